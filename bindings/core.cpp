@@ -1,0 +1,24 @@
+// The module ringlet._core. Each folder of the core binds itself in a file of its own.
+#include "arrays.h"
+
+#include "ringlet/math/simd.h"
+
+#include <nanobind/stl/string.h>
+#include <omp.h>
+
+namespace nb = nanobind;
+
+void bind_geometry(nb::module_ &module);
+void bind_groom(nb::module_ &module);
+void bind_scene(nb::module_ &module);
+
+NB_MODULE(_core, module) {
+    module.doc() = "Ringlet's core: arrays in, arrays out. SI units.";
+    module.def("simd", [] { return std::string(ringlet::simd_name(ringlet::simd())); },
+               "The instruction set in use: baseline, avx2 or avx512.");
+    module.def("thread_count", [] { return omp_get_max_threads(); }, "Threads that the core uses.");
+    module.def("set_thread_count", [](int count) { omp_set_num_threads(count); }, nb::arg("count"));
+    bind_geometry(module);
+    bind_groom(module);
+    bind_scene(module);
+}

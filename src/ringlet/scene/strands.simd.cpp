@@ -1,0 +1,2 @@
+// strands kernel, being written
+namespace ringlet::RINGLET_SIMD {}
