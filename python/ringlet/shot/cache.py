@@ -1,0 +1,23 @@
+"""The result of a simulation: where every groom guide is, frame by frame."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass
+class Cache:
+    """Simulated groom guides over time.
+
+    frames:     frame numbers (time codes), shape (k,)
+    points:     positions [m], shape (k, n, 3), float32; the same points as ``groom.locks``
+    statistics: what the solver reports, one dict per frame
+    """
+
+    frames: NDArray[np.float64]
+    points: NDArray[np.float32]
+    statistics: list[dict[str, Any]] = field(default_factory=list)
