@@ -32,7 +32,8 @@ nb::tuple bind_roots(const Array3<double> &points, const Array3<int> &triangles,
                      const std::optional<Array1<int>> &allowed) {
     const TriangleMesh mesh = mesh_of(points, triangles);
     if (allowed) check_triangles(view(*allowed), mesh);
-    if ((allowed ? allowed->shape(0) : triangles.shape(0)) == 0) throw std::invalid_argument("there are no triangles to bind to");
+    if ((allowed ? allowed->shape(0) : triangles.shape(0)) == 0)
+        throw std::invalid_argument("there are no triangles to bind to");
     const View<Vec3> places = vectors<Vec3>(roots);
     const size_t count = places.size();
     std::vector<int> triangle(count);
@@ -75,12 +76,14 @@ nb::tuple root_frames(const Array3<double> &points, const Array3<int> &triangles
             frames[i] = surface_frame(mesh, normals, triangle[i], barycentric[i]);
         }
     }
-    return nb::make_tuple(to_numpy<double>(std::move(positions), {count, 3}), to_numpy<double>(std::move(frames), {count, 3, 3}));
+    return nb::make_tuple(to_numpy<double>(std::move(positions), {count, 3}),
+                          to_numpy<double>(std::move(frames), {count, 3, 3}));
 }
 
 CurveView curves_of(const Array3<double> &points, const Array1<int> &offsets) {
     const CurveView curves{vectors<Vec3>(points), view(offsets)};
-    if (curves.offsets.empty() || curves.offsets.front() != 0 || curves.offsets.back() != static_cast<int>(curves.points.size()))
+    if (curves.offsets.empty() || curves.offsets.front() != 0 ||
+        curves.offsets.back() != static_cast<int>(curves.points.size()))
         throw std::invalid_argument("offsets do not fit the points");
     for (int i = 0; i < curves.count(); ++i)
         if (curves.offsets[i + 1] - curves.offsets[i] < 2) throw std::invalid_argument("a curve has fewer than 2 points");
@@ -88,7 +91,8 @@ CurveView curves_of(const Array3<double> &points, const Array1<int> &offsets) {
 }
 
 // Frames (n, 3, 3) along curves; columns: axis, tangent × axis, tangent.
-nb::ndarray<nb::numpy, double> curve_frames(const Array3<double> &points, const Array1<int> &offsets, const Array3<double> &axis) {
+nb::ndarray<nb::numpy, double> curve_frames(const Array3<double> &points, const Array1<int> &offsets,
+                                            const Array3<double> &axis) {
     const CurveView curves = curves_of(points, offsets);
     const View<Vec3> first = vectors<Vec3>(axis);
     if (static_cast<int>(first.size()) != curves.count()) throw std::invalid_argument("axis needs one row a curve");
@@ -129,12 +133,14 @@ void bind_geometry(nb::module_ &module) {
     module.def("bind_roots", &bind_roots, "points"_a, "triangles"_a, "roots"_a, "allowed_triangles"_a = nb::none(),
                "The point of a triangle mesh nearest to each root: triangle (k,), barycentric (k, 3), distance (k,) [m].\n"
                "points (n, 3) [m], triangles (m, 3), roots (k, 3) [m], allowed_triangles: indices to search, or None for all.");
-    module.def("root_frames", &root_frames, "points"_a, "triangles"_a, "root_triangle"_a, "root_barycentric"_a,
-               "Roots on a mesh as it stands: positions (k, 3) [m] and frames (k, 3, 3), whose columns are tangent, bitangent and\n"
-               "normal. The frame is tied to the material: now @ rest.T carries what grows there.");
-    module.def("curve_frames", &curve_frames, "points"_a, "offsets"_a, "axis"_a,
-               "Rotation-minimising frames (n, 3, 3) along curves (Wang et al. 2008), whose columns are the carried axis, tangent\n"
-               "x axis, and tangent; axis (count, 3) is made orthogonal to the first tangent of each curve.");
+    module.def(
+        "root_frames", &root_frames, "points"_a, "triangles"_a, "root_triangle"_a, "root_barycentric"_a,
+        "Roots on a mesh as it stands: positions (k, 3) [m] and frames (k, 3, 3), whose columns are tangent, bitangent and\n"
+        "normal. The frame is tied to the material: now @ rest.T carries what grows there.");
+    module.def(
+        "curve_frames", &curve_frames, "points"_a, "offsets"_a, "axis"_a,
+        "Rotation-minimising frames (n, 3, 3) along curves (Wang et al. 2008), whose columns are the carried axis, tangent\n"
+        "x axis, and tangent; axis (count, 3) is made orthogonal to the first tangent of each curve.");
     module.def("resample_curves", &resample_curves, "points"_a, "offsets"_a, "count"_a,
                "count points evenly spaced along the Catmull-Rom spline through each curve: (curves * count, 3) [m].");
 }

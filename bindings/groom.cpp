@@ -83,10 +83,10 @@ nb::ndarray<nb::numpy, double> push_out_curves(const Array3<double> &points, con
     return to_numpy<double>(std::move(result), {curves.points.size(), 3});
 }
 
-nb::ndarray<nb::numpy, float> warp(const Array3<float> &lock_points, const Array1<int> &lock_offsets, const Array3<double> &axis,
-                                   const Array3<float> &root, const Array1<int> &first, const Table<float> &offset,
-                                   const Array1<float> &tip, const Table<float> &frizz, const Array1<float> &profile,
-                                   const Array1<float> &hold) {
+nb::ndarray<nb::numpy, float> warp(const Array3<float> &lock_points, const Array1<int> &lock_offsets,
+                                   const Array3<double> &axis, const Array3<float> &root, const Array1<int> &first,
+                                   const Table<float> &offset, const Array1<float> &tip, const Table<float> &frizz,
+                                   const Array1<float> &profile, const Array1<float> &hold) {
     const size_t locks = lock_offsets.size() - 1, points = profile.size(), hairs = first.data()[locks];
     require(first.size() == locks + 1 && axis.shape(0) == locks, "first and axis need one row a lock");
     require(root.shape(0) == hairs && offset.size() == 2 * hairs && tip.size() == hairs && frizz.shape(0) == hairs,
@@ -114,11 +114,13 @@ nb::ndarray<nb::numpy, float> warp(const Array3<float> &lock_points, const Array
 } // namespace
 
 void bind_groom(nb::module_ &module) {
-    module.def("thin_out", &thin_out_samples, "candidates"_a, "area"_a, "count"_a,
-               "Indices of count evenly spread samples out of a dense cloud of candidates (n, 3) on a surface of that area [m2].");
+    module.def(
+        "thin_out", &thin_out_samples, "candidates"_a, "area"_a, "count"_a,
+        "Indices of count evenly spread samples out of a dense cloud of candidates (n, 3) on a surface of that area [m2].");
     module.def("curl_curves", &curl_curves, "points"_a, "offsets"_a, nb::kw_only(), "axis"_a, "radius"_a, "turns"_a, "phase"_a,
-               "start"_a, "width_ramp"_a, "rate_ramp"_a, "width_noise"_a, "rate_noise"_a, "hand"_a, "flatness"_a, "keep_length"_a,
-               "count"_a, "Winds each shape curve into a curl of count evenly spaced points; see groom/curl.h.");
+               "start"_a, "width_ramp"_a, "rate_ramp"_a, "width_noise"_a, "rate_noise"_a, "hand"_a, "flatness"_a,
+               "keep_length"_a, "count"_a,
+               "Winds each shape curve into a curl of count evenly spaced points; see groom/curl.h.");
     module.def("push_out", &push_out_curves, "points"_a, "offsets"_a, "body_points"_a, "body_triangles"_a, "margin"_a,
                "The points of curves moved out of a body, to a margin [m]; roots stay.");
     module.def("warp_hairs", &warp, "lock_points"_a, "lock_offsets"_a, nb::kw_only(), "axis"_a, "root"_a, "first"_a, "offset"_a,

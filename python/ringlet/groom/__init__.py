@@ -6,4 +6,16 @@ from ringlet.groom.presets import PRESETS
 from ringlet.groom.recipe import Recipe, parse_recipe, read_recipe, schema
 from ringlet.groom.stack import Memory, make_groom
 
-__all__ = ["PRESETS", "Groom", "HairSettings", "Hairs", "Memory", "Recipe", "make_groom", "make_hairs", "parse_recipe", "read_recipe", "schema"]
+__all__ = [
+    "PRESETS",
+    "Groom",
+    "HairSettings",
+    "Hairs",
+    "Memory",
+    "Recipe",
+    "make_groom",
+    "make_hairs",
+    "parse_recipe",
+    "read_recipe",
+    "schema",
+]

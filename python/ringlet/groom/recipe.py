@@ -17,9 +17,9 @@ from ringlet.groom.settings import UNITS, Section, explain
 class ScalpSettings(Section):
     """The mesh that hair grows on."""
 
-    file: str | None = Field(None, description="USD file with the mesh, beside the recipe or with a full path")
-    mesh: str | None = Field(None, description="prim of the mesh; needed when the file has several")
-    region: str | None = Field(None, description="named faces (GeomSubset) that carry hair; all when absent")
+    file: str | None = Field(default=None, description="USD file with the mesh, beside the recipe or with a full path")
+    mesh: str | None = Field(default=None, description="prim of the mesh; needed when the file has several")
+    region: str | None = Field(default=None, description="named faces (GeomSubset) that carry hair; all when absent")
 
 
 def _kind_of_guides(data: Any) -> str:
@@ -30,18 +30,20 @@ class Recipe(Section):
     """A groom from guides to hairs. Inside, lengths are in metres."""
 
     ringlet: Literal[1] = Field(description="version of this format")
-    name: str = Field("", description="what the groom is called")
-    seed: int = Field(1, ge=0, le=2**31, description="another seed gives another head of hair of the same kind")
-    unit: Literal["m", "cm", "mm", "in"] = Field("cm", description="unit of lengths that are plain numbers")
-    scalp: ScalpSettings = Field(ScalpSettings(), description="where it grows")
-    guides: Annotated[Annotated[Grown, Tag("grown")] | Annotated[Drawn, Tag("drawn")], Discriminator(_kind_of_guides)] = Field(
-        Grown(), description="the curves that give silhouette and length: grown, or drawn and read from a file"
+    name: str = Field(default="", description="what the groom is called")
+    seed: int = Field(default=1, ge=0, le=2**31, description="another seed gives another head of hair of the same kind")
+    unit: Literal["m", "cm", "mm", "in"] = Field(default="cm", description="unit of lengths that are plain numbers")
+    scalp: ScalpSettings = Field(default=ScalpSettings(), description="where it grows")
+    guides: Annotated[
+        Annotated[Grown, Tag("grown")] | Annotated[Drawn, Tag("drawn")], Discriminator(_kind_of_guides)
+    ] = Field(
+        default=Grown(), description="the curves that give silhouette and length: grown, or drawn and read from a file"
     )
-    locks: Locks = Field(Locks(), description="the locks between the guides")
-    shape: list[ShapeOperator] = Field([], description="operators on the shape of the locks, in order")
-    curl: Curl | None = Field(None, description="the curl; straight hair when absent")
-    clean: Clean = Field(Clean(), description="keeping out of the head")
-    hairs: HairSettings = Field(HairSettings(), description="the hairs of each lock")
+    locks: Locks = Field(default=Locks(), description="the locks between the guides")
+    shape: list[ShapeOperator] = Field(default=[], description="operators on the shape of the locks, in order")
+    curl: Curl | None = Field(default=None, description="the curl; straight hair when absent")
+    clean: Clean = Field(default=Clean(), description="keeping out of the head")
+    hairs: HairSettings = Field(default=HairSettings(), description="the hairs of each lock")
 
     _path: Path | None = PrivateAttr(None)
     _text: str | None = PrivateAttr(None)

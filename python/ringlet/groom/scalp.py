@@ -49,13 +49,16 @@ class Scalp:
         return 0.5 * (places.min(axis=0) + places.max(axis=0))
 
     def sample(self, count: int, seed: int) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.float64]]:
-        """``count`` places evenly spread over the region, without a pattern: ids, triangles (count,), barycentrics (count, 3).
+        """``count`` places evenly spread over the region, without a pattern: ids, triangles (count,) and barycentrics
+        (count, 3).
 
         The places are chosen among candidates that belong to their triangle, so their ids and most of the places stay
         when the count or the region changes.
         """
         random = Random(seed, "candidates")
-        density = 2.0 ** np.ceil(np.log2(5 * count / self.area))  # in powers of 2: a few more samples use the same candidates
+        density = 2.0 ** np.ceil(
+            np.log2(5 * count / self.area)
+        )  # in powers of 2: a few more samples use the same candidates
         each = np.floor(self.areas * density + random.uniform(self.region, IDS_PER_TRIANGLE)).astype(np.int64)
         if each.max() >= IDS_PER_TRIANGLE:
             raise UserError(f"{self.where}: {count} curves on so few triangles; subdivide the mesh")
@@ -83,15 +86,16 @@ class Scalp:
         )[1]
 
     def bind(self, curves: Curves, tolerance: float, what: str) -> Curves:
-        """The curves with ``root_triangle`` and ``root_barycentric``; refuses roots farther than ``tolerance`` [m] off."""
+        """The curves with ``root_triangle`` and ``root_barycentric``; refuses roots more than ``tolerance`` [m] off."""
         triangle, barycentric, distance = _core.bind_roots(
             self.points, self.triangles, np.ascontiguousarray(curves.roots, np.float64), self.region
         )
         if distance.max() > tolerance:
             worst, off = int(distance.argmax()), int((distance > tolerance).sum())
             raise UserError(
-                f"{what}: {off} of {len(curves)} roots are not on the scalp ({self.where}); curve {curves.ids[worst]} is "
-                f"{distance[worst]:.4g} m away, at most {tolerance:.4g} m is allowed; {self._remedy(curves)}"
+                f"{what}: {off} of {len(curves)} roots are not on the scalp ({self.where}); that of curve "
+                f"{curves.ids[worst]} is {distance[worst]:.4g} m away, at most {tolerance:.4g} m is allowed; "
+                f"{self._remedy(curves)}"
             )
         bound = {"root_triangle": triangle, "root_barycentric": barycentric}
         return Curves(curves.points, curves.offsets, curves.ids, {**curves.curve, **bound}, curves.point)
@@ -122,7 +126,9 @@ def _check_mesh(mesh: Mesh) -> None:
     if not (finite := np.isfinite(mesh.points).all(axis=1)).all():
         raise UserError(f"{mesh.name}: point {np.flatnonzero(~finite)[0]} is not finite; repair the mesh")
     if mesh.triangles.min() < 0 or mesh.triangles.max() >= len(mesh.points):
-        raise UserError(f"{mesh.name}: a face names point {mesh.triangles.max()}, but there are {len(mesh.points)}; repair the mesh")
+        raise UserError(
+            f"{mesh.name}: a face names point {mesh.triangles.max()}, but there are {len(mesh.points)}; repair the mesh"
+        )
 
 
 def _check_region(scalp: Scalp) -> None:
@@ -137,6 +143,8 @@ def _check_region(scalp: Scalp) -> None:
     edges = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
     _, uses = np.unique(np.sort(edges, axis=1), axis=0, return_counts=True)
     if uses.max() > 2:
-        raise UserError(f"{scalp.where}: an edge is shared by {uses.max()} triangles; the scalp must be a manifold surface")
+        raise UserError(
+            f"{scalp.where}: an edge is shared by {uses.max()} triangles; the scalp must be a manifold surface"
+        )
     if len(np.unique(edges, axis=0)) < len(edges):
         raise UserError(f"{scalp.where}: neighbouring faces are turned opposite ways; make their normals agree")

@@ -1,4 +1,4 @@
-"""What recipe sections are made of: lengths with units, values that vary from lock to lock, ramps; and readable errors."""
+"""What recipe sections are made of: lengths with units, values that vary from lock to lock, ramps; readable errors."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import difflib
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Annotated, Any, get_args
 
 import numpy as np
@@ -26,7 +27,8 @@ def refuse(message: str) -> PydanticCustomError:
 
 
 class Section(BaseModel):
-    """A table of the recipe. Unknown settings are refused with the nearest name that exists."""
+    """A table of the recipe. Unknown settings are refused with the nearest name that exists; a value that is given
+    without its variation or ramp keeps those of the default."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
@@ -36,8 +38,23 @@ class Section(BaseModel):
         if isinstance(data, dict):
             for key in data:
                 if key not in cls.model_fields:
-                    raise PydanticCustomError("unknown", "{key}{hint}", {"key": key, "hint": did_you_mean(key, cls.model_fields)})
+                    raise PydanticCustomError(
+                        "unknown", "{key}{hint}", {"key": key, "hint": did_you_mean(key, cls.model_fields)}
+                    )
+            for name, default in cls.defaults(data).items():
+                if name in data:
+                    given = data[name]
+                    if isinstance(default, dict) and not isinstance(given, BaseModel):
+                        data = {**data, name: {**default, **(given if isinstance(given, dict) else {"value": given})}}
+                else:
+                    data = {**data, name: default}
         return data
+
+    @classmethod
+    def defaults(cls, data: dict[str, Any]) -> dict[str, Any]:
+        """What holds where ``data`` says nothing, as a recipe would say it."""
+        varied = {name: field for name, field in cls.model_fields.items() if isinstance(field.default, Varied)}
+        return {name: _as_said(field.default, field.metadata) for name, field in varied.items()}
 
 
 def did_you_mean(name: str, valid: Any) -> str:
@@ -46,9 +63,17 @@ def did_you_mean(name: str, valid: Any) -> str:
     return f"; did you mean '{near[0]}'?" if near else f"; there are: {', '.join(valid)}"
 
 
+def _as_said(value: Varied, metadata: list[Any]) -> dict[str, Any]:
+    said = value.model_dump(exclude_unset=True)
+    if any(isinstance(part, Quantity) and part.unit == "m" for part in metadata):
+        said["value"] = f"{said['value']!r} m"
+    return said
+
+
 @dataclass(frozen=True)
 class Quantity:
-    """The unit and bounds of a setting. Unit ``m``: a number counts in the recipe's unit, a text carries its own (``"5 mm"``)."""
+    """The unit and bounds of a setting. Unit ``m``: a number counts in the recipe's unit, a text carries its own, as in
+    ``"5 mm"``."""
 
     unit: str = ""
     least: float = -np.inf
@@ -59,7 +84,9 @@ class Quantity:
         if isinstance(value, str):
             match = re.fullmatch(r"\s*([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*([a-z]+)\s*", value)
             if self.unit != "m" or not match or match[2] not in UNITS:
-                raise refuse(f"is '{value}'; must be a number" + (' or a length such as "5 mm"' if self.unit == "m" else ""))
+                raise refuse(
+                    f"is '{value}'; must be a number" + (' or a length such as "5 mm"' if self.unit == "m" else "")
+                )
             try:
                 value = float(match[1]) * UNITS[match[2]]
             except ValueError:
@@ -86,7 +113,9 @@ class Quantity:
         number = self.number(value, unit)
         return {"value": number} if table else number
 
-    def __get_pydantic_core_schema__(self, source: Any, handler: Callable[[Any], core_schema.CoreSchema]) -> core_schema.CoreSchema:
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: Callable[[Any], core_schema.CoreSchema]
+    ) -> core_schema.CoreSchema:
         table = any(isinstance(kind, type) and issubclass(kind, Section) for kind in (source, *get_args(source)))
         return core_schema.with_info_before_validator_function(
             lambda value, info: self._read(value, table, info), handler(source)
@@ -106,9 +135,15 @@ class Varied(Section):
     ``{ value = …, vary = …, noise = …, noise_size = … }``."""
 
     value: float
-    vary: float = Field(0.0, ge=0.0, le=1.0, description="random change per lock, as a part of the value: 0.2 is ±20 %")
-    noise: float = Field(0.0, ge=0.0, le=1.0, description="smooth change over the scalp, as a part of the value")
-    noise_size: Annotated[float, Quantity("m", 1e-4, 10.0)] = Field(0.03, description="distance over which the noise changes")
+    vary: float = Field(
+        default=0.0, ge=0.0, le=1.0, description="random change per lock, as a part of the value: 0.2 is ±20 %"
+    )
+    noise: float = Field(
+        default=0.0, ge=0.0, le=1.0, description="smooth change over the scalp, as a part of the value"
+    )
+    noise_size: Annotated[float, Quantity("m", 1e-4, 10.0)] = Field(
+        default=0.03, description="distance over which the noise changes"
+    )
 
     def per_curve(self, random: Random, ids: NDArray, places: NDArray) -> NDArray[np.float64]:
         """The value for each curve, shape (len(ids),); ``places``: roots [m], shape (len(ids), 3)."""
@@ -121,10 +156,12 @@ class Varied(Section):
 
 
 class Ramped(Varied):
-    """A varied value with a ramp from root to tip: ``{ value = …, ramp = [[0, 1], [1, 0.5]] }`` multiplies it by 1 at the root and
-    by 0.5 at the tip, smoothly between and without overshoot."""
+    """A varied value with a ramp from root to tip: ``{ value = …, ramp = [[0, 1], [1, 0.5]] }`` multiplies it by 1 at
+    the root and by 0.5 at the tip, smoothly between and without overshoot."""
 
-    ramp: list[tuple[float, float]] = Field([(0.0, 1.0), (1.0, 1.0)], description="[place, factor] from root (0) to tip (1)")
+    ramp: list[tuple[float, float]] = Field(
+        default=[(0.0, 1.0), (1.0, 1.0)], description="[place, factor] from root (0) to tip (1)"
+    )
 
     @field_validator("ramp")
     @classmethod
@@ -133,8 +170,9 @@ class Ramped(Varied):
         if not ramp:
             raise refuse("is empty; give at least one [place, factor]")
         if min(places) < 0.0 or max(places) > 1.0:
-            raise refuse(f"has a place at {min(places) if min(places) < 0 else max(places)}; must be between 0 (root) and 1 (tip)")
-        if any(b <= a for a, b in zip(places, places[1:], strict=False)):
+            outside = min(places) if min(places) < 0.0 else max(places)
+            raise refuse(f"has a place at {outside}; must be between 0 (root) and 1 (tip)")
+        if any(b <= a for a, b in pairwise(places)):
             raise refuse(f"has places {places}; must ascend")
         if any(factor < 0.0 for _, factor in ramp):
             raise refuse(f"has a factor of {min(f for _, f in ramp)}; must be at least 0")
@@ -152,7 +190,11 @@ def explain(error: ValidationError, where: str) -> UserError:
     """The first mistake that a model found, in one line: file, setting, value, remedy."""
     first = error.errors()[0]
     name, kind, context, given = _setting(first["loc"]), first["type"], first.get("ctx", {}), first["input"]
-    at_least = {"greater_than_equal": ("at least", "ge"), "less_than_equal": ("at most", "le"), "greater_than": ("more than", "gt")}
+    at_least = {
+        "greater_than_equal": ("at least", "ge"),
+        "less_than_equal": ("at most", "le"),
+        "greater_than": ("more than", "gt"),
+    }
     if kind == "unknown":
         message = f"{name}.{context['key']} is not a setting{context['hint']}".removeprefix(".")
     elif kind == "ringlet":
@@ -169,6 +211,10 @@ def explain(error: ValidationError, where: str) -> UserError:
         message = f"{name}.op is '{context['tag']}'{did_you_mean(context['tag'], valid)}"
     elif kind == "union_tag_not_found":
         message = f"{name} has no 'op'; say which operator it is"
+    elif kind in ("model_type", "model_attributes_type", "dict_type"):
+        message = f"{name} is {given!r}; must be a table of settings"
+    elif kind.startswith(("int_", "float_")):
+        message = f"{name} is {given!r}; must be a {'whole ' if kind.startswith('int') else ''}number"
     else:
         message = f"{name} is {given!r}; {first['msg'][0].lower()}{first['msg'][1:]}"
     return UserError(f"{where}: {message}")
@@ -177,12 +223,12 @@ def explain(error: ValidationError, where: str) -> UserError:
 def _setting(loc: tuple[int | str, ...]) -> str:
     """A setting's name as it stands in the recipe: ``curl.width``, ``shape[0].amplitude``."""
     name = ""
-    for before, part in zip((None, *loc), loc, strict=False):
+    for depth, part in enumerate(loc):
         if isinstance(part, int):
             name += f"[{part}]"
-        elif not (isinstance(before, int) and name.startswith("shape")) and (before, part) not in TAGS:
-            name += f".{part}"  # what is left out are the names that pydantic gives to the kinds of a union
+        elif depth != _KIND_AT.get(str(loc[0])):
+            name += f".{part}"
     return name.removeprefix(".").removesuffix(".value")
 
 
-TAGS = {("guides", "grown"), ("guides", "drawn")}
+_KIND_AT = {"guides": 1, "shape": 2}  # where pydantic puts in the kind of a union, which no recipe says

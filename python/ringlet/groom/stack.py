@@ -52,7 +52,9 @@ def make_groom(
     try:
         key, surface = _scalp(recipe, scalp, memory)
         if isinstance(recipe.guides, Drawn) and drawn_guides is None:
-            raise UserError(f"guides.file is '{recipe.guides.file}', but no curves were read from it; pass drawn_guides")
+            raise UserError(
+                f"guides.file is '{recipe.guides.file}', but no curves were read from it; pass drawn_guides"
+            )
         if drawn_guides is not None:
             key = _key(key, drawn_guides.points.tobytes(), drawn_guides.offsets.tobytes(), drawn_guides.ids.tobytes())
         curves = drawn_guides or Curves.from_list([])
@@ -105,8 +107,12 @@ def _run(operator: Operator, curves: Curves, key: str, context: Context, memory:
 
 
 def _scalp(recipe: Recipe, mesh: Mesh, memory: Memory) -> tuple[str, Scalp]:
-    key = _key(str((recipe.seed, recipe.scalp.region)), mesh.points.tobytes(), mesh.triangles.tobytes(),
-               *(values.tobytes() for values in mesh.regions.values()))
+    key = _key(
+        str((recipe.seed, recipe.scalp.region)),
+        mesh.points.tobytes(),
+        mesh.triangles.tobytes(),
+        *(values.tobytes() for values in mesh.regions.values()),
+    )
     if memory.scalp is None or memory.scalp[0] != key:
         memory.scalp = (key, Scalp(mesh, recipe.scalp.region))
     return memory.scalp

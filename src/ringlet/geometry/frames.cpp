@@ -30,8 +30,10 @@ void tangents(View<Vec3> points, std::span<Vec3> result) {
         if (i + 1 < n) after = (points[i + 1] - points[i]).stableNormalized();
         const Vec3 sum = before + after;
         // Where the curve turns straight back, or two points coincide, the last good direction is as right as any.
-        if (sum.squaredNorm() > 1e-20) result[i] = sum.normalized();
-        else result[i] = i > 0 ? result[i - 1] : Vec3::UnitY();
+        if (sum.squaredNorm() > 1e-20)
+            result[i] = sum.normalized();
+        else
+            result[i] = i > 0 ? result[i - 1] : Vec3::UnitY();
         if (after.squaredNorm() > 0.5) before = after;
     }
 }

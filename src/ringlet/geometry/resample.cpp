@@ -33,7 +33,8 @@ void resample(View<Vec3> points, std::span<Vec3> result) {
     const size_t fine_count = 8 * std::max(points.size(), result.size());
     std::vector<Vec3> fine(fine_count);
     const double last = static_cast<double>(points.size() - 1);
-    for (size_t k = 0; k < fine_count; ++k) fine[k] = spline(points, last * static_cast<double>(k) / static_cast<double>(fine_count - 1));
+    for (size_t k = 0; k < fine_count; ++k)
+        fine[k] = spline(points, last * static_cast<double>(k) / static_cast<double>(fine_count - 1));
     fine.back() = points.back();
     space_evenly(fine, result);
 }

@@ -15,7 +15,8 @@ struct TriangleMesh {
 
     const Vec3 &corner(int triangle, int k) const { return points[triangles[triangle][k]]; }
     Vec3 at(int triangle, const Vec3 &barycentric) const {
-        return barycentric[0] * corner(triangle, 0) + barycentric[1] * corner(triangle, 1) + barycentric[2] * corner(triangle, 2);
+        return barycentric[0] * corner(triangle, 0) + barycentric[1] * corner(triangle, 1) +
+               barycentric[2] * corner(triangle, 2);
     }
 };
 
@@ -25,8 +26,8 @@ std::vector<Vec3> vertex_normals(const TriangleMesh &mesh);
 // The unit normal interpolated from vertex normals, smooth from triangle to triangle.
 Vec3 smooth_normal(const TriangleMesh &mesh, View<Vec3> normals, int triangle, const Vec3 &barycentric);
 
-// Columns: tangent, bitangent, normal. The normal is smooth; the tangent is the triangle's first edge, so that the frame is tied
-// to the material: R = now · restᵀ carries whatever grows there.
+// Columns: tangent, bitangent, normal. The normal is smooth; the tangent is the triangle's first edge, so that the frame is
+// tied to the material: R = now · restᵀ carries whatever grows there.
 Mat3 surface_frame(const TriangleMesh &mesh, View<Vec3> normals, int triangle, const Vec3 &barycentric);
 
 } // namespace ringlet

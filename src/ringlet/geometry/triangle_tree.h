@@ -20,7 +20,7 @@ SurfacePoint closest_point(const TriangleMesh &mesh, int triangle, const Vec3 &p
 
 // Borrows the mesh, which must outlive it.
 class TriangleTree {
-  public:
+public:
     TriangleTree(const TriangleMesh &mesh, View<int> triangles); // searches these triangles only
     explicit TriangleTree(const TriangleMesh &mesh);             // searches all
 
@@ -28,7 +28,7 @@ class TriangleTree {
     SurfacePoint closest(const Vec3 &p, double within = std::numeric_limits<double>::infinity()) const;
     const TriangleMesh &mesh() const { return mesh_; }
 
-  private:
+private:
     struct Node {
         Vec3 low, high;
         int begin, count; // leaf: triangles order_[begin, begin + count); inner (count 0): children next to it and at begin

@@ -26,8 +26,9 @@ double eased_table(View<double> table, double u) {
 
 // One lock being curled; the scratch is kept from lock to lock.
 class Curler {
-  public:
-    Curler(const CurlSettings &settings, int count) : settings_(settings), fine_(8 * count), centre_(fine_), tangent_(fine_), axis_(fine_), curled_(fine_) {}
+public:
+    Curler(const CurlSettings &settings, int count)
+        : settings_(settings), fine_(8 * count), centre_(fine_), tangent_(fine_), axis_(fine_), curled_(fine_) {}
 
     void operator()(int lock, View<Vec3> shape, std::span<Vec3> result) {
         double length = 0.0;
@@ -45,7 +46,7 @@ class Curler {
         space_evenly(curled_, result);
     }
 
-  private:
+private:
     // Curls the first part of the shape, with all turns in it when they are counted per lock; returns the arc length.
     double wind(int lock, View<Vec3> shape, double length, double part) {
         const size_t n = curled_.size();
@@ -66,8 +67,7 @@ class Curler {
             const double radius = settings_.radius[lock] * lerp_table(settings_.width_ramp, u) * opened * opened *
                                   (3.0 - 2.0 * opened) * (1.0 + eased_table(width_noise, u));
             const Vec3 b = tangent_[k].cross(axis_[k]);
-            curled_[k] =
-                centre_[k] + radius * (std::cos(phase) * axis_[k] + (1.0 - settings_.flatness) * std::sin(phase) * b);
+            curled_[k] = centre_[k] + radius * (std::cos(phase) * axis_[k] + (1.0 - settings_.flatness) * std::sin(phase) * b);
             if (k > 0) arc += (curled_[k] - curled_[k - 1]).norm();
             phase += per_step * lerp_table(settings_.rate_ramp, u) * (1.0 + eased_table(rate_noise, u)) * eased_table(hand, u);
         }

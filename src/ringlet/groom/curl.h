@@ -20,12 +20,12 @@ struct CurlSettings {
     View<double> rate_noise;  // factor - 1 on the turns per length, `noise_count` values a lock
     View<double> hand;        // +1 or -1 along the lock, `noise_count` values a lock: a change is a switchback
     int noise_count = 1;
-    double flatness = 0.0;  // 0 round … 1 flat
+    double flatness = 0.0;    // 0 round … 1 flat
     bool keep_length = false; // the curled arc length is that of the shape, and the silhouette shortens; else the reverse
 };
 
-// The helix p(u) = c(u) + r(u) (a(u) cos φ(u) + b(u) sin φ(u)) about each shape curve c, where a and b are its rotation-minimising
-// frame and φ' the turns per length; `count` points per lock, evenly spaced along the curl.
+// The helix p(u) = c(u) + r(u) (a(u) cos φ(u) + b(u) sin φ(u)) about each shape curve c, where a and b are its
+// rotation-minimising frame and φ' the turns per length; `count` points per lock, evenly spaced along the curl.
 std::vector<Vec3> curl(const CurveView &shapes, const CurlSettings &settings, int count);
 
 } // namespace ringlet

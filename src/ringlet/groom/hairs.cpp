@@ -7,7 +7,7 @@ namespace {
 
 // Coordinates apart, with a point more before the root and two after the tip.
 class Table {
-  public:
+public:
     // Rows: x, y, z of the point, of a and of b.
     LockTable fill(View<Vec3f> source, View<Vec3> axis_seed) {
         const size_t n = source.size(), stride = n + 3;
@@ -30,7 +30,8 @@ class Table {
             put(i + 1, source[i], axes_[i].cast<float>(), tangents_[i].cross(axes_[i]).cast<float>());
         // The curve goes on as a parabola beyond its ends (see resample.cpp).
         const bool bent = n > 2;
-        const Vec3f before = bent ? Vec3f(3.0f * source[0] - 3.0f * source[1] + source[2]) : Vec3f(2.0f * source[0] - source[1]);
+        const Vec3f before =
+            bent ? Vec3f(3.0f * source[0] - 3.0f * source[1] + source[2]) : Vec3f(2.0f * source[0] - source[1]);
         const Vec3f after = bent ? Vec3f(3.0f * source[n - 1] - 3.0f * source[n - 2] + source[n - 3])
                                  : Vec3f(2.0f * source[n - 1] - source[n - 2]);
         put(0, before, axes_[0].cast<float>(), tangents_[0].cross(axes_[0]).cast<float>());
@@ -48,7 +49,7 @@ class Table {
         return table;
     }
 
-  private:
+private:
     std::vector<Vec3> points_, tangents_, axes_;
     std::vector<float> numbers_;
 };
@@ -65,7 +66,8 @@ void warp_hairs(View<Vec3f> lock_points, View<int> lock_offsets, View<Vec3> axis
 #pragma omp for schedule(dynamic, 8)
         for (int lock = 0; lock < locks; ++lock) {
             const int begin = lock_offsets[lock];
-            const LockTable filled = table.fill(lock_points.subspan(begin, lock_offsets[lock + 1] - begin), axis.subspan(lock, 1));
+            const LockTable filled =
+                table.fill(lock_points.subspan(begin, lock_offsets[lock + 1] - begin), axis.subspan(lock, 1));
             const size_t first = layout.first[lock];
             const HairSpan hairs{.count = layout.first[lock + 1] - layout.first[lock],
                                  .points = points,

@@ -39,8 +39,10 @@ void fill_hairs(const LockTable &lock, const HairSpan &hairs) {
                 const float t = at - static_cast<float>(i);
                 const float p0 = p[i - 1], p1 = p[i], p2 = p[i + 1], p3 = p[i + 2];
                 const float on_lock =
-                    p1 + 0.5f * t * ((p2 - p0) + t * ((2.0f * p0 - 5.0f * p1 + 4.0f * p2 - p3) + t * (3.0f * (p1 - p2) + p3 - p0)));
-                out[k] = on_lock + x[k] * (a[i] + t * (a[i + 1] - a[i])) + y[k] * (b[i] + t * (b[i + 1] - b[i])) + hold[k] * root_c;
+                    p1 +
+                    0.5f * t * ((p2 - p0) + t * ((2.0f * p0 - 5.0f * p1 + 4.0f * p2 - p3) + t * (3.0f * (p1 - p2) + p3 - p0)));
+                out[k] =
+                    on_lock + x[k] * (a[i] + t * (a[i + 1] - a[i])) + y[k] * (b[i] + t * (b[i + 1] - b[i])) + hold[k] * root_c;
             }
         }
         float *__restrict result = hairs.result + 3L * n * hair;

@@ -11,7 +11,7 @@ namespace {
 
 // Points sorted into cubes, so that neighbours are found in the 27 cubes around.
 class Grid {
-  public:
+public:
     Grid(View<Vec3> points, double cell) : points_(points), cell_(cell) {
         for (int i = 0; i < static_cast<int>(points.size()); ++i) cells_[key(cube(points[i]))].push_back(i);
     }
@@ -26,7 +26,7 @@ class Grid {
                             if (j != i) visit(j);
     }
 
-  private:
+private:
     Eigen::Vector3i cube(const Vec3 &p) const { return (p / cell_).array().floor().cast<int>(); }
     static std::uint64_t key(const Eigen::Vector3i &c) {
         return (static_cast<std::uint64_t>(c[0] & 0x1fffff) << 42) | (static_cast<std::uint64_t>(c[1] & 0x1fffff) << 21) |
@@ -41,7 +41,8 @@ class Grid {
 
 std::vector<int> thin_out(View<Vec3> candidates, double area, int count) {
     const int total = static_cast<int>(candidates.size());
-    const double reach = 2.0 * std::sqrt(area / (2.0 * std::sqrt(3.0) * std::max(count, 1))); // twice the radius of a perfect packing
+    const double reach =
+        2.0 * std::sqrt(area / (2.0 * std::sqrt(3.0) * std::max(count, 1))); // twice the radius of a perfect packing
     const Grid grid(candidates, reach);
     const auto crowding = [&](int i, int j) {
         const double distance = (candidates[i] - candidates[j]).norm();

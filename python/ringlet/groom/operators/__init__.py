@@ -18,4 +18,18 @@ from ringlet.groom.operators.scraggle import Scraggle
 
 ShapeOperator = Annotated[Resample | Length | Loft | Scraggle | Clump, Field(discriminator="op")]
 
-__all__ = ["Clean", "Clump", "Context", "Curl", "Drawn", "Grown", "Length", "Locks", "Loft", "Operator", "Resample", "Scraggle", "ShapeOperator"]
+__all__ = [
+    "Clean",
+    "Clump",
+    "Context",
+    "Curl",
+    "Drawn",
+    "Grown",
+    "Length",
+    "Locks",
+    "Loft",
+    "Operator",
+    "Resample",
+    "Scraggle",
+    "ShapeOperator",
+]

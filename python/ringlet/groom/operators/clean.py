@@ -13,11 +13,16 @@ from ringlet.groom.settings import Quantity
 
 
 class Clean(Operator):
-    """Moves what dips under the skin, or comes nearer than ``margin``, out along the surface's normal; the margin begins at 0 at the root."""
+    """Moves what dips under the skin, or comes nearer than ``margin``, out along the surface's normal; at the root the
+    margin begins at 0."""
 
-    margin: Annotated[float, Quantity("m", 0.0, 0.1)] = Field(0.002, description="distance that locks keep from the skin")
+    margin: Annotated[float, Quantity("m", 0.0, 0.1)] = Field(
+        default=0.002, description="distance that locks keep from the skin"
+    )
 
     def apply(self, curves: Curves, context: Context) -> Curves:
         """The same curves, outside of the mesh."""
         scalp = context.scalp
-        return curves.with_points(_core.push_out(curves.points, curves.offsets, scalp.points, scalp.triangles, self.margin))
+        return curves.with_points(
+            _core.push_out(curves.points, curves.offsets, scalp.points, scalp.triangles, self.margin)
+        )

@@ -20,38 +20,58 @@ NOISE_VALUES = 24
 
 
 class Curl(Operator):
-    """Winds each lock about its shape: ``p(u) = c(u) + r(u) (a cos φ + b sin φ)`` with (a, b) the rotation-minimising frame of the shape c,
-    the radius ``r = width/2 · ramp`` opening smoothly from the root, and φ growing by one turn per pitch.
+    """Winds each lock about its shape: ``p(u) = c(u) + r(u) (a cos φ + b sin φ)``, with (a, b) the rotation-minimising
+    frame of the shape c, the radius ``r = width/2 · ramp`` opening smoothly from the root, and φ growing by one turn
+    per pitch.
 
     ``keep = "silhouette"``: the curl fills the shape's length L, and the hair is longer, by √(1 + (2πr/pitch)²).
     ``keep = "length"``: the hair has the shape's length, and the silhouette is shorter by the same factor.
     """
 
-    preset: Literal["3B", "3C", "4A", "4C"] | None = Field(None, description="curl type; fills what is not given here")
-    width: Annotated[Ramped, Quantity("m", 0.0, 0.2)] = Field(Ramped(value=0.008), description="diameter of the curl")
-    pitch: Annotated[Varied | None, Quantity("m", 5e-4, 1.0)] = Field(None, description="rise per curl, along the shape")
-    curls: Annotated[Varied | None, Quantity("", 0.0, 500.0)] = Field(None, description="number of curls of a lock")
-    curls_per_cm: Annotated[Varied | None, Quantity("", 0.0, 20.0)] = Field(None, description="number of curls per centimetre of shape")
-    rate: list[tuple[float, float]] = Field([(0.0, 1.0), (1.0, 1.0)], description="ramp: [place, factor] on curls per length")
-    start: Annotated[float, Quantity("m", 0.0, 1.0)] = Field(0.01, description="length at the root over which the curl opens")
-    right_handed: Annotated[float, Quantity("", 0.0, 1.0)] = Field(0.5, description="part of the locks that wind right-handed")
-    switchbacks: Annotated[float, Quantity("", 0.0, 5.0)] = Field(0.0, description="changes of hand per lock, on average")
-    phase: Annotated[float, Quantity("deg", -360.0, 360.0)] = Field(0.0, description="where the curl starts")
-    phase_spread: Annotated[float, Quantity("", 0.0, 1.0)] = Field(1.0, description="0: all start alike, 1: anywhere")
-    irregularity: Annotated[float, Quantity("", 0.0, 0.9)] = Field(0.2, description="how much width and pitch wander along a lock")
-    flatness: Annotated[float, Quantity("", 0.0, 1.0)] = Field(0.0, description="0 a round curl, 1 a flat wave")
-    keep: Literal["silhouette", "length"] = Field("silhouette", description="what the curl does not change")
+    preset: Literal["3B", "3C", "4A", "4C"] | None = Field(
+        default=None, description="curl type; fills what is not given here"
+    )
+    width: Annotated[Ramped, Quantity("m", 0.0, 0.2)] = Field(
+        default=Ramped(value=0.008), description="diameter of the curl"
+    )
+    pitch: Annotated[Varied | None, Quantity("m", 5e-4, 1.0)] = Field(
+        default=None, description="rise per curl, along the shape"
+    )
+    curls: Annotated[Varied | None, Quantity("", 0.0, 500.0)] = Field(
+        default=None, description="number of curls of a lock"
+    )
+    curls_per_cm: Annotated[Varied | None, Quantity("", 0.0, 20.0)] = Field(
+        default=None, description="number of curls per centimetre of shape"
+    )
+    rate: list[tuple[float, float]] = Field(
+        default=[(0.0, 1.0), (1.0, 1.0)], description="ramp: [place, factor] on curls per length"
+    )
+    start: Annotated[float, Quantity("m", 0.0, 1.0)] = Field(
+        default=0.01, description="length at the root over which the curl opens"
+    )
+    right_handed: Annotated[float, Quantity("", 0.0, 1.0)] = Field(
+        default=0.5, description="part of the locks that wind right-handed"
+    )
+    switchbacks: Annotated[float, Quantity("", 0.0, 5.0)] = Field(
+        default=0.0, description="changes of hand per lock, on average"
+    )
+    phase: Annotated[float, Quantity("deg", -360.0, 360.0)] = Field(default=0.0, description="where the curl starts")
+    phase_spread: Annotated[float, Quantity("", 0.0, 1.0)] = Field(
+        default=1.0, description="0: all start alike, 1: anywhere"
+    )
+    irregularity: Annotated[float, Quantity("", 0.0, 0.9)] = Field(
+        default=0.2, description="how much width and pitch wander along a lock"
+    )
+    flatness: Annotated[float, Quantity("", 0.0, 1.0)] = Field(default=0.0, description="0 a round curl, 1 a flat wave")
+    keep: Literal["silhouette", "length"] = Field(default="silhouette", description="what the curl does not change")
 
-    @model_validator(mode="before")
     @classmethod
-    def _fill_from_preset(cls, data: Any) -> Any:
-        if not isinstance(data, dict) or data.get("preset") not in PRESETS:
-            return data
-        preset = dict(PRESETS[data["preset"]])
-        if any(name in data for name in ("curls", "curls_per_cm", "pitch")):
-            del preset["pitch"]
-        fill = {name: _in_metres(name, value) for name, value in preset.items() if name not in data}
-        return {**fill, **data}
+    def defaults(cls, data: dict[str, Any]) -> dict[str, Any]:
+        """The preset's settings, then those of the class."""
+        said = dict(PRESETS.get(str(data.get("preset")), {}))
+        if any(data.get(name) is not None for name in ("curls", "curls_per_cm", "pitch")) and "pitch" not in data:
+            said.pop("pitch", None)
+        return {**super().defaults(data), **said}
 
     @model_validator(mode="after")
     def _one_count(self) -> Curl:
@@ -59,10 +79,12 @@ class Curl(Operator):
         if len(given) > 1:
             raise refuse(f"has both '{given[0]}' and '{given[1]}'; give exactly one of curls, curls_per_cm and pitch")
         if not given:
-            raise refuse("says neither how many curls nor how close; give a preset, or one of curls, curls_per_cm and pitch")
+            raise refuse(
+                "says neither how many curls nor how close; give a preset, or one of curls, curls_per_cm and pitch"
+            )
         return self
 
-    def turns(self, curves: Curves, context: Context) -> NDArray[np.float64]:
+    def turns(self, curves: Curves, context: Context) -> NDArray[np.floating]:
         """Curls of each lock, shape (count,)."""
         lengths = curves.lengths()
         if self.curls is not None:
@@ -87,7 +109,8 @@ class Curl(Operator):
         # How strongly each lock wanders is its own affair too: some are neat, some are not.
         wander = self.irregularity * (0.5 + context.random("neatness").uniform(ids))[:, None]
         width_noise, rate_noise = (
-            np.clip(wander * (2.0 * context.random(name).uniforms(ids, NOISE_VALUES) - 1.0), -0.9, 0.9) for name in ("width", "rate")
+            np.clip(wander * (2.0 * context.random(name).uniforms(ids, NOISE_VALUES) - 1.0), -0.9, 0.9)
+            for name in ("width", "rate")
         )
         curled = _core.curl_curves(
             curves.points,
@@ -108,15 +131,8 @@ class Curl(Operator):
         )
         return Curves(curled, offsets_from_counts(np.full(len(ids), points)), ids, curves.curve)
 
-    def _hands(self, context: Context, ids: NDArray) -> NDArray[np.float64]:
+    def _hands(self, context: Context, ids: NDArray) -> NDArray[np.floating]:
         """+1, and -1 after an odd number of switchbacks; shape (count, NOISE_VALUES)."""
         turned = context.random("switchbacks").uniforms(ids, NOISE_VALUES) < self.switchbacks / NOISE_VALUES
         turned[:, 0] = False
         return 1.0 - 2.0 * (np.cumsum(turned, axis=1) % 2)
-
-
-def _in_metres(name: str, value: Any) -> Any:
-    """A preset's value as a recipe would say it, in a unit of its own: the recipe's unit must not scale it."""
-    if isinstance(value, dict):
-        return {**value, "value": f"{value['value']:g} m"}
-    return f"{value:g} m" if name == "start" else value

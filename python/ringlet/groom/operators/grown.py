@@ -19,10 +19,12 @@ class Zone(Section):
     """A part of the head where hair is longer, shorter or stands differently; it fades out towards its edge."""
 
     toward: Vector = Field(description="direction from the middle of the scalp, Y up: [0, 0.5, 1] is the forehead")
-    spread: Annotated[float, Quantity("deg", 1.0, 180.0)] = Field(40.0, description="half the opening angle of the zone")
-    length: Annotated[float, Quantity("", 0.0, 10.0)] = Field(1.0, description="factor on the length")
-    lift: Annotated[float, Quantity("", 0.0, 10.0)] = Field(1.0, description="factor on the lift")
-    droop: Annotated[float, Quantity("", 0.0, 10.0)] = Field(1.0, description="factor on the droop")
+    spread: Annotated[float, Quantity("deg", 1.0, 180.0)] = Field(
+        default=40.0, description="half the opening angle of the zone"
+    )
+    length: Annotated[float, Quantity("", 0.0, 10.0)] = Field(default=1.0, description="factor on the length")
+    lift: Annotated[float, Quantity("", 0.0, 10.0)] = Field(default=1.0, description="factor on the lift")
+    droop: Annotated[float, Quantity("", 0.0, 10.0)] = Field(default=1.0, description="factor on the droop")
 
     def weight(self, outward: NDArray) -> NDArray[np.float64]:
         """1 in the middle of the zone, 0 outside, for unit directions (n, 3)."""
@@ -35,21 +37,31 @@ class Grown(Operator):
     """Grows guides on the scalp.
 
     A guide leaves its root along ``lift · normal + (1 - lift) · flow`` and bends down on its way:
-    ``direction(u) = that + droop · u · down``, with u from 0 (root) to 1 (tip). The flow runs along the surface away from the whorl.
+    ``direction(u) = that + droop · u · down``, with u from 0 (root) to 1 (tip). The flow runs along the surface, away
+    from the whorl.
     """
 
-    count: int | None = Field(None, ge=1, le=1_000_000, description="number of guides (this or spacing)")
-    spacing: Annotated[float | None, Quantity("m", 1e-4, 1.0)] = Field(None, description="distance of guides")
-    points: int = Field(10, ge=3, le=1000, description="points of a guide")
-    length: Annotated[Varied, Quantity("m", 1e-4, 10.0)] = Field(Varied(value=0.08), description="length of a guide")
-    lift: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(Varied(value=0.8), description="1 stands up, 0 lies flat")
-    droop: Annotated[Varied, Quantity("", 0.0, 10.0)] = Field(Varied(value=0.4), description="how much the tip hangs down")
-    whorl: Vector | None = Field(
-        (0.0, 1.0, -0.6), description="direction of the crown from the middle of the scalp; the flow runs away from it"
+    count: int | None = Field(default=None, ge=1, le=1_000_000, description="number of guides (this or spacing)")
+    spacing: Annotated[float | None, Quantity("m", 1e-4, 1.0)] = Field(default=None, description="distance of guides")
+    points: int = Field(default=10, ge=3, le=1000, description="points of a guide")
+    length: Annotated[Varied, Quantity("m", 1e-4, 10.0)] = Field(
+        default=Varied(value=0.08), description="length of a guide"
     )
-    whorl_turn: Annotated[float, Quantity("deg", -180.0, 180.0)] = Field(25.0, description="how much the flow spirals about the whorl")
-    flow: Vector = Field((0.0, -1.0, 0.0), description="direction of the flow where there is no whorl")
-    zone: list[Zone] = Field([], description="parts of the head with their own length and stand")
+    lift: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
+        default=Varied(value=0.8), description="1 stands up, 0 lies flat"
+    )
+    droop: Annotated[Varied, Quantity("", 0.0, 10.0)] = Field(
+        default=Varied(value=0.4), description="how much the tip hangs down"
+    )
+    whorl: Vector | None = Field(
+        default=(0.0, 1.0, -0.6),
+        description="direction of the crown from the middle of the scalp; the flow runs away from it",
+    )
+    whorl_turn: Annotated[float, Quantity("deg", -180.0, 180.0)] = Field(
+        default=25.0, description="how much the flow spirals about the whorl"
+    )
+    flow: Vector = Field(default=(0.0, -1.0, 0.0), description="direction of the flow where there is no whorl")
+    zone: list[Zone] = Field(default=[], description="parts of the head with their own length and stand")
 
     @model_validator(mode="after")
     def _one_density(self) -> Grown:

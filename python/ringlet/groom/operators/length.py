@@ -13,11 +13,13 @@ from ringlet.groom.settings import Quantity, Varied
 
 
 class Length(Operator):
-    """Multiplies the length: ``p' = root + factor · (p - root)``; with ``cut`` shorter hair is cut off instead of shrunk."""
+    """Multiplies the length: ``p' = root + factor · (p - root)``; with ``cut``, hair is cut off instead of shrunk."""
 
     op: Literal["length"] = "length"
-    factor: Annotated[Varied, Quantity("", 0.01, 100.0)] = Field(Varied(value=1.0), description="factor on the length")
-    cut: bool = Field(False, description="cut what is too long; the rest keeps its place")
+    factor: Annotated[Varied, Quantity("", 0.01, 100.0)] = Field(
+        default=Varied(value=1.0), description="factor on the length"
+    )
+    cut: bool = Field(default=False, description="cut what is too long; the rest keeps its place")
 
     def apply(self, curves: Curves, context: Context) -> Curves:
         """The same shapes, longer or shorter."""

@@ -7,7 +7,7 @@ from typing import Annotated
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
-from scipy.spatial import cKDTree
+from scipy.spatial import KDTree
 
 from ringlet import _core
 from ringlet.curves import Curves, offsets_from_counts
@@ -16,18 +16,20 @@ from ringlet.groom.settings import Quantity, refuse
 
 
 class Locks(Operator):
-    """Spreads locks over the scalp and gives each the shape of the guides around it; without ``count`` and ``spacing`` every guide
-    becomes a lock.
+    """Spreads locks over the scalp and gives each the shape of the guides around it; without ``count`` and ``spacing``
+    every guide becomes a lock.
 
-    ``shape = Σ wᵢ Rᵢ (guideᵢ - rootᵢ)``: the nearest guides, turned with the surface (Rᵢ is the smallest turn from the guide's
-    normal to the lock's), weighted by 1/d², and given the weighted length.
+    ``shape = Σ wᵢ Rᵢ (guideᵢ - rootᵢ)``: the nearest guides, turned with the surface (Rᵢ is the smallest turn from the
+    guide's normal to the lock's), weighted by 1/d², and given the weighted length.
     """
 
-    count: int | None = Field(None, ge=1, le=1_000_000, description="number of locks (this or spacing)")
-    spacing: Annotated[float | None, Quantity("m", 1e-4, 1.0)] = Field(None, description="distance of locks")
-    points: int = Field(64, ge=4, le=10_000, description="points of a groom guide, curl included; 12 a curl simulate well")
-    shape_points: int = Field(20, ge=4, le=1000, description="points of a lock's shape, before it is curled")
-    neighbours: int = Field(4, ge=1, le=16, description="guides that a lock takes its shape from")
+    count: int | None = Field(default=None, ge=1, le=1_000_000, description="number of locks (this or spacing)")
+    spacing: Annotated[float | None, Quantity("m", 1e-4, 1.0)] = Field(default=None, description="distance of locks")
+    points: int = Field(
+        default=64, ge=4, le=10_000, description="points of a groom guide, curl included; 12 a curl simulate well"
+    )
+    shape_points: int = Field(default=20, ge=4, le=1000, description="points of a lock's shape, before it is curled")
+    neighbours: int = Field(default=4, ge=1, le=16, description="guides that a lock takes its shape from")
 
     @model_validator(mode="after")
     def _one_density(self) -> Locks:
@@ -52,7 +54,7 @@ class Locks(Operator):
         normal = _core.root_frames(scalp.points, scalp.triangles, triangle, barycentric)[1][:, :, 2]
 
         near = min(self.neighbours, len(curves))
-        distance, index = cKDTree(curves.roots).query(roots, k=near)
+        distance, index = KDTree(curves.roots).query(roots, k=near)
         distance, index = distance.reshape(count, near), index.reshape(count, near)
         weight = 1.0 / np.maximum(distance, 1e-6) ** 2
         weight /= weight.sum(axis=1, keepdims=True)

@@ -17,8 +17,12 @@ class Loft(Operator):
     ``edge' = |edge| · unit(edge + amount · |edge| · (up · world up + (1 - up) · normal))``."""
 
     op: Literal["loft"] = "loft"
-    amount: Annotated[Ramped, Quantity("", 0.0, 10.0)] = Field(Ramped(value=0.5), description="0 leaves the shape, 1 halves the angle")
-    up: Annotated[float, Quantity("", 0.0, 1.0)] = Field(0.5, description="0 lifts off the scalp, 1 against gravity")
+    amount: Annotated[Ramped, Quantity("", 0.0, 10.0)] = Field(
+        default=Ramped(value=0.5), description="0 leaves the shape, 1 halves the angle"
+    )
+    up: Annotated[float, Quantity("", 0.0, 1.0)] = Field(
+        default=0.5, description="0 lifts off the scalp, 1 against gravity"
+    )
 
     def apply(self, curves: Curves, context: Context) -> Curves:
         """The same shapes, raised; lengths stay."""

@@ -47,12 +47,12 @@ class Operator(Section):
         raise NotImplementedError
 
 
-def grid(curves: Curves) -> NDArray[np.float64]:
+def grid(curves: Curves) -> NDArray[np.floating]:
     """Points of curves that all have the same count, shape (count, points, 3): what the shape operators work on."""
     return curves.points.reshape(len(curves), -1, 3)
 
 
-def arc_lengths(points: NDArray) -> NDArray[np.float64]:
+def arc_lengths(points: NDArray) -> NDArray[np.floating]:
     """Length from the root to every point [m], shape (count, points), for points (count, points, 3)."""
     edges = np.linalg.norm(np.diff(points, axis=1), axis=2)
     return np.concatenate([np.zeros((len(points), 1)), np.cumsum(edges, axis=1)], axis=1)

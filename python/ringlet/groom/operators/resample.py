@@ -16,7 +16,7 @@ class Resample(Operator):
     """Evenly spaced points along the Catmull-Rom spline through the old ones."""
 
     op: Literal["resample"] = "resample"
-    points: int = Field(32, ge=3, le=10_000, description="points of a shape")
+    points: int = Field(default=32, ge=3, le=10_000, description="points of a shape")
 
     def apply(self, curves: Curves, context: Context) -> Curves:
         """The same shapes with ``points`` points each."""

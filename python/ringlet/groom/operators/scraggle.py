@@ -13,14 +13,16 @@ from ringlet.groom.settings import Quantity, Ramped
 
 
 class Scraggle(Operator):
-    """A slow random wander that grows towards the tip: ``p' = p + amount · ramp(u) · noise(s / size)``, with s the length from the
-    root; the noise is a spline through normally distributed knots, of its own for each lock."""
+    """A slow random wander that grows towards the tip: ``p' = p + amount · ramp(u) · noise(s / size)``, with s the
+    length from the root; the noise is a B-spline of normally distributed knots, of its own for each lock."""
 
     op: Literal["scraggle"] = "scraggle"
     amount: Annotated[Ramped, Quantity("m", 0.0, 1.0)] = Field(
-        Ramped(value=0.005, ramp=[(0, 0), (1, 1)]), description="how far a lock wanders (deviation at the tip)"
+        default=Ramped(value=0.005, ramp=[(0, 0), (1, 1)]), description="how far a lock wanders (deviation at the tip)"
     )
-    size: Annotated[float, Quantity("m", 1e-3, 10.0)] = Field(0.03, description="length over which it changes its mind")
+    size: Annotated[float, Quantity("m", 1e-3, 10.0)] = Field(
+        default=0.03, description="length over which it changes its mind"
+    )
 
     def apply(self, curves: Curves, context: Context) -> Curves:
         """The same shapes, less orderly; roots stay."""
@@ -34,8 +36,15 @@ class Scraggle(Operator):
         t = (at - i)[:, :, None]
         rows = np.arange(len(points))[:, None]
         a, b, c, d = (knots[rows, i + k] for k in range(4))
-        noise = ((-t + 3.0) * t - 3.0) * t + 1.0, (3.0 * t - 6.0) * t * t + 4.0, ((-3.0 * t + 3.0) * t + 3.0) * t + 1.0, t**3
-        wander = (noise[0] * a + noise[1] * b + noise[2] * c + noise[3] * d) / 6.0  # a cubic B-spline: smooth in its curvature
+        noise = (
+            ((-t + 3.0) * t - 3.0) * t + 1.0,
+            (3.0 * t - 6.0) * t * t + 4.0,
+            ((-3.0 * t + 3.0) * t + 3.0) * t + 1.0,
+            t**3,
+        )
+        wander = (
+            noise[0] * a + noise[1] * b + noise[2] * c + noise[3] * d
+        ) / 6.0  # a cubic B-spline: smooth in its curvature
         reach = context.values("amount", self.amount, curves)[:, None] * self.amount.along(np.linspace(0.0, 1.0, count))
         first = wander[:, :1]
         return with_grid(curves, points + 1.5 * reach[:, :, None] * (wander - first))
