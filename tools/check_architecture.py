@@ -36,8 +36,9 @@ PYTHON = {
     "picture": DATA,
     "report": DATA,
     "api": DATA | {"_core", "groom", "shot", "validate", "io", "picture", "report"},
-    "demo": DATA | {"api"},
-    API: DATA | {"api", "demo"},
+    "run": DATA | {"_core", "report"},
+    "demo": DATA | {"api", "run"},
+    API: DATA | {"api", "run", "demo"},
     "cli": {API},
 }
 OUTSIDE = ("bench", "examples")  # these use the public API only
