@@ -92,7 +92,7 @@ def simulate(
     shot: Shot | Path | str,
     groom: Groom | Path | str | None = None,
     *,
-    frames: tuple[float, float] | None = None,
+    frames: tuple[int, int] | None = None,
     progress: Progress | None = None,
 ) -> Cache:
     """Moves the locks of a groom while the scalp plays its clip.
@@ -142,7 +142,7 @@ def write_hairs(
     path: Path | str,
     *,
     cache: Path | str | None = None,
-    frames: tuple[float, float] | None = None,
+    frames: tuple[int, int] | None = None,
     fraction: float = 1.0,
     progress: Progress | None = None,
 ) -> dict[str, int]:
@@ -174,7 +174,7 @@ def write_hairs(
     }
 
 
-def _within(cache: Cache, frames: tuple[float, float] | None, path: Path | str) -> Cache:
+def _within(cache: Cache, frames: tuple[int, int] | None, path: Path | str) -> Cache:
     """The frames of a cache from the first to the last of ``frames``."""
     if frames is None:
         return cache
@@ -225,7 +225,7 @@ def write_sheet(
     stage: Path | str,
     path: Path | str,
     *,
-    frames: tuple[float, float] | None = None,
+    frames: tuple[int, int] | None = None,
     count: int = 12,
     color: str = "dark_brown",
     progress: Progress | None = None,

@@ -113,13 +113,13 @@ class Run:
 
 
 def check_place(path: Path | str) -> None:
-    """Refuses a file that could not be written."""
+    """Refuses a file that could not be written, and leaves nothing behind."""
     path = Path(path)
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
         if path.is_dir():
             raise UserError(f"{path}: is a folder; give a file name")
-        with tempfile.TemporaryFile(dir=path.parent):
+        there = next(folder for folder in path.absolute().parents if folder.exists())
+        with tempfile.TemporaryFile(dir=there):
             pass
     except OSError as error:
         raise UserError(f"{path}: cannot be written ({error.strerror or error}); choose another place") from error

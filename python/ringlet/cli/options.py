@@ -34,11 +34,11 @@ Fraction = Annotated[
 ]
 
 
-def parse_frames(text: str) -> tuple[float, float]:
+def parse_frames(text: str) -> tuple[int, int]:
     """``A:B`` as the first and the last frame; ``A`` alone as one frame."""
     first, colon, last = text.partition(":")
     try:
-        frames = float(first), float(last if colon else first)
+        frames = int(first), int(last if colon else first)
     except ValueError:
         raise ringlet.UserError(f"--frames {text}: must be FIRST:LAST, such as 1:48") from None
     if not frames[0] <= frames[1]:

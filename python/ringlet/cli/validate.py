@@ -26,7 +26,7 @@ def validate(
     with shown_progress() as progress:
         rows = ringlet.run_validation(cases or None, progress=progress)
     if as_json:
-        print_json([row.to_json() for row in rows])
+        print_json([row.json() for row in rows])
     else:
         cells = [
             [
