@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Any
 
 import typer.main
-
-import ringlet
 from ringlet.cli.app import app
 from ringlet.files import replacing
+
+import ringlet
 
 
 def write_references(folder: Path) -> None:
@@ -90,7 +90,8 @@ def commands() -> Iterator[str]:
     group: Any = typer.main.get_command(app)
     for name, command in group.commands.items():
         arguments = " ".join(p.metavar for p in command.params if p.param_type_name == "argument")
-        yield f"\n## ringlet {name}\n\n```\nringlet {name} {arguments} [OPTIONS]\n```\n\n{inspect.cleandoc(command.help)}\n"
+        yield f"\n## ringlet {name}\n\n```\nringlet {name} {arguments} [OPTIONS]\n```\n"
+        yield inspect.cleandoc(command.help) + "\n"
         yield "| | |\n|---|---|"
         for param in command.params:
             names = [param.metavar] if param.param_type_name == "argument" else param.opts

@@ -25,7 +25,7 @@ CORE = {
 }
 
 # Module of python/ringlet → modules that it may import. DATA is plain data and small helpers, which all may share.
-DATA = {"curves", "mesh", "stage", "files", "errors", "share", "groom.groom", "shot.cache"}
+DATA = {"curves", "mesh", "stage", "files", "errors", "settings", "share", "groom.groom", "shot.cache"}
 API = "the public API"  # ringlet/__init__.py
 PYTHON = {
     **dict.fromkeys(DATA, DATA),
@@ -36,8 +36,9 @@ PYTHON = {
     "picture": DATA,
     "report": DATA,
     "api": DATA | {"_core", "groom", "shot", "validate", "io", "picture", "report"},
-    "demo": DATA | {"api"},
-    API: DATA | {"api", "demo"},
+    "run": DATA | {"_core", "report"},
+    "demo": DATA | {"api", "run"},
+    API: DATA | {"api", "run", "demo"},
     "cli": {API},
 }
 OUTSIDE = ("bench", "examples")  # these use the public API only

@@ -2,9 +2,61 @@
 
 from importlib.metadata import version
 
+from ringlet.api import (
+    build_groom,
+    build_hairs,
+    load_groom,
+    read_cache,
+    read_groom,
+    read_recipe,
+    read_shot,
+    run_bench,
+    run_validation,
+    schema,
+    simulate,
+    use_threads,
+    write_cache,
+    write_groom,
+    write_hairs,
+    write_sheet,
+    write_still,
+)
 from ringlet.curves import Curves
+from ringlet.demo import run_demo
 from ringlet.errors import UserError
+from ringlet.groom.groom import Groom
 from ringlet.mesh import Clip, Mesh
+from ringlet.run import Run
+from ringlet.shot.cache import Cache
+from ringlet.stage import StageSpace
 
 __version__ = version("ringlet")
-__all__ = ["Clip", "Curves", "Mesh", "UserError", "__version__"]
+__all__ = [
+    "Cache",
+    "Clip",
+    "Curves",
+    "Groom",
+    "Mesh",
+    "Run",
+    "StageSpace",
+    "UserError",
+    "__version__",
+    "build_groom",
+    "build_hairs",
+    "load_groom",
+    "read_cache",
+    "read_groom",
+    "read_recipe",
+    "read_shot",
+    "run_bench",
+    "run_demo",
+    "run_validation",
+    "schema",
+    "simulate",
+    "use_threads",
+    "write_cache",
+    "write_groom",
+    "write_hairs",
+    "write_sheet",
+    "write_still",
+]

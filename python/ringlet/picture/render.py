@@ -155,7 +155,7 @@ def trace(
     return (total / done).astype(np.float32)
 
 
-def over_backdrop(image: NDArray[np.float32]) -> NDArray[np.float32]:
+def over_backdrop(image: NDArray[np.float32]) -> NDArray[np.floating]:
     """Puts light with coverage, shape (h, w, 4), before the studio's wall; shape (h, w, 3)."""
     wall = backdrop(image.shape[1], image.shape[0])
     return image[:, :, :3] + (1.0 - np.clip(image[:, :, 3:], 0.0, 1.0)) * wall

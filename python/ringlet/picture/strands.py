@@ -20,8 +20,8 @@ def spline_controls(points: NDArray[np.floating]) -> NDArray[np.float64]:
     """Control points of the uniform cubic B-splines that pass through the given points.
 
     A B-spline runs inside its control polygon, so using the points themselves would shrink a curl of 12 points a turn
-    by (1 - cos 30°)/3 = 4.5 %. With c the control points, the curve passes (cᵢ₋₁ + 4cᵢ + cᵢ₊₁)/6 at knot i: a tridiagonal
-    system, closed by straight ends (c₋₁ = 2c₀ - c₁).
+    by (1 - cos 30°)/3 = 4.5 %. With c the control points, the curve passes (cᵢ₋₁ + 4cᵢ + cᵢ₊₁)/6 at knot i, which makes
+    a tridiagonal system; straight ends close it (c₋₁ = 2c₀ - c₁).
 
     points: shape (curves, n, 3), n ≥ 2; returns shape (curves, n + 2, 3)
     """
