@@ -45,39 +45,55 @@ def table(definition: dict[str, Any], title: str) -> Iterator[str]:
     yield "| setting | value | default | meaning |\n|---|---|---|---|"
     required = definition.get("required", [])
     for key, about in definition.get("properties", {}).items():
-        default = "*required*" if key in required else told(about.get("default"))
-        yield f"| `{key}` | {kind(about)} | {default} | {cell(about.get('description', ''))} |"
+        unit = about.get("unit", "")
+        default = "*required*" if key in required else told(about.get("default"), unit)
+        yield f"| `{key}` | {kind(about, unit)} | {default} | {cell(about.get('description', ''))} |"
 
 
-def kind(about: dict[str, Any]) -> str:
-    """Type and bounds in words: ``number, at least 0``."""
+def kind(about: dict[str, Any], unit: str = "") -> str:
+    """Type and bounds in words: ``number, at least 0``. A length may be a number or a text such as ``5 mm``."""
     if "anyOf" in about or "oneOf" in about:
-        options = [
-            kind(option) for option in about.get("anyOf", about.get("oneOf", [])) if option.get("type") != "null"
-        ]
-        return " or ".join(dict.fromkeys(options))
+        options = [option for option in about.get("anyOf", about.get("oneOf", [])) if option.get("type") != "null"]
+        if unit == "m":
+            options = [option for option in options if option.get("type") != "string"]
+        return " or ".join(dict.fromkeys(kind(option, unit) for option in options))
     if "$ref" in about:
         name = about["$ref"].rpartition("/")[2]
         return f"[{name}](#{name.lower()})"
-    if "allOf" in about:
-        return kind(about["allOf"][0])
     if "const" in about or "enum" in about:
         return ", ".join(f"`{value}`" for value in about.get("enum", [about.get("const")]))
-    words = {"integer": "whole number", "object": "table", "boolean": "true or false"}
-    name = words.get(about.get("type", ""), about.get("type", "any"))
     if about.get("type") == "array":
-        name = f"list of {kind(about['items'])}" if about.get("items") else "list"
+        return f"list of {kind(about['items'])}" if about.get("items") else "list"
+    words = {"integer": "whole number", "object": "table", "boolean": "true or false", "string": "text"}
+    name = "length" if unit == "m" else words.get(about.get("type", ""), about.get("type", "any"))
     bounds = {"minimum": "at least", "exclusiveMinimum": "above", "maximum": "at most", "exclusiveMaximum": "below"}
-    return ", ".join([name, *(f"{word} {about[key]:g}" for key, word in bounds.items() if key in about)])
+    told_bounds = [f"{word} {number(about[key], unit)}" for key, word in bounds.items() if key in about]
+    return ", ".join([f"{name} in degrees" if unit == "deg" else name, *told_bounds])
 
 
-def told(value: Any) -> str:
-    """A default as it would stand in the file; nothing for what is simply absent."""
-    return (
-        ""
-        if value is None or value == {}
-        else f"`{cell(str(value).lower() if isinstance(value, bool) else str(value))}`"
-    )
+def number(value: float, unit: str) -> str:
+    """A number with its unit, lengths in the unit that suits them."""
+    if unit != "m" or value == 0:
+        return f"{value}" if isinstance(value, int) else f"{value:g}"
+    return f"{1e3 * value:g} mm" if value < 0.1 else f"{value:g} m"
+
+
+def told(value: Any, unit: str) -> str:
+    """A default in a few words; nothing for what is simply absent, or is a table of its own."""
+    if isinstance(value, dict):
+        if "value" not in value:
+            return ""
+        rest = {
+            k: v
+            for k, v in value.items()
+            if k in ("vary", "noise", "ramp") and v not in (0.0, [[0.0, 1.0], [1.0, 1.0]])
+        }
+        return ", ".join([told(value["value"], unit), *(f"{k} `{v}`" for k, v in rest.items())])
+    if value is None or value in ("", []):
+        return ""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return f"`{cell(str(value).lower() if isinstance(value, bool) else str(value))}`"
+    return f"`{number(value, unit)}`"
 
 
 def cell(text: str) -> str:
