@@ -34,7 +34,7 @@ class PosedBody:
 # What a mesh is made of is guessed from the last part of its name; the first pattern that matches wins.
 _MADE_OF = (
     ("matte", r"brow|lash|mouth|nostril"),
-    ("eye", r"eye|iris|pupil|cornea|sclera|teeth"),
+    ("eye", r"eye|white|iris|pupil|cornea|sclera|teeth"),
     ("cloth", r"shirt|cloth|tee|dress|jacket|sweater|hood|scarf|collar"),
     ("skin", r"skin|head|face|body|scalp|neck|ear|bust|child"),
 )
@@ -48,7 +48,7 @@ def material(mesh: Mesh) -> dict[str, Any]:
     look: dict[str, dict[str, Any]] = {
         # `flatness` and `sheen` stand in for light that wanders under the skin: softer shading, a warm edge
         "skin": {"roughness": 0.48, "specular": 0.4, "flatness": 0.5, "sheen": 0.25, "sheen_tint": 0.6},
-        "eye": {"roughness": 0.12, "specular": 0.6, "clearcoat": 1.0, "clearcoat_gloss": 0.97},
+        "eye": {"roughness": 0.15, "specular": 0.9, "clearcoat": 1.0, "clearcoat_gloss": 0.99},
         "cloth": {"roughness": 0.9, "specular": 0.15, "sheen": 0.5, "sheen_tint": 0.5},
         "matte": {"roughness": 0.8, "specular": 0.2},
     }

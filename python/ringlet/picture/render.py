@@ -27,12 +27,12 @@ class HairColor:
 
     eumelanin: float
     pheomelanin: float
-    roughness: float = 0.3
+    roughness: float = 0.38
 
 
 HAIR_COLORS: dict[str, HairColor] = {
     "black": HairColor(6.0, 0.3, 0.28),
-    "dark_brown": HairColor(2.2, 0.4),
+    "dark_brown": HairColor(2.4, 0.3),
     "brown": HairColor(0.9, 0.7),
     "auburn": HairColor(0.35, 1.6),
     "ginger": HairColor(0.08, 0.9),
@@ -43,11 +43,9 @@ HAIR_COLORS: dict[str, HairColor] = {
 # The least diameter at which a hair is drawn [pixels].
 THINNEST = 0.3
 
-# Samples per pixel of one pass: enough for them to be spread evenly over a pixel and over the lights.
-PER_PASS = 8
-
-# No pixel of a pass may be brighter than this: rare paths that hit a light through many hairs would leave specks.
-BRIGHTEST = 4.0
+# Samples per pixel of one pass: enough for them to be spread evenly over a pixel and over the lights, few enough for
+# some passes to compare.
+MOST_PER_PASS, FEWEST_PASSES = 8, 4
 
 
 def hair_color(name: str) -> HairColor:
@@ -84,7 +82,7 @@ def build_scene(
     place = mi.ScalarTransform4f().look_at(origin=list(local_origin), target=[0, 0, 0], up=list(camera.axes[1]))
     scene: dict[str, Any] = {
         "type": "scene",
-        "integrator": {"type": "path", "max_depth": max_depth, "rr_depth": 4, "hide_emitters": True},
+        "integrator": {"type": "path", "max_depth": max_depth, "rr_depth": 2, "hide_emitters": True},
         "sensor": {
             "type": "perspective",
             "fov": camera.fov,
@@ -92,7 +90,7 @@ def build_scene(
             "near_clip": near,
             "far_clip": far,
             "to_world": place,
-            "sampler": {"type": "multijitter", "sample_count": PER_PASS},
+            "sampler": {"type": "multijitter"},
             "film": {
                 "type": "hdrfilm",
                 "width": size[0],
@@ -133,18 +131,24 @@ def trace(
 ) -> NDArray[np.float32]:
     """Light and coverage (r, g, b, a), shape (height, width, 4): the mean of passes with different random numbers.
 
+    Where one pass is much brighter than all others together, a rare path met a light through many hairs; it is taken
+    down to what the others say, or it would leave a speck.
+
     seconds:  no further pass begins when it would end after this time
     progress: called with "picture", the passes done and to do
     """
     mi = mitsuba()
-    passes = max(1, round(samples / PER_PASS))
+    per_pass = min(max(samples // FEWEST_PASSES, 1), MOST_PER_PASS)
+    passes = -(-samples // per_pass)
     began = time.monotonic()
     total: Any = 0.0
+    brightest: Any = 0.0
     done = 0
-    for index in range(passes):
-        image = np.array(mi.render(scene, seed=index), np.float64)
-        total += np.minimum(np.nan_to_num(image), BRIGHTEST)
-        done = index + 1
+    while done < passes:
+        image = np.nan_to_num(np.array(mi.render(scene, spp=per_pass, seed=done), np.float64))
+        total += image
+        brightest = np.maximum(brightest, image)
+        done += 1
         if progress:
             progress("picture", done, passes)
         elapsed = time.monotonic() - began
@@ -152,6 +156,9 @@ def trace(
             break
     if progress and done < passes:
         progress("picture", passes, passes)
+    if done > 2:
+        others = (total - brightest) / (done - 1)
+        total += np.minimum(brightest, 1.5 * others + 0.05) - brightest
     return (total / done).astype(np.float32)
 
 
