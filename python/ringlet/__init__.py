@@ -1,6 +1,7 @@
 """Ringlet grooms tightly curled hair and simulates it."""
 
 from importlib.metadata import version
+from typing import TYPE_CHECKING
 
 from ringlet.api import (
     build_groom,
@@ -24,11 +25,13 @@ from ringlet.api import (
 from ringlet.curves import Curves
 from ringlet.demo import run_demo
 from ringlet.errors import UserError
-from ringlet.groom.groom import Groom
 from ringlet.mesh import Clip, Mesh
 from ringlet.run import Run
-from ringlet.shot.cache import Cache
 from ringlet.stage import StageSpace
+
+if TYPE_CHECKING:
+    from ringlet.groom.groom import Groom
+    from ringlet.shot.cache import Cache
 
 __version__ = version("ringlet")
 __all__ = [
@@ -60,3 +63,16 @@ __all__ = [
     "write_sheet",
     "write_still",
 ]
+
+
+def __getattr__(name: str) -> type:
+    """Groom and Cache live in packages that load slowly, so those are imported when they are first asked for."""
+    if name == "Groom":
+        from ringlet.groom.groom import Groom
+
+        return Groom
+    if name == "Cache":
+        from ringlet.shot.cache import Cache
+
+        return Cache
+    raise AttributeError(f"module 'ringlet' has no attribute '{name}'")

@@ -10,19 +10,20 @@ import difflib
 import importlib.util
 import inspect
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ringlet.errors import UserError
-from ringlet.groom.groom import Groom
 from ringlet.share import share
-from ringlet.shot.cache import Cache
 
 if TYPE_CHECKING:
     from ringlet.groom import Hairs, Recipe
+    from ringlet.groom.groom import Groom
     from ringlet.shot import Shot
+    from ringlet.shot.cache import Cache
     from ringlet.validate import Row
 
 Progress = Callable[[str, int, int], None]
@@ -102,6 +103,7 @@ def simulate(
     """
     from ringlet import io
     from ringlet import shot as shots
+    from ringlet.groom.groom import Groom
 
     if not isinstance(shot, shots.Shot):
         shot = read_shot(shot)
@@ -182,7 +184,7 @@ def _within(cache: Cache, frames: tuple[int, int] | None, path: Path | str) -> C
     if not chosen.any():
         held = f"{cache.frames[0]:g} to {cache.frames[-1]:g}"
         raise UserError(f"{path}: has no frame from {frames[0]:g} to {frames[1]:g}; it holds {held}")
-    return Cache(cache.frames[chosen], cache.points[chosen])
+    return replace(cache, frames=cache.frames[chosen], points=cache.points[chosen])
 
 
 # Pictures

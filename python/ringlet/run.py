@@ -11,10 +11,12 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
 from ringlet.errors import UserError
-from ringlet.shot.cache import Cache
+
+if TYPE_CHECKING:
+    from ringlet.shot.cache import Cache
 
 LIMITS = [
     "Strands do not collide yet: they may pass through the head and through one another.",
