@@ -27,6 +27,10 @@ nb::ndarray<nb::numpy, double> state_view(nb::handle self, std::vector<Vec3> &va
 } // namespace
 
 void bind_scene(nb::module_ &module) {
+    nb::enum_<Continuation>(module, "Continuation", "How signs and turns of a curl are carried from step to step.")
+        .value("history", Continuation::history)
+        .value("least_energy", Continuation::least_energy);
+
     nb::class_<StrandMaterial>(module, "StrandMaterial", "What a lock is made of (SI units); a hair's values.")
         .def(nb::init<>())
         .def_rw("youngs_modulus", &StrandMaterial::youngs_modulus)
@@ -59,13 +63,14 @@ void bind_scene(nb::module_ &module) {
         .def(
             "step",
             [](Strands &self, Array3<double> targets, double dt, std::array<double, 3> gravity, std::array<double, 3> wind, int newton,
-               double tolerance) {
+               double tolerance, Continuation continuation) {
                 StrandStep step;
                 step.dt = dt;
                 std::copy(gravity.begin(), gravity.end(), step.gravity);
                 std::copy(wind.begin(), wind.end(), step.wind);
                 step.newton = newton;
                 step.tolerance = tolerance;
+                step.continuation = continuation;
                 {
                     nb::gil_scoped_release release;
                     step_strands(self.model, self.state, vectors<Vec3>(targets), step, self.reports);
@@ -73,19 +78,19 @@ void bind_scene(nb::module_ &module) {
                 const size_t rows = self.reports.size();
                 return to_numpy<double>(std::vector<StrandReport>(self.reports), {rows, size_t(strand_report_columns)});
             },
-            "targets"_a, "dt"_a, "gravity"_a, "wind"_a, "newton"_a, "tolerance"_a,
+            "targets"_a, "dt"_a, "gravity"_a, "wind"_a, "newton"_a, "tolerance"_a, "continuation"_a,
             "One time step; targets: where held vertices are at its end [m], shape (n, 3). Returns one report row per strand (REPORT).")
         .def(
             "energy",
-            [](const Strands &self, Array3<double> positions, bool hessian) {
+            [](const Strands &self, Array3<double> positions, Continuation continuation, bool hessian) {
                 std::vector<Vec3> gradient;
                 std::vector<double> dense;
                 const double energy =
-                    strand_energy(self.model, self.state, vectors<Vec3>(positions), gradient, hessian ? &dense : nullptr);
+                    strand_energy(self.model, self.state, continuation, vectors<Vec3>(positions), gradient, hessian ? &dense : nullptr);
                 const size_t n = positions.shape(0), size = hessian ? 3 * n : 0;
                 return nb::make_tuple(energy, to_numpy<double>(std::move(gradient), {n, 3}), to_numpy<double>(std::move(dense), {size, size}));
             },
-            "positions"_a, "hessian"_a = false,
+            "positions"_a, "continuation"_a, "hessian"_a = false,
             "Elastic energy [J], its gradient [N] and the clamped Hessian of a single strand, with signs and turns carried from the state.");
 
     nb::tuple names = nb::make_tuple("newton", "cuts", "residual", "unconverged", "stretch", "bend", "twist", "gravity", "kinetic",

@@ -52,6 +52,8 @@ NewtonResult<T> newton(Objective &objective, Vec<T> *x, int vertices, const Newt
         result.residual = select(active > 0.0, largest, result.residual);
         result.iterations += active;
 
+        // A lane that has arrived takes its last step only if that is no step up; it is not worth a search.
+        const auto arrived = largest <= settings.tolerance;
         T step = active;
         for (int cut = 0;; ++cut) {
             for (int i = 0; i < vertices; ++i) space.trial[i] = x[i] + step * space.direction[i];
@@ -62,11 +64,12 @@ NewtonResult<T> newton(Objective &objective, Vec<T> *x, int vertices, const Newt
                 result.energy = select(step > 0.0, energy, result.energy);
                 break;
             }
-            result.cuts += refused;
-            step *= select(refused > 0.0, constant<T>(cut < most_cuts ? 0.5 : 0.0), one);
+            result.cuts += select(arrived, T{}, refused);
+            const T shorter = select(arrived, T{}, constant<T>(cut < most_cuts ? 0.5 : 0.0));
+            step *= select(refused > 0.0, shorter, one);
         }
         for (int i = 0; i < vertices; ++i) x[i] = select<T>(step > 0.0, space.trial[i], x[i]);
-        active = select(largest <= settings.tolerance, T{}, active);
+        active = select(arrived, T{}, active);
         if (!any(active > 0.0)) break;
     }
     return result;

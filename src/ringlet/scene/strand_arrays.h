@@ -7,7 +7,7 @@
 
 namespace ringlet {
 
-// How signs and turns are carried (see scene/strand_continuation.h).
+// How signs and turns are carried (see scene/continuation_*.h).
 enum class Continuation { history, least_energy };
 
 struct StrandStep {

@@ -7,69 +7,34 @@
 #include "ringlet/energy/strand/stretch.h"
 #include "ringlet/energy/strand/twist.h"
 #include "ringlet/linear/banded.h"
-#include "ringlet/scene/strand_continuation.h"
+#include "ringlet/scene/continuation_history.h"
+#include "ringlet/scene/continuation_least_energy.h"
+#include "ringlet/scene/strand_arrays.h"
 
 namespace ringlet::RINGLET_SIMD {
 
-// Fixed during a step: one row per vertex; an edge's values stand in the row of the vertex where it begins.
-template <class T> struct StrandRow {
-    T free;           // 1, or 0 where the vertex is held
-    T inertia;        // a [kg/s²]
-    Vec<T> inertial;  // y [m]
-    T stretch, rest_length;
-    T bend, rest_angle;
-    T twist, rest_twist, rest_dihedral;
-    T fade;           // of the twist, 0 … 1
-    Reference<T> reference;
-    T start_sigma, start_turns; // as the step begins, for the report
-};
-
-// At the positions evaluated last.
-template <class T> struct StrandShape {
-    Vec<T> tangent; // of the edge that begins here
-    T length;
-    Corner<T> corner;
-    T sigma; // sign of the corner's bend
-    T delta; // Δφ of the edge, with its turns
-    T turns; // how many of them
-};
-
 template <class T> class StrandObjective {
   public:
-    StrandObjective(int vertices, StrandRow<T> *rows, StrandShape<T> *shapes)
-        : vertices_(vertices), rows_(rows), shapes_(shapes) {}
-
-    StrandRow<T> &row(int vertex) { return rows_[vertex]; }
-    const StrandShape<T> &shape(int vertex) const { return shapes_[vertex]; }
-    int vertices() const { return vertices_; }
+    StrandObjective(Continuation continuation, int vertices, StrandRow<T> *rows, StrandShape<T> *shapes)
+        : continuation_(continuation), vertices_(vertices), rows_(rows), shapes_(shapes) {}
 
     T evaluate(const Vec<T> *x) {
         positions_ = x;
+        measure(x);
+        if (continuation_ == Continuation::history)
+            continue_history(vertices_, rows_, shapes_);
+        else
+            continue_least_energy(vertices_, rows_, shapes_);
+
         T energy{};
         for (int i = 0; i < vertices_; ++i) {
             const Vec<T> away = x[i] - rows_[i].inertial;
             energy += 0.5 * rows_[i].free * rows_[i].inertia * dot(away, away);
         }
-        for (int i = 0; i + 1 < vertices_; ++i) {
-            const Vec<T> edge = x[i + 1] - x[i];
-            shapes_[i].length = max(norm(edge), constant<T>(1e-30));
-            shapes_[i].tangent = (1.0 / shapes_[i].length) * edge;
-            energy += stretch_energy(shapes_[i].length, rows_[i].rest_length, rows_[i].stretch);
-        }
-        for (int i = 1; i + 1 < vertices_; ++i) {
-            StrandShape<T> &s = shapes_[i];
-            s.corner = corner(shapes_[i - 1].tangent, s.tangent);
-            s.sigma = carried_sign(rows_[i].reference, s.tangent, s.corner.normal);
-            energy += bend_energy(s.corner.angle, s.sigma, rows_[i].rest_angle, rows_[i].bend);
-        }
-        for (int i = 1; i + 2 < vertices_; ++i) {
-            StrandShape<T> &s = shapes_[i];
-            const T phi = dihedral(s.corner, shapes_[i + 1].corner, shapes_[i + 1].tangent);
-            const T unsigned_delta = phi - rows_[i].rest_dihedral;
-            s.delta = carried_turns(rows_[i].reference, unsigned_delta, s.sigma * shapes_[i + 1].sigma);
-            s.turns = round((s.delta - unsigned_delta) * (0.5 / pi));
-            energy += twist_energy(rows_[i].fade * (s.delta - rows_[i].rest_twist), rows_[i].twist);
-        }
+        for (int i = 0; i + 1 < vertices_; ++i) energy += stretch_energy(shapes_[i].length, rows_[i].damped_length, rows_[i].stretch);
+        for (int i = 1; i + 1 < vertices_; ++i)
+            energy += bend_energy(shapes_[i].corner.angle, shapes_[i].sigma, rows_[i].damped_angle, rows_[i].bend);
+        for (int i = 1; i + 2 < vertices_; ++i) energy += twist_energy(shapes_[i].strain - rows_[i].damped_strain, rows_[i].twist);
         return energy;
     }
 
@@ -87,9 +52,19 @@ template <class T> class StrandObjective {
     }
 
   private:
+    void measure(const Vec<T> *x) {
+        for (int i = 0; i + 1 < vertices_; ++i) {
+            const Vec<T> edge = x[i + 1] - x[i];
+            shapes_[i].length = max(norm(edge), constant<T>(1e-30));
+            shapes_[i].tangent = (1.0 / shapes_[i].length) * edge;
+        }
+        for (int i = 1; i + 1 < vertices_; ++i) shapes_[i].corner = corner(shapes_[i - 1].tangent, shapes_[i].tangent);
+        for (int i = 1; i + 2 < vertices_; ++i) shapes_[i].phi = dihedral(shapes_[i].corner, shapes_[i + 1].corner, shapes_[i + 1].tangent);
+    }
+
     void add_stretch(int i, Vec<T> *gradient, Banded<T> &hessian) {
         const StrandShape<T> &s = shapes_[i];
-        const Stretch<T> e = stretch(s.tangent, s.length, rows_[i].rest_length, rows_[i].stretch);
+        const Stretch<T> e = stretch(s.tangent, s.length, rows_[i].damped_length, rows_[i].stretch);
         gradient[i] = gradient[i] - e.gradient;
         gradient[i + 1] = gradient[i + 1] + e.gradient;
         const T free0 = rows_[i].free, free1 = rows_[i + 1].free;
@@ -102,7 +77,8 @@ template <class T> class StrandObjective {
 
     void add_bend(int i, Vec<T> *gradient, Banded<T> &hessian) {
         const StrandShape<T> &before = shapes_[i - 1], &s = shapes_[i];
-        const Bend<T> e = bend(s.corner, before.tangent, s.tangent, before.length, s.length, s.sigma, rows_[i].rest_angle, rows_[i].bend);
+        const Bend<T> e =
+            bend(s.corner, before.tangent, s.tangent, before.length, s.length, s.sigma, rows_[i].damped_angle, rows_[i].bend);
         gradient[i - 1] = gradient[i - 1] - e.gradient0;
         gradient[i] = gradient[i] + (e.gradient0 - e.gradient1);
         gradient[i + 1] = gradient[i + 1] + e.gradient1;
@@ -113,19 +89,33 @@ template <class T> class StrandObjective {
         }
     }
 
+    // ½ k r² with the Hessian k ∇r∇rᵀ; r depends on the dihedral and, where it fades, on the two corners' angles.
     void add_twist(int i, Vec<T> *gradient, Banded<T> &hessian) {
         const StrandShape<T> &before = shapes_[i - 1], &s = shapes_[i], &after = shapes_[i + 1];
-        const DihedralGradient<T> g = dihedral_gradient(s.corner, after.corner, before.length, s.length, after.length);
-        const T stiffness = rows_[i].twist * rows_[i].fade * rows_[i].fade;
-        const T moment = stiffness * (s.delta - rows_[i].rest_twist);
+        const DihedralGradient<T> phi = dihedral_gradient(s.corner, after.corner, before.length, s.length, after.length);
+        Vec<T> slope[4];
+        for (int k = 0; k < 4; ++k) slope[k] = s.by_dihedral * phi.at[k];
+        add_angle_gradient(slope, s.by_angle, s.corner, before, s);
+        add_angle_gradient(slope + 1, s.by_next, after.corner, s, after);
+        const T moment = rows_[i].twist * (s.strain - rows_[i].damped_strain);
         Vec<T> u[4];
         for (int k = 0; k < 4; ++k) {
-            gradient[i - 1 + k] = gradient[i - 1 + k] + moment * g.at[k];
-            u[k] = rows_[i - 1 + k].free * g.at[k];
+            gradient[i - 1 + k] = gradient[i - 1 + k] + moment * slope[k];
+            u[k] = rows_[i - 1 + k].free * slope[k];
         }
-        hessian.add_square(i - 1, stiffness, u);
+        hessian.add_square(i - 1, rows_[i].twist, u);
     }
 
+    // Adds weight · ∂θ/∂x of the corner between two edges, at its three vertices.
+    static void add_angle_gradient(Vec<T> *slope, T weight, const Corner<T> &corner, const StrandShape<T> &first, const StrandShape<T> &second) {
+        const Vec<T> g0 = (-weight / first.length) * cross(corner.normal, first.tangent);
+        const Vec<T> g1 = (weight / second.length) * cross(corner.normal, second.tangent);
+        slope[0] = slope[0] - g0;
+        slope[1] = slope[1] + (g0 - g1);
+        slope[2] = slope[2] + g1;
+    }
+
+    Continuation continuation_;
     int vertices_;
     StrandRow<T> *rows_;
     StrandShape<T> *shapes_;

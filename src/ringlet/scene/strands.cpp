@@ -157,8 +157,8 @@ void step_strands(const StrandModel &model, StrandState &state, View<Vec3> targe
     }
 }
 
-double strand_energy(const StrandModel &model, const StrandState &state, View<Vec3> positions, std::vector<Vec3> &gradient,
-                     std::vector<double> *hessian) {
+double strand_energy(const StrandModel &model, const StrandState &state, Continuation continuation, View<Vec3> positions,
+                     std::vector<Vec3> &gradient, std::vector<double> *hessian) {
     if (int(positions.size()) != model.vertex_count()) throw std::invalid_argument("strands: positions do not fit the model");
     StrandState copy = state;
     const StrandArrays arrays = arrays_of(model, copy, positions);
@@ -168,9 +168,11 @@ double strand_energy(const StrandModel &model, const StrandState &state, View<Ve
         if (model.strand_count() != 1) throw std::invalid_argument("strands: the Hessian is given for one strand at a time");
         hessian->assign(9 * positions.size() * positions.size(), 0.0);
     }
+    StrandStep step;
+    step.continuation = continuation;
     double energy = 0;
     for (int s = 0; s < model.strand_count(); ++s)
-        energy += RINGLET_DISPATCH(strand_group_energy, arrays, StrandStep{}, s, positions.data()->data(), workspace.get(),
+        energy += RINGLET_DISPATCH(strand_group_energy, arrays, step, s, positions.data()->data(), workspace.get(),
                                    gradient[model.offsets[s]].data(), hessian ? hessian->data() : nullptr);
     return energy;
 }

@@ -62,7 +62,7 @@ void step_strands(const StrandModel &model, StrandState &state, View<Vec3> targe
 
 // Energy [J] of the state's elastic terms, its gradient by the free vertices [N] (rows of pinned vertices are zero) and the
 // clamped Hessian that Newton uses (dense, row-major, n×n over all coordinates of ONE strand; empty to leave it out).
-double strand_energy(const StrandModel &model, const StrandState &state, View<Vec3> positions, std::vector<Vec3> &gradient,
-                     std::vector<double> *hessian);
+double strand_energy(const StrandModel &model, const StrandState &state, Continuation continuation, View<Vec3> positions,
+                     std::vector<Vec3> &gradient, std::vector<double> *hessian);
 
 } // namespace ringlet

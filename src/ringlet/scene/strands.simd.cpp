@@ -53,7 +53,7 @@ class Group {
   public:
     Group(const StrandArrays &arrays, const StrandStep &step, StrandGroup group, int vertices, void *memory)
         : arrays_(arrays), step_(step), group_(group), vertices_(vertices), space_(memory, vertices),
-          objective_(vertices, space_.rows, space_.shapes) {
+          objective_(step.continuation, vertices, space_.rows, space_.shapes) {
         for (int lane = 0; lane < lanes; ++lane) load(lane);
         objective_.evaluate(space_.start);
         remember_start();
@@ -115,7 +115,12 @@ class Group {
             const double beyond = real ? 0.0 : i - count + 1;
             set_lane(space_.start[i].x, lane, space_.start[i].x[lane] + beyond);
             set_lane(space_.x[i].x, lane, space_.x[i].x[lane] + beyond);
-            row.rest_twist = Pack{};
+            row.damped_strain = Pack{};
+        }
+        for (int i = 0; i < vertices_; ++i) {
+            StrandRow<Pack> &row = space_.rows[i];
+            row.damped_length = row.rest_length;
+            row.damped_angle = row.rest_angle;
         }
         for (int i = 0; i + 1 < vertices_; ++i) { // the references are of this very state: nothing to carry yet
             const Vec<Pack> edge = space_.start[i + 1] - space_.start[i];
@@ -131,7 +136,12 @@ class Group {
             const StrandShape<Pack> &s = space_.shapes[i];
             row.start_sigma = s.sigma;
             row.start_turns = s.turns;
-            row.fade = is_hinge(i) ? straightness_fade(s.corner.angle) * straightness_fade(space_.shapes[i + 1].corner.angle) : Pack{};
+            row.reference.fade =
+                is_hinge(i) ? straightness_fade(s.corner.angle) * straightness_fade(space_.shapes[i + 1].corner.angle) : Pack{};
+            if (is_hinge(i) && step_.continuation == Continuation::history) { // evaluated before the fades were known
+                space_.shapes[i].strain = row.reference.fade * s.delta;
+                space_.shapes[i].by_dihedral = row.reference.fade;
+            }
         }
     }
 
@@ -157,7 +167,8 @@ class Group {
 
     void carry(const RootMotion &root, int i) {
         Reference<Pack> &reference = space_.rows[i].reference;
-        reference = {root.turn(reference.normal), root.turn(reference.tangent), reference.delta};
+        reference.normal = root.turn(reference.normal);
+        reference.tangent = root.turn(reference.tangent);
     }
 
     // Damping of the strains' rates, as stiffer energies about rest values between the groom's and the present ones.
@@ -167,9 +178,9 @@ class Group {
         for (int i = 0; i + 1 < vertices_; ++i) {
             StrandRow<Pack> &row = space_.rows[i];
             const StrandShape<Pack> &s = space_.shapes[i];
-            row.rest_length = part * (row.rest_length + b * s.length);
-            if (i > 0) row.rest_angle = part * (row.rest_angle + b * s.sigma * s.corner.angle);
-            if (is_hinge(i)) row.rest_twist = part * b * s.delta;
+            row.damped_length = part * (row.rest_length + b * s.length);
+            if (i > 0) row.damped_angle = part * (row.rest_angle + b * s.sigma * s.corner.angle);
+            if (is_hinge(i)) row.damped_strain = part * b * s.strain;
             row.stretch *= 1.0 + b;
             row.bend *= 1.0 + b;
             row.twist *= 1.0 + b;
@@ -254,9 +265,9 @@ class Group {
                 remember_normal(lane, i, at);
             }
             if (hinge) {
-                report.twist += twist_energy(row.fade[lane] * s.delta[lane], arrays_.twist_stiffness[at]);
+                report.twist += twist_energy(s.strain[lane], arrays_.twist_stiffness[at]);
                 report.winding_changes += s.turns[lane] != row.start_turns[lane];
-                report.too_straight += hinge_free && row.fade[lane] == 0.0;
+                report.too_straight += hinge_free && s.by_dihedral[lane] == 0.0;
                 arrays_.twist[at] = s.delta[lane];
             }
         }

@@ -1,18 +1,10 @@
 // `history`: production's safeguards against virtual triangles that degenerate or flip. Signs and turns are compared with those of
-// the last accepted step.
+// the last accepted step, the fade is fixed within a step.
 #pragma once
 
-#include "ringlet/energy/strand/bend.h"
-#include "ringlet/math/pack.h"
+#include "ringlet/scene/strand_shape.h"
 
 namespace ringlet::RINGLET_SIMD {
-
-// What a vertex and the edge that begins there remember of the last accepted step.
-template <class T> struct Reference {
-    Vec<T> normal;  // σ n of the vertex
-    Vec<T> tangent; // of the edge
-    T delta;        // Δφ of the edge, with its turns
-};
 
 // Normal flips. A normal reversed against its predecessor is the triangle inverting (a curl passing through straight), not half a
 // turn of twist: σ = −1. The old normal is first carried along with the edge's own rotation, so that a fast rigid turn of the strand
@@ -35,6 +27,20 @@ template <class T> inline T straightness_fade(T angle) {
     const T u = (min(angle, pi - angle) - low) * (1.0 / (high - low));
     const T y = min(max(u, T{}), constant<T>(1.0));
     return y * y * (3.0 - 2.0 * y);
+}
+
+template <class T> void continue_history(int vertices, const StrandRow<T> *rows, StrandShape<T> *shapes) {
+    for (int i = 1; i + 1 < vertices; ++i)
+        shapes[i].sigma = carried_sign(rows[i].reference, shapes[i].tangent, shapes[i].corner.normal);
+    for (int i = 1; i + 2 < vertices; ++i) {
+        StrandShape<T> &s = shapes[i];
+        const T delta = s.phi - rows[i].rest_dihedral;
+        s.delta = carried_turns(rows[i].reference, delta, s.sigma * shapes[i + 1].sigma);
+        s.turns = round((s.delta - delta) * (0.5 / pi));
+        s.strain = rows[i].reference.fade * s.delta;
+        s.by_dihedral = rows[i].reference.fade;
+        s.by_angle = s.by_next = T{};
+    }
 }
 
 } // namespace ringlet::RINGLET_SIMD
