@@ -63,7 +63,9 @@ class Clip:
 
     def at(self, frame: float) -> NDArray[np.float64]:
         """Positions at a frame, linear between samples, held beyond the ends; shape (n, 3)."""
-        after = int(np.clip(np.searchsorted(self.frames, frame), 1, len(self.frames) - 1)) if len(self.frames) > 1 else 0
+        after = (
+            int(np.clip(np.searchsorted(self.frames, frame), 1, len(self.frames) - 1)) if len(self.frames) > 1 else 0
+        )
         if after == 0:
             return self.points[0]
         start, end = self.frames[after - 1], self.frames[after]

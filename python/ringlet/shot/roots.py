@@ -38,8 +38,8 @@ class Roots:
         scalp, locks = self.groom.scalp, self.groom.locks
         if scalp_points.shape != scalp.points.shape:
             raise UserError(
-                f"{scalp.name}: has {len(scalp_points)} points at {when}, but the groom was made on {len(scalp.points)}; "
-                "make the groom again on this mesh"
+                f"{scalp.name}: has {len(scalp_points)} points at {when}, but the groom was made on one with "
+                f"{len(scalp.points)}; make the groom again on this mesh"
             )
         place, axes = _core.root_frames(
             np.ascontiguousarray(scalp_points, np.float64),
@@ -52,7 +52,7 @@ class Roots:
             lock = int(np.flatnonzero(~good)[0])
             triangle = locks.curve["root_triangle"][lock]
             raise UserError(
-                f"{scalp.name}: at {when} triangle {triangle}, where lock {locks.ids[lock]} is rooted, has no area or is not finite; "
-                "mend the mesh or its animation"
+                f"{scalp.name}: at {when} triangle {triangle}, where lock {locks.ids[lock]} is rooted, has no area or "
+                "is not finite; mend the mesh or its animation"
             )
         return place, axes

@@ -23,9 +23,13 @@ class Shot(Section):
 
     ringlet: Literal[1] = Field(description="version of this format")
     name: str = Field("", description="what the shot is called")
-    groom_file: str = Field(alias="groom", description="recipe (.toml) or groom (.usdc, .usda, .usd); relative names count from the shot")
+    groom_file: str = Field(
+        alias="groom", description="recipe (.toml) or groom (.usdc, .usda, .usd); relative names count from the shot"
+    )
     frames: tuple[int, int] = Field(description="first and last frame")
-    preroll: int = Field(24, ge=0, le=100_000, description="frames simulated before the first, with the head still, so that hair hangs")
+    preroll: int = Field(
+        24, ge=0, le=100_000, description="frames simulated before the first, with the head still, so that hair hangs"
+    )
     held: int = Field(3, ge=2, le=1000, description="vertices of each lock, from its root, that the scalp holds")
     strands: Material = Field(Material(), description="what locks are made of")
     solver: Solver = Field(Solver(), description="how a time step is solved")

@@ -41,7 +41,10 @@ def simulate(
         raise UserError(f"sim: frames are {first}:{last}; the last must not come before the first")
     groom.locks.check("sim: locks")
     if (groom.locks.counts <= shot.held).any():
-        raise UserError(f"sim: held is {shot.held}, but a lock has {groom.locks.counts.min()} points; hold fewer, or resample the locks")
+        raise UserError(
+            f"sim: held is {shot.held}, but a lock has {groom.locks.counts.min()} points; "
+            "hold fewer, or resample the locks"
+        )
 
     roots = Roots(groom)
     strands = Strands(groom.locks, shot.strands, shot.held)
@@ -74,7 +77,13 @@ def _advance(shot: Shot, strands: Strands, roots: Roots, clip: Clip, start: floa
         frame = start + (end - start) * k / substeps
         targets = roots.carry(clip.at(frame), frame)
         reports.append(
-            strands.step(targets, 1.0 / (clip.fps * substeps), gravity=shot.forces.gravity, wind=shot.forces.wind, solver=shot.solver)
+            strands.step(
+                targets,
+                1.0 / (clip.fps * substeps),
+                gravity=shot.forces.gravity,
+                wind=shot.forces.wind,
+                solver=shot.solver,
+            )
         )
     statistics = _summary(reports, strands)
     return {

@@ -17,17 +17,24 @@ Vector = tuple[float, float, float]
 
 
 class Material(Section):
-    """What a lock is made of. A lock of many hairs that do not stick together moves like one of them, so these are a hair's values."""
+    """What a lock is made of: a hair's values, since hairs that do not stick together move like one of them."""
 
     youngs_modulus: float = Field(4e9, gt=0, le=1e13, description="E [Pa]; hair: 2e9 to 6e9")
     radius: float = Field(35e-6, gt=1e-7, le=0.1, description="r of one hair [m]")
     density: float = Field(1300.0, gt=0, le=1e5, description="[kg/m³]")
-    stretch_scale: float = Field(0.01, gt=0, le=100, description="scales the resistance to stretch, E π r²; hair is hard to stretch")
+    stretch_scale: float = Field(
+        0.01, gt=0, le=100, description="scales the resistance to stretch, E π r²; hair is hard to stretch"
+    )
     bend_scale: float = Field(1.0, ge=0, le=1e6, description="scales the resistance to bend, E π r⁴ / 4")
-    twist_ratio: float = Field(0.72, ge=0, le=1, description="twist stiffness as a part of bend stiffness: the spring constant of a coil")
-    damping: float = Field(0.005, ge=0, le=100, description="[s] every strain resists its own rate with this time times its stiffness")
+    twist_ratio: float = Field(
+        0.72, ge=0, le=1, description="twist stiffness as a part of bend stiffness: the spring constant of a coil"
+    )
+    damping: float = Field(
+        0.005, ge=0, le=100, description="[s] every strain resists its own rate with this time times its stiffness"
+    )
     mass_damping: float = Field(0.0, ge=0, le=1e4, description="[1/s] rate at which velocities decay")
     drag: float = Field(2e-5, ge=0, le=100, description="air drag per length and speed [kg/(m s)]")
+    correct_resolution: bool = Field(True, description="make coils of few vertices a turn as soft as smooth ones")
 
     def core(self) -> _core.StrandMaterial:
         """The same, for the core."""
@@ -40,9 +47,13 @@ class Material(Section):
 class Solver(Section):
     """How a time step is solved."""
 
-    newton: int = Field(5, ge=1, le=1000, description="Newton iterations per step; 1 is stable, 5 is the quality for film")
+    newton: int = Field(
+        5, ge=1, le=1000, description="Newton iterations per step; 1 is stable, 5 is the quality for film"
+    )
     substeps: int = Field(1, ge=1, le=1000, description="steps per frame")
-    tolerance: float = Field(1e-6, gt=0, le=1e-2, description="[m] a lock has converged when no vertex moves more than this")
+    tolerance: float = Field(
+        1e-6, gt=0, le=1e-2, description="[m] a lock has converged when no vertex moves more than this"
+    )
     continuation: Literal["least_energy", "history"] = Field(
         "least_energy", description="how the signs of bends and the turns of twist are found: see the theory page"
     )
@@ -112,12 +123,15 @@ class Strands:
     def energy(
         self, positions: NDArray[np.float64], *, continuation: str = "least_energy", hessian: bool = False
     ) -> tuple[float, NDArray[np.float64], NDArray[np.float64]]:
-        """Elastic energy [J], its gradient [N], shape (n, 3), and (for a single strand, on demand) the Hessian that Newton uses."""
+        """Elastic energy [J], its gradient [N], shape (n, 3), and, for a single strand, the Hessian Newton uses."""
         points = np.ascontiguousarray(positions, np.float64)
         return self._core.energy(points, getattr(_core.Continuation, continuation), hessian)
 
     def settle(self, *, gravity: Vector, tolerance: float = 1e-9, dt: float = 1.0, steps: int = 2000) -> bool:
-        """Lets the strands come to rest under gravity, with large steps; True when they have (movement per step below ``tolerance`` [m])."""
+        """Lets the strands come to rest under gravity, in large steps.
+
+        Returns whether they have: no coordinate moved more than ``tolerance`` [m] in the last step.
+        """
         still = self.positions.copy()
         solver = Solver(newton=50, tolerance=max(tolerance * 1e-2, 1e-14))
         for _ in range(steps):

@@ -28,7 +28,8 @@ template <class T> struct NewtonSpace {
 };
 
 template <class T, class Objective>
-NewtonResult<T> newton(Objective &objective, Vec<T> *x, int vertices, const NewtonSettings &settings, const NewtonSpace<T> &space) {
+NewtonResult<T> newton(Objective &objective, Vec<T> *x, int vertices, const NewtonSettings &settings,
+                       const NewtonSpace<T> &space) {
     const int most_cuts = 40;
     const double least_decrease = 1e-4; // Armijo
     const double rounding = 1e-14;      // of the energy: below this a decrease cannot be seen

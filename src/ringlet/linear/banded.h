@@ -8,7 +8,7 @@ namespace ringlet::RINGLET_SIMD {
 
 // The lower band, column by column: entry(c)[k] is the element in row c + k of scalar column c, k = 0 … 11.
 template <class T> class Banded {
-  public:
+public:
     static constexpr int band = 12;    // entries of a column
     static constexpr int padding = 12; // columns behind the last, so that no loop needs an end test
     static constexpr int entries(int vertices) { return (3 * vertices + padding) * band; }
@@ -77,7 +77,7 @@ template <class T> class Banded {
         }
     }
 
-  private:
+private:
     T *columns_;
     int vertices_;
 };

@@ -82,7 +82,8 @@ template <class T> inline T round(T x) {
 template <class T> inline T wrap(T angle) { return angle - 2.0 * pi * round(angle / (2.0 * pi)); }
 
 // atan2 with y ≥ 0 or y < 0, good to two units in the last place; atan2(0, 0) = 0.
-// |q| ≤ tan(π/8) by atan(r) = π/4 + atan((r − 1)/(r + 1)); there a polynomial in q², interpolated at Chebyshev nodes (error 4e-18).
+// |q| ≤ tan(π/8) by atan(r) = π/4 + atan((r − 1)/(r + 1)); there a polynomial in q², interpolated at Chebyshev nodes (error
+// 4e-18).
 template <class T> inline T atan2(T y, T x) {
     const double tan_pi_8 = 0.41421356237309504880;
     const T ax = abs(x), ay = abs(y);

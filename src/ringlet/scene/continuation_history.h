@@ -1,20 +1,20 @@
-// `history`: production's safeguards against virtual triangles that degenerate or flip. Signs and turns are compared with those of
-// the last accepted step, the fade is fixed within a step.
+// `history`: production's safeguards against virtual triangles that degenerate or flip. Signs and turns are compared with those
+// of the last accepted step, the fade is fixed within a step.
 #pragma once
 
 #include "ringlet/scene/strand_shape.h"
 
 namespace ringlet::RINGLET_SIMD {
 
-// Normal flips. A normal reversed against its predecessor is the triangle inverting (a curl passing through straight), not half a
-// turn of twist: σ = −1. The old normal is first carried along with the edge's own rotation, so that a fast rigid turn of the strand
-// is never taken for a flip.
+// Normal flips. A normal reversed against its predecessor is the triangle inverting (a curl passing through straight), not half
+// a turn of twist: σ = −1. The old normal is first carried along with the edge's own rotation, so that a fast rigid turn of the
+// strand is never taken for a flip.
 template <class T> inline T carried_sign(const Reference<T> &reference, Vec<T> tangent, Vec<T> normal) {
     return sign(dot(normal, transport(reference.normal, reference.tangent, tangent)));
 }
 
-// Winding. Δφ is known up to whole turns: the one nearest to the last step's is taken, so twist accumulates past ±π. Where one of
-// the two triangles is inverted (signs differ) the dihedral is half a turn off.
+// Winding. Δφ is known up to whole turns: the one nearest to the last step's is taken, so twist accumulates past ±π. Where one
+// of the two triangles is inverted (signs differ) the dihedral is half a turn off.
 template <class T> inline T carried_turns(const Reference<T> &reference, T delta, T sign_product) {
     const T with_sign = delta + select(sign_product < 0.0, constant<T>(pi), T{});
     return reference.delta + wrap(with_sign - reference.delta);

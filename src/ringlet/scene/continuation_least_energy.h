@@ -1,8 +1,8 @@
-// `least_energy`: the signs that give the strand the least energy, as part of the energy itself. It is a continuous function of the
-// positions alone: nothing to initialise, to carry or to restart, and nothing that can add energy.
+// `least_energy`: the signs that give the strand the least energy, as part of the energy itself. It is a continuous function of
+// the positions alone: nothing to initialise, to carry or to restart, and nothing that can add energy.
 //   E = min over σ of Σ ½ k_b (σθ − θ̄)² + Σ ½ k_t [s(θ_a) s(θ_b) f(Δ)]²,  Δ = wrap(φ − φ̄ + π [σ_a σ_b < 0])
-// The minimum is found exactly, corner by corner (dynamic programming over two states); the signs stay fixed while derivatives are
-// taken (envelope theorem).
+// The minimum is found exactly, corner by corner (dynamic programming over two states); the signs stay fixed while derivatives
+// are taken (envelope theorem).
 #pragma once
 
 #include "ringlet/energy/strand/bend.h"
@@ -63,7 +63,8 @@ template <class T> void continue_least_energy(int vertices, const StrandRow<T> *
     T plus = bend_of(1, 1), minus = bend_of(1, -1);
     for (int i = 1; i < last; ++i) {
         StrandShape<T> &s = shapes[i], &next = shapes[i + 1];
-        const T fade = straightness(s.corner.angle, rows[i].rest_angle).value * straightness(next.corner.angle, rows[i + 1].rest_angle).value;
+        const T fade = straightness(s.corner.angle, rows[i].rest_angle).value *
+                       straightness(next.corner.angle, rows[i + 1].rest_angle).value;
         const T delta = wrap(s.phi - rows[i].rest_dihedral);
         const T same = twist_energy(fade * rounded(delta).value - rows[i].damped_strain, rows[i].twist);
         const T differ = twist_energy(fade * rounded(wrap(delta + pi)).value - rows[i].damped_strain, rows[i].twist);
@@ -76,12 +77,14 @@ template <class T> void continue_least_energy(int vertices, const StrandRow<T> *
         minus = to_minus + bend_of(i + 1, -1);
     }
     shapes[last].sigma = select(plus <= minus, one, -one);
-    for (int i = last; i > 1; --i) shapes[i - 1].sigma = select(shapes[i].sigma > 0.0, shapes[i].choice_plus, shapes[i].choice_minus);
+    for (int i = last; i > 1; --i)
+        shapes[i - 1].sigma = select(shapes[i].sigma > 0.0, shapes[i].choice_plus, shapes[i].choice_minus);
 
     for (int i = 1; i < last; ++i) {
         StrandShape<T> &s = shapes[i];
         const StrandShape<T> &next = shapes[i + 1];
-        const WithSlope<T> a = straightness(s.corner.angle, rows[i].rest_angle), b = straightness(next.corner.angle, rows[i + 1].rest_angle);
+        const WithSlope<T> a = straightness(s.corner.angle, rows[i].rest_angle),
+                           b = straightness(next.corner.angle, rows[i + 1].rest_angle);
         s.delta = wrap(s.phi - rows[i].rest_dihedral + select(s.sigma * next.sigma < 0.0, constant<T>(pi), T{}));
         s.turns = T{};
         const WithSlope<T> f = rounded(s.delta);

@@ -11,26 +11,26 @@ namespace ringlet {
 enum class Continuation { history, least_energy };
 
 struct StrandStep {
-    double dt = 1.0 / 24;            // [s]
-    double gravity[3] = {0, 0, 0};   // [m/s²]
-    double wind[3] = {0, 0, 0};      // [m/s]
-    int newton = 5;                  // iterations at most
-    double tolerance = 1e-7;         // [m]; a strand is done when no coordinate moves more
+    double dt = 1.0 / 24;          // [s]
+    double gravity[3] = {0, 0, 0}; // [m/s²]
+    double wind[3] = {0, 0, 0};    // [m/s]
+    int newton = 5;                // iterations at most
+    double tolerance = 1e-7;       // [m]; a strand is done when no coordinate moves more
     Continuation continuation = Continuation::history;
 };
 
 // What happened to one strand in one step.
 struct StrandReport {
-    double newton;          // iterations used
-    double cuts;            // line search halvings
-    double residual;        // largest coordinate of the last Newton step [m]
-    double unconverged;     // 1 where iterations ran out
+    double newton;                                 // iterations used
+    double cuts;                                   // line search halvings
+    double residual;                               // largest coordinate of the last Newton step [m]
+    double unconverged;                            // 1 where iterations ran out
     double stretch, bend, twist, gravity, kinetic; // energies at the end [J]
-    double max_stretch;     // largest |l/l̄ − 1| of free edges
-    double flips;           // vertices whose sign changed
-    double winding_changes; // edges whose number of turns changed
-    double too_straight;    // edges without twist in this step
-    double nan;             // 1 where a position is not finite (the strand then keeps its last state)
+    double max_stretch;                            // largest |l/l̄ − 1| of free edges
+    double flips;                                  // vertices whose sign changed
+    double winding_changes;                        // edges whose number of turns changed
+    double too_straight;                           // edges without twist in this step
+    double nan;                                    // 1 where a position is not finite (the strand then keeps its last state)
 };
 inline constexpr int strand_report_columns = sizeof(StrandReport) / sizeof(double);
 

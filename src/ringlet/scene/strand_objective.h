@@ -1,6 +1,6 @@
-// What a time step of a strand minimises: Σ ½ aᵢ ‖xᵢ − yᵢ‖² (inertia, gravity, mass damping, drag) + stretch + bend + twist, with the
-// vertices that are held left out. Damping of strains needs no term of its own: with b = β/dt,
-// ½ k (θ − θ̄)² + ½ b k (θ − θₙ)² = ½ k (1 + b) (θ − (θ̄ + b θₙ)/(1 + b))² + constant.
+// What a time step of a strand minimises: Σ ½ aᵢ ‖xᵢ − yᵢ‖² (inertia, gravity, mass damping, drag) + stretch + bend + twist,
+// with the vertices that are held left out. Damping of strains needs no term of its own: with b = β/dt, ½ k (θ − θ̄)² + ½ b k (θ
+// − θₙ)² = ½ k (1 + b) (θ − (θ̄ + b θₙ)/(1 + b))² + constant.
 #pragma once
 
 #include "ringlet/energy/strand/bend.h"
@@ -14,7 +14,7 @@
 namespace ringlet::RINGLET_SIMD {
 
 template <class T> class StrandObjective {
-  public:
+public:
     StrandObjective(Continuation continuation, int vertices, StrandRow<T> *rows, StrandShape<T> *shapes)
         : continuation_(continuation), vertices_(vertices), rows_(rows), shapes_(shapes) {}
 
@@ -31,10 +31,12 @@ template <class T> class StrandObjective {
             const Vec<T> away = x[i] - rows_[i].inertial;
             energy += 0.5 * rows_[i].free * rows_[i].inertia * dot(away, away);
         }
-        for (int i = 0; i + 1 < vertices_; ++i) energy += stretch_energy(shapes_[i].length, rows_[i].damped_length, rows_[i].stretch);
+        for (int i = 0; i + 1 < vertices_; ++i)
+            energy += stretch_energy(shapes_[i].length, rows_[i].damped_length, rows_[i].stretch);
         for (int i = 1; i + 1 < vertices_; ++i)
             energy += bend_energy(shapes_[i].corner.angle, shapes_[i].sigma, rows_[i].damped_angle, rows_[i].bend);
-        for (int i = 1; i + 2 < vertices_; ++i) energy += twist_energy(shapes_[i].strain - rows_[i].damped_strain, rows_[i].twist);
+        for (int i = 1; i + 2 < vertices_; ++i)
+            energy += twist_energy(shapes_[i].strain - rows_[i].damped_strain, rows_[i].twist);
         return energy;
     }
 
@@ -51,15 +53,19 @@ template <class T> class StrandObjective {
         for (int i = 0; i < vertices_; ++i) gradient[i] = rows_[i].free * gradient[i];
     }
 
-  private:
+private:
     void measure(const Vec<T> *x) {
         for (int i = 0; i + 1 < vertices_; ++i) {
-            const Vec<T> edge = x[i + 1] - x[i];
-            shapes_[i].length = max(norm(edge), constant<T>(1e-30));
-            shapes_[i].tangent = (1.0 / shapes_[i].length) * edge;
+            // An edge that has shrunk to a point is given some direction and a length that can be divided by.
+            const Vec<T> edge = x[i + 1] - x[i], some{constant<T>(1.0), T{}, T{}};
+            const T length = norm(edge), least = 1e-6 * rows_[i].rest_length;
+            const auto point = length < least;
+            shapes_[i].length = select(point, least, length);
+            shapes_[i].tangent = select<T>(point, some, (1.0 / shapes_[i].length) * edge);
         }
         for (int i = 1; i + 1 < vertices_; ++i) shapes_[i].corner = corner(shapes_[i - 1].tangent, shapes_[i].tangent);
-        for (int i = 1; i + 2 < vertices_; ++i) shapes_[i].phi = dihedral(shapes_[i].corner, shapes_[i + 1].corner, shapes_[i + 1].tangent);
+        for (int i = 1; i + 2 < vertices_; ++i)
+            shapes_[i].phi = dihedral(shapes_[i].corner, shapes_[i + 1].corner, shapes_[i + 1].tangent);
     }
 
     void add_stretch(int i, Vec<T> *gradient, Banded<T> &hessian) {
@@ -107,7 +113,8 @@ template <class T> class StrandObjective {
     }
 
     // Adds weight · ∂θ/∂x of the corner between two edges, at its three vertices.
-    static void add_angle_gradient(Vec<T> *slope, T weight, const Corner<T> &corner, const StrandShape<T> &first, const StrandShape<T> &second) {
+    static void add_angle_gradient(Vec<T> *slope, T weight, const Corner<T> &corner, const StrandShape<T> &first,
+                                   const StrandShape<T> &second) {
         const Vec<T> g0 = (-weight / first.length) * cross(corner.normal, first.tangent);
         const Vec<T> g1 = (weight / second.length) * cross(corner.normal, second.tangent);
         slope[0] = slope[0] - g0;

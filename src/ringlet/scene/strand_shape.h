@@ -32,11 +32,11 @@ template <class T> struct StrandShape {
     Vec<T> tangent; // of the edge that begins here
     T length;
     Corner<T> corner;
-    T sigma; // ±1, sign of the corner's bend
-    T phi;   // dihedral angle of the edge, in (−π, π]
-    T delta; // φ − φ̄ of the edge as the signs and turns have it
-    T turns; // whole turns in it
-    T strain;                        // of the twist: what its energy is the square of
+    T sigma;                          // ±1, sign of the corner's bend
+    T phi;                            // dihedral angle of the edge, in (−π, π]
+    T delta;                          // φ − φ̄ of the edge as the signs and turns have it
+    T turns;                          // whole turns in it
+    T strain;                         // of the twist: what its energy is the square of
     T by_dihedral, by_angle, by_next; // ∂strain by φ, by the angle at this corner and by that at the next
 
     T choice_plus, choice_minus; // `least_energy`: best sign of the corner before, were this one's + or −

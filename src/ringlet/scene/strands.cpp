@@ -1,5 +1,6 @@
 #include "ringlet/scene/strands.h"
 
+#include "ringlet/rest/resolution.h"
 #include "ringlet/rest/rest_shape.h"
 
 #include <Eigen/Geometry>
@@ -17,14 +18,14 @@ namespace {
 constexpr std::align_val_t alignment{64};
 
 class Workspace {
-  public:
+public:
     explicit Workspace(size_t bytes) : memory_(::operator new(bytes, alignment)) {}
     ~Workspace() { ::operator delete(memory_, alignment); }
     Workspace(const Workspace &) = delete;
     Workspace &operator=(const Workspace &) = delete;
     void *get() const { return memory_; }
 
-  private:
+private:
     void *memory_;
 };
 
@@ -54,8 +55,8 @@ StrandArrays arrays_of(const StrandModel &model, StrandState &state, View<Vec3> 
             state.twist.data()};
 }
 
-// Strands of like length together, so that few lanes carry vertices that are not there. A fixed order: the result of a strand does
-// not depend on its group, and a group never on the threads.
+// Strands of like length together, so that few lanes carry vertices that are not there. A fixed order: the result of a strand
+// does not depend on its group, and a group never on the threads.
 std::vector<int> by_length(const StrandModel &model) {
     std::vector<int> order(model.strand_count());
     std::iota(order.begin(), order.end(), 0);
@@ -63,6 +64,18 @@ std::vector<int> by_length(const StrandModel &model) {
         return model.offsets[a + 1] - model.offsets[a] > model.offsets[b + 1] - model.offsets[b];
     });
     return order;
+}
+
+// Per edge of a strand; the two end edges, which have one corner only, take those of their neighbours.
+std::vector<ResolutionFactors> resolution_of(const StrandModel &model, int first, int end) {
+    std::vector<ResolutionFactors> factors(end - first - 1);
+    for (int i = first + 1; i + 2 < end; ++i)
+        factors[i - first] = resolution_factors(0.5 * (model.rest_angle[i] + model.rest_angle[i + 1]), model.rest_dihedral[i]);
+    if (factors.size() > 2) {
+        factors.front() = factors[1];
+        factors.back() = factors[factors.size() - 2];
+    }
+    return factors;
 }
 
 } // namespace
@@ -94,22 +107,28 @@ StrandModel make_strand_model(View<int> offsets, View<Vec3> rest, View<int> pinn
     model.mass.assign(n, 0.0);
     model.drag.assign(n, 0.0);
     const double area = std::numbers::pi * material.radius * material.radius;
-    const double stretching = material.stretch_scale * material.youngs_modulus * area;                                // EA [N]
-    const double bending = material.bend_scale * material.youngs_modulus * area * material.radius * material.radius / 4; // EI [N m²]
-    const double twisting = std::clamp(material.twist_ratio, 0.0, 1.0) * bending;                                     // GJ [N m²]
+    const double stretching = material.stretch_scale * material.youngs_modulus * area; // EA [N]
+    const double bending =
+        material.bend_scale * material.youngs_modulus * area * material.radius * material.radius / 4; // EI [N m²]
+    const double twisting = std::clamp(material.twist_ratio, 0.0, 1.0) * bending;                     // GJ [N m²]
     for (int s = 0; s < strands; ++s) {
         const int first = offsets[s], end = offsets[s + 1];
+        std::vector<ResolutionFactors> factors(end - first - 1);
+        if (material.correct_resolution) factors = resolution_of(model, first, end);
         for (int i = first; i + 1 < end; ++i) {
             const double length = model.rest_length[i];
-            if (!(length > 0)) throw std::invalid_argument("strands: strand " + std::to_string(s) + " has an edge without length");
+            const ResolutionFactors &factor = factors[i - first];
+            if (!(length > 0))
+                throw std::invalid_argument("strands: strand " + std::to_string(s) + " has an edge without length");
             model.stretch_stiffness[i] = stretching / length;
             for (const int vertex : {i, i + 1}) {
-                model.mass[vertex] += 0.5 * material.density * area * length;
+                model.mass[vertex] += 0.5 * material.density * area * length * factor.mass;
                 model.drag[vertex] += 0.5 * material.drag * length;
             }
             if (i == first) continue;
-            model.bend_stiffness[i] = bending / (0.5 * (model.rest_length[i - 1] + length));
-            if (i + 2 < end) model.twist_stiffness[i] = twisting / length;
+            model.bend_stiffness[i] =
+                bending * 0.5 * (factors[i - first - 1].bend + factor.bend) / (0.5 * (model.rest_length[i - 1] + length));
+            if (i + 2 < end) model.twist_stiffness[i] = twisting * factor.twist / length;
         }
     }
     return model;

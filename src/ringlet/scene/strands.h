@@ -10,15 +10,16 @@ namespace ringlet {
 
 // What a lock is made of. A lock of many hairs that do not stick together moves like one of them, so these are a hair's values.
 struct StrandMaterial {
-    double youngs_modulus = 4e9;  // E [Pa]
-    double radius = 35e-6;        // r [m]
-    double density = 1300;        // ρ [kg/m³]
-    double stretch_scale = 1;     // scales EA: below 1 the strand is easier to stretch than its E says
-    double bend_scale = 1;        // scales EI
-    double twist_ratio = 0.72;    // c = GJ / EI, clamped to [0, 1]
-    double damping = 0.0;         // Kelvin–Voigt time β [s]: every strain resists its own rate with β times its stiffness
-    double mass_damping = 0.0;    // α [1/s]: velocities decay at this rate
-    double drag = 0.0;            // linear air drag per length [kg/(m s)]
+    double youngs_modulus = 4e9;    // E [Pa]
+    double radius = 35e-6;          // r [m]
+    double density = 1300;          // ρ [kg/m³]
+    double stretch_scale = 1;       // scales EA: below 1 the strand is easier to stretch than its E says
+    double bend_scale = 1;          // scales EI
+    double twist_ratio = 0.72;      // c = GJ / EI, clamped to [0, 1]
+    double damping = 0.0;           // Kelvin–Voigt time β [s]: every strain resists its own rate with β times its stiffness
+    double mass_damping = 0.0;      // α [1/s]: velocities decay at this rate
+    double drag = 0.0;              // linear air drag per length [kg/(m s)]
+    bool correct_resolution = true; // make coils of few vertices a turn as soft as smooth ones (rest/resolution.h)
 };
 
 // Fixed: packed like Curves, one row per vertex; row i of an edge quantity belongs to the edge from i to i+1.

@@ -15,7 +15,8 @@ struct Workspace {
 
     static size_t bytes(int vertices) {
         return vertices * (sizeof(StrandRow<Pack>) + sizeof(StrandShape<Pack>)) +
-               (6 * size_t(vertices) + Banded<Pack>::padding) * sizeof(Vec<Pack>) + Banded<Pack>::entries(vertices) * sizeof(Pack);
+               (6 * size_t(vertices) + Banded<Pack>::padding) * sizeof(Vec<Pack>) +
+               Banded<Pack>::entries(vertices) * sizeof(Pack);
     }
 
     Workspace(void *memory, int vertices) {
@@ -50,7 +51,7 @@ Vec<Pack> load_vector(const double *values, int row, int lane, Vec<Pack> into) {
 }
 
 class Group {
-  public:
+public:
     Group(const StrandArrays &arrays, const StrandStep &step, StrandGroup group, int vertices, void *memory)
         : arrays_(arrays), step_(step), group_(group), vertices_(vertices), space_(memory, vertices),
           objective_(step.continuation, vertices, space_.rows, space_.shapes) {
@@ -65,7 +66,8 @@ class Group {
         resist_rates();
         add_inertia();
         guess(root);
-        const NewtonResult<Pack> result = newton(objective_, space_.x, vertices_, {step_.newton, step_.tolerance}, space_.newton);
+        const NewtonResult<Pack> result =
+            newton(objective_, space_.x, vertices_, {step_.newton, step_.tolerance}, space_.newton);
         objective_.evaluate(space_.x);
         for (int lane = 0; lane < group_.count; ++lane) reports[lane] = unload(lane, result);
     }
@@ -89,7 +91,7 @@ class Group {
         return value;
     }
 
-  private:
+private:
     int strand(int lane) const { return group_.strands[lane < group_.count ? lane : 0]; }
 
     // Lanes hold strands of different lengths: behind a strand's tip follow vertices that nothing acts on, on a straight line.
@@ -99,7 +101,9 @@ class Group {
             StrandRow<Pack> &row = space_.rows[i];
             const bool real = i < count;
             const int at = first + (real ? i : count - 1);
-            const auto value = [&](Pack &into, const double *from, double otherwise) { set_lane(into, lane, real ? from[at] : otherwise); };
+            const auto value = [&](Pack &into, const double *from, double otherwise) {
+                set_lane(into, lane, real ? from[at] : otherwise);
+            };
             set_lane(row.free, lane, real && i >= arrays_.pinned[strand(lane)] ? 1.0 : 0.0);
             value(row.stretch, arrays_.stretch_stiffness, 0.0);
             value(row.rest_length, arrays_.rest_length, 1.0);
@@ -145,8 +149,8 @@ class Group {
         }
     }
 
-    // The rigid motion from the held vertices at the start of the step to where they are at its end. Three of them give a rotation;
-    // with fewer the root only translates.
+    // The rigid motion from the held vertices at the start of the step to where they are at its end. Three of them give a
+    // rotation; with fewer the root only translates.
     RootMotion root_motion() const {
         const Vec<Pack> *a = space_.start, *b = space_.x;
         RootMotion motion{a[0], b[0], {}};
@@ -192,7 +196,8 @@ class Group {
         for (int lane = 0; lane < lanes; ++lane) {
             const int first = arrays_.offsets[strand(lane)], count = arrays_.offsets[strand(lane) + 1] - first;
             for (int i = 0; i < vertices_; ++i) {
-                const double mass = i < count ? arrays_.mass[first + i] : 0.0, drag = i < count ? arrays_.drag[first + i] / h : 0.0;
+                const double mass = i < count ? arrays_.mass[first + i] : 0.0,
+                             drag = i < count ? arrays_.drag[first + i] / h : 0.0;
                 const double moving = mass / (h * h), held = arrays_.mass_damping * mass / h, sum = moving + held + drag;
                 set_lane(space_.rows[i].inertia, lane, sum);
                 for (int k = 0; k < 3; ++k) {
@@ -206,8 +211,8 @@ class Group {
         }
     }
 
-    // Newton starts from the least energetic of: staying, flying on, moving rigidly with the root. Staying is among them, so a step
-    // with a still root can never gain energy.
+    // Newton starts from the least energetic of: staying, flying on, moving rigidly with the root. Staying is among them, so a
+    // step with a still root can never gain energy.
     void guess(const RootMotion &root) {
         const auto place = [this](int i, Vec<Pack> p) { return select<Pack>(space_.rows[i].free > 0.0, p, space_.x[i]); };
         Vec<Pack> *trial = space_.newton.trial, *best = space_.x;
@@ -215,7 +220,8 @@ class Group {
         Pack least = objective_.evaluate(best);
         for (int attempt = 0; attempt < 2; ++attempt) {
             for (int i = 0; i < vertices_; ++i)
-                trial[i] = place(i, attempt == 0 ? root.move(space_.start[i]) : space_.start[i] + constant<Pack>(step_.dt) * space_.velocity[i]);
+                trial[i] = place(i, attempt == 0 ? root.move(space_.start[i])
+                                                 : space_.start[i] + constant<Pack>(step_.dt) * space_.velocity[i]);
             const Pack energy = objective_.evaluate(trial);
             const auto better = energy < least;
             for (int i = 0; i < vertices_; ++i) best[i] = select<Pack>(better, trial[i], best[i]);
@@ -244,7 +250,8 @@ class Group {
             const StrandShape<Pack> &s = space_.shapes[i];
             const int at = first + i;
             const bool free = row.free[lane] > 0, edge = i + 1 < count, corner = edge && i > 0, hinge = i > 0 && i + 2 < count;
-            const bool edge_free = edge && space_.rows[i + 1].free[lane] > 0, hinge_free = hinge && space_.rows[i + 2].free[lane] > 0;
+            const bool edge_free = edge && space_.rows[i + 1].free[lane] > 0,
+                       hinge_free = hinge && space_.rows[i + 2].free[lane] > 0;
             double speed2 = 0;
             for (int k = 0; k < 3; ++k) {
                 const double x = space_.x[i][k][lane], v = (x - arrays_.positions[3 * at + k]) / step_.dt;
@@ -260,7 +267,8 @@ class Group {
                 report.max_stretch = max(report.max_stretch, abs(strain));
             }
             if (corner) {
-                report.bend += bend_energy(s.corner.angle[lane], s.sigma[lane], arrays_.rest_angle[at], arrays_.bend_stiffness[at]);
+                report.bend +=
+                    bend_energy(s.corner.angle[lane], s.sigma[lane], arrays_.rest_angle[at], arrays_.bend_stiffness[at]);
                 report.flips += s.sigma[lane] != row.start_sigma[lane];
                 remember_normal(lane, i, at);
             }
@@ -279,7 +287,8 @@ class Group {
         const StrandRow<Pack> &row = space_.rows[i];
         const StrandShape<Pack> &s = space_.shapes[i];
         const bool bent = s.corner.sine[lane] > 2.6e-3;
-        const Vec<Pack> normal = bent ? s.sigma * s.corner.normal : transport(row.reference.normal, row.reference.tangent, s.tangent);
+        const Vec<Pack> normal =
+            bent ? s.sigma * s.corner.normal : transport(row.reference.normal, row.reference.tangent, s.tangent);
         for (int k = 0; k < 3; ++k) arrays_.normals[3 * at + k] = normal[k][lane];
     }
 
@@ -306,12 +315,13 @@ int strand_lanes() { return lanes; }
 
 size_t strand_workspace(int vertices) { return Workspace::bytes(vertices); }
 
-void step_strand_group(const StrandArrays &arrays, const StrandStep &step, StrandGroup group, void *workspace, StrandReport *reports) {
+void step_strand_group(const StrandArrays &arrays, const StrandStep &step, StrandGroup group, void *workspace,
+                       StrandReport *reports) {
     Group(arrays, step, group, longest(arrays, group), workspace).step(reports);
 }
 
-double strand_group_energy(const StrandArrays &arrays, const StrandStep &step, int strand, const double *positions, void *workspace,
-                           double *gradient, double *hessian) {
+double strand_group_energy(const StrandArrays &arrays, const StrandStep &step, int strand, const double *positions,
+                           void *workspace, double *gradient, double *hessian) {
     const StrandGroup group{&strand, 1};
     return Group(arrays, step, group, longest(arrays, group), workspace).energy(positions, gradient, hessian);
 }
