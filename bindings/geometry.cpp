@@ -1,5 +1,146 @@
 #include "arrays.h"
 
-namespace nb = nanobind;
+#include "ringlet/geometry/resample.h"
+#include "ringlet/geometry/triangle_tree.h"
 
-void bind_geometry(nb::module_ &module) { (void)module; }
+#include <nanobind/stl/optional.h>
+#include <optional>
+#include <stdexcept>
+
+namespace nb = nanobind;
+using namespace nb::literals;
+using namespace ringlet;
+using namespace ringlet::bindings;
+
+namespace {
+
+TriangleMesh mesh_of(const Array3<double> &points, const Array3<int> &triangles) {
+    const TriangleMesh mesh{vectors<Vec3>(points), vectors<Triangle>(triangles)};
+    for (const Triangle &t : mesh.triangles)
+        if (t.minCoeff() < 0 || t.maxCoeff() >= static_cast<int>(mesh.points.size()))
+            throw std::out_of_range("a triangle names a point that the mesh does not have");
+    return mesh;
+}
+
+void check_triangles(View<int> triangles, const TriangleMesh &mesh) {
+    for (const int t : triangles)
+        if (t < 0 || t >= static_cast<int>(mesh.triangles.size())) throw std::out_of_range("there is no such triangle");
+}
+
+// (triangle (k,), barycentric (k, 3), distance (k,)) of the point of the mesh nearest to each root.
+nb::tuple bind_roots(const Array3<double> &points, const Array3<int> &triangles, const Array3<double> &roots,
+                     const std::optional<Array1<int>> &allowed) {
+    const TriangleMesh mesh = mesh_of(points, triangles);
+    if (allowed) check_triangles(view(*allowed), mesh);
+    if ((allowed ? allowed->shape(0) : triangles.shape(0)) == 0)
+        throw std::invalid_argument("there are no triangles to bind to");
+    const View<Vec3> places = vectors<Vec3>(roots);
+    const size_t count = places.size();
+    std::vector<int> triangle(count);
+    std::vector<Vec3> barycentric(count);
+    std::vector<double> distance(count);
+    {
+        nb::gil_scoped_release release;
+        const TriangleTree tree = allowed ? TriangleTree(mesh, view(*allowed)) : TriangleTree(mesh);
+#pragma omp parallel for schedule(dynamic, 64)
+        for (size_t i = 0; i < count; ++i) {
+            const SurfacePoint found = tree.closest(places[i]);
+            triangle[i] = found.triangle;
+            barycentric[i] = found.barycentric;
+            distance[i] = found.distance;
+        }
+    }
+    return nb::make_tuple(to_numpy<int>(std::move(triangle), {count}), to_numpy<double>(std::move(barycentric), {count, 3}),
+                          to_numpy<double>(std::move(distance), {count}));
+}
+
+using RowMajor3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+// (positions (k, 3), frames (k, 3, 3)) of roots on the mesh as it stands.
+nb::tuple root_frames(const Array3<double> &points, const Array3<int> &triangles, const Array1<int> &root_triangle,
+                      const Array3<double> &root_barycentric) {
+    const TriangleMesh mesh = mesh_of(points, triangles);
+    const View<int> triangle = view(root_triangle);
+    const View<Vec3> barycentric = vectors<Vec3>(root_barycentric);
+    check_triangles(triangle, mesh);
+    const size_t count = triangle.size();
+    if (barycentric.size() != count) throw std::invalid_argument("root_triangle and root_barycentric differ in length");
+    std::vector<Vec3> positions(count);
+    std::vector<RowMajor3> frames(count);
+    {
+        nb::gil_scoped_release release;
+        const std::vector<Vec3> normals = vertex_normals(mesh);
+#pragma omp parallel for schedule(static)
+        for (size_t i = 0; i < count; ++i) {
+            positions[i] = mesh.at(triangle[i], barycentric[i]);
+            frames[i] = surface_frame(mesh, normals, triangle[i], barycentric[i]);
+        }
+    }
+    return nb::make_tuple(to_numpy<double>(std::move(positions), {count, 3}),
+                          to_numpy<double>(std::move(frames), {count, 3, 3}));
+}
+
+CurveView curves_of(const Array3<double> &points, const Array1<int> &offsets) {
+    const CurveView curves{vectors<Vec3>(points), view(offsets)};
+    if (curves.offsets.empty() || curves.offsets.front() != 0 ||
+        curves.offsets.back() != static_cast<int>(curves.points.size()))
+        throw std::invalid_argument("offsets do not fit the points");
+    for (int i = 0; i < curves.count(); ++i)
+        if (curves.offsets[i + 1] - curves.offsets[i] < 2) throw std::invalid_argument("a curve has fewer than 2 points");
+    return curves;
+}
+
+// Frames (n, 3, 3) along curves; columns: axis, tangent × axis, tangent.
+nb::ndarray<nb::numpy, double> curve_frames(const Array3<double> &points, const Array1<int> &offsets,
+                                            const Array3<double> &axis) {
+    const CurveView curves = curves_of(points, offsets);
+    const View<Vec3> first = vectors<Vec3>(axis);
+    if (static_cast<int>(first.size()) != curves.count()) throw std::invalid_argument("axis needs one row a curve");
+    const size_t n = curves.points.size();
+    std::vector<RowMajor3> frames(n);
+    {
+        nb::gil_scoped_release release;
+        std::vector<Vec3> tangent(n), moved(n);
+#pragma omp parallel for schedule(static)
+        for (int i = 0; i < curves.count(); ++i) {
+            const size_t begin = curves.offsets[i], count = curves[i].size();
+            const std::span<Vec3> t = std::span(tangent).subspan(begin, count), a = std::span(moved).subspan(begin, count);
+            tangents(curves[i], t);
+            transport(curves[i], t, first[i], a);
+            for (size_t k = 0; k < count; ++k) frames[begin + k] << a[k], t[k].cross(a[k]), t[k];
+        }
+    }
+    return to_numpy<double>(std::move(frames), {n, 3, 3});
+}
+
+nb::ndarray<nb::numpy, double> resample_curves(const Array3<double> &points, const Array1<int> &offsets, int count) {
+    const CurveView curves = curves_of(points, offsets);
+    if (count < 2) throw std::invalid_argument("count must be at least 2");
+    const size_t n = static_cast<size_t>(curves.count()) * count;
+    std::vector<Vec3> result(n);
+    {
+        nb::gil_scoped_release release;
+#pragma omp parallel for schedule(static)
+        for (int i = 0; i < curves.count(); ++i)
+            resample(curves[i], std::span(result).subspan(static_cast<size_t>(i) * count, count));
+    }
+    return to_numpy<double>(std::move(result), {n, 3});
+}
+
+} // namespace
+
+void bind_geometry(nb::module_ &module) {
+    module.def("bind_roots", &bind_roots, "points"_a, "triangles"_a, "roots"_a, "allowed_triangles"_a = nb::none(),
+               "The point of a triangle mesh nearest to each root: triangle (k,), barycentric (k, 3), distance (k,) [m].\n"
+               "points (n, 3) [m], triangles (m, 3), roots (k, 3) [m], allowed_triangles: indices to search, or None for all.");
+    module.def(
+        "root_frames", &root_frames, "points"_a, "triangles"_a, "root_triangle"_a, "root_barycentric"_a,
+        "Roots on a mesh as it stands: positions (k, 3) [m] and frames (k, 3, 3), whose columns are tangent, bitangent and\n"
+        "normal. The frame is tied to the material: now @ rest.T carries what grows there.");
+    module.def(
+        "curve_frames", &curve_frames, "points"_a, "offsets"_a, "axis"_a,
+        "Rotation-minimising frames (n, 3, 3) along curves (Wang et al. 2008), whose columns are the carried axis, tangent\n"
+        "x axis, and tangent; axis (count, 3) is made orthogonal to the first tangent of each curve.");
+    module.def("resample_curves", &resample_curves, "points"_a, "offsets"_a, "count"_a,
+               "count points evenly spaced along the Catmull-Rom spline through each curve: (curves * count, 3) [m].");
+}

@@ -96,7 +96,8 @@ class Curves:
             row = int(np.flatnonzero(~finite)[0])
             curve = int(np.searchsorted(self.offsets, row, side="right") - 1)
             raise UserError(
-                f"{what}: curve {self.ids[curve]}, point {row - self.offsets[curve]} is not finite: {self.points[row]}"
+                f"{what}: curve {self.ids[curve]}, point {row - self.offsets[curve]} is {self.points[row]}; "
+                "must be finite"
             )
         if (flat := np.flatnonzero(self.lengths() <= 0)).size:
             raise UserError(f"{what}: curve {self.ids[flat[0]]} has length 0; remove it or draw it out")

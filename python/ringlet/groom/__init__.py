@@ -1,1 +1,21 @@
+"""The groom: from a recipe and a scalp to every hair."""
 
+from ringlet.groom.groom import Groom
+from ringlet.groom.hairs import Hairs, HairSettings, make_hairs
+from ringlet.groom.presets import PRESETS
+from ringlet.groom.recipe import Recipe, parse_recipe, read_recipe, schema
+from ringlet.groom.stack import Memory, make_groom
+
+__all__ = [
+    "PRESETS",
+    "Groom",
+    "HairSettings",
+    "Hairs",
+    "Memory",
+    "Recipe",
+    "make_groom",
+    "make_hairs",
+    "parse_recipe",
+    "read_recipe",
+    "schema",
+]

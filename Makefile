@@ -1,0 +1,52 @@
+# The front door. `make help` lists what there is.
+.DEFAULT_GOAL := help
+MAKEFLAGS += --no-builtin-rules
+export PIP_DISABLE_PIP_VERSION_CHECK := 1
+
+python := .venv/bin/python
+pip := $(python) -m pip install --quiet
+
+# What the compiled part of the package is made from; editing Python needs no new build.
+sources := pyproject.toml CMakeLists.txt $(wildcard cmake/*) $(shell find src bindings -type f)
+
+.PHONY: help build demo test bench docs lint clean
+
+help: ## list the targets
+	@grep -E '^[a-z]+:.*##' Makefile | sed -E 's/:.*## /\t/' | expand -t 10
+
+build: .venv/built ## set up .venv and build: gives .venv/bin/ringlet
+
+.venv/prepared: tools/bootstrap.sh pyproject.toml
+	@tools/bootstrap.sh
+	@echo "Installing what the build needs"
+	@$(python) -c 'import tomllib; print(*tomllib.load(open("pyproject.toml", "rb"))["build-system"]["requires"], sep="\n")' >$@.txt
+	@$(pip) cmake ninja --requirement $@.txt
+	@touch $@
+
+.venv/built: .venv/prepared $(sources)
+	@echo "Building Ringlet and installing what it needs"
+	@$(pip) --no-build-isolation --editable .
+	@touch $@
+
+.venv/tooled: .venv/built
+	@echo "Building the C++ tests and installing what tests, lints and documents need"
+	@$(pip) --no-build-isolation --config-settings=cmake.define.RINGLET_TESTS=ON --editable '.[dev]'
+	@touch $@
+
+demo: build ## groom, simulate and picture the example: writes out/demo
+	@.venv/bin/ringlet demo -o out/demo
+
+test: .venv/tooled ## everything: C++, Python, known answers, lints, documents
+	@tools/test.sh
+
+bench: build ## speed, as JSON
+	@for name in groom strands; do .venv/bin/ringlet bench $$name --json; done
+
+docs: .venv/tooled ## the documents: docs/_build/html/index.html
+	@tools/docs.sh
+
+lint: .venv/tooled ## formatting, types, static analysis, who may call whom
+	@tools/lint.sh
+
+clean: ## remove everything that was built
+	rm -rf .venv build dist out docs/_build

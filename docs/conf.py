@@ -1,0 +1,31 @@
+"""How the documents are built; the references are made from the program itself, so that they cannot lag behind it."""
+
+import sys
+from importlib.metadata import version
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+from reference import write_references
+
+project = "Ringlet"
+author = copyright = "The Ringlet authors"
+release = version("ringlet")
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
+myst_enable_extensions = ["colon_fence", "deflist"]
+myst_heading_anchors = 3
+exclude_patterns = ["_build"]
+autodoc_typehints = "signature"
+autodoc_member_order = "bysource"
+html_theme = "alabaster"
+html_title = f"Ringlet {release}"
+html_theme_options = {
+    "description": "Grooms tightly curled hair and simulates it",
+    "page_width": "1080px",
+    "sidebar_width": "240px",
+    "fixed_sidebar": True,
+}
+
+
+def setup(app):
+    write_references(Path(app.srcdir) / "_generated")

@@ -1,0 +1,164 @@
+"""Makes the example head: a child's bust with a named scalp and a clip of 48 frames, as USD in centimetres.
+
+    python examples/child/make_head.py [-o head.usdc]
+
+Needs scikit-image beside Ringlet's own requirements. The result is kept beside this file; nobody has to run it.
+"""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import head_shape
+import numpy as np
+import parts
+from charts import unwrap
+from motion import FPS, FRAMES, eye_matrix, head_matrix, pose
+from numpy.typing import NDArray
+from pxr import Gf, Kind, Sdf, Usd, UsdGeom, UsdShade, Vt
+from regions import NAMES, label
+from remesh import mesh_shape
+from shapes import Array, capsule, sphere
+
+GROUND = np.array([0.0, 27.0, 0.0])  # the bust stands on the ground, y = 0
+SKIN, LIPS, BLUSH = np.array([0.40, 0.205, 0.125]), np.array([0.36, 0.115, 0.09]), np.array([0.43, 0.175, 0.11])
+
+
+@dataclass
+class Piece:
+    """A mesh with its colour and gloss; points are in the rest pose of the head or of their own frame."""
+
+    points: Array
+    triangles: NDArray[np.int32]
+    color: Array
+    roughness: float
+    uv: Array | None = None
+    regions: dict[str, NDArray[np.int32]] = field(default_factory=dict)
+
+
+def skin_size(points: Array) -> Array:
+    """Edge lengths [cm]: fine around eyes, lips, nose and ears, growing slowly away from them."""
+    p = head_shape.mirrored(points)
+    fine = [
+        (sphere(p, head_shape.EYE_CENTRE + [0, 0, 1.2], 1.7), 0.2),
+        (capsule(p, (0, -5.1, 7.0), (1.9, -4.9, 6.2), 0.8), 0.2),
+        (sphere(p, (0.5, -3.2, 7.8), 1.0), 0.2),
+        (sphere(p, head_shape.EAR_CENTRE + [0.5, 0, -0.5], 2.8), 0.3),
+    ]
+    return np.min([size + 0.22 * np.maximum(distance, 0.0) for distance, size in fine] + [np.full(len(p), 0.72)], axis=0)
+
+
+def build() -> dict[str, Piece]:
+    """Every mesh by name."""
+    low, high = np.array([-9.6, -20.0, -11.2]), np.array([9.6, 11.2, 9.8])
+    points, triangles = mesh_shape(head_shape.skin, low, high, 0.24, skin_size)
+    labels = label(points, triangles)
+    regions = {name: np.flatnonzero(labels == k).astype(np.int32) for k, name in enumerate(NAMES)}
+    skin = Piece(points, triangles, SKIN, 0.5, unwrap(points, triangles, labels), regions)
+    cloth = mesh_shape(
+        head_shape.shirt, np.array([-13.6, -28.4, -10.0]), np.array([13.6, -8.0, 4.4]), 0.4, lambda p: np.full(len(p), 1.0)
+    )
+    pieces = {"skin": skin, "shirt": Piece(*cloth, np.array([0.62, 0.36, 0.08]), 0.9)}
+    for side, sign in (("left", 1.0), ("right", -1.0)):
+        pieces[f"eye_{side}/white"] = Piece(*parts.eye_white(), np.array([0.82, 0.8, 0.77]), 0.12)
+        pieces[f"eye_{side}/iris"] = Piece(*parts.iris(), np.array([0.12, 0.045, 0.018]), 0.08)
+        pieces[f"eye_{side}/pupil"] = Piece(*parts.pupil(), np.array([0.004, 0.004, 0.004]), 0.05)
+        pieces[f"brow_{side}"] = Piece(*parts.brow(sign), np.array([0.03, 0.017, 0.012]), 0.8)
+        pieces[f"lash_{side}"] = Piece(*parts.lash(sign), np.array([0.012, 0.008, 0.007]), 0.7)
+    return pieces
+
+
+def write(pieces: dict[str, Piece], path: Path) -> None:
+    stage = Usd.Stage.CreateNew(str(path))
+    UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.y)
+    UsdGeom.SetStageMetersPerUnit(stage, UsdGeom.LinearUnits.centimeters)
+    stage.SetTimeCodesPerSecond(FPS)
+    stage.SetFramesPerSecond(FPS)
+    stage.SetStartTimeCode(float(FRAMES[0]))
+    stage.SetEndTimeCode(float(FRAMES[-1]))
+    child = UsdGeom.Xform.Define(stage, "/child")
+    stage.SetDefaultPrim(child.GetPrim())
+    Usd.ModelAPI(child).SetKind(Kind.Tokens.component)
+    UsdGeom.Scope.Define(stage, "/child/materials")
+    for name, piece in pieces.items():
+        if name in ("skin", "shirt"):
+            define_soft(stage, name, piece)
+        else:
+            define_rigid(stage, name, piece)
+    stage.GetRootLayer().Save()
+
+
+def define_mesh(stage: Usd.Stage, name: str, piece: Piece) -> UsdGeom.Mesh:
+    """What does not change over time: topology, colour, material, texture coordinates, regions."""
+    mesh = UsdGeom.Mesh.Define(stage, f"/child/{name}")
+    mesh.CreateSubdivisionSchemeAttr(UsdGeom.Tokens.none)
+    mesh.CreateFaceVertexCountsAttr(Vt.IntArray.FromNumpy(np.full(len(piece.triangles), 3, np.int32)))
+    mesh.CreateFaceVertexIndicesAttr(Vt.IntArray.FromNumpy(piece.triangles.ravel()))
+    mesh.CreateDisplayColorAttr([Gf.Vec3f(*map(float, piece.color))])
+    if piece.uv is not None:
+        values, indices = np.unique(piece.uv.reshape(-1, 2).astype(np.float32), axis=0, return_inverse=True)
+        st = UsdGeom.PrimvarsAPI(mesh).CreatePrimvar(
+            "st", Sdf.ValueTypeNames.TexCoord2fArray, UsdGeom.Tokens.faceVarying
+        )
+        st.Set(Vt.Vec2fArray.FromNumpy(values))
+        st.SetIndices(Vt.IntArray.FromNumpy(indices.ravel().astype(np.int32)))
+    for region, faces in piece.regions.items():
+        UsdGeom.Subset.CreateGeomSubset(
+            mesh, region, UsdGeom.Tokens.face, Vt.IntArray.FromNumpy(faces), "region", UsdGeom.Tokens.partition
+        )
+    material = define_material(stage, name.split("/")[-1].split("_")[0], piece)
+    UsdShade.MaterialBindingAPI.Apply(mesh.GetPrim()).Bind(material)
+    return mesh
+
+
+def define_material(stage: Usd.Stage, name: str, piece: Piece) -> UsdShade.Material:
+    material = UsdShade.Material.Define(stage, f"/child/materials/{name}")
+    shader = UsdShade.Shader.Define(stage, f"/child/materials/{name}/surface")
+    shader.CreateIdAttr("UsdPreviewSurface")
+    shader.CreateInput("diffuseColor", Sdf.ValueTypeNames.Color3f).Set(Gf.Vec3f(*map(float, piece.color)))
+    shader.CreateInput("roughness", Sdf.ValueTypeNames.Float).Set(piece.roughness)
+    material.CreateSurfaceOutput().ConnectToSource(shader.ConnectableAPI(), "surface")
+    return material
+
+
+def define_soft(stage: Usd.Stage, name: str, piece: Piece) -> None:
+    """Skin and cloth bend: their points are sampled at every frame."""
+    mesh = define_mesh(stage, name, piece)
+    set_points(mesh, piece.points + GROUND, Usd.TimeCode.Default())
+    for frame in FRAMES:
+        set_points(mesh, pose(piece.points, frame) + GROUND, Usd.TimeCode(float(frame)))
+
+
+def define_rigid(stage: Usd.Stage, name: str, piece: Piece) -> None:
+    """Eyes, lashes and brows follow the head as they are: only their place is sampled."""
+    mesh = define_mesh(stage, name, piece)
+    set_points(mesh, piece.points, Usd.TimeCode.Default())
+    owner = UsdGeom.Xform.Define(stage, f"/child/{name.split('/')[0]}") if "/" in name else mesh
+    operation = UsdGeom.Xformable(owner).MakeMatrixXform()
+    side = 1.0 if "left" in name else -1.0
+    for frame in FRAMES:
+        matrix = eye_matrix(head_shape.EYE_CENTRE * [side, 1, 1], frame) if "/" in name else head_matrix(frame)
+        matrix[:3, 3] += GROUND
+        operation.Set(Gf.Matrix4d(*matrix.T.ravel().tolist()), Usd.TimeCode(float(frame)))
+
+
+def set_points(mesh: UsdGeom.Mesh, points: Array, time: Usd.TimeCode) -> None:
+    values = points.astype(np.float32)
+    mesh.GetPointsAttr().Set(Vt.Vec3fArray.FromNumpy(values), time)
+    mesh.GetExtentAttr().Set(Vt.Vec3fArray.FromNumpy(np.stack([values.min(axis=0), values.max(axis=0)])), time)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("-o", "--output", type=Path, default=Path(__file__).with_name("head.usdc"))
+    output = parser.parse_args().output
+    pieces = build()
+    write(pieces, output)
+    vertices = sum(len(piece.points) for piece in pieces.values())
+    print(f"{output}: {len(pieces)} meshes, {vertices} vertices, {output.stat().st_size / 1e6:.1f} MB")
+
+
+if __name__ == "__main__":
+    main()

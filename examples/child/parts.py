@@ -1,0 +1,99 @@
+"""Eyes, lashes and brows: small meshes of their own, in the head's rest pose."""
+
+from __future__ import annotations
+
+import numpy as np
+from head_shape import EYE_CENTRE, EYE_RADIUS, LID, lid_direction, skin
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+from shapes import Array, gradient, project
+
+Part = tuple[Array, NDArray[np.int32]]
+
+IRIS = np.radians(29.0)  # half-angle seen from the middle of the eyeball
+PUPIL = np.radians(14.0)
+
+
+def dome(last: float, rings: int, lift: float, segments: int = 28) -> Part:
+    """The front of an eyeball up to an angle from its axis (+Z); a bulging cornea catches the light."""
+    theta = last * np.arange(1, rings + 1) / rings
+    around = 2.0 * np.pi * np.arange(segments) / segments
+    bulge = np.maximum(1.0 - (np.append(0.0, theta) / np.radians(34.0)) ** 2, 0.0) ** 2
+    radius = EYE_RADIUS + lift + 0.09 * bulge
+    ring = np.stack([np.outer(np.sin(theta), np.cos(around)), np.outer(np.sin(theta), np.sin(around))], axis=-1)
+    ring = np.concatenate([ring, np.broadcast_to(np.cos(theta)[:, None, None], (rings, segments, 1))], axis=-1)
+    points = np.concatenate([[[0.0, 0.0, radius[0]]], (radius[1:, None, None] * ring).reshape(-1, 3)])
+    return points, np.concatenate([fan(0, 1, segments), tube(1, rings, segments)])
+
+
+def eye_white() -> Part:
+    return dome(np.radians(120.0), 14, 0.0)
+
+
+def iris() -> Part:
+    return dome(IRIS, 5, 0.012)
+
+
+def pupil() -> Part:
+    return dome(PUPIL, 3, 0.024)
+
+
+def brow(side: float) -> Part:
+    """A soft strip over the eye, laid on the skin; ``side`` is 1 for the child's left and -1 for the right."""
+    bow = CubicSpline([0.0, 0.5, 1.0], [(1.35, 1.75, 8.0), (3.25, 2.55, 7.2), (5.1, 1.75, 5.6)])
+    t = np.linspace(0.0, 1.0, 12)
+    points = project(skin, bow(t) * [side, 1.0, 1.0], steps=8)
+    normals = gradient(skin, points)
+    return strip(points, normals, np.interp(t, [0, 0.15, 0.55, 1], [0.2, 0.3, 0.27, 0.06]), 0.13)
+
+
+def lash(side: float) -> Part:
+    """A dark line along the edge of the upper lid."""
+    across = np.linspace(-0.93, 1.02, 16)
+    normals = lid_direction(across) * [side, 1.0, 1.0]
+    points = EYE_CENTRE * [side, 1.0, 1.0] + (EYE_RADIUS + 0.5 * LID + 0.05) * normals
+    widths = np.interp(across, [-0.93, 0.0, 0.8, 1.02], [0.02, 0.07, 0.1, 0.03])
+    return strip(points, normals, widths, LID)
+
+
+def strip(points: Array, normals: Array, widths: Array, thickness: float, segments: int = 8) -> Part:
+    """A closed lens-shaped tube along points, flat on the surface with those normals."""
+    normals = normals / np.linalg.norm(normals, axis=1, keepdims=True)
+    along = np.gradient(points, axis=0)
+    across = np.cross(normals, along)
+    across /= np.linalg.norm(across, axis=1, keepdims=True)
+    turn = 2.0 * np.pi * np.arange(segments) / segments
+    height = thickness * widths / widths.max()
+    rings = points[:, None] + widths[:, None, None] * np.cos(turn)[:, None] * across[:, None]
+    rings = rings + height[:, None, None] * np.sin(turn)[:, None] * normals[:, None]
+    count = len(points)
+    ends = [points[0] - 0.5 * (points[1] - points[0]), points[-1] + 0.5 * (points[-1] - points[-2])]
+    all_points = np.concatenate([[ends[0]], rings.reshape(-1, 3), [ends[1]]])
+    last = 1 + count * segments
+    triangles = np.concatenate(
+        [fan(0, 1, segments), tube(1, count, segments), fan(last, last - segments, segments)[:, ::-1]]
+    )
+    return all_points, outward(all_points, triangles)
+
+
+def fan(tip: int, first: int, segments: int) -> NDArray[np.int32]:
+    """Triangles between a tip and the ring that starts at a vertex."""
+    k = np.arange(segments)
+    return np.stack([np.full(segments, tip), first + k, first + (k + 1) % segments], axis=1).astype(np.int32)
+
+
+def tube(first: int, rings: int, segments: int) -> NDArray[np.int32]:
+    """Triangles between consecutive rings."""
+    k = np.arange(segments)
+    here = first + segments * np.arange(rings - 1)[:, None]
+    a, b = here + k, here + (k + 1) % segments
+    lower = np.stack([a, a + segments, b], axis=-1)
+    upper = np.stack([b, a + segments, b + segments], axis=-1)
+    return np.concatenate([lower, upper], axis=1).reshape(-1, 3).astype(np.int32)
+
+
+def outward(points: Array, triangles: NDArray) -> NDArray[np.int32]:
+    """The triangles of a closed mesh, turned over if its volume is negative."""
+    a, b, c = (points[triangles[:, k]] - points.mean(axis=0) for k in range(3))
+    volume = np.einsum("ij,ij->", a, np.cross(b, c))
+    return np.ascontiguousarray(triangles if volume > 0 else triangles[:, ::-1], dtype=np.int32)

@@ -1,0 +1,69 @@
+"""Which part of the skin is what: scalp, ears, face and neck, one of them for every triangle."""
+
+from __future__ import annotations
+
+import numpy as np
+from head_shape import EAR_CENTRE, ear_frame, ear_leaf, mirrored
+from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator
+from scipy.sparse import csr_matrix
+from scipy.sparse.csgraph import connected_components
+from shapes import Array
+
+NAMES = ("scalp", "face", "ear_left", "ear_right", "neck")
+SKULL_CENTRE = np.array([0.0, 0.5, -1.2])
+
+# Heights over the angle around the vertical axis: 0° looks forward, 90° to the ear, 180° back.
+#             forehead   corner      temple       sideburn     over the ear            behind it            nape
+_HAIRLINE = PchipInterpolator(
+    np.radians([0, 15, 30, 42, 55, 66, 78, 85, 92, 100, 112, 124, 136, 150, 165, 180]),
+    [6.0, 6.05, 6.0, 5.3, 3.9, 2.6, 0.6, -0.2, 0.6, 1.6, 1.3, -0.8, -3.2, -4.7, -5.2, -5.0],
+)
+_JAWLINE = PchipInterpolator(np.radians([0, 30, 60, 90, 110, 180]), [-8.7, -8.3, -7.2, -5.6, -4.4, -4.0])
+
+
+def above_hairline(points: Array) -> Array:
+    """Height over the hairline [cm], positive where hair grows; ears are not asked about."""
+    p = mirrored(points) - SKULL_CENTRE
+    return points[:, 1] - _HAIRLINE(np.arctan2(p[:, 0], p[:, 2]))
+
+
+def label(points: Array, triangles: NDArray) -> NDArray:
+    """Index into ``NAMES`` of each triangle, every region in one piece."""
+    p = mirrored(points[triangles].mean(axis=1))
+    around = np.arctan2(p[:, 0], p[:, 2] - SKULL_CENTRE[2])
+    is_ear = (ear_leaf(ear_frame(p)) < 0.12) & (p[:, 0] > EAR_CENTRE[0] - 0.6)
+    side = np.where(points[triangles, 0].mean(axis=1) > 0, NAMES.index("ear_left"), NAMES.index("ear_right"))
+    labels = np.where(p[:, 1] > _JAWLINE(around), NAMES.index("face"), NAMES.index("neck"))
+    labels = np.where(above_hairline(p) > 0, NAMES.index("scalp"), labels)
+    return without_islands(np.where(is_ear, side, labels), triangles)
+
+
+def without_islands(labels: NDArray, triangles: NDArray) -> NDArray:
+    """Gives scattered triangles to the region around them, so that every region is its largest piece."""
+    neighbours = facing(triangles)
+    labels = labels.copy()
+    for _ in range(100):
+        same = labels[neighbours[:, 0]] == labels[neighbours[:, 1]]
+        inside = neighbours[same]
+        graph = csr_matrix((np.ones(len(inside)), inside.T), shape=(len(triangles),) * 2)
+        piece = connected_components(graph, directed=False)[1]
+        size = np.bincount(piece)
+        largest = {int(piece[labels == k][np.argmax(size[piece[labels == k]])]) for k in np.unique(labels)}
+        stray = ~np.isin(piece, list(largest))
+        votes = np.zeros((len(triangles), len(NAMES)), int)
+        for a, b in (neighbours.T, neighbours.T[::-1]):
+            np.add.at(votes, (a[~stray[b]], labels[b[~stray[b]]]), 1)
+        # A triangle mostly surrounded by another region is a tooth in the border: it changes sides too.
+        own = votes[np.arange(len(labels)), labels]
+        change = (stray & (votes.max(axis=1) > 0)) | (~stray & (own <= 1) & (votes.max(axis=1) >= 2))
+        if not change.any():
+            break
+        labels[change] = votes[change].argmax(axis=1)
+    return labels
+
+
+def facing(triangles: NDArray) -> NDArray:
+    """Pairs of triangles that share an edge, shape (e, 2)."""
+    halves = np.sort(np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=-1).reshape(-1, 2), axis=1)
+    return np.lexsort(halves.T).reshape(-1, 2) // 3

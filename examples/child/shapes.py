@@ -1,0 +1,75 @@
+"""Signed distances to soft shapes: negative inside, positive outside, in the unit of the points.
+
+Every shape takes points of shape (n, 3) and returns distances of shape (n,). They are bounds rather than exact
+distances once shapes are blended; ``project`` therefore steps along the gradient until it stands on the surface.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+Shape = Callable[[Array], Array]
+
+
+def sphere(p: Array, centre: ArrayLike, radius: float) -> Array:
+    return np.linalg.norm(p - np.asarray(centre), axis=-1) - radius
+
+
+def ellipsoid(p: Array, centre: ArrayLike, radii: ArrayLike) -> Array:
+    """Distance to an ellipsoid, first order near its surface."""
+    scaled = (p - np.asarray(centre)) / np.asarray(radii)
+    k = np.linalg.norm(scaled, axis=-1)
+    return k * (k - 1.0) / np.maximum(np.linalg.norm(scaled / np.asarray(radii), axis=-1), 1e-9)
+
+
+def capsule(p: Array, start: ArrayLike, end: ArrayLike, radius: float, end_radius: float | None = None) -> Array:
+    """A segment with a radius that may change linearly from end to end."""
+    a, b = np.asarray(start, float), np.asarray(end, float)
+    t = np.clip((p - a) @ (b - a) / ((b - a) @ (b - a)), 0.0, 1.0)
+    taper = 0.0 if end_radius is None else end_radius - radius
+    return np.linalg.norm(p - a - t[:, None] * (b - a), axis=-1) - radius - taper * t
+
+
+def stroke(p: Array, points: Sequence[ArrayLike], radii: Sequence[float]) -> Array:
+    """A chain of capsules, as drawn with a round brush of changing size."""
+    links = zip(points[:-1], points[1:], radii[:-1], radii[1:], strict=True)
+    return np.min([capsule(p, a, b, ra, rb) for a, b, ra, rb in links], axis=0)
+
+
+def union(a: Array, b: Array, blend: float) -> Array:
+    """Both shapes, joined by a fillet about as wide as ``blend``."""
+    near = np.maximum(blend - np.abs(a - b), 0.0) / blend
+    return np.minimum(a, b) - 0.25 * blend * near * near
+
+
+def subtract(a: Array, b: Array, blend: float) -> Array:
+    """The first shape without the second, the edge rounded."""
+    return -union(-a, b, blend)
+
+
+def intersect(a: Array, b: Array, blend: float) -> Array:
+    """What the two shapes share, the edge rounded."""
+    return -union(-a, -b, blend)
+
+
+def engrave(shape: Array, tool: Array, depth: float, blend: float) -> Array:
+    """The shape with the tool pressed into its surface down to a depth, wherever the surface is."""
+    return subtract(shape, np.maximum(tool, -(shape + depth)), blend)
+
+
+def gradient(shape: Shape, p: Array, step: float = 2e-3) -> Array:
+    """Central differences, shape (n, 3)."""
+    return np.stack([shape(p + h) - shape(p - h) for h in step * np.eye(3)], axis=-1) / (2.0 * step)
+
+
+def project(shape: Shape, p: Array, steps: int = 3, stride: float = 0.3) -> Array:
+    """Points moved onto the surface by Newton steps along the gradient, none longer than ``stride``."""
+    for _ in range(steps):
+        slope = gradient(shape, p)
+        move = -(shape(p) / np.maximum((slope**2).sum(-1), 1e-2))[:, None] * slope
+        p = p + move * np.minimum(1.0, stride / np.maximum(np.linalg.norm(move, axis=-1, keepdims=True), 1e-12))
+    return p

@@ -1,0 +1,311 @@
+"""The public functions: what the command line does, for programs.
+
+They follow the data: recipe → groom → cache → hairs → pictures. Heavy libraries are imported where they are used, so
+that ``import ringlet`` is quick. ``progress``, wherever it is taken, is called as ``progress(stage, done, total)``.
+"""
+
+from __future__ import annotations
+
+import difflib
+import importlib.util
+import inspect
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ringlet.errors import UserError
+from ringlet.share import share
+
+if TYPE_CHECKING:
+    from ringlet.groom import Hairs, Recipe
+    from ringlet.groom.groom import Groom
+    from ringlet.shot import Shot
+    from ringlet.shot.cache import Cache
+    from ringlet.validate import Row
+
+Progress = Callable[[str, int, int], None]
+
+
+# Groom
+
+
+def read_recipe(path: Path | str) -> Recipe:
+    """Reads a recipe from a TOML file, with every setting checked."""
+    from ringlet import groom
+
+    return groom.read_recipe(Path(path))
+
+
+def build_groom(recipe: Recipe | Path | str, *, progress: Progress | None = None) -> Groom:
+    """Makes the groom of a recipe: guides grown on the scalp or read from USD, then locks, shape and curl."""
+    from ringlet import groom, io
+
+    if not isinstance(recipe, groom.Recipe):
+        recipe = read_recipe(recipe)
+    if recipe.scalp_file is None:
+        raise UserError(f"{recipe.path or 'recipe'}: scalp.file is missing; name the USD file of the head")
+    scalp = io.read_mesh(recipe.scalp_file, recipe.scalp.mesh)
+    drawn = io.read_curves(recipe.guides_file, recipe.guides.prim) if recipe.guides_file else None
+    return groom.make_groom(
+        recipe,
+        scalp,
+        drawn_guides=drawn,
+        scalp_file=recipe.scalp_file,
+        scalp_prim=recipe.scalp.mesh,
+        space=io.read_space(recipe.scalp_file),
+        progress=(lambda _, done, total: progress("groom", done, total)) if progress else None,
+    )
+
+
+def write_groom(groom: Groom, path: Path | str) -> None:
+    """Writes a groom as USD, with the head it grows on by reference."""
+    from ringlet import io
+
+    io.write_groom(groom, Path(path))
+
+
+def read_groom(path: Path | str) -> Groom:
+    """Reads a groom that ``write_groom`` wrote."""
+    from ringlet import io
+
+    return io.read_groom(Path(path))
+
+
+def load_groom(path: Path | str, *, progress: Progress | None = None) -> Groom:
+    """The groom of a recipe (``.toml``) or of a USD file."""
+    return build_groom(path, progress=progress) if Path(path).suffix == ".toml" else read_groom(path)
+
+
+# Shot
+
+
+def read_shot(path: Path | str) -> Shot:
+    """Reads a shot from a TOML file, with every setting checked."""
+    from ringlet import shot
+
+    return shot.read_shot(Path(path))
+
+
+def simulate(
+    shot: Shot | Path | str,
+    groom: Groom | Path | str | None = None,
+    *,
+    frames: tuple[int, int] | None = None,
+    progress: Progress | None = None,
+) -> Cache:
+    """Moves the locks of a groom while the scalp plays its clip.
+
+    groom:  in place of the one that the shot names
+    frames: first and last frame, in place of the shot's
+    """
+    from ringlet import io
+    from ringlet import shot as shots
+    from ringlet.groom.groom import Groom
+
+    if not isinstance(shot, shots.Shot):
+        shot = read_shot(shot)
+    if not isinstance(groom, Groom):
+        groom = load_groom(groom or shot.groom, progress=progress)
+    if groom.scalp_file is None:
+        raise UserError("sim: the groom names no file for its scalp; write the head as USD and name it in the recipe")
+    clip = io.read_clip(groom.scalp_file, groom.scalp_prim)
+    return shots.simulate(shot, groom, clip, frames=frames, progress=progress)
+
+
+def write_cache(cache: Cache, groom: Path | str, path: Path | str) -> None:
+    """Writes simulated guides as a USD layer over the file ``groom``."""
+    from ringlet import io
+
+    io.write_cache(cache, Path(groom), Path(path), io.read_space(Path(groom)))
+
+
+def read_cache(path: Path | str) -> Cache:
+    """Reads simulated guides that ``write_cache`` wrote."""
+    from ringlet import io
+
+    return io.read_cache(Path(path))
+
+
+# Hairs
+
+
+def build_hairs(groom: Groom, *, fraction: float = 1.0) -> Hairs:
+    """Makes the hairs of every lock. ``fraction`` of them: the same ones every time, in (0, 1]."""
+    from ringlet import groom as grooms
+
+    return grooms.make_hairs(groom, fraction=fraction)
+
+
+def write_hairs(
+    groom: Path | str,
+    path: Path | str,
+    *,
+    cache: Path | str | None = None,
+    frames: tuple[int, int] | None = None,
+    fraction: float = 1.0,
+    progress: Progress | None = None,
+) -> dict[str, int]:
+    """Writes the hairs of the USD file ``groom``, at rest, or carried by the guides of ``cache`` through ``frames``.
+
+    Returns how many ``locks``, ``hairs``, ``points`` and ``frames`` there are.
+    """
+    from ringlet import io
+
+    locks = read_groom(groom)
+    hairs = build_hairs(locks, fraction=fraction)
+    written = 0
+    with io.HairWriter(Path(path), locks, hairs.curves, Path(cache or groom)) as writer:
+        if cache is None:
+            writer.add(None, hairs.curves.points)
+        else:
+            moved = _within(read_cache(cache), frames, cache)
+            clip = io.read_clip(locks.scalp_file, locks.scalp_prim)
+            for frame, points in zip(moved.frames, moved.points, strict=True):
+                writer.add(frame, hairs.at(points, clip.at(frame)))
+                written += 1
+                if progress:
+                    progress("hairs", written, len(moved.frames))
+    return {
+        "locks": len(locks.locks),
+        "hairs": len(hairs.curves),
+        "points": len(hairs.curves.points),
+        "frames": written,
+    }
+
+
+def _within(cache: Cache, frames: tuple[int, int] | None, path: Path | str) -> Cache:
+    """The frames of a cache from the first to the last of ``frames``."""
+    if frames is None:
+        return cache
+    chosen = (cache.frames >= frames[0]) & (cache.frames <= frames[1])
+    if not chosen.any():
+        held = f"{cache.frames[0]:g} to {cache.frames[-1]:g}"
+        raise UserError(f"{path}: has no frame from {frames[0]:g} to {frames[1]:g}; it holds {held}")
+    return replace(cache, frames=cache.frames[chosen], points=cache.points[chosen])
+
+
+# Pictures
+
+
+def write_still(
+    stage: Path | str,
+    path: Path | str,
+    *,
+    frame: float | None = None,
+    width: int = 900,
+    height: int = 1100,
+    samples: int = 64,
+    view: str = "three_quarter",
+    color: str = "dark_brown",
+    progress: Progress | None = None,
+) -> None:
+    """Path-traces one frame of a USD stage to a PNG: the hairs and the bodies in it, framed on their own.
+
+    frame: the first of the stage by default
+    view:  ``three_quarter``, ``front``, ``side`` or ``back``
+    """
+    from ringlet import picture
+
+    bodies, hairs = _posed(Path(stage), frame)
+    picture.still(
+        bodies,
+        hairs,
+        Path(path),
+        width=width,
+        height=height,
+        samples=samples,
+        view=view,
+        color=color,
+        progress=progress,
+    )
+
+
+def write_sheet(
+    stage: Path | str,
+    path: Path | str,
+    *,
+    frames: tuple[int, int] | None = None,
+    count: int = 12,
+    color: str = "dark_brown",
+    progress: Progress | None = None,
+) -> None:
+    """Draws ``count`` frames of a USD stage, evenly spread, on one page."""
+    from ringlet import io, picture
+
+    _, _, held = io.read_stage(Path(stage))
+    chosen = [f for f in held if frames is None or frames[0] <= f <= frames[1]]
+    if not chosen:
+        raise UserError(f"{stage}: has no frames to draw a sheet of; give hairs made with --cache, or other frames")
+    spread = [chosen[i] for i in np.unique(np.linspace(0, len(chosen) - 1, count).round().astype(int))]
+    picture.sheet(
+        ((frame, *_posed(Path(stage), frame)) for frame in spread), Path(path), color=color, progress=progress
+    )
+
+
+def _posed(stage: Path, frame: float | None) -> tuple[list[Any], Any]:
+    """Bodies and hairs of a stage at a frame, as the pictures take them."""
+    from ringlet import io, picture
+
+    bodies, hairs, frames = io.read_stage(stage, frame)
+    if hairs is None:
+        raise UserError(f"{stage}: has no hairs; make them with: ringlet hair {stage} -o hair.usdc")
+    at = frame if frame is not None else frames[0] if len(frames) else 0.0
+    return [picture.PosedBody(body.mesh, body.clip.at(at)) for body in bodies], hairs
+
+
+# What checks Ringlet
+
+
+def run_validation(cases: Sequence[str] | None = None, *, progress: Progress | None = None) -> list[Row]:
+    """Compares the simulator with known answers: all cases, or the named ones."""
+    from ringlet import validate
+
+    chosen = list(validate.CASES) if cases is None else list(cases)
+    for name in chosen:
+        _known(name, validate.CASES, "validate", "case")
+    rows = []
+    for index, name in enumerate(chosen):
+        rows += validate.run_case(name)
+        if progress:
+            progress("known answers", index + 1, len(chosen))
+    return rows
+
+
+def run_bench(name: str, **params: Any) -> dict[str, Any]:
+    """Runs the benchmark of that name with its parameters; returns what it measured."""
+    folder = share("bench")
+    files = {file.stem: file for file in sorted(folder.glob("*.py"))}
+    _known(name, files, "bench", "benchmark")
+    spec = importlib.util.spec_from_file_location(f"ringlet_bench_{name}", files[name])
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    taken = inspect.signature(module.run).parameters
+    for key in params:
+        _known(key, taken, f"bench {name}", "parameter")
+    return module.run(**params)
+
+
+def schema() -> dict[str, Any]:
+    """JSON schemas of what people write: ``recipe`` and ``shot``."""
+    from ringlet import groom, shot
+
+    return {"recipe": groom.schema(), "shot": shot.schema()}
+
+
+def use_threads(count: int) -> None:
+    """Limits the core to so many threads."""
+    from ringlet import _core
+
+    _core.set_thread_count(count)
+
+
+def _known(name: str, names: Any, where: str, what: str) -> None:
+    """Refuses a name that is not among ``names``, with the nearest one that is."""
+    if name not in names:
+        near = difflib.get_close_matches(name, names, n=1)
+        hint = f"did you mean '{near[0]}'?" if near else f"there are: {', '.join(names)}"
+        raise UserError(f"{where}: {name} is not a {what}; {hint}")

@@ -1,0 +1,120 @@
+"""The command ``ringlet``: its commands, and what becomes of an error.
+
+Exit codes: 0 success, 1 what was checked does not hold, 2 bad input, 3 a mistake in Ringlet itself, 130 interrupted.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import tempfile
+import traceback
+from collections.abc import Sequence
+from typing import Annotated, Any
+
+import typer
+from typer.core import TyperGroup
+
+import ringlet
+from ringlet.cli import bench, demo, groom, hair, picture, schema, sim, validate
+
+
+class Front(TyperGroup):
+    """Tells every error in one line, and never shows a traceback that was not asked for."""
+
+    def main(self, args: Sequence[str] | None = None, *rest: Any, standalone_mode: bool = True, **extra: Any) -> Any:
+        """Runs a command line and exits with its code."""
+        try:
+            code = super().main(args, *rest, standalone_mode=False, **extra) or 0
+        except typer.TyperException as error:
+            code = fail(f"{error.format_message()}  (ringlet --help tells more)", error.exit_code)
+        except ringlet.UserError as error:
+            code = fail(str(error), 2)
+        except BrokenPipeError:  # the reader of our output has seen enough
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            code = 1
+        except (typer.Abort, KeyboardInterrupt):
+            code = fail("interrupted", 130)
+        except OSError as error:
+            place = f"{error.filename}: " if error.filename else ""
+            code = fail(f"{place}{error.strerror or error}; check the place and its rights", 2)
+        except Exception:
+            code = fail(bug(), 3)
+        sys.exit(code)
+
+
+def fail(message: str, code: int) -> int:
+    """Prints a message as one line and gives the exit code back."""
+    print("error:", " ".join(message.split()), file=sys.stderr)
+    return code
+
+
+def bug() -> str:
+    """What to say of an exception that should not have happened; its traceback goes to a file, or is shown."""
+    if os.environ.get("RINGLET_DEBUG"):
+        traceback.print_exc()
+        where = "above"
+    else:
+        with tempfile.NamedTemporaryFile("w", prefix="ringlet-", suffix=".txt", delete=False) as file:
+            traceback.print_exc(file=file)
+        where = f"in {file.name}"
+    kind, value, _ = sys.exc_info()
+    name = kind.__name__ if kind else ""
+    return f"this is a mistake in Ringlet ({name}: {value}); the traceback is {where}, please report it"
+
+
+app = typer.Typer(
+    name="ringlet",
+    cls=Front,
+    help="Grooms tightly curled hair and simulates it.",
+    epilog="Start with: [bold]ringlet demo[/bold]",
+    rich_markup_mode="rich",
+    pretty_exceptions_enable=False,
+    add_completion=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+def show_version(asked: bool) -> None:
+    """Prints the version and ends."""
+    if asked:
+        print(f"ringlet {ringlet.__version__}")
+        raise typer.Exit
+
+
+def show_tracebacks(asked: bool) -> None:
+    """Lets mistakes in Ringlet show where they happened."""
+    if asked:
+        os.environ["RINGLET_DEBUG"] = "1"
+
+
+@app.callback(invoke_without_command=True)
+def front(
+    context: typer.Context,
+    version: Annotated[
+        bool, typer.Option("--version", callback=show_version, is_eager=True, help="Print the version.")
+    ] = False,
+    debug: Annotated[
+        bool, typer.Option("--debug", callback=show_tracebacks, help="Show the traceback of a mistake in Ringlet.")
+    ] = False,
+) -> None:
+    if context.invoked_subcommand is None:
+        print(context.get_help())
+
+
+for name, command in {
+    "demo": demo.demo,
+    "groom": groom.groom,
+    "sim": sim.sim,
+    "hair": hair.hair,
+    "picture": picture.picture,
+    "validate": validate.validate,
+    "bench": bench.bench,
+    "schema": schema.schema,
+}.items():
+    app.command(name)(command)
+
+
+def main() -> None:
+    """Entry point of the command ``ringlet``."""
+    app()

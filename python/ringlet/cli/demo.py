@@ -1,0 +1,40 @@
+"""``ringlet demo``: the whole way on the example."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+import ringlet
+from ringlet.cli.options import Json, Threads
+from ringlet.cli.output import print_json, print_table, size
+from ringlet.cli.progress import shown_progress
+
+
+def demo(
+    output: Annotated[Path, typer.Option("--output", "-o", metavar="FOLDER", help="The folder to write to.")] = Path(
+        "out/demo"
+    ),
+    as_json: Json = False,
+    threads: Threads = None,
+) -> None:
+    """Grooms, simulates and pictures the example: a child's head full of tight curls.
+
+    Example: ringlet demo -o out/demo
+    """
+    start = time.perf_counter()
+    with shown_progress() as progress:
+        run = ringlet.run_demo(output, progress=progress)
+    seconds = time.perf_counter() - start
+    made = {stage.file: stage for stage in run.stages if stage.file}
+    if as_json:
+        print_json({"folder": str(output), "seconds": round(seconds, 1), "files": list(map(str, made)), **run.counts})
+        return
+    rows = [[str(file), size(file.stat().st_size), f"{s.wall:.1f} s", s.what] for file, s in made.items()]
+    for name, what in (("report.html", "what happened, to read"), ("report.json", "what happened, for programs")):
+        rows.append([str(output / name), size((output / name).stat().st_size), "", what])
+    print_table(["file", "size", "took", ""], rows, right=(1, 2))
+    print(f"\nDone in {seconds:.0f} s. Look at {output / 'still.png'}, read {output / 'report.html'}.")

@@ -1,0 +1,34 @@
+"""``ringlet groom``: from a recipe to groom guides."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+import ringlet
+from ringlet.cli.options import Json, Report, Threads
+from ringlet.cli.output import wrote
+from ringlet.cli.progress import shown_progress
+
+
+def groom(
+    recipe: Annotated[Path, typer.Argument(metavar="RECIPE", help="The recipe, a TOML file.")],
+    output: Annotated[Path, typer.Option("--output", "-o", metavar="GROOM", help="The USD file to write.")] = Path(
+        "groom.usdc"
+    ),
+    report: Report = None,
+    as_json: Json = False,
+    threads: Threads = None,
+) -> None:
+    """Grows, shapes and curls the locks of a RECIPE.
+
+    Example: ringlet groom curls.recipe.toml -o groom.usdc
+    """
+    with ringlet.Run("groom", report) as run, shown_progress() as progress:
+        with run.stage("groom", output):
+            groom = ringlet.build_groom(recipe, progress=progress)
+            ringlet.write_groom(groom, output)
+        run.count(guides=len(groom.guides), locks=len(groom.locks), points=len(groom.locks.points))
+    wrote(output, run.counts, as_json)

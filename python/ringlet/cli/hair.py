@@ -1,0 +1,43 @@
+"""``ringlet hair``: every hair, at rest or carried by the simulated guides."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+import ringlet
+from ringlet.cli.options import Fraction, Frames, Json, Report, Threads
+from ringlet.cli.output import wrote
+from ringlet.cli.progress import shown_progress
+
+
+def hair(
+    groom: Annotated[Path, typer.Argument(metavar="GROOM", help="The groom, a USD file.")],
+    output: Annotated[Path, typer.Option("--output", "-o", metavar="HAIR", help="The USD file to write.")] = Path(
+        "hair.usdc"
+    ),
+    cache: Annotated[
+        Path | None,
+        typer.Option(
+            "--cache", metavar="CACHE", help="Simulated guides; without them the hairs are at rest.", show_default=False
+        ),
+    ] = None,
+    frames: Frames = None,
+    fraction: Fraction = 1.0,
+    report: Report = None,
+    as_json: Json = False,
+    threads: Threads = None,
+) -> None:
+    """Makes the hairs of a GROOM, frame by frame where there is a cache.
+
+    Example: ringlet hair groom.usdc --cache cache.usdc -o hair.usdc
+    """
+    with ringlet.Run("hair", report) as run, shown_progress() as progress:
+        with run.stage("hairs", output):
+            counts = ringlet.write_hairs(
+                groom, output, cache=cache, frames=frames, fraction=fraction, progress=progress
+            )
+        run.count(**counts)
+    wrote(output, run.counts, as_json)

@@ -1,0 +1,56 @@
+"""Options that several commands share."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+import ringlet
+
+
+def _use_threads(count: int | None) -> int | None:
+    if count is not None:
+        ringlet.use_threads(count)
+    return count
+
+
+Threads = Annotated[
+    int | None,
+    typer.Option(
+        "--threads", min=1, callback=_use_threads, help="Threads to use; all processors by default.", show_default=False
+    ),
+]
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON value instead of text.")]
+Report = Annotated[
+    Path | None,
+    typer.Option(
+        "--report", metavar="FOLDER", help="Write report.json and report.html to this folder.", show_default=False
+    ),
+]
+Fraction = Annotated[
+    float, typer.Option("--fraction", min=0.001, max=1.0, help="Share of the hairs to make, for a quick look.")
+]
+
+
+def parse_frames(text: str) -> tuple[int, int]:
+    """``A:B`` as the first and the last frame; ``A`` alone as one frame."""
+    first, colon, last = text.partition(":")
+    try:
+        frames = int(first), int(last if colon else first)
+    except ValueError:
+        raise ringlet.UserError(f"--frames {text}: must be FIRST:LAST, such as 1:48") from None
+    if not frames[0] <= frames[1]:
+        raise ringlet.UserError(
+            f"--frames {text}: the last frame is before the first; must be FIRST:LAST, such as 1:48"
+        )
+    return frames
+
+
+Frames = Annotated[
+    Any,
+    typer.Option(
+        "--frames", metavar="A:B", parser=parse_frames, help="First and last frame; all by default.", show_default=False
+    ),
+]

@@ -1,0 +1,52 @@
+"""What a command says when it is done: a few lines for people, or one JSON value for machines."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+
+
+def print_json(value: Any) -> None:
+    """One JSON value on the standard output, and nothing else."""
+    print(json.dumps(finite(value), indent=2, ensure_ascii=False, allow_nan=False))
+
+
+def finite(value: Any) -> Any:
+    """The same value with null in place of numbers that JSON cannot hold."""
+    if isinstance(value, dict):
+        return {key: finite(entry) for key, entry in value.items()}
+    if isinstance(value, list):
+        return [finite(entry) for entry in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def wrote(path: Path, facts: dict[str, Any], as_json: bool) -> None:
+    """Tells that a file was written, with what is worth knowing of it."""
+    if as_json:
+        print_json({"path": str(path), "bytes": path.stat().st_size, **facts})
+    else:
+        told = [f"{value:,} {name}" if isinstance(value, int) else f"{value} {name}" for name, value in facts.items()]
+        print(f"{path}: {', '.join([*told, size(path.stat().st_size)])}")
+
+
+def size(count: int) -> str:
+    """A number of bytes in a readable unit: ``3.2 MB``."""
+    for unit, step in (("GB", 1e9), ("MB", 1e6), ("kB", 1e3)):
+        if count >= step:
+            return f"{count / step:.1f} {unit}"
+    return f"{count} bytes"
+
+
+def print_table(columns: list[str], rows: list[list[str]], right: tuple[int, ...] = ()) -> None:
+    """A plain table on the standard output; ``right`` are the columns that hold numbers."""
+    table = Table(box=None, pad_edge=False, header_style="bold")
+    for index, column in enumerate(columns):
+        table.add_column(column, justify="right" if index in right else "left", overflow="fold")
+    for row in rows:
+        table.add_row(*row)
+    Console().print(table)

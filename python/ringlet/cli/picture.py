@@ -1,0 +1,58 @@
+"""``ringlet picture``: a path-traced still, or a contact sheet of the clip."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+import ringlet
+from ringlet.cli.options import Frames, Json, Report
+from ringlet.cli.output import wrote
+from ringlet.cli.progress import shown_progress
+
+
+def picture(
+    stage: Annotated[
+        Path, typer.Argument(metavar="STAGE", help="A USD file with hairs, and with the head if it is to be seen.")
+    ],
+    output: Annotated[Path, typer.Option("--output", "-o", metavar="PICTURE", help="The PNG file to write.")] = Path(
+        "still.png"
+    ),
+    frame: Annotated[
+        float | None,
+        typer.Option("--frame", metavar="F", help="Frame of the still; the first by default.", show_default=False),
+    ] = None,
+    view: Annotated[str, typer.Option("--view", help="three_quarter, front, side or back.")] = "three_quarter",
+    color: Annotated[str, typer.Option("--color", help="Colour of the hair.")] = "dark_brown",
+    width: Annotated[int, typer.Option("--width", min=16, max=8192, help="Pixels across.")] = 900,
+    height: Annotated[int, typer.Option("--height", min=16, max=8192, help="Pixels down.")] = 1100,
+    samples: Annotated[int, typer.Option("--samples", min=1, help="Paths per pixel: more is cleaner and slower.")] = 64,
+    sheet: Annotated[bool, typer.Option("--sheet", help="A contact sheet of the clip in place of a still.")] = False,
+    frames: Frames = None,
+    report: Report = None,
+    as_json: Json = False,
+) -> None:
+    """Pictures a STAGE: one frame, path-traced, or with --sheet a page of small ones.
+
+    Examples: ringlet picture hair.usdc -o still.png --frame 24 --view side · ringlet picture hair.usdc --sheet
+    """
+    with ringlet.Run("picture", report) as run, shown_progress() as progress:
+        with run.stage("sheet" if sheet else "still", output):
+            if sheet:
+                ringlet.write_sheet(stage, output, frames=frames, color=color, progress=progress)
+            else:
+                ringlet.write_still(
+                    stage,
+                    output,
+                    frame=frame,
+                    view=view,
+                    color=color,
+                    width=width,
+                    height=height,
+                    samples=samples,
+                    progress=progress,
+                )
+        run.pictured(output, f"{stage.name}: the clip" if sheet else f"{stage.name}, {view.replace('_', ' ')}")
+    wrote(output, run.counts, as_json)

@@ -1,0 +1,50 @@
+"""``ringlet sim``: groom guides in motion."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+import ringlet
+from ringlet.cli.options import Frames, Json, Report, Threads
+from ringlet.cli.output import wrote
+from ringlet.cli.progress import shown_progress
+
+
+def sim(
+    shot: Annotated[Path, typer.Argument(metavar="SHOT", help="The shot, a TOML file.")],
+    output: Annotated[Path, typer.Option("--output", "-o", metavar="CACHE", help="The USD file to write.")] = Path(
+        "cache.usdc"
+    ),
+    groom: Annotated[
+        Path | None,
+        typer.Option("--groom", metavar="GROOM", help="A groom to use in place of the shot's.", show_default=False),
+    ] = None,
+    frames: Frames = None,
+    report: Report = None,
+    as_json: Json = False,
+    threads: Threads = None,
+) -> None:
+    """Simulates the groom of a SHOT while the scalp moves.
+
+    The cache is a layer over the groom. Where the shot names a recipe, the groom is made first and written beside
+    the cache.
+
+    Examples: ringlet sim nod.shot.toml -o cache.usdc --frames 1:24 · ringlet sim nod.shot.toml --groom groom.usdc
+    """
+    with ringlet.Run("sim", report) as run, shown_progress() as progress:
+        settings = ringlet.read_shot(shot)
+        source = groom or settings.groom
+        layer = source if source.suffix != ".toml" else output.with_name(f"{output.stem}.groom.usdc")
+        with run.stage("groom", None if layer == source else layer):
+            locks = ringlet.load_groom(source, progress=progress)
+            if layer != source:
+                ringlet.write_groom(locks, layer)
+        with run.stage("simulate", output):
+            cache = ringlet.simulate(settings, locks, frames=frames, progress=progress)
+            ringlet.write_cache(cache, layer, output)
+        run.simulated(cache)
+        run.count(locks=len(locks.locks), points=len(locks.locks.points), frames=len(cache.frames))
+    wrote(output, run.counts, as_json)

@@ -1,0 +1,73 @@
+"""The whole way on the example, from a recipe to moving curls and a picture of them."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from ringlet import api
+from ringlet.run import Run
+from ringlet.share import share
+
+STILL_FRAME = 24  # in the middle of the quick turn
+MOVING = 0.3  # share of the hairs that move in hair.usdc, which keeps it small; the still has all of them
+
+# How much of the whole each stage takes, as measured; only the overall bar depends on it.
+SHARES = {"groom": 2, "simulate": 25, "hairs": 8, "still": 40, "sheet": 25}
+
+
+def run_demo(folder: Path | str, *, progress: api.Progress | None = None) -> Run:
+    """Grooms, simulates and pictures the example; writes everything, and the report, to ``folder``."""
+    folder = Path(folder)
+    example = share("examples/child")
+    groom_file, cache_file, hair_file = folder / "groom.usdc", folder / "cache.usdc", folder / "hair.usdc"
+    still_file, sheet_file = folder / "still.png", folder / "sheet.png"
+    with Run("demo", folder) as run:
+        with run.stage("groom", groom_file, "groom guides over the head"):
+            groom = api.build_groom(example / "curls.recipe.toml", progress=_overall("groom", progress))
+            api.write_groom(groom, groom_file)
+            run.count(guides=len(groom.guides), locks=len(groom.locks))
+        with run.stage("simulate", cache_file, "the guides in motion"):
+            cache = api.simulate(example / "nod.shot.toml", groom, progress=_overall("simulate", progress))
+            api.write_cache(cache, groom_file, cache_file)
+            run.count(frames=len(cache.frames))
+            run.simulated(cache)
+        with run.stage("hairs", hair_file, f"hairs in motion, {MOVING:.0%} of all"):
+            part = _overall("hairs", progress)
+            api.write_hairs(groom_file, hair_file, cache=cache_file, fraction=MOVING, progress=part)
+        with (
+            run.stage("still", still_file, f"frame {STILL_FRAME} with all hairs, path-traced"),
+            _aside(folder) as all_hairs,
+        ):
+            counts = api.write_hairs(groom_file, all_hairs, cache=cache_file, frames=(STILL_FRAME, STILL_FRAME))
+            api.write_still(all_hairs, still_file, frame=STILL_FRAME, progress=_overall("still", progress))
+            run.count(hairs=counts["hairs"], points=counts["points"])
+            run.pictured(still_file, f"Frame {STILL_FRAME}: the head in the middle of a quick turn.")
+        with run.stage("sheet", sheet_file, "the clip at a glance"):
+            api.write_sheet(hair_file, sheet_file, progress=_overall("sheet", progress))
+            run.pictured(sheet_file, "The clip: a nod, a quick turn and a hop.")
+    return run
+
+
+@contextmanager
+def _aside(folder: Path) -> Iterator[Path]:
+    """A USD file beside the others that is gone in the end."""
+    with tempfile.TemporaryDirectory(dir=folder) as aside:
+        yield Path(aside) / "hair.usdc"
+
+
+def _overall(part: str, progress: api.Progress | None) -> api.Progress | None:
+    """Reports a part as itself and as its share of the whole, in per cent."""
+    if progress is None:
+        return None
+    names = list(SHARES)
+    before = sum(SHARES[name] for name in names[: names.index(part)])
+
+    def report(stage: str, done: int, total: int) -> None:
+        progress("demo", round(before + SHARES[part] * done / max(total, 1)), 100)
+        progress(stage, done, total)
+
+    progress("demo", before, 100)
+    return report

@@ -1,0 +1,26 @@
+"""Guides drawn by an artist, read from a file."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field
+
+from ringlet.curves import Curves
+from ringlet.groom.operators.operator import Context, Operator
+from ringlet.groom.settings import Quantity
+
+
+class Drawn(Operator):
+    """Takes guides from a USD file and binds them to the scalp."""
+
+    file: str = Field(min_length=1, description="USD file with the curves, beside the recipe or with a full path")
+    prim: str | None = Field(default=None, description="prim of the curves; needed when the file has several")
+    tolerance: Annotated[float, Quantity("m", 0.0, 1.0)] = Field(
+        default=0.01, description="how far a root may be off the scalp"
+    )
+
+    def apply(self, curves: Curves, context: Context) -> Curves:
+        """The drawn curves, bound by the nearest point of the scalp region."""
+        curves.check("guides")
+        return context.scalp.bind(curves, self.tolerance, "guides")

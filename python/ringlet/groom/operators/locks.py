@@ -1,0 +1,83 @@
+"""Locks between the guides."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, model_validator
+from scipy.spatial import KDTree
+
+from ringlet import _core
+from ringlet.curves import Curves, offsets_from_counts
+from ringlet.groom.operators.operator import Context, Operator, arc_lengths, unit
+from ringlet.groom.settings import Quantity, refuse
+
+
+class Locks(Operator):
+    """Spreads locks over the scalp and gives each the shape of the guides around it; without ``count`` and ``spacing``
+    every guide becomes a lock.
+
+    ``shape = Σ wᵢ Rᵢ (guideᵢ - rootᵢ)``: the nearest guides, turned with the surface (Rᵢ is the smallest turn from the
+    guide's normal to the lock's), weighted by 1/d², and given the weighted length.
+    """
+
+    count: int | None = Field(default=None, ge=1, le=1_000_000, description="number of locks (this or spacing)")
+    spacing: Annotated[float | None, Quantity("m", 1e-4, 1.0)] = Field(default=None, description="distance of locks")
+    points: int = Field(
+        default=64, ge=4, le=10_000, description="points of a groom guide, curl included; 12 a curl simulate well"
+    )
+    shape_points: int = Field(default=20, ge=4, le=1000, description="points of a lock's shape, before it is curled")
+    neighbours: int = Field(default=4, ge=1, le=16, description="guides that a lock takes its shape from")
+
+    @model_validator(mode="after")
+    def _one_density(self) -> Locks:
+        if self.count is not None and self.spacing is not None:
+            raise refuse("has both 'count' and 'spacing'; give one of them")
+        return self
+
+    def apply(self, curves: Curves, context: Context) -> Curves:
+        """Shape curves, one per lock, with ``shape_points`` each."""
+        guides = _core.resample_curves(curves.points, curves.offsets, self.shape_points)
+        shapes = guides.reshape(len(curves), self.shape_points, 3)
+        if self.count is None and self.spacing is None:
+            return _pack(shapes, curves.ids, curves.curve["root_triangle"], curves.curve["root_barycentric"])
+
+        scalp = context.scalp
+        count = self.count or scalp.count_for_spacing(self.spacing or 0.01)
+        ids, triangle, barycentric = scalp.sample(count, context.seed)
+        roots = scalp.positions(triangle, barycentric)
+        lengths = arc_lengths(shapes)[:, -1]
+        local = shapes - shapes[:, :1]
+        guide_normal = scalp.frames(curves)[:, :, 2]
+        normal = _core.root_frames(scalp.points, scalp.triangles, triangle, barycentric)[1][:, :, 2]
+
+        near = min(self.neighbours, len(curves))
+        distance, index = KDTree(curves.roots).query(roots, k=near)
+        distance, index = distance.reshape(count, near), index.reshape(count, near)
+        weight = 1.0 / np.maximum(distance, 1e-6) ** 2
+        weight /= weight.sum(axis=1, keepdims=True)
+
+        blended = np.zeros((count, self.shape_points, 3))
+        for k in range(near):
+            turned = local[index[:, k]] @ _turn(guide_normal[index[:, k]], normal).transpose(0, 2, 1)
+            blended += weight[:, k, None, None] * turned
+        wanted = np.sum(weight * lengths[index], axis=1)
+        blended *= (wanted / np.maximum(arc_lengths(blended)[:, -1], 1e-9))[:, None, None]
+        return _pack(roots[:, None] + blended, ids, triangle, barycentric)
+
+
+def _turn(a: NDArray, b: NDArray) -> NDArray[np.float64]:
+    """The smallest rotations from unit vectors a to b, shape (n, 3, 3): two mirrors, H(a + b) H(a) up to sign."""
+    half = unit(a + b)
+    eye = np.eye(3)
+    mirror = eye - 2.0 * half[:, :, None] * half[:, None, :]
+    first = eye - 2.0 * a[:, :, None] * a[:, None, :]
+    return mirror @ first
+
+
+def _pack(points: NDArray, ids: NDArray, triangle: NDArray, barycentric: NDArray) -> Curves:
+    bound = {"root_triangle": triangle, "root_barycentric": barycentric}
+    offsets = offsets_from_counts(np.full(len(points), points.shape[1]))
+    return Curves(np.ascontiguousarray(points.reshape(-1, 3)), offsets, ids, bound)

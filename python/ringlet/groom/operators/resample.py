@@ -1,0 +1,25 @@
+"""More or fewer points on the shape."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+from pydantic import Field
+
+from ringlet import _core
+from ringlet.curves import Curves, offsets_from_counts
+from ringlet.groom.operators.operator import Context, Operator
+
+
+class Resample(Operator):
+    """Evenly spaced points along the Catmull-Rom spline through the old ones."""
+
+    op: Literal["resample"] = "resample"
+    points: int = Field(default=32, ge=3, le=10_000, description="points of a shape")
+
+    def apply(self, curves: Curves, context: Context) -> Curves:
+        """The same shapes with ``points`` points each."""
+        points = _core.resample_curves(curves.points, curves.offsets, self.points)
+        offsets = offsets_from_counts(np.full(len(curves), self.points))
+        return Curves(points, offsets, curves.ids, curves.curve)

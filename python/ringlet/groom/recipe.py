@@ -1,0 +1,106 @@
+"""The recipe: what a groom is made of, as a TOML file that an artist can read."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import Discriminator, Field, PrivateAttr, Tag, ValidationError
+
+from ringlet.errors import UserError
+from ringlet.groom.hairs import HairSettings
+from ringlet.groom.operators import Clean, Curl, Drawn, Grown, Locks, ShapeOperator
+from ringlet.groom.settings import UNITS, Section, explain
+
+
+class ScalpSettings(Section):
+    """The mesh that hair grows on."""
+
+    file: str | None = Field(default=None, description="USD file with the mesh, beside the recipe or with a full path")
+    mesh: str | None = Field(default=None, description="prim of the mesh; needed when the file has several")
+    region: str | None = Field(default=None, description="named faces (GeomSubset) that carry hair; all when absent")
+
+
+def _kind_of_guides(data: Any) -> str:
+    return "drawn" if isinstance(data, Drawn) or (isinstance(data, dict) and "file" in data) else "grown"
+
+
+class Recipe(Section):
+    """A groom from guides to hairs. Inside, lengths are in metres."""
+
+    ringlet: Literal[1] = Field(description="version of this format")
+    name: str = Field(default="", description="what the groom is called")
+    seed: int = Field(default=1, ge=0, le=2**31, description="another seed gives another head of hair of the same kind")
+    unit: Literal["m", "cm", "mm", "in"] = Field(default="cm", description="unit of lengths that are plain numbers")
+    scalp: ScalpSettings = Field(default=ScalpSettings(), description="where it grows")
+    guides: Annotated[
+        Annotated[Grown, Tag("grown")] | Annotated[Drawn, Tag("drawn")], Discriminator(_kind_of_guides)
+    ] = Field(
+        default=Grown(), description="the curves that give silhouette and length: grown, or drawn and read from a file"
+    )
+    locks: Locks = Field(default=Locks(), description="the locks between the guides")
+    shape: list[ShapeOperator] = Field(default=[], description="operators on the shape of the locks, in order")
+    curl: Curl | None = Field(default=None, description="the curl; straight hair when absent")
+    clean: Clean = Field(default=Clean(), description="keeping out of the head")
+    hairs: HairSettings = Field(default=HairSettings(), description="the hairs of each lock")
+
+    _path: Path | None = PrivateAttr(None)
+    _text: str | None = PrivateAttr(None)
+
+    @property
+    def path(self) -> Path | None:
+        """The file it was read from."""
+        return self._path
+
+    @property
+    def text(self) -> str | None:
+        """The text it was read from."""
+        return self._text
+
+    @property
+    def scalp_file(self) -> Path | None:
+        """The scalp's file; a relative name counts from the recipe."""
+        return self._beside(self.scalp.file)
+
+    @property
+    def guides_file(self) -> Path | None:
+        """The file of drawn guides, or None where they are grown."""
+        return self._beside(self.guides.file) if isinstance(self.guides, Drawn) else None
+
+    def _beside(self, name: str | None) -> Path | None:
+        return (self._path.parent if self._path else Path()) / name if name else None
+
+
+def read_recipe(path: Path | str) -> Recipe:
+    """Reads a recipe file. Raises UserError with file, setting, value and remedy."""
+    path = Path(path)
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", None) or "it is not a text file"
+        raise UserError(f"{path}: cannot be read ({reason}); give a recipe file") from error
+    return parse_recipe(text, path)
+
+
+def parse_recipe(text: str, path: Path | None = None) -> Recipe:
+    """A recipe from its text; ``path`` names it in messages and is where relative file names count from."""
+    where = path.name if path else "recipe"
+    try:
+        data = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise UserError(f"{where}: is not valid TOML: {str(error)[0].lower()}{str(error)[1:]}") from error
+    if "ringlet" not in data:
+        raise UserError(f"{where}: is not a Ringlet recipe; its first line must be 'ringlet = 1'")
+    unit = data.get("unit", "cm")
+    try:
+        recipe = Recipe.model_validate(data, context={"unit": UNITS.get(unit, 1.0) if isinstance(unit, str) else 1.0})
+    except ValidationError as error:
+        raise explain(error, where) from error
+    recipe._path, recipe._text = path, text
+    return recipe
+
+
+def schema() -> dict[str, Any]:
+    """The JSON schema of a recipe: types, bounds, units, defaults and descriptions of all settings."""
+    return Recipe.model_json_schema()

@@ -1,0 +1,150 @@
+"""The surface that hair grows on: checks, places on it, and frames there."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ringlet import _core
+from ringlet.curves import Curves
+from ringlet.errors import UserError
+from ringlet.groom.random import Random
+from ringlet.mesh import Mesh
+
+IDS_PER_TRIANGLE = 1_000_000  # the id of a grown curve says where it stands: triangle · 1 000 000 + number in it
+
+
+class Scalp:
+    """A mesh in its rest pose and the region of it that carries roots."""
+
+    def __init__(self, mesh: Mesh, region: str | None) -> None:
+        self.mesh = mesh
+        self.points = np.ascontiguousarray(mesh.points, np.float64)
+        self.triangles = np.ascontiguousarray(mesh.triangles, np.int32)
+        _check_mesh(mesh)
+        try:
+            self.region = np.ascontiguousarray(np.sort(mesh.region(region)), np.int32)
+        except KeyError as error:
+            raise UserError(f"scalp.region: {error.args[0]}") from None
+        self.where = f"{mesh.name} region '{region}'" if region else mesh.name
+        _check_region(self)
+
+    @cached_property
+    def areas(self) -> NDArray[np.float64]:
+        """Area of each triangle of the region [m²]."""
+        return _areas(self.points, self.triangles[self.region])
+
+    @property
+    def area(self) -> float:
+        """Area of the region [m²]."""
+        return float(self.areas.sum())
+
+    @cached_property
+    def middle(self) -> NDArray[np.float64]:
+        """The middle of the box around the region [m]: about the middle of the skull for the scalp of a head."""
+        places = self.points[np.unique(self.triangles[self.region])]
+        return 0.5 * (places.min(axis=0) + places.max(axis=0))
+
+    def sample(self, count: int, seed: int) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.float64]]:
+        """``count`` places evenly spread over the region, without a pattern: ids, triangles (count,) and barycentrics
+        (count, 3).
+
+        The places are chosen among candidates that belong to their triangle, so their ids and most of the places stay
+        when the count or the region changes.
+        """
+        random = Random(seed, "candidates")
+        density = 2.0 ** np.ceil(
+            np.log2(5 * count / self.area)
+        )  # in powers of 2: a few more samples use the same candidates
+        each = np.floor(self.areas * density + random.uniform(self.region, IDS_PER_TRIANGLE)).astype(np.int64)
+        if each.max() >= IDS_PER_TRIANGLE:
+            raise UserError(f"{self.where}: {count} curves on so few triangles; subdivide the mesh")
+        first = np.repeat(np.cumsum(each) - each, each)
+        ids = np.repeat(self.region.astype(np.int64), each) * IDS_PER_TRIANGLE + (np.arange(each.sum()) - first)
+        triangle = np.repeat(self.region, each)
+        root, v = np.sqrt(random.uniform(ids, 0)), random.uniform(ids, 1)
+        barycentric = np.stack([1.0 - root, root * (1.0 - v), root * v], axis=1)
+        kept = _core.thin_out(self.positions(triangle, barycentric), self.area, count)
+        return ids[kept], triangle[kept], barycentric[kept]
+
+    def count_for_spacing(self, spacing: float) -> int:
+        """How many places evenly spread at about that distance [m] the region holds."""
+        return max(1, round(0.75 * self.area / (0.5 * np.sqrt(3.0) * spacing**2)))  # 0.75 of the densest packing
+
+    def positions(self, triangle: NDArray, barycentric: NDArray, points: NDArray | None = None) -> NDArray[np.float64]:
+        """Places on the mesh [m], shape (k, 3), in the rest pose or with other mesh points."""
+        corners = (self.points if points is None else points)[self.triangles[triangle]]
+        return np.einsum("kc,kcx->kx", barycentric, corners)
+
+    def frames(self, curves: Curves) -> NDArray[np.float64]:
+        """Frames at the roots of bound curves, shape (count, 3, 3); columns tangent, bitangent, normal."""
+        return _core.root_frames(
+            self.points, self.triangles, curves.curve["root_triangle"], curves.curve["root_barycentric"]
+        )[1]
+
+    def bind(self, curves: Curves, tolerance: float, what: str) -> Curves:
+        """The curves with ``root_triangle`` and ``root_barycentric``; refuses roots more than ``tolerance`` [m] off."""
+        triangle, barycentric, distance = _core.bind_roots(
+            self.points, self.triangles, np.ascontiguousarray(curves.roots, np.float64), self.region
+        )
+        if distance.max() > tolerance:
+            worst, off = int(distance.argmax()), int((distance > tolerance).sum())
+            raise UserError(
+                f"{what}: {off} of {len(curves)} roots are not on the scalp ({self.where}); that of curve "
+                f"{curves.ids[worst]} is {distance[worst]:.4g} m away, at most {tolerance:.4g} m is allowed; "
+                f"{self._remedy(curves)}"
+            )
+        bound = {"root_triangle": triangle, "root_barycentric": barycentric}
+        return Curves(curves.points, curves.offsets, curves.ids, {**curves.curve, **bound}, curves.point)
+
+    def _remedy(self, curves: Curves) -> str:
+        """What is probably wrong: the unit, when the sizes differ by a factor that units differ by."""
+        body = np.ptp(self.points, axis=0).max()
+        ratio = np.ptp(curves.points, axis=0).max() / body
+        for factor in (1000.0, 100.0, 10.0, 0.1, 0.01, 0.001):
+            if len(curves) > 1 and 0.5 < ratio / factor < 2.0:
+                return f"the guides are about {factor:g} times the head's size: check metersPerUnit of both files"
+        return "move the guides onto the scalp, or raise guides.tolerance"
+
+
+def scalp_name(file: Path | None, prim: str | None) -> str:
+    """How messages call a scalp."""
+    return " ".join(str(part) for part in (file, prim) if part) or "the scalp"
+
+
+def _areas(points: NDArray, triangles: NDArray) -> NDArray[np.float64]:
+    a, b, c = (points[triangles[:, k]] for k in range(3))
+    return 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
+
+
+def _check_mesh(mesh: Mesh) -> None:
+    if len(mesh.points) == 0 or len(mesh.triangles) == 0:
+        raise UserError(f"{mesh.name}: the mesh is empty; choose another prim")
+    if not (finite := np.isfinite(mesh.points).all(axis=1)).all():
+        raise UserError(f"{mesh.name}: point {np.flatnonzero(~finite)[0]} is not finite; repair the mesh")
+    if mesh.triangles.min() < 0 or mesh.triangles.max() >= len(mesh.points):
+        raise UserError(
+            f"{mesh.name}: a face names point {mesh.triangles.max()}, but there are {len(mesh.points)}; repair the mesh"
+        )
+
+
+def _check_region(scalp: Scalp) -> None:
+    if len(scalp.region) == 0:
+        raise UserError(f"{scalp.where}: the scalp has no faces; choose the faces that carry hair")
+    size = np.ptp(scalp.points, axis=0).max()
+    if (flat := np.flatnonzero(scalp.areas <= 1e-14 * size**2)).size:
+        raise UserError(
+            f"{scalp.where}: {flat.size} triangle(s) have no area, the first is {scalp.region[flat[0]]}; clean the mesh"
+        )
+    corners = scalp.triangles[scalp.region].astype(np.int64)
+    edges = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
+    _, uses = np.unique(np.sort(edges, axis=1), axis=0, return_counts=True)
+    if uses.max() > 2:
+        raise UserError(
+            f"{scalp.where}: an edge is shared by {uses.max()} triangles; the scalp must be a manifold surface"
+        )
+    if len(np.unique(edges, axis=0)) < len(edges):
+        raise UserError(f"{scalp.where}: neighbouring faces are turned opposite ways; make their normals agree")

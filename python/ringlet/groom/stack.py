@@ -1,0 +1,125 @@
+"""The stack: guides → locks → shape → curl → clean, each stage a pure function of the one before."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from hashlib import blake2b
+from pathlib import Path
+
+from ringlet.curves import Curves
+from ringlet.errors import UserError
+from ringlet.groom.groom import Groom
+from ringlet.groom.operators import Context, Drawn, Operator, Resample
+from ringlet.groom.recipe import Recipe
+from ringlet.groom.scalp import Scalp
+from ringlet.mesh import Mesh
+from ringlet.stage import StageSpace
+
+Progress = Callable[[str, int, int], None]
+
+
+@dataclass
+class Memory:
+    """Results of the last run, stage by stage: changing one operator recomputes from there."""
+
+    results: dict[str, tuple[str, Curves]] = field(default_factory=dict)
+    scalp: tuple[str, Scalp] | None = None
+
+
+def make_groom(
+    recipe: Recipe,
+    scalp: Mesh,
+    *,
+    drawn_guides: Curves | None = None,
+    scalp_file: Path | None = None,
+    scalp_prim: str | None = None,
+    space: StageSpace | None = None,
+    progress: Progress | None = None,
+    memory: Memory | None = None,
+) -> Groom:
+    """Grooms a head: guides, then one curled groom guide per lock.
+
+    scalp:        the mesh, in metres, in its rest pose
+    drawn_guides: the curves that ``[guides] file`` names, in metres
+    scalp_file, scalp_prim, space: where the mesh came from, kept with the groom
+    progress:     called with (stage, done, total)
+    memory:       keeps results between calls, so that an edit recomputes only what follows it
+    """
+    memory = memory or Memory()
+    where = recipe.path.name if recipe.path else "recipe"
+    try:
+        key, surface = _scalp(recipe, scalp, memory)
+        if isinstance(recipe.guides, Drawn) and drawn_guides is None:
+            raise UserError(
+                f"guides.file is '{recipe.guides.file}', but no curves were read from it; pass drawn_guides"
+            )
+        if drawn_guides is not None:
+            key = _key(key, drawn_guides.points.tobytes(), drawn_guides.offsets.tobytes(), drawn_guides.ids.tobytes())
+        curves = drawn_guides or Curves.from_list([])
+        stages = _stages(recipe)
+        guides = curves
+        for done, (name, operator) in enumerate(stages):
+            if progress:
+                progress(name, done, len(stages))
+            context = Context(recipe.seed, surface, name, recipe.locks.points)
+            curves, key = _run(operator, curves, key, context, memory)
+            if name == "guides":
+                guides = curves
+        if progress:
+            progress("groom", len(stages), len(stages))
+    except UserError as error:
+        raise UserError(f"{where}: {error}") from error
+    return Groom(
+        guides=guides,
+        locks=curves,
+        scalp=scalp,
+        scalp_file=scalp_file,
+        scalp_prim=scalp_prim,
+        region=recipe.scalp.region,
+        space=space or StageSpace(),
+        hairs=recipe.hairs.model_dump(mode="json"),
+        recipe=recipe.text,
+    )
+
+
+def _stages(recipe: Recipe) -> list[tuple[str, Operator]]:
+    """Every stage with a name that stays its own when others are added: ``scraggle``, a second one ``scraggle 2``."""
+    stages: list[tuple[str, Operator]] = [("guides", recipe.guides), ("locks", recipe.locks)]
+    used = Counter[str]()
+    for operator in recipe.shape:
+        used[operator.op] += 1
+        stages.append((operator.op if used[operator.op] == 1 else f"{operator.op} {used[operator.op]}", operator))
+    stages.append(("curl", recipe.curl or Resample(points=recipe.locks.points)))
+    stages.append(("clean", recipe.clean))
+    return stages
+
+
+def _run(operator: Operator, curves: Curves, key: str, context: Context, memory: Memory) -> tuple[Curves, str]:
+    """The operator's result, remembered if nothing that it depends on has changed."""
+    key = _key(key, context.purpose.encode(), operator.model_dump_json().encode())
+    known = memory.results.get(context.purpose)
+    if known is None or known[0] != key:
+        known = (key, operator.apply(curves, context))
+        memory.results[context.purpose] = known
+    return known[1], key
+
+
+def _scalp(recipe: Recipe, mesh: Mesh, memory: Memory) -> tuple[str, Scalp]:
+    key = _key(
+        str((recipe.seed, recipe.scalp.region)),
+        mesh.points.tobytes(),
+        mesh.triangles.tobytes(),
+        *(values.tobytes() for values in mesh.regions.values()),
+    )
+    if memory.scalp is None or memory.scalp[0] != key:
+        memory.scalp = (key, Scalp(mesh, recipe.scalp.region))
+    return memory.scalp
+
+
+def _key(before: str, *content: bytes) -> str:
+    digest = blake2b(before.encode(), digest_size=16)
+    for part in content:
+        digest.update(part)
+    return digest.hexdigest()

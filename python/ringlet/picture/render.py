@@ -1,0 +1,186 @@
+"""Path tracing in passes: bodies and hairs in the studio, seen by a camera, as linear light."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ringlet.curves import Curves
+from ringlet.errors import UserError
+from ringlet.picture.bodies import PosedBody, material
+from ringlet.picture.camera import Camera
+from ringlet.picture.strands import fibres, load_fibres
+from ringlet.picture.studio import backdrop, lights
+
+# Told what is being done, how many steps of it are done, and of how many.
+Progress = Callable[[str, int, int], None]
+
+
+@dataclass(frozen=True)
+class HairColor:
+    """Pigments in a hair (the two kinds of melanin, Chiang et al. 2016) and how rough its cuticle is."""
+
+    eumelanin: float
+    pheomelanin: float
+    roughness: float = 0.38
+
+
+HAIR_COLORS: dict[str, HairColor] = {
+    "black": HairColor(6.0, 0.3, 0.28),
+    "dark_brown": HairColor(2.4, 0.3),
+    "brown": HairColor(0.9, 0.7),
+    "auburn": HairColor(0.35, 1.6),
+    "ginger": HairColor(0.08, 0.9),
+    "blond": HairColor(0.15, 0.25, 0.33),
+    "gray": HairColor(0.12, 0.0, 0.36),
+}
+
+# The least diameter at which a hair is drawn [pixels].
+THINNEST = 0.3
+
+# Samples per pixel of one pass: enough for them to be spread evenly over a pixel and over the lights, few enough for
+# some passes to compare.
+MOST_PER_PASS, FEWEST_PASSES = 8, 4
+
+
+def hair_color(name: str) -> HairColor:
+    """A colour by name."""
+    if name not in HAIR_COLORS:
+        raise UserError(f"picture: there is no hair colour '{name}'; choose one of {', '.join(HAIR_COLORS)}")
+    return HAIR_COLORS[name]
+
+
+def mitsuba() -> Any:
+    """Mitsuba, in the variant that runs on any computer; loaded when first needed, since that takes a moment."""
+    import mitsuba as mi
+
+    mi.set_variant("scalar_rgb")
+    return mi
+
+
+def build_scene(
+    bodies: Sequence[PosedBody],
+    hairs: Curves | None,
+    camera: Camera,
+    *,
+    size: tuple[int, int],
+    color: HairColor,
+    max_depth: int,
+) -> Any:
+    """The Mitsuba scene, moved to the origin and scaled so that single precision resolves a hair's width."""
+    mi = mitsuba()
+    scale = 100.0 / camera.distance
+    distance = 100.0
+    target = camera.target
+    near, far = 0.05 * distance, 20.0 * distance
+    local_origin = (camera.origin - target) * scale
+    place = mi.ScalarTransform4f().look_at(origin=list(local_origin), target=[0, 0, 0], up=list(camera.axes[1]))
+    scene: dict[str, Any] = {
+        "type": "scene",
+        "integrator": {"type": "path", "max_depth": max_depth, "rr_depth": 2, "hide_emitters": True},
+        "sensor": {
+            "type": "perspective",
+            "fov": camera.fov,
+            "fov_axis": "x",
+            "near_clip": near,
+            "far_clip": far,
+            "to_world": place,
+            "sampler": {"type": "multijitter"},
+            "film": {
+                "type": "hdrfilm",
+                "width": size[0],
+                "height": size[1],
+                "pixel_format": "rgba",
+                "component_format": "float32",
+                "rfilter": {"type": "gaussian", "stddev": 0.45},
+            },
+        },
+        **lights(mi, camera.axes, distance),
+    }
+    for index, body in enumerate(bodies):
+        scene[f"body{index}"] = _mesh(mi, body, target, scale)
+    if hairs is not None and len(hairs):
+        controls, offsets = fibres(hairs)
+        controls[:, :3] -= target.astype(np.float32)
+        # A hair far thinner than a pixel is mostly missed: it costs many samples and looks like noise. Drawn a little
+        # wider it also stands in for the many hairs that a groom leaves out.
+        pixel = 2.0 * camera.slopes[0] * camera.distance / size[0]
+        controls[:, 3] = np.maximum(controls[:, 3], 0.5 * THINNEST * pixel)
+        look = {
+            "type": "hair",
+            "eumelanin": color.eumelanin,
+            "pheomelanin": color.pheomelanin,
+            "longitudinal_roughness": color.roughness,
+            "azimuthal_roughness": color.roughness,
+        }
+        scene["hairs"] = load_fibres(mi, controls * np.float32(scale), offsets, look)
+    return mi.load_dict(scene)
+
+
+def trace(
+    scene: Any,
+    *,
+    samples: int,
+    seconds: float | None = None,
+    progress: Progress | None = None,
+) -> NDArray[np.float32]:
+    """Light and coverage (r, g, b, a), shape (height, width, 4): the mean of passes with different random numbers.
+
+    Where one pass is much brighter than all others together, a rare path met a light through many hairs; it is taken
+    down to what the others say, or it would leave a speck.
+
+    seconds:  no further pass begins when it would end after this time
+    progress: called with "picture", the passes done and to do
+    """
+    mi = mitsuba()
+    per_pass = min(max(samples // FEWEST_PASSES, 1), MOST_PER_PASS)
+    passes = -(-samples // per_pass)
+    began = time.monotonic()
+    total: Any = 0.0
+    brightest: Any = 0.0
+    done = 0
+    while done < passes:
+        image = np.nan_to_num(np.array(mi.render(scene, spp=per_pass, seed=done), np.float64))
+        total += image
+        brightest = np.maximum(brightest, image)
+        done += 1
+        if progress:
+            progress("picture", done, passes)
+        elapsed = time.monotonic() - began
+        if seconds is not None and elapsed * (done + 1) / done > seconds:
+            break
+    if progress and done < passes:
+        progress("picture", passes, passes)
+    if done > 2:
+        others = (total - brightest) / (done - 1)
+        total += np.minimum(brightest, 1.5 * others + 0.05) - brightest
+    return (total / done).astype(np.float32)
+
+
+def over_backdrop(image: NDArray[np.float32]) -> NDArray[np.floating]:
+    """Puts light with coverage, shape (h, w, 4), before the studio's wall; shape (h, w, 3)."""
+    wall = backdrop(image.shape[1], image.shape[0])
+    return image[:, :, :3] + (1.0 - np.clip(image[:, :, 3:], 0.0, 1.0)) * wall
+
+
+def _mesh(mi: Any, body: PosedBody, target: NDArray[np.float64], scale: float) -> Any:
+    mesh = body.mesh
+    properties = mi.Properties()
+    properties["bsdf"] = mi.load_dict(material(mesh))
+    shape = mi.Mesh(mesh.name, len(mesh.points), len(mesh.triangles), has_vertex_normals=True, props=properties)
+    parameters = mi.traverse(shape)
+    values = {
+        "vertex_positions": (body.points - target) * scale,
+        "vertex_normals": mesh.normals(np.asarray(body.points, np.float64)),
+        "faces": mesh.triangles,
+    }
+    for name, array in values.items():
+        kind = type(parameters[name])
+        parameters[name] = kind(np.ascontiguousarray(array, np.uint32 if name == "faces" else np.float32).ravel())
+    parameters.update()
+    return shape

@@ -1,0 +1,107 @@
+"""A contact sheet: frames of a clip in a grid, drawn quickly, with one camera that sees the whole motion."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+import numpy as np
+from PIL import Image, ImageDraw, ImageFont
+
+from ringlet.curves import Curves
+from ringlet.errors import UserError
+from ringlet.files import replacing
+from ringlet.picture.bodies import PosedBody
+from ringlet.picture.camera import frame as frame_camera
+from ringlet.picture.render import Progress, build_scene, hair_color, over_backdrop, trace
+from ringlet.picture.still import subject
+from ringlet.picture.tone import develop
+
+Frame = tuple[float, Sequence[PosedBody], Curves]
+
+PAPER, INK, FADED = (22, 25, 28), (236, 234, 230), (150, 154, 158)
+GAP, CAPTION = 10, 34
+
+
+def sheet(
+    frames: Iterable[Frame],
+    path: Path | str,
+    *,
+    columns: int = 4,
+    tile: tuple[int, int] = (320, 360),
+    title: str = "",
+    fps: float = 24.0,
+    hairs: int = 6000,
+    samples: int = 16,
+    view: str | tuple[float, float] = "three_quarter",
+    color: str = "dark_brown",
+    progress: Progress | None = None,
+) -> Path:
+    """Writes a PNG with one labelled tile per frame.
+
+    frames:   frame number, posed bodies and hairs [m] of each tile
+    columns:  tiles side by side
+    tile:     width and height of a tile [pixels]
+    title:    printed above the tiles
+    fps:      frames per second, for the times in the labels
+    hairs:    how many of the hairs to draw
+    samples:  light paths per pixel
+    view, color: as in ``still``
+    progress: called with "sheet", the frames done and to do
+    """
+    shots = [(number, bodies, _thin_out(curves, hairs)) for number, bodies, curves in frames]
+    if not shots:
+        raise UserError("sheet: there are no frames; give at least one")
+    if columns < 1 or min(tile) < 1 or samples < 1:
+        raise UserError(f"sheet: {columns} columns of {tile[0]} × {tile[1]} pixels; each must be at least 1")
+    pigments = hair_color(color)
+    camera = frame_camera(
+        (points for _, bodies, curves in shots for points in subject(bodies, curves)),
+        view=view,
+        aspect=tile[0] / tile[1],
+        margin=0.04,
+    )
+    tiles = []
+    for number, bodies, curves in shots:
+        scene = build_scene(bodies, curves, camera, size=tile, color=pigments, max_depth=4)
+        tiles.append((number, develop(over_backdrop(trace(scene, samples=samples)))))
+        if progress:
+            progress("sheet", len(tiles), len(shots))
+    page = _lay_out(tiles, min(columns, len(tiles)), tile, title, fps)
+    with replacing(path) as aside:
+        page.save(aside)
+    return Path(path)
+
+
+def _thin_out(hairs: Curves, wanted: int) -> Curves:
+    """Evenly chosen hairs, the same ones in every frame."""
+    if len(hairs) <= wanted:
+        return hairs
+    return hairs.take(np.linspace(0, len(hairs) - 1, wanted).round().astype(np.int64))
+
+
+def _lay_out(
+    tiles: Sequence[tuple[float, np.ndarray]], columns: int, tile: tuple[int, int], title: str, fps: float
+) -> Image.Image:
+    """Tiles in reading order on dark paper, each over its frame and time, under a title strip."""
+    rows = -(-len(tiles) // columns)
+    strip = 64 if title else GAP
+    cell = (tile[0] + GAP, tile[1] + CAPTION)
+    page = Image.new("RGB", (columns * cell[0] + GAP, strip + rows * cell[1]), PAPER)
+    draw = ImageDraw.Draw(page)
+
+    def write(x: int, y: int, text: str, size: int, ink: tuple[int, int, int], anchor: str) -> None:
+        draw.text((x, y), text, ink, ImageFont.load_default(size), anchor=anchor)
+
+    numbers = [number for number, _ in tiles]
+    if title:
+        write(2 * GAP, strip // 2, title, 26, INK, "lm")
+        span = f"frames {numbers[0]:g} to {numbers[-1]:g}, {fps:g} per second"
+        write(page.width - 2 * GAP, strip // 2, span, 16, FADED, "rm")
+    for index, (number, pixels) in enumerate(tiles):
+        left, top = GAP + (index % columns) * cell[0], strip + (index // columns) * cell[1]
+        page.paste(Image.fromarray(pixels), (left, top))
+        middle = top + tile[1] + CAPTION // 2 - 2
+        write(left + 4, middle, f"frame {number:g}", 16, INK, "lm")
+        write(left + tile[0] - 4, middle, f"{(number - numbers[0]) / fps:.2f} s", 15, FADED, "rm")
+    return page

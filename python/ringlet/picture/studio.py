@@ -1,0 +1,70 @@
+"""A small photo studio around the subject: lights that turn with the camera, and a painted backdrop."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import cos, radians, sin
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True)
+class Light:
+    """A square soft box that looks at the subject.
+
+    azimuth:   from the camera to its right [degrees]
+    elevation: above the camera's height [degrees]
+    size:      edge, in units of the subject's distance from the light
+    strength:  light that arrives at the subject (linear r, g, b), if it faced the box
+    attention: how often shadow rays go to it, among the others; its light is the same, its noise less
+    """
+
+    azimuth: float
+    elevation: float
+    size: float
+    strength: tuple[float, float, float]
+    attention: float = 1.0
+
+
+LIGHTS = {
+    "key": Light(-38.0, 34.0, 0.8, (9.6, 8.4, 7.0), 3.0),  # warm, large and high: it draws the face
+    "fill": Light(62.0, 4.0, 1.4, (1.0, 1.2, 1.5)),  # cool and dim, from the other side
+    "rim_right": Light(148.0, 28.0, 0.6, (8.0, 7.8, 7.6)),  # from behind: it draws every curl of the silhouette
+    "rim_left": Light(-150.0, 44.0, 0.6, (7.0, 7.2, 7.8)),
+}
+AMBIENT = (0.22, 0.23, 0.25)
+
+# Linear colours of the backdrop: around the subject's shoulders, and at the picture's edge.
+BACKDROP_NEAR, BACKDROP_FAR = np.array([0.33, 0.38, 0.40]), np.array([0.05, 0.062, 0.072])
+
+
+def lights(mi: Any, axes: NDArray[np.float64], distance: float) -> dict[str, Any]:
+    """The soft boxes as Mitsuba shapes, ``distance`` away from a subject at the origin; ``axes`` as in Camera."""
+    shapes: dict[str, Any] = {"ambient": {"type": "constant", "radiance": _rgb(AMBIENT), "sampling_weight": 1.0}}
+    for name, light in LIGHTS.items():
+        azimuth, elevation = radians(light.azimuth), radians(light.elevation)
+        local = np.array([sin(azimuth) * cos(elevation), sin(elevation), cos(azimuth) * cos(elevation)])
+        half = 0.5 * light.size * distance
+        # Mitsuba's rectangle spans -1…1; a box of edge s at distance 1 sends its radiance times s² to the subject
+        place = mi.ScalarTransform4f().look_at(
+            origin=list(distance * (local @ axes)), target=[0, 0, 0], up=list(axes[1] + 1e-3 * axes[2])
+        ) @ mi.ScalarTransform4f().scale([half, half, 1.0])
+        radiance = [s / light.size**2 for s in light.strength]
+        emitter = {"type": "area", "radiance": _rgb(radiance), "sampling_weight": light.attention}
+        shapes[name] = {"type": "rectangle", "to_world": place, "emitter": emitter}
+    return shapes
+
+
+def backdrop(width: int, height: int) -> NDArray[np.float32]:
+    """A seamless studio wall with a pool of light behind the subject, linear colours of shape (height, width, 3)."""
+    x = (np.arange(width) + 0.5) / width - 0.5
+    y = (np.arange(height) + 0.5) / height - 0.55
+    away = np.hypot(x[None, :], 0.85 * y[:, None] * height / width) / 0.78
+    pool = np.exp(-2.2 * away**2)[:, :, None]
+    return (BACKDROP_FAR + (BACKDROP_NEAR - BACKDROP_FAR) * pool).astype(np.float32)
+
+
+def _rgb(values: Any) -> dict[str, Any]:
+    return {"type": "rgb", "value": [float(v) for v in values]}

@@ -1,0 +1,95 @@
+"""What the numbers of a simulation say, in sentences."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+Statistics = Sequence[dict[str, Any]]
+
+
+def series(statistics: Statistics, key: str) -> list[float] | None:
+    """One number per frame, NaN where a frame lacks it; None when all do. ``energy.bend`` looks inside a dict."""
+    values = []
+    for frame in statistics:
+        value: Any = frame
+        for part in key.split("."):
+            value = value.get(part) if isinstance(value, dict) else None
+        values.append(float(value) if isinstance(value, int | float) else math.nan)
+    return values if any(math.isfinite(v) for v in values) else None
+
+
+def total(statistics: Statistics, key: str) -> int | None:
+    """A count summed over all frames; None when no frame has it."""
+    values = series(statistics, key)
+    return None if values is None else int(sum(v for v in values if math.isfinite(v)))
+
+
+def frame_number(statistics: Statistics, index: int) -> str:
+    """The number of a frame as text."""
+    return f"{statistics[index].get('frame', index + 1):g}"
+
+
+def worst_frame(statistics: Statistics) -> int | None:
+    """The frame to look at first: one with broken numbers, else unsolved strands, else the most stretch."""
+    for key in ("nan", "unconverged", "max_stretch", "newton_max", "newton"):
+        values = series(statistics, key)
+        if values and (highest := max(v for v in values if math.isfinite(v))) > 0:
+            return values.index(highest)
+    return None
+
+
+def verdict(statistics: Statistics) -> list[str]:
+    """The outcome in a few sentences, the gravest first."""
+    if not statistics:
+        return []
+    said = []
+    if broken := total(statistics, "nan"):
+        said.append(f"{_strands(broken)} ended in numbers that are not finite: do not use this result.")
+    if late := total(statistics, "unconverged"):
+        said.append(f"{_times(late)} a strand ran out of Newton iterations before it was at rest in its step.")
+    elif late == 0:
+        said.append(f"Every strand was solved in each of the {len(statistics)} frames.")
+    stretch = series(statistics, "max_stretch")
+    if stretch:
+        highest = max(v for v in stretch if math.isfinite(v))
+        at = frame_number(statistics, stretch.index(highest))
+        said.append(f"No edge was ever longer than {100 * highest:.2g} % over its rest length (frame {at}).")
+    curl = {key: total(statistics, key) for key in ("flips", "winding_changes", "too_straight")}
+    if any(curl.values()):
+        meaning = {"flips": "curls flipped", "winding_changes": "lost or won a turn", "too_straight": "pulled straight"}
+        parts = [f"{meaning[key]}: {count}" for key, count in curl.items() if count]
+        said.append(f"The curl did not always hold its shape ({', '.join(parts)}).")
+    elif curl["flips"] == 0:
+        said.append("No curl flipped over or changed its number of turns.")
+    return said
+
+
+def explain_worst(statistics: Statistics) -> str | None:
+    """Why the worst frame is the worst, in one sentence."""
+    index = worst_frame(statistics)
+    if index is None:
+        return None
+    frame = statistics[index]
+    phrases = {
+        "nan": lambda v: f"{v:g} broken strands" if v else None,
+        "unconverged": lambda v: f"{v:g} strands unsolved" if v else None,
+        "max_stretch": lambda v: f"edges up to {100 * v:.2g} % too long",
+        "newton": lambda v: f"{v:.3g} Newton iterations for a strand on average",
+        "newton_max": lambda v: f"{v:g} at most",
+        "line_search_cuts": lambda v: f"steps cut short {v:g} times" if v else None,
+        "flips": lambda v: f"{v:g} flips" if v else None,
+        "winding_changes": lambda v: f"{v:g} changes of winding" if v else None,
+    }
+    known = [phrases[key](frame[key]) for key in phrases if isinstance(frame.get(key), int | float)]
+    told = [phrase for phrase in known if phrase]
+    return f"Frame {frame_number(statistics, index)} is the hardest: {', '.join(told)}." if told else None
+
+
+def _strands(count: int) -> str:
+    return "One strand" if count == 1 else f"{count} strands"
+
+
+def _times(count: int) -> str:
+    return "Once" if count == 1 else f"{count} times"

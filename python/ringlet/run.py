@@ -1,0 +1,127 @@
+"""One run of a command: how long its stages took and what it wrote, for people and for the report."""
+
+from __future__ import annotations
+
+import shlex
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+from typing import TYPE_CHECKING, Self
+
+from ringlet.errors import UserError
+
+if TYPE_CHECKING:
+    from ringlet.shot.cache import Cache
+
+LIMITS = [
+    "Strands do not collide yet: they may pass through the head and through one another.",
+    "A straight strand does not resist being twisted about its own axis.",
+]
+
+
+@dataclass
+class Stage:
+    """A part of a run.
+
+    name: what was done
+    wall: time on the clock [s]
+    cpu:  time of all threads together [s]
+    file: what it wrote, or None
+    what: what is in that file
+    """
+
+    name: str
+    wall: float
+    cpu: float
+    file: Path | None = None
+    what: str = ""
+
+
+class Run:
+    """Collects what one run did; when the block ends well, the report is written to ``folder``, if there is one.
+
+    Example::
+
+        with ringlet.Run("groom", "out") as run:
+            with run.stage("groom", "groom.usdc"):
+                ringlet.write_groom(ringlet.build_groom("curls.recipe.toml"), "groom.usdc")
+    """
+
+    def __init__(self, name: str, folder: Path | str | None = None) -> None:
+        self.name = name
+        self.folder = None if folder is None else Path(folder)
+        self.stages: list[Stage] = []
+        self.counts: dict[str, int] = {}
+        self.pictures: dict[Path, str] = {}
+        self.cache: Cache | None = None
+        if self.folder is not None:
+            check_place(self.folder / "report.html")
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+        if kind is None and self.folder is not None:
+            self._write_report(self.folder)
+
+    @contextmanager
+    def stage(self, name: str, file: Path | str | None = None, what: str = "") -> Iterator[None]:
+        """Times a part of the run. A ``file`` that it cannot write is refused before the work for it is done."""
+        if file is not None:
+            check_place(file)
+        wall, cpu = time.perf_counter(), time.process_time()
+        yield
+        self.stages.append(
+            Stage(
+                name, time.perf_counter() - wall, time.process_time() - cpu, None if file is None else Path(file), what
+            )
+        )
+
+    def count(self, **counts: int) -> None:
+        """Notes how many there are of what was made: ``run.count(locks=1200)``."""
+        self.counts |= counts
+
+    def simulated(self, cache: Cache) -> None:
+        """Notes a simulation, for the charts of its statistics."""
+        self.cache = cache
+
+    def pictured(self, path: Path | str, caption: str) -> None:
+        """Notes a picture to show in the report."""
+        self.pictures[Path(path)] = caption
+
+    def _write_report(self, folder: Path) -> None:
+        from ringlet import _core, report
+
+        report.write_report(
+            report.RunReport(
+                name=self.name,
+                version=version("ringlet"),
+                command=shlex.join([Path(sys.argv[0]).name, *sys.argv[1:]]),
+                machine=report.Machine(threads=_core.thread_count(), simd=_core.simd()),
+                counts=self.counts,
+                stages=[report.Stage(name=s.name, wall_ms=1e3 * s.wall, cpu_ms=1e3 * s.cpu) for s in self.stages],
+                statistics=self.cache.statistics if self.cache else [],
+                files=[report.MadeFile.of(s.file, s.what) for s in self.stages if s.file],
+                pictures=[report.Picture(path=str(path), caption=caption) for path, caption in self.pictures.items()],
+                limits=LIMITS,
+            ),
+            folder,
+        )
+
+
+def check_place(path: Path | str) -> None:
+    """Refuses a file that could not be written, and leaves nothing behind."""
+    path = Path(path)
+    try:
+        if path.is_dir():
+            raise UserError(f"{path}: is a folder; give a file name")
+        there = next(folder for folder in path.absolute().parents if folder.exists())
+        with tempfile.TemporaryFile(dir=there):
+            pass
+    except OSError as error:
+        raise UserError(f"{path}: cannot be written ({error.strerror or error}); choose another place") from error

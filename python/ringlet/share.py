@@ -1,0 +1,16 @@
+"""Where the example and the benchmarks are: in the repository when working in it, beside the package when installed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ringlet.errors import UserError
+
+
+def share(name: str) -> Path:
+    """The folder ``name`` that comes with Ringlet: ``examples/child`` or ``bench``."""
+    package = Path(__file__).parent
+    for root in (package.parents[1], package / "share"):
+        if (root / name).exists():
+            return root / name
+    raise UserError(f"{name}: does not come with this installation of Ringlet; install it again")

@@ -1,0 +1,30 @@
+// Frames along curves that turn as little as possible.
+#pragma once
+
+#include "ringlet/math/types.h"
+
+#include <Eigen/Geometry>
+
+namespace ringlet {
+
+// Packed polylines: curve i owns points[offsets[i]] up to points[offsets[i + 1]], root first.
+struct CurveView {
+    View<Vec3> points;
+    View<int> offsets;
+
+    int count() const { return static_cast<int>(offsets.size()) - 1; }
+    View<Vec3> operator[](int i) const { return points.subspan(offsets[i], offsets[i + 1] - offsets[i]); }
+};
+
+// Unit tangents of one polyline: the bisector of the two edges inside, the edge at the ends.
+void tangents(View<Vec3> points, std::span<Vec3> result);
+
+// Carries `axis` along one polyline without turning it about the tangent: the double reflection of
+// Wang, Jüttler, Zheng and Liu, "Computation of rotation minimizing frames", ACM TOG 27(1), 2008.
+// The first axis is `axis` made orthogonal to the first tangent; all are unit vectors orthogonal to theirs.
+void transport(View<Vec3> points, View<Vec3> tangents, const Vec3 &axis, std::span<Vec3> result);
+
+// `axis` without its part along the unit vector `tangent`, of length 1; any orthogonal vector where nothing is left.
+Vec3 orthogonal(const Vec3 &axis, const Vec3 &tangent);
+
+} // namespace ringlet

@@ -1,0 +1,41 @@
+#include "ringlet/geometry/triangle_mesh.h"
+
+#include "ringlet/geometry/frames.h"
+
+#include <cmath>
+
+namespace ringlet {
+
+std::vector<Vec3> vertex_normals(const TriangleMesh &mesh) {
+    std::vector<Vec3> normals(mesh.points.size(), Vec3::Zero());
+    for (const Triangle &t : mesh.triangles) {
+        const Vec3 face = (mesh.points[t[1]] - mesh.points[t[0]]).cross(mesh.points[t[2]] - mesh.points[t[0]]);
+        const double twice_area = face.norm();
+        if (twice_area == 0.0) continue;
+        for (int k = 0; k < 3; ++k) {
+            const Vec3 a = mesh.points[t[(k + 1) % 3]] - mesh.points[t[k]], b = mesh.points[t[(k + 2) % 3]] - mesh.points[t[k]];
+            normals[t[k]] += (std::atan2(twice_area, a.dot(b)) / twice_area) * face;
+        }
+    }
+    for (Vec3 &normal : normals) normal.stableNormalize();
+    return normals;
+}
+
+Vec3 smooth_normal(const TriangleMesh &mesh, View<Vec3> normals, int triangle, const Vec3 &barycentric) {
+    const Triangle &t = mesh.triangles[triangle];
+    const Vec3 normal = barycentric[0] * normals[t[0]] + barycentric[1] * normals[t[1]] + barycentric[2] * normals[t[2]];
+    const Vec3 face =
+        (mesh.corner(triangle, 1) - mesh.corner(triangle, 0)).cross(mesh.corner(triangle, 2) - mesh.corner(triangle, 0));
+    // On a fold sharper than a right angle the interpolated normal says nothing; the face still does.
+    return normal.squaredNorm() > 1e-6 ? normal.normalized() : face.stableNormalized();
+}
+
+Mat3 surface_frame(const TriangleMesh &mesh, View<Vec3> normals, int triangle, const Vec3 &barycentric) {
+    Mat3 frame;
+    frame.col(2) = smooth_normal(mesh, normals, triangle, barycentric);
+    frame.col(0) = orthogonal((mesh.corner(triangle, 1) - mesh.corner(triangle, 0)).stableNormalized(), frame.col(2));
+    frame.col(1) = frame.col(2).cross(frame.col(0));
+    return frame;
+}
+
+} // namespace ringlet

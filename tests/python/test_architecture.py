@@ -1,0 +1,69 @@
+"""The arrows of docs/architecture.md hold, and the script that checks them sees one that does not."""
+
+from __future__ import annotations
+
+import importlib.util
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture(scope="module")
+def problems():
+    spec = importlib.util.spec_from_file_location("check_architecture", ROOT / "tools/check_architecture.py")
+    assert spec and spec.loader
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module.problems
+
+
+def test_the_tree_keeps_to_the_table(problems):
+    assert problems(ROOT) == []
+
+
+@pytest.mark.parametrize(
+    ("file", "text", "complaint"),
+    [
+        ("src/ringlet/energy/bend.h", '#include "ringlet/contact/pairs.h"', "energy may not use contact"),
+        ("src/ringlet/dynamics/newton.h", '  #  include "ringlet/energy/bend.h"', "dynamics may not use energy"),
+        ("src/ringlet/scene/step.cpp", "#include <iostream>", "no printing"),
+        ("src/ringlet/hats/hat.h", "", "'hats' is not a folder"),
+        ("python/ringlet/io/usd.py", "from ringlet.picture import still", "io may not use picture"),
+        ("python/ringlet/io/usd.py", "from ringlet import _core", "io may not use _core"),
+        ("python/ringlet/io/usd.py", "def f():\n    import ringlet.groom.curl", "io may not use groom"),
+        ("python/ringlet/cli/groom.py", "from ringlet.groom import make_groom", "cli may not use groom"),
+        ("python/ringlet/groom/groom.py", "from ringlet.groom.curl import curl", "groom.groom may not use groom"),
+        ("python/ringlet/hats.py", "", "'hats' is not a module"),
+        ("bench/groom.py", "import ringlet._core", "bench may use the public API only"),
+    ],
+)
+def test_a_forbidden_arrow_is_found(problems, tmp_path, file, text, complaint):
+    for place in ("src/ringlet", "python/ringlet/groom", "python/ringlet/picture", "bench", "examples"):
+        (tmp_path / place).mkdir(parents=True)
+    for module in ("__init__", "groom/__init__", "groom/curl", "picture/__init__"):
+        (tmp_path / f"python/ringlet/{module}.py").touch()
+    (tmp_path / file).parent.mkdir(parents=True, exist_ok=True)
+    (tmp_path / file).write_text(text)
+
+    found = problems(tmp_path)
+
+    assert len(found) == 1
+    assert found[0].startswith(file)
+    assert complaint in found[0]
+
+
+def test_what_the_table_allows_is_not_reported(problems, tmp_path):
+    for file, text in {
+        "src/ringlet/energy/bend.h": '#include "ringlet/geometry/curves.h"\n#include "ringlet/energy/common.h"',
+        "python/ringlet/groom/groom.py": "from ringlet.curves import Curves",
+        "python/ringlet/curves.py": "from ringlet.errors import UserError",
+        "python/ringlet/errors.py": "",
+        "python/ringlet/io/usd.py": "from ringlet.groom.groom import Groom",
+        "python/ringlet/__init__.py": "from ringlet.curves import Curves",
+        "examples/try.py": "import ringlet",
+    }.items():
+        (tmp_path / file).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / file).write_text(text)
+    assert problems(tmp_path) == []

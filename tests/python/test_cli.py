@@ -1,0 +1,127 @@
+"""The command line as people and programs meet it: help, exit codes, errors in one line, JSON."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from ringlet.cli.app import app
+from typer.testing import CliRunner
+
+import ringlet
+
+COMMANDS = ["demo", "groom", "sim", "hair", "picture", "validate", "bench", "schema"]
+
+
+def run(*arguments: object):
+    """What a command line prints and the code it exits with."""
+    return CliRunner().invoke(app, [str(argument) for argument in arguments])
+
+
+def refused(result, *words: str) -> str:
+    """Asserts that the input was refused in one line without a traceback; returns the line."""
+    assert result.exit_code == 2, result.output
+    assert result.stdout == ""
+    lines = result.stderr.strip().splitlines()
+    message = lines[-1]
+    assert message.startswith("error: ")
+    assert sum(line.startswith("error: ") for line in lines) == 1
+    assert "Traceback" not in result.output
+    for word in words:
+        assert word in message
+    return message
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_command_has_help_with_an_example(command):
+    result = run(command, "--help")
+    assert result.exit_code == 0
+    assert f"ringlet {command}" in result.stdout
+    assert "Example" in result.stdout
+
+
+def test_without_arguments_the_commands_are_listed():
+    result = run()
+    assert result.exit_code == 0
+    assert all(command in result.stdout for command in COMMANDS)
+
+
+def test_version():
+    assert run("--version").stdout == f"ringlet {ringlet.__version__}\n"
+
+
+def test_help_needs_none_of_the_heavy_libraries():
+    program = "import sys, ringlet.cli; print({'pxr', 'mitsuba', 'matplotlib', 'scipy'} & set(sys.modules))"
+    assert subprocess.run([sys.executable, "-c", program], capture_output=True, text=True).stdout == "set()\n"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["simm"], ["simm", "sim"]),
+        (["groom", "x.toml", "--outptu", "y"], ["--outptu", "--output"]),
+        (["groom"], ["RECIPE"]),
+        (["groom", "x.toml", "--threads", "0"], ["--threads"]),
+        (["sim", "x.toml", "--frames", "9:1"], ["--frames 9:1", "FIRST:LAST"]),
+        (["sim", "x.toml", "--frames", "one"], ["--frames one", "FIRST:LAST"]),
+        (["hair", "x.usdc", "--fraction", "2"], ["--fraction"]),
+        (["schema", "recipes"], ["recipes", "recipe"]),
+        (["bench", "strand"], ["strand", "'strands'"]),
+        (["bench", "groom", "--set", "locks"], ["--set locks", "KEY=VALUE"]),
+        (["bench", "groom", "--set", "lokcs=3"], ["lokcs", "'locks'"]),
+        (["validate", "cantilver"], ["cantilver", "'cantilever'"]),
+    ],
+)
+def test_a_mistake_on_the_command_line_is_told_in_one_line(arguments, words):
+    refused(run(*arguments), *words)
+
+
+def test_a_mistake_in_ringlet_is_told_in_one_line_with_the_place_of_its_traceback(monkeypatch):
+    def broken(*_, **__):
+        raise ZeroDivisionError("no such luck")
+
+    monkeypatch.setattr(ringlet, "schema", broken)
+    monkeypatch.delenv("RINGLET_DEBUG", raising=False)
+    result = run("schema")
+    assert result.exit_code == 3
+    message = result.stderr.strip()
+    assert len(message.splitlines()) == 1
+    assert "no such luck" in message
+    file = Path(message.split("traceback is in ")[1].split(",")[0])
+    assert "ZeroDivisionError" in file.read_text()
+    file.unlink()
+
+
+def test_a_mistake_in_ringlet_shows_its_traceback_when_asked(monkeypatch):
+    def broken(*_, **__):
+        raise ZeroDivisionError
+
+    monkeypatch.setattr(ringlet, "schema", broken)
+    monkeypatch.delenv("RINGLET_DEBUG", raising=False)
+    result = run("--debug", "schema")
+    assert result.exit_code == 3
+    assert "Traceback" in result.stderr
+
+
+def test_schemas_are_json_and_describe_every_setting():
+    both = json.loads(run("schema").stdout)
+    assert set(both) == {"recipe", "shot"}
+    recipe = json.loads(run("schema", "recipe").stdout)
+    assert recipe == both["recipe"]
+    assert all(about.get("description") for about in recipe["properties"].values())
+
+
+def test_interrupting_ends_tidily(tmp_path):
+    command = [Path(sys.executable).with_name("ringlet"), "bench", "strands", "--set", "steps=100000"]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env={**os.environ})
+    time.sleep(2.0)
+    process.send_signal(signal.SIGINT)
+    _, errors = process.communicate(timeout=20)
+    assert process.returncode == 130
+    assert "Traceback" not in errors

@@ -1,0 +1,310 @@
+"""The way from a recipe to hairs on the command line, and bad input of every kind on it."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pxr import Usd, UsdGeom
+from small_example import FRAMES, write_example, write_head
+from test_cli import refused, run
+
+import ringlet
+
+
+@pytest.fixture(scope="module")
+def example(tmp_path_factory) -> Path:
+    """The small example with its groom, cache and hairs."""
+    folder = write_example(tmp_path_factory.mktemp("example"))
+    made = [
+        run("groom", folder / "small.recipe.toml", "-o", folder / "groom.usdc", "--json"),
+        run("sim", folder / "small.shot.toml", "--groom", folder / "groom.usdc", "-o", folder / "cache.usdc", "--json"),
+        run("hair", folder / "groom.usdc", "--cache", folder / "cache.usdc", "-o", folder / "hair.usdc", "--json"),
+    ]
+    for result in made:
+        assert result.exit_code == 0, result.output
+        told = json.loads(result.stdout)
+        (folder / f"{Path(told['path']).stem}.json").write_text(result.stdout)
+    return folder
+
+
+@pytest.fixture
+def copy(tmp_path) -> Path:
+    """The files of the small example, to be spoilt."""
+    return write_example(tmp_path)
+
+
+def edit(file: Path, old: str, new: str) -> Path:
+    """Replaces a part of a text file."""
+    text = file.read_text()
+    assert old in text
+    file.write_text(text.replace(old, new, 1))
+    return file
+
+
+def told(example: Path, name: str) -> dict:
+    return json.loads((example / f"{name}.json").read_text())
+
+
+# What works
+
+
+def test_groom_tells_what_it_made(example):
+    groom = ringlet.read_groom(example / "groom.usdc")
+    assert told(example, "groom") == {
+        "path": str(example / "groom.usdc"),
+        "bytes": (example / "groom.usdc").stat().st_size,
+        "guides": 6,
+        "locks": len(groom.locks),
+        "points": len(groom.locks.points),
+    }
+    assert len(groom.locks) == 8
+
+
+def test_sim_writes_every_frame_and_the_locks_follow_the_scalp(example):
+    cache, groom = ringlet.read_cache(example / "cache.usdc"), ringlet.read_groom(example / "groom.usdc")
+    assert told(example, "cache")["frames"] == FRAMES
+    assert cache.frames.tolist() == list(range(1, FRAMES + 1))
+    roots = cache.points[:, groom.locks.offsets[:-1]]
+    # The head turns by 5° a frame about the vertical, so roots move on circles and keep their height.
+    angle = np.radians(5 * (FRAMES - 1))
+    x, z = roots[0, :, 0], roots[0, :, 2]
+    turned = np.stack([np.cos(angle) * x + np.sin(angle) * z, -np.sin(angle) * x + np.cos(angle) * z], axis=1)
+    np.testing.assert_allclose(roots[-1][:, [0, 2]], turned, atol=1e-5)
+    np.testing.assert_allclose(roots[-1][:, 1], roots[0][:, 1], atol=1e-5)
+
+
+def test_hair_has_the_hairs_of_every_lock_in_every_frame(example):
+    assert told(example, "hair")["hairs"] == 3 * 8
+    stage = Usd.Stage.Open(str(example / "hair.usdc"))
+    points = UsdGeom.BasisCurves(stage.GetPrimAtPath("/groom/hairs")).GetPointsAttr()
+    assert points.GetTimeSamples() == list(range(1, FRAMES + 1))
+
+
+def test_frames_can_be_chosen(example, tmp_path):
+    result = run("sim", example / "small.shot.toml", "-o", tmp_path / "cache.usdc", "--frames", "2:3", "--json")
+    assert result.exit_code == 0, result.output
+    assert ringlet.read_cache(tmp_path / "cache.usdc").frames.tolist() == [2, 3]
+
+
+def test_a_shot_of_a_recipe_leaves_its_groom_beside_the_cache(example, tmp_path):
+    assert run("sim", example / "small.shot.toml", "-o", tmp_path / "cache.usdc", "--frames", "1:1").exit_code == 0
+    assert (tmp_path / "cache.groom.usdc").exists()
+    assert (
+        run(
+            "hair", tmp_path / "cache.groom.usdc", "--cache", tmp_path / "cache.usdc", "-o", tmp_path / "h.usdc"
+        ).exit_code
+        == 0
+    )
+
+
+def test_without_json_a_person_reads_one_line(example, tmp_path):
+    result = run("groom", example / "small.recipe.toml", "-o", tmp_path / "groom.usdc")
+    assert len(result.stdout.splitlines()) == 1
+    assert "8 locks" in result.stdout
+
+
+def test_a_report_is_written_where_it_is_asked_for(example, tmp_path):
+    result = run("sim", example / "small.shot.toml", "-o", tmp_path / "cache.usdc", "--report", tmp_path / "report")
+    assert result.exit_code == 0, result.output
+    report = json.loads((tmp_path / "report/report.json").read_text())
+    assert report["name"] == "sim"
+    assert len(report["statistics"]) == FRAMES
+    assert [stage["name"] for stage in report["stages"]] == ["groom", "simulate"]
+    assert "<html" in (tmp_path / "report/report.html").read_text()
+
+
+@pytest.mark.parametrize(("unit", "up"), [(1.0, "Y"), (0.01, "Z"), (0.0254, "Y")])
+def test_a_head_in_another_unit_or_up_axis_gives_the_same_groom(example, tmp_path, unit, up):
+    write_example(tmp_path)
+    (tmp_path / "head.usda").unlink()
+    write_head(tmp_path / "head.usda", unit=unit, up=up)
+    same, other = ringlet.read_groom(example / "groom.usdc"), ringlet.build_groom(tmp_path / "small.recipe.toml")
+    np.testing.assert_allclose(other.locks.points, same.locks.points, atol=2e-4)
+    assert other.space.meters_per_unit == pytest.approx(unit)
+
+
+def test_the_installed_command_works_in_a_process_of_its_own(copy):
+    command = Path(sys.executable).with_name("ringlet")
+    done = subprocess.run([command, "groom", "small.recipe.toml"], cwd=copy, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert (copy / "groom.usdc").exists()
+    failed = subprocess.run([command, "groom", "none.toml"], cwd=copy, capture_output=True, text=True)
+    assert failed.returncode == 2
+    assert failed.stdout == ""
+    assert len(failed.stderr.splitlines()) == 1
+
+
+# Bad input: one line, exit code 2, nothing written
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("[curl]\nwidth", "[curl]\nwidht", ["small.recipe.toml", "curl", "widht", "'width'"]),
+        ("[locks]", "[lokcs]", ["lokcs", "'locks'"]),
+        ("count = 8", "count = -8", ["locks.count", "-8", "at least"]),
+        ("pitch = 1.5", "pitch = 1.5\ncurls = 4", ["curl", "pitch", "curls"]),
+        ("width = 1.0", "width = nan", ["curl.width", "nan"]),
+        ("points = 40", "points = 'many'", ["locks.points", "many"]),
+        ("points = 40", "points = 4", ["points"]),
+        ("ringlet = 1", "ringlet = 2", ["ringlet", "2"]),
+        ("[scalp]", "[scalp", ["small.recipe.toml", "TOML", "line"]),
+        ('file = "head.usda"', 'file = "had.usda"', ["had.usda"]),
+        ('region = "scalp"', 'region = "sclap"', ["sclap", "scalp"]),
+        ('region = "scalp"', 'mesh = "/ball/skim"', ["/ball/skim", "/ball/skin"]),
+    ],
+)
+def test_a_bad_recipe_is_refused(copy, old, new, words):
+    recipe = edit(copy / "small.recipe.toml", old, new)
+    before = sorted(copy.iterdir())
+    refused(run("groom", recipe, "-o", copy / "groom.usdc"), *words)
+    assert sorted(copy.iterdir()) == before
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("frames = [1, 4]", "frames = [4, 1]", ["small.shot.toml", "frames"]),
+        ("preroll = 0", "prerol = 0", ["prerol", "'preroll'"]),
+        ("preroll = 0", "preroll = -1", ["preroll", "-1", "at least"]),
+        ("small.recipe.toml", "small.recip.toml", ["small.recip.toml"]),
+        ("preroll = 0", "[strands]\nradius = -1", ["radius", "-1"]),
+        ("preroll = 0", "[strands]\ntwist_ratio = 1.5", ["twist_ratio", "1.5", "at most 1"]),
+    ],
+)
+def test_a_bad_shot_is_refused(copy, old, new, words):
+    shot = edit(copy / "small.shot.toml", old, new)
+    before = sorted(copy.iterdir())
+    refused(run("sim", shot, "-o", copy / "cache.usdc"), *words)
+    assert sorted(copy.iterdir()) == before
+
+
+def spoil_points(folder: Path) -> None:
+    stage = Usd.Stage.Open(str(folder / "head.usda"))
+    attribute = UsdGeom.Mesh(stage.GetPrimAtPath("/ball/skin")).GetPointsAttr()
+    points = np.array(attribute.Get())
+    points[5] = np.nan
+    attribute.Set(points)
+    stage.Save()
+
+
+def remove_mesh(folder: Path) -> None:
+    stage = Usd.Stage.Open(str(folder / "head.usda"))
+    stage.RemovePrim("/ball/skin")
+    stage.Save()
+
+
+def empty_mesh(folder: Path) -> None:
+    stage = Usd.Stage.Open(str(folder / "head.usda"))
+    mesh = UsdGeom.Mesh(stage.GetPrimAtPath("/ball/skin"))
+    mesh.GetPointsAttr().Set([])
+    mesh.GetFaceVertexCountsAttr().Set([])
+    mesh.GetFaceVertexIndicesAttr().Set([])
+    stage.RemovePrim("/ball/skin/scalp")
+    stage.Save()
+
+
+def fold_scalp(folder: Path) -> None:
+    """Adds a third triangle at an edge of the scalp."""
+    stage = Usd.Stage.Open(str(folder / "head.usda"))
+    mesh = UsdGeom.Mesh(stage.GetPrimAtPath("/ball/skin"))
+    counts, indices = list(mesh.GetFaceVertexCountsAttr().Get()), list(mesh.GetFaceVertexIndicesAttr().Get())
+    subset = UsdGeom.Subset(stage.GetPrimAtPath("/ball/skin/scalp"))
+    subset.GetIndicesAttr().Set([*subset.GetIndicesAttr().Get(), len(counts)])
+    mesh.GetFaceVertexCountsAttr().Set([*counts, 3])
+    mesh.GetFaceVertexIndicesAttr().Set([*indices, *indices[:2], indices[20]])
+    stage.Save()
+
+
+def spoil_file(folder: Path) -> None:
+    (folder / "head.usda").write_text("a head")
+
+
+@pytest.mark.parametrize(
+    ("spoil", "words"),
+    [
+        (spoil_points, ["head.usda", "/ball/skin", "finite"]),
+        (remove_mesh, ["head.usda", "mesh"]),
+        (empty_mesh, ["head.usda", "/ball/skin"]),
+        (fold_scalp, ["manifold"]),
+        (spoil_file, ["head.usda"]),
+    ],
+)
+def test_a_bad_head_is_refused(copy, spoil, words):
+    spoil(copy)
+    before = sorted(copy.iterdir())
+    refused(run("groom", copy / "small.recipe.toml", "-o", copy / "groom.usdc"), *words)
+    assert sorted(copy.iterdir()) == before
+
+
+def write_guides(path: Path, curves: list[list[tuple[float, float, float]]]) -> None:
+    stage = Usd.Stage.CreateNew(str(path))
+    UsdGeom.SetStageMetersPerUnit(stage, 0.01)
+    UsdGeom.SetStageUpAxis(stage, "Y")
+    guides = UsdGeom.BasisCurves.Define(stage, "/guides")
+    guides.CreateTypeAttr("linear")
+    guides.CreateWrapAttr("nonperiodic")
+    guides.CreateCurveVertexCountsAttr([len(curve) for curve in curves])
+    guides.CreatePointsAttr([point for curve in curves for point in curve])
+    stage.Save()
+
+
+@pytest.mark.parametrize(
+    ("curves", "words"),
+    [
+        ([[(0, 9, 0), (0, 12, 0)], [(0, 9, 0), (0, 9, 0)]], ["length 0"]),
+        ([[(0, 9, 0), (0, 12, 0)], [(0, 9, 0)]], ["1 point"]),
+        ([[(0, 9, 0), (0, float("nan"), 0)]], ["finite"]),
+        ([[(0, 59, 0), (0, 62, 0)]], ["scalp"]),
+        ([], ["guides"]),
+    ],
+)
+def test_bad_drawn_guides_are_refused(copy, curves, words):
+    write_guides(copy / "guides.usda", curves)
+    recipe = edit(copy / "small.recipe.toml", "count = 6\nlength = 5", 'file = "guides.usda"')
+    before = sorted(copy.iterdir())
+    refused(run("groom", recipe, "-o", copy / "groom.usdc"), *words)
+    assert sorted(copy.iterdir()) == before
+
+
+@pytest.mark.parametrize("place", ["file/groom.usdc", "folder", "groom.txt", "/dev/null/groom.usdc"])
+def test_a_place_that_cannot_be_written_is_refused(copy, place):
+    (copy / "file").touch()
+    (copy / "folder").mkdir()
+    before = sorted(copy.iterdir())
+    refused(run("groom", copy / "small.recipe.toml", "-o", copy / place))
+    assert sorted(copy.iterdir()) == before
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["sim", "SHOT", "--groom", "HEAD"],
+        ["sim", "SHOT", "--groom", "NONE"],
+        ["hair", "HEAD"],
+        ["hair", "NONE"],
+        ["hair", "GROOM", "--cache", "GROOM"],
+        ["hair", "GROOM", "--cache", "CACHE", "--frames", "80:90"],
+        ["picture", "NONE"],
+        ["picture", "HAIR", "--view", "below"],
+        ["picture", "HAIR", "--color", "colour"],
+        ["picture", "HAIR", "--sheet", "--frames", "80:90"],
+    ],
+)
+def test_a_file_of_the_wrong_kind_is_refused(example, tmp_path, arguments):
+    files = {
+        "SHOT": example / "small.shot.toml",
+        "HEAD": example / "head.usda",
+        "GROOM": example / "groom.usdc",
+        "CACHE": example / "cache.usdc",
+        "HAIR": example / "hair.usdc",
+        "NONE": tmp_path / "none.usdc",
+    }
+    output = tmp_path / ("out.png" if arguments[0] == "picture" else "out.usdc")
+    refused(run(*[files.get(argument, argument) for argument in arguments], "-o", output))
+    assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,145 @@
+"""Curves, frames along them, and roots on a moving mesh."""
+
+import numpy as np
+import pytest
+from shapes import ball, rotation, sheet
+
+from ringlet import Curves, UserError, _core
+
+
+def helix(radius=0.01, pitch=0.02, turns=3.0, points=400):
+    phase = 2.0 * np.pi * turns * np.linspace(0.0, 1.0, points)
+    return np.stack([radius * np.cos(phase), pitch * phase / (2.0 * np.pi), radius * np.sin(phase)], axis=1)
+
+
+def frames_along(points, axis=(1.0, 0.0, 0.0)):
+    offsets = np.array([0, len(points)], np.int32)
+    return _core.curve_frames(np.ascontiguousarray(points), offsets, np.array([axis]))
+
+
+def test_frames_are_rotations_whose_last_axis_follows_the_curve():
+    points = helix()
+    frames = frames_along(points)
+    assert np.allclose(frames @ frames.transpose(0, 2, 1), np.eye(3), atol=1e-12)
+    assert np.allclose(np.linalg.det(frames), 1.0)
+    edges = np.diff(points, axis=0)
+    along = np.einsum("nx,nx->n", edges / np.linalg.norm(edges, axis=1)[:, None], frames[:-1, :, 2])
+    assert (along > 0.999).all()
+
+
+def test_frames_do_not_turn_about_the_tangent():
+    frames = frames_along(helix(points=4000))
+    change = np.diff(frames[:, :, 0], axis=0)
+    turning = np.abs(np.einsum("nx,nx->n", change, frames[:-1, :, 1]))
+    assert turning.max() < 1e-5  # the frame of Frenet turns by 1.4e-3 an edge here
+
+
+def test_in_a_plane_the_frame_keeps_its_normal():
+    angle = np.linspace(0.0, 5.0, 50)
+    circle = np.stack([np.cos(angle), np.sin(angle), 0.0 * angle], axis=1)
+    frames = frames_along(circle, axis=(0.0, 0.0, 1.0))
+    assert np.allclose(frames[:, :, 0], [0.0, 0.0, 1.0])
+
+
+def test_frames_turn_with_the_curve():
+    turn = rotation((1.0, 2.0, 3.0), 70.0)
+    points = helix(points=60)
+    still, turned = (
+        frames_along(points, (0.3, 0.1, 0.9)),
+        frames_along(points @ turn.T, turn @ np.array([0.3, 0.1, 0.9])),
+    )
+    assert np.allclose(turned, turn @ still)
+
+
+def test_frames_survive_points_that_coincide_and_curves_that_turn_back():
+    points = np.array([[0, 0, 0], [0, 1, 0], [0, 1, 0], [0, 0.5, 0], [0.5, 0.5, 0]], float)
+    frames = frames_along(points)
+    assert np.allclose(frames @ frames.transpose(0, 2, 1), np.eye(3), atol=1e-12)
+
+
+def test_resampling_spaces_points_evenly_and_keeps_the_ends():
+    rough = np.array([[0, 0, 0], [0.02, 0.01, 0], [0.05, 0.03, 0], [0.07, 0.09, 0.02]])
+    fine = _core.resample_curves(rough, np.array([0, 4], np.int32), 40)
+    edges = np.linalg.norm(np.diff(fine, axis=0), axis=1)
+    assert np.ptp(edges) < 0.01 * edges.mean()
+    assert np.array_equal(fine[[0, -1]], rough[[0, -1]])
+
+
+def test_a_root_binds_to_the_point_of_the_mesh_that_is_nearest():
+    mesh = ball()
+    rng = np.random.default_rng(1)
+    places = rng.normal(size=(200, 3))
+    places *= 0.11 / np.linalg.norm(places, axis=1)[:, None]
+    triangle, barycentric, distance = _core.bind_roots(mesh.points, mesh.triangles, places)
+    corners = mesh.points[mesh.triangles]
+    bound = np.einsum("kc,kcx->kx", barycentric, corners[triangle])
+    assert np.allclose(np.linalg.norm(bound - places, axis=1), distance)
+    assert (barycentric >= 0.0).all() and np.allclose(barycentric.sum(axis=1), 1.0)
+    inside = rng.dirichlet([1, 1, 1], size=30)  # no other point of any triangle is nearer
+    others = np.einsum("sc,mcx->msx", inside, corners).reshape(-1, 3)
+    for place, nearest in zip(places[:40], distance, strict=False):
+        assert np.linalg.norm(others - place, axis=1).min() >= nearest - 1e-12
+
+
+def test_a_root_binds_only_where_it_may():
+    mesh = ball()
+    below = np.array([[0.0, -0.1, 0.0]])
+    triangle, _, distance = _core.bind_roots(mesh.points, mesh.triangles, below, mesh.regions["scalp"])
+    assert triangle[0] in mesh.regions["scalp"]
+    assert distance[0] > 0.1
+
+
+def test_a_root_is_carried_rigidly_by_a_mesh_that_moves_rigidly():
+    mesh = ball()
+    triangle, barycentric, _ = _core.bind_roots(mesh.points, mesh.triangles, mesh.points[:50] * 1.05)
+    turn, shift = rotation((0.2, 1.0, -0.4), 130.0), np.array([0.3, -0.1, 0.5])
+    rest, rest_frames = _core.root_frames(mesh.points, mesh.triangles, triangle, barycentric)
+    now, now_frames = _core.root_frames(mesh.points @ turn.T + shift, mesh.triangles, triangle, barycentric)
+    assert np.allclose(now, rest @ turn.T + shift)
+    assert np.allclose(now_frames @ rest_frames.transpose(0, 2, 1), turn)
+
+
+def test_the_normal_of_roots_is_smooth_across_edges():
+    mesh = ball(rings=12)
+    angle = np.linspace(0.2, 1.2, 400)
+    path = 0.09 * np.stack([np.sin(angle), np.cos(angle), 0.1 * np.sin(angle)], axis=1)
+    triangle, barycentric, _ = _core.bind_roots(mesh.points, mesh.triangles, path)
+    normals = _core.root_frames(mesh.points, mesh.triangles, triangle, barycentric)[1][:, :, 2]
+    assert len(np.unique(triangle)) > 4
+    assert np.linalg.norm(np.diff(normals, axis=0), axis=1).max() < 0.02  # facets meet at 15°, a step of 0.26
+
+
+def test_binding_to_a_triangle_without_area_still_finds_its_nearest_point():
+    points = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0]], float)
+    _, _, distance = _core.bind_roots(points, np.array([[0, 1, 2]], np.int32), np.array([[1.5, 1.0, 0.0]]))
+    assert np.isclose(distance[0], 1.0)
+
+
+def test_a_mesh_that_names_a_missing_point_is_refused():
+    mesh = sheet()
+    with pytest.raises(IndexError, match="point"):
+        _core.bind_roots(mesh.points[:10], mesh.triangles, mesh.points[:1])
+
+
+@pytest.mark.parametrize(
+    ("curves", "words"),
+    [
+        ([np.zeros((1, 3))], "must have at least 2"),
+        ([np.zeros((3, 3))], "length 0"),
+        ([np.array([[0, 0, 0], [0, np.nan, 0]])], "must be finite"),
+        ([], "no curves"),
+    ],
+)
+def test_curves_that_nothing_could_use_are_refused(curves, words):
+    with pytest.raises(UserError, match=words):
+        Curves.from_list(curves).check("drawn guides")
+
+
+def test_taking_curves_takes_their_attributes():
+    curves = Curves.from_list([helix(points=5), helix(points=7), helix(points=3)], ids=[10, 20, 30])
+    curves.curve["hand"] = np.array([1, -1, 1])
+    curves.point["width"] = np.arange(15.0)
+    taken = curves.take(np.array([2, 0]))
+    assert taken.ids.tolist() == [30, 10]
+    assert np.array_equal(taken[0], curves[2])
+    assert taken.point["width"].tolist() == [12, 13, 14, 0, 1, 2, 3, 4]

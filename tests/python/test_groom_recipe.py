@@ -1,0 +1,110 @@
+"""Recipes: what they accept, and how they refuse."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ringlet import UserError
+from ringlet.groom import PRESETS, parse_recipe, read_recipe, schema
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "child" / "curls.recipe.toml"
+
+
+def recipe(text):
+    return parse_recipe("ringlet = 1\n" + text, Path("curls.recipe.toml"))
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("[curl]\npreset = '4A'\nwidht = 3", "curl.widht is not a setting; did you mean 'width'?"),
+        ("[crul]", "crul is not a setting; did you mean 'curl'?"),
+        ("[curl]\npreset = '4A'\nwidth = -20", "curl.width is -0.2 m; must be at least 0 m"),
+        ("[curl]\npreset = '4A'\nwidth = nan", "curl.width is nan; must be finite"),
+        ("[curl]\npreset = '4A'\nwidth = '5 furlong'", "curl.width is '5 furlong'; must be a number or a length"),
+        ("[curl]\npitch = { vary = 0.1 }", "curl.pitch is missing"),
+        ("[curl]\npreset = '5Z'", "curl.preset is '5Z'; must be '3B', '3C', '4A' or '4C'"),
+        ("[curl]\npitch = 1\ncurls = 3", "give exactly one of"),
+        ("[curl]\nwidth = 1", "neither how many curls"),
+        ("[locks]\ncount = 0", "locks.count is 0; must be at least 1"),
+        ("[locks]\ncount = 5\nspacing = 1", "both 'count' and 'spacing'"),
+        ("[hairs]\nper_lock = 'many'", "hairs.per_lock is 'many'; must be a whole number"),
+        ("[[shape]]\nop = 'scragle'", "shape[0].op is 'scragle'; did you mean 'scraggle'?"),
+        ("[[shape]]\nop = 'loft'\namout = 1", "shape[0].amout is not a setting; did you mean 'amount'?"),
+        ("[[shape]]\nop = 'loft'\namount = { value = 1, ramp = [[0, 1], [2, 1]] }", "has a place at 2.0"),
+        ("[[shape]]\nop = 'loft'\namount = { value = 1, ramp = [[1, 1], [0, 1]] }", "must ascend"),
+        ("curl = 3", "curl is 3; must be a table"),
+        ("unit = 'ft'", "unit is 'ft'; must be"),
+        ("x = = 1", "not valid TOML: invalid value (at line 2"),
+    ],
+)
+def test_mistakes_are_refused_with_file_setting_and_remedy(text, message):
+    with pytest.raises(UserError) as error:
+        recipe(text)
+    assert str(error.value).startswith("curls.recipe.toml: ")
+    assert message in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+def test_a_file_that_is_no_recipe_is_refused(tmp_path):
+    with pytest.raises(UserError, match="cannot be read"):
+        read_recipe(tmp_path / "none.toml")
+    with pytest.raises(UserError, match="first line must be 'ringlet = 1'"):
+        parse_recipe("name = 'x'")
+
+
+def test_numbers_count_in_the_recipe_unit_and_texts_in_their_own():
+    for text in (
+        "[guides]\nlength = 8",
+        "unit = 'mm'\n[guides]\nlength = 80",
+        "unit = 'in'\n[guides]\nlength = '8 cm'",
+    ):
+        assert recipe(text).guides.length.value == pytest.approx(0.08)
+
+
+def test_a_preset_fills_only_what_the_recipe_does_not_say():
+    for unit in ("cm", "m"):
+        curl = recipe(f"unit = '{unit}'\n[curl]\npreset = '3C'\ncurls = 5\nstart = '2 mm'").curl
+        assert curl.width.value == pytest.approx(0.009)
+        assert curl.pitch is None and curl.curls.value == 5.0
+        assert curl.start == pytest.approx(0.002)
+
+
+def test_a_number_keeps_the_ramp_and_the_variation_of_the_default():
+    width = recipe("[curl]\npreset = '3C'\nwidth = 1").curl.width
+    preset = PRESETS["3C"]["width"]
+    assert width.value == pytest.approx(0.01)
+    assert width.ramp == preset["ramp"] and width.vary == preset["vary"]
+    table = recipe("[curl]\npreset = '3C'\nwidth = { vary = 0.5 }").curl.width
+    assert table.value == pytest.approx(0.009) and table.vary == 0.5 and table.ramp == preset["ramp"]
+    scraggle = recipe("[[shape]]\nop = 'scraggle'\namount = 2").shape[0].amount
+    assert scraggle.along(0.0) == 0.0 and scraggle.along(1.0) == 1.0
+
+
+def test_presets_are_ordered_from_wide_to_tight():
+    widths = [recipe(f"[curl]\npreset = '{name}'").curl.width.value for name in PRESETS]
+    assert list(PRESETS) == ["3B", "3C", "4A", "4C"]
+    assert widths == sorted(widths, reverse=True)
+    assert widths[0] == pytest.approx(0.016) and widths[-1] < 0.004
+
+
+def test_a_ramp_passes_through_its_knots_and_never_overshoots():
+    width = recipe("[curl]\npreset = '4A'\nwidth = { value = 1, ramp = [[0, 0], [0.2, 1], [1, 0.5]] }").curl.width
+    assert np.allclose(width.along(np.array([0.0, 0.2, 1.0])), [0.0, 1.0, 0.5])
+    along = width.along(np.linspace(0.0, 1.0, 200))
+    assert along.min() >= 0.0 and along.max() <= 1.0
+
+
+def test_the_schema_tells_bounds_units_and_descriptions_of_every_setting():
+    definitions = schema()["$defs"]
+    width = definitions["Curl"]["properties"]["width"]
+    assert width["unit"] == "m" and width["anyOf"][0] == {"type": "number", "minimum": 0.0, "maximum": 0.2}
+    for name, section in definitions.items():
+        for setting, told in section["properties"].items():
+            if setting not in ("op", "value"):
+                assert told.get("description"), f"{name}.{setting} has no description"
+
+
+def test_the_example_reads():
+    assert read_recipe(EXAMPLE).scalp_file == EXAMPLE.parent / "head.usdc"

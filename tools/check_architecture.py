@@ -1,0 +1,134 @@
+"""Checks who may use whom, in C++ and in Python: the tables below are those of docs/architecture.md.
+
+Usage: python tools/check_architecture.py [ROOT]. Prints one line per forbidden arrow and exits with 1 if there is one.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+# Folder of src/ringlet → folders that it may include.
+CORE = {
+    "math": set(),
+    "geometry": {"math"},
+    "groom": {"geometry", "math"},
+    "energy": {"geometry", "math"},
+    "contact": {"geometry", "math"},
+    "linear": {"math"},
+    "dynamics": {"linear", "math"},
+    "rest": {"energy", "dynamics", "linear", "geometry", "math"},
+    "scene": {"rest", "energy", "contact", "dynamics", "linear", "geometry", "math"},
+}
+
+# Module of python/ringlet → modules that it may import. DATA is plain data and small helpers, which all may share.
+DATA = {"curves", "mesh", "stage", "files", "errors", "settings", "share", "groom.groom", "shot.cache"}
+API = "the public API"  # ringlet/__init__.py
+PYTHON = {
+    **dict.fromkeys(DATA, DATA),
+    "groom": DATA | {"_core"},
+    "shot": DATA | {"_core"},
+    "validate": DATA | {"_core", "shot"},
+    "io": DATA,
+    "picture": DATA,
+    "report": DATA,
+    "api": DATA | {"_core", "groom", "shot", "validate", "io", "picture", "report"},
+    "run": DATA | {"_core", "report"},
+    "demo": DATA | {"api", "run"},
+    API: DATA | {"api", "run", "demo"},
+    "cli": {API},
+}
+OUTSIDE = ("bench", "examples")  # these use the public API only
+
+INCLUDE = re.compile(r'^\s*#\s*include\s+"ringlet/([^/"]+)/', re.MULTILINE)
+FOREIGN = re.compile(r'^\s*#\s*include\s+[<"](nanobind/|Python\.h|iostream|fstream|cstdio|filesystem)', re.MULTILINE)
+
+
+def core_problems(root: Path) -> Iterator[str]:
+    """Arrows between the folders of the core, and from the core to the outside."""
+    for file in sorted([*(root / "src/ringlet").rglob("*.h"), *(root / "src/ringlet").rglob("*.cpp")]):
+        where, text = file.relative_to(root), file.read_text()
+        folder = where.parts[2]
+        if folder not in CORE:
+            yield f"{where}: '{folder}' is not a folder of the core"
+            continue
+        for used in sorted({*INCLUDE.findall(text)} - CORE[folder] - {folder}):
+            yield f"{where}: {folder} may not use {used}"
+        if foreign := FOREIGN.search(text):
+            yield f"{where}: the core knows no files, no printing and no Python, but includes {foreign[1]}"
+
+
+class Package:
+    """The modules of python/ringlet, and the rows of the table that they belong to."""
+
+    def __init__(self, root: Path) -> None:
+        self.folder = root / "python/ringlet"
+        files = sorted(self.folder.rglob("*.py"))
+        self.modules = {self.name(file): file for file in files}
+
+    def name(self, file: Path) -> str:
+        """Dotted name below ringlet, empty for ringlet itself."""
+        return ".".join(file.relative_to(self.folder).with_suffix("").parts).removesuffix("__init__").removesuffix(".")
+
+    def row(self, module: str) -> str:
+        """The row of the table for a module."""
+        return module if module in DATA else module.split(".")[0] or API
+
+    def used(self, file: Path) -> set[str]:
+        """Rows that a file imports, wherever in it the import stands."""
+        rows = set()
+        for node in ast.walk(ast.parse(file.read_text(), str(file))):
+            if isinstance(node, ast.Import):
+                names = [alias.name for alias in node.names]
+            elif isinstance(node, ast.ImportFrom) and not node.level:
+                # What is imported may itself be a module: `from ringlet import _core`.
+                names = [f"{node.module}.{alias.name}" for alias in node.names]
+            elif isinstance(node, ast.ImportFrom):
+                raise SyntaxError(f"{file}:{node.lineno}: relative import; write the full name")
+            else:
+                continue
+            for name in names:
+                if name == "ringlet" or name.startswith("ringlet."):
+                    rows.add(self.row(self.module(name.removeprefix("ringlet").removeprefix("."))))
+        return rows
+
+    def module(self, name: str) -> str:
+        """The module that a dotted name lies in."""
+        while name and name not in self.modules and name != "_core":
+            name = name.rpartition(".")[0]
+        return name
+
+
+def python_problems(root: Path) -> Iterator[str]:
+    """Arrows between the Python modules, and from examples and benchmarks into them."""
+    package = Package(root)
+    for module, file in package.modules.items():
+        where, row = file.relative_to(root), package.row(module)
+        if row not in PYTHON:
+            yield f"{where}: '{row}' is not a module of the table"
+            continue
+        for used in sorted(package.used(file) - PYTHON[row] - {row}):
+            yield f"{where}: {row} may not use {used}"
+    for folder in OUTSIDE:
+        for file in sorted((root / folder).rglob("*.py")):
+            for used in sorted(package.used(file) - {API}):
+                yield f"{file.relative_to(root)}: {folder} may use the public API only, but uses {used}"
+
+
+def problems(root: Path) -> list[str]:
+    """One line per forbidden arrow in the tree below ``root``."""
+    return [*core_problems(root), *python_problems(root)]
+
+
+def main() -> int:
+    """Prints the problems of a tree, this one by default."""
+    found = problems(Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).parents[1])
+    print("\n".join(found), end="\n" if found else "")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,23 @@
+#!/bin/bash
+# Formatting, types, static analysis, and who may call whom. All of them run, and one that fails fails the whole.
+set -u
+cd "$(dirname "$0")/.."
+bin=.venv/bin
+status=0
+check() { # name, command …
+    echo "lint: $1"
+    "${@:2}" || { status=1 && echo "lint: $1 failed" >&2; }
+}
+
+types() { # the compiled module is seen through its stub
+    $bin/python -m nanobind.stubgen -q -m ringlet._core -o python/ringlet/_core.pyi && $bin/pyright --warnings
+}
+
+mapfile -d '' cpp < <(find src bindings tests/cpp -name '*.h' -print0 -o -name '*.cpp' -print0)
+check "python" $bin/ruff check --quiet .
+check "python format" $bin/ruff format --quiet --check .
+check "python types" types
+check "arrows" $bin/python tools/check_architecture.py
+check "c++ format" $bin/clang-format --dry-run -Werror "${cpp[@]}"
+check "c++" $bin/python $bin/run-clang-tidy.py -quiet -j 2 -p build/editable -clang-tidy-binary "$PWD/$bin/clang-tidy" 'src/ringlet/'
+exit $status

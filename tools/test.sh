@@ -1,0 +1,35 @@
+#!/bin/bash
+# Everything that must hold, one step after the other; what fails is shown, and the rest still runs.
+set -u
+cd "$(dirname "$0")/.."
+bin=.venv/bin
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+failed=()
+
+step() { # name, command …
+    local name=$1 start=$SECONDS
+    shift
+    if "$@" >"$log" 2>&1; then
+        printf 'ok      %-40s %4d s\n' "$name" $((SECONDS - start))
+    else
+        printf 'FAILED  %-40s %4d s\n' "$name" $((SECONDS - start))
+        sed 's/^/        /' "$log"
+        failed+=("$name")
+    fi
+}
+
+cpp_tests() { $bin/cmake --build build/editable --target ringlet_tests && $bin/ctest --test-dir build/editable --output-on-failure; }
+
+step "C++ tests" cpp_tests
+step "Python tests" $bin/python -m pytest -n 2 tests/python
+step "physics tests" $bin/python -m pytest -n 2 tests/physics
+step "known answers (ringlet validate)" $bin/ringlet validate
+step "lints" tools/lint.sh
+step "documents" tools/docs.sh
+
+if ((${#failed[@]})); then
+    printf '\nRinglet: %d of 6 steps failed: %s\n' ${#failed[@]} "$(IFS=,; echo "${failed[*]}")"
+    exit 1
+fi
+printf '\nRinglet: everything holds (%d s).\n' $SECONDS
