@@ -8,9 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from coils import helix, jittered, rotation
-from ringlet import _core
 from ringlet.curves import Curves
 from ringlet.shot import Material, Solver, Strands
+
+from ringlet import _core
 
 CONTINUATIONS = ["history", "least_energy"]
 FRAME = 1 / 24
