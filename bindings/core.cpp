@@ -14,8 +14,9 @@ void bind_scene(nb::module_ &module);
 
 NB_MODULE(_core, module) {
     module.doc() = "Ringlet's core: arrays in, arrays out. SI units.";
-    module.def("simd", [] { return std::string(ringlet::simd_name(ringlet::simd())); },
-               "The instruction set in use: baseline, avx2 or avx512.");
+    module.def(
+        "simd", [] { return std::string(ringlet::simd_name(ringlet::simd())); },
+        "The instruction set in use: baseline, avx2 or avx512.");
     module.def("thread_count", [] { return omp_get_max_threads(); }, "Threads that the core uses.");
     module.def("set_thread_count", [](int count) { omp_set_num_threads(count); }, nb::arg("count"));
     bind_geometry(module);

@@ -1,5 +1,119 @@
+// ringlet._core: strands and their steps.
 #include "arrays.h"
 
-namespace nb = nanobind;
+#include "ringlet/rest/resolution.h"
+#include "ringlet/scene/strands.h"
 
-void bind_scene(nb::module_ &module) { (void)module; }
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/string.h>
+
+namespace nb = nanobind;
+using namespace nb::literals;
+using namespace ringlet;
+using namespace ringlet::bindings;
+
+namespace {
+
+// A model with the state that moves on it.
+struct Strands {
+    StrandModel model;
+    StrandState state;
+    std::vector<StrandReport> reports;
+};
+
+nb::ndarray<nb::numpy, double> state_view(nb::handle self, std::vector<Vec3> &values) {
+    return {values.data()->data(), {values.size(), 3}, self};
+}
+
+} // namespace
+
+void bind_scene(nb::module_ &module) {
+    nb::enum_<Continuation>(module, "Continuation", "How signs and turns of a curl are carried from step to step.")
+        .value("history", Continuation::history)
+        .value("least_energy", Continuation::least_energy);
+
+    nb::class_<StrandMaterial>(module, "StrandMaterial", "What a lock is made of (SI units); a hair's values.")
+        .def(nb::init<>())
+        .def_rw("youngs_modulus", &StrandMaterial::youngs_modulus)
+        .def_rw("radius", &StrandMaterial::radius)
+        .def_rw("density", &StrandMaterial::density)
+        .def_rw("stretch_scale", &StrandMaterial::stretch_scale)
+        .def_rw("bend_scale", &StrandMaterial::bend_scale)
+        .def_rw("twist_ratio", &StrandMaterial::twist_ratio)
+        .def_rw("damping", &StrandMaterial::damping)
+        .def_rw("mass_damping", &StrandMaterial::mass_damping)
+        .def_rw("drag", &StrandMaterial::drag)
+        .def_rw("correct_resolution", &StrandMaterial::correct_resolution);
+
+    module.def(
+        "resolution_factors",
+        [](double angle, double dihedral) {
+            const ResolutionFactors factors = resolution_factors(angle, dihedral);
+            return nb::make_tuple(factors.bend, factors.twist, factors.mass);
+        },
+        "angle"_a, "dihedral"_a,
+        "Factors (bend, twist, mass) of a coil's edge whose corners and dihedral have these rest angles [rad].");
+
+    nb::class_<Strands>(module, "Strands", "Strands at rest in their rest shape, ready to be stepped.")
+        .def(
+            "__init__",
+            [](Strands *self, Array1<int> offsets, Array3<double> rest, Array1<int> pinned, const StrandMaterial &material) {
+                StrandModel model = make_strand_model(view(offsets), vectors<Vec3>(rest), view(pinned), material);
+                StrandState state = make_strand_state(model, vectors<Vec3>(rest));
+                new (self) Strands{std::move(model), std::move(state), {}};
+            },
+            "offsets"_a, "rest"_a, "pinned"_a, "material"_a,
+            "offsets: shape (count + 1,) int32; rest: rest shape [m], shape (n, 3); pinned: vertices held from the root, "
+            "(count,) int32.")
+        .def_prop_ro(
+            "positions", [](nb::object self) { return state_view(self, nb::cast<Strands &>(self).state.positions); },
+            "Positions [m], shape (n, 3): the solver's own memory, changed by step().")
+        .def_prop_ro(
+            "velocities", [](nb::object self) { return state_view(self, nb::cast<Strands &>(self).state.velocities); },
+            "Velocities [m/s], shape (n, 3): the solver's own memory.")
+        .def(
+            "place",
+            [](Strands &self, Array3<double> positions) {
+                self.state = make_strand_state(self.model, vectors<Vec3>(positions));
+            },
+            "positions"_a, "Puts the strands at rest at these positions [m], shape (n, 3), and forgets their history.")
+        .def(
+            "step",
+            [](Strands &self, Array3<double> targets, double dt, std::array<double, 3> gravity, std::array<double, 3> wind,
+               int newton, double tolerance, Continuation continuation) {
+                StrandStep step;
+                step.dt = dt;
+                std::copy(gravity.begin(), gravity.end(), step.gravity);
+                std::copy(wind.begin(), wind.end(), step.wind);
+                step.newton = newton;
+                step.tolerance = tolerance;
+                step.continuation = continuation;
+                {
+                    nb::gil_scoped_release release;
+                    step_strands(self.model, self.state, vectors<Vec3>(targets), step, self.reports);
+                }
+                const size_t rows = self.reports.size();
+                return to_numpy<double>(std::vector<StrandReport>(self.reports), {rows, size_t(strand_report_columns)});
+            },
+            "targets"_a, "dt"_a, "gravity"_a, "wind"_a, "newton"_a, "tolerance"_a, "continuation"_a,
+            "One time step; targets: where held vertices are at its end [m], shape (n, 3). Returns one report row per strand "
+            "(REPORT).")
+        .def(
+            "energy",
+            [](const Strands &self, Array3<double> positions, Continuation continuation, bool hessian) {
+                std::vector<Vec3> gradient;
+                std::vector<double> dense;
+                const double energy = strand_energy(self.model, self.state, continuation, vectors<Vec3>(positions), gradient,
+                                                    hessian ? &dense : nullptr);
+                const size_t n = positions.shape(0), size = hessian ? 3 * n : 0;
+                return nb::make_tuple(energy, to_numpy<double>(std::move(gradient), {n, 3}),
+                                      to_numpy<double>(std::move(dense), {size, size}));
+            },
+            "positions"_a, "continuation"_a, "hessian"_a = false,
+            "Elastic energy [J], its gradient [N] and the clamped Hessian of a single strand, with signs and turns carried "
+            "from the state.");
+
+    nb::tuple names = nb::make_tuple("newton", "cuts", "residual", "unconverged", "stretch", "bend", "twist", "gravity",
+                                     "kinetic", "max_stretch", "flips", "winding_changes", "too_straight", "nan");
+    module.attr("REPORT") = names;
+}

@@ -36,9 +36,10 @@ PYTHON = {
     "picture": DATA,
     "report": DATA,
     "api": DATA | {"_core", "groom", "shot", "validate", "io", "picture", "report"},
+    "bench": {"_core"},
     "run": DATA | {"_core", "report"},
     "demo": DATA | {"api", "run"},
-    API: DATA | {"api", "run", "demo"},
+    API: DATA | {"api", "run", "demo", "shot", "bench"},
     "cli": {API},
 }
 OUTSIDE = ("bench", "examples")  # these use the public API only

@@ -1,5 +1,6 @@
 """Ringlet grooms tightly curled hair and simulates it."""
 
+from importlib import import_module
 from importlib.metadata import version
 from typing import TYPE_CHECKING
 
@@ -30,18 +31,24 @@ from ringlet.run import Run
 from ringlet.stage import StageSpace
 
 if TYPE_CHECKING:
+    from ringlet.bench import Clock
     from ringlet.groom.groom import Groom
     from ringlet.shot.cache import Cache
+    from ringlet.shot.strands import Material, Solver, Strands
 
 __version__ = version("ringlet")
 __all__ = [
     "Cache",
     "Clip",
+    "Clock",
     "Curves",
     "Groom",
+    "Material",
     "Mesh",
     "Run",
+    "Solver",
     "StageSpace",
+    "Strands",
     "UserError",
     "__version__",
     "build_groom",
@@ -65,14 +72,18 @@ __all__ = [
 ]
 
 
+# These live in packages that load slowly, so they are imported when they are first asked for.
+_SLOW = {
+    "Cache": "ringlet.shot.cache",
+    "Clock": "ringlet.bench",
+    "Groom": "ringlet.groom.groom",
+    "Material": "ringlet.shot.strands",
+    "Solver": "ringlet.shot.strands",
+    "Strands": "ringlet.shot.strands",
+}
+
+
 def __getattr__(name: str) -> type:
-    """Groom and Cache live in packages that load slowly, so those are imported when they are first asked for."""
-    if name == "Groom":
-        from ringlet.groom.groom import Groom
-
-        return Groom
-    if name == "Cache":
-        from ringlet.shot.cache import Cache
-
-        return Cache
+    if name in _SLOW:
+        return getattr(import_module(_SLOW[name]), name)
     raise AttributeError(f"module 'ringlet' has no attribute '{name}'")

@@ -22,6 +22,7 @@ from ringlet.share import share
 if TYPE_CHECKING:
     from ringlet.groom import Hairs, Recipe
     from ringlet.groom.groom import Groom
+    from ringlet.mesh import Clip
     from ringlet.shot import Shot
     from ringlet.shot.cache import Cache
     from ringlet.validate import Row
@@ -42,13 +43,16 @@ def read_recipe(path: Path | str) -> Recipe:
 def build_groom(recipe: Recipe | Path | str, *, progress: Progress | None = None) -> Groom:
     """Makes the groom of a recipe: guides grown on the scalp or read from USD, then locks, shape and curl."""
     from ringlet import groom, io
+    from ringlet.groom.operators import Drawn
 
     if not isinstance(recipe, groom.Recipe):
         recipe = read_recipe(recipe)
     if recipe.scalp_file is None:
         raise UserError(f"{recipe.path or 'recipe'}: scalp.file is missing; name the USD file of the head")
     scalp = io.read_mesh(recipe.scalp_file, recipe.scalp.mesh)
-    drawn = io.read_curves(recipe.guides_file, recipe.guides.prim) if recipe.guides_file else None
+    drawn = None
+    if isinstance(recipe.guides, Drawn) and recipe.guides_file is not None:
+        drawn = io.read_curves(recipe.guides_file, recipe.guides.prim)
     return groom.make_groom(
         recipe,
         scalp,
@@ -101,7 +105,6 @@ def simulate(
     groom:  in place of the one that the shot names
     frames: first and last frame, in place of the shot's
     """
-    from ringlet import io
     from ringlet import shot as shots
     from ringlet.groom.groom import Groom
 
@@ -109,10 +112,16 @@ def simulate(
         shot = read_shot(shot)
     if not isinstance(groom, Groom):
         groom = load_groom(groom or shot.groom, progress=progress)
+    return shots.simulate(shot, groom, _scalp_clip(groom), frames=frames, progress=progress)
+
+
+def _scalp_clip(groom: Groom) -> Clip:
+    """How the scalp of a groom moves."""
+    from ringlet import io
+
     if groom.scalp_file is None:
-        raise UserError("sim: the groom names no file for its scalp; write the head as USD and name it in the recipe")
-    clip = io.read_clip(groom.scalp_file, groom.scalp_prim)
-    return shots.simulate(shot, groom, clip, frames=frames, progress=progress)
+        raise UserError("groom: names no file for its scalp; write the head as USD and name it in the recipe")
+    return io.read_clip(groom.scalp_file, groom.scalp_prim)
 
 
 def write_cache(cache: Cache, groom: Path | str, path: Path | str) -> None:
@@ -162,7 +171,7 @@ def write_hairs(
             writer.add(None, hairs.curves.points)
         else:
             moved = _within(read_cache(cache), frames, cache)
-            clip = io.read_clip(locks.scalp_file, locks.scalp_prim)
+            clip = _scalp_clip(locks)
             for frame, points in zip(moved.frames, moved.points, strict=True):
                 writer.add(frame, hairs.at(points, clip.at(frame)))
                 written += 1

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from ringlet.errors import UserError
@@ -28,4 +28,5 @@ def replacing(path: Path | str) -> Iterator[Path]:
     except OSError as error:
         raise UserError(f"{path}: cannot be written ({error.strerror or error}); choose another place") from error
     finally:
-        aside.unlink(missing_ok=True)
+        with suppress(OSError):  # where the folder is no folder there is nothing to take away
+            aside.unlink()

@@ -229,7 +229,7 @@ def spoil_file(folder: Path) -> None:
     ("spoil", "words"),
     [
         (spoil_points, ["head.usda", "/ball/skin", "finite"]),
-        (remove_mesh, ["head.usda", "mesh"]),
+        (remove_mesh, ["head.usda", "Mesh"]),
         (empty_mesh, ["head.usda", "/ball/skin"]),
         (fold_scalp, ["manifold"]),
         (spoil_file, ["head.usda"]),

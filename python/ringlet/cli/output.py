@@ -25,12 +25,12 @@ def finite(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def wrote(path: Path, facts: dict[str, Any], as_json: bool) -> None:
-    """Tells that a file was written, with what is worth knowing of it."""
+def wrote(path: Path, counts: dict[str, int], as_json: bool) -> None:
+    """Tells that a file was written, with counts of what is in it."""
     if as_json:
-        print_json({"path": str(path), "bytes": path.stat().st_size, **facts})
+        print_json({"path": str(path), "bytes": path.stat().st_size, **counts})
     else:
-        told = [f"{value:,} {name}" if isinstance(value, int) else f"{value} {name}" for name, value in facts.items()]
+        told = [f"{value:,} {name}" for name, value in counts.items() if value]
         print(f"{path}: {', '.join([*told, size(path.stat().st_size)])}")
 
 

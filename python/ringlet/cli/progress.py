@@ -15,8 +15,6 @@ from rich.progress import (
     ProgressColumn,
     Task,
     TextColumn,
-    TimeElapsedColumn,
-    TimeRemainingColumn,
 )
 from rich.text import Text
 
@@ -36,6 +34,17 @@ class Rate(ProgressColumn):
         )
 
 
+class Clock(ProgressColumn):
+    """How long a stage will still take, and how long it took in the end."""
+
+    def render(self, task: Task) -> Text:
+        """Seconds left, or the seconds that it took."""
+        if task.finished:
+            return Text(f"{task.finished_time:.1f} s", "cyan")
+        left = task.time_remaining
+        return Text("" if left is None else f"{left:.0f} s left", "cyan")
+
+
 @contextmanager
 def shown_progress() -> Iterator[Callable[[str, int, int], None]]:
     """Yields ``progress(stage, done, total)``, which draws a bar for every stage that it hears of."""
@@ -51,8 +60,7 @@ def on_terminal() -> Iterator[Callable[[str, int, int], None]]:
         BarColumn(bar_width=32),
         MofNCompleteColumn(),
         Rate(),
-        TimeElapsedColumn(),
-        TimeRemainingColumn(elapsed_when_finished=False),
+        Clock(),
     )
     with Progress(*columns, console=Console(stderr=True)) as bars:
         tasks = {}

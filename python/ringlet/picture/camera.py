@@ -91,17 +91,16 @@ def frame(
 
     # A point (x, y, z) in camera axes is inside when |x - cx| ≤ room (d - z): four planes, so only the farthest point
     # along each plane's normal counts, and the smallest distance d and the centre c follow directly.
-    reach_right, reach_up, reach_left, reach_down = np.full((4,), -np.inf)
+    reach_right = reach_up = reach_left = reach_down = nearest = deepest = -np.inf
     for points in subject:
         x, y, z = axes @ np.asarray(points, np.float64).T
         reach_right = max(reach_right, (x + room[0] * z).max())
         reach_left = max(reach_left, (-x + room[0] * z).max())
         reach_up = max(reach_up, (y + room[1] * z).max())
         reach_down = max(reach_down, (-y + room[1] * z).max())
-    # From the frame's origin to the camera along `backward`; points behind it are cut by the same planes.
-    distance = max((reach_right + reach_left) / (2.0 * room[0]), (reach_up + reach_down) / (2.0 * room[1]))
-    lowest, highest = reach_up - room[1] * distance, room[1] * distance - reach_down
+        nearest, deepest = max(nearest, z.max()), max(deepest, -z.min())
+    stand = max((reach_right + reach_left) / (2.0 * room[0]), (reach_up + reach_down) / (2.0 * room[1]))
+    lowest, highest = reach_up - room[1] * stand, room[1] * stand - reach_down
     centre_x = 0.5 * (reach_right - reach_left)
     centre_y = lowest + headroom * (highest - lowest)
-    origin = np.array([centre_x, centre_y, distance]) @ axes
-    return Camera(origin, axes, distance, slopes)
+    return Camera(np.array([centre_x, centre_y, stand]) @ axes, axes, stand - 0.5 * (nearest - deepest), slopes)

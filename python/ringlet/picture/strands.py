@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import solveh_banded
+from scipy.linalg import solve_banded
 
 from ringlet.curves import Curves, offsets_from_counts
 
@@ -32,9 +32,9 @@ def spline_controls(points: NDArray[np.floating]) -> NDArray[np.float64]:
         right = 6.0 * values[1:-1]
         right[0] -= values[0]
         right[-1] -= values[-1]
-        bands = np.ones((2, n - 2))
+        bands = np.ones((3, n - 2))
         bands[1] = 4.0
-        inner[1:-1] = solveh_banded(bands, right, overwrite_b=True, check_finite=False)
+        inner[1:-1] = solve_banded((1, 1), bands, right, overwrite_b=True, check_finite=False)
     controls = np.concatenate([2 * inner[:1] - inner[1:2], inner, 2 * inner[-1:] - inner[-2:-1]])
     return np.ascontiguousarray(controls.reshape(n + 2, count, -1).transpose(1, 0, 2))
 

@@ -1,0 +1,1 @@
+"""USD, one concept a file."""

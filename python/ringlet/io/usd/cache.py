@@ -1,0 +1,93 @@
+"""A simulation as USD: a layer over the groom that moves the points of ``/groom/locks``."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import NDArray
+from pxr import Sdf, Usd, UsdGeom
+
+from ringlet.errors import UserError
+from ringlet.io.usd.groom import LOCKS, VERSION, groom_prim
+from ringlet.io.usd.stage import reading
+from ringlet.io.usd.stream import StreamWriter
+from ringlet.io.usd.values import to_metres
+from ringlet.shot.cache import Cache
+from ringlet.stage import StageSpace
+
+
+def write_cache(cache: Cache, groom_path: Path | str, path: Path | str, space: StageSpace) -> None:
+    """Writes a simulation as a layer over the groom file.
+
+    space: unit, up-axis and rate of the groom file
+    """
+    with CacheWriter(path, groom_path, space) as writer:
+        for index, (frame, points) in enumerate(zip(cache.frames, cache.points, strict=True)):
+            writer.add(frame, points, cache.statistics[index] if index < len(cache.statistics) else None)
+
+
+def read_cache(path: Path | str) -> Cache:
+    """Reads a simulation, or the one under hairs."""
+    with reading(path) as source:
+        groom_prim(source)
+        attribute = UsdGeom.PointBased(source.stage.GetPrimAtPath(LOCKS)).GetPointsAttr()
+        frames = attribute.GetTimeSamples()
+        if not frames:
+            raise UserError(
+                f"{path}: holds no simulated frames; make a cache with: ringlet sim SHOT.toml -o cache.usdc"
+            )
+        rest = len(attribute.Get(Usd.TimeCode.Default()))
+        points = np.empty((len(frames), rest, 3), np.float32)
+        for index, frame in enumerate(frames):
+            moved = np.array(attribute.Get(frame))
+            if len(moved) != rest:
+                raise UserError(f"{path}: has {len(moved)} points at frame {frame:g}, its groom {rest}; simulate again")
+            points[index] = to_metres(moved, source.space)
+        kept = [layer.customLayerData.get("ringlet", {}) for layer in source.stage.GetLayerStack()]
+        statistics = next((data["statistics"] for data in kept if "statistics" in data), "[]")
+        return Cache(np.array(frames), points, json.loads(statistics))
+
+
+def cache_groom_path(path: Path | str) -> Path:
+    """The groom file that a cache lies over."""
+    with reading(path) as source:
+        groom_prim(source)
+        layers = source.stage.GetPrimAtPath(LOCKS).GetPrimStack()
+        return Path(next(spec.layer.realPath for spec in layers if spec.specifier == Sdf.SpecifierDef))
+
+
+class CacheWriter(StreamWriter):
+    """Writes a simulation while it runs: ``with CacheWriter(…) as writer: writer.add(frame, points, statistics)``.
+
+    Nothing is at ``path`` until the block ends, and nothing new if it fails.
+
+    space: unit, up-axis and rate of the groom file
+    """
+
+    def __init__(self, path: Path | str, groom_path: Path | str, space: StageSpace) -> None:
+        super().__init__(path, groom_path, space)
+        self._statistics: list[dict[str, Any]] = []
+
+    def __enter__(self) -> Self:
+        with reading(self.under) as source:
+            groom_prim(source)
+        stage = self.begin()
+        self._curves = UsdGeom.BasisCurves(stage.OverridePrim(LOCKS))
+        return self
+
+    def add(self, frame: float, points: NDArray, statistics: dict[str, Any] | None = None) -> None:
+        """Adds a frame.
+
+        points:     where the locks are [m], shape (n, 3), in the order of the groom's locks
+        statistics: what the solver reports
+        """
+        self.put(self._curves, frame, points)
+        self._statistics.append(statistics or {})
+
+    def finish(self) -> None:
+        """Adds the statistics to the layer."""
+        text = json.dumps(self._statistics, separators=(",", ":"), default=lambda value: value.tolist())
+        self.layer.customLayerData = {"ringlet": {"version": VERSION, "statistics": text}}

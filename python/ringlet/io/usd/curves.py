@@ -1,0 +1,288 @@
+"""Curves from USD, of every type, basis and wrap; and Ringlet's own curves into USD and back.
+
+Ringlet writes Catmull-Rom curves that are pinned, so that their vertices are the points of the polyline. What has no
+place in USD's schema goes into primvars called ``ringlet:…``, as it is inside: SI units, Y-up.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from pxr import Sdf, Usd, UsdGeom, Vt
+
+from ringlet.curves import Curves, offsets_from_counts
+from ringlet.errors import UserError
+from ringlet.io.usd.stage import Source, choose, find_prim, prims, reading
+from ringlet.io.usd.values import (
+    Types,
+    float3,
+    from_metres,
+    from_usd,
+    read_points,
+    rest_time,
+    set_primvar,
+    to_metres,
+    transformed,
+)
+from ringlet.mesh import Mesh
+from ringlet.stage import StageSpace
+
+OWN = "ringlet:"
+ID_NAMES = ("ringlet:id", "groom_id", "id", "hair_id", "hairid", "curve_id")
+HAIR_WIDTH = 70e-6  # diameter of a hair that says nothing else [m]
+STEPS = 6  # points per segment of a cubic curve
+
+# One row per power of t, one column per control point (Foley et al., Computer Graphics, chapter 9).
+_BASES = {
+    UsdGeom.Tokens.bezier: np.array([[1, 0, 0, 0], [-3, 3, 0, 0], [3, -6, 3, 0], [-1, 3, -3, 1]], float),
+    UsdGeom.Tokens.bspline: np.array([[1, 4, 1, 0], [-3, 0, 3, 0], [3, -6, 3, 0], [-1, 3, -3, 1]]) / 6.0,
+    UsdGeom.Tokens.catmullRom: np.array([[0, 2, 0, 0], [-1, 0, 1, 0], [2, -5, 4, -1], [-1, 3, -3, 1]]) / 2.0,
+}
+
+
+def read_curves(path: Path | str, prim: str | None = None) -> Curves:
+    """Reads a ``BasisCurves`` prim in its rest pose as polylines, in metres and Y-up.
+
+    Cubic curves are evaluated at 6 points per segment, but for pinned Catmull-Rom curves, which keep their vertices.
+    Names come from a primvar like ``groom_id``, or are 0, 1, 2 …; primvars become attributes, ``widths`` the point
+    attribute ``width`` [m].
+
+    prim: its path; by default the only one there is
+    """
+    with reading(path) as source:
+        root = source.stage.GetPseudoRoot() if prim is None else find_prim(source, prim)
+        found = [p for p in prims(root) if UsdGeom.BasisCurves(p)]
+        chosen = choose(source, found, "BasisCurves")
+        return curves_at(source, chosen, rest_time(chosen))
+
+
+def curves_at(source: Source, prim: Usd.Prim, time: Usd.TimeCode) -> Curves:
+    """The polylines of a curves prim at a time [m], with its primvars as attributes."""
+    where = source.where(prim)
+    points = read_points(prim, time, where)
+    counts = _counts(prim, time, len(points), where)
+    sampling = _Sampling(UsdGeom.BasisCurves(prim), time, counts, where)
+    moved = to_metres(transformed(points, prim, time), source.space)
+    curves = Curves(sampling.vertex(moved), sampling.offsets, np.arange(len(counts), dtype=np.int64))
+
+    for primvar in UsdGeom.PrimvarsAPI(prim).GetPrimvarsWithAuthoredValues():
+        name = primvar.GetPrimvarName().removeprefix(OWN)
+        values = from_usd(primvar.ComputeFlattened(time))
+        if values.dtype.kind not in "bifuSU" or values.ndim == 0:
+            continue
+        if primvar.GetTypeName().role == Sdf.ValueRoleNames.Point:
+            values = to_metres(transformed(np.asarray(values, np.float64), prim, time), source.space)
+        _add(curves, sampling, name, values, primvar.GetInterpolation(), f"{where}: {primvar.GetName()}")
+    schema = UsdGeom.BasisCurves(prim)
+    if (widths := schema.GetWidthsAttr().Get(time)) is not None and len(widths):
+        diameters = np.array(widths, np.float64) * source.space.meters_per_unit
+        _add(curves, sampling, "width", diameters, schema.GetWidthsInterpolation(), f"{where}: widths")
+    _name(curves)
+    return curves.check(where)
+
+
+def own_curves(source: Source, prim: Usd.Prim, time: Usd.TimeCode | None = None, dtype: type = np.float64) -> Curves:
+    """Curves that Ringlet wrote, as they were in memory; at rest, or at a time."""
+    where, time = source.where(prim), time or Usd.TimeCode.Default()
+    value = UsdGeom.PointBased(prim).GetPointsAttr().Get(time)
+    points = to_metres(np.array(value if value is not None else [], dtype).reshape(-1, 3), source.space)
+    counts = _counts(prim, time, len(points), where)
+    ids = UsdGeom.PrimvarsAPI(prim).GetPrimvar(f"{OWN}id").Get()
+    if ids is None or len(ids) != len(counts):
+        raise UserError(f"{where}: has no ringlet:id for each of its {len(counts)} curves; write the file again")
+    curves = Curves(points, offsets_from_counts(counts), np.array(ids, np.int64))
+    schema = UsdGeom.BasisCurves(prim)
+    if schema.GetWidthsInterpolation() == UsdGeom.Tokens.vertex and "width" not in curves.curve:
+        curves.point["width"] = np.array(schema.GetWidthsAttr().Get()) * np.float32(source.space.meters_per_unit)
+    for primvar in UsdGeom.PrimvarsAPI(prim).GetPrimvarsWithAuthoredValues():
+        name = primvar.GetPrimvarName()
+        if not name.startswith(OWN) or name == f"{OWN}id":
+            continue
+        values = from_usd(primvar.Get())
+        per_curve = primvar.GetInterpolation() == UsdGeom.Tokens.uniform
+        if len(values) != (len(curves) if per_curve else len(points)):
+            raise UserError(
+                f"{where}: {name} has {len(values)} values; must have one for each curve or point; write it again"
+            )
+        (curves.curve if per_curve else curves.point)[name.removeprefix(OWN)] = values
+    return curves
+
+
+def define_curves(
+    stage: Usd.Stage, path: str, curves: Curves, space: StageSpace, *, guide: bool
+) -> UsdGeom.BasisCurves:
+    """Writes everything about curves at a prim path but their points: type, counts, widths, names and attributes."""
+    defined = UsdGeom.BasisCurves.Define(stage, path)
+    defined.CreateTypeAttr(UsdGeom.Tokens.cubic)
+    defined.CreateBasisAttr(UsdGeom.Tokens.catmullRom)
+    defined.CreateWrapAttr(UsdGeom.Tokens.pinned)
+    defined.CreatePurposeAttr(UsdGeom.Tokens.guide if guide else UsdGeom.Tokens.default_)
+    defined.CreateCurveVertexCountsAttr(Vt.IntArray.FromNumpy(curves.counts))
+    known = {"width"} & (curves.point.keys() | curves.curve.keys())
+    widths = (curve_widths(curves) if known else np.array([HAIR_WIDTH])) / space.meters_per_unit
+    defined.CreateWidthsAttr(Vt.FloatArray.FromNumpy(np.ascontiguousarray(widths, np.float32)))
+    defined.SetWidthsInterpolation(UsdGeom.Tokens.vertex if known else UsdGeom.Tokens.constant)
+
+    prim = defined.GetPrim()
+    set_primvar(prim, f"{OWN}id", "uniform", curves.ids)
+    for interpolation, attributes in (("uniform", curves.curve), ("vertex", curves.point)):
+        for name in attributes.keys() - ({"width"} if interpolation == "vertex" else set()):  # width is in ``widths``
+            set_primvar(prim, OWN + name, interpolation, attributes[name])
+    short = curves.ids if np.abs(curves.ids).max(initial=0) < 2**31 else np.arange(len(curves))
+    set_primvar(prim, "groom_id", "uniform", short.astype(np.int32))
+    set_primvar(prim, "groom_group_id", "uniform", np.zeros(len(curves), np.int32))
+    set_primvar(prim, "groom_guide", "uniform", np.full(len(curves), guide, np.int32))
+    return defined
+
+
+def set_points(curves: UsdGeom.BasisCurves, points: NDArray, space: StageSpace, time: Usd.TimeCode) -> None:
+    """Writes points [m] and their extent at a time; both stream to the file as they are."""
+    value = float3(from_metres(points, space))
+    curves.CreatePointsAttr().Set(value, time)
+    curves.CreateExtentAttr().Set(UsdGeom.Curves.ComputeExtent(value, curves.GetWidthsAttr().Get()), time)
+
+
+def set_roots(prim: Usd.Prim, curves: Curves, scalp: Mesh) -> None:
+    """Says where on the scalp the roots are, in the words of Houdini, Blender, Unreal and renderers.
+
+    Needs the curve attributes ``root_triangle`` and ``root_barycentric``; without them nothing is written.
+    """
+    if not {"root_triangle", "root_barycentric"} <= curves.curve.keys():
+        return
+    triangle, weights = curves.curve["root_triangle"], curves.curve["root_barycentric"]
+    if scalp.faces is not None:
+        set_primvar(prim, "skinprim", "uniform", scalp.faces[triangle].astype(np.int32))
+        place = np.einsum("nk,nkd->nd", weights, _face_places(scalp.faces)[triangle]).astype(np.float32)
+        set_primvar(prim, "skinprimuv", "uniform", place, Types.TexCoord2fArray)
+    if scalp.uv is not None:
+        uv = np.einsum("nk,nkd->nd", weights, scalp.uv[triangle]).astype(np.float32)
+        set_primvar(prim, "st", "uniform", uv, Types.TexCoord2fArray)
+        set_primvar(prim, "surface_uv_coordinate", "uniform", uv)
+        set_primvar(prim, "groom_root_uv", "uniform", uv)
+
+
+def curve_widths(curves: Curves) -> NDArray:
+    """Diameters [m], one per point."""
+    if "width" in curves.point:
+        return curves.point["width"]
+    return np.repeat(curves.curve.get("width", np.full(len(curves), HAIR_WIDTH)), curves.counts).astype(np.float32)
+
+
+class _Sampling:
+    """How values on the control points of curves become values on the points of polylines."""
+
+    def __init__(self, curves: UsdGeom.BasisCurves, time: Usd.TimeCode, counts: NDArray, where: str) -> None:
+        kind, basis, wrap = (
+            attribute.Get(time) for attribute in (curves.GetTypeAttr(), curves.GetBasisAttr(), curves.GetWrapAttr())
+        )
+        if wrap == UsdGeom.Tokens.periodic:
+            raise UserError(
+                f"{where}: wrap is periodic; must be nonperiodic or pinned, since hairs have a root and a tip"
+            )
+        self.offsets_in = offsets_from_counts(counts)
+        pinned = wrap == UsdGeom.Tokens.pinned and basis != UsdGeom.Tokens.bezier
+        self.as_is = kind == UsdGeom.Tokens.linear or (pinned and basis == UsdGeom.Tokens.catmullRom)
+        self.pinned = pinned and not self.as_is
+        if self.as_is:
+            self.segments, self.offsets = counts - 1, self.offsets_in
+            return
+
+        stride, least = (3, 4) if basis == UsdGeom.Tokens.bezier else (1, 2 if pinned else 4)
+        if (bad := np.flatnonzero((counts < least) | ((counts - 1) % stride != 0))).size:
+            rule = "4, 7, 10 …" if stride == 3 else f"at least {least}"
+            raise UserError(
+                f"{where}: curve {bad[0]} has {counts[bad[0]]} points; {wrap} {basis} curves must have {rule}"
+            )
+        controls = counts + 2 if self.pinned else counts  # a phantom point at each end
+        self.segments = (controls - 4) // stride + 1
+        self.offsets = offsets_from_counts(self.segments * STEPS + 1)
+
+        # Every sample: its segment, where that begins among the control points, and t in it (1 at the end of a curve).
+        curve = np.repeat(np.arange(len(counts)), np.diff(self.offsets))
+        along = np.arange(self.offsets[-1]) - self.offsets[curve]
+        segment = np.minimum(along // STEPS, self.segments[curve] - 1)
+        self.t = (along - segment * STEPS) / STEPS
+        self.curve, self.segment = curve, segment
+        self.first = offsets_from_counts(controls)[curve] + segment * stride
+        powers = self.t[:, None] ** np.arange(4)
+        self.weights = powers @ _BASES[basis]
+
+    def vertex(self, values: NDArray) -> NDArray:
+        """Values on vertices, shape (n, …), at the points."""
+        if self.as_is:
+            return values
+        controls = self._with_phantoms(values) if self.pinned else values
+        rows = controls[self.first[:, None] + np.arange(4)].astype(np.float64)
+        return np.einsum("sk,sk...->s...", self.weights, rows)
+
+    def varying(self, values: NDArray) -> NDArray:
+        """Values on the ends of segments, at the points; linear in between."""
+        if self.as_is:
+            return values
+        start = offsets_from_counts(self.segments + 1)[self.curve] + self.segment
+        t = self.t.reshape(-1, *[1] * (values.ndim - 1))
+        return (1.0 - t) * values[start] + t * values[start + 1]
+
+    def _with_phantoms(self, values: NDArray) -> NDArray:
+        """Adds a point before the first and after the last of every curve, so that pinned curves reach their ends."""
+        first, last = self.offsets_in[:-1], self.offsets_in[1:] - 1
+        before = 2.0 * values[first] - values[first + 1]
+        after = 2.0 * values[last] - values[last - 1]
+        places = np.concatenate([first, np.arange(len(values)), last + 1])
+        order = np.argsort(places + np.repeat([-0.5, 0.0, -0.75], [len(first), len(values), len(last)]), kind="stable")
+        return np.concatenate([before, values, after])[order]
+
+
+def _counts(prim: Usd.Prim, time: Usd.TimeCode, points: int, where: str) -> NDArray[np.int64]:
+    """Vertices per curve, checked."""
+    value = UsdGeom.Curves(prim).GetCurveVertexCountsAttr().Get(time)
+    counts = np.array(value if value is not None else [], np.int64)
+    if len(counts) == 0:
+        raise UserError(f"{where}: there are no curves; give at least one")
+    if counts.min() < 2:
+        raise UserError(f"{where}: curve {counts.argmin()} has {counts.min()} point(s); must have at least 2")
+    if counts.sum() != points:
+        raise UserError(f"{where}: curveVertexCounts add up to {counts.sum()}, but there are {points} points")
+    return counts
+
+
+def _add(curves: Curves, sampling: _Sampling, name: str, values: NDArray, interpolation: str, what: str) -> None:
+    """Keeps the values of a primvar as an attribute of curves or of points."""
+    expected = {
+        UsdGeom.Tokens.constant: 1,
+        UsdGeom.Tokens.uniform: len(curves),
+        UsdGeom.Tokens.varying: int((sampling.segments + 1).sum()),
+    }.get(interpolation, int(sampling.offsets_in[-1]))
+    if len(values) != expected:
+        if interpolation == UsdGeom.Tokens.constant:
+            return  # a list that belongs to the whole prim
+        raise UserError(f"{what} has {len(values)} values; must have {expected}, being {interpolation}")
+    if interpolation == UsdGeom.Tokens.constant:
+        curves.curve[name] = np.repeat(values, len(curves), axis=0)
+    elif interpolation == UsdGeom.Tokens.uniform:
+        curves.curve[name] = values
+    elif values.dtype.kind in "bifu":
+        curves.point[name] = (
+            sampling.varying(values) if interpolation == UsdGeom.Tokens.varying else sampling.vertex(values)
+        )
+
+
+def _name(curves: Curves) -> None:
+    """Takes the names of curves from the first attribute that can be one."""
+    for name in (known.removeprefix(OWN) for known in ID_NAMES):
+        ids = curves.curve.get(name)
+        if ids is not None and ids.dtype.kind in "iu" and ids.ndim == 1 and len(np.unique(ids)) == len(ids):
+            curves.ids = curves.curve.pop(name).astype(np.int64)
+            return
+
+
+def _face_places(faces: NDArray) -> NDArray[np.float64]:
+    """Parametric coordinates (u, v) of the triangle corners in their polygons, shape (m, 3, 2), as Houdini counts them:
+    triangles (0,0) (1,0) (0,1); quads (0,0) (0,1) (1,1) (1,0), taken as linear in either half."""
+    whole = np.array([[0, 0], [1, 0], [0, 1]], float)
+    halves = np.array([[[0, 0], [0, 1], [1, 1]], [[0, 0], [1, 1], [1, 0]]], float)
+    first = np.concatenate([[True], faces[1:] != faces[:-1]])
+    alone = first & np.concatenate([first[1:], [True]])
+    return np.where(alone[:, None, None], whole, np.where(first[:, None, None], halves[0], halves[1]))

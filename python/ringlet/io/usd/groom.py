@@ -1,0 +1,158 @@
+"""A groom as USD: its guides and locks beside the head they grow on, which is referenced and not copied.
+
+/groom          Xform, with the recipe
+/groom/locks    BasisCurves, one per lock, in the rest pose
+/groom/guides   BasisCurves, the artist's
+/groom/body     the head: a reference to its file, or the mesh itself if it came from none
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from pxr import Sdf, Usd, UsdGeom
+
+from ringlet.curves import Curves
+from ringlet.errors import UserError
+from ringlet.groom.groom import Groom
+from ringlet.io.usd.curves import define_curves, own_curves, set_points, set_roots
+from ringlet.io.usd.mesh import define_mesh, mesh_at, read_mesh, select_mesh
+from ringlet.io.usd.stage import (
+    SUFFIXES,
+    Source,
+    new_stage,
+    read_space,
+    reading,
+    refuse_itself,
+    relative,
+    require_layers,
+    writing,
+)
+from ringlet.io.usd.values import Types, float3, from_metres
+from ringlet.stage import StageSpace
+
+GROOM, LOCKS, GUIDES, BODY = "/groom", "/groom/locks", "/groom/guides", "/groom/body"
+VERSION = 1  # of this layout
+
+
+def write_groom(groom: Groom, path: Path | str) -> None:
+    """Writes a groom in the unit, up-axis and rate of its head, which it references by a path relative to ``path``."""
+    head = groom.scalp_file if groom.scalp_file and groom.scalp_file.suffix in SUFFIXES else None
+    if head:
+        refuse_itself(path, head, "head")
+    space = read_space(head) if head else groom.space
+    with writing(path) as aside:
+        stage = new_stage(aside, space)
+        root = UsdGeom.Xform.Define(stage, GROOM).GetPrim()
+        _set(root, "version", Types.Int, VERSION)
+        _set(root, "hairs", Types.String, json.dumps(groom.hairs))
+        for name, text in (("recipe", groom.recipe), ("region", groom.region)):
+            if text is not None:
+                _set(root, name, Types.String, text)
+        scalp = (
+            _reference(stage, head, groom.scalp_prim)
+            if head
+            else define_mesh(stage, BODY, groom.scalp, space).GetPath()
+        )
+        root.CreateRelationship("ringlet:scalp", custom=True).SetTargets([scalp])
+        _define_guides(stage, LOCKS, groom.locks, groom, space)
+        _define_guides(stage, GUIDES, groom.guides, groom, space)
+        stage.Save()
+
+
+def read_groom(path: Path | str) -> Groom:
+    """Reads a groom, or the groom under a cache or hairs: all that was written, with the scalp from its file."""
+    path = Path(path)
+    with reading(path) as source:
+        root = groom_prim(source)
+        scalp_file, scalp_prim = scalp_source(source)
+        if scalp_file == path.absolute():
+            scalp_file, scalp = path, mesh_at(source, select_mesh(source, scalp_prim))
+        elif scalp_file.exists():
+            scalp = read_mesh(scalp_file, scalp_prim)
+        else:
+            raise UserError(f"{path}: its head {scalp_file} is not there; put it back or make the groom again")
+        return Groom(
+            guides=own_curves(source, source.stage.GetPrimAtPath(GUIDES)),
+            locks=own_curves(source, source.stage.GetPrimAtPath(LOCKS)),
+            scalp=scalp,
+            scalp_file=scalp_file,
+            scalp_prim=scalp_prim,
+            region=_get(root, "region"),
+            space=source.space,
+            hairs=json.loads(_get(root, "hairs") or "{}"),
+            recipe=_get(root, "recipe"),
+        )
+
+
+def groom_prim(source: Source) -> Usd.Prim:
+    """The prim ``/groom``; refuses a stage that is no groom, or one of a later layout."""
+    require_layers(source)
+    root = source.stage.GetPrimAtPath(GROOM)
+    version = _get(root, "version") if root else None
+    if version is None:
+        raise UserError(
+            f"{source.path}: is no groom of Ringlet's; make one with: ringlet groom RECIPE.toml -o groom.usdc"
+        )
+    if version > VERSION:
+        raise UserError(f"{source.path}: has layout {version}; this Ringlet reads up to {VERSION}: update it")
+    for path in (LOCKS, GUIDES):
+        if not source.stage.GetPrimAtPath(path):
+            raise UserError(f"{source.path}: has no {path}; make the groom again")
+    return root
+
+
+def scalp_source(source: Source) -> tuple[Path, str]:
+    """The file of the scalp and its prim path there: behind the reference on ``/groom/body``, or the groom itself."""
+    targets = source.stage.GetRelationshipAtPath(f"{GROOM}.ringlet:scalp").GetTargets()
+    if not targets:
+        raise UserError(f"{source.path}: does not name its scalp (ringlet:scalp); make the groom again")
+    for spec in source.stage.GetPrimAtPath(BODY).GetPrimStack():
+        for reference in spec.referenceList.GetAddedOrExplicitItems():
+            file = Path(spec.layer.ComputeAbsolutePath(reference.assetPath))
+            root = reference.primPath or _default_prim(file)
+            return file, str(targets[0].ReplacePrefix(BODY, root))
+    return Path(source.stage.GetRootLayer().realPath), str(targets[0])
+
+
+def _reference(stage: Usd.Stage, head: Path, scalp: str | None) -> Sdf.Path:
+    """Brings the head in under ``/groom/body``, with its motion; returns where its scalp now is."""
+    with reading(head) as source:
+        prim = select_mesh(source, scalp).GetPath()
+        top = prim.GetPrefixes()[0]
+        default = source.stage.GetDefaultPrim()
+        whole = bool(default) and default.GetPath() == top
+        if source.stage.HasAuthoredTimeCodeRange():
+            stage.SetStartTimeCode(source.stage.GetStartTimeCode())
+            stage.SetEndTimeCode(source.stage.GetEndTimeCode())
+    body = stage.DefinePrim(BODY)
+    name = relative(head, stage.GetRootLayer().realPath)
+    body.GetReferences().AddReference(Sdf.Reference(name) if whole else Sdf.Reference(name, top))
+    return prim.ReplacePrefix(top, BODY)
+
+
+def _define_guides(stage: Usd.Stage, path: str, curves: Curves, groom: Groom, space: StageSpace) -> None:
+    """Writes locks or guides with everything that other programs ask of guides."""
+    defined = define_curves(stage, path, curves, space, guide=True)
+    set_points(defined, curves.points, space, Usd.TimeCode.Default())
+    prim = defined.GetPrim()
+    UsdGeom.PrimvarsAPI(prim).CreatePrimvar("rest", Types.Point3fArray, "vertex").Set(
+        float3(from_metres(curves.points, space))
+    )
+    set_roots(prim, curves, groom.scalp)
+
+
+def _default_prim(file: Path) -> Sdf.Path:
+    layer = Sdf.Layer.FindOrOpen(str(file)) if file.exists() else None
+    return Sdf.Path(f"/{layer.defaultPrim}") if layer and layer.defaultPrim else Sdf.Path.absoluteRootPath
+
+
+def _set(prim: Usd.Prim, name: str, kind: Sdf.ValueTypeName, value: Any) -> None:
+    prim.CreateAttribute(f"ringlet:{name}", kind, custom=True, variability=Sdf.VariabilityUniform).Set(value)
+
+
+def _get(prim: Usd.Prim, name: str) -> Any:
+    attribute = prim.GetAttribute(f"ringlet:{name}")
+    return attribute.Get() if attribute else None

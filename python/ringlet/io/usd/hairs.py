@@ -1,0 +1,133 @@
+"""Dense hairs as USD: ``/groom/hairs`` over the groom or the cache, so that the head is there too.
+
+And a stage as pictures need it: bodies and hairs.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+from pxr import Usd, UsdGeom
+
+from ringlet.curves import Curves, offsets_from_counts
+from ringlet.errors import UserError
+from ringlet.groom.groom import Groom
+from ringlet.io.usd.curves import curve_widths, curves_at, define_curves, own_curves, set_roots
+from ringlet.io.usd.groom import GROOM, groom_prim
+from ringlet.io.usd.mesh import Body, clip_at, mesh_at, visible_meshes, whole_frames
+from ringlet.io.usd.stage import Source, prims, reading
+from ringlet.io.usd.stream import StreamWriter
+from ringlet.io.usd.values import Types, rest_time, set_primvar
+from ringlet.mesh import Clip
+
+HAIRS = f"{GROOM}/hairs"
+COLOR = (0.06, 0.035, 0.02)  # dark brown, for viewports
+LOCK_INDEX = "lock"  # curve attribute: the lock that carries a hair
+
+
+class HairWriter(StreamWriter):
+    """Writes hairs: ``with HairWriter(…) as writer: writer.add(frame, points)``.
+
+    Nothing is at ``path`` until the block ends, and nothing new if it fails.
+
+    curves:     the hairs with their attributes; ``width`` is the diameter [m], ``lock`` the index of a hair's lock
+    groom_path: the groom or the cache to lie over
+    """
+
+    def __init__(self, path: Path | str, groom: Groom, curves: Curves, groom_path: Path | str) -> None:
+        super().__init__(path, groom_path, groom.space)
+        self._groom, self._hairs = groom, curves
+
+    def __enter__(self) -> Self:
+        with reading(self.under) as source:
+            groom_prim(source)
+        hairs = self._hairs
+        self._curves = define_curves(self.begin(), HAIRS, hairs, self.space, guide=False)
+        prim = self._curves.GetPrim()
+        set_roots(prim, hairs, self._groom.scalp)
+        set_primvar(prim, "displayColor", "constant", np.array([COLOR], np.float32), Types.Color3fArray)
+        if LOCK_INDEX in hairs.curve:
+            for name in ("guide_curve_index", "clumpid"):
+                set_primvar(prim, name, "uniform", hairs.curve[LOCK_INDEX].astype(np.int32))
+        if "color" in hairs.point:
+            set_primvar(prim, "groom_color", "vertex", hairs.point["color"].astype(np.float32), Types.Color3fArray)
+        return self
+
+    def add(self, frame: float | None, points: NDArray) -> None:
+        """Adds a frame, or the rest pose for None; ``points`` are positions [m], shape (n, 3), best as float32."""
+        if points.shape != self._hairs.points.shape:
+            raise ValueError(f"hairs: points have shape {points.shape}; must be {self._hairs.points.shape}")
+        self.put(self._curves, frame, points)
+
+
+def read_hairs(path: Path | str, frame: float | None = None) -> Curves:
+    """Reads the hairs of a stage at a frame; without one at the first, or at rest if they do not move. float32 [m]."""
+    with reading(path) as source:
+        hairs = _hairs(source, frame)
+        if hairs is None:
+            raise UserError(f"{path}: has no hairs; make them with: ringlet hair GROOM -o hair.usdc")
+        return hairs
+
+
+def read_stage(path: Path | str, frame: float | None = None) -> tuple[list[Body], Curves | None, NDArray[np.float64]]:
+    """Reads what a picture shows: visible bodies, hairs (None if there are none) and the whole frames there are.
+
+    frame: hairs and clips at this frame only; without one, whole clips and the hairs of the first frame
+    """
+    with reading(path) as source:
+        hair_prims, hairs = _hair_prims(source), _hairs(source, frame)
+        samples = [time for prim in hair_prims for time in UsdGeom.PointBased(prim).GetPointsAttr().GetTimeSamples()]
+        frames = whole_frames(min(samples), max(samples), str(path)) if samples else np.empty(0)
+        bodies = []
+        for prim in visible_meshes(source):
+            mesh = mesh_at(source, prim)
+            if frame is not None:
+                clip = clip_at(source, prim, (frame, frame))
+            elif hairs is not None and not samples:  # hairs at rest are on a head at rest
+                clip = Clip(np.zeros(1), mesh.points[None], source.space.fps)
+            else:
+                clip = clip_at(source, prim)
+            bodies.append(Body(mesh, clip))
+        return bodies, hairs, frames
+
+
+def _hair_prims(source: Source) -> list[Usd.Prim]:
+    """Curves that a render shows."""
+    if own := source.stage.GetPrimAtPath(HAIRS):
+        return [own]
+    shown = (UsdGeom.Tokens.default_, UsdGeom.Tokens.render)
+    found = (prim for prim in prims(source.stage.GetPseudoRoot()) if UsdGeom.BasisCurves(prim))
+    return [prim for prim in found if UsdGeom.Imageable(prim).ComputePurpose() in shown]
+
+
+def _hairs(source: Source, frame: float | None) -> Curves | None:
+    """The hairs of a stage at a frame, packed as one."""
+    found = [_hairs_at(source, prim, frame) for prim in _hair_prims(source)]
+    if len(found) < 2:
+        return found[0] if found else None
+    counts = np.concatenate([curves.counts for curves in found])
+    return Curves(
+        np.concatenate([curves.points for curves in found]),
+        offsets_from_counts(counts),
+        np.arange(len(counts), dtype=np.int64),
+        point={"width": np.concatenate([curves.point["width"] for curves in found])},
+    )
+
+
+def _hairs_at(source: Source, prim: Usd.Prim, frame: float | None) -> Curves:
+    """The hairs of one prim at a frame, float32, with the point attribute ``width``."""
+    samples = UsdGeom.PointBased(prim).GetPointsAttr().GetTimeSamples()
+    if frame is None and samples:
+        frame = samples[0]
+    time = rest_time(prim) if frame is None else Usd.TimeCode(frame)
+    if prim.GetPath() == HAIRS:
+        curves = own_curves(source, prim, time, np.float32)
+    else:
+        curves = curves_at(source, prim, time)
+        curves.points = curves.points.astype(np.float32)
+    if "width" not in curves.point:
+        curves.point["width"] = curve_widths(curves)
+    return curves.check(source.where(prim))

@@ -1,0 +1,256 @@
+"""Meshes from USD: the scalp, bodies, and how they move; and a mesh into USD."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from pxr import Usd, UsdGeom, Vt
+
+from ringlet.errors import UserError
+from ringlet.io.usd.stage import Source, choose, find_prim, prims, reading
+from ringlet.io.usd.values import (
+    Types,
+    float3,
+    from_metres,
+    local_to_world,
+    motion,
+    read_points,
+    rest_time,
+    set_primvar,
+    to_metres,
+    transformed,
+)
+from ringlet.mesh import Clip, Mesh
+from ringlet.stage import StageSpace
+
+SCALP = "scalp"
+
+
+@dataclass
+class Body:
+    """Something solid beside the hair: a mesh in its rest pose and where it goes."""
+
+    mesh: Mesh
+    clip: Clip
+
+
+def read_mesh(path: Path | str, prim: str | None = None) -> Mesh:
+    """Reads a mesh in its rest pose, in metres and Y-up.
+
+    Polygons are cut into fans (subdivision surfaces by their cage), and face ``GeomSubset``s become regions. The rest
+    pose is the default value of the points, or the first time sample where there is none. A file without
+    ``metersPerUnit`` is in centimetres, as USD has it.
+
+    prim: its path; by default the only mesh, or the only one with a region called ``scalp``
+    """
+    with reading(path) as source:
+        return mesh_at(source, select_mesh(source, prim))
+
+
+def read_clip(path: Path | str, prim: str | None = None, frames: tuple[float, float] | None = None) -> Clip:
+    """Reads the positions of a mesh at all whole frames, with every transform above it applied.
+
+    prim:   as for ``read_mesh``
+    frames: first and last frame, instead of the range of the stage; a mesh that does not move gives one sample
+    """
+    with reading(path) as source:
+        return clip_at(source, select_mesh(source, prim), frames)
+
+
+def read_bodies(path: Path | str) -> list[Body]:
+    """Reads every visible mesh under the default prim (under the root where there is none), with its clip."""
+    with reading(path) as source:
+        return [Body(mesh_at(source, prim), clip_at(source, prim)) for prim in visible_meshes(source)]
+
+
+def select_mesh(source: Source, name: str | None) -> Usd.Prim:
+    """The mesh prim at a path, or the only one there is at or below it."""
+    root = source.stage.GetPseudoRoot() if name is None else find_prim(source, name)
+    meshes = [prim for prim in prims(root) if UsdGeom.Mesh(prim)]
+    scalps = [prim for prim in meshes if SCALP in _subsets(prim)]
+    return choose(source, scalps if len(scalps) == 1 else meshes, "Mesh")
+
+
+def visible_meshes(source: Source) -> list[Usd.Prim]:
+    """Meshes that a render shows, under the default prim."""
+    root = source.stage.GetDefaultPrim() or source.stage.GetPseudoRoot()
+    shown = (UsdGeom.Tokens.default_, UsdGeom.Tokens.render)
+    return [
+        prim
+        for prim in prims(root)
+        if UsdGeom.Mesh(prim)
+        and UsdGeom.Imageable(prim).ComputePurpose() in shown
+        and UsdGeom.Imageable(prim).ComputeVisibility(Usd.TimeCode.EarliestTime()) != UsdGeom.Tokens.invisible
+    ]
+
+
+def mesh_at(source: Source, prim: Usd.Prim) -> Mesh:
+    """The mesh of a prim in its rest pose [m]."""
+    where, time, mesh = source.where(prim), rest_time(prim), UsdGeom.Mesh(prim)
+    points = read_points(prim, time, where)
+    counts = np.array(mesh.GetFaceVertexCountsAttr().Get(time) or [], np.int64)
+    indices = np.array(mesh.GetFaceVertexIndicesAttr().Get(time) or [], np.int64)
+    _check_topology(counts, indices, len(points), where)
+
+    # A mirroring transform turns the winding round, as leftHanded does.
+    mirrored = np.linalg.det(local_to_world(prim, time)[:3, :3]) < 0
+    left_handed = mesh.GetOrientationAttr().Get(time) == UsdGeom.Tokens.leftHanded
+    corners, faces = _fans(counts, clockwise=bool(mirrored) != left_handed)
+    kept = ~np.isin(faces, np.array(mesh.GetHoleIndicesAttr().Get(time) or [], np.int64))
+    corners, faces = corners[kept], faces[kept]
+    if len(faces) == 0:
+        raise UserError(f"{where}: has no faces; export it again or choose another mesh")
+
+    triangles = indices[corners]
+    return Mesh(
+        name=f"{source.path.name} {prim.GetPath()}",
+        points=to_metres(transformed(points, prim, time), source.space),
+        triangles=triangles.astype(np.int32),
+        uv=_uv(prim, corners, triangles, len(points), len(indices), where),
+        faces=faces.astype(np.int32),
+        regions=_regions(prim, faces, len(counts), where),
+        color=_color(prim),
+    )
+
+
+def clip_at(source: Source, prim: Usd.Prim, frames: tuple[float, float] | None = None) -> Clip:
+    """Positions of a mesh prim at all whole frames of the stage, or from the first to the last of ``frames``."""
+    where, rest = source.where(prim), rest_time(prim)
+    times = _frames(source, prim, frames)
+    if len(times) == 0:
+        start = source.stage.GetStartTimeCode()
+        still = to_metres(transformed(read_points(prim, rest, where), prim, rest), source.space)
+        return Clip(np.array([start]), still[None], source.space.fps)
+    samples = []
+    for frame in times:
+        time = Usd.TimeCode(frame)
+        points = to_metres(transformed(read_points(prim, time, where), prim, time), source.space)
+        if samples and len(points) != len(samples[0]):
+            raise UserError(
+                f"{where}: has {len(points)} points at frame {frame:g}, {len(samples[0])} before; must not change"
+            )
+        samples.append(points)
+    return Clip(times, np.stack(samples), source.space.fps)
+
+
+def whole_frames(first: float, last: float, where: str) -> NDArray[np.float64]:
+    """The frames from the first to the last, shape (k,)."""
+    frames = np.arange(math.ceil(first), math.floor(last) + 1, dtype=np.float64)
+    if len(frames) == 0:
+        raise UserError(f"{where}: there is no whole frame from {first:g} to {last:g}; give a longer range")
+    return frames
+
+
+def define_mesh(stage: Usd.Stage, path: str, mesh: Mesh, space: StageSpace) -> Usd.Prim:
+    """Writes a mesh with its regions at a prim path."""
+    defined = UsdGeom.Mesh.Define(stage, path)
+    prim, points = defined.GetPrim(), float3(from_metres(mesh.points, space))
+    defined.CreatePointsAttr(points)
+    defined.CreateExtentAttr(UsdGeom.PointBased.ComputeExtent(points))
+    defined.CreateFaceVertexCountsAttr(Vt.IntArray.FromNumpy(np.full(len(mesh.triangles), 3, np.int32)))
+    defined.CreateFaceVertexIndicesAttr(Vt.IntArray.FromNumpy(mesh.triangles.astype(np.int32).ravel()))
+    defined.CreateSubdivisionSchemeAttr(UsdGeom.Tokens.none)
+    set_primvar(prim, "displayColor", "constant", np.array([mesh.color], np.float32), Types.Color3fArray)
+    if mesh.uv is not None:
+        set_primvar(prim, "st", "faceVarying", mesh.uv.reshape(-1, 2).astype(np.float32), Types.TexCoord2fArray)
+    for name, triangles in mesh.regions.items():
+        UsdGeom.Subset.CreateGeomSubset(
+            defined, name, UsdGeom.Tokens.face, Vt.IntArray.FromNumpy(triangles.astype(np.int32))
+        )
+    return prim
+
+
+def _check_topology(counts: NDArray, indices: NDArray, points: int, where: str) -> None:
+    if len(counts) == 0:
+        raise UserError(f"{where}: has no faces; export it again or choose another mesh")
+    if counts.min() < 3:
+        raise UserError(f"{where}: face {counts.argmin()} has {counts.min()} corners; must have at least 3")
+    if counts.sum() != len(indices):
+        raise UserError(f"{where}: faceVertexCounts add up to {counts.sum()}, but there are {len(indices)} indices")
+    if (bad := np.flatnonzero((indices < 0) | (indices >= points))).size:
+        raise UserError(f"{where}: a face uses point {indices[bad[0]]}; must be from 0 to {points - 1}")
+
+
+def _fans(counts: NDArray, clockwise: bool) -> tuple[NDArray, NDArray]:
+    """Cuts polygons into fans: three corners per triangle, shape (m, 3), and its polygon, shape (m,)."""
+    faces = np.repeat(np.arange(len(counts)), counts - 2)
+    starts, cuts = np.cumsum(counts) - counts, np.cumsum(counts - 2) - (counts - 2)
+    step = np.arange(len(faces)) - cuts[faces]
+    around = np.stack([np.zeros_like(step), step + 1, step + 2], axis=1)
+    if clockwise:  # walk round the other way, from the same first corner
+        around[:, 1:] = counts[faces][:, None] - around[:, 1:]
+    return starts[faces][:, None] + around, faces
+
+
+def _uv(prim: Usd.Prim, corners: NDArray, triangles: NDArray, points: int, indices: int, where: str) -> NDArray | None:
+    """Texture coordinates per triangle corner: of ``st``, or of the first primvar that holds some."""
+    api = UsdGeom.PrimvarsAPI(prim)
+    named = [api.FindPrimvarWithInheritance(name) for name in ("st", "uv", "UVMap", "map1")]
+    typed = [
+        primvar for primvar in api.GetPrimvarsWithAuthoredValues() if primvar.GetTypeName() == Types.TexCoord2fArray
+    ]
+    for primvar in (p for p in (*named, *typed) if p and p.HasAuthoredValue()):
+        values = np.array(primvar.Get(Usd.TimeCode.EarliestTime()), np.float64)
+        if primvar.IsIndexed():
+            rows = np.array(primvar.GetIndices(Usd.TimeCode.EarliestTime()))
+            if ((rows < 0) | (rows >= len(values))).any():
+                raise UserError(f"{where}: {primvar.GetName()} has an index that is not from 0 to {len(values) - 1}")
+            values = values[rows]
+        faceted = primvar.GetInterpolation() == UsdGeom.Tokens.faceVarying
+        if not faceted and primvar.GetInterpolation() not in (UsdGeom.Tokens.vertex, UsdGeom.Tokens.varying):
+            continue
+        if values.shape != (indices if faceted else points, 2):
+            wanted = f"{indices} corners" if faceted else f"{points} points"
+            raise UserError(
+                f"{where}: {primvar.GetName()} has {len(values)} values for {wanted}; must have one for each"
+            )
+        if not np.isfinite(values).all():
+            raise UserError(f"{where}: {primvar.GetName()} has a value that is no number; must be finite")
+        return values[corners if faceted else triangles]
+    return None
+
+
+def _subsets(prim: Usd.Prim) -> dict[str, UsdGeom.Subset]:
+    found = UsdGeom.Subset.GetAllGeomSubsets(UsdGeom.Imageable(prim))
+    return {s.GetPrim().GetName(): s for s in found if s.GetElementTypeAttr().Get() == UsdGeom.Tokens.face}
+
+
+def _regions(prim: Usd.Prim, faces: NDArray, count: int, where: str) -> dict[str, NDArray[np.int32]]:
+    """Face subsets as sets of triangles."""
+    regions = {}
+    for name, subset in _subsets(prim).items():
+        chosen = np.array(subset.GetIndicesAttr().Get(Usd.TimeCode.EarliestTime()) or [], np.int64)
+        if (bad := np.flatnonzero((chosen < 0) | (chosen >= count))).size:
+            raise UserError(f"{where}/{name}: names face {chosen[bad[0]]}; must be from 0 to {count - 1}")
+        inside = np.zeros(count, bool)
+        inside[chosen] = True
+        regions[name] = np.flatnonzero(inside[faces]).astype(np.int32)
+    return regions
+
+
+def _color(prim: Usd.Prim) -> tuple[float, float, float]:
+    """The display colour, averaged where it varies."""
+    primvar = UsdGeom.PrimvarsAPI(prim).FindPrimvarWithInheritance("displayColor")
+    colors = np.array((primvar and primvar.Get(Usd.TimeCode.EarliestTime())) or [], np.float64).reshape(-1, 3)
+    if len(colors) == 0:
+        return Mesh.color
+    red, green, blue = colors.mean(axis=0)
+    return float(red), float(green), float(blue)
+
+
+def _frames(source: Source, prim: Usd.Prim, frames: tuple[float, float] | None) -> NDArray[np.float64]:
+    """The whole frames to read; none for a mesh that does not move."""
+    samples = [
+        time for attribute in motion(prim) if attribute.GetNumTimeSamples() > 1 for time in attribute.GetTimeSamples()
+    ]
+    if not samples:
+        return np.empty(0)
+    stage = source.stage
+    if frames is None and stage.HasAuthoredTimeCodeRange():
+        frames = stage.GetStartTimeCode(), stage.GetEndTimeCode()
+    first, last = frames or (min(samples), max(samples))
+    return whole_frames(first, last, source.where(prim))

@@ -1,0 +1,180 @@
+"""Opening, finding and writing in USD, with every mistake told in one line.
+
+``reading`` and ``writing`` wrap all work on stages: USD's errors become ``UserError`` there, and its warnings stay off
+the screen.
+"""
+
+from __future__ import annotations
+
+import difflib
+import math
+import os
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from pxr import Sdf, Tf, Usd, UsdGeom, UsdUtils
+
+from ringlet.errors import UserError
+from ringlet.files import replacing
+from ringlet.stage import StageSpace
+
+SUFFIXES = (".usd", ".usda", ".usdc", ".usdz")
+
+
+@dataclass(frozen=True)
+class Source:
+    """A stage that is being read.
+
+    path:  the file, as the user named it
+    space: its unit, up-axis and rate
+    """
+
+    path: Path
+    stage: Usd.Stage
+    space: StageSpace
+
+    def where(self, prim: Usd.Prim) -> str:
+        """File and prim, for messages."""
+        return f"{self.path} {prim.GetPath()}"
+
+
+@contextmanager
+def reading(path: Path | str) -> Iterator[Source]:
+    """Opens a stage; what USD raises inside the block becomes a UserError."""
+    path = Path(path)
+    if not path.exists():
+        raise UserError(f"{path}: there is no such file; check the name")
+    if path.is_dir():
+        raise UserError(f"{path}: is a folder; give a USD file")
+    warnings = UsdUtils.CoalescingDiagnosticDelegate()  # takes what USD would print
+    try:
+        stage = Usd.Stage.Open(str(path))
+        stage.Reload()  # a layer that someone else holds open may be older than the file
+        yield Source(path, stage, _space(stage, path))
+    except Tf.ErrorException as error:
+        raise UserError(f"{path}: cannot be read as USD ({_reason(error)}); write it again or choose another") from None
+    finally:
+        del warnings
+
+
+@contextmanager
+def writing(path: Path | str) -> Iterator[Path]:
+    """``replacing`` for stages: yields the path beside ``path`` to write to; USD's errors become a UserError."""
+    path = Path(path)
+    if path.suffix not in SUFFIXES[:3]:
+        raise UserError(f"{path}: ends in '{path.suffix}'; must end in .usdc, .usd or .usda")
+    warnings = UsdUtils.CoalescingDiagnosticDelegate()
+    try:
+        with replacing(path) as aside:
+            yield aside
+    except Tf.ErrorException as error:
+        raise UserError(f"{path}: cannot be written ({_reason(error)}); choose another place") from None
+    finally:
+        del warnings
+
+
+def new_stage(aside: Path, space: StageSpace, over: Path | str | None = None) -> Usd.Stage:
+    """An empty stage in a new file, laid over another file if one is given; its default prim is to be ``/groom``."""
+    layer = Sdf.Layer.CreateNew(str(aside))
+    layer.defaultPrim = "groom"
+    layer.timeCodesPerSecond = layer.framesPerSecond = space.fps
+    if over is not None:
+        layer.subLayerPaths.append(relative(over, aside))
+    stage = Usd.Stage.Open(layer)
+    UsdGeom.SetStageMetersPerUnit(stage, space.meters_per_unit)
+    UsdGeom.SetStageUpAxis(stage, space.up_axis)
+    return stage
+
+
+def relative(target: Path | str, file: Path | str) -> str:
+    """The path of ``target`` as ``file`` should name it, so that both can move together."""
+    try:
+        path = os.path.relpath(Path(target).absolute(), Path(file).absolute().parent)
+    except ValueError:  # another drive
+        return Path(target).absolute().as_posix()
+    return "./" + Path(path).as_posix()
+
+
+def refuse_itself(path: Path | str, target: Path | str, what: str) -> None:
+    """Refuses to write a file over the one it refers to."""
+    if Path(path).absolute() == Path(target).absolute():
+        raise UserError(f"{path}: is the {what} that it would refer to; choose another name")
+
+
+def read_space(path: Path | str) -> StageSpace:
+    """Unit, up-axis and rate of a USD file. Where it does not say: 0.01 m (USD's own fallback), Y and 24."""
+    with reading(path) as source:
+        return source.space
+
+
+def find_prim(source: Source, name: str) -> Usd.Prim:
+    """The prim at a path; refuses one that is not there, with the nearest one that is."""
+    stage = source.stage
+    prim = stage.GetPrimAtPath(name) if Sdf.Path.IsValidPathString(name) and name.startswith("/") else None
+    if prim:
+        return prim
+    paths = [str(prim.GetPath()) for prim in prims(stage.GetPseudoRoot())]
+    near = difflib.get_close_matches(name, paths, n=1, cutoff=0.4)
+    hint = f"did you mean {near[0]}?" if near else f"there are: {', '.join(paths[:8]) or 'none'}"
+    raise UserError(f"{source.path}: has no prim {name}; {hint}")
+
+
+def prims(root: Usd.Prim) -> Iterator[Usd.Prim]:
+    """All prims from ``root`` down, through instances, but not the prototypes of point instancers."""
+    walk = iter(Usd.PrimRange(root, Usd.TraverseInstanceProxies()))
+    for prim in walk:
+        if prim.IsPseudoRoot():
+            continue
+        if UsdGeom.PointInstancer(prim):
+            walk.PruneChildren()
+        yield prim
+
+
+def choose(source: Source, candidates: list[Usd.Prim], what: str) -> Usd.Prim:
+    """The only candidate of a type, e.g. ``Mesh``; refuses none and many."""
+    if not candidates:
+        gone = [
+            Path(path).name for path in source.stage.GetRootLayer().GetExternalReferences() if _missing(source, path)
+        ]
+        remedy = f"{', '.join(gone)}, which it refers to, is not there" if gone else "export one or choose another file"
+        raise UserError(f"{source.path}: has no {what} prim; {remedy}")
+    if len(candidates) > 1:
+        names = ", ".join(str(prim.GetPath()) for prim in candidates[:8])
+        raise UserError(
+            f"{source.path}: has {len(candidates)} {what}es; name one of: {names}".replace("curveses", "curves")
+        )
+    return candidates[0]
+
+
+def require_layers(source: Source) -> None:
+    """Refuses a file that lies over another which is not there."""
+    for layer in source.stage.GetLayerStack(includeSessionLayers=False):
+        for path in layer.subLayerPaths:
+            if not Sdf.Layer.FindOrOpenRelativeToLayer(layer, path):
+                raise UserError(f"{source.path}: lies over {path}, which is not there or broken; put it back")
+
+
+def _missing(source: Source, path: str) -> bool:
+    return bool(path) and not Path(source.stage.GetRootLayer().ComputeAbsolutePath(path)).exists()
+
+
+def _space(stage: Usd.Stage, path: Path) -> StageSpace:
+    unit, rate = UsdGeom.GetStageMetersPerUnit(stage), stage.GetTimeCodesPerSecond()
+    for name, value in (("metersPerUnit", unit), ("timeCodesPerSecond", rate)):
+        if not (math.isfinite(value) and value > 0):
+            raise UserError(f"{path}: {name} is {value:g}; must be above 0")
+    axis = UsdGeom.GetStageUpAxis(stage)
+    return StageSpace(unit, "Z" if axis == UsdGeom.Tokens.z else "Y", rate)
+
+
+def _reason(error: Tf.ErrorException) -> str:
+    """The telling part of what USD says."""
+    said = [str(part.commentary).strip() for part in error.args]
+    if syntax := re.search(r":(\d+):\d+: parse error", said[0]):
+        return f"syntax error in line {syntax[1]}"
+    if said[0].startswith("Failed to open layer"):
+        return "not a USD file"
+    return said[0].splitlines()[0]

@@ -1,0 +1,122 @@
+"""Numpy arrays as USD values, and points between the file's space and ours (metres, Y-up)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pxr import Sdf, Usd, UsdGeom, Vt
+
+from ringlet.errors import UserError
+from ringlet.stage import StageSpace
+
+Types = Sdf.ValueTypeNames
+
+# What an array of a dtype and row shape is called in USD, and the class that takes it without a loop in Python.
+_TYPES: dict[tuple[str, tuple[int, ...]], tuple[Sdf.ValueTypeName, Any]] = {
+    ("bool", ()): (Types.BoolArray, Vt.BoolArray),
+    ("uint8", ()): (Types.UCharArray, Vt.UCharArray),
+    ("int32", ()): (Types.IntArray, Vt.IntArray),
+    ("int32", (2,)): (Types.Int2Array, Vt.Vec2iArray),
+    ("int32", (3,)): (Types.Int3Array, Vt.Vec3iArray),
+    ("int32", (4,)): (Types.Int4Array, Vt.Vec4iArray),
+    ("uint32", ()): (Types.UIntArray, Vt.UIntArray),
+    ("int64", ()): (Types.Int64Array, Vt.Int64Array),
+    ("uint64", ()): (Types.UInt64Array, Vt.UInt64Array),
+    ("float32", ()): (Types.FloatArray, Vt.FloatArray),
+    ("float32", (2,)): (Types.Float2Array, Vt.Vec2fArray),
+    ("float32", (3,)): (Types.Float3Array, Vt.Vec3fArray),
+    ("float32", (4,)): (Types.Float4Array, Vt.Vec4fArray),
+    ("float64", ()): (Types.DoubleArray, Vt.DoubleArray),
+    ("float64", (2,)): (Types.Double2Array, Vt.Vec2dArray),
+    ("float64", (3,)): (Types.Double3Array, Vt.Vec3dArray),
+    ("float64", (4,)): (Types.Double4Array, Vt.Vec4dArray),
+    ("float64", (3, 3)): (Types.Matrix3dArray, Vt.Matrix3dArray),
+    ("float64", (4, 4)): (Types.Matrix4dArray, Vt.Matrix4dArray),
+}
+
+
+def to_usd(values: NDArray) -> tuple[Sdf.ValueTypeName, Any]:
+    """An array, one row per element, as a USD type and value."""
+    if values.dtype.kind in "USO":
+        return Types.StringArray, Vt.StringArray([str(value) for value in values])
+    key = (values.dtype.name, values.shape[1:])
+    if key not in _TYPES:
+        raise TypeError(f"no USD type holds rows of shape {values.shape[1:]} and type {values.dtype}")
+    kind, array = _TYPES[key]
+    return kind, array.FromNumpy(np.ascontiguousarray(values))
+
+
+def from_usd(value: Any) -> NDArray:
+    """A USD array as numpy."""
+    return np.array(list(value)) if isinstance(value, Vt.StringArray | Vt.TokenArray) else np.array(value)
+
+
+def set_primvar(
+    prim: Usd.Prim, name: str, interpolation: str, values: NDArray, kind: Sdf.ValueTypeName | None = None
+) -> None:
+    """Writes ``primvars:name``; ``kind`` gives it a role, such as a colour."""
+    own, value = to_usd(values)
+    UsdGeom.PrimvarsAPI(prim).CreatePrimvar(name, kind or own, interpolation).Set(value)
+
+
+def float3(values: NDArray) -> Vt.Vec3fArray:
+    """Rows of three as a USD value, shape (n, 3)."""
+    return Vt.Vec3fArray.FromNumpy(np.ascontiguousarray(values, np.float32))
+
+
+def to_metres(points: NDArray, space: StageSpace) -> NDArray:
+    """Points of a file, shape (n, 3) → [m], Y-up, same type."""
+    scaled = points * points.dtype.type(space.meters_per_unit)
+    if space.up_axis == "Z":  # a quarter turn about x
+        scaled = np.stack([scaled[:, 0], scaled[:, 2], -scaled[:, 1]], axis=1)
+    return scaled
+
+
+def from_metres(points: NDArray, space: StageSpace) -> NDArray[np.float32]:
+    """Points [m], Y-up, shape (n, 3) → points of a file."""
+    scaled = points * points.dtype.type(1.0 / space.meters_per_unit)
+    if space.up_axis == "Z":
+        scaled = np.stack([scaled[:, 0], -scaled[:, 2], scaled[:, 1]], axis=1)
+    return np.ascontiguousarray(scaled, np.float32)
+
+
+def read_points(prim: Usd.Prim, time: Usd.TimeCode, where: str) -> NDArray[np.float64]:
+    """The points of a mesh or of curves as the file has them, checked; shape (n, 3)."""
+    value = UsdGeom.PointBased(prim).GetPointsAttr().Get(time)
+    if value is None or len(value) == 0:
+        raise UserError(f"{where}: has no points; export it again or choose another prim")
+    points = np.array(value, np.float64)
+    if not (finite := np.isfinite(points).all(axis=1)).all():
+        row = int(np.flatnonzero(~finite)[0])
+        raise UserError(f"{where}: point {row} is {points[row]}; must be finite")
+    return points
+
+
+def transformed(points: NDArray[np.float64], prim: Usd.Prim, time: Usd.TimeCode) -> NDArray[np.float64]:
+    """Points of a prim in the space of the stage, shape (n, 3)."""
+    matrix = local_to_world(prim, time)
+    return points @ matrix[:3, :3] + matrix[3, :3]
+
+
+def local_to_world(prim: Usd.Prim, time: Usd.TimeCode) -> NDArray[np.float64]:
+    """The transform of a prim, for row vectors, shape (4, 4)."""
+    return np.array(UsdGeom.XformCache(time).GetLocalToWorldTransform(prim))
+
+
+def motion(prim: Usd.Prim) -> list[Usd.Attribute]:
+    """The attributes that place the points of a prim: the points and every transform above them."""
+    found = [UsdGeom.PointBased(prim).GetPointsAttr()]
+    while prim and not prim.IsPseudoRoot():
+        if xformable := UsdGeom.Xformable(prim):
+            found += [op.GetAttr() for op in xformable.GetOrderedXformOps()]
+        prim = prim.GetParent()
+    return found
+
+
+def rest_time(prim: Usd.Prim) -> Usd.TimeCode:
+    """When a prim stands in its rest pose: at the default values, or at the first sample if there are only samples."""
+    moving = [attribute for attribute in motion(prim) if attribute.GetNumTimeSamples()]
+    default = all(attribute.Get(Usd.TimeCode.Default()) is not None for attribute in moving)
+    return Usd.TimeCode.Default() if default else Usd.TimeCode.EarliestTime()

@@ -1,0 +1,84 @@
+"""What the tables of our TOML files are made of, and how their mistakes are told."""
+
+from __future__ import annotations
+
+import difflib
+import tomllib
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
+from pydantic_core import PydanticCustomError
+
+from ringlet.errors import UserError
+
+
+class Section(BaseModel):
+    """A table of a recipe or a shot. Unknown settings are refused with the nearest name that exists."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _only_known_settings(cls, data: Any) -> Any:
+        if isinstance(data, dict):
+            for key in data:
+                if key not in cls.model_fields:
+                    raise PydanticCustomError(
+                        "unknown", "{key}{hint}", {"key": key, "hint": did_you_mean(key, cls.model_fields)}
+                    )
+        return data
+
+
+def did_you_mean(name: str, valid: Iterable[str]) -> str:
+    """``; did you mean 'width'?`` or, with nothing near, ``; there are: …``."""
+    valid = list(valid)
+    near = difflib.get_close_matches(name, valid, n=1, cutoff=0.5)
+    return f"; did you mean '{near[0]}'?" if near else f"; there are: {', '.join(valid)}"
+
+
+def read_toml(path: Path, kind: str) -> tuple[str, dict[str, Any]]:
+    """Text and tables of a TOML file that begins with ``ringlet = 1``; ``kind`` (recipe, shot) is for messages."""
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", None) or "it is not a text file"
+        raise UserError(f"{path}: cannot be read ({reason}); give a {kind} file") from error
+    return text, parse_toml(text, path.name, kind)
+
+
+def parse_toml(text: str, where: str, kind: str) -> dict[str, Any]:
+    """Tables of a TOML text that begins with ``ringlet = 1``."""
+    try:
+        data = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise UserError(f"{where}: is not valid TOML: {str(error)[0].lower()}{str(error)[1:]}") from error
+    if "ringlet" not in data:
+        raise UserError(f"{where}: is not a Ringlet {kind}; its first line must be 'ringlet = 1'")
+    return data
+
+
+def explain(error: ValidationError, where: str) -> UserError:
+    """The first mistake that a model found, in one line: file, setting, value, remedy."""
+    first = error.errors()[0]
+    name = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in first["loc"]).removeprefix(".")
+    kind, context, given = first["type"], first.get("ctx", {}), first["input"]
+    bounds = {
+        "greater_than_equal": ("at least", "ge"),
+        "greater_than": ("more than", "gt"),
+        "less_than_equal": ("at most", "le"),
+        "less_than": ("less than", "lt"),
+    }
+    if kind == "unknown":
+        message = f"{name}.{context['key']} is not a setting{context['hint']}".removeprefix(".")
+    elif kind == "missing":
+        message = f"{name} is missing; it must be given"
+    elif kind in bounds:
+        word, key = bounds[kind]
+        message = f"{name} is {given!r}; must be {word} {context[key]}"
+    elif kind == "literal_error":
+        message = f"{name} is {given!r}; must be {context['expected']}"
+    else:
+        message = f"{name} is {given!r}; {first['msg'][0].lower()}{first['msg'][1:]}"
+    return UserError(f"{where}: {message}")

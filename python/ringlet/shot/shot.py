@@ -1,0 +1,81 @@
+"""The shot: which groom moves, how, and for how long, as a TOML file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, Literal
+
+from pydantic import Field, PrivateAttr, ValidationError, field_validator
+
+from ringlet.settings import Section, explain, parse_toml, read_toml
+from ringlet.shot.strands import Material, Solver
+
+
+class Forces(Section):
+    """What acts on the strands from outside, in metres and Y-up whatever the files use."""
+
+    gravity: tuple[float, float, float] = Field((0.0, -9.81, 0.0), description="[m/s²]")
+    wind: tuple[float, float, float] = Field((0.0, 0.0, 0.0), description="velocity of the air [m/s]")
+
+
+class Shot(Section):
+    """A simulation of a groom on its animated scalp. SI units."""
+
+    ringlet: Literal[1] = Field(description="version of this format")
+    name: str = Field("", description="what the shot is called")
+    groom_file: str = Field(
+        alias="groom", description="recipe (.toml) or groom (.usdc, .usda, .usd); relative names count from the shot"
+    )
+    frames: tuple[int, int] = Field(description="first and last frame")
+    preroll: int = Field(
+        24, ge=0, le=100_000, description="frames simulated before the first, with the head still, so that hair hangs"
+    )
+    held: int = Field(3, ge=2, le=1000, description="vertices of each lock, from its root, that the scalp holds")
+    strands: Material = Field(Material(), description="what locks are made of")
+    solver: Solver = Field(Solver(), description="how a time step is solved")
+    forces: Forces = Field(Forces(), description="what acts from outside")
+
+    _path: Path | None = PrivateAttr(None)
+
+    @field_validator("frames")
+    @classmethod
+    def _in_order(cls, frames: tuple[int, int]) -> tuple[int, int]:
+        if frames[1] < frames[0]:
+            raise ValueError(f"the last must not come before the first: [{frames[1]}, {frames[0]}]?")
+        return frames
+
+    @property
+    def path(self) -> Path | None:
+        """The file it was read from."""
+        return self._path
+
+    @property
+    def groom(self) -> Path:
+        """The recipe or groom that moves."""
+        return (self._path.parent if self._path else Path()) / self.groom_file
+
+
+def read_shot(path: Path | str) -> Shot:
+    """Reads a shot file. Raises UserError with file, setting, value and remedy."""
+    path = Path(path)
+    _, data = read_toml(path, "shot")
+    return _shot(data, path)
+
+
+def parse_shot(text: str, path: Path | None = None) -> Shot:
+    """A shot from its text; ``path`` names it in messages and is where relative file names count from."""
+    return _shot(parse_toml(text, path.name if path else "shot", "shot"), path)
+
+
+def _shot(data: dict[str, Any], path: Path | None) -> Shot:
+    try:
+        shot = Shot.model_validate(data)
+    except ValidationError as error:
+        raise explain(error, path.name if path else "shot") from error
+    shot._path = path
+    return shot
+
+
+def schema() -> dict[str, Any]:
+    """The JSON schema of a shot: types, bounds, defaults and descriptions of all settings."""
+    return Shot.model_json_schema()

@@ -1,0 +1,143 @@
+"""Strands that move: the core's solver with named settings."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from ringlet import _core
+from ringlet.curves import Curves
+from ringlet.settings import Section
+
+Vector = tuple[float, float, float]
+
+
+class Material(Section):
+    """What a lock is made of: a hair's values, since hairs that do not stick together move like one of them."""
+
+    youngs_modulus: float = Field(4e9, gt=0, le=1e13, description="E [Pa]; hair: 2e9 to 6e9")
+    radius: float = Field(35e-6, gt=1e-7, le=0.1, description="r of one hair [m]")
+    density: float = Field(1300.0, gt=0, le=1e5, description="[kg/m³]")
+    stretch_scale: float = Field(
+        0.01, gt=0, le=100, description="scales the resistance to stretch, E π r²; hair is hard to stretch"
+    )
+    bend_scale: float = Field(1.0, ge=0, le=1e6, description="scales the resistance to bend, E π r⁴ / 4")
+    twist_ratio: float = Field(
+        0.72, ge=0, le=1, description="twist stiffness as a part of bend stiffness: the spring constant of a coil"
+    )
+    damping: float = Field(
+        0.005, ge=0, le=100, description="[s] every strain resists its own rate with this time times its stiffness"
+    )
+    mass_damping: float = Field(0.0, ge=0, le=1e4, description="[1/s] rate at which velocities decay")
+    drag: float = Field(2e-5, ge=0, le=100, description="air drag per length and speed [kg/(m s)]")
+    correct_resolution: bool = Field(True, description="make coils of few vertices a turn as soft as smooth ones")
+
+    def core(self) -> _core.StrandMaterial:
+        """The same, for the core."""
+        material = _core.StrandMaterial()
+        for name, value in self:
+            setattr(material, name, value)
+        return material
+
+
+class Solver(Section):
+    """How a time step is solved."""
+
+    newton: int = Field(
+        5, ge=1, le=1000, description="Newton iterations per step; 1 is stable, 5 is the quality for film"
+    )
+    substeps: int = Field(1, ge=1, le=1000, description="steps per frame")
+    tolerance: float = Field(
+        1e-6, gt=0, le=1e-2, description="[m] a lock has converged when no vertex moves more than this"
+    )
+    continuation: Literal["least_energy", "history"] = Field(
+        "least_energy", description="how the signs of bends and the turns of twist are found: see the theory page"
+    )
+
+
+@dataclass
+class Strands:
+    """Strands in motion, at rest in their rest shape to begin with.
+
+    curves:   the rest shape, positions [m]
+    material: what they are made of
+    held:     vertices per strand, from the root, that follow ``targets``; three of them hold position and frame
+    """
+
+    curves: Curves
+    material: Material
+    held: int | NDArray[np.integer] = 3
+
+    def __post_init__(self) -> None:
+        held = np.broadcast_to(np.asarray(self.held, np.int32), len(self.curves))
+        self._core = _core.Strands(
+            self.curves.offsets,
+            np.ascontiguousarray(self.curves.points, np.float64),
+            np.ascontiguousarray(held),
+            self.material.core(),
+        )
+
+    @property
+    def positions(self) -> NDArray[np.float64]:
+        """Positions [m], shape (n, 3): the solver's own memory."""
+        return self._core.positions
+
+    @property
+    def velocities(self) -> NDArray[np.float64]:
+        """Velocities [m/s], shape (n, 3): the solver's own memory."""
+        return self._core.velocities
+
+    def place(self, positions: NDArray[np.float64]) -> None:
+        """Puts the strands at rest at other positions [m], shape (n, 3); the rest shape stays what it was."""
+        self._core.place(np.ascontiguousarray(positions, np.float64))
+
+    def step(
+        self,
+        targets: NDArray[np.float64],
+        dt: float,
+        *,
+        gravity: Vector = (0.0, 0.0, 0.0),
+        wind: Vector = (0.0, 0.0, 0.0),
+        solver: Solver | None = None,
+    ) -> dict[str, NDArray[np.float64]]:
+        """Advances by ``dt`` [s]; held vertices end where ``targets`` [m], shape (n, 3), has them.
+
+        Returns the report of every strand, one array of shape (count,) per quantity (see ``_core.REPORT``).
+        """
+        solver = solver or Solver()
+        rows = self._core.step(
+            np.ascontiguousarray(targets, np.float64),
+            dt,
+            gravity,
+            wind,
+            solver.newton,
+            solver.tolerance,
+            getattr(_core.Continuation, solver.continuation),
+        )
+        return dict(zip(_core.REPORT, rows.T, strict=True))
+
+    def energy(
+        self, positions: NDArray[np.float64], *, continuation: str = "least_energy", hessian: bool = False
+    ) -> tuple[float, NDArray[np.float64], NDArray[np.float64]]:
+        """Elastic energy [J], its gradient [N], shape (n, 3), and, for a single strand, the Hessian Newton uses."""
+        points = np.ascontiguousarray(positions, np.float64)
+        return self._core.energy(points, getattr(_core.Continuation, continuation), hessian)
+
+    def settle(self, *, gravity: Vector, tolerance: float = 1e-9, dt: float = 1.0, steps: int = 2000) -> bool:
+        """Lets the strands come to rest under gravity, in large steps.
+
+        Returns whether they have: no coordinate moved more than ``tolerance`` [m] in the last step.
+        """
+        still = self.positions.copy()
+        solver = Solver(newton=50, tolerance=max(tolerance * 1e-2, 1e-14))
+        for _ in range(steps):
+            before = self.positions.copy()
+            self.velocities[:] = 0.0
+            self.step(still, dt, gravity=gravity, solver=solver)
+            if np.abs(self.positions - before).max() < tolerance:
+                return True
+        return False

@@ -1,0 +1,70 @@
+"""What a known answer is: a case that can be run, and the rows that it yields."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Row:
+    """One number that the simulator is held to.
+
+    error: relative, |got / expected − 1|
+    """
+
+    case: str
+    expected: float
+    got: float
+    tolerance: float
+
+    @property
+    def error(self) -> float:
+        return abs(self.got / self.expected - 1.0)
+
+    @property
+    def passed(self) -> bool:
+        return bool(self.error <= self.tolerance)  # False for NaN
+
+    def json(self) -> dict[str, Any]:
+        """As ``ringlet validate --json`` prints it."""
+        return {
+            "case": self.case,
+            "expected": self.expected,
+            "got": self.got,
+            "error": self.error,
+            "tolerance": self.tolerance,
+            "pass": self.passed,
+        }
+
+
+@dataclass(frozen=True)
+class Case:
+    """A known answer: ``title`` says it in a sentence, ``run`` computes its rows."""
+
+    name: str
+    title: str
+    run: Callable[[], Iterable[Row]]
+
+
+def convergence(
+    case: str,
+    expected: float,
+    measure: Callable[[int], float],
+    resolutions: tuple[int, ...],
+    tolerance: float,
+    *,
+    unit: str = "edges",
+) -> list[Row]:
+    """Rows of a quantity at rising resolutions, and one for the order at which its error falls.
+
+    The scheme is second order: the tolerance of the finest resolution is given, the coarser ones follow from it.
+    """
+    finest = resolutions[-1]
+    rows = [Row(f"{case}, {n} {unit}", expected, measure(n), tolerance * (finest / n) ** 2) for n in resolutions]
+    coarse, fine = rows[0].error, rows[-1].error
+    order = float(np.log(coarse / fine) / np.log(finest / resolutions[0])) if fine > 0.0 < coarse else np.inf
+    return [*rows, Row(f"{case}, order", 2.0, order, 0.25)]

@@ -1,0 +1,25 @@
+// Stretch of one edge: E = ½ k (‖e‖ − l̄)², k = EA / l̄ [N/m]. Stencil: two vertices.
+#pragma once
+
+#include "ringlet/math/pack.h"
+
+namespace ringlet::RINGLET_SIMD {
+
+// Force and stiffness of a stretch of the edge with unit tangent t:
+// ∂E/∂e = k (l − l̄) t,  H = k t tᵀ + k (1 − l̄/l)(I − t tᵀ); the second part is left out where it is negative (compression).
+template <class T> struct Stretch {
+    Vec<T> gradient; // by the edge vector [N]
+    T along, across; // H = along t tᵀ + across (I − t tᵀ), both ≥ 0 [N/m]
+};
+
+template <class T> inline T stretch_energy(T length, T rest_length, T stiffness) {
+    const T w = length - rest_length;
+    return 0.5 * stiffness * w * w;
+}
+
+template <class T> inline Stretch<T> stretch(Vec<T> tangent, T length, T rest_length, T stiffness) {
+    const T w = length - rest_length;
+    return {(stiffness * w) * tangent, stiffness, stiffness * max(w / length, T{})};
+}
+
+} // namespace ringlet::RINGLET_SIMD

@@ -1,0 +1,148 @@
+// Packs: one double per lane, a strand per lane. Every formula of the kernels is written once, for T = Pack or T = double.
+// Compiled once per instruction set, each in its own namespace (see cmake/Simd.cmake).
+#pragma once
+
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
+
+#ifndef RINGLET_SIMD
+#define RINGLET_SIMD baseline
+#endif
+
+namespace ringlet::RINGLET_SIMD {
+
+#if defined(__AVX512F__)
+inline constexpr int lanes = 8;
+#elif defined(__AVX2__)
+inline constexpr int lanes = 4;
+#else
+inline constexpr int lanes = 2;
+#endif
+
+typedef double Pack __attribute__((vector_size(lanes * sizeof(double))));
+using Mask = decltype(Pack{} < Pack{}); // all bits set where true
+
+template <class T> struct Traits;
+template <> struct Traits<double> {
+    using Mask = bool;
+    static constexpr int lanes = 1;
+};
+template <> struct Traits<Pack> {
+    using Mask = RINGLET_SIMD::Mask;
+    static constexpr int lanes = RINGLET_SIMD::lanes;
+};
+template <class T> using MaskOf = typename Traits<T>::Mask;
+
+template <class T> inline T constant(double value) { return T{} + value; }
+
+inline double select(bool mask, double a, double b) { return mask ? a : b; }
+inline Pack select(Mask mask, Pack a, Pack b) { return mask ? a : b; }
+
+inline bool any(bool mask) { return mask; }
+inline bool any(Mask mask) {
+    auto some = mask[0];
+    for (int lane = 1; lane < lanes; ++lane) some |= mask[lane];
+    return some != 0;
+}
+
+inline double lane(double value, int) { return value; }
+inline double lane(const Pack &value, int index) { return value[index]; }
+inline void set_lane(double &value, int, double to) { value = to; }
+inline void set_lane(Pack &value, int index, double to) { value[index] = to; }
+
+inline double sqrt(double x) { return __builtin_sqrt(x); }
+inline Pack sqrt(Pack x) {
+#if defined(__AVX512F__)
+    return (Pack)_mm512_sqrt_pd((__m512d)x);
+#elif defined(__AVX2__)
+    return (Pack)_mm256_sqrt_pd((__m256d)x);
+#elif defined(__SSE2__)
+    return (Pack)_mm_sqrt_pd((__m128d)x);
+#else
+    for (int lane = 0; lane < lanes; ++lane) x[lane] = __builtin_sqrt(x[lane]);
+    return x;
+#endif
+}
+
+template <class T> inline T min(T a, T b) { return select(a < b, a, b); }
+template <class T> inline T max(T a, T b) { return select(a > b, a, b); }
+template <class T> inline T abs(T x) { return select(x < 0.0, -x, x); }
+template <class T> inline T sign(T x) { return select(x < 0.0, constant<T>(-1.0), constant<T>(1.0)); } // sign(0) = +1
+
+inline constexpr double pi = 3.14159265358979323846;
+
+// Nearest integer, for |x| < 2^51: adding and removing 1.5·2^52 leaves no room for a fraction.
+template <class T> inline T round(T x) {
+    const double shift = 6755399441055744.0;
+    return (x + shift) - shift;
+}
+
+// An angle to (−π, π].
+template <class T> inline T wrap(T angle) { return angle - 2.0 * pi * round(angle / (2.0 * pi)); }
+
+// atan2 with y ≥ 0 or y < 0, good to two units in the last place; atan2(0, 0) = 0.
+// |q| ≤ tan(π/8) by atan(r) = π/4 + atan((r − 1)/(r + 1)); there a polynomial in q², interpolated at Chebyshev nodes (error
+// 4e-18).
+template <class T> inline T atan2(T y, T x) {
+    const double tan_pi_8 = 0.41421356237309504880;
+    const T ax = abs(x), ay = abs(y);
+    const T low = min(ax, ay), high = max(ax, ay);
+    const auto far = low > tan_pi_8 * high;
+    const T numerator = select(far, low - high, low);
+    const T denominator = select(far, low + high, high);
+    const T q = numerator / select(denominator > 0.0, denominator, constant<T>(1.0));
+    const T z = q * q;
+    T p = constant<T>(-0.017805397205419446);
+    p = p * z + 0.03796525745386593;
+    p = p * z - 0.05035102456601552;
+    p = p * z + 0.05846878297330872;
+    p = p * z - 0.06662951813629191;
+    p = p * z + 0.07692045330902225;
+    p = p * z - 0.09090896809064027;
+    p = p * z + 0.11111110744919658;
+    p = p * z - 0.14285714279250245;
+    p = p * z + 0.19999999999940893;
+    p = p * z - 0.3333333333333312;
+    T angle = q + q * z * p;
+    angle = select(far, angle + pi / 4, angle);
+    angle = select(ay > ax, pi / 2 - angle, angle);
+    angle = select(x < 0.0, pi - angle, angle);
+    return select(y < 0.0, -angle, angle);
+}
+
+template <class T> struct Vec {
+    T x, y, z;
+    T &operator[](int k) { return (&x)[k]; }
+    const T &operator[](int k) const { return (&x)[k]; }
+};
+
+template <class T> inline Vec<T> operator+(Vec<T> a, Vec<T> b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+template <class T> inline Vec<T> operator-(Vec<T> a, Vec<T> b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+template <class T> inline Vec<T> operator-(Vec<T> a) { return {-a.x, -a.y, -a.z}; }
+template <class T> inline Vec<T> operator*(T s, Vec<T> a) { return {s * a.x, s * a.y, s * a.z}; }
+template <class T> inline T dot(Vec<T> a, Vec<T> b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+template <class T> inline Vec<T> cross(Vec<T> a, Vec<T> b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+template <class T> inline T norm(Vec<T> a) { return sqrt(dot(a, a)); }
+template <class T> inline Vec<T> select(MaskOf<T> mask, Vec<T> a, Vec<T> b) {
+    return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};
+}
+
+// A unit vector perpendicular to the unit vector t, however it lies.
+template <class T> inline Vec<T> perpendicular(Vec<T> t) {
+    const auto x_small = abs(t.x) < 0.6;
+    const Vec<T> axis{select(x_small, constant<T>(1.0), T{}), select(x_small, T{}, constant<T>(1.0)), T{}};
+    const Vec<T> p = cross(t, axis);
+    return (1.0 / norm(p)) * p;
+}
+
+// v carried along by the smallest rotation that takes the unit vector a to the unit vector b (parallel transport).
+template <class T> inline Vec<T> transport(Vec<T> v, Vec<T> a, Vec<T> b) {
+    const Vec<T> axis = cross(a, b);
+    const T cosine = max(dot(a, b), constant<T>(-1.0 + 1e-9));
+    return cosine * v + cross(axis, v) + (dot(axis, v) / (1.0 + cosine)) * axis;
+}
+
+} // namespace ringlet::RINGLET_SIMD

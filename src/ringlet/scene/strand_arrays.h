@@ -1,0 +1,63 @@
+// The border between the portable core and the kernels of each instruction set: plain pointers and numbers.
+#pragma once
+
+#include "ringlet/math/simd.h"
+
+#include <cstddef>
+
+namespace ringlet {
+
+// How signs and turns are carried (see scene/continuation_*.h).
+enum class Continuation { history, least_energy };
+
+struct StrandStep {
+    double dt = 1.0 / 24;          // [s]
+    double gravity[3] = {0, 0, 0}; // [m/s²]
+    double wind[3] = {0, 0, 0};    // [m/s]
+    int newton = 5;                // iterations at most
+    double tolerance = 1e-7;       // [m]; a strand is done when no coordinate moves more
+    Continuation continuation = Continuation::history;
+};
+
+// What happened to one strand in one step.
+struct StrandReport {
+    double newton;                                 // iterations used
+    double cuts;                                   // line search halvings
+    double residual;                               // largest coordinate of the last Newton step [m]
+    double unconverged;                            // 1 where iterations ran out
+    double stretch, bend, twist, gravity, kinetic; // energies at the end [J]
+    double max_stretch;                            // largest |l/l̄ − 1| of free edges
+    double flips;                                  // vertices whose sign changed
+    double winding_changes;                        // edges whose number of turns changed
+    double too_straight;                           // edges without twist in this step
+    double nan;                                    // 1 where a position is not finite (the strand then keeps its last state)
+};
+inline constexpr int strand_report_columns = sizeof(StrandReport) / sizeof(double);
+
+// Model and state of all strands, as pointers (see scene/strands.h for what each holds).
+struct StrandArrays {
+    const int *offsets, *pinned;
+    const double *rest_length, *rest_angle, *rest_dihedral;
+    const double *stretch_stiffness, *bend_stiffness, *twist_stiffness;
+    const double *mass, *drag;
+    double damping, mass_damping;
+    const double *targets;
+    double *positions, *velocities, *normals, *twist;
+};
+
+// Strands that one call of a kernel steps together, one per lane.
+struct StrandGroup {
+    const int *strands;
+    int count;
+};
+
+// clang-format off
+RINGLET_DECLARE(
+    int strand_lanes();
+    size_t strand_workspace(int vertices); // bytes that stepping a group of strands of at most that many vertices needs
+    void step_strand_group(const StrandArrays &arrays, const StrandStep &step, StrandGroup group, void *workspace, StrandReport *reports);
+    double strand_group_energy(const StrandArrays &arrays, const StrandStep &step, int strand, const double *positions, void *workspace, double *gradient, double *hessian);
+)
+// clang-format on
+
+} // namespace ringlet

@@ -1,0 +1,199 @@
+#include "ringlet/scene/strands.h"
+
+#include "ringlet/rest/resolution.h"
+#include "ringlet/rest/rest_shape.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <exception>
+#include <new>
+#include <numbers>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+
+namespace ringlet {
+namespace {
+
+constexpr std::align_val_t alignment{64};
+
+class Workspace {
+public:
+    explicit Workspace(size_t bytes) : memory_(::operator new(bytes, alignment)) {}
+    ~Workspace() { ::operator delete(memory_, alignment); }
+    Workspace(const Workspace &) = delete;
+    Workspace &operator=(const Workspace &) = delete;
+    void *get() const { return memory_; }
+
+private:
+    void *memory_;
+};
+
+int longest_strand(const StrandModel &model) {
+    int most = 3;
+    for (int s = 0; s < model.strand_count(); ++s) most = std::max(most, model.offsets[s + 1] - model.offsets[s]);
+    return most;
+}
+
+StrandArrays arrays_of(const StrandModel &model, StrandState &state, View<Vec3> targets) {
+    return {model.offsets.data(),
+            model.pinned.data(),
+            model.rest_length.data(),
+            model.rest_angle.data(),
+            model.rest_dihedral.data(),
+            model.stretch_stiffness.data(),
+            model.bend_stiffness.data(),
+            model.twist_stiffness.data(),
+            model.mass.data(),
+            model.drag.data(),
+            model.damping,
+            model.mass_damping,
+            targets.data()->data(),
+            state.positions.data()->data(),
+            state.velocities.data()->data(),
+            state.normals.data()->data(),
+            state.twist.data()};
+}
+
+// Strands of like length together, so that few lanes carry vertices that are not there. A fixed order: the result of a strand
+// does not depend on its group, and a group never on the threads.
+std::vector<int> by_length(const StrandModel &model) {
+    std::vector<int> order(model.strand_count());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+        return model.offsets[a + 1] - model.offsets[a] > model.offsets[b + 1] - model.offsets[b];
+    });
+    return order;
+}
+
+// Per edge of a strand; the two end edges, which have one corner only, take those of their neighbours.
+std::vector<ResolutionFactors> resolution_of(const StrandModel &model, int first, int end) {
+    std::vector<ResolutionFactors> factors(end - first - 1);
+    for (int i = first + 1; i + 2 < end; ++i)
+        factors[i - first] = resolution_factors(0.5 * (model.rest_angle[i] + model.rest_angle[i + 1]), model.rest_dihedral[i]);
+    if (factors.size() > 2) {
+        factors.front() = factors[1];
+        factors.back() = factors[factors.size() - 2];
+    }
+    return factors;
+}
+
+} // namespace
+
+StrandModel make_strand_model(View<int> offsets, View<Vec3> rest, View<int> pinned, const StrandMaterial &material) {
+    const int strands = int(offsets.size()) - 1;
+    if (strands < 0 || offsets.front() != 0 || offsets.back() != int(rest.size()) || int(pinned.size()) != strands)
+        throw std::invalid_argument("strands: offsets, points and pinned do not fit together");
+    for (int s = 0; s < strands; ++s) {
+        const std::string name = "strands: strand " + std::to_string(s);
+        if (offsets[s + 1] - offsets[s] < 3) throw std::invalid_argument(name + " has fewer than 3 vertices");
+        if (pinned[s] < 1 || pinned[s] > offsets[s + 1] - offsets[s])
+            throw std::invalid_argument(name + " holds " + std::to_string(pinned[s]) + " vertices; must be 1 to all of them");
+    }
+    StrandModel model;
+    model.offsets.assign(offsets.begin(), offsets.end());
+    model.pinned.assign(pinned.begin(), pinned.end());
+    RestShape shape = measure_rest_shape(offsets, rest);
+    model.rest_length = std::move(shape.length);
+    model.rest_angle = std::move(shape.angle);
+    model.rest_dihedral = std::move(shape.dihedral);
+    model.damping = material.damping;
+    model.mass_damping = material.mass_damping;
+
+    const size_t n = rest.size();
+    model.stretch_stiffness.assign(n, 0.0);
+    model.bend_stiffness.assign(n, 0.0);
+    model.twist_stiffness.assign(n, 0.0);
+    model.mass.assign(n, 0.0);
+    model.drag.assign(n, 0.0);
+    const double area = std::numbers::pi * material.radius * material.radius;
+    const double stretching = material.stretch_scale * material.youngs_modulus * area; // EA [N]
+    const double bending =
+        material.bend_scale * material.youngs_modulus * area * material.radius * material.radius / 4; // EI [N m²]
+    const double twisting = std::clamp(material.twist_ratio, 0.0, 1.0) * bending;                     // GJ [N m²]
+    for (int s = 0; s < strands; ++s) {
+        const int first = offsets[s], end = offsets[s + 1];
+        std::vector<ResolutionFactors> factors(end - first - 1);
+        if (material.correct_resolution) factors = resolution_of(model, first, end);
+        for (int i = first; i + 1 < end; ++i) {
+            const double length = model.rest_length[i];
+            const ResolutionFactors &factor = factors[i - first];
+            if (!(length > 0))
+                throw std::invalid_argument("strands: strand " + std::to_string(s) + " has an edge without length");
+            model.stretch_stiffness[i] = stretching / length;
+            for (const int vertex : {i, i + 1}) {
+                model.mass[vertex] += 0.5 * material.density * area * length * factor.mass;
+                model.drag[vertex] += 0.5 * material.drag * length;
+            }
+            if (i == first) continue;
+            model.bend_stiffness[i] =
+                bending * 0.5 * (factors[i - first - 1].bend + factor.bend) / (0.5 * (model.rest_length[i - 1] + length));
+            if (i + 2 < end) model.twist_stiffness[i] = twisting * factor.twist / length;
+        }
+    }
+    return model;
+}
+
+StrandState make_strand_state(const StrandModel &model, View<Vec3> positions) {
+    if (int(positions.size()) != model.vertex_count()) throw std::invalid_argument("strands: positions do not fit the model");
+    StrandState state;
+    const size_t n = positions.size();
+    state.positions.assign(positions.begin(), positions.end());
+    state.velocities.assign(n, Vec3::Zero());
+    state.normals.assign(n, Vec3::Zero());
+    state.twist.assign(n, 0.0);
+    const RestShape now = measure_rest_shape(View<int>(model.offsets), positions);
+    for (int s = 0; s < model.strand_count(); ++s)
+        for (int i = model.offsets[s] + 1; i + 1 < model.offsets[s + 1]; ++i) {
+            const Vec3 before = positions[i] - positions[i - 1], after = positions[i + 1] - positions[i];
+            const Vec3 product = before.cross(after);
+            const bool bent = product.norm() > 1e-12 * before.norm() * after.norm();
+            state.normals[i] = bent ? product.normalized() : before.unitOrthogonal();
+            state.twist[i] = std::remainder(now.dihedral[i] - model.rest_dihedral[i], 2 * std::numbers::pi);
+        }
+    return state;
+}
+
+void step_strands(const StrandModel &model, StrandState &state, View<Vec3> targets, const StrandStep &step,
+                  std::vector<StrandReport> &reports) {
+    if (int(targets.size()) != model.vertex_count()) throw std::invalid_argument("strands: targets do not fit the model");
+    reports.assign(model.strand_count(), StrandReport{});
+    const StrandArrays arrays = arrays_of(model, state, targets);
+    const std::vector<int> order = by_length(model);
+    const int strands = model.strand_count(), lanes = RINGLET_DISPATCH(strand_lanes);
+    const int groups = (strands + lanes - 1) / lanes;
+    const size_t bytes = RINGLET_DISPATCH(strand_workspace, longest_strand(model));
+#pragma omp parallel
+    {
+        const Workspace workspace(bytes);
+        StrandReport group_reports[8];
+#pragma omp for schedule(dynamic)
+        for (int g = 0; g < groups; ++g) {
+            const StrandGroup group{order.data() + g * lanes, std::min(lanes, strands - g * lanes)};
+            RINGLET_DISPATCH(step_strand_group, arrays, step, group, workspace.get(), group_reports);
+            for (int k = 0; k < group.count; ++k) reports[group.strands[k]] = group_reports[k];
+        }
+    }
+}
+
+double strand_energy(const StrandModel &model, const StrandState &state, Continuation continuation, View<Vec3> positions,
+                     std::vector<Vec3> &gradient, std::vector<double> *hessian) {
+    if (int(positions.size()) != model.vertex_count()) throw std::invalid_argument("strands: positions do not fit the model");
+    StrandState copy = state;
+    const StrandArrays arrays = arrays_of(model, copy, positions);
+    const Workspace workspace(RINGLET_DISPATCH(strand_workspace, longest_strand(model)));
+    gradient.assign(positions.size(), Vec3::Zero());
+    if (hessian) {
+        if (model.strand_count() != 1) throw std::invalid_argument("strands: the Hessian is given for one strand at a time");
+        hessian->assign(9 * positions.size() * positions.size(), 0.0);
+    }
+    StrandStep step;
+    step.continuation = continuation;
+    double energy = 0;
+    for (int s = 0; s < model.strand_count(); ++s)
+        energy += RINGLET_DISPATCH(strand_group_energy, arrays, step, s, positions.data()->data(), workspace.get(),
+                                   gradient[model.offsets[s]].data(), hessian ? hessian->data() : nullptr);
+    return energy;
+}
+
+} // namespace ringlet

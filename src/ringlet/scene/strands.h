@@ -1,0 +1,69 @@
+// Strands: what is fixed (model), what moves (state), how to step them.
+#pragma once
+
+#include "ringlet/math/types.h"
+#include "ringlet/scene/strand_arrays.h"
+
+#include <vector>
+
+namespace ringlet {
+
+// What a lock is made of. A lock of many hairs that do not stick together moves like one of them, so these are a hair's values.
+struct StrandMaterial {
+    double youngs_modulus = 4e9;    // E [Pa]
+    double radius = 35e-6;          // r [m]
+    double density = 1300;          // ρ [kg/m³]
+    double stretch_scale = 1;       // scales EA: below 1 the strand is easier to stretch than its E says
+    double bend_scale = 1;          // scales EI
+    double twist_ratio = 0.72;      // c = GJ / EI, clamped to [0, 1]
+    double damping = 0.0;           // Kelvin–Voigt time β [s]: every strain resists its own rate with β times its stiffness
+    double mass_damping = 0.0;      // α [1/s]: velocities decay at this rate
+    double drag = 0.0;              // linear air drag per length [kg/(m s)]
+    bool correct_resolution = true; // make coils of few vertices a turn as soft as smooth ones (rest/resolution.h)
+};
+
+// Fixed: packed like Curves, one row per vertex; row i of an edge quantity belongs to the edge from i to i+1.
+struct StrandModel {
+    std::vector<int> offsets;              // where each strand begins, and the end; strand count + 1
+    std::vector<int> pinned;               // per strand: how many vertices from the root are held
+    std::vector<double> rest_length;       // l̄ per edge [m]
+    std::vector<double> rest_angle;        // θ̄ per vertex [rad], in [0, π]
+    std::vector<double> rest_dihedral;     // φ̄ per edge [rad]
+    std::vector<double> stretch_stiffness; // EA / l̄ per edge [N/m]
+    std::vector<double> bend_stiffness;    // EI / l_v per vertex [N m]
+    std::vector<double> twist_stiffness;   // c EI / l̄ per edge [N m]
+    std::vector<double> mass;              // per vertex [kg]
+    std::vector<double> drag;              // per vertex [kg/s]
+    double damping = 0.0;                  // β [s]
+    double mass_damping = 0.0;             // α [1/s]
+
+    int strand_count() const { return int(offsets.size()) - 1; }
+    int vertex_count() const { return offsets.back(); }
+};
+
+// Moving, with the history that the four safeguards compare with.
+struct StrandState {
+    std::vector<Vec3> positions;  // [m]
+    std::vector<Vec3> velocities; // [m/s]
+    std::vector<Vec3> normals;    // per vertex: σ n of the last accepted step
+    std::vector<double> twist;    // per edge: Δφ with its turns [rad]
+};
+
+// The rest shape is measured from the polylines `rest` (shape: offsets.back() points); every strand has at least 3 points and
+// pinned ≥ 1 of them held. Throws std::invalid_argument where lengths do not fit or an edge has no length.
+StrandModel make_strand_model(View<int> offsets, View<Vec3> rest, View<int> pinned, const StrandMaterial &material);
+
+// At rest at the given positions, with the normals and twist that they have.
+StrandState make_strand_state(const StrandModel &model, View<Vec3> positions);
+
+// One time step. `targets` holds where the pinned vertices are at its end (rows of free vertices are not read).
+// One report per strand. The result does not depend on the number of threads.
+void step_strands(const StrandModel &model, StrandState &state, View<Vec3> targets, const StrandStep &step,
+                  std::vector<StrandReport> &reports);
+
+// Energy [J] of the state's elastic terms, its gradient by the free vertices [N] (rows of pinned vertices are zero) and the
+// clamped Hessian that Newton uses (dense, row-major, n×n over all coordinates of ONE strand; empty to leave it out).
+double strand_energy(const StrandModel &model, const StrandState &state, Continuation continuation, View<Vec3> positions,
+                     std::vector<Vec3> &gradient, std::vector<double> *hessian);
+
+} // namespace ringlet

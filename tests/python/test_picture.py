@@ -1,0 +1,236 @@
+"""Pictures show the hair where it is, from any place and at any scale, and leave nothing half done."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+from ringlet.curves import Curves
+from ringlet.errors import UserError
+from ringlet.mesh import Mesh
+from ringlet.picture import HAIR_COLORS, VIEWS, PosedBody, sheet, still
+from ringlet.picture.bodies import material
+from ringlet.picture.camera import frame
+from ringlet.picture.render import build_scene, mitsuba, trace
+from ringlet.picture.strands import fibres, load_fibres, spline_controls
+from ringlet.picture.tone import develop
+from scipy.interpolate import BSpline
+
+
+def helix(turns: float, per_turn: int, radius: float = 0.004) -> np.ndarray:
+    """A helix along y, shape (n, 3)."""
+    angle = 2 * np.pi * np.arange(round(turns * per_turn) + 1) / per_turn
+    return np.stack([radius * np.cos(angle), 0.001 * angle, radius * np.sin(angle)], axis=1)
+
+
+def tuft(count: int = 40, scale: float = 1.0, at: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> Curves:
+    """Curls side by side, 1 mm thick so that small pictures see them."""
+    curl = helix(5, 12)
+    roots = np.stack([np.linspace(-0.06, 0.06, count), np.zeros(count), np.zeros(count)], axis=1)
+    curves = Curves.from_list([scale * (curl + root) + at for root in roots])
+    curves.point["width"] = np.full(len(curves.points), 1e-3 * scale)
+    return curves
+
+
+def ball(scale: float = 1.0, at: tuple[float, float, float] = (0.0, 0.0, 0.0), name: str = "ball") -> PosedBody:
+    """An octahedron of radius 5 cm, under the tuft."""
+    corners = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], float)
+    points = 0.05 * scale * corners - np.array([0, 0.05 * scale, 0]) + at
+    triangles = [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]]
+    return PosedBody(Mesh(name, points, np.array(triangles, np.int32), color=(0.4, 0.2, 0.1)), points)
+
+
+def pixels(path: Path) -> np.ndarray:
+    return np.asarray(Image.open(path), float)
+
+
+# Curves
+
+
+@pytest.mark.parametrize("count", [2, 3, 4, 50])
+def test_the_spline_passes_through_every_point(count: int) -> None:
+    points = np.random.default_rng(1).normal(size=(3, count, 3))
+    controls = spline_controls(points)
+    for curve, c in zip(points, controls, strict=True):
+        knots = np.arange(-3, count + 3, dtype=float)
+        assert BSpline(knots, c, 3)(np.arange(count)) == pytest.approx(curve, abs=1e-12)
+
+
+def test_a_curl_of_twelve_points_a_turn_keeps_its_radius() -> None:
+    curl = helix(4, 12)
+    controls = spline_controls(curl[None])[0]
+    along = np.linspace(6, len(curl) - 7, 500)  # away from the ends, which are straight
+    drawn = BSpline(np.arange(-3, len(curl) + 3, dtype=float), controls, 3)(along)
+    radius = np.hypot(drawn[:, 0], drawn[:, 2])
+    assert radius.min() > 0.999 * 0.004
+    uncorrected = BSpline(np.arange(-3, len(curl) + 1, dtype=float), curl, 3)(along)
+    assert np.hypot(uncorrected[:, 0], uncorrected[:, 2]).max() < 0.96 * 0.004  # what the correction is for
+
+
+def test_hairs_of_different_lengths_reach_the_renderer_whole() -> None:
+    hairs = Curves.from_list([helix(2, 12), helix(1, 7), np.array([[0.0, 0, 0], [0, 0.01, 0]])])
+    hairs.point["width"] = np.linspace(1e-4, 5e-5, len(hairs.points))
+    controls, offsets = fibres(hairs)
+    shape = load_fibres(mitsuba(), controls, offsets, {"type": "hair"})
+    parameters = mitsuba().traverse(shape)
+    held = np.array(parameters["control_points"]).reshape(-1, 4)
+    assert np.array_equal(held, controls)
+    assert len(np.array(parameters["segment_indices"])) == sum(len(hairs[k]) - 1 for k in range(3))
+    for k in range(3):
+        middle = controls[offsets[k] : offsets[k + 1]]
+        knot = (middle[:-2, :3] + 4 * middle[1:-1, :3] + middle[2:, :3]) / 6
+        assert knot == pytest.approx(hairs[k], abs=1e-8)
+        widths = hairs.point["width"][hairs.offsets[k] : hairs.offsets[k + 1]]
+        assert middle[1:-1, 3] == pytest.approx(0.5 * widths)
+
+
+# Framing
+
+
+@pytest.mark.parametrize("view", [*VIEWS, (217.0, 35.0)])
+@pytest.mark.parametrize("scale", [0.01, 1.0, 100.0])
+@pytest.mark.parametrize("aspect", [0.6, 1.0, 1.8])
+def test_everything_is_in_the_frame_and_fills_it(view: str | tuple[float, float], scale: float, aspect: float) -> None:
+    points = scale * (np.random.default_rng(3).normal(size=(200, 3)) * (1.0, 2.0, 0.5) + (30.0, -4.0, 9.0))
+    seen = frame([points[:90], points[90:]], view=view, aspect=aspect, margin=0.05).project(points)
+    assert seen.min() >= 0.05 - 1e-9
+    assert seen.max() <= 0.95 + 1e-9
+    assert np.ptp(seen, axis=0).max() == pytest.approx(0.9)  # one side is as full as the margins allow
+
+
+def test_the_front_view_looks_at_the_face_and_the_side_view_at_the_left_ear() -> None:
+    head = np.random.default_rng(0).normal(size=(50, 3))
+    assert frame([head], view="front").origin[2] > 5.0
+    assert frame([head], view="side").origin[0] > 5.0
+    assert frame([head], view="back").origin[2] < -5.0
+
+
+# Stills
+
+
+@pytest.mark.parametrize(("scale", "at"), [(1.0, (0.0, 0.0, 0.0)), (0.01, (3.0, -2.0, 1.0))])
+def test_hair_is_seen_where_it_is(tmp_path: Path, scale: float, at: tuple[float, float, float]) -> None:
+    hairs, size = tuft(scale=scale, at=at), (64, 64)
+    camera = frame([hairs.points], view="front")
+    scene = build_scene([], hairs, camera, size=size, color=HAIR_COLORS["dark_brown"], max_depth=4)
+    coverage = trace(scene, samples=16)[:, :, 3]
+    expected = np.zeros(size, bool)
+    where = np.clip((camera.project(hairs.points) * 64).astype(int), 0, 63)
+    expected[where[:, 1], where[:, 0]] = True
+    near = np.zeros(size, bool)  # every pixel that touches one with hair points
+    for dx in (-1, 0, 1):
+        for dy in (-1, 0, 1):
+            near |= np.roll(expected, (dy, dx), (0, 1))
+    assert coverage[expected].mean() > 0.3
+    assert coverage[~near].max() < 0.05
+
+
+def test_a_still_is_neither_black_nor_burnt_and_the_hair_darkens_the_wall(tmp_path: Path) -> None:
+    path = still([ball()], tuft(), tmp_path / "still.png", width=64, height=64, samples=8, view="front")
+    image = pixels(path)
+    assert image.shape == (64, 64, 3)
+    assert 20 < image.mean() < 235
+    empty = still([ball()], tuft(2), tmp_path / "empty.png", width=64, height=64, samples=8, view="front")
+    assert np.abs(image - pixels(empty)).max() > 40
+
+
+def test_blond_hair_is_brighter_than_black(tmp_path: Path) -> None:
+    hairs = tuft(60)
+    camera = frame([hairs.points], view="front")
+    light = {}
+    for name in ("black", "blond"):
+        scene = build_scene([], hairs, camera, size=(32, 32), color=HAIR_COLORS[name], max_depth=8)
+        light[name] = trace(scene, samples=16)[:, :, :3].mean()
+    assert light["blond"] > 1.5 * light["black"]
+
+
+def test_thin_hairs_are_still_seen(tmp_path: Path) -> None:
+    hairs = tuft()
+    hairs.point["width"][:] = 1e-9
+    camera = frame([hairs.points], view="front")
+    scene = build_scene([], hairs, camera, size=(32, 32), color=HAIR_COLORS["black"], max_depth=2)
+    assert trace(scene, samples=8)[:, :, 3].mean() > 0.05
+
+
+def test_a_still_tells_how_far_it_is_and_keeps_to_its_time(tmp_path: Path) -> None:
+    told: list[tuple[str, int, int]] = []
+    still([], tuft(4), tmp_path / "a.png", width=16, height=16, samples=16, progress=lambda *step: told.append(step))
+    assert [done for _, done, _ in told] == list(range(1, told[-1][2] + 1))
+    told.clear()
+    still(
+        [],
+        tuft(4),
+        tmp_path / "b.png",
+        width=16,
+        height=16,
+        samples=10_000,
+        seconds=0.0,
+        progress=lambda *step: told.append(step),
+    )
+    assert len(told) == 2  # one pass, and the word that it is over
+
+
+def test_bright_light_rolls_off_and_order_is_kept() -> None:
+    ramp = np.linspace(0.0, 4.0, 400)[None, :, None].repeat(3, axis=2)
+    values = develop(ramp)[0, :, 0].astype(int)
+    assert values[0] <= 1
+    assert (np.diff(values) >= -2).all()  # the dither is one step
+    assert values[100] < 240  # light of strength 1 is not yet white
+
+
+def test_a_body_is_made_of_what_its_name_says() -> None:
+    eye = material(ball(name="head.usdc /child/eye_left/iris").mesh)["bsdf"]
+    shirt = material(ball(name="head.usdc /child/shirt").mesh)["bsdf"]
+    assert eye["roughness"] < shirt["roughness"]
+    assert shirt["base_color"]["value"] == pytest.approx([0.4, 0.2, 0.1])
+
+
+# Sheets
+
+
+def test_a_sheet_has_a_tile_for_every_frame_and_shows_the_motion(tmp_path: Path) -> None:
+    hairs = tuft()
+    moved = hairs.with_points(hairs.points + np.array([0.15, 0.0, 0.0]))
+    frames = [(1.0, [], hairs), (2.0, [], moved), (3.0, [], hairs)]
+    path = sheet(frames, tmp_path / "sheet.png", columns=2, tile=(64, 48), samples=4, view="front")
+    image = pixels(path)
+    assert image.shape[0] > 2 * 48
+    assert image.shape[1] > 2 * 64
+    first, second, third = image[10:58, 10:74], image[10:58, 84:148], image[92:140, 10:74]
+    assert np.abs(first - third).mean() < 1.0  # the camera stands still
+    assert np.abs(first - second).mean() > 3.0
+
+
+# What a user can get wrong
+
+
+@pytest.mark.parametrize(
+    ("options", "named"),
+    [({"view": "below"}, "three_quarter"), ({"color": "green"}, "dark_brown"), ({"samples": 0}, "at least 1")],
+)
+def test_wrong_options_are_refused_by_name(tmp_path: Path, options: dict, named: str) -> None:
+    with pytest.raises(UserError, match=named):
+        still([ball()], tuft(2), tmp_path / "still.png", **options)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_nothing_to_draw_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(UserError, match="neither hairs nor bodies"):
+        still([], tuft(1).take(np.arange(0)), tmp_path / "still.png")
+    with pytest.raises(UserError, match="no frames"):
+        sheet([], tmp_path / "sheet.png")
+
+
+def test_a_picture_that_cannot_be_written_leaves_nothing_behind(tmp_path: Path) -> None:
+    (tmp_path / "place").write_text("in the way")
+    with pytest.raises(UserError, match="cannot be written"):
+        still([], tuft(1), tmp_path / "place" / "still.png", width=8, height=8, samples=1)
+    assert [entry.name for entry in tmp_path.iterdir()] == ["place"]
+
+
+def test_posed_points_must_fit_the_mesh() -> None:
+    body = ball()
+    with pytest.raises(UserError, match="must be"):
+        PosedBody(body.mesh, body.points[:3])

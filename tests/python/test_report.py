@@ -1,0 +1,146 @@
+"""A report tells all that was measured, stands on its own, and is either whole or not there."""
+
+from __future__ import annotations
+
+import json
+import re
+import xml.dom.minidom
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+from ringlet.errors import UserError
+from ringlet.report import Machine, MadeFile, Picture, RunReport, Stage, write_report
+from ringlet.report.charts import line_chart, nice_ticks
+from ringlet.report.findings import explain_worst, verdict
+
+
+def frames(count: int = 6) -> list[dict]:
+    """Statistics as a simulation gives them, with numpy numbers among them."""
+    return [
+        {
+            "frame": float(k + 1),
+            "wall_ms": np.float32(20.0 + k),
+            "newton": 2.5,
+            "newton_max": np.int64(4),
+            "unconverged": 0,
+            "line_search_cuts": 1,
+            "residual": float("nan"),
+            "energy": {"stretch": 1e-6, "bend": 2e-4, "twist": np.float64(3e-5), "gravity": 0.1, "kinetic": 1e-4 * k},
+            "max_stretch": 0.002 * (k == 3) + 0.001,
+            "flips": 0,
+            "winding_changes": 0,
+            "too_straight": 0,
+            "nan": 0,
+        }
+        for k in range(count)
+    ]
+
+
+def report(folder: Path) -> RunReport:
+    Image.new("RGB", (40, 30), (120, 80, 60)).save(folder / "still.png")
+    return RunReport(
+        name="demo <small>",
+        version="1.2.3",
+        command="ringlet demo -o 'a & b'",
+        machine=Machine(threads=2, simd="avx2"),
+        counts={"locks": 12, "hairs": 3400},
+        stages=[Stage(name="groom", wall_ms=12.0, cpu_ms=20.0), Stage(name="simulate", wall_ms=90_000.0)],
+        statistics=frames(),
+        files=[MadeFile.of(folder / "still.png", "the picture")],
+        pictures=[Picture(path=str(folder / "still.png"), caption="Curls at frame 24")],
+        warnings=["3 locks were left out."],
+        limits=["Strands may pass through the head."],
+    )
+
+
+def test_the_page_holds_every_stage_picture_warning_and_limit(tmp_path: Path) -> None:
+    _, html_path = write_report(report(tmp_path), tmp_path)
+    html = html_path.read_text(encoding="utf-8")
+    for text in ("groom", "simulate", "avx2", "1.2.3", "Curls at frame 24", "3 locks were left out.", "still.png"):
+        assert text in html
+    assert "Strands may pass through the head." in html
+    assert html.count("<svg") == 5  # strands, motion, stretch, Newton, time; nothing curled otherwise
+
+
+def test_the_page_is_well_formed_and_needs_nothing_from_outside(tmp_path: Path) -> None:
+    _, html_path = write_report(report(tmp_path), tmp_path)
+    html = html_path.read_text(encoding="utf-8")
+    xml.dom.minidom.parseString(html.removeprefix("<!doctype html>\n"))
+    assert "<small>" not in html  # what a user typed is text, not markup
+    assert "<script" not in html
+    assert re.findall(r'(?:src|href)\s*=\s*["\'](?!data:)', html) == []
+    assert re.findall(r"url\(|@import|https?://", html) == []
+    assert 'alt="Curls at frame 24"' in html
+
+
+def test_the_json_can_be_read_back_to_the_same_report(tmp_path: Path) -> None:
+    made = report(tmp_path)
+    json_path, _ = write_report(made, tmp_path)
+    held = json.loads(json_path.read_text())
+    assert held["format"] == 1
+    assert held["statistics"][2]["residual"] is None
+    assert held["stages"][0] == {"name": "groom", "wall_ms": 12.0, "cpu_ms": 20.0}
+    again = RunReport.model_validate(held)
+    assert again.counts == made.counts
+    assert again.date == made.date
+
+
+def test_a_chart_is_left_out_when_its_numbers_are_missing(tmp_path: Path) -> None:
+    made = report(tmp_path)
+    made.statistics = [{"frame": k, "newton": 3.0} for k in range(4)]
+    _, html_path = write_report(made, tmp_path)
+    assert html_path.read_text(encoding="utf-8").count("<svg") == 1
+
+
+def test_an_empty_report_is_a_page_too(tmp_path: Path) -> None:
+    _, html_path = write_report(RunReport(name="groom", version="1"), tmp_path)
+    xml.dom.minidom.parseString(html_path.read_text(encoding="utf-8").removeprefix("<!doctype html>\n"))
+
+
+def test_a_report_is_written_whole_or_not_at_all(tmp_path: Path) -> None:
+    made = report(tmp_path)
+    place = tmp_path / "out"
+    (place / "report.html").mkdir(parents=True)  # in the way
+    with pytest.raises(UserError, match=r"report\.html"):
+        write_report(made, place)
+    assert [entry.name for entry in place.iterdir()] == ["report.html"]
+    made.pictures = [Picture(path=str(tmp_path / "lost.png"), caption="")]
+    with pytest.raises(UserError, match=r"lost\.png"):
+        write_report(made, tmp_path / "other")
+    assert not (tmp_path / "other").exists()
+
+
+def test_the_worst_frame_is_the_one_that_broke_before_the_one_that_stretched() -> None:
+    statistics = frames()
+    assert (explain_worst(statistics) or "").startswith("Frame 4 ")
+    statistics[1]["unconverged"] = 2
+    assert (explain_worst(statistics) or "").startswith("Frame 2 ")
+    statistics[5]["nan"] = 1
+    assert (explain_worst(statistics) or "").startswith("Frame 6 ")
+
+
+def test_the_verdict_names_what_went_wrong_and_when_all_is_well_says_so() -> None:
+    assert any("Every strand was solved" in sentence for sentence in verdict(frames()))
+    statistics = frames()
+    statistics[0]["nan"], statistics[2]["flips"] = 3, 2
+    said = verdict(statistics)
+    assert "do not use" in said[0]
+    assert any("flipped: 2" in sentence for sentence in said)
+
+
+@pytest.mark.parametrize(("low", "high"), [(0.0, 1.0), (-3.2, 7.9), (1e-9, 4e-9), (0.0, 0.0), (5.0, 5.0), (0.0, 48.0)])
+def test_ticks_are_round_and_cover_the_range(low: float, high: float) -> None:
+    ticks = nice_ticks(low, high)
+    assert ticks[0] <= low + 1e-15
+    assert ticks[-1] >= high - 1e-15
+    assert 2 <= len(ticks) <= 8
+    leading = (ticks[1] - ticks[0]) / 10 ** np.floor(np.log10(ticks[1] - ticks[0]) + 1e-9)
+    assert round(float(leading), 6) in (1.0, 2.0, 5.0)
+
+
+def test_a_line_is_interrupted_where_a_value_is_missing_and_its_unit_suits_it() -> None:
+    svg = line_chart("Energy", "J", [1, 2, 3, 4, 5], {"bend": [1e-6, 2e-6, float("nan"), 3e-6, 1e-6]})
+    assert svg.count("<polyline") == 2
+    assert "µJ" in svg
