@@ -118,7 +118,10 @@ def make_hairs(groom: Groom, *, fraction: float = 1.0) -> Hairs:
     axis = _start_axes(locks, frames)
     disk = _disk(settings, ids, number)
     around = roots[lock] + settings.spread * np.einsum("hxk,hk->hx", frames[lock][:, :, :2], disk)
-    region = None if groom.region is None else np.ascontiguousarray(scalp.region(groom.region), np.int32)
+    try:
+        region = np.ascontiguousarray(scalp.region(groom.region), np.int32)
+    except KeyError as error:
+        raise UserError(f"hairs: {error.args[0]}") from None
     root_triangle, root_barycentric, _ = _core.bind_roots(scalp.points, scalp.triangles, around, region)
     is_lock = number == 0
     root_triangle[is_lock] = locks.curve["root_triangle"]

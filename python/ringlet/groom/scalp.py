@@ -57,7 +57,7 @@ class Scalp:
         """
         random = Random(seed, "candidates")
         density = 2.0 ** np.ceil(
-            np.log2(5 * count / self.area)
+            np.log2((5 * count + 30) / self.area)
         )  # in powers of 2: a few more samples use the same candidates
         each = np.floor(self.areas * density + random.uniform(self.region, IDS_PER_TRIANGLE)).astype(np.int64)
         if each.max() >= IDS_PER_TRIANGLE:

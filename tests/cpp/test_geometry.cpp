@@ -1,0 +1,91 @@
+// Frames, normals and nearest points.
+#include "ringlet/geometry/frames.h"
+#include "ringlet/geometry/resample.h"
+#include "ringlet/geometry/triangle_tree.h"
+#include "shapes.h"
+
+#include <Eigen/LU>
+#include <boost/test/unit_test.hpp>
+
+using namespace ringlet;
+
+BOOST_AUTO_TEST_SUITE(geometry)
+
+BOOST_AUTO_TEST_CASE(the_tree_finds_what_looking_at_every_triangle_finds) {
+    const OwnedMesh soup = triangle_soup(300);
+    const TriangleTree tree(soup.view());
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> in(-0.5, 1.5);
+    for (int i = 0; i < 200; ++i) {
+        const Vec3 p(in(random), in(random), in(random));
+        double nearest = 1e9;
+        for (int t = 0; t < 300; ++t) nearest = std::min(nearest, closest_point(soup.view(), t, p).distance);
+        BOOST_TEST(tree.closest(p).distance == nearest, boost::test_tools::tolerance(1e-12));
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_search_within_a_distance_finds_nothing_beyond_it) {
+    const OwnedMesh mesh = octahedron();
+    const TriangleTree tree(mesh.view());
+    BOOST_TEST(tree.closest({2.0, 0.0, 0.0}, 0.9).triangle == -1);
+    BOOST_TEST(tree.closest({2.0, 0.0, 0.0}, 1.1).distance == 1.0);
+}
+
+BOOST_AUTO_TEST_CASE(the_nearest_point_of_a_triangle_is_nearer_than_any_other) {
+    const OwnedMesh soup = triangle_soup(20);
+    std::mt19937 random(6);
+    std::uniform_real_distribution<double> in(0.0, 1.0);
+    for (int t = 0; t < 20; ++t) {
+        const Vec3 p(in(random), in(random), in(random));
+        const SurfacePoint nearest = closest_point(soup.view(), t, p);
+        BOOST_TEST(nearest.barycentric.minCoeff() >= 0.0);
+        BOOST_TEST((soup.view().at(t, nearest.barycentric) - nearest.position).norm() < 1e-14);
+        for (int k = 0; k < 100; ++k) {
+            const double root = std::sqrt(in(random)), v = in(random);
+            const Vec3 other = soup.view().at(t, {1.0 - root, root * (1.0 - v), root * v});
+            BOOST_TEST((other - p).norm() >= nearest.distance - 1e-12);
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(vertex_normals_point_outward_whatever_the_cut_into_triangles) {
+    const OwnedMesh mesh = octahedron();
+    const std::vector<Vec3> normals = vertex_normals(mesh.view());
+    for (size_t i = 0; i < mesh.points.size(); ++i) BOOST_TEST((normals[i] - mesh.points[i]).norm() < 1e-12);
+}
+
+BOOST_AUTO_TEST_CASE(surface_frames_are_rotations) {
+    const OwnedMesh mesh = octahedron();
+    const std::vector<Vec3> normals = vertex_normals(mesh.view());
+    for (int t = 0; t < 8; ++t) {
+        const Mat3 frame = surface_frame(mesh.view(), normals, t, {0.5, 0.2, 0.3});
+        BOOST_TEST((frame * frame.transpose() - Mat3::Identity()).norm() < 1e-12);
+        BOOST_TEST(frame.determinant() > 0.0);
+        BOOST_TEST(frame.col(2).dot(mesh.view().at(t, {0.5, 0.2, 0.3})) > 0.0);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_closed_curve_turns_the_carried_axis_by_the_angle_that_its_tangents_enclose) {
+    // Tangents that go once around a cone of half-angle b enclose the solid angle 2π (1 - cos b) on the sphere of directions.
+    constexpr int count = 20000;
+    const double slope = 0.7;
+    std::vector<Vec3> points, tangent(count), axis(count);
+    for (int i = 0; i < count; ++i) {
+        const double phase = 2.0 * std::numbers::pi * i / (count - 1);
+        points.emplace_back(std::cos(phase), slope * phase, std::sin(phase));
+    }
+    tangents(points, tangent);
+    transport(points, tangent, Vec3::UnitX(), axis);
+    const double cos_b = slope / std::hypot(1.0, slope);
+    BOOST_TEST(axis.front().dot(axis.back()) == std::cos(2.0 * std::numbers::pi * (1.0 - cos_b)),
+               boost::test_tools::tolerance(1e-3));
+}
+
+BOOST_AUTO_TEST_CASE(the_spline_passes_through_its_points_and_reproduces_a_parabola) {
+    std::vector<Vec3> points;
+    for (int i = 0; i < 6; ++i) points.emplace_back(i, 0.5 * i * i, 2.0);
+    for (int i = 0; i < 6; ++i) BOOST_TEST((spline(points, i) - points[i]).norm() < 1e-14);
+    for (double at = 0.0; at <= 5.0; at += 0.1) BOOST_TEST((spline(points, at) - Vec3(at, 0.5 * at * at, 2.0)).norm() < 1e-12);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

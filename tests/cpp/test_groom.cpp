@@ -1,0 +1,109 @@
+// Sampling, curling, pushing out, and hairs.
+#include "ringlet/groom/curl.h"
+#include "ringlet/groom/hairs.h"
+#include "ringlet/groom/push_out.h"
+#include "ringlet/groom/sample.h"
+#include "shapes.h"
+
+#include <algorithm>
+#include <boost/test/unit_test.hpp>
+
+using namespace ringlet;
+
+namespace {
+
+std::vector<Vec3> random_square(int count) {
+    std::mt19937 random(9);
+    std::uniform_real_distribution<double> in(0.0, 1.0);
+    std::vector<Vec3> points;
+    for (int i = 0; i < count; ++i) points.emplace_back(in(random), 0.0, in(random));
+    return points;
+}
+
+double closest_pair(const std::vector<Vec3> &points, const std::vector<int> &chosen) {
+    double least = 1e9;
+    for (size_t i = 0; i < chosen.size(); ++i)
+        for (size_t j = i + 1; j < chosen.size(); ++j) least = std::min(least, (points[chosen[i]] - points[chosen[j]]).norm());
+    return least;
+}
+
+// Settings of one lock that need an owner for their arrays.
+struct OneCurl {
+    std::vector<Vec3> axis{Vec3::UnitX()};
+    std::vector<double> radius{0.004}, turns{5.0}, phase{0.0}, start{0.0}, one{1.0}, zero{0.0};
+    CurlSettings settings() const { return {axis, radius, turns, phase, start, one, one, zero, zero, one, 1, 0.0, false}; }
+};
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(groom)
+
+BOOST_AUTO_TEST_CASE(thinned_samples_keep_most_of_the_distance_that_a_perfect_packing_has) {
+    const std::vector<Vec3> candidates = random_square(2000);
+    const std::vector<int> kept = thin_out(candidates, 1.0, 250);
+    BOOST_TEST(kept.size() == 250u);
+    const double packing = 2.0 * std::sqrt(1.0 / (2.0 * std::sqrt(3.0) * 250));
+    BOOST_TEST(closest_pair(candidates, kept) > 0.6 * packing);
+}
+
+BOOST_AUTO_TEST_CASE(asking_for_no_fewer_than_there_are_keeps_all) {
+    BOOST_TEST(thin_out(random_square(10), 1.0, 20).size() == 10u);
+}
+
+BOOST_AUTO_TEST_CASE(a_curl_about_a_straight_line_is_a_helix) {
+    const std::vector<Vec3> shape = straight(10, 0.08);
+    const std::vector<int> offsets{0, 10};
+    const OneCurl one;
+    for (const Vec3 &p : curl({shape, offsets}, one.settings(), 100)) {
+        const double phase = 2.0 * std::numbers::pi * 5.0 * p.y() / 0.08;
+        // The helix turns from the axis x towards tangent × axis = -z.
+        BOOST_TEST((p - Vec3(0.004 * std::cos(phase), p.y(), -0.004 * std::sin(phase))).norm() < 2e-5);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_curl_without_width_is_its_shape) {
+    const std::vector<Vec3> shape = straight(10, 0.08);
+    const std::vector<int> offsets{0, 10};
+    OneCurl one;
+    one.radius = {0.0};
+    const std::vector<Vec3> result = curl({shape, offsets}, one.settings(), 10);
+    for (size_t i = 0; i < 10; ++i) BOOST_TEST((result[i] - shape[i]).norm() < 1e-12);
+}
+
+BOOST_AUTO_TEST_CASE(a_curve_through_a_body_comes_out_and_keeps_its_root) {
+    const OwnedMesh body = octahedron();
+    std::vector<Vec3> curve;
+    for (int i = 0; i <= 40; ++i) curve.emplace_back(0.05 + 0.02 * i, 0.95 - 0.02 * i, 0.02); // goes down inside, near a face
+    const std::vector<int> offsets{0, static_cast<int>(curve.size())};
+    const std::vector<Vec3> result = push_out({curve, offsets}, body.view(), 0.01);
+    BOOST_TEST(result.front() == curve.front());
+    for (size_t i = 1; i < result.size(); ++i) BOOST_TEST(result[i].lpNorm<1>() >= 1.0 - 1e-9); // outside of the octahedron
+}
+
+BOOST_AUTO_TEST_CASE(curves_that_keep_clear_are_left_alone) {
+    const OwnedMesh body = octahedron();
+    std::vector<Vec3> curve = straight(20, 1.0);
+    for (Vec3 &p : curve) p.y() += 1.0;
+    const std::vector<int> offsets{0, 20};
+    const std::vector<Vec3> result = push_out({curve, offsets}, body.view(), 0.01);
+    BOOST_TEST(std::equal(result.begin(), result.end(), curve.begin()));
+}
+
+BOOST_AUTO_TEST_CASE(a_hair_off_the_middle_runs_beside_a_straight_lock) {
+    const std::vector<Vec3> line = straight(8, 0.07);
+    std::vector<Vec3f> lock;
+    for (const Vec3 &p : line) lock.push_back(p.cast<float>());
+    const std::vector<int> offsets{0, 8}, first{0, 2};
+    const std::vector<Vec3> axis{Vec3::UnitX()};
+    const std::vector<float> root(6, 0.0F), offset{0, 0, 0.002F, 0.001F}, tip{1, 1}, frizz(8, 0.0F), profile(8, 1.0F),
+        hold(8, 0.0F);
+    std::vector<float> result(size_t{2} * 8 * 3);
+    warp_hairs(lock, offsets, axis, root, {first, offset, tip, frizz, 2, profile, hold}, result);
+    for (size_t k = 0; k < 8; ++k) {
+        BOOST_TEST((Eigen::Map<Vec3f>(&result[3 * k]) == lock[k]));
+        const Vec3f beside = lock[k] + Vec3f(0.002F, 0.0F, -0.001F);
+        BOOST_TEST((Eigen::Map<Vec3f>(&result[3 * (8 + k)]) - beside).norm() < 1e-8F);
+    }
+}
+
+BOOST_AUTO_TEST_SUITE_END()
