@@ -32,7 +32,7 @@ class HairColor:
 
 HAIR_COLORS: dict[str, HairColor] = {
     "black": HairColor(6.0, 0.3, 0.28),
-    "dark_brown": HairColor(2.4, 0.3),
+    "dark_brown": HairColor(2.0, 0.35),
     "brown": HairColor(0.9, 0.7),
     "auburn": HairColor(0.35, 1.6),
     "ginger": HairColor(0.08, 0.9),
