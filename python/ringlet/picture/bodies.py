@@ -29,6 +29,8 @@ class PosedBody:
             raise UserError(
                 f"{self.mesh.name}: posed points have shape {self.points.shape}; must be {self.mesh.points.shape}"
             )
+        if (broken := np.flatnonzero(~np.isfinite(self.points).all(axis=1))).size:
+            raise UserError(f"{self.mesh.name}: point {broken[0]} is {self.points[broken[0]]}; must be finite")
 
 
 # What a mesh is made of is guessed from the last part of its name; the first pattern that matches wins.

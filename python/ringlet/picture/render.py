@@ -144,6 +144,8 @@ def trace(
     total: Any = 0.0
     brightest: Any = 0.0
     done = 0
+    if progress:
+        progress("picture", 0, passes)
     while done < passes:
         image = np.nan_to_num(np.array(mi.render(scene, spp=per_pass, seed=done), np.float64))
         total += image
