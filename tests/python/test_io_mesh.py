@@ -6,11 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from pxr import Gf, Sdf, Usd, UsdGeom, UsdSkel, Vt
+from pxr import Gf, Sdf, UsdGeom, Vt
+from ringlet.io import problems, read_bodies, read_clip, read_mesh, read_space
 from usd_scenes import CUBE, CUBE_FACES, FRAMES, add_cube, new_stage, write_head
 
 from ringlet import Mesh
-from ringlet.io import problems, read_bodies, read_clip, read_mesh, read_space
 
 EXAMPLE = Path(__file__).parents[2] / "examples/child/head.usdc"
 
@@ -95,7 +95,7 @@ def test_polygons_become_fans_that_remember_their_polygon_region_and_corners(tmp
     mesh = read_mesh(write_head(tmp_path / "head.usda"))
     np.testing.assert_array_equal(mesh.faces, np.repeat(np.arange(6), 2))
     np.testing.assert_array_equal(mesh.regions["scalp"], [10, 11])
-    assert (mesh.points[mesh.triangles[mesh.regions["scalp"]]][..., 2] == pytest.approx(0.1))
+    assert mesh.points[mesh.triangles[mesh.regions["scalp"]]][..., 2] == pytest.approx(0.1)
     np.testing.assert_allclose(mesh.uv[0], [[0, 0], [1, 0], [1, 1]])
     np.testing.assert_allclose(mesh.uv[1], [[0, 0], [1, 1], [0, 1]])
 

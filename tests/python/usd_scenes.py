@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 from pxr import Gf, Sdf, Usd, UsdGeom, Vt
+from ringlet.io import read_mesh, read_space
 
 from ringlet import Curves, Groom, Mesh
-from ringlet.io import read_mesh, read_space
 
 CUBE = np.array([[x, y, z] for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)])  # corner 4x + 2y + z
 CUBE_FACES = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]  # outward
@@ -25,7 +25,9 @@ def new_stage(path: Path, *, unit: float | None = 0.01, axis: str = "Y") -> Usd.
     return stage
 
 
-def add_cube(stage: Usd.Stage, path: str = "/head/skin", *, points: np.ndarray = CUBE, scalp: bool = True) -> UsdGeom.Mesh:
+def add_cube(
+    stage: Usd.Stage, path: str = "/head/skin", *, points: np.ndarray = CUBE, scalp: bool = True
+) -> UsdGeom.Mesh:
     """A cube of quads whose last face, z = 1, is the scalp."""
     mesh = UsdGeom.Mesh.Define(stage, path)
     mesh.CreatePointsAttr(Vt.Vec3fArray.FromNumpy(points.astype(np.float32)))
@@ -63,7 +65,9 @@ def make_groom(head: Path | None, scalp: Mesh | None = None) -> Groom:
     triangles = rng.choice(mesh.region("scalp"), 5).astype(np.int32)
     weights = rng.dirichlet([1, 1, 1], 5)
     roots = np.einsum("nk,nkd->nd", weights, mesh.points[mesh.triangles[triangles]])
-    locks = Curves.from_list([root + np.linspace(0, 0.05, 7)[:, None] * [0.1, 0.2, 1.0] for root in roots], [7, 3, 11, 2**40, 5])
+    locks = Curves.from_list(
+        [root + np.linspace(0, 0.05, 7)[:, None] * [0.1, 0.2, 1.0] for root in roots], [7, 3, 11, 2**40, 5]
+    )
     locks.curve = {
         "root_triangle": triangles,
         "root_barycentric": weights,
@@ -74,4 +78,6 @@ def make_groom(head: Path | None, scalp: Mesh | None = None) -> Groom:
     locks.point = {"width": rng.random(35).astype(np.float32) * 1e-4, "ramp": rng.random(35)}
     guides = Curves.from_list([root + np.linspace(0, 0.05, 4)[:, None] * [0.0, 0.0, 1.0] for root in roots[:2]])
     space = read_space(head) if head else Groom(guides, locks, mesh).space
-    return Groom(guides, locks, mesh, head, "/head/skin" if head else None, "scalp", space, {"per_lock": 4}, "recipe = 'ñ'\n")
+    return Groom(
+        guides, locks, mesh, head, "/head/skin" if head else None, "scalp", space, {"per_lock": 4}, "recipe = 'ñ'\n"
+    )
