@@ -23,11 +23,10 @@ class Section(BaseModel):
     @classmethod
     def _only_known_settings(cls, data: Any) -> Any:
         if isinstance(data, dict):
+            known = [field.alias or name for name, field in cls.model_fields.items()]
             for key in data:
-                if key not in cls.model_fields:
-                    raise PydanticCustomError(
-                        "unknown", "{key}{hint}", {"key": key, "hint": did_you_mean(key, cls.model_fields)}
-                    )
+                if key not in known:
+                    raise PydanticCustomError("unknown", "{key}{hint}", {"key": key, "hint": did_you_mean(key, known)})
         return data
 
 

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 from ringlet.cli.app import app
+from ringlet.cli.progress import shown_progress
 from typer.testing import CliRunner
 
 import ringlet
@@ -125,3 +126,13 @@ def test_interrupting_ends_tidily(tmp_path):
     _, errors = process.communicate(timeout=20)
     assert process.returncode == 130
     assert "Traceback" not in errors
+
+
+def test_without_a_terminal_progress_is_a_line_per_stage(capsys):
+    with shown_progress() as progress:
+        for done in range(1, 101):
+            progress("groom", done, 100)
+        progress("simulate", 1, 1)
+    lines = capsys.readouterr().err.splitlines()
+    assert [line.split(":")[0] for line in lines] == ["groom", "simulate"]
+    assert "100/100" in lines[0]

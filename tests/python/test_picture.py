@@ -157,7 +157,7 @@ def test_thin_hairs_are_still_seen(tmp_path: Path) -> None:
 def test_a_still_tells_how_far_it_is_and_keeps_to_its_time(tmp_path: Path) -> None:
     told: list[tuple[str, int, int]] = []
     still([], tuft(4), tmp_path / "a.png", width=16, height=16, samples=16, progress=lambda *step: told.append(step))
-    assert [done for _, done, _ in told] == list(range(1, told[-1][2] + 1))
+    assert [done for _, done, _ in told] == list(range(told[-1][2] + 1))
     told.clear()
     still(
         [],
@@ -169,7 +169,7 @@ def test_a_still_tells_how_far_it_is_and_keeps_to_its_time(tmp_path: Path) -> No
         seconds=0.0,
         progress=lambda *step: told.append(step),
     )
-    assert len(told) == 2  # one pass, and the word that it is over
+    assert len(told) == 3  # the beginning, one pass, and the word that it is over
 
 
 def test_bright_light_rolls_off_and_order_is_kept() -> None:
@@ -228,6 +228,17 @@ def test_a_picture_that_cannot_be_written_leaves_nothing_behind(tmp_path: Path) 
     with pytest.raises(UserError, match="cannot be written"):
         still([], tuft(1), tmp_path / "place" / "still.png", width=8, height=8, samples=1)
     assert [entry.name for entry in tmp_path.iterdir()] == ["place"]
+
+
+def test_points_that_are_not_finite_are_refused(tmp_path: Path) -> None:
+    hairs, body = tuft(3), ball()
+    hairs.points[70] = np.nan
+    with pytest.raises(UserError, match="curve 1, point 9"):
+        still([], hairs, tmp_path / "still.png")
+    with pytest.raises(UserError, match="frame 7: hairs: curve 1"):
+        sheet([(7.0, [], hairs)], tmp_path / "sheet.png")
+    with pytest.raises(UserError, match="ball: point 2"):
+        PosedBody(body.mesh, np.where(np.arange(6)[:, None] == 2, np.inf, body.points))
 
 
 def test_posed_points_must_fit_the_mesh() -> None:

@@ -61,7 +61,7 @@ def test_the_page_holds_every_stage_picture_warning_and_limit(tmp_path: Path) ->
     for text in ("groom", "simulate", "avx2", "1.2.3", "Curls at frame 24", "3 locks were left out.", "still.png"):
         assert text in html
     assert "Strands may pass through the head." in html
-    assert html.count("<svg") == 5  # strands, motion, stretch, Newton, time; nothing curled otherwise
+    assert html.count("<svg") == 6  # strands, motion, stretch, Newton, time, steps cut; no curl changed
 
 
 def test_the_page_is_well_formed_and_needs_nothing_from_outside(tmp_path: Path) -> None:

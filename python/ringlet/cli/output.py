@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import json
 import math
+import sys
 from pathlib import Path
 from typing import Any
 
 from rich.console import Console
 from rich.table import Table
+
+PLAIN_WIDTH = 160  # of a table that goes to a file or to another program
 
 
 def print_json(value: Any) -> None:
@@ -49,4 +52,4 @@ def print_table(columns: list[str], rows: list[list[str]], right: tuple[int, ...
         table.add_column(column, justify="right" if index in right else "left", overflow="fold")
     for row in rows:
         table.add_row(*row)
-    Console().print(table)
+    Console(width=None if sys.stdout.isatty() else PLAIN_WIDTH).print(table)

@@ -78,14 +78,17 @@ def in_lines() -> Iterator[Callable[[str, int, int], None]]:
     """A line when a stage ends, and every few seconds while it runs."""
     began: dict[str, float] = {}
     told: dict[str, float] = {}
+    ended: set[str] = set()
 
     def report(stage: str, done: int, total: int) -> None:
         now = time.monotonic()
         start = began.setdefault(stage, now)
-        due = done >= total or now - told.setdefault(stage, now) >= SECONDS_BETWEEN_LINES
-        if not due or told[stage] == float("inf"):
+        since = now - told.setdefault(stage, now)
+        if stage in ended or (done < total and since < SECONDS_BETWEEN_LINES):
             return
-        told[stage] = float("inf") if done >= total else now
+        told[stage] = now
+        if done >= total:
+            ended.add(stage)
         left = f", {(now - start) / done * (total - done):.0f} s left" if 0 < done < total else ""
         print(f"{stage}: {done}/{total}, {now - start:.1f} s{left}", file=sys.stderr, flush=True)
 

@@ -33,8 +33,8 @@ def validate(
                 row.case,
                 f"{row.expected:.6g}",
                 f"{row.got:.6g}",
-                f"{row.error:.2e}",
-                f"{row.tolerance:.0e}",
+                f"{row.error:.2g}",
+                f"{row.tolerance:.2g}",
                 "ok" if row.passed else "FAILS",
             ]
             for row in rows

@@ -29,6 +29,8 @@ class PosedBody:
             raise UserError(
                 f"{self.mesh.name}: posed points have shape {self.points.shape}; must be {self.mesh.points.shape}"
             )
+        if (broken := np.flatnonzero(~np.isfinite(self.points).all(axis=1))).size:
+            raise UserError(f"{self.mesh.name}: point {broken[0]} is {self.points[broken[0]]}; must be finite")
 
 
 # What a mesh is made of is guessed from the last part of its name; the first pattern that matches wins.
@@ -47,8 +49,8 @@ def material(mesh: Mesh) -> dict[str, Any]:
     color = {"type": "rgb", "value": [float(np.clip(c, 0.0, 1.0)) for c in mesh.color]}
     look: dict[str, dict[str, Any]] = {
         # `flatness` and `sheen` stand in for light that wanders under the skin: softer shading, a warm edge
-        "skin": {"roughness": 0.48, "specular": 0.4, "flatness": 0.5, "sheen": 0.25, "sheen_tint": 0.6},
-        "eye": {"roughness": 0.15, "specular": 0.9, "clearcoat": 1.0, "clearcoat_gloss": 0.99},
+        "skin": {"roughness": 0.48, "specular": 0.4, "flatness": 0.5, "sheen": 0.1, "sheen_tint": 0.8},
+        "eye": {"roughness": 0.07, "specular": 0.9, "clearcoat": 1.0, "clearcoat_gloss": 0.99},
         "cloth": {"roughness": 0.9, "specular": 0.15, "sheen": 0.5, "sheen_tint": 0.5},
         "matte": {"roughness": 0.8, "specular": 0.2},
     }

@@ -32,7 +32,7 @@ class HairColor:
 
 HAIR_COLORS: dict[str, HairColor] = {
     "black": HairColor(6.0, 0.3, 0.28),
-    "dark_brown": HairColor(2.4, 0.3),
+    "dark_brown": HairColor(2.0, 0.35),
     "brown": HairColor(0.9, 0.7),
     "auburn": HairColor(0.35, 1.6),
     "ginger": HairColor(0.08, 0.9),
@@ -144,6 +144,8 @@ def trace(
     total: Any = 0.0
     brightest: Any = 0.0
     done = 0
+    if progress:
+        progress("picture", 0, passes)
     while done < passes:
         image = np.nan_to_num(np.array(mi.render(scene, spp=per_pass, seed=done), np.float64))
         total += image

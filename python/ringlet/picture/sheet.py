@@ -54,6 +54,9 @@ def sheet(
         raise UserError("sheet: there are no frames; give at least one")
     if columns < 1 or min(tile) < 1 or samples < 1:
         raise UserError(f"sheet: {columns} columns of {tile[0]} × {tile[1]} pixels; each must be at least 1")
+    for number, _, curves in shots:
+        if len(curves):
+            curves.check(f"frame {number:g}: hairs")
     pigments = hair_color(color)
     camera = frame_camera(
         (points for _, bodies, curves in shots for points in subject(bodies, curves)),

@@ -25,7 +25,7 @@ def still(
     *,
     width: int = 900,
     height: int = 1100,
-    samples: int = 64,
+    samples: int = 40,
     view: str | tuple[float, float] = "three_quarter",
     color: str = "dark_brown",
     max_depth: int = 8,
@@ -45,6 +45,8 @@ def still(
     """
     if width < 1 or height < 1 or samples < 1:
         raise UserError(f"picture: size {width} × {height} with {samples} samples; each must be at least 1")
+    if len(hairs):
+        hairs.check("hairs")
     pigments = hair_color(color)
     camera = frame(subject(bodies, hairs), view=view, aspect=width / height)
     scene = build_scene(bodies, hairs, camera, size=(width, height), color=pigments, max_depth=max_depth)

@@ -29,10 +29,10 @@ class Light:
 
 
 LIGHTS = {
-    "key": Light(-38.0, 34.0, 0.8, (9.6, 8.4, 7.0), 3.0),  # warm, large and high: it draws the face
-    "fill": Light(62.0, 4.0, 1.4, (1.0, 1.2, 1.5)),  # cool and dim, from the other side
-    "rim_right": Light(148.0, 28.0, 0.6, (8.0, 7.8, 7.6)),  # from behind: it draws every curl of the silhouette
-    "rim_left": Light(-150.0, 44.0, 0.6, (7.0, 7.2, 7.8)),
+    "key": Light(-36.0, 25.0, 0.55, (10.5, 9.0, 7.3), 3.0),  # warm, large, under the fringe: it draws the face
+    "fill": Light(64.0, 4.0, 1.4, (1.2, 1.4, 1.7)),  # cool and dim, from the other side
+    "rim_right": Light(142.0, 34.0, 0.7, (9.5, 9.2, 8.8)),  # from behind: it draws every curl of the silhouette
+    "rim_left": Light(-128.0, 52.0, 0.7, (9.5, 9.2, 9.2)),
 }
 AMBIENT = (0.22, 0.23, 0.25)
 

@@ -18,6 +18,6 @@ def develop(light: NDArray[np.floating], *, exposure: float = 1.0) -> NDArray[np
     film = np.clip(0.5 * (exposed * scale + per_channel), 0.0, 1.0)
     encoded = np.where(film <= 0.0031308, 12.92 * film, 1.055 * film ** (1 / 2.4) - 0.055)
     # a gentle S-curve restores the contrast that the roll-off takes away
-    contrasted = encoded + 0.25 * (encoded**2 * (3.0 - 2.0 * encoded) - encoded)
+    contrasted = encoded + 0.4 * (encoded**2 * (3.0 - 2.0 * encoded) - encoded)
     dither = np.random.default_rng(0).uniform(-0.5, 0.5, encoded.shape[:2])[:, :, None]
     return np.clip(np.rint(255.0 * contrasted + dither), 0, 255).astype(np.uint8)

@@ -157,6 +157,7 @@ def _simulation(report: RunReport) -> str:
     elastic = {f"energy.{term}": term for term in terms if term not in ("gravity", "kinetic")}
     moving = {"energy.kinetic": "kinetic", "energy.gravity": "gravity, since the first frame"}
     curl = {"flips": "flips", "winding_changes": "winding changes", "too_straight": "too straight"}
+    care = {"line_search_cuts": "steps cut short", "unconverged": "strands unsolved"}
     charts = "".join(
         (
             chart("Energy in the strands", "J", elastic),
@@ -164,6 +165,7 @@ def _simulation(report: RunReport) -> str:
             chart("Longest edge, over its rest length", "%", {"max_stretch": "stretch"}, factor=100.0),
             chart("Newton iterations for a strand", "", {"newton": "mean", "newton_max": "most"}),
             chart("Time for a frame", "s", {"wall_ms": "time", "cpu_ms": "CPU, all threads"}, factor=1e-3),
+            chart("Steps that needed care", "", care) if any(total(statistics, key) for key in care) else "",
             chart("Curls that changed", "", curl) if any(total(statistics, key) for key in curl) else "",
         )
     )

@@ -23,8 +23,8 @@ class Shot(Section):
 
     ringlet: Literal[1] = Field(description="version of this format")
     name: str = Field("", description="what the shot is called")
-    groom_file: str = Field(
-        alias="groom", description="recipe (.toml) or groom (.usdc, .usda, .usd); relative names count from the shot"
+    groom: Path = Field(
+        description="recipe (.toml) or groom (.usdc, .usda, .usd); a relative name counts from the shot"
     )
     frames: tuple[int, int] = Field(description="first and last frame")
     preroll: int = Field(
@@ -49,11 +49,6 @@ class Shot(Section):
         """The file it was read from."""
         return self._path
 
-    @property
-    def groom(self) -> Path:
-        """The recipe or groom that moves."""
-        return (self._path.parent if self._path else Path()) / self.groom_file
-
 
 def read_shot(path: Path | str) -> Shot:
     """Reads a shot file. Raises UserError with file, setting, value and remedy."""
@@ -72,6 +67,7 @@ def _shot(data: dict[str, Any], path: Path | None) -> Shot:
         shot = Shot.model_validate(data)
     except ValidationError as error:
         raise explain(error, path.name if path else "shot") from error
+    shot = shot.model_copy(update={"groom": (path.parent if path else Path()) / shot.groom})
     shot._path = path
     return shot
 

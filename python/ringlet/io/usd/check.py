@@ -14,4 +14,4 @@ def problems(path: Path | str) -> list[str]:
     with reading(path) as source:
         validators = UsdValidation.ValidationRegistry().GetOrLoadAllValidators()
         found = UsdValidation.ValidationContext(validators).Validate(source.stage)
-        return [f"{error.GetErrorAsString()}".strip() for error in found]
+        return [error.GetErrorAsString() for error in found]

@@ -63,9 +63,11 @@ def curves_at(source: Source, prim: Usd.Prim, time: Usd.TimeCode) -> Curves:
     where = source.where(prim)
     points = read_points(prim, time, where)
     counts = _counts(prim, time, len(points), where)
-    sampling = _Sampling(UsdGeom.BasisCurves(prim), time, counts, where)
     moved = to_metres(transformed(points, prim, time), source.space)
-    curves = Curves(sampling.vertex(moved), sampling.offsets, np.arange(len(counts), dtype=np.int64))
+    ids = np.arange(len(counts), dtype=np.int64)
+    Curves(moved, offsets_from_counts(counts), ids).check(where)
+    sampling = _Sampling(UsdGeom.BasisCurves(prim), time, counts, where)
+    curves = Curves(sampling.vertex(moved), sampling.offsets, ids)
 
     for primvar in UsdGeom.PrimvarsAPI(prim).GetPrimvarsWithAuthoredValues():
         name = primvar.GetPrimvarName().removeprefix(OWN)
@@ -80,7 +82,7 @@ def curves_at(source: Source, prim: Usd.Prim, time: Usd.TimeCode) -> Curves:
         diameters = np.array(widths, np.float64) * source.space.meters_per_unit
         _add(curves, sampling, "width", diameters, schema.GetWidthsInterpolation(), f"{where}: widths")
     _name(curves)
-    return curves.check(where)
+    return curves
 
 
 def own_curves(source: Source, prim: Usd.Prim, time: Usd.TimeCode | None = None, dtype: type = np.float64) -> Curves:

@@ -12,13 +12,14 @@ import json
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from pxr import Sdf, Usd, UsdGeom
 
 from ringlet.curves import Curves
 from ringlet.errors import UserError
 from ringlet.groom.groom import Groom
 from ringlet.io.usd.curves import define_curves, own_curves, set_points, set_roots
-from ringlet.io.usd.mesh import define_mesh, mesh_at, read_mesh, select_mesh
+from ringlet.io.usd.mesh import define_mesh, read_mesh, select_mesh
 from ringlet.io.usd.stage import (
     SUFFIXES,
     Source,
@@ -31,6 +32,7 @@ from ringlet.io.usd.stage import (
     writing,
 )
 from ringlet.io.usd.values import Types, float3, from_metres
+from ringlet.mesh import Mesh
 from ringlet.stage import StageSpace
 
 GROOM, LOCKS, GUIDES, BODY = "/groom", "/groom/locks", "/groom/guides", "/groom/body"
@@ -68,15 +70,12 @@ def read_groom(path: Path | str) -> Groom:
     with reading(path) as source:
         root = groom_prim(source)
         scalp_file, scalp_prim = scalp_source(source)
-        if scalp_file == path.absolute():
-            scalp_file, scalp = path, mesh_at(source, select_mesh(source, scalp_prim))
-        elif scalp_file.exists():
-            scalp = read_mesh(scalp_file, scalp_prim)
-        else:
+        if not scalp_file.exists():
             raise UserError(f"{path}: its head {scalp_file} is not there; put it back or make the groom again")
+        scalp = read_mesh(scalp_file, scalp_prim)
         return Groom(
-            guides=own_curves(source, source.stage.GetPrimAtPath(GUIDES)),
-            locks=own_curves(source, source.stage.GetPrimAtPath(LOCKS)),
+            guides=_bound(source, GUIDES, scalp),
+            locks=_bound(source, LOCKS, scalp),
             scalp=scalp,
             scalp_file=scalp_file,
             scalp_prim=scalp_prim,
@@ -142,6 +141,18 @@ def _define_guides(stage: Usd.Stage, path: str, curves: Curves, groom: Groom, sp
         float3(from_metres(curves.points, space))
     )
     set_roots(prim, curves, groom.scalp)
+
+
+def _bound(source: Source, path: str, scalp: Mesh) -> Curves:
+    """Locks or guides as they were written, whose roots are still on the scalp."""
+    curves = own_curves(source, source.stage.GetPrimAtPath(path)).check(f"{source.path} {path}")
+    last = curves.curve.get("root_triangle", np.zeros(1)).max()
+    if last >= len(scalp.triangles):
+        raise UserError(
+            f"{source.path}: {path} has a root on triangle {last}, but {scalp.name} has {len(scalp.triangles)}; "
+            "the head has changed: make the groom again"
+        )
+    return curves
 
 
 def _default_prim(file: Path) -> Sdf.Path:

@@ -52,7 +52,9 @@ def reading(path: Path | str) -> Iterator[Source]:
     warnings = UsdUtils.CoalescingDiagnosticDelegate()  # takes what USD would print
     try:
         stage = Usd.Stage.Open(str(path))
-        stage.Reload()  # a layer that someone else holds open may be older than the file
+        for layer in stage.GetUsedLayers():
+            if not layer.anonymous and Path(layer.realPath).exists():
+                layer.Reload()  # what something else holds open may be older than the file
         yield Source(path, stage, _space(stage, path))
     except Tf.ErrorException as error:
         raise UserError(f"{path}: cannot be read as USD ({_reason(error)}); write it again or choose another") from None
@@ -143,9 +145,7 @@ def choose(source: Source, candidates: list[Usd.Prim], what: str) -> Usd.Prim:
         raise UserError(f"{source.path}: has no {what} prim; {remedy}")
     if len(candidates) > 1:
         names = ", ".join(str(prim.GetPath()) for prim in candidates[:8])
-        raise UserError(
-            f"{source.path}: has {len(candidates)} {what}es; name one of: {names}".replace("curveses", "curves")
-        )
+        raise UserError(f"{source.path}: has {len(candidates)} {what} prims; name one of: {names}")
     return candidates[0]
 
 
@@ -153,8 +153,8 @@ def require_layers(source: Source) -> None:
     """Refuses a file that lies over another which is not there."""
     for layer in source.stage.GetLayerStack(includeSessionLayers=False):
         for path in layer.subLayerPaths:
-            if not Sdf.Layer.FindOrOpenRelativeToLayer(layer, path):
-                raise UserError(f"{source.path}: lies over {path}, which is not there or broken; put it back")
+            if not Path(layer.ComputeAbsolutePath(path)).exists():
+                raise UserError(f"{source.path}: lies over {path}, which is not there; put it back")
 
 
 def _missing(source: Source, path: str) -> bool:
@@ -173,7 +173,7 @@ def _space(stage: Usd.Stage, path: Path) -> StageSpace:
 def _reason(error: Tf.ErrorException) -> str:
     """The telling part of what USD says."""
     said = [str(part.commentary).strip() for part in error.args]
-    if syntax := re.search(r":(\d+):\d+: parse error", said[0]):
+    if syntax := re.search(r"\.usda?:(\d+):\d+: ", said[0]):
         return f"syntax error in line {syntax[1]}"
     if said[0].startswith("Failed to open layer"):
         return "not a USD file"

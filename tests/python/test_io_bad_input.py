@@ -1,0 +1,200 @@
+"""Bad files and bad places: one line that says what and where, and never half a file."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from pxr import Gf, Sdf, UsdGeom
+from ringlet.io import (
+    read_bodies,
+    read_cache,
+    read_clip,
+    read_groom,
+    read_hairs,
+    read_mesh,
+    read_space,
+    write_cache,
+    write_groom,
+)
+from usd_scenes import add_cube, make_groom, new_stage, write_head
+
+from ringlet import Cache, UserError
+
+
+def refused(call, *args) -> str:
+    """The line with which a call refuses."""
+    with pytest.raises(UserError) as caught:
+        call(*args)
+    line = str(caught.value)
+    assert "\n" not in line and "Error in" not in line and "pxrInternal" not in line
+    return line
+
+
+def names_in(folder) -> list[str]:
+    return sorted(path.name for path in folder.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "says"),
+    [
+        ("no.usda", None, "there is no such file"),
+        ("folder.usd", "folder", "is a folder"),
+        ("text.usda", b"hello", "cannot be read as USD"),
+        ("syntax.usda", b'#usda 1.0\n\ndef Xform "a" {', "syntax error in line 3"),
+        ("empty.usdc", b"", "cannot be read as USD"),
+        ("cut.usdc", "cut", "cannot be read as USD"),
+        ("photo.usd", b"\x89PNG\r\n\x1a\n" + bytes(100), "cannot be read as USD"),
+        ("notes.txt", b"hello", "cannot be read as USD"),
+    ],
+)
+def test_files_that_are_no_usd_are_refused(tmp_path, capfd, name, content, says):
+    path = tmp_path / name
+    if content == "folder":
+        path.mkdir()
+    elif content == "cut":
+        path.write_bytes(write_head(tmp_path / "head.usdc").read_bytes()[:-200])
+    elif content is not None:
+        path.write_bytes(content)
+    for call in (read_mesh, read_space, read_clip, read_bodies, read_groom, read_cache, read_hairs):
+        line = refused(call, path)
+        assert says in line and str(path) in line
+    assert capfd.readouterr().err == ""  # what USD has to say stays off the screen
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        (lambda m: m.CreatePointsAttr([]), "/head/skin: has no points"),
+        (lambda m: m.GetPointsAttr().Block(), "/head/skin: has no points"),
+        (lambda m: m.CreatePointsAttr([Gf.Vec3f(0, float("inf"), 0)] * 8), "point 0 is .*inf.*; must be finite"),
+        (lambda m: m.CreateFaceVertexCountsAttr([]), "/head/skin: has no faces"),
+        (lambda m: m.CreateFaceVertexCountsAttr([4] * 5), "faceVertexCounts add up to 20, but there are 24 indices"),
+        (lambda m: m.CreateFaceVertexCountsAttr([4] * 5 + [2, 2]), "face 5 has 2 corners; must have at least 3"),
+        (lambda m: m.CreateFaceVertexCountsAttr([4] * 5 + [-4, 8]), "face 5 has -4 corners"),
+        (lambda m: m.CreateFaceVertexIndicesAttr([8] * 24), "a face uses point 8; must be from 0 to 7"),
+        (lambda m: m.CreateFaceVertexIndicesAttr([-1] * 24), "a face uses point -1"),
+        (lambda m: m.CreateHoleIndicesAttr(range(6)), "has no faces"),
+        (
+            lambda m: UsdGeom.Subset.CreateGeomSubset(m, "neck", "face", [99]),
+            "skin/neck: names face 99; must be from 0 to 5",
+        ),
+        (lambda m: set_uv(m, [Gf.Vec2f(0, 0)] * 7), "primvars:st has 7 values for 24 corners"),
+        (lambda m: set_uv(m, [Gf.Vec2f(0, float("nan"))] * 24), "primvars:st has a value that is no number"),
+        (lambda m: set_uv(m, [Gf.Vec2f(0, 0)], [5] * 24), "primvars:st has an index that is not from 0 to 0"),
+    ],
+)
+def test_broken_meshes_are_refused(tmp_path, change, says):
+    stage = new_stage(tmp_path / "a.usda")
+    change(add_cube(stage))
+    stage.Save()
+    with pytest.raises(UserError, match=says):
+        read_mesh(tmp_path / "a.usda")
+
+
+def set_uv(mesh, values, indices=None):
+    primvar = UsdGeom.PrimvarsAPI(mesh).CreatePrimvar("st", Sdf.ValueTypeNames.TexCoord2fArray, "faceVarying")
+    primvar.Set(values)
+    if indices:
+        primvar.SetIndices(indices)
+
+
+def test_a_mesh_that_changes_its_points_count_is_refused(tmp_path):
+    stage = new_stage(tmp_path / "a.usda")
+    mesh = add_cube(stage)
+    mesh.GetPointsAttr().Set([Gf.Vec3f(0)] * 8, 1)
+    mesh.GetPointsAttr().Set([Gf.Vec3f(0)] * 9, 2)
+    stage.Save()
+    assert "has 9 points at frame 2, 8 before" in refused(read_clip, tmp_path / "a.usda")
+
+
+def test_a_prim_that_is_not_there_is_answered_with_the_nearest(tmp_path):
+    path = write_head(tmp_path / "head.usda")
+    assert "has no prim /head/skn; did you mean /head/skin?" in refused(read_mesh, path, "/head/skn")
+    assert "did you mean /head/skin?" in refused(read_mesh, path, "head/skin")
+    assert "has no prim" in refused(read_mesh, path, "not a path!")
+
+
+def test_no_mesh_and_many_meshes_are_told_apart(tmp_path):
+    stage = new_stage(tmp_path / "a.usda")
+    stage.Save()
+    assert "has no Mesh prim" in refused(read_mesh, tmp_path / "a.usda")
+    add_cube(stage, "/head/one")
+    add_cube(stage, "/head/two")
+    stage.Save()
+    assert "has 2 Mesh prims; name one of: /head/one, /head/two" in refused(read_mesh, tmp_path / "a.usda")
+    lonely = new_stage(tmp_path / "b.usda")
+    lonely.GetPrimAtPath("/head").GetReferences().AddReference("./gone.usda")
+    lonely.Save()
+    assert "gone.usda, which it refers to, is not there" in refused(read_mesh, tmp_path / "b.usda")
+
+
+@pytest.mark.parametrize(
+    ("unit", "rate", "says"),
+    [(0, 24, "metersPerUnit is 0"), (-1, 24, "metersPerUnit is -1"), (1, 0, "timeCodesPerSecond is 0")],
+)
+def test_units_and_rates_that_are_not_positive_are_refused(tmp_path, unit, rate, says):
+    path = write_head(tmp_path / "head.usda")
+    layer = Sdf.Layer.FindOrOpen(str(path))
+    layer.pseudoRoot.SetInfo("metersPerUnit", float(unit))
+    layer.timeCodesPerSecond = rate
+    layer.Save()
+    assert says in refused(read_mesh, path)
+    assert "must be above 0" in refused(read_space, path)
+
+
+def test_what_is_no_groom_or_lost_its_groom_or_its_head_is_refused(tmp_path):
+    head = write_head(tmp_path / "head.usda")
+    assert "is no groom of Ringlet's" in refused(read_groom, head)
+    assert "is no groom of Ringlet's" in refused(read_cache, head)
+    groom = make_groom(head)
+    write_groom(groom, tmp_path / "groom.usdc")
+    assert "holds no simulated frames" in refused(read_cache, tmp_path / "groom.usdc")
+    assert "has no hairs" in refused(read_hairs, tmp_path / "groom.usdc")
+    cache = Cache(np.array([1.0]), groom.locks.points[None].astype(np.float32))
+    write_cache(cache, tmp_path / "groom.usdc", tmp_path / "cache.usdc", groom.space)
+    head.unlink()
+    assert "its head" in refused(read_groom, tmp_path / "groom.usdc")
+    (tmp_path / "groom.usdc").unlink()
+    assert "lies over ./groom.usdc, which is not there" in refused(read_cache, tmp_path / "cache.usdc")
+
+
+def test_a_groom_of_a_later_layout_is_refused(tmp_path):
+    write_groom(make_groom(write_head(tmp_path / "head.usda")), tmp_path / "groom.usda")
+    text = (tmp_path / "groom.usda").read_text().replace("ringlet:version = 1", "ringlet:version = 2")
+    (tmp_path / "later.usda").write_text(text)
+    assert "has layout 2; this Ringlet reads up to 1" in refused(read_groom, tmp_path / "later.usda")
+
+
+def test_places_that_cannot_be_written_are_refused(tmp_path):
+    groom = make_groom(write_head(tmp_path / "head.usda"))
+    (tmp_path / "file").write_text("in the way")
+    assert "cannot be written" in refused(write_groom, groom, tmp_path / "file/groom.usdc")
+    assert "ends in '.abc'" in refused(write_groom, groom, tmp_path / "groom.abc")
+    assert "is the head that it would refer to" in refused(write_groom, groom, tmp_path / "head.usda")
+    assert names_in(tmp_path) == ["file", "head.usda"]
+
+
+FULL = """
+import resource, sys, numpy as np
+from ringlet import UserError
+from ringlet.io import CacheWriter, read_groom
+groom = read_groom("groom.usdc")
+resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
+try:
+    with CacheWriter("cache.usdc", "groom.usdc", groom.space) as writer:
+        for frame in range(2000):
+            writer.add(frame, groom.locks.points + np.random.rand(*groom.locks.points.shape))
+except UserError as error:
+    print(error)
+"""
+
+
+def test_a_full_disk_leaves_nothing_behind(tmp_path):
+    write_groom(make_groom(write_head(tmp_path / "head.usda")), tmp_path / "groom.usdc")
+    done = subprocess.run([sys.executable, "-c", FULL], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.stdout.startswith("cache.usdc: cannot be written") and done.stdout.count("\n") == 1, done
+    assert done.stderr == ""
+    assert names_in(tmp_path) == ["groom.usdc", "head.usda"]

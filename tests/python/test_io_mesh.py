@@ -1,0 +1,155 @@
+"""Meshes from USD: the same metres whatever the file's unit, axis and layering."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pxr import Gf, Sdf, UsdGeom, Vt
+from ringlet.io import problems, read_bodies, read_clip, read_mesh, read_space
+from usd_scenes import CUBE, CUBE_FACES, FRAMES, add_cube, new_stage, write_head
+
+from ringlet import Mesh
+
+EXAMPLE = Path(__file__).parents[2] / "examples/child/head.usdc"
+
+
+def volume(mesh: Mesh, points: np.ndarray | None = None) -> float:
+    """Signed volume [m³]; positive when the triangles are counter-clockwise from outside."""
+    at = mesh.points if points is None else points
+    a, b, c = (at[mesh.triangles[:, k]] for k in range(3))
+    return float(np.einsum("nk,nk->", a, np.cross(b, c)) / 6)
+
+
+@pytest.mark.parametrize("unit", [1.0, 0.01, 0.0254])
+@pytest.mark.parametrize("axis", ["Y", "Z"])
+def test_the_same_head_in_any_unit_and_axis_is_the_same_in_metres(tmp_path, unit, axis):
+    path = write_head(tmp_path / "head.usda", unit=unit, axis=axis)
+    mesh, clip = read_mesh(path), read_clip(path)
+    np.testing.assert_allclose(mesh.points, 0.1 * CUBE, atol=1e-7)
+    assert volume(mesh) == pytest.approx(0.001)
+    np.testing.assert_allclose(clip.points[-1] - clip.points[0], np.tile([0.03, 0, 0], (8, 1)), atol=1e-7)
+    space = read_space(path)
+    assert (space.meters_per_unit, space.up_axis, space.fps) == (unit, axis, 24)
+
+
+def test_without_a_unit_a_file_is_in_centimetres(tmp_path):
+    stage = new_stage(tmp_path / "a.usda", unit=None)
+    add_cube(stage)
+    stage.Save()
+    np.testing.assert_allclose(read_mesh(tmp_path / "a.usda").points, 0.01 * CUBE, atol=1e-9)
+
+
+def test_a_clip_has_every_whole_frame_with_all_transforms_in_it(tmp_path):
+    stage = new_stage(tmp_path / "a.usda", unit=1.0)
+    stage.SetStartTimeCode(1.5)
+    stage.SetEndTimeCode(4.5)
+    UsdGeom.Xformable(stage.GetPrimAtPath("/head")).AddTranslateOp().Set(Gf.Vec3d(0, 5, 0))
+    mesh = add_cube(stage)
+    turn = mesh.AddRotateYOp()
+    for frame, angle in ((0, 0.0), (10, 90.0)):
+        turn.Set(angle, frame)
+    stage.Save()
+    clip = read_clip(tmp_path / "a.usda")
+    np.testing.assert_array_equal(clip.frames, [2, 3, 4])
+    angle = np.radians(9.0 * 3)
+    np.testing.assert_allclose(clip.points[1, 4], [np.cos(angle), 5, -np.sin(angle)], atol=1e-6)  # corner (1, 0, 0)
+    np.testing.assert_array_equal(read_clip(tmp_path / "a.usda", frames=(0, 10)).frames, np.arange(11))
+
+
+def test_a_still_mesh_gives_one_sample(tmp_path):
+    path = write_head(tmp_path / "head.usda", moving=False)
+    clip = read_clip(path)
+    assert clip.points.shape == (1, 8, 3)
+    np.testing.assert_allclose(clip.at(17), read_mesh(path).points)
+
+
+def test_the_rest_pose_is_the_default_value_where_there_is_one(tmp_path):
+    stage = new_stage(tmp_path / "a.usda", unit=1.0)
+    mesh = add_cube(stage)
+    mesh.GetPointsAttr().Set(Vt.Vec3fArray.FromNumpy((CUBE + 9).astype(np.float32)), 1)
+    mesh.GetPointsAttr().Set(Vt.Vec3fArray.FromNumpy((CUBE + 8).astype(np.float32)), 2)
+    stage.Save()
+    np.testing.assert_allclose(read_mesh(tmp_path / "a.usda").points, CUBE)
+    mesh.GetPointsAttr().ClearDefault()
+    stage.Save()
+    np.testing.assert_allclose(read_mesh(tmp_path / "a.usda").points, CUBE + 9)
+
+
+@pytest.mark.parametrize("left_handed", [False, True])
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_triangles_are_counter_clockwise_from_outside_whatever_the_winding(tmp_path, left_handed, mirrored):
+    stage = new_stage(tmp_path / "a.usda", unit=1.0)
+    mesh = add_cube(stage)
+    if left_handed:
+        mesh.CreateOrientationAttr(UsdGeom.Tokens.leftHanded)
+        mesh.GetFaceVertexIndicesAttr().Set([corner for face in CUBE_FACES for corner in face[::-1]])
+    if mirrored:
+        mesh.AddScaleOp().Set(Gf.Vec3f(-1, 1, 1))
+    stage.Save()
+    assert volume(read_mesh(tmp_path / "a.usda")) == pytest.approx(1.0)
+
+
+def test_polygons_become_fans_that_remember_their_polygon_region_and_corners(tmp_path):
+    mesh = read_mesh(write_head(tmp_path / "head.usda"))
+    np.testing.assert_array_equal(mesh.faces, np.repeat(np.arange(6), 2))
+    np.testing.assert_array_equal(mesh.regions["scalp"], [10, 11])
+    assert mesh.points[mesh.triangles[mesh.regions["scalp"]]][..., 2] == pytest.approx(0.1)
+    np.testing.assert_allclose(mesh.uv[0], [[0, 0], [1, 0], [1, 1]])
+    np.testing.assert_allclose(mesh.uv[1], [[0, 0], [1, 1], [0, 1]])
+
+
+def test_indexed_texture_coordinates_on_vertices_follow_the_corners(tmp_path):
+    stage = new_stage(tmp_path / "a.usda")
+    mesh = add_cube(stage)
+    primvar = UsdGeom.PrimvarsAPI(mesh).CreatePrimvar("st", Sdf.ValueTypeNames.TexCoord2fArray, "vertex")
+    primvar.Set([Gf.Vec2f(0, 0), Gf.Vec2f(1, 0.5)])
+    primvar.SetIndices(Vt.IntArray([int(corner[0]) for corner in CUBE]))
+    stage.Save()
+    read = read_mesh(tmp_path / "a.usda")
+    x = CUBE[read.triangles][..., 0]
+    np.testing.assert_allclose(read.uv, np.stack([x, 0.5 * x], axis=-1))
+
+
+def test_holes_are_left_out_and_regions_still_point_at_their_triangles(tmp_path):
+    stage = new_stage(tmp_path / "a.usda", unit=1.0)
+    add_cube(stage).CreateHoleIndicesAttr([0, 3])
+    stage.Save()
+    mesh = read_mesh(tmp_path / "a.usda")
+    np.testing.assert_array_equal(np.unique(mesh.faces), [1, 2, 4, 5])
+    assert set(mesh.faces[mesh.regions["scalp"]]) == {5}
+
+
+def test_the_scalp_is_chosen_among_many_meshes_and_a_parent_may_be_named(tmp_path):
+    stage = new_stage(tmp_path / "a.usda")
+    add_cube(stage)
+    add_cube(stage, "/head/shirt", scalp=False)
+    stage.Save()
+    assert read_mesh(tmp_path / "a.usda").name == "a.usda /head/skin"
+    assert read_mesh(tmp_path / "a.usda", "/head").name == "a.usda /head/skin"
+    assert read_mesh(tmp_path / "a.usda", "/head/shirt").name == "a.usda /head/shirt"
+
+
+def test_bodies_are_the_visible_meshes_with_their_colours_through_references(tmp_path):
+    head = write_head(tmp_path / "head.usda")
+    stage = new_stage(tmp_path / "shot.usda", unit=0.01)
+    stage.SetStartTimeCode(FRAMES[0])
+    stage.SetEndTimeCode(FRAMES[1])
+    for name in ("left", "right"):
+        prim = stage.DefinePrim(f"/head/{name}")
+        prim.GetReferences().AddReference(f"./{head.name}")
+        prim.SetInstanceable(True)
+    UsdGeom.Gprim(add_cube(stage, "/head/red")).CreateDisplayColorAttr([Gf.Vec3f(1, 0, 0)])
+    UsdGeom.Imageable(add_cube(stage, "/head/gone")).MakeInvisible()
+    add_cube(stage, "/head/sketch").CreatePurposeAttr(UsdGeom.Tokens.guide)
+    stage.Save()
+    bodies = {body.mesh.name.split("/")[-2]: body for body in read_bodies(tmp_path / "shot.usda")}
+    assert set(bodies) == {"left", "right", "head"}
+    assert bodies["head"].mesh.color == (1, 0, 0)
+    assert bodies["left"].clip.points.shape == (4, 8, 3)
+
+
+def test_the_example_head_keeps_the_rules_of_usd_and_has_a_scalp():
+    assert problems(EXAMPLE) == []
+    assert len(read_mesh(EXAMPLE).region("scalp")) > 100
