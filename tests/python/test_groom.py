@@ -176,6 +176,17 @@ def test_a_zone_shortens_the_hair_it_looks_towards():
     assert np.allclose(change[back], 1.0)
 
 
+def test_hair_flows_away_from_a_parting_and_locks_do_not_mix_its_sides():
+    flat = BASE[: BASE.index("[curl]")].replace(
+        "length = 6", "length = 6\nlift = 0.1\ndroop = 0\npart = { reach = 20 }"
+    )
+    locks = groom(flat).locks
+    away = np.abs(locks.roots[:, 0])
+    near = (away > 0.015) & (away < 0.04)  # nearer, the next guide may be one of the other side
+    lean = (locks.points.reshape(60, 64, 3)[:, 20] - locks.roots)[near, 0] / locks.lengths()[near]
+    assert (lean * np.sign(locks.roots[near, 0]) > 0.1).all()
+
+
 def test_drawn_guides_become_locks_of_the_same_name_when_no_number_is_asked():
     locks = drawn("").locks
     assert locks.ids.tolist() == [5, 6, 7]

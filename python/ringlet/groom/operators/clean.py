@@ -8,7 +8,7 @@ from pydantic import Field
 
 from ringlet import _core
 from ringlet.curves import Curves
-from ringlet.groom.operators.operator import Context, Operator
+from ringlet.groom.operators.operator import Context, Operator, packed
 from ringlet.groom.settings import Quantity
 
 
@@ -23,6 +23,4 @@ class Clean(Operator):
     def apply(self, curves: Curves, context: Context) -> Curves:
         """The same curves, outside of the mesh."""
         scalp = context.scalp
-        return curves.with_points(
-            _core.push_out(curves.points, curves.offsets, scalp.points, scalp.triangles, self.margin)
-        )
+        return curves.with_points(_core.push_out(*packed(curves), scalp.points, scalp.triangles, self.margin))

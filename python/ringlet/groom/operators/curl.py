@@ -11,7 +11,7 @@ from pydantic import Field, model_validator
 from ringlet import _core
 from ringlet.curves import Curves, offsets_from_counts
 from ringlet.errors import UserError
-from ringlet.groom.operators.operator import Context, Operator
+from ringlet.groom.operators.operator import Context, Operator, packed
 from ringlet.groom.presets import PRESETS
 from ringlet.groom.settings import Quantity, Ramped, Varied, refuse
 
@@ -113,8 +113,7 @@ class Curl(Operator):
             for name in ("width", "rate")
         )
         curled = _core.curl_curves(
-            curves.points,
-            curves.offsets,
+            *packed(curves),
             axis=np.ascontiguousarray(frames[:, :, 0]),
             radius=0.5 * context.values("width", self.width, curves),
             turns=np.where(right, turns, -turns),
@@ -131,8 +130,8 @@ class Curl(Operator):
         )
         return Curves(curled, offsets_from_counts(np.full(len(ids), points)), ids, curves.curve)
 
-    def _hands(self, context: Context, ids: NDArray) -> NDArray[np.floating]:
+    def _hands(self, context: Context, ids: NDArray) -> NDArray[np.float64]:
         """+1, and -1 after an odd number of switchbacks; shape (count, NOISE_VALUES)."""
         turned = context.random("switchbacks").uniforms(ids, NOISE_VALUES) < self.switchbacks / NOISE_VALUES
         turned[:, 0] = False
-        return 1.0 - 2.0 * (np.cumsum(turned, axis=1) % 2)
+        return np.where(np.cumsum(turned, axis=1) % 2 == 1, -1.0, 1.0)

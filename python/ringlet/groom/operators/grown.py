@@ -33,6 +33,25 @@ class Zone(Section):
         return t * t * (3.0 - 2.0 * t)
 
 
+class Part(Section):
+    """A parting: hair on each side of a plane flows away from it."""
+
+    across: Vector = Field(default=(1.0, 0.0, 0.0), description="direction from one side of the parting to the other")
+    offset: Annotated[float, Quantity("m", -1.0, 1.0)] = Field(
+        default=0.0, description="how far the parting is from the middle of the scalp, along 'across'"
+    )
+    reach: Annotated[float, Quantity("m", 1e-3, 1.0)] = Field(
+        default=0.04, description="distance at which hair has half forgotten the parting"
+    )
+
+    def turn(self, flow: NDArray, from_middle: NDArray) -> NDArray[np.float64]:
+        """The flow (n, 3), turned away from the parting; ``from_middle``: places from the middle of the scalp [m]."""
+        across = unit(np.array(self.across))
+        side = from_middle @ across - self.offset
+        weight = 0.5 ** (np.abs(side) / self.reach)
+        return (1.0 - weight)[:, None] * flow + (weight * np.sign(side))[:, None] * across
+
+
 class Grown(Operator):
     """Grows guides on the scalp.
 
@@ -61,6 +80,7 @@ class Grown(Operator):
         default=25.0, description="how much the flow spirals about the whorl"
     )
     flow: Vector = Field(default=(0.0, -1.0, 0.0), description="direction of the flow where there is no whorl")
+    part: Part | None = Field(default=None, description="a parting; none when absent")
     zone: list[Zone] = Field(default=[], description="parts of the head with their own length and stand")
 
     @model_validator(mode="after")
@@ -88,7 +108,7 @@ class Grown(Operator):
             droop *= 1.0 + weight * (zone.droop - 1.0)
         lift = np.clip(lift, 0.0, 1.0)[:, None]
 
-        start = unit(lift * normal + (1.0 - lift) * self._flow(normal, outward))
+        start = unit(lift * normal + (1.0 - lift) * self._flow(normal, roots - scalp.middle))
         u = (np.arange(self.points - 1) + 0.5) / (self.points - 1)
         direction = unit(start[:, None, :] - (droop[:, None] * u)[:, :, None] * UP)
         steps = direction * (length / (self.points - 1))[:, None, None]
@@ -96,12 +116,14 @@ class Grown(Operator):
         offsets = offsets_from_counts(np.full(len(ids), self.points))
         return Curves(np.ascontiguousarray(points.reshape(-1, 3)), offsets, ids, bound)
 
-    def _flow(self, normal: NDArray, outward: NDArray) -> NDArray[np.float64]:
+    def _flow(self, normal: NDArray, from_middle: NDArray) -> NDArray[np.float64]:
         """Unit directions along the surface, shape (n, 3)."""
         if self.whorl is None:
             wanted = np.broadcast_to(np.array(self.flow), normal.shape)
         else:
-            away = unit(outward - unit(np.array(self.whorl)))
+            away = unit(unit(from_middle) - unit(np.array(self.whorl)))
             turn = np.radians(self.whorl_turn)
             wanted = np.cos(turn) * away + np.sin(turn) * np.cross(normal, away)
+        if self.part is not None:
+            wanted = self.part.turn(wanted, from_middle)
         return unit(wanted - np.sum(wanted * normal, axis=1, keepdims=True) * normal)

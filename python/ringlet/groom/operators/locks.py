@@ -11,7 +11,7 @@ from scipy.spatial import KDTree
 
 from ringlet import _core
 from ringlet.curves import Curves, offsets_from_counts
-from ringlet.groom.operators.operator import Context, Operator, arc_lengths, unit
+from ringlet.groom.operators.operator import Context, Operator, arc_lengths, packed, unit
 from ringlet.groom.settings import Quantity, refuse
 
 
@@ -20,7 +20,8 @@ class Locks(Operator):
     every guide becomes a lock.
 
     ``shape = Σ wᵢ Rᵢ (guideᵢ - rootᵢ)``: the nearest guides, turned with the surface (Rᵢ is the smallest turn from the
-    guide's normal to the lock's), weighted by 1/d², and given the weighted length.
+    guide's normal to the lock's), weighted by 1/d², and given the weighted length. Guides that leave the scalp in
+    another direction than the nearest one, as on the other side of a parting, have no say.
     """
 
     count: int | None = Field(default=None, ge=1, le=1_000_000, description="number of locks (this or spacing)")
@@ -31,6 +32,10 @@ class Locks(Operator):
     shape_points: int = Field(default=20, ge=4, le=1000, description="points of a lock's shape, before it is curled")
     neighbours: int = Field(default=4, ge=1, le=16, description="guides that a lock takes its shape from")
 
+    apart: Annotated[float, Quantity("deg", 1.0, 180.0)] = Field(
+        default=60.0, description="guides that lean further apart than this are not mixed"
+    )
+
     @model_validator(mode="after")
     def _one_density(self) -> Locks:
         if self.count is not None and self.spacing is not None:
@@ -39,7 +44,7 @@ class Locks(Operator):
 
     def apply(self, curves: Curves, context: Context) -> Curves:
         """Shape curves, one per lock, with ``shape_points`` each."""
-        guides = _core.resample_curves(curves.points, curves.offsets, self.shape_points)
+        guides = _core.resample_curves(*packed(curves), self.shape_points)
         shapes = guides.reshape(len(curves), self.shape_points, 3)
         if self.count is None and self.spacing is None:
             return _pack(shapes, curves.ids, curves.curve["root_triangle"], curves.curve["root_barycentric"])
@@ -56,13 +61,14 @@ class Locks(Operator):
         near = min(self.neighbours, len(curves))
         distance, index = KDTree(curves.roots).query(roots, k=near)
         distance, index = distance.reshape(count, near), index.reshape(count, near)
-        weight = 1.0 / np.maximum(distance, 1e-6) ** 2
-        weight /= weight.sum(axis=1, keepdims=True)
-
-        blended = np.zeros((count, self.shape_points, 3))
+        turned = np.empty((near, count, self.shape_points, 3))
         for k in range(near):
-            turned = local[index[:, k]] @ _turn(guide_normal[index[:, k]], normal).transpose(0, 2, 1)
-            blended += weight[:, k, None, None] * turned
+            turned[k] = local[index[:, k]] @ _turn(guide_normal[index[:, k]], normal).transpose(0, 2, 1)
+        lean = unit(turned[:, :, self.shape_points // 3])
+        together = np.einsum("klx,lx->lk", lean, lean[0]) >= np.cos(np.radians(self.apart))
+        weight = together / np.maximum(distance, 1e-6) ** 2
+        weight /= weight.sum(axis=1, keepdims=True)
+        blended = np.einsum("lk,klpx->lpx", weight, turned)
         wanted = np.sum(weight * lengths[index], axis=1)
         blended *= (wanted / np.maximum(arc_lengths(blended)[:, -1], 1e-9))[:, None, None]
         return _pack(roots[:, None] + blended, ids, triangle, barycentric)

@@ -52,6 +52,11 @@ def grid(curves: Curves) -> NDArray[np.floating]:
     return curves.points.reshape(len(curves), -1, 3)
 
 
+def packed(curves: Curves) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+    """Points and offsets as the core takes them."""
+    return np.ascontiguousarray(curves.points, np.float64), np.ascontiguousarray(curves.offsets, np.int32)
+
+
 def arc_lengths(points: NDArray) -> NDArray[np.floating]:
     """Length from the root to every point [m], shape (count, points), for points (count, points, 3)."""
     edges = np.linalg.norm(np.diff(points, axis=1), axis=2)

@@ -9,7 +9,7 @@ from pydantic import Field
 
 from ringlet import _core
 from ringlet.curves import Curves, offsets_from_counts
-from ringlet.groom.operators.operator import Context, Operator
+from ringlet.groom.operators.operator import Context, Operator, packed
 
 
 class Resample(Operator):
@@ -20,6 +20,6 @@ class Resample(Operator):
 
     def apply(self, curves: Curves, context: Context) -> Curves:
         """The same shapes with ``points`` points each."""
-        points = _core.resample_curves(curves.points, curves.offsets, self.points)
+        points = _core.resample_curves(*packed(curves), self.points)
         offsets = offsets_from_counts(np.full(len(curves), self.points))
         return Curves(points, offsets, curves.ids, curves.curve)
