@@ -1,20 +1,21 @@
 """How the documents are built; the references are made from the program itself, so that they cannot lag behind it."""
 
+import importlib.metadata
 import sys
-from importlib.metadata import version
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent))
 
+from docstrings import as_list
 from reference import write_references
 
 project = "Ringlet"
 author = copyright = "The Ringlet authors"
-release = version("ringlet")
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
+version = release = importlib.metadata.version("ringlet")
+extensions = ["myst_parser", "sphinx.ext.autodoc"]
 myst_enable_extensions = ["colon_fence", "deflist"]
 myst_heading_anchors = 3
-exclude_patterns = ["_build"]
+exclude_patterns = ["_build", "_generated"]
 autodoc_typehints = "signature"
 autodoc_member_order = "bysource"
 html_theme = "alabaster"
@@ -29,3 +30,4 @@ html_theme_options = {
 
 def setup(app):
     write_references(Path(app.srcdir) / "_generated")
+    app.connect("autodoc-process-docstring", as_list)

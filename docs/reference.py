@@ -105,8 +105,8 @@ def commands() -> Iterator[str]:
     """What ``--help`` says of every command."""
     group: Any = typer.main.get_command(app)
     for name, command in group.commands.items():
-        arguments = " ".join(p.metavar for p in command.params if p.param_type_name == "argument")
-        yield f"\n## ringlet {name}\n\n```\nringlet {name} {arguments} [OPTIONS]\n```\n"
+        arguments = [p.metavar for p in command.params if p.param_type_name == "argument"]
+        yield f"\n## ringlet {name}\n\n```\n{' '.join(['ringlet', name, *arguments])} [OPTIONS]\n```\n"
         yield inspect.cleandoc(command.help) + "\n"
         yield "| | |\n|---|---|"
         for param in command.params:

@@ -8,11 +8,11 @@ disc, which is one-to-one for any disc-shaped patch (Tutte, "How to draw a graph
 from __future__ import annotations
 
 import numpy as np
+from distances import Array
 from numpy.typing import NDArray
 from regions import NAMES, SKULL_CENTRE
 from scipy.sparse import coo_matrix, csr_matrix
 from scipy.sparse.linalg import spsolve
-from shapes import Array
 
 # Middle and radius of each region's disc.
 DISCS = {

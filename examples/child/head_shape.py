@@ -8,11 +8,11 @@ edge (lids, lips, wings of the nose).
 from __future__ import annotations
 
 import numpy as np
-from shapes import Array, capsule, ellipsoid, engrave, intersect, sphere, stroke, subtract, union
+from distances import Array, capsule, ellipsoid, engrave, intersect, smooth, sphere, stroke, subtract, union
 
-EYE_CENTRE = np.array([3.05, -0.2, 4.75])
-EYE_RADIUS = 1.95
-EYE_WIDTH, UPPER_LID, LOWER_LID = np.radians([47.0, 36.0, 27.0])  # half the opening, seen from the eyeball's middle
+EYE_CENTRE = np.array([3.15, -0.5, 4.5])
+EYE_RADIUS = 2.25
+EYE_WIDTH, UPPER_LID, LOWER_LID = np.radians([45.0, 31.5, 25.5])  # half the opening, seen from the eyeball's middle
 EYE_SLANT = 0.06  # the outer corner is a little higher
 LID = 0.2  # thickness of the lids
 
@@ -29,49 +29,57 @@ def mirrored(p: Array) -> Array:
 def skin(points: Array) -> Array:
     """Head, ears, neck and the part of the chest that a neckline can show."""
     p = mirrored(points)
-    shown = intersect(body(p), sphere(p, (0, -11.0, -2.5), 8.6), 0.6)
-    d = union(head(p), shown, 1.6)
-    d = eyes(d, p)
-    d = nose(d, p)
-    d = mouth(d, p)
-    return ear(d, p)
+    shown = intersect(body(p), sphere(p, (0, -10.0, -2.5), 7.4), 0.6)
+    d = union(head(p), shown, 1.4)
+    for feature, centre, reach in FEATURES:
+        near = np.flatnonzero(sphere(p, centre, reach) < 0.0)
+        d[near] = feature(d[near], p[near])
+    return d
 
 
 def shirt(points: Array) -> Array:
-    """A T-shirt: the body with an offset, open around the neck, with a rib along the neckline."""
+    """A T-shirt: the body with an offset, open around the neck, with a rib along the neckline, rounded off below."""
     p = mirrored(points)
-    cloth = intersect(body(p) - 0.45, -(p[:, 1] + 27.0), 1.6)
-    neckline = capsule(p, (0, -13.6, -1.9), (0, 4.0, -8.0), 4.7, 12.0)
-    open_cloth = subtract(cloth, neckline, 0.15)
-    rib = np.hypot(np.maximum(np.abs(neckline - 0.3) - 0.3, 0.0), cloth) - 0.2
-    return union(open_cloth, rib, 0.15)
+    cloth = intersect(torso(p) - 0.45, ellipsoid(p, (0, -14.5, -3.0), (11.4, 10.6, 9.0)), 1.5)
+    opening = neckline(p)
+    rib = np.hypot(opening - 0.25, cloth + 0.05) - 0.36
+    return union(subtract(cloth, opening, 0.15), rib, 0.12)
+
+
+def neckline(p: Array) -> Array:
+    """The space around the neck that the shirt leaves open."""
+    return capsule(p, (0, -10.7, -2.5), (0, -2.0, -4.0), 5.2, 7.5)
 
 
 def head(p: Array) -> Array:
-    d = ellipsoid(p, (0, 2.4, -1.3), (7.5, 7.9, 8.6))
-    d = union(d, ellipsoid(p, (0, 3.4, 2.6), (6.4, 5.2, 5.1)), 3.0)  # forehead
-    d = union(d, ellipsoid(p, (0, -3.2, 1.4), (5.9, 6.0, 5.9)), 2.5)  # face
-    d = union(d, sphere(p, (3.5, -3.9, 4.1), 2.75), 1.8)  # cheeks
-    d = union(d, capsule(p, (4.4, -5.0, 0.5), (1.0, -7.7, 4.7), 1.9, 1.4), 1.6)  # jaw
-    return union(d, ellipsoid(p, (0, -7.7, 5.5), (1.6, 1.35, 1.6)), 1.3)  # chin
+    d = ellipsoid(p, (0, 2.4, -1.3), (7.6, 7.9, 8.6))
+    d = union(d, ellipsoid(p, (0, 3.4, 2.6), (6.5, 5.2, 5.1)), 3.0)  # forehead
+    d = union(d, ellipsoid(p, (0, -3.0, 1.4), (5.9, 5.8, 5.9)), 2.5)  # face
+    d = union(d, sphere(p, (3.4, -3.8, 4.0), 2.8), 1.6)  # cheeks
+    d = union(d, capsule(p, (4.0, -5.0, 0.5), (1.0, -7.6, 4.7), 1.75, 1.4), 1.6)  # jaw
+    return union(d, ellipsoid(p, (0, -7.75, 5.5), (1.4, 1.25, 1.5)), 1.2)  # chin
 
 
 def body(p: Array) -> Array:
-    d = capsule(p, (0, -4.0, -2.4), (0, -15.0, -3.2), 3.3, 3.5)  # neck
-    d = union(d, stroke(p, [(4.6, -4.5, -2.8), (0.8, -15.4, 0.7)], [0.8, 0.7]), 1.4)  # the cord from ear to breastbone
-    d = union(d, capsule(p, (1.0, -11.0, -3.8), (7.3, -17.0, -3.4), 2.0, 2.4), 2.6)  # trapezius
-    d = union(d, ellipsoid(p, (0, -23.5, -3.0), (8.6, 8.2, 5.0)), 2.4)  # chest
-    d = union(d, stroke(p, [(7.6, -18.0, -3.2), (9.6, -23.0, -3.0), (10.0, -30.0, -2.6)], [2.9, 2.5, 2.4]), 1.6)  # arms
-    return union(d, stroke(p, [(0.9, -15.6, 1.0), (4.0, -15.5, 0.5), (7.4, -15.6, -2.0)], [0.35, 0.3, 0.3]), 0.9)
+    d = union(torso(p), stroke(p, [(4.0, -4.8, -2.6), (0.7, -13.7, 0.1)], [0.6, 0.55]), 1.2)  # from ear to breastbone
+    return union(d, stroke(p, [(0.7, -14.3, 0.2), (3.4, -14.1, -0.5), (5.6, -14.0, -2.2)], [0.3, 0.26, 0.2]), 0.9)
+
+
+def torso(p: Array) -> Array:
+    """The body as cloth feels it, without the fine forms of neck and collar bones."""
+    d = capsule(p, (0, -4.0, -2.4), (0, -14.0, -3.2), 2.9, 3.1)  # neck
+    d = union(d, capsule(p, (0.8, -10.8, -3.7), (6.5, -14.0, -3.5), 1.7, 2.1), 2.2)  # trapezius
+    d = union(d, ellipsoid(p, (0, -21.5, -3.0), (7.3, 7.6, 4.5)), 2.2)  # chest
+    return union(
+        d, stroke(p, [(6.5, -15.6, -3.2), (8.1, -20.5, -3.0), (8.5, -28.0, -2.6)], [2.5, 2.2, 2.1]), 1.6
+    )  # arms
 
 
 def eyes(d: Array, p: Array) -> Array:
     """Sockets, then lids as shells around the eyeballs, then the opening between the lids."""
-    d = subtract(d, ellipsoid(p, (3.0, 0.1, 8.0), (2.3, 1.35, 1.5)), 1.3)
-    d = union(d, sphere(p, EYE_CENTRE, EYE_RADIUS + LID), 0.7)
+    d = subtract(d, ellipsoid(p, (3.15, -0.15, 7.6), (2.7, 2.0, 1.75)), 1.2)
+    d = union(d, sphere(p, EYE_CENTRE, EYE_RADIUS + LID), 0.4)
     upper, lower = lid_edges(p)
-    crease = np.abs(upper - 0.42) - 0.03
-    d = engrave(d, np.maximum(crease, EYE_CENTRE[2] - p[:, 2]), 0.1, 0.2)
     pocket = np.maximum(np.maximum(upper, lower), EYE_RADIUS - 0.3 - np.linalg.norm(p - EYE_CENTRE, axis=-1))
     return subtract(d, np.maximum(pocket, EYE_CENTRE[2] - p[:, 2]), 0.12)
 
@@ -97,44 +105,48 @@ def lid_direction(across: Array) -> Array:
 
 
 def nose(d: Array, p: Array) -> Array:
-    d = union(d, capsule(p, (0, 0.6, 6.3), (0, -2.3, 7.6), 0.7, 0.85), 1.3)  # bridge
-    d = union(d, ellipsoid(p, (0, -2.75, 8.0), (1.12, 0.98, 1.1)), 0.6)  # tip
-    d = union(d, ellipsoid(p, (1.0, -3.05, 7.3), (0.62, 0.6, 0.8)), 0.45)  # wings
-    return subtract(d, ellipsoid(p, (0.52, -3.72, 7.85), (0.3, 0.34, 0.42)), 0.2)  # nostrils
+    d = union(d, capsule(p, (0, 0.2, 6.4), (0, -2.5, 7.5), 0.62, 0.75), 1.3)  # bridge
+    d = union(d, ellipsoid(p, (0, -2.9, 7.85), (1.05, 0.9, 1.0)), 0.6)  # tip
+    d = union(d, ellipsoid(p, (1.0, -3.2, 7.2), (0.64, 0.58, 0.75)), 0.4)  # wings
+    return subtract(d, ellipsoid(p, (0.52, -3.82, 7.75), (0.32, 0.42, 0.44)), 0.15)  # nostrils
 
 
 def mouth(d: Array, p: Array) -> Array:
-    d = union(d, ellipsoid(p, (0, -5.2, 5.4), (2.5, 1.7, 1.9)), 1.2)
-    d = engrave(d, capsule(p, (0, -3.7, 7.6), (0, -4.2, 7.6), 0.14, 0.2), 0.12, 0.25)  # philtrum
-    lip = [(2.0, -4.9, 6.2), (1.2, -4.75, 7.0), (0.42, -4.6, 7.38), (0, -4.72, 7.38)]
-    d = union(d, stroke(p, lip, [0.1, 0.28, 0.34, 0.32]), 0.3)
-    lip = [(1.9, -5.0, 6.2), (1.1, -5.5, 6.95), (0, -5.65, 7.25)]
-    d = union(d, stroke(p, lip, [0.1, 0.36, 0.44]), 0.3)
-    gap = np.hypot(p[:, 1] - mouth_line(p[:, 0]), np.maximum(p[:, 0] - 2.2, 0.0)) - 0.05
-    d = engrave(d, np.maximum(gap, 3.0 - p[:, 2]), 0.35, 0.15)
-    return engrave(d, capsule(p, (2.3, -4.55, 5.0), (2.3, -4.55, 9.0), 0.16), 0.18, 0.5)  # corners
+    d = union(d, ellipsoid(p, (0, -5.4, 5.2), (2.6, 1.7, 1.9)), 1.4)
+    d = engrave(d, capsule(p, (0, -3.9, 7.4), (0, -4.45, 7.4), 0.14, 0.2), 0.1, 0.25)  # philtrum
+    d = union(d, lips(p), 0.25)
+    gap = np.hypot(p[:, 1] - mouth_line(p[:, 0]), np.maximum(p[:, 0] - 2.55, 0.0)) - 0.09
+    return engrave(d, np.maximum(gap, 3.0 - p[:, 2]), 0.32 - 0.08 * p[:, 0], 0.16)
+
+
+def lips(p: Array) -> Array:
+    upper = [(2.4, -4.8, 6.9), (1.4, -4.97, 7.0), (0.45, -4.8, 7.22), (0, -4.93, 7.22)]
+    lower = [(2.35, -4.94, 6.88), (1.3, -5.64, 6.86), (0, -5.98, 7.05)]
+    d = stroke(p, *smooth(upper, [0.2, 0.34, 0.43, 0.38]))
+    return np.minimum(d, stroke(p, *smooth(lower, [0.2, 0.44, 0.56])))
 
 
 def mouth_line(x: Array) -> Array:
     """Height of the line where the lips meet: a bow that ends in a slight smile."""
-    return -5.12 + 0.08 * np.cos(2.4 * x) + 0.1 * x**2
+    return -5.38 + 0.07 * np.cos(2.4 * x) + 0.11 * x**2
 
 
 def ear(d: Array, p: Array) -> Array:
     q = ear_frame(p)
     d = union(d, ear_leaf(q), 0.5)
-    d = subtract(d, ellipsoid(q, (0.45, -0.35, 0.85), (0.75, 0.95, 0.8)), 0.3)  # the bowl
+    d = subtract(d, ellipsoid(q, (0.45, -0.4, 0.72), (0.72, 0.95, 0.8)), 0.25)  # the bowl
     return union(d, ellipsoid(q, (-0.5, -0.55, 0.35), (0.35, 0.5, 0.3)), 0.3)  # tragus
 
 
 def ear_leaf(q: Array) -> Array:
+    """The ear without its bowl: a leaf with a rolled rim, a lobe and an inner fold."""
     leaf = ellipsoid(q, (0.7, 0.1, 0.0), (1.75, 2.6, 0.5))
-    rim = [(-0.2, 0.0, 0.15), (-0.5, 1.0, 0.2), (-0.1, 2.1, 0.3), (0.8, 2.6, 0.35), (1.8, 2.15, 0.4)]
-    rim += [(2.25, 0.8, 0.4), (2.0, -0.7, 0.35), (1.35, -1.9, 0.2), (0.6, -2.5, 0.1)]
-    leaf = union(leaf, stroke(q, rim, [0.2, 0.3, 0.34, 0.36, 0.36, 0.34, 0.32, 0.3, 0.3]), 0.25)
+    rim = [(-0.2, 0.0, 0.15), (-0.5, 1.0, 0.2), (-0.15, 2.0, 0.3), (0.75, 2.6, 0.35), (1.7, 2.2, 0.4)]
+    rim += [(2.25, 0.9, 0.4), (2.05, -0.7, 0.35), (1.4, -1.9, 0.2), (0.6, -2.5, 0.1)]
+    leaf = union(leaf, stroke(q, *smooth(rim, [0.2, 0.3, 0.34, 0.36, 0.36, 0.34, 0.32, 0.3, 0.3])), 0.25)
     leaf = union(leaf, ellipsoid(q, (0.35, -2.4, 0.05), (0.75, 0.75, 0.42)), 0.5)  # lobe
     fold = [(1.2, 1.5, 0.3), (1.4, 0.3, 0.4), (1.15, -0.8, 0.4), (0.5, -1.45, 0.3)]
-    return union(leaf, stroke(q, fold, [0.2, 0.3, 0.3, 0.25]), 0.3)
+    return union(leaf, stroke(q, *smooth(fold, [0.2, 0.3, 0.3, 0.25])), 0.3)
 
 
 def ear_frame(p: Array) -> Array:
@@ -144,3 +156,12 @@ def ear_frame(p: Array) -> Array:
     up -= (up @ back) * back
     up /= np.linalg.norm(up)
     return (p - EAR_CENTRE) @ np.column_stack([back, up, np.cross(back, up)])
+
+
+# What is modelled onto the head, in this order, and the ball outside which it changes nothing.
+FEATURES = (
+    (eyes, EYE_CENTRE + [0, 0, 1.5], 5.0),
+    (nose, (0, -2.0, 7.2), 4.5),
+    (mouth, (0, -5.2, 5.8), 4.8),
+    (ear, EAR_CENTRE, 5.0),
+)

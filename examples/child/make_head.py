@@ -15,15 +15,27 @@ import head_shape
 import numpy as np
 import parts
 from charts import unwrap
+from distances import Array, capsule, sphere
 from motion import FPS, FRAMES, eye_matrix, head_matrix, pose
 from numpy.typing import NDArray
 from pxr import Gf, Kind, Sdf, Usd, UsdGeom, UsdShade, Vt
 from regions import NAMES, label
 from remesh import mesh_shape
-from shapes import Array, capsule, sphere
 
-GROUND = np.array([0.0, 27.0, 0.0])  # the bust stands on the ground, y = 0
-SKIN, LIPS, BLUSH = np.array([0.40, 0.205, 0.125]), np.array([0.36, 0.115, 0.09]), np.array([0.43, 0.175, 0.11])
+GROUND = np.array([0.0, 25.0, 0.0])  # the bust stands on the ground, y = 0
+
+# Linear red, green, blue.
+SKIN = np.array([0.40, 0.205, 0.125])
+LIPS = np.array([0.37, 0.10, 0.085])
+BLUSH = np.array([0.45, 0.15, 0.10])
+SHIRT = np.array([0.62, 0.36, 0.08])
+EYEBALL = np.array([0.82, 0.80, 0.77])
+IRIS = np.array([0.12, 0.045, 0.018])
+PUPIL = np.array([0.004, 0.004, 0.004])
+BROW = np.array([0.030, 0.017, 0.012])
+LASH = np.array([0.012, 0.008, 0.007])
+
+TIMES = [Usd.TimeCode.Default(), *map(Usd.TimeCode, map(float, FRAMES))]  # the default holds the rest pose
 
 
 @dataclass
@@ -42,31 +54,46 @@ def skin_size(points: Array) -> Array:
     """Edge lengths [cm]: fine around eyes, lips, nose and ears, growing slowly away from them."""
     p = head_shape.mirrored(points)
     fine = [
-        (sphere(p, head_shape.EYE_CENTRE + [0, 0, 1.2], 1.7), 0.2),
-        (capsule(p, (0, -5.1, 7.0), (1.9, -4.9, 6.2), 0.8), 0.2),
-        (sphere(p, (0.5, -3.2, 7.8), 1.0), 0.2),
-        (sphere(p, head_shape.EAR_CENTRE + [0.5, 0, -0.5], 2.8), 0.3),
+        (sphere(p, head_shape.EYE_CENTRE + [0, 0, 1.4], 1.9), 0.155),
+        (capsule(p, (0, -5.1, 7.0), (2.3, -4.9, 6.0), 0.8), 0.14),
+        (sphere(p, (0.5, -3.2, 7.8), 1.0), 0.155),
+        (sphere(p, head_shape.EAR_CENTRE + [0.5, 0, -0.5], 2.8), 0.235),
     ]
-    return np.min([size + 0.22 * np.maximum(distance, 0.0) for distance, size in fine] + [np.full(len(p), 0.72)], axis=0)
+    return np.min(
+        [size + 0.21 * np.maximum(distance, 0.0) for distance, size in fine] + [np.full(len(p), 0.64)], axis=0
+    )
+
+
+def skin_color(points: Array) -> Array:
+    """Colours per point: pink lips, warm cheeks, nose and ears."""
+    p = head_shape.mirrored(points)
+    glow = [(3.9, -3.4, 6.0), 1.7], [(0.0, -3.2, 8.6), 1.0], [head_shape.EAR_CENTRE + [1.2, 0.5, -1.0], 2.0]
+    blush = np.max([np.exp(-((sphere(p, centre, 0.0) / reach) ** 2)) for centre, reach in glow], axis=0)[:, None]
+    lips = np.clip(0.5 - head_shape.lips(p) / 0.15, 0.0, 1.0)[:, None]
+    color = SKIN + 0.8 * blush * (BLUSH - SKIN)
+    return color + lips * (LIPS - color)
+
+
+def shirt_size(points: Array) -> Array:
+    """Edge lengths [cm]: fine along the neckline."""
+    return np.minimum(0.3 + 0.3 * np.maximum(np.abs(head_shape.neckline(points)) - 0.5, 0.0), 1.1)
 
 
 def build() -> dict[str, Piece]:
     """Every mesh by name."""
     low, high = np.array([-9.6, -20.0, -11.2]), np.array([9.6, 11.2, 9.8])
-    points, triangles = mesh_shape(head_shape.skin, low, high, 0.24, skin_size)
+    points, triangles = mesh_shape(head_shape.skin, low, high, 0.3, skin_size)
     labels = label(points, triangles)
     regions = {name: np.flatnonzero(labels == k).astype(np.int32) for k, name in enumerate(NAMES)}
-    skin = Piece(points, triangles, SKIN, 0.5, unwrap(points, triangles, labels), regions)
-    cloth = mesh_shape(
-        head_shape.shirt, np.array([-13.6, -28.4, -10.0]), np.array([13.6, -8.0, 4.4]), 0.4, lambda p: np.full(len(p), 1.0)
-    )
-    pieces = {"skin": skin, "shirt": Piece(*cloth, np.array([0.62, 0.36, 0.08]), 0.9)}
+    skin = Piece(points, triangles, skin_color(points), 0.5, unwrap(points, triangles, labels), regions)
+    low, high = np.array([-11.6, -25.6, -9.2]), np.array([11.6, -7.6, 3.2])
+    pieces = {"skin": skin, "shirt": Piece(*mesh_shape(head_shape.shirt, low, high, 0.3, shirt_size), SHIRT, 0.9)}
     for side, sign in (("left", 1.0), ("right", -1.0)):
-        pieces[f"eye_{side}/white"] = Piece(*parts.eye_white(), np.array([0.82, 0.8, 0.77]), 0.12)
-        pieces[f"eye_{side}/iris"] = Piece(*parts.iris(), np.array([0.12, 0.045, 0.018]), 0.08)
-        pieces[f"eye_{side}/pupil"] = Piece(*parts.pupil(), np.array([0.004, 0.004, 0.004]), 0.05)
-        pieces[f"brow_{side}"] = Piece(*parts.brow(sign), np.array([0.03, 0.017, 0.012]), 0.8)
-        pieces[f"lash_{side}"] = Piece(*parts.lash(sign), np.array([0.012, 0.008, 0.007]), 0.7)
+        pieces[f"eye_{side}/eyeball"] = Piece(*parts.eyeball(), EYEBALL, 0.12)
+        pieces[f"eye_{side}/iris"] = Piece(*parts.iris(), IRIS, 0.08)
+        pieces[f"eye_{side}/pupil"] = Piece(*parts.pupil(), PUPIL, 0.05)
+        pieces[f"brow_{side}"] = Piece(*parts.brow(sign), BROW, 0.8)
+        pieces[f"lash_{side}"] = Piece(*parts.lash(sign), LASH, 0.7)
     return pieces
 
 
@@ -96,7 +123,9 @@ def define_mesh(stage: Usd.Stage, name: str, piece: Piece) -> UsdGeom.Mesh:
     mesh.CreateSubdivisionSchemeAttr(UsdGeom.Tokens.none)
     mesh.CreateFaceVertexCountsAttr(Vt.IntArray.FromNumpy(np.full(len(piece.triangles), 3, np.int32)))
     mesh.CreateFaceVertexIndicesAttr(Vt.IntArray.FromNumpy(piece.triangles.ravel()))
-    mesh.CreateDisplayColorAttr([Gf.Vec3f(*map(float, piece.color))])
+    per_point = piece.color.ndim == 2
+    color = mesh.CreateDisplayColorPrimvar(UsdGeom.Tokens.vertex if per_point else UsdGeom.Tokens.constant)
+    color.Set(Vt.Vec3fArray.FromNumpy(np.atleast_2d(piece.color).astype(np.float32)))
     if piece.uv is not None:
         values, indices = np.unique(piece.uv.reshape(-1, 2).astype(np.float32), axis=0, return_inverse=True)
         st = UsdGeom.PrimvarsAPI(mesh).CreatePrimvar(
@@ -117,7 +146,15 @@ def define_material(stage: Usd.Stage, name: str, piece: Piece) -> UsdShade.Mater
     material = UsdShade.Material.Define(stage, f"/child/materials/{name}")
     shader = UsdShade.Shader.Define(stage, f"/child/materials/{name}/surface")
     shader.CreateIdAttr("UsdPreviewSurface")
-    shader.CreateInput("diffuseColor", Sdf.ValueTypeNames.Color3f).Set(Gf.Vec3f(*map(float, piece.color)))
+    diffuse = shader.CreateInput("diffuseColor", Sdf.ValueTypeNames.Color3f)
+    if piece.color.ndim == 1:
+        diffuse.Set(Gf.Vec3f(*piece.color.tolist()))
+    else:
+        reader = UsdShade.Shader.Define(stage, f"/child/materials/{name}/color")
+        reader.CreateIdAttr("UsdPrimvarReader_float3")
+        reader.CreateInput("varname", Sdf.ValueTypeNames.String).Set("displayColor")
+        reader.CreateOutput("result", Sdf.ValueTypeNames.Float3)
+        diffuse.ConnectToSource(reader.ConnectableAPI(), "result")
     shader.CreateInput("roughness", Sdf.ValueTypeNames.Float).Set(piece.roughness)
     material.CreateSurfaceOutput().ConnectToSource(shader.ConnectableAPI(), "surface")
     return material
@@ -126,9 +163,9 @@ def define_material(stage: Usd.Stage, name: str, piece: Piece) -> UsdShade.Mater
 def define_soft(stage: Usd.Stage, name: str, piece: Piece) -> None:
     """Skin and cloth bend: their points are sampled at every frame."""
     mesh = define_mesh(stage, name, piece)
-    set_points(mesh, piece.points + GROUND, Usd.TimeCode.Default())
-    for frame in FRAMES:
-        set_points(mesh, pose(piece.points, frame) + GROUND, Usd.TimeCode(float(frame)))
+    for time in TIMES:
+        points = piece.points if time.IsDefault() else pose(piece.points, time.GetValue())
+        set_points(mesh, points + GROUND, time)
 
 
 def define_rigid(stage: Usd.Stage, name: str, piece: Piece) -> None:
@@ -137,11 +174,12 @@ def define_rigid(stage: Usd.Stage, name: str, piece: Piece) -> None:
     set_points(mesh, piece.points, Usd.TimeCode.Default())
     owner = UsdGeom.Xform.Define(stage, f"/child/{name.split('/')[0]}") if "/" in name else mesh
     operation = UsdGeom.Xformable(owner).MakeMatrixXform()
-    side = 1.0 if "left" in name else -1.0
-    for frame in FRAMES:
-        matrix = eye_matrix(head_shape.EYE_CENTRE * [side, 1, 1], frame) if "/" in name else head_matrix(frame)
+    centre = head_shape.EYE_CENTRE * [1.0 if "left" in name else -1.0, 1.0, 1.0]
+    for time in TIMES:
+        frame = FRAMES[0] if time.IsDefault() else time.GetValue()
+        matrix = eye_matrix(centre, frame) if "/" in name else head_matrix(frame)
         matrix[:3, 3] += GROUND
-        operation.Set(Gf.Matrix4d(*matrix.T.ravel().tolist()), Usd.TimeCode(float(frame)))
+        operation.Set(Gf.Matrix4d(*matrix.T.ravel().tolist()), time)
 
 
 def set_points(mesh: UsdGeom.Mesh, points: Array, time: Usd.TimeCode) -> None:

@@ -10,22 +10,32 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from distances import Array
 from scipy.interpolate import BPoly
 from scipy.spatial.transform import Rotation
-from shapes import Array
 
 FPS = 24.0
 FRAMES = np.arange(1, 49)
 GRAVITY = 981.0  # cm/s²
-HOP = 11.0  # height [cm]
+HOP = 10.5  # height [cm]
 
-# Knots (frame, degrees); the channel rests for a moment at each.
-NOD = [(2, 0), (6.5, 19), (11, -7), (16, 0)]  # down is positive
-TURN = [(17, 0), (19.2, -5), (25.2, 43), (26.2, 43), (32.5, -2.5), (36, 0)]  # to the child's left
-TILT = [(18, 0), (25, -6), (32, 2), (36, 0)]  # the ear goes towards the shoulder
-GAZE = [(16.5, 0), (18.5, 14), (23.5, 12), (26, 0), (27.5, -13), (32, 0)]  # the eyes within the head
-BRACE = [(31, 0), (34.6, 10), (37.5, -7), (42.2, -4), (45, 11), (48, 0)]  # the head in the hop, as in the nod
-LEAN = [(31, 0), (34.4, 5), (37.2, -2), (42.5, 0), (44.8, 6), (48, 0)]  # the trunk in the hop
+
+def channel(*knots: tuple[float, float]) -> BPoly:
+    """Angles [degrees] over frames that come to rest at every knot."""
+    return BPoly.from_derivatives([f for f, _ in knots], [[value, 0.0, 0.0] for _, value in knots])
+
+
+NOD = channel((2, 0), (6.5, 19), (11, -7), (16, 0))  # down is positive
+TURN = channel((17, 0), (19.2, -5), (25.2, 43), (26.2, 43), (32.5, -2.5), (36, 0))  # to the child's left
+TILT = channel((18, 0), (25, -6), (32, 2), (36, 0))  # the ear goes towards the shoulder
+GAZE = channel((16.5, 0), (18.5, 14), (23.5, 12), (26, 0), (27.5, -13), (32, 0))  # the eyes within the head
+BRACE = channel((30, 0), (34.6, 8), (39.5, -6), (45.2, 8), (48, 0))  # the head in the hop, as in the nod
+LEAN = channel((30, 0), (34.4, 4), (38.5, -2), (44.8, 4), (48, 0))  # the trunk in the hop
+
+
+def at(curve: BPoly, frame: float) -> float:
+    """The value at a frame, held before the first knot and after the last."""
+    return float(curve(np.clip(frame, curve.x[0], curve.x[-1])))
 
 
 @dataclass(frozen=True)
@@ -42,30 +52,24 @@ class Joint:
         return t * t * t * (t * (6.0 * t - 15.0) + 10.0)
 
 
-TRUNK = Joint(np.array([0.0, -27.0, -3.0]), -90.0, -80.0, 0.0)
-NECK = Joint(np.array([0.0, -13.0, -3.2]), -17.0, -9.5, 0.2)
-SKULL = Joint(np.array([0.0, -7.2, -2.2]), -12.2, -7.6, 0.33)
+TRUNK = Joint(np.array([0.0, -25.0, -3.0]), -90.0, -80.0, 0.0)
+NECK = Joint(np.array([0.0, -12.0, -3.2]), -15.5, -9.0, 0.2)
+SKULL = Joint(np.array([0.0, -7.2, -2.2]), -12.6, -8.2, 0.33)
 
 
-def channel(knots: list[tuple[float, float]]) -> BPoly:
-    """Rest at every knot: velocity and acceleration are zero there."""
-    return BPoly.from_derivatives([f for f, _ in knots], [[value, 0.0, 0.0] for _, value in knots], extrapolate=False)
-
-
-def at(knots: list[tuple[float, float]], frame: float) -> float:
-    return float(channel(knots)(np.clip(frame, knots[0][0], knots[-1][0])))
-
-
-def height(frame: float) -> float:
+def hop() -> BPoly:
     """Height of the body over its rest [cm]: it crouches, pushes off, flies, lands and rises again."""
     speed = np.sqrt(2.0 * GRAVITY * HOP) / FPS  # cm per frame
     fall = -GRAVITY / FPS**2
-    flight = -2.0 * speed / fall  # frames
-    leave = 36.2
-    land = leave + flight
-    knots = [31.0, 34.4, leave, land, land + 1.7, 48.0]
-    values = [[0, 0, 0], [-4.6, 0, 1.2], [0, speed, fall], [0, -speed, fall], [-4.2, 0, 2.0], [0, 0, 0]]
-    return float(BPoly.from_derivatives(knots, values)(np.clip(frame, knots[0], knots[-1])))
+    leave = 36.4
+    land = leave - 2.0 * speed / fall
+    knots = [30.0, 34.2, leave, land, land + 2.0, 48.0]
+    return BPoly.from_derivatives(
+        knots, [[0, 0, 0], [-5.2, 0, 1.6], [0, speed, fall], [0, -speed, fall], [-5.0, 0, 1.8], [0, 0, 0]]
+    )
+
+
+HEIGHT = hop()
 
 
 def chain(frame: float) -> list[tuple[Joint, Array]]:
@@ -87,7 +91,7 @@ def pose(rest: Array, frame: float) -> Array:
     for joint, rotation in reversed(chain(frame)):
         turn = Rotation.from_rotvec(joint.share(rest)[:, None] * rotation)
         points = joint.pivot + turn.apply(points - joint.pivot)
-    return points + [0.0, height(frame), 0.0]
+    return points + [0.0, at(HEIGHT, frame), 0.0]
 
 
 def head_matrix(frame: float) -> Array:
@@ -98,7 +102,7 @@ def head_matrix(frame: float) -> Array:
         step = np.eye(4)
         step[:3, :3], step[:3, 3] = turn, joint.pivot - turn @ joint.pivot
         matrix = matrix @ step
-    matrix[1, 3] += height(frame)
+    matrix[1, 3] += at(HEIGHT, frame)
     return matrix
 
 

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
+from distances import Array, gradient, project
 from head_shape import EYE_CENTRE, EYE_RADIUS, LID, lid_direction, skin
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
-from shapes import Array, gradient, project
 
 Part = tuple[Array, NDArray[np.int32]]
 
-IRIS = np.radians(29.0)  # half-angle seen from the middle of the eyeball
+IRIS = np.radians(30.0)  # half-angle seen from the middle of the eyeball
 PUPIL = np.radians(14.0)
 
 
@@ -26,7 +26,7 @@ def dome(last: float, rings: int, lift: float, segments: int = 28) -> Part:
     return points, np.concatenate([fan(0, 1, segments), tube(1, rings, segments)])
 
 
-def eye_white() -> Part:
+def eyeball() -> Part:
     return dome(np.radians(120.0), 14, 0.0)
 
 
@@ -40,11 +40,11 @@ def pupil() -> Part:
 
 def brow(side: float) -> Part:
     """A soft strip over the eye, laid on the skin; ``side`` is 1 for the child's left and -1 for the right."""
-    bow = CubicSpline([0.0, 0.5, 1.0], [(1.35, 1.75, 8.0), (3.25, 2.55, 7.2), (5.1, 1.75, 5.6)])
+    bow = CubicSpline([0.0, 0.5, 1.0], [(1.45, 2.1, 8.0), (3.35, 2.8, 7.3), (5.35, 1.8, 5.6)])
     t = np.linspace(0.0, 1.0, 12)
     points = project(skin, bow(t) * [side, 1.0, 1.0], steps=8)
     normals = gradient(skin, points)
-    return strip(points, normals, np.interp(t, [0, 0.15, 0.55, 1], [0.2, 0.3, 0.27, 0.06]), 0.13)
+    return strip(points, normals, np.interp(t, [0, 0.2, 0.55, 1], [0.2, 0.34, 0.3, 0.07]), 0.14)
 
 
 def lash(side: float) -> Part:

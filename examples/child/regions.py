@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 import numpy as np
+from distances import Array
 from head_shape import EAR_CENTRE, ear_frame, ear_leaf, mirrored
 from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import connected_components
-from shapes import Array
 
 NAMES = ("scalp", "face", "ear_left", "ear_right", "neck")
 SKULL_CENTRE = np.array([0.0, 0.5, -1.2])
 
 # Heights over the angle around the vertical axis: 0° looks forward, 90° to the ear, 180° back.
-#             forehead   corner      temple       sideburn     over the ear            behind it            nape
-_HAIRLINE = PchipInterpolator(
-    np.radians([0, 15, 30, 42, 55, 66, 78, 85, 92, 100, 112, 124, 136, 150, 165, 180]),
-    [6.0, 6.05, 6.0, 5.3, 3.9, 2.6, 0.6, -0.2, 0.6, 1.6, 1.3, -0.8, -3.2, -4.7, -5.2, -5.0],
+_HAIRLINE = PchipInterpolator(  # forehead, corner, temple, sideburn, over the ear, behind it, nape
+    np.radians([0, 15, 30, 42, 55, 66, 78, 85, 90, 97, 104, 110, 118, 130, 150, 165, 180]),
+    [6.0, 6.05, 6.0, 5.3, 3.9, 2.6, 0.6, -0.3, 0.3, 1.2, 0.9, -0.8, -2.6, -4.0, -5.1, -5.4, -5.2],
 )
 _JAWLINE = PchipInterpolator(np.radians([0, 30, 60, 90, 110, 180]), [-8.7, -8.3, -7.2, -5.6, -4.4, -4.0])
 
@@ -32,7 +31,7 @@ def label(points: Array, triangles: NDArray) -> NDArray:
     """Index into ``NAMES`` of each triangle, every region in one piece."""
     p = mirrored(points[triangles].mean(axis=1))
     around = np.arctan2(p[:, 0], p[:, 2] - SKULL_CENTRE[2])
-    is_ear = (ear_leaf(ear_frame(p)) < 0.12) & (p[:, 0] > EAR_CENTRE[0] - 0.6)
+    is_ear = (ear_leaf(ear_frame(p)) < 0.2) & (p[:, 0] > EAR_CENTRE[0] - 0.7)
     side = np.where(points[triangles, 0].mean(axis=1) > 0, NAMES.index("ear_left"), NAMES.index("ear_right"))
     labels = np.where(p[:, 1] > _JAWLINE(around), NAMES.index("face"), NAMES.index("neck"))
     labels = np.where(above_hairline(p) > 0, NAMES.index("scalp"), labels)

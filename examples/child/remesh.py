@@ -11,10 +11,10 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
+from distances import Array, Shape, project
 from numpy.typing import NDArray
 from scipy.ndimage import zoom
 from scipy.sparse import csr_matrix
-from shapes import Array, Shape, project
 from skimage.measure import marching_cubes
 
 Triangles = NDArray[np.int32]
@@ -25,7 +25,7 @@ def mesh_shape(shape: Shape, low: Array, high: Array, cell: float, size: SizeFie
     """Points and outward triangles of the surface within a box, edges about ``size(points)`` long."""
     points, triangles = polygonise(shape, low, high, cell)
     points = project(shape, points)
-    for _ in range(8):
+    for _ in range(6):
         points, triangles = split_long(points, triangles, size)
         points, triangles = collapse_short(points, triangles, size)
         triangles = flip(points, triangles)
@@ -50,7 +50,7 @@ def polygonise(shape: Shape, low: Array, high: Array, cell: float) -> tuple[Arra
 
 
 def edges_of(triangles: Triangles) -> tuple[NDArray, NDArray]:
-    """Edges as sorted vertex pairs, shape (e, 2), and for each its two half-edges (3 · triangle + corner), shape (e, 2).
+    """Edges as sorted vertex pairs, shape (e, 2), and the two half-edges of each, shape (e, 2).
 
     Half-edge 3t + k runs from corner k to corner k + 1 of triangle t. The mesh is closed, so each edge has two.
     """
@@ -98,14 +98,15 @@ def split_long(points: Array, triangles: Triangles, size: SizeField) -> tuple[Ar
 
 
 def collapse_short(points: Array, triangles: Triangles, size: SizeField) -> tuple[Array, Triangles]:
-    """Merges the ends of edges shorter than 4/5 of the wish, the shortest first, where the surface stays a surface."""
+    """Merges the ends of edges shorter than 4/5 of the wish where the surface stays a surface, until none is left."""
+    shuffle = np.random.default_rng(0).permutation  # a mixed order lets many edges act at once
     while True:
         edges, _ = edges_of(triangles)
         length = relative_length(points, edges, size)
+        short = shuffle(np.flatnonzero(length < 0.8))
         link = adjacency(edges, len(points))
-        shared = np.asarray((link[edges[:, 0]].multiply(link[edges[:, 1]])).sum(axis=1)).ravel()
-        short = np.flatnonzero((length < 0.8) & (shared == 2))
-        short = short[np.argsort(length[short], kind="stable")]
+        shared = link[edges[short, 0]].multiply(link[edges[short, 1]]).sum(axis=1)
+        short = short[np.asarray(shared).ravel() == 2]
         short = short[alone(link, edges[short])]
         middle = points[edges[short]].mean(axis=1)
         moved = points.copy()

@@ -209,12 +209,14 @@ def write_still(
     samples: int = 64,
     view: str = "three_quarter",
     color: str = "dark_brown",
+    seconds: float | None = None,
     progress: Progress | None = None,
 ) -> None:
     """Path-traces one frame of a USD stage to a PNG: the hairs and the bodies in it, framed on their own.
 
-    frame: the first of the stage by default
-    view:  ``three_quarter``, ``front``, ``side`` or ``back``
+    frame:   the first of the stage by default
+    view:    ``three_quarter``, ``front``, ``side`` or ``back``
+    seconds: stop adding samples after that long
     """
     from ringlet import picture
 
@@ -228,6 +230,7 @@ def write_still(
         samples=samples,
         view=view,
         color=color,
+        seconds=seconds,
         progress=progress,
     )
 

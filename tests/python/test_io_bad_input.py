@@ -71,7 +71,7 @@ def test_files_that_are_no_usd_are_refused(tmp_path, capfd, name, content, says)
         (lambda m: m.GetPointsAttr().Block(), "/head/skin: has no points"),
         (lambda m: m.CreatePointsAttr([Gf.Vec3f(0, float("inf"), 0)] * 8), "point 0 is .*inf.*; must be finite"),
         (lambda m: m.CreateFaceVertexCountsAttr([]), "/head/skin: has no faces"),
-        (lambda m: m.CreateFaceVertexCountsAttr([4] * 5), "faceVertexCounts add up to 20, but there are 24 indices"),
+        (lambda m: m.CreateFaceVertexCountsAttr([4] * 5), "its faces have 20 corners, but there are 24 indices"),
         (lambda m: m.CreateFaceVertexCountsAttr([4] * 5 + [2, 2]), "face 5 has 2 corners; must have at least 3"),
         (lambda m: m.CreateFaceVertexCountsAttr([4] * 5 + [-4, 8]), "face 5 has -4 corners"),
         (lambda m: m.CreateFaceVertexIndicesAttr([8] * 24), "a face uses point 8; must be from 0 to 7"),

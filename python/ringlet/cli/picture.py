@@ -29,6 +29,9 @@ def picture(
     width: Annotated[int, typer.Option("--width", min=16, max=8192, help="Pixels across.")] = 900,
     height: Annotated[int, typer.Option("--height", min=16, max=8192, help="Pixels down.")] = 1100,
     samples: Annotated[int, typer.Option("--samples", min=1, help="Paths per pixel: more is cleaner and slower.")] = 64,
+    seconds: Annotated[
+        float | None, typer.Option("--seconds", min=1, help="Stop adding samples after that long.", show_default=False)
+    ] = None,
     sheet: Annotated[bool, typer.Option("--sheet", help="A contact sheet of the clip in place of a still.")] = False,
     frames: Frames = None,
     report: Report = None,
@@ -52,6 +55,7 @@ def picture(
                     width=width,
                     height=height,
                     samples=samples,
+                    seconds=seconds,
                     progress=progress,
                 )
         run.pictured(output, f"{stage.name}: the clip" if sheet else f"{stage.name}, {view.replace('_', ' ')}")

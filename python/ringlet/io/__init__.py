@@ -1,12 +1,11 @@
-"""Files in and out: USD."""
+"""Files in and out: USD; meshes and polylines from OBJ, hairs from .hair."""
 
+from ringlet.io.read import read_clip, read_curves, read_mesh, read_space
 from ringlet.io.usd.cache import CacheWriter, cache_groom_path, read_cache, write_cache
 from ringlet.io.usd.check import problems
-from ringlet.io.usd.curves import read_curves
 from ringlet.io.usd.groom import read_groom, write_groom
 from ringlet.io.usd.hairs import HairWriter, read_hairs, read_stage
-from ringlet.io.usd.mesh import Body, read_bodies, read_clip, read_mesh
-from ringlet.io.usd.stage import read_space
+from ringlet.io.usd.mesh import Body, read_bodies
 
 __all__ = [
     "Body",

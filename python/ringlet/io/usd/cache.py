@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from pxr import Sdf, Usd, UsdGeom
 
 from ringlet.errors import UserError
+from ringlet.io.space import to_metres
 from ringlet.io.usd.groom import LOCKS, VERSION, groom_prim
 from ringlet.io.usd.stage import reading
 from ringlet.io.usd.stream import StreamWriter
-from ringlet.io.usd.values import to_metres
 from ringlet.shot.cache import Cache
 from ringlet.stage import StageSpace
 

@@ -14,16 +14,15 @@ from pxr import Sdf, Usd, UsdGeom, Vt
 
 from ringlet.curves import Curves, offsets_from_counts
 from ringlet.errors import UserError
+from ringlet.io.space import from_metres, to_metres
 from ringlet.io.usd.stage import Source, choose, find_prim, prims, reading
 from ringlet.io.usd.values import (
     Types,
     float3,
-    from_metres,
     from_usd,
     read_points,
     rest_time,
     set_primvar,
-    to_metres,
     transformed,
 )
 from ringlet.mesh import Mesh
@@ -42,15 +41,8 @@ _BASES = {
 }
 
 
-def read_curves(path: Path | str, prim: str | None = None) -> Curves:
-    """Reads a ``BasisCurves`` prim in its rest pose as polylines, in metres and Y-up.
-
-    Cubic curves are evaluated at 6 points per segment, but for pinned Catmull-Rom curves, which keep their vertices.
-    Names come from a primvar like ``groom_id``, or are 0, 1, 2 …; primvars become attributes, ``widths`` the point
-    attribute ``width`` [m].
-
-    prim: its path; by default the only one there is
-    """
+def read_usd_curves(path: Path | str, prim: str | None = None) -> Curves:
+    """Reads a ``BasisCurves`` prim in its rest pose as polylines [m]; by default the only one there is."""
     with reading(path) as source:
         root = source.stage.GetPseudoRoot() if prim is None else find_prim(source, prim)
         found = [p for p in prims(root) if UsdGeom.BasisCurves(p)]

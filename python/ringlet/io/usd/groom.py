@@ -18,20 +18,21 @@ from pxr import Sdf, Usd, UsdGeom
 from ringlet.curves import Curves
 from ringlet.errors import UserError
 from ringlet.groom.groom import Groom
+from ringlet.io.space import from_metres
 from ringlet.io.usd.curves import define_curves, own_curves, set_points, set_roots
-from ringlet.io.usd.mesh import define_mesh, read_mesh, select_mesh
+from ringlet.io.usd.mesh import define_mesh, read_usd_mesh, select_mesh
 from ringlet.io.usd.stage import (
     SUFFIXES,
     Source,
     new_stage,
-    read_space,
+    read_usd_space,
     reading,
     refuse_itself,
     relative,
     require_layers,
     writing,
 )
-from ringlet.io.usd.values import Types, float3, from_metres
+from ringlet.io.usd.values import Types, float3
 from ringlet.mesh import Mesh
 from ringlet.stage import StageSpace
 
@@ -44,7 +45,7 @@ def write_groom(groom: Groom, path: Path | str) -> None:
     head = groom.scalp_file if groom.scalp_file and groom.scalp_file.suffix in SUFFIXES else None
     if head:
         refuse_itself(path, head, "head")
-    space = read_space(head) if head else groom.space
+    space = read_usd_space(head) if head else groom.space
     with writing(path) as aside:
         stage = new_stage(aside, space)
         root = UsdGeom.Xform.Define(stage, GROOM).GetPrim()
@@ -72,7 +73,7 @@ def read_groom(path: Path | str) -> Groom:
         scalp_file, scalp_prim = scalp_source(source)
         if not scalp_file.exists():
             raise UserError(f"{path}: its head {scalp_file} is not there; put it back or make the groom again")
-        scalp = read_mesh(scalp_file, scalp_prim)
+        scalp = read_usd_mesh(scalp_file, scalp_prim)
         return Groom(
             guides=_bound(source, GUIDES, scalp),
             locks=_bound(source, LOCKS, scalp),

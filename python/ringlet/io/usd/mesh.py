@@ -11,17 +11,17 @@ from numpy.typing import NDArray
 from pxr import Usd, UsdGeom, Vt
 
 from ringlet.errors import UserError
+from ringlet.io.polygons import check_polygons, fans
+from ringlet.io.space import from_metres, to_metres
 from ringlet.io.usd.stage import Source, choose, find_prim, prims, reading
 from ringlet.io.usd.values import (
     Types,
     float3,
-    from_metres,
     local_to_world,
     motion,
     read_points,
     rest_time,
     set_primvar,
-    to_metres,
     transformed,
 )
 from ringlet.mesh import Clip, Mesh
@@ -38,25 +38,14 @@ class Body:
     clip: Clip
 
 
-def read_mesh(path: Path | str, prim: str | None = None) -> Mesh:
-    """Reads a mesh in its rest pose, in metres and Y-up.
-
-    Polygons are cut into fans (subdivision surfaces by their cage), and face ``GeomSubset``s become regions. The rest
-    pose is the default value of the points, or the first time sample where there is none. A file without
-    ``metersPerUnit`` is in centimetres, as USD has it.
-
-    prim: its path; by default the only mesh, or the only one with a region called ``scalp``
-    """
+def read_usd_mesh(path: Path | str, prim: str | None = None) -> Mesh:
+    """Reads a mesh in its rest pose [m]."""
     with reading(path) as source:
         return mesh_at(source, select_mesh(source, prim))
 
 
-def read_clip(path: Path | str, prim: str | None = None, frames: tuple[float, float] | None = None) -> Clip:
-    """Reads the positions of a mesh at all whole frames, with every transform above it applied.
-
-    prim:   as for ``read_mesh``
-    frames: first and last frame, instead of the range of the stage; a mesh that does not move gives one sample
-    """
+def read_usd_clip(path: Path | str, prim: str | None = None, frames: tuple[float, float] | None = None) -> Clip:
+    """Reads the positions of a mesh at all whole frames [m]."""
     with reading(path) as source:
         return clip_at(source, select_mesh(source, prim), frames)
 
@@ -94,12 +83,12 @@ def mesh_at(source: Source, prim: Usd.Prim) -> Mesh:
     points = read_points(prim, time, where)
     counts = np.array(mesh.GetFaceVertexCountsAttr().Get(time) or [], np.int64)
     indices = np.array(mesh.GetFaceVertexIndicesAttr().Get(time) or [], np.int64)
-    _check_topology(counts, indices, len(points), where)
+    check_polygons(counts, indices, len(points), where)
 
     # A mirroring transform turns the winding round, as leftHanded does.
     mirrored = np.linalg.det(local_to_world(prim, time)[:3, :3]) < 0
     left_handed = mesh.GetOrientationAttr().Get(time) == UsdGeom.Tokens.leftHanded
-    corners, faces = _fans(counts, clockwise=bool(mirrored) != left_handed)
+    corners, faces = fans(counts, clockwise=bool(mirrored) != left_handed)
     kept = ~np.isin(faces, np.array(mesh.GetHoleIndicesAttr().Get(time) or [], np.int64))
     corners, faces = corners[kept], faces[kept]
     if len(faces) == 0:
@@ -162,28 +151,6 @@ def define_mesh(stage: Usd.Stage, path: str, mesh: Mesh, space: StageSpace) -> U
             defined, name, UsdGeom.Tokens.face, Vt.IntArray.FromNumpy(triangles.astype(np.int32))
         )
     return prim
-
-
-def _check_topology(counts: NDArray, indices: NDArray, points: int, where: str) -> None:
-    if len(counts) == 0:
-        raise UserError(f"{where}: has no faces; export it again or choose another mesh")
-    if counts.min() < 3:
-        raise UserError(f"{where}: face {counts.argmin()} has {counts.min()} corners; must have at least 3")
-    if counts.sum() != len(indices):
-        raise UserError(f"{where}: faceVertexCounts add up to {counts.sum()}, but there are {len(indices)} indices")
-    if (bad := np.flatnonzero((indices < 0) | (indices >= points))).size:
-        raise UserError(f"{where}: a face uses point {indices[bad[0]]}; must be from 0 to {points - 1}")
-
-
-def _fans(counts: NDArray, clockwise: bool) -> tuple[NDArray, NDArray]:
-    """Cuts polygons into fans: three corners per triangle, shape (m, 3), and its polygon, shape (m,)."""
-    faces = np.repeat(np.arange(len(counts)), counts - 2)
-    starts, cuts = np.cumsum(counts) - counts, np.cumsum(counts - 2) - (counts - 2)
-    step = np.arange(len(faces)) - cuts[faces]
-    around = np.stack([np.zeros_like(step), step + 1, step + 2], axis=1)
-    if clockwise:  # walk round the other way, from the same first corner
-        around[:, 1:] = counts[faces][:, None] - around[:, 1:]
-    return starts[faces][:, None] + around, faces
 
 
 def _uv(prim: Usd.Prim, corners: NDArray, triangles: NDArray, points: int, indices: int, where: str) -> NDArray | None:

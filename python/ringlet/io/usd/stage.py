@@ -106,8 +106,8 @@ def refuse_itself(path: Path | str, target: Path | str, what: str) -> None:
         raise UserError(f"{path}: is the {what} that it would refer to; choose another name")
 
 
-def read_space(path: Path | str) -> StageSpace:
-    """Unit, up-axis and rate of a USD file. Where it does not say: 0.01 m (USD's own fallback), Y and 24."""
+def read_usd_space(path: Path | str) -> StageSpace:
+    """Unit, up-axis and rate of a USD file."""
     with reading(path) as source:
         return source.space
 

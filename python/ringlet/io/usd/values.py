@@ -1,4 +1,4 @@
-"""Numpy arrays as USD values, and points between the file's space and ours (metres, Y-up)."""
+"""Numpy arrays as USD values, and where and when the points of a prim are."""
 
 from __future__ import annotations
 
@@ -8,8 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pxr import Sdf, Usd, UsdGeom, Vt
 
-from ringlet.errors import UserError
-from ringlet.stage import StageSpace
+from ringlet.io.space import check_points
 
 Types = Sdf.ValueTypeNames
 
@@ -66,31 +65,11 @@ def float3(values: NDArray) -> Vt.Vec3fArray:
     return Vt.Vec3fArray.FromNumpy(np.ascontiguousarray(values, np.float32))
 
 
-def to_metres(points: NDArray, space: StageSpace) -> NDArray:
-    """Points of a file, shape (n, 3) → [m], Y-up, same type."""
-    scaled = points * points.dtype.type(space.meters_per_unit)
-    if space.up_axis == "Z":  # a quarter turn about x
-        scaled = np.stack([scaled[:, 0], scaled[:, 2], -scaled[:, 1]], axis=1)
-    return scaled
-
-
-def from_metres(points: NDArray, space: StageSpace) -> NDArray[np.float32]:
-    """Points [m], Y-up, shape (n, 3) → points of a file."""
-    scaled = points * points.dtype.type(1.0 / space.meters_per_unit)
-    if space.up_axis == "Z":
-        scaled = np.stack([scaled[:, 0], -scaled[:, 2], scaled[:, 1]], axis=1)
-    return np.ascontiguousarray(scaled, np.float32)
-
-
 def read_points(prim: Usd.Prim, time: Usd.TimeCode, where: str) -> NDArray[np.float64]:
     """The points of a mesh or of curves as the file has them, checked; shape (n, 3)."""
     value = UsdGeom.PointBased(prim).GetPointsAttr().Get(time)
-    if value is None or len(value) == 0:
-        raise UserError(f"{where}: has no points; export it again or choose another prim")
-    points = np.array(value, np.float64)
-    if not (finite := np.isfinite(points).all(axis=1)).all():
-        row = int(np.flatnonzero(~finite)[0])
-        raise UserError(f"{where}: point {row} is {points[row]}; must be finite")
+    points = np.array(value if value is not None else [], np.float64).reshape(-1, 3)
+    check_points(points, where)
     return points
 
 

@@ -10,6 +10,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import CubicSpline
 
 Array = NDArray[np.float64]
 Shape = Callable[[Array], Array]
@@ -34,10 +35,17 @@ def capsule(p: Array, start: ArrayLike, end: ArrayLike, radius: float, end_radiu
     return np.linalg.norm(p - a - t[:, None] * (b - a), axis=-1) - radius - taper * t
 
 
-def stroke(p: Array, points: Sequence[ArrayLike], radii: Sequence[float]) -> Array:
+def stroke(p: Array, points: Sequence[ArrayLike] | Array, radii: Sequence[float] | Array) -> Array:
     """A chain of capsules, as drawn with a round brush of changing size."""
     links = zip(points[:-1], points[1:], radii[:-1], radii[1:], strict=True)
     return np.min([capsule(p, a, b, ra, rb) for a, b, ra, rb in links], axis=0)
+
+
+def smooth(points: Sequence[ArrayLike], radii: Sequence[float], pieces: int = 3) -> tuple[Array, Array]:
+    """Points and radii of a stroke without corners, each link cut into pieces along a spline."""
+    knots = np.arange(len(points))
+    fine = np.linspace(0, len(points) - 1, pieces * (len(points) - 1) + 1)
+    return CubicSpline(knots, np.asarray(points, float))(fine), np.interp(fine, knots, radii)
 
 
 def union(a: Array, b: Array, blend: float) -> Array:

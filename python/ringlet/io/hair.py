@@ -1,0 +1,78 @@
+"""Cem Yuksel's .hair files: hair models as plain arrays.
+
+Format: http://www.cemyuksel.com/research/hairmodels/. A file says neither its unit nor its up-axis.
+"""
+
+from __future__ import annotations
+
+import struct
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ringlet.curves import Curves, offsets_from_counts
+from ringlet.errors import UserError
+from ringlet.io.space import to_metres
+from ringlet.stage import StageSpace
+
+HEADER = struct.Struct(
+    "<4sIIIIff3f88s"
+)  # magic, hairs, points, arrays, segments, thickness, transparency, colour, text
+SEGMENTS, POINTS, THICKNESS, TRANSPARENCY, COLOR = (1 << bit for bit in range(5))
+
+
+def read_hair(path: Path, space: StageSpace) -> Curves:
+    """Reads all hairs, root first; point attributes ``width``, a diameter [m], and, where there, ``color``."""
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise UserError(f"{path}: cannot be read ({error.strerror}); check the name") from None
+    if len(data) < HEADER.size or data[:4] != b"HAIR":
+        raise UserError(f"{path}: is not a .hair file (it does not begin with HAIR); choose another")
+    _, hairs, points, arrays, segments, thickness, *_ = HEADER.unpack_from(data)
+    if not arrays & POINTS:
+        raise UserError(f"{path}: holds no points; export it again")
+    if len(data) < HEADER.size + 12 * points:  # before room is made for what is not there
+        raise UserError(f"{path}: has {len(data)} bytes, too few for {points} points; export it again")
+
+    def take(flag: int, dtype: str, count: int) -> NDArray | None:
+        """The next array of the file, if it is there."""
+        nonlocal place
+        if not arrays & flag:
+            return None
+        end = place + count * np.dtype(dtype).itemsize
+        if end > len(data):
+            raise UserError(f"{path}: has {len(data)} bytes, but says it holds {end} or more; export it again")
+        values, place = np.frombuffer(data, dtype, count, place), end
+        return values
+
+    place = HEADER.size
+    each = take(SEGMENTS, "<u2", hairs)
+    if each is None:
+        if hairs * (segments + 1) != points:
+            raise UserError(
+                f"{path}: {hairs} hairs of {segments} segments do not make {points} points; export it again"
+            )
+        each = np.full(hairs, segments)
+    counts = each.astype(np.int64) + 1
+    if counts.sum() != points:
+        raise UserError(f"{path}: its hairs have {counts.sum()} points, but it holds {points}; export it again")
+    places = take(POINTS, "<f4", 3 * points)
+    widths = take(THICKNESS, "<f4", points)
+    take(TRANSPARENCY, "<f4", points)
+    colors = take(COLOR, "<f4", 3 * points)
+
+    assert places is not None
+    attributes = {
+        "width": (np.full(points, thickness, np.float32) if widths is None else widths) * space.meters_per_unit
+    }
+    if colors is not None:
+        attributes["color"] = colors.reshape(-1, 3)
+    curves = Curves(
+        to_metres(places.reshape(-1, 3).astype(np.float64), space),
+        offsets_from_counts(counts),
+        np.arange(hairs, dtype=np.int64),
+        point=attributes,
+    )
+    return curves.check(str(path))

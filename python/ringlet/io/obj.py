@@ -1,0 +1,104 @@
+"""Wavefront OBJ: meshes and polylines.
+
+Format: http://paulbourke.net/dataformats/obj/. A file says neither its unit nor its up-axis.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from ringlet.curves import Curves
+from ringlet.errors import UserError
+from ringlet.io.polygons import check_polygons, fans
+from ringlet.io.space import check_points, to_metres
+from ringlet.mesh import Mesh
+from ringlet.stage import StageSpace
+
+
+@dataclass
+class _Content:
+    """What the lines of a file say; indices count from 0."""
+
+    points: list[list[float]] = field(default_factory=list)
+    uv: list[list[float]] = field(default_factory=list)
+    faces: list[list[int]] = field(default_factory=list)
+    face_uv: list[list[int]] = field(default_factory=list)
+    groups: dict[str, list[int]] = field(default_factory=dict)
+    lines: list[list[int]] = field(default_factory=list)
+
+
+def read_obj_mesh(path: Path, space: StageSpace) -> Mesh:
+    """Reads all faces as one mesh; groups (``g``) and objects (``o``) become regions."""
+    content = _parse(path)
+    points = np.array(content.points, np.float64).reshape(-1, 3)
+    check_points(points, str(path))
+    counts = np.array([len(face) for face in content.faces], np.int64)
+    indices = np.array([index for face in content.faces for index in face], np.int64)
+    check_polygons(counts, indices, len(points), str(path))
+    corners, faces = fans(counts)
+
+    uv, uv_indices = (
+        np.array(content.uv).reshape(-1, 2),
+        np.array([i for face in content.face_uv for i in face], np.int64),
+    )
+    if len(uv_indices) == len(indices) and (bad := np.flatnonzero((uv_indices < 0) | (uv_indices >= len(uv)))).size:
+        raise UserError(f"{path}: a face uses vt {uv_indices[bad[0]] + 1}; must be from 1 to {len(uv)}")
+    return Mesh(
+        name=path.name,
+        points=to_metres(points, space),
+        triangles=indices[corners].astype(np.int32),
+        uv=uv[uv_indices][corners] if len(uv_indices) == len(indices) else None,
+        faces=faces.astype(np.int32),
+        regions={
+            name: np.flatnonzero(np.isin(faces, chosen)).astype(np.int32) for name, chosen in content.groups.items()
+        },
+    )
+
+
+def read_obj_curves(path: Path, space: StageSpace) -> Curves:
+    """Reads the polylines (``l``), root first."""
+    content = _parse(path)
+    points = to_metres(np.array(content.points, np.float64).reshape(-1, 3), space)
+    for line in content.lines:
+        if min(line) < 0 or max(line) >= len(points):
+            raise UserError(f"{path}: a line uses point {max(line) + 1}; must be from 1 to {len(points)}")
+    return Curves.from_list([points[line] for line in content.lines]).check(str(path))
+
+
+def _parse(path: Path) -> _Content:
+    content, named = _Content(), []
+    try:
+        text = path.read_text(encoding="utf-8", errors="replace")
+    except OSError as error:
+        raise UserError(f"{path}: cannot be read ({error.strerror}); check the name") from None
+    for number, line in enumerate(text.replace("\\\n", " ").splitlines(), 1):
+        key, *words = line.split("#", 1)[0].split() or [""]
+        try:
+            if key == "v":
+                x, y, z = map(float, words[:3])
+                content.points.append([x, y, z])
+            elif key == "vt":
+                u, v = map(float, (*words, "0")[:2])
+                content.uv.append([u, v])
+            elif key == "f":
+                parts = [word.split("/") for word in words]
+                content.faces.append([_index(part[0], len(content.points)) for part in parts])
+                content.face_uv.append([_index(part[1], len(content.uv)) for part in parts if part[1:] and part[1]])
+                for name in named:
+                    content.groups.setdefault(name, []).append(len(content.faces) - 1)
+            elif key == "l":
+                content.lines.append([_index(word.split("/")[0], len(content.points)) for word in words])
+            elif key in ("g", "o"):
+                named = words
+        except ValueError:
+            raise UserError(f"{path}: line {number} is '{line.strip()[:60]}'; must be numbers after '{key}'") from None
+    return content
+
+
+def _index(word: str, count: int) -> int:
+    """An index that counts from 1, or back from the last one there is so far, as one that counts from 0."""
+    index = int(word)
+    return index - 1 if index > 0 else count + index if index < 0 else -1

@@ -1,0 +1,34 @@
+"""Points between the space of a file and ours: metres, Y-up."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ringlet.errors import UserError
+from ringlet.stage import StageSpace
+
+
+def to_metres(points: NDArray, space: StageSpace) -> NDArray:
+    """Points of a file, shape (n, 3) → [m], Y-up, same type."""
+    scaled = points * points.dtype.type(space.meters_per_unit)
+    if space.up_axis == "Z":  # a quarter turn about x
+        scaled = np.stack([scaled[:, 0], scaled[:, 2], -scaled[:, 1]], axis=1)
+    return scaled
+
+
+def from_metres(points: NDArray, space: StageSpace) -> NDArray[np.float32]:
+    """Points [m], Y-up, shape (n, 3) → points of a file."""
+    scaled = points * points.dtype.type(1.0 / space.meters_per_unit)
+    if space.up_axis == "Z":
+        scaled = np.stack([scaled[:, 0], -scaled[:, 2], scaled[:, 1]], axis=1)
+    return np.ascontiguousarray(scaled, np.float32)
+
+
+def check_points(points: NDArray, where: str) -> None:
+    """Refuses points of a file, shape (n, 3), that are none or not finite."""
+    if len(points) == 0:
+        raise UserError(f"{where}: has no points; export it again or choose another")
+    if not (finite := np.isfinite(points).all(axis=1)).all():
+        row = int(np.flatnonzero(~finite)[0])
+        raise UserError(f"{where}: point {row} is {points[row]}; must be finite")
