@@ -178,7 +178,7 @@ def test_a_zone_shortens_the_hair_it_looks_towards():
 
 def test_hair_flows_away_from_a_parting_and_locks_do_not_mix_its_sides():
     flat = BASE[: BASE.index("[curl]")].replace(
-        "length = 6", "length = 6\nlift = 0.1\ndroop = 0\npart = { reach = 20 }"
+        "count = 20", "count = 150\nlift = 0.1\ndroop = 0\npart = { reach = 20 }"
     )
     locks = groom(flat).locks
     away = np.abs(locks.roots[:, 0])
