@@ -18,6 +18,7 @@ myst_heading_anchors = 3
 exclude_patterns = ["_build", "_generated"]
 autodoc_typehints = "signature"
 autodoc_member_order = "bysource"
+autodoc_class_signature = "separated"  # the fields are told in the text
 html_theme = "alabaster"
 html_title = f"Ringlet {release}"
 html_theme_options = {

@@ -1,4 +1,4 @@
-"""Writes the references of recipes, shots and commands as Markdown, from the schemas and the command line."""
+"""Writes the references of recipes, shots, commands and the Python API as Markdown, from the program itself."""
 
 from __future__ import annotations
 
@@ -15,13 +15,14 @@ import ringlet
 
 
 def write_references(folder: Path) -> None:
-    """Writes ``recipe.md``, ``shot.md`` and ``commands.md`` to a folder, each only when it has changed."""
+    """Writes the four references to a folder, each only when it has changed."""
     folder.mkdir(exist_ok=True)
     schemas = ringlet.schema()
     for name, lines in {
         "recipe": settings(schemas["recipe"]),
         "shot": settings(schemas["shot"]),
         "commands": commands(),
+        "python": public_names(),
     }.items():
         path, text = folder / f"{name}.md", "\n".join(lines) + "\n"
         if not path.exists() or path.read_text() != text:
@@ -113,3 +114,15 @@ def commands() -> Iterator[str]:
             names = [param.metavar] if param.param_type_name == "argument" else param.opts
             value = f" {param.metavar}" if param.param_type_name == "option" and param.metavar else ""
             yield f"| `{', '.join(names)}{value}` | {cell(param.help or '')} |"
+
+
+def public_names() -> Iterator[str]:
+    """Everything that ``import ringlet`` gives: functions in the order of the pipeline, then classes."""
+    names = [name for name in ringlet.__all__ if not name.startswith("__")]
+    classes = [name for name in names if inspect.isclass(getattr(ringlet, name))]
+    functions = sorted(set(names) - set(classes), key=lambda name: inspect.getsourcelines(getattr(ringlet, name))[1])
+    yield "## Functions\n\n```{eval-rst}"
+    yield from (f".. autofunction:: ringlet.{name}" for name in functions)
+    yield "```\n\n## Classes\n\n```{eval-rst}"
+    yield from (f".. autoclass:: ringlet.{name}\n   :members:\n   :exclude-members: model_config" for name in classes)
+    yield "```"

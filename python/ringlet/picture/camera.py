@@ -72,7 +72,7 @@ def frame(
     view: str | tuple[float, float] = "three_quarter",
     aspect: float = 1.0,
     margin: float = 0.06,
-    headroom: float = 0.3,
+    headroom: float = 0.4,
 ) -> Camera:
     """The nearest camera of a view that sees every point of the subject.
 

@@ -34,7 +34,7 @@ HAIR_COLORS: dict[str, HairColor] = {
     "black": HairColor(6.0, 0.3, 0.28),
     "dark_brown": HairColor(2.0, 0.35),
     "brown": HairColor(0.9, 0.7),
-    "auburn": HairColor(0.35, 1.6),
+    "auburn": HairColor(0.5, 2.4),
     "ginger": HairColor(0.08, 0.9),
     "blond": HairColor(0.15, 0.25, 0.33),
     "gray": HairColor(0.12, 0.0, 0.36),

@@ -32,7 +32,7 @@ def sheet(
     title: str = "",
     fps: float = 24.0,
     hairs: int = 6000,
-    samples: int = 16,
+    samples: int = 12,
     view: str | tuple[float, float] = "three_quarter",
     color: str = "dark_brown",
     progress: Progress | None = None,

@@ -13,7 +13,7 @@ from PIL import Image
 from ringlet.errors import UserError
 from ringlet.report.charts import line_chart
 from ringlet.report.findings import explain_worst, series, total, verdict
-from ringlet.report.model import Picture, RunReport, Stage
+from ringlet.report.model import MadeFile, Picture, RunReport, Stage
 
 STYLE = Path(__file__).with_name("style.css")
 
@@ -91,10 +91,9 @@ def _outcome(report: RunReport) -> str:
     said = "".join(f"<p>{escape(sentence)}</p>" for sentence in verdict(report.statistics))
     warned = "".join(f'<p class="warning">{escape(warning)}</p>' for warning in report.warnings)
     text = (f'<dl class="counts">{numbers}</dl>' if numbers else "") + warned + said
-    if not report.pictures and not text:
-        return ""
     hero = _picture(report.pictures[0]) if report.pictures else ""
-    return f'<section class="outcome">{hero}<div><h2>What was made</h2>{text}</div></section>'
+    beside = f"<div><h2>What was made</h2>{text}</div>" if text else ""
+    return f'<section class="outcome">{hero}{beside}</section>' if hero or beside else ""
 
 
 def _picture(picture: Picture) -> str:
@@ -194,14 +193,17 @@ def _frame_table(report: RunReport) -> str:
 def _files(report: RunReport) -> str:
     if not report.files:
         return ""
-    rows = "".join(
-        f"<tr><th scope='row'><code>{escape(file.path)}</code></th><td class='text'>{escape(file.what)}</td>"
-        f"<td>{_size(file.bytes)}</td></tr>"
-        for file in report.files
-    )
+    told = any(file.what for file in report.files)
+
+    def row(file: MadeFile) -> str:
+        holds = f"<td class='text'>{escape(file.what)}</td>" if told else ""
+        return f"<tr><th scope='row'><code>{escape(file.path)}</code></th>{holds}<td>{_size(file.bytes)}</td></tr>"
+
+    rows = "".join(row(file) for file in report.files)
+    holds = "<th scope='col' class='text'>Holds</th>" if told else ""
     return (
-        "<section><h2>Files</h2><table><thead><tr><th scope='col'>File</th><th scope='col' class='text'>Holds</th>"
-        f"<th scope='col'>Size</th></tr></thead><tbody>{rows}</tbody></table></section>"
+        f"<section><h2>Files</h2><table><thead><tr><th scope='col'>File</th>{holds}<th scope='col'>Size</th></tr>"
+        f"</thead><tbody>{rows}</tbody></table></section>"
     )
 
 
