@@ -13,7 +13,7 @@ from ringlet.mesh import Mesh
 from ringlet.picture import HAIR_COLORS, VIEWS, PosedBody, sheet, still
 from ringlet.picture.bodies import material
 from ringlet.picture.camera import frame
-from ringlet.picture.render import build_scene, mitsuba, trace
+from ringlet.picture.render import build_scene, mitsuba, trace, without_specks
 from ringlet.picture.strands import fibres, load_fibres, spline_controls
 from ringlet.picture.tone import develop
 from scipy.interpolate import BSpline
@@ -170,6 +170,16 @@ def test_a_still_tells_how_far_it_is_and_keeps_to_its_time(tmp_path: Path) -> No
         progress=lambda *step: told.append(step),
     )
     assert len(told) == 3  # the beginning, one pass, and the word that it is over
+
+
+def test_a_speck_is_spread_over_its_neighbourhood_and_no_light_is_lost() -> None:
+    passes = np.full((5, 40, 40, 4), 0.5)
+    passes[2, 20, 20, :3] += 5.0  # one pass met a light by chance
+    total, brightest = passes.sum(axis=0), passes.max(axis=0)
+    calm = without_specks(total, brightest, (total - brightest) / 4)
+    assert calm[20, 20, 0] < 0.6 * total[20, 20, 0]
+    assert calm[:, :, :3].sum() == pytest.approx(total[:, :, :3].sum(), rel=1e-3)
+    assert np.array_equal(calm[:, :, 3], total[:, :, 3])
 
 
 def test_bright_light_rolls_off_and_order_is_kept() -> None:

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter
 
 from ringlet.curves import Curves
 from ringlet.errors import UserError
@@ -131,9 +132,6 @@ def trace(
 ) -> NDArray[np.float32]:
     """Light and coverage (r, g, b, a), shape (height, width, 4): the mean of passes with different random numbers.
 
-    Where one pass is much brighter than all others together, a rare path met a light through many hairs; it is taken
-    down to what the others say, or it would leave a speck.
-
     seconds:  no further pass begins when it would end after this time
     progress: called with "picture", the passes done and to do
     """
@@ -158,10 +156,25 @@ def trace(
             break
     if progress and done < passes:
         progress("picture", passes, passes)
-    if done > 2:
-        others = (total - brightest) / (done - 1)
-        total += np.minimum(brightest, 1.5 * others + 0.05) - brightest
-    return (total / done).astype(np.float32)
+    light = total if done < 3 else without_specks(total, brightest, (total - brightest) / (done - 1))
+    return (light / done).astype(np.float32)
+
+
+def without_specks(
+    total: NDArray[np.float64], brightest: NDArray[np.float64], others: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Spreads specks over their neighbourhood.
+
+    A speck is a pixel with one pass much brighter than the mean of the others: a rare path met a light through many
+    hairs. It is taken down to what the others say, and the light that is lost so goes to the pixels around it, so that
+    hair, which is lit by many such paths, stays as bright as it is.
+
+    All of shape (height, width, 4): the sum of the passes, the brightest of them, and the mean of those without it.
+    """
+    steady = total + np.minimum(brightest, 1.5 * others + 0.05) - brightest
+    steady[:, :, 3] = total[:, :, 3]
+    before, after = (gaussian_filter(light, (2.5, 2.5, 0.0)) for light in (total, steady))
+    return steady * np.clip(before / np.maximum(after, 1e-9), 1.0, 2.0)
 
 
 def over_backdrop(image: NDArray[np.float32]) -> NDArray[np.floating]:

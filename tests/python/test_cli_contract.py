@@ -1,0 +1,80 @@
+"""What programs rely on: the JSON of ``bench`` and ``validate``, and their exit codes."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass
+
+import pytest
+from test_cli import run
+
+import ringlet
+
+
+@dataclass
+class Answer:
+    """A row of a validation, made up."""
+
+    case: str
+    expected: float
+    got: float
+    tolerance: float = 0.1
+
+    @property
+    def error(self) -> float:
+        return abs(self.got / self.expected - 1)
+
+    @property
+    def passed(self) -> bool:
+        return self.error <= self.tolerance
+
+    def json(self) -> dict:
+        return {**vars(self), "error": self.error, "pass": self.passed}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "asked"),
+    [
+        (["groom", "--set", "locks=20", "--set", "hairs=60"], {"locks": 20, "hairs": 60}),
+        (["strands", "--set", "strands=4", "--set", "steps=3"], {"strands": 4, "steps": 3}),
+    ],
+)
+def test_bench_prints_the_object_that_was_agreed(arguments, asked):
+    result = run("bench", *arguments, "--json", "--threads", "1")
+    assert result.exit_code == 0, result.output
+    told = json.loads(result.stdout)
+    assert told["name"] == arguments[0]
+    assert asked.items() <= told["params"].items()
+    assert told["threads"] == 1
+    assert told["simd"] in ("baseline", "avx2", "avx512")
+    for times in (told["cpu_ms"], told["wall_ms"]):
+        assert 0 < times["min"] <= times["median"] <= times["max"]
+    assert all(time >= 0 for time in told["stages"].values())
+
+
+def test_validate_prints_rows_and_succeeds_when_all_hold():
+    result = run("validate", "cantilever", "--json")
+    assert result.exit_code == 0, result.output
+    rows = json.loads(result.stdout)
+    assert rows
+    for row in rows:
+        assert set(row) == {"case", "expected", "got", "error", "tolerance", "pass"}
+        assert row["pass"] is (row["error"] <= row["tolerance"])
+
+
+@pytest.mark.parametrize("got", [2.0, math.nan])
+def test_validate_exits_with_1_when_one_row_does_not_hold(monkeypatch, got):
+    rows = [Answer("good", 1.0, 1.0), Answer("bad", 1.0, got)]
+    monkeypatch.setattr(ringlet, "run_validation", lambda *_, **__: rows)
+    assert run("validate").exit_code == 1
+    result = run("validate", "--json")
+    assert result.exit_code == 1
+    assert [row["pass"] for row in json.loads(result.stdout)] == [True, False]
+
+
+def test_validate_shows_a_table(monkeypatch):
+    monkeypatch.setattr(ringlet, "run_validation", lambda *_, **__: [Answer("a rod that bends", 1.0, 2.0)])
+    shown = run("validate").stdout
+    assert "a rod that bends" in shown
+    assert "FAILS" in shown
