@@ -29,8 +29,8 @@ build: .venv/built ## set up .venv and build: gives .venv/bin/ringlet
 	@touch $@
 
 .venv/tooled: .venv/built
-	@echo "Building the C++ tests and installing what tests, lints and documents need"
-	@$(pip) --no-build-isolation --config-settings=cmake.define.RINGLET_TESTS=ON --editable '.[dev]'
+	@echo "Installing what tests, lints and documents need"
+	@$(pip) --no-build-isolation --editable '.[dev]'
 	@touch $@
 
 demo: build ## groom, simulate and picture the example: writes out/demo
