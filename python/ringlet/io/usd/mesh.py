@@ -19,6 +19,7 @@ from ringlet.io.usd.values import (
     float3,
     local_to_world,
     motion,
+    read_integers,
     read_points,
     rest_time,
     set_primvar,
@@ -81,15 +82,15 @@ def mesh_at(source: Source, prim: Usd.Prim) -> Mesh:
     """The mesh of a prim in its rest pose [m]."""
     where, time, mesh = source.where(prim), rest_time(prim), UsdGeom.Mesh(prim)
     points = read_points(prim, time, where)
-    counts = np.array(mesh.GetFaceVertexCountsAttr().Get(time) or [], np.int64)
-    indices = np.array(mesh.GetFaceVertexIndicesAttr().Get(time) or [], np.int64)
+    counts = read_integers(mesh.GetFaceVertexCountsAttr(), time, where)
+    indices = read_integers(mesh.GetFaceVertexIndicesAttr(), time, where)
     check_polygons(counts, indices, len(points), where)
 
     # A mirroring transform turns the winding round, as leftHanded does.
     mirrored = np.linalg.det(local_to_world(prim, time)[:3, :3]) < 0
     left_handed = mesh.GetOrientationAttr().Get(time) == UsdGeom.Tokens.leftHanded
     corners, faces = fans(counts, clockwise=bool(mirrored) != left_handed)
-    kept = ~np.isin(faces, np.array(mesh.GetHoleIndicesAttr().Get(time) or [], np.int64))
+    kept = ~np.isin(faces, read_integers(mesh.GetHoleIndicesAttr(), time, where))
     corners, faces = corners[kept], faces[kept]
     if len(faces) == 0:
         raise UserError(f"{where}: has no faces; export it again or choose another mesh")
@@ -190,7 +191,7 @@ def _regions(prim: Usd.Prim, faces: NDArray, count: int, where: str) -> dict[str
     """Face subsets as sets of triangles."""
     regions = {}
     for name, subset in _subsets(prim).items():
-        chosen = np.array(subset.GetIndicesAttr().Get(Usd.TimeCode.EarliestTime()) or [], np.int64)
+        chosen = read_integers(subset.GetIndicesAttr(), Usd.TimeCode.EarliestTime(), f"{where}/{name}")
         if (bad := np.flatnonzero((chosen < 0) | (chosen >= count))).size:
             raise UserError(f"{where}/{name}: names face {chosen[bad[0]]}; must be from 0 to {count - 1}")
         inside = np.zeros(count, bool)
