@@ -5,6 +5,7 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
 python := .venv/bin/python
 pip := $(python) -m pip install --quiet
+editable := $(pip) --no-build-isolation --config-settings=cmake.define.RINGLET_TESTS=OFF --editable
 
 # What the compiled part of the package is made from; editing Python needs no new build.
 sources := pyproject.toml CMakeLists.txt $(wildcard cmake/*) $(shell find src bindings -type f)
@@ -25,12 +26,12 @@ build: .venv/built ## set up .venv and build: gives .venv/bin/ringlet
 
 .venv/built: .venv/prepared $(sources)
 	@echo "Building Ringlet and installing what it needs"
-	@$(pip) --no-build-isolation --editable .
+	@$(editable) .
 	@touch $@
 
 .venv/tooled: .venv/built
-	@echo "Building the C++ tests and installing what tests, lints and documents need"
-	@$(pip) --no-build-isolation --config-settings=cmake.define.RINGLET_TESTS=ON --editable '.[dev]'
+	@echo "Installing what tests, lints and documents need"
+	@$(editable) '.[dev]'
 	@touch $@
 
 demo: build ## groom, simulate and picture the example: writes out/demo

@@ -19,7 +19,10 @@ step() { # name, command …
     fi
 }
 
-cpp_tests() { $bin/cmake --build build/editable --target ringlet_tests && $bin/ctest --test-dir build/editable --output-on-failure; }
+cpp_tests() {
+    $bin/cmake -S . -B build/editable -D RINGLET_TESTS=ON && $bin/cmake --build build/editable --target ringlet_tests &&
+        $bin/ctest --test-dir build/editable --output-on-failure
+}
 
 step "C++ tests" cpp_tests
 step "Python tests" $bin/python -m pytest -n 2 tests/python

@@ -124,6 +124,7 @@ def test_names_widths_and_primvars_come_along(tmp_path):
     ("change", "message"),
     [
         (lambda c: c.CreateWrapAttr("periodic"), "wrap is periodic"),
+        (lambda c: c.CreateBasisAttr("hermite"), "basis is hermite; must be bezier, bspline or catmullRom"),
         (lambda c: c.CreateCurveVertexCountsAttr([4, 5]), "add up to 9, but there are 8 points"),
         (
             lambda c: c.CreateCurveVertexCountsAttr([5, 3]),

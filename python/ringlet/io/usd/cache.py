@@ -13,7 +13,7 @@ from pxr import Sdf, Usd, UsdGeom
 from ringlet.errors import UserError
 from ringlet.io.space import to_metres
 from ringlet.io.usd.groom import LOCKS, VERSION, groom_prim
-from ringlet.io.usd.stage import reading
+from ringlet.io.usd.stage import parse_json, reading
 from ringlet.io.usd.stream import StreamWriter
 from ringlet.shot.cache import Cache
 from ringlet.stage import StageSpace
@@ -46,9 +46,9 @@ def read_cache(path: Path | str) -> Cache:
             if len(moved) != rest:
                 raise UserError(f"{path}: has {len(moved)} points at frame {frame:g}, its groom {rest}; simulate again")
             points[index] = to_metres(moved, source.space)
-        kept = [layer.customLayerData.get("ringlet", {}) for layer in source.stage.GetLayerStack()]
+        kept = [layer.customLayerData.get("ringlet") or {} for layer in source.stage.GetLayerStack()]
         statistics = next((data["statistics"] for data in kept if "statistics" in data), "[]")
-        return Cache(np.array(frames), points, json.loads(statistics))
+        return Cache(np.array(frames), points, parse_json(source, statistics, "ringlet:statistics"))
 
 
 def cache_groom_path(path: Path | str) -> Path:

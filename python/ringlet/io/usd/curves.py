@@ -20,6 +20,7 @@ from ringlet.io.usd.values import (
     Types,
     float3,
     from_usd,
+    read_integers,
     read_points,
     rest_time,
     set_primvar,
@@ -89,7 +90,10 @@ def own_curves(source: Source, prim: Usd.Prim, time: Usd.TimeCode | None = None,
     curves = Curves(points, offsets_from_counts(counts), np.array(ids, np.int64))
     schema = UsdGeom.BasisCurves(prim)
     if schema.GetWidthsInterpolation() == UsdGeom.Tokens.vertex and "width" not in curves.curve:
-        curves.point["width"] = np.array(schema.GetWidthsAttr().Get()) * np.float32(source.space.meters_per_unit)
+        widths = np.array(schema.GetWidthsAttr().Get() or [], np.float32)
+        if len(widths) != len(points):
+            raise UserError(f"{where}: has {len(widths)} widths for {len(points)} points; write the file again")
+        curves.point["width"] = widths * np.float32(source.space.meters_per_unit)
     for primvar in UsdGeom.PrimvarsAPI(prim).GetPrimvarsWithAuthoredValues():
         name = primvar.GetPrimvarName()
         if not name.startswith(OWN) or name == f"{OWN}id":
@@ -183,6 +187,8 @@ class _Sampling:
             self.segments, self.offsets = counts - 1, self.offsets_in
             return
 
+        if basis not in _BASES:
+            raise UserError(f"{where}: basis is {basis}; must be bezier, bspline or catmullRom: convert the curves")
         stride, least = (3, 4) if basis == UsdGeom.Tokens.bezier else (1, 2 if pinned else 4)
         if (bad := np.flatnonzero((counts < least) | ((counts - 1) % stride != 0))).size:
             rule = "4, 7, 10 …" if stride == 3 else f"at least {least}"
@@ -231,8 +237,7 @@ class _Sampling:
 
 def _counts(prim: Usd.Prim, time: Usd.TimeCode, points: int, where: str) -> NDArray[np.int64]:
     """Vertices per curve, checked."""
-    value = UsdGeom.Curves(prim).GetCurveVertexCountsAttr().Get(time)
-    counts = np.array(value if value is not None else [], np.int64)
+    counts = read_integers(UsdGeom.Curves(prim).GetCurveVertexCountsAttr(), time, where)
     if len(counts) == 0:
         raise UserError(f"{where}: there are no curves; give at least one")
     if counts.min() < 2:

@@ -25,6 +25,7 @@ from ringlet.io.usd.stage import (
     SUFFIXES,
     Source,
     new_stage,
+    parse_json,
     read_usd_space,
     reading,
     refuse_itself,
@@ -82,7 +83,7 @@ def read_groom(path: Path | str) -> Groom:
             scalp_prim=scalp_prim,
             region=_get(root, "region"),
             space=source.space,
-            hairs=json.loads(_get(root, "hairs") or "{}"),
+            hairs=parse_json(source, _get(root, "hairs") or "{}", "ringlet:hairs"),
             recipe=_get(root, "recipe"),
         )
 
@@ -147,11 +148,11 @@ def _define_guides(stage: Usd.Stage, path: str, curves: Curves, groom: Groom, sp
 def _bound(source: Source, path: str, scalp: Mesh) -> Curves:
     """Locks or guides as they were written, whose roots are still on the scalp."""
     curves = own_curves(source, source.stage.GetPrimAtPath(path)).check(f"{source.path} {path}")
-    last = curves.curve.get("root_triangle", np.zeros(1)).max()
-    if last >= len(scalp.triangles):
+    triangles = curves.curve.get("root_triangle", np.zeros(1))
+    if (bad := np.flatnonzero((triangles < 0) | (triangles >= len(scalp.triangles)))).size:
         raise UserError(
-            f"{source.path}: {path} has a root on triangle {last}, but {scalp.name} has {len(scalp.triangles)}; "
-            "the head has changed: make the groom again"
+            f"{source.path}: {path} has a root on triangle {triangles[bad[0]]}, but {scalp.name} has "
+            f"{len(scalp.triangles)}; the head has changed: make the groom again"
         )
     return curves
 

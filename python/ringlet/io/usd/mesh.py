@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from pxr import Usd, UsdGeom, Vt
+from pxr import Usd, UsdGeom, UsdSkel, Vt
 
 from ringlet.errors import UserError
 from ringlet.io.polygons import check_polygons, fans
@@ -19,6 +19,7 @@ from ringlet.io.usd.values import (
     float3,
     local_to_world,
     motion,
+    read_integers,
     read_points,
     rest_time,
     set_primvar,
@@ -58,6 +59,7 @@ def read_bodies(path: Path | str) -> list[Body]:
 
 def select_mesh(source: Source, name: str | None) -> Usd.Prim:
     """The mesh prim at a path, or the only one there is at or below it."""
+    _bake_skinning(source.stage)
     root = source.stage.GetPseudoRoot() if name is None else find_prim(source, name)
     meshes = [prim for prim in prims(root) if UsdGeom.Mesh(prim)]
     scalps = [prim for prim in meshes if SCALP in _subsets(prim)]
@@ -66,6 +68,7 @@ def select_mesh(source: Source, name: str | None) -> Usd.Prim:
 
 def visible_meshes(source: Source) -> list[Usd.Prim]:
     """Meshes that a render shows, under the default prim."""
+    _bake_skinning(source.stage)
     root = source.stage.GetDefaultPrim() or source.stage.GetPseudoRoot()
     shown = (UsdGeom.Tokens.default_, UsdGeom.Tokens.render)
     return [
@@ -81,15 +84,15 @@ def mesh_at(source: Source, prim: Usd.Prim) -> Mesh:
     """The mesh of a prim in its rest pose [m]."""
     where, time, mesh = source.where(prim), rest_time(prim), UsdGeom.Mesh(prim)
     points = read_points(prim, time, where)
-    counts = np.array(mesh.GetFaceVertexCountsAttr().Get(time) or [], np.int64)
-    indices = np.array(mesh.GetFaceVertexIndicesAttr().Get(time) or [], np.int64)
+    counts = read_integers(mesh.GetFaceVertexCountsAttr(), time, where)
+    indices = read_integers(mesh.GetFaceVertexIndicesAttr(), time, where)
     check_polygons(counts, indices, len(points), where)
 
     # A mirroring transform turns the winding round, as leftHanded does.
     mirrored = np.linalg.det(local_to_world(prim, time)[:3, :3]) < 0
     left_handed = mesh.GetOrientationAttr().Get(time) == UsdGeom.Tokens.leftHanded
     corners, faces = fans(counts, clockwise=bool(mirrored) != left_handed)
-    kept = ~np.isin(faces, np.array(mesh.GetHoleIndicesAttr().Get(time) or [], np.int64))
+    kept = ~np.isin(faces, read_integers(mesh.GetHoleIndicesAttr(), time, where))
     corners, faces = corners[kept], faces[kept]
     if len(faces) == 0:
         raise UserError(f"{where}: has no faces; export it again or choose another mesh")
@@ -153,6 +156,13 @@ def define_mesh(stage: Usd.Stage, path: str, mesh: Mesh, space: StageSpace) -> U
     return prim
 
 
+def _bake_skinning(stage: Usd.Stage) -> None:
+    """Turns the motion of skeletons into points and transforms, in the session layer, which is never saved."""
+    if any(UsdSkel.Root(prim) for prim in stage.Traverse()):
+        stage.SetEditTarget(stage.GetSessionLayer())
+        UsdSkel.BakeSkinning(Usd.PrimRange(stage.GetPseudoRoot()))
+
+
 def _uv(prim: Usd.Prim, corners: NDArray, triangles: NDArray, points: int, indices: int, where: str) -> NDArray | None:
     """Texture coordinates per triangle corner: of ``st``, or of the first primvar that holds some."""
     api = UsdGeom.PrimvarsAPI(prim)
@@ -190,7 +200,7 @@ def _regions(prim: Usd.Prim, faces: NDArray, count: int, where: str) -> dict[str
     """Face subsets as sets of triangles."""
     regions = {}
     for name, subset in _subsets(prim).items():
-        chosen = np.array(subset.GetIndicesAttr().Get(Usd.TimeCode.EarliestTime()) or [], np.int64)
+        chosen = read_integers(subset.GetIndicesAttr(), Usd.TimeCode.EarliestTime(), f"{where}/{name}")
         if (bad := np.flatnonzero((chosen < 0) | (chosen >= count))).size:
             raise UserError(f"{where}/{name}: names face {chosen[bad[0]]}; must be from 0 to {count - 1}")
         inside = np.zeros(count, bool)

@@ -7,6 +7,7 @@ the screen.
 from __future__ import annotations
 
 import difflib
+import json
 import math
 import os
 import re
@@ -14,6 +15,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from pxr import Sdf, Tf, Usd, UsdGeom, UsdUtils
 
@@ -21,6 +23,7 @@ from ringlet.errors import UserError
 from ringlet.files import replacing
 from ringlet.stage import StageSpace
 
+NOT_TEXT = "it holds text that is not UTF-8"
 SUFFIXES = (".usd", ".usda", ".usdc", ".usdz")
 
 
@@ -58,6 +61,8 @@ def reading(path: Path | str) -> Iterator[Source]:
         yield Source(path, stage, _space(stage, path))
     except Tf.ErrorException as error:
         raise UserError(f"{path}: cannot be read as USD ({_reason(error)}); write it again or choose another") from None
+    except UnicodeDecodeError:
+        raise UserError(f"{path}: cannot be read as USD ({NOT_TEXT}); write it again or choose another") from None
     finally:
         del warnings
 
@@ -149,6 +154,14 @@ def choose(source: Source, candidates: list[Usd.Prim], what: str) -> Usd.Prim:
     return candidates[0]
 
 
+def parse_json(source: Source, text: Any, name: str) -> Any:
+    """Plain values that Ringlet keeps as text under a name."""
+    try:
+        return json.loads(text)
+    except (TypeError, ValueError):
+        raise UserError(f"{source.path}: {name} is not JSON; write the file again") from None
+
+
 def require_layers(source: Source) -> None:
     """Refuses a file that lies over another which is not there."""
     for layer in source.stage.GetLayerStack(includeSessionLayers=False):
@@ -172,7 +185,10 @@ def _space(stage: Usd.Stage, path: Path) -> StageSpace:
 
 def _reason(error: Tf.ErrorException) -> str:
     """The telling part of what USD says."""
-    said = [str(part.commentary).strip() for part in error.args]
+    try:
+        said = [str(part.commentary).strip() for part in error.args]
+    except UnicodeDecodeError:
+        return NOT_TEXT
     if syntax := re.search(r"\.usda?:(\d+):\d+: ", said[0]):
         return f"syntax error in line {syntax[1]}"
     if said[0].startswith("Failed to open layer"):

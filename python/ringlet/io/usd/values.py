@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pxr import Sdf, Usd, UsdGeom, Vt
 
+from ringlet.errors import UserError
 from ringlet.io.space import check_points
 
 Types = Sdf.ValueTypeNames
@@ -71,6 +72,15 @@ def read_points(prim: Usd.Prim, time: Usd.TimeCode, where: str) -> NDArray[np.fl
     points = np.array(value if value is not None else [], np.float64).reshape(-1, 3)
     check_points(points, where)
     return points
+
+
+def read_integers(attribute: Usd.Attribute, time: Usd.TimeCode, where: str) -> NDArray[np.int64]:
+    """A list of whole numbers at a time, shape (n,); none where nothing is said."""
+    value = attribute.Get(time)
+    numbers = np.array(value if value is not None else [], np.int64 if value is None else None)
+    if numbers.ndim != 1 or (len(numbers) and numbers.dtype.kind not in "iu"):
+        raise UserError(f"{where}: {attribute.GetName()} is no list of whole numbers; export it again")
+    return numbers.astype(np.int64)
 
 
 def transformed(points: NDArray[np.float64], prim: Usd.Prim, time: Usd.TimeCode) -> NDArray[np.float64]:
