@@ -52,6 +52,13 @@ def test_the_same_recipe_gives_the_same_groom_and_another_seed_another():
     assert not np.array_equal(first.locks.points, other.locks.points)
 
 
+def test_variations_that_add_up_leave_every_lock_some_length():
+    wild = BASE.replace("length = 6", "length = { value = 6, vary = 1, noise = 1 }").replace(
+        "count = 20", "count = 300"
+    )
+    assert groom(wild).guides.lengths().min() > 0.0025
+
+
 def test_roots_are_on_the_scalp_region_and_keep_their_distance():
     locks = groom(BASE.replace("count = 60", "count = 300")).locks
     assert len(locks) == 300

@@ -4,6 +4,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from ringlet import UserError
 from ringlet.groom import PRESETS, parse_recipe, read_recipe, schema
@@ -34,6 +36,9 @@ def recipe(text):
         ("[[shape]]\nop = 'loft'\namout = 1", "shape[0].amout is not a setting; did you mean 'amount'?"),
         ("[[shape]]\nop = 'loft'\namount = { value = 1, ramp = [[0, 1], [2, 1]] }", "has a place at 2.0"),
         ("[[shape]]\nop = 'loft'\namount = { value = 1, ramp = [[1, 1], [0, 1]] }", "must ascend"),
+        ("[curl]\npreset = '4A'\nrate = [[0, -1]]", "curl.rate has a factor of -1.0"),
+        (f"[curl]\npreset = '4A'\nflatness = {10**400}", "must be a number"),
+        ("[guides]\nwhorl = [0, nan, 1]", "guides.whorl[1] is nan; input should be a finite number"),
         ("curl = 3", "curl is 3; must be a table"),
         ("unit = 'ft'", "unit is 'ft'; must be"),
         ("x = = 1", "not valid TOML: invalid value (at line 2"),
@@ -45,6 +50,46 @@ def test_mistakes_are_refused_with_file_setting_and_remedy(text, message):
     assert str(error.value).startswith("curls.recipe.toml: ")
     assert message in str(error.value)
     assert "\n" not in str(error.value)
+
+
+numbers = st.one_of(st.integers(), st.floats(), st.sampled_from([10**400, -(10**30)]))
+plain = st.one_of(numbers, st.booleans(), st.text("m c5.-", max_size=5), st.sampled_from(["5 mm", "-1 in", "4A"]))
+anything = st.recursive(
+    plain,
+    lambda inner: st.one_of(
+        st.lists(inner, max_size=3), st.dictionaries(st.sampled_from(["value", "vary", "ramp", "noise", "x"]), inner)
+    ),
+    max_leaves=8,
+)
+SETTINGS = [
+    (section, setting)
+    for section, model in (
+        ("guides", "Grown"),
+        ("locks", "Locks"),
+        ("curl", "Curl"),
+        ("clean", "Clean"),
+        ("hairs", "HairSettings"),
+    )
+    for setting in schema()["$defs"][model]["properties"]
+]
+
+
+def as_toml(value):
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{key} = {as_toml(part)}" for key, part in value.items()) + " }"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(as_toml, value)) + "]"
+    return str(value).lower() if isinstance(value, bool) else f"'{value}'" if isinstance(value, str) else repr(value)
+
+
+@settings(max_examples=400, deadline=None)
+@given(st.sampled_from(SETTINGS), anything)
+def test_whatever_stands_in_a_setting_is_read_or_refused_in_one_line(place, value):
+    section, setting = place
+    try:
+        recipe(f"[{section}]\n{setting} = {as_toml(value)}")
+    except UserError as error:
+        assert "\n" not in str(error)
 
 
 def test_a_file_that_is_no_recipe_is_refused(tmp_path):

@@ -11,7 +11,16 @@ from typing import Annotated, Any, get_args
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, ValidationInfo, field_validator, model_validator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Field,
+    FiniteFloat,
+    ValidationError,
+    ValidationInfo,
+    model_validator,
+)
 from pydantic_core import PydanticCustomError, core_schema
 from scipy.interpolate import PchipInterpolator
 
@@ -91,10 +100,11 @@ class Quantity:
                 value = float(match[1]) * UNITS[match[2]]
             except ValueError:
                 raise refuse(f"is '{value}'; must be a length such as \"5 mm\"") from None
-        elif isinstance(value, bool) or not isinstance(value, int | float):
+        elif isinstance(value, bool) or not isinstance(value, int | float) or abs(value) > 1e300:
             raise refuse(f"is {value!r}; must be a number")
         elif self.unit == "m":
             value = value * unit
+        value = float(value)
         suffix = f" {self.unit}" if self.unit else ""
         if not np.isfinite(value):
             raise refuse(f"is {value}; must be finite")
@@ -102,7 +112,7 @@ class Quantity:
             raise refuse(f"is {value:.6g}{suffix}; must be at least {self.least:.6g}{suffix}")
         if value > self.most:
             raise refuse(f"is {value:.6g}{suffix}; must be at most {self.most:.6g}{suffix}")
-        return float(value)
+        return value
 
     def _read(self, value: Any, table: bool, info: ValidationInfo) -> Any:
         unit = (info.context or {}).get("unit", 1.0)
@@ -152,38 +162,43 @@ class Varied(Section):
             factor += self.vary * (2.0 * random.uniform(ids) - 1.0)
         if self.noise > 0.0:
             factor += self.noise * random.field(places, self.noise_size)
-        return self.value * factor
+        return self.value * np.maximum(factor, 0.05)  # variations that add up never turn a value around
+
+
+def _in_order(ramp: list[tuple[float, float]]) -> list[tuple[float, float]]:
+    places = [at for at, _ in ramp]
+    if not ramp:
+        raise refuse("is empty; give at least one [place, factor]")
+    if min(places) < 0.0 or max(places) > 1.0:
+        outside = min(places) if min(places) < 0.0 else max(places)
+        raise refuse(f"has a place at {outside}; must be between 0 (root) and 1 (tip)")
+    if any(b <= a for a, b in pairwise(places)):
+        raise refuse(f"has places {places}; must ascend")
+    if any(factor < 0.0 for _, factor in ramp):
+        raise refuse(f"has a factor of {min(f for _, f in ramp)}; must be at least 0")
+    return ramp
+
+
+Ramp = Annotated[list[tuple[FiniteFloat, FiniteFloat]], AfterValidator(_in_order)]
+
+
+def along(ramp: list[tuple[float, float]], u: NDArray) -> NDArray[np.float64]:
+    """A ramp's factor at places ``u`` from root (0) to tip (1): smooth, no overshoot (Fritsch and Carlson 1980)."""
+    at, factor = np.array(ramp).T
+    if len(at) == 1:
+        return np.full(np.shape(u), factor[0])
+    return PchipInterpolator(at, factor)(np.clip(u, at[0], at[-1]))
 
 
 class Ramped(Varied):
     """A varied value with a ramp from root to tip: ``{ value = …, ramp = [[0, 1], [1, 0.5]] }`` multiplies it by 1 at
     the root and by 0.5 at the tip, smoothly between and without overshoot."""
 
-    ramp: list[tuple[float, float]] = Field(
-        default=[(0.0, 1.0), (1.0, 1.0)], description="[place, factor] from root (0) to tip (1)"
-    )
-
-    @field_validator("ramp")
-    @classmethod
-    def _in_order(cls, ramp: list[tuple[float, float]]) -> list[tuple[float, float]]:
-        places = [at for at, _ in ramp]
-        if not ramp:
-            raise refuse("is empty; give at least one [place, factor]")
-        if min(places) < 0.0 or max(places) > 1.0:
-            outside = min(places) if min(places) < 0.0 else max(places)
-            raise refuse(f"has a place at {outside}; must be between 0 (root) and 1 (tip)")
-        if any(b <= a for a, b in pairwise(places)):
-            raise refuse(f"has places {places}; must ascend")
-        if any(factor < 0.0 for _, factor in ramp):
-            raise refuse(f"has a factor of {min(f for _, f in ramp)}; must be at least 0")
-        return ramp
+    ramp: Ramp = Field(default=[(0.0, 1.0), (1.0, 1.0)], description="[place, factor] from root (0) to tip (1)")
 
     def along(self, u: NDArray) -> NDArray[np.float64]:
         """The ramp's factor at places ``u`` between root (0) and tip (1)."""
-        at, factor = np.array(self.ramp).T
-        if len(at) == 1:
-            return np.full(np.shape(u), factor[0])
-        return PchipInterpolator(at, factor)(np.clip(u, at[0], at[-1]))
+        return along(self.ramp, u)
 
 
 def explain(error: ValidationError, where: str) -> UserError:

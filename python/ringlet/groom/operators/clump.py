@@ -33,4 +33,5 @@ class Clump(Operator):
         amount = context.values("amount", self.amount, curves)[:, None] * self.amount.along(
             np.linspace(0, 1, points.shape[1])
         )
+        amount = np.minimum(amount, 1.0)
         return with_grid(curves, points + amount[:, :, None] * (points[leaders[nearest]] - points))

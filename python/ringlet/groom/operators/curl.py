@@ -13,7 +13,7 @@ from ringlet.curves import Curves, offsets_from_counts
 from ringlet.errors import UserError
 from ringlet.groom.operators.operator import Context, Operator, packed
 from ringlet.groom.presets import PRESETS
-from ringlet.groom.settings import Quantity, Ramped, Varied, refuse
+from ringlet.groom.settings import Quantity, Ramp, Ramped, Varied, along, refuse
 
 RAMP_SAMPLES = 128
 NOISE_VALUES = 24
@@ -43,9 +43,7 @@ class Curl(Operator):
     curls_per_cm: Annotated[Varied | None, Quantity("", 0.0, 20.0)] = Field(
         default=None, description="number of curls per centimetre of shape"
     )
-    rate: list[tuple[float, float]] = Field(
-        default=[(0.0, 1.0), (1.0, 1.0)], description="ramp: [place, factor] on curls per length"
-    )
+    rate: Ramp = Field(default=[(0.0, 1.0), (1.0, 1.0)], description="ramp: [place, factor] on curls per length")
     start: Annotated[float, Quantity("m", 0.0, 1.0)] = Field(
         default=0.01, description="length at the root over which the curl opens"
     )
@@ -120,7 +118,7 @@ class Curl(Operator):
             phase=np.radians(phase),
             start=np.full(len(ids), self.start),
             width_ramp=self.width.along(u),
-            rate_ramp=Ramped(value=1.0, ramp=self.rate).along(u),
+            rate_ramp=along(self.rate, u),
             width_noise=width_noise,
             rate_noise=rate_noise,
             hand=self._hands(context, ids),

@@ -6,13 +6,13 @@ from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, model_validator
+from pydantic import Field, FiniteFloat, model_validator
 
 from ringlet.curves import Curves, offsets_from_counts
 from ringlet.groom.operators.operator import UP, Context, Operator, unit
 from ringlet.groom.settings import Quantity, Section, Varied, refuse
 
-Vector = tuple[float, float, float]
+Vector = tuple[FiniteFloat, FiniteFloat, FiniteFloat]
 
 
 class Zone(Section):
