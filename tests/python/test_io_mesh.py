@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from pxr import Gf, Sdf, UsdGeom, Vt
+from pxr import Gf, Sdf, UsdGeom, UsdSkel, Vt
 from ringlet.io import problems, read_bodies, read_clip, read_mesh, read_space
 from usd_scenes import CUBE, CUBE_FACES, FRAMES, add_cube, new_stage, write_head
 
@@ -148,6 +148,32 @@ def test_bodies_are_the_visible_meshes_with_their_colours_through_references(tmp
     assert set(bodies) == {"left", "right", "head"}
     assert bodies["head"].mesh.color == (1, 0, 0)
     assert bodies["left"].clip.points.shape == (4, 8, 3)
+
+
+def test_a_skinned_mesh_follows_its_skeleton(tmp_path):
+    stage = new_stage(tmp_path / "a.usda", unit=1.0)
+    stage.SetStartTimeCode(1)
+    stage.SetEndTimeCode(3)
+    UsdSkel.Root.Define(stage, "/head")
+    mesh, bones = add_cube(stage), UsdSkel.Skeleton.Define(stage, "/head/bones")
+    bones.CreateJointsAttr(["neck", "neck/crown"])
+    bones.CreateBindTransformsAttr([Gf.Matrix4d(1), Gf.Matrix4d(1)])
+    bones.CreateRestTransformsAttr([Gf.Matrix4d(1), Gf.Matrix4d(1)])
+    motion = UsdSkel.Animation.Define(stage, "/head/motion")
+    motion.CreateJointsAttr(["neck", "neck/crown"])
+    motion.CreateRotationsAttr([Gf.Quatf(1)] * 2)
+    motion.CreateScalesAttr([Gf.Vec3h(1)] * 2)
+    for frame in (1, 2, 3):  # the crown rises, the neck stays
+        motion.CreateTranslationsAttr().Set([Gf.Vec3f(0), Gf.Vec3f(0, frame - 1, 0)], frame)
+    UsdSkel.BindingAPI.Apply(bones.GetPrim()).CreateAnimationSourceRel().SetTargets(["/head/motion"])
+    skin = UsdSkel.BindingAPI.Apply(mesh.GetPrim())
+    skin.CreateSkeletonRel().SetTargets(["/head/bones"])
+    skin.CreateJointIndicesPrimvar(False, 1).Set([int(y) for y in CUBE[:, 1]])
+    skin.CreateJointWeightsPrimvar(False, 1).Set([1.0] * 8)
+    stage.Save()
+    clip = read_clip(tmp_path / "a.usda")
+    np.testing.assert_allclose(read_mesh(tmp_path / "a.usda").points, CUBE)
+    np.testing.assert_allclose(clip.points[2], CUBE * [1, 3, 1], atol=1e-6)
 
 
 def test_the_example_head_keeps_the_rules_of_usd_and_has_a_scalp():

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import cached_property
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -108,11 +107,6 @@ class Scalp:
             if len(curves) > 1 and 0.5 < ratio / factor < 2.0:
                 return f"the guides are about {factor:g} times the head's size: check metersPerUnit of both files"
         return "move the guides onto the scalp, or raise guides.tolerance"
-
-
-def scalp_name(file: Path | None, prim: str | None) -> str:
-    """How messages call a scalp."""
-    return " ".join(str(part) for part in (file, prim) if part) or "the scalp"
 
 
 def _areas(points: NDArray, triangles: NDArray) -> NDArray[np.float64]:

@@ -3,6 +3,7 @@
 #include "ringlet/geometry/triangle_tree.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace ringlet {
 namespace {
@@ -12,13 +13,17 @@ bool find_pushes(std::span<const Vec3> points, const TriangleTree &tree, View<Ve
                  std::span<Vec3> pushes) {
     bool any = false;
     double along = 0.0, clear = 0.0; // `clear`: how far the curve can still go before it may come within the margin again
+    double reach = std::numeric_limits<double>::infinity(); // the surface is no farther than this
     for (size_t k = 1; k < points.size(); ++k) {
         const double edge = (points[k] - points[k - 1]).norm();
         along += edge;
         clear -= edge;
+        reach += edge;
         pushes[k].setZero();
         if (clear > 0.0) continue;
-        const SurfacePoint near = tree.closest(points[k]);
+        const SurfacePoint near = tree.closest(points[k], 1.001 * reach);
+        if (near.triangle < 0) continue; // a point that is not finite is near nothing
+        reach = near.distance;
         const Vec3 normal = smooth_normal(tree.mesh(), normals, near.triangle, near.barycentric);
         const double height = (points[k] - near.position).dot(normal) < 0.0 ? -near.distance : near.distance;
         const double wanted = std::min(margin, 0.5 * along);

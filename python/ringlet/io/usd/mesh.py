@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from pxr import Usd, UsdGeom, Vt
+from pxr import Usd, UsdGeom, UsdSkel, Vt
 
 from ringlet.errors import UserError
 from ringlet.io.polygons import check_polygons, fans
@@ -59,6 +59,7 @@ def read_bodies(path: Path | str) -> list[Body]:
 
 def select_mesh(source: Source, name: str | None) -> Usd.Prim:
     """The mesh prim at a path, or the only one there is at or below it."""
+    _bake_skinning(source.stage)
     root = source.stage.GetPseudoRoot() if name is None else find_prim(source, name)
     meshes = [prim for prim in prims(root) if UsdGeom.Mesh(prim)]
     scalps = [prim for prim in meshes if SCALP in _subsets(prim)]
@@ -67,6 +68,7 @@ def select_mesh(source: Source, name: str | None) -> Usd.Prim:
 
 def visible_meshes(source: Source) -> list[Usd.Prim]:
     """Meshes that a render shows, under the default prim."""
+    _bake_skinning(source.stage)
     root = source.stage.GetDefaultPrim() or source.stage.GetPseudoRoot()
     shown = (UsdGeom.Tokens.default_, UsdGeom.Tokens.render)
     return [
@@ -152,6 +154,13 @@ def define_mesh(stage: Usd.Stage, path: str, mesh: Mesh, space: StageSpace) -> U
             defined, name, UsdGeom.Tokens.face, Vt.IntArray.FromNumpy(triangles.astype(np.int32))
         )
     return prim
+
+
+def _bake_skinning(stage: Usd.Stage) -> None:
+    """Turns the motion of skeletons into points and transforms, in the session layer, which is never saved."""
+    if any(UsdSkel.Root(prim) for prim in stage.Traverse()):
+        stage.SetEditTarget(stage.GetSessionLayer())
+        UsdSkel.BakeSkinning(Usd.PrimRange(stage.GetPseudoRoot()))
 
 
 def _uv(prim: Usd.Prim, corners: NDArray, triangles: NDArray, points: int, indices: int, where: str) -> NDArray | None:
