@@ -57,14 +57,18 @@ void bind_scene(nb::module_ &module) {
     nb::class_<Strands>(module, "Strands", "Strands at rest in their rest shape, ready to be stepped.")
         .def(
             "__init__",
-            [](Strands *self, Array1<int> offsets, Array3<double> rest, Array1<int> pinned, const StrandMaterial &material) {
-                StrandModel model = make_strand_model(view(offsets), vectors<Vec3>(rest), view(pinned), material);
+            [](Strands *self, Array1<int> offsets, Array3<double> rest, Array1<unsigned char> held,
+               const StrandMaterial &material, Array1<double> radius, Array1<double> stretch, Array1<double> bend,
+               Array1<double> twist, Array1<double> damping) {
+                const StrandVariation variation{view(radius), view(stretch), view(bend), view(twist), view(damping)};
+                StrandModel model = make_strand_model(view(offsets), vectors<Vec3>(rest), view(held), material, variation);
                 StrandState state = make_strand_state(model, vectors<Vec3>(rest));
                 new (self) Strands{std::move(model), std::move(state), {}};
             },
-            "offsets"_a, "rest"_a, "pinned"_a, "material"_a,
-            "offsets: shape (count + 1,) int32; rest: rest shape [m], shape (n, 3); pinned: vertices held from the root, "
-            "(count,) int32.")
+            "offsets"_a, "rest"_a, "held"_a, "material"_a, "radius"_a, "stretch"_a, "bend"_a, "twist"_a, "damping"_a,
+            "offsets: shape (count + 1,) int32; rest: rest shape [m], shape (n, 3); held: 1 where a vertex follows its target, "
+            "(n,) uint8; "
+            "then factors on the material, each of shape (n,) or empty.")
         .def_prop_ro(
             "positions", [](nb::object self) { return state_view(self, nb::cast<Strands &>(self).state.positions); },
             "Positions [m], shape (n, 3): the solver's own memory, changed by step().")
@@ -79,8 +83,8 @@ void bind_scene(nb::module_ &module) {
             "positions"_a, "Puts the strands at rest at these positions [m], shape (n, 3), and forgets their history.")
         .def(
             "step",
-            [](Strands &self, Array3<double> targets, double dt, std::array<double, 3> gravity, std::array<double, 3> wind,
-               int newton, double tolerance, Continuation continuation) {
+            [](Strands &self, Array3<double> targets, Array3<double> forces, double dt, std::array<double, 3> gravity,
+               std::array<double, 3> wind, int newton, double tolerance, Continuation continuation) {
                 StrandStep step;
                 step.dt = dt;
                 std::copy(gravity.begin(), gravity.end(), step.gravity);
@@ -90,12 +94,12 @@ void bind_scene(nb::module_ &module) {
                 step.continuation = continuation;
                 {
                     nb::gil_scoped_release release;
-                    step_strands(self.model, self.state, vectors<Vec3>(targets), step, self.reports);
+                    step_strands(self.model, self.state, vectors<Vec3>(targets), vectors<Vec3>(forces), step, self.reports);
                 }
                 const size_t rows = self.reports.size();
                 return to_numpy<double>(std::vector<StrandReport>(self.reports), {rows, size_t(strand_report_columns)});
             },
-            "targets"_a, "dt"_a, "gravity"_a, "wind"_a, "newton"_a, "tolerance"_a, "continuation"_a,
+            "targets"_a, "forces"_a, "dt"_a, "gravity"_a, "wind"_a, "newton"_a, "tolerance"_a, "continuation"_a,
             "One time step; targets: where held vertices are at its end [m], shape (n, 3). Returns one report row per strand "
             "(REPORT).")
         .def(

@@ -13,11 +13,18 @@ types() { # the compiled module is seen through its stub
     $bin/python -m nanobind.stubgen -q -m ringlet._core -o python/ringlet/_core.pyi && $bin/pyright --warnings
 }
 
+tidy() { # clang-tidy brings headers of its own, but not that of OpenMP: it gets the compiler's, after all others
+    local openmp
+    openmp=$(dirname "$(${CXX:-c++} -print-file-name=include/omp.h)")
+    $bin/python $bin/run-clang-tidy.py -quiet -j 2 -p build/editable -clang-tidy-binary "$PWD/$bin/clang-tidy" \
+        -extra-arg=-idirafter -extra-arg="$openmp" 'src/ringlet/'
+}
+
 mapfile -d '' cpp < <(find src bindings tests/cpp -name '*.h' -print0 -o -name '*.cpp' -print0)
 check "python" $bin/ruff check --quiet .
 check "python format" $bin/ruff format --quiet --check .
 check "python types" types
 check "arrows" $bin/python tools/check_architecture.py
 check "c++ format" $bin/clang-format --dry-run -Werror "${cpp[@]}"
-check "c++" $bin/python $bin/run-clang-tidy.py -quiet -j 2 -p build/editable -clang-tidy-binary "$PWD/$bin/clang-tidy" 'src/ringlet/'
+check "c++" tidy
 exit $status

@@ -11,7 +11,8 @@ import numpy as np
 from distances import Array
 from numpy.typing import NDArray
 from regions import NAMES, SKULL_CENTRE
-from scipy.sparse import coo_matrix, csr_matrix
+from remesh import adjacency
+from scipy.sparse.csgraph import laplacian
 from scipy.sparse.linalg import spsolve
 
 # Middle and radius of each region's disc.
@@ -39,15 +40,17 @@ def unwrap(points: Array, triangles: NDArray, labels: NDArray) -> Array:
 
 
 def azimuthal(points: Array) -> Array:
-    """Directions from the middle of the skull, unrolled from the scalp's axis into the unit disc; areas are kept."""
+    """Directions from the middle of the skull, unrolled from the scalp's axis into the unit disc; areas are kept.
+
+    Lambert's radius is √2 sin(θ/2); here it is scaled so that the disc reaches a little past the lowest hair.
+    """
     out = points - SKULL_CENTRE
     out /= np.linalg.norm(out, axis=1, keepdims=True)
     right = np.array([1.0, 0.0, 0.0])
     up = np.cross(SCALP_AXIS, right)
     across = np.stack([out @ right, out @ up], axis=1)
-    # Lambert: the radius is √2 sin(θ/2) times a direction; sin θ / (2 cos(θ/2)) = sin(θ/2).
-    cosine = out @ SCALP_AXIS
-    return across / np.sqrt(1.0 + cosine)[:, None] / np.sqrt(1.6)
+    # `across` has length sin θ = 2 sin(θ/2) cos(θ/2), and 1 + cos θ = 2 cos²(θ/2).
+    return across / np.sqrt(1.6 * (1.0 + out @ SCALP_AXIS))[:, None]
 
 
 def harmonic(points: Array, triangles: NDArray) -> Array:
@@ -57,13 +60,11 @@ def harmonic(points: Array, triangles: NDArray) -> Array:
     turn = 2.0 * np.pi * (np.cumsum(steps) - steps) / steps.sum()
     flat = np.zeros((len(points), 2))
     flat[loop] = np.stack([np.cos(turn), np.sin(turn)], axis=1)
-    a, b = np.concatenate([triangles, np.roll(triangles, -1, axis=1)]).ravel(), None
-    b = np.concatenate([np.roll(triangles, -1, axis=1), triangles]).ravel()
-    link = csr_matrix(coo_matrix((np.ones(len(a)), (a, b)), shape=(len(points),) * 2).astype(bool), dtype=float)
+    halves = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=-1).reshape(-1, 2)
+    link = adjacency(np.unique(np.sort(halves, axis=1), axis=0), len(points)).astype(float)
     inner = np.setdiff1d(np.arange(len(points)), loop)
-    degree = np.asarray(link.sum(axis=1)).ravel()
-    system = coo_matrix((degree[inner], (np.arange(len(inner)),) * 2)).tocsr() - link[inner][:, inner]
-    flat[inner] = spsolve(system.tocsc(), link[inner][:, loop] @ flat[loop])
+    pull = laplacian(link).tocsr()[inner]
+    flat[inner] = spsolve(pull[:, inner].tocsc(), -(pull[:, loop] @ flat[loop]))
     return flat
 
 

@@ -64,7 +64,7 @@ def intersect(a: Array, b: Array, blend: float) -> Array:
     return -union(-a, -b, blend)
 
 
-def engrave(shape: Array, tool: Array, depth: float, blend: float) -> Array:
+def engrave(shape: Array, tool: Array, depth: float | Array, blend: float) -> Array:
     """The shape with the tool pressed into its surface down to a depth, wherever the surface is."""
     return subtract(shape, np.maximum(tool, -(shape + depth)), blend)
 

@@ -12,7 +12,7 @@ from distances import Array, capsule, ellipsoid, engrave, intersect, smooth, sph
 
 EYE_CENTRE = np.array([3.15, -0.5, 4.5])
 EYE_RADIUS = 2.25
-EYE_WIDTH, UPPER_LID, LOWER_LID = np.radians([45.0, 31.5, 25.5])  # half the opening, seen from the eyeball's middle
+EYE_WIDTH, UPPER_LID, LOWER_LID = np.radians([45.0, 28.5, 25.0])  # half the opening, seen from the eyeball's middle
 EYE_SLANT = 0.06  # the outer corner is a little higher
 LID = 0.2  # thickness of the lids
 
@@ -115,8 +115,8 @@ def mouth(d: Array, p: Array) -> Array:
     d = union(d, ellipsoid(p, (0, -5.4, 5.2), (2.6, 1.7, 1.9)), 1.4)
     d = engrave(d, capsule(p, (0, -3.9, 7.4), (0, -4.45, 7.4), 0.14, 0.2), 0.1, 0.25)  # philtrum
     d = union(d, lips(p), 0.25)
-    gap = np.hypot(p[:, 1] - mouth_line(p[:, 0]), np.maximum(p[:, 0] - 2.55, 0.0)) - 0.09
-    return engrave(d, np.maximum(gap, 3.0 - p[:, 2]), 0.32 - 0.08 * p[:, 0], 0.16)
+    gap = np.hypot(p[:, 1] - mouth_line(p[:, 0]), np.maximum(p[:, 0] - 2.5, 0.0)) - 0.12
+    return engrave(d, np.maximum(gap, 3.0 - p[:, 2]), 0.26 - 0.06 * p[:, 0], 0.18)
 
 
 def lips(p: Array) -> Array:

@@ -25,12 +25,12 @@ from remesh import mesh_shape
 GROUND = np.array([0.0, 25.0, 0.0])  # the bust stands on the ground, y = 0
 
 # Linear red, green, blue.
-SKIN = np.array([0.40, 0.205, 0.125])
-LIPS = np.array([0.37, 0.10, 0.085])
-BLUSH = np.array([0.45, 0.15, 0.10])
-SHIRT = np.array([0.62, 0.36, 0.08])
+SKIN = np.array([0.34, 0.165, 0.095])
+LIPS = np.array([0.32, 0.085, 0.07])
+BLUSH = np.array([0.40, 0.125, 0.08])
+SHIRT = np.array([0.55, 0.31, 0.085])
 EYEBALL = np.array([0.82, 0.80, 0.77])
-IRIS = np.array([0.12, 0.045, 0.018])
+IRIS = np.array([0.085, 0.032, 0.013])
 PUPIL = np.array([0.004, 0.004, 0.004])
 BROW = np.array([0.030, 0.017, 0.012])
 LASH = np.array([0.012, 0.008, 0.007])

@@ -169,10 +169,10 @@ def flip(points: Array, triangles: Triangles) -> Triangles:
         turned = np.stack([face_normals(points, new[:, s]) for s in (0, 1)], axis=1)
         level = np.einsum("esx,ex->es", turned, together)
         level /= np.linalg.norm(turned, axis=-1) * np.linalg.norm(together, axis=-1, keepdims=True) + 1e-300
-        flat = (old[f0] * old[f1]).sum(1) > 0.7 * np.linalg.norm(old[f0], axis=1) * np.linalg.norm(old[f1], axis=1)
+        flat = (old[f0] * old[f1]).sum(1) > 0.5 * np.linalg.norm(old[f0], axis=1) * np.linalg.norm(old[f1], axis=1)
         link = adjacency(edges, len(points))
         fresh = np.asarray(link[c, d]).ravel() == 0
-        wanted = np.flatnonzero((facing > np.pi + 1e-3) & (level > 0.7).all(axis=1) & flat & fresh)
+        wanted = np.flatnonzero((facing > np.pi + 1e-3) & (level > 0.5).all(axis=1) & flat & fresh)
         wanted = wanted[np.argsort(-facing[wanted], kind="stable")]
         wanted = wanted[first_come([a[wanted], b[wanted], c[wanted], d[wanted]], len(points))]
         if len(wanted) == 0:

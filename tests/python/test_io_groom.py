@@ -68,6 +68,20 @@ def test_a_groom_comes_back_whole(folder):
         np.testing.assert_allclose(read.point.get("width", 0), wrote.point.get("width", 0), rtol=1e-6)
 
 
+def test_the_same_groom_makes_the_same_file(folder):
+    write_groom(make_groom(folder / "assets/head.usdc"), folder / "out/again.usdc")
+    assert (folder / "out/again.usdc").read_bytes() == (folder / "out/groom.usdc").read_bytes()
+
+
+def test_widths_of_whole_curves_stay_widths_of_whole_curves(folder):
+    groom = make_groom(folder / "assets/head.usdc")
+    groom.locks.curve["width"] = groom.locks.point.pop("width")[groom.locks.offsets[:-1]]
+    write_groom(groom, folder / "out/groom.usdc")
+    locks = read_groom(folder / "out/groom.usdc").locks
+    np.testing.assert_array_equal(locks.curve["width"], groom.locks.curve["width"])
+    assert "width" not in locks.point
+
+
 def test_a_scalp_that_came_from_no_file_travels_inside_the_groom(tmp_path):
     mesh = make_groom(write_head(tmp_path / "head.usda")).scalp
     write_groom(make_groom(None, mesh), tmp_path / "groom.usdc")

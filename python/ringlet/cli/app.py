@@ -18,6 +18,8 @@ from typer.core import TyperGroup
 import ringlet
 from ringlet.cli import bench, demo, groom, hair, picture, schema, sim, validate
 
+INTERRUPTED = 130  # what typer makes of a KeyboardInterrupt
+
 
 class Front(TyperGroup):
     """Tells every error in one line, and never shows a traceback that was not asked for."""
@@ -26,6 +28,8 @@ class Front(TyperGroup):
         """Runs a command line and exits with its code."""
         try:
             code = super().main(args, *rest, standalone_mode=False, **extra) or 0
+            if code == INTERRUPTED:
+                fail("interrupted", code)
         except typer.TyperException as error:
             code = fail(f"{error.format_message()}  (ringlet --help tells more)", error.exit_code)
         except ringlet.UserError as error:
@@ -33,8 +37,8 @@ class Front(TyperGroup):
         except BrokenPipeError:  # the reader of our output has seen enough
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             code = 1
-        except (typer.Abort, KeyboardInterrupt):
-            code = fail("interrupted", 130)
+        except typer.Abort:
+            code = fail("interrupted", INTERRUPTED)
         except OSError as error:
             place = f"{error.filename}: " if error.filename else ""
             code = fail(f"{place}{error.strerror or error}; check the place and its rights", 2)

@@ -25,7 +25,9 @@ def picture(
         typer.Option("--frame", metavar="F", help="Frame of the still; the first by default.", show_default=False),
     ] = None,
     view: Annotated[str, typer.Option("--view", help="three_quarter, front, side or back.")] = "three_quarter",
-    color: Annotated[str, typer.Option("--color", help="black, dark_brown, brown, auburn, ginger, blond or gray.")] = "dark_brown",
+    color: Annotated[
+        str, typer.Option("--color", help="black, dark_brown, brown, auburn, ginger, blond or gray.")
+    ] = "dark_brown",
     width: Annotated[int, typer.Option("--width", min=16, max=8192, help="Pixels across.")] = 900,
     height: Annotated[int, typer.Option("--height", min=16, max=8192, help="Pixels down.")] = 1100,
     samples: Annotated[int, typer.Option("--samples", min=1, help="Paths per pixel: more is cleaner and slower.")] = 64,

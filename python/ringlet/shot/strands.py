@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
@@ -59,27 +60,39 @@ class Solver(Section):
     )
 
 
+VARIATIONS = ("radius", "stretch", "bend", "twist", "damping")
+
+
 @dataclass
 class Strands:
     """Strands in motion, at rest in their rest shape to begin with.
 
-    curves:   the rest shape, positions [m]
-    material: what they are made of
-    held:     vertices per strand, from the root, that follow ``targets``; three of them hold position and frame
+    curves:    the rest shape, positions [m]
+    material:  what they are made of
+    held:      which vertices follow ``targets``: a number of them from each root (three hold position and frame), or a
+               mask of shape (n,) that contains the roots
+    variation: factors on the material per vertex, shape (n,) each, by name: radius, stretch, bend, twist, damping
     """
 
     curves: Curves
     material: Material
-    held: int | NDArray[np.integer] = 3
+    held: int | NDArray[np.bool_] = 3
+    variation: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        held = np.broadcast_to(np.asarray(self.held, np.int32), len(self.curves))
+        if unknown := set(self.variation) - set(VARIATIONS):
+            raise ValueError(f"strands: variation of {unknown.pop()}; there are: {', '.join(VARIATIONS)}")
+        if isinstance(self.held, int):
+            from_root = np.arange(len(self.curves.points)) - np.repeat(self.curves.offsets[:-1], self.curves.counts)
+            self.held = from_root < self.held
         self._core = _core.Strands(
             self.curves.offsets,
             np.ascontiguousarray(self.curves.points, np.float64),
-            np.ascontiguousarray(held),
+            np.ascontiguousarray(self.held, np.uint8),
             self.material.core(),
+            **{name: np.ascontiguousarray(self.variation.get(name, ()), np.float64) for name in VARIATIONS},
         )
+        self._no_forces = np.zeros_like(self.curves.points, np.float64)
 
     @property
     def positions(self) -> NDArray[np.float64]:
@@ -102,15 +115,18 @@ class Strands:
         *,
         gravity: Vector = (0.0, 0.0, 0.0),
         wind: Vector = (0.0, 0.0, 0.0),
+        forces: NDArray[np.float64] | None = None,
         solver: Solver | None = None,
     ) -> dict[str, NDArray[np.float64]]:
         """Advances by ``dt`` [s]; held vertices end where ``targets`` [m], shape (n, 3), has them.
 
+        forces: what pulls at each vertex besides gravity and air [N], shape (n, 3)
         Returns the report of every strand, one array of shape (count,) per quantity (see ``_core.REPORT``).
         """
         solver = solver or Solver()
         rows = self._core.step(
             np.ascontiguousarray(targets, np.float64),
+            self._no_forces if forces is None else np.ascontiguousarray(forces, np.float64),
             dt,
             gravity,
             wind,
@@ -127,8 +143,16 @@ class Strands:
         points = np.ascontiguousarray(positions, np.float64)
         return self._core.energy(points, getattr(_core.Continuation, continuation), hessian)
 
-    def settle(self, *, gravity: Vector, tolerance: float = 1e-9, dt: float = 1.0, steps: int = 2000) -> bool:
-        """Lets the strands come to rest under gravity, in large steps.
+    def settle(
+        self,
+        *,
+        gravity: Vector = (0.0, 0.0, 0.0),
+        forces: NDArray[np.float64] | None = None,
+        tolerance: float = 1e-9,
+        dt: float = 1.0,
+        steps: int = 2000,
+    ) -> bool:
+        """Lets the strands come to rest under gravity and forces [N], in large steps; what is held stays put.
 
         Returns whether they have: no coordinate moved more than ``tolerance`` [m] in the last step.
         """
@@ -137,7 +161,7 @@ class Strands:
         for _ in range(steps):
             before = self.positions.copy()
             self.velocities[:] = 0.0
-            self.step(still, dt, gravity=gravity, solver=solver)
+            self.step(still, dt, gravity=gravity, forces=forces, solver=solver)
             if np.abs(self.positions - before).max() < tolerance:
                 return True
         return False

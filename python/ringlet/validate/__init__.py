@@ -2,10 +2,20 @@
 
 from ringlet.errors import UserError
 from ringlet.settings import did_you_mean
-from ringlet.validate import cantilever, hanging_helix, vibration
+from ringlet.validate import (
+    buckling,
+    cantilever,
+    hanging_chain,
+    hanging_helix,
+    love,
+    out_of_plane,
+    tip_load,
+    vibration,
+)
 from ringlet.validate.case import Case, Row
 
-CASES: dict[str, Case] = {case.name: case for case in (cantilever.CASE, hanging_helix.CASE, vibration.CASE)}
+_MODULES = (cantilever, tip_load, hanging_helix, love, vibration, hanging_chain, buckling, out_of_plane)
+CASES: dict[str, Case] = {module.CASE.name: module.CASE for module in _MODULES}
 
 
 def run_case(name: str) -> list[Row]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -31,9 +33,39 @@ def gravity_for(gamma: float, length: float, material: Material) -> float:
     return gamma * bending_stiffness(material) / (line_density(material) * length**3)
 
 
-def strand(points: NDArray[np.float64], material: Material, held: int) -> Strands:
+def strand(
+    points: NDArray[np.float64],
+    material: Material,
+    held: int | NDArray[np.bool_],
+    variation: Mapping[str, NDArray[np.float64]] | None = None,
+) -> Strands:
     """One strand at rest in the shape of ``points`` [m], shape (n, 3)."""
-    return Strands(Curves.from_list([points]), material, held)
+    return Strands(Curves.from_list([points]), material, held, variation or {})
+
+
+def masses(rod: Strands) -> NDArray[np.float64]:
+    """Mass of each vertex [kg], shape (n,): half of each edge beside it."""
+    edges = line_density(rod.material) * np.linalg.norm(np.diff(rod.curves.points, axis=0), axis=1)
+    return 0.5 * (np.append(edges, 0.0) + np.append(0.0, edges))
+
+
+def stiffness(
+    rod: Strands, positions: NDArray[np.float64], vertices: NDArray[np.int64], axis: int
+) -> NDArray[np.float64]:
+    """Exact second derivative [N/m] of the elastic energy by the given vertices' coordinates along ``axis``.
+
+    By differences of the gradient: the solver's own Hessian leaves negative eigenvalues out, and thresholds are where
+    the exact one has its first.
+    """
+    h = 1e-6 * np.linalg.norm(rod.curves.points[1] - rod.curves.points[0])
+    columns = []
+    for vertex in vertices:
+        step = np.zeros_like(positions)
+        step[vertex, axis] = h
+        up, down = (rod.energy(positions + sign * step)[1][vertices, axis] for sign in (1, -1))
+        columns.append((up - down) / (2 * h))
+    result = np.array(columns)
+    return 0.5 * (result + result.T)
 
 
 def straight_rod(length: float, edges: int, material: Material) -> Strands:

@@ -1,6 +1,6 @@
 """A clamped–free rod vibrates at ω = (βL)² √(EI/λ) / L², without gravity.
 
-Two measurements: the eigenvalues of the solver's own stiffness and masses, and a rod that is let go and swings.
+Two measurements: the eigenvalues of stiffness and masses at rest, and a rod that is let go and swings.
 Backward Euler with damping β follows z² (1 + βω²h + ω²h²) − z (2 + βω²h) + 1 = 0 from step to step: a mode must be seen
 to shrink by 1/√(1 + βω²h + ω²h²) a step and, undamped, to swing at atan(ωh)/h.
 """
@@ -16,7 +16,7 @@ from scipy.optimize import curve_fit
 
 from ringlet.shot.strands import Solver, Strands
 from ringlet.validate.case import Case, Row, convergence
-from ringlet.validate.rods import bending_stiffness, line_density, rod_material, straight_rod
+from ringlet.validate.rods import bending_stiffness, line_density, masses, rod_material, stiffness, straight_rod
 
 LENGTH = 0.1  # [m]
 BETA = (1.875104, 4.694091, 7.854757)  # βL, from cos βL cosh βL = −1
@@ -28,18 +28,15 @@ def theory(mode: int) -> float:
     return BETA[mode] ** 2 * np.sqrt(bending_stiffness(material) / line_density(material)) / LENGTH**2
 
 
-def modes(rod: Strands, edges: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """ω² [1/s²] and shapes (columns; rows are the free vertices) of motion along y, from stiffness and masses."""
-    _, _, stiffness = rod.energy(rod.curves.points, hessian=True)
-    across = 3 * np.arange(2, edges + 1) + 1
-    masses = np.full(edges - 1, line_density(rod.material) * LENGTH / (edges - 0.5))
-    masses[-1] /= 2
-    return eigh(stiffness[np.ix_(across, across)], np.diag(masses))
+def modes(rod: Strands) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """ω² [1/s²] and shapes (columns; rows are the free vertices) of motion along y about the rest shape."""
+    free = np.arange(2, len(rod.curves.points))
+    return eigh(stiffness(rod, rod.curves.points, free, axis=1), np.diag(masses(rod)[free]))
 
 
 def eigenfrequency(mode: int, edges: int) -> float:
     """ω of a mode [1/s]."""
-    squares, _ = modes(straight_rod(LENGTH, edges, rod_material()), edges)
+    squares, _ = modes(straight_rod(LENGTH, edges, rod_material()))
     return float(np.sqrt(squares[mode]))
 
 
@@ -47,7 +44,7 @@ def swing(edges: int, steps_per_period: int, damping: float = 0.0) -> tuple[floa
     """Frequency [1/s] and amplitude ratio per step of the first mode of a rod that is let go; damping β [s]."""
     rod = straight_rod(LENGTH, edges, rod_material().model_copy(update={"damping": damping}))
     rest = rod.curves.points
-    shape = modes(rod, edges)[1][:, 0]
+    shape = modes(rod)[1][:, 0]
     start = rest.copy()
     start[2:, 1] = 1e-4 * LENGTH * shape / abs(shape).max()
     rod.place(start)

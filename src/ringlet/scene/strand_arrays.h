@@ -36,12 +36,13 @@ inline constexpr int strand_report_columns = sizeof(StrandReport) / sizeof(doubl
 
 // Model and state of all strands, as pointers (see scene/strands.h for what each holds).
 struct StrandArrays {
-    const int *offsets, *pinned;
+    const int *offsets;
+    const unsigned char *held;
     const double *rest_length, *rest_angle, *rest_dihedral;
     const double *stretch_stiffness, *bend_stiffness, *twist_stiffness;
-    const double *mass, *drag;
-    double damping, mass_damping;
-    const double *targets;
+    const double *mass, *drag, *damping;
+    double mass_damping;
+    const double *targets, *forces;
     double *positions, *velocities, *normals, *twist;
 };
 

@@ -22,6 +22,7 @@ template <class T> struct StrandRow {
     T stretch, rest_length;
     T bend, rest_angle;
     T twist, rest_dihedral;
+    T damping;                                    // β [s]
     T damped_length, damped_angle, damped_strain; // the values that the step's energies rest at (see strand_objective.h)
     Reference<T> reference;
     T start_sigma, start_turns; // as the step begins, for the report

@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <new>
 #include <numbers>
@@ -35,9 +36,9 @@ int longest_strand(const StrandModel &model) {
     return most;
 }
 
-StrandArrays arrays_of(const StrandModel &model, StrandState &state, View<Vec3> targets) {
+StrandArrays arrays_of(const StrandModel &model, StrandState &state, View<Vec3> targets, View<Vec3> forces) {
     return {model.offsets.data(),
-            model.pinned.data(),
+            model.held.data(),
             model.rest_length.data(),
             model.rest_angle.data(),
             model.rest_dihedral.data(),
@@ -46,9 +47,10 @@ StrandArrays arrays_of(const StrandModel &model, StrandState &state, View<Vec3> 
             model.twist_stiffness.data(),
             model.mass.data(),
             model.drag.data(),
-            model.damping,
+            model.damping.data(),
             model.mass_damping,
             targets.data()->data(),
+            forces.data()->data(),
             state.positions.data()->data(),
             state.velocities.data()->data(),
             state.normals.data()->data(),
@@ -80,55 +82,65 @@ std::vector<ResolutionFactors> resolution_of(const StrandModel &model, int first
 
 } // namespace
 
-StrandModel make_strand_model(View<int> offsets, View<Vec3> rest, View<int> pinned, const StrandMaterial &material) {
+StrandModel make_strand_model(View<int> offsets, View<Vec3> rest, View<unsigned char> held, const StrandMaterial &material,
+                              const StrandVariation &variation) {
     const int strands = int(offsets.size()) - 1;
-    if (strands < 0 || offsets.front() != 0 || offsets.back() != int(rest.size()) || int(pinned.size()) != strands)
-        throw std::invalid_argument("strands: offsets, points and pinned do not fit together");
-    for (int s = 0; s < strands; ++s) {
-        const std::string name = "strands: strand " + std::to_string(s);
-        if (offsets[s + 1] - offsets[s] < 3) throw std::invalid_argument(name + " has fewer than 3 vertices");
-        if (pinned[s] < 1 || pinned[s] > offsets[s + 1] - offsets[s])
-            throw std::invalid_argument(name + " holds " + std::to_string(pinned[s]) + " vertices; must be 1 to all of them");
-    }
+    const size_t n = rest.size();
+    if (strands < 0 || offsets.front() != 0 || offsets.back() != int(n) || held.size() != n)
+        throw std::invalid_argument("strands: offsets, points and held do not fit together");
+    for (const View<double> &factor : {variation.radius, variation.stretch, variation.bend, variation.twist, variation.damping})
+        if (!factor.empty() && factor.size() != n) throw std::invalid_argument("strands: a variation does not fit the points");
+
     StrandModel model;
     model.offsets.assign(offsets.begin(), offsets.end());
-    model.pinned.assign(pinned.begin(), pinned.end());
+    model.held.assign(held.begin(), held.end());
     RestShape shape = measure_rest_shape(offsets, rest);
     model.rest_length = std::move(shape.length);
     model.rest_angle = std::move(shape.angle);
     model.rest_dihedral = std::move(shape.dihedral);
-    model.damping = material.damping;
     model.mass_damping = material.mass_damping;
-
-    const size_t n = rest.size();
     model.stretch_stiffness.assign(n, 0.0);
     model.bend_stiffness.assign(n, 0.0);
     model.twist_stiffness.assign(n, 0.0);
     model.mass.assign(n, 0.0);
     model.drag.assign(n, 0.0);
-    const double area = std::numbers::pi * material.radius * material.radius;
-    const double stretching = material.stretch_scale * material.youngs_modulus * area; // EA [N]
-    const double bending =
-        material.bend_scale * material.youngs_modulus * area * material.radius * material.radius / 4; // EI [N m²]
-    const double twisting = std::clamp(material.twist_ratio, 0.0, 1.0) * bending;                     // GJ [N m²]
+    model.damping.assign(n, material.damping);
+
+    const auto at = [](View<double> factor, int i) { return factor.empty() ? 1.0 : factor[i]; };
+    const auto on_edge = [&at](View<double> factor, int i) { return 0.5 * (at(factor, i) + at(factor, i + 1)); };
+    const auto area = [&](double factor) { return std::numbers::pi * std::pow(factor * material.radius, 2); };
+    const auto bending = [&](double radius_factor, double bend_factor) { // EI [N m²]
+        return bend_factor * material.bend_scale * material.youngs_modulus * std::pow(area(radius_factor), 2) /
+               (4 * std::numbers::pi);
+    };
     for (int s = 0; s < strands; ++s) {
         const int first = offsets[s], end = offsets[s + 1];
+        const std::string name = "strands: strand " + std::to_string(s);
+        if (end - first < 3) throw std::invalid_argument(name + " has fewer than 3 vertices");
+        if (!held[first]) throw std::invalid_argument(name + " does not hold its root");
         std::vector<ResolutionFactors> factors(end - first - 1);
         if (material.correct_resolution) factors = resolution_of(model, first, end);
         for (int i = first; i + 1 < end; ++i) {
             const double length = model.rest_length[i];
             const ResolutionFactors &factor = factors[i - first];
-            if (!(length > 0))
-                throw std::invalid_argument("strands: strand " + std::to_string(s) + " has an edge without length");
-            model.stretch_stiffness[i] = stretching / length;
+            if (!(length > 0)) throw std::invalid_argument(name + " has an edge without length");
+            const double section = area(on_edge(variation.radius, i));
+            model.stretch_stiffness[i] =
+                material.stretch_scale * on_edge(variation.stretch, i) * material.youngs_modulus * section / length;
             for (const int vertex : {i, i + 1}) {
-                model.mass[vertex] += 0.5 * material.density * area * length * factor.mass;
+                model.mass[vertex] += 0.5 * material.density * section * length * factor.mass;
                 model.drag[vertex] += 0.5 * material.drag * length;
             }
+            model.damping[i] *= at(variation.damping, i);
             if (i == first) continue;
+            const double EI = bending(at(variation.radius, i), at(variation.bend, i));
             model.bend_stiffness[i] =
-                bending * 0.5 * (factors[i - first - 1].bend + factor.bend) / (0.5 * (model.rest_length[i - 1] + length));
-            if (i + 2 < end) model.twist_stiffness[i] = twisting * factor.twist / length;
+                EI * 0.5 * (factors[i - first - 1].bend + factor.bend) / (0.5 * (model.rest_length[i - 1] + length));
+            if (i + 2 == end) continue;
+            const double ratio =
+                std::clamp(material.twist_ratio * on_edge(variation.twist, i), 0.0, 1.0); // safeguard: never above bend
+            model.twist_stiffness[i] =
+                ratio * factor.twist * bending(on_edge(variation.radius, i), on_edge(variation.bend, i)) / length;
         }
     }
     return model;
@@ -154,11 +166,12 @@ StrandState make_strand_state(const StrandModel &model, View<Vec3> positions) {
     return state;
 }
 
-void step_strands(const StrandModel &model, StrandState &state, View<Vec3> targets, const StrandStep &step,
+void step_strands(const StrandModel &model, StrandState &state, View<Vec3> targets, View<Vec3> forces, const StrandStep &step,
                   std::vector<StrandReport> &reports) {
-    if (int(targets.size()) != model.vertex_count()) throw std::invalid_argument("strands: targets do not fit the model");
+    if (int(targets.size()) != model.vertex_count() || int(forces.size()) != model.vertex_count())
+        throw std::invalid_argument("strands: targets and forces do not fit the model");
     reports.assign(model.strand_count(), StrandReport{});
-    const StrandArrays arrays = arrays_of(model, state, targets);
+    const StrandArrays arrays = arrays_of(model, state, targets, forces);
     const std::vector<int> order = by_length(model);
     const int strands = model.strand_count(), lanes = RINGLET_DISPATCH(strand_lanes);
     const int groups = (strands + lanes - 1) / lanes;
@@ -180,7 +193,7 @@ double strand_energy(const StrandModel &model, const StrandState &state, Continu
                      std::vector<Vec3> &gradient, std::vector<double> *hessian) {
     if (int(positions.size()) != model.vertex_count()) throw std::invalid_argument("strands: positions do not fit the model");
     StrandState copy = state;
-    const StrandArrays arrays = arrays_of(model, copy, positions);
+    const StrandArrays arrays = arrays_of(model, copy, positions, positions); // no force is read
     const Workspace workspace(RINGLET_DISPATCH(strand_workspace, longest_strand(model)));
     gradient.assign(positions.size(), Vec3::Zero());
     if (hessian) {

@@ -22,10 +22,16 @@ struct StrandMaterial {
     bool correct_resolution = true; // make coils of few vertices a turn as soft as smooth ones (rest/resolution.h)
 };
 
+// How the material varies: factors per vertex on what StrandMaterial says, each n long or empty (1 everywhere). An edge takes
+// the mean of its two vertices.
+struct StrandVariation {
+    View<double> radius, stretch, bend, twist, damping;
+};
+
 // Fixed: packed like Curves, one row per vertex; row i of an edge quantity belongs to the edge from i to i+1.
 struct StrandModel {
     std::vector<int> offsets;              // where each strand begins, and the end; strand count + 1
-    std::vector<int> pinned;               // per strand: how many vertices from the root are held
+    std::vector<unsigned char> held;       // per vertex: 1 where it follows its target
     std::vector<double> rest_length;       // l̄ per edge [m]
     std::vector<double> rest_angle;        // θ̄ per vertex [rad], in [0, π]
     std::vector<double> rest_dihedral;     // φ̄ per edge [rad]
@@ -34,7 +40,7 @@ struct StrandModel {
     std::vector<double> twist_stiffness;   // c EI / l̄ per edge [N m]
     std::vector<double> mass;              // per vertex [kg]
     std::vector<double> drag;              // per vertex [kg/s]
-    double damping = 0.0;                  // β [s]
+    std::vector<double> damping;           // β per vertex [s]
     double mass_damping = 0.0;             // α [1/s]
 
     int strand_count() const { return int(offsets.size()) - 1; }
@@ -49,19 +55,20 @@ struct StrandState {
     std::vector<double> twist;    // per edge: Δφ with its turns [rad]
 };
 
-// The rest shape is measured from the polylines `rest` (shape: offsets.back() points); every strand has at least 3 points and
-// pinned ≥ 1 of them held. Throws std::invalid_argument where lengths do not fit or an edge has no length.
-StrandModel make_strand_model(View<int> offsets, View<Vec3> rest, View<int> pinned, const StrandMaterial &material);
+// The rest shape is measured from the polylines `rest` (offsets.back() points); every strand has at least 3 points, of which
+// the root is held. Throws std::invalid_argument where lengths do not fit or an edge has no length.
+StrandModel make_strand_model(View<int> offsets, View<Vec3> rest, View<unsigned char> held, const StrandMaterial &material,
+                              const StrandVariation &variation = {});
 
 // At rest at the given positions, with the normals and twist that they have.
 StrandState make_strand_state(const StrandModel &model, View<Vec3> positions);
 
-// One time step. `targets` holds where the pinned vertices are at its end (rows of free vertices are not read).
-// One report per strand. The result does not depend on the number of threads.
-void step_strands(const StrandModel &model, StrandState &state, View<Vec3> targets, const StrandStep &step,
+// One time step. `targets` holds where the held vertices are at its end (rows of free vertices are not read), `forces` what
+// pulls at each vertex from outside [N]. One report per strand. The result does not depend on the number of threads.
+void step_strands(const StrandModel &model, StrandState &state, View<Vec3> targets, View<Vec3> forces, const StrandStep &step,
                   std::vector<StrandReport> &reports);
 
-// Energy [J] of the state's elastic terms, its gradient by the free vertices [N] (rows of pinned vertices are zero) and the
+// Energy [J] of the state's elastic terms, its gradient by the free vertices [N] (rows of held vertices are zero) and the
 // clamped Hessian that Newton uses (dense, row-major, n×n over all coordinates of ONE strand; empty to leave it out).
 double strand_energy(const StrandModel &model, const StrandState &state, Continuation continuation, View<Vec3> positions,
                      std::vector<Vec3> &gradient, std::vector<double> *hessian);

@@ -104,13 +104,14 @@ private:
             const auto value = [&](Pack &into, const double *from, double otherwise) {
                 set_lane(into, lane, real ? from[at] : otherwise);
             };
-            set_lane(row.free, lane, real && i >= arrays_.pinned[strand(lane)] ? 1.0 : 0.0);
+            set_lane(row.free, lane, real && !arrays_.held[at] ? 1.0 : 0.0);
             value(row.stretch, arrays_.stretch_stiffness, 0.0);
             value(row.rest_length, arrays_.rest_length, 1.0);
             value(row.bend, arrays_.bend_stiffness, 0.0);
             value(row.rest_angle, arrays_.rest_angle, 0.0);
             value(row.twist, arrays_.twist_stiffness, 0.0);
             value(row.rest_dihedral, arrays_.rest_dihedral, 0.0);
+            value(row.damping, arrays_.damping, 0.0);
             value(row.reference.delta, arrays_.twist, 0.0);
             row.reference.normal = load_vector(arrays_.normals, at, lane, row.reference.normal);
             space_.start[i] = load_vector(arrays_.positions, at, lane, space_.start[i]);
@@ -177,11 +178,10 @@ private:
 
     // Damping of the strains' rates, as stiffer energies about rest values between the groom's and the present ones.
     void resist_rates() {
-        const double b = arrays_.damping / step_.dt;
-        const double part = 1.0 / (1.0 + b);
         for (int i = 0; i + 1 < vertices_; ++i) {
             StrandRow<Pack> &row = space_.rows[i];
             const StrandShape<Pack> &s = space_.shapes[i];
+            const Pack b = row.damping / step_.dt, part = 1.0 / (1.0 + b);
             row.damped_length = part * (row.rest_length + b * s.length);
             if (i > 0) row.damped_angle = part * (row.rest_angle + b * s.sigma * s.corner.angle);
             if (is_hinge(i)) row.damped_strain = part * b * s.strain;
@@ -204,7 +204,8 @@ private:
                     const double start = space_.start[i][k][lane];
                     const double free_flight = start + h * space_.velocity[i][k][lane] + h * h * step_.gravity[k];
                     const double with_wind = start + h * step_.wind[k];
-                    const double y = sum > 0 ? (moving * free_flight + held * start + drag * with_wind) / sum : 0.0;
+                    const double force = i < count ? arrays_.forces[3 * (first + i) + k] : 0.0;
+                    const double y = sum > 0 ? (moving * free_flight + held * start + drag * with_wind + force) / sum : 0.0;
                     set_lane(space_.rows[i].inertial[k], lane, y);
                 }
             }

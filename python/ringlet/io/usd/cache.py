@@ -72,10 +72,8 @@ class CacheWriter(StreamWriter):
         self._statistics: list[dict[str, Any]] = []
 
     def __enter__(self) -> Self:
-        with reading(self.under) as source:
-            groom_prim(source)
-        stage = self.begin()
-        self._curves = UsdGeom.BasisCurves(stage.OverridePrim(LOCKS))
+        self._curves = UsdGeom.BasisCurves(self.begin().OverridePrim(LOCKS))
+        self._shape = (len(self._curves.GetPointsAttr().Get()), 3)
         return self
 
     def add(self, frame: float, points: NDArray, statistics: dict[str, Any] | None = None) -> None:
@@ -84,6 +82,8 @@ class CacheWriter(StreamWriter):
         points:     where the locks are [m], shape (n, 3), in the order of the groom's locks
         statistics: what the solver reports
         """
+        if points.shape != self._shape:
+            raise ValueError(f"cache: points have shape {points.shape}; must be {self._shape}")
         self.put(self._curves, frame, points)
         self._statistics.append(statistics or {})
 

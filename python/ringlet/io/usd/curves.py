@@ -15,6 +15,7 @@ from pxr import Sdf, Usd, UsdGeom, Vt
 from ringlet.curves import Curves, offsets_from_counts
 from ringlet.errors import UserError
 from ringlet.io.space import from_metres, to_metres
+from ringlet.io.usd.basis import Sampling
 from ringlet.io.usd.stage import Source, choose, find_prim, prims, reading
 from ringlet.io.usd.values import (
     Types,
@@ -32,14 +33,6 @@ from ringlet.stage import StageSpace
 OWN = "ringlet:"
 ID_NAMES = ("ringlet:id", "groom_id", "id", "hair_id", "hairid", "curve_id")
 HAIR_WIDTH = 70e-6  # diameter of a hair that says nothing else [m]
-STEPS = 6  # points per segment of a cubic curve
-
-# One row per power of t, one column per control point (Foley et al., Computer Graphics, chapter 9).
-_BASES = {
-    UsdGeom.Tokens.bezier: np.array([[1, 0, 0, 0], [-3, 3, 0, 0], [3, -6, 3, 0], [-1, 3, -3, 1]], float),
-    UsdGeom.Tokens.bspline: np.array([[1, 4, 1, 0], [-3, 0, 3, 0], [3, -6, 3, 0], [-1, 3, -3, 1]]) / 6.0,
-    UsdGeom.Tokens.catmullRom: np.array([[0, 2, 0, 0], [-1, 0, 1, 0], [2, -5, 4, -1], [-1, 3, -3, 1]]) / 2.0,
-}
 
 
 def read_usd_curves(path: Path | str, prim: str | None = None) -> Curves:
@@ -59,7 +52,7 @@ def curves_at(source: Source, prim: Usd.Prim, time: Usd.TimeCode) -> Curves:
     moved = to_metres(transformed(points, prim, time), source.space)
     ids = np.arange(len(counts), dtype=np.int64)
     Curves(moved, offsets_from_counts(counts), ids).check(where)
-    sampling = _Sampling(UsdGeom.BasisCurves(prim), time, counts, where)
+    sampling = Sampling(UsdGeom.BasisCurves(prim), time, counts, where)
     curves = Curves(sampling.vertex(moved), sampling.offsets, ids)
 
     for primvar in UsdGeom.PrimvarsAPI(prim).GetPrimvarsWithAuthoredValues():
@@ -88,12 +81,6 @@ def own_curves(source: Source, prim: Usd.Prim, time: Usd.TimeCode | None = None,
     if ids is None or len(ids) != len(counts):
         raise UserError(f"{where}: has no ringlet:id for each of its {len(counts)} curves; write the file again")
     curves = Curves(points, offsets_from_counts(counts), np.array(ids, np.int64))
-    schema = UsdGeom.BasisCurves(prim)
-    if schema.GetWidthsInterpolation() == UsdGeom.Tokens.vertex and "width" not in curves.curve:
-        widths = np.array(schema.GetWidthsAttr().Get() or [], np.float32)
-        if len(widths) != len(points):
-            raise UserError(f"{where}: has {len(widths)} widths for {len(points)} points; write the file again")
-        curves.point["width"] = widths * np.float32(source.space.meters_per_unit)
     for primvar in UsdGeom.PrimvarsAPI(prim).GetPrimvarsWithAuthoredValues():
         name = primvar.GetPrimvarName()
         if not name.startswith(OWN) or name == f"{OWN}id":
@@ -105,6 +92,12 @@ def own_curves(source: Source, prim: Usd.Prim, time: Usd.TimeCode | None = None,
                 f"{where}: {name} has {len(values)} values; must have one for each curve or point; write it again"
             )
         (curves.curve if per_curve else curves.point)[name.removeprefix(OWN)] = values
+    schema = UsdGeom.BasisCurves(prim)
+    if schema.GetWidthsInterpolation() == UsdGeom.Tokens.vertex and "width" not in curves.curve:
+        widths = np.array(schema.GetWidthsAttr().Get() or [], np.float32)
+        if len(widths) != len(points):
+            raise UserError(f"{where}: has {len(widths)} widths for {len(points)} points; write the file again")
+        curves.point["width"] = widths * np.float32(source.space.meters_per_unit)
     return curves
 
 
@@ -125,9 +118,11 @@ def define_curves(
 
     prim = defined.GetPrim()
     set_primvar(prim, f"{OWN}id", "uniform", curves.ids)
-    for interpolation, attributes in (("uniform", curves.curve), ("vertex", curves.point)):
-        for name in attributes.keys() - ({"width"} if interpolation == "vertex" else set()):  # width is in ``widths``
-            set_primvar(prim, OWN + name, interpolation, attributes[name])
+    for name, values in curves.curve.items():
+        set_primvar(prim, OWN + name, "uniform", values)
+    for name, values in curves.point.items():
+        if name != "width":  # which is in ``widths``
+            set_primvar(prim, OWN + name, "vertex", values)
     short = curves.ids if np.abs(curves.ids).max(initial=0) < 2**31 else np.arange(len(curves))
     set_primvar(prim, "groom_id", "uniform", short.astype(np.int32))
     set_primvar(prim, "groom_group_id", "uniform", np.zeros(len(curves), np.int32))
@@ -168,73 +163,6 @@ def curve_widths(curves: Curves) -> NDArray:
     return np.repeat(curves.curve.get("width", np.full(len(curves), HAIR_WIDTH)), curves.counts).astype(np.float32)
 
 
-class _Sampling:
-    """How values on the control points of curves become values on the points of polylines."""
-
-    def __init__(self, curves: UsdGeom.BasisCurves, time: Usd.TimeCode, counts: NDArray, where: str) -> None:
-        kind, basis, wrap = (
-            attribute.Get(time) for attribute in (curves.GetTypeAttr(), curves.GetBasisAttr(), curves.GetWrapAttr())
-        )
-        if wrap == UsdGeom.Tokens.periodic:
-            raise UserError(
-                f"{where}: wrap is periodic; must be nonperiodic or pinned, since hairs have a root and a tip"
-            )
-        self.offsets_in = offsets_from_counts(counts)
-        pinned = wrap == UsdGeom.Tokens.pinned and basis != UsdGeom.Tokens.bezier
-        self.as_is = kind == UsdGeom.Tokens.linear or (pinned and basis == UsdGeom.Tokens.catmullRom)
-        self.pinned = pinned and not self.as_is
-        if self.as_is:
-            self.segments, self.offsets = counts - 1, self.offsets_in
-            return
-
-        if basis not in _BASES:
-            raise UserError(f"{where}: basis is {basis}; must be bezier, bspline or catmullRom: convert the curves")
-        stride, least = (3, 4) if basis == UsdGeom.Tokens.bezier else (1, 2 if pinned else 4)
-        if (bad := np.flatnonzero((counts < least) | ((counts - 1) % stride != 0))).size:
-            rule = "4, 7, 10 …" if stride == 3 else f"at least {least}"
-            raise UserError(
-                f"{where}: curve {bad[0]} has {counts[bad[0]]} points; {wrap} {basis} curves must have {rule}"
-            )
-        controls = counts + 2 if self.pinned else counts  # a phantom point at each end
-        self.segments = (controls - 4) // stride + 1
-        self.offsets = offsets_from_counts(self.segments * STEPS + 1)
-
-        # Every sample: its segment, where that begins among the control points, and t in it (1 at the end of a curve).
-        curve = np.repeat(np.arange(len(counts)), np.diff(self.offsets))
-        along = np.arange(self.offsets[-1]) - self.offsets[curve]
-        segment = np.minimum(along // STEPS, self.segments[curve] - 1)
-        self.t = (along - segment * STEPS) / STEPS
-        self.curve, self.segment = curve, segment
-        self.first = offsets_from_counts(controls)[curve] + segment * stride
-        powers = self.t[:, None] ** np.arange(4)
-        self.weights = powers @ _BASES[basis]
-
-    def vertex(self, values: NDArray) -> NDArray:
-        """Values on vertices, shape (n, …), at the points."""
-        if self.as_is:
-            return values
-        controls = self._with_phantoms(values) if self.pinned else values
-        rows = controls[self.first[:, None] + np.arange(4)].astype(np.float64)
-        return np.einsum("sk,sk...->s...", self.weights, rows)
-
-    def varying(self, values: NDArray) -> NDArray:
-        """Values on the ends of segments, at the points; linear in between."""
-        if self.as_is:
-            return values
-        start = offsets_from_counts(self.segments + 1)[self.curve] + self.segment
-        t = self.t.reshape(-1, *[1] * (values.ndim - 1))
-        return (1.0 - t) * values[start] + t * values[start + 1]
-
-    def _with_phantoms(self, values: NDArray) -> NDArray:
-        """Adds a point before the first and after the last of every curve, so that pinned curves reach their ends."""
-        first, last = self.offsets_in[:-1], self.offsets_in[1:] - 1
-        before = 2.0 * values[first] - values[first + 1]
-        after = 2.0 * values[last] - values[last - 1]
-        places = np.concatenate([first, np.arange(len(values)), last + 1])
-        order = np.argsort(places + np.repeat([-0.5, 0.0, -0.75], [len(first), len(values), len(last)]), kind="stable")
-        return np.concatenate([before, values, after])[order]
-
-
 def _counts(prim: Usd.Prim, time: Usd.TimeCode, points: int, where: str) -> NDArray[np.int64]:
     """Vertices per curve, checked."""
     counts = read_integers(UsdGeom.Curves(prim).GetCurveVertexCountsAttr(), time, where)
@@ -247,7 +175,7 @@ def _counts(prim: Usd.Prim, time: Usd.TimeCode, points: int, where: str) -> NDAr
     return counts
 
 
-def _add(curves: Curves, sampling: _Sampling, name: str, values: NDArray, interpolation: str, what: str) -> None:
+def _add(curves: Curves, sampling: Sampling, name: str, values: NDArray, interpolation: str, what: str) -> None:
     """Keeps the values of a primvar as an attribute of curves or of points."""
     expected = {
         UsdGeom.Tokens.constant: 1,

@@ -16,7 +16,7 @@ from ringlet.curves import Curves, offsets_from_counts
 from ringlet.errors import UserError
 from ringlet.groom.groom import Groom
 from ringlet.io.usd.curves import curve_widths, curves_at, define_curves, own_curves, set_roots
-from ringlet.io.usd.groom import GROOM, groom_prim
+from ringlet.io.usd.groom import GROOM
 from ringlet.io.usd.mesh import Body, clip_at, mesh_at, visible_meshes, whole_frames
 from ringlet.io.usd.stage import Source, prims, reading
 from ringlet.io.usd.stream import StreamWriter
@@ -42,8 +42,6 @@ class HairWriter(StreamWriter):
         self._groom, self._hairs = groom, curves
 
     def __enter__(self) -> Self:
-        with reading(self.under) as source:
-            groom_prim(source)
         hairs = self._hairs
         self._curves = define_curves(self.begin(), HAIRS, hairs, self.space, guide=False)
         prim = self._curves.GetPrim()

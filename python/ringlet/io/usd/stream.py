@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from pxr import Sdf, Usd, UsdGeom
 
 from ringlet.io.usd.curves import set_points
-from ringlet.io.usd.stage import new_stage, refuse_itself, writing
+from ringlet.io.usd.groom import groom_prim
+from ringlet.io.usd.stage import new_stage, reading, refuse_itself, writing
 from ringlet.stage import StageSpace
 
 FLUSH = 64e6  # bytes of points held in memory before they go to the file
@@ -26,7 +27,11 @@ class StreamWriter:
         self._held = 0
 
     def begin(self) -> Usd.Stage:
-        """Opens the file beside ``path`` and gives its stage."""
+        """Opens the file beside ``path`` and gives its stage, over a groom that is fit for it."""
+        with reading(self.under) as source:
+            groom_prim(source)
+            if source.space != self.space:
+                raise ValueError(f"{self.under}: has {source.space}; must be {self.space}")
         with ExitStack() as opened:
             self._stage = new_stage(opened.enter_context(writing(self.path)), self.space, over=self.under)
             self._opened = opened.pop_all()

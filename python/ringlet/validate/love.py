@@ -1,0 +1,89 @@
+"""A coil pulled along its axis by a force on it, both ends free to turn: it stays a helix (Love).
+
+GJ(τ−τ₀) sinα + EI(κ−κ₀) cosα = 0,  FR = GJ(τ−τ₀) cosα − EI(κ−κ₀) sinα,  κ = cos²α/R,  τ = sinα cosα/R.
+The coil has R = 5 mm and a pitch of 4 mm.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cache
+
+import numpy as np
+from scipy.optimize import fsolve
+
+from ringlet.validate.case import Case, Row, convergence
+from ringlet.validate.rods import bending_stiffness, rod_material, strand
+
+RADIUS, PITCH, TURNS, RATIO = 5e-3, 4e-3, 6, 1 / 1.38
+LOADS = (0.02, 0.1, 0.3)  # F R₀² / EI
+
+
+@cache
+def theory(load: float) -> float:
+    """Rise per arc length, sin α, of the pulled coil."""
+    alpha0 = np.arctan2(PITCH, 2 * np.pi * RADIUS)
+    curvature0, torsion0 = np.cos(alpha0) ** 2, np.sin(alpha0) * np.cos(alpha0)  # in 1 / R₀
+
+    def residual(unknown: np.ndarray) -> list[float]:
+        alpha, radius = unknown
+        bend = np.cos(alpha) ** 2 / radius - curvature0
+        twist = RATIO * (np.sin(alpha) * np.cos(alpha) / radius - torsion0)
+        return [
+            twist * np.sin(alpha) + bend * np.cos(alpha),
+            twist * np.cos(alpha) - bend * np.sin(alpha) - load * radius,
+        ]
+
+    alpha = alpha0
+    radius = 1.0
+    for part in np.linspace(0, 1, 21)[1:]:  # along the branch that begins unloaded
+
+        def at(unknown: np.ndarray, part: float = part) -> list[float]:
+            first, second = residual(unknown)
+            return [first, second + (1 - part) * load * unknown[1]]
+
+        alpha, radius = fsolve(at, (alpha, radius), xtol=1e-13)
+    return float(np.sin(alpha))
+
+
+def rise(load: float, per_turn: int, *, correct_resolution: bool) -> float:
+    """Rise per arc length of the coil's middle part.
+
+    Stiff radial arms lead from both ends to the axis; the upper one is held at its tip alone, the lower one is pulled.
+    """
+    turn = 2 * np.pi * np.arange(per_turn * TURNS + 1) / per_turn
+    coil = np.c_[RADIUS * np.cos(turn), -PITCH * turn / (2 * np.pi), RADIUS * np.sin(turn)]
+    on_axis = np.array([0.0, 1.0, 0.0])
+    start, end = coil[0] * on_axis, coil[-1] * on_axis
+    points = np.concatenate([[start, 0.5 * (start + coil[0])], coil, [0.5 * (end + coil[-1]), end]])
+    stiff = np.ones(len(points))
+    stiff[[0, 1, 2, -3, -2, -1]] = 1e3
+    material = rod_material(twist_ratio=RATIO, correct_resolution=correct_resolution)
+    spring = strand(points, material, 1, {"bend": stiff})
+    forces = np.zeros_like(points)
+    forces[-1, 1] = -load * bending_stiffness(material) / RADIUS**2
+    spring.settle(forces=forces, tolerance=1e-9)
+    middle = slice(2 + per_turn, -2 - per_turn, per_turn)
+    ends = spring.positions[middle][[0, -1]]
+    axis = spring.positions[-1] - spring.positions[0]
+    arc = np.hypot(2 * np.pi * RADIUS, PITCH) * (len(spring.positions[middle]) - 1)
+    return float((ends[1] - ends[0]) @ axis / np.linalg.norm(axis) / arc)
+
+
+def run() -> Iterator[Row]:
+    for load in LOADS:
+        case = f"pulled coil FR²/EI={load} rise/L"
+        yield from convergence(
+            f"{case}, uncorrected",
+            theory(load),
+            lambda n, f=load: rise(f, n, correct_resolution=False),
+            (12, 24, 48),
+            5e-3,
+            unit="vertices a turn",
+        )
+        for per_turn, tolerance in ((8, 2e-2), (12, 1e-2)):
+            got = rise(load, per_turn, correct_resolution=True)
+            yield Row(f"{case}, corrected, {per_turn} vertices a turn", theory(load), got, tolerance)
+
+
+CASE = Case("pulled-coil", "A coil pulled along its axis lengthens as Love's exact solution does", run)
