@@ -1,4 +1,4 @@
-"""Writes the references of recipes, shots, commands and the Python API as Markdown, from the program itself."""
+"""Writes references as Markdown from the program itself: recipes, shots, commands, known answers, the Python API."""
 
 from __future__ import annotations
 
@@ -12,10 +12,11 @@ from ringlet.cli.app import app
 from ringlet.files import replacing
 
 import ringlet
+from ringlet import validate
 
 
 def write_references(folder: Path) -> None:
-    """Writes the four references to a folder, each only when it has changed."""
+    """Writes the references to a folder, each only when it has changed."""
     folder.mkdir(exist_ok=True)
     schemas = ringlet.schema()
     for name, lines in {
@@ -23,6 +24,7 @@ def write_references(folder: Path) -> None:
         "shot": settings(schemas["shot"]),
         "commands": commands(),
         "python": public_names(),
+        "cases": cases(),
     }.items():
         path, text = folder / f"{name}.md", "\n".join(lines) + "\n"
         if not path.exists() or path.read_text() != text:
@@ -126,3 +128,9 @@ def public_names() -> Iterator[str]:
     yield "```\n\n## Classes\n\n```{eval-rst}"
     yield from (f".. autoclass:: ringlet.{name}\n   :members:\n   :exclude-members: model_config" for name in classes)
     yield "```"
+
+
+def cases() -> Iterator[str]:
+    """The known answers, each in a sentence."""
+    yield "| case | what must hold |\n|---|---|"
+    yield from (f"| `{name}` | {cell(case.title)} |" for name, case in validate.CASES.items())

@@ -11,7 +11,7 @@ from ringlet import api
 from ringlet.run import Run
 from ringlet.share import share
 
-STILL_FRAME = 24  # in the middle of the quick turn
+STILL_FRAME = 22  # in the middle of the quick turn
 STILL_SECONDS = 110.0  # a slow machine gets a noisier picture, not a longer wait
 MOVING = 0.3  # share of the hairs that move in hair.usdc, which keeps it small; the still has all of them
 

@@ -13,7 +13,7 @@ from ringlet.cli.output import print_json, print_table
 
 
 def bench(
-    name: Annotated[str, typer.Argument(metavar="NAME", help="groom or strands.")],
+    name: Annotated[str, typer.Argument(metavar="NAME", help="What to measure: groom, strands or twirl.")],
     settings: Annotated[
         list[str] | None,
         typer.Option(
