@@ -16,6 +16,8 @@ EYE_WIDTH, UPPER_LID, LOWER_LID = np.radians([45.0, 28.5, 25.0])  # half the ope
 EYE_SLANT = 0.06  # the outer corner is a little higher
 LID = 0.2  # thickness of the lids
 
+WAIST, STRETCH = -17.0, 13.0  # the shirt is as wide as at the waist for so long, to be cut by any picture's edge
+
 EAR_CENTRE = np.array([6.95, -1.5, -1.3])
 EAR_FLARE = np.radians(33.0)  # how far the rim stands off the skull
 EAR_TILT = np.radians(12.0)  # the top leans back
@@ -40,6 +42,7 @@ def skin(points: Array) -> Array:
 def shirt(points: Array) -> Array:
     """A T-shirt: the body with an offset, open around the neck, with a rib along the neckline, rounded off below."""
     p = mirrored(points)
+    p[:, 1] += np.clip(WAIST - p[:, 1], 0.0, STRETCH)
     cloth = intersect(torso(p) - 0.45, ellipsoid(p, (0, -14.5, -3.0), (11.4, 10.6, 9.0)), 1.5)
     opening = neckline(p)
     rib = np.hypot(opening - 0.25, cloth + 0.05) - 0.36

@@ -22,7 +22,7 @@ from pxr import Gf, Kind, Sdf, Usd, UsdGeom, UsdShade, Vt
 from regions import NAMES, label
 from remesh import mesh_shape
 
-GROUND = np.array([0.0, 25.0, 0.0])  # the bust stands on the ground, y = 0
+GROUND = np.array([0.0, 38.0, 0.0])  # the bust stands on the ground, y = 0
 
 # Linear red, green, blue.
 SKIN = np.array([0.34, 0.165, 0.095])
@@ -30,7 +30,8 @@ LIPS = np.array([0.32, 0.085, 0.07])
 BLUSH = np.array([0.40, 0.125, 0.08])
 SHIRT = np.array([0.55, 0.31, 0.085])
 EYEBALL = np.array([0.82, 0.80, 0.77])
-IRIS = np.array([0.085, 0.032, 0.013])
+IRIS = np.array([0.105, 0.041, 0.016])
+RIM = np.array([0.016, 0.007, 0.004])
 PUPIL = np.array([0.004, 0.004, 0.004])
 BROW = np.array([0.030, 0.017, 0.012])
 LASH = np.array([0.012, 0.008, 0.007])
@@ -74,9 +75,17 @@ def skin_color(points: Array) -> Array:
     return color + lips * (LIPS - color)
 
 
+def iris_color(points: Array) -> Array:
+    """Colours per point: a dark rim, and light that gathers in the lower half."""
+    out = np.degrees(np.arctan2(np.hypot(points[:, 0], points[:, 1]), points[:, 2]))
+    rim = np.clip((out - 20.0) / 9.0, 0.0, 1.0)[:, None] ** 2
+    glow = 1.0 - 0.7 * points[:, 1:2] / np.abs(points[:, 1]).max()
+    return glow * IRIS + rim * (RIM - glow * IRIS)
+
+
 def shirt_size(points: Array) -> Array:
     """Edge lengths [cm]: fine along the neckline."""
-    return np.minimum(0.3 + 0.3 * np.maximum(np.abs(head_shape.neckline(points)) - 0.5, 0.0), 1.1)
+    return np.minimum(0.3 + 0.3 * np.maximum(np.abs(head_shape.neckline(points)) - 0.5, 0.0), 1.3)
 
 
 def build() -> dict[str, Piece]:
@@ -86,11 +95,11 @@ def build() -> dict[str, Piece]:
     labels = label(points, triangles)
     regions = {name: np.flatnonzero(labels == k).astype(np.int32) for k, name in enumerate(NAMES)}
     skin = Piece(points, triangles, skin_color(points), 0.5, unwrap(points, triangles, labels), regions)
-    low, high = np.array([-11.6, -25.6, -9.2]), np.array([11.6, -7.6, 3.2])
+    low, high = np.array([-11.6, -38.6, -9.2]), np.array([11.6, -7.6, 3.2])
     pieces = {"skin": skin, "shirt": Piece(*mesh_shape(head_shape.shirt, low, high, 0.3, shirt_size), SHIRT, 0.9)}
     for side, sign in (("left", 1.0), ("right", -1.0)):
         pieces[f"eye_{side}/eyeball"] = Piece(*parts.eyeball(), EYEBALL, 0.12)
-        pieces[f"eye_{side}/iris"] = Piece(*parts.iris(), IRIS, 0.08)
+        pieces[f"eye_{side}/iris"] = Piece(*parts.iris(), iris_color(parts.iris()[0]), 0.08)
         pieces[f"eye_{side}/pupil"] = Piece(*parts.pupil(), PUPIL, 0.05)
         pieces[f"brow_{side}"] = Piece(*parts.brow(sign), BROW, 0.8)
         pieces[f"lash_{side}"] = Piece(*parts.lash(sign), LASH, 0.7)

@@ -31,7 +31,7 @@ def eyeball() -> Part:
 
 
 def iris() -> Part:
-    return dome(IRIS, 5, 0.012)
+    return dome(IRIS, 7, 0.012)
 
 
 def pupil() -> Part:

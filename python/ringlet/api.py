@@ -205,8 +205,8 @@ def write_still(
     *,
     frame: float | None = None,
     width: int = 900,
-    height: int = 1100,
-    samples: int = 64,
+    height: int = 1000,
+    samples: int = 32,
     view: str = "three_quarter",
     color: str = "dark_brown",
     seconds: float | None = None,
@@ -241,10 +241,11 @@ def write_sheet(
     *,
     frames: tuple[int, int] | None = None,
     count: int = 12,
+    title: str = "",
     color: str = "dark_brown",
     progress: Progress | None = None,
 ) -> None:
-    """Draws ``count`` frames of a USD stage, evenly spread, on one page."""
+    """Draws ``count`` frames of a USD stage, evenly spread, on one page, under a title if there is one."""
     from ringlet import io, picture
 
     _, _, held = io.read_stage(Path(stage))
@@ -253,7 +254,12 @@ def write_sheet(
         raise UserError(f"{stage}: has no frames to draw a sheet of; give hairs made with --cache, or other frames")
     spread = [chosen[i] for i in np.unique(np.linspace(0, len(chosen) - 1, count).round().astype(int))]
     picture.sheet(
-        ((frame, *_posed(Path(stage), frame)) for frame in spread), Path(path), color=color, progress=progress
+        ((frame, *_posed(Path(stage), frame)) for frame in spread),
+        Path(path),
+        title=title,
+        fps=io.read_space(Path(stage)).fps,
+        color=color,
+        progress=progress,
     )
 
 

@@ -13,7 +13,8 @@ from ringlet.mesh import Mesh
 from ringlet.picture import HAIR_COLORS, VIEWS, PosedBody, sheet, still
 from ringlet.picture.bodies import material
 from ringlet.picture.camera import frame
-from ringlet.picture.render import build_scene, mitsuba, trace, without_specks
+from ringlet.picture.denoise import denoise
+from ringlet.picture.render import build_scene, hair_share, mitsuba, trace, without_specks
 from ringlet.picture.strands import fibres, load_fibres, spline_controls
 from ringlet.picture.tone import develop
 from scipy.interpolate import BSpline
@@ -75,9 +76,10 @@ def test_hairs_of_different_lengths_reach_the_renderer_whole() -> None:
     controls, offsets = fibres(hairs)
     shape = load_fibres(mitsuba(), controls, offsets, {"type": "hair"})
     parameters = mitsuba().traverse(shape)
-    held = np.array(parameters["control_points"]).reshape(-1, 4)
+    held, guard = np.split(np.array(parameters["control_points"]).reshape(-1, 4), [len(controls)])
     assert np.array_equal(held, controls)
-    assert len(np.array(parameters["segment_indices"])) == sum(len(hairs[k]) - 1 for k in range(3))
+    assert guard[:, 3].max() < 1e-3 * controls[:, 3].min(), "the curve that ends the list is never seen"
+    assert len(np.array(parameters["segment_indices"])) == sum(len(hairs[k]) - 1 for k in range(3)) + 1
     for k in range(3):
         middle = controls[offsets[k] : offsets[k + 1]]
         knot = (middle[:-2, :3] + 4 * middle[1:-1, :3] + middle[2:, :3]) / 6
@@ -180,6 +182,27 @@ def test_a_speck_is_spread_over_its_neighbourhood_and_no_light_is_lost() -> None
     assert calm[20, 20, 0] < 0.6 * total[20, 20, 0]
     assert calm[:, :, :3].sum() == pytest.approx(total[:, :, :3].sum(), rel=1e-3)
     assert np.array_equal(calm[:, :, 3], total[:, :, 3])
+
+
+def test_noise_goes_and_edges_stay() -> None:
+    clean = np.full((60, 60, 4), 0.2)
+    clean[:, 30:] = 0.8
+    noise = np.random.default_rng(4).normal(0.0, 0.05, clean.shape)
+    calm = denoise(clean + noise, np.full(clean.shape, 0.05**2))
+    assert np.abs(calm - clean).mean() < 0.3 * np.abs(noise).mean()
+    assert (calm[:, 30] - calm[:, 29]).min() > 0.5
+    assert np.allclose(denoise(clean, np.zeros(clean.shape)), clean, atol=1e-3)
+
+
+def test_hair_is_told_from_skin() -> None:
+    hairs = tuft()
+    camera = frame([hairs.points, ball().points], view="front")
+    scene = build_scene([ball()], hairs, camera, size=(64, 64), color=HAIR_COLORS["black"], max_depth=2)
+    share = hair_share(scene)[:, :, 0]
+    where = np.clip((camera.project(hairs.points) * 64).astype(int), 0, 63)
+    assert share[where[:, 1], where[:, 0]].mean() > 0.4
+    below = camera.project(ball().points[3:4])[0] * 64
+    assert share[int(below[1]) - 6, int(below[0])] < 0.01
 
 
 def test_bright_light_rolls_off_and_order_is_kept() -> None:

@@ -29,8 +29,8 @@ def picture(
         str, typer.Option("--color", help="black, dark_brown, brown, auburn, ginger, blond or gray.")
     ] = "dark_brown",
     width: Annotated[int, typer.Option("--width", min=16, max=8192, help="Pixels across.")] = 900,
-    height: Annotated[int, typer.Option("--height", min=16, max=8192, help="Pixels down.")] = 1100,
-    samples: Annotated[int, typer.Option("--samples", min=1, help="Paths per pixel: more is cleaner and slower.")] = 64,
+    height: Annotated[int, typer.Option("--height", min=16, max=8192, help="Pixels down.")] = 1000,
+    samples: Annotated[int, typer.Option("--samples", min=1, help="Paths per pixel: more is cleaner and slower.")] = 32,
     seconds: Annotated[
         float | None, typer.Option("--seconds", min=1, help="Stop adding samples after that long.", show_default=False)
     ] = None,

@@ -55,7 +55,7 @@ def material(mesh: Mesh) -> dict[str, Any]:
     look: dict[str, dict[str, Any]] = {
         # `flatness` and `sheen` stand in for light that wanders under the skin: softer shading, a warm edge
         "skin": {"roughness": 0.48, "specular": 0.4, "flatness": 0.5, "sheen": 0.1, "sheen_tint": 0.8},
-        "eye": {"roughness": 0.07, "specular": 0.9, "clearcoat": 1.0, "clearcoat_gloss": 0.99},
+        "eye": {"roughness": 0.06, "specular": 0.35},
         "cloth": {"roughness": 0.9, "specular": 0.15, "sheen": 0.5, "sheen_tint": 0.5},
         "matte": {"roughness": 0.8, "specular": 0.2},
     }

@@ -15,6 +15,7 @@ from ringlet.curves import Curves
 from ringlet.errors import UserError
 from ringlet.picture.bodies import COLORS, PosedBody, material
 from ringlet.picture.camera import Camera
+from ringlet.picture.denoise import denoise
 from ringlet.picture.strands import fibres, load_fibres
 from ringlet.picture.studio import backdrop, lights
 
@@ -41,12 +42,18 @@ HAIR_COLORS: dict[str, HairColor] = {
     "gray": HairColor(0.12, 0.0, 0.36),
 }
 
+# What the hairs are called in a scene.
+HAIRS = "hairs"
+
 # The least diameter at which a hair is drawn [pixels].
 THINNEST = 0.3
 
 # Samples per pixel of one pass: enough for them to be spread evenly over a pixel and over the lights, few enough for
 # some passes to compare.
 MOST_PER_PASS, FEWEST_PASSES = 8, 4
+
+# How much of its noise hair keeps: single hairs are as small as noise, and would go with it.
+GRAIN = 0.68
 
 
 def hair_color(name: str) -> HairColor:
@@ -119,7 +126,7 @@ def build_scene(
             "longitudinal_roughness": color.roughness,
             "azimuthal_roughness": color.roughness,
         }
-        scene["hairs"] = load_fibres(mi, controls * np.float32(scale), offsets, look)
+        scene[HAIRS] = load_fibres(mi, controls * np.float32(scale), offsets, look)
     return mi.load_dict(scene)
 
 
@@ -130,7 +137,8 @@ def trace(
     seconds: float | None = None,
     progress: Progress | None = None,
 ) -> NDArray[np.float32]:
-    """Light and coverage (r, g, b, a), shape (height, width, 4): the mean of passes with different random numbers.
+    """Light and coverage (r, g, b, a), shape (height, width, 4): the mean of passes with different random numbers,
+    cleaned of specks and noise by what the passes differ in.
 
     seconds:  no further pass begins when it would end after this time
     progress: called with "picture", the passes done and to do
@@ -141,6 +149,7 @@ def trace(
     began = time.monotonic()
     total: Any = 0.0
     brightest: Any = 0.0
+    squares: Any = 0.0
     done = 0
     if progress:
         progress("picture", 0, passes)
@@ -148,6 +157,7 @@ def trace(
         image = np.nan_to_num(np.array(mi.render(scene, spp=per_pass, seed=done), np.float64))
         total += image
         brightest = np.maximum(brightest, image)
+        squares += image**2
         done += 1
         if progress:
             progress("picture", done, passes)
@@ -156,8 +166,23 @@ def trace(
             break
     if progress and done < passes:
         progress("picture", passes, passes)
-    light = total if done < 3 else without_specks(total, brightest, (total - brightest) / (done - 1))
-    return (light / done).astype(np.float32)
+    if done < 3:
+        return (total / done).astype(np.float32)
+    light = without_specks(total, brightest, (total - brightest) / (done - 1)) / done
+    smooth = denoise(light, np.maximum(squares / done - (total / done) ** 2, 0.0) / (done - 1))
+    kept: NDArray = GRAIN * hair_share(scene) * (light - smooth)
+    return np.asarray(smooth + kept, np.float32)
+
+
+def hair_share(scene: Any) -> NDArray[np.float32]:
+    """Where hair is what the camera sees, from 0 to 1, soft at its edges; shape (height, width, 1)."""
+    mi = mitsuba()
+    names = [shape.id() for shape in scene.shapes()]
+    if HAIRS not in names:
+        return np.zeros((1, 1, 1), np.float32)
+    seen = mi.render(scene, integrator=mi.load_dict({"type": "aov", "aovs": "seen:shape_index"}), spp=1)
+    is_hair = np.abs(np.array(seen)[:, :, 0] - (names.index(HAIRS) + 1)) < 0.5  # 0 is where nothing is seen
+    return np.asarray(gaussian_filter(is_hair.astype(np.float32), 1.2), np.float32)[:, :, None]
 
 
 def without_specks(

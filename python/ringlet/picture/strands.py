@@ -55,7 +55,14 @@ def fibres(hairs: Curves) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
 
 def load_fibres(mi: Any, controls: NDArray[np.float32], offsets: NDArray[np.int32], bsdf: dict[str, Any]) -> Any:
     """The Mitsuba shape. Mitsuba reads curves from a text file only; numbers as text are slow and lose precision, so
-    the file merely lays out how many points each curve has, and the points go in as one array afterwards."""
+    the file merely lays out how many points each curve has, and the points go in as one array afterwards.
+
+    One more curve, too thin to be hit, ends the list: Mitsuba finds a segment by one single-precision number over all
+    of them, which at the tip of the last of a million rounds up to a segment that is not there."""
+    guard = np.repeat(controls[-1:], 4, axis=0)
+    guard[:, 1] += np.arange(4) * controls[-1, 3]
+    guard[:, 3] *= 1e-5
+    controls, offsets = np.concatenate([controls, guard]), np.append(offsets, offsets[-1] + 4)
     row, rows_before = b"0 0 0 1\n", np.diff(offsets)
     layout = b"\n".join(row * int(n) for n in rows_before)
     with tempfile.TemporaryDirectory(prefix="ringlet-") as folder:

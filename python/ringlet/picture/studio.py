@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import cos, radians, sin
+from math import cos, pi, radians, sin
 from typing import Any
 
 import numpy as np
@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True)
 class Light:
-    """A square soft box that looks at the subject.
+    """A round soft box, for round lights in the eyes, that looks at the subject.
 
     azimuth:   from the camera to its right [degrees]
     elevation: above the camera's height [degrees]
-    size:      edge, in units of the subject's distance from the light
+    size:      diameter, in units of the subject's distance from the light
     strength:  light that arrives at the subject (linear r, g, b), if it faced the box
     attention: how often shadow rays go to it, among the others; its light is the same, its noise less
     """
@@ -29,8 +29,8 @@ class Light:
 
 
 LIGHTS = {
-    "key": Light(-36.0, 25.0, 0.55, (10.5, 9.0, 7.3), 3.0),  # warm, large, under the fringe: it draws the face
-    "fill": Light(64.0, 4.0, 1.4, (1.2, 1.4, 1.7)),  # cool and dim, from the other side
+    "key": Light(-36.0, 25.0, 0.62, (10.5, 9.0, 7.3), 3.0),  # warm, large, under the fringe: it draws the face
+    "fill": Light(64.0, 4.0, 1.0, (1.2, 1.4, 1.7)),  # cool and dim, from the other side
     "rim_right": Light(142.0, 34.0, 0.7, (9.5, 9.2, 8.8)),  # from behind: it draws every curl of the silhouette
     "rim_left": Light(-128.0, 52.0, 0.7, (9.5, 9.2, 9.2)),
 }
@@ -47,13 +47,13 @@ def lights(mi: Any, axes: NDArray[np.float64], distance: float) -> dict[str, Any
         azimuth, elevation = radians(light.azimuth), radians(light.elevation)
         local = np.array([sin(azimuth) * cos(elevation), sin(elevation), cos(azimuth) * cos(elevation)])
         half = 0.5 * light.size * distance
-        # Mitsuba's rectangle spans -1…1; a box of edge s at distance 1 sends its radiance times s² to the subject
+        # Mitsuba's disk has radius 1; one of diameter s at distance 1 sends its radiance times π s²/4 to the subject
         place = mi.ScalarTransform4f().look_at(
             origin=list(distance * (local @ axes)), target=[0, 0, 0], up=list(axes[1] + 1e-3 * axes[2])
         ) @ mi.ScalarTransform4f().scale([half, half, 1.0])
-        radiance = [s / light.size**2 for s in light.strength]
+        radiance = [s / (0.25 * pi * light.size**2) for s in light.strength]
         emitter = {"type": "area", "radiance": _rgb(radiance), "sampling_weight": light.attention}
-        shapes[name] = {"type": "rectangle", "to_world": place, "emitter": emitter}
+        shapes[name] = {"type": "disk", "to_world": place, "emitter": emitter}
     return shapes
 
 
