@@ -55,8 +55,8 @@ class Solver(Section):
     tolerance: float = Field(
         1e-6, gt=0, le=1e-2, description="[m] a lock has converged when no vertex moves more than this"
     )
-    continuation: Literal["least_energy", "history"] = Field(
-        "least_energy", description="how the signs of bends and the turns of twist are found: see the theory page"
+    continuation: Literal["material_frame", "least_energy", "history"] = Field(
+        "material_frame", description="how the signs of bends and the turns of twist are found: see the theory page"
     )
 
 
@@ -137,7 +137,7 @@ class Strands:
         return dict(zip(_core.REPORT, rows.T, strict=True))
 
     def energy(
-        self, positions: NDArray[np.float64], *, continuation: str = "least_energy", hessian: bool = False
+        self, positions: NDArray[np.float64], *, continuation: str = "material_frame", hessian: bool = False
     ) -> tuple[float, NDArray[np.float64], NDArray[np.float64]]:
         """Elastic energy [J], its gradient [N], shape (n, 3), and, for a single strand, the Hessian Newton uses."""
         points = np.ascontiguousarray(positions, np.float64)

@@ -62,7 +62,7 @@ def rise(load: float, per_turn: int, *, correct_resolution: bool) -> float:
     spring = strand(points, material, 1, {"bend": stiff})
     forces = np.zeros_like(points)
     forces[-1, 1] = -load * bending_stiffness(material) / RADIUS**2
-    spring.settle(forces=forces, tolerance=1e-9)
+    spring.settle(forces=forces, tolerance=1e-7)  # it may turn about its axis at no cost
     middle = slice(2 + per_turn, -2 - per_turn, per_turn)
     ends = spring.positions[middle][[0, -1]]
     axis = spring.positions[-1] - spring.positions[0]
