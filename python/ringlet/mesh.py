@@ -18,7 +18,8 @@ class Mesh:
     uv:        texture coordinates per triangle corner, shape (m, 3, 2), or None
     faces:     the source polygon of each triangle, shape (m,), int32 (Houdini's ``skinprim``)
     regions:   named sets of triangles, e.g. ``scalp``; index arrays, int32
-    color:     display colour (linear r, g, b)
+    color:     display colour (linear r, g, b), the mean of it where it varies
+    colors:    display colour of each vertex (linear r, g, b), shape (n, 3), or None where it does not vary
     """
 
     name: str
@@ -28,6 +29,7 @@ class Mesh:
     faces: NDArray[np.int32] | None = None
     regions: dict[str, NDArray[np.int32]] = field(default_factory=dict)
     color: tuple[float, float, float] = (0.5, 0.5, 0.5)
+    colors: NDArray[np.float64] | None = None
 
     def region(self, name: str | None) -> NDArray[np.int32]:
         """Triangles of a named region; all of them for None. Raises KeyError with the names there are."""

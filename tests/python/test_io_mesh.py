@@ -179,3 +179,26 @@ def test_a_skinned_mesh_follows_its_skeleton(tmp_path):
 def test_the_example_head_keeps_the_rules_of_usd_and_has_a_scalp():
     assert problems(EXAMPLE) == []
     assert len(read_mesh(EXAMPLE).region("scalp")) > 100
+
+
+def test_colours_reach_the_vertices_however_the_file_spreads_them(tmp_path):
+    each = {
+        "vertex": CUBE,
+        "varying": CUBE,
+        "faceVarying": np.concatenate([CUBE[face] for face in CUBE_FACES]),
+        "uniform": np.repeat(np.arange(6.0)[:, None] / 6, 3, axis=1),
+        "constant": np.array([[0.2, 0.4, 0.6]]),
+    }
+    meshes = {}
+    for interpolation, colors in each.items():
+        stage = new_stage(tmp_path / f"{interpolation}.usda")
+        primvar = UsdGeom.Gprim(add_cube(stage)).CreateDisplayColorPrimvar(interpolation)
+        primvar.Set(Vt.Vec3fArray.FromNumpy(colors.astype(np.float32)))
+        stage.Save()
+        meshes[interpolation] = read_mesh(tmp_path / f"{interpolation}.usda")
+        assert meshes[interpolation].color == pytest.approx(colors.mean(axis=0), abs=1e-6)
+    for interpolation in ("vertex", "varying", "faceVarying"):
+        np.testing.assert_allclose(meshes[interpolation].colors, CUBE)
+    corner_0 = np.mean([k / 6 for k, face in enumerate(CUBE_FACES) if 0 in face])
+    np.testing.assert_allclose(meshes["uniform"].colors[0], corner_0, atol=1e-6)
+    assert meshes["constant"].colors is None

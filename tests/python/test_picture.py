@@ -197,6 +197,17 @@ def test_a_body_is_made_of_what_its_name_says() -> None:
     assert shirt["base_color"]["value"] == pytest.approx([0.4, 0.2, 0.1])
 
 
+def test_a_body_shows_the_colours_of_its_vertices() -> None:
+    body = ball()
+    body.mesh.colors = np.zeros((6, 3))
+    body.mesh.colors[1], body.mesh.colors[0] = (0.8, 0.0, 0.0), (0.0, 0.0, 0.8)  # red on the left, blue on the right
+    camera = frame([body.points], view="front")
+    scene = build_scene([body], None, camera, size=(32, 32), color=HAIR_COLORS["black"], max_depth=2)
+    red, _, blue, _ = np.moveaxis(trace(scene, samples=8), 2, 0)
+    assert red[:, :8].sum() > 1.5 * blue[:, :8].sum()
+    assert blue[:, -8:].sum() > 1.5 * red[:, -8:].sum()
+
+
 # Sheets
 
 

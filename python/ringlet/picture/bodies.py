@@ -33,6 +33,9 @@ class PosedBody:
             raise UserError(f"{self.mesh.name}: point {broken[0]} is {self.points[broken[0]]}; must be finite")
 
 
+# Where Mitsuba finds the colours of vertices.
+COLORS = "vertex_color"
+
 # What a mesh is made of is guessed from the last part of its name; the first pattern that matches wins.
 _MADE_OF = (
     ("matte", r"brow|lash|mouth|nostril"),
@@ -46,7 +49,9 @@ def material(mesh: Mesh) -> dict[str, Any]:
     """The Mitsuba material of a mesh, coloured by its display colour and guessed from its name."""
     name = re.split(r"[/\s]", mesh.name.lower())[-1]
     made_of = next((kind for kind, pattern in _MADE_OF if re.search(pattern, name)), "matte")
-    color = {"type": "rgb", "value": [float(np.clip(c, 0.0, 1.0)) for c in mesh.color]}
+    color: dict[str, Any] = {"type": "rgb", "value": [float(np.clip(c, 0.0, 1.0)) for c in mesh.color]}
+    if mesh.colors is not None:
+        color = {"type": "mesh_attribute", "name": COLORS}
     look: dict[str, dict[str, Any]] = {
         # `flatness` and `sheen` stand in for light that wanders under the skin: softer shading, a warm edge
         "skin": {"roughness": 0.48, "specular": 0.4, "flatness": 0.5, "sheen": 0.1, "sheen_tint": 0.8},

@@ -13,7 +13,7 @@ from scipy.ndimage import gaussian_filter
 
 from ringlet.curves import Curves
 from ringlet.errors import UserError
-from ringlet.picture.bodies import PosedBody, material
+from ringlet.picture.bodies import COLORS, PosedBody, material
 from ringlet.picture.camera import Camera
 from ringlet.picture.strands import fibres, load_fibres
 from ringlet.picture.studio import backdrop, lights
@@ -188,6 +188,8 @@ def _mesh(mi: Any, body: PosedBody, target: NDArray[np.float64], scale: float) -
     properties = mi.Properties()
     properties["bsdf"] = mi.load_dict(material(mesh))
     shape = mi.Mesh(mesh.name, len(mesh.points), len(mesh.triangles), has_vertex_normals=True, props=properties)
+    if mesh.colors is not None:
+        shape.add_attribute(COLORS, 3, np.clip(mesh.colors, 0.0, 1.0).astype(np.float32).ravel())
     parameters = mi.traverse(shape)
     values = {
         "vertex_positions": (body.points - target) * scale,

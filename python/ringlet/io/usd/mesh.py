@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -105,7 +106,7 @@ def mesh_at(source: Source, prim: Usd.Prim) -> Mesh:
         uv=_uv(prim, corners, triangles, len(points), len(indices), where),
         faces=faces.astype(np.int32),
         regions=_regions(prim, faces, len(counts), where),
-        color=_color(prim),
+        **_color(prim, counts, indices, len(points)),
     )
 
 
@@ -146,7 +147,9 @@ def define_mesh(stage: Usd.Stage, path: str, mesh: Mesh, space: StageSpace) -> U
     defined.CreateFaceVertexCountsAttr(Vt.IntArray.FromNumpy(np.full(len(mesh.triangles), 3, np.int32)))
     defined.CreateFaceVertexIndicesAttr(Vt.IntArray.FromNumpy(mesh.triangles.astype(np.int32).ravel()))
     defined.CreateSubdivisionSchemeAttr(UsdGeom.Tokens.none)
-    set_primvar(prim, "displayColor", "constant", np.array([mesh.color], np.float32), Types.Color3fArray)
+    varies = mesh.colors is not None
+    colors = np.array(mesh.colors if varies else [mesh.color], np.float32)
+    set_primvar(prim, "displayColor", "vertex" if varies else "constant", colors, Types.Color3fArray)
     if mesh.uv is not None:
         set_primvar(prim, "st", "faceVarying", mesh.uv.reshape(-1, 2).astype(np.float32), Types.TexCoord2fArray)
     for name, triangles in mesh.regions.items():
@@ -209,14 +212,25 @@ def _regions(prim: Usd.Prim, faces: NDArray, count: int, where: str) -> dict[str
     return regions
 
 
-def _color(prim: Usd.Prim) -> tuple[float, float, float]:
-    """The display colour, averaged where it varies."""
+def _color(prim: Usd.Prim, counts: NDArray, indices: NDArray, points: int) -> dict[str, Any]:
+    """The display colour and, where it varies, that of each vertex: the mean of the corners that meet there."""
     primvar = UsdGeom.PrimvarsAPI(prim).FindPrimvarWithInheritance("displayColor")
-    colors = np.array((primvar and primvar.Get(Usd.TimeCode.EarliestTime())) or [], np.float64).reshape(-1, 3)
-    if len(colors) == 0:
-        return Mesh.color
-    red, green, blue = colors.mean(axis=0)
-    return float(red), float(green), float(blue)
+    values = primvar.ComputeFlattened(Usd.TimeCode.EarliestTime()) if primvar else None
+    colors = np.array(values if values is not None else [], np.float64).reshape(-1, 3)
+    if len(colors) == 0 or not np.isfinite(colors).all():
+        return {}
+    color = dict(color=tuple(map(float, colors.mean(axis=0))))
+    interpolation = primvar.GetInterpolation()
+    if interpolation == UsdGeom.Tokens.uniform and len(colors) == len(counts):
+        corners = np.repeat(colors, counts, axis=0)
+    elif interpolation == UsdGeom.Tokens.faceVarying and len(colors) == len(indices):
+        corners = colors
+    elif interpolation in (UsdGeom.Tokens.vertex, UsdGeom.Tokens.varying) and len(colors) == points:
+        return {**color, "colors": colors}
+    else:
+        return color
+    sums = np.stack([np.bincount(indices, channel, points) for channel in corners.T], axis=1)
+    return {**color, "colors": sums / np.maximum(np.bincount(indices, minlength=points), 1)[:, None]}
 
 
 def _frames(source: Source, prim: Usd.Prim, frames: tuple[float, float] | None) -> NDArray[np.float64]:
