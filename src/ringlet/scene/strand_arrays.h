@@ -58,7 +58,7 @@ RINGLET_DECLARE(
     int strand_lanes();
     size_t strand_workspace(int vertices); // bytes that stepping a group of strands of at most that many vertices needs
     void step_strand_group(const StrandArrays &arrays, const StrandStep &step, StrandGroup group, void *workspace, StrandReport *reports);
-    void relax_strand_frames(const StrandArrays &arrays, StrandGroup group, void *workspace);
+    void relax_strand_frames(const StrandArrays &arrays, StrandGroup group, void *workspace, double *energies);
     double strand_group_energy(const StrandArrays &arrays, const StrandStep &step, int strand, const double *positions, void *workspace, double *gradient, double *hessian);
 )
 // clang-format on

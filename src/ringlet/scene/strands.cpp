@@ -195,9 +195,26 @@ StrandState make_strand_state(const StrandModel &model, View<Vec3> positions) {
             state.directors[i + 1] = Eigen::Quaterniond::FromTwoVectors(tangent(i), tangent(i + 1)) * turned;
         }
     }
-    const StrandArrays arrays = arrays_of(model, state, positions, positions);
-    for_each_group(
-        model, [&](StrandGroup group, void *workspace) { RINGLET_DISPATCH(relax_strand_frames, arrays, group, workspace); });
+
+    // Where it ends depends on where it begins: frames that follow the corners' normals are tried too, the cheaper are kept.
+    const auto relax = [&](StrandState &of) {
+        std::vector<double> energies(model.strand_count());
+        const StrandArrays arrays = arrays_of(model, of, positions, positions);
+        for_each_group(model, [&](StrandGroup group, void *workspace) {
+            double group_energies[most_lanes];
+            RINGLET_DISPATCH(relax_strand_frames, arrays, group, workspace, group_energies);
+            for (int k = 0; k < group.count; ++k) energies[group.strands[k]] = group_energies[k];
+        });
+        return energies;
+    };
+    StrandState by_normals = state;
+    for (int s = 0; s < model.strand_count(); ++s)
+        for (int i = model.offsets[s] + 2; i + 1 < model.offsets[s + 1]; ++i) by_normals.directors[i] = now.normal[i];
+    const std::vector<double> untwisted = relax(state), normal = relax(by_normals);
+    for (int s = 0; s < model.strand_count(); ++s)
+        if (normal[s] < untwisted[s])
+            std::copy(by_normals.directors.begin() + model.offsets[s], by_normals.directors.begin() + model.offsets[s + 1],
+                      state.directors.begin() + model.offsets[s]);
     return state;
 }
 

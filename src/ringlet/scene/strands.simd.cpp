@@ -78,11 +78,13 @@ public:
         for (int lane = 0; lane < group_.count; ++lane) reports[lane] = unload(lane, result);
     }
 
-    // Turns the material frames to where they cost least at the present positions.
-    void relax_frames() {
-        relax();
-        for (int lane = 0; lane < group_.count; ++lane)
+    // Turns the material frames to where they cost least at the present positions; says how much that is [J].
+    void relax_frames(double *energies) {
+        const Pack energy = relax();
+        for (int lane = 0; lane < group_.count; ++lane) {
+            energies[lane] = energy[lane];
             for (int i = 1; i + 1 < count(lane); ++i) keep_normal(lane, i);
+        }
     }
 
     // Elastic energy, gradient and Hessian of the first lane's strand at other positions, without inertia or damping; frames
@@ -93,8 +95,7 @@ public:
             for (int k = 0; k < 3; ++k) p[k] = constant<Pack>(positions[3 * (first(0) + i) + k]);
             place(space_.x, i, p);
         }
-        relax();
-        const double value = lane(objective_.evaluate(space_.x), 0);
+        const double value = lane(relax(), 0);
         typename Objective::Matrix band(space_.newton.band, objective_.size());
         objective_.assemble(space_.newton.gradient, band);
         const int size = objective_.size();
@@ -165,15 +166,15 @@ private:
     }
 
     // Newton on the frames alone: all vertices are held.
-    void relax() {
-        if (!frames) return;
+    Pack relax() {
+        if (!frames) return objective_.evaluate(space_.x);
         for (int i = 0; i < vertices_; ++i) {
             space_.start[i].x = space_.rows[i].free;
             space_.rows[i].free = Pack{};
         }
         newton(objective_, space_.x, {100, 1e-14}, space_.newton);
         for (int i = 0; i < vertices_; ++i) space_.rows[i].free = space_.start[i].x;
-        objective_.evaluate(space_.x);
+        return objective_.evaluate(space_.x);
     }
 
     void keep_normal(int lane, int i) {
@@ -374,10 +375,10 @@ void step_strand_group(const StrandArrays &arrays, const StrandStep &step, Stran
     with_group(arrays, step, group, workspace, [&](auto &made) { made.step(reports); });
 }
 
-void relax_strand_frames(const StrandArrays &arrays, StrandGroup group, void *workspace) {
+void relax_strand_frames(const StrandArrays &arrays, StrandGroup group, void *workspace, double *energies) {
     StrandStep step;
     step.continuation = Continuation::material_frame;
-    with_group(arrays, step, group, workspace, [](auto &made) { made.relax_frames(); });
+    with_group(arrays, step, group, workspace, [&](auto &made) { made.relax_frames(energies); });
 }
 
 double strand_group_energy(const StrandArrays &arrays, const StrandStep &step, int strand, const double *positions,
