@@ -1,4 +1,4 @@
-"""Strands released from shapes far from rest: how they come back. Run as a program it prints the table of the documents."""
+"""Strands released from shapes far from rest: how they come back. As a program it prints the table of the documents."""
 
 from __future__ import annotations
 
@@ -119,7 +119,7 @@ def release(continuation="material_frame", newton=5, fps=24.0, steps=600):
 
 
 def main():
-    """Prints a table in Markdown: for each model and setting the steps until back at rest, or how far away it stayed."""
+    """Prints a table in Markdown: by model and setting the steps until back at rest, or how far away it stayed."""
     settings = [(5, 24), (1, 24), (5, 12)]
     models = ["history", "least_energy", "material_frame"]
     columns = [f"{model}, {n} Newton, 1/{fps} s" for model in models for n, fps in settings]
