@@ -1,4 +1,4 @@
-"""The scene that published strand solvers are compared on: tight 4C wisps on a sphere that is twirled about each axis."""
+"""The scene that published strand solvers are compared on: tight 4C wisps on a sphere that is twirled."""
 
 from __future__ import annotations
 

@@ -4,6 +4,7 @@
 #include "ringlet/rest/resolution.h"
 #include "ringlet/scene/strands.h"
 
+#include <cmath>
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/string.h>
 
@@ -30,7 +31,8 @@ nb::ndarray<nb::numpy, double> state_view(nb::handle self, std::vector<Vec3> &va
 void bind_scene(nb::module_ &module) {
     nb::enum_<Continuation>(module, "Continuation", "How signs and turns of a curl are carried from step to step.")
         .value("history", Continuation::history)
-        .value("least_energy", Continuation::least_energy);
+        .value("least_energy", Continuation::least_energy)
+        .value("material_frame", Continuation::material_frame);
 
     nb::class_<StrandMaterial>(module, "StrandMaterial", "What a lock is made of (SI units); a hair's values.")
         .def(nb::init<>())
@@ -109,7 +111,7 @@ void bind_scene(nb::module_ &module) {
                 std::vector<double> dense;
                 const double energy = strand_energy(self.model, self.state, continuation, vectors<Vec3>(positions), gradient,
                                                     hessian ? &dense : nullptr);
-                const size_t n = positions.shape(0), size = hessian ? 3 * n : 0;
+                const size_t n = positions.shape(0), size = hessian ? size_t(std::lround(std::sqrt(double(dense.size())))) : 0;
                 return nb::make_tuple(energy, to_numpy<double>(std::move(gradient), {n, 3}),
                                       to_numpy<double>(std::move(dense), {size, size}));
             },

@@ -6,10 +6,9 @@ that ``import ringlet`` is quick. ``progress``, wherever it is taken, is called 
 
 from __future__ import annotations
 
-import difflib
 import importlib.util
 import inspect
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ringlet.errors import UserError
+from ringlet.settings import did_you_mean
 from ringlet.share import share
 
 if TYPE_CHECKING:
@@ -281,7 +281,7 @@ def run_validation(cases: Sequence[str] | None = None, *, progress: Progress | N
     """Compares the simulator with known answers: all cases, or the named ones."""
     from ringlet import validate
 
-    chosen = [name for name, case in validate.CASES.items() if not case.limit] if cases is None else list(cases)
+    chosen = list(validate.CASES) if cases is None else list(cases)
     for name in chosen:
         _known(name, validate.CASES, "validate", "case")
     rows = []
@@ -321,9 +321,7 @@ def use_threads(count: int) -> None:
     _core.set_thread_count(count)
 
 
-def _known(name: str, names: Any, where: str, what: str) -> None:
+def _known(name: str, names: Iterable[str], where: str, what: str) -> None:
     """Refuses a name that is not among ``names``, with the nearest one that is."""
     if name not in names:
-        near = difflib.get_close_matches(name, names, n=1)
-        hint = f"did you mean '{near[0]}'?" if near else f"there are: {', '.join(names)}"
-        raise UserError(f"{where}: {name} is not a {what}; {hint}")
+        raise UserError(f"{where}: {name} is not a {what}{did_you_mean(name, names)}")

@@ -18,10 +18,7 @@ from ringlet.errors import UserError
 if TYPE_CHECKING:
     from ringlet.shot.cache import Cache
 
-LIMITS = [
-    "Strands do not collide yet: they may pass through the head and through one another.",
-    "A straight strand does not resist being twisted about its own axis.",
-]
+LIMITS = ["Strands do not collide yet: they may pass through the head and through one another."]
 
 
 @dataclass

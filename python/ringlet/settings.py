@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import tomllib
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +12,13 @@ from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
 from pydantic_core import PydanticCustomError
 
 from ringlet.errors import UserError
+
+Location = tuple[int | str, ...]  # where in a model pydantic found a mistake
+
+
+def refuse(message: str) -> PydanticCustomError:
+    """An error whose message follows the setting's name, e.g. ``is -1; must be at least 0``."""
+    return PydanticCustomError("ringlet", "{message}", {"message": message})
 
 
 class Section(BaseModel):
@@ -58,10 +65,13 @@ def parse_toml(text: str, where: str, kind: str) -> dict[str, Any]:
     return data
 
 
-def explain(error: ValidationError, where: str) -> UserError:
-    """The first mistake that a model found, in one line: file, setting, value, remedy."""
+def explain(error: ValidationError, where: str, name_of: Callable[[Location], str] | None = None) -> UserError:
+    """The first mistake that a model found, in one line: file, setting, value, remedy.
+
+    name_of: how a place in the model is called in the file, where that is not simply its path
+    """
     first = error.errors()[0]
-    name = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in first["loc"]).removeprefix(".")
+    name = (name_of or setting_name)(first["loc"])
     kind, context, given = first["type"], first.get("ctx", {}), first["input"]
     bounds = {
         "greater_than_equal": ("at least", "ge"),
@@ -71,6 +81,8 @@ def explain(error: ValidationError, where: str) -> UserError:
     }
     if kind == "unknown":
         message = f"{name}.{context['key']} is not a setting{context['hint']}".removeprefix(".")
+    elif kind == "ringlet":
+        message = f"{name} {context['message']}"
     elif kind == "missing":
         message = f"{name} is missing; it must be given"
     elif kind in bounds:
@@ -78,6 +90,20 @@ def explain(error: ValidationError, where: str) -> UserError:
         message = f"{name} is {given!r}; must be {word} {context[key]}"
     elif kind == "literal_error":
         message = f"{name} is {given!r}; must be {context['expected']}"
+    elif kind == "union_tag_invalid":
+        valid = [tag.strip(" '") for tag in context["expected_tags"].split(",")]
+        message = f"{name}.op is '{context['tag']}'{did_you_mean(context['tag'], valid)}"
+    elif kind == "union_tag_not_found":
+        message = f"{name} has no 'op'; say which operator it is"
+    elif kind in ("model_type", "model_attributes_type", "dict_type"):
+        message = f"{name} is {given!r}; must be a table of settings"
+    elif kind.startswith(("int_", "float_")):
+        message = f"{name} is {given!r}; must be a {'whole ' if kind.startswith('int') else ''}number"
     else:
         message = f"{name} is {given!r}; {first['msg'][0].lower()}{first['msg'][1:]}"
     return UserError(f"{where}: {message}")
+
+
+def setting_name(place: Location) -> str:
+    """A setting's name as it stands in the file: ``solver.newton``, ``shape[0].amplitude``."""
+    return "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in place).removeprefix(".")

@@ -10,29 +10,29 @@ using namespace ringlet::baseline;
 
 namespace {
 
+using Matrix = Banded<double, 12>;
+
 // Random squares over four consecutive vertices plus a diagonal: positive definite and as dense as the band allows.
 struct RandomSystem {
-    explicit RandomSystem(int vertices) : memory(Banded<double>::entries(vertices)), band(memory.data(), vertices) {
+    explicit RandomSystem(int vertices) : memory(Matrix::entries(3 * vertices)), band(memory.data(), 3 * vertices) {
         std::mt19937 random(7);
         std::normal_distribution<double> normal;
         band.set_zero();
         dense = Eigen::MatrixXd::Zero(3 * vertices, 3 * vertices);
-        for (int i = 0; i < vertices; ++i) {
-            band.add_diagonal(i, 0.1);
-            dense.diagonal().segment<3>(3 * i).array() += 0.1;
+        for (int i = 0; i < 3 * vertices; ++i) {
+            band.entry(i)[0] += 0.1;
+            dense(i, i) += 0.1;
         }
         for (int i = 0; i + 3 < vertices; ++i) {
-            Vec<double> u[4];
+            double u[12];
             Eigen::VectorXd v = Eigen::VectorXd::Zero(3 * vertices);
-            for (int k = 0; k < 12; ++k) v[3 * i + k] = u[k / 3][k % 3] = normal(random);
-            band.add_square(i, 2.5, u);
+            for (int k = 0; k < 12; ++k) v[3 * i + k] = u[k] = normal(random);
+            band.add_square(3 * i, 2.5, u);
             dense += 2.5 * v * v.transpose();
         }
-        band.add_coupling(1, 0.05);
-        for (int c = 3; c < 6; ++c) dense(c, c + 3) = dense(c + 3, c) = dense(c, c + 3) + 0.05;
     }
     std::vector<double> memory;
-    Banded<double> band;
+    Matrix band;
     Eigen::MatrixXd dense;
 };
 
@@ -45,7 +45,7 @@ BOOST_AUTO_TEST_CASE(solution_agrees_with_a_dense_solver) {
     RandomSystem system(vertices);
     const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(3 * vertices, -1, 2);
     std::vector<double> x(b.data(), b.data() + b.size());
-    x.resize(b.size() + Banded<double>::padding);
+    x.resize(b.size() + Matrix::padding);
     system.band.factor();
     system.band.solve(x.data());
     const Eigen::VectorXd expected = system.dense.ldlt().solve(b);

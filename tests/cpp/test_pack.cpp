@@ -33,7 +33,8 @@ BOOST_AUTO_TEST_CASE(a_lane_of_a_pack_computes_what_a_double_does) {
 
 BOOST_AUTO_TEST_CASE(wrap_takes_whole_turns_away) {
     for (const double turns : {-3.0, -1.0, 0.0, 1.0, 2.0})
-        for (const double angle : {-3.1, -1.0, 0.0, 0.5, 3.1}) BOOST_TEST(std::abs(wrap(angle + 2 * pi * turns) - angle) < 1e-14);
+        for (const double angle : {-3.1, -1.0, 0.0, 0.5, 3.1})
+            BOOST_TEST(std::abs(wrap(angle + 2 * pi * turns) - angle) < 1e-14);
 }
 
 BOOST_AUTO_TEST_CASE(transport_is_a_rotation_that_takes_one_tangent_to_the_other) {

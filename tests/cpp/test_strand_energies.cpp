@@ -1,5 +1,5 @@
-// Stretch, bend and twist of a single stencil: gradients against differences, Hessians positive semi-definite and, where nothing is
-// clamped, exact.
+// Stretch, bend and twist of a single stencil: gradients against differences, Hessians positive semi-definite and, where
+// nothing is clamped, exact.
 #include "ringlet/energy/strand/bend.h"
 #include "ringlet/energy/strand/stretch.h"
 #include "ringlet/energy/strand/twist.h"
@@ -124,7 +124,8 @@ BOOST_AUTO_TEST_CASE(bend_hessian_is_exact_where_all_its_eigenvalues_are_positiv
         for (int k = 0; k < 6; ++k) {
             VectorXd step = VectorXd::Zero(6);
             step[k] = 1e-5;
-            expected.col(k) = (gradient_of(bend_of(e + step, 1, angle, 2.0)) - gradient_of(bend_of(e - step, 1, angle, 2.0))) / 2e-5;
+            expected.col(k) =
+                (gradient_of(bend_of(e + step, 1, angle, 2.0)) - gradient_of(bend_of(e - step, 1, angle, 2.0))) / 2e-5;
         }
         BOOST_TEST((H - expected).norm() < 1e-5 * (1 + expected.norm()));
     }
@@ -143,7 +144,8 @@ BOOST_AUTO_TEST_CASE(bend_hessian_is_the_positive_part_of_the_exact_one) {
                 VectorXd step = VectorXd::Zero(6);
                 step[k] = 1e-5;
                 exact.col(k) =
-                    (gradient_of(bend_of(e + step, 1, rest_angle, 1.0)) - gradient_of(bend_of(e - step, 1, rest_angle, 1.0))) / 2e-5;
+                    (gradient_of(bend_of(e + step, 1, rest_angle, 1.0)) - gradient_of(bend_of(e - step, 1, rest_angle, 1.0))) /
+                    2e-5;
             }
             const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(0.5 * (exact + exact.transpose()));
             const MatrixXd positive =

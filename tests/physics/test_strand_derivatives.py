@@ -6,7 +6,7 @@ from coils import helix, jittered
 from ringlet.curves import Curves
 from ringlet.shot import Material, Strands
 
-CONTINUATIONS = ["history", "least_energy"]
+CONTINUATIONS = ["history", "least_energy", "material_frame"]
 
 
 def strands_of(points, **material):

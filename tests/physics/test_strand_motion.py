@@ -13,7 +13,7 @@ from ringlet.shot import Material, Solver, Strands
 
 from ringlet import _core
 
-CONTINUATIONS = ["history", "least_energy"]
+CONTINUATIONS = ["history", "least_energy", "material_frame"]
 FRAME = 1 / 24
 
 

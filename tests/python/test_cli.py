@@ -72,8 +72,8 @@ def test_help_needs_none_of_the_heavy_libraries():
         (["hair", "x.usdc", "--fraction", "2"], ["--fraction"]),
         (["schema", "recipes"], ["recipes", "recipe"]),
         (["bench", "strand"], ["strand", "'strands'"]),
-        (["bench", "groom", "--set", "locks"], ["--set locks", "KEY=VALUE"]),
-        (["bench", "groom", "--set", "lokcs=3"], ["lokcs", "'locks'"]),
+        (["bench", "groom", "--locks"], ["--locks", "VALUE"]),
+        (["bench", "groom", "--lokcs", "3"], ["lokcs", "'locks'"]),
         (["validate", "cantilver"], ["cantilver", "'cantilever'"]),
     ],
 )

@@ -36,8 +36,9 @@ class Answer:
 @pytest.mark.parametrize(
     ("arguments", "asked"),
     [
-        (["groom", "--set", "locks=20", "--set", "hairs=60"], {"locks": 20, "hairs": 60}),
-        (["strands", "--set", "strands=4", "--set", "steps=3"], {"strands": 4, "steps": 3}),
+        (["groom", "--locks", "20", "--hairs", "60"], {"locks": 20, "hairs": 60}),
+        (["strands", "--strands", "4", "--steps", "3"], {"strands": 4, "steps": 3}),
+        (["twirl", "--strands", "3", "--contacts", "off", "--steps", "4"], {"strands": 3, "contacts": "off"}),
     ],
 )
 def test_bench_prints_the_object_that_was_agreed(arguments, asked):

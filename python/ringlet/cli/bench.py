@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
+from itertools import zip_longest
 from typing import Annotated, Any
 
 import typer
@@ -13,33 +15,30 @@ from ringlet.cli.output import print_json, print_table
 
 
 def bench(
+    context: typer.Context,
     name: Annotated[str, typer.Argument(metavar="NAME", help="What to measure: groom, strands or twirl.")],
-    settings: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--set", metavar="KEY=VALUE", help="A parameter of the benchmark; may be given again.", show_default=False
-        ),
-    ] = None,
     as_json: Json = False,
     threads: Threads = None,
 ) -> None:
-    """Measures a part of Ringlet.
+    """Measures a part of Ringlet. A benchmark's own parameters are given as --PARAMETER VALUE.
 
-    Examples: ringlet bench groom · ringlet bench strands --json --set strands=500 --threads 1
+    Examples: ringlet bench groom · ringlet bench strands --json --threads 1 · ringlet bench twirl --strands 1024 --json
     """
-    result = ringlet.run_bench(name, **dict(map(parse_setting, settings or [])))
+    result = ringlet.run_bench(name, **dict(parameters(context.args)))
     if as_json:
         print_json(result)
         return
     print_table(["", ""], [[key, json.dumps(value)] for key, value in result.items()])
 
 
-def parse_setting(text: str) -> tuple[str, Any]:
-    """``strands=500`` as a name and a value; what is no JSON is text."""
-    key, equals, value = text.partition("=")
-    if not equals or not key.isidentifier():
-        raise ringlet.UserError(f"--set {text}: must be KEY=VALUE, such as strands=500")
-    try:
-        return key, json.loads(value)
-    except ValueError:
-        return key, value
+def parameters(words: list[str]) -> Iterator[tuple[str, Any]]:
+    """``--strands 500`` as a name and a value; what is no JSON is text."""
+    for option, value in zip_longest(words[::2], words[1::2]):
+        if not option.startswith("--") or value is None:
+            raise ringlet.UserError(
+                f"bench: {option}: parameters are given as --PARAMETER VALUE, such as --strands 500"
+            )
+        try:
+            yield option[2:], json.loads(value)
+        except ValueError:
+            yield option[2:], value

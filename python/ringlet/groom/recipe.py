@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import tomllib
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, PrivateAttr, Tag, ValidationError
 
-from ringlet.errors import UserError
 from ringlet.groom.hairs import HairSettings
 from ringlet.groom.operators import Clean, Curl, Drawn, Grown, Locks, ShapeOperator
 from ringlet.groom.settings import UNITS, Section, explain
+from ringlet.settings import parse_toml, read_toml
 
 
 class ScalpSettings(Section):
@@ -75,28 +74,21 @@ class Recipe(Section):
 def read_recipe(path: Path | str) -> Recipe:
     """Reads a recipe file. Raises UserError with file, setting, value and remedy."""
     path = Path(path)
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "it is not a text file"
-        raise UserError(f"{path}: cannot be read ({reason}); give a recipe file") from error
-    return parse_recipe(text, path)
+    text, data = read_toml(path, "recipe")
+    return _recipe(text, data, path)
 
 
 def parse_recipe(text: str, path: Path | None = None) -> Recipe:
     """A recipe from its text; ``path`` names it in messages and is where relative file names count from."""
-    where = path.name if path else "recipe"
-    try:
-        data = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise UserError(f"{where}: is not valid TOML: {str(error)[0].lower()}{str(error)[1:]}") from error
-    if "ringlet" not in data:
-        raise UserError(f"{where}: is not a Ringlet recipe; its first line must be 'ringlet = 1'")
+    return _recipe(text, parse_toml(text, path.name if path else "recipe", "recipe"), path)
+
+
+def _recipe(text: str, data: dict[str, Any], path: Path | None) -> Recipe:
     unit = data.get("unit", "cm")
     try:
         recipe = Recipe.model_validate(data, context={"unit": UNITS.get(unit, 1.0) if isinstance(unit, str) else 1.0})
     except ValidationError as error:
-        raise explain(error, where) from error
+        raise explain(error, path.name if path else "recipe") from error
     recipe._path, recipe._text = path, text
     return recipe
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -14,42 +13,30 @@ from numpy.typing import NDArray
 from pydantic import (
     AfterValidator,
     BaseModel,
-    ConfigDict,
     Field,
     FiniteFloat,
     ValidationError,
     ValidationInfo,
     model_validator,
 )
-from pydantic_core import PydanticCustomError, core_schema
+from pydantic_core import core_schema
 from scipy.interpolate import PchipInterpolator
 
+from ringlet import settings
 from ringlet.errors import UserError
 from ringlet.groom.random import Random
+from ringlet.settings import Location, refuse
 
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254}
 
 
-def refuse(message: str) -> PydanticCustomError:
-    """An error whose message follows the setting's name, e.g. ``is -1; must be at least 0``."""
-    return PydanticCustomError("ringlet", "{message}", {"message": message})
-
-
-class Section(BaseModel):
-    """A table of the recipe. Unknown settings are refused with the nearest name that exists; a value that is given
-    without its variation or ramp keeps those of the default."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
+class Section(settings.Section):
+    """A table of the recipe. A value that is given without its variation or ramp keeps those of the default."""
 
     @model_validator(mode="before")
     @classmethod
-    def _only_known_settings(cls, data: Any) -> Any:
+    def _with_defaults(cls, data: Any) -> Any:
         if isinstance(data, dict):
-            for key in data:
-                if key not in cls.model_fields:
-                    raise PydanticCustomError(
-                        "unknown", "{key}{hint}", {"key": key, "hint": did_you_mean(key, cls.model_fields)}
-                    )
             for name, default in cls.defaults(data).items():
                 if name in data:
                     given = data[name]
@@ -64,12 +51,6 @@ class Section(BaseModel):
         """What holds where ``data`` says nothing, as a recipe would say it."""
         varied = {name: field for name, field in cls.model_fields.items() if isinstance(field.default, Varied)}
         return {name: _as_said(field.default, field.metadata) for name, field in varied.items()}
-
-
-def did_you_mean(name: str, valid: Any) -> str:
-    """``; did you mean 'width'?`` or, with nothing near, ``; there are: …``."""
-    near = difflib.get_close_matches(name, list(valid), n=1, cutoff=0.5)
-    return f"; did you mean '{near[0]}'?" if near else f"; there are: {', '.join(valid)}"
 
 
 def _as_said(value: Varied, metadata: list[Any]) -> dict[str, Any]:
@@ -202,40 +183,11 @@ class Ramped(Varied):
 
 
 def explain(error: ValidationError, where: str) -> UserError:
-    """The first mistake that a model found, in one line: file, setting, value, remedy."""
-    first = error.errors()[0]
-    name, kind, context, given = _setting(first["loc"]), first["type"], first.get("ctx", {}), first["input"]
-    at_least = {
-        "greater_than_equal": ("at least", "ge"),
-        "less_than_equal": ("at most", "le"),
-        "greater_than": ("more than", "gt"),
-    }
-    if kind == "unknown":
-        message = f"{name}.{context['key']} is not a setting{context['hint']}".removeprefix(".")
-    elif kind == "ringlet":
-        message = f"{name} {context['message']}"
-    elif kind == "missing":
-        message = f"{name} is missing; it must be given"
-    elif kind in at_least:
-        word, key = at_least[kind]
-        message = f"{name} is {given!r}; must be {word} {context[key]}"
-    elif kind == "literal_error":
-        message = f"{name} is {given!r}; must be {context['expected']}"
-    elif kind == "union_tag_invalid":
-        valid = [tag.strip(" '") for tag in context["expected_tags"].split(",")]
-        message = f"{name}.op is '{context['tag']}'{did_you_mean(context['tag'], valid)}"
-    elif kind == "union_tag_not_found":
-        message = f"{name} has no 'op'; say which operator it is"
-    elif kind in ("model_type", "model_attributes_type", "dict_type"):
-        message = f"{name} is {given!r}; must be a table of settings"
-    elif kind.startswith(("int_", "float_")):
-        message = f"{name} is {given!r}; must be a {'whole ' if kind.startswith('int') else ''}number"
-    else:
-        message = f"{name} is {given!r}; {first['msg'][0].lower()}{first['msg'][1:]}"
-    return UserError(f"{where}: {message}")
+    """The first mistake in a recipe, in one line: file, setting, value, remedy."""
+    return settings.explain(error, where, _setting)
 
 
-def _setting(loc: tuple[int | str, ...]) -> str:
+def _setting(loc: Location) -> str:
     """A setting's name as it stands in the recipe: ``curl.width``, ``shape[0].amplitude``."""
     name = ""
     for depth, part in enumerate(loc):

@@ -14,26 +14,31 @@ from ringlet.shot.strands import Material, Solver
 class Forces(Section):
     """What acts on the strands from outside, in metres and Y-up whatever the files use."""
 
-    gravity: tuple[float, float, float] = Field((0.0, -9.81, 0.0), description="[m/s²]")
-    wind: tuple[float, float, float] = Field((0.0, 0.0, 0.0), description="velocity of the air [m/s]")
+    gravity: tuple[float, float, float] = Field(default=(0.0, -9.81, 0.0), description="[m/s²]")
+    wind: tuple[float, float, float] = Field(default=(0.0, 0.0, 0.0), description="velocity of the air [m/s]")
 
 
 class Shot(Section):
     """A simulation of a groom on its animated scalp. SI units."""
 
     ringlet: Literal[1] = Field(description="version of this format")
-    name: str = Field("", description="what the shot is called")
+    name: str = Field(default="", description="what the shot is called")
     groom: Path = Field(
         description="recipe (.toml) or groom (.usdc, .usda, .usd); a relative name counts from the shot"
     )
     frames: tuple[int, int] = Field(description="first and last frame")
     preroll: int = Field(
-        24, ge=0, le=100_000, description="frames simulated before the first, with the head still, so that hair hangs"
+        default=24,
+        ge=0,
+        le=100_000,
+        description="frames simulated before the first, with the head still, so that hair hangs",
     )
-    held: int = Field(3, ge=2, le=1000, description="vertices of each lock, from its root, that the scalp holds")
-    strands: Material = Field(Material(), description="what locks are made of")
-    solver: Solver = Field(Solver(), description="how a time step is solved")
-    forces: Forces = Field(Forces(), description="what acts from outside")
+    held: int = Field(
+        default=3, ge=2, le=1000, description="vertices of each lock, from its root, that the scalp holds"
+    )
+    strands: Material = Field(default=Material(), description="what locks are made of")
+    solver: Solver = Field(default=Solver(), description="how a time step is solved")
+    forces: Forces = Field(default=Forces(), description="what acts from outside")
 
     _path: Path | None = PrivateAttr(None)
 

@@ -20,22 +20,30 @@ Vector = tuple[float, float, float]
 class Material(Section):
     """What a lock is made of: a hair's values, since hairs that do not stick together move like one of them."""
 
-    youngs_modulus: float = Field(4e9, gt=0, le=1e13, description="E [Pa]; hair: 2e9 to 6e9")
-    radius: float = Field(35e-6, gt=1e-7, le=0.1, description="r of one hair [m]")
-    density: float = Field(1300.0, gt=0, le=1e5, description="[kg/m³]")
+    youngs_modulus: float = Field(default=4e9, gt=0, le=1e13, description="E [Pa]; hair: 2e9 to 6e9")
+    radius: float = Field(default=35e-6, gt=1e-7, le=0.1, description="r of one hair [m]")
+    density: float = Field(default=1300.0, gt=0, le=1e5, description="[kg/m³]")
     stretch_scale: float = Field(
-        0.01, gt=0, le=100, description="scales the resistance to stretch, E π r²; hair is hard to stretch"
+        default=0.01, gt=0, le=100, description="scales the resistance to stretch, E π r²; hair is hard to stretch"
     )
-    bend_scale: float = Field(1.0, ge=0, le=1e6, description="scales the resistance to bend, E π r⁴ / 4")
+    bend_scale: float = Field(default=1.0, ge=0, le=1e6, description="scales the resistance to bend, E π r⁴ / 4")
     twist_ratio: float = Field(
-        0.72, ge=0, le=1, description="twist stiffness as a part of bend stiffness: the spring constant of a coil"
+        default=0.72,
+        ge=0,
+        le=1,
+        description="twist stiffness as a part of bend stiffness: the spring constant of a coil",
     )
     damping: float = Field(
-        0.005, ge=0, le=100, description="[s] every strain resists its own rate with this time times its stiffness"
+        default=0.005,
+        ge=0,
+        le=100,
+        description="[s] every strain resists its own rate with this time times its stiffness",
     )
-    mass_damping: float = Field(0.0, ge=0, le=1e4, description="[1/s] rate at which velocities decay")
-    drag: float = Field(2e-5, ge=0, le=100, description="air drag per length and speed [kg/(m s)]")
-    correct_resolution: bool = Field(True, description="make coils of few vertices a turn as soft as smooth ones")
+    mass_damping: float = Field(default=0.0, ge=0, le=1e4, description="[1/s] rate at which velocities decay")
+    drag: float = Field(default=2e-5, ge=0, le=100, description="air drag per length and speed [kg/(m s)]")
+    correct_resolution: bool = Field(
+        default=True, description="make coils of few vertices a turn as soft as smooth ones"
+    )
 
     def core(self) -> _core.StrandMaterial:
         """The same, for the core."""
@@ -49,14 +57,15 @@ class Solver(Section):
     """How a time step is solved."""
 
     newton: int = Field(
-        5, ge=1, le=1000, description="Newton iterations per step; 1 is stable, 5 is the quality for film"
+        default=5, ge=1, le=1000, description="Newton iterations per step; 1 is stable, 5 is the quality for film"
     )
-    substeps: int = Field(1, ge=1, le=1000, description="steps per frame")
+    substeps: int = Field(default=1, ge=1, le=1000, description="steps per frame")
     tolerance: float = Field(
-        1e-6, gt=0, le=1e-2, description="[m] a lock has converged when no vertex moves more than this"
+        default=1e-6, gt=0, le=1e-2, description="[m] a lock has converged when no vertex moves more than this"
     )
-    continuation: Literal["least_energy", "history"] = Field(
-        "least_energy", description="how the signs of bends and the turns of twist are found: see the theory page"
+    continuation: Literal["material_frame", "least_energy", "history"] = Field(
+        default="material_frame",
+        description="how the signs of bends and the turns of twist are found: see the theory page",
     )
 
 
@@ -104,18 +113,18 @@ class Strands:
         """Velocities [m/s], shape (n, 3): the solver's own memory."""
         return self._core.velocities
 
-    def place(self, positions: NDArray[np.float64]) -> None:
+    def place(self, positions: NDArray[np.floating]) -> None:
         """Puts the strands at rest at other positions [m], shape (n, 3); the rest shape stays what it was."""
         self._core.place(np.ascontiguousarray(positions, np.float64))
 
     def step(
         self,
-        targets: NDArray[np.float64],
+        targets: NDArray[np.floating],
         dt: float,
         *,
         gravity: Vector = (0.0, 0.0, 0.0),
         wind: Vector = (0.0, 0.0, 0.0),
-        forces: NDArray[np.float64] | None = None,
+        forces: NDArray[np.floating] | None = None,
         solver: Solver | None = None,
     ) -> dict[str, NDArray[np.float64]]:
         """Advances by ``dt`` [s]; held vertices end where ``targets`` [m], shape (n, 3), has them.
@@ -137,7 +146,7 @@ class Strands:
         return dict(zip(_core.REPORT, rows.T, strict=True))
 
     def energy(
-        self, positions: NDArray[np.float64], *, continuation: str = "least_energy", hessian: bool = False
+        self, positions: NDArray[np.floating], *, continuation: str = "material_frame", hessian: bool = False
     ) -> tuple[float, NDArray[np.float64], NDArray[np.float64]]:
         """Elastic energy [J], its gradient [N], shape (n, 3), and, for a single strand, the Hessian Newton uses."""
         points = np.ascontiguousarray(positions, np.float64)
@@ -147,7 +156,7 @@ class Strands:
         self,
         *,
         gravity: Vector = (0.0, 0.0, 0.0),
-        forces: NDArray[np.float64] | None = None,
+        forces: NDArray[np.floating] | None = None,
         tolerance: float = 1e-9,
         dt: float = 1.0,
         steps: int = 2000,

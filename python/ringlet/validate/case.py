@@ -43,15 +43,11 @@ class Row:
 
 @dataclass(frozen=True)
 class Case:
-    """A known answer: ``title`` says it in a sentence, ``run`` computes its rows.
-
-    limit: why the model cannot give this answer, where it cannot; such a case is run only when it is asked for by name
-    """
+    """A known answer: ``title`` says it in a sentence, ``run`` computes its rows."""
 
     name: str
     title: str
     run: Callable[[], Iterable[Row]]
-    limit: str = ""
 
 
 def convergence(

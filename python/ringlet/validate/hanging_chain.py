@@ -10,7 +10,7 @@ from collections.abc import Iterator
 
 import numpy as np
 from scipy.linalg import eigh
-from scipy.optimize import brentq
+from scipy.optimize import root_scalar
 from scipy.special import jn_zeros
 
 from ringlet.validate.case import Case, Row, convergence
@@ -40,7 +40,7 @@ def sag(edges: int) -> float:
     """How far a chain of length 1 m hangs down between supports 0.6 m apart [m]."""
     material = rod_material().model_copy(update={"bend_scale": 0.0})
     # It begins as an arc of a circle whose chords add up to its length.
-    opening = brentq(lambda half: np.sin(half) / (edges * np.sin(half / edges)) - SPAN, 0.1, 3.1)
+    opening = root_scalar(lambda half: np.sin(half) / (edges * np.sin(half / edges)) - SPAN, bracket=(0.1, 3.1)).root
     turn = np.linspace(-opening, opening, edges + 1)
     points = 0.5 * SPAN / np.sin(opening) * np.c_[np.sin(turn), np.cos(opening) - np.cos(turn), 0 * turn]
     held = np.isin(np.arange(edges + 1), (0, edges))

@@ -34,7 +34,7 @@ def gravity_for(gamma: float, length: float, material: Material) -> float:
 
 
 def strand(
-    points: NDArray[np.float64],
+    points: NDArray[np.floating],
     material: Material,
     held: int | NDArray[np.bool_],
     variation: Mapping[str, NDArray[np.float64]] | None = None,
@@ -50,7 +50,7 @@ def masses(rod: Strands) -> NDArray[np.float64]:
 
 
 def stiffness(
-    rod: Strands, positions: NDArray[np.float64], vertices: NDArray[np.int64], axis: int
+    rod: Strands, positions: NDArray[np.floating], vertices: NDArray[np.int64], axis: int
 ) -> NDArray[np.float64]:
     """Exact second derivative [N/m] of the elastic energy by the given vertices' coordinates along ``axis``.
 

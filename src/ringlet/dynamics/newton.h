@@ -1,7 +1,9 @@
 // Newton's method with a line search on the true energy, one independent problem per lane.
 // It knows objectives, not hair. An objective offers
-//   T evaluate(const Vec<T> *x)                          energy of every lane at x; remembers what assembling needs
-//   void assemble(Vec<T> *gradient, Banded<T> &hessian)  at the x evaluated last; the Hessian positive definite
+//   int size()                                        unknowns
+//   T evaluate(const T *x)                            energy of every lane at x; remembers what assembling needs
+//   void assemble(T *gradient, Objective::Matrix &)   at the x evaluated last; the Hessian positive definite
+//   Objective::Matrix                                 a Banded matrix
 #pragma once
 
 #include "ringlet/linear/banded.h"
@@ -11,44 +13,43 @@ namespace ringlet::RINGLET_SIMD {
 
 struct NewtonSettings {
     int iterations;   // at most
-    double tolerance; // a lane is done when no coordinate moves more than this [m]
+    double tolerance; // a lane is done when no unknown changes more than this [m]
 };
 
 template <class T> struct NewtonResult {
     T energy;
     T iterations; // used, per lane
     T cuts;       // times a step was halved
-    T residual;   // largest coordinate of the last full step [m]
+    T residual;   // largest unknown of the last full step [m]
 };
 
-// What Newton works in: `direction` has Banded::padding / 3 entries of room behind its last vertex.
+// What Newton works in: `direction` has Matrix::padding entries of room behind its last.
 template <class T> struct NewtonSpace {
-    Vec<T> *trial, *gradient, *direction;
-    T *band;
+    T *trial, *gradient, *direction, *band;
 };
 
 template <class T, class Objective>
-NewtonResult<T> newton(Objective &objective, Vec<T> *x, int vertices, const NewtonSettings &settings,
-                       const NewtonSpace<T> &space) {
+NewtonResult<T> newton(Objective &objective, T *x, const NewtonSettings &settings, const NewtonSpace<T> &space) {
     const int most_cuts = 40;
     const double least_decrease = 1e-4; // Armijo
     const double rounding = 1e-14;      // of the energy: below this a decrease cannot be seen
     const T one = constant<T>(1.0);
+    const int size = objective.size();
 
-    Banded<T> hessian(space.band, vertices);
+    typename Objective::Matrix hessian(space.band, size);
     NewtonResult<T> result{objective.evaluate(x), T{}, T{}, T{}};
     T active = one; // 1 while a lane still moves, else 0
 
     for (int iteration = 0; iteration < settings.iterations; ++iteration) {
         objective.assemble(space.gradient, hessian);
         hessian.factor();
-        for (int i = 0; i < vertices; ++i) space.direction[i] = -space.gradient[i];
-        hessian.solve(&space.direction[0].x);
+        for (int i = 0; i < size; ++i) space.direction[i] = -space.gradient[i];
+        hessian.solve(space.direction);
 
         T slope{}, largest{};
-        for (int i = 0; i < vertices; ++i) {
-            slope += dot(space.gradient[i], space.direction[i]);
-            for (int k = 0; k < 3; ++k) largest = max(largest, abs(space.direction[i][k]));
+        for (int i = 0; i < size; ++i) {
+            slope += space.gradient[i] * space.direction[i];
+            largest = max(largest, abs(space.direction[i]));
         }
         result.residual = select(active > 0.0, largest, result.residual);
         result.iterations += active;
@@ -57,7 +58,7 @@ NewtonResult<T> newton(Objective &objective, Vec<T> *x, int vertices, const Newt
         const auto arrived = largest <= settings.tolerance;
         T step = active;
         for (int cut = 0;; ++cut) {
-            for (int i = 0; i < vertices; ++i) space.trial[i] = x[i] + step * space.direction[i];
+            for (int i = 0; i < size; ++i) space.trial[i] = x[i] + step * space.direction[i];
             const T energy = objective.evaluate(space.trial);
             const T bound = result.energy + least_decrease * step * slope + rounding * abs(result.energy);
             const T refused = select(energy <= bound, T{}, one) * select(step > 0.0, one, T{}); // also where energy is NaN
@@ -69,7 +70,7 @@ NewtonResult<T> newton(Objective &objective, Vec<T> *x, int vertices, const Newt
             const T shorter = select(arrived, T{}, constant<T>(cut < most_cuts ? 0.5 : 0.0));
             step *= select(refused > 0.0, shorter, one);
         }
-        for (int i = 0; i < vertices; ++i) x[i] = select<T>(step > 0.0, space.trial[i], x[i]);
+        for (int i = 0; i < size; ++i) x[i] = select(step > 0.0, space.trial[i], x[i]);
         active = select(arrived, T{}, active);
         if (!any(active > 0.0)) break;
     }

@@ -111,6 +111,39 @@ template <class T> inline T atan2(T y, T x) {
     return select(y < 0.0, -angle, angle);
 }
 
+template <class T> struct SineCosine {
+    T sine, cosine;
+};
+
+// Of |x| ≤ π/2 (a little more is fine), by polynomials interpolated at Chebyshev nodes (errors 1e-16).
+template <class T> inline SineCosine<T> sine_cosine_quarter(T x) {
+    const T z = x * x;
+    T sine = constant<T>(-7.374119385051447e-13);
+    sine = sine * z + 1.6048146803827966e-10;
+    sine = sine * z - 2.5051881272501282e-08;
+    sine = sine * z + 2.755731659866929e-06;
+    sine = sine * z - 0.00019841269824780153;
+    sine = sine * z + 0.008333333333282452;
+    sine = sine * z - 0.1666666666666607;
+    T cosine = constant<T>(4.6088093988032985e-14);
+    cosine = cosine * z - 1.1462886384313275e-11;
+    cosine = cosine * z + 2.0876561258872958e-09;
+    cosine = cosine * z - 2.755731637975365e-07;
+    cosine = cosine * z + 2.48015872772945e-05;
+    cosine = cosine * z - 0.0013888888888772296;
+    cosine = cosine * z + 0.04166666666666386;
+    cosine = cosine * z - 0.4999999999999997;
+    return {x + x * z * sine, cosine * z + 1.0};
+}
+
+// Of any angle: half turns are taken away, each of which changes both signs.
+template <class T> inline SineCosine<T> sine_cosine(T x) {
+    const T half_turns = round(x / pi);
+    const SineCosine<T> rest = sine_cosine_quarter(x - pi * half_turns);
+    const auto odd = abs(half_turns - 2.0 * round(0.5 * half_turns)) > 0.5;
+    return {select(odd, -rest.sine, rest.sine), select(odd, -rest.cosine, rest.cosine)};
+}
+
 template <class T> struct Vec {
     T x, y, z;
     T &operator[](int k) { return (&x)[k]; }

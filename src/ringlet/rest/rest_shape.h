@@ -12,6 +12,7 @@ struct RestShape {
     std::vector<double> length;   // l̄ of the edge [m]
     std::vector<double> angle;    // θ̄ at the vertex [rad], 0 = straight
     std::vector<double> dihedral; // φ̄ of the edge [rad], in (−π, π]
+    std::vector<Vec3> normal;     // of the corner; where it is straight, that of a neighbour carried along
 };
 
 RestShape measure_rest_shape(View<int> offsets, View<Vec3> points);

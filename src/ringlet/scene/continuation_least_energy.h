@@ -18,27 +18,9 @@ template <class T> struct WithSlope {
 // f(Δ): Δ up to a quarter turn, then bending over to be level at ±π, so that the energy has no kink where Δ wraps.
 template <class T> inline WithSlope<T> rounded(T delta) {
     const T beyond = abs(delta) - pi / 2;
-    const T y = min(max(beyond, T{}), constant<T>(pi / 2)), z = y * y;
-    // sin and cos on [0, π/2], interpolated at Chebyshev nodes (errors 1e-16)
-    T sine = constant<T>(-7.374119385051447e-13);
-    sine = sine * z + 1.6048146803827966e-10;
-    sine = sine * z - 2.5051881272501282e-08;
-    sine = sine * z + 2.755731659866929e-06;
-    sine = sine * z - 0.00019841269824780153;
-    sine = sine * z + 0.008333333333282452;
-    sine = sine * z - 0.1666666666666607;
-    sine = y + y * z * sine;
-    T cosine = constant<T>(4.6088093988032985e-14);
-    cosine = cosine * z - 1.1462886384313275e-11;
-    cosine = cosine * z + 2.0876561258872958e-09;
-    cosine = cosine * z - 2.755731637975365e-07;
-    cosine = cosine * z + 2.48015872772945e-05;
-    cosine = cosine * z - 0.0013888888888772296;
-    cosine = cosine * z + 0.04166666666666386;
-    cosine = cosine * z - 0.4999999999999997;
-    cosine = cosine * z + 1.0;
+    const SineCosine<T> end = sine_cosine_quarter(min(max(beyond, T{}), constant<T>(pi / 2)));
     const auto bent_over = beyond > 0.0;
-    return {select(bent_over, sign(delta) * (pi / 2 + sine), delta), select(bent_over, cosine, constant<T>(1.0))};
+    return {select(bent_over, sign(delta) * (pi / 2 + end.sine), delta), select(bent_over, end.cosine, constant<T>(1.0))};
 }
 
 // s(θ): 0 below 0.15° from straight (or folded), 1 from half the rest angle up.

@@ -7,8 +7,9 @@
 
 namespace ringlet {
 
-// How signs and turns are carried (see scene/continuation_*.h).
-enum class Continuation { history, least_energy };
+// How signs and turns are carried (scene/continuation_*.h), or the frame that makes them needless
+// (scene/frame_objective.h).
+enum class Continuation { history, least_energy, material_frame };
 
 struct StrandStep {
     double dt = 1.0 / 24;          // [s]
@@ -43,7 +44,7 @@ struct StrandArrays {
     const double *mass, *drag, *damping;
     double mass_damping;
     const double *targets, *forces;
-    double *positions, *velocities, *normals, *twist;
+    double *positions, *velocities, *normals, *twist, *directors;
 };
 
 // Strands that one call of a kernel steps together, one per lane.
@@ -57,6 +58,7 @@ RINGLET_DECLARE(
     int strand_lanes();
     size_t strand_workspace(int vertices); // bytes that stepping a group of strands of at most that many vertices needs
     void step_strand_group(const StrandArrays &arrays, const StrandStep &step, StrandGroup group, void *workspace, StrandReport *reports);
+    void relax_strand_frames(const StrandArrays &arrays, StrandGroup group, void *workspace, double *energies);
     double strand_group_energy(const StrandArrays &arrays, const StrandStep &step, int strand, const double *positions, void *workspace, double *gradient, double *hessian);
 )
 // clang-format on

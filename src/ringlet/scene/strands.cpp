@@ -54,7 +54,8 @@ StrandArrays arrays_of(const StrandModel &model, StrandState &state, View<Vec3> 
             state.positions.data()->data(),
             state.velocities.data()->data(),
             state.normals.data()->data(),
-            state.twist.data()};
+            state.twist.data(),
+            state.directors.data()->data()};
 }
 
 // Strands of like length together, so that few lanes carry vertices that are not there. A fixed order: the result of a strand
@@ -66,6 +67,23 @@ std::vector<int> by_length(const StrandModel &model) {
         return model.offsets[a + 1] - model.offsets[a] > model.offsets[b + 1] - model.offsets[b];
     });
     return order;
+}
+
+constexpr int most_lanes = 8;
+
+// work(group, workspace) for groups of as many strands as there are lanes, in parallel.
+template <class Work> void for_each_group(const StrandModel &model, const Work &work) {
+    const std::vector<int> order = by_length(model);
+    const int strands = model.strand_count(), lanes = RINGLET_DISPATCH(strand_lanes);
+    const int groups = (strands + lanes - 1) / lanes;
+    const size_t bytes = RINGLET_DISPATCH(strand_workspace, longest_strand(model));
+#pragma omp parallel
+    {
+        const Workspace workspace(bytes);
+#pragma omp for schedule(dynamic)
+        for (int g = 0; g < groups; ++g)
+            work(StrandGroup{order.data() + g * lanes, std::min(lanes, strands - g * lanes)}, workspace.get());
+    }
 }
 
 // Per edge of a strand; the two end edges, which have one corner only, take those of their neighbours.
@@ -98,6 +116,8 @@ StrandModel make_strand_model(View<int> offsets, View<Vec3> rest, View<unsigned 
     model.rest_length = std::move(shape.length);
     model.rest_angle = std::move(shape.angle);
     model.rest_dihedral = std::move(shape.dihedral);
+    model.rest_normal = std::move(shape.normal);
+    model.rest_tangent.assign(n, Vec3::Zero());
     model.mass_damping = material.mass_damping;
     model.stretch_stiffness.assign(n, 0.0);
     model.bend_stiffness.assign(n, 0.0);
@@ -124,6 +144,7 @@ StrandModel make_strand_model(View<int> offsets, View<Vec3> rest, View<unsigned 
             const double length = model.rest_length[i];
             const ResolutionFactors &factor = factors[i - first];
             if (!(length > 0)) throw std::invalid_argument(name + " has an edge without length");
+            model.rest_tangent[i] = (rest[i + 1] - rest[i]) / length;
             const double section = area(on_edge(variation.radius, i));
             model.stretch_stiffness[i] =
                 material.stretch_scale * on_edge(variation.stretch, i) * material.youngs_modulus * section / length;
@@ -139,8 +160,10 @@ StrandModel make_strand_model(View<int> offsets, View<Vec3> rest, View<unsigned 
             if (i + 2 == end) continue;
             const double ratio =
                 std::clamp(material.twist_ratio * on_edge(variation.twist, i), 0.0, 1.0); // safeguard: never above bend
+            // An edge that is held is held to its middle, as the bend behind it has it: only half of it can twist.
+            const double twisting_length = held[i] && held[i + 1] ? 0.5 * length : length;
             model.twist_stiffness[i] =
-                ratio * factor.twist * bending(on_edge(variation.radius, i), on_edge(variation.bend, i)) / length;
+                ratio * factor.twist * bending(on_edge(variation.radius, i), on_edge(variation.bend, i)) / twisting_length;
         }
     }
     return model;
@@ -154,15 +177,44 @@ StrandState make_strand_state(const StrandModel &model, View<Vec3> positions) {
     state.velocities.assign(n, Vec3::Zero());
     state.normals.assign(n, Vec3::Zero());
     state.twist.assign(n, 0.0);
+    state.directors.assign(n, Vec3::Zero());
     const RestShape now = measure_rest_shape(View<int>(model.offsets), positions);
-    for (int s = 0; s < model.strand_count(); ++s)
-        for (int i = model.offsets[s] + 1; i + 1 < model.offsets[s + 1]; ++i) {
-            const Vec3 before = positions[i] - positions[i - 1], after = positions[i + 1] - positions[i];
-            const Vec3 product = before.cross(after);
-            const bool bent = product.norm() > 1e-12 * before.norm() * after.norm();
-            state.normals[i] = bent ? product.normalized() : before.unitOrthogonal();
+    state.normals = now.normal;
+    for (int s = 0; s < model.strand_count(); ++s) {
+        const int first = model.offsets[s], end = model.offsets[s + 1];
+        // The frame begins as that of the root and follows without any twist but the groom's; then it is let go.
+        const auto tangent = [&](int i) -> Vec3 { return (positions[i + 1] - positions[i]).normalized(); };
+        const bool bent = model.rest_angle[first + 1] > 1e-6 && now.angle[first + 1] > 1e-6;
+        state.directors[first + 1] =
+            bent ? now.normal[first + 1]
+                 : Eigen::Quaterniond::FromTwoVectors(model.rest_tangent[first + 1], tangent(first + 1)) *
+                       model.rest_normal[first + 1];
+        for (int i = first + 1; i + 2 < end; ++i) {
             state.twist[i] = std::remainder(now.dihedral[i] - model.rest_dihedral[i], 2 * std::numbers::pi);
+            const Vec3 turned = Eigen::AngleAxisd(model.rest_dihedral[i], tangent(i)) * state.directors[i];
+            state.directors[i + 1] = Eigen::Quaterniond::FromTwoVectors(tangent(i), tangent(i + 1)) * turned;
         }
+    }
+
+    // Where it ends depends on where it begins: frames that follow the corners' normals are tried too, the cheaper are kept.
+    const auto relax = [&](StrandState &of) {
+        std::vector<double> energies(model.strand_count());
+        const StrandArrays arrays = arrays_of(model, of, positions, positions);
+        for_each_group(model, [&](StrandGroup group, void *workspace) {
+            double group_energies[most_lanes];
+            RINGLET_DISPATCH(relax_strand_frames, arrays, group, workspace, group_energies);
+            for (int k = 0; k < group.count; ++k) energies[group.strands[k]] = group_energies[k];
+        });
+        return energies;
+    };
+    StrandState by_normals = state;
+    for (int s = 0; s < model.strand_count(); ++s)
+        for (int i = model.offsets[s] + 2; i + 1 < model.offsets[s + 1]; ++i) by_normals.directors[i] = now.normal[i];
+    const std::vector<double> untwisted = relax(state), normal = relax(by_normals);
+    for (int s = 0; s < model.strand_count(); ++s)
+        if (normal[s] < untwisted[s])
+            std::copy(by_normals.directors.begin() + model.offsets[s], by_normals.directors.begin() + model.offsets[s + 1],
+                      state.directors.begin() + model.offsets[s]);
     return state;
 }
 
@@ -172,21 +224,11 @@ void step_strands(const StrandModel &model, StrandState &state, View<Vec3> targe
         throw std::invalid_argument("strands: targets and forces do not fit the model");
     reports.assign(model.strand_count(), StrandReport{});
     const StrandArrays arrays = arrays_of(model, state, targets, forces);
-    const std::vector<int> order = by_length(model);
-    const int strands = model.strand_count(), lanes = RINGLET_DISPATCH(strand_lanes);
-    const int groups = (strands + lanes - 1) / lanes;
-    const size_t bytes = RINGLET_DISPATCH(strand_workspace, longest_strand(model));
-#pragma omp parallel
-    {
-        const Workspace workspace(bytes);
-        StrandReport group_reports[8];
-#pragma omp for schedule(dynamic)
-        for (int g = 0; g < groups; ++g) {
-            const StrandGroup group{order.data() + g * lanes, std::min(lanes, strands - g * lanes)};
-            RINGLET_DISPATCH(step_strand_group, arrays, step, group, workspace.get(), group_reports);
-            for (int k = 0; k < group.count; ++k) reports[group.strands[k]] = group_reports[k];
-        }
-    }
+    for_each_group(model, [&](StrandGroup group, void *workspace) {
+        StrandReport group_reports[most_lanes];
+        RINGLET_DISPATCH(step_strand_group, arrays, step, group, workspace, group_reports);
+        for (int k = 0; k < group.count; ++k) reports[group.strands[k]] = group_reports[k];
+    });
 }
 
 double strand_energy(const StrandModel &model, const StrandState &state, Continuation continuation, View<Vec3> positions,
@@ -198,7 +240,8 @@ double strand_energy(const StrandModel &model, const StrandState &state, Continu
     gradient.assign(positions.size(), Vec3::Zero());
     if (hessian) {
         if (model.strand_count() != 1) throw std::invalid_argument("strands: the Hessian is given for one strand at a time");
-        hessian->assign(9 * positions.size() * positions.size(), 0.0);
+        const size_t unknowns = (continuation == Continuation::material_frame ? 4 : 3) * positions.size();
+        hessian->assign(unknowns * unknowns, 0.0);
     }
     StrandStep step;
     step.continuation = continuation;

@@ -35,6 +35,8 @@ struct StrandModel {
     std::vector<double> rest_length;       // l̄ per edge [m]
     std::vector<double> rest_angle;        // θ̄ per vertex [rad], in [0, π]
     std::vector<double> rest_dihedral;     // φ̄ per edge [rad]
+    std::vector<Vec3> rest_normal;         // of the corners, in the pose of the rest shape
+    std::vector<Vec3> rest_tangent;        // of the edges, likewise
     std::vector<double> stretch_stiffness; // EA / l̄ per edge [N/m]
     std::vector<double> bend_stiffness;    // EI / l_v per vertex [N m]
     std::vector<double> twist_stiffness;   // c EI / l̄ per edge [N m]
@@ -53,6 +55,7 @@ struct StrandState {
     std::vector<Vec3> velocities; // [m/s]
     std::vector<Vec3> normals;    // per vertex: σ n of the last accepted step
     std::vector<double> twist;    // per edge: Δφ with its turns [rad]
+    std::vector<Vec3> directors;  // per edge from the second: D of its material frame
 };
 
 // The rest shape is measured from the polylines `rest` (offsets.back() points); every strand has at least 3 points, of which
@@ -69,7 +72,8 @@ void step_strands(const StrandModel &model, StrandState &state, View<Vec3> targe
                   std::vector<StrandReport> &reports);
 
 // Energy [J] of the state's elastic terms, its gradient by the free vertices [N] (rows of held vertices are zero) and the
-// clamped Hessian that Newton uses (dense, row-major, n×n over all coordinates of ONE strand; empty to leave it out).
+// Hessian that Newton uses (dense, row-major, over all unknowns of ONE strand: 3 a vertex, 4 with material frames; null to
+// leave it out). Material frames take the turns that cost least at these positions.
 double strand_energy(const StrandModel &model, const StrandState &state, Continuation continuation, View<Vec3> positions,
                      std::vector<Vec3> &gradient, std::vector<double> *hessian);
 

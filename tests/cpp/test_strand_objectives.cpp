@@ -1,0 +1,123 @@
+// Whole strands, away from rest, with references of another shape, with damping and with held vertices: gradients against
+// differences in all unknowns, Hessians positive definite.
+#include "ringlet/scene/frame_objective.h"
+#include "ringlet/scene/hinge_objective.h"
+
+#include <Eigen/Dense>
+#include <boost/test/unit_test.hpp>
+#include <random>
+#include <vector>
+
+using namespace ringlet::baseline;
+
+namespace {
+
+constexpr int vertices = 9;
+
+Vec<double> random_unit(std::mt19937 &random) {
+    std::normal_distribution<double> normal;
+    const Vec<double> v{normal(random), normal(random), normal(random)};
+    return (1 / norm(v)) * v;
+}
+
+// A random walk with random rest values and references; the first three vertices are held.
+template <class Objective> struct RandomStrand {
+    explicit RandomStrand(int seed) : random(seed), rows(vertices), shapes(vertices), x(Objective::freedoms * vertices) {
+        std::uniform_real_distribution<double> uniform(0.3, 1.2);
+        Vec<double> p{};
+        for (int i = 0; i < vertices; ++i) {
+            StrandRow<double> &r = rows[i];
+            const bool edge = i + 1 < vertices, corner = edge && i > 0, hinge = i > 0 && i + 2 < vertices;
+            r = {};
+            r.free = i > 2;
+            r.frame_free = corner && i > 1;
+            r.inertia = uniform(random);
+            r.inertial = random_unit(random);
+            r.rest_length = uniform(random);
+            r.damped_length = uniform(random);
+            r.stretch = edge * uniform(random);
+            r.bend = corner * uniform(random);
+            r.twist = hinge * uniform(random);
+            r.rest_angle = r.damped_angle = uniform(random);
+            r.rest_dihedral = uniform(random);
+            r.damped_bend = 0.1 * random_unit(random);
+            r.damped_strain = 0.1;
+            r.reference.tangent = random_unit(random);
+            r.reference.normal = perpendicular(r.reference.tangent);
+            r.reference.fade = 0.7;
+            for (int k = 0; k < 3; ++k) x[Objective::freedoms * i + k] = p[k];
+            if (Objective::freedoms == 4) x[4 * i + 3] = 0.3 * uniform(random);
+            p = p + 0.8 * random_unit(random);
+        }
+    }
+    std::mt19937 random;
+    std::vector<StrandRow<double>> rows;
+    std::vector<StrandShape<double>> shapes;
+    std::vector<double> x;
+};
+
+template <class Objective> void gradient_agrees_with_differences() {
+    for (int seed = 0; seed < 20; ++seed) {
+        RandomStrand<Objective> strand(seed);
+        Objective objective(vertices, strand.rows.data(), strand.shapes.data());
+        const int size = objective.size();
+        std::vector<double> gradient(size), memory(Objective::Matrix::entries(size));
+        typename Objective::Matrix hessian(memory.data(), size);
+        objective.evaluate(strand.x.data());
+        objective.assemble(gradient.data(), hessian);
+
+        double largest = 0;
+        for (const double g : gradient) largest = std::max(largest, std::abs(g));
+        for (int k = 0; k < size; ++k) {
+            const int vertex = k / Objective::freedoms, part = k % Objective::freedoms;
+            if (!(part < 3 ? strand.rows[vertex].free : strand.rows[vertex].frame_free)) {
+                BOOST_TEST(gradient[k] == 0);
+                continue;
+            }
+            const double at = strand.x[k], h = 1e-6;
+            strand.x[k] = at + h;
+            const double up = objective.evaluate(strand.x.data());
+            strand.x[k] = at - h;
+            const double down = objective.evaluate(strand.x.data());
+            strand.x[k] = at;
+            BOOST_TEST(std::abs(gradient[k] - (up - down) / (2 * h)) < 2e-7 * largest);
+        }
+
+        Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(size, size);
+        for (int c = 0; c < size; ++c)
+            for (int r = c; r < std::min(size, c + Objective::Matrix::band); ++r)
+                dense(r, c) = dense(c, r) = hessian.entry(c)[r - c];
+        BOOST_TEST(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(dense).eigenvalues()[0] > 0);
+    }
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(strand_objectives)
+
+BOOST_AUTO_TEST_CASE(hinge_with_history) { gradient_agrees_with_differences<HingeObjective<double, true>>(); }
+
+BOOST_AUTO_TEST_CASE(hinge_with_least_energy) { gradient_agrees_with_differences<HingeObjective<double, false>>(); }
+
+BOOST_AUTO_TEST_CASE(material_frame) { gradient_agrees_with_differences<FrameObjective<double>>(); }
+
+BOOST_AUTO_TEST_CASE(a_frame_does_not_feel_a_turn_of_the_whole_strand_about_its_own_axis) {
+    // On a straight strand of straight rest shape all frames may turn together at no cost.
+    RandomStrand<FrameObjective<double>> strand(3);
+    for (int i = 0; i < vertices; ++i) {
+        StrandRow<double> &r = strand.rows[i];
+        r.free = r.inertia = r.rest_angle = r.rest_dihedral = r.damped_strain = 0;
+        r.damped_bend = {};
+        r.frame_free = i > 0 && i + 1 < vertices;
+        r.rest_length = 1;
+        r.reference.tangent = {1, 0, 0};
+        r.reference.normal = {0, 1, 0};
+        for (int k = 0; k < 4; ++k) strand.x[4 * i + k] = k == 0 ? i : 0;
+    }
+    FrameObjective<double> objective(vertices, strand.rows.data(), strand.shapes.data());
+    const double before = objective.evaluate(strand.x.data());
+    for (int i = 0; i < vertices; ++i) strand.x[4 * i + 3] = 2.5;
+    BOOST_TEST(std::abs(objective.evaluate(strand.x.data()) - before) < 1e-14);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

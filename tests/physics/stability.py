@@ -1,0 +1,137 @@
+"""Strands released from shapes far from rest: how they come back. As a program it prints the table of the documents."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+
+import numpy as np
+from coils import helix, jittered, rotation
+from ringlet.curves import Curves
+from ringlet.shot import Material, Solver, Strands
+
+VERTICES, HELD = 100, 4
+CLOSE = 1e-5  # [m] this near to rest counts as back
+
+
+def zigzag():
+    """A 4B curl: planar, bent to and fro."""
+    k = np.arange(VERTICES)
+    return np.c_[2e-3 * (k % 2), -1.5e-3 * k, 0 * k]
+
+
+def straight():
+    """Type 1 hair."""
+    k = np.arange(VERTICES)
+    return np.c_[0 * k, -2e-3 * k, 0 * k]
+
+
+def coil_with_straight_middle():
+    """A coil with ten edges in line in its middle, whose virtual triangles are degenerate."""
+    edges = np.diff(helix(VERTICES), axis=0)
+    edges[45:55] = edges[44]
+    return np.concatenate([helix(1), helix(1) + np.cumsum(edges, axis=0)])
+
+
+def straightened(rest):
+    """Pulled out straight, downwards."""
+    lengths = np.linalg.norm(np.diff(rest[HELD - 1 :], axis=0), axis=1)
+    shape = rest.copy()
+    shape[HELD:] = rest[HELD - 1] - np.c_[0 * lengths, np.cumsum(lengths), 0 * lengths]
+    return shape
+
+
+def flattened(rest):
+    """Pressed into a plane."""
+    shape = rest.copy()
+    shape[HELD:, 2] = rest[HELD - 1, 2]
+    return shape
+
+
+def compressed(rest):
+    """To 30 % of its height."""
+    shape = rest.copy()
+    shape[HELD:, 1] = rest[HELD - 1, 1] + 0.3 * (rest[HELD:, 1] - rest[HELD - 1, 1])
+    return shape
+
+
+def tip_twisted(rest):
+    """The last vertex turned by 45° about the edge before."""
+    shape = rest.copy()
+    shape[-1] = rest[-2] + rotation(rest[-2] - rest[-3], np.pi / 4) @ (rest[-1] - rest[-2])
+    return shape
+
+
+def scenes():
+    """Name, rest shape and start of every scene."""
+    for per_turn, hand in itertools.product((5, 12), (1, -1)):
+        rest = helix(VERTICES, per_turn=per_turn, hand=hand)
+        coil = f"{'right' if hand > 0 else 'left'}-handed coil, {per_turn} vertices a turn"
+        for amount in (0.05, 0.2, 0.5, 1.0):
+            yield f"{coil}, jitter {amount:g} cm", rest, jittered(rest, 0.01 * amount)
+        for shape in (straightened, flattened, compressed, tip_twisted):
+            yield f"{coil}, {shape.__name__.replace('_', ' ')}", rest, shape(rest)
+    for make in (straight, zigzag, coil_with_straight_middle):
+        for amount in (0.05, 0.2, 0.5):
+            yield f"{make.__name__.replace('_', ' ')}, jitter {amount:g} cm", make(), jittered(make(), 0.01 * amount)
+
+
+@dataclass
+class Release:
+    """What became of each scene, arrays of shape (scenes,).
+
+    away:      distance from rest at the end [m]
+    excursion: largest distance from rest on the way, by the largest at the start
+    gain:      largest rise of the energy in a step, by the energy of the start
+    back:      steps after which it stayed close to rest, or -1
+    """
+
+    away: np.ndarray
+    excursion: np.ndarray
+    gain: np.ndarray
+    back: np.ndarray
+
+
+def release(continuation="material_frame", newton=5, fps=24.0, steps=600):
+    """Lets all scenes go at once, with the default material."""
+    _, rests, starts = zip(*scenes(), strict=True)
+    rest, start = Curves.from_list(rests), np.concatenate(starts)
+    strands = Strands(rest, Material(), HELD)
+    strands.place(start)
+    single = [Strands(Curves.from_list([r]), Material(), HELD) for r in rests]
+    first = np.array([s.energy(x, continuation=continuation)[0] for s, x in zip(single, starts, strict=True)])
+    solver = Solver(newton=newton, continuation=continuation)
+
+    def distance():
+        return np.linalg.norm(strands.positions - rest.points, axis=1).reshape(len(rests), -1).max(axis=1)
+
+    begin, before = distance(), first
+    excursion, gain, back = begin.copy(), np.zeros(len(rests)), np.full(len(rests), -1)
+    for step in range(1, steps + 1):
+        report = strands.step(rest.points, 1 / fps, solver=solver)
+        energy = sum(report[name] for name in ("stretch", "bend", "twist", "kinetic"))
+        gain = np.maximum(gain, np.where(report["nan"] > 0, np.inf, (energy - before) / first))
+        before = energy
+        away = distance()
+        excursion = np.maximum(excursion, away)
+        back = np.where(away < CLOSE, np.where(back < 0, step, back), -1)
+    return Release(away, excursion / begin, gain, back)
+
+
+def main():
+    """Prints a table in Markdown: by model and setting the steps until back at rest, or how far away it stayed."""
+    settings = [(5, 24), (1, 24), (5, 12)]
+    models = ["history", "least_energy", "material_frame"]
+    columns = [f"{model}, {n} Newton, 1/{fps} s" for model in models for n, fps in settings]
+    results = [release(model, n, fps, 1500) for model in models for n, fps in settings]
+    print("| scene |", " | ".join(columns), "|\n|---|" + "---|" * len(columns))
+    for k, (name, _, _) in enumerate(scenes()):
+        cells = []
+        for result in results:
+            cell = f"{result.back[k]}" if result.back[k] > 0 else f"**{100 * result.away[k]:.2g} cm away**"
+            cells.append(cell + (f", +{100 * result.gain[k]:.2g} %" if result.gain[k] > 1e-5 else ""))
+        print(f"| {name} |", " | ".join(cells), "|")
+
+
+if __name__ == "__main__":
+    main()
