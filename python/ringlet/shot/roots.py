@@ -47,7 +47,10 @@ class Roots:
             locks.curve["root_triangle"],
             locks.curve["root_barycentric"],
         )
-        good = np.isfinite(place).all(axis=1) & np.isfinite(axes).all(axis=(1, 2))
+        a, b, c = (scalp_points[scalp.triangles[locks.curve["root_triangle"], k]] for k in range(3))
+        area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+        flat = area <= 1e-9 * np.maximum(((b - a) ** 2).sum(axis=1), ((c - a) ** 2).sum(axis=1))
+        good = np.isfinite(place).all(axis=1) & np.isfinite(axes).all(axis=(1, 2)) & ~flat
         if not good.all():
             lock = int(np.flatnonzero(~good)[0])
             triangle = locks.curve["root_triangle"][lock]

@@ -7,7 +7,7 @@ from typing import Any, Literal
 
 from pydantic import Field, PrivateAttr, ValidationError, field_validator
 
-from ringlet.settings import Section, explain, parse_toml, read_toml
+from ringlet.settings import Section, explain, parse_toml, read_toml, refuse
 from ringlet.shot.strands import Material, Solver
 
 
@@ -46,7 +46,7 @@ class Shot(Section):
     @classmethod
     def _in_order(cls, frames: tuple[int, int]) -> tuple[int, int]:
         if frames[1] < frames[0]:
-            raise ValueError(f"the last must not come before the first: [{frames[1]}, {frames[0]}]?")
+            raise refuse(f"is {list(frames)}; the last must not come before the first")
         return frames
 
     @property

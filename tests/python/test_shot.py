@@ -1,0 +1,143 @@
+"""Shots: what their files may say, and how locks follow a moving scalp."""
+
+import numpy as np
+import pytest
+from ringlet.curves import Curves
+from ringlet.errors import UserError
+from ringlet.groom.groom import Groom
+from ringlet.mesh import Clip, Mesh
+from ringlet.shot import parse_shot, simulate
+
+from ringlet import _core
+
+SHOT = 'ringlet = 1\ngroom = "groom.usdc"\nframes = [1, 6]\npreroll = 0\n'
+
+
+def scalp():
+    """A square patch of 10 cm in the plane y = 0, facing up."""
+    points = np.array([[0, 0, 0], [0.1, 0, 0], [0.1, 0, 0.1], [0, 0, 0.1]])
+    return Mesh("patch", points, np.array([[0, 2, 1], [0, 3, 2]], np.int32))
+
+
+def groom():
+    """Three coils that stand on the patch."""
+    turn = 2 * np.pi * np.arange(40) / 12
+    coil = np.c_[0.003 * np.cos(turn) - 0.003, 0.004 * turn / (2 * np.pi), 0.003 * np.sin(turn)]
+    roots = np.array([[0.03, 0, 0.05], [0.05, 0, 0.02], [0.08, 0, 0.07]])
+    locks = Curves.from_list([coil + root for root in roots], ids=[11, 12, 13])
+    mesh = scalp()
+    triangle, barycentric, _ = _core.bind_roots(mesh.points, mesh.triangles, locks.roots)
+    locks.curve |= {"root_triangle": triangle, "root_barycentric": barycentric}
+    return Groom(locks, locks, mesh)
+
+
+def moving(motion, frames=6):
+    """A clip of the patch: ``motion(frame, points)``."""
+    numbers = np.arange(1.0, frames + 1)
+    return Clip(numbers, np.array([motion(frame, scalp().points) for frame in numbers]), 24.0)
+
+
+def turned(frame, points):
+    """By 10° a frame about y, rising by 1 cm a frame."""
+    angle = np.radians(10) * (frame - 1)
+    about = np.array([[np.cos(angle), 0, np.sin(angle)], [0, 1, 0], [-np.sin(angle), 0, np.cos(angle)]])
+    return points @ about.T + [0, 0.01 * (frame - 1), 0]
+
+
+def test_held_vertices_ride_on_the_scalp_in_place_and_orientation():
+    made = groom()
+    cache = simulate(parse_shot(SHOT), made, moving(turned))
+    held = (made.locks.offsets[:-1, None] + np.arange(3)).ravel()
+    for frame, points in zip(cache.frames, cache.points, strict=True):
+        assert np.abs(points[held] - turned(frame, made.locks.points)[held]).max() < 1e-7
+
+
+def test_without_forces_a_still_groom_stays_as_it_was_groomed():
+    made = groom()
+    shot = parse_shot(SHOT + "[forces]\ngravity = [0, 0, 0]\n")
+    cache = simulate(shot, made, moving(lambda frame, points: points))
+    assert np.abs(cache.points - made.locks.points).max() < 1e-7
+
+
+def test_a_shot_begins_where_the_head_is_at_its_first_frame():
+    made = groom()
+    shot = parse_shot(SHOT + "[forces]\ngravity = [0, 0, 0]\n")
+    cache = simulate(shot, made, moving(turned), frames=(4, 4))
+    assert np.abs(cache.points[0] - turned(4, made.locks.points)).max() < 1e-7
+
+
+def test_a_preroll_lets_the_hair_hang_before_the_first_frame():
+    made, clip = groom(), moving(lambda frame, points: points)
+    fresh = simulate(parse_shot(SHOT), made, clip)
+    hung = simulate(parse_shot(SHOT.replace("preroll = 0", "preroll = 200")), made, clip)
+    settles = [np.abs(cache.points[-1] - cache.points[0]).max() for cache in (fresh, hung)]
+    assert settles[1] < 0.01 * settles[0]
+
+
+def test_substeps_divide_a_frame_and_its_motion():
+    made = groom()
+    seen = []
+    shot = parse_shot(SHOT + "[solver]\nsubsteps = 3\n")
+    cache = simulate(shot, made, moving(turned), on_frame=lambda frame, points, _: seen.append((frame, points.copy())))
+    assert [frame for frame, _ in seen] == list(cache.frames) == [1, 2, 3, 4, 5, 6]
+    assert all((points == kept).all() for (_, points), kept in zip(seen, cache.points, strict=True))
+    coarse = simulate(parse_shot(SHOT), made, moving(turned))
+    assert 0 < np.abs(cache.points[-1] - coarse.points[-1]).max() < 0.02
+
+
+def test_statistics_tell_what_the_solver_did():
+    for statistics in simulate(parse_shot(SHOT), groom(), moving(turned)).statistics:
+        assert 1 <= statistics["newton"] <= statistics["newton_max"] <= 5
+        assert statistics["nan"] == 0 and statistics["max_stretch"] < 0.05
+        assert statistics["worst_lock"] in (11, 12, 13)
+        assert set(statistics["energy"]) == {"stretch", "bend", "twist", "gravity", "kinetic"}
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (("frames = [1, 6]", "frames = [6, 1]"), ["frames", "[6, 1]", "before"]),
+        (("frames = [1, 6]", "framse = [1, 6]"), ["framse", "'frames'"]),
+        (("preroll = 0", "preroll = -1"), ["preroll", "-1", "at least 0"]),
+        (("preroll = 0", "[strands]\ntwist_ratio = 1.4"), ["strands.twist_ratio", "1.4", "at most 1"]),
+        (("preroll = 0", "[solver]\nnewton = 0"), ["solver.newton", "0", "at least 1"]),
+        (("preroll = 0", "[solver]\ncontinuation = 'memory'"), ["solver.continuation", "memory", "material_frame"]),
+        (("preroll = 0", "[forces]\ngravity = [0, nan, 0]"), ["forces.gravity", "nan"]),
+        (("ringlet = 1", ""), ["first line", "ringlet = 1"]),
+        (("ringlet = 1", "ringlet = "), ["TOML"]),
+    ],
+)
+def test_a_mistake_in_a_shot_is_told_in_one_line(change, words):
+    with pytest.raises(UserError) as told:
+        parse_shot(SHOT.replace(*change))
+    assert "\n" not in str(told.value)
+    for word in words:
+        assert word in str(told.value)
+
+
+def flattened(frame, points):
+    return points * [1, 1, 0] if frame == 3 else points
+
+
+@pytest.mark.parametrize(
+    ("spoil", "clip", "words"),
+    [
+        (lambda g: g.locks.curve.clear(), moving(turned), ["not bound", "recipe"]),
+        (lambda g: None, Clip(np.array([1.0]), np.zeros((1, 5, 3)), 24.0), ["5 points", "4", "again"]),
+        (lambda g: None, moving(flattened), ["frame 3", "triangle", "lock"]),
+        (lambda g: g.locks.points.__setitem__((50, 1), np.nan), moving(turned), ["curve 12", "finite"]),
+    ],
+)
+def test_what_cannot_be_simulated_is_refused_in_one_line(spoil, clip, words):
+    made = groom()
+    spoil(made)
+    with pytest.raises(UserError) as told:
+        simulate(parse_shot(SHOT), made, clip)
+    assert "\n" not in str(told.value)
+    for word in words:
+        assert word in str(told.value)
+
+
+def test_holding_more_vertices_than_a_lock_has_is_refused():
+    with pytest.raises(UserError, match="held is 40"):
+        simulate(parse_shot(SHOT.replace("preroll = 0", "held = 40")), groom(), moving(turned))
