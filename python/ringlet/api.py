@@ -206,7 +206,7 @@ def write_still(
     frame: float | None = None,
     width: int = 900,
     height: int = 1000,
-    samples: int = 32,
+    samples: int = 40,
     view: str = "three_quarter",
     color: str = "dark_brown",
     seconds: float | None = None,

@@ -30,7 +30,7 @@ def picture(
     ] = "dark_brown",
     width: Annotated[int, typer.Option("--width", min=16, max=8192, help="Pixels across.")] = 900,
     height: Annotated[int, typer.Option("--height", min=16, max=8192, help="Pixels down.")] = 1000,
-    samples: Annotated[int, typer.Option("--samples", min=1, help="Paths per pixel: more is cleaner and slower.")] = 32,
+    samples: Annotated[int, typer.Option("--samples", min=1, help="Paths per pixel: more is cleaner and slower.")] = 40,
     seconds: Annotated[
         float | None, typer.Option("--seconds", min=1, help="Stop adding samples after that long.", show_default=False)
     ] = None,

@@ -45,7 +45,7 @@ HAIR_COLORS: dict[str, HairColor] = {
 # What the hairs are called in a scene.
 HAIRS = "hairs"
 
-# The least diameter at which a hair is drawn [pixels].
+# The least diameter at which a hair is drawn in a still [pixels].
 THINNEST = 0.3
 
 # Samples per pixel of one pass: enough for them to be spread evenly over a pixel and over the lights, few enough for
@@ -79,8 +79,12 @@ def build_scene(
     size: tuple[int, int],
     color: HairColor,
     max_depth: int,
+    thinnest: float = THINNEST,
 ) -> Any:
-    """The Mitsuba scene, moved to the origin and scaled so that single precision resolves a hair's width."""
+    """The Mitsuba scene, moved to the origin and scaled so that single precision resolves a hair's width.
+
+    thinnest: the least diameter at which a hair is drawn [pixels]
+    """
     mi = mitsuba()
     scale = 100.0 / camera.distance
     distance = 100.0
@@ -118,7 +122,7 @@ def build_scene(
         # A hair far thinner than a pixel is mostly missed: it costs many samples and looks like noise. Drawn a little
         # wider it also stands in for the many hairs that a groom leaves out.
         pixel = 2.0 * camera.slopes[0] * camera.distance / size[0]
-        controls[:, 3] = np.maximum(controls[:, 3], 0.5 * THINNEST * pixel)
+        controls[:, 3] = np.maximum(controls[:, 3], 0.5 * thinnest * pixel)
         look = {
             "type": "hair",
             "eumelanin": color.eumelanin,

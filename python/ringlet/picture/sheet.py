@@ -22,6 +22,9 @@ Frame = tuple[float, Sequence[PosedBody], Curves]
 PAPER, INK, FADED = (22, 25, 28), (236, 234, 230), (150, 154, 158)
 GAP, CAPTION = 10, 34
 
+# A sheet shows few of the hairs, so each is drawn thick enough to stand in for those beside it [pixels].
+THINNEST = 0.7
+
 
 def sheet(
     frames: Iterable[Frame],
@@ -66,7 +69,7 @@ def sheet(
     )
     tiles = []
     for number, bodies, curves in shots:
-        scene = build_scene(bodies, curves, camera, size=tile, color=pigments, max_depth=4)
+        scene = build_scene(bodies, curves, camera, size=tile, color=pigments, max_depth=4, thinnest=THINNEST)
         tiles.append((number, develop(over_backdrop(trace(scene, samples=samples)))))
         if progress:
             progress("sheet", len(tiles), len(shots))

@@ -25,7 +25,7 @@ def still(
     *,
     width: int = 900,
     height: int = 1000,
-    samples: int = 32,
+    samples: int = 40,
     view: str | tuple[float, float] = "three_quarter",
     color: str = "dark_brown",
     max_depth: int = 8,
