@@ -2,7 +2,10 @@
 
 import numpy as np
 import pytest
-from stability import CLOSE, release, scenes
+from coils import helix, rotation
+from ringlet.curves import Curves
+from ringlet.shot import Material, Solver, Strands
+from stability import CLOSE, HELD, release, scenes
 
 NAMES = [name for name, _, _ in scenes()]
 
@@ -43,3 +46,36 @@ def test_what_the_frame_is_good_for():
     """Signs alone lose a coil whose middle is straight; the material frame does not."""
     middle = [name.startswith("coil with straight middle") for name in NAMES]
     assert (release(continuation="least_energy").away[middle] > 10 * CLOSE).any()
+
+
+def shaken(time):
+    """±10 cm at 4 Hz, along x."""
+    return np.eye(3), np.array([0.1 * np.sin(2 * np.pi * 4 * time), 0, 0])
+
+
+def spun(time):
+    """Three turns a second about the vertical, half a coil's length off the axis."""
+    return rotation([0, 1, 0], 2 * np.pi * 3 * time), np.zeros(3)
+
+
+def teleported(time):
+    """A metre away and upside down from one step to the next."""
+    return (rotation([1, 0, 0.3], 3.0), np.array([1.0, 0.5, -0.4])) if time > 0.25 else (np.eye(3), np.zeros(3))
+
+
+@pytest.mark.parametrize("motion", [shaken, spun, teleported])
+@pytest.mark.parametrize("per_turn", [5, 12])
+@pytest.mark.parametrize("newton", [1, 5])
+def test_after_a_violent_motion_of_the_root_a_coil_comes_back(motion, per_turn, newton):
+    rest = Curves.from_list([helix(per_turn=per_turn, hand=hand) + [0.1, 0, 0.1 * k] for k, hand in enumerate((1, -1))])
+    strands = Strands(rest, Material(), HELD)
+    reach = rest.lengths().max()
+    for step in range(1, 25):
+        turn, shift = motion(step / 24)
+        targets = rest.points @ turn.T + shift
+        report = strands.step(targets, 1 / 24, solver=Solver(newton=newton))
+        assert not report["nan"].any()
+        assert np.linalg.norm(strands.positions - targets, axis=1).max() < 2 * reach
+    for _ in range(1200):
+        strands.step(targets, 1 / 24, solver=Solver(newton=newton))
+    assert np.abs(strands.positions - targets).max() < CLOSE
