@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ringlet import Clock, Curves, Material, Solver, Strands
+from ringlet import Clock, Curves, Material, Solver, Strands, solver_counts
 
 
 def run(
@@ -37,12 +37,7 @@ def run(
         warm_up=2,
         strands=strands,
         vertices=len(rest),
-        contacts=0,
-        newton=float(np.mean([report["newton"].mean() for report in reports])),
-        linear_iterations=0,
-        line_search_cuts=int(sum(report["cuts"].sum() for report in reports)),
-        nan=int(sum(report["nan"].sum() for report in reports)),
-        max_stretch=float(max(report["max_stretch"].max() for report in reports)),
+        **solver_counts(reports),
     )
 
 

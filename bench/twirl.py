@@ -7,7 +7,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from ringlet import Clock, Curves, Material, Solver, Strands, UserError
+from ringlet import Clock, Curves, Material, Solver, Strands, UserError, solver_counts
 
 FPS = 30.0
 HELD = 4  # the vertices of a wisp inside the sphere's surface
@@ -44,12 +44,7 @@ def run(strands: int = 256, contacts: Literal["off"] = "off", newton: int = 3, s
         warm_up=2,
         strands=strands,
         vertices=len(curves.points),
-        contacts=0,
-        newton=float(np.mean([report["newton"].mean() for report in reports])),
-        linear_iterations=0,
-        line_search_cuts=int(sum(report["cuts"].sum() for report in reports)),
-        nan=int(sum(report["nan"].sum() for report in reports)),
-        max_stretch=float(max(report["max_stretch"].max() for report in reports)),
+        **solver_counts(reports),
     )
 
 

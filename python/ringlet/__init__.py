@@ -2,7 +2,7 @@
 
 from importlib import import_module
 from importlib.metadata import version
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ringlet.api import (
     build_groom,
@@ -31,7 +31,7 @@ from ringlet.run import Run
 from ringlet.stage import StageSpace
 
 if TYPE_CHECKING:
-    from ringlet.bench import Clock
+    from ringlet.bench import Clock, solver_counts
     from ringlet.groom.groom import Groom
     from ringlet.shot.cache import Cache
     from ringlet.shot.strands import Material, Solver, Strands
@@ -63,6 +63,7 @@ __all__ = [
     "run_validation",
     "schema",
     "simulate",
+    "solver_counts",
     "use_threads",
     "write_cache",
     "write_groom",
@@ -80,10 +81,11 @@ _SLOW = {
     "Material": "ringlet.shot.strands",
     "Solver": "ringlet.shot.strands",
     "Strands": "ringlet.shot.strands",
+    "solver_counts": "ringlet.bench",
 }
 
 
-def __getattr__(name: str) -> type:
+def __getattr__(name: str) -> Any:
     if name in _SLOW:
         return getattr(import_module(_SLOW[name]), name)
     raise AttributeError(f"module 'ringlet' has no attribute '{name}'")

@@ -8,6 +8,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from ringlet import _core
 
 
@@ -50,6 +53,18 @@ class Clock:
             "stages": {stage: statistics.median(times[warm_up:]) for stage, times in self.cpu.items()},
             **counts,
         }
+
+
+def solver_counts(reports: list[dict[str, NDArray[np.float64]]]) -> dict[str, Any]:
+    """What a benchmark of the solver counts, from the reports of all its steps (see ``Strands.step``)."""
+    return {
+        "contacts": 0,
+        "newton": float(np.mean([report["newton"].mean() for report in reports])),
+        "linear_iterations": 0,
+        "line_search_cuts": int(sum(report["cuts"].sum() for report in reports)),
+        "nan": int(sum(report["nan"].sum() for report in reports)),
+        "max_stretch": float(max(report["max_stretch"].max() for report in reports)),
+    }
 
 
 def spread(times: list[float]) -> dict[str, float]:

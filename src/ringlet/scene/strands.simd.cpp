@@ -165,7 +165,7 @@ private:
             space_.rows[i].reference.tangent = unit(space_.start[i + 1] - space_.start[i]);
     }
 
-    // Newton on the frames alone: all vertices are held.
+    // Newton on the frames alone: all vertices are held (which were free is kept in `start`, which is not needed any more).
     Pack relax() {
         if (!frames) return objective_.evaluate(space_.x);
         for (int i = 0; i < vertices_; ++i) {
