@@ -7,6 +7,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parent))
 
 from docstrings import as_list
+from plots import write_convergence
 from reference import write_references
 
 project = "Ringlet"
@@ -31,4 +32,5 @@ html_theme_options = {
 
 def setup(app):
     write_references(Path(app.srcdir) / "_generated")
+    write_convergence(Path(app.srcdir) / "_generated" / "convergence.svg")
     app.connect("autodoc-process-docstring", as_list)
