@@ -1,7 +1,6 @@
 // ringlet._core: strands and their steps.
 #include "arrays.h"
 
-#include "ringlet/rest/resolution.h"
 #include "ringlet/scene/strands.h"
 
 #include <cmath>
@@ -46,15 +45,6 @@ void bind_scene(nb::module_ &module) {
         .def_rw("mass_damping", &StrandMaterial::mass_damping)
         .def_rw("drag", &StrandMaterial::drag)
         .def_rw("correct_resolution", &StrandMaterial::correct_resolution);
-
-    module.def(
-        "resolution_factors",
-        [](double angle, double dihedral) {
-            const ResolutionFactors factors = resolution_factors(angle, dihedral);
-            return nb::make_tuple(factors.bend, factors.twist, factors.mass);
-        },
-        "angle"_a, "dihedral"_a,
-        "Factors (bend, twist, mass) of a coil's edge whose corners and dihedral have these rest angles [rad].");
 
     nb::class_<Strands>(module, "Strands", "Strands at rest in their rest shape, ready to be stepped.")
         .def(

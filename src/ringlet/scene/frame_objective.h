@@ -1,13 +1,10 @@
-// Bend and twist of a strand with a material frame: every edge carries a director D ⟂ t, free to turn about the edge (angle γ,
-// no inertia: it takes what turn costs least). With K = θ n the turning at a vertex,
-//   bend  ½ k_b [ (K·D − θ̄)² + (K·(t×D))² ]         the frame of the edge behind the vertex
-//   twist ½ k_t wrap(τ − φ̄)²                         τ: angle about the edge from D to the next director, carried back to the
-//   edge
-// At rest D is the corner's normal, τ = φ̄ the dihedral angle: with the directors locked to the normals this is the hinge model.
-// Free directors make it Kirchhoff's rod (Bergou et al. 2008, 2010), with no corner that is too straight, no signs and no
+// Bend and twist of a strand with a material frame (energy/strand/frame.h): every edge's director may turn about the edge, by
+// an angle γ without inertia, which takes what turn costs least. At rest a director is the corner's normal: locked to the
+// normals, this is the hinge model. Free, they make it Kirchhoff's rod, with no corner that is too straight, no signs and no
 // turns.
 #pragma once
 
+#include "ringlet/energy/strand/frame.h"
 #include "ringlet/scene/strand_objective.h"
 
 namespace ringlet::RINGLET_SIMD {
@@ -28,7 +25,7 @@ public:
             const Vec<T> director = transport(rows_[i].reference.normal, rows_[i].reference.tangent, s.tangent);
             const SineCosine<T> turn = sine_cosine(x[4 * i + 3] / rows_[i].rest_length);
             s.director = turn.cosine * director + turn.sine * cross(s.tangent, director);
-            const Vec<T> K = curvature(i);
+            const Vec<T> K = turning(s.corner, shapes_[i - 1].tangent, s.tangent);
             s.across = dot(K, s.director) - rows_[i].rest_angle;
             s.along = dot(K, cross(s.tangent, s.director));
         }
@@ -39,8 +36,8 @@ public:
         }
         for (int i = 1; i + 2 < vertices_; ++i) {
             StrandShape<T> &s = shapes_[i];
-            const Vec<T> next = transport(shapes_[i + 1].director, shapes_[i + 1].tangent, s.tangent);
-            s.strain = wrap(atan2(dot(cross(s.tangent, s.director), next), dot(s.director, next)) - rows_[i].rest_dihedral);
+            const StrandShape<T> &next = shapes_[i + 1];
+            s.strain = wrap(frame_twist(s.director, s.tangent, next.director, next.tangent) - rows_[i].rest_dihedral);
             const T w = s.strain - rows_[i].damped_strain;
             energy += 0.5 * rows_[i].twist * w * w;
         }
@@ -81,46 +78,18 @@ public:
     T too_straight(int) const { return T{}; }
 
 private:
-    // θ / sinθ, 1 where straight.
-    static T ratio(const Corner<T> &c) {
-        const auto straight = c.sine < 1e-8;
-        return select(straight, constant<T>(1.0), c.angle / select(straight, constant<T>(1.0), c.sine));
-    }
-
-    Vec<T> curvature(int i) const { return ratio(shapes_[i].corner) * cross(shapes_[i - 1].tangent, shapes_[i].tangent); }
-
-    // How the frame of an edge is turned about it when its tangent moves, since the director is carried straight from where it
-    // was as the step began: ∂γ/∂e.
-    Vec<T> spin(int i) const {
-        const Vec<T> &from = rows_[i].reference.tangent, &to = shapes_[i].tangent;
-        const T cosine = max(dot(from, to), constant<T>(-1.0 + 1e-9));
-        return (-1.0 / ((1.0 + cosine) * shapes_[i].length)) * cross(from, to);
-    }
-
-    // ∂(K·W)/∂e of the two edges at vertex i, for a unit W ⟂ t₁ that is carried along with t₁.
-    struct CurvatureGradient {
-        Vec<T> first, second;
-    };
-    CurvatureGradient curvature_gradient(int i, Vec<T> W) const {
-        const StrandShape<T> &before = shapes_[i - 1], &s = shapes_[i];
-        const Corner<T> &c = s.corner;
-        const T r = ratio(c);
-        const T W_m = dot(W, cross(c.normal, s.tangent));
-        const Vec<T> back = transport(W, s.tangent, before.tangent);
-        const Vec<T> first = cross(before.tangent, back) + ((r - 1.0) * W_m) * c.normal;
-        const Vec<T> second = ((1.0 - r * c.cosine) * W_m) * c.normal - cross(s.tangent, W);
-        return {(1.0 / before.length) * first, (1.0 / s.length) * second};
-    }
+    Vec<T> spin_of(int i) const { return spin(rows_[i].reference.tangent, shapes_[i].tangent, shapes_[i].length); }
 
     void add_bend(int i, T *gradient, Matrix &hessian) const {
-        const StrandShape<T> &s = shapes_[i];
+        const StrandShape<T> &before = shapes_[i - 1], &s = shapes_[i];
         const Vec<T> other = cross(s.tangent, s.director);
-        const Vec<T> K = curvature(i), turning = spin(i);
+        const Vec<T> K = turning(s.corner, before.tangent, s.tangent), spinning = spin_of(i);
         const T residual[2] = {s.across - rows_[i].damped_bend.x, s.along - rows_[i].damped_bend.y};
         const T by_frame[2] = {dot(K, other), -dot(K, s.director)};
         for (int k = 0; k < 2; ++k) {
-            const CurvatureGradient g = curvature_gradient(i, k == 0 ? s.director : other);
-            const Vec<T> second = g.second + by_frame[k] * turning;
+            const EdgeGradient<T> g =
+                turning_gradient(s.corner, before.tangent, s.tangent, before.length, s.length, k == 0 ? s.director : other);
+            const Vec<T> second = g.second + by_frame[k] * spinning;
             const T force = rows_[i].bend * residual[k], frame = by_frame[k] / rows_[i].rest_length;
             this->add(gradient, i - 1, -(force * g.first));
             this->add(gradient, i, force * (g.first - second));
@@ -135,12 +104,10 @@ private:
         }
     }
 
-    // ∂τ/∂e of the two edges that meet behind it is half the curvature binormal 2 t×t'/(1 + t·t') by their lengths.
     void add_twist(int i, T *gradient, Matrix &hessian) const {
         const StrandShape<T> &s = shapes_[i], &after = shapes_[i + 1];
-        const Vec<T> binormal = (1.0 / max(1.0 + after.corner.cosine, constant<T>(1e-9))) * cross(s.tangent, after.tangent);
-        const Vec<T> first = (1.0 / s.length) * binormal - spin(i);
-        const Vec<T> second = (1.0 / after.length) * binormal + spin(i + 1);
+        const EdgeGradient<T> g = frame_twist_gradient(after.corner, s.tangent, after.tangent, s.length, after.length);
+        const Vec<T> first = g.first - spin_of(i), second = g.second + spin_of(i + 1);
         const T frame0 = -1.0 / rows_[i].rest_length, frame1 = 1.0 / rows_[i + 1].rest_length;
         const T moment = rows_[i].twist * (s.strain - rows_[i].damped_strain);
         this->add(gradient, i, -(moment * first));

@@ -17,7 +17,7 @@ struct StrandStep {
     double wind[3] = {0, 0, 0};    // [m/s]
     int newton = 5;                // iterations at most
     double tolerance = 1e-7;       // [m]; a strand is done when no coordinate moves more
-    Continuation continuation = Continuation::history;
+    Continuation continuation = Continuation::material_frame;
 };
 
 // What happened to one strand in one step.

@@ -49,7 +49,7 @@ struct StrandModel {
     int vertex_count() const { return offsets.back(); }
 };
 
-// Moving, with the history that the four safeguards compare with.
+// Moving, with what the next step compares with: normals and twist (`history`) or the material frame.
 struct StrandState {
     std::vector<Vec3> positions;  // [m]
     std::vector<Vec3> velocities; // [m/s]
@@ -63,7 +63,7 @@ struct StrandState {
 StrandModel make_strand_model(View<int> offsets, View<Vec3> rest, View<unsigned char> held, const StrandMaterial &material,
                               const StrandVariation &variation = {});
 
-// At rest at the given positions, with the normals and twist that they have.
+// At rest at the given positions, with the normals and twist that they have and material frames turned to cost least.
 StrandState make_strand_state(const StrandModel &model, View<Vec3> positions);
 
 // One time step. `targets` holds where the held vertices are at its end (rows of free vertices are not read), `forces` what
