@@ -1,0 +1,44 @@
+// Which pairs may touch while everything moves from one place to the next.
+#pragma once
+
+#include "ringlet/contact/collision_mesh.h"
+#include "ringlet/contact/moving_tree.h"
+
+#include <vector>
+
+namespace ringlet {
+
+struct Candidates {                                 // in ascending order, each pair once
+    std::vector<std::array<int, 2>> edge_edge;      // indices into `edges`, the lower first
+    std::vector<std::array<int, 2>> point_triangle; // a vertex, and an index into `triangles`
+};
+
+// Borrows the mesh, which must outlive it.
+class BroadPhase {
+public:
+    explicit BroadPhase(const CollisionMesh &mesh);
+
+    // All pairs that may come within their contact distance plus `margin` [m] on the straight paths from `start` to `end`:
+    // positions [m] of all vertices. Left out are pairs that share a vertex, pairs whose motions are both given, and what is
+    // carried against what carries it. The same for any number of threads, and whatever was asked before.
+    void find(View<Vec3> start, View<Vec3> end, double margin, Candidates &candidates);
+
+    int built() const { return edge_tree_.built(); } // how often the tree of edges was built, for studies
+
+private:
+    using Pairs = std::vector<std::array<int, 2>>;
+
+    void place(View<Vec3> start, View<Vec3> end);
+    template <class Primitives> void fit(MovingTree &tree, const Primitives &primitives, double margin);
+    template <class Accept> void search(const MovingTree &a, const MovingTree &b, const Accept &accept);
+    void gather(size_t firsts, Pairs &sorted);
+
+    const CollisionMesh &mesh_;
+    std::vector<std::array<int, 1>> points_;
+    MovingTree edge_tree_, triangle_tree_, point_tree_;
+    std::vector<MovingBox> boxes_;
+    std::vector<Eigen::Array4f> places_, motions_; // of the vertices, relative to the first
+    std::vector<Pairs> found_;                     // by each task
+};
+
+} // namespace ringlet

@@ -1,0 +1,65 @@
+// What can touch: strands, cloth and bodies in one list of vertices, and how near two of its primitives may come.
+#pragma once
+
+#include "ringlet/contact/distance.h"
+
+#include <array>
+#include <vector>
+
+namespace ringlet {
+
+struct CollisionMesh {
+    std::vector<std::array<int, 2>> edges;     // of strands, cloth and bodies alike
+    std::vector<std::array<int, 3>> triangles; // of cloth and bodies
+    std::vector<int> points;                   // the vertices that are tested against triangles
+
+    // Per vertex:
+    std::vector<double> radius;       // half the thickness [m]
+    std::vector<unsigned char> moves; // 0 where the motion is given: bodies, and what is held; two such primitives never meet
+    std::vector<int> object;          // the strand, cloth or body it belongs to
+    std::vector<int> anchor; // the object that carries it, which it may touch: the body that a strand is rooted in; −1: none
+    std::vector<Vec3> rest;  // position at rest [m]
+};
+
+// The radius of a primitive is the mean over its vertices.
+template <size_t N> double mean_radius(const CollisionMesh &mesh, const std::array<int, N> &primitive) {
+    double sum = 0.0;
+    for (int v : primitive) sum += mesh.radius[v];
+    return sum / N;
+}
+
+template <size_t N, size_t M> bool share_vertex(const std::array<int, N> &a, const std::array<int, M> &b) {
+    for (int v : a)
+        for (int w : b)
+            if (v == w) return true;
+    return false;
+}
+
+inline ClosestPoints closest_points(View<Vec3> x, const std::array<int, 2> &a, const std::array<int, 2> &b) {
+    return closest_edge_edge(x[a[0]], x[a[1]], x[b[0]], x[b[1]]);
+}
+
+inline ClosestPoints closest_points(View<Vec3> x, const std::array<int, 1> &p, const std::array<int, 3> &t) {
+    return closest_point_triangle(x[p[0]], x[t[0]], x[t[1]], x[t[2]]);
+}
+
+// The distance [m] below which two edges, or a point and a triangle, touch: the sum of their radii; within one object at most
+// nine tenths of what is between them at rest, so that neighbours along a strand never push each other apart.
+template <size_t N, size_t M>
+double contact_distance(const CollisionMesh &mesh, const std::array<int, N> &a, const std::array<int, M> &b) {
+    const double radii = mean_radius(mesh, a) + mean_radius(mesh, b);
+    if (mesh.object[a[0]] != mesh.object[b[0]]) return radii;
+    return std::min(radii, 0.9 * std::sqrt(closest_points(mesh.rest, a, b).distance2));
+}
+
+// Whether one of the two holds a vertex that the other's object carries.
+template <size_t N, size_t M>
+bool carries(const CollisionMesh &mesh, const std::array<int, N> &a, const std::array<int, M> &b) {
+    for (int v : a)
+        if (mesh.anchor[v] == mesh.object[b[0]]) return true;
+    for (int v : b)
+        if (mesh.anchor[v] == mesh.object[a[0]]) return true;
+    return false;
+}
+
+} // namespace ringlet

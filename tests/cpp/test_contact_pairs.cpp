@@ -1,0 +1,241 @@
+// Which pairs may touch: against looking at all of them.
+#include "ringlet/contact/impact.h"
+#include "ringlet/contact/impacts.h"
+
+#include <boost/test/unit_test.hpp>
+#include <cmath>
+#include <omp.h>
+#include <random>
+#include <set>
+
+using namespace ringlet;
+
+namespace {
+
+// Strands in the unit cube that wind among a cloth and a body. The strands are rooted in the body, object 0; the cloth is
+// object 1.
+struct Scene {
+    CollisionMesh mesh;
+    std::vector<Vec3> start, end;
+    std::mt19937 random;
+
+    explicit Scene(unsigned seed, double motion) : random(seed) {
+        add_grid(0, 0.0, false);
+        add_grid(1, 0.4, true);
+        for (int strand = 0; strand < 30; ++strand) add_strand(2 + strand);
+        mesh.rest = start;
+        const Vec3 shared = motion * anywhere(1.0);
+        for (const Vec3 &x : start) end.push_back(x + shared + motion * anywhere(0.3));
+    }
+
+    Vec3 anywhere(double size) {
+        std::uniform_real_distribution<double> in(-size, size);
+        return Vec3(in(random), in(random), in(random));
+    }
+
+    int add(const Vec3 &x, int object, double radius, bool moves, int anchor) {
+        start.push_back(x);
+        mesh.radius.push_back(radius);
+        mesh.moves.push_back(moves);
+        mesh.object.push_back(object);
+        mesh.anchor.push_back(anchor);
+        mesh.points.push_back(static_cast<int>(start.size()) - 1);
+        return mesh.points.back();
+    }
+
+    void add_grid(int object, double height, bool moves) { // 6 × 6 vertices
+        const int first = static_cast<int>(start.size());
+        for (int i = 0; i < 36; ++i) add(Vec3(i / 6 / 5.0, height, i % 6 / 5.0) + anywhere(0.03), object, 0.002, moves, -1);
+        for (int i = 0; i < 36; ++i) {
+            const int v = first + i;
+            const bool right = i % 6 < 5, down = i < 30;
+            if (right) mesh.edges.push_back({v, v + 1});
+            if (down) mesh.edges.push_back({v, v + 6});
+            if (!right || !down) continue;
+            mesh.edges.push_back({v, v + 7});
+            mesh.triangles.push_back({v, v + 7, v + 1});
+            mesh.triangles.push_back({v, v + 6, v + 7});
+        }
+    }
+
+    void add_strand(int object) { // of 20 vertices, the first two held by the body
+        Vec3 x = Vec3::Constant(0.5) + anywhere(0.5);
+        x.y() = 0.0;
+        for (int k = 0; k < 20; ++k) {
+            add(x, object, 0.01, k >= 2, k < 2 ? 0 : -1);
+            if (k > 0) mesh.edges.push_back({mesh.points.back() - 1, mesh.points.back()});
+            x += Vec3(0.0, 0.015, 0.0) + anywhere(0.03);
+        }
+    }
+};
+
+template <size_t N> bool any_moves(const CollisionMesh &mesh, const std::array<int, N> &vertices) {
+    return std::any_of(vertices.begin(), vertices.end(), [&](int v) { return mesh.moves[v]; });
+}
+
+template <class A, class B> bool excluded(const CollisionMesh &mesh, const A &a, const B &b) {
+    return share_vertex(a, b) || carries(mesh, a, b) || (!any_moves(mesh, a) && !any_moves(mesh, b));
+}
+
+// How far two primitives are from touching where they come nearest, at 41 times.
+template <class A, class B> double nearest_gap(const Scene &scene, const A &a, const B &b) {
+    double nearest = 1e9;
+    std::vector<Vec3> x(scene.start.size());
+    for (int k = 0; k <= 40; ++k) {
+        for (int v : a) x[v] = scene.start[v] + k / 40.0 * (scene.end[v] - scene.start[v]);
+        for (int v : b) x[v] = scene.start[v] + k / 40.0 * (scene.end[v] - scene.start[v]);
+        nearest = std::min(nearest, std::sqrt(closest_points(x, a, b).distance2));
+    }
+    return nearest - contact_distance(scene.mesh, a, b);
+}
+
+Candidates found(const Scene &scene, double margin) {
+    Candidates candidates;
+    BroadPhase(scene.mesh).find(scene.start, scene.end, margin, candidates);
+    return candidates;
+}
+
+bool same(const Candidates &a, const Candidates &b) {
+    return a.edge_edge == b.edge_edge && a.point_triangle == b.point_triangle;
+}
+
+template <class Pairs> bool ascending(const Pairs &pairs) {
+    return std::adjacent_find(pairs.begin(), pairs.end(), std::greater_equal()) == pairs.end();
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(contact_pairs)
+
+BOOST_AUTO_TEST_CASE(no_pair_that_comes_near_is_missed) {
+    for (double motion : {0.0, 0.02, 0.3}) {
+        const Scene scene(1, motion);
+        const CollisionMesh &mesh = scene.mesh;
+        const double margin = 0.005;
+        const Candidates candidates = found(scene, margin);
+        BOOST_TEST((ascending(candidates.edge_edge) && ascending(candidates.point_triangle)));
+        const std::set<std::array<int, 2>> edges(candidates.edge_edge.begin(), candidates.edge_edge.end());
+        const std::set<std::array<int, 2>> points(candidates.point_triangle.begin(), candidates.point_triangle.end());
+        int near = 0, missed = 0;
+        for (int a = 0; a < static_cast<int>(mesh.edges.size()); ++a)
+            for (int b = a + 1; b < static_cast<int>(mesh.edges.size()); ++b) {
+                if (excluded(mesh, mesh.edges[a], mesh.edges[b]) || nearest_gap(scene, mesh.edges[a], mesh.edges[b]) > margin)
+                    continue;
+                ++near;
+                missed += !edges.count({a, b});
+            }
+        for (int v : mesh.points)
+            for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
+                const std::array<int, 1> point = {v};
+                if (excluded(mesh, point, mesh.triangles[t]) || nearest_gap(scene, point, mesh.triangles[t]) > margin) continue;
+                ++near;
+                missed += !points.count({v, t});
+            }
+        BOOST_TEST(missed == 0, "motion " << motion << ": " << missed << " of " << near << " pairs missed");
+        BOOST_TEST(near > 50);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(what_may_never_touch_is_left_out) {
+    const Scene scene(2, 0.1);
+    const CollisionMesh &mesh = scene.mesh;
+    const Candidates candidates = found(scene, 0.05);
+    BOOST_TEST(candidates.edge_edge.size() > 1000);
+    BOOST_TEST(candidates.point_triangle.size() > 1000);
+    for (const auto &[a, b] : candidates.edge_edge) BOOST_TEST(!excluded(mesh, mesh.edges[a], mesh.edges[b]));
+    for (const auto &[v, t] : candidates.point_triangle) BOOST_TEST(!excluded(mesh, std::array<int, 1>{v}, mesh.triangles[t]));
+}
+
+BOOST_AUTO_TEST_CASE(neighbours_along_a_strand_that_rests_are_no_pairs) {
+    CollisionMesh mesh; // segments of 1 mm, ten times as thick
+    for (int k = 0; k < 50; ++k) {
+        mesh.rest.emplace_back(0.001 * k, 0.0, 0.0);
+        if (k > 0) mesh.edges.push_back({k - 1, k});
+    }
+    mesh.radius.assign(50, 0.005);
+    mesh.moves.assign(50, 1);
+    mesh.object.assign(50, 0);
+    mesh.anchor.assign(50, -1);
+    Candidates candidates;
+    BroadPhase broad(mesh);
+    broad.find(mesh.rest, mesh.rest, 0.0, candidates);
+    BOOST_TEST(candidates.edge_edge.empty());
+    std::vector<Vec3> shorter = mesh.rest;
+    for (Vec3 &x : shorter) x *= 0.5;
+    broad.find(shorter, shorter, 0.0, candidates); // drawn together, they do push
+    BOOST_TEST(!candidates.edge_edge.empty());
+}
+
+BOOST_AUTO_TEST_CASE(pairs_do_not_depend_on_threads_nor_on_what_was_asked_before) {
+    const Scene scene(3, 0.1), other(4, 0.5);
+    const int threads = omp_get_max_threads();
+    omp_set_num_threads(1);
+    const Candidates one = found(scene, 0.01);
+    omp_set_num_threads(4);
+    Candidates four;
+    BroadPhase broad(scene.mesh);
+    broad.find(other.start, other.end, 0.02, four); // the same mesh elsewhere
+    broad.find(scene.start, scene.end, 0.01, four);
+    omp_set_num_threads(threads);
+    BOOST_TEST(same(one, four));
+}
+
+BOOST_AUTO_TEST_CASE(a_tree_that_no_longer_fits_is_built_again) {
+    Scene scene(3, 0.1);
+    BroadPhase broad(scene.mesh);
+    Candidates candidates;
+    for (int k = 0; k < 3; ++k) broad.find(scene.start, scene.end, 0.001 * k, candidates); // a wider margin is no reason
+    BOOST_TEST(broad.built() == 1);
+    std::shuffle(scene.start.begin(), scene.start.end(), scene.random);
+    broad.find(scene.start, scene.start, 0.01, candidates);
+    BOOST_TEST(broad.built() == 2);
+    scene.end = scene.start;
+    BOOST_TEST(same(candidates, found(scene, 0.01)));
+}
+
+// For a film frame, in any direction: as many pairs as if the scene stood still, not all that lie along the way.
+BOOST_AUTO_TEST_CASE(a_scene_that_flies_at_100_m_per_s_finds_the_same_pairs) {
+    Scene scene(5, 0.05);
+    const Candidates at_home = found(scene, 0.01);
+    for (Vec3 &x : scene.end) x += Vec3(60.0, 0.0, 80.0) / 24.0;
+    BOOST_TEST(same(at_home, found(scene, 0.01)));
+}
+
+BOOST_AUTO_TEST_CASE(impacts_of_a_scene_keep_the_distance_of_every_candidate) {
+    const Scene scene(6, 0.1);
+    const CollisionMesh &mesh = scene.mesh;
+    const Candidates candidates = found(scene, 0.0);
+    std::vector<double> times;
+    impacts(mesh, scene.start, scene.end, candidates, 0.1, times);
+    BOOST_REQUIRE(times.size() == candidates.edge_edge.size() + candidates.point_triangle.size());
+    const auto check = [&](const auto &a, const auto &b, double time) {
+        const double first = std::sqrt(closest_points(scene.start, a, b).distance2);
+        std::vector<Vec3> x = scene.start;
+        for (int k = 0; k <= 20; ++k) {
+            for (int v : a) x[v] = scene.start[v] + std::min(time, 1.0) * k / 20.0 * (scene.end[v] - scene.start[v]);
+            for (int v : b) x[v] = scene.start[v] + std::min(time, 1.0) * k / 20.0 * (scene.end[v] - scene.start[v]);
+            if (std::sqrt(closest_points(x, a, b).distance2) < 0.1 * first - 1e-12) return false;
+        }
+        return true;
+    };
+    int stopped = 0, crossed = 0;
+    for (size_t k = 0; k < times.size(); ++k) {
+        stopped += times[k] <= 1.0;
+        const size_t j = k - candidates.edge_edge.size();
+        crossed += k < candidates.edge_edge.size()
+                       ? !check(mesh.edges[candidates.edge_edge[k][0]], mesh.edges[candidates.edge_edge[k][1]], times[k])
+                       : !check(std::array<int, 1>{candidates.point_triangle[j][0]},
+                                mesh.triangles[candidates.point_triangle[j][1]], times[k]);
+    }
+    BOOST_TEST(crossed == 0);
+    BOOST_TEST(stopped > 10);
+}
+
+BOOST_AUTO_TEST_CASE(nothing_meets_nothing) {
+    CollisionMesh mesh;
+    Candidates candidates;
+    BroadPhase(mesh).find({}, {}, 1.0, candidates);
+    BOOST_TEST((candidates.edge_edge.empty() && candidates.point_triangle.empty()));
+}
+
+BOOST_AUTO_TEST_SUITE_END()
