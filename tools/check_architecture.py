@@ -25,7 +25,11 @@ CORE = {
 }
 
 # Module of python/ringlet → modules that it may import. DATA is plain data and small helpers, which all may share.
-DATA = {"curves", "mesh", "stage", "files", "errors", "settings", "share", "groom.groom", "shot.cache"}
+DATA = {"curves", "mesh", "stage", "files", "errors", "settings", "share", "shot.cache"} | {
+    "groom.groom",
+    "groom.random",
+    "groom.settings",
+}
 API = "the public API"  # ringlet/__init__.py
 PYTHON = {
     **dict.fromkeys(DATA, DATA),

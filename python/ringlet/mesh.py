@@ -20,6 +20,7 @@ class Mesh:
     regions:   named sets of triangles, e.g. ``scalp``; index arrays, int32
     color:     display colour (linear r, g, b), the mean of it where it varies
     colors:    display colour of each vertex (linear r, g, b), shape (n, 3), or None where it does not vary
+    maps:      painted values by name, at the corners of each triangle, shape (m, 3), float64
     """
 
     name: str
@@ -30,6 +31,7 @@ class Mesh:
     regions: dict[str, NDArray[np.int32]] = field(default_factory=dict)
     color: tuple[float, float, float] = (0.5, 0.5, 0.5)
     colors: NDArray[np.float64] | None = None
+    maps: dict[str, NDArray[np.float64]] = field(default_factory=dict)
 
     def region(self, name: str | None) -> NDArray[np.int32]:
         """Triangles of a named region; all of them for None. Raises KeyError with the names there are."""

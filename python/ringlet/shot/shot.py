@@ -9,6 +9,7 @@ from pydantic import Field, PrivateAttr, ValidationError, field_validator
 
 from ringlet.settings import Section, explain, parse_toml, read_toml, refuse
 from ringlet.shot.strands import Material, Solver
+from ringlet.shot.variation import Variation
 
 
 class Forces(Section):
@@ -37,6 +38,7 @@ class Shot(Section):
         default=3, ge=2, le=1000, description="vertices of each lock, from its root, that the scalp holds"
     )
     strands: Material = Field(default=Material(), description="what locks are made of")
+    variation: Variation = Field(default=Variation(), description="how the material varies")
     solver: Solver = Field(default=Solver(), description="how a time step is solved")
     forces: Forces = Field(default=Forces(), description="what acts from outside")
 

@@ -47,7 +47,7 @@ def simulate(
         )
 
     roots = Roots(groom)
-    strands = Strands(groom.locks, shot.strands, shot.held)
+    strands = make_strands(shot, groom)
     strands.place(roots.carry(clip.at(first), first))
     numbers = range(first, last + 1)
     total = shot.preroll + len(numbers)
@@ -66,6 +66,11 @@ def simulate(
         if progress:
             progress("sim", shot.preroll + k + 1, total)
     return cache
+
+
+def make_strands(shot: Shot, groom: Groom) -> Strands:
+    """The locks of a groom as strands of a shot's material."""
+    return Strands(groom.locks, shot.strands, shot.held, shot.variation.factors(groom))
 
 
 def _advance(shot: Shot, strands: Strands, roots: Roots, clip: Clip, start: float, end: float) -> dict[str, Any]:

@@ -20,6 +20,7 @@ from ringlet.io.usd.stage import Source, choose, find_prim, prims, reading
 from ringlet.io.usd.values import (
     Types,
     float3,
+    float_primvars,
     from_usd,
     read_integers,
     read_points,
@@ -92,6 +93,7 @@ def own_curves(source: Source, prim: Usd.Prim, time: Usd.TimeCode | None = None,
                 f"{where}: {name} has {len(values)} values; must have one for each curve or point; write it again"
             )
         (curves.curve if per_curve else curves.point)[name.removeprefix(OWN)] = values
+    _add_maps(curves, prim, where)
     schema = UsdGeom.BasisCurves(prim)
     if schema.GetWidthsInterpolation() == UsdGeom.Tokens.vertex and "width" not in curves.curve:
         widths = np.array(schema.GetWidthsAttr().Get() or [], np.float32)
@@ -194,6 +196,20 @@ def _add(curves: Curves, sampling: Sampling, name: str, values: NDArray, interpo
         curves.point[name] = (
             sampling.varying(values) if interpolation == UsdGeom.Tokens.varying else sampling.vertex(values)
         )
+
+
+def _add_maps(curves: Curves, prim: Usd.Prim, where: str) -> None:
+    """Takes what others painted on our curves, primvars of floats, as attributes."""
+    for name, interpolation, values in float_primvars(prim):
+        if name.startswith(OWN) or name in curves.curve or name in curves.point:
+            continue
+        per_curve = interpolation in (UsdGeom.Tokens.constant, UsdGeom.Tokens.uniform)
+        expected = len(curves) if per_curve else len(curves.points)
+        if interpolation == UsdGeom.Tokens.constant and len(values) == 1:
+            values = np.repeat(values, expected)
+        if len(values) != expected:
+            raise UserError(f"{where}: {name} has {len(values)} values; must have {expected}, being {interpolation}")
+        (curves.curve if per_curve else curves.point)[name] = values
 
 
 def _name(curves: Curves) -> None:

@@ -18,6 +18,7 @@ from ringlet.io.usd.stage import Source, choose, find_prim, prims, reading
 from ringlet.io.usd.values import (
     Types,
     float3,
+    float_primvars,
     local_to_world,
     motion,
     read_integers,
@@ -106,6 +107,7 @@ def mesh_at(source: Source, prim: Usd.Prim) -> Mesh:
         uv=_uv(prim, corners, triangles, len(points), len(indices), where),
         faces=faces.astype(np.int32),
         regions=_regions(prim, faces, len(counts), where),
+        maps=_maps(prim, corners, triangles, faces, len(counts), where),
         **_color(prim, counts, indices, len(points)),
     )
 
@@ -192,6 +194,25 @@ def _uv(prim: Usd.Prim, corners: NDArray, triangles: NDArray, points: int, indic
             raise UserError(f"{where}: {primvar.GetName()} has a value that is no number; must be finite")
         return values[corners if faceted else triangles]
     return None
+
+
+def _maps(
+    prim: Usd.Prim, corners: NDArray, triangles: NDArray, faces: NDArray, polygons: int, where: str
+) -> dict[str, NDArray[np.float64]]:
+    """Primvars of floats, at the corners of each triangle."""
+    maps = {}
+    for name, interpolation, values in float_primvars(prim):
+        rows = {
+            UsdGeom.Tokens.constant: np.zeros_like(corners),
+            UsdGeom.Tokens.uniform: np.repeat(faces[:, None], 3, axis=1),
+            UsdGeom.Tokens.faceVarying: corners,
+        }.get(interpolation, triangles)
+        if len(values) <= rows.max(initial=-1) or (interpolation == UsdGeom.Tokens.uniform and len(values) != polygons):
+            raise UserError(
+                f"{where}: {name} has {len(values)} values, too few for being {interpolation}; paint it again"
+            )
+        maps[name] = values[rows]
+    return maps
 
 
 def _subsets(prim: Usd.Prim) -> dict[str, UsdGeom.Subset]:

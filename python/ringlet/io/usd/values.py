@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -59,6 +60,15 @@ def set_primvar(
     """Writes ``primvars:name``; ``kind`` gives it a role, such as a colour."""
     own, value = to_usd(values)
     UsdGeom.PrimvarsAPI(prim).CreatePrimvar(name, kind or own, interpolation).Set(value)
+
+
+def float_primvars(prim: Usd.Prim) -> Iterator[tuple[str, str, NDArray[np.float64]]]:
+    """Name, interpolation and values, shape (k,), of every primvar of plain floats, at rest."""
+    for primvar in UsdGeom.PrimvarsAPI(prim).GetPrimvarsWithAuthoredValues():
+        kind = primvar.GetTypeName().scalarType
+        if kind in (Types.Float, Types.Double, Types.Half):
+            value = primvar.ComputeFlattened(Usd.TimeCode.EarliestTime())
+            yield primvar.GetPrimvarName(), primvar.GetInterpolation(), np.atleast_1d(np.array(value, np.float64))
 
 
 def float3(values: NDArray) -> Vt.Vec3fArray:

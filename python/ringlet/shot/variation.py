@@ -1,0 +1,98 @@
+"""Values that vary: from root to tip by a ramp, over the head by a map, and from lock to lock by chance."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from ringlet.curves import Curves
+from ringlet.errors import UserError
+from ringlet.groom.groom import Groom
+from ringlet.groom.random import Random
+from ringlet.groom.settings import Quantity, Ramped
+from ringlet.settings import Section, did_you_mean
+from ringlet.shot.strands import VARIATIONS
+
+
+class Mapped(Ramped):
+    """A number, or a table ``{ value = …, ramp = [[0, 1], [1, 0.5]], map = "…", vary = …, noise = … }``: the product of
+    all of it."""
+
+    value: float = Field(default=1.0)
+    map: str | None = Field(
+        default=None,
+        description="a primvar of floats that multiplies it: of the locks, or of the scalp at their roots",
+    )
+
+
+Factor = Annotated[Mapped, Quantity("", 0.0, 1e6)]
+
+
+class Variation(Section):
+    """Factors on the material of the strands, for each vertex of each lock."""
+
+    radius: Factor = Field(default=Mapped(), description="on `strands.radius`")
+    stretch: Factor = Field(default=Mapped(), description="on `strands.stretch_scale`")
+    bend: Factor = Field(default=Mapped(), description="on `strands.bend_scale`")
+    twist: Factor = Field(default=Mapped(), description="on `strands.twist_ratio`; their product goes up to 1")
+    damping: Factor = Field(default=Mapped(), description="on `strands.damping`")
+    seed: int = Field(default=1, ge=0, le=2**31, description="another seed, another chance for `vary` and `noise`")
+
+    def factors(self, groom: Groom) -> dict[str, NDArray[np.float64]]:
+        """The factors that differ from 1 at the vertices of the locks, by name, shape (n,) each."""
+        factors: dict[str, NDArray[np.float64]] = {}
+        for name in VARIATIONS:
+            factor = at_vertices(getattr(self, name), groom, f"variation.{name}", self.seed)
+            if name in ("radius", "stretch") and not factor.min() > 0.0:
+                raise UserError(f"shot: variation.{name} is 0 somewhere; it must be above 0, raise its ramp or map")
+            if (factor != 1.0).any():
+                factors[name] = factor
+        return factors
+
+
+def at_vertices(varied: Mapped, groom: Groom, setting: str, seed: int = 1) -> NDArray[np.float64]:
+    """A value at each vertex of the locks, shape (n,); ``setting`` is its name in the shot, for messages."""
+    locks = groom.locks
+    value = varied.per_curve(Random(seed, setting), locks.ids, locks.roots)
+    values = np.repeat(value, locks.counts) * varied.along(_places(locks))
+    return values if varied.map is None else values * _map(varied.map, groom, setting)
+
+
+def _places(locks: Curves) -> NDArray[np.float64]:
+    """How far along its lock each vertex is, from 0 at the root to 1 at the tip, by arc length; shape (n,)."""
+    steps = np.linalg.norm(np.diff(locks.points, axis=0, prepend=locks.points[:1]), axis=1)
+    steps[locks.offsets[:-1]] = 0.0
+    run = np.cumsum(steps)
+    return (run - np.repeat(run[locks.offsets[:-1]], locks.counts)) / np.repeat(locks.lengths(), locks.counts)
+
+
+def _map(name: str, groom: Groom, setting: str) -> NDArray[np.float64]:
+    """A map's values at the vertices of the locks, shape (n,)."""
+    locks, scalp = groom.locks, groom.scalp
+    floats = {
+        key for kind in (locks.point, locks.curve) for key, v in kind.items() if v.ndim == 1 and v.dtype.kind == "f"
+    }
+    if name not in floats | scalp.maps.keys():
+        known = sorted(floats | scalp.maps.keys())
+        hint = did_you_mean(name, known)
+        there = f" there are: {', '.join(known)}" if "did you mean" in hint else ""
+        remedy = f"{hint}{there}" if known else "; paint one as a primvar of floats"
+        raise UserError(f"shot: {setting}.map is '{name}', which neither the locks nor {scalp.name} have{remedy}")
+    if name in locks.point:
+        values = locks.point[name]
+    elif name in locks.curve:
+        values = np.repeat(locks.curve[name], locks.counts)
+    else:
+        corners = scalp.maps[name][locks.curve["root_triangle"]]
+        values = np.repeat((corners * locks.curve["root_barycentric"]).sum(axis=1), locks.counts)
+    values = np.asarray(values, np.float64)
+    if (bad := np.flatnonzero(~(np.isfinite(values) & (values >= 0.0)))).size:
+        lock = locks.ids[np.searchsorted(locks.offsets, bad[0], side="right") - 1]
+        raise UserError(
+            f"shot: {setting}.map '{name}' is {values[bad[0]]:g} on lock {lock}; must be at least 0 and finite, "
+            "paint it again"
+        )
+    return values
