@@ -10,6 +10,7 @@ namespace nb = nanobind;
 
 void bind_geometry(nb::module_ &module);
 void bind_groom(nb::module_ &module);
+void bind_linear(nb::module_ &module);
 void bind_scene(nb::module_ &module);
 
 NB_MODULE(_core, module) {
@@ -21,5 +22,6 @@ NB_MODULE(_core, module) {
     module.def("set_thread_count", [](int count) { omp_set_num_threads(count); }, nb::arg("count"));
     bind_geometry(module);
     bind_groom(module);
+    bind_linear(module);
     bind_scene(module);
 }

@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from ringlet.bench import Clock, solver_counts
     from ringlet.groom.groom import Groom
     from ringlet.shot.cache import Cache
+    from ringlet.shot.direct import DirectSolver
     from ringlet.shot.strands import Material, Solver, Strands
 
 __version__ = version("ringlet")
@@ -42,6 +43,7 @@ __all__ = [
     "Clip",
     "Clock",
     "Curves",
+    "DirectSolver",
     "Groom",
     "Material",
     "Mesh",
@@ -77,6 +79,7 @@ __all__ = [
 _SLOW = {
     "Cache": "ringlet.shot.cache",
     "Clock": "ringlet.bench",
+    "DirectSolver": "ringlet.shot.direct",
     "Groom": "ringlet.groom.groom",
     "Material": "ringlet.shot.strands",
     "Solver": "ringlet.shot.strands",

@@ -1,0 +1,110 @@
+#include "ringlet/linear/pardiso.h"
+
+#include <dlfcn.h>
+#include <mutex>
+#include <omp.h>
+#include <stdexcept>
+
+namespace ringlet {
+namespace {
+
+using Index = long long; // of pardiso_64, whatever the library's default is
+
+// The functions of the library that are used, as its manual declares them.
+struct Library {
+    void (*pardiso)(void *handle, const Index *factors, const Index *number, const Index *type, const Index *phase,
+                    const Index *rows, const void *values, const Index *starts, const Index *columns, Index *permutation,
+                    const Index *right_sides, Index *settings, const Index *verbose, void *b, void *x, Index *error);
+    int (*set_threading_layer)(int layer);
+    int (*set_threads)(int count);
+};
+
+constexpr int gnu_threads = 3; // the threads that the core uses too, so that two pools do not fight for the processors
+
+Library library; // pardiso is null until it is open
+
+bool open(const char *name) {
+    void *handle = dlopen(name, RTLD_NOW | RTLD_LOCAL);
+    if (handle == nullptr) return false;
+    const auto find = [&]<class Function>(Function &function, const char *symbol) {
+        return (function = reinterpret_cast<Function>(dlsym(handle, symbol))) != nullptr;
+    };
+    Library found{};
+    if (!find(found.pardiso, "pardiso_64") || !find(found.set_threading_layer, "MKL_Set_Threading_Layer") ||
+        !find(found.set_threads, "MKL_Set_Num_Threads_Local"))
+        return false;
+    found.set_threading_layer(gnu_threads);
+    library = found;
+    return true;
+}
+
+class Pardiso final : public Factorisation {
+public:
+    explicit Pardiso(const SparsePattern &pattern)
+        : starts_(pattern.starts().begin(), pattern.starts().end()),
+          columns_(pattern.columns().begin(), pattern.columns().end()) {
+        if (pattern.half() != Half::upper) throw std::invalid_argument("pardiso: the pattern keeps the lower triangle");
+        settings_[0] = 1;                                           // these settings, not the defaults
+        settings_[1] = 2;                                           // nested dissection
+        settings_[17] = -1;                                         // count the factor's entries
+        settings_[34] = 1;                                          // indices from 0, blocks row by row
+        settings_[36] = pattern.block() == 1 ? 0 : pattern.block(); // block CSR
+        if (const Index error = call(analyse, nullptr); error != 0)
+            throw std::runtime_error("pardiso: analysis failed with error " + std::to_string(error));
+    }
+    ~Pardiso() override { call(release, nullptr); }
+    Pardiso(const Pardiso &) = delete;
+    Pardiso &operator=(const Pardiso &) = delete;
+
+    bool factor(const SparseMatrix &matrix) override {
+        const Index error = call(factorise, matrix.values().data());
+        if (error != 0 && error != not_definite)
+            throw std::runtime_error("pardiso: factorisation failed with error " + std::to_string(error) +
+                                     (error == no_memory ? " (out of memory)" : ""));
+        return error == 0;
+    }
+
+    void solve(View<double> b, std::span<double> x) const override {
+        // It declares b writable, for a setting that is not used.
+        if (const Index error = call(substitute, nullptr, const_cast<double *>(b.data()), x.data()); error != 0)
+            throw std::runtime_error("pardiso: solution failed with error " + std::to_string(error));
+    }
+
+    std::int64_t entries() const override { return settings_[17] * (settings_[36] ? settings_[36] * settings_[36] : 1); }
+
+private:
+    static constexpr Index analyse = 11, factorise = 22, substitute = 33, release = -1; // phases
+    static constexpr Index not_definite = -4, no_memory = -2;                           // errors
+
+    Index call(Index phase, const void *values, double *b = nullptr, double *x = nullptr) const {
+        const Index one = 1, zero = 0, positive_definite = 2, rows = Index(starts_.size()) - 1;
+        Index error = 0;
+        const int before = library.set_threads(omp_get_max_threads());
+        library.pardiso(handle_, &one, &one, &positive_definite, &phase, &rows, values, starts_.data(), columns_.data(),
+                        nullptr, &one, settings_, &zero, b, x, &error);
+        library.set_threads(before);
+        return error;
+    }
+
+    std::vector<Index> starts_, columns_;
+    mutable void *handle_[64] = {}; // its own memory
+    mutable Index settings_[64] = {};
+};
+
+} // namespace
+
+bool open_pardiso(const std::string &path) {
+    static std::mutex opening;
+    const std::lock_guard guard(opening);
+    if (library.pardiso != nullptr) return true;
+    if (!path.empty()) return open(path.c_str());
+    for (const char *name : {"libmkl_rt.so.3", "libmkl_rt.so.2", "libmkl_rt.so"})
+        if (open(name)) return true;
+    return false;
+}
+
+bool pardiso_available() { return open_pardiso(); }
+
+std::unique_ptr<Factorisation> make_pardiso(const SparsePattern &pattern) { return std::make_unique<Pardiso>(pattern); }
+
+} // namespace ringlet
