@@ -1,6 +1,7 @@
 #include "ringlet/contact/broad_phase.h"
 
 #include <algorithm>
+#include <bit>
 #include <numeric>
 
 namespace ringlet {
@@ -10,34 +11,36 @@ using Pair = std::array<int, 2>; // two nodes
 
 constexpr size_t tasks = 256; // at least, where there are as many: the same for any number of threads
 
-// Calls visit(pair) for the pairs of children of a pair of nodes that are not both leaves.
-template <class Visit> void for_children(const MovingTree &a, const MovingTree &b, Pair pair, const Visit &visit) {
+// Compares the four boxes of node i of a with those of node j of b. Calls nodes(i', j') for pairs below them that may meet, and
+// primitives(i, k, j, l) where both are leaves.
+template <class Nodes, class Primitives>
+void compare(const MovingTree &a, const MovingTree &b, Pair pair, const Nodes &nodes, const Primitives &primitives) {
     const auto [i, j] = pair;
-    if (&a == &b && i == j) {
-        visit({2 * i + 1, 2 * i + 1});
-        visit({2 * i + 2, 2 * i + 2});
-        visit({2 * i + 1, 2 * i + 2});
-        return;
+    const bool itself = &a == &b && i == j, leaf_a = a.is_leaf(i), leaf_b = b.is_leaf(j);
+    unsigned any = 0;
+    for (int k = 0; k < a.size(i); ++k) {
+        unsigned which = which_may_meet(a.boxes(i), k, b.boxes(j));
+        if (itself) {
+            if (!leaf_a) nodes({a.child(i, k), a.child(i, k)});
+            which &= ~1u << k; // each pair once
+        }
+        any |= which;
+        if (which != 0 && !leaf_a && leaf_b) nodes({a.child(i, k), j});
+        if (leaf_a != leaf_b) continue;
+        for (; which != 0; which &= which - 1) {
+            const int l = std::countr_zero(which);
+            if (leaf_a)
+                primitives(i, k, j, l);
+            else
+                nodes({a.child(i, k), b.child(j, l)});
+        }
     }
-    const bool split_a = !a.is_leaf(i), split_b = !b.is_leaf(j);
-    for (int u = split_a ? 2 * i + 1 : i; u <= (split_a ? 2 * i + 2 : i); ++u)
-        for (int v = split_b ? 2 * j + 1 : j; v <= (split_b ? 2 * j + 2 : j); ++v) visit({u, v});
+    if (leaf_a && !leaf_b)
+        for (; any != 0; any &= any - 1) nodes({i, b.child(j, std::countr_zero(any))});
 }
 
-bool may_meet(const MovingTree &a, const MovingTree &b, Pair pair) {
-    return (&a == &b && pair[0] == pair[1]) || may_meet(a.node(pair[0]), b.node(pair[1]));
-}
-
-bool are_leaves(const MovingTree &a, const MovingTree &b, Pair pair) { return a.is_leaf(pair[0]) && b.is_leaf(pair[1]); }
-
-template <class Meet> void descend(const MovingTree &a, const MovingTree &b, Pair pair, const Meet &meet) {
-    if (!may_meet(a, b, pair)) return;
-    if (!are_leaves(a, b, pair)) return for_children(a, b, pair, [&](Pair child) { descend(a, b, child, meet); });
-    const MovingTree::Leaf first = a.leaf(pair[0]), second = b.leaf(pair[1]);
-    const bool itself = &a == &b && pair[0] == pair[1];
-    for (int i = first.begin; i < first.end; ++i)
-        for (int j = itself ? i + 1 : second.begin; j < second.end; ++j)
-            if (may_meet(a.box(i), b.box(j))) meet(i, j);
+template <class Primitives> void descend(const MovingTree &a, const MovingTree &b, Pair pair, const Primitives &primitives) {
+    compare(a, b, pair, [&](Pair below) { descend(a, b, below, primitives); }, primitives);
 }
 
 // The pairs of nodes to descend from, one for each task.
@@ -47,13 +50,11 @@ std::vector<Pair> split(const MovingTree &a, const MovingTree &b) {
         split = false;
         std::vector<Pair> finer;
         for (Pair pair : pairs)
-            if (!may_meet(a, b, pair))
-                continue;
-            else if (are_leaves(a, b, pair))
+            if (a.is_leaf(pair[0]) && b.is_leaf(pair[1]))
                 finer.push_back(pair);
             else {
                 split = true;
-                for_children(a, b, pair, [&](Pair child) { finer.push_back(child); });
+                compare(a, b, pair, [&](Pair below) { finer.push_back(below); }, [](auto &&...) {});
             }
         pairs = std::move(finer);
     }
@@ -64,15 +65,10 @@ template <size_t N> bool any_moves(const CollisionMesh &mesh, const std::array<i
     return std::any_of(primitive.begin(), primitive.end(), [&](int v) { return mesh.moves[v] != 0; });
 }
 
-// Whether two primitives whose boxes may meet are a candidate.
-template <size_t N, size_t M>
-bool candidate(const CollisionMesh &mesh, const std::array<int, N> &a, const std::array<int, M> &b, const MovingBox &box_a,
-               const MovingBox &box_b) {
-    if (share_vertex(a, b)) return false;
-    double less = 0.0;
-    if (mesh.object[a[0]] == mesh.object[b[0]])
-        less = mean_radius(mesh, a) + mean_radius(mesh, b) - contact_distance(mesh, a, b);
-    return meet_at_one_time(box_a, box_b, static_cast<float>(less)) && !carries(mesh, a, b);
+// By how much the contact distance of two primitives is less than their radii together.
+template <size_t N, size_t M> float less(const CollisionMesh &mesh, const std::array<int, N> &a, const std::array<int, M> &b) {
+    if (mesh.object[a[0]] != mesh.object[b[0]]) return 0.0f;
+    return static_cast<float>(mean_radius(mesh, a) + mean_radius(mesh, b) - contact_distance(mesh, a, b));
 }
 
 } // namespace
@@ -84,59 +80,61 @@ BroadPhase::BroadPhase(const CollisionMesh &mesh) : mesh_(mesh) {
 void BroadPhase::find(View<Vec3> start, View<Vec3> end, double margin, Candidates &candidates) {
     place(start, end);
     fit(edge_tree_, mesh_.edges, margin);
-    search(edge_tree_, edge_tree_, [&](int i, int j, Pairs &found) {
-        const auto [a, b] = std::minmax(edge_tree_.order()[i], edge_tree_.order()[j]);
-        if (candidate(mesh_, mesh_.edges[a], mesh_.edges[b], edge_tree_.box(i), edge_tree_.box(j))) found.push_back({a, b});
-    });
+    search(edge_tree_, mesh_.edges, edge_tree_, mesh_.edges);
     gather(mesh_.edges.size(), candidates.edge_edge);
 
+    candidates.point_triangle.clear();
+    if (points_.empty() || mesh_.triangles.empty()) return;
     fit(point_tree_, points_, margin);
     fit(triangle_tree_, mesh_.triangles, margin);
-    search(point_tree_, triangle_tree_, [&](int i, int j, Pairs &found) {
-        const std::array<int, 1> &point = points_[point_tree_.order()[i]];
-        const int triangle = triangle_tree_.order()[j];
-        if (candidate(mesh_, point, mesh_.triangles[triangle], point_tree_.box(i), triangle_tree_.box(j)))
-            found.push_back({point[0], triangle});
-    });
+    search(point_tree_, points_, triangle_tree_, mesh_.triangles);
+    for (Pairs &found : found_)
+        for (auto &pair : found) pair[0] = mesh_.points[pair[0]];
     gather(start.size(), candidates.point_triangle);
 }
 
 // In the frame of the first vertex: where the scene is and how fast it flies as a whole costs no precision.
 void BroadPhase::place(View<Vec3> start, View<Vec3> end) {
     const int count = static_cast<int>(start.size());
-    places_.resize(count);
-    motions_.resize(count);
+    starts_.resize(count);
+    ends_.resize(count);
     if (count == 0) return;
-    const Vec3 origin = start[0], shared = end[0] - start[0];
+    const Vec3 origin = start[0], end_origin = end[0];
 #pragma omp parallel for schedule(static)
     for (int v = 0; v < count; ++v) {
-        places_[v] << (start[v] - origin).cast<float>().array(), 0.0f;
-        motions_[v] << (end[v] - start[v] - shared).cast<float>().array(), 0.0f;
+        starts_[v] << (start[v] - origin).cast<float>().array(), 0.0f;
+        ends_[v] << (end[v] - end_origin).cast<float>().array(), 0.0f;
     }
 }
 
 template <class Primitives> void BroadPhase::fit(MovingTree &tree, const Primitives &primitives, double margin) {
-    const int count = static_cast<int>(primitives.size());
-    boxes_.resize(count);
-#pragma omp parallel for schedule(static)
-    for (int i = 0; i < count; ++i) {
+    tree.fit(static_cast<int>(primitives.size()), [&](int i) {
         const auto &primitive = primitives[i];
-        MovingBox box{places_[primitive[0]], places_[primitive[0]], motions_[primitive[0]], motions_[primitive[0]]};
-        for (int v : primitive) box.include({places_[v], places_[v], motions_[v], motions_[v]});
+        const auto at = [&](int v) -> MovingBox { return {starts_[v], starts_[v], ends_[v], ends_[v]}; };
+        MovingBox box = at(primitive[0]);
+        for (size_t k = 1; k < primitive.size(); ++k) box.include(at(primitive[k]));
         box.widen(static_cast<float>(mean_radius(mesh_, primitive) + 0.5 * margin), any_moves(mesh_, primitive));
-        boxes_[i] = box;
-    }
-    tree.fit(boxes_);
+        return box;
+    });
 }
 
-template <class Accept> void BroadPhase::search(const MovingTree &a, const MovingTree &b, const Accept &accept) {
+template <class A, class B>
+void BroadPhase::search(const MovingTree &tree_a, const A &all_a, const MovingTree &tree_b, const B &all_b) {
     for (Pairs &found : found_) found.clear();
-    if (a.empty() || b.empty()) return;
-    const std::vector<Pair> starts = split(a, b);
+    if (tree_a.empty()) return;
+    const std::vector<Pair> starts = split(tree_a, tree_b);
     if (found_.size() < starts.size()) found_.resize(starts.size());
 #pragma omp parallel for schedule(dynamic, 1)
     for (size_t task = 0; task < starts.size(); ++task)
-        descend(a, b, starts[task], [&](int i, int j) { accept(i, j, found_[task]); });
+        descend(tree_a, tree_b, starts[task], [&](int i, int k, int j, int l) {
+            int p = tree_a.primitive(i, k), q = tree_b.primitive(j, l);
+            const auto &a = all_a[p];
+            const auto &b = all_b[q];
+            if (share_vertex(a, b) || carries(mesh_, a, b)) return;
+            if (!meet_at_one_time(tree_a.boxes(i).box(k), tree_b.boxes(j).box(l), less(mesh_, a, b))) return;
+            if (&tree_a == &tree_b && p > q) std::swap(p, q);
+            found_[task].push_back({p, q});
+        });
 }
 
 // Sorts what the tasks have found: by the first of a pair, whose number is below `firsts`, into bins, and then each bin.

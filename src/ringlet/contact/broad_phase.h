@@ -30,15 +30,14 @@ private:
 
     void place(View<Vec3> start, View<Vec3> end);
     template <class Primitives> void fit(MovingTree &tree, const Primitives &primitives, double margin);
-    template <class Accept> void search(const MovingTree &a, const MovingTree &b, const Accept &accept);
+    template <class A, class B> void search(const MovingTree &tree_a, const A &all_a, const MovingTree &tree_b, const B &all_b);
     void gather(size_t firsts, Pairs &sorted);
 
     const CollisionMesh &mesh_;
     std::vector<std::array<int, 1>> points_;
     MovingTree edge_tree_, triangle_tree_, point_tree_;
-    std::vector<MovingBox> boxes_;
-    std::vector<Eigen::Array4f> places_, motions_; // of the vertices, relative to the first
-    std::vector<Pairs> found_;                     // by each task
+    std::vector<Eigen::Array4f> starts_, ends_; // of the vertices, relative to the first
+    std::vector<Pairs> found_;                  // by each task
 };
 
 } // namespace ringlet

@@ -3,40 +3,93 @@
 
 #include "ringlet/contact/moving_box.h"
 
-#include <span>
+#include <cstdint>
 #include <vector>
 
 namespace ringlet {
 
-// A perfect binary tree. The children of node i are 2i + 1 and 2i + 2; leaf l of 2^depth holds the boxes of its share of an
-// order that keeps neighbours together.
+// A perfect tree of four children a node: of node i they are 4i + 1 … 4i + 4. Primitives stand in an order that keeps
+// neighbours together, cut into 2^depth shares of at most four; a leaf holds a share, and an odd depth leaves the root half
+// empty.
 class MovingTree {
 public:
-    struct Leaf {
-        int begin, end; // into order() and boxes()
-    };
+    // Takes box(i) for each of `count` primitives i.
+    template <class Box> void fit(int count, const Box &box);
 
-    // Takes one box for each primitive, in their own order.
-    void fit(std::span<const MovingBox> primitives);
-
-    bool empty() const { return order_.empty(); }
+    bool empty() const { return count_ == 0; }
     bool is_leaf(int node) const { return node >= first_leaf_; }
-    Leaf leaf(int node) const { return {begin(node - first_leaf_, depth_), begin(node - first_leaf_ + 1, depth_)}; }
-    const MovingBox &node(int i) const { return nodes_[i]; }
-    const MovingBox &box(int place) const { return boxes_[place]; } // of primitive order()[place]
-    std::span<const int> order() const { return order_; }
+    static int child(int node, int k) { return 4 * node + 1 + k; }
+    const MovingQuad &boxes(int node) const { return nodes_[node]; } // of its children or, in a leaf, of its primitives
+    int size(int node) const {                                       // how many these are
+        return is_leaf(node)             ? begin(node - first_leaf_ + 1, depth_) - begin(node - first_leaf_, depth_)
+               : node == 0 && depth_ % 2 ? 2
+                                         : 4;
+    }
+    int primitive(int leaf, int k) const { return primitives_[4 * (leaf - first_leaf_) + k]; }
     int built() const { return built_; } // how often
 
 private:
-    int begin(int64_t share, int depth) const { return static_cast<int>(share * static_cast<int64_t>(order_.size()) >> depth); }
-    void build(std::span<const MovingBox> primitives);
-    void refit(std::span<const MovingBox> primitives);
-    double looseness() const;
+    struct Centre {
+        float at[3];
+        int primitive;
+    };
+    static constexpr int small = 1 << 10; // less work than that is not shared among threads
 
-    std::vector<int> order_;
-    std::vector<MovingBox> boxes_, nodes_;
-    int depth_ = 0, first_leaf_ = 0, built_ = 0;
+    template <class Box> void build(const Box &box);
+    void arrange(std::vector<Centre> &centres);
+    template <class Box> void refit(const Box &box);
+    void refit_inner();
+    double looseness() const;
+    int begin(int64_t share, int depth) const { return static_cast<int>(share * count_ >> depth); }
+    int leaves() const { return 1 << depth_; }
+    void put(int node, const MovingBox &all) { // into its parent
+        if (node > 0) nodes_[(node - 1) / 4].set((node - 1) % 4, all);
+    }
+
+    std::vector<int> primitives_; // four to a leaf, the last of which may be missing
+    std::vector<MovingQuad> nodes_;
+    int count_ = 0, depth_ = 0, first_leaf_ = 0, built_ = 0;
     double built_looseness_ = 0.0;
 };
+
+template <class Box> void MovingTree::fit(int count, const Box &box) {
+    constexpr double worn_out = 1.4; // looser than that, relative to when it was built: built again
+    const bool fresh = count != count_;
+    count_ = count;
+    if (count == 0) return;
+    if (fresh) build(box);
+    refit(box);
+    if (!fresh && looseness() > worn_out * built_looseness_) {
+        build(box);
+        refit(box);
+        built_looseness_ = looseness();
+    } else if (fresh)
+        built_looseness_ = looseness();
+}
+
+template <class Box> void MovingTree::build(const Box &box) {
+    std::vector<Centre> centres(count_);
+    for (int i = 0; i < count_; ++i) {
+        const MovingBox at = box(i);
+        const Eigen::Array4f middle = at.low + at.high;
+        centres[i] = {{middle[0], middle[1], middle[2]}, i};
+    }
+    arrange(centres);
+    ++built_;
+}
+
+template <class Box> void MovingTree::refit(const Box &box) {
+#pragma omp parallel for schedule(static) if (count_ > small)
+    for (int leaf = first_leaf_; leaf < first_leaf_ + leaves(); ++leaf) {
+        MovingBox all = MovingBox::nothing();
+        for (int k = 0; k < size(leaf); ++k) {
+            const MovingBox one = box(primitive(leaf, k));
+            nodes_[leaf].set(k, one);
+            all.include(one);
+        }
+        put(leaf, all);
+    }
+    refit_inner();
+}
 
 } // namespace ringlet
