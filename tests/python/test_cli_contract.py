@@ -37,6 +37,8 @@ class Answer:
     ("arguments", "asked"),
     [
         (["groom", "--locks", "20", "--hairs", "60"], {"locks": 20, "hairs": 60}),
+        (["direct", "--strands", "4", "--vertices", "12", "--method", "builtin"], {"strands": 4, "method": "builtin"}),
+        (["memory", "--strands", "20"], {"strands": 20}),
         (["strands", "--strands", "4", "--steps", "3"], {"strands": 4, "steps": 3}),
         (["twirl", "--strands", "3", "--contacts", "off", "--steps", "4"], {"strands": 3, "contacts": "off"}),
     ],
