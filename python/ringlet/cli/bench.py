@@ -16,7 +16,9 @@ from ringlet.cli.output import print_json, print_table
 
 def bench(
     context: typer.Context,
-    name: Annotated[str, typer.Argument(metavar="NAME", help="What to measure: direct, groom, memory, strands, twirl …")],
+    name: Annotated[
+        str, typer.Argument(metavar="NAME", help="What to measure: direct, groom, memory, strands, twirl …")
+    ],
     as_json: Json = False,
     threads: Threads = None,
 ) -> None:
