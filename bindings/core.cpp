@@ -8,6 +8,7 @@
 
 namespace nb = nanobind;
 
+void bind_cloth(nb::module_ &module);
 void bind_geometry(nb::module_ &module);
 void bind_groom(nb::module_ &module);
 void bind_linear(nb::module_ &module);
@@ -20,6 +21,7 @@ NB_MODULE(_core, module) {
         "The instruction set in use: baseline, avx2 or avx512.");
     module.def("thread_count", [] { return omp_get_max_threads(); }, "Threads that the core uses.");
     module.def("set_thread_count", [](int count) { omp_set_num_threads(count); }, nb::arg("count"));
+    bind_cloth(module);
     bind_geometry(module);
     bind_groom(module);
     bind_linear(module);
