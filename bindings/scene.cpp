@@ -67,6 +67,10 @@ void bind_scene(nb::module_ &module) {
         .def_prop_ro(
             "velocities", [](nb::object self) { return state_view(self, nb::cast<Strands &>(self).state.velocities); },
             "Velocities [m/s], shape (n, 3): the solver's own memory.")
+        .def_prop_ro(
+            "directors", [](nb::object self) { return state_view(self, nb::cast<Strands &>(self).state.directors); },
+            "Directors of the material frame, one per edge from the second of each strand on, shape (n, 3): the solver's own "
+            "memory.")
         .def(
             "place",
             [](Strands &self, Array3<double> positions) {

@@ -8,6 +8,7 @@ from ringlet.api import (
     build_groom,
     build_hairs,
     load_groom,
+    loft,
     read_cache,
     read_groom,
     read_recipe,
@@ -20,6 +21,8 @@ from ringlet.api import (
     write_cache,
     write_groom,
     write_hairs,
+    write_loft,
+    write_loft_picture,
     write_sheet,
     write_still,
 )
@@ -35,6 +38,7 @@ if TYPE_CHECKING:
     from ringlet.groom.groom import Groom
     from ringlet.shot.cache import Cache
     from ringlet.shot.direct import DirectSolver
+    from ringlet.shot.loft import Loft
     from ringlet.shot.strands import Material, Solver, Strands
 
 __version__ = version("ringlet")
@@ -45,6 +49,7 @@ __all__ = [
     "Curves",
     "DirectSolver",
     "Groom",
+    "Loft",
     "Material",
     "Mesh",
     "Run",
@@ -56,6 +61,7 @@ __all__ = [
     "build_groom",
     "build_hairs",
     "load_groom",
+    "loft",
     "read_cache",
     "read_groom",
     "read_recipe",
@@ -70,6 +76,8 @@ __all__ = [
     "write_cache",
     "write_groom",
     "write_hairs",
+    "write_loft",
+    "write_loft_picture",
     "write_sheet",
     "write_still",
 ]
@@ -81,6 +89,7 @@ _SLOW = {
     "Clock": "ringlet.bench",
     "DirectSolver": "ringlet.shot.direct",
     "Groom": "ringlet.groom.groom",
+    "Loft": "ringlet.shot.loft",
     "Material": "ringlet.shot.strands",
     "Solver": "ringlet.shot.strands",
     "Strands": "ringlet.shot.strands",

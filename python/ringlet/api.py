@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ringlet.curves import Curves
 from ringlet.errors import UserError
 from ringlet.settings import did_you_mean
 from ringlet.share import share
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from ringlet.mesh import Clip
     from ringlet.shot import Shot
     from ringlet.shot.cache import Cache
+    from ringlet.shot.loft import Loft
     from ringlet.validate import Row
 
 Progress = Callable[[str, int, int], None]
@@ -98,12 +100,14 @@ def simulate(
     groom: Groom | Path | str | None = None,
     *,
     frames: tuple[int, int] | None = None,
+    allow_stale: bool = False,
     progress: Progress | None = None,
 ) -> Cache:
     """Moves the locks of a groom while the scalp plays its clip.
 
-    groom:  in place of the one that the shot names
-    frames: first and last frame, in place of the shot's
+    groom:       in place of the one that the shot names
+    frames:      first and last frame, in place of the shot's
+    allow_stale: use a lofted shape although it was made from another groom, material or forces
     """
     from ringlet import shot as shots
     from ringlet.groom.groom import Groom
@@ -112,7 +116,56 @@ def simulate(
         shot = read_shot(shot)
     if not isinstance(groom, Groom):
         groom = load_groom(groom or shot.groom, progress=progress)
-    return shots.simulate(shot, groom, _scalp_clip(groom), frames=frames, progress=progress)
+    rest = _rest_shape(shot, groom, allow_stale)
+    return shots.simulate(shot, groom, _scalp_clip(groom), rest=rest, frames=frames, progress=progress)
+
+
+def loft(
+    shot: Shot | Path | str,
+    groom: Groom | Path | str | None = None,
+    *,
+    known: Path | str | None = None,
+    progress: Progress | None = None,
+) -> Loft:
+    """Pre-bends the shape that the locks remember, so that the groom is what hangs under the forces of the shot.
+
+    groom: in place of the one that the shot names
+    known: a file that ``write_loft`` wrote: locks that have not changed since are taken from it
+    """
+    from ringlet import io
+    from ringlet import shot as shots
+    from ringlet.groom.groom import Groom
+
+    if not isinstance(shot, shots.Shot):
+        shot = read_shot(shot)
+    if not isinstance(groom, Groom):
+        groom = load_groom(groom or shot.groom, progress=progress)
+    if known is None or not Path(known).exists():
+        return shots.loft(shot, groom, progress=progress)
+    return shots.refresh(shot, groom, *io.read_rest(Path(known)), progress=progress)
+
+
+def write_loft(loft: Loft, shot: Shot, path: Path | str) -> None:
+    """Writes the shape that locks remember, with what it was made from, for ``simulate``."""
+    from ringlet import io
+    from ringlet import shot as shots
+
+    io.write_rest(shots.keep(loft, shot), shots.made_from(shot), Path(path), loft.groom.space)
+
+
+def _rest_shape(shot: Shot, groom: Groom, allow_stale: bool) -> Curves | None:
+    """What the locks remember: nothing but the groom, or a lofted shape that fits."""
+    from ringlet import io
+    from ringlet import shot as shots
+
+    if shot.rest.mode == "none":
+        return None
+    if shot.rest_file is None:
+        raise UserError("shot: rest.mode is 'lofted', but rest.file is missing; name what ringlet loft wrote")
+    if not shot.rest_file.exists():
+        raise UserError(f"{shot.rest_file}: there is no lofted shape; make it with: ringlet loft {shot.path}")
+    kept, made_from = io.read_rest(shot.rest_file)
+    return shots.check(kept, made_from, shot, groom, shot.rest_file, allow_stale=allow_stale)
 
 
 def _scalp_clip(groom: Groom) -> Clip:
@@ -259,6 +312,30 @@ def write_sheet(
         title=title,
         fps=io.read_space(Path(stage)).fps,
         color=color,
+        progress=progress,
+    )
+
+
+def write_loft_picture(
+    loft: Loft,
+    path: Path | str,
+    *,
+    title: str = "",
+    view: str = "three_quarter",
+    progress: Progress | None = None,
+) -> None:
+    """Draws the hair as groomed, as it hangs without the loft and with it, on one page."""
+    from ringlet import picture
+
+    groom = loft.groom
+    hairs = build_hairs(groom, fraction=min(1.0, 6000 / max(1, len(groom.locks) * groom.hairs.get("per_lock", 20))))
+    shapes = {"groomed": groom.locks.points, "hanging, not lofted": loft.sagged, "hanging, lofted": loft.lofted}
+    picture.compare(
+        {name: hairs.curves.with_points(hairs.at(points, groom.scalp.points)) for name, points in shapes.items()},
+        [picture.PosedBody(groom.scalp, groom.scalp.points)],
+        Path(path),
+        title=title,
+        view=view,
         progress=progress,
     )
 

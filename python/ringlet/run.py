@@ -55,6 +55,8 @@ class Run:
         self.stages: list[Stage] = []
         self.counts: dict[str, int] = {}
         self.pictures: dict[Path, str] = {}
+        self.tables: list[tuple[str, list[str], list[list[str]]]] = []
+        self.warnings: list[str] = []
         self.cache: Cache | None = None
         if self.folder is not None:
             check_place(self.folder / "report.html")
@@ -91,6 +93,14 @@ class Run:
         """Notes a picture to show in the report."""
         self.pictures[Path(path)] = caption
 
+    def table(self, title: str, columns: list[str], rows: list[list[str]]) -> None:
+        """Notes a table of numbers to show in the report."""
+        self.tables.append((title, columns, rows))
+
+    def warn(self, sentence: str) -> None:
+        """Notes what the reader of the report should know."""
+        self.warnings.append(sentence)
+
     def _write_report(self, folder: Path) -> None:
         from ringlet import _core, report
 
@@ -105,6 +115,8 @@ class Run:
                 statistics=self.cache.statistics if self.cache else [],
                 files=[report.MadeFile.of(s.file, s.what) for s in self.stages if s.file],
                 pictures=[report.Picture(path=str(path), caption=caption) for path, caption in self.pictures.items()],
+                tables=[report.Table(title=title, columns=columns, rows=rows) for title, columns, rows in self.tables],
+                warnings=self.warnings,
                 limits=LIMITS,
             ),
             folder,

@@ -23,6 +23,9 @@ def sim(
         typer.Option("--groom", metavar="GROOM", help="A groom to use in place of the shot's.", show_default=False),
     ] = None,
     frames: Frames = None,
+    allow_stale: Annotated[
+        bool, typer.Option("--allow-stale", help="Use a lofted shape although what it was made from has changed.")
+    ] = False,
     report: Report = None,
     as_json: Json = False,
     threads: Threads = None,
@@ -43,7 +46,7 @@ def sim(
             if layer != source:
                 ringlet.write_groom(locks, layer)
         with run.stage("simulate", output):
-            cache = ringlet.simulate(settings, locks, frames=frames, progress=progress)
+            cache = ringlet.simulate(settings, locks, frames=frames, allow_stale=allow_stale, progress=progress)
             ringlet.write_cache(cache, layer, output)
         run.simulated(cache)
         run.count(locks=len(locks.locks), points=len(locks.locks.points), frames=len(cache.frames))

@@ -6,6 +6,7 @@ from ringlet.io.usd.check import problems
 from ringlet.io.usd.groom import read_groom, write_groom
 from ringlet.io.usd.hairs import HairWriter, read_hairs, read_stage
 from ringlet.io.usd.mesh import Body, read_bodies
+from ringlet.io.usd.rest import read_rest, write_rest
 
 __all__ = [
     "Body",
@@ -20,8 +21,10 @@ __all__ = [
     "read_groom",
     "read_hairs",
     "read_mesh",
+    "read_rest",
     "read_space",
     "read_stage",
     "write_cache",
     "write_groom",
+    "write_rest",
 ]

@@ -2,8 +2,9 @@
 
 from ringlet.picture.bodies import PosedBody
 from ringlet.picture.camera import VIEWS
+from ringlet.picture.compare import compare
 from ringlet.picture.render import HAIR_COLORS
 from ringlet.picture.sheet import sheet
 from ringlet.picture.still import still
 
-__all__ = ["HAIR_COLORS", "VIEWS", "PosedBody", "sheet", "still"]
+__all__ = ["HAIR_COLORS", "VIEWS", "PosedBody", "compare", "sheet", "still"]

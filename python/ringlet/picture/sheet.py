@@ -52,7 +52,7 @@ def sheet(
     view, color: as in ``still``
     progress: called with "sheet", the frames done and to do
     """
-    shots = [(number, bodies, _thin_out(curves, hairs)) for number, bodies, curves in frames]
+    shots = [(number, bodies, thin_out(curves, hairs)) for number, bodies, curves in frames]
     if not shots:
         raise UserError("sheet: there are no frames; give at least one")
     if columns < 1 or min(tile) < 1 or samples < 1:
@@ -73,23 +73,26 @@ def sheet(
         tiles.append((number, develop(over_backdrop(trace(scene, samples=samples)))))
         if progress:
             progress("sheet", len(tiles), len(shots))
-    page = _lay_out(tiles, min(columns, len(tiles)), tile, title, fps)
+    first, last = tiles[0][0], tiles[-1][0]
+    labelled = [(f"frame {number:g}", f"{(number - first) / fps:.2f} s", pixels) for number, pixels in tiles]
+    about = f"frames {first:g} to {last:g}, {fps:g} per second"
+    page = lay_out(labelled, min(columns, len(tiles)), tile, title, about)
     with replacing(path) as aside:
         page.save(aside)
     return Path(path)
 
 
-def _thin_out(hairs: Curves, wanted: int) -> Curves:
+def thin_out(hairs: Curves, wanted: int) -> Curves:
     """Evenly chosen hairs, the same ones in every frame."""
     if len(hairs) <= wanted:
         return hairs
     return hairs.take(np.linspace(0, len(hairs) - 1, wanted).round().astype(np.int64))
 
 
-def _lay_out(
-    tiles: Sequence[tuple[float, np.ndarray]], columns: int, tile: tuple[int, int], title: str, fps: float
+def lay_out(
+    tiles: Sequence[tuple[str, str, np.ndarray]], columns: int, tile: tuple[int, int], title: str, about: str
 ) -> Image.Image:
-    """Tiles in reading order on dark paper, each over its frame and time, under a title strip."""
+    """Tiles in reading order on dark paper, each over what it is (left, right), under a strip with title and more."""
     rows = -(-len(tiles) // columns)
     strip = 64 if title else GAP
     cell = (tile[0] + GAP, tile[1] + CAPTION)
@@ -99,15 +102,13 @@ def _lay_out(
     def write(x: int, y: int, text: str, size: int, ink: tuple[int, int, int], anchor: str) -> None:
         draw.text((x, y), text, ink, ImageFont.load_default(size), anchor=anchor)
 
-    numbers = [number for number, _ in tiles]
     if title:
         write(2 * GAP, strip // 2, title, 26, INK, "lm")
-        span = f"frames {numbers[0]:g} to {numbers[-1]:g}, {fps:g} per second"
-        write(page.width - 2 * GAP, strip // 2, span, 16, FADED, "rm")
-    for index, (number, pixels) in enumerate(tiles):
+        write(page.width - 2 * GAP, strip // 2, about, 16, FADED, "rm")
+    for index, (name, more, pixels) in enumerate(tiles):
         left, top = GAP + (index % columns) * cell[0], strip + (index // columns) * cell[1]
         page.paste(Image.fromarray(pixels), (left, top))
         middle = top + tile[1] + CAPTION // 2 - 2
-        write(left + 4, middle, f"frame {number:g}", 16, INK, "lm")
-        write(left + tile[0] - 4, middle, f"{(number - numbers[0]) / fps:.2f} s", 15, FADED, "rm")
+        write(left + 4, middle, name, 16, INK, "lm")
+        write(left + tile[0] - 4, middle, more, 15, FADED, "rm")
     return page

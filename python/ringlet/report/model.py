@@ -64,6 +64,14 @@ class Picture(BaseModel):
     caption: str
 
 
+class Table(BaseModel):
+    """Numbers to show as they are, under a title."""
+
+    title: str
+    columns: list[str]
+    rows: list[list[str]]
+
+
 class RunReport(BaseModel):
     """Everything about one run.
 
@@ -76,6 +84,7 @@ class RunReport(BaseModel):
     statistics: one dict per simulated frame, as in ``Cache.statistics``; missing entries leave a chart out
     fps:        frames per second of the clip
     pictures:   shown in this order
+    tables:     numbers of one kind of run, e.g. of a loft
     warnings:   what happened that the reader should know
     limits:     what this version does not do
     """
@@ -95,5 +104,6 @@ class RunReport(BaseModel):
     fps: float = 24.0
     files: list[MadeFile] = Field(default_factory=list)
     pictures: list[Picture] = Field(default_factory=list)
+    tables: list[Table] = Field(default_factory=list)
     warnings: list[str] = Field(default_factory=list)
     limits: list[str] = Field(default_factory=list)

@@ -13,7 +13,7 @@ from PIL import Image
 from ringlet.errors import UserError
 from ringlet.report.charts import line_chart
 from ringlet.report.findings import explain_worst, series, total, verdict
-from ringlet.report.model import MadeFile, Picture, RunReport, Stage
+from ringlet.report.model import MadeFile, Picture, RunReport, Stage, Table
 
 STYLE = Path(__file__).with_name("style.css")
 
@@ -44,6 +44,7 @@ def page(report: RunReport) -> str:
             _header(report),
             _outcome(report),
             *(_picture(picture) for picture in report.pictures[1:]),
+            *(_table(table) for table in report.tables),
             _timings(report.stages),
             _simulation(report),
             _files(report),
@@ -110,6 +111,18 @@ def _picture(picture: Picture) -> str:
     return (
         f'<figure class="picture"><img src="data:image/jpeg;base64,{data}" width="{size[0]}" height="{size[1]}"'
         f' alt="{caption}"/><figcaption>{caption}</figcaption></figure>'
+    )
+
+
+def _table(table: Table) -> str:
+    head = "".join(f"<th scope='col'>{escape(name)}</th>" for name in table.columns)
+    rows = "".join(
+        f"<tr><th scope='row'>{escape(row[0])}</th>{''.join(f'<td>{escape(cell)}</td>' for cell in row[1:])}</tr>"
+        for row in table.rows
+    )
+    return (
+        f"<section><h2>{escape(table.title)}</h2><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
+        "</section>"
     )
 
 

@@ -8,6 +8,7 @@ from typing import Any, Literal
 from pydantic import Field, PrivateAttr, ValidationError, field_validator
 
 from ringlet.settings import Section, explain, parse_toml, read_toml, refuse
+from ringlet.shot.rest import Rest
 from ringlet.shot.strands import Material, Solver
 from ringlet.shot.variation import Variation
 
@@ -39,6 +40,7 @@ class Shot(Section):
     )
     strands: Material = Field(default=Material(), description="what locks are made of")
     variation: Variation = Field(default=Variation(), description="how the material varies")
+    rest: Rest = Field(default=Rest(), description="the shape that strands remember")
     solver: Solver = Field(default=Solver(), description="how a time step is solved")
     forces: Forces = Field(default=Forces(), description="what acts from outside")
 
@@ -50,6 +52,15 @@ class Shot(Section):
         if frames[1] < frames[0]:
             raise refuse(f"is {list(frames)}; the last must not come before the first")
         return frames
+
+    @property
+    def rest_file(self) -> Path | None:
+        """Where the lofted rest shape is: ``rest.file``, or beside the shot, after its name."""
+        if self.rest.file is not None:
+            return self.rest.file
+        return self._path and self._path.with_name(
+            f"{self._path.name.removesuffix('.toml').removesuffix('.shot')}.rest.usdc"
+        )
 
     @property
     def path(self) -> Path | None:
@@ -74,7 +85,9 @@ def _shot(data: dict[str, Any], path: Path | None) -> Shot:
         shot = Shot.model_validate(data)
     except ValidationError as error:
         raise explain(error, path.name if path else "shot") from error
-    shot = shot.model_copy(update={"groom": (path.parent if path else Path()) / shot.groom})
+    folder = path.parent if path else Path()
+    rest = shot.rest.model_copy(update={"file": shot.rest.file and folder / shot.rest.file})
+    shot = shot.model_copy(update={"groom": folder / shot.groom, "rest": rest})
     shot._path = path
     return shot
 

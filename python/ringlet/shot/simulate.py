@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ringlet.curves import Curves
 from ringlet.errors import UserError
 from ringlet.groom.groom import Groom
 from ringlet.mesh import Clip
@@ -26,12 +27,14 @@ def simulate(
     groom: Groom,
     clip: Clip,
     *,
+    rest: Curves | None = None,
     frames: tuple[int, int] | None = None,
     progress: Progress | None = None,
     on_frame: OnFrame | None = None,
 ) -> Cache:
     """Moves the locks of ``groom`` while its scalp plays ``clip``.
 
+    rest:     the shape that the locks remember, in the rest pose of the scalp; the groomed one by default
     frames:   first and last frame, in place of the shot's
     progress: called as progress("sim", done, total)
     on_frame: called with each frame's number, positions [m] of shape (n, 3) and statistics, as soon as it is there
@@ -47,7 +50,7 @@ def simulate(
         )
 
     roots = Roots(groom)
-    strands = make_strands(shot, groom)
+    strands = make_strands(shot, groom, rest)
     strands.place(roots.carry(clip.at(first), first))
     numbers = range(first, last + 1)
     total = shot.preroll + len(numbers)
@@ -68,9 +71,9 @@ def simulate(
     return cache
 
 
-def make_strands(shot: Shot, groom: Groom) -> Strands:
-    """The locks of a groom as strands of a shot's material."""
-    return Strands(groom.locks, shot.strands, shot.held, shot.variation.factors(groom))
+def make_strands(shot: Shot, groom: Groom, rest: Curves | None = None) -> Strands:
+    """The locks of a groom as strands of a shot's material that remember the groomed shape, or another one."""
+    return Strands(rest or groom.locks, shot.strands, shot.held, shot.variation.factors(groom))
 
 
 def _advance(shot: Shot, strands: Strands, roots: Roots, clip: Clip, start: float, end: float) -> dict[str, Any]:

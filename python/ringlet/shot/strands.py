@@ -15,6 +15,7 @@ from ringlet.curves import Curves
 from ringlet.settings import Section
 
 Vector = tuple[float, float, float]
+Continuation = Literal["material_frame", "least_energy", "history"]
 
 
 class Material(Section):
@@ -63,7 +64,7 @@ class Solver(Section):
     tolerance: float = Field(
         default=1e-6, gt=0, le=1e-2, description="[m] a lock has converged when no vertex moves more than this"
     )
-    continuation: Literal["material_frame", "least_energy", "history"] = Field(
+    continuation: Continuation = Field(
         default="material_frame",
         description="how the signs of bends and the turns of twist are found: see the theory page",
     )
@@ -113,6 +114,12 @@ class Strands:
         """Velocities [m/s], shape (n, 3): the solver's own memory."""
         return self._core.velocities
 
+    @property
+    def directors(self) -> NDArray[np.float64]:
+        """Directors of the material frame, one per edge from the second of each strand on, shape (n, 3): the solver's
+        own memory. Only ``material_frame`` moves them with the strands."""
+        return self._core.directors
+
     def place(self, positions: NDArray[np.floating]) -> None:
         """Puts the strands at rest at other positions [m], shape (n, 3); the rest shape stays what it was."""
         self._core.place(np.ascontiguousarray(positions, np.float64))
@@ -156,21 +163,23 @@ class Strands:
         self,
         *,
         gravity: Vector = (0.0, 0.0, 0.0),
+        wind: Vector = (0.0, 0.0, 0.0),
         forces: NDArray[np.floating] | None = None,
         tolerance: float = 1e-9,
         dt: float = 1.0,
         steps: int = 2000,
+        continuation: Continuation = "material_frame",
     ) -> bool:
-        """Lets the strands come to rest under gravity and forces [N], in large steps; what is held stays put.
+        """Lets the strands come to rest under gravity, wind and forces [N], in large steps; what is held stays put.
 
         Returns whether they have: no coordinate moved more than ``tolerance`` [m] in the last step.
         """
         still = self.positions.copy()
-        solver = Solver(newton=50, tolerance=max(tolerance * 1e-2, 1e-14))
+        solver = Solver(newton=50, tolerance=max(tolerance * 1e-2, 1e-14), continuation=continuation)
         for _ in range(steps):
             before = self.positions.copy()
             self.velocities[:] = 0.0
-            self.step(still, dt, gravity=gravity, forces=forces, solver=solver)
+            self.step(still, dt, gravity=gravity, wind=wind, forces=forces, solver=solver)
             if np.abs(self.positions - before).max() < tolerance:
                 return True
         return False

@@ -1,0 +1,87 @@
+"""``ringlet loft``: the shape that locks must remember to hang as they were groomed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+import ringlet
+from ringlet.cli.options import Json, Report, Threads
+from ringlet.cli.output import print_json, print_table, size
+from ringlet.cli.progress import shown_progress
+
+MEASURES = {
+    "away": "away from the groom, vertices",
+    "drop": "drop of the tips",
+    "height": "height of the locks, change",
+}
+NEAR = 1e-3  # what hangs within this of where it should counts as held [m]
+
+
+def loft(
+    shot: Annotated[Path, typer.Argument(metavar="SHOT", help="The shot, a TOML file.")],
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "--output",
+            "-o",
+            metavar="REST",
+            help="The USD file to write; by default where the shot will look for it.",
+            show_default=False,
+        ),
+    ] = None,
+    groom: Annotated[
+        Path | None,
+        typer.Option("--groom", metavar="GROOM", help="A groom to use in place of the shot's.", show_default=False),
+    ] = None,
+    again: Annotated[bool, typer.Option("--again", help="Loft all locks, also those that have not changed.")] = False,
+    report: Report = None,
+    as_json: Json = False,
+    threads: Threads = None,
+) -> None:
+    """Pre-bends the shape that the locks of a SHOT remember, so that what hangs under gravity is the groom.
+
+    The locks hang still under the forces of the shot, in the rest pose of the scalp. Where REST is there already, only
+    locks that have changed since are lofted. The shot uses it with [rest] mode = "lofted".
+
+    Examples: ringlet loft nod.shot.toml · ringlet loft nod.shot.toml --report out
+    """
+    with ringlet.Run("loft", report) as run, shown_progress() as progress:
+        settings = ringlet.read_shot(shot)
+        path = output or settings.rest_file
+        assert path is not None  # a shot from a file has a place for it
+        with run.stage("groom"):
+            locks = ringlet.load_groom(groom or settings.groom, progress=progress)
+        with run.stage("loft", path, "the shape that locks remember"):
+            made = ringlet.loft(settings, locks, known=None if again else path, progress=progress)
+            ringlet.write_loft(made, settings, path)
+        near = int((made.off < NEAR).sum())
+        run.count(locks=len(locks.locks), points=len(locks.locks.points), held=near)
+        lost = made.lost()
+        rows = [
+            [f"{what}, {when} loft", *(f"{1e3 * lost[name][f'{when} {k}']:.2f}" for k in ("mean", "95", "max"))]
+            for name, what in MEASURES.items()
+            for when in ("without", "with")
+        ]
+        columns = ["mm", "mean", "95 % are below", "most"]
+        run.table("What gravity takes from the groom", columns, rows)
+        fell, moving = len(made.off) - near, int((made.moving > 1e-6).sum())
+        if fell:
+            run.warn(f"{fell} of {len(made.off)} locks do not hang as groomed: too soft to stand; stiffen them.")
+        if moving:
+            run.warn(f"{moving} of {len(made.off)} locks were not quite still when they were measured.")
+        if report is not None:
+            picture = report / "loft.png"
+            with run.stage("picture", picture, "the groom, and how it hangs"):
+                ringlet.write_loft_picture(made, picture, title=f"{shot.name}: the loft", progress=progress)
+            run.pictured(picture, "The groom; how it hangs without the loft; how it hangs with it.")
+    if as_json:
+        told = {"path": str(path), "bytes": path.stat().st_size, **run.counts}
+        print_json({**told, "tolerance": NEAR, "most_moving": float(made.moving.max()), "lost": lost})
+        return
+    print_table(columns, rows, right=(1, 2, 3))
+    for sentence in run.warnings:
+        print(sentence)
+    print(f"{path}: {len(locks.locks):,} locks, {near:,} within 1 mm, {size(path.stat().st_size)}")

@@ -1,0 +1,81 @@
+"""The same hair in several shapes side by side, seen by one camera; the outline of the first over the others."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image, ImageChops, ImageDraw, ImageFilter
+
+from ringlet.curves import Curves
+from ringlet.files import replacing
+from ringlet.picture.bodies import PosedBody
+from ringlet.picture.camera import Camera
+from ringlet.picture.camera import frame as frame_camera
+from ringlet.picture.render import Progress, build_scene, hair_color, over_backdrop, trace
+from ringlet.picture.sheet import THINNEST, lay_out, thin_out
+from ringlet.picture.still import subject
+from ringlet.picture.tone import develop
+
+OUTLINE = (255, 176, 59)
+CLOSE = 7  # gaps between curls up to so many pixels are no part of an outline
+
+
+def compare(
+    shapes: Mapping[str, Curves],
+    bodies: Sequence[PosedBody],
+    path: Path | str,
+    *,
+    tile: tuple[int, int] = (420, 480),
+    title: str = "",
+    hairs: int = 6000,
+    samples: int = 12,
+    view: str | tuple[float, float] = "three_quarter",
+    color: str = "dark_brown",
+    progress: Progress | None = None,
+) -> Path:
+    """Writes a PNG with one tile per shape, under its name.
+
+    shapes: hairs [m] by name; the outline of the first is drawn over all others
+    bodies, tile, title, hairs, samples, view, color, progress: as in ``sheet``
+    """
+    thinned = {name: thin_out(curves, hairs) for name, curves in shapes.items()}
+    camera = frame_camera(
+        (points for curves in thinned.values() for points in subject(bodies, curves)),
+        view=view,
+        aspect=tile[0] / tile[1],
+        margin=0.04,
+    )
+    tiles: list[tuple[str, str, NDArray[np.uint8]]] = []
+    outline = None
+    for name, curves in thinned.items():
+        scene = build_scene(bodies, curves, camera, size=tile, color=hair_color(color), max_depth=4, thinnest=THINNEST)
+        pixels = develop(over_backdrop(trace(scene, samples=samples)))
+        if outline is None:
+            outline = _outline(curves, bodies, camera, tile)
+        else:
+            pixels = pixels.copy()
+            pixels[outline] = OUTLINE
+        tiles.append((name, "outline: " + next(iter(thinned)) if len(tiles) else "", pixels))
+        if progress:
+            progress("picture", len(tiles), len(shapes))
+    page = lay_out(tiles, len(tiles), tile, title, "")
+    with replacing(path) as aside:
+        page.save(aside)
+    return Path(path)
+
+
+def _outline(hairs: Curves, bodies: Sequence[PosedBody], camera: Camera, size: tuple[int, int]) -> NDArray[np.bool_]:
+    """The pixels along the edge of hair and bodies together, shape (height, width)."""
+    mask = Image.new("L", size, 0)
+    draw = ImageDraw.Draw(mask)
+    for body in bodies:
+        for corners in (camera.project(body.points) * size)[body.mesh.triangles]:
+            draw.polygon([(float(x), float(y)) for x, y in corners], fill=255)
+    places = camera.project(hairs.points) * size
+    for begin, end in zip(hairs.offsets[:-1], hairs.offsets[1:], strict=True):
+        draw.line([(float(x), float(y)) for x, y in places[begin:end]], fill=255, width=2)
+    whole = mask.filter(ImageFilter.MaxFilter(CLOSE)).filter(ImageFilter.MinFilter(CLOSE))
+    return np.asarray(ImageChops.difference(whole, whole.filter(ImageFilter.MinFilter(3)))) > 0

@@ -1,0 +1,31 @@
+"""The shape that strands remember: the groom itself, or one that carries gravity, so that the groom is what hangs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from ringlet.groom.settings import Quantity
+from ringlet.settings import Section
+from ringlet.shot.variation import Mapped
+
+
+class Rest(Section):
+    """The shape that strands remember."""
+
+    mode: Literal["none", "lofted"] = Field(
+        default="none", description="`none`: the groom, which then sags; `lofted`: what `ringlet loft` made of it"
+    )
+    gain: Annotated[Mapped, Quantity("", 0.0, 1.0)] = Field(
+        default=Mapped(), description="the part of the sag that the loft takes away, from 0 to 1"
+    )
+    iterations: int = Field(default=12, ge=1, le=1000, description="times that the loft is corrected at most")
+    tolerance: Annotated[float, Quantity("m", 1e-9, 0.1)] = Field(
+        default=2e-5, description="a lock is done when no vertex hangs farther than this from where it should"
+    )
+    file: Path | None = Field(
+        default=None,
+        description="the lofted shape; by default beside the shot, as `NAME.rest.usdc` for `NAME.shot.toml`",
+    )

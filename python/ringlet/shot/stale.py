@@ -1,0 +1,105 @@
+"""Whether a lofted shape still fits: it is kept with what it was made from, lock by lock."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ringlet.curves import Curves
+from ringlet.errors import UserError
+from ringlet.groom.groom import Groom
+from ringlet.shot.loft import Loft, Progress, loft
+from ringlet.shot.shot import Shot
+from ringlet.shot.strands import VARIATIONS
+from ringlet.shot.variation import at_vertices
+
+SAME_PLACE = 1e-6  # points closer than this are the same: a file in single precision rounds them [m]
+
+# What a loft does not depend on, besides `rest.gain` and the variation, which are kept as their values at the vertices.
+_FREE = {
+    **dict.fromkeys(("ringlet", "name", "groom", "frames", "preroll", "variation"), True),
+    "solver": {"newton", "substeps", "tolerance"},
+    "rest": {"mode", "file", "gain"},
+}
+
+
+def made_from(shot: Shot) -> dict[str, Any]:
+    """The settings of a shot that a loft depends on, as plain values."""
+    return shot.model_dump(mode="json", exclude=_FREE)
+
+
+def keep(loft: Loft, shot: Shot) -> Curves:
+    """The rest shape of a loft with all that it was made from, and what it does, as attributes."""
+    rest = loft.rest
+    point = {"groomed": loft.groom.locks.points, "sagged": loft.sagged, "lofted": loft.lofted}
+    point |= _values(shot, loft.groom)
+    curve = {"off": loft.off, "moving": loft.moving}
+    floats = {name: np.asarray(values, np.float32) for name, values in point.items()}
+    return Curves(rest.points, rest.offsets, rest.ids, curve, floats)
+
+
+def recall(kept: Curves, groom: Groom) -> Loft:
+    """The loft that ``keep`` kept, of the same locks."""
+    sagged, lofted = (np.asarray(kept.point[name], np.float64) for name in ("sagged", "lofted"))
+    return Loft(groom, kept, sagged, lofted, kept.curve["off"].copy(), kept.curve["moving"].copy())
+
+
+def refresh(shot: Shot, groom: Groom, kept: Curves, made: dict[str, Any], *, progress: Progress | None = None) -> Loft:
+    """The loft of a groom; locks that have not changed since a kept one was made are taken from it."""
+    if not same_locks(kept, groom) or made != made_from(shot):
+        return loft(shot, groom, progress=progress)
+    whole, changed = recall(kept, groom), changed_locks(kept, shot, groom)
+    if changed.any():
+        part = loft(shot, replace(groom, locks=groom.locks.take(changed)), progress=progress)
+        rows = np.repeat(changed, groom.locks.counts)
+        whole.rest.points[rows], whole.sagged[rows], whole.lofted[rows] = part.rest.points, part.sagged, part.lofted
+        whole.off[changed], whole.moving[changed] = part.off, part.moving
+    return whole
+
+
+def same_locks(kept: Curves, groom: Groom) -> bool:
+    """Whether a kept shape has the locks and the points of a groom, wherever they are."""
+    return np.array_equal(kept.ids, groom.locks.ids) and np.array_equal(kept.offsets, groom.locks.offsets)
+
+
+def changed_locks(kept: Curves, shot: Shot, groom: Groom) -> NDArray[np.bool_]:
+    """Which locks of a groom, the same ones, are not those that a kept shape was made from, shape (count,)."""
+    changed = np.linalg.norm(kept.point["groomed"] - groom.locks.points, axis=1) > SAME_PLACE
+    values = _values(shot, groom)
+    for name in ("gain", *VARIATIONS):
+        old, now = (np.asarray(of.get(name, np.ones(len(changed)))) for of in (kept.point, values))
+        changed |= np.abs(old - now) > 1e-5 * np.maximum(now, 1e-3)
+    return np.logical_or.reduceat(changed, groom.locks.offsets[:-1])
+
+
+def check(kept: Curves, made: dict[str, Any], shot: Shot, groom: Groom, path: Path, *, allow_stale: bool) -> Curves:
+    """The kept shape, as long as it fits; refuses one that was made from another groom, material or forces."""
+    again = f"make it again with: ringlet loft {shot.path or 'SHOT.toml'}"
+    if not same_locks(kept, groom):
+        raise UserError(f"{path}: was made from other locks ({len(kept)}, the groom has {len(groom.locks)}); {again}")
+    if allow_stale:
+        return kept
+    reason = next(_differences(made, made_from(shot)), None)
+    if reason is None and (changed := changed_locks(kept, shot, groom)).any():
+        reason = f"{changed.sum()} of {len(changed)} locks or their material have changed"
+    if reason is not None:
+        raise UserError(f"{path}: is stale, {reason}; {again}, or use it as it is with --allow-stale")
+    return kept
+
+
+def _values(shot: Shot, groom: Groom) -> dict[str, NDArray[np.float64]]:
+    return {"gain": at_vertices(shot.rest.gain, groom, "rest.gain"), **shot.variation.factors(groom)}
+
+
+def _differences(old: Any, now: Any, name: str = "") -> Iterator[str]:
+    """What settings were and are, one sentence each."""
+    if isinstance(old, dict) and isinstance(now, dict):
+        for key in sorted({*old, *now}):
+            yield from _differences(old.get(key), now.get(key), f"{name}.{key}".removeprefix("."))
+    elif old != now:
+        yield f"{name} was {old} and is {now}"

@@ -1,0 +1,132 @@
+"""The command that lofts, its file, and when that is stale."""
+
+import json
+
+import numpy as np
+import pytest
+from ringlet.cli.app import app
+from ringlet.io import read_rest
+from small_example import write_example
+from typer.testing import CliRunner
+
+import ringlet
+
+LOFTED = "\n[rest]\nmode = 'lofted'\niterations = 6\n"
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """The small example, to be lofted."""
+    write_example(tmp_path)
+    shot = tmp_path / "small.shot.toml"
+    shot.write_text(shot.read_text() + LOFTED)
+    return tmp_path
+
+
+def run(*arguments):
+    return CliRunner().invoke(app, [str(argument) for argument in arguments])
+
+
+def change(folder, old, new, file="small.shot.toml"):
+    text = (folder / file).read_text()
+    assert old in text
+    (folder / file).write_text(text.replace(old, new))
+
+
+def stay(folder):
+    """How far the guides move from where they were groomed within the still preroll and the first frame [m]."""
+    shot = folder / "small.shot.toml"
+    cache = ringlet.simulate(shot, frames=(1, 1))
+    groomed = ringlet.build_groom(folder / "small.recipe.toml").locks.points
+    return np.linalg.norm(cache.points[0] - groomed, axis=1)
+
+
+def test_a_lofted_shot_begins_nearer_to_its_groom(folder):
+    change(folder, "preroll = 0", "preroll = 30")
+    assert run("loft", folder / "small.shot.toml").exit_code == 0
+    assert (folder / "small.rest.usdc").exists()
+    lofted = stay(folder)
+    change(folder, "mode = 'lofted'", "mode = 'none'")
+    assert lofted.mean() < 0.2 * stay(folder).mean()
+
+
+def test_the_report_tells_what_is_lost_and_shows_it(folder):
+    result = run("loft", folder / "small.shot.toml", "-o", folder / "a.usdc", "--json", "--report", folder / "out")
+    told = json.loads(result.stdout)
+    assert told["locks"] == 8 and told["lost"]["away"]["with mean"] < told["lost"]["away"]["without mean"]
+    report = json.loads((folder / "out/report.json").read_text())
+    assert [len(row) for row in report["tables"][0]["rows"]] == [4] * 6
+    assert "What gravity takes" in (folder / "out/report.html").read_text()
+    assert (folder / "out/loft.png").stat().st_size > 10_000
+
+
+def test_without_its_file_a_lofted_shot_says_how_to_make_it(folder):
+    result = run("sim", folder / "small.shot.toml", "-o", folder / "cache.usdc")
+    assert result.exit_code == 2
+    assert "small.rest.usdc" in result.stderr and "ringlet loft" in result.stderr
+    assert not (folder / "cache.usdc").exists()
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "file", "words"),
+    [
+        (
+            "preroll = 0",
+            "preroll = 0\nstrands = { bend_scale = 2 }",
+            "small.shot.toml",
+            ["strands.bend_scale", "1.0", "2"],
+        ),
+        ("preroll = 0", "preroll = 0\nforces = { gravity = [0, -5, 0] }", "small.shot.toml", ["forces.gravity", "-5"]),
+        ("preroll = 0", "preroll = 0\nvariation = { bend = 2 }", "small.shot.toml", ["8 of 8 locks"]),
+        ("width = 1.0", "width = 1.1", "small.recipe.toml", ["8 of 8 locks"]),
+    ],
+)
+def test_a_stale_loft_is_refused_in_one_line_unless_it_is_allowed(folder, old, new, file, words):
+    shot = folder / "small.shot.toml"
+    assert run("loft", shot).exit_code == 0
+    change(folder, old, new, file)
+    result = run("sim", shot, "-o", folder / "cache.usdc")
+    message = result.stderr.strip().splitlines()[-1]
+    assert result.exit_code == 2
+    for word in ["is stale", "ringlet loft", "--allow-stale", *words]:
+        assert word in message
+    assert run("sim", shot, "-o", folder / "cache.usdc", "--allow-stale").exit_code == 0
+
+
+def test_what_a_loft_does_not_depend_on_does_not_make_it_stale(folder):
+    shot = folder / "small.shot.toml"
+    assert run("loft", shot).exit_code == 0
+    change(folder, "preroll = 0", "preroll = 2\nname = 'other'\nsolver = { newton = 7, substeps = 2 }")
+    assert run("sim", shot, "-o", folder / "cache.usdc").exit_code == 0
+    assert run("groom", folder / "small.recipe.toml", "-o", folder / "groom.usdc").exit_code == 0  # single precision
+    assert run("sim", shot, "--groom", folder / "groom.usdc", "-o", folder / "cache.usdc").exit_code == 0
+
+
+def test_other_locks_are_refused_always(folder):
+    shot = folder / "small.shot.toml"
+    assert run("loft", shot).exit_code == 0
+    change(folder, "count = 8", "count = 9", "small.recipe.toml")
+    result = run("sim", shot, "-o", folder / "cache.usdc", "--allow-stale")
+    assert result.exit_code == 2 and "other locks" in result.stderr
+
+
+def test_only_locks_that_have_changed_are_lofted_again(folder):
+    shot, file = ringlet.read_shot(folder / "small.shot.toml"), folder / "small.rest.usdc"
+    groom = ringlet.build_groom(folder / "small.recipe.toml")
+    ringlet.write_loft(ringlet.loft(shot, groom), shot, file)
+    before, _ = read_rest(file)
+    rows = slice(groom.locks.offsets[3] + 3, groom.locks.offsets[4])
+    groom.locks.points[rows] += np.linspace(0, 2e-3, rows.stop - rows.start)[:, None]
+    seen = []
+    again = ringlet.loft(shot, groom, known=file, progress=lambda *step: seen.append(step))
+    whole = ringlet.loft(shot, groom)
+    assert seen
+    same = np.ones(len(groom.locks.points), bool)
+    same[groom.locks.offsets[3] : groom.locks.offsets[4]] = False
+    assert (again.rest.points[same] == before.points[same]).all()
+    assert np.abs(again.rest.points - whole.rest.points).max() < 1e-5
+    assert np.abs(whole.rest.points - before.points)[~same].max() > 1e-4
+    ringlet.write_loft(again, shot, file)
+    seen.clear()
+    ringlet.loft(shot, groom, known=file, progress=lambda *step: seen.append(step))
+    assert not seen
