@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from ringlet.bench import Clock, solver_counts
     from ringlet.groom.groom import Groom
     from ringlet.shot.cache import Cache
+    from ringlet.shot.cloth import Cloth, ClothMaterial, ClothSolver
     from ringlet.shot.direct import DirectSolver
     from ringlet.shot.loft import Loft
     from ringlet.shot.strands import Material, Solver, Strands
@@ -46,6 +47,9 @@ __all__ = [
     "Cache",
     "Clip",
     "Clock",
+    "Cloth",
+    "ClothMaterial",
+    "ClothSolver",
     "Curves",
     "DirectSolver",
     "Groom",
@@ -87,6 +91,9 @@ __all__ = [
 _SLOW = {
     "Cache": "ringlet.shot.cache",
     "Clock": "ringlet.bench",
+    "Cloth": "ringlet.shot.cloth",
+    "ClothMaterial": "ringlet.shot.cloth",
+    "ClothSolver": "ringlet.shot.cloth",
     "DirectSolver": "ringlet.shot.direct",
     "Groom": "ringlet.groom.groom",
     "Loft": "ringlet.shot.loft",

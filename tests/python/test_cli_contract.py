@@ -37,6 +37,7 @@ class Answer:
     ("arguments", "asked"),
     [
         (["groom", "--locks", "20", "--hairs", "60"], {"locks": 20, "hairs": 60}),
+        (["cloth", "--side", "5", "--steps", "3"], {"side": 5, "steps": 3}),
         (["direct", "--strands", "4", "--vertices", "12", "--method", "builtin"], {"strands": 4, "method": "builtin"}),
         (["memory", "--strands", "20"], {"strands": 20}),
         (["strands", "--strands", "4", "--steps", "3"], {"strands": 4, "steps": 3}),

@@ -1,6 +1,7 @@
 """Shots: strands that move with an animated scalp."""
 
 from ringlet.shot.cache import Cache
+from ringlet.shot.cloth import Cloth, ClothMaterial, ClothSolver
 from ringlet.shot.loft import Loft, loft
 from ringlet.shot.shot import Forces, Shot, parse_shot, read_shot, schema
 from ringlet.shot.simulate import simulate
@@ -9,6 +10,9 @@ from ringlet.shot.strands import Material, Solver, Strands
 
 __all__ = [
     "Cache",
+    "Cloth",
+    "ClothMaterial",
+    "ClothSolver",
     "Forces",
     "Loft",
     "Material",
