@@ -69,7 +69,7 @@ def loft(
         run.table("What gravity takes from the groom", columns, rows)
         fell, moving = len(made.off) - near, int((made.moving > 1e-6).sum())
         if fell:
-            run.warn(f"{fell} of {len(made.off)} locks do not hang as groomed: too soft to stand; stiffen them.")
+            run.warn(f"{fell} of {len(made.off)} locks do not hang as groomed: probably too soft to stand.")
         if moving:
             run.warn(f"{moving} of {len(made.off)} locks were not quite still when they were measured.")
         if report is not None:

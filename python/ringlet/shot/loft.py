@@ -108,7 +108,7 @@ class _Hanging:
 def loft(shot: Shot, groom: Groom, *, progress: Progress | None = None) -> Loft:
     """Finds the shape that the locks of ``groom`` must remember to hang as groomed, under the forces of ``shot``.
 
-    A lock that cannot hang as groomed, since it would fall over however it is pre-bent, keeps the best that was found.
+    A lock that does not get there, as where it would fall over however it is pre-bent, keeps the best that was found.
     """
     locks = groom.locks
     locks.check("loft: locks")
