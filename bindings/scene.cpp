@@ -33,6 +33,16 @@ void bind_scene(nb::module_ &module) {
         .value("least_energy", Continuation::least_energy)
         .value("material_frame", Continuation::material_frame);
 
+    nb::enum_<Integrator>(module, "Integrator", "How velocities and rates follow from positions.")
+        .value("backward_euler", Integrator::backward_euler)
+        .value("bdf2", Integrator::bdf2);
+
+    nb::class_<Safeguards>(module, "Safeguards", "Which safeguards of `history` are on; all to begin with.")
+        .def(nb::init<>())
+        .def_rw("flip_history", &Safeguards::flip_history)
+        .def_rw("winding_number", &Safeguards::winding_number)
+        .def_rw("straight_fade", &Safeguards::straight_fade);
+
     nb::class_<StrandMaterial>(module, "StrandMaterial", "What a lock is made of (SI units); a hair's values.")
         .def(nb::init<>())
         .def_rw("youngs_modulus", &StrandMaterial::youngs_modulus)
@@ -41,6 +51,7 @@ void bind_scene(nb::module_ &module) {
         .def_rw("stretch_scale", &StrandMaterial::stretch_scale)
         .def_rw("bend_scale", &StrandMaterial::bend_scale)
         .def_rw("twist_ratio", &StrandMaterial::twist_ratio)
+        .def_rw("limit_twist", &StrandMaterial::limit_twist)
         .def_rw("damping", &StrandMaterial::damping)
         .def_rw("mass_damping", &StrandMaterial::mass_damping)
         .def_rw("drag", &StrandMaterial::drag)
@@ -80,7 +91,8 @@ void bind_scene(nb::module_ &module) {
         .def(
             "step",
             [](Strands &self, Array3<double> targets, Array3<double> forces, double dt, std::array<double, 3> gravity,
-               std::array<double, 3> wind, int newton, double tolerance, Continuation continuation) {
+               std::array<double, 3> wind, int newton, double tolerance, Continuation continuation, Integrator integrator,
+               const Safeguards &safeguards) {
                 StrandStep step;
                 step.dt = dt;
                 std::copy(gravity.begin(), gravity.end(), step.gravity);
@@ -88,6 +100,8 @@ void bind_scene(nb::module_ &module) {
                 step.newton = newton;
                 step.tolerance = tolerance;
                 step.continuation = continuation;
+                step.integrator = integrator;
+                step.safeguards = safeguards;
                 {
                     nb::gil_scoped_release release;
                     step_strands(self.model, self.state, vectors<Vec3>(targets), vectors<Vec3>(forces), step, self.reports);
@@ -95,7 +109,8 @@ void bind_scene(nb::module_ &module) {
                 const size_t rows = self.reports.size();
                 return to_numpy<double>(std::vector<StrandReport>(self.reports), {rows, size_t(strand_report_columns)});
             },
-            "targets"_a, "forces"_a, "dt"_a, "gravity"_a, "wind"_a, "newton"_a, "tolerance"_a, "continuation"_a,
+            "targets"_a, "forces"_a, "dt"_a, "gravity"_a, "wind"_a, "newton"_a, "tolerance"_a, "continuation"_a, "integrator"_a,
+            "safeguards"_a,
             "One time step; targets: where held vertices are at its end [m], shape (n, 3). Returns one report row per strand "
             "(REPORT).")
         .def(
@@ -114,6 +129,6 @@ void bind_scene(nb::module_ &module) {
             "from the state.");
 
     nb::tuple names = nb::make_tuple("newton", "cuts", "residual", "unconverged", "stretch", "bend", "twist", "gravity",
-                                     "kinetic", "max_stretch", "flips", "winding_changes", "too_straight", "nan");
+                                     "kinetic", "max_stretch", "flips", "winding_changes", "too_straight", "clamped", "nan");
     module.attr("REPORT") = names;
 }

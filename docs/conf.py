@@ -7,7 +7,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parent))
 
 from docstrings import as_list
-from plots import write_convergence
+from plots import write_convergence, write_release
 from reference import write_references
 
 project = "Ringlet"
@@ -33,4 +33,5 @@ html_theme_options = {
 def setup(app):
     write_references(Path(app.srcdir) / "_generated")
     write_convergence(Path(app.srcdir) / "_generated" / "convergence.svg")
+    write_release(Path(app.srcdir) / "_generated" / "release.svg")
     app.connect("autodoc-process-docstring", as_list)

@@ -1,16 +1,23 @@
-"""Draws the errors of the known answers against resolution, from a run of them."""
+"""Draws what the documents show from runs: errors of the known answers, and strands that are let go far from rest."""
 
 from __future__ import annotations
 
 import re
+import sys
 from collections import defaultdict
 from pathlib import Path
 
 import matplotlib as mpl
+import numpy as np
 from matplotlib.figure import Figure
+from ringlet.curves import Curves
 from ringlet.files import replacing
+from ringlet.shot import Material, Strands
 
 from ringlet import validate
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "physics"))
+from stability import HELD, scenes
 
 RESOLUTION = re.compile(r"(?P<curve>.*), (?P<n>\d+) (edges|vertices a turn)$")
 
@@ -41,5 +48,40 @@ def write_convergence(path: Path) -> None:
         panel.remove()
     figure.supxlabel("edges, or vertices a turn", fontsize=9)
     figure.supylabel("relative error", fontsize=9)
+    with replacing(path) as aside:
+        figure.savefig(aside)
+
+
+RELEASED = {
+    "right-handed coil, 12 vertices a turn, jitter 1 cm": "jitter, 1 cm",
+    "right-handed coil, 12 vertices a turn, straightened": "straightened",
+    "right-handed coil, 12 vertices a turn, flattened": "flattened",
+    "right-handed coil, 12 vertices a turn, compressed": "compressed",
+    "zigzag, jitter 0.5 cm": "zigzag, jitter 0.5 cm",
+    "coil with straight middle, jitter 0.5 cm": "straight middle",
+}
+
+
+def write_release(path: Path) -> None:
+    """One column a scene of the stability table, one row a moment, from the side; gray: the rest shape."""
+    steps = (0, 2, 12, 48, 300)
+    chosen = [(rest, start) for name, rest, start in scenes() if name in RELEASED]
+    rest = Curves.from_list([shape for shape, _ in chosen])
+    strands = Strands(rest, Material(), HELD)
+    strands.place(np.concatenate([start for _, start in chosen]))
+    figure = Figure(figsize=(11, 11), layout="constrained")
+    panels = figure.subplots(len(steps), len(chosen), sharey="col")
+    for row, before, step in zip(panels, (0, *steps), steps, strict=False):
+        for _ in range(before, step):
+            strands.step(rest.points, 1 / 24)
+        now = rest.with_points(strands.positions)
+        for k, panel in enumerate(row):
+            panel.plot(*(100 * rest[k][:, :2].T), color="lightgray", lw=1.5)
+            panel.plot(*(100 * now[k][:, :2].T), color="#8c3b2a", lw=0.8)
+            panel.set_aspect("equal", adjustable="datalim")
+            panel.tick_params(labelsize=6)
+        row[0].set_ylabel(f"{step} steps" if step else "let go", fontsize=9)
+    for panel, title in zip(panels[0], RELEASED.values(), strict=True):
+        panel.set_title(title, fontsize=9)
     with replacing(path) as aside:
         figure.savefig(aside)

@@ -155,6 +155,29 @@ BOOST_AUTO_TEST_CASE(bend_hessian_is_the_positive_part_of_the_exact_one) {
     }
 }
 
+BOOST_AUTO_TEST_CASE(as_many_bend_eigenvalues_count_as_clamped_as_are_negative) {
+    // Measuring each edge in its own length is a congruence: the signs are those of the plain Hessian (Sylvester).
+    std::mt19937 random(7);
+    for (int trial = 0; trial < 50; ++trial) {
+        const VectorXd e = random_vector(6, random);
+        for (const double sigma : {1.0, -1.0}) {
+            const double rest_angle = 1.0;
+            MatrixXd exact(6, 6);
+            for (int k = 0; k < 6; ++k) {
+                VectorXd step = VectorXd::Zero(6);
+                step[k] = 1e-5;
+                exact.col(k) = (gradient_of(bend_of(e + step, sigma, rest_angle, 1.0)) -
+                                gradient_of(bend_of(e - step, sigma, rest_angle, 1.0))) /
+                               2e-5;
+            }
+            const VectorXd values = Eigen::SelfAdjointEigenSolver<MatrixXd>(0.5 * (exact + exact.transpose())).eigenvalues();
+            BOOST_TEST(clamped_bend(edges_of(e).c, sigma, rest_angle, 1.0) == (values.array() < -1e-6).count());
+        }
+        const double angle = edges_of(e).c.angle;
+        BOOST_TEST(clamped_bend(edges_of(e).c, 1.0, angle, 1.0) == 0);
+    }
+}
+
 BOOST_AUTO_TEST_CASE(bend_stays_finite_and_positive_on_degenerate_input) {
     VectorXd straight(6), folded(6);
     straight << 1, 0, 0, 2, 0, 0;

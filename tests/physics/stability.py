@@ -81,7 +81,7 @@ class Release:
     """What became of each scene, arrays of shape (scenes,).
 
     away:      distance from rest at the end [m]
-    excursion: largest distance from rest on the way, by the largest at the start
+    excursion: largest distance from rest on the way [m]
     gain:      largest rise of the energy in a step, by the energy of the start
     back:      steps after which it stayed close to rest, or -1
     """
@@ -92,7 +92,7 @@ class Release:
     back: np.ndarray
 
 
-def release(continuation="material_frame", newton=5, fps=24.0, steps=600):
+def release(continuation="material_frame", newton=5, fps=24.0, steps=600, integrator="backward_euler"):
     """Lets all scenes go at once, with the default material."""
     _, rests, starts = zip(*scenes(), strict=True)
     rest, start = Curves.from_list(rests), np.concatenate(starts)
@@ -100,13 +100,13 @@ def release(continuation="material_frame", newton=5, fps=24.0, steps=600):
     strands.place(start)
     single = [Strands(Curves.from_list([r]), Material(), HELD) for r in rests]
     first = np.array([s.energy(x, continuation=continuation)[0] for s, x in zip(single, starts, strict=True)])
-    solver = Solver(newton=newton, continuation=continuation)
+    solver = Solver(newton=newton, continuation=continuation, integrator=integrator)
 
     def distance():
         return np.linalg.norm(strands.positions - rest.points, axis=1).reshape(len(rests), -1).max(axis=1)
 
-    begin, before = distance(), first
-    excursion, gain, back = begin.copy(), np.zeros(len(rests)), np.full(len(rests), -1)
+    before, excursion = first, distance()
+    gain, back = np.zeros(len(rests)), np.full(len(rests), -1)
     for step in range(1, steps + 1):
         report = strands.step(rest.points, 1 / fps, solver=solver)
         energy = sum(report[name] for name in ("stretch", "bend", "twist", "kinetic"))
@@ -115,22 +115,28 @@ def release(continuation="material_frame", newton=5, fps=24.0, steps=600):
         away = distance()
         excursion = np.maximum(excursion, away)
         back = np.where(away < CLOSE, np.where(back < 0, step, back), -1)
-    return Release(away, excursion / begin, gain, back)
+    return Release(away, excursion, gain, back)
+
+
+def cells(result, k):
+    """One scene's columns of a table: steps until back, or how far away it stayed; excursion; gain."""
+    end = f"{result.back[k]}" if result.back[k] > 0 else f"**{100 * result.away[k]:.2g} cm away**"
+    gain = f"{100 * result.gain[k]:.2g} %" if result.gain[k] > 1e-5 else "–"
+    return end, f"{100 * result.excursion[k]:.2g} cm", gain
 
 
 def main():
-    """Prints a table in Markdown: by model and setting the steps until back at rest, or how far away it stayed."""
+    """Prints a table in Markdown for each model: by setting the end, the worst excursion and the energy gained."""
     settings = [(5, 24), (1, 24), (5, 12)]
-    models = ["history", "least_energy", "material_frame"]
-    columns = [f"{model}, {n} Newton, 1/{fps} s" for model in models for n, fps in settings]
-    results = [release(model, n, fps, 1500) for model in models for n, fps in settings]
-    print("| scene |", " | ".join(columns), "|\n|---|" + "---|" * len(columns))
-    for k, (name, _, _) in enumerate(scenes()):
-        cells = []
-        for result in results:
-            cell = f"{result.back[k]}" if result.back[k] > 0 else f"**{100 * result.away[k]:.2g} cm away**"
-            cells.append(cell + (f", +{100 * result.gain[k]:.2g} %" if result.gain[k] > 1e-5 else ""))
-        print(f"| {name} |", " | ".join(cells), "|")
+    models = [(name, "backward_euler") for name in ("material_frame", "least_energy", "history")]
+    for continuation, integrator in [*models, ("material_frame", "bdf2")]:
+        title = f"`{continuation}`" if integrator == "backward_euler" else f"`{continuation}` with `{integrator}`"
+        print(f"\n## {title}\n")
+        columns = [f"{n} × 1/{fps} s | excursion | gain" for n, fps in settings]
+        print("| scene |", " | ".join(columns), "|\n|---|" + "---|" * (3 * len(columns)))
+        results = [release(continuation, n, fps, 1500, integrator) for n, fps in settings]
+        for k, (name, _, _) in enumerate(scenes()):
+            print(f"| {name} |", " | ".join(cell for result in results for cell in cells(result, k)), "|")
 
 
 if __name__ == "__main__":

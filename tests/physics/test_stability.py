@@ -10,10 +10,14 @@ from stability import CLOSE, HELD, release, scenes
 NAMES = [name for name, _, _ in scenes()]
 
 
-@pytest.fixture(scope="module", params=[(5, 24.0), (5, 12.0)], ids=["24 steps a second", "12 steps a second"])
+@pytest.fixture(
+    scope="module",
+    params=[(24.0, "backward_euler"), (12.0, "backward_euler"), (24.0, "bdf2"), (12.0, "bdf2")],
+    ids=lambda param: f"{param[0]:g} steps a second, {param[1]}",
+)
 def released(request):
-    newton, fps = request.param
-    return release(newton=newton, fps=fps)
+    fps, integrator = request.param
+    return release(fps=fps, integrator=integrator)
 
 
 def listed(bad):
@@ -31,8 +35,7 @@ def test_no_scene_gains_energy(released):
 
 def test_no_scene_is_thrown_further_than_its_coil_is_long(released):
     lengths = np.array([np.linalg.norm(np.diff(rest, axis=0), axis=1).sum() for _, rest, _ in scenes()])
-    begin = np.array([np.linalg.norm(start - rest, axis=1).max() for _, rest, start in scenes()])
-    assert not listed(released.excursion * begin > lengths)
+    assert not listed(released.excursion > lengths)
 
 
 def test_one_newton_step_a_step_stays_stable():

@@ -131,6 +131,76 @@ def test_free_fall_is_uniformly_accelerated():
     assert np.abs(strand.positions - rest - [0, fallen, 0]).max() < 1e-9
 
 
+def shaken(strand, rest, steps, integrator, dt=FRAME):
+    """Positions after so many steps in which the root is pulled to the side."""
+    solver = Solver(newton=50, tolerance=1e-12, integrator=integrator)
+    for k in range(1, steps + 1):
+        strand.step(rest + [0.01 * np.sin(0.3 * k), 0, 0], dt, gravity=(0, -9.81, 0), solver=solver)
+    return strand.positions.copy()
+
+
+def test_the_first_step_of_bdf2_is_one_of_backward_euler():
+    rest = helix(40)
+    first = [shaken(one(rest, damping=0.01), rest, 1, integrator) for integrator in ("backward_euler", "bdf2")]
+    second = [shaken(one(rest, damping=0.01), rest, 2, integrator) for integrator in ("backward_euler", "bdf2")]
+    assert (first[0] == first[1]).all()
+    assert np.abs(second[0] - second[1]).max() > 1e-5
+
+
+def test_bdf2_begins_anew_when_a_strand_is_placed():
+    rest = helix(40)
+    fresh, moved = one(rest, damping=0.01), one(rest, damping=0.01)
+    shaken(moved, rest, 3, "bdf2")
+    moved.place(rest)
+    assert (shaken(moved, rest, 3, "bdf2") == shaken(fresh, rest, 3, "bdf2")).all()
+
+
+def test_bdf2_takes_a_step_of_backward_euler_when_the_time_step_changes():
+    rest = helix(40)
+    a, b = one(rest, damping=0.01), one(rest, damping=0.01)
+    shaken(a, rest, 3, "bdf2")
+    shaken(b, rest, 3, "bdf2")
+    assert (shaken(a, rest, 1, "bdf2", FRAME / 2) == shaken(b, rest, 1, "backward_euler", FRAME / 2)).all()
+
+
+def test_bdf2_follows_a_falling_root_to_second_order():
+    """In free fall nothing is bent; only its one step of backward Euler is off, and that by g h² / 2 at most."""
+    rest = helix(40)
+    strand = one(rest)
+    for k in range(1, 11):
+        targets = rest - [0, 0.5 * 9.81 * (k * FRAME) ** 2, 0]
+        strand.step(targets, FRAME, gravity=(0, -9.81, 0), solver=Solver(newton=50, integrator="bdf2"))
+    assert np.abs(strand.positions - targets).max() < 0.5 * 9.81 * FRAME**2
+    assert np.abs(strand.velocities[4:] - [0, -9.81 * 10 * FRAME, 0]).max() < 0.02 * 9.81 * 10 * FRAME
+
+
+def test_until_converged_goes_on_where_five_iterations_are_not_enough():
+    rest = helix()
+    there = rest @ rotation([0, 0, 1], 1.0).T
+    for solver, unsolved in ((Solver(), 1), (Solver(until_converged=True), 0)):
+        report = one(rest).step(there, FRAME, gravity=(0, -9.81, 0), solver=solver)
+        assert report["unconverged"][0] == unsolved
+        assert (report["residual"][0] > solver.tolerance) == unsolved
+
+
+def test_a_material_frame_leaves_no_eigenvalue_out_but_of_compressed_edges():
+    rest = helix(40)
+    for continuation in ("material_frame", "least_energy"):
+        strand = one(rest)
+        assert strand.step(rest, FRAME, solver=Solver(continuation=continuation))["clamped"][0] == 0
+    short = one(rest)
+    short.place(0.9 * rest)
+    report = short.step(0.9 * rest, 1e-6)
+    assert report["clamped"][0] == 2 * (len(rest) - 4), "two across every edge with a free end"
+    bent = one(rest)
+    bent.place(jittered(rest, 1e-3))
+    counts = [
+        bent.step(rest, 1e-6, solver=Solver(continuation=continuation))["clamped"][0]
+        for continuation in ("material_frame", "least_energy")
+    ]
+    assert counts[1] > counts[0]
+
+
 def test_drag_carries_a_strand_to_the_speed_of_the_wind():
     """With its root free to follow, a coil ends up moving as the air does."""
     rest = helix(30)

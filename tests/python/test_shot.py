@@ -102,6 +102,10 @@ def test_statistics_tell_what_the_solver_did():
         (("preroll = 0", "[strands]\ntwist_ratio = 1.4"), ["strands.twist_ratio", "1.4", "at most 1"]),
         (("preroll = 0", "[solver]\nnewton = 0"), ["solver.newton", "0", "at least 1"]),
         (("preroll = 0", "[solver]\ncontinuation = 'memory'"), ["solver.continuation", "memory", "material_frame"]),
+        (
+            ("preroll = 0", "[solver]\nsafeguards = []"),
+            ["solver.safeguards", "material_frame", "history"],
+        ),
         (("preroll = 0", "[forces]\ngravity = [0, nan, 0]"), ["forces.gravity", "nan"]),
         (("ringlet = 1", ""), ["first line", "ringlet = 1"]),
         (("ringlet = 1", "ringlet = "), ["TOML"]),

@@ -105,6 +105,7 @@ def _advance(shot: Shot, strands: Strands, roots: Roots, clip: Clip, start: floa
 def _summary(reports: list[dict[str, NDArray[np.float64]]], strands: Strands) -> dict[str, Any]:
     """What happened in a frame's substeps, over all strands: sums of events, the worst values, energies at its end."""
     last = reports[-1]
+    unsolved = np.any([report["unconverged"] > 0 for report in reports], axis=0)
 
     def total(name: str) -> int:
         return int(sum(report[name].sum() for report in reports))
@@ -116,6 +117,7 @@ def _summary(reports: list[dict[str, NDArray[np.float64]]], strands: Strands) ->
         "newton": float(np.mean([report["newton"].mean() for report in reports])),
         "newton_max": int(worst("newton")),
         "unconverged": total("unconverged"),
+        "unconverged_locks": [int(lock) for lock in strands.curves.ids[unsolved]],
         "line_search_cuts": total("cuts"),
         "residual": worst("residual"),
         "energy": {name: float(last[name].sum()) for name in ("stretch", "bend", "twist", "gravity", "kinetic")},
@@ -124,5 +126,6 @@ def _summary(reports: list[dict[str, NDArray[np.float64]]], strands: Strands) ->
         "flips": total("flips"),
         "winding_changes": total("winding_changes"),
         "too_straight": total("too_straight"),
+        "clamped": total("clamped"),
         "nan": total("nan"),
     }

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
+from pydantic import Field, ValidationInfo, field_validator
 
 from ringlet import _core
 from ringlet.curves import Curves
-from ringlet.settings import Section
+from ringlet.settings import Section, refuse
 
 Vector = tuple[float, float, float]
 Continuation = Literal["material_frame", "least_energy", "history"]
@@ -28,11 +28,14 @@ class Material(Section):
         default=0.01, gt=0, le=100, description="scales the resistance to stretch, E π r²; hair is hard to stretch"
     )
     bend_scale: float = Field(default=1.0, ge=0, le=1e6, description="scales the resistance to bend, E π r⁴ / 4")
+    limit_twist: bool = Field(
+        default=True, description="twist never exceeds bend; off only to study what this safeguard is for"
+    )
     twist_ratio: float = Field(
         default=0.72,
         ge=0,
-        le=1,
-        description="twist stiffness as a part of bend stiffness: the spring constant of a coil",
+        le=100,
+        description="twist stiffness as a part of bend stiffness, at most 1: the spring constant of a coil",
     )
     damping: float = Field(
         default=0.005,
@@ -46,6 +49,13 @@ class Material(Section):
         default=True, description="make coils of few vertices a turn as soft as smooth ones"
     )
 
+    @field_validator("twist_ratio")
+    @classmethod
+    def _within_bend(cls, ratio: float, info: ValidationInfo) -> float:
+        if ratio > 1 and info.data.get("limit_twist"):
+            raise refuse(f"is {ratio}; must be at most 1 (or limit_twist = false, to study what the limit is for)")
+        return ratio
+
     def core(self) -> _core.StrandMaterial:
         """The same, for the core."""
         material = _core.StrandMaterial()
@@ -54,20 +64,52 @@ class Material(Section):
         return material
 
 
+Safeguard = Literal["flip_history", "winding_number", "straight_fade"]
+SAFEGUARDS: tuple[Safeguard, ...] = get_args(Safeguard)
+MOST_ITERATIONS = 1000
+
+
 class Solver(Section):
     """How a time step is solved."""
 
     newton: int = Field(
-        default=5, ge=1, le=1000, description="Newton iterations per step; 1 is stable, 5 is the quality for film"
+        default=5,
+        ge=1,
+        le=MOST_ITERATIONS,
+        description="Newton iterations per step; 1 is stable, 5 is the quality for film",
+    )
+    until_converged: bool = Field(
+        default=False,
+        description=f"go on until every lock has converged, at most {MOST_ITERATIONS} iterations, whatever newton is",
     )
     substeps: int = Field(default=1, ge=1, le=1000, description="steps per frame")
     tolerance: float = Field(
         default=1e-6, gt=0, le=1e-2, description="[m] a lock has converged when no vertex moves more than this"
     )
+    integrator: Literal["backward_euler", "bdf2"] = Field(
+        default="backward_euler",
+        description="first order and calm, or second order (BDF-2), which keeps a swing going for longer",
+    )
     continuation: Continuation = Field(
         default="material_frame",
         description="how the signs of bends and the turns of twist are found: see the theory page",
     )
+    safeguards: tuple[Safeguard, ...] = Field(
+        default=SAFEGUARDS, description="those of `history` that are on; fewer only to study what each is for"
+    )
+
+    @field_validator("safeguards")
+    @classmethod
+    def _of_history(cls, safeguards: tuple[Safeguard, ...], info: ValidationInfo) -> tuple[Safeguard, ...]:
+        continuation = info.data.get("continuation")
+        if continuation != "history" and set(safeguards) != set(SAFEGUARDS):
+            raise refuse(f"is {list(safeguards)}; continuation is '{continuation}', only 'history' can be without one")
+        return safeguards
+
+    @property
+    def iterations(self) -> int:
+        """Newton iterations per step, at most."""
+        return MOST_ITERATIONS if self.until_converged else self.newton
 
 
 VARIATIONS = ("radius", "stretch", "bend", "twist", "damping")
@@ -140,15 +182,20 @@ class Strands:
         Returns the report of every strand, one array of shape (count,) per quantity (see ``_core.REPORT``).
         """
         solver = solver or Solver()
+        safeguards = _core.Safeguards()
+        for name in SAFEGUARDS:
+            setattr(safeguards, name, name in solver.safeguards)
         rows = self._core.step(
             np.ascontiguousarray(targets, np.float64),
             self._no_forces if forces is None else np.ascontiguousarray(forces, np.float64),
             dt,
             gravity,
             wind,
-            solver.newton,
+            solver.iterations,
             solver.tolerance,
             getattr(_core.Continuation, solver.continuation),
+            getattr(_core.Integrator, solver.integrator),
+            safeguards,
         )
         return dict(zip(_core.REPORT, rows.T, strict=True))
 

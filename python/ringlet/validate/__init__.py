@@ -7,14 +7,27 @@ from ringlet.validate import (
     cantilever,
     hanging_chain,
     hanging_helix,
+    loose_waves,
     love,
     out_of_plane,
+    plucked_coil,
     tip_load,
     vibration,
 )
 from ringlet.validate.case import Case, Row
 
-_MODULES = (cantilever, tip_load, hanging_helix, love, vibration, hanging_chain, buckling, out_of_plane)
+_MODULES = (
+    cantilever,
+    tip_load,
+    hanging_helix,
+    love,
+    vibration,
+    plucked_coil,
+    hanging_chain,
+    buckling,
+    out_of_plane,
+    loose_waves,
+)
 CASES: dict[str, Case] = {module.CASE.name: module.CASE for module in _MODULES}
 
 

@@ -71,7 +71,7 @@ NewtonResult<T> newton(Objective &objective, T *x, const NewtonSettings &setting
             step *= select(refused > 0.0, shorter, one);
         }
         for (int i = 0; i < size; ++i) x[i] = select(step > 0.0, space.trial[i], x[i]);
-        active = select(arrived, T{}, active);
+        active = select(arrived, T{}, select(step > 0.0, active, T{})); // where no step is one down, none will be
         if (!any(active > 0.0)) break;
     }
     return result;

@@ -2,6 +2,7 @@
 // of the last accepted step, the fade is fixed within a step.
 #pragma once
 
+#include "ringlet/scene/strand_arrays.h"
 #include "ringlet/scene/strand_shape.h"
 
 namespace ringlet::RINGLET_SIMD {
@@ -15,9 +16,9 @@ template <class T> inline T carried_sign(const Reference<T> &reference, Vec<T> t
 
 // Winding. Δφ is known up to whole turns: the one nearest to the last step's is taken, so twist accumulates past ±π. Where one
 // of the two triangles is inverted (signs differ) the dihedral is half a turn off.
-template <class T> inline T carried_turns(const Reference<T> &reference, T delta, T sign_product) {
+template <class T> inline T carried_turns(T before, T delta, T sign_product) {
     const T with_sign = delta + select(sign_product < 0.0, constant<T>(pi), T{});
-    return reference.delta + wrap(with_sign - reference.delta);
+    return before + wrap(with_sign - before);
 }
 
 // Too straight to twist. An edge with a corner below 0.15° or above 179.85° gets no twist; a hard cut would take away a large
@@ -29,13 +30,16 @@ template <class T> inline T straightness_fade(T angle) {
     return y * y * (3.0 - 2.0 * y);
 }
 
-template <class T> void continue_history(int vertices, const StrandRow<T> *rows, StrandShape<T> *shapes) {
+template <class T>
+void continue_history(int vertices, const StrandRow<T> *rows, StrandShape<T> *shapes, Safeguards safeguards) {
     for (int i = 1; i + 1 < vertices; ++i)
-        shapes[i].sigma = carried_sign(rows[i].reference, shapes[i].tangent, shapes[i].corner.normal);
+        shapes[i].sigma = safeguards.flip_history ? carried_sign(rows[i].reference, shapes[i].tangent, shapes[i].corner.normal)
+                                                  : constant<T>(1.0);
     for (int i = 1; i + 2 < vertices; ++i) {
         StrandShape<T> &s = shapes[i];
         const T delta = s.phi - rows[i].rest_dihedral;
-        s.delta = carried_turns(rows[i].reference, delta, s.sigma * shapes[i + 1].sigma);
+        s.delta =
+            carried_turns(safeguards.winding_number ? rows[i].reference.delta : T{}, delta, s.sigma * shapes[i + 1].sigma);
         s.turns = round((s.delta - delta) * (0.5 / pi));
         s.strain = rows[i].reference.fade * s.delta;
         s.by_dihedral = rows[i].reference.fade;

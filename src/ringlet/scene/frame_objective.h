@@ -59,11 +59,16 @@ public:
 
     void remember_start() {}
 
-    // Rest values between the groom's and the present ones, b = β/dt.
-    void damp(int i, T b) {
+    Strains<T> strains(int i) const {
+        const StrandShape<T> &s = shapes_[i];
+        return {{s.length, s.across, s.along, s.strain}};
+    }
+
+    // Rest values between the groom's and the carried ones (strand_objective.h), b = β/h.
+    void damp(int i, T b, const Strains<T> &carried) {
         const T part = b / (1.0 + b);
-        rows_[i].damped_bend = {part * shapes_[i].across, part * shapes_[i].along, T{}};
-        if (this->is_hinge(i)) rows_[i].damped_strain = part * shapes_[i].strain;
+        rows_[i].damped_bend = {part * carried[1], part * carried[2], T{}};
+        if (this->is_hinge(i)) rows_[i].damped_strain = part * carried.twist();
     }
 
     // Without damping, of the stiffnesses as they are in the rows.
@@ -76,6 +81,7 @@ public:
     T flipped(int) const { return T{}; }
     T wound(int) const { return T{}; }
     T too_straight(int) const { return T{}; }
+    T clamped(int i) const { return this->clamped_stretch(i); } // bend and twist are sums of squares
 
 private:
     Vec<T> spin_of(int i) const { return spin(rows_[i].reference.tangent, shapes_[i].tangent, shapes_[i].length); }

@@ -22,7 +22,7 @@ public:
         for (int i = 1; i + 2 < vertices_; ++i)
             shapes_[i].phi = dihedral(shapes_[i].corner, shapes_[i + 1].corner, shapes_[i + 1].tangent);
         if constexpr (history)
-            continue_history(vertices_, rows_, shapes_);
+            continue_history(vertices_, rows_, shapes_, this->safeguards_);
         else
             continue_least_energy(vertices_, rows_, shapes_);
 
@@ -49,17 +49,24 @@ public:
             row.start_sigma = s.sigma;
             row.start_turns = s.turns;
             if (!this->is_hinge(i) || !history) continue;
-            row.reference.fade = straightness_fade(s.corner.angle) * straightness_fade(shapes_[i + 1].corner.angle);
+            row.reference.fade = constant<T>(1.0);
+            if (this->safeguards_.straight_fade)
+                row.reference.fade = straightness_fade(s.corner.angle) * straightness_fade(shapes_[i + 1].corner.angle);
             s.strain = row.reference.fade * s.delta; // evaluated before the fade was known
             s.by_dihedral = row.reference.fade;
         }
     }
 
-    // Rest values between the groom's and the present ones, b = β/dt.
-    void damp(int i, T b) {
+    Strains<T> strains(int i) const {
+        const StrandShape<T> &s = shapes_[i];
+        return {{s.length, s.sigma * s.corner.angle, T{}, s.strain}};
+    }
+
+    // Rest values between the groom's and the carried ones (strand_objective.h), b = β/h.
+    void damp(int i, T b, const Strains<T> &carried) {
         const T part = 1.0 / (1.0 + b);
-        rows_[i].damped_angle = part * (rows_[i].rest_angle + b * shapes_[i].sigma * shapes_[i].corner.angle);
-        if (this->is_hinge(i)) rows_[i].damped_strain = part * b * shapes_[i].strain;
+        rows_[i].damped_angle = part * (rows_[i].rest_angle + b * carried[1]);
+        if (this->is_hinge(i)) rows_[i].damped_strain = part * b * carried.twist();
     }
 
     // Without damping, of the stiffnesses as they are in the rows.
@@ -79,6 +86,12 @@ public:
     T flipped(int i) const { return select(shapes_[i].sigma == rows_[i].start_sigma, T{}, constant<T>(1.0)); }
     T wound(int i) const { return select(shapes_[i].turns == rows_[i].start_turns, T{}, constant<T>(1.0)); }
     T too_straight(int i) const { return select(shapes_[i].by_dihedral == 0.0, constant<T>(1.0), T{}); }
+    T clamped(int i) const {
+        T count = this->clamped_stretch(i);
+        if (this->is_corner(i))
+            count += clamped_bend(shapes_[i].corner, shapes_[i].sigma, rows_[i].damped_angle, rows_[i].bend);
+        return count;
+    }
 
 private:
     void add_bend(int i, T *gradient, Matrix &hessian) const {

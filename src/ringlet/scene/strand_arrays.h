@@ -11,6 +11,14 @@ namespace ringlet {
 // (scene/frame_objective.h).
 enum class Continuation { history, least_energy, material_frame };
 
+// How velocities and rates follow from positions, see strand_objective.h.
+enum class Integrator { backward_euler, bdf2 };
+
+// What keeps degenerate virtual triangles harmless (scene/continuation_history.h); each can be turned off to study it.
+struct Safeguards {
+    bool flip_history = true, winding_number = true, straight_fade = true;
+};
+
 struct StrandStep {
     double dt = 1.0 / 24;          // [s]
     double gravity[3] = {0, 0, 0}; // [m/s²]
@@ -18,6 +26,8 @@ struct StrandStep {
     int newton = 5;                // iterations at most
     double tolerance = 1e-7;       // [m]; a strand is done when no coordinate moves more
     Continuation continuation = Continuation::material_frame;
+    Integrator integrator = Integrator::backward_euler;
+    Safeguards safeguards; // of `history`
 };
 
 // What happened to one strand in one step.
@@ -31,6 +41,7 @@ struct StrandReport {
     double flips;                                  // vertices whose sign changed
     double winding_changes;                        // edges whose number of turns changed
     double too_straight;                           // edges without twist in this step
+    double clamped;                                // eigenvalues of elements' Hessians that are negative at the end
     double nan;                                    // 1 where a position is not finite (the strand then keeps its last state)
 };
 inline constexpr int strand_report_columns = sizeof(StrandReport) / sizeof(double);
@@ -45,6 +56,7 @@ struct StrandArrays {
     double mass_damping;
     const double *targets, *forces;
     double *positions, *velocities, *normals, *twist, *directors;
+    double *last_positions, *last_velocities, *last_strains, *last_dt;
 };
 
 // Strands that one call of a kernel steps together, one per lane.

@@ -1,12 +1,14 @@
 // What a time step of a strand minimises: Σ ½ aᵢ ‖xᵢ − yᵢ‖² (inertia, gravity, mass damping, drag) + stretch + bend + twist,
-// with the vertices that are held left out. Damping of strains needs no term of its own: with b = β/dt,
-// ½ k (θ − θ̄)² + ½ b k (θ − θₙ)² = ½ k (1 + b) (θ − (θ̄ + b θₙ)/(1 + b))² + constant.
+// with the vertices that are held left out. Rates are (x − x̂)/h, of positions, velocities and strains alike: backward Euler has
+// x̂ = xₙ, h = dt; BDF-2 x̂ = xₙ + ⅓ (xₙ − xₙ₋₁), h = ⅔ dt. Damping of strains needs no term of its own: with b = β/h,
+// ½ k (θ − θ̄)² + ½ b k (θ − θ̂)² = ½ k (1 + b) (θ − (θ̄ + b θ̂)/(1 + b))² + constant.
 // Here is what the models of bend and twist share; they are hinge_objective.h and frame_objective.h.
 #pragma once
 
 #include "ringlet/energy/strand/bend.h"
 #include "ringlet/energy/strand/stretch.h"
 #include "ringlet/linear/banded.h"
+#include "ringlet/scene/strand_arrays.h"
 #include "ringlet/scene/strand_shape.h"
 
 namespace ringlet::RINGLET_SIMD {
@@ -23,8 +25,8 @@ public:
     static constexpr int freedoms = freedoms_;
     using Matrix = Banded<T, band>;
 
-    StrandObjective(int vertices, StrandRow<T> *rows, StrandShape<T> *shapes)
-        : vertices_(vertices), rows_(rows), shapes_(shapes) {}
+    StrandObjective(int vertices, StrandRow<T> *rows, StrandShape<T> *shapes, Safeguards safeguards = {})
+        : vertices_(vertices), rows_(rows), shapes_(shapes), safeguards_(safeguards) {}
 
     int size() const { return freedoms * vertices_; }
 
@@ -79,6 +81,11 @@ protected:
         }
     }
 
+    // Eigenvalues of the edge's Hessian that are left out: the two across an edge that is compressed.
+    T clamped_stretch(int i) const {
+        return select(shapes_[i].length < (1.0 - clamped_from) * rows_[i].damped_length, constant<T>(2.0), T{});
+    }
+
     void hold(T *gradient) const {
         for (int i = 0; i < vertices_; ++i)
             for (int k = 0; k < 3; ++k) gradient[freedoms * i + k] *= rows_[i].free;
@@ -98,6 +105,7 @@ protected:
     int vertices_;
     StrandRow<T> *rows_;
     StrandShape<T> *shapes_;
+    Safeguards safeguards_;
     const T *positions_ = nullptr;
 };
 

@@ -14,6 +14,16 @@ template <class T> struct Reference {
     T fade;         // of the twist, 0 … 1 (`history`)
 };
 
+// What Kelvin–Voigt damping resists the rate of.
+template <class T> struct Strains {
+    static constexpr int count = 4;
+    T of[count] = {}; // length of the edge [m]; bend: σθ and 0, or the two material curvatures less those at rest; twist
+    T &operator[](int k) { return of[k]; }
+    T operator[](int k) const { return of[k]; }
+    T length() const { return of[0]; }
+    T twist() const { return of[3]; }
+};
+
 // Fixed during a step. What is damped rests at a value between the groom's and that of the step's start (see
 // strand_objective.h).
 template <class T> struct StrandRow {

@@ -55,7 +55,11 @@ StrandArrays arrays_of(const StrandModel &model, StrandState &state, View<Vec3> 
             state.velocities.data()->data(),
             state.normals.data()->data(),
             state.twist.data(),
-            state.directors.data()->data()};
+            state.directors.data()->data(),
+            state.last_positions.data()->data(),
+            state.last_velocities.data()->data(),
+            state.last_strains.data()->data(),
+            state.last_dt.data()};
 }
 
 // Strands of like length together, so that few lanes carry vertices that are not there. A fixed order: the result of a strand
@@ -158,8 +162,8 @@ StrandModel make_strand_model(View<int> offsets, View<Vec3> rest, View<unsigned 
             model.bend_stiffness[i] =
                 EI * 0.5 * (factors[i - first - 1].bend + factor.bend) / (0.5 * (model.rest_length[i - 1] + length));
             if (i + 2 == end) continue;
-            const double ratio =
-                std::clamp(material.twist_ratio * on_edge(variation.twist, i), 0.0, 1.0); // safeguard: never above bend
+            const double most = material.limit_twist ? 1.0 : 1e300; // safeguard: twist never above bend
+            const double ratio = std::clamp(material.twist_ratio * on_edge(variation.twist, i), 0.0, most);
             // An edge that is held is held to its middle, as the bend behind it has it: only half of it can twist.
             const double twisting_length = held[i] && held[i + 1] ? 0.5 * length : length;
             model.twist_stiffness[i] =
@@ -178,6 +182,10 @@ StrandState make_strand_state(const StrandModel &model, View<Vec3> positions) {
     state.normals.assign(n, Vec3::Zero());
     state.twist.assign(n, 0.0);
     state.directors.assign(n, Vec3::Zero());
+    state.last_positions.assign(n, Vec3::Zero());
+    state.last_velocities.assign(n, Vec3::Zero());
+    state.last_strains.assign(n, {});
+    state.last_dt.assign(model.strand_count(), 0.0);
     const RestShape now = measure_rest_shape(View<int>(model.offsets), positions);
     state.normals = now.normal;
     for (int s = 0; s < model.strand_count(); ++s) {

@@ -4,6 +4,7 @@
 #include "ringlet/math/types.h"
 #include "ringlet/scene/strand_arrays.h"
 
+#include <array>
 #include <vector>
 
 namespace ringlet {
@@ -15,7 +16,8 @@ struct StrandMaterial {
     double density = 1300;          // ρ [kg/m³]
     double stretch_scale = 1;       // scales EA: below 1 the strand is easier to stretch than its E says
     double bend_scale = 1;          // scales EI
-    double twist_ratio = 0.72;      // c = GJ / EI, clamped to [0, 1]
+    double twist_ratio = 0.72;      // c = GJ / EI
+    bool limit_twist = true;        // clamp c to [0, 1]
     double damping = 0.0;           // Kelvin–Voigt time β [s]: every strain resists its own rate with β times its stiffness
     double mass_damping = 0.0;      // α [1/s]: velocities decay at this rate
     double drag = 0.0;              // linear air drag per length [kg/(m s)]
@@ -49,13 +51,17 @@ struct StrandModel {
     int vertex_count() const { return offsets.back(); }
 };
 
-// Moving, with what the next step compares with: normals and twist (`history`) or the material frame.
+// Moving, with what the next step compares with: normals and twist (`history`) or the material frame; and, for BDF-2, the state
+// that the last step began with.
 struct StrandState {
     std::vector<Vec3> positions;  // [m]
     std::vector<Vec3> velocities; // [m/s]
     std::vector<Vec3> normals;    // per vertex: σ n of the last accepted step
     std::vector<double> twist;    // per edge: Δφ with its turns [rad]
     std::vector<Vec3> directors;  // per edge from the second: D of its material frame
+    std::vector<Vec3> last_positions, last_velocities;
+    std::vector<std::array<double, 4>> last_strains; // per vertex: length [m], two of bend, twist [rad]
+    std::vector<double> last_dt;                     // per strand [s]; 0 where there is no such step, or not one of BDF-2
 };
 
 // The rest shape is measured from the polylines `rest` (offsets.back() points); every strand has at least 3 points, of which

@@ -59,7 +59,7 @@ template <class Objective> class Group {
 public:
     Group(const StrandArrays &arrays, const StrandStep &step, StrandGroup group, int vertices, void *memory)
         : arrays_(arrays), step_(step), group_(group), vertices_(vertices), space_(memory, vertices),
-          objective_(vertices, space_.rows, space_.shapes) {
+          objective_(vertices, space_.rows, space_.shapes, step.safeguards) {
         for (int lane = 0; lane < lanes; ++lane) load(lane);
         for (int i = 0; i < vertices_; ++i) place(space_.x, i, space_.start[i]);
         objective_.evaluate(space_.x);
@@ -124,6 +124,8 @@ private:
     // Lanes hold strands of different lengths: behind a strand's tip follow vertices that nothing acts on, on a straight line.
     void load(int lane) {
         const int begin = first(lane), n = count(lane);
+        const bool carries = step_.integrator == Integrator::bdf2 && arrays_.last_dt[strand(lane)] == step_.dt;
+        set_lane(part_, lane, carries ? 1.0 / 3 : 0.0);
         for (int i = 0; i < vertices_; ++i) {
             StrandRow<Pack> &row = space_.rows[i];
             const bool real = i < n;
@@ -208,14 +210,16 @@ private:
         }
     }
 
-    // Damping of the strains' rates, as stiffer energies about rest values between the groom's and the present ones.
+    // Damping of the strains' rates, as stiffer energies about rest values between the groom's and the carried ones.
     void resist_rates() {
+        const Pack h = step_.dt * (1.0 - part_);
         for (int i = 0; i + 1 < vertices_; ++i) {
             StrandRow<Pack> &row = space_.rows[i];
-            const Pack b = row.damping / step_.dt;
+            const Pack b = row.damping / h;
+            const Strains<Pack> carried = carried_strains(i);
             row.undamped = 1.0 / (1.0 + b);
-            row.damped_length = row.undamped * (row.rest_length + b * space_.shapes[i].length);
-            if (i > 0) objective_.damp(i, b);
+            row.damped_length = row.undamped * (row.rest_length + b * carried.length());
+            if (i > 0) objective_.damp(i, b, carried);
             row.stretch *= 1.0 + b;
             row.bend *= 1.0 + b;
             row.twist *= 1.0 + b;
@@ -231,18 +235,40 @@ private:
         }
     }
 
+    // x̂ of the strains, whose present values are kept for the next step. Twist is known up to turns, and so is its change.
+    Strains<Pack> carried_strains(int i) {
+        Strains<Pack> now = objective_.strains(i);
+        if (step_.integrator == Integrator::backward_euler) return now;
+        Strains<Pack> last = now;
+        for (int lane = 0; lane < group_.count; ++lane) {
+            if (i + 1 >= count(lane)) continue;
+            double *kept = arrays_.last_strains + Strains<Pack>::count * (first(lane) + i);
+            for (int k = 0; k < Strains<Pack>::count; ++k) {
+                if (part_[lane] > 0) set_lane(last[k], lane, kept[k]);
+                kept[k] = now[k][lane];
+            }
+        }
+        for (int k = 0; k < 3; ++k) now[k] += part_ * (now[k] - last[k]);
+        now[3] += part_ * wrap(now.twist() - last.twist());
+        return now;
+    }
+
+    // x̂ of the integrator, of a quantity that was `last` a step ago.
+    double carried(double now, double last, int lane) const { return now + part_[lane] * (now - last); }
+
     void add_inertia() {
-        const double h = step_.dt;
         for (int lane = 0; lane < lanes; ++lane) {
             const int begin = first(lane), n = count(lane);
+            const double h = step_.dt * (1.0 - part_[lane]);
             for (int i = 0; i < n; ++i) {
                 const int at = begin + i;
                 const double mass = arrays_.mass[at], drag = arrays_.drag[at] / h;
                 const double moving = mass / (h * h), held = arrays_.mass_damping * mass / h, sum = moving + held + drag;
                 set_lane(space_.rows[i].inertia, lane, sum);
                 for (int k = 0; k < 3; ++k) {
-                    const double start = space_.start[i][k][lane];
-                    const double free_flight = start + h * space_.velocity[i][k][lane] + h * h * step_.gravity[k];
+                    const double start = carried(space_.start[i][k][lane], arrays_.last_positions[3 * at + k], lane);
+                    const double velocity = carried(space_.velocity[i][k][lane], arrays_.last_velocities[3 * at + k], lane);
+                    const double free_flight = start + h * velocity + h * h * step_.gravity[k];
                     const double with_wind = start + h * step_.wind[k];
                     const double force = arrays_.forces[3 * at + k];
                     const double y = sum > 0 ? (moving * free_flight + held * start + drag * with_wind + force) / sum : 0.0;
@@ -291,8 +317,11 @@ private:
         if (!(sum - sum == 0)) { // not finite: keep the last good state, at rest
             report.nan = 1;
             for (int i = 3 * begin; i < 3 * (begin + n); ++i) arrays_.velocities[i] = 0;
+            arrays_.last_dt[strand(lane)] = 0;
             return report;
         }
+        arrays_.last_dt[strand(lane)] = step_.integrator == Integrator::bdf2 ? step_.dt : 0.0;
+        const double h = step_.dt * (1.0 - part_[lane]);
         for (int i = 0; i < n; ++i) {
             const StrandRow<Pack> &row = space_.rows[i];
             const StrandShape<Pack> &s = space_.shapes[i];
@@ -302,9 +331,13 @@ private:
             const bool hinge_free = hinge && space_.rows[i + 2].free[lane] > 0;
             double speed2 = 0;
             for (int k = 0; k < 3; ++k) {
-                const double x = coordinate(i, k), v = (x - arrays_.positions[3 * at + k]) / step_.dt;
-                arrays_.positions[3 * at + k] = x;
-                arrays_.velocities[3 * at + k] = v;
+                double &position = arrays_.positions[3 * at + k], &velocity = arrays_.velocities[3 * at + k];
+                double &last_position = arrays_.last_positions[3 * at + k];
+                const double x = coordinate(i, k), v = (x - carried(position, last_position, lane)) / h;
+                last_position = position;
+                arrays_.last_velocities[3 * at + k] = velocity;
+                position = x;
+                velocity = v;
                 speed2 += v * v;
                 report.gravity -= arrays_.mass[at] * step_.gravity[k] * x * free;
             }
@@ -313,6 +346,7 @@ private:
                 const double strain = s.length[lane] / arrays_.rest_length[at] - 1.0;
                 report.stretch += stretch_energy(s.length[lane], arrays_.rest_length[at], arrays_.stretch_stiffness[at]);
                 report.max_stretch = max(report.max_stretch, abs(strain));
+                report.clamped += objective_.clamped(i)[lane];
             }
             if (corner) {
                 report.bend += objective_.bend_energy_at(i)[lane];
@@ -335,6 +369,7 @@ private:
     int vertices_;
     Workspace<Objective> space_;
     Objective objective_;
+    Pack part_{}; // ⅓ in lanes that take a step of BDF-2, else 0 (strand_objective.h)
 };
 
 int longest(const StrandArrays &arrays, StrandGroup group) {

@@ -68,4 +68,18 @@ inline Bend<T> bend(const Corner<T> &c, Vec<T> t0, Vec<T> t1, T length0, T lengt
     return result;
 }
 
+// An eigenvalue counts as clamped from this much below zero, by the element's stiffness: rounding does not.
+inline constexpr double clamped_from = 1e-6;
+
+// How many of the six eigenvalues are negative, so that bend() leaves them out: one of each pair where the corner is bent and
+// not at its rest angle.
+template <class T> inline T clamped_bend(const Corner<T> &c, T sigma, T rest_angle, T stiffness) {
+    const T w = c.angle - sigma * rest_angle, one = constant<T>(1.0);
+    const T one_plus_cosine = max(1.0 + c.cosine, constant<T>(1e-12));
+    const auto counted = [&](T eigenvalue) { return select(eigenvalue < -clamped_from, one, T{}); };
+    const T count = counted(one - sqrt(1.0 + w * w)) + counted(-abs(w)) + counted(-w * c.sine / one_plus_cosine) +
+                    counted(w * one_plus_cosine / max(c.sine, constant<T>(1e-9)));
+    return select(stiffness > 0.0, count, T{});
+}
+
 } // namespace ringlet::RINGLET_SIMD

@@ -1,0 +1,91 @@
+"""Loose waves of type 2A swing as the smooth rod does, in every direction: their shape does not tie them.
+
+Expected values: linear theory of a curved rod. A force F at a point r bends and twists the rod between r and the clamp
+with the moment m(s) = (r − r(s)) × F. By virtual work two forces share the compliance
+∫ m₁⊥ · m₂⊥ / EI + m₁ₜ m₂ₜ / GJ ds, which gives the frequencies with the masses.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import eigh
+
+from ringlet.shot.strands import Continuation, Strands
+from ringlet.validate.case import Case, Row
+from ringlet.validate.rods import bending_stiffness, line_density, masses, rod_material, strand
+
+HEIGHT, AMPLITUDE, WAVELENGTH = 0.06, 2e-3, 0.03  # [m]
+SHAPES = {"wave in a plane": 0.0, "wave around an axis": 1.0}  # how far the third coordinate goes
+HELD = 3
+
+Points = NDArray[np.float64]
+
+
+def wave(shape: str, along: NDArray[np.floating]) -> Points:
+    """Points [m] at depths ``along`` [m] below the clamp."""
+    phase = 2 * np.pi * np.asarray(along, np.float64) / WAVELENGTH
+    return np.c_[AMPLITUDE * np.sin(phase), -np.asarray(along), SHAPES[shape] * AMPLITUDE * np.cos(phase)]
+
+
+def polyline(shape: str, edges: int) -> Points:
+    """Vertices at equal distances [m]; the clamp stands in the middle of the second edge."""
+    along = np.linspace(-HEIGHT, HEIGHT, 40_001)
+    steps = np.linalg.norm(np.diff(wave(shape, along), axis=0), axis=1)
+    arc = np.append(0.0, np.cumsum(steps)) - steps[: len(steps) // 2].sum()
+    return wave(shape, np.interp(arc[-1] * (np.arange(edges + 1) - 1.5) / (edges - 1.5), arc, along))
+
+
+@cache
+def theory(shape: str) -> tuple[float, float]:
+    """The two lowest ω [1/s] of the smooth rod."""
+    material, pieces = rod_material(), 400
+    ends = wave(shape, np.linspace(0.0, HEIGHT, pieces + 1))
+    middle, edges = 0.5 * (ends[1:] + ends[:-1]), np.diff(ends, axis=0)
+    lengths = np.linalg.norm(edges, axis=1)
+    tangents = edges / lengths[:, None]
+    # Moment at piece s of unit forces along the axes at piece r beyond it, in the order (s, moment, r, axis).
+    arms = np.triu(np.ones((pieces, pieces)))[:, :, None] * (middle[None] - middle[:, None])
+    moments = np.stack([np.cross(arms, axis) for axis in np.eye(3)], axis=-1).transpose(0, 2, 1, 3)
+    twist = np.einsum("smra,sm->sra", moments, tangents)
+    bend = moments - tangents[:, :, None, None] * twist[:, None]
+    EI = bending_stiffness(material)
+    bend *= np.sqrt(lengths / EI)[:, None, None, None]
+    twist *= np.sqrt(lengths / (material.twist_ratio * EI))[:, None, None]
+    factor = np.concatenate([bend.reshape(3 * pieces, -1), twist.reshape(pieces, -1)])
+    factor *= np.sqrt(line_density(material) * np.repeat(lengths, 3))
+    first, second = np.linalg.svd(factor, compute_uv=False)[:2]
+    return float(1 / first), float(1 / second)
+
+
+def frequencies(shape: str, edges: int, continuation: Continuation = "material_frame") -> tuple[float, float]:
+    """The two lowest ω [1/s] of the strand."""
+    rod: Strands = strand(polyline(shape, edges), rod_material(), HELD)
+    rest = rod.curves.points
+    h = 1e-6 * np.linalg.norm(rest[1] - rest[0])
+    columns = []
+    for coordinate in range(3 * HELD, rest.size):
+        step = np.zeros(rest.size)
+        step[coordinate] = h
+        up, down = (
+            rod.energy(rest + sign * step.reshape(rest.shape), continuation=continuation)[1][HELD:].ravel()
+            for sign in (1, -1)
+        )
+        columns.append((up - down) / (2 * h))
+    stiffness = np.array(columns)
+    mass = np.diag(np.repeat(masses(rod)[HELD:], 3))
+    squares = eigh(0.5 * (stiffness + stiffness.T), mass, eigvals_only=True, subset_by_index=(0, 1))
+    return float(np.sqrt(squares[0])), float(np.sqrt(squares[1]))
+
+
+def run() -> Iterator[Row]:
+    for shape in SHAPES:
+        for edges, tolerance in ((15, 5e-3), (30, 2e-3), (60, 5e-4)):
+            for name, expected, got in zip(("lowest", "second"), theory(shape), frequencies(shape, edges), strict=True):
+                yield Row(f"{shape}, {name} ω, {edges} edges", expected, got, tolerance)
+
+
+CASE = Case("loose-waves", "Loose waves swing freely, in their plane and out of it", run)

@@ -1,0 +1,81 @@
+"""What each safeguard of `history` is for: a scene that goes well with it, and badly as soon as it is turned off."""
+
+import numpy as np
+import pytest
+from coils import helix, rotation
+from ringlet.curves import Curves
+from ringlet.shot import Material, Solver, Strands
+from stability import CLOSE, HELD, flattened, straightened
+
+FRAME = 1 / 24
+SAFEGUARDS = ("flip_history", "winding_number", "straight_fade")
+
+
+def history(*, without=()):
+    return Solver(continuation="history", safeguards=[name for name in SAFEGUARDS if name not in without])
+
+
+def let_go(rest, start, solver, *, steps, variation=None, **material):
+    """Distance from rest at the end [m], and the largest rise of the energy in a step, by that at the start."""
+    strand = Strands(Curves.from_list([rest]), Material(**material), HELD, variation or {})
+    strand.place(start)
+    first = before = strand.energy(start, continuation="history")[0]
+    gain = 0.0
+    for _ in range(steps):
+        report = strand.step(rest, FRAME, solver=solver)
+        energy = sum(report[name][0] for name in ("stretch", "bend", "twist", "kinetic"))
+        gain, before = max(gain, (energy - before) / first), energy
+    return np.abs(strand.positions - rest).max(), gain
+
+
+@pytest.mark.parametrize("limit_twist", [True, False])
+def test_twist_stiffer_than_bend_gains_energy(limit_twist):
+    """A flattened coil whose twist is varied up to ten times its bend: the limit keeps it calm."""
+    rest = helix(100)
+    stiff = {"twist": np.full(len(rest), 10 / 0.72)}
+    away, gain = let_go(rest, flattened(rest), history(), steps=200, variation=stiff, limit_twist=limit_twist)
+    assert (gain < 1e-6) == limit_twist
+    assert limit_twist or gain > 1e-2
+    assert away < CLOSE
+
+
+@pytest.mark.parametrize("without", [(), ("flip_history",)])
+def test_a_kink_pushed_through_straight_comes_back_only_if_the_flip_is_remembered(without):
+    """Without it the mirrored kink has its rest angle, and stays."""
+    rest = 0.01 * np.array([[0, 0, 0], [0, -1, 0], [0, -2, 0], [0.6, -2.8, 0]])
+    strand = Strands(Curves.from_list([rest]), Material(twist_ratio=0.0, mass_damping=20.0), 3)
+    push = np.zeros_like(rest)
+    for step in range(480):
+        push[3, 0] = -2e-4 if step < 120 else 0.0
+        strand.step(rest, FRAME, forces=push, solver=history(without=without))
+        if step == 119:
+            assert strand.positions[3, 0] < -0.004, "it is on the other side"
+    mirrored = rest[3] * [-1, 1, 1]
+    assert np.abs(strand.positions[3] - (mirrored if without else rest[3])).max() < CLOSE
+
+
+@pytest.mark.parametrize("without", [(), ("winding_number",)])
+def test_twist_adds_up_over_whole_turns_only_if_they_are_counted(without):
+    """The far end is turned twice about the middle edge, which is a torsion spring: ½ k Δφ²."""
+    rest = helix(6)
+    strand = Strands(Curves.from_list([rest]), Material(), np.ones(6, bool))
+    energies = []
+    for angle in np.linspace(0, 4 * np.pi, 49)[1:]:
+        turned = rest.copy()
+        turned[4:] = rest[3] + (rest[4:] - rest[3]) @ rotation(rest[3] - rest[2], angle).T
+        energies.append(strand.step(turned, FRAME, solver=history(without=without))["twist"][0])
+    quarter, whole, two = (energies[k - 1] for k in (6, 24, 48))
+    if without:
+        assert whole < 1e-6 * quarter and two < 1e-6 * quarter
+    else:
+        assert whole == pytest.approx(16 * quarter, rel=1e-6)
+        assert two == pytest.approx(64 * quarter, rel=1e-6)
+
+
+@pytest.mark.parametrize("without", [(), ("straight_fade",)])
+def test_a_straightened_coil_comes_back_only_if_twist_has_faded_out(without):
+    """Where edges are in line the dihedral is undefined and its slope without bound: left in, it locks them."""
+    rest = helix(100, per_turn=5)
+    away, _ = let_go(rest, straightened(rest), history(without=without), steps=400)
+    assert (away < CLOSE) == (not without)
+    assert not without or away > 0.1
