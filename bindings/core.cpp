@@ -13,6 +13,7 @@ void bind_geometry(nb::module_ &module);
 void bind_groom(nb::module_ &module);
 void bind_linear(nb::module_ &module);
 void bind_scene(nb::module_ &module);
+void bind_contact(nb::module_ &module);
 
 NB_MODULE(_core, module) {
     module.doc() = "Ringlet's core: arrays in, arrays out. SI units.";
@@ -26,4 +27,5 @@ NB_MODULE(_core, module) {
     bind_groom(module);
     bind_linear(module);
     bind_scene(module);
+    bind_contact(module);
 }

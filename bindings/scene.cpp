@@ -1,7 +1,6 @@
 // ringlet._core: strands and their steps.
 #include "arrays.h"
-
-#include "ringlet/scene/strands.h"
+#include "strands.h"
 
 #include <cmath>
 #include <nanobind/stl/array.h>
@@ -13,13 +12,6 @@ using namespace ringlet;
 using namespace ringlet::bindings;
 
 namespace {
-
-// A model with the state that moves on it.
-struct Strands {
-    StrandModel model;
-    StrandState state;
-    std::vector<StrandReport> reports;
-};
 
 nb::ndarray<nb::numpy, double> state_view(nb::handle self, std::vector<Vec3> &values) {
     return {values.data()->data(), {values.size(), 3}, self};

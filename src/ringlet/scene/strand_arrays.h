@@ -46,6 +46,11 @@ struct StrandReport {
 };
 inline constexpr int strand_report_columns = sizeof(StrandReport) / sizeof(double);
 
+// What finding the end of a step took.
+struct StrandEffort {
+    double iterations, cuts, residual;
+};
+
 // Model and state of all strands, as pointers (see scene/strands.h for what each holds).
 struct StrandArrays {
     const int *offsets;
@@ -65,12 +70,31 @@ struct StrandGroup {
     int count;
 };
 
+// The linear system of a group whose step is solved from outside, together with what its strands touch
+// (scene/coupled_strands.h). Coordinate k of vertex i of a lane's strand stands at [(freedoms i + k) lanes + lane], in the
+// unknowns as in their gradient; the element in row c + k of column c of its matrix at [(c band + k) lanes + lane].
+struct StrandGroupSystem {
+    double *x;        // unknowns: the guess to begin with
+    double *gradient; // of the energy, at the x evaluated last
+    double *matrix;   // lower band of the Hessian; its factor later
+    int freedoms, band, lanes, vertices;
+    int padding; // unknowns behind the last that solving writes to
+};
+
 // clang-format off
 RINGLET_DECLARE(
     int strand_lanes();
     size_t strand_workspace(int vertices); // bytes that stepping a group of strands of at most that many vertices needs
     void step_strand_group(const StrandArrays &arrays, const StrandStep &step, StrandGroup group, void *workspace, StrandReport *reports);
     void relax_strand_frames(const StrandArrays &arrays, StrandGroup group, void *workspace, double *energies);
+    // A group's step in phases; `memory` holds the group from begin to end, and what begin is given must live as long.
+    size_t strand_group_bytes(const StrandStep &step, int vertices);
+    StrandGroupSystem begin_strand_group(const StrandArrays &arrays, const StrandStep &step, StrandGroup group, void *memory);
+    void evaluate_strand_group(void *memory, const double *x, double *energies); // one energy a lane
+    void assemble_strand_group(void *memory);                                     // gradient and matrix at the x evaluated last
+    void factor_strand_group(void *memory);
+    void solve_strand_group(void *memory, double *b); // in place
+    void end_strand_group(void *memory, const double *x, const StrandEffort &effort, StrandReport *reports);
     double strand_group_energy(const StrandArrays &arrays, const StrandStep &step, int strand, const double *positions, void *workspace, double *gradient, double *hessian);
 )
 // clang-format on

@@ -2,39 +2,18 @@
 
 #include "ringlet/rest/resolution.h"
 #include "ringlet/rest/rest_shape.h"
+#include "ringlet/scene/strand_groups.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <exception>
-#include <new>
 #include <numbers>
 #include <numeric>
 #include <stdexcept>
 #include <string>
 
 namespace ringlet {
-namespace {
-
-constexpr std::align_val_t alignment{64};
-
-class Workspace {
-public:
-    explicit Workspace(size_t bytes) : memory_(::operator new(bytes, alignment)) {}
-    ~Workspace() { ::operator delete(memory_, alignment); }
-    Workspace(const Workspace &) = delete;
-    Workspace &operator=(const Workspace &) = delete;
-    void *get() const { return memory_; }
-
-private:
-    void *memory_;
-};
-
-int longest_strand(const StrandModel &model) {
-    int most = 3;
-    for (int s = 0; s < model.strand_count(); ++s) most = std::max(most, model.offsets[s + 1] - model.offsets[s]);
-    return most;
-}
 
 StrandArrays arrays_of(const StrandModel &model, StrandState &state, View<Vec3> targets, View<Vec3> forces) {
     return {model.offsets.data(),
@@ -62,8 +41,6 @@ StrandArrays arrays_of(const StrandModel &model, StrandState &state, View<Vec3> 
             state.last_dt.data()};
 }
 
-// Strands of like length together, so that few lanes carry vertices that are not there. A fixed order: the result of a strand
-// does not depend on its group, and a group never on the threads.
 std::vector<int> by_length(const StrandModel &model) {
     std::vector<int> order(model.strand_count());
     std::iota(order.begin(), order.end(), 0);
@@ -71,6 +48,14 @@ std::vector<int> by_length(const StrandModel &model) {
         return model.offsets[a + 1] - model.offsets[a] > model.offsets[b + 1] - model.offsets[b];
     });
     return order;
+}
+
+namespace {
+
+int longest_strand(const StrandModel &model) {
+    int most = 3;
+    for (int s = 0; s < model.strand_count(); ++s) most = std::max(most, model.offsets[s + 1] - model.offsets[s]);
+    return most;
 }
 
 constexpr int most_lanes = 8;

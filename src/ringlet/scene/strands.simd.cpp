@@ -4,6 +4,8 @@
 #include "ringlet/scene/hinge_objective.h"
 #include "ringlet/scene/strand_arrays.h"
 
+#include <new>
+
 namespace ringlet::RINGLET_SIMD {
 namespace {
 
@@ -53,7 +55,19 @@ struct RootMotion {
 
 Vec<Pack> unit(Vec<Pack> v) { return (1.0 / max(norm(v), constant<Pack>(1e-30))) * v; }
 
-template <class Objective> class Group {
+// A group whose step is solved from outside, whatever its model.
+struct OpenGroup {
+    virtual ~OpenGroup() = default;
+    virtual StrandGroupSystem begin() = 0;
+    virtual void evaluate(const Pack *x, double *energies) = 0;
+    virtual void assemble() = 0;
+    virtual void factor() = 0;
+    virtual void solve(Pack *b) = 0;
+    virtual void end(const Pack *x, const StrandEffort &effort, StrandReport *reports) = 0;
+};
+
+template <class Objective> class Group final : public OpenGroup {
+    using Matrix = typename Objective::Matrix;
     static constexpr bool frames = Objective::freedoms == 4;
 
 public:
@@ -67,15 +81,45 @@ public:
     }
 
     void step(StrandReport *reports) {
-        const RootMotion root = root_motion();
-        resist_rates();
-        carry(root);
-        add_inertia();
-        guess(root);
+        prepare();
         const NewtonResult<Pack> result = newton(objective_, space_.x, {step_.newton, step_.tolerance}, space_.newton);
         objective_.evaluate(space_.x);
         undamp();
-        for (int lane = 0; lane < group_.count; ++lane) reports[lane] = unload(lane, result);
+        for (int lane = 0; lane < group_.count; ++lane)
+            reports[lane] = unload(lane, {result.iterations[lane], result.cuts[lane], result.residual[lane]});
+    }
+
+    StrandGroupSystem begin() override {
+        prepare();
+        const auto plain = [](Pack *values) { return reinterpret_cast<double *>(values); };
+        return {plain(space_.x),
+                plain(space_.newton.gradient),
+                plain(space_.newton.band),
+                Objective::freedoms,
+                Matrix::band,
+                lanes,
+                vertices_,
+                Matrix::padding};
+    }
+
+    void evaluate(const Pack *x, double *energies) override {
+        const Pack energy = objective_.evaluate(x);
+        for (int lane = 0; lane < lanes; ++lane) energies[lane] = lane < group_.count ? energy[lane] : 0.0;
+    }
+
+    void assemble() override {
+        Matrix hessian = matrix();
+        objective_.assemble(space_.newton.gradient, hessian);
+    }
+
+    void factor() override { matrix().factor(); }
+    void solve(Pack *b) override { matrix().solve(b); }
+
+    void end(const Pack *x, const StrandEffort &effort, StrandReport *reports) override {
+        for (int i = 0; i < objective_.size(); ++i) space_.x[i] = x[i];
+        objective_.evaluate(space_.x);
+        undamp();
+        for (int lane = 0; lane < group_.count; ++lane) reports[lane] = unload(lane, effort);
     }
 
     // Turns the material frames to where they cost least at the present positions; says how much that is [J].
@@ -108,6 +152,16 @@ public:
     }
 
 private:
+    Matrix matrix() { return {space_.newton.band, objective_.size()}; }
+
+    void prepare() {
+        const RootMotion root = root_motion();
+        resist_rates();
+        carry(root);
+        add_inertia();
+        guess(root);
+    }
+
     int strand(int lane) const { return group_.strands[lane < group_.count ? lane : 0]; }
     int first(int lane) const { return arrays_.offsets[strand(lane)]; }
     int count(int lane) const { return arrays_.offsets[strand(lane) + 1] - first(lane); }
@@ -303,13 +357,13 @@ private:
     }
 
     // Writes one strand's state back and says what happened to it.
-    StrandReport unload(int lane, const NewtonResult<Pack> &result) {
+    StrandReport unload(int lane, const StrandEffort &effort) {
         const int begin = first(lane), n = count(lane);
         StrandReport report{};
-        report.newton = result.iterations[lane];
-        report.cuts = result.cuts[lane];
-        report.residual = result.residual[lane];
-        report.unconverged = result.residual[lane] > step_.tolerance;
+        report.newton = effort.iterations;
+        report.cuts = effort.cuts;
+        report.residual = effort.residual;
+        report.unconverged = effort.residual > step_.tolerance;
         const auto coordinate = [&](int i, int k) { return space_.x[Objective::freedoms * i + k][lane]; };
         double sum = 0;
         for (int i = 0; i < n; ++i)
@@ -381,19 +435,28 @@ int longest(const StrandArrays &arrays, StrandGroup group) {
     return most;
 }
 
+// Calls work.operator()<Objective>() with the model that the step asks for.
+template <class Work> auto with_objective(const StrandStep &step, const Work &work) {
+    switch (step.continuation) {
+    case Continuation::history: return work.template operator()<HingeObjective<Pack, true>>();
+    case Continuation::least_energy: return work.template operator()<HingeObjective<Pack, false>>();
+    default: return work.template operator()<FrameObjective<Pack>>();
+    }
+}
+
 // Calls work(group) with the group made for the model that the step asks for.
 template <class Work>
 void with_group(const StrandArrays &arrays, const StrandStep &step, StrandGroup group, void *workspace, const Work &work) {
-    const auto call = [&]<class Objective>() {
+    with_objective(step, [&]<class Objective>() {
         Group<Objective> made(arrays, step, group, longest(arrays, group), workspace);
         work(made);
-    };
-    switch (step.continuation) {
-    case Continuation::history: return call.template operator()<HingeObjective<Pack, true>>();
-    case Continuation::least_energy: return call.template operator()<HingeObjective<Pack, false>>();
-    case Continuation::material_frame: return call.template operator()<FrameObjective<Pack>>();
-    }
+    });
 }
+
+// An open group stands at the beginning of its memory, its workspace behind it.
+constexpr size_t group_room = 512;
+
+OpenGroup &open_group(void *memory) { return *static_cast<OpenGroup *>(memory); }
 
 } // namespace
 
@@ -414,6 +477,31 @@ void relax_strand_frames(const StrandArrays &arrays, StrandGroup group, void *wo
     StrandStep step;
     step.continuation = Continuation::material_frame;
     with_group(arrays, step, group, workspace, [&](auto &made) { made.relax_frames(energies); });
+}
+
+size_t strand_group_bytes(const StrandStep &step, int vertices) {
+    return group_room +
+           with_objective(step, [&]<class Objective>() { return Workspace<Objective>::bytes(vertices < 3 ? 3 : vertices); });
+}
+
+StrandGroupSystem begin_strand_group(const StrandArrays &arrays, const StrandStep &step, StrandGroup group, void *memory) {
+    return with_objective(step, [&]<class Objective>() {
+        static_assert(sizeof(Group<Objective>) <= group_room);
+        char *workspace = static_cast<char *>(memory) + group_room;
+        return (new (memory) Group<Objective>(arrays, step, group, longest(arrays, group), workspace))->begin();
+    });
+}
+
+void evaluate_strand_group(void *memory, const double *x, double *energies) {
+    open_group(memory).evaluate(reinterpret_cast<const Pack *>(x), energies);
+}
+void assemble_strand_group(void *memory) { open_group(memory).assemble(); }
+void factor_strand_group(void *memory) { open_group(memory).factor(); }
+void solve_strand_group(void *memory, double *b) { open_group(memory).solve(reinterpret_cast<Pack *>(b)); }
+
+void end_strand_group(void *memory, const double *x, const StrandEffort &effort, StrandReport *reports) {
+    open_group(memory).end(reinterpret_cast<const Pack *>(x), effort, reports);
+    open_group(memory).~OpenGroup();
 }
 
 double strand_group_energy(const StrandArrays &arrays, const StrandStep &step, int strand, const double *positions,

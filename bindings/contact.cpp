@@ -1,0 +1,110 @@
+// ringlet._core: scenes of strands and bodies that touch.
+#include "arrays.h"
+#include "strands.h"
+
+#include "ringlet/scene/scene.h"
+
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/vector.h>
+
+namespace nb = nanobind;
+using namespace nb::literals;
+using namespace ringlet;
+using namespace ringlet::bindings;
+
+namespace {
+
+template <class Element, class Scalar, class Array> std::vector<Element> copied(const Array &array) {
+    const View<Element> rows = vectors<Element>(array);
+    return {rows.begin(), rows.end()};
+}
+
+} // namespace
+
+void bind_contact(nb::module_ &module) {
+    nb::enum_<System>(module, "System", "How the linear system of a step is solved.")
+        .value("automatic", System::automatic)
+        .value("banded", System::banded)
+        .value("conjugate_gradient", System::conjugate_gradient)
+        .value("direct", System::direct);
+
+    nb::class_<SceneContact>(module, "SceneContact", "Contact in a scene (SI units).")
+        .def(nb::init<>())
+        .def_rw("strand_radius", &SceneContact::strand_radius)
+        .def_rw("strand_material", &SceneContact::strand_material)
+        .def_rw("friction", &SceneContact::friction)
+        .def_rw("stiffness", &SceneContact::stiffness)
+        .def_rw("creep_speed", &SceneContact::creep_speed);
+
+    nb::class_<BodyModel>(module, "BodyModel", "A surface that moves as it is told.")
+        .def(
+            "__init__",
+            [](BodyModel *self, Array3<double> rest, Array3<int> triangles, double thickness, int material) {
+                new (self) BodyModel{copied<Vec3, double>(rest), copied<Triangle, int>(triangles), thickness, material};
+            },
+            "rest"_a, "triangles"_a, "thickness"_a, "material"_a);
+
+    nb::class_<Scene>(module, "Scene", "Strands and bodies that touch.")
+        .def(
+            "__init__",
+            [](Scene *self, Strands &strands, const std::vector<BodyModel> &bodies, const std::vector<int> &rooted_in,
+               const SceneContact &contact) { new (self) Scene(strands.model, strands.state, bodies, rooted_in, contact); },
+            "strands"_a, "bodies"_a, "rooted_in"_a, "contact"_a, nb::keep_alive<1, 2>())
+        .def(
+            "step",
+            [](Scene &self, Array3<double> targets, Array3<double> forces, Array3<double> body_targets, double dt,
+               std::array<double, 3> gravity, std::array<double, 3> wind, int newton, double tolerance,
+               Continuation continuation, System system, double system_tolerance) {
+                SceneStep step;
+                step.strands.dt = dt;
+                std::copy(gravity.begin(), gravity.end(), step.strands.gravity);
+                std::copy(wind.begin(), wind.end(), step.strands.wind);
+                step.strands.newton = newton;
+                step.strands.tolerance = tolerance;
+                step.strands.continuation = continuation;
+                step.system = system;
+                step.system_tolerance = system_tolerance;
+                std::vector<StrandReport> reports;
+                SceneReport report;
+                {
+                    nb::gil_scoped_release release;
+                    report =
+                        self.step(vectors<Vec3>(targets), vectors<Vec3>(forces), vectors<Vec3>(body_targets), step, reports);
+                }
+                const size_t rows = reports.size();
+                return nb::make_tuple(to_numpy<double>(std::vector<SceneReport>{report}, {size_t(scene_report_columns)}),
+                                      to_numpy<double>(std::move(reports), {rows, size_t(strand_report_columns)}));
+            },
+            "targets"_a, "forces"_a, "body_targets"_a, "dt"_a, "gravity"_a, "wind"_a, "newton"_a, "tolerance"_a,
+            "continuation"_a, "system"_a, "system_tolerance"_a,
+            "One time step. Returns the scene's report (SCENE_REPORT) and one report row per strand (REPORT).")
+        .def_prop_ro(
+            "positions",
+            [](const Scene &self) {
+                const View<Vec3> all = self.positions();
+                return to_numpy<double>(std::vector<Vec3>(all.begin(), all.end()), {all.size(), 3});
+            },
+            nb::rv_policy::automatic, "Positions [m] of all vertices, strands before bodies, shape (n, 3).")
+        .def_prop_ro(
+            "contacts",
+            [](const Scene &self) {
+                std::vector<int> vertices;
+                std::vector<double> values; // weights, normal, distance, force
+                for (const Contact &c : self.contacts()) {
+                    vertices.insert(vertices.end(), c.vertex.begin(), c.vertex.end());
+                    values.insert(values.end(), c.weight.begin(), c.weight.end());
+                    values.insert(values.end(), c.normal.data(), c.normal.data() + 3);
+                    values.insert(values.end(), {c.distance, c.force});
+                }
+                const size_t count = self.contacts().size();
+                return nb::make_tuple(to_numpy<int>(std::move(vertices), {count, 4}),
+                                      to_numpy<double>(std::move(values), {count, 9}));
+            },
+            nb::rv_policy::automatic,
+            "Of the last step's end: vertices (k, 4), and weights, normal, distance and force (k, 9).");
+
+    module.attr("SCENE_REPORT") =
+        nb::make_tuple("newton", "cuts", "residual", "unconverged", "linear_iterations", "linear_residual", "candidates",
+                       "contacts", "closest", "violations", "zone_vertices", "substeps", "fraction", "energy", "time_pairs",
+                       "time_assemble", "time_solve", "time_search", "time_filter");
+}

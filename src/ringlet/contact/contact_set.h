@@ -1,0 +1,43 @@
+// All contacts of a scene at the present positions, and how vertices find those that act on them.
+#pragma once
+
+#include "ringlet/contact/broad_phase.h"
+#include "ringlet/contact/contact.h"
+
+#include <vector>
+
+namespace ringlet {
+
+// What the pairs of a scene are made of, per vertex of the collision mesh.
+struct ContactMaterial {
+    std::vector<double> stiffness; // a pair takes the softer side's [N/m]; kinematic vertices: infinity
+    std::vector<int> material;     // which material a vertex is made of
+    std::vector<double> friction;  // μ of a pair of materials, row-major, materials × materials
+    int materials = 1;
+    double creep = 0.0; // [m]
+};
+
+class ContactSet {
+public:
+    // The candidates that touch at the positions `now`; `start` says where the step began, for what they slid since.
+    void find(const CollisionMesh &mesh, const ContactMaterial &material, const Candidates &candidates, View<Vec3> start,
+              View<Vec3> now);
+
+    const std::vector<Contact> &contacts() const { return contacts_; }
+
+    // The contacts that act on a vertex, and as which of their four.
+    struct Role {
+        int contact, as;
+    };
+    View<Role> of(int vertex) const { return {roles_.data() + role_begin_[vertex], roles_.data() + role_begin_[vertex + 1]}; }
+    const std::vector<int> &vertices() const { return vertices_; } // those that move and have contacts
+
+private:
+    void index(const CollisionMesh &mesh);
+
+    std::vector<Contact> contacts_;
+    std::vector<Role> roles_;
+    std::vector<int> role_begin_, vertices_;
+};
+
+} // namespace ringlet

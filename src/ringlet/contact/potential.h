@@ -1,0 +1,36 @@
+// What a contact costs by its gap, and friction by how far it slid.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+namespace ringlet {
+
+// A value and its first and second derivative.
+struct Potential {
+    double value, first, second;
+};
+
+// Contact at gap g, active below r (two-stage activation, Chen et al. 2025, with an end):
+//   ½ (r − g)²                              r/2 ≤ g < r
+//   −(r²/4) (ln(2g/r) − ½)                  r/64 ≤ g < r/2     a barrier: the stiffness grows as r²/4g²
+//   the parabola that touches it at r/64    below, also where g < 0: gaps are those of planes that may be overstepped for now
+// Convex and C² everywhere but at r, where it is C¹.
+inline Potential contact_potential(double g, double r) {
+    if (g >= r) return {0.0, 0.0, 0.0};
+    if (g >= 0.5 * r) return {0.5 * (r - g) * (r - g), g - r, 1.0};
+    const double s = 0.25 * r * r, end = r / 64, d = std::max(g, end);
+    const double value = -s * (std::log(2.0 * d / r) - 0.5), first = -s / d, second = s / (d * d);
+    const double below = g - d;
+    return {value + first * below + 0.5 * second * below * below, first + second * below, second};
+}
+
+// Friction per force μN after sliding a distance y ≥ 0 in a step (Li et al. 2020): |force| rises smoothly to 1 at y = creep and
+// stays there. `first` is that force, `second` its slope.
+inline Potential friction_potential(double y, double creep) {
+    if (y >= creep) return {y, 1.0, 0.0};
+    const double q = y / creep;
+    return {creep * (q * q - q * q * q / 3.0 + 1.0 / 3.0), 2.0 * q - q * q, 2.0 * (1.0 - q) / creep};
+}
+
+} // namespace ringlet

@@ -1,0 +1,44 @@
+// The last word on every move: nothing passes through anything.
+#pragma once
+
+#include "ringlet/contact/broad_phase.h"
+
+#include <functional>
+#include <vector>
+
+namespace ringlet {
+
+// How what is kinematic moves near one of its vertices: where a point that goes along with it ends.
+using CarriedBy = std::function<Vec3(int vertex, const Vec3 &point)>;
+
+struct FilterReport {
+    int candidates = 0; // pairs near one another's paths
+    int violations = 0; // of them, how many would have met
+    int zone_vertices = 0, rounds = 0;
+    double fraction = 1.0; // of the move that everything goes; 1 unless no way out was found
+};
+
+// What a filter knows of a scene besides its mesh.
+struct FilterScene {
+    const CollisionMesh &mesh;
+    View<double> mass; // per vertex
+    View<int> offsets; // where each strand begins among the vertices, and the end
+    CarriedBy carried_by;
+    View<int>
+        rigid; // per vertex: vertices of one number ≥ 0 are moved by one and the same affine map, so that none of them meet
+    bool still = false; // nothing kinematic moves: staying is safe
+};
+
+// Changes where a move ends (`end`, rows of vertices that move) so that no pair meets while every vertex goes straight from
+// `start` to `end`: none comes nearer than half its contact distance or a fifth of its distance at the start, whichever is
+// less. Where nothing kinematic moves, a strand that would meet another goes only as far as where they touch, as a whole, so
+// that its shape is one on the way; what is still in the way after some rounds stays. Else vertices of pairs that would meet
+// form zones, which share one motion: that of the body they touch, or their mean. Along a strand the change fades out so slowly
+// that no edge is strained by more than a few per cent. Zones grow while pairs at their border would meet. Where bodies leave
+// no way out, everything goes only a part of its way.
+//
+// Only relative motion counts: a scene that moves as a whole is filtered alike. `candidates` are those of the filtered move.
+FilterReport filter_step(const FilterScene &scene, BroadPhase &broad_phase, View<Vec3> start, std::vector<Vec3> &end,
+                         Candidates &candidates);
+
+} // namespace ringlet

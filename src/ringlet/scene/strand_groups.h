@@ -1,0 +1,35 @@
+// How strands are dealt to the lanes of the kernels.
+#pragma once
+
+#include "ringlet/scene/strands.h"
+
+#include <new>
+#include <utility>
+#include <vector>
+
+namespace ringlet {
+
+// Memory for the kernels, aligned for any instruction set.
+class Workspace {
+public:
+    explicit Workspace(size_t bytes) : memory_(::operator new(bytes, alignment)) {}
+    ~Workspace() { ::operator delete(memory_, alignment); }
+    Workspace(Workspace &&other) noexcept : memory_(std::exchange(other.memory_, nullptr)) {}
+    Workspace &operator=(Workspace &&other) noexcept {
+        std::swap(memory_, other.memory_);
+        return *this;
+    }
+    void *get() const { return memory_; }
+
+private:
+    static constexpr std::align_val_t alignment{64};
+    void *memory_;
+};
+
+StrandArrays arrays_of(const StrandModel &model, StrandState &state, View<Vec3> targets, View<Vec3> forces);
+
+// Strands of like length together, so that few lanes carry vertices that are not there. A fixed order: the result of a strand
+// does not depend on its group, and a group never on the threads.
+std::vector<int> by_length(const StrandModel &model);
+
+} // namespace ringlet
