@@ -22,16 +22,21 @@ from stability import HELD, scenes
 RESOLUTION = re.compile(r"(?P<curve>.*), (?P<n>\d+) (edges|vertices a turn)$")
 
 
+def errors(case: validate.Case) -> dict[str, list[tuple[int, float]]]:
+    """Of every quantity that a case computes at several resolutions: each with its relative error."""
+    lines: dict[str, list[tuple[int, float]]] = defaultdict(list)
+    for row in case.run():
+        if match := RESOLUTION.match(row.case):
+            lines[match["curve"]].append((int(match["n"]), row.error))
+    return lines
+
+
 def write_convergence(path: Path) -> None:
     """One panel a case: relative error against edges or vertices a turn, one line a quantity; dotted, second order."""
-    cases = list(validate.CASES.values())
-    figure = Figure(figsize=(11, 2.7 * ((len(cases) + 2) // 3)), layout="constrained")
-    panels = figure.subplots((len(cases) + 2) // 3, 3, squeeze=False).ravel()
-    for panel, case in zip(panels, cases, strict=False):
-        lines: dict[str, list[tuple[int, float]]] = defaultdict(list)
-        for row in case.run():
-            if match := RESOLUTION.match(row.case):
-                lines[match["curve"]].append((int(match["n"]), row.error))
+    runs = {name: lines for name, case in validate.CASES.items() if (lines := errors(case))}
+    figure = Figure(figsize=(11, 2.7 * ((len(runs) + 2) // 3)), layout="constrained")
+    panels = figure.subplots((len(runs) + 2) // 3, 3, squeeze=False).ravel()
+    for panel, (title, lines) in zip(panels, runs.items(), strict=False):
         colors = mpl.colormaps["viridis"].resampled(len(lines) + 1)
         for k, (name, points) in enumerate(lines.items()):
             n, error = zip(*points, strict=True)
@@ -39,12 +44,12 @@ def write_convergence(path: Path) -> None:
         n = sorted({n for points in lines.values() for n, _ in points})
         worst = max(error for points in lines.values() for _, error in points)
         panel.loglog(n, [2 * worst * (n[0] / m) ** 2 for m in n], ":", color="gray")
-        panel.set_title(case.name, fontsize=10)
+        panel.set_title(title, fontsize=10)
         panel.set_xticks(n, [str(m) for m in n], minor=False)
         panel.minorticks_off()
         panel.tick_params(labelsize=7)
         panel.grid(alpha=0.3)
-    for panel in panels[len(cases) :]:
+    for panel in panels[len(runs) :]:
         panel.remove()
     figure.supxlabel("edges, or vertices a turn", fontsize=9)
     figure.supylabel("relative error", fontsize=9)

@@ -308,7 +308,9 @@ private:
     }
 
     // x̂ of the integrator, of a quantity that was `last` a step ago.
-    double carried(double now, double last, int lane) const { return now + part_[lane] * (now - last); }
+    double carried(double now, const double *last, int at, int lane) const {
+        return part_[lane] > 0 ? now + part_[lane] * (now - last[at]) : now;
+    }
 
     void add_inertia() {
         for (int lane = 0; lane < lanes; ++lane) {
@@ -320,8 +322,8 @@ private:
                 const double moving = mass / (h * h), held = arrays_.mass_damping * mass / h, sum = moving + held + drag;
                 set_lane(space_.rows[i].inertia, lane, sum);
                 for (int k = 0; k < 3; ++k) {
-                    const double start = carried(space_.start[i][k][lane], arrays_.last_positions[3 * at + k], lane);
-                    const double velocity = carried(space_.velocity[i][k][lane], arrays_.last_velocities[3 * at + k], lane);
+                    const double start = carried(space_.start[i][k][lane], arrays_.last_positions, 3 * at + k, lane);
+                    const double velocity = carried(space_.velocity[i][k][lane], arrays_.last_velocities, 3 * at + k, lane);
                     const double free_flight = start + h * velocity + h * h * step_.gravity[k];
                     const double with_wind = start + h * step_.wind[k];
                     const double force = arrays_.forces[3 * at + k];
@@ -386,10 +388,11 @@ private:
             double speed2 = 0;
             for (int k = 0; k < 3; ++k) {
                 double &position = arrays_.positions[3 * at + k], &velocity = arrays_.velocities[3 * at + k];
-                double &last_position = arrays_.last_positions[3 * at + k];
-                const double x = coordinate(i, k), v = (x - carried(position, last_position, lane)) / h;
-                last_position = position;
-                arrays_.last_velocities[3 * at + k] = velocity;
+                const double x = coordinate(i, k), v = (x - carried(position, arrays_.last_positions, 3 * at + k, lane)) / h;
+                if (step_.integrator == Integrator::bdf2) {
+                    arrays_.last_positions[3 * at + k] = position;
+                    arrays_.last_velocities[3 * at + k] = velocity;
+                }
                 position = x;
                 velocity = v;
                 speed2 += v * v;
