@@ -85,6 +85,25 @@ void bind_contact(nb::module_ &module) {
                 return to_numpy<double>(std::vector<Vec3>(all.begin(), all.end()), {all.size(), 3});
             },
             nb::rv_policy::automatic, "Positions [m] of all vertices, strands before bodies, shape (n, 3).")
+        .def(
+            "excuse",
+            [](Scene &self, Array1<int> vertices, int body) {
+                for (const int vertex : view(vertices)) self.excuse(vertex, body);
+            },
+            "vertices"_a, "body"_a,
+            "Vertices of strands, shape (k,) int32, may be inside a body until they have been pushed out of it.")
+        .def_prop_ro("excused", &Scene::excused, "How many vertices still are.")
+        .def("record", &Scene::record, "on"_a, "Keeps the path of each step from now on.")
+        .def_prop_ro(
+            "path",
+            [](const Scene &self) {
+                std::vector<Vec3> all;
+                for (const std::vector<Vec3> &stop : self.path()) all.insert(all.end(), stop.begin(), stop.end());
+                const size_t stops = self.path().size(), vertices = self.positions().size();
+                return to_numpy<double>(std::move(all), {stops, vertices, 3});
+            },
+            nb::rv_policy::automatic,
+            "Positions [m] of all vertices at the start and after each move of the last step, shape (k, n, 3).")
         .def_prop_ro(
             "contacts",
             [](const Scene &self) {

@@ -87,6 +87,27 @@ class Scene:
         return self._core.positions
 
     @property
+    def path(self) -> NDArray[np.float64]:
+        """Positions [m] at the start and after each move of the last step, shape (k, n, 3); needs ``record()``.
+
+        Nothing meets while every vertex goes straight from one to the next.
+        """
+        return self._core.path
+
+    def record(self, on: bool = True) -> None:
+        """Keeps the path of each step from now on."""
+        self._core.record(on)
+
+    def excuse(self, vertices: NDArray[np.integer], body: int) -> None:
+        """Lets vertices of strands be inside a body until they have been pushed out of it, gently."""
+        self._core.excuse(np.ascontiguousarray(vertices, np.int32), body)
+
+    @property
+    def excused(self) -> int:
+        """How many vertices are still inside a body, excused."""
+        return self._core.excused
+
+    @property
     def contacts(self) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
         """The last step's contacts: their vertices (k, 4); weights, normal, distance [m] and force [N], (k, 9)."""
         return self._core.contacts

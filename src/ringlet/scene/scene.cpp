@@ -2,6 +2,7 @@
 
 #include "ringlet/contact/impact.h"
 #include "ringlet/scene/coupled_strands.h"
+#include "ringlet/scene/embedded.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -58,6 +59,11 @@ struct Scene::Parts {
     std::vector<int> root_body;          // per strand; −1: none
     std::vector<int> rigid;              // per vertex: the body that it goes along with as one in this step; −1: none
     std::vector<Vec3> positions;         // of all vertices
+
+    std::vector<Embedded::Body> embedded_bodies; // per body
+    Embedded embedded;
+    bool recording = false;
+    std::vector<std::vector<Vec3>> path;
 
     // Within a step
     Candidates candidates;
@@ -163,6 +169,7 @@ void Scene::Parts::collect(const std::vector<BodyModel> &bodies, const std::vect
     for (int b = 0; b < int(bodies.size()); ++b) {
         const int base = int(positions.size());
         body_begin.push_back(base);
+        embedded_bodies.push_back({base, int(bodies[b].rest.size()), strand_count + b, bodies[b].triangles});
         for (const Vec3 &rest : bodies[b].rest) {
             add_vertex(rest, rest, bodies[b].thickness, false, strand_count + b, -1, 0.0, bodies[b].material, -1);
             some_triangle.push_back(Triangle(0, 0, 0));
@@ -224,6 +231,7 @@ double Scene::Parts::move(std::vector<Vec3> &now, std::vector<Vec3> &to, bool st
     report.violations += filtered.violations;
     report.zone_vertices += filtered.zone_vertices;
     now = to;
+    if (recording) path.push_back(now);
     return filtered.fraction;
 }
 
@@ -549,11 +557,19 @@ SceneReport Scene::Parts::step(View<Vec3> strand_targets, View<Vec3> strand_forc
     reports.assign(model.strand_count(), StrandReport{});
     SceneReport report;
     std::copy(state.positions.begin(), state.positions.end(), positions.begin()); // they may have been placed since
+    path.clear();
+    if (recording) path.push_back(positions);
+    std::vector<Vec3> forces(strand_forces.begin(), strand_forces.end());
+    if (embedded.count() > 0) {
+        constexpr double speed = 0.02; // [m/s]
+        set_stiffness(scene_step.strands.dt);
+        embedded.push_out(mesh, positions, View<int>(model.offsets), material.stiffness, speed * scene_step.strands.dt, forces);
+    }
     double left = 1.0;
     for (int part = 0; part < scene_step.most_substeps && left > 1e-9; ++part) {
         StrandStep step = scene_step.strands;
         step.dt *= left;
-        const double fraction = advance(strand_targets, strand_forces, body_targets, scene_step, step, report, reports);
+        const double fraction = advance(strand_targets, forces, body_targets, scene_step, step, report, reports);
         left = fraction < 1.0 ? left * (1.0 - fraction) : 0.0;
         ++report.substeps;
     }
@@ -573,6 +589,19 @@ SceneReport Scene::step(View<Vec3> strand_targets, View<Vec3> strand_forces, Vie
                         std::vector<StrandReport> &reports) {
     return parts_->step(strand_targets, strand_forces, body_targets, step, reports);
 }
+
+void Scene::excuse(int vertex, int body) {
+    if (vertex < 0 || vertex >= parts_->strand_vertices)
+        throw std::invalid_argument("scene: only vertices of strands are excused");
+    if (body < 0 || body >= int(parts_->embedded_bodies.size())) throw std::invalid_argument("scene: there is no such body");
+    parts_->embedded.add(vertex, parts_->embedded_bodies[body], parts_->mesh);
+}
+
+int Scene::excused() const { return parts_->embedded.count(); }
+
+void Scene::record(bool on) { parts_->recording = on; }
+
+const std::vector<std::vector<Vec3>> &Scene::path() const { return parts_->path; }
 
 View<Vec3> Scene::positions() const { return parts_->positions; }
 const std::vector<Contact> &Scene::contacts() const { return parts_->contacts.contacts(); }

@@ -62,6 +62,16 @@ public:
     SceneReport step(View<Vec3> strand_targets, View<Vec3> strand_forces, View<Vec3> body_targets, const SceneStep &step,
                      std::vector<StrandReport> &reports);
 
+    // A vertex of a strand that begins inside a body, or too near to it, may be there until it has come out: it is pushed out
+    // gently, and guarded like any other from then on.
+    void excuse(int vertex, int body);
+    int excused() const; // how many still are
+
+    // Keeps where everything was after each move of the last step, the first being where the step began: nothing meets while
+    // every vertex goes straight from one to the next.
+    void record(bool on);
+    const std::vector<std::vector<Vec3>> &path() const;
+
     View<Vec3> positions() const;                 // of all vertices: strands, then bodies
     const std::vector<Contact> &contacts() const; // of the last step
 

@@ -1,0 +1,35 @@
+// Vertices that begin inside a body: excused from contact with it, pushed out gently, guarded once they are out.
+#pragma once
+
+#include "ringlet/contact/collision_mesh.h"
+
+#include <vector>
+
+namespace ringlet {
+
+class Embedded {
+public:
+    // A body's vertices and triangles (of the collision mesh, counter-clockwise seen from outside), and its object number.
+    struct Body {
+        int first, count, object;
+        std::vector<Triangle> triangles; // indices counted from `first`
+    };
+
+    void add(int vertex, const Body &body, CollisionMesh &mesh);
+    int count() const { return int(vertices_.size()); }
+
+    // Lets go of those that are out by now: they and the edges to their neighbours at the contact distance. Adds to `forces`
+    // [N] of the others what would move a vertex of that stiffness [N/m] outward by `speed` · dt, at most to where it touches.
+    // Vertices of one strand follow one another; `offsets` are their ranges.
+    void push_out(CollisionMesh &mesh, View<Vec3> positions, View<int> offsets, View<double> stiffness, double way,
+                  std::vector<Vec3> &forces);
+
+private:
+    struct Vertex {
+        int vertex, body; // index into bodies_
+    };
+    std::vector<Body> bodies_;
+    std::vector<Vertex> vertices_;
+};
+
+} // namespace ringlet
