@@ -10,6 +10,7 @@ import pytest
 from coils import helix, jittered, rotation
 from ringlet.curves import Curves
 from ringlet.shot import Material, Solver, Strands
+from ringlet.shot.scene import Scene
 
 from ringlet import _core
 
@@ -172,6 +173,19 @@ def test_bdf2_follows_a_falling_root_to_second_order():
         strand.step(targets, FRAME, gravity=(0, -9.81, 0), solver=Solver(newton=50, integrator="bdf2"))
     assert np.abs(strand.positions - targets).max() < 0.5 * 9.81 * FRAME**2
     assert np.abs(strand.velocities[4:] - [0, -9.81 * 10 * FRAME, 0]).max() < 0.02 * 9.81 * 10 * FRAME
+
+
+@pytest.mark.parametrize("integrator", ["backward_euler", "bdf2"])
+def test_a_scene_in_which_nothing_touches_moves_with_the_same_integrator(integrator):
+    rest = helix(20)
+    alone, among = one(rest, damping=0.01), one(rest, damping=0.01)
+    scene = Scene(among)
+    solver = Solver(until_converged=True, tolerance=1e-11, integrator=integrator)
+    for k in range(1, 6):
+        targets = rest + [0.002 * k, 0, 0]
+        alone.step(targets, FRAME, gravity=(0, -9.81, 0), solver=solver)
+        scene.step(targets, FRAME, gravity=(0, -9.81, 0), solver=solver, system_tolerance=1e-12)
+    assert np.abs(scene.positions - alone.positions).max() < 1e-9
 
 
 def test_until_converged_goes_on_where_five_iterations_are_not_enough():

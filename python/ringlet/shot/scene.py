@@ -139,9 +139,11 @@ class Scene:
             dt,
             gravity,
             wind,
-            solver.newton,
+            solver.iterations,
             solver.tolerance,
             getattr(_core.Continuation, solver.continuation),
+            getattr(_core.Integrator, solver.integrator),
+            solver.core_safeguards(),
             _core.System.automatic,
             system_tolerance,
         )

@@ -111,6 +111,13 @@ class Solver(Section):
         """Newton iterations per step, at most."""
         return MOST_ITERATIONS if self.until_converged else self.newton
 
+    def core_safeguards(self) -> _core.Safeguards:
+        """Which safeguards are on, for the core."""
+        safeguards = _core.Safeguards()
+        for name in SAFEGUARDS:
+            setattr(safeguards, name, name in self.safeguards)
+        return safeguards
+
 
 VARIATIONS = ("radius", "stretch", "bend", "twist", "damping")
 
@@ -182,9 +189,6 @@ class Strands:
         Returns the report of every strand, one array of shape (count,) per quantity (see ``_core.REPORT``).
         """
         solver = solver or Solver()
-        safeguards = _core.Safeguards()
-        for name in SAFEGUARDS:
-            setattr(safeguards, name, name in solver.safeguards)
         rows = self._core.step(
             np.ascontiguousarray(targets, np.float64),
             self._no_forces if forces is None else np.ascontiguousarray(forces, np.float64),
@@ -195,7 +199,7 @@ class Strands:
             solver.tolerance,
             getattr(_core.Continuation, solver.continuation),
             getattr(_core.Integrator, solver.integrator),
-            safeguards,
+            solver.core_safeguards(),
         )
         return dict(zip(_core.REPORT, rows.T, strict=True))
 
