@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from coils import helix, rotation
+from coils import helix, jittered, rotation
 from ringlet.curves import Curves
 from ringlet.shot import Material, Solver, Strands
 from stability import CLOSE, HELD, flattened, straightened
@@ -30,13 +30,12 @@ def let_go(rest, start, solver, *, steps, variation=None, **material):
 
 @pytest.mark.parametrize("limit_twist", [True, False])
 def test_twist_stiffer_than_bend_gains_energy(limit_twist):
-    """A flattened coil whose twist is varied up to ten times its bend: the limit keeps it calm."""
+    """A flattened coil whose twist is varied up to ten times its bend, disturbed a little, in six ways."""
     rest = helix(100)
     stiff = {"twist": np.full(len(rest), 10 / 0.72)}
-    away, gain = let_go(rest, flattened(rest), history(), steps=200, variation=stiff, limit_twist=limit_twist)
-    assert (gain < 1e-6) == limit_twist
-    assert limit_twist or gain > 1e-2
-    assert away < CLOSE
+    starts = [jittered(flattened(rest), 1e-8, seed) for seed in range(6)]
+    gains = [let_go(rest, start, history(), steps=40, variation=stiff, limit_twist=limit_twist)[1] for start in starts]
+    assert max(gains) < 1e-2 if limit_twist else min(gains) > 2e-2
 
 
 @pytest.mark.parametrize("without", [(), ("flip_history",)])
