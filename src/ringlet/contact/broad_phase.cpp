@@ -61,8 +61,8 @@ std::vector<Pair> split(const MovingTree &a, const MovingTree &b) {
     return pairs;
 }
 
-template <size_t N> bool any_moves(const CollisionMesh &mesh, const std::array<int, N> &primitive) {
-    return std::any_of(primitive.begin(), primitive.end(), [&](int v) { return mesh.moves[v] != 0; });
+template <size_t N> bool any_of(View<unsigned char> vertices, const std::array<int, N> &primitive) {
+    return std::any_of(primitive.begin(), primitive.end(), [&](int v) { return vertices[v] != 0; });
 }
 
 // By how much the contact distance of two primitives is less than their radii together.
@@ -77,16 +77,18 @@ BroadPhase::BroadPhase(const CollisionMesh &mesh) : mesh_(mesh) {
     for (int v : mesh.points) points_.push_back({v});
 }
 
-void BroadPhase::find(View<Vec3> start, View<Vec3> end, double margin, Candidates &candidates) {
+void BroadPhase::find(View<Vec3> start, View<Vec3> end, double margin, Candidates &candidates, View<unsigned char> changed) {
+    // Pairs of two that do not count are left out: of those whose motions are given, or that have not changed.
+    const View<unsigned char> counts = changed.empty() ? View<unsigned char>(mesh_.moves) : changed;
     place(start, end);
-    fit(edge_tree_, mesh_.edges, margin);
+    fit(edge_tree_, mesh_.edges, margin, counts);
     search(edge_tree_, mesh_.edges, edge_tree_, mesh_.edges);
     gather(mesh_.edges.size(), candidates.edge_edge);
 
     candidates.point_triangle.clear();
     if (points_.empty() || mesh_.triangles.empty()) return;
-    fit(point_tree_, points_, margin);
-    fit(triangle_tree_, mesh_.triangles, margin);
+    fit(point_tree_, points_, margin, counts);
+    fit(triangle_tree_, mesh_.triangles, margin, counts);
     search(point_tree_, points_, triangle_tree_, mesh_.triangles);
     for (Pairs &found : found_)
         for (auto &pair : found) pair[0] = mesh_.points[pair[0]];
@@ -107,13 +109,14 @@ void BroadPhase::place(View<Vec3> start, View<Vec3> end) {
     }
 }
 
-template <class Primitives> void BroadPhase::fit(MovingTree &tree, const Primitives &primitives, double margin) {
+template <class Primitives>
+void BroadPhase::fit(MovingTree &tree, const Primitives &primitives, double margin, View<unsigned char> counts) {
     tree.fit(static_cast<int>(primitives.size()), [&](int i) {
         const auto &primitive = primitives[i];
         const auto at = [&](int v) -> MovingBox { return {starts_[v], starts_[v], ends_[v], ends_[v]}; };
         MovingBox box = at(primitive[0]);
         for (size_t k = 1; k < primitive.size(); ++k) box.include(at(primitive[k]));
-        box.widen(static_cast<float>(mean_radius(mesh_, primitive) + 0.5 * margin), any_moves(mesh_, primitive));
+        box.widen(static_cast<float>(mean_radius(mesh_, primitive) + 0.5 * margin), any_of(counts, primitive));
         return box;
     });
 }

@@ -21,7 +21,8 @@ public:
     // All pairs that may come within their contact distance plus `margin` [m] on the straight paths from `start` to `end`:
     // positions [m] of all vertices. Left out are pairs that share a vertex, pairs whose motions are both given, and what is
     // carried against what carries it. The same for any number of threads, and whatever was asked before.
-    void find(View<Vec3> start, View<Vec3> end, double margin, Candidates &candidates);
+    // `changed`, if given, leaves only pairs with a vertex for which it is not 0.
+    void find(View<Vec3> start, View<Vec3> end, double margin, Candidates &candidates, View<unsigned char> changed = {});
 
     int built() const { return edge_tree_.built(); } // how often the tree of edges was built, for studies
 
@@ -29,7 +30,8 @@ private:
     using Pairs = std::vector<std::array<int, 2>>;
 
     void place(View<Vec3> start, View<Vec3> end);
-    template <class Primitives> void fit(MovingTree &tree, const Primitives &primitives, double margin);
+    template <class Primitives>
+    void fit(MovingTree &tree, const Primitives &primitives, double margin, View<unsigned char> counts);
     template <class A, class B> void search(const MovingTree &tree_a, const A &all_a, const MovingTree &tree_b, const B &all_b);
     void gather(size_t firsts, Pairs &sorted);
 

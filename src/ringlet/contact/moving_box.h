@@ -11,7 +11,7 @@ namespace ringlet {
 
 // Boxes are compared by what is between them at the start and at the end, so that a motion which they share changes nothing: on
 // each axis the distance of two points that move straight is never less than the lesser of the two. The fourth lane tells who
-// moves.
+// counts: who moves, say.
 struct MovingBox {
     Eigen::Array4f low, high, end_low, end_high;
 
@@ -28,7 +28,7 @@ struct MovingBox {
     }
 
     // By `reach`, and by what may be lost in computing with it in single precision.
-    void widen(float reach, bool moves) {
+    void widen(float reach, bool counts) {
         constexpr float rounding = 0x1p-21f;
         const Eigen::Array4f largest = low.abs().max(high.abs()).max(end_low.abs()).max(end_high.abs());
         const Eigen::Array4f by = reach + rounding * largest;
@@ -36,14 +36,14 @@ struct MovingBox {
         high += by;
         end_low -= by;
         end_high += by;
-        low[3] = moves ? -2.0f : 1.0f; // the sum of two is positive where neither moves
+        low[3] = counts ? -2.0f : 1.0f; // the sum of two is positive where neither counts
     }
 };
 
 // Four boxes side by side: lane k of each array is of box k.
 struct MovingQuad {
     std::array<Eigen::Array4f, 3> low, high, end_low, end_high;
-    Eigen::Array4f who_moves;
+    Eigen::Array4f who_counts;
 
     void set(int k, const MovingBox &box) {
         for (int axis = 0; axis < 3; ++axis) {
@@ -52,11 +52,11 @@ struct MovingQuad {
             end_low[axis][k] = box.end_low[axis];
             end_high[axis][k] = box.end_high[axis];
         }
-        who_moves[k] = box.low[3];
+        who_counts[k] = box.low[3];
     }
 
     MovingBox box(int k) const {
-        return {{low[0][k], low[1][k], low[2][k], who_moves[k]},
+        return {{low[0][k], low[1][k], low[2][k], who_counts[k]},
                 {high[0][k], high[1][k], high[2][k], 0.0f},
                 {end_low[0][k], end_low[1][k], end_low[2][k], 0.0f},
                 {end_high[0][k], end_high[1][k], end_high[2][k], 0.0f}};
@@ -65,8 +65,8 @@ struct MovingQuad {
 
 // With which boxes of b box k of a overlaps on each axis at some time: a bit for each. What is in the others never comes
 // together with what is in that one.
-inline unsigned which_may_meet(const MovingQuad &a, int k, const MovingQuad &b) {
-    Eigen::Array4f apart = b.who_moves + a.who_moves[k]; // above 0: never
+[[gnu::always_inline]] inline unsigned which_may_meet(const MovingQuad &a, int k, const MovingQuad &b) {
+    Eigen::Array4f apart = b.who_counts + a.who_counts[k]; // above 0: never
     for (int axis = 0; axis < 3; ++axis) {
         const Eigen::Array4f above = (b.low[axis] - a.high[axis][k]).min(b.end_low[axis] - a.end_high[axis][k]);
         const Eigen::Array4f below = (a.low[axis][k] - b.high[axis]).min(a.end_low[axis][k] - b.end_high[axis]);

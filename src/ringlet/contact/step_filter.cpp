@@ -114,7 +114,7 @@ void fade(const FilterScene &scene, View<Vec3> start, View<Vec3> end, double str
 // Strands of pairs that would meet go only as far as that as a whole, and after some rounds stay where they are: two that stay
 // do not meet.
 void hold_back(const FilterScene &scene, View<Vec3> start, const std::vector<int> &met, const std::vector<double> &times,
-               const Candidates &candidates, int round, std::vector<Vec3> &end) {
+               const Candidates &candidates, int round, std::vector<Vec3> &end, std::vector<unsigned char> &changed) {
     constexpr int rounds = 8;
     std::map<int, double> parts; // object → how far it goes
     const int strands = int(scene.offsets.size()) - 1;
@@ -127,7 +127,31 @@ void hold_back(const FilterScene &scene, View<Vec3> start, const std::vector<int
     for (const auto &[object, part] : parts)
         if (object < strands)
             for (int v = scene.offsets[object]; v < scene.offsets[object + 1]; ++v)
-                if (scene.mesh.moves[v]) end[v] = start[v] + part * (end[v] - start[v]);
+                if (scene.mesh.moves[v]) {
+                    end[v] = start[v] + part * (end[v] - start[v]);
+                    changed[v] = 1;
+                }
+}
+
+// Takes out of `pairs` those of primitives with a changed vertex, and puts `found` in, all in order.
+template <class Changed>
+void replace(std::vector<std::array<int, 2>> &pairs, const Changed &changed, const std::vector<std::array<int, 2>> &found) {
+    std::erase_if(pairs, changed);
+    const size_t kept = pairs.size();
+    pairs.insert(pairs.end(), found.begin(), found.end());
+    std::inplace_merge(pairs.begin(), pairs.begin() + kept, pairs.end());
+}
+
+void replace(const CollisionMesh &mesh, View<unsigned char> changed, Candidates &candidates, const Candidates &found) {
+    const auto any = [&](const auto &primitive) {
+        return std::any_of(primitive.begin(), primitive.end(), [&](int v) { return changed[v] != 0; });
+    };
+    replace(
+        candidates.edge_edge, [&](const auto &pair) { return any(mesh.edges[pair[0]]) || any(mesh.edges[pair[1]]); },
+        found.edge_edge);
+    replace(
+        candidates.point_triangle, [&](const auto &pair) { return changed[pair[0]] || any(mesh.triangles[pair[1]]); },
+        found.point_triangle);
 }
 
 } // namespace
@@ -144,9 +168,16 @@ FilterReport filter_step(const FilterScene &scene, BroadPhase &broad_phase, View
     std::vector<int> carrier(vertices, -1); // a kinematic vertex that it met
     std::vector<Pull> pulls;
     std::vector<double> times;
+    std::vector<unsigned char> changed; // since the last round; empty: everything
+    Candidates looked_at;
     for (;; ++report.rounds) {
-        broad_phase.find(start, end, 0.0, candidates);
-        impact_times(mesh, scene.rigid, start, end, candidates, times);
+        // What has not changed since the last round has not met.
+        broad_phase.find(start, end, 0.0, looked_at, changed);
+        if (changed.empty())
+            candidates = looked_at;
+        else
+            replace(mesh, changed, candidates, looked_at);
+        impact_times(mesh, scene.rigid, start, end, looked_at, times);
         std::vector<int> met;
         for (int k = 0; k < int(times.size()); ++k)
             if (times[k] <= 1.0) met.push_back(k);
@@ -164,7 +195,7 @@ FilterReport filter_step(const FilterScene &scene, BroadPhase &broad_phase, View
 
         // What is kinematic does not join zones: one body would tie together all that touches it.
         for (const int k : met) {
-            const auto v = vertices_of(mesh, candidates, k);
+            const auto v = vertices_of(mesh, looked_at, k);
             for (const int i : v)
                 for (const int j : v) {
                     if (!mesh.moves[i]) continue;
@@ -179,7 +210,7 @@ FilterReport filter_step(const FilterScene &scene, BroadPhase &broad_phase, View
         // away.
         std::map<int, Zone> hit;
         for (const int k : met)
-            for (const int v : vertices_of(mesh, candidates, k))
+            for (const int v : vertices_of(mesh, looked_at, k))
                 if (mesh.moves[v]) {
                     Zone &zone = hit[zones.find(v)];
                     if (report.rounds < to_touch)
@@ -195,7 +226,8 @@ FilterReport filter_step(const FilterScene &scene, BroadPhase &broad_phase, View
                 zone->second.carrier = std::max(zone->second.carrier, carrier[v]);
             }
         if (scene.still) {
-            hold_back(scene, start, met, times, candidates, report.rounds, end);
+            changed.assign(vertices, 0);
+            hold_back(scene, start, met, times, looked_at, report.rounds, end, changed);
             continue;
         }
         pulls.assign(vertices, {});
