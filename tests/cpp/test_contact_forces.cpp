@@ -1,0 +1,171 @@
+// What contacts do: forces from energies, and moves that pass through nothing.
+#include "ringlet/contact/contact.h"
+#include "ringlet/contact/step_filter.h"
+
+#include <boost/test/unit_test.hpp>
+
+#include <Eigen/Eigenvalues>
+#include <random>
+
+using namespace ringlet;
+
+namespace {
+
+struct Random {
+    std::mt19937 engine{7};
+    double operator()(double low, double high) { return std::uniform_real_distribution<>(low, high)(engine); }
+    Vec3 vector(double size) { return {(*this)(-size, size), (*this)(-size, size), (*this)(-size, size)}; }
+};
+
+Contact some_contact(Random &random) {
+    Contact contact{};
+    contact.first = 2;
+    contact.normal = random.vector(1.0).normalized();
+    contact.distance = 1e-3;
+    contact.stiffness = random(0.1, 10.0);
+    contact.friction = random(0.0, 1.0);
+    contact.creep = 2e-5;
+    contact.start = random.vector(1e-3);
+    contact.force = random(0.0, 1e-3);
+    return contact;
+}
+
+// Strands of three vertices that start anywhere and wish to be anywhere else.
+struct Crowd {
+    CollisionMesh mesh;
+    std::vector<Vec3> start, end;
+    std::vector<int> offsets{0};
+    std::vector<double> mass;
+
+    Crowd(int strands, double size, double way, unsigned seed) {
+        Random random{std::mt19937(seed)};
+        for (int s = 0; s < strands; ++s) {
+            const Vec3 place = random.vector(size), along = random.vector(size), wish = random.vector(way);
+            for (int k = 0; k < 3; ++k) {
+                const int v = int(start.size());
+                start.push_back(place + k * along);
+                end.push_back(start.back() + wish + random.vector(0.3 * way));
+                mesh.points.push_back(v);
+                mesh.radius.push_back(1e-3);
+                mesh.moves.push_back(1);
+                mesh.object.push_back(s);
+                mesh.anchor.push_back(-1);
+                mass.push_back(random(0.5, 2.0));
+                if (k > 0) mesh.edges.push_back({v - 1, v});
+            }
+            offsets.push_back(int(start.size()));
+        }
+        mesh.rest = start;
+    }
+
+    FilterReport filter(bool still, std::vector<Vec3> &filtered) const {
+        BroadPhase broad_phase(mesh);
+        Candidates candidates;
+        filtered = end;
+        const FilterScene scene{
+            mesh, View<double>(mass), View<int>(offsets), [](int, const Vec3 &point) { return point; }, View<int>(), still};
+        return filter_step(scene, broad_phase, start, filtered, candidates);
+    }
+
+    // The least distance of any two strands on the way, by dense sampling.
+    double closest(const std::vector<Vec3> &to) const {
+        double least = 1.0;
+        std::vector<Vec3> now(start.size());
+        for (int step = 0; step <= 400; ++step) {
+            for (size_t v = 0; v < start.size(); ++v) now[v] = start[v] + (step / 400.0) * (to[v] - start[v]);
+            for (size_t a = 0; a < mesh.edges.size(); ++a)
+                for (size_t b = 0; b < a; ++b)
+                    if (!share_vertex(mesh.edges[a], mesh.edges[b]))
+                        least = std::min(least, std::sqrt(closest_points(now, mesh.edges[a], mesh.edges[b]).distance2));
+        }
+        return least;
+    }
+};
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(contact_forces)
+
+BOOST_AUTO_TEST_CASE(potentials_are_the_integrals_of_their_forces) {
+    Random random;
+    const double h = 1e-7;
+    for (int i = 0; i < 1000; ++i) {
+        const double r = 1.0, g = random(-0.5, 1.2);
+        const auto at = [&](double gap) { return contact_potential(gap, r); };
+        const double scale = 1.0 + at(g).second;
+        BOOST_TEST(std::abs((at(g + h).value - at(g - h).value) / (2 * h) - at(g).first) < 1e-5 * scale);
+        if (std::abs(g - r) > 1e-3 && std::abs(g - r / 64) > 1e-4)
+            BOOST_TEST(std::abs((at(g + h).first - at(g - h).first) / (2 * h) - at(g).second) < 1e-4 * scale);
+        BOOST_TEST(at(g).first <= 0.0);
+        BOOST_TEST(at(g).second >= 0.0);
+
+        const double y = random(0.0, 2.0);
+        const auto rub = [&](double slid) { return friction_potential(slid, 1.0); };
+        if (y > h) BOOST_TEST(std::abs((rub(y + h).value - rub(y - h).value) / (2 * h) - rub(y).first) < 1e-6);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(the_gradient_is_that_of_the_energy_and_the_hessian_semi_definite) {
+    Random random;
+    const double h = 1e-9;
+    for (int i = 0; i < 1000; ++i) {
+        const Contact contact = some_contact(random);
+        const Vec3 separation = random.vector(1e-3);
+        const ContactValue value = contact_value(contact, separation);
+        const double scale = value.gradient.norm() + contact.stiffness * contact.distance;
+        for (int k = 0; k < 3; ++k) {
+            const Vec3 step = h * Vec3::Unit(k);
+            const double slope =
+                (contact_energy(contact, separation + step) - contact_energy(contact, separation - step)) / (2 * h);
+            BOOST_TEST(std::abs(slope - value.gradient[k]) < 1e-4 * scale);
+        }
+        const Eigen::SelfAdjointEigenSolver<Mat3> eigen(value.hessian);
+        BOOST_TEST(eigen.eigenvalues()[0] >= -1e-9 * eigen.eigenvalues()[2]);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(friction_never_exceeds_its_cone) {
+    Random random;
+    for (int i = 0; i < 1000; ++i) {
+        const Contact contact = some_contact(random);
+        const Vec3 gradient = contact_value(contact, random.vector(1e-3)).gradient;
+        const Vec3 tangential = gradient - contact.normal.dot(gradient) * contact.normal;
+        BOOST_TEST(tangential.norm() <=
+                   contact.friction * contact.force + 1e-14 * gradient.norm()); // what rounding leaves of the push
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_filtered_move_passes_through_nothing) {
+    int violations = 0;
+    for (unsigned seed = 0; seed < 20; ++seed)
+        for (const bool still : {true, false}) {
+            const Crowd crowd(12, 0.02, 0.03, seed);
+            if (crowd.closest(crowd.start) < 1e-5) continue;
+            std::vector<Vec3> filtered;
+            const FilterReport report = crowd.filter(still, filtered);
+            violations += report.violations;
+            BOOST_TEST(crowd.closest(filtered) > 1e-6);
+        }
+    BOOST_TEST(violations > 100);
+}
+
+BOOST_AUTO_TEST_CASE(a_move_that_meets_nothing_is_left_alone) {
+    const Crowd crowd(1, 0.02, 0.03, 3);
+    std::vector<Vec3> filtered;
+    BOOST_TEST(crowd.filter(true, filtered).violations == 0);
+    BOOST_TEST((filtered == crowd.end));
+}
+
+BOOST_AUTO_TEST_CASE(only_relative_motion_is_filtered) {
+    Crowd crowd(12, 0.02, 0.03, 5);
+    std::vector<Vec3> filtered, filtered_flying;
+    const FilterReport report = crowd.filter(false, filtered);
+    const Vec3 flight(100.0 / 24, 0.0, 0.0);
+    for (Vec3 &place : crowd.end) place += flight;
+    const FilterReport flying = crowd.filter(false, filtered_flying);
+    BOOST_TEST(report.violations > 0);
+    BOOST_TEST(report.violations == flying.violations);
+    for (size_t v = 0; v < filtered.size(); ++v) BOOST_TEST((filtered_flying[v] - flight - filtered[v]).norm() < 1e-8);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
