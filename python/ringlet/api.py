@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ringlet.groom import Hairs, Recipe
     from ringlet.groom.groom import Groom
     from ringlet.mesh import Clip
-    from ringlet.shot import Shot
+    from ringlet.shot import Obstacle, Shot
     from ringlet.shot.cache import Cache
     from ringlet.shot.loft import Loft
     from ringlet.validate import Row
@@ -117,7 +117,15 @@ def simulate(
     if not isinstance(groom, Groom):
         groom = load_groom(groom or shot.groom, progress=progress)
     rest = _rest_shape(shot, groom, allow_stale)
-    return shots.simulate(shot, groom, _scalp_clip(groom), rest=rest, frames=frames, progress=progress)
+    return shots.simulate(
+        shot,
+        groom,
+        _scalp_clip(groom),
+        rest=rest,
+        obstacles=_obstacles(shot, groom),
+        frames=frames,
+        progress=progress,
+    )
 
 
 def loft(
@@ -175,6 +183,22 @@ def _scalp_clip(groom: Groom) -> Clip:
     if groom.scalp_file is None:
         raise UserError("groom: names no file for its scalp; write the head as USD and name it in the recipe")
     return io.read_clip(groom.scalp_file, groom.scalp_prim)
+
+
+def _obstacles(shot: Shot, groom: Groom) -> list[Obstacle]:
+    """What the locks of a shot touch besides one another: of several settings for one mesh, the last."""
+    from ringlet import io
+    from ringlet import shot as shots
+
+    if not shot.touching:
+        return []
+    found: dict[tuple[Path, str], Obstacle] = {}
+    for collider in shot.collider or (shots.Collider(),):
+        file = collider.file or groom.scalp_file
+        assert file is not None  # as for the scalp's clip
+        for body in io.read_bodies(file, collider.mesh):
+            found[file.resolve(), body.mesh.name] = shots.Obstacle(body.mesh, body.clip, collider)
+    return list(found.values())
 
 
 def write_cache(cache: Cache, groom: Path | str, path: Path | str) -> None:

@@ -18,7 +18,8 @@ from ringlet.errors import UserError
 if TYPE_CHECKING:
     from ringlet.shot.cache import Cache
 
-LIMITS = ["Strands do not collide yet: they may pass through the head and through one another."]
+FREE = "Contact was off: locks may pass through the head and one another. A table [contact] in the shot turns it on."
+CARRIED = "Locks touch, single hairs do not: they go with their lock, and may dip into what it touches."
 
 
 @dataclass
@@ -86,8 +87,13 @@ class Run:
         self.counts |= counts
 
     def simulated(self, cache: Cache) -> None:
-        """Notes a simulation, for the charts of its statistics."""
+        """Notes a simulation, for the charts of its statistics, and what was in the way when it started."""
+        from ringlet.report import start_table, start_warnings
+
         self.cache = cache
+        self.warnings += start_warnings(cache.start)
+        if cache.start:
+            self.table("How it started", *start_table(cache.start))
 
     def pictured(self, path: Path | str, caption: str) -> None:
         """Notes a picture to show in the report."""
@@ -117,7 +123,7 @@ class Run:
                 pictures=[report.Picture(path=str(path), caption=caption) for path, caption in self.pictures.items()],
                 tables=[report.Table(title=title, columns=columns, rows=rows) for title, columns, rows in self.tables],
                 warnings=self.warnings,
-                limits=LIMITS,
+                limits=[CARRIED if self.cache and self.cache.start else FREE],
             ),
             folder,
         )

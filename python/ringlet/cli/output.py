@@ -28,10 +28,10 @@ def finite(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def wrote(path: Path, counts: dict[str, int], as_json: bool) -> None:
-    """Tells that a file was written, with counts of what is in it."""
+def wrote(path: Path, counts: dict[str, int], as_json: bool, **more: Any) -> None:
+    """Tells that a file was written, with counts of what is in it; programs are told ``more``."""
     if as_json:
-        print_json({"path": str(path), "bytes": path.stat().st_size, **counts})
+        print_json({"path": str(path), "bytes": path.stat().st_size, **counts, **more})
     else:
         told = [f"{value:,} {name}" for name, value in counts.items() if value]
         print(f"{path}: {', '.join([*told, size(path.stat().st_size)])}")

@@ -50,4 +50,6 @@ def sim(
             ringlet.write_cache(cache, layer, output)
         run.simulated(cache)
         run.count(locks=len(locks.locks), points=len(locks.locks.points), frames=len(cache.frames))
-    wrote(output, run.counts, as_json)
+    for sentence in [] if as_json else run.warnings:
+        print(sentence)
+    wrote(output, run.counts, as_json, **({"start": cache.start} if cache.start else {}))

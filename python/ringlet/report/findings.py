@@ -11,13 +11,17 @@ Statistics = Sequence[dict[str, Any]]
 
 def series(statistics: Statistics, key: str) -> list[float] | None:
     """One number per frame, NaN where a frame lacks it; None when all do. ``energy.bend`` looks inside a dict."""
-    values = []
-    for frame in statistics:
-        value: Any = frame
-        for part in key.split("."):
-            value = value.get(part) if isinstance(value, dict) else None
-        values.append(float(value) if isinstance(value, int | float) else math.nan)
+    found = [value(frame, key) for frame in statistics]
+    values = [float(v) if isinstance(v, int | float) else math.nan for v in found]
     return values if any(math.isfinite(v) for v in values) else None
+
+
+def value(frame: dict[str, Any], key: str) -> Any:
+    """What a frame's statistics say, None where they do not; ``energy.bend`` looks inside a dict."""
+    found: Any = frame
+    for part in key.split("."):
+        found = found.get(part) if isinstance(found, dict) else None
+    return found
 
 
 def total(statistics: Statistics, key: str) -> int | None:
@@ -47,7 +51,11 @@ def verdict(statistics: Statistics) -> list[str]:
     said = []
     if broken := total(statistics, "nan"):
         said.append(f"{_strands(broken)} ended in numbers that are not finite: do not use this result.")
-    if late := total(statistics, "unconverged"):
+    touching = any("contact" in frame for frame in statistics)
+    late = total(statistics, "unconverged")
+    if late and touching:
+        said.append(f"{_times(late)} the scene ran out of Newton iterations before all of it was at rest in its step.")
+    elif late:
         said.append(f"{_times(late)} a strand ran out of Newton iterations before it was at rest in its step.")
     elif late == 0:
         said.append(f"Every strand was solved in each of the {len(statistics)} frames.")
@@ -56,6 +64,15 @@ def verdict(statistics: Statistics) -> list[str]:
         highest = max(v for v in stretch if math.isfinite(v))
         at = frame_number(statistics, stretch.index(highest))
         said.append(f"No edge was ever longer than {100 * highest:.2g} % over its rest length (frame {at}).")
+    if touching:
+        kept = total(statistics, "contact.violations") or 0
+        said.append(
+            f"Nothing passed through anything: {kept:,} times a pair was kept from meeting.".replace(",", "\u202f")
+        )
+    if any(part < 1.0 for part in series(statistics, "contact.fraction") or []):
+        said.append(
+            "In some frames bodies left no way out between them: there everything stopped before the frame's end."
+        )
     curl = {key: total(statistics, key) for key in ("flips", "winding_changes", "too_straight")}
     if any(curl.values()):
         meaning = {"flips": "curls flipped", "winding_changes": "lost or won a turn", "too_straight": "pulled straight"}
@@ -74,7 +91,7 @@ def explain_worst(statistics: Statistics) -> str | None:
     frame = statistics[index]
     phrases = {
         "nan": lambda v: f"{v:g} broken strands" if v else None,
-        "unconverged": lambda v: f"{v:g} strands unsolved" if v else None,
+        "unconverged": lambda v: f"{v:g} strands unsolved" if v and "contact" not in frame else None,
         "max_stretch": lambda v: f"edges up to {100 * v:.2g} % too long",
         "newton": lambda v: f"{v:.3g} Newton iterations for a strand on average",
         "newton_max": lambda v: f"{v:g} at most",

@@ -12,7 +12,7 @@ from PIL import Image
 
 from ringlet.errors import UserError
 from ringlet.report.charts import line_chart
-from ringlet.report.findings import explain_worst, series, total, verdict
+from ringlet.report.findings import explain_worst, series, total, value, verdict
 from ringlet.report.model import MadeFile, Picture, RunReport, Stage, Table
 
 STYLE = Path(__file__).with_name("style.css")
@@ -33,7 +33,15 @@ _COLUMNS = {
     "winding_changes": "Winding",
     "too_straight": "Too straight",
     "nan": "Not finite",
+    "contact.candidates": "Pairs",
+    "contact.contacts": "Contacts",
+    "contact.closest": "Closest, m",
+    "contact.violations": "Kept apart",
+    "contact.zone_vertices": "Held back",
+    "contact.linear_iterations": "CG",
 }
+
+_PHASES = ("pairs", "assemble", "solve", "search", "filter")  # of a step with contact
 
 
 def page(report: RunReport) -> str:
@@ -181,6 +189,19 @@ def _simulation(report: RunReport) -> str:
             chart("Curls that changed", "", curl) if any(total(statistics, key) for key in curl) else "",
         )
     )
+    charts += "".join(
+        (
+            chart("Contacts", "", {"contact.candidates": "pairs looked at", "contact.contacts": "of them touch"}),
+            chart("Closest two that touch", "m", {"contact.closest": "distance"}),
+            chart(
+                "Pairs that were kept from meeting",
+                "",
+                {"contact.violations": "pairs", "contact.zone_vertices": "vertices held back"},
+            ),
+            chart("Conjugate gradients", "", {"contact.linear_iterations": "iterations"}),
+            chart("Where a frame's time goes", "s", {f"contact.{p}_ms": p for p in _PHASES}, factor=1e-3),
+        )
+    )
     worst = explain_worst(statistics)
     lead = f"<p>{escape(worst)}</p>" if worst else ""
     settings = _facts({key.replace("_", " "): f"{value}" for key, value in report.settings.items()})
@@ -195,7 +216,7 @@ def _frame_table(report: RunReport) -> str:
     columns = {key: name for key, name in _COLUMNS.items() if series(statistics, key) is not None}
     head = "".join(f"<th scope='col'>{name}</th>" for name in columns.values())
     rows = "".join(
-        f"<tr>{''.join(f'<td>{_cell(frame.get(key))}</td>' for key in columns)}</tr>" for frame in statistics
+        f"<tr>{''.join(f'<td>{_cell(value(frame, key))}</td>' for key in columns)}</tr>" for frame in statistics
     )
     return (
         f"<details><summary>All {len(statistics)} frames as numbers</summary><div class='wide'><table>"

@@ -2,21 +2,29 @@
 
 from ringlet.shot.cache import Cache
 from ringlet.shot.cloth import Cloth, ClothMaterial, ClothSolver
+from ringlet.shot.collider import Collider, Obstacle, ShotContact
 from ringlet.shot.loft import Loft, loft
+from ringlet.shot.scene import Body, Contact, Scene
 from ringlet.shot.shot import Forces, Shot, parse_shot, read_shot, schema
 from ringlet.shot.simulate import simulate
 from ringlet.shot.stale import check, keep, made_from, refresh
 from ringlet.shot.strands import Material, Solver, Strands
 
 __all__ = [
+    "Body",
     "Cache",
     "Cloth",
     "ClothMaterial",
     "ClothSolver",
+    "Collider",
+    "Contact",
     "Forces",
     "Loft",
     "Material",
+    "Obstacle",
+    "Scene",
     "Shot",
+    "ShotContact",
     "Solver",
     "Strands",
     "check",

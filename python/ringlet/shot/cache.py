@@ -16,8 +16,10 @@ class Cache:
     frames:     frame numbers (time codes), shape (k,)
     points:     positions [m], shape (k, n, 3), float32; the same points as ``groom.locks``
     statistics: what the solver reports, one dict per frame
+    start:      what was in the way when the shot began (see ``shot/start.py``); empty without contact
     """
 
     frames: NDArray[np.float64]
     points: NDArray[np.float32]
     statistics: list[dict[str, Any]] = field(default_factory=list)
+    start: dict[str, Any] = field(default_factory=dict)

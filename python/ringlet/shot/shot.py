@@ -5,9 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any, Literal
 
-from pydantic import Field, PrivateAttr, ValidationError, field_validator
+from pydantic import Field, PrivateAttr, ValidationError, ValidationInfo, field_validator
 
 from ringlet.settings import Section, explain, parse_toml, read_toml, refuse
+from ringlet.shot.collider import Collider, ShotContact
 from ringlet.shot.rest import Rest
 from ringlet.shot.strands import Material, Solver
 from ringlet.shot.variation import Variation
@@ -43,6 +44,13 @@ class Shot(Section):
     rest: Rest = Field(default=Rest(), description="the shape that strands remember")
     solver: Solver = Field(default=Solver(), description="how a time step is solved")
     forces: Forces = Field(default=Forces(), description="what acts from outside")
+    contact: ShotContact | None = Field(
+        default=None, description="how locks touch; without this table they pass through everything"
+    )
+    collider: tuple[Collider, ...] = Field(
+        default=(),
+        description="what locks touch besides one another; by default the head with all that is visible there",
+    )
 
     _path: Path | None = PrivateAttr(None)
 
@@ -52,6 +60,18 @@ class Shot(Section):
         if frames[1] < frames[0]:
             raise refuse(f"is {list(frames)}; the last must not come before the first")
         return frames
+
+    @field_validator("collider")
+    @classmethod
+    def _touched(cls, colliders: tuple[Collider, ...], info: ValidationInfo) -> tuple[Collider, ...]:
+        if colliders and info.data.get("contact", True) is None:
+            raise refuse("is there, but locks touch nothing; add a table [contact]")
+        return colliders
+
+    @property
+    def touching(self) -> ShotContact | None:
+        """How locks touch, if they do."""
+        return self.contact if self.contact and self.contact.on else None
 
     @property
     def rest_file(self) -> Path | None:
@@ -87,7 +107,8 @@ def _shot(data: dict[str, Any], path: Path | None) -> Shot:
         raise explain(error, path.name if path else "shot") from error
     folder = path.parent if path else Path()
     rest = shot.rest.model_copy(update={"file": shot.rest.file and folder / shot.rest.file})
-    shot = shot.model_copy(update={"groom": folder / shot.groom, "rest": rest})
+    colliders = tuple(one.model_copy(update={"file": one.file and folder / one.file}) for one in shot.collider)
+    shot = shot.model_copy(update={"groom": folder / shot.groom, "rest": rest, "collider": colliders})
     shot._path = path
     return shot
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -13,8 +13,11 @@ from ringlet.curves import Curves
 from ringlet.errors import UserError
 from ringlet.groom.groom import Groom
 from ringlet.mesh import Clip
+from ringlet.shot import start
 from ringlet.shot.cache import Cache
+from ringlet.shot.collider import Obstacle
 from ringlet.shot.roots import Roots
+from ringlet.shot.scene import Scene
 from ringlet.shot.shot import Shot
 from ringlet.shot.strands import Strands
 
@@ -28,16 +31,18 @@ def simulate(
     clip: Clip,
     *,
     rest: Curves | None = None,
+    obstacles: Sequence[Obstacle] = (),
     frames: tuple[int, int] | None = None,
     progress: Progress | None = None,
     on_frame: OnFrame | None = None,
 ) -> Cache:
     """Moves the locks of ``groom`` while its scalp plays ``clip``.
 
-    rest:     the shape that the locks remember, in the rest pose of the scalp; the groomed one by default
-    frames:   first and last frame, in place of the shot's
-    progress: called as progress("sim", done, total)
-    on_frame: called with each frame's number, positions [m] of shape (n, 3) and statistics, as soon as it is there
+    rest:      the shape that the locks remember, in the rest pose of the scalp; the groomed one by default
+    obstacles: what the locks touch, where the shot has contact
+    frames:    first and last frame, in place of the shot's
+    progress:  called as progress("sim", done, total)
+    on_frame:  called with each frame's number, positions [m] of shape (n, 3) and statistics, as soon as it is there
     """
     first, last = frames or shot.frames
     if last < first:
@@ -49,20 +54,19 @@ def simulate(
             "hold fewer, or resample the locks"
         )
 
-    roots = Roots(groom)
-    strands = make_strands(shot, groom, rest)
-    strands.place(roots.carry(clip.at(first), first))
+    motion = Motion(shot, groom, clip, rest, obstacles, first)
     numbers = range(first, last + 1)
     total = shot.preroll + len(numbers)
     cache = Cache(np.array(numbers, np.float64), np.empty((len(numbers), len(groom.locks.points), 3), np.float32))
+    cache.start = motion.start
 
     for done in range(shot.preroll):
-        _advance(shot, strands, roots, clip, first, first)
+        motion.advance(first, first)
         if progress:
             progress("sim", done + 1, total)
     for k, frame in enumerate(numbers):
-        statistics = _advance(shot, strands, roots, clip, frame - 1 if k else frame, frame)
-        cache.points[k] = strands.positions
+        statistics = motion.advance(frame - 1 if k else frame, frame)
+        cache.points[k] = motion.strands.positions
         cache.statistics.append(statistics)
         if on_frame:
             on_frame(frame, cache.points[k], statistics)
@@ -76,30 +80,72 @@ def make_strands(shot: Shot, groom: Groom, rest: Curves | None = None) -> Strand
     return Strands(rest or groom.locks, shot.strands, shot.held, shot.variation.factors(groom))
 
 
-def _advance(shot: Shot, strands: Strands, roots: Roots, clip: Clip, start: float, end: float) -> dict[str, Any]:
-    """One frame's time passes while the scalp goes from frame ``start`` to ``end``."""
-    wall, cpu = time.perf_counter(), time.process_time()
-    substeps = shot.solver.substeps
-    reports = []
-    for k in range(1, substeps + 1):
-        frame = start + (end - start) * k / substeps
-        targets = roots.carry(clip.at(frame), frame)
-        reports.append(
-            strands.step(
-                targets,
-                1.0 / (clip.fps * substeps),
-                gravity=shot.forces.gravity,
-                wind=shot.forces.wind,
-                solver=shot.solver,
-            )
-        )
-    statistics = _summary(reports, strands)
-    return {
-        "frame": float(end),
-        "wall_ms": 1e3 * (time.perf_counter() - wall),
-        "cpu_ms": 1e3 * (time.process_time() - cpu),
-        **statistics,
-    }
+class Motion:
+    """Locks on their moving scalp, in contact where the shot has it; see ``simulate`` for what it is made of.
+
+    first: the frame at which everything starts
+    start: what was in the way then (see ``start.py``)
+    """
+
+    def __init__(
+        self, shot: Shot, groom: Groom, clip: Clip, rest: Curves | None, obstacles: Sequence[Obstacle], first: float
+    ) -> None:
+        self.shot, self.clip, self.roots = shot, clip, Roots(groom)
+        self.strands = make_strands(shot, groom, rest)
+        self.strands.place(self.roots.carry(clip.at(first), first))
+        self.scene: Scene | None = None
+        self.start: dict[str, Any] = {}
+        self.obstacles = [obstacle.starting_at(first) for obstacle in obstacles]
+        if shot.touching:
+            self._touch(groom, first)
+
+    def _touch(self, groom: Groom, first: float) -> None:
+        """Puts the locks into a scene with the obstacles; what starts inside one is excused until it is out."""
+        contact = self.shot.touching
+        assert contact is not None
+        locks = groom.locks.with_points(self.strands.positions.copy())
+        carriers = [k for k, obstacle in enumerate(self.obstacles) if obstacle.is_surface_of(groom.scalp)]
+        rooted_in = np.full(len(locks), carriers[0] if carriers else -1)
+        bodies = [obstacle.body(first) for obstacle in self.obstacles]
+        self.scene = Scene(self.strands, bodies, contact, rooted_in)
+        inside = []
+        for k, (obstacle, body) in enumerate(zip(self.obstacles, bodies, strict=True)):
+            depth = start.depths(locks.points, obstacle.mesh.triangles, body.points)
+            depth[self.strands.held] = 0.0
+            if depth.any():
+                inside.append(start.tell_inside(locks, obstacle.mesh, depth))
+                self.scene.excuse(np.flatnonzero(depth), k)
+        self.start = {"inside": inside, "overlapping": start.tell_overlapping(locks, self.scene, self.shot.solver)}
+
+    def advance(self, begin: float, end: float) -> dict[str, Any]:
+        """One frame's time passes while the scalp goes from frame ``begin`` to ``end``; returns what happened."""
+        wall, cpu = time.perf_counter(), time.process_time()
+        substeps = self.shot.solver.substeps
+        dt = 1.0 / (self.clip.fps * substeps)
+        touched: list[dict[str, float]] = []
+        reports: list[dict[str, NDArray[np.float64]]] = []
+        outside: dict[str, Any] = {
+            "gravity": self.shot.forces.gravity,
+            "wind": self.shot.forces.wind,
+            "solver": self.shot.solver,
+        }
+        for k in range(1, substeps + 1):
+            frame = begin + (end - begin) * k / substeps
+            targets = self.roots.carry(self.clip.at(frame), frame)
+            if self.scene:
+                ends = [obstacle.at(frame) for obstacle in self.obstacles]
+                contact, report = self.scene.step(targets, dt, bodies=ends, **outside)
+                touched.append(contact)
+            else:
+                report = self.strands.step(targets, dt, **outside)
+            reports.append(report)
+        return {
+            "frame": float(end),
+            "wall_ms": 1e3 * (time.perf_counter() - wall),
+            "cpu_ms": 1e3 * (time.process_time() - cpu),
+            **_summary(reports, self.strands),
+            **(_contact_summary(touched, self.scene) if self.scene else {}),
+        }
 
 
 def _summary(reports: list[dict[str, NDArray[np.float64]]], strands: Strands) -> dict[str, Any]:
@@ -128,4 +174,33 @@ def _summary(reports: list[dict[str, NDArray[np.float64]]], strands: Strands) ->
         "too_straight": total("too_straight"),
         "clamped": total("clamped"),
         "nan": total("nan"),
+    }
+
+
+def _contact_summary(reports: list[dict[str, float]], scene: Scene) -> dict[str, Any]:
+    """What happened in a frame's substeps in a scene, which is solved as one: it replaces what strands tell of that."""
+
+    def total(name: str) -> float:
+        return sum(report[name] for report in reports)
+
+    closest = min(report["closest"] for report in reports)
+    times = [name for name in reports[0] if name.startswith("time_")]
+    return {
+        "newton": float(np.mean([report["newton"] for report in reports])),
+        "newton_max": int(max(report["newton"] for report in reports)),
+        "unconverged": int(total("unconverged")),
+        "unconverged_locks": [],
+        "line_search_cuts": int(total("cuts")),
+        "residual": max(report["residual"] for report in reports),
+        "contact": {
+            "candidates": int(reports[-1]["candidates"]),
+            "contacts": int(reports[-1]["contacts"]),
+            "closest": closest if np.isfinite(closest) else None,
+            "violations": int(total("violations")),
+            "zone_vertices": int(total("zone_vertices")),
+            "excused": scene.excused,
+            "linear_iterations": int(total("linear_iterations")),
+            "fraction": min(report["fraction"] for report in reports),
+            **{f"{name}_ms".removeprefix("time_"): 1e3 * total(name) for name in times},
+        },
     }

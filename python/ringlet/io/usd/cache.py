@@ -25,6 +25,7 @@ def write_cache(cache: Cache, groom_path: Path | str, path: Path | str, space: S
     space: unit, up-axis and rate of the groom file
     """
     with CacheWriter(path, groom_path, space) as writer:
+        writer.start = cache.start
         for index, (frame, points) in enumerate(zip(cache.frames, cache.points, strict=True)):
             writer.add(frame, points, cache.statistics[index] if index < len(cache.statistics) else None)
 
@@ -47,8 +48,11 @@ def read_cache(path: Path | str) -> Cache:
                 raise UserError(f"{path}: has {len(moved)} points at frame {frame:g}, its groom {rest}; simulate again")
             points[index] = to_metres(moved, source.space)
         kept = [layer.customLayerData.get("ringlet") or {} for layer in source.stage.GetLayerStack()]
-        statistics = next((data["statistics"] for data in kept if "statistics" in data), "[]")
-        return Cache(np.array(frames), points, parse_json(source, statistics, "ringlet:statistics"))
+        told = {
+            name: parse_json(source, next((data[name] for data in kept if name in data), empty), f"ringlet:{name}")
+            for name, empty in (("statistics", "[]"), ("start", "{}"))
+        }
+        return Cache(np.array(frames), points, **told)
 
 
 def cache_groom_path(path: Path | str) -> Path:
@@ -65,10 +69,12 @@ class CacheWriter(StreamWriter):
     Nothing is at ``path`` until the block ends, and nothing new if it fails.
 
     space: unit, up-axis and rate of the groom file
+    start: what was in the way when the simulation began
     """
 
     def __init__(self, path: Path | str, groom_path: Path | str, space: StageSpace) -> None:
         super().__init__(path, groom_path, space)
+        self.start: dict[str, Any] = {}
         self._statistics: list[dict[str, Any]] = []
 
     def __enter__(self) -> Self:
@@ -89,5 +95,8 @@ class CacheWriter(StreamWriter):
 
     def finish(self) -> None:
         """Adds the statistics to the layer."""
-        text = json.dumps(self._statistics, separators=(",", ":"), default=lambda value: value.tolist())
-        self.layer.customLayerData = {"ringlet": {"version": VERSION, "statistics": text}}
+        told = {
+            name: json.dumps(what, separators=(",", ":"), default=lambda value: value.tolist())
+            for name, what in (("statistics", self._statistics), ("start", self.start))
+        }
+        self.layer.customLayerData = {"ringlet": {"version": VERSION, **told}}

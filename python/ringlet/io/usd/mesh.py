@@ -53,10 +53,12 @@ def read_usd_clip(path: Path | str, prim: str | None = None, frames: tuple[float
         return clip_at(source, select_mesh(source, prim), frames)
 
 
-def read_bodies(path: Path | str) -> list[Body]:
-    """Reads every visible mesh under the default prim (under the root where there is none), with its clip."""
+def read_bodies(path: Path | str, prim: str | None = None) -> list[Body]:
+    """Reads meshes with their clips: all at and below ``prim``; by default every visible one under the default prim
+    (under the root where there is none)."""
     with reading(path) as source:
-        return [Body(mesh_at(source, prim), clip_at(source, prim)) for prim in visible_meshes(source)]
+        meshes = visible_meshes(source) if prim is None else meshes_below(source, prim)
+        return [Body(mesh_at(source, mesh), clip_at(source, mesh)) for mesh in meshes]
 
 
 def select_mesh(source: Source, name: str | None) -> Usd.Prim:
@@ -66,6 +68,15 @@ def select_mesh(source: Source, name: str | None) -> Usd.Prim:
     meshes = [prim for prim in prims(root) if UsdGeom.Mesh(prim)]
     scalps = [prim for prim in meshes if SCALP in _subsets(prim)]
     return choose(source, scalps if len(scalps) == 1 else meshes, "Mesh")
+
+
+def meshes_below(source: Source, name: str) -> list[Usd.Prim]:
+    """The mesh prims at and below a path; refuses a path without any."""
+    _bake_skinning(source.stage)
+    meshes = [prim for prim in prims(find_prim(source, name)) if UsdGeom.Mesh(prim)]
+    if not meshes:
+        raise UserError(f"{source.path}: there is no Mesh at or below {name}; name one, or a prim above one")
+    return meshes
 
 
 def visible_meshes(source: Source) -> list[Usd.Prim]:

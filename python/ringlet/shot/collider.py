@@ -1,0 +1,91 @@
+"""Colliders: the meshes that locks cannot pass through, and how they move."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from ringlet.errors import UserError
+from ringlet.mesh import Clip, Mesh
+from ringlet.settings import Section
+from ringlet.shot.scene import Body, Contact
+
+
+class ShotContact(Contact):
+    """How locks touch one another and the colliders."""
+
+    on: bool = Field(default=True, description="false: everything passes through everything, as without this table")
+
+
+class Collider(Section):
+    """Meshes that locks cannot pass through. Where several entries name one mesh, the last of them counts."""
+
+    file: Path | None = Field(
+        default=None,
+        description="USD file with the animation of the groom's head; by default that head. A relative name counts "
+        "from the shot",
+    )
+    mesh: str | None = Field(
+        default=None, description="path of a prim: the meshes at and below it; by default all that are visible"
+    )
+    animated: bool = Field(default=True, description="false: it stays as it is at the first frame of the shot")
+    thickness: float = Field(
+        default=5e-4, ge=0, le=0.1, description="[m] how far from the surface contact begins, besides `contact.radius`"
+    )
+    friction: float = Field(default=0.3, ge=0, le=10, description="Coulomb's μ of a lock on it")
+
+
+@dataclass
+class Obstacle:
+    """A mesh in the way of locks.
+
+    mesh:     its triangles, and its points in the rest pose [m]
+    clip:     how it moves
+    settings: its thickness and friction, and whether it moves
+    """
+
+    mesh: Mesh
+    clip: Clip
+    settings: Collider = field(default_factory=Collider)
+
+    def starting_at(self, frame: float) -> Obstacle:
+        """The same for a shot that begins at ``frame``: what is not animated stays as it is there."""
+        if self.settings.animated:
+            return self
+        return Obstacle(self.mesh, Clip(np.array([frame]), self.clip.at(frame)[None], self.clip.fps), self.settings)
+
+    def at(self, frame: float) -> NDArray[np.float64]:
+        """Its points at a frame [m], shape (n, 3); refuses what nothing can touch."""
+        points = self.clip.at(frame)
+        if points.shape != self.mesh.points.shape:
+            raise UserError(
+                f"{self.mesh.name}: has {len(points)} points at frame {frame:g}, "
+                f"{len(self.mesh.points)} in its rest pose; must not change"
+            )
+        corners = points[self.mesh.triangles]
+        e1, e2 = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+        longest = np.maximum((e1 * e1).sum(axis=1), (e2 * e2).sum(axis=1))
+        flat = ~(np.linalg.norm(np.cross(e1, e2), axis=1) > 1e-9 * longest)
+        if flat.any():
+            raise UserError(
+                f"{self.mesh.name}: at frame {frame:g} triangle {flat.argmax()} has no area or is not finite "
+                f"({flat.sum()} of {len(flat)}); mend the mesh or leave it out of the colliders"
+            )
+        return points
+
+    def body(self, frame: float) -> Body:
+        """The same for a scene that begins at ``frame``."""
+        return Body(self.at(frame), self.mesh.triangles, self.settings.thickness, self.settings.friction)
+
+    def is_surface_of(self, scalp: Mesh) -> bool:
+        """Whether it is the scalp that locks are rooted in."""
+        mine, theirs = self.mesh, scalp
+        return (
+            np.array_equal(mine.triangles, theirs.triangles)
+            and mine.points.shape == theirs.points.shape
+            and bool(np.abs(mine.points - theirs.points).max() < 1e-6)
+        )

@@ -1,0 +1,102 @@
+"""How a shot starts: which vertices of locks are inside a collider, and which locks are nearer than they may be."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ringlet import _core
+from ringlet.curves import Curves
+from ringlet.mesh import Mesh
+from ringlet.shot.scene import Scene
+from ringlet.shot.strands import Solver
+
+Array = NDArray[np.float64]
+
+WORST = 5  # places that are told
+INSTANT = 1e-7  # a step so short that nothing moves [s]
+
+
+def depths(points: NDArray[np.floating], triangles: NDArray[np.int32], corners: NDArray[np.floating]) -> Array:
+    """How deep points are inside a closed mesh with those corners [m], 0 outside; shape (n,).
+
+    What is behind the nearest triangle is a candidate; inside is what the mesh winds around.
+    """
+    depth = np.zeros(len(points))
+    near = np.flatnonzero(((points > corners.min(axis=0)) & (points < corners.max(axis=0))).all(axis=1))
+    places, surface = np.asarray(points[near], np.float64), np.asarray(corners, np.float64)
+    triangle, barycentric, distance = _core.bind_roots(surface, triangles, places)
+    foot, axes = _core.root_frames(surface, triangles, triangle, barycentric)
+    behind = np.flatnonzero(np.einsum("ni,ni->n", places - foot, axes[:, :, 2]) < 0.0)
+    inside = behind[winding(places[behind], surface[triangles]) > 0.5]
+    depth[near[inside]] = distance[inside]
+    return depth
+
+
+def winding(points: Array, corners: Array) -> Array:
+    """How often triangles (m, 3, 3) wind around points, shape (n,): Σ Ω / 4π (Jacobson et al. 2013, eq. 5)."""
+    numbers = np.empty(len(points))
+    for k, point in enumerate(points):
+        a, b, c = (corners[:, i] - point for i in range(3))
+        la, lb, lc = (np.linalg.norm(side, axis=1) for side in (a, b, c))
+        volume = np.einsum("ni,ni->n", a, np.cross(b, c))
+        dots = (np.einsum("ni,ni->n", u, v) * w for u, v, w in ((a, b, lc), (b, c, la), (c, a, lb)))
+        numbers[k] = 2.0 * np.arctan2(volume, la * lb * lc + sum(dots)).sum() / (4.0 * np.pi)
+    return numbers
+
+
+def tell_inside(locks: Curves, mesh: Mesh, depth: Array) -> dict[str, Any]:
+    """What is inside a mesh, as numbers: how many vertices of how many locks, and the deepest of them."""
+    inside = np.flatnonzero(depth > 0.0)
+    deepest = inside[np.argsort(-depth[inside], kind="stable")[:WORST]]
+    return {
+        "mesh": mesh.name,
+        "vertices": len(inside),
+        "locks": len(np.unique(_lock_of(locks, inside))),
+        "depth": float(depth.max(initial=0.0)),
+        "worst": [{**_place(locks, vertex), "depth": float(depth[vertex])} for vertex in deepest],
+    }
+
+
+def tell_overlapping(locks: Curves, scene: Scene, solver: Solver) -> dict[str, Any]:
+    """Which locks are nearer to one another than they may be, as numbers. The strands are at rest, and stay so."""
+    strands = scene.strands
+    before = strands.positions.copy()
+    scene.step(before, INSTANT, solver=solver.model_copy(update={"newton": 1}))
+    strands.place(before)
+    vertices, values = scene.contacts
+    pairs = _lock_of(locks, vertices[:, [0, 3]])
+    of_two = (vertices < len(before)).all(axis=1) & (pairs[:, 0] != pairs[:, 1])
+    vertices, weights, limit, pairs = vertices[of_two], values[of_two, :4], values[of_two, 7], pairs[of_two]
+    distance = np.linalg.norm(np.einsum("kv,kvi->ki", weights, before[vertices]), axis=1)
+    nearest = np.argsort(distance / limit, kind="stable")[:WORST]
+    return {
+        "places": len(pairs),
+        "locks": len(np.unique(pairs)),
+        "depth": float((limit - distance).max(initial=0.0)),
+        "worst": [
+            {
+                **_place(locks, int(vertices[k, 0])),
+                "other": int(locks.ids[pairs[k, 1]]),
+                "distance": float(distance[k]),
+            }
+            for k in nearest
+        ],
+    }
+
+
+def _lock_of(locks: Curves, vertices: NDArray[np.integer]) -> NDArray[np.int64]:
+    """The place in the list of the lock that each vertex belongs to."""
+    return np.searchsorted(locks.offsets, vertices, side="right") - 1
+
+
+def _place(locks: Curves, vertex: int) -> dict[str, Any]:
+    """A vertex as an artist finds it: the id of its lock, its number from the root, where it is [m]."""
+    lock = int(_lock_of(locks, np.array(vertex)))
+    return {
+        "lock": int(locks.ids[lock]),
+        "vertex": int(vertex - locks.offsets[lock]),
+        "place": [float(x) for x in locks.points[vertex]],
+    }

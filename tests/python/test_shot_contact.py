@@ -1,0 +1,257 @@
+"""Contact in shots: locks stay outside of what they touch, colliders come from USD, and what starts inside is told."""
+
+import json
+
+import numpy as np
+import pytest
+from pxr import Usd, UsdGeom, Vt
+from ringlet.curves import Curves
+from ringlet.errors import UserError
+from ringlet.groom.groom import Groom
+from ringlet.mesh import Clip, Mesh
+from ringlet.shot import Collider, Obstacle, parse_shot, simulate
+from ringlet.shot.start import depths, winding
+from small_example import FRAMES, write_example
+from test_cli import refused, run
+
+import ringlet
+from ringlet import _core
+
+SHOT = 'ringlet = 1\ngroom = "groom.usdc"\nframes = [1, 12]\npreroll = 0\n[strands]\nbend_scale = 0.2\n'
+CONTACT = "[contact]\nradius = 1e-3\n"
+POINTS = 31
+
+
+def floor():
+    """A square of 20 cm in the plane y = 0, facing up."""
+    points = 0.1 * np.array([[-1.0, 0, -1], [1, 0, -1], [1, 0, 1], [-1, 0, 1]])
+    return Mesh("floor", points, np.array([[0, 2, 1], [0, 3, 2]], np.int32))
+
+
+def ball(radius=0.01, centre=(0.0, 0.0, 0.0), name="ball"):
+    """A closed sphere of 168 triangles."""
+    points, triangles = [[0, 1, 0]], []
+    for polar in np.linspace(0, np.pi, 9)[1:-1]:
+        for around in np.linspace(0, 2 * np.pi, 12, endpoint=False):
+            points.append([np.sin(polar) * np.sin(around), np.cos(polar), np.sin(polar) * np.cos(around)])
+    points.append([0, -1, 0])
+    last = len(points) - 1
+    for k in range(12):
+        following = (k + 1) % 12
+        triangles += [[0, 1 + k, 1 + following], [last, last - 12 + following, last - 12 + k]]
+        for row in range(6):
+            a, b = 1 + 12 * row + k, 1 + 12 * row + following
+            triangles += [[a, a + 12, b + 12], [a, b + 12, b]]
+    return Mesh(name, radius * np.array(points) + centre, np.array(triangles, np.int32))
+
+
+def groom(apart=0.01):
+    """Straight strands of 6 cm that lean along x, 17° above the floor; rooted at z = 0, ``apart``, 2 ``apart`` …"""
+    along = np.linspace(0, 0.06, POINTS)[:, None] * [np.cos(0.3), np.sin(0.3), 0]
+    locks = Curves.from_list([along + [-0.03, 0, apart * k] for k in range(3)], ids=[11, 12, 13])
+    mesh = floor()
+    triangle, barycentric, _ = _core.bind_roots(mesh.points, mesh.triangles, locks.roots)
+    locks.curve |= {"root_triangle": triangle, "root_barycentric": barycentric}
+    return Groom(locks, locks, mesh)
+
+
+def still(mesh):
+    return Clip(np.array([1.0]), mesh.points[None], 24.0)
+
+
+def simulated(text=SHOT + CONTACT, made=None, obstacles=()):
+    made = made or groom()
+    return simulate(parse_shot(text), made, still(made.scalp), obstacles=obstacles)
+
+
+def test_locks_fall_onto_the_scalp_and_not_through_it():
+    through = simulated(SHOT, obstacles=[Obstacle(floor(), still(floor()))])
+    cache = simulated(obstacles=[Obstacle(floor(), still(floor()))])
+    free = np.tile(np.arange(POINTS) >= 3, 3)
+    assert through.points[-1, free, 1].min() < -0.005
+    assert cache.points[:, free, 1].min() > 0
+    assert cache.points[-1, free, 1].max() < 0.01  # they did fall
+
+
+def test_a_thicker_collider_keeps_locks_farther_away():
+    heights = []
+    for thickness in (5e-4, 3e-3):
+        obstacle = Obstacle(floor(), still(floor()), Collider(thickness=thickness))
+        cache = simulated(SHOT.replace("12]", "40]") + CONTACT, obstacles=[obstacle])
+        heights.append(cache.points[-1].reshape(3, POINTS, 3)[:, 10:, 1].mean())
+    assert heights[1] > heights[0] + 1e-3
+
+
+def test_a_collider_that_moves_takes_locks_along_and_one_that_is_not_animated_does_not():
+    hand = ball(0.012, (0.02, 0.028, 0.01), "hand")
+    frames = np.arange(1.0, 13.0)
+    sweep = Clip(frames, np.array([hand.points + [0, 0, -0.005 * (f - 1)] for f in frames]), 24.0)
+    tips = {}
+    for animated in (True, False):
+        cache = simulated(
+            SHOT + "[forces]\ngravity = [0, 0, 0]\n" + CONTACT,
+            made=groom(apart=-0.03),
+            obstacles=[Obstacle(hand, sweep, Collider(animated=animated))],
+        )
+        tips[animated] = cache.points[:, :POINTS].astype(float)
+    moved = np.abs(tips[True][-1] - tips[True][0])[:, 2].max()
+    assert moved > 0.01
+    assert np.abs(tips[False] - tips[False][0]).max() < 1e-6
+
+
+def test_statistics_of_contact_are_there_frame_by_frame():
+    cache = simulated(obstacles=[Obstacle(floor(), still(floor()))])
+    touched = [frame["contact"] for frame in cache.statistics]
+    assert max(frame["contacts"] for frame in touched) > 0
+    for frame in touched:
+        assert frame["candidates"] >= frame["contacts"]
+        assert frame["fraction"] == 1.0 and frame["excused"] == 0
+        assert frame["contacts"] == 0 or 0 < frame["closest"] < 1.5e-3
+        assert all(frame[f"{phase}_ms"] >= 0 for phase in ("pairs", "assemble", "solve", "search", "filter"))
+
+
+def test_what_starts_inside_is_told_and_comes_out():
+    tip = groom().locks.points[POINTS - 1]  # of lock 11
+    sphere = ball(0.004, tip + [0, 0, 0.001])
+    shot = SHOT.replace("12]", "30]") + "[forces]\ngravity = [0, 0, 0]\n" + CONTACT
+    cache = simulated(shot, obstacles=[Obstacle(sphere, still(sphere))])
+    (told,) = cache.start["inside"]
+    assert told["mesh"] == "ball" and told["locks"] == 1
+    assert told["vertices"] == 2  # they are 2 mm apart; the sphere is left after 3.9 mm
+    assert told["worst"][0]["lock"] == 11 and told["worst"][0]["vertex"] == POINTS - 1
+    assert 0.0025 < told["depth"] <= 0.003
+    left = [frame["contact"]["excused"] for frame in cache.statistics]
+    assert left[0] == 2 and left[-1] == 0
+    assert not depths(cache.points[-1], sphere.triangles, sphere.points).any()
+
+
+def test_locks_that_start_too_near_each_other_are_told_and_part():
+    cache = simulated(SHOT + "[forces]\ngravity = [0, 0, 0]\n" + CONTACT, made=groom(apart=5e-4))
+    told = cache.start["overlapping"]
+    assert told["locks"] == 3 and told["places"] >= 2 * (POINTS - 4)
+    assert np.isclose(told["depth"], 1.5e-3, atol=1e-5)
+    assert {told["worst"][0]["lock"], told["worst"][0]["other"]} in ({11, 12}, {12, 13})
+    tips = cache.points[-1].reshape(3, POINTS, 3)[:, -1]
+    assert np.diff(tips[:, 2]).min() > 1.2e-3
+
+
+def test_depth_is_that_of_a_closed_mesh_and_of_no_sheet():
+    mesh = ball(0.01)
+    points = np.array([[0.0, 0.004, 0], [0, 0.02, 0], [0, -0.0095, 0]])
+    depth = depths(points, mesh.triangles, mesh.points)
+    assert 0.005 < depth[0] < 0.0061 and depth[1] == 0 and 0 < depth[2] < 6e-4
+    sheet = floor()
+    assert not depths(points - [0, 0.005, 0], sheet.triangles, sheet.points).any()
+    numbers = winding(points, mesh.points[mesh.triangles])
+    assert np.allclose(numbers, [1, 0, 1], atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("[contact]\nfricton = 1\n", ["contact.fricton", "'friction'?"]),
+        ("[contact]\nradius = 0\n", ["contact.radius", "0", "more than 0"]),
+        ("[contact]\n[[collider]]\nthicknes = 1\n", ["collider[0].thicknes", "'thickness'?"]),
+        ("[contact]\n[[collider]]\nfriction = -1\n", ["collider[0].friction", "-1", "at least 0"]),
+        ("[[collider]]\nfriction = 1\n", ["collider", "[contact]"]),
+    ],
+)
+def test_a_mistake_in_the_settings_is_told_in_one_line(text, words):
+    with pytest.raises(UserError) as told:
+        parse_shot(SHOT + text)
+    assert "\n" not in str(told.value)
+    for word in words:
+        assert word in str(told.value)
+
+
+def test_a_collider_that_loses_its_area_is_refused_with_the_frame():
+    mesh = floor()
+    clip = Clip(np.array([1.0, 4.0]), np.array([mesh.points, mesh.points * [1, 1, 0]]), 24.0)
+    with pytest.raises(UserError, match=r"floor: at frame 4 triangle 0 has no area .*\(2 of 2\)"):
+        simulated(obstacles=[Obstacle(mesh, clip)])
+
+
+def test_a_collider_whose_points_change_in_number_is_refused():
+    clip = Clip(np.array([1.0]), np.zeros((1, 5, 3)), 24.0)
+    with pytest.raises(UserError, match="floor: has 5 points at frame 1, 4 in its rest pose"):
+        simulated(obstacles=[Obstacle(floor(), clip)])
+
+
+@pytest.fixture(scope="module")
+def example(tmp_path_factory):
+    """The small example in contact, with its groom."""
+    folder = write_example(tmp_path_factory.mktemp("contact"))
+    shot = folder / "small.shot.toml"
+    shot.write_text(shot.read_text() + "[contact]\n")
+    assert run("groom", folder / "small.recipe.toml", "-o", folder / "groom.usdc").exit_code == 0
+    return folder
+
+
+def sim(folder, *more):
+    return run("sim", folder / "small.shot.toml", "--groom", folder / "groom.usdc", "-o", folder / "cache.usdc", *more)
+
+
+def test_the_head_is_a_collider_by_default_and_the_report_tells_of_contact(example):
+    result = sim(example, "--json", "--report", example / "report")
+    assert result.exit_code == 0, result.output
+    told = json.loads(result.stdout)
+    assert told["frames"] == FRAMES and set(told["start"]) == {"inside", "overlapping"}
+    assert ringlet.read_cache(example / "cache.usdc").start == told["start"]
+    statistics = json.loads((example / "report/report.json").read_text())["statistics"]
+    assert all(frame["contact"]["candidates"] > 0 for frame in statistics)
+    html = (example / "report/report.html").read_text()
+    for text in ("How it started", "Pairs that were kept from meeting", "Held back", "single hairs do not"):
+        assert text in html
+
+
+def spoilt(example, tmp_path, change):
+    """The example's shot with another collider in its head: a box whose prim ``change`` spoils."""
+    stage = Usd.Stage.CreateNew(str(tmp_path / "props.usda"))
+    stage.SetStartTimeCode(1)
+    stage.SetEndTimeCode(FRAMES)
+    mesh = UsdGeom.Mesh.Define(stage, "/props/box")
+    points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], np.float32) + [0, 30, 0]
+    mesh.CreatePointsAttr(Vt.Vec3fArray.FromNumpy(points.astype(np.float32)))
+    mesh.CreateFaceVertexCountsAttr([3, 3, 3, 3])
+    mesh.CreateFaceVertexIndicesAttr([0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3])
+    change(mesh)
+    stage.Save()
+    shot = tmp_path / "props.shot.toml"
+    shot.write_text((example / "small.shot.toml").read_text() + f'[[collider]]\nfile = "{tmp_path}/props.usda"\n')
+    return shot
+
+
+def test_a_collider_comes_from_another_file(example, tmp_path):
+    shot = spoilt(example, tmp_path, lambda mesh: None)
+    assert run("sim", shot, "--groom", example / "groom.usdc", "-o", tmp_path / "cache.usdc").exit_code == 0
+
+
+def lose_points(mesh):
+    mesh.GetPointsAttr().Set(Vt.Vec3fArray([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]), 1)
+    mesh.GetPointsAttr().Set(Vt.Vec3fArray([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1)]), 2)
+
+
+def lose_a_number(mesh):
+    mesh.GetPointsAttr().Set(Vt.Vec3fArray([(0, 0, float("nan")), (1, 0, 0), (0, 1, 0), (0, 0, 1)]))
+
+
+def lose_area(mesh):
+    mesh.GetPointsAttr().Set(Vt.Vec3fArray([(0, 0, 0), (1, 0, 0), (2, 0, 0), (0, 0, 1)]))
+
+
+@pytest.mark.parametrize(
+    ("change", "more", "words"),
+    [
+        (lambda mesh: None, 'mesh = "/props/bos"\n', ["/props/bos", "did you mean /props/box?"]),
+        (lambda mesh: None, 'mesh = "props"\n', ["props"]),
+        (lambda mesh: mesh.GetPrim().SetTypeName("Xform"), 'mesh = "/props"\n', ["no Mesh", "/props"]),
+        (lose_points, "", ["/props/box", "5 points at frame 2"]),
+        (lose_a_number, "", ["/props/box", "nan"]),
+        (lose_area, "", ["/props/box", "triangle 0", "area"]),
+    ],
+)
+def test_a_collider_that_cannot_be_used_is_refused_in_one_line(example, tmp_path, change, more, words):
+    shot = spoilt(example, tmp_path, change)
+    shot.write_text(shot.read_text() + more)
+    refused(run("sim", shot, "--groom", example / "groom.usdc", "-o", tmp_path / "cache.usdc"), *words)
+    assert not (tmp_path / "cache.usdc").exists()
