@@ -2,41 +2,52 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ringlet import Clock, Curves, Material, Solver, Strands, UserError, solver_counts
+from ringlet import Body, Clock, Contact, Curves, Material, Scene, Solver, Strands, UserError, solver_counts
 
 FPS = 30.0
+GRAVITY = (0.0, -9.81, 0.0)
 HELD = 4  # the vertices of a wisp inside the sphere's surface
+RADIUS = 0.1525  # of the sphere [m]
+DISTANCE = math.sqrt(2) * 1e-3  # at which contact begins [m]
 
 
-def run(strands: int = 256, contacts: Literal["off"] = "off", newton: int = 3, steps: int = 90) -> dict[str, Any]:
+def run(strands: int = 256, contacts: Literal["on", "off"] = "off", newton: int = 3, steps: int = 90) -> dict[str, Any]:
     """Twirls ``strands`` wisps of 101 vertices, 5 a turn, at 30 steps per second.
 
     40 frames of rest, then 50 about each of ±z, ±y, ±x.
 
-    contacts: ``off``: wisps pass through one another and through the sphere
+    contacts: ``off``: wisps pass through one another and through the sphere; ``on``: they touch both
     newton:   iterations of every step
     steps:    how many of the scene's 340 frames are run
     """
-    if contacts != "off":
-        raise UserError(f"bench twirl: contacts is {contacts}; must be off: there is no contact yet")
+    if contacts not in ("on", "off"):
+        raise UserError(f"bench twirl: contacts is {contacts}; must be on or off")
     wisps = groom(strands)
     curves = Curves.from_list(wisps)
     moving = Strands(curves, Material(damping=0.0, drag=0.0), HELD)
     solver = Solver(newton=newton, tolerance=1e-12)  # never reached: all iterations are spent
+    ball, triangles = sphere()
+    scene = Scene(moving, [Body(ball, triangles, DISTANCE / 2)], Contact(radius=DISTANCE / 2), np.zeros(strands, int))
     clock = Clock()
-    reports = []
+    reports, touched = [], []
     turned = np.eye(3)
     for step in range(steps):
         turned = turn(step) @ turned
         # Not with @: the threads of the matrix library would wait actively, on the processors that are timed.
-        targets = np.einsum("ij,kj->ik", curves.points, turned)
+        targets, ends = (np.einsum("ij,kj->ik", points, turned) for points in (curves.points, ball))
         with clock("step"):
-            reports.append(moving.step(targets, 1 / FPS, gravity=(0.0, -9.81, 0.0), solver=solver))
+            if contacts == "on":
+                contact, report = scene.step(targets, 1 / FPS, bodies=[ends], gravity=GRAVITY, solver=solver)
+                touched.append(contact)
+            else:
+                report = moving.step(targets, 1 / FPS, gravity=GRAVITY, solver=solver)
+            reports.append(report)
     return clock.result(
         "twirl",
         {"strands": strands, "contacts": contacts, "newton": newton, "steps": steps},
@@ -44,8 +55,24 @@ def run(strands: int = 256, contacts: Literal["off"] = "off", newton: int = 3, s
         warm_up=2,
         strands=strands,
         vertices=len(curves.points),
-        **solver_counts(reports),
+        **solver_counts(reports, touched),
     )
+
+
+def sphere(rings: int = 32) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+    """The sphere, cut along latitudes and longitudes: points [m], triangles that are counter-clockwise from outside."""
+    sides = 2 * rings
+    polar = np.linspace(0, np.pi, rings + 1)[1:-1, None]
+    around = np.linspace(0, 2 * np.pi, sides, endpoint=False)
+    ring = np.stack([np.sin(polar) * np.sin(around), np.cos(polar) + 0 * around, np.sin(polar) * np.cos(around)], -1)
+    points = RADIUS * np.concatenate([[[0, 1, 0]], ring.reshape(-1, 3), [[0, -1, 0]]])
+    last, k = len(points) - 1, np.arange(sides)
+    after = (k + 1) % sides
+    triangles = [np.c_[0 * k, 1 + k, 1 + after], np.c_[0 * k + last, last - sides + after, last - sides + k]]
+    for row in range(rings - 2):
+        a, b = 1 + row * sides + k, 1 + row * sides + after
+        triangles += [np.c_[a, a + sides, b + sides], np.c_[a, b + sides, b]]
+    return points, np.concatenate(triangles).astype(np.int32)
 
 
 def wisp() -> NDArray[np.float64]:

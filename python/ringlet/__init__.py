@@ -40,16 +40,19 @@ if TYPE_CHECKING:
     from ringlet.shot.cloth import Cloth, ClothMaterial, ClothSolver
     from ringlet.shot.direct import DirectSolver
     from ringlet.shot.loft import Loft
+    from ringlet.shot.scene import Body, Contact, Scene
     from ringlet.shot.strands import Material, Solver, Strands
 
 __version__ = version("ringlet")
 __all__ = [
+    "Body",
     "Cache",
     "Clip",
     "Clock",
     "Cloth",
     "ClothMaterial",
     "ClothSolver",
+    "Contact",
     "Curves",
     "DirectSolver",
     "Groom",
@@ -57,6 +60,7 @@ __all__ = [
     "Material",
     "Mesh",
     "Run",
+    "Scene",
     "Solver",
     "StageSpace",
     "Strands",
@@ -89,15 +93,18 @@ __all__ = [
 
 # These live in packages that load slowly, so they are imported when they are first asked for.
 _SLOW = {
+    "Body": "ringlet.shot.scene",
     "Cache": "ringlet.shot.cache",
     "Clock": "ringlet.bench",
     "Cloth": "ringlet.shot.cloth",
     "ClothMaterial": "ringlet.shot.cloth",
     "ClothSolver": "ringlet.shot.cloth",
+    "Contact": "ringlet.shot.scene",
     "DirectSolver": "ringlet.shot.direct",
     "Groom": "ringlet.groom.groom",
     "Loft": "ringlet.shot.loft",
     "Material": "ringlet.shot.strands",
+    "Scene": "ringlet.shot.scene",
     "Solver": "ringlet.shot.strands",
     "Strands": "ringlet.shot.strands",
     "solver_counts": "ringlet.bench",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import statistics
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
@@ -55,16 +55,29 @@ class Clock:
         }
 
 
-def solver_counts(reports: list[dict[str, NDArray[np.float64]]]) -> dict[str, Any]:
-    """What a benchmark of the solver counts, from the reports of all its steps (see ``Strands.step``)."""
-    return {
-        "contacts": 0,
-        "newton": float(np.mean([report["newton"].mean() for report in reports])),
-        "linear_iterations": 0,
-        "line_search_cuts": int(sum(report["cuts"].sum() for report in reports)),
-        "nan": int(sum(report["nan"].sum() for report in reports)),
-        "max_stretch": float(max(report["max_stretch"].max() for report in reports)),
+def solver_counts(
+    strands: list[dict[str, NDArray[np.float64]]], scenes: Sequence[dict[str, float]] = ()
+) -> dict[str, Any]:
+    """What a benchmark of the solver counts, from the reports of all its steps: of ``Strands.step``, or the two of
+    ``Scene.step``. Counts of contact are means over the steps."""
+
+    def mean(name: str) -> float:
+        return float(np.mean([scene[name] for scene in scenes])) if scenes else 0.0
+
+    cuts = sum(scene["cuts"] for scene in scenes) if scenes else sum(report["cuts"].sum() for report in strands)
+    counts = {
+        "contacts": mean("contacts"),
+        "newton": float(np.mean([report["newton"].mean() for report in strands])),
+        "linear_iterations": mean("linear_iterations"),
+        "line_search_cuts": int(cuts),
+        "nan": int(sum(report["nan"].sum() for report in strands)),
+        "max_stretch": float(max(report["max_stretch"].max() for report in strands)),
     }
+    if not scenes:
+        return counts
+    phases = {name.removeprefix("time_"): 1e3 * mean(name) for name in scenes[0] if name.startswith("time_")}
+    more = {name: mean(name) for name in ("candidates", "violations", "zone_vertices")}
+    return {**counts, **more, "closest": min(scene["closest"] for scene in scenes), "phases_wall_ms": phases}
 
 
 def spread(times: list[float]) -> dict[str, float]:

@@ -41,7 +41,9 @@ class Answer:
         (["direct", "--strands", "4", "--vertices", "12", "--method", "builtin"], {"strands": 4, "method": "builtin"}),
         (["memory", "--strands", "20"], {"strands": 20}),
         (["strands", "--strands", "4", "--steps", "3"], {"strands": 4, "steps": 3}),
+        (["head", "--locks", "30", "--points", "30", "--frames", "2", "--preroll", "0"], {"locks": 30, "points": 30}),
         (["twirl", "--strands", "3", "--contacts", "off", "--steps", "4"], {"strands": 3, "contacts": "off"}),
+        (["twirl", "--strands", "3", "--contacts", "on", "--steps", "4"], {"strands": 3, "contacts": "on"}),
     ],
 )
 def test_bench_prints_the_object_that_was_agreed(arguments, asked):

@@ -17,7 +17,8 @@ from ringlet.cli.output import print_json, print_table
 def bench(
     context: typer.Context,
     name: Annotated[
-        str, typer.Argument(metavar="NAME", help="What to measure: cloth, direct, groom, memory, strands, twirl …")
+        str,
+        typer.Argument(metavar="NAME", help="What to measure: cloth, direct, groom, head, strands, twirl …"),
     ],
     as_json: Json = False,
     threads: Threads = None,
