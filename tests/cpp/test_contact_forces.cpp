@@ -22,6 +22,7 @@ Contact some_contact(Random &random) {
     contact.first = 2;
     contact.normal = random.vector(1.0).normalized();
     contact.distance = 1e-3;
+    contact.barrier_end = 1e-3 / 64;
     contact.stiffness = random(0.1, 10.0);
     contact.friction = random(0.0, 1.0);
     contact.creep = 2e-5;
@@ -91,7 +92,7 @@ BOOST_AUTO_TEST_CASE(potentials_are_the_integrals_of_their_forces) {
     const double h = 1e-7;
     for (int i = 0; i < 1000; ++i) {
         const double r = 1.0, g = random(-0.5, 1.2);
-        const auto at = [&](double gap) { return contact_potential(gap, r); };
+        const auto at = [&](double gap) { return contact_potential(gap, r, r / 64); };
         const double scale = 1.0 + at(g).second;
         BOOST_TEST(std::abs((at(g + h).value - at(g - h).value) / (2 * h) - at(g).first) < 1e-5 * scale);
         if (std::abs(g - r) > 1e-3 && std::abs(g - r / 64) > 1e-4)

@@ -17,6 +17,7 @@ struct Contact {
     int first;                    // vertices of the first primitive: 2 of an edge, 1 of a point
     Vec3 normal;                  // n, from the second to the first
     double distance;              // r: the contact is active below this gap [m]
+    double barrier_end;           // below this gap the barrier ends in a parabola [m]
     double stiffness;             // k [N/m]
     double friction;              // μ
     double creep;                 // a contact that slid less in the step counts as sticking [m]
@@ -40,11 +41,11 @@ inline Vec3 separation(const Contact &c, View<Vec3> positions) {
 
 // Force [N] with which the contact pushes at a separation c_a − c_b.
 inline double contact_force(const Contact &c, const Vec3 &separation) {
-    return -c.stiffness * contact_potential(c.normal.dot(separation), c.distance).first;
+    return -c.stiffness * contact_potential(c.normal.dot(separation), c.distance, c.barrier_end).first;
 }
 
 inline double contact_energy(const Contact &c, const Vec3 &separation) {
-    double energy = c.stiffness * contact_potential(c.normal.dot(separation), c.distance).value;
+    double energy = c.stiffness * contact_potential(c.normal.dot(separation), c.distance, c.barrier_end).value;
     if (c.friction > 0.0 && c.force > 0.0) {
         const Vec3 moved = separation - c.start, slid = moved - c.normal.dot(moved) * c.normal;
         energy += c.friction * c.force * friction_potential(slid.norm(), c.creep).value;
@@ -53,7 +54,7 @@ inline double contact_energy(const Contact &c, const Vec3 &separation) {
 }
 
 inline ContactValue contact_value(const Contact &c, const Vec3 &separation) {
-    const Potential push = contact_potential(c.normal.dot(separation), c.distance);
+    const Potential push = contact_potential(c.normal.dot(separation), c.distance, c.barrier_end);
     ContactValue value{c.stiffness * push.value, c.stiffness * push.first * c.normal,
                        c.stiffness * push.second * c.normal * c.normal.transpose()};
     if (!(c.friction > 0.0 && c.force > 0.0)) return value;
@@ -63,7 +64,7 @@ inline ContactValue contact_value(const Contact &c, const Vec3 &separation) {
     value.energy += most * rub.value;
     const Mat3 plane = Mat3::Identity() - c.normal * c.normal.transpose();
     if (length < 1e-9 * c.creep) {
-        value.hessian += (2.0 * most / c.creep) * plane; // ψ'/y → 2/creep
+        value.hessian += (4.0 * most / c.creep) * plane; // ψ'/y → 4/creep
         return value;
     }
     const Vec3 way = slid / length;

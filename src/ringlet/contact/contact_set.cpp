@@ -16,6 +16,7 @@ std::optional<Contact> touch(const CollisionMesh &mesh, const std::array<int, N>
     Contact contact{};
     contact.distance = contact_distance(mesh, a, b);
     if (distance >= contact.distance) return {};
+    contact.barrier_end = std::clamp(0.25 * distance, contact.distance / 2000, contact.distance / 64);
     std::copy(a.begin(), a.end(), contact.vertex.begin());
     std::copy(b.begin(), b.end(), contact.vertex.begin() + N);
     contact.weight = nearest.weights;
@@ -25,7 +26,25 @@ std::optional<Contact> touch(const CollisionMesh &mesh, const std::array<int, N>
     return contact;
 }
 
+uint64_t name(const std::array<int, 2> &pair, bool of_edges) {
+    return uint64_t(of_edges) << 63 | uint64_t(pair[0]) << 32 | uint64_t(pair[1]);
+}
+
 } // namespace
+
+void ContactSet::begin(const CollisionMesh &mesh, const Candidates &candidates, View<Vec3> positions) {
+    early_.clear();
+    const auto note = [&](const auto &a, const auto &b, uint64_t pair) {
+        const double distance = std::sqrt(closest_points(positions, a, b).distance2);
+        if (distance < contact_distance(mesh, a, b)) early_[pair] = distance;
+    };
+    for (const auto &pair : candidates.edge_edge) note(mesh.edges[pair[0]], mesh.edges[pair[1]], name(pair, true));
+    for (const auto &pair : candidates.point_triangle) note(std::array{pair[0]}, mesh.triangles[pair[1]], name(pair, false));
+}
+
+void ContactSet::part_early(double way) {
+    for (auto &[pair, distance] : early_) distance += way;
+}
 
 void ContactSet::find(const CollisionMesh &mesh, const ContactMaterial &material, const Candidates &candidates,
                       View<Vec3> start, View<Vec3> now) {
@@ -47,6 +66,15 @@ void ContactSet::find(const CollisionMesh &mesh, const ContactMaterial &material
         for (int k = c * chunk; k < std::min(all, (c + 1) * chunk); ++k) {
             std::optional<Contact> contact = contact_of(k);
             if (!contact) continue;
+            if (!early_.empty()) {
+                const auto early = early_.find(k < edges ? name(candidates.edge_edge[k], true)
+                                                         : name(candidates.point_triangle[k - edges], false));
+                if (early != early_.end()) {
+                    contact->distance = std::min(contact->distance, early->second);
+                    contact->barrier_end =
+                        std::min(contact->barrier_end, contact->distance / 64); // the clamp above, for the less distance
+                }
+            }
             double softness[2] = {0.0, 0.0};
             for (int i = 0; i < 4; ++i)
                 softness[i >= contact->first] += std::abs(contact->weight[i]) / material.stiffness[contact->vertex[i]];

@@ -4,6 +4,7 @@
 #include "ringlet/contact/broad_phase.h"
 #include "ringlet/contact/contact.h"
 
+#include <unordered_map>
 #include <vector>
 
 namespace ringlet {
@@ -19,6 +20,12 @@ struct ContactMaterial {
 
 class ContactSet {
 public:
+    // Pairs that begin nearer than their contact distance push only from there on, which then grows by `way` a step: nothing
+    // pops.
+    void begin(const CollisionMesh &mesh, const Candidates &candidates, View<Vec3> positions);
+    void part_early(double way);
+    int early() const { return int(early_.size()); } // pairs that began so near and still are
+
     // The candidates that touch at the positions `now`; `start` says where the step began, for what they slid since.
     void find(const CollisionMesh &mesh, const ContactMaterial &material, const Candidates &candidates, View<Vec3> start,
               View<Vec3> now);
@@ -35,6 +42,7 @@ public:
 private:
     void index(const CollisionMesh &mesh);
 
+    std::unordered_map<uint64_t, double> early_; // pair → distance at which it pushes [m]
     std::vector<Contact> contacts_;
     std::vector<Role> roles_;
     std::vector<int> role_begin_, vertices_;

@@ -12,25 +12,26 @@ struct Potential {
 };
 
 // Contact at gap g, active below r (two-stage activation, Chen et al. 2025, with an end):
-//   ½ (r − g)²                              r/2 ≤ g < r
-//   −(r²/4) (ln(2g/r) − ½)                  r/64 ≤ g < r/2     a barrier: the stiffness grows as r²/4g²
-//   the parabola that touches it at r/64    below, also where g < 0: gaps are those of planes that may be overstepped for now
+//   ½ (r − g)²                        r/2 ≤ g < r
+//   −(r²/4) (ln(2g/r) − ½)            end ≤ g < r/2     a barrier: its force grows as 1/g, its stiffness as 1/g²
+//   the parabola that touches it      g < end, also where g < 0: gaps are those of planes that may be overstepped for now
 // Convex and C² everywhere but at r, where it is C¹.
-inline Potential contact_potential(double g, double r) {
+inline Potential contact_potential(double g, double r, double end) {
     if (g >= r) return {0.0, 0.0, 0.0};
     if (g >= 0.5 * r) return {0.5 * (r - g) * (r - g), g - r, 1.0};
-    const double s = 0.25 * r * r, end = r / 64, d = std::max(g, end);
+    const double s = 0.25 * r * r, d = std::max(g, std::min(end, 0.5 * r));
     const double value = -s * (std::log(2.0 * d / r) - 0.5), first = -s / d, second = s / (d * d);
     const double below = g - d;
     return {value + first * below + 0.5 * second * below * below, first + second * below, second};
 }
 
-// Friction per force μN after sliding a distance y ≥ 0 in a step (Li et al. 2020): |force| rises smoothly to 1 at y = creep and
-// stays there. `first` is that force, `second` its slope.
+// Friction per force μN after sliding a distance y ≥ 0 in a step: |force| rises smoothly to 1 at y = creep and stays there
+// (after Li et al. 2020, steeper at the start: what holds creeps by less than half of its part of the most, times `creep`, up
+// to 0.9 of it). `first` is that force, `second` its slope.
 inline Potential friction_potential(double y, double creep) {
     if (y >= creep) return {y, 1.0, 0.0};
-    const double q = y / creep;
-    return {creep * (q * q - q * q * q / 3.0 + 1.0 / 3.0), 2.0 * q - q * q, 2.0 * (1.0 - q) / creep};
+    const double q = y / creep, left = 1.0 - q, left3 = left * left * left;
+    return {creep * (q + left3 * left * left / 5.0), 1.0 - left3 * left, 4.0 * left3 / creep};
 }
 
 } // namespace ringlet

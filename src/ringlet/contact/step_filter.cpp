@@ -56,7 +56,7 @@ double impact_time(const CollisionMesh &mesh, const std::array<int, N> &a, const
     }
     const double distance = std::sqrt(closest_points(start, a, b).distance2);
     const double r = contact_distance(mesh, a, b);
-    const double kept = std::min(0.5 * r, std::max(0.2 * distance, std::min(0.9 * distance, r / 64)));
+    const double kept = std::min(0.5 * r, 0.2 * distance);
     if constexpr (N == 2)
         return edge_edge_impact(x, p, kept);
     else
@@ -111,26 +111,25 @@ void fade(const FilterScene &scene, View<Vec3> start, View<Vec3> end, double str
     }
 }
 
-// Strands of pairs that would meet go only as far as that as a whole, and after some rounds stay where they are: two that stay
-// do not meet.
+// Strands of pairs that would meet go only as far as that: near the pair in the first rounds, then as a whole, and after some
+// more they stay where they are: two that stay do not meet.
 void hold_back(const FilterScene &scene, View<Vec3> start, const std::vector<int> &met, const std::vector<double> &times,
                const Candidates &candidates, int round, std::vector<Vec3> &end, std::vector<unsigned char> &changed) {
-    constexpr int rounds = 8;
-    std::map<int, double> parts; // object → how far it goes
-    const int strands = int(scene.offsets.size()) - 1;
+    constexpr int local_rounds = 2, rounds = 8;
+    constexpr double strain = 0.05;
+    std::vector<Pull> pulls(start.size());
     for (const int k : met)
-        for (const int v : vertices_of(scene.mesh, candidates, k)) {
-            if (!scene.mesh.moves[v]) continue;
-            double &part = parts.try_emplace(scene.mesh.object[v], 1.0).first->second;
-            part = round < rounds ? std::min(part, times[k]) : 0.0;
+        for (const int v : vertices_of(scene.mesh, candidates, k))
+            if (scene.mesh.moves[v]) {
+                pulls[v].part = std::max(pulls[v].part, round < rounds ? 1.0 - times[k] : 1.0);
+            }
+    fade(scene, start, end, round < local_rounds ? strain : 0.0, pulls);
+#pragma omp parallel for schedule(static)
+    for (int v = 0; v < int(start.size()); ++v)
+        if (pulls[v].part > 0.0) {
+            end[v] += pulls[v].part * (start[v] - end[v]);
+            changed[v] = 1;
         }
-    for (const auto &[object, part] : parts)
-        if (object < strands)
-            for (int v = scene.offsets[object]; v < scene.offsets[object + 1]; ++v)
-                if (scene.mesh.moves[v]) {
-                    end[v] = start[v] + part * (end[v] - start[v]);
-                    changed[v] = 1;
-                }
 }
 
 // Takes out of `pairs` those of primitives with a changed vertex, and puts `found` in, all in order.

@@ -3,6 +3,7 @@
 #include "ringlet/geometry/triangle_tree.h"
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 
 namespace ringlet {
@@ -38,7 +39,7 @@ void Embedded::add(int vertex, const Body &body, CollisionMesh &mesh) {
     if (!mesh.moves[vertex] || std::any_of(vertices_.begin(), vertices_.end(), same)) return;
     auto known = std::find_if(bodies_.begin(), bodies_.end(), [&](const Body &b) { return b.object == body.object; });
     if (known == bodies_.end()) known = bodies_.insert(known, body);
-    vertices_.push_back({vertex, int(known - bodies_.begin())});
+    vertices_.push_back({vertex, int(known - bodies_.begin()), -std::numeric_limits<double>::infinity()});
     mesh.anchor[vertex] = body.object;
 }
 
@@ -66,7 +67,9 @@ void Embedded::push_out(CollisionMesh &mesh, View<Vec3> positions, View<int> off
                     least = std::min(least, surface.least_height(positions[v], positions[next]));
             out[k] = least >= 0.5 * touching;
         }
-        if (!out[k]) forces[v] += stiffness[v] * std::clamp(touching - height, 0.0, way) * outward;
+        double &wanted = vertices_[k].height;
+        wanted = std::min(std::max(wanted, height) + way, touching);
+        if (!out[k]) forces[v] += stiffness[v] * std::max(wanted - height, 0.0) * outward;
     }
     for (size_t k = 0; k < vertices_.size(); ++k)
         if (out[k]) mesh.anchor[vertices_[k].vertex] = -1;

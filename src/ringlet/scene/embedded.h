@@ -19,14 +19,15 @@ public:
     int count() const { return int(vertices_.size()); }
 
     // Lets go of those that are out by now: they and the edges to their neighbours at the contact distance. Adds to `forces`
-    // [N] of the others what would move a vertex of that stiffness [N/m] outward by `speed` · dt, at most to where it touches.
-    // Vertices of one strand follow one another; `offsets` are their ranges.
+    // [N] of the others what would move a vertex of that stiffness [N/m] to a height that rises by `way` a step, at most to
+    // where it touches. Vertices of one strand follow one another; `offsets` are their ranges.
     void push_out(CollisionMesh &mesh, View<Vec3> positions, View<int> offsets, View<double> stiffness, double way,
                   std::vector<Vec3> &forces);
 
 private:
     struct Vertex {
         int vertex, body; // index into bodies_
+        double height;    // over the surface, where it is to be by now; rises from step to step [m]
     };
     std::vector<Body> bodies_;
     std::vector<Vertex> vertices_;

@@ -62,7 +62,7 @@ struct Scene::Parts {
 
     std::vector<Embedded::Body> embedded_bodies; // per body
     Embedded embedded;
-    bool recording = false;
+    bool recording = false, begun = false;
     std::vector<std::vector<Vec3>> path;
 
     // Within a step
@@ -201,7 +201,7 @@ void Scene::Parts::set_stiffness(double dt) {
         if (model.held[v]) continue;
         const double length = std::max(model.rest_length[v], model.rest_length[v - 1]);
         const double bend = std::max(model.bend_stiffness[v], model.bend_stiffness[v - 1]) / (length * length);
-        material.stiffness[v] = settings.stiffness * (model.mass[v] / (dt * dt) + bend + 0.01 * model.stretch_stiffness[v - 1]);
+        material.stiffness[v] = settings.stiffness * (model.mass[v] / (dt * dt) + bend + 0.1 * model.stretch_stiffness[v - 1]);
     }
 }
 
@@ -400,6 +400,9 @@ bool Scene::Parts::search(SceneReport &report, double tolerance, double &moved) 
                 largest[g] = std::max(largest[g], std::abs(d));
             }
             slope[strands.strands_of(g).strands[lane]] = sum;
+            if (std::isfinite(sum)) continue; // a system too ill-conditioned to solve: the strand stays
+            slope[strands.strands_of(g).strands[lane]] = 0.0;
+            for (int i = 0; i < rows; ++i) direction[begin + size_t(i) * system.lanes + lane] = 0.0;
         }
     });
     moved = *std::max_element(largest.begin(), largest.end());
@@ -559,6 +562,13 @@ SceneReport Scene::Parts::step(View<Vec3> strand_targets, View<Vec3> strand_forc
     reports.assign(model.strand_count(), StrandReport{});
     SceneReport report;
     std::copy(state.positions.begin(), state.positions.end(), positions.begin()); // they may have been placed since
+    if (!begun) {
+        broad_phase->find(positions, positions, 0.0, candidates);
+        contacts.begin(mesh, candidates, positions);
+        begun = true;
+    }
+    constexpr double parting = 0.002; // [m/s]
+    contacts.part_early(parting * scene_step.strands.dt);
     path.clear();
     if (recording) path.push_back(positions);
     std::vector<Vec3> forces(strand_forces.begin(), strand_forces.end());
