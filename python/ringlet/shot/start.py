@@ -16,7 +16,7 @@ from ringlet.shot.strands import Solver
 Array = NDArray[np.float64]
 
 WORST = 5  # places that are told
-INSTANT = 1e-7  # a step so short that nothing moves [s]
+INSTANT = 1e-6  # a step so short that nothing moves [s]
 
 
 def depths(points: NDArray[np.floating], triangles: NDArray[np.int32], corners: NDArray[np.floating]) -> Array:
@@ -69,13 +69,13 @@ def tell_overlapping(locks: Curves, scene: Scene, solver: Solver) -> dict[str, A
     vertices, values = scene.contacts
     pairs = _lock_of(locks, vertices[:, [0, 3]])
     of_two = (vertices < len(before)).all(axis=1) & (pairs[:, 0] != pairs[:, 1])
-    vertices, weights, limit, pairs = vertices[of_two], values[of_two, :4], values[of_two, 7], pairs[of_two]
+    vertices, weights, pairs = vertices[of_two], values[of_two, :4], pairs[of_two]
     distance = np.linalg.norm(np.einsum("kv,kvi->ki", weights, before[vertices]), axis=1)
-    nearest = np.argsort(distance / limit, kind="stable")[:WORST]
+    nearest = np.argsort(distance, kind="stable")[:WORST]
     return {
         "places": len(pairs),
         "locks": len(np.unique(pairs)),
-        "depth": float((limit - distance).max(initial=0.0)),
+        "depth": float((2.0 * scene.contact.radius - distance).max(initial=0.0)),
         "worst": [
             {
                 **_place(locks, int(vertices[k, 0])),
