@@ -5,6 +5,7 @@ from ringlet.settings import did_you_mean
 from ringlet.validate import (
     buckling,
     cantilever,
+    friction,
     hanging_chain,
     hanging_helix,
     loose_waves,
@@ -27,6 +28,7 @@ _MODULES = (
     buckling,
     out_of_plane,
     loose_waves,
+    friction,
 )
 CASES: dict[str, Case] = {module.CASE.name: module.CASE for module in _MODULES}
 

@@ -1,0 +1,114 @@
+"""Coulomb friction: where a strand begins to slide, how it slides and creeps, and how a drum that turns pulls at one.
+
+On a slope of angle α it sticks where tan α < μ and else slides at g (sin α − μ cos α). What sticks creeps, since
+friction is smoothed: it is μ N (1 − (1 − s)⁴) at a part s of the creep speed. Round a drum that turns under a strand
+the tension grows as e^{μφ} over an angle φ of contact (Euler, Eytelwein).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ringlet.curves import Curves
+from ringlet.shot.scene import Body, Contact, Scene
+from ringlet.shot.strands import Material, Solver, Strands
+from ringlet.validate.case import Case, Row
+
+GRAVITY, STEP = 9.81, 1 / 240  # [m/s²], [s]
+DISTANCE = 1e-3  # [m] where contact begins
+CREEP = 1e-3  # [m/s] slower than this counts as sticking
+CONTACT = Contact(radius=DISTANCE / 2, creep_speed=CREEP)
+SOLVER = Solver(newton=30, tolerance=1e-12)
+
+
+def speeds_on_a_slope(friction: float, slope: float, seconds: tuple[float, ...]) -> list[float]:
+    """How fast a strand goes down [m/s] at some times after the ground was tilted to tan α = ``slope``.
+
+    Its root is held, but by an edge so soft that the rest of it is free.
+    """
+    x = 5e-3 * np.arange(12)
+    points = np.c_[x, np.full_like(x, 0.9 * DISTANCE), 0 * x]
+    soft = np.where(x < 7e-3, 1e-14, 1.0)
+    strands = Strands(Curves.from_list([points]), Material(drag=0.0, damping=0.0), 1, {"stretch": soft, "bend": soft})
+    ground = Body(np.array([[-2.0, 0, 4], [-2, 0, -4], [8, 0, 0]]), np.array([[0, 1, 2]]), DISTANCE / 2, friction)
+    scene = Scene(strands, [ground], CONTACT)
+    along, down = GRAVITY * np.sin(np.arctan(slope)), -GRAVITY * np.cos(np.arctan(slope))
+    for _ in range(60):
+        scene.step(points, STEP, gravity=(0.0, down, 0.0), solver=SOLVER)
+    speeds = []
+    for _ in range(round(max(seconds) / STEP)):
+        scene.step(points, STEP, gravity=(along, down, 0.0), solver=SOLVER)
+        speeds.append(float(strands.velocities[2:, 0].mean()))
+    return [speeds[round(t / STEP) - 1] for t in seconds]
+
+
+def threshold(friction: float) -> float:
+    """The least slope, tan α, on which the strand goes faster and faster; found by halving."""
+    sticks, slides = 0.9 * friction, 1.1 * friction
+    while slides - sticks > 1e-3 * friction:
+        middle = 0.5 * (sticks + slides)
+        before, after = speeds_on_a_slope(friction, middle, (0.15, 0.3))
+        sticks, slides = (sticks, middle) if after > max(before, CREEP) else (middle, slides)
+    return 0.5 * (sticks + slides)
+
+
+def acceleration(friction: float, slope: float) -> float:
+    """Of a strand that slides [m/s²]."""
+    before, after = speeds_on_a_slope(friction, slope, (0.15, 0.3))
+    return (after - before) / 0.15
+
+
+def tension_ratio(friction: float) -> tuple[float, float]:
+    """Tension of a strand before a drum by that behind it, and the angle on which it touches.
+
+    The drum turns under a strand that is held at one end and pulled at the other.
+    """
+    radius, facets, width, speed, dt, steps = 10e-3, 96, 5e-3, 0.05, STEP / 4, 120
+    way = radius + 0.95 * DISTANCE
+    over = np.pi - np.linspace(0.0, np.pi, 36)
+    leg = -way * np.pi / 35 * np.arange(1, 12)
+    held_side = np.c_[np.full(11, -way), leg[::-1], 0 * leg]
+    arc = way * np.c_[np.cos(over), np.sin(over), 0 * over]
+    points = np.concatenate([held_side, arc, held_side[::-1] * [-1, 1, 1]])
+    strands = Strands(Curves.from_list([points]), Material(stretch_scale=1.0, bend_scale=0.0, drag=0.0), 1)
+
+    k = np.arange(facets)
+    turn = 2 * np.pi * k / facets
+    ring, beside = radius * np.c_[np.cos(turn), np.sin(turn), 0 * turn], np.array([0, 0, width])
+    drum = np.concatenate([ring - beside, ring + beside])
+    after = np.roll(k, -1)
+    triangles = np.concatenate([np.c_[k, after, after + facets], np.c_[k, after + facets, k + facets]])
+    scene = Scene(strands, [Body(drum, triangles, DISTANCE / 2, friction)], CONTACT)
+
+    pull = np.zeros_like(points)
+    pull[-1, 1] = -0.01
+    for step in range(1, steps + 1):
+        angle = step * dt * speed / radius  # clockwise
+        spin = np.array([[np.cos(angle), -np.sin(angle), 0], [np.sin(angle), np.cos(angle), 0], [0, 0, 1]])
+        scene.step(points, dt, bodies=[drum @ spin], forces=pull, solver=SOLVER)
+    edges = np.diff(strands.positions, axis=0)
+    strain = np.linalg.norm(edges, axis=1) / np.linalg.norm(np.diff(points, axis=0), axis=1) - 1
+    first, last = (edges[side].sum(axis=0) for side in (slice(2, 6), slice(-6, -2)))
+    angle = np.arccos(first @ last / (np.linalg.norm(first) * np.linalg.norm(last)))
+    return float(strain[2:6].mean() / strain[-6:-2].mean()), float(angle)
+
+
+def run() -> Iterator[Row]:
+    for friction in (0.2, 0.5):
+        yield Row(f"slope where μ = {friction} begins to slide, tan α", friction, threshold(friction), 0.01)
+    for friction, slope in ((0.2, 0.3), (0.5, 0.6)):
+        angle = np.arctan(slope)
+        expected = GRAVITY * (np.sin(angle) - friction * np.cos(angle))
+        got = acceleration(friction, slope)
+        yield Row(f"sliding, μ = {friction}, tan α = {slope}: acceleration", float(expected), got, 0.02)
+    for load in (0.1, 0.5, 0.9):  # W / μN; less than CREEP · load / 2 as long as load < 0.91
+        creep = CREEP * (1 - (1 - load) ** 0.25)
+        yield Row(f"creep under {load:.0%} of μN", creep, speeds_on_a_slope(0.4, 0.4 * load, (0.25,))[0], 0.01)
+    for friction in (0.1, 0.3, 0.5):
+        got, angle = tension_ratio(friction)
+        yield Row(f"round a drum, μ = {friction}: tension ratio", float(np.exp(friction * angle)), got, 0.03)
+
+
+CASE = Case("friction", "Strands stick and slide on slopes and round a drum as Coulomb's law says", run)
