@@ -80,8 +80,8 @@ private:
         const Index one = 1, zero = 0, positive_definite = 2, rows = Index(starts_.size()) - 1;
         Index error = 0;
         const int before = library.set_threads(omp_get_max_threads());
-        library.pardiso(handle_, &one, &one, &positive_definite, &phase, &rows, values, starts_.data(), columns_.data(),
-                        nullptr, &one, settings_, &zero, b, x, &error);
+        library.pardiso(static_cast<void *>(handle_), &one, &one, &positive_definite, &phase, &rows, values, starts_.data(),
+                        columns_.data(), nullptr, &one, settings_, &zero, b, x, &error);
         library.set_threads(before);
         return error;
     }
