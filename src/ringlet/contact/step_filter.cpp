@@ -111,19 +111,29 @@ void fade(const FilterScene &scene, View<Vec3> start, View<Vec3> end, double str
     }
 }
 
-// Strands of pairs that would meet go only as far as that: near the pair in the first rounds, then as a whole, and after some
-// more they stay where they are: two that stay do not meet.
+// Strands of pairs that would meet go only as far as that, as a whole; one that could hardly move is in the first rounds held
+// back near the pair alone, so that the rest of it can follow. After some more rounds they stay where they are: two that stay
+// do not meet.
 void hold_back(const FilterScene &scene, View<Vec3> start, const std::vector<int> &met, const std::vector<double> &times,
                const Candidates &candidates, int round, std::vector<Vec3> &end, std::vector<unsigned char> &changed) {
     constexpr int local_rounds = 2, rounds = 8;
-    constexpr double strain = 0.05;
+    constexpr double strain = 0.05, hardly = 0.2;
+    const int strands = int(scene.offsets.size()) - 1;
     std::vector<Pull> pulls(start.size());
+    std::map<int, double> parts; // strand → how far it goes as a whole
     for (const int k : met)
         for (const int v : vertices_of(scene.mesh, candidates, k))
             if (scene.mesh.moves[v]) {
-                pulls[v].part = std::max(pulls[v].part, round < rounds ? 1.0 - times[k] : 1.0);
+                const double part = round < rounds ? times[k] : 0.0;
+                pulls[v].part = std::max(pulls[v].part, 1.0 - part);
+                double &whole = parts.try_emplace(scene.mesh.object[v], 1.0).first->second;
+                whole = std::min(whole, part);
             }
-    fade(scene, start, end, round < local_rounds ? strain : 0.0, pulls);
+    if (round < local_rounds) fade(scene, start, end, strain, pulls);
+    for (const auto &[strand, part] : parts)
+        if (strand < strands && (round >= local_rounds || part > hardly))
+            for (int v = scene.offsets[strand]; v < scene.offsets[strand + 1]; ++v)
+                if (scene.mesh.moves[v]) pulls[v].part = 1.0 - part;
 #pragma omp parallel for schedule(static)
     for (int v = 0; v < int(start.size()); ++v)
         if (pulls[v].part > 0.0) {

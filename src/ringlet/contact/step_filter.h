@@ -32,10 +32,10 @@ struct FilterScene {
 // Changes where a move ends (`end`, rows of vertices that move) so that no pair meets while every vertex goes straight from
 // `start` to `end`: none comes nearer than half its contact distance or a fifth of its distance at the start, whichever is
 // less. Where nothing kinematic moves, a strand that would meet another goes only as far as where they touch, as a whole, so
-// that its shape is one on the way; what is still in the way after some rounds stays. Else vertices of pairs that would meet
-// form zones, which share one motion: that of the body they touch, or their mean. Along a strand the change fades out so slowly
-// that no edge is strained by more than a few per cent. Zones grow while pairs at their border would meet. Where bodies leave
-// no way out, everything goes only a part of its way.
+// that its shape is one on the way, or is held back near the pair alone if it could hardly move; what is still in the way after
+// some rounds stays. Else vertices of pairs that would meet form zones, which share one motion: that of the body they touch, or
+// their mean. Along a strand the change fades out so slowly that no edge is strained by more than a few per cent. Zones grow
+// while pairs at their border would meet. Where bodies leave no way out, everything goes only a part of its way.
 //
 // Only relative motion counts: a scene that moves as a whole is filtered alike. `candidates` are those of the filtered move.
 FilterReport filter_step(const FilterScene &scene, BroadPhase &broad_phase, View<Vec3> start, std::vector<Vec3> &end,
