@@ -131,7 +131,8 @@ def test_locks_that_start_too_near_each_other_are_told_and_part():
     assert np.isclose(told["depth"], 1.5e-3, atol=1e-5)
     assert {told["worst"][0]["lock"], told["worst"][0]["other"]} in ({11, 12}, {12, 13})
     tips = cache.points[-1].reshape(3, POINTS, 3)[:, -1]
-    assert np.diff(tips[:, 2]).min() > 1.2e-3
+    # From 0.5 mm; the distance at which they push grows by 2 mm a second, which is 1 mm in this shot.
+    assert np.diff(tips[:, 2]).min() > 6e-4
 
 
 def test_depth_is_that_of_a_closed_mesh_and_of_no_sheet():
