@@ -24,9 +24,12 @@ cpp_tests() {
         $bin/ctest --test-dir build/editable --output-on-failure
 }
 
+# Two tests at a time, each on one thread: threads that wait for one another would take the processors from the other test.
+pytests() { OMP_NUM_THREADS=1 $bin/python -m pytest -n 2 --durations 8 "$@"; }
+
 step "C++ tests" cpp_tests
-step "Python tests" $bin/python -m pytest -n 2 tests/python
-step "physics tests" $bin/python -m pytest -n 2 tests/physics
+step "Python tests" pytests tests/python
+step "physics tests" pytests tests/physics
 step "known answers (ringlet validate)" $bin/ringlet validate
 step "lints" tools/lint.sh
 step "documents" tools/docs.sh
