@@ -22,12 +22,6 @@ template <class Element, class Scalar, class Array> std::vector<Element> copied(
 } // namespace
 
 void bind_contact(nb::module_ &module) {
-    nb::enum_<System>(module, "System", "How the linear system of a step is solved.")
-        .value("automatic", System::automatic)
-        .value("banded", System::banded)
-        .value("conjugate_gradient", System::conjugate_gradient)
-        .value("direct", System::direct);
-
     nb::class_<SceneContact>(module, "SceneContact", "Contact in a scene (SI units).")
         .def(nb::init<>())
         .def_rw("strand_radius", &SceneContact::strand_radius)
@@ -54,8 +48,7 @@ void bind_contact(nb::module_ &module) {
             "step",
             [](Scene &self, Array3<double> targets, Array3<double> forces, Array3<double> body_targets, double dt,
                std::array<double, 3> gravity, std::array<double, 3> wind, int newton, double tolerance,
-               Continuation continuation, Integrator integrator, const Safeguards &safeguards, System system,
-               double system_tolerance) {
+               Continuation continuation, Integrator integrator, const Safeguards &safeguards, double system_tolerance) {
                 SceneStep step;
                 step.strands.dt = dt;
                 std::copy(gravity.begin(), gravity.end(), step.strands.gravity);
@@ -65,7 +58,6 @@ void bind_contact(nb::module_ &module) {
                 step.strands.continuation = continuation;
                 step.strands.integrator = integrator;
                 step.strands.safeguards = safeguards;
-                step.system = system;
                 step.system_tolerance = system_tolerance;
                 std::vector<StrandReport> reports;
                 SceneReport report;
@@ -79,7 +71,7 @@ void bind_contact(nb::module_ &module) {
                                       to_numpy<double>(std::move(reports), {rows, size_t(strand_report_columns)}));
             },
             "targets"_a, "forces"_a, "body_targets"_a, "dt"_a, "gravity"_a, "wind"_a, "newton"_a, "tolerance"_a,
-            "continuation"_a, "integrator"_a, "safeguards"_a, "system"_a, "system_tolerance"_a,
+            "continuation"_a, "integrator"_a, "safeguards"_a, "system_tolerance"_a,
             "One time step. Returns the scene's report (SCENE_REPORT) and one report row per strand (REPORT).")
         .def_prop_ro(
             "positions",

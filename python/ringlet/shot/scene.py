@@ -144,7 +144,6 @@ class Scene:
             getattr(_core.Continuation, solver.continuation),
             getattr(_core.Integrator, solver.integrator),
             solver.core_safeguards(),
-            _core.System.automatic,
             system_tolerance,
         )
         report = dict(zip(_core.SCENE_REPORT, totals.tolist(), strict=True))

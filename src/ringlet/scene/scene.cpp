@@ -35,7 +35,7 @@ Vec3 carried_by_triangle(const Vec3 from[3], const Vec3 to[3], const Vec3 &point
         return axes;
     };
     const Mat3 before = frame(from);
-    const Vec3 translated = point + to[0] - from[0];
+    Vec3 translated = point + to[0] - from[0];
     if (std::abs(before.determinant()) < 1e-30) return translated;
     const Vec3 carried = to[0] + frame(to) * before.inverse() * (point - from[0]);
     return carried.allFinite() ? carried : translated;
@@ -172,7 +172,7 @@ void Scene::Parts::collect(const std::vector<BodyModel> &bodies, const std::vect
         embedded_bodies.push_back({base, int(bodies[b].rest.size()), strand_count + b, bodies[b].triangles});
         for (const Vec3 &rest : bodies[b].rest) {
             add_vertex(rest, rest, bodies[b].thickness, false, strand_count + b, -1, 0.0, bodies[b].material, -1);
-            some_triangle.push_back(Triangle(0, 0, 0));
+            some_triangle.emplace_back(0, 0, 0);
         }
         std::set<std::array<int, 2>> edges;
         for (const Triangle &t : bodies[b].triangles) {
@@ -549,7 +549,7 @@ double Scene::Parts::advance(View<Vec3> strand_targets, View<Vec3> strand_forces
     report.unconverged = moved > step.tolerance;
     report.contacts = double(contacts.contacts().size());
     strands.end(x, {double(iteration), report.cuts, moved}, reports);
-    positions = now;
+    positions = std::move(now);
     return fraction;
 }
 

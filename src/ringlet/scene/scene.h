@@ -27,12 +27,8 @@ struct SceneContact {
     double creep_speed = 1e-3;            // slower than this counts as sticking [m/s]
 };
 
-// How the linear system of a step is solved.
-enum class System { automatic, banded, conjugate_gradient, direct };
-
 struct SceneStep {
-    StrandStep strands; // time, forces, Newton
-    System system = System::automatic;
+    StrandStep strands;             // time, forces, Newton
     double system_tolerance = 0.05; // of the linear solution, relative
     int most_substeps = 8;          // where bodies leave no way out a step is taken in parts
 };
