@@ -1,9 +1,7 @@
 // ringlet._core: cloth and its steps.
+#include "cloth.h"
 #include "arrays.h"
 
-#include "ringlet/scene/cloth_step.h"
-
-#include <memory>
 #include <nanobind/stl/array.h>
 
 namespace nb = nanobind;
@@ -12,13 +10,6 @@ using namespace ringlet;
 using namespace ringlet::bindings;
 
 namespace {
-
-// A model with the state that moves on it. The objective refers to the model.
-struct Cloth {
-    std::unique_ptr<ClothModel> model;
-    ClothObjective objective;
-    ClothState state;
-};
 
 nb::ndarray<nb::numpy, double> state_view(nb::handle self, std::vector<Vec3> &values) {
     return {values.data()->data(), {values.size(), 3}, self};

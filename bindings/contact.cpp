@@ -1,5 +1,6 @@
-// ringlet._core: scenes of strands and bodies that touch.
+// ringlet._core: scenes of strands, cloths and bodies that touch.
 #include "arrays.h"
+#include "cloth.h"
 #include "strands.h"
 
 #include "ringlet/scene/scene.h"
@@ -22,6 +23,13 @@ template <class Element, class Scalar, class Array> std::vector<Element> copied(
 } // namespace
 
 void bind_contact(nb::module_ &module) {
+    nb::exception<CoupledError>(module, "CoupledError", PyExc_ValueError);
+    nb::enum_<System>(module, "System", "How the linear system of a step is solved.")
+        .value("automatic", System::automatic)
+        .value("banded", System::banded)
+        .value("conjugate_gradient", System::conjugate_gradient)
+        .value("direct", System::direct);
+
     nb::class_<SceneContact>(module, "SceneContact", "Contact in a scene (SI units).")
         .def(nb::init<>())
         .def_rw("strand_radius", &SceneContact::strand_radius)
@@ -38,17 +46,29 @@ void bind_contact(nb::module_ &module) {
             },
             "rest"_a, "triangles"_a, "thickness"_a, "material"_a);
 
-    nb::class_<Scene>(module, "Scene", "Strands and bodies that touch.")
+    nb::class_<SceneCloth>(module, "SceneCloth",
+                           "A cloth in a scene, with its material there and the body that it is pinned to.")
         .def(
             "__init__",
-            [](Scene *self, Strands &strands, const std::vector<BodyModel> &bodies, const std::vector<int> &rooted_in,
-               const SceneContact &contact) { new (self) Scene(strands.model, strands.state, bodies, rooted_in, contact); },
-            "strands"_a, "bodies"_a, "rooted_in"_a, "contact"_a, nb::keep_alive<1, 2>())
+            [](SceneCloth *self, Cloth &cloth, int material, int pinned_to) {
+                new (self) SceneCloth{cloth.model.get(), &cloth.state, material, pinned_to};
+            },
+            "cloth"_a, "material"_a, "pinned_to"_a, nb::keep_alive<1, 2>());
+
+    nb::class_<Scene>(module, "Scene", "Strands, cloths and bodies that touch. Strands and cloths must outlive it.")
+        .def(
+            "__init__",
+            [](Scene *self, Strands &strands, const std::vector<SceneCloth> &cloths, const std::vector<BodyModel> &bodies,
+               const std::vector<int> &rooted_in, const SceneContact &contact) {
+                new (self) Scene(strands.model, strands.state, cloths, bodies, rooted_in, contact);
+            },
+            "strands"_a, "cloths"_a, "bodies"_a, "rooted_in"_a, "contact"_a, nb::keep_alive<1, 2>())
         .def(
             "step",
-            [](Scene &self, Array3<double> targets, Array3<double> forces, Array3<double> body_targets, double dt,
-               std::array<double, 3> gravity, std::array<double, 3> wind, int newton, double tolerance,
-               Continuation continuation, Integrator integrator, const Safeguards &safeguards, double system_tolerance) {
+            [](Scene &self, Array3<double> targets, Array3<double> forces, Array3<double> cloth_targets,
+               Array3<double> cloth_forces, Array3<double> body_targets, double dt, std::array<double, 3> gravity,
+               std::array<double, 3> wind, int newton, double tolerance, Continuation continuation, Integrator integrator,
+               const Safeguards &safeguards, System system, double system_tolerance) {
                 SceneStep step;
                 step.strands.dt = dt;
                 std::copy(gravity.begin(), gravity.end(), step.strands.gravity);
@@ -58,28 +78,33 @@ void bind_contact(nb::module_ &module) {
                 step.strands.continuation = continuation;
                 step.strands.integrator = integrator;
                 step.strands.safeguards = safeguards;
+                step.system = system;
                 step.system_tolerance = system_tolerance;
-                std::vector<StrandReport> reports;
+                const SceneInput input{vectors<Vec3>(targets), vectors<Vec3>(forces), vectors<Vec3>(cloth_targets),
+                                       vectors<Vec3>(cloth_forces), vectors<Vec3>(body_targets)};
+                std::vector<StrandReport> of_strands;
+                std::vector<ClothReport> of_cloths;
                 SceneReport report;
                 {
                     nb::gil_scoped_release release;
-                    report =
-                        self.step(vectors<Vec3>(targets), vectors<Vec3>(forces), vectors<Vec3>(body_targets), step, reports);
+                    report = self.step(input, step, of_strands, of_cloths);
                 }
-                const size_t rows = reports.size();
+                const size_t strands = of_strands.size(), cloths = of_cloths.size();
                 return nb::make_tuple(to_numpy<double>(std::vector<SceneReport>{report}, {size_t(scene_report_columns)}),
-                                      to_numpy<double>(std::move(reports), {rows, size_t(strand_report_columns)}));
+                                      to_numpy<double>(std::move(of_strands), {strands, size_t(strand_report_columns)}),
+                                      to_numpy<double>(std::move(of_cloths), {cloths, size_t(cloth_report_columns)}));
             },
-            "targets"_a, "forces"_a, "body_targets"_a, "dt"_a, "gravity"_a, "wind"_a, "newton"_a, "tolerance"_a,
-            "continuation"_a, "integrator"_a, "safeguards"_a, "system_tolerance"_a,
-            "One time step. Returns the scene's report (SCENE_REPORT) and one report row per strand (REPORT).")
+            "targets"_a, "forces"_a, "cloth_targets"_a, "cloth_forces"_a, "body_targets"_a, "dt"_a, "gravity"_a, "wind"_a,
+            "newton"_a, "tolerance"_a, "continuation"_a, "integrator"_a, "safeguards"_a, "system"_a, "system_tolerance"_a,
+            "One time step. Returns the scene's report (SCENE_REPORT), one report row per strand (REPORT) and one per cloth "
+            "(CLOTH_REPORT).")
         .def_prop_ro(
             "positions",
             [](const Scene &self) {
                 const View<Vec3> all = self.positions();
                 return to_numpy<double>(std::vector<Vec3>(all.begin(), all.end()), {all.size(), 3});
             },
-            nb::rv_policy::automatic, "Positions [m] of all vertices, strands before bodies, shape (n, 3).")
+            nb::rv_policy::automatic, "Positions [m] of all vertices, strands, cloths, bodies, shape (n, 3).")
         .def(
             "excuse",
             [](Scene &self, Array1<int> vertices, int body) {
@@ -119,6 +144,6 @@ void bind_contact(nb::module_ &module) {
 
     module.attr("SCENE_REPORT") =
         nb::make_tuple("newton", "cuts", "residual", "unconverged", "linear_iterations", "linear_residual", "candidates",
-                       "contacts", "closest", "violations", "zone_vertices", "substeps", "fraction", "energy", "time_pairs",
+                       "contacts", "closest", "violations", "zone_vertices", "substeps", "fraction", "time_pairs",
                        "time_assemble", "time_solve", "time_search", "time_filter");
 }

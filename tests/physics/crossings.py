@@ -5,20 +5,26 @@ import numpy as np
 
 
 class Judge:
-    """Looks at the strands and bodies of a scene, but not at pairs that move as they are told on both sides."""
+    """Looks at the strands, cloths and bodies of a scene, but not at pairs that move as they are told on both sides."""
 
     def __init__(self, scene):
         curves = scene.strands.curves
         first = np.arange(len(curves.points) - 1)
         edges = np.c_[first, first + 1][~np.isin(first + 1, curves.offsets)]
-        points, triangles, begin = curves.points, np.zeros((0, 3), int), len(curves.points)
+        triangles, begin = np.zeros((0, 3), int), len(curves.points)
+        moves = [~scene.strands.held]
+        for cloth in scene.cloths:
+            triangles = np.concatenate([triangles, cloth.mesh.triangles + begin])
+            begin += len(cloth.positions)
+            moves.append(~cloth.held)
         for body in scene.bodies:
             triangles = np.concatenate([triangles, body.triangles + begin])
             begin += len(body.points)
+            moves.append(np.zeros(len(body.points), bool))
         sides = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
         edges = np.concatenate([edges, np.unique(np.sort(sides, axis=1), axis=0)])
         patches = np.arange(begin)  # what moves as it is told is of one patch, every other vertex of its own
-        patches[len(points) :] = patches[: len(points)][scene.strands.held] = begin
+        patches[~np.concatenate(moves)] = begin
         self.mesh = ipctk.CollisionMesh(scene.positions, edges.astype(np.int32), triangles.astype(np.int32))
         self.mesh.can_collide = ipctk.make_vertex_patches_filter(patches.astype(np.int32))
         # Additive advancement: what comes nearer than a ten-thousandth of its distance at the start has met.

@@ -38,12 +38,14 @@ class ClothMaterial(Section):
     mass_damping: float = Field(default=0.0, ge=0, le=1e4, description="[1/s] rate at which velocities decay")
     drag: float = Field(default=0.05, ge=0, le=1e3, description="air drag per area and speed [kg/(m² s)]")
     thickness: float = Field(default=1e-3, gt=0, le=0.1, description="[m] how near other things come")
+    friction: float = Field(default=0.3, ge=0, le=10, description="Coulomb's μ of a lock on it")
 
     def core(self) -> _core.ClothMaterial:
         """The same, for the core."""
         material = _core.ClothMaterial()
         for name, value in self:
-            setattr(material, name, value)
+            if name != "friction":  # which is of a pair: the scene's
+                setattr(material, name, value)
         return material
 
 

@@ -1,4 +1,4 @@
-"""Scenes: strands and bodies that touch one another, solved together."""
+"""Scenes: strands, cloth and bodies that touch one another, solved together."""
 
 from __future__ import annotations
 
@@ -11,8 +11,11 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from ringlet import _core
+from ringlet.curves import Curves
+from ringlet.errors import UserError
 from ringlet.settings import Section
-from ringlet.shot.strands import Solver, Strands, Vector
+from ringlet.shot.cloth import Cloth
+from ringlet.shot.strands import Material, Solver, Strands, Vector
 
 
 class Contact(Section):
@@ -46,44 +49,63 @@ class Body:
 
 @dataclass
 class Scene:
-    """Strands and bodies in contact, in one implicit step; nothing passes through anything.
+    """Strands, cloths and bodies in contact, in one implicit step; nothing passes through anything.
 
-    strands:   in motion; they go on being stepped here
+    strands:   in motion; they go on being stepped here; by default there are none
     bodies:    the surfaces that they touch
     rooted_in: per strand the body that holds its root, which the held vertices may touch; -1: none. Shape (count,)
+    cloths:    in motion as well; contact begins half their thickness from them
+    pinned_to: per cloth the body that carries its held vertices, which these may touch; -1: none. Shape (cloths,)
     """
 
-    strands: Strands
+    strands: Strands = field(default_factory=lambda: Strands(Curves.from_list([]), Material()))
     bodies: Sequence[Body] = ()
     contact: Contact = field(default_factory=Contact)
     rooted_in: NDArray[np.integer] | None = None
+    cloths: Sequence[Cloth] = ()
+    pinned_to: NDArray[np.integer] | None = None
 
     def __post_init__(self) -> None:
         settings = _core.SceneContact()
         settings.strand_radius = self.contact.radius
         settings.stiffness = self.contact.stiffness
         settings.creep_speed = self.contact.creep_speed
-        # Material 0: strands; body k: k + 1. Bodies do not touch each other.
-        friction = np.zeros((len(self.bodies) + 1, len(self.bodies) + 1))
-        friction[0, 0] = self.contact.friction
-        for k, body in enumerate(self.bodies):
-            friction[0, k + 1] = friction[k + 1, 0] = body.friction
-        settings.friction = friction.ravel().tolist()
-        models = [
+        settings.friction = self._friction().ravel().tolist()
+        pinned = [-1] * len(self.cloths) if self.pinned_to is None else [int(body) for body in self.pinned_to]
+        cloths = [
+            _core.SceneCloth(cloth._core, 1 + k, body)
+            for k, (cloth, body) in enumerate(zip(self.cloths, pinned, strict=True))
+        ]
+        bodies = [
             _core.BodyModel(
                 np.ascontiguousarray(body.points, np.float64),
                 np.ascontiguousarray(body.triangles, np.int32),
                 body.thickness,
-                k + 1,
+                1 + len(cloths) + k,
             )
             for k, body in enumerate(self.bodies)
         ]
         rooted = [] if self.rooted_in is None else [int(body) for body in self.rooted_in]
-        self._core = _core.Scene(self.strands._core, models, rooted, settings)
+        self._core = _core.Scene(self.strands._core, cloths, bodies, rooted, settings)
+        self._cloth_rows = np.zeros((len(cloths), len(_core.CLOTH_REPORT)))
+
+    def _friction(self) -> NDArray[np.float64]:
+        """μ of each pair of materials: of strands, then of each cloth, then of each body.
+
+        A body and a cloth say what a lock on them has; two of them, the geometric mean. Bodies do not touch each other.
+        """
+        cloths, bodies = len(self.cloths), len(self.bodies)
+        on_it = [cloth.material.friction for cloth in self.cloths] + [body.friction for body in self.bodies]
+        friction = np.zeros((1 + cloths + bodies,) * 2)
+        friction[0, 0] = self.contact.friction
+        friction[0, 1:] = friction[1:, 0] = on_it
+        friction[1:, 1:] = np.sqrt(np.outer(on_it, on_it))
+        friction[1 + cloths :, 1 + cloths :] = 0.0
+        return friction
 
     @property
     def positions(self) -> NDArray[np.float64]:
-        """Positions [m] of all vertices: those of the strands, then those of each body."""
+        """Positions [m] of all vertices: those of the strands, then those of each cloth and of each body."""
         return self._core.positions
 
     @property
@@ -112,39 +134,65 @@ class Scene:
         """The last step's contacts: their vertices (k, 4); weights, normal, distance [m] and force [N], (k, 9)."""
         return self._core.contacts
 
+    @property
+    def cloth_reports(self) -> list[dict[str, float]]:
+        """Of each cloth, what happened to it in the last step (see ``Cloth.step``)."""
+        return [dict(zip(_core.CLOTH_REPORT, row.tolist(), strict=True)) for row in self._cloth_rows]
+
     def step(
         self,
-        targets: NDArray[np.floating],
+        targets: NDArray[np.floating] | None,
         dt: float,
         *,
+        cloths: Sequence[NDArray[np.floating]] | None = None,
         bodies: Sequence[NDArray[np.floating]] | None = None,
         gravity: Vector = (0.0, 0.0, 0.0),
         wind: Vector = (0.0, 0.0, 0.0),
         forces: NDArray[np.floating] | None = None,
+        cloth_forces: Sequence[NDArray[np.floating]] | None = None,
         solver: Solver | None = None,
         system_tolerance: float = 0.05,
     ) -> tuple[dict[str, Any], dict[str, NDArray[np.float64]]]:
         """Advances by ``dt`` [s]; held vertices end where ``targets`` [m], shape (n, 3), has them.
 
-        bodies: where each body's points end [m]; without it they stay
+        targets: of the vertices of strands; None: they stay
+        cloths:  where each cloth's held and attached vertices end [m], shape (n, 3) each; without it they stay
+        bodies:  where each body's points end [m]; without it they stay
+        forces:  what pulls at each vertex of strands besides gravity and air [N], shape (n, 3)
+        cloth_forces: likewise at those of each cloth
         Returns the scene's report and that of every strand (see ``Strands.step``).
         """
         solver = solver or Solver()
-        count = len(self.strands.curves.points)
-        ends = self.positions[count:] if bodies is None else np.concatenate([np.zeros((0, 3)), *bodies])
-        totals, rows = self._core.step(
-            np.ascontiguousarray(targets, np.float64),
-            np.zeros((count, 3)) if forces is None else np.ascontiguousarray(forces, np.float64),
-            np.ascontiguousarray(ends, np.float64),
-            dt,
-            gravity,
-            wind,
-            solver.iterations,
-            solver.tolerance,
-            getattr(_core.Continuation, solver.continuation),
-            getattr(_core.Integrator, solver.integrator),
-            solver.core_safeguards(),
-            system_tolerance,
-        )
+        now, strands = self.positions, len(self.strands.curves.points)
+        moving = strands + sum(len(cloth.positions) for cloth in self.cloths)
+        try:
+            totals, rows, self._cloth_rows = self._core.step(
+                _rows(None if targets is None else [targets], now[:strands]),
+                _rows(None if forces is None else [forces], np.zeros((strands, 3))),
+                _rows(cloths, now[strands:moving]),
+                _rows(cloth_forces, np.zeros((moving - strands, 3))),
+                _rows(bodies, now[moving:]),
+                dt,
+                gravity,
+                wind,
+                solver.iterations,
+                solver.tolerance,
+                getattr(_core.Continuation, solver.continuation),
+                getattr(_core.Integrator, solver.integrator),
+                solver.core_safeguards(),
+                getattr(_core.System, solver.system),
+                system_tolerance,
+            )
+        except _core.CoupledError as error:
+            raise UserError(
+                "solver.system is 'banded', which solves strands alone, but something couples them; take 'automatic', "
+                "'conjugate_gradient' or 'direct'"
+            ) from error
         report = dict(zip(_core.SCENE_REPORT, totals.tolist(), strict=True))
         return report, dict(zip(_core.REPORT, rows.T, strict=True))
+
+
+def _rows(parts: Sequence[NDArray[np.floating]] | None, otherwise: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The parts' rows one after another, or what stands for them."""
+    rows = otherwise if parts is None else np.concatenate([np.zeros((0, 3)), *parts])
+    return np.ascontiguousarray(rows, np.float64)

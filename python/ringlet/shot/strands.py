@@ -86,6 +86,11 @@ class Solver(Section):
     tolerance: float = Field(
         default=1e-6, gt=0, le=1e-2, description="[m] a lock has converged when no vertex moves more than this"
     )
+    system: Literal["automatic", "banded", "conjugate_gradient", "direct"] = Field(
+        default="automatic",
+        description="how the linear system of locks that touch is solved: each alone (an error where something couples "
+        "them), together by conjugate gradients, or by factoring the whole; automatic: alone or together, as needed",
+    )
     integrator: Literal["backward_euler", "bdf2"] = Field(
         default="backward_euler",
         description="first order and calm, or second order (BDF-2), which keeps a swing going for longer",

@@ -24,7 +24,6 @@ public:
     // pops.
     void begin(const CollisionMesh &mesh, const Candidates &candidates, View<Vec3> positions);
     void part_early(double way);
-    int early() const { return int(early_.size()); } // pairs that began so near and still are
 
     // The candidates that touch at the positions `now`; `start` says where the step began, for what they slid since.
     void find(const CollisionMesh &mesh, const ContactMaterial &material, const Candidates &candidates, View<Vec3> start,

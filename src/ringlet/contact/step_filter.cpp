@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <queue>
 
 namespace ringlet {
 namespace {
@@ -95,29 +96,54 @@ struct Pull {
     Vec3 motion = Vec3::Zero();
 };
 
-// Along every strand from vertex to vertex, in both directions.
-void fade(const FilterScene &scene, View<Vec3> start, View<Vec3> end, double strain, std::vector<Pull> &pulls) {
-    const auto pass_on = [&](int from, int to) {
-        if (!scene.mesh.moves[to] || pulls[from].part <= 0.0) return;
+// Over cloths from vertex to vertex, what pulls hardest first.
+template <class PassOn> void fade_over_cloths(const FilterScene &scene, const std::vector<Pull> &pulls, const PassOn &pass_on) {
+    std::priority_queue<std::pair<double, int>> queue;
+    for (int v = scene.cloths.front(); v < scene.cloths.back(); ++v)
+        if (pulls[v].part > 0.0) queue.emplace(pulls[v].part, v);
+    while (!queue.empty()) {
+        const auto [part, v] = queue.top();
+        queue.pop();
+        if (part < pulls[v].part) continue; // it has been pulled harder since
+        for (const int next : scene.neighbours->of(v))
+            if (pass_on(v, next)) queue.emplace(pulls[next].part, next);
+    }
+}
+
+// How much an edge may be strained by what its vertices give up.
+struct FadeStrain {
+    double strand, cloth;
+};
+
+// Along every strand from vertex to vertex, in both directions, and over cloths.
+void fade(const FilterScene &scene, View<Vec3> start, View<Vec3> end, const FadeStrain &most, std::vector<Pull> &pulls) {
+    const auto pass_on = [&](int from, int to, double strain) { // says whether `to` is pulled harder now
+        if (!scene.mesh.moves[to] || pulls[from].part <= 0.0) return false;
         const double length = (start[to] - start[from]).norm(), way = (end[to] - start[to] - pulls[from].motion).norm();
         const double left = pulls[from].part - strain * length / std::max(way, 1e-30);
-        if (left > pulls[to].part) pulls[to] = {left, pulls[from].motion};
+        if (left <= pulls[to].part) return false;
+        pulls[to] = {left, pulls[from].motion};
+        return true;
     };
     const int strands = int(scene.offsets.size()) - 1;
 #pragma omp parallel for schedule(static)
     for (int s = 0; s < strands; ++s) {
-        for (int v = scene.offsets[s]; v + 1 < scene.offsets[s + 1]; ++v) pass_on(v, v + 1);
-        for (int v = scene.offsets[s + 1] - 1; v > scene.offsets[s]; --v) pass_on(v, v - 1);
+        for (int v = scene.offsets[s]; v + 1 < scene.offsets[s + 1]; ++v) pass_on(v, v + 1, most.strand);
+        for (int v = scene.offsets[s + 1] - 1; v > scene.offsets[s]; --v) pass_on(v, v - 1, most.strand);
     }
+    if (scene.cloths.size() > 1)
+        fade_over_cloths(scene, pulls, [&](int from, int to) { return pass_on(from, to, most.cloth); });
 }
+
+constexpr double most_strain = 0.05;
 
 // Strands of pairs that would meet go only as far as that, as a whole; one that could hardly move is in the first rounds held
 // back near the pair alone, so that the rest of it can follow. After some more rounds they stay where they are: two that stay
-// do not meet.
+// do not meet. A cloth is held back near the pair, and stays as a whole only when all else fails.
 void hold_back(const FilterScene &scene, View<Vec3> start, const std::vector<int> &met, const std::vector<double> &times,
                const Candidates &candidates, int round, std::vector<Vec3> &end, std::vector<unsigned char> &changed) {
-    constexpr int local_rounds = 2, rounds = 8;
-    constexpr double strain = 0.05, hardly = 0.2;
+    constexpr int local_rounds = 2, rounds = 8, local_rounds_of_cloth = 16;
+    constexpr double hardly = 0.2;
     const int strands = int(scene.offsets.size()) - 1;
     std::vector<Pull> pulls(start.size());
     std::map<int, double> parts; // strand → how far it goes as a whole
@@ -129,7 +155,7 @@ void hold_back(const FilterScene &scene, View<Vec3> start, const std::vector<int
                 double &whole = parts.try_emplace(scene.mesh.object[v], 1.0).first->second;
                 whole = std::min(whole, part);
             }
-    if (round < local_rounds) fade(scene, start, end, strain, pulls);
+    fade(scene, start, end, {most_strain, round < local_rounds_of_cloth ? most_strain : 0.0}, pulls);
     for (const auto &[strand, part] : parts)
         if (strand < strands && (round >= local_rounds || part > hardly))
             for (int v = scene.offsets[strand]; v < scene.offsets[strand + 1]; ++v)
@@ -168,7 +194,7 @@ void replace(const CollisionMesh &mesh, View<unsigned char> changed, Candidates 
 FilterReport filter_step(const FilterScene &scene, BroadPhase &broad_phase, View<Vec3> start, std::vector<Vec3> &end,
                          Candidates &candidates) {
     constexpr int to_touch = 3; // rounds in which zones keep some of their own motion
-    const int most_rounds = scene.still ? int(scene.offsets.size()) + 16 : 16;
+    const int most_rounds = scene.still ? int(scene.offsets.size() + scene.cloths.size()) + 16 : 16;
     const CollisionMesh &mesh = scene.mesh;
     FilterReport report;
     const int vertices = int(start.size());
@@ -246,7 +272,7 @@ FilterReport filter_step(const FilterScene &scene, BroadPhase &broad_phase, View
                 pulls[v] = {1.0 - zone.safe, zone.carrier >= 0 ? Vec3(scene.carried_by(zone.carrier, start[v]) - start[v])
                                                                : Vec3(zone.moved / zone.mass)};
             }
-        fade(scene, start, end, 0.05, pulls);
+        fade(scene, start, end, {most_strain, most_strain}, pulls);
 #pragma omp parallel for schedule(static)
         for (int v = 0; v < vertices; ++v)
             if (pulls[v].part > 0.0) end[v] += pulls[v].part * (start[v] + pulls[v].motion - end[v]);

@@ -45,6 +45,7 @@ ClothModel make_cloth_model(View<Triangle> triangles, View<Vec3> rest, View<Vec3
     check_sizes(triangles, n, warp, held, attachment);
 
     ClothModel model;
+    model.rest.assign(rest.begin(), rest.end());
     model.triangles.assign(triangles.begin(), triangles.end());
     model.held.assign(held.begin(), held.end());
     model.attachment.assign(n, 0.0);

@@ -23,6 +23,7 @@ struct ClothMaterial {
 
 // Fixed. Triangles and hinges refer to vertices.
 struct ClothModel {
+    std::vector<Vec3> rest; // rest shape [m]
     std::vector<Triangle> triangles;
     std::vector<MembraneRest> membrane;     // per triangle: rest shape
     std::vector<std::array<int, 4>> hinges; // apex, the two ends of an interior edge, apex

@@ -69,19 +69,16 @@ Positions minimise(ClothObjective &objective, Positions x, const ClothStep &step
     return x;
 }
 
-bool finite(Positions &x) { return flat(x).allFinite(); }
-
 } // namespace
 
-ClothReport step_cloth(ClothObjective &objective, ClothState &state, const ClothForces &forces, const ClothStep &step) {
+void end_cloth_step(const ClothObjective &objective, ClothState &state, const ClothForces &forces, const std::vector<Vec3> &end,
+                    ClothReport &report) {
     const ClothModel &model = objective.model();
-    ClothReport report{};
-    objective.begin(state, forces);
-    Positions end = minimise(objective, guess(objective, state, forces), step, report);
-    if (!finite(end)) { // keep the last good state, at rest
+    if (!std::all_of(end.begin(), end.end(),
+                     [](const Vec3 &x) { return x.allFinite(); })) { // keep the last good state, at rest
         report.nan = 1;
         std::fill(state.velocities.begin(), state.velocities.end(), Vec3::Zero());
-        return report;
+        return;
     }
     for (int i = 0; i < model.vertex_count(); ++i) {
         state.velocities[i] = (end[i] - state.positions[i]) / forces.dt;
@@ -94,6 +91,12 @@ ClothReport step_cloth(ClothObjective &objective, ClothState &state, const Cloth
     report.stretch = elastic.stretch;
     report.bend = elastic.bend;
     report.max_stretch = elastic.max_stretch;
+}
+
+ClothReport step_cloth(ClothObjective &objective, ClothState &state, const ClothForces &forces, const ClothStep &step) {
+    ClothReport report{};
+    objective.begin(state, forces);
+    end_cloth_step(objective, state, forces, minimise(objective, guess(objective, state, forces), step, report), report);
     return report;
 }
 

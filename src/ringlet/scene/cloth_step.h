@@ -31,4 +31,8 @@ inline constexpr int cloth_report_columns = sizeof(ClothReport) / sizeof(double)
 // not depend on the number of threads.
 ClothReport step_cloth(ClothObjective &objective, ClothState &state, const ClothForces &forces, const ClothStep &step);
 
+// The end of a step whose positions were found elsewhere: velocities, the energies of the report.
+void end_cloth_step(const ClothObjective &objective, ClothState &state, const ClothForces &forces, const std::vector<Vec3> &end,
+                    ClothReport &report);
+
 } // namespace ringlet

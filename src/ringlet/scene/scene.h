@@ -1,36 +1,25 @@
-// Strands and kinematic bodies that touch: one implicit step for all of them.
+// Strands, cloths and kinematic bodies that touch: one implicit step for all of them.
 #pragma once
 
-#include "ringlet/contact/broad_phase.h"
-#include "ringlet/contact/contact_set.h"
-#include "ringlet/contact/step_filter.h"
-#include "ringlet/scene/strands.h"
+#include "ringlet/scene/scene_solver.h"
 
 #include <memory>
 #include <vector>
 
 namespace ringlet {
 
-// A surface that moves as it is told, closed or open, touched from both sides.
-struct BodyModel {
-    std::vector<Vec3> rest; // [m]
-    std::vector<Triangle> triangles;
-    double thickness = 0.0; // contact begins this far from the surface, besides what touches it [m]
-    int material = 0;       // row of SceneContact::friction
-};
-
-struct SceneContact {
-    double strand_radius = 5e-4;          // half the distance at which two strands begin to push [m]
-    int strand_material = 0;              // row of `friction`
-    std::vector<double> friction = {0.0}; // μ of each pair of materials, row-major
-    double stiffness = 1.0;               // scales how hard contacts push
-    double creep_speed = 1e-3;            // slower than this counts as sticking [m/s]
-};
-
 struct SceneStep {
-    StrandStep strands;             // time, forces, Newton
+    StrandStep strands; // time, forces, Newton; cloths take theirs from it
+    System system = System::automatic;
     double system_tolerance = 0.05; // of the linear solution, relative
     int most_substeps = 8;          // where bodies leave no way out a step is taken in parts
+};
+
+// Where a step ends for what is told where to be, and what pulls besides. Rows of the vertices of all strands, cloths, bodies.
+struct SceneInput {
+    View<Vec3> strand_targets, strand_forces; // [m], [N]
+    View<Vec3> cloth_targets, cloth_forces;   // of held and attached vertices
+    View<Vec3> body_targets;
 };
 
 // What happened in one step.
@@ -41,22 +30,21 @@ struct SceneReport {
     double closest = 0;                       // distance of two that touch, at the end [m]
     double violations = 0, zone_vertices = 0; // pairs that would have met, vertices held back for them
     double substeps = 0, fraction = 1;        // fraction < 1: bodies left no way out, the step ends early
-    double energy = 0;                        // what Newton minimised, at its end [J]
     double time_pairs = 0, time_assemble = 0, time_solve = 0, time_search = 0, time_filter = 0; // [s]
 };
 inline constexpr int scene_report_columns = sizeof(SceneReport) / sizeof(double);
 
 class Scene {
 public:
-    // Borrows the strands; both must outlive it. Bodies that `rooted_in` names (per strand, −1: none) carry the held vertices
-    // of strands: nothing is tested between the two.
-    Scene(const StrandModel &model, StrandState &state, const std::vector<BodyModel> &bodies, const std::vector<int> &rooted_in,
-          const SceneContact &contact);
+    // Borrows strands and cloths, which must outlive it. Bodies that `rooted_in` names (per strand, −1: none) carry the held
+    // vertices of strands: nothing is tested between the two.
+    Scene(const StrandModel &model, StrandState &state, const std::vector<SceneCloth> &cloths,
+          const std::vector<BodyModel> &bodies, const std::vector<int> &rooted_in, const SceneContact &contact);
     ~Scene();
 
-    // One step to where the held vertices of strands and all vertices of bodies are told to be.
-    SceneReport step(View<Vec3> strand_targets, View<Vec3> strand_forces, View<Vec3> body_targets, const SceneStep &step,
-                     std::vector<StrandReport> &reports);
+    // One step, of which there is a report of every strand and every cloth.
+    SceneReport step(const SceneInput &input, const SceneStep &step, std::vector<StrandReport> &of_strands,
+                     std::vector<ClothReport> &of_cloths);
 
     // A vertex of a strand that begins inside a body, or too near to it, may be there until it has come out: it is pushed out
     // gently, and guarded like any other from then on.
@@ -68,7 +56,7 @@ public:
     void record(bool on);
     const std::vector<std::vector<Vec3>> &path() const;
 
-    View<Vec3> positions() const;                 // of all vertices: strands, then bodies
+    View<Vec3> positions() const;                 // of all vertices: strands, cloths, bodies
     const std::vector<Contact> &contacts() const; // of the last step
 
 private:

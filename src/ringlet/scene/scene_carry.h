@@ -1,0 +1,33 @@
+// The first move of a step: what is kinematic goes where it is told, and everything along with it.
+#pragma once
+
+#include "ringlet/scene/scene_vertices.h"
+
+namespace ringlet {
+
+struct SceneCarry {
+    const SceneVertices &all;
+    View<Vec3> start; // where vertices are
+    View<Vec3> given; // where those that are kinematic go
+
+    // Where a point ends that goes along with a kinematic vertex.
+    Vec3 carried(int vertex, const Vec3 &point) const;
+
+    // The bodies that move rigidly: for each a vertex that says how, else −1.
+    std::vector<int> rigid_bodies() const;
+};
+
+// What a step's parts go along with.
+struct SceneCarriers {
+    View<int> of_strands; // the body that each strand is rooted in; −1: none. May be empty
+    View<int> of_cloths;  // the body that each cloth is pinned to or lies on; −1: none
+    Vec3 drift;           // of all cloths where nothing is kinematic [m]
+};
+
+// Says in `to` where the vertices of parts are once they have gone along: a strand with its root, or the body that it is rooted
+// in, a cloth with the body that it is pinned to or lies on, else with the mean of its held vertices, else of all that is
+// kinematic. Returns for each vertex the body that it goes along with as one; −1: none.
+std::vector<int> carry_rigidly(const SceneCarry &carry, View<int> offsets, const SceneCarriers &carriers,
+                               std::vector<Vec3> &to);
+
+} // namespace ringlet

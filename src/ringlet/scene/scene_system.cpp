@@ -1,0 +1,182 @@
+#include "ringlet/scene/scene_system.h"
+
+#include <algorithm>
+
+namespace ringlet {
+
+SceneSystem::SceneSystem(const StrandModel &model_, const std::vector<SceneCloth> &cloths_, const SceneVertices &vertices_)
+    : strands(model_), vertices(vertices_), model(model_) {
+    for (const SceneCloth &cloth : cloths_) cloths.emplace_back(*cloth.model, *cloth.state);
+}
+
+void SceneSystem::begin(const StrandArrays &arrays, const StrandStep &step, View<Vec3> given) {
+    strands.begin(arrays, step);
+    given_ = given;
+    own_energies_.assign(vertices.parts(), 0.0);
+}
+
+void SceneSystem::gather(const AlignedVector &at, std::vector<Vec3> &into) const {
+#pragma omp parallel for schedule(static)
+    for (int v = 0; v < vertices.moving_vertices(); ++v) into[v] = position(at, v);
+}
+
+void SceneSystem::scatter(View<Vec3> from, AlignedVector &into) const {
+#pragma omp parallel for schedule(static)
+    for (int v = 0; v < vertices.moving_vertices(); ++v)
+        for (int k = 0; k < 3; ++k) into[slot(v) + k * stride(v)] = from[v][k];
+}
+
+// Nothing but the incomplete factor is known of a cloth: it counts as coupled whatever touches it.
+void SceneSystem::couple_parts() {
+    values_.resize(contacts.contacts().size());
+    pushes_.resize(values_.size());
+    coupled_.assign(unit_count(), 0);
+    std::fill(coupled_.begin() + group_count(), coupled_.end(), 1);
+    together_.assign(vertices.parts(), 0);
+    for (const Contact &c : contacts.contacts()) {
+        const int a = vertices.part_of(c.vertex[0]), b = vertices.part_of(c.vertex[3]);
+        if (a < 0 || b < 0) continue;
+        coupled_[unit_of(a)] = coupled_[unit_of(b)] = 1;
+        together_[a] = together_[b] = 1;
+    }
+}
+
+bool SceneSystem::any_coupled() const {
+    return std::any_of(coupled_.begin(), coupled_.end(), [](unsigned char coupled) { return coupled != 0; });
+}
+
+Vec3 SceneSystem::separation_at(const Contact &c, const AlignedVector &x) const {
+    Vec3 sum = Vec3::Zero();
+    for (int i = 0; i < 4; ++i)
+        if (c.weight[i] != 0.0) sum += c.weight[i] * position(x, c.vertex[i]);
+    return sum;
+}
+
+void SceneSystem::energies(const AlignedVector &x, const std::vector<unsigned char> &changed, std::vector<double> &of) {
+    for_units([&](int u) {
+        if (!changed[u]) return;
+        if (u >= group_count()) {
+            const int cloth = u - group_count();
+            own_energies_[vertices.strands + cloth] = cloths[cloth].energy(x.data() + unit_begin(u));
+            return;
+        }
+        double energy[16];
+        strands.evaluate(u, x, energy);
+        const StrandGroup group = strands.strands_of(u);
+        for (int lane = 0; lane < group.count; ++lane) own_energies_[group.strands[lane]] = energy[lane];
+    });
+    of = own_energies_;
+    const std::vector<Contact> &all = contacts.contacts();
+    std::vector<double> energy(all.size());
+#pragma omp parallel for schedule(static)
+    for (int c = 0; c < int(all.size()); ++c) energy[c] = contact_energy(all[c], separation_at(all[c], x));
+    for (int c = 0; c < int(all.size()); ++c) {
+        const int a = vertices.part_of(all[c].vertex[0]), b = vertices.part_of(all[c].vertex[3]);
+        if (a >= 0) of[a] += b >= 0 ? 0.5 * energy[c] : energy[c];
+        if (b >= 0) of[b] += a >= 0 ? 0.5 * energy[c] : energy[c];
+    }
+}
+
+void SceneSystem::assemble(const AlignedVector &x) {
+    for_units([&](int u) {
+        if (u < group_count())
+            strands.assemble(u);
+        else
+            cloths[u - group_count()].assemble(x.data() + unit_begin(u));
+    });
+    const std::vector<Contact> &all = contacts.contacts();
+#pragma omp parallel for schedule(static)
+    for (int c = 0; c < int(all.size()); ++c) values_[c] = contact_value(all[c], separation_at(all[c], x));
+    const std::vector<int> &touched = contacts.vertices();
+#pragma omp parallel for schedule(static)
+    for (int k = 0; k < int(touched.size()); ++k) {
+        if (touched[k] < vertices.strand_vertices())
+            add_to_strand(touched[k]);
+        else
+            add_to_cloth(touched[k]);
+    }
+}
+
+// What contacts do to a vertex and, by edges, from it to the next.
+void SceneSystem::add_to_strand(int v) {
+    const CollisionMesh &mesh = vertices.mesh;
+    const int strand = vertices.part_of(v), group = strands.group_of(strand);
+    Vec3 force = Vec3::Zero();
+    Mat3 diagonal = Mat3::Zero(), next = Mat3::Zero();
+    for (const ContactSet::Role &role : contacts.of(v)) {
+        const Contact &c = contacts.contacts()[role.contact];
+        const ContactValue &value = values_[role.contact];
+        force += c.weight[role.as] * value.gradient;
+        diagonal += c.weight[role.as] * c.weight[role.as] * value.hessian;
+        const int other = role.as ^ 1; // of the same edge
+        if (c.of_edges() && c.vertex[other] == v + 1 && mesh.moves[v + 1])
+            next += c.weight[role.as] * c.weight[other] * value.hessian;
+    }
+    const StrandGroupSystem &system = strands.system(group);
+    const size_t slot = strands.slot(v) - strands.group_begin(group);
+    for (int i = 0; i < 3; ++i) system.gradient[slot + i * strands.stride()] += force[i];
+    strands.add_block(strand, v, v, diagonal);
+    if (v + 1 < model.offsets[strand + 1] && mesh.moves[v + 1]) strands.add_block(strand, v + 1, v, next);
+}
+
+// A side's vertices share a triangle, so that the pattern of the cloth's own matrix has their blocks.
+void SceneSystem::add_to_cloth(int v) {
+    const int number = vertices.part_of(v) - vertices.strands, first = vertices.cloths[number];
+    CoupledCloth &cloth = cloths[number];
+    for (const ContactSet::Role &role : contacts.of(v)) {
+        const Contact &c = contacts.contacts()[role.contact];
+        const ContactValue &value = values_[role.contact];
+        cloth.gradient[v - first] += c.weight[role.as] * value.gradient;
+        const bool second = role.as >= c.first;
+        for (int other = second ? c.first : 0; other < (second ? 4 : c.first); ++other)
+            if (c.weight[other] != 0.0 && vertices.mesh.moves[c.vertex[other]])
+                cloth.matrix.block(cloth.matrix.slot(v - first, c.vertex[other] - first)) +=
+                    c.weight[role.as] * c.weight[other] * value.hessian;
+    }
+}
+
+double SceneSystem::gradient(size_t i, int unit) const {
+    const size_t in_unit = i - unit_begin(unit);
+    if (unit >= group_count()) return cloths[unit - group_count()].gradient[in_unit / 3][in_unit % 3];
+    const StrandGroupSystem &system = strands.system(unit);
+    return in_unit < size_t(system.freedoms) * system.vertices * system.lanes ? system.gradient[in_unit] : 0.0;
+}
+
+void SceneSystem::factor(int unit) {
+    if (unit < group_count())
+        strands.factor(unit);
+    else
+        cloths[unit - group_count()].factor();
+}
+
+void SceneSystem::precondition(int unit, AlignedVector &b) const {
+    if (unit < group_count())
+        strands.solve(unit, b);
+    else
+        cloths[unit - group_count()].precondition(b.data() + unit_begin(unit));
+}
+
+void SceneSystem::couple(const AlignedVector &p, AlignedVector &q) {
+    const std::vector<Contact> &all = contacts.contacts();
+    const CollisionMesh &mesh = vertices.mesh;
+#pragma omp parallel for schedule(static)
+    for (int c = 0; c < int(all.size()); ++c) {
+        Vec3 side[2] = {Vec3::Zero(), Vec3::Zero()};
+        for (int i = 0; i < 4; ++i)
+            if (mesh.moves[all[c].vertex[i]]) side[i >= all[c].first] += all[c].weight[i] * position(p, all[c].vertex[i]);
+        pushes_[c] = {values_[c].hessian * side[1], values_[c].hessian * side[0]};
+    }
+    const std::vector<int> &touched = contacts.vertices();
+#pragma omp parallel for schedule(static)
+    for (int k = 0; k < int(touched.size()); ++k) {
+        Vec3 force = Vec3::Zero();
+        for (const ContactSet::Role &role : contacts.of(touched[k])) {
+            const Contact &c = all[role.contact];
+            force += c.weight[role.as] * pushes_[role.contact][role.as >= c.first];
+        }
+        const size_t first = slot(touched[k]), step = stride(touched[k]);
+        for (int i = 0; i < 3; ++i) q[first + i * step] += force[i];
+    }
+}
+
+} // namespace ringlet

@@ -1,0 +1,99 @@
+// What Newton's method works on: the unknowns of strands and cloths in one vector, and of the energy of all of them, contacts
+// included, its parts, its gradient and its matrix A = P + C. P is what every part has for itself, with what contacts do to
+// each of their sides alone; C is what they do from side to side.
+#pragma once
+
+#include "ringlet/scene/coupled_cloth.h"
+#include "ringlet/scene/coupled_strands.h"
+#include "ringlet/scene/scene_vertices.h"
+
+#include <numeric>
+#include <vector>
+
+namespace ringlet {
+
+class SceneSystem {
+public:
+    SceneSystem(const StrandModel &model, const std::vector<SceneCloth> &cloths, const SceneVertices &vertices);
+
+    CoupledStrands strands;
+    std::vector<CoupledCloth> cloths;
+    ContactSet contacts;
+    const SceneVertices &vertices;
+    const StrandModel &model;
+
+    // Opens a step of the strands; each cloth has its own begin(). `given` says where what is kinematic is, of all vertices.
+    void begin(const StrandArrays &arrays, const StrandStep &step, View<Vec3> given);
+
+    // Units are what is computed at once, each with its range of the unknowns: groups of strands, then cloths.
+    int group_count() const { return strands.group_count(); }
+    int unit_count() const { return group_count() + int(cloths.size()); }
+    int unit_of(int part) const {
+        return part < vertices.strands ? strands.group_of(part) : group_count() + part - vertices.strands;
+    }
+    size_t unit_begin(int unit) const {
+        return unit < group_count() ? strands.group_begin(unit)
+                                    : strands.size() + 3 * size_t(vertices.cloths[unit - group_count()] - vertices.cloths[0]);
+    }
+    size_t unit_end(int unit) const {
+        return unit < group_count() ? strands.group_end(unit) : unit_begin(unit) + cloths[unit - group_count()].size();
+    }
+    size_t size() const { return strands.size() + 3 * size_t(vertices.cloths.back() - vertices.cloths[0]); }
+    template <class Work> void for_units(const Work &work) const {
+#pragma omp parallel for schedule(dynamic)
+        for (int u = 0; u < group_count(); ++u) work(u);
+        for (int u = group_count(); u < unit_count(); ++u) work(u); // parallel inside
+    }
+    // Σ over units of what `of` says, in a fixed order.
+    template <class Of> double sum(const Of &of) const {
+        std::vector<double> values(unit_count(), 0.0);
+        for_units([&](int u) { values[u] = of(u); });
+        return std::accumulate(values.begin(), values.end(), 0.0);
+    }
+
+    // Coordinate k of a part's vertex stands at slot + k · stride.
+    size_t slot(int vertex) const {
+        const int in_cloths = vertex - vertices.strand_vertices();
+        return in_cloths < 0 ? strands.slot(vertex) : strands.size() + 3 * size_t(in_cloths);
+    }
+    size_t stride(int vertex) const { return vertex < vertices.strand_vertices() ? strands.stride() : 1; }
+    Vec3 position(const AlignedVector &at, int vertex) const {
+        if (vertex >= vertices.moving_vertices()) return given_[vertex];
+        const size_t first = slot(vertex), step = stride(vertex);
+        return {at[first], at[first + step], at[first + 2 * step]};
+    }
+    void gather(const AlignedVector &at, std::vector<Vec3> &into) const; // positions of the vertices of parts
+    void scatter(View<Vec3> from, AlignedVector &into) const;
+
+    // To be called when the contacts have changed: finds what they couple.
+    void couple_parts();
+    bool together(int part) const { return together_[part]; }  // something that moves touches it
+    bool is_coupled(int unit) const { return coupled_[unit]; } // its own factor does not solve it
+    bool any_coupled() const;
+
+    // Energies [J] of the parts at x, each with its share of those of its contacts; only units that have `changed` since this
+    // was last asked are asked again.
+    void energies(const AlignedVector &x, const std::vector<unsigned char> &changed, std::vector<double> &of_parts);
+
+    void assemble(const AlignedVector &x);     // the gradient and A where the energies were asked last
+    double gradient(size_t i, int unit) const; // its entry i of the whole vector, which is the unit's; 0 of padding
+
+    void factor(int unit);                                 // of P, exactly or nearly
+    void precondition(int unit, AlignedVector &b) const;   // in place
+    void couple(const AlignedVector &p, AlignedVector &q); // q += C p
+
+    const ContactValue &value(int contact) const { return values_[contact]; }
+
+private:
+    Vec3 separation_at(const Contact &contact, const AlignedVector &x) const;
+    void add_to_strand(int vertex);
+    void add_to_cloth(int vertex);
+
+    View<Vec3> given_;
+    std::vector<ContactValue> values_;        // of the contacts
+    std::vector<std::array<Vec3, 2>> pushes_; // on the two sides of each
+    std::vector<unsigned char> coupled_, together_;
+    std::vector<double> own_energies_; // per part, without contacts
+};
+
+} // namespace ringlet
