@@ -7,13 +7,8 @@ int freedoms(const SceneSystem &system) { return system.group_count() > 0 ? syst
 
 } // namespace
 
-SceneMatrix::SceneMatrix(const SceneSystem &system)
-    : system_(system), block_(freedoms(system)), row_of_(system.vertices.count(), -1) {
-    const SceneVertices &vertices = system.vertices;
-    for (int v = 0; v < vertices.moving_vertices(); ++v)
-        if (v >= vertices.strand_vertices() || system.together(vertices.part_of(v))) row_of_[v] = rows_++;
-    for (int s = 0; s < vertices.strands; ++s)
-        if (system.together(s)) add_strand(s);
+SceneMatrix::SceneMatrix(const SceneSystem &system) : system_(system), block_(freedoms(system)) {
+    for (int s = 0; s < system.vertices.strands; ++s) add_strand(s);
     for (int c = 0; c < int(system.cloths.size()); ++c) add_cloth(c);
     const std::vector<Contact> &contacts = system.contacts.contacts();
     for (int c = 0; c < int(contacts.size()); ++c) add_contact(contacts[c], system.value(c).hessian);
@@ -32,7 +27,7 @@ void SceneMatrix::add_strand(int strand) {
     const int lane = system_.strands.lane_of(strand), reach = (system.band - 1) / block_;
     for (int b = 0; b < count; ++b)
         for (int a = b; a < std::min(count, b + reach + 1); ++a) {
-            double *block = add_block(row_of_[first + a], row_of_[first + b]);
+            double *block = add_block(first + a, first + b);
             for (int r = 0; r < block_; ++r)
                 for (int c = 0; c < block_; ++c) { // of the diagonal block only one half is stored
                     const int column = b * block_ + (a == b ? std::min(r, c) : c);
@@ -46,7 +41,7 @@ void SceneMatrix::add_strand(int strand) {
 // What a vertex has no use for is the unit matrix.
 void SceneMatrix::add_cloth(int cloth) {
     const BlockMatrix &matrix = system_.cloths[cloth].matrix;
-    const int first = row_of_[system_.vertices.cloths[cloth]];
+    const int first = system_.vertices.cloths[cloth];
     for (int row = 0; row < matrix.rows(); ++row)
         for (int slot = matrix.diagonal(row); slot < matrix.row_end(row); ++slot) {
             double *block = add_block(first + row, first + matrix.column(slot));
@@ -62,23 +57,22 @@ void SceneMatrix::add_contact(const Contact &c, const Mat3 &hessian) {
     for (int i = 0; i < c.first; ++i)
         for (int j = c.first; j < 4; ++j) {
             if (!moves[c.vertex[i]] || !moves[c.vertex[j]] || c.weight[i] * c.weight[j] == 0.0) continue;
-            double *block = add_block(row_of_[c.vertex[i]], row_of_[c.vertex[j]]);
+            double *block = add_block(c.vertex[i], c.vertex[j]);
             for (int r = 0; r < 3; ++r)
                 for (int k = 0; k < 3; ++k) block[r * block_ + k] = c.weight[i] * c.weight[j] * hessian(r, k);
         }
 }
 
 std::shared_ptr<const SparsePattern> SceneMatrix::pattern() const {
-    return std::make_shared<const SparsePattern>(rows_, block_, i_, j_);
+    return std::make_shared<const SparsePattern>(rows(), block_, i_, j_);
 }
 
 // work(its number in the matrix, its number in the scene, unit).
 template <class Work> void SceneMatrix::for_unknowns(const Work &work) const {
     for (int v = 0; v < system_.vertices.moving_vertices(); ++v) {
-        if (row_of_[v] < 0) continue;
         const int unit = system_.unit_of(system_.vertices.part_of(v));
         const int count = v < system_.vertices.strand_vertices() ? block_ : 3;
-        for (int k = 0; k < count; ++k) work(row_of_[v] * block_ + k, system_.slot(v) + k * system_.stride(v), unit);
+        for (int k = 0; k < count; ++k) work(v * block_ + k, system_.slot(v) + k * system_.stride(v), unit);
     }
 }
 

@@ -9,10 +9,10 @@ namespace ringlet {
 namespace {
 
 System choose(const SceneSystem &system, System how) {
-    if (!system.any_coupled()) return System::banded;
-    if (how == System::banded)
+    if (how == System::banded && system.any_coupled())
         throw CoupledError("scene: the system 'banded' solves strands alone, but something couples them");
-    return how == System::automatic ? System::conjugate_gradient : how;
+    if (how != System::automatic) return how;
+    return system.any_coupled() ? System::conjugate_gradient : System::banded;
 }
 
 // Work for every unknown of a unit, in order.
@@ -29,6 +29,7 @@ double dot(const SceneSystem &system, int unit, const AlignedVector &a, const Al
 } // namespace
 
 SceneSolver::Result SceneSolver::solve(SceneSystem &system, System how, double tolerance, AlignedVector &direction) {
+    all_ = how == System::conjugate_gradient || how == System::direct;
     how = choose(system, how);
     if (residual_.size() != system.size())
         for (AlignedVector *vector : {&residual_, &solved_, &searched_, &image_, &product_})
@@ -56,7 +57,7 @@ void SceneSolver::begin(SceneSystem &system, AlignedVector &direction) {
         system.factor(u);
         each(system, u, [&](size_t i) { solved_[i] = residual_[i] = -system.gradient(i, u); });
         system.precondition(u, solved_);
-        each(system, u, [&](size_t i) { direction[i] = system.is_coupled(u) ? 0.0 : solved_[i]; });
+        each(system, u, [&](size_t i) { direction[i] = takes_part(system, u) ? 0.0 : solved_[i]; });
     });
 }
 
@@ -66,10 +67,10 @@ SceneSolver::Result SceneSolver::conjugate_gradient(SceneSystem &system, double 
     constexpr int most = 2000;
     const auto for_coupled = [&](const auto &work) {
         system.for_units([&](int u) {
-            if (system.is_coupled(u)) work(u);
+            if (takes_part(system, u)) work(u);
         });
     };
-    const auto sum = [&](const auto &of) { return system.sum([&](int u) { return system.is_coupled(u) ? of(u) : 0.0; }); };
+    const auto sum = [&](const auto &of) { return system.sum([&](int u) { return takes_part(system, u) ? of(u) : 0.0; }); };
     const auto follow = [&](double beta) { // p = z + β p, and P p
         for_coupled([&](int u) {
             each(system, u, [&](size_t i) {

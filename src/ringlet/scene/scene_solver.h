@@ -32,6 +32,9 @@ private:
     void begin(SceneSystem &system, AlignedVector &direction);
     Result conjugate_gradient(SceneSystem &system, double tolerance, AlignedVector &direction);
 
+    bool takes_part(const SceneSystem &system, int unit) const { return all_ || system.is_coupled(unit); }
+
+    bool all_ = false; // what nothing couples takes part as well, since the way to solve was asked for
     AlignedVector residual_, solved_, searched_, image_, product_;
 };
 
