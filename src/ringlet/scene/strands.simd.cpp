@@ -4,6 +4,7 @@
 #include "ringlet/scene/hinge_objective.h"
 #include "ringlet/scene/strand_arrays.h"
 
+#include <cmath>
 #include <new>
 
 namespace ringlet::RINGLET_SIMD {
@@ -76,7 +77,7 @@ public:
           objective_(vertices, space_.rows, space_.shapes, step.safeguards) {
         for (int lane = 0; lane < lanes; ++lane) load(lane);
         for (int i = 0; i < vertices_; ++i) place(space_.x, i, space_.start[i]);
-        objective_.evaluate(space_.x);
+        start_energy_ = objective_.evaluate(space_.x);
         objective_.remember_start();
     }
 
@@ -85,8 +86,10 @@ public:
         const NewtonResult<Pack> result = newton(objective_, space_.x, {step_.newton, step_.tolerance}, space_.newton);
         objective_.evaluate(space_.x);
         undamp();
-        for (int lane = 0; lane < group_.count; ++lane)
+        for (int lane = 0; lane < group_.count; ++lane) {
             reports[lane] = unload(lane, {result.iterations[lane], result.cuts[lane], result.residual[lane]});
+            if (reports[lane].unconverged > 0 && is_left_alone(lane)) keep_energy(lane, reports[lane]);
+        }
     }
 
     StrandGroupSystem begin() override {
@@ -420,13 +423,49 @@ private:
         return report;
     }
 
+    // Nothing does work on it but gravity and forces: what is held rests, and the air does.
+    bool is_left_alone(int lane) const {
+        bool alone = step_.integrator == Integrator::backward_euler;
+        for (int k = 0; k < 3; ++k) alone = alone && step_.wind[k] == 0.0;
+        for (int i = 0; i < count(lane); ++i)
+            for (int k = 0; k < 3; ++k)
+                alone = alone && (space_.rows[i].free[lane] > 0 || space_.target[i][k][lane] == space_.start[i][k][lane]);
+        return alone;
+    }
+
+    // A converged step loses energy; one that is not may gain some. The strand is slowed down to what it may have.
+    void keep_energy(int lane, StrandReport &report) {
+        const int begin = first(lane), n = count(lane);
+        double most = start_energy_[lane] - report.stretch - report.bend - report.twist;
+        for (int i = 0; i < n; ++i) {
+            if (!(space_.rows[i].free[lane] > 0)) { // the report leaves out what is held at both ends
+                const double length = i > 0 ? space_.shapes[i - 1].length[lane] : 0.0;
+                if (i > 0)
+                    most -=
+                        stretch_energy(length, arrays_.rest_length[begin + i - 1], arrays_.stretch_stiffness[begin + i - 1]);
+                continue;
+            }
+            for (int k = 0; k < 3; ++k) {
+                const int at = 3 * (begin + i) + k;
+                const double velocity = space_.velocity[i][k][lane], way = arrays_.positions[at] - space_.start[i][k][lane];
+                most += 0.5 * arrays_.mass[begin + i] * velocity * velocity;
+                most += (arrays_.mass[begin + i] * step_.gravity[k] + arrays_.forces[at]) * way;
+            }
+        }
+        if (!(report.kinetic > most)) return;
+        const double share = most > 0 ? most / report.kinetic : 0.0;
+        for (int i = 3 * begin; i < 3 * (begin + n); ++i) arrays_.velocities[i] *= std::sqrt(share);
+        report.kinetic *= share;
+    }
+
     const StrandArrays &arrays_;
     const StrandStep &step_;
     StrandGroup group_;
     int vertices_;
     Workspace<Objective> space_;
     Objective objective_;
-    Pack part_{}; // ⅓ in lanes that take a step of BDF-2, else 0 (strand_objective.h)
+    Pack start_energy_{}; // elastic
+    Pack part_{};         // ⅓ in lanes that take a step of BDF-2, else 0 (strand_objective.h)
 };
 
 int longest(const StrandArrays &arrays, StrandGroup group) {
