@@ -50,19 +50,25 @@ def build_groom(recipe: Recipe | Path | str, *, progress: Progress | None = None
     if not isinstance(recipe, groom.Recipe):
         recipe = read_recipe(recipe)
     if recipe.scalp_file is None:
-        raise UserError(f"{recipe.path or 'recipe'}: scalp.file is missing; name the USD file of the head")
-    scalp = io.read_mesh(recipe.scalp_file, recipe.scalp.mesh)
+        raise UserError(f"{recipe.path or 'recipe'}: scalp.file is missing; name the file of the head")
+    scalp = io.read_mesh(recipe.scalp_file, recipe.scalp.mesh, space=recipe.scalp.space)
+    scalp.textures = {name: io.read_texture(file) for name, file in recipe.map_files().items()}
     drawn = None
     if isinstance(recipe.guides, Drawn) and recipe.guides_file is not None:
-        drawn = io.read_curves(recipe.guides_file, recipe.guides.prim)
+        drawn = io.read_curves(recipe.guides_file, recipe.guides.prim, space=recipe.guides.space)
+    helpers = {
+        name: io.read_curves(file, recipe.curves[name].prim, space=recipe.curves[name].space)
+        for name, file in recipe.helper_files().items()
+    }
     return groom.make_groom(
         recipe,
         scalp,
         drawn_guides=drawn,
+        helpers=helpers,
         scalp_file=recipe.scalp_file,
         scalp_prim=recipe.scalp.mesh,
-        space=io.read_space(recipe.scalp_file),
-        progress=(lambda _, done, total: progress("groom", done, total)) if progress else None,
+        space=io.read_space(recipe.scalp_file, space=recipe.scalp.space),
+        progress=progress,
     )
 
 

@@ -21,6 +21,8 @@ class Mesh:
     color:     display colour (linear r, g, b), the mean of it where it varies
     colors:    display colour of each vertex (linear r, g, b), shape (n, 3), or None where it does not vary
     maps:      painted values by name, at the corners of each triangle, shape (m, 3), float64
+    vectors:   painted directions by name, at the corners of each triangle, shape (m, 3, 3), float64, as the points are
+    textures:  painted values by name, as pictures over ``uv``, shape (rows, columns), the first row at v = 1
     """
 
     name: str
@@ -32,6 +34,8 @@ class Mesh:
     color: tuple[float, float, float] = (0.5, 0.5, 0.5)
     colors: NDArray[np.float64] | None = None
     maps: dict[str, NDArray[np.float64]] = field(default_factory=dict)
+    vectors: dict[str, NDArray[np.float64]] = field(default_factory=dict)
+    textures: dict[str, NDArray[np.float64]] = field(default_factory=dict)
 
     def region(self, name: str | None) -> NDArray[np.int32]:
         """Triangles of a named region; all of them for None. Raises KeyError with the names there are."""

@@ -37,10 +37,8 @@ def test_every_public_name_is_there_and_documented():
 def test_progress_ends_at_the_whole(tmp_path):
     heard = []
     ringlet.build_groom(write_example(tmp_path) / "small.recipe.toml", progress=lambda *step: heard.append(step))
-    stages, done, totals = zip(*heard, strict=True)
-    assert set(stages) == {"groom"}
-    assert list(done) == sorted(done)
-    assert done[-1] == totals[-1]
+    ended = {stage: done == total for stage, done, total in heard}
+    assert {"guides", "locks", "curl", "clean"} <= ended.keys() and all(ended.values())
 
 
 def test_a_groom_made_in_memory_says_what_a_simulation_lacks(tmp_path):

@@ -8,15 +8,19 @@ from typing import Annotated, Any, Literal
 from pydantic import Discriminator, Field, PrivateAttr, Tag, ValidationError
 
 from ringlet.groom.hairs import HairSettings
+from ringlet.groom.helpers import HelperCurves
 from ringlet.groom.operators import Clean, Curl, Drawn, Grown, Locks, ShapeOperator
 from ringlet.groom.settings import UNITS, Section, explain
+from ringlet.groom.source import Source
 from ringlet.settings import parse_toml, read_toml
 
 
-class ScalpSettings(Section):
+class ScalpSettings(Source):
     """The mesh that hair grows on."""
 
-    file: str | None = Field(default=None, description="USD file with the mesh, beside the recipe or with a full path")
+    file: str | None = Field(
+        default=None, description="USD or OBJ file with the mesh, beside the recipe or with a full path"
+    )
     mesh: str | None = Field(default=None, description="prim of the mesh; needed when the file has several")
     region: str | None = Field(default=None, description="named faces (GeomSubset) that carry hair; all when absent")
 
@@ -33,6 +37,10 @@ class Recipe(Section):
     seed: int = Field(default=1, ge=0, le=2**31, description="another seed gives another head of hair of the same kind")
     unit: Literal["m", "cm", "mm", "in"] = Field(default="cm", description="unit of lengths that are plain numbers")
     scalp: ScalpSettings = Field(default=ScalpSettings(), description="where it grows")
+    maps: dict[str, str] = Field(
+        default={}, description="pictures over the texture coordinates of the scalp, as maps by name: black 0, white 1"
+    )
+    curves: dict[str, HelperCurves] = Field(default={}, description="curves by name that operators go by")
     guides: Annotated[
         Annotated[Grown, Tag("grown")] | Annotated[Drawn, Tag("drawn")], Discriminator(_kind_of_guides)
     ] = Field(
@@ -66,6 +74,14 @@ class Recipe(Section):
     def guides_file(self) -> Path | None:
         """The file of drawn guides, or None where they are grown."""
         return self._beside(self.guides.file) if isinstance(self.guides, Drawn) else None
+
+    def helper_files(self) -> dict[str, Path]:
+        """Files of helper curves by their name."""
+        return {name: file for name, curves in self.curves.items() if (file := self._beside(curves.file)) is not None}
+
+    def map_files(self) -> dict[str, Path]:
+        """Pictures of maps by their name."""
+        return {name: file for name, text in self.maps.items() if (file := self._beside(text)) is not None}
 
     def _beside(self, name: str | None) -> Path | None:
         return (self._path.parent if self._path else Path()) / name if name else None

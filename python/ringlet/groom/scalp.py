@@ -10,10 +10,14 @@ from numpy.typing import NDArray
 from ringlet import _core
 from ringlet.curves import Curves
 from ringlet.errors import UserError
+from ringlet.groom.painted import painted
 from ringlet.groom.random import Random
 from ringlet.mesh import Mesh
 
 IDS_PER_TRIANGLE = 1_000_000  # the id of a grown curve says where it stands: triangle · 1 000 000 + number in it
+
+MOST_DENSER = 20  # a density may be so many times its mean
+THINNER, THINNING_STEPS = 0.8, 24
 
 
 class Scalp:
@@ -47,13 +51,26 @@ class Scalp:
         places = self.points[np.unique(self.triangles[self.region])]
         return 0.5 * (places.min(axis=0) + places.max(axis=0))
 
-    def sample(self, count: int, seed: int) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.float64]]:
-        """``count`` places evenly spread over the region, without a pattern: ids, triangles (count,) and barycentrics
-        (count, 3).
+    def sample(
+        self, count: int, seed: int, density: str | None = None, what: str = "density"
+    ) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.float64]]:
+        """``count`` places spread over the region without a pattern, evenly or as a painted density says: ids,
+        triangles (count,) and barycentrics (count, 3).
 
         The places are chosen among candidates that belong to their triangle, so their ids and most of the places stay
         when the count or the region changes.
+
+        density: name of what is painted; ``what`` is the setting that names it
         """
+        if density is None:
+            ids, triangle, barycentric = self._candidates(count, seed)
+            kept = _core.thin_out(self.positions(triangle, barycentric), self.area, count)
+        else:
+            ids, triangle, barycentric, kept = self._by_density(count, seed, density, what)
+        return ids[kept], triangle[kept], barycentric[kept]
+
+    def _candidates(self, count: int, seed: int) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.float64]]:
+        """Many more places than ``count``, thrown at random; ids, triangles and barycentrics."""
         random = Random(seed, "candidates")
         density = 2.0 ** np.ceil(
             np.log2((5 * count + 30) / self.area)
@@ -65,9 +82,42 @@ class Scalp:
         ids = np.repeat(self.region.astype(np.int64), each) * IDS_PER_TRIANGLE + (np.arange(each.sum()) - first)
         triangle = np.repeat(self.region, each)
         root, v = np.sqrt(random.uniform(ids, 0)), random.uniform(ids, 1)
-        barycentric = np.stack([1.0 - root, root * (1.0 - v), root * v], axis=1)
-        kept = _core.thin_out(self.positions(triangle, barycentric), self.area, count)
-        return ids[kept], triangle[kept], barycentric[kept]
+        return ids, triangle, np.stack([1.0 - root, root * (1.0 - v), root * v], axis=1)
+
+    def _by_density(
+        self, count: int, seed: int, name: str, what: str
+    ) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.float64], NDArray[np.int32]]:
+        """Candidates, and the indices of ``count`` of them as dense as is painted.
+
+        Even samples are thinned step by step, and stay even; each place has a rank, the part of the samples that are
+        left when it goes. Where the density is a half, the places of the first half of the ranks are taken.
+        """
+        _, triangle, barycentric = self._candidates(count, seed)
+        share = self._painted(name, triangle, barycentric, what)
+        if not share.any():
+            raise UserError(f"{what} '{name}' is 0 all over {self.where}; paint where hair is to grow")
+        wanted = 1.1 * count * min(share.max() / share.mean(), MOST_DENSER)
+        most = int(THINNER ** -np.ceil(np.log(wanted) / -np.log(THINNER)))  # a few curves more use the same ranks
+        ids, triangle, barycentric = self._candidates(most, seed)
+        places = self.positions(triangle, barycentric)
+        kept = _core.thin_out(places, self.area, most)
+        rank, left = np.ones(len(ids)), kept
+        for step in range(1, THINNING_STEPS + 1):
+            left = left[_core.thin_out(places[left], self.area, max(1, round(most * THINNER**step)))]
+            rank[left] = THINNER**step
+        rank *= THINNER ** Random(seed, "rank").uniform(ids)  # within a step by chance
+        density = self._painted(name, triangle, barycentric, what)[kept]
+        with np.errstate(divide="ignore"):
+            order = np.argsort(rank[kept] / density, kind="stable")
+        chosen = order[:count][density[order[:count]] > 0.0]
+        return ids, triangle, barycentric, np.sort(kept[chosen])
+
+    def _painted(self, name: str, triangle: NDArray, barycentric: NDArray, what: str) -> NDArray[np.float64]:
+        """What is painted at places, shape (n,)."""
+        count = len(triangle)
+        bound = {"root_triangle": triangle, "root_barycentric": barycentric}
+        places = Curves(np.zeros((count, 3)), np.arange(count + 1, dtype=np.int32), np.arange(count), bound)
+        return painted(name, places, self.mesh, what)
 
     def count_for_spacing(self, spacing: float) -> int:
         """How many places evenly spread at about that distance [m] the region holds."""

@@ -19,7 +19,7 @@ from pydantic import (
     ValidationInfo,
     model_validator,
 )
-from pydantic_core import core_schema
+from pydantic_core import PydanticCustomError, core_schema
 from scipy.interpolate import PchipInterpolator
 
 from ringlet import settings
@@ -100,9 +100,20 @@ class Quantity:
         if value is None or isinstance(value, BaseModel):
             return value
         if table and isinstance(value, dict):
-            return {**value, "value": self.number(value["value"], unit)} if "value" in value else value
+            read = {**value, "value": self.number(value["value"], unit)} if "value" in value else {**value}
+            for kind in ("region", "lock"):
+                if isinstance(given := value.get(kind), dict):
+                    read[kind] = {name: self._of(kind, name, number, unit) for name, number in given.items()}
+            return read
         number = self.number(value, unit)
         return {"value": number} if table else number
+
+    def _of(self, kind: str, name: str, value: Any, unit: float) -> float:
+        """The value for one region or lock."""
+        try:
+            return self.number(value, unit)
+        except PydanticCustomError as error:
+            raise refuse(f"for {kind} '{name}' {error.message()}") from None
 
     def __get_pydantic_core_schema__(
         self, source: Any, handler: Callable[[Any], core_schema.CoreSchema]
@@ -123,7 +134,7 @@ class Quantity:
 
 class Varied(Section):
     """A value that may differ from lock to lock. In a recipe: a number, or a table
-    ``{ value = …, vary = …, noise = …, noise_size = … }``."""
+    ``{ value = …, vary = …, noise = …, map = "…", region = { name = … }, lock = { id = … } }``."""
 
     value: float
     vary: float = Field(
@@ -135,15 +146,29 @@ class Varied(Section):
     noise_size: Annotated[float, Quantity("m", 1e-4, 10.0)] = Field(
         default=0.03, description="distance over which the noise changes"
     )
+    map: str | None = Field(
+        default=None,
+        description="painted values that multiply it: of the locks, or of the scalp at their roots (a primvar of "
+        "floats, or a texture of `[maps]`)",
+    )
+    region: dict[str, float] = Field(default={}, description="the value in named regions of the scalp")
+    lock: dict[int, float] = Field(default={}, description="the value of single locks, by their id")
 
     def per_curve(self, random: Random, ids: NDArray, places: NDArray) -> NDArray[np.float64]:
-        """The value for each curve, shape (len(ids),); ``places``: roots [m], shape (len(ids), 3)."""
+        """The value for each curve, shape (len(ids),), as far as it needs no scalp (see ``painted.per_lock``).
+
+        places: roots [m], shape (len(ids), 3)
+        """
+        return self.value * self.factors(random, ids, places)
+
+    def factors(self, random: Random, ids: NDArray, places: NDArray) -> NDArray[np.float64]:
+        """What chance and noise make of the value, shape (len(ids),)."""
         factor = np.ones(len(ids))
         if self.vary > 0.0:
             factor += self.vary * (2.0 * random.uniform(ids) - 1.0)
         if self.noise > 0.0:
             factor += self.noise * random.field(places, self.noise_size)
-        return self.value * np.maximum(factor, 0.05)  # variations that add up never turn a value around
+        return np.maximum(factor, 0.05)  # variations that add up never turn a value around
 
 
 def _in_order(ramp: list[tuple[float, float]]) -> list[tuple[float, float]]:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from hashlib import blake2b
 from pathlib import Path
+
+from numpy.typing import NDArray
 
 from ringlet.curves import Curves
 from ringlet.errors import UserError
@@ -33,6 +35,7 @@ def make_groom(
     scalp: Mesh,
     *,
     drawn_guides: Curves | None = None,
+    helpers: Mapping[str, Curves] | None = None,
     scalp_file: Path | None = None,
     scalp_prim: str | None = None,
     space: StageSpace | None = None,
@@ -43,8 +46,9 @@ def make_groom(
 
     scalp:        the mesh, in metres, in its rest pose
     drawn_guides: the curves that ``[guides] file`` names, in metres
+    helpers:      the curves that files of ``[curves]`` hold, in metres
     scalp_file, scalp_prim, space: where the mesh came from, kept with the groom
-    progress:     called with (stage, done, total)
+    progress:     called with (stage, 0, 1) before and (stage, 1, 1) after every stage
     memory:       keeps results between calls, so that an edit recomputes only what follows it
     """
     memory = memory or Memory()
@@ -57,18 +61,22 @@ def make_groom(
             )
         if drawn_guides is not None:
             key = _key(key, drawn_guides.points.tobytes(), drawn_guides.offsets.tobytes(), drawn_guides.ids.tobytes())
+        helpers = {**{name: c for name, h in recipe.curves.items() if (c := h.given())}, **(helpers or {})}
+        for name, helper in helpers.items():
+            helper.check(f"curves.{name}")
+            key = _key(key, name.encode(), helper.points.tobytes(), helper.offsets.tobytes())
         curves = drawn_guides or Curves.from_list([])
         stages = _stages(recipe)
         guides = curves
-        for done, (name, operator) in enumerate(stages):
+        for name, operator in stages:
             if progress:
-                progress(name, done, len(stages))
-            context = Context(recipe.seed, surface, name, recipe.locks.points)
+                progress(name, 0, 1)
+            context = Context(recipe.seed, surface, name, recipe.locks.points, helpers)
             curves, key = _run(operator, curves, key, context, memory)
             if name == "guides":
                 guides = curves
-        if progress:
-            progress("groom", len(stages), len(stages))
+            if progress:
+                progress(name, 1, 1)
     except UserError as error:
         raise UserError(f"{where}: {error}") from error
     return Groom(
@@ -111,11 +119,17 @@ def _scalp(recipe: Recipe, mesh: Mesh, memory: Memory) -> tuple[str, Scalp]:
         str((recipe.seed, recipe.scalp.region)),
         mesh.points.tobytes(),
         mesh.triangles.tobytes(),
-        *(values.tobytes() for values in mesh.regions.values()),
+        *(part for kind in (mesh.regions, mesh.maps, mesh.vectors, mesh.textures) for part in _contents(kind)),
+        b"" if mesh.uv is None else mesh.uv.tobytes(),
     )
     if memory.scalp is None or memory.scalp[0] != key:
         memory.scalp = (key, Scalp(mesh, recipe.scalp.region))
     return memory.scalp
+
+
+def _contents(named: dict[str, NDArray]) -> Iterator[bytes]:
+    for name, values in named.items():
+        yield from (name.encode(), values.tobytes())
 
 
 def _key(before: str, *content: bytes) -> str:

@@ -1,6 +1,7 @@
 """Files in and out: USD; meshes and polylines from OBJ, hairs from .hair."""
 
 from ringlet.io.read import read_clip, read_curves, read_mesh, read_space
+from ringlet.io.texture import read_texture
 from ringlet.io.usd.cache import CacheWriter, cache_groom_path, read_cache, write_cache
 from ringlet.io.usd.check import problems
 from ringlet.io.usd.groom import read_groom, write_groom
@@ -24,6 +25,7 @@ __all__ = [
     "read_rest",
     "read_space",
     "read_stage",
+    "read_texture",
     "write_cache",
     "write_groom",
     "write_rest",

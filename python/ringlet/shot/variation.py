@@ -11,9 +11,10 @@ from pydantic import Field
 from ringlet.curves import Curves
 from ringlet.errors import UserError
 from ringlet.groom.groom import Groom
+from ringlet.groom.painted import per_lock
 from ringlet.groom.random import Random
 from ringlet.groom.settings import Quantity, Ramped
-from ringlet.settings import Section, did_you_mean
+from ringlet.settings import Section
 from ringlet.shot.strands import VARIATIONS
 
 
@@ -56,9 +57,11 @@ class Variation(Section):
 def at_vertices(varied: Mapped, groom: Groom, setting: str, seed: int = 1) -> NDArray[np.float64]:
     """A value at each vertex of the locks, shape (n,); ``setting`` is its name in the shot, for messages."""
     locks = groom.locks
-    value = varied.per_curve(Random(seed, setting), locks.ids, locks.roots)
+    of_point = varied.map if varied.map in locks.point else None
+    plain = varied.model_copy(update={"map": None}) if of_point else varied
+    value = per_lock(plain, Random(seed, setting), locks, groom.scalp, f"shot: {setting}")
     values = np.repeat(value, locks.counts) * varied.along(_places(locks))
-    return values if varied.map is None else values * _map(varied.map, groom, setting)
+    return values if of_point is None else values * _at_points(of_point, locks, setting)
 
 
 def _places(locks: Curves) -> NDArray[np.float64]:
@@ -69,26 +72,13 @@ def _places(locks: Curves) -> NDArray[np.float64]:
     return (run - np.repeat(run[locks.offsets[:-1]], locks.counts)) / np.repeat(locks.lengths(), locks.counts)
 
 
-def _map(name: str, groom: Groom, setting: str) -> NDArray[np.float64]:
-    """A map's values at the vertices of the locks, shape (n,)."""
-    locks, scalp = groom.locks, groom.scalp
-    floats = {
-        key for kind in (locks.point, locks.curve) for key, v in kind.items() if v.ndim == 1 and v.dtype.kind == "f"
-    }
-    if name not in floats | scalp.maps.keys():
-        known = sorted(floats | scalp.maps.keys())
-        hint = did_you_mean(name, known)
-        there = f" there are: {', '.join(known)}" if "did you mean" in hint else ""
-        remedy = f"{hint}{there}" if known else "; paint one as a primvar of floats"
-        raise UserError(f"shot: {setting}.map is '{name}', which neither the locks nor {scalp.name} have{remedy}")
-    if name in locks.point:
-        values = locks.point[name]
-    elif name in locks.curve:
-        values = np.repeat(locks.curve[name], locks.counts)
-    else:
-        corners = scalp.maps[name][locks.curve["root_triangle"]]
-        values = np.repeat((corners * locks.curve["root_barycentric"]).sum(axis=1), locks.counts)
-    values = np.asarray(values, np.float64)
+def _at_points(name: str, locks: Curves, setting: str) -> NDArray[np.float64]:
+    """What is painted on the points of the locks, shape (n,)."""
+    values = np.asarray(locks.point[name], np.float64)
+    if values.ndim != 1:
+        raise UserError(
+            f"shot: {setting}.map '{name}' has {values.shape[1]} numbers a point; must be one, paint another"
+        )
     if (bad := np.flatnonzero(~(np.isfinite(values) & (values >= 0.0)))).size:
         lock = locks.ids[np.searchsorted(locks.offsets, bad[0], side="right") - 1]
         raise UserError(

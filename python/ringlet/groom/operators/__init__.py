@@ -4,32 +4,71 @@ from typing import Annotated
 
 from pydantic import Field
 
+from ringlet.groom.operators.attract import Attract
+from ringlet.groom.operators.bend import Bend
 from ringlet.groom.operators.clean import Clean
 from ringlet.groom.operators.clump import Clump
 from ringlet.groom.operators.curl import Curl
 from ringlet.groom.operators.drawn import Drawn
+from ringlet.groom.operators.flyaways import Flyaways
+from ringlet.groom.operators.frizz import Frizz
+from ringlet.groom.operators.gather import Gather
 from ringlet.groom.operators.grown import Grown
 from ringlet.groom.operators.length import Length
+from ringlet.groom.operators.lift import Lift
 from ringlet.groom.operators.locks import Locks
 from ringlet.groom.operators.loft import Loft
+from ringlet.groom.operators.noise import Noise
 from ringlet.groom.operators.operator import Context, Operator
+from ringlet.groom.operators.part import Part
 from ringlet.groom.operators.resample import Resample
 from ringlet.groom.operators.scraggle import Scraggle
+from ringlet.groom.operators.shape import Shape
+from ringlet.groom.operators.smooth import Smooth
+from ringlet.groom.operators.straighten import Straighten
 
-ShapeOperator = Annotated[Resample | Length | Loft | Scraggle | Clump, Field(discriminator="op")]
+ShapeOperator = Annotated[
+    Resample
+    | Smooth
+    | Length
+    | Lift
+    | Loft
+    | Bend
+    | Scraggle
+    | Noise
+    | Frizz
+    | Clump
+    | Part
+    | Gather
+    | Flyaways
+    | Straighten
+    | Attract,
+    Field(discriminator="op"),
+]
 
 __all__ = [
+    "Attract",
+    "Bend",
     "Clean",
     "Clump",
     "Context",
     "Curl",
     "Drawn",
+    "Flyaways",
+    "Frizz",
+    "Gather",
     "Grown",
     "Length",
+    "Lift",
     "Locks",
     "Loft",
+    "Noise",
     "Operator",
+    "Part",
     "Resample",
     "Scraggle",
+    "Shape",
     "ShapeOperator",
+    "Smooth",
+    "Straighten",
 ]

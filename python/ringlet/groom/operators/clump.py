@@ -5,33 +5,45 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import Field
 from scipy.spatial import KDTree
 
 from ringlet.curves import Curves
-from ringlet.groom.operators.operator import Context, Operator, grid, with_grid
+from ringlet.groom.operators.operator import Context
+from ringlet.groom.operators.shape import Shape
 from ringlet.groom.settings import Quantity, Ramped
 
 
-class Clump(Operator):
+class Clump(Shape):
     """Draws neighbouring locks towards one of them: ``p' = p + amount · ramp(u) · (centre(u) - p)``. The centres are
-    the locks nearest to places spread over the scalp at distance ``size``."""
+    the locks nearest to places spread over the scalp at distance ``size``. Further levels draw smaller clumps together
+    within the larger ones: each ``finer`` times as far apart as those before, and all by the same amount."""
 
     op: Literal["clump"] = "clump"
     size: Annotated[float, Quantity("m", 1e-3, 1.0)] = Field(default=0.02, description="distance of the clumps")
     amount: Annotated[Ramped, Quantity("", 0.0, 1.0)] = Field(
         default=Ramped(value=0.4, vary=0.5, ramp=[(0, 0), (1, 1)]), description="0 apart, 1 all at the centre"
     )
+    levels: int = Field(default=1, ge=1, le=8, description="clumps within clumps")
+    finer: Annotated[float, Quantity("", 0.1, 0.9)] = Field(
+        default=0.5, description="distance of the clumps of a level, as a part of that of the level before"
+    )
 
-    def apply(self, curves: Curves, context: Context) -> Curves:
-        """The same shapes, drawn together; roots stay."""
-        points, scalp = grid(curves), context.scalp
-        _, triangle, barycentric = scalp.sample(scalp.count_for_spacing(self.size), context.seed + 1)
-        _, leaders = KDTree(points[:, 0]).query(scalp.positions(triangle, barycentric))
+    def shape(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
+        """The same shapes, drawn together, large clumps first; roots stay."""
+        amount = context.values("amount", self.amount, curves)[:, None]
+        amount = np.minimum(amount * self.amount.along(np.linspace(0.0, 1.0, points.shape[1])), 1.0)[:, :, None]
+        for level in range(self.levels):
+            centre = self._centres(points[:, 0], self.size * self.finer**level, context)
+            points = points + amount * (points[centre] - points)
+        return points
+
+    def _centres(self, roots: NDArray, size: float, context: Context) -> NDArray[np.integer]:
+        """The lock that each lock is drawn to, shape (count,)."""
+        scalp = context.scalp
+        _, triangle, barycentric = scalp.sample(scalp.count_for_spacing(size), context.seed + 1)
+        _, leaders = KDTree(roots).query(scalp.positions(triangle, barycentric))
         leaders = np.unique(leaders)
-        _, nearest = KDTree(points[leaders, 0]).query(points[:, 0])
-        amount = context.values("amount", self.amount, curves)[:, None] * self.amount.along(
-            np.linspace(0, 1, points.shape[1])
-        )
-        amount = np.minimum(amount, 1.0)
-        return with_grid(curves, points + amount[:, :, None] * (points[leaders[nearest]] - points))
+        _, nearest = KDTree(roots[leaders]).query(roots)
+        return leaders[nearest]

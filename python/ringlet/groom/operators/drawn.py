@@ -7,20 +7,24 @@ from typing import Annotated
 from pydantic import Field
 
 from ringlet.curves import Curves
-from ringlet.groom.operators.operator import Context, Operator
+from ringlet.groom.operators.guides import Guides
+from ringlet.groom.operators.operator import Context
 from ringlet.groom.settings import Quantity
+from ringlet.groom.source import Source
 
 
-class Drawn(Operator):
-    """Takes guides from a USD file and binds them to the scalp."""
+class Drawn(Source, Guides):
+    """Takes guides from a USD, OBJ or .hair file and binds them to the scalp."""
 
-    file: str = Field(min_length=1, description="USD file with the curves, beside the recipe or with a full path")
+    file: str = Field(
+        min_length=1, description="USD, OBJ or .hair file with the curves, beside the recipe or with a full path"
+    )
     prim: str | None = Field(default=None, description="prim of the curves; needed when the file has several")
     tolerance: Annotated[float, Quantity("m", 0.0, 1.0)] = Field(
         default=0.01, description="how far a root may be off the scalp"
     )
 
-    def apply(self, curves: Curves, context: Context) -> Curves:
+    def make(self, curves: Curves, context: Context) -> Curves:
         """The drawn curves, bound by the nearest point of the scalp region."""
         curves.check("guides")
         return context.scalp.bind(curves, self.tolerance, "guides")

@@ -6,53 +6,52 @@ from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, FiniteFloat, model_validator
+from pydantic import Field, model_validator
 
 from ringlet.curves import Curves, offsets_from_counts
-from ringlet.groom.operators.operator import UP, Context, Operator, unit
+from ringlet.groom.mask import Mask
+from ringlet.groom.operators.guides import Guides
+from ringlet.groom.operators.operator import UP, Context, unit
+from ringlet.groom.painted import painted_directions
+from ringlet.groom.parting import Parting, Vector
 from ringlet.groom.settings import Quantity, Section, Varied, refuse
-
-Vector = tuple[FiniteFloat, FiniteFloat, FiniteFloat]
 
 
 class Zone(Section):
-    """A part of the head where hair is longer, shorter or stands differently; it fades out towards its edge."""
+    """A part of the head where hair is longer, shorter or stands differently: around a direction, where it fades out
+    towards its edge, or by a mask, or where both are."""
 
-    toward: Vector = Field(description="direction from the middle of the scalp, Y up: [0, 0.5, 1] is the forehead")
+    toward: Vector | None = Field(
+        default=None, description="direction from the middle of the scalp, Y up: [0, 0.5, 1] is the forehead"
+    )
     spread: Annotated[float, Quantity("deg", 1.0, 180.0)] = Field(
         default=40.0, description="half the opening angle of the zone"
     )
+    mask: Annotated[Mask | None, Quantity("", 0.0, 1.0)] = Field(default=None, description="where it is")
     length: Annotated[float, Quantity("", 0.0, 10.0)] = Field(default=1.0, description="factor on the length")
     lift: Annotated[float, Quantity("", 0.0, 10.0)] = Field(default=1.0, description="factor on the lift")
     droop: Annotated[float, Quantity("", 0.0, 10.0)] = Field(default=1.0, description="factor on the droop")
 
-    def weight(self, outward: NDArray) -> NDArray[np.float64]:
-        """1 in the middle of the zone, 0 outside, for unit directions (n, 3)."""
-        angle = np.degrees(np.arccos(np.clip(outward @ unit(np.array(self.toward)), -1.0, 1.0)))
-        t = np.clip(1.0 - angle / self.spread, 0.0, 1.0)
-        return t * t * (3.0 - 2.0 * t)
+    @model_validator(mode="after")
+    def _somewhere(self) -> Zone:
+        if self.toward is None and self.mask is None:
+            raise refuse("does not say where it is; give it 'toward' or a 'mask'")
+        return self
+
+    def weight(self, seeds: Curves, context: Context, what: str) -> NDArray[np.float64]:
+        """1 in the middle of the zone, 0 outside; shape (count,). ``seeds``: curves of a point, the root."""
+        weight = np.ones(len(seeds))
+        if self.toward is not None:
+            outward = unit(seeds.points - context.scalp.middle)
+            angle = np.degrees(np.arccos(np.clip(outward @ unit(np.array(self.toward)), -1.0, 1.0)))
+            t = np.clip(1.0 - angle / self.spread, 0.0, 1.0)
+            weight *= t * t * (3.0 - 2.0 * t)
+        if self.mask is not None:
+            weight *= self.mask.weights(seeds, context.scalp.mesh, context.random("zone"), f"{what}.mask")[:, 0]
+        return weight
 
 
-class Part(Section):
-    """A parting: hair on each side of a plane flows away from it."""
-
-    across: Vector = Field(default=(1.0, 0.0, 0.0), description="direction from one side of the parting to the other")
-    offset: Annotated[float, Quantity("m", -1.0, 1.0)] = Field(
-        default=0.0, description="how far the parting is from the middle of the scalp, along 'across'"
-    )
-    reach: Annotated[float, Quantity("m", 1e-3, 1.0)] = Field(
-        default=0.04, description="distance at which hair has half forgotten the parting"
-    )
-
-    def turn(self, flow: NDArray, from_middle: NDArray) -> NDArray[np.float64]:
-        """The flow (n, 3), turned away from the parting; ``from_middle``: places from the middle of the scalp [m]."""
-        across = unit(np.array(self.across))
-        side = from_middle @ across - self.offset
-        weight = 0.5 ** (np.abs(side) / self.reach)
-        return (1.0 - weight)[:, None] * flow + (weight * np.sign(side))[:, None] * across
-
-
-class Grown(Operator):
+class Grown(Guides):
     """Grows guides on the scalp.
 
     A guide leaves its root along ``lift · normal + (1 - lift) · flow`` and bends down on its way:
@@ -80,7 +79,14 @@ class Grown(Operator):
         default=25.0, description="how much the flow spirals about the whorl"
     )
     flow: Vector = Field(default=(0.0, -1.0, 0.0), description="direction of the flow where there is no whorl")
-    part: Part | None = Field(default=None, description="a parting; none when absent")
+    density: str | None = Field(
+        default=None,
+        description="painted values: where they are higher, guides stand closer; none grow where they are 0",
+    )
+    direction: str | None = Field(
+        default=None, description="painted directions (a primvar of vectors) that replace the flow where they are not 0"
+    )
+    part: Parting | None = Field(default=None, description="a parting; none when absent")
     zone: list[Zone] = Field(default=[], description="parts of the head with their own length and stand")
 
     @model_validator(mode="after")
@@ -89,26 +95,25 @@ class Grown(Operator):
             raise refuse("has both 'count' and 'spacing'; give one of them")
         return self
 
-    def apply(self, curves: Curves, context: Context) -> Curves:
+    def make(self, curves: Curves, context: Context) -> Curves:
         """Guides with ids that belong to their places; what comes in is not used."""
         scalp = context.scalp
         count = self.count or scalp.count_for_spacing(self.spacing or 0.025)
-        ids, triangle, barycentric = scalp.sample(count, context.seed)
+        ids, triangle, barycentric = scalp.sample(count, context.seed, self.density, "guides.density")
         bound = {"root_triangle": triangle, "root_barycentric": barycentric}
         roots = scalp.positions(triangle, barycentric)
         seeds = Curves(roots, offsets_from_counts(np.ones(len(ids))), ids, bound)
 
         normal = scalp.frames(seeds)[:, :, 2]
-        outward = unit(roots - scalp.middle)
         length, lift, droop = (context.values(k, getattr(self, k), seeds) for k in ("length", "lift", "droop"))
-        for zone in self.zone:
-            weight = zone.weight(outward)
+        for k, zone in enumerate(self.zone):
+            weight = zone.weight(seeds, context, f"guides.zone[{k}]")
             length *= 1.0 + weight * (zone.length - 1.0)
             lift *= 1.0 + weight * (zone.lift - 1.0)
             droop *= 1.0 + weight * (zone.droop - 1.0)
         lift = np.clip(lift, 0.0, 1.0)[:, None]
 
-        start = unit(lift * normal + (1.0 - lift) * self._flow(normal, roots - scalp.middle))
+        start = unit(lift * normal + (1.0 - lift) * self._flow(seeds, normal, context))
         u = (np.arange(self.points - 1) + 0.5) / (self.points - 1)
         direction = unit(start[:, None, :] - (droop[:, None] * u)[:, :, None] * UP)
         steps = direction * (length / (self.points - 1))[:, None, None]
@@ -116,14 +121,20 @@ class Grown(Operator):
         offsets = offsets_from_counts(np.full(len(ids), self.points))
         return Curves(np.ascontiguousarray(points.reshape(-1, 3)), offsets, ids, bound)
 
-    def _flow(self, normal: NDArray, from_middle: NDArray) -> NDArray[np.float64]:
+    def _flow(self, seeds: Curves, normal: NDArray, context: Context) -> NDArray[np.float64]:
         """Unit directions along the surface, shape (n, 3)."""
+        roots, scalp = seeds.points, context.scalp
+        from_middle = roots - scalp.middle
         if self.whorl is None:
             wanted = np.broadcast_to(np.array(self.flow), normal.shape)
         else:
             away = unit(unit(from_middle) - unit(np.array(self.whorl)))
             turn = np.radians(self.whorl_turn)
             wanted = np.cos(turn) * away + np.sin(turn) * np.cross(normal, away)
+        if self.direction is not None:
+            painted = painted_directions(self.direction, seeds, scalp.mesh, "guides.direction")
+            wanted = np.where(painted.any(axis=1, keepdims=True), unit(painted), wanted)
         if self.part is not None:
-            wanted = self.part.turn(wanted, from_middle)
+            away, felt = self.part.away(roots, normal, scalp.middle, context.helper)
+            wanted = (1.0 - felt)[:, None] * wanted + felt[:, None] * away
         return unit(wanted - np.sum(wanted * normal, axis=1, keepdims=True) * normal)

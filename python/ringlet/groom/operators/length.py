@@ -5,31 +5,34 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import Field
 
 from ringlet.curves import Curves
-from ringlet.groom.operators.operator import Context, Operator, grid, with_grid
+from ringlet.groom.operators.operator import Context, arc_lengths, at_lengths
+from ringlet.groom.operators.shape import Shape
 from ringlet.groom.settings import Quantity, Varied
 
 
-class Length(Operator):
-    """Multiplies the length: ``p' = root + factor · (p - root)``; with ``cut``, hair is cut off instead of shrunk."""
+class Length(Shape):
+    """Multiplies the length, or sets it: ``p' = root + factor · (p - root)``; with ``cut``, what is too long is cut off
+    instead of shrunk, and nothing grows."""
 
     op: Literal["length"] = "length"
     factor: Annotated[Varied, Quantity("", 0.01, 100.0)] = Field(
         default=Varied(value=1.0), description="factor on the length"
     )
+    to: Annotated[Varied | None, Quantity("m", 1e-4, 10.0)] = Field(
+        default=None, description="the length that all have before the factor; their own when absent"
+    )
     cut: bool = Field(default=False, description="cut what is too long; the rest keeps its place")
 
-    def apply(self, curves: Curves, context: Context) -> Curves:
+    def shape(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
         """The same shapes, longer or shorter."""
-        points = grid(curves)
-        factor = context.values("factor", self.factor, curves)
+        along = arc_lengths(points)
+        factor = np.maximum(context.values("factor", self.factor, curves), 1e-3)  # a map may say 0
+        if self.to is not None:
+            factor *= np.maximum(context.values("to", self.to, curves), 1e-6) / np.maximum(along[:, -1], 1e-9)
         if not self.cut:
-            return with_grid(curves, points[:, :1] + factor[:, None, None] * (points - points[:, :1]))
-        last = points.shape[1] - 1
-        at = np.minimum(factor, 1.0)[:, None] * np.arange(last + 1)
-        i = np.minimum(at.astype(int), last - 1)
-        t = (at - i)[:, :, None]
-        rows = np.arange(len(points))[:, None]
-        return with_grid(curves, (1.0 - t) * points[rows, i] + t * points[rows, i + 1])
+            return points[:, :1] + factor[:, None, None] * (points - points[:, :1])
+        return at_lengths(points, np.minimum(factor, 1.0)[:, None] * along)

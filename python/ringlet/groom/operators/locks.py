@@ -26,6 +26,10 @@ class Locks(Operator):
 
     count: int | None = Field(default=None, ge=1, le=1_000_000, description="number of locks (this or spacing)")
     spacing: Annotated[float | None, Quantity("m", 1e-4, 1.0)] = Field(default=None, description="distance of locks")
+    density: str | None = Field(
+        default=None,
+        description="painted values: where they are higher, locks stand closer; none grow where they are 0",
+    )
     points: int = Field(
         default=64, ge=4, le=10_000, description="points of a groom guide, curl included; 12 a curl simulate well"
     )
@@ -51,7 +55,8 @@ class Locks(Operator):
 
         scalp = context.scalp
         count = self.count or scalp.count_for_spacing(self.spacing or 0.01)
-        ids, triangle, barycentric = scalp.sample(count, context.seed)
+        ids, triangle, barycentric = scalp.sample(count, context.seed, self.density, "locks.density")
+        count = len(ids)
         roots = scalp.positions(triangle, barycentric)
         lengths = arc_lengths(shapes)[:, -1]
         local = shapes - shapes[:, :1]

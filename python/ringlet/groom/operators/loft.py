@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import Field
 
 from ringlet.curves import Curves
-from ringlet.groom.operators.operator import UP, Context, Operator, grid, unit, with_grid
+from ringlet.groom.operators.operator import UP, Context, along_edges, between_edges, pulled, unit
+from ringlet.groom.operators.shape import Shape
 from ringlet.groom.settings import Quantity, Ramped
 
 
-class Loft(Operator):
+class Loft(Shape):
     """Turns every piece of a lock towards a lifting direction and keeps its length:
     ``edge' = |edge| · unit(edge + amount · |edge| · (up · world up + (1 - up) · normal))``."""
 
@@ -24,14 +26,11 @@ class Loft(Operator):
         default=0.5, description="0 lifts off the scalp, 1 against gravity"
     )
 
-    def apply(self, curves: Curves, context: Context) -> Curves:
+    turns: ClassVar[bool] = True
+
+    def shape(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
         """The same shapes, raised; lengths stay."""
-        points = grid(curves)
-        normal = context.scalp.frames(curves)[:, :, 2]
         edges = np.diff(points, axis=1)
-        length = np.linalg.norm(edges, axis=2, keepdims=True)
-        u = (np.arange(edges.shape[1]) + 0.5) / edges.shape[1]
-        amount = context.values("amount", self.amount, curves)[:, None] * self.amount.along(u)
-        target = unit(self.up * UP + (1.0 - self.up) * normal)[:, None, :]
-        raised = length * unit(edges + amount[:, :, None] * length * target)
-        return with_grid(curves, np.concatenate([points[:, :1], points[:, :1] + np.cumsum(raised, axis=1)], axis=1))
+        amount = context.values("amount", self.amount, curves)[:, None] * self.amount.along(between_edges(edges))
+        target = unit(self.up * UP + (1.0 - self.up) * context.scalp.frames(curves)[:, :, 2])
+        return along_edges(points[:, 0], pulled(edges, amount, target))

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ringlet.curves import Curves
+from ringlet.errors import UserError
+from ringlet.groom.painted import per_lock
 from ringlet.groom.random import Random
 from ringlet.groom.scalp import Scalp
 from ringlet.groom.settings import Section, Varied
+from ringlet.settings import did_you_mean
 
 UP = np.array([0.0, 1.0, 0.0])
 
@@ -23,20 +27,29 @@ class Context:
     scalp:       the surface that the curves grow on
     purpose:     a name of the operator that is its own in the stack; random numbers hang on it
     lock_points: points of a groom guide
+    curves:      helper curves by name: partings, ties, what attracts
     """
 
     seed: int
     scalp: Scalp
     purpose: str
     lock_points: int = 64
+    curves: Mapping[str, Curves] = field(default_factory=dict)
 
     def random(self, setting: str = "") -> Random:
         """Random numbers for one setting of this operator."""
         return Random(self.seed, f"{self.purpose}/{setting}")
 
+    def helper(self, name: str, setting: str) -> Curves:
+        """The helper curves that a setting names."""
+        if name not in self.curves:
+            remedy = did_you_mean(name, self.curves) if self.curves else f"; add a table [curves.{name}]"
+            raise UserError(f"{self.purpose}.{setting} is '{name}', which is no helper curve{remedy}")
+        return self.curves[name]
+
     def values(self, name: str, setting: Varied, curves: Curves) -> NDArray[np.float64]:
         """A varied setting for each curve, shape (count,)."""
-        return setting.per_curve(self.random(name), curves.ids, curves.roots)
+        return per_lock(setting, self.random(name), curves, self.scalp.mesh, f"{self.purpose}.{name}")
 
 
 class Operator(Section):
@@ -61,6 +74,42 @@ def arc_lengths(points: NDArray) -> NDArray[np.floating]:
     """Length from the root to every point [m], shape (count, points), for points (count, points, 3)."""
     edges = np.linalg.norm(np.diff(points, axis=1), axis=2)
     return np.concatenate([np.zeros((len(points), 1)), np.cumsum(edges, axis=1)], axis=1)
+
+
+def at_lengths(points: NDArray, along: NDArray) -> NDArray[np.floating]:
+    """Places on polylines (count, points, 3) at lengths from their roots (count, k) [m]; shape (count, k, 3).
+
+    Beyond its tip a line goes on straight.
+    """
+    run = arc_lengths(points)
+    i = np.clip((run[:, None, :] <= along[:, :, None]).sum(axis=2) - 1, 0, points.shape[1] - 2)
+    rows = np.arange(len(points))[:, None]
+    start, edge = run[rows, i], run[rows, i + 1] - run[rows, i]
+    t = ((along - start) / np.maximum(edge, 1e-12))[:, :, None]
+    return points[rows, i] + t * (points[rows, i + 1] - points[rows, i])
+
+
+def along_edges(roots: NDArray, edges: NDArray) -> NDArray[np.floating]:
+    """Polylines from roots (count, 3) along edges (count, points - 1, 3); shape (count, points, 3)."""
+    return np.concatenate([roots[:, None], roots[:, None] + np.cumsum(edges, axis=1)], axis=1)
+
+
+def between_edges(edges: NDArray) -> NDArray[np.float64]:
+    """The middles of the edges of a lock as places from root (0) to tip (1), shape (points - 1,)."""
+    return (np.arange(edges.shape[1]) + 0.5) / edges.shape[1]
+
+
+def turned(vectors: NDArray, axis: NDArray, angle: NDArray) -> NDArray[np.float64]:
+    """Vectors (…, 3) turned about unit axes (…, 3) by angles (…) [rad]; an axis of length 0 turns nothing."""
+    angle = np.where(np.linalg.norm(axis, axis=-1) > 0.5, angle, 0.0)[..., None]
+    along = np.sum(axis * vectors, axis=-1, keepdims=True) * axis
+    return np.cos(angle) * (vectors - along) + np.sin(angle) * np.cross(axis, vectors) + along
+
+
+def pulled(edges: NDArray, amount: NDArray, target: NDArray) -> NDArray[np.float64]:
+    """Edges (count, k, 3) of the same length, turned towards unit directions (count, 3) by amounts (count, k)."""
+    length = np.linalg.norm(edges, axis=2, keepdims=True)
+    return length * unit(edges + amount[:, :, None] * length * target[:, None, :])
 
 
 def unit(vectors: NDArray) -> NDArray[np.float64]:

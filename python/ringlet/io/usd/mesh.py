@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -26,6 +27,7 @@ from ringlet.io.usd.values import (
     rest_time,
     set_primvar,
     transformed,
+    vector_primvars,
 )
 from ringlet.mesh import Clip, Mesh
 from ringlet.stage import StageSpace
@@ -118,7 +120,8 @@ def mesh_at(source: Source, prim: Usd.Prim) -> Mesh:
         uv=_uv(prim, corners, triangles, len(points), len(indices), where),
         faces=faces.astype(np.int32),
         regions=_regions(prim, faces, len(counts), where),
-        maps=_maps(prim, corners, triangles, faces, len(counts), where),
+        maps=_maps(float_primvars(prim), corners, triangles, faces, len(counts), where),
+        vectors=_vectors(prim, time, source, corners, triangles, faces, len(counts), where),
         **_color(prim, counts, indices, len(points)),
     )
 
@@ -208,11 +211,16 @@ def _uv(prim: Usd.Prim, corners: NDArray, triangles: NDArray, points: int, indic
 
 
 def _maps(
-    prim: Usd.Prim, corners: NDArray, triangles: NDArray, faces: NDArray, polygons: int, where: str
+    primvars: Iterable[tuple[str, str, NDArray]],
+    corners: NDArray,
+    triangles: NDArray,
+    faces: NDArray,
+    polygons: int,
+    where: str,
 ) -> dict[str, NDArray[np.float64]]:
-    """Primvars of floats, at the corners of each triangle."""
+    """Primvars, at the corners of each triangle."""
     maps = {}
-    for name, interpolation, values in float_primvars(prim):
+    for name, interpolation, values in primvars:
         rows = {
             UsdGeom.Tokens.constant: np.zeros_like(corners),
             UsdGeom.Tokens.uniform: np.repeat(faces[:, None], 3, axis=1),
@@ -224,6 +232,26 @@ def _maps(
             )
         maps[name] = values[rows]
     return maps
+
+
+def _vectors(
+    prim: Usd.Prim,
+    time: Usd.TimeCode,
+    source: Source,
+    corners: NDArray,
+    triangles: NDArray,
+    faces: NDArray,
+    polygons: int,
+    where: str,
+) -> dict[str, NDArray[np.float64]]:
+    """Primvars of directions, at the corners of each triangle, turned as the points are."""
+    upright = StageSpace(1.0, source.space.up_axis)
+    origin = transformed(np.zeros((1, 3)), prim, time)
+    turned = (
+        (name, interpolation, to_metres(transformed(values, prim, time) - origin, upright))
+        for name, interpolation, values in vector_primvars(prim)
+    )
+    return _maps(turned, corners, triangles, faces, polygons, where)
 
 
 def _subsets(prim: Usd.Prim) -> dict[str, UsdGeom.Subset]:

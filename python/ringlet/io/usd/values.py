@@ -37,6 +37,8 @@ _TYPES: dict[tuple[str, tuple[int, ...]], tuple[Sdf.ValueTypeName, Any]] = {
     ("float64", (4, 4)): (Types.Matrix4dArray, Vt.Matrix4dArray),
 }
 
+_DIRECTIONS = (Types.Vector3f, Types.Vector3d, Types.Normal3f, Types.Normal3d, Types.Float3, Types.Double3)
+
 
 def to_usd(values: NDArray) -> tuple[Sdf.ValueTypeName, Any]:
     """An array, one row per element, as a USD type and value."""
@@ -69,6 +71,15 @@ def float_primvars(prim: Usd.Prim) -> Iterator[tuple[str, str, NDArray[np.float6
         if kind in (Types.Float, Types.Double, Types.Half):
             value = primvar.ComputeFlattened(Usd.TimeCode.EarliestTime())
             yield primvar.GetPrimvarName(), primvar.GetInterpolation(), np.atleast_1d(np.array(value, np.float64))
+
+
+def vector_primvars(prim: Usd.Prim) -> Iterator[tuple[str, str, NDArray[np.float64]]]:
+    """Name, interpolation and values, shape (k, 3), of every primvar of directions (vectors, normals, or three plain
+    floats), at rest."""
+    for primvar in UsdGeom.PrimvarsAPI(prim).GetPrimvarsWithAuthoredValues():
+        if primvar.GetTypeName().scalarType in _DIRECTIONS:
+            value = primvar.ComputeFlattened(Usd.TimeCode.EarliestTime())
+            yield primvar.GetPrimvarName(), primvar.GetInterpolation(), np.array(value, np.float64).reshape(-1, 3)
 
 
 def float3(values: NDArray) -> Vt.Vec3fArray:

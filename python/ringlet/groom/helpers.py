@@ -1,0 +1,43 @@
+"""Helper curves: what operators go by without being hair, such as partings and ties."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import numpy as np
+from pydantic import BeforeValidator, Field, ValidationInfo, model_validator
+
+from ringlet.curves import Curves
+from ringlet.groom.settings import Quantity, refuse
+from ringlet.groom.source import Source
+
+
+def _lengths(place: object, info: ValidationInfo) -> object:
+    """Three lengths in the unit of the recipe, or with units of their own, as metres."""
+    unit = (info.context or {}).get("unit", 1.0)
+    return [Quantity("m").number(x, unit) for x in place] if isinstance(place, list | tuple) else place
+
+
+Place = Annotated[tuple[float, float, float], BeforeValidator(_lengths)]
+
+
+class HelperCurves(Source):
+    """Curves that operators go by: points given here, or curves drawn in a file."""
+
+    points: list[Place] | None = Field(default=None, description="[x, y, z] of the points of a curve, Y up")
+    file: str | None = Field(
+        default=None, description="USD, OBJ or .hair file with the curves, beside the recipe or with a full path"
+    )
+    prim: str | None = Field(default=None, description="prim of the curves; needed when the file has several")
+
+    @model_validator(mode="after")
+    def _one_source(self) -> HelperCurves:
+        if (self.points is None) == (self.file is None):
+            raise refuse("needs either 'points' or a 'file'; give one of them")
+        if self.points is not None and len(self.points) < 2:
+            raise refuse(f"has {len(self.points)} point(s); give at least 2")
+        return self
+
+    def given(self) -> Curves | None:
+        """The curve of the points; None where a file is to be read."""
+        return None if self.points is None else Curves.from_list([np.array(self.points)])

@@ -1,0 +1,80 @@
+"""Where an operator acts: on which locks, and where along them."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import AfterValidator, Field
+
+from ringlet import _core
+from ringlet.curves import Curves
+from ringlet.errors import UserError
+from ringlet.groom import expression
+from ringlet.groom.painted import painted, region
+from ringlet.groom.random import Random
+from ringlet.groom.settings import Quantity, Ramp, Section, along
+from ringlet.mesh import Mesh
+
+
+class Mask(Section):
+    """Where an operator acts: 0 nowhere, 1 fully. In a recipe a number, or a table
+    ``{ value = …, ramp = …, map = …, region = …, where = … }``: the product of all that is given."""
+
+    value: float = Field(default=1.0, ge=0.0, le=1.0, description="the same everywhere")
+    ramp: Ramp = Field(default=[(0.0, 1.0), (1.0, 1.0)], description="[place, factor] from root (0) to tip (1)")
+    map: str | None = Field(default=None, description="painted values, of the locks or of the scalp at their roots")
+    region: str | None = Field(default=None, description="a named region of the scalp")
+    soft: Annotated[float, Quantity("m", 0.0, 1.0)] = Field(
+        default=0.0, description="distance beyond the region over which it fades out"
+    )
+    where: Annotated[str, AfterValidator(expression.check)] | None = Field(
+        default=None,
+        description="an expression of `id`, `random` (0 to 1), `length`, and `x`, `y`, `z` of the root (in metres), "
+        "such as `id % 3 == 0 and y > 0.1`; what is true is 1",
+    )
+    invert: bool = Field(default=False, description="act where this mask is not")
+
+    @property
+    def everywhere(self) -> bool:
+        """Whether it is 1 all over."""
+        return self == Mask()
+
+    def weights(self, curves: Curves, scalp: Mesh, random: Random, what: str) -> NDArray[np.float64]:
+        """The mask at the points of curves that all have the same count, shape (count, points).
+
+        what: the name of the setting, for messages
+        """
+        points = len(curves.points) // len(curves)
+        weight = self.per_lock(curves, scalp, random, what)[:, None] * along(self.ramp, np.linspace(0.0, 1.0, points))
+        weight = np.clip(weight, 0.0, 1.0)
+        return 1.0 - weight if self.invert else weight
+
+    def per_lock(self, curves: Curves, scalp: Mesh, random: Random, what: str) -> NDArray[np.float64]:
+        """The part of the mask that does not change along a lock, before it is inverted; shape (count,)."""
+        weight = np.full(len(curves), self.value)
+        if self.map is not None:
+            weight *= painted(self.map, curves, scalp, f"{what}.map")
+        if self.region is not None:
+            weight *= self._near(region(self.region, scalp, f"{what}.region"), curves, scalp)
+        if self.where is not None:
+            x, y, z = curves.roots.T
+            values = {"id": curves.ids, "random": random.uniform(curves.ids), "length": curves.lengths()}
+            told = expression.evaluate(self.where, {**values, "x": x, "y": y, "z": z})
+            if not (finite := np.isfinite(told)).all():
+                lock = curves.ids[np.flatnonzero(~finite)[0]]
+                raise UserError(f"{what}.where is '{self.where}', not a finite number on lock {lock}; rewrite it")
+            weight *= np.clip(told, 0.0, 1.0)
+        return weight
+
+    def _near(self, triangles: NDArray[np.int32], curves: Curves, scalp: Mesh) -> NDArray[np.float64]:
+        """1 in the region, 0 farther than ``soft`` from it, smooth in between; shape (count,)."""
+        inside = np.isin(curves.curve["root_triangle"], triangles)
+        if self.soft == 0.0 or inside.all() or not len(triangles):
+            return inside.astype(np.float64)
+        roots = np.ascontiguousarray(curves.roots, np.float64)
+        points = np.ascontiguousarray(scalp.points, np.float64)
+        distance = _core.bind_roots(points, np.ascontiguousarray(scalp.triangles, np.int32), roots, triangles)[2]
+        t = np.where(inside, 1.0, np.clip(1.0 - distance / self.soft, 0.0, 1.0))
+        return t * t * (3.0 - 2.0 * t)

@@ -1,0 +1,42 @@
+"""Locks drawn to helper curves."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+from scipy.spatial import KDTree
+
+from ringlet import _core
+from ringlet.curves import Curves
+from ringlet.groom.operators.operator import Context, packed
+from ringlet.groom.operators.shape import Shape
+from ringlet.groom.settings import Quantity, Ramped
+
+
+class Attract(Shape):
+    """Draws locks to a helper curve, each to the one whose root is nearest:
+    ``p' = p + amount · ramp(u) · near · (curve(u) - p)``, with near falling from 1 to 0 over ``reach``."""
+
+    op: Literal["attract"] = "attract"
+    curve: str = Field(min_length=1, description="name of the helper curves, from `[curves]`")
+    amount: Annotated[Ramped, Quantity("", 0.0, 1.0)] = Field(
+        default=Ramped(value=0.5, ramp=[(0, 0), (1, 1)]), description="0 leaves the shape, 1 puts it on the curve"
+    )
+    reach: Annotated[float | None, Quantity("m", 1e-4, 10.0)] = Field(
+        default=None, description="locks farther from the root of the curve than this stay; all come when absent"
+    )
+
+    def shape(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
+        """The same locks, nearer to the curves; roots stay."""
+        count = points.shape[1]
+        helper = context.helper(self.curve, "curve")
+        lines = _core.resample_curves(*packed(helper), count).reshape(len(helper), count, 3)
+        distance, nearest = KDTree(lines[:, 0]).query(points[:, 0])
+        t = np.ones(len(points)) if self.reach is None else np.clip(1.0 - distance / self.reach, 0.0, 1.0)
+        amount = context.values("amount", self.amount, curves) * t * t * (3.0 - 2.0 * t)
+        amount = np.minimum(amount[:, None] * self.amount.along(np.linspace(0.0, 1.0, count)), 1.0)
+        amount[:, 0] = 0.0
+        return points + amount[:, :, None] * (lines[nearest] - points)

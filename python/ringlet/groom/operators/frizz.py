@@ -1,0 +1,41 @@
+"""Small, quick waves across the hair."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from ringlet.curves import Curves
+from ringlet.errors import UserError
+from ringlet.groom.operators.operator import Context, arc_lengths, unit
+from ringlet.groom.operators.shape import Shape
+from ringlet.groom.operators.wander import wander
+from ringlet.groom.settings import Quantity, Ramped
+
+
+class Frizz(Shape):
+    """A quick random wander across the lock: ``p' = p + amount · ramp(u) · (noise - (noise · t) t)``, with t the
+    direction of the lock and a noise of its own for each."""
+
+    op: Literal["frizz"] = "frizz"
+    amount: Annotated[Ramped, Quantity("m", 0.0, 0.1)] = Field(
+        default=Ramped(value=0.001, ramp=[(0, 0), (0.2, 1), (1, 1)]), description="how far it goes (deviation)"
+    )
+    size: Annotated[float, Quantity("m", 5e-4, 1.0)] = Field(default=0.008, description="length over which it changes")
+
+    def shape(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
+        """The same shapes with small waves; roots stay."""
+        along, count = arc_lengths(points), points.shape[1]
+        if (longest := float(along[:, -1].max())) / (count - 1) > self.size:
+            raise UserError(
+                f"{context.purpose}.size is {self.size:.4g} m, less than the {longest / (count - 1):.4g} m between the "
+                f"points of a shape; set locks.shape_points to {int(np.ceil(2.0 * longest / self.size)) + 1}"
+            )
+        noise = wander(context.random("wander"), curves.ids, along, self.size)
+        direction = unit(np.gradient(points, axis=1))
+        across = noise - np.sum(noise * direction, axis=2, keepdims=True) * direction
+        reach = context.values("amount", self.amount, curves)[:, None] * self.amount.along(np.linspace(0.0, 1.0, count))
+        return points + reach[:, :, None] * across

@@ -1,0 +1,51 @@
+"""Guides on both sides of the head from those on one."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import numpy as np
+from pydantic import Field
+
+from ringlet.curves import Curves, offsets_from_counts
+from ringlet.errors import UserError
+from ringlet.groom.operators.operator import Context, unit
+from ringlet.groom.parting import Vector
+from ringlet.groom.settings import Quantity, Section
+
+
+class Mirror(Section):
+    """Takes the guides on one side of a plane, and their mirror images on the other. What was on that other side is
+    left out; guides on the plane stay as they are. The image of a guide has the id ``-1 - id``."""
+
+    across: Vector = Field(default=(1.0, 0.0, 0.0), description="direction from the plane to the side that is kept")
+    offset: Annotated[float, Quantity("m", -1.0, 1.0)] = Field(
+        default=0.0, description="how far the plane is from the middle of the scalp, along 'across'"
+    )
+    seam: Annotated[float, Quantity("m", 0.0, 0.1)] = Field(
+        default=0.002, description="guides with a root nearer to the plane than this are on it"
+    )
+    tolerance: Annotated[float, Quantity("m", 0.0, 1.0)] = Field(
+        default=0.01, description="how far the image of a root may be off the scalp; it is moved onto it"
+    )
+
+    def both_sides(self, guides: Curves, context: Context) -> Curves:
+        """The kept guides and their images, bound to the scalp."""
+        across, scalp = unit(np.array(self.across)), context.scalp
+        side = (guides.roots - scalp.middle) @ across - self.offset
+        if not (side > -self.seam).any():
+            raise UserError("guides.mirror: there is no guide on the side that is kept; turn 'across' round")
+        kept, away = guides.take(side > -self.seam), guides.take(side >= self.seam)
+        if len(away) == 0:
+            return kept
+        height = (away.points - scalp.middle) @ across - self.offset
+        image = Curves(away.points - 2.0 * height[:, None] * across, away.offsets, -1 - away.ids)
+        image = scalp.bind(image, self.tolerance, "guides.mirror")
+        on_scalp = scalp.positions(image.curve["root_triangle"], image.curve["root_barycentric"])
+        image.points += np.repeat(on_scalp - image.roots, image.counts, axis=0)
+        return Curves(
+            np.concatenate([kept.points, image.points]),
+            offsets_from_counts(np.concatenate([kept.counts, image.counts])),
+            np.concatenate([kept.ids, image.ids]),
+            {name: np.concatenate([kept.curve[name], image.curve[name]]) for name in image.curve},
+        ).check("guides.mirror")

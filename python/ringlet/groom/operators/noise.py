@@ -1,0 +1,36 @@
+"""Neighbouring locks led astray together."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from ringlet.curves import Curves
+from ringlet.groom.operators.operator import Context
+from ringlet.groom.operators.shape import Shape
+from ringlet.groom.settings import Quantity, Ramped
+
+
+class Noise(Shape):
+    """Moves points by a smooth field in space, the same for all locks that pass a place:
+    ``p' = p + amount · ramp(u) · (field(p) - field(root))``."""
+
+    op: Literal["noise"] = "noise"
+    amount: Annotated[Ramped, Quantity("m", 0.0, 1.0)] = Field(
+        default=Ramped(value=0.005, ramp=[(0, 0), (1, 1)]), description="how far the field reaches"
+    )
+    size: Annotated[float, Quantity("m", 1e-3, 10.0)] = Field(
+        default=0.05, description="distance over which the field changes"
+    )
+
+    def shape(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
+        """The same shapes, moved with their neighbours; roots stay."""
+        places = points.reshape(-1, 3)
+        field = np.stack([context.random(axis).field(places, self.size) for axis in "xyz"], axis=1)
+        field = field.reshape(points.shape)
+        ramp = self.amount.along(np.linspace(0.0, 1.0, points.shape[1]))
+        reach = context.values("amount", self.amount, curves)[:, None] * ramp
+        return points + reach[:, :, None] * (field - field[:, :1])

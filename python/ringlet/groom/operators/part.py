@@ -1,0 +1,38 @@
+"""Locks combed away from a parting."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from ringlet.curves import Curves
+from ringlet.groom.operators.operator import Context, along_edges, between_edges, pulled
+from ringlet.groom.operators.shape import Shape
+from ringlet.groom.parting import Parting
+from ringlet.groom.settings import Quantity, Ramped
+
+
+class Part(Shape):
+    """Turns every piece of a lock away from a parting and keeps its length:
+    ``edge' = |edge| · unit(edge + amount · ramp(u) · felt · |edge| · away)``, where what is felt of the parting halves
+    every ``reach``."""
+
+    op: Literal["part"] = "part"
+    parting: Parting = Field(default=Parting(), description="where it is")
+    amount: Annotated[Ramped, Quantity("", 0.0, 10.0)] = Field(
+        default=Ramped(value=1.0, ramp=[(0, 1), (1, 0.3)]), description="how much beside it: 0 leaves the shape"
+    )
+
+    turns: ClassVar[bool] = True
+
+    def shape(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
+        """The same shapes, combed to their sides; lengths stay."""
+        edges = np.diff(points, axis=1)
+        normal = context.scalp.frames(curves)[:, :, 2]
+        away, felt = self.parting.away(points[:, 0], normal, context.scalp.middle, context.helper)
+        amount = felt * context.values("amount", self.amount, curves)
+        ramp = self.amount.along(between_edges(edges))
+        return along_edges(points[:, 0], pulled(edges, amount[:, None] * ramp, away))

@@ -1,0 +1,36 @@
+"""Locks without their small waves."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from ringlet.curves import Curves
+from ringlet.groom.operators.operator import Context, arc_lengths
+from ringlet.groom.operators.shape import Shape
+from ringlet.groom.settings import Quantity, Varied
+
+
+class Smooth(Shape):
+    """Takes waves shorter than ``size`` out of a lock: the points that minimise ``|p' - p|² + λ |Δ²p'|²`` with the root
+    held, where λ halves waves of just that length. Straight locks stay as they are."""
+
+    op: Literal["smooth"] = "smooth"
+    size: Annotated[Varied, Quantity("m", 0.0, 10.0)] = Field(
+        default=Varied(value=0.02), description="length of the waves that are halved; shorter ones are taken out"
+    )
+
+    def shape(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
+        """The same shapes, smoother; roots stay."""
+        count = points.shape[1]
+        spacing = np.maximum(arc_lengths(points)[:, -1], 1e-9) / (count - 1)
+        weight = (np.maximum(context.values("size", self.size, curves), 0.0) / (2.0 * np.pi * spacing)) ** 4
+        second = np.diff(np.eye(count), n=2, axis=0)[:, 1:]  # Δ² of all points but the root, which is the origin
+        stiffness, modes = np.linalg.eigh(second.T @ second)
+        kept = 1.0 / (1.0 + weight[:, None] * np.maximum(stiffness, 0.0))
+        away = points[:, 1:] - points[:, :1]
+        smoothed = np.einsum("ij,kj,lj,klx->kix", modes, kept, modes, away, optimize=True)
+        return np.concatenate([points[:, :1], points[:, :1] + smoothed], axis=1)

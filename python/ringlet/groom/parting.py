@@ -1,0 +1,63 @@
+"""Partings: where hair turns away to both sides of a plane or of a drawn line."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Annotated
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, FiniteFloat
+
+from ringlet.curves import Curves
+from ringlet.groom.settings import Quantity, Section
+
+Vector = tuple[FiniteFloat, FiniteFloat, FiniteFloat]
+
+
+class Parting(Section):
+    """A parting: hair on each side of a plane, or of drawn lines, turns away from it."""
+
+    line: str | None = Field(
+        default=None, description="name of helper curves along the parting, from `[curves]`; a plane when absent"
+    )
+    across: Vector = Field(default=(1.0, 0.0, 0.0), description="direction from one side of the plane to the other")
+    offset: Annotated[float, Quantity("m", -1.0, 1.0)] = Field(
+        default=0.0, description="how far the plane is from the middle of the scalp, along 'across'"
+    )
+    reach: Annotated[float, Quantity("m", 1e-3, 1.0)] = Field(
+        default=0.04, description="distance at which hair has half forgotten the parting"
+    )
+
+    def away(
+        self, places: NDArray, normals: NDArray, middle: NDArray, helper: Callable[[str, str], Curves]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Unit directions away from the parting, shape (n, 3), and how much it is felt, from 1 beside it to 0 far away.
+
+        places, normals: of the roots, shape (n, 3); middle: of the scalp
+        helper:          gives the helper curves of a name for a setting
+        """
+        if self.line is None:
+            across = np.array(self.across) / max(float(np.linalg.norm(self.across)), 1e-12)
+            side = (places - middle) @ across - self.offset
+            return np.sign(side)[:, None] * across, 0.5 ** (np.abs(side) / self.reach)
+        foot, along = _nearest(places, helper(self.line, "line"))
+        across = np.cross(along, normals)
+        across /= np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-12)
+        side = np.sign(np.sum((places - foot) * across, axis=1))
+        return side[:, None] * across, 0.5 ** (np.linalg.norm(places - foot, axis=1) / self.reach)
+
+
+def _nearest(places: NDArray, lines: Curves) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The nearest point of polylines to each place, and the direction of the line there; shape (n, 3) each."""
+    within = np.ones(len(lines.points), bool)
+    within[lines.offsets[1:] - 1] = False
+    start = np.flatnonzero(within)
+    begin = np.asarray(lines.points[start], np.float64)
+    edge = lines.points[start + 1] - begin
+    length2 = np.maximum(np.sum(edge * edge, axis=1), 1e-18)
+    t = np.clip(np.einsum("nex,ex->ne", places[:, None] - begin, edge) / length2, 0.0, 1.0)
+    feet = begin + t[:, :, None] * edge
+    nearest = np.sum((places[:, None] - feet) ** 2, axis=2).argmin(axis=1)
+    foot = feet[np.arange(len(places)), nearest]
+    return foot, edge[nearest] / np.sqrt(length2[nearest])[:, None]

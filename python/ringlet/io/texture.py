@@ -1,0 +1,30 @@
+"""Painted values from pictures."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image, UnidentifiedImageError
+
+from ringlet.errors import UserError
+
+WHITE = {"1": 1.0, "L": 255.0, "I;16": 65535.0, "I;16B": 65535.0, "I": 65535.0, "F": 1.0}
+
+
+def read_texture(path: Path | str) -> NDArray[np.float64]:
+    """A picture of one channel as numbers, black 0 and white 1, shape (rows, columns); colours by their luma.
+
+    The numbers are those of the file: no gamma is taken out. Pictures of floating-point numbers keep theirs.
+    """
+    path = Path(path)
+    try:
+        with Image.open(path) as picture:
+            if picture.mode not in WHITE:
+                picture = picture.convert("L")
+            return np.asarray(picture, np.float64) / WHITE[picture.mode]
+    except UnidentifiedImageError:
+        raise UserError(f"{path}: is not a picture that can be read; save it as PNG or TIFF") from None
+    except OSError as error:
+        raise UserError(f"{path}: cannot be read ({error.strerror or error}); check the name") from None
