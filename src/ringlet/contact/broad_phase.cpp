@@ -134,6 +134,7 @@ void BroadPhase::search(const MovingTree &tree_a, const A &all_a, const MovingTr
             const auto &a = all_a[p];
             const auto &b = all_b[q];
             if (share_vertex(a, b) || carries(mesh_, a, b)) return;
+            if (!any_of(mesh_.moves, a) && !any_of(mesh_.moves, b)) return;
             if (!meet_at_one_time(tree_a.boxes(i).box(k), tree_b.boxes(j).box(l), less(mesh_, a, b))) return;
             if (&tree_a == &tree_b && p > q) std::swap(p, q);
             found_[task].push_back({p, q});

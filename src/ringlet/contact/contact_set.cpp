@@ -1,92 +1,57 @@
 #include "ringlet/contact/contact_set.h"
 
+#include "ringlet/contact/collect.h"
+
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 namespace ringlet {
 namespace {
 
-template <size_t N, size_t M>
-std::optional<Contact> touch(const CollisionMesh &mesh, const std::array<int, N> &a, const std::array<int, M> &b,
-                             View<Vec3> start, View<Vec3> now) {
-    const ClosestPoints nearest = closest_points(now, a, b);
-    const double distance = std::sqrt(nearest.distance2), radii = mean_radius(mesh, a) + mean_radius(mesh, b);
-    if (distance >= radii || !(distance > 0.0)) return {};
-    Contact contact{};
-    contact.distance = contact_distance(mesh, a, b);
-    if (distance >= contact.distance) return {};
-    contact.barrier_end = std::clamp(0.25 * distance, contact.distance / 2000, contact.distance / 64);
-    std::copy(a.begin(), a.end(), contact.vertex.begin());
-    std::copy(b.begin(), b.end(), contact.vertex.begin() + N);
-    contact.weight = nearest.weights;
-    contact.first = N;
-    contact.normal = separation(contact, now) / distance;
-    contact.start = separation(contact, start);
-    return contact;
-}
-
-uint64_t name(const std::array<int, 2> &pair, bool of_edges) {
-    return uint64_t(of_edges) << 63 | uint64_t(pair[0]) << 32 | uint64_t(pair[1]);
+uint64_t name(const Touch &touch) {
+    return uint64_t(touch.of_edges) << 63 | uint64_t(touch.of[0]) << 32 | uint64_t(touch.of[1]);
 }
 
 } // namespace
 
-void ContactSet::begin(const CollisionMesh &mesh, const Candidates &candidates, View<Vec3> positions) {
+void ContactSet::begin(const std::vector<Touch> &touching) {
     early_.clear();
-    const auto note = [&](const auto &a, const auto &b, uint64_t pair) {
-        const double distance = std::sqrt(closest_points(positions, a, b).distance2);
-        if (distance < contact_distance(mesh, a, b)) early_[pair] = distance;
-    };
-    for (const auto &pair : candidates.edge_edge) note(mesh.edges[pair[0]], mesh.edges[pair[1]], name(pair, true));
-    for (const auto &pair : candidates.point_triangle) note(std::array{pair[0]}, mesh.triangles[pair[1]], name(pair, false));
+    for (const Touch &touch : touching) early_[name(touch)] = std::sqrt(touch.nearest.distance2);
 }
 
 void ContactSet::part_early(double way) {
     for (auto &[pair, distance] : early_) distance += way;
 }
 
-void ContactSet::find(const CollisionMesh &mesh, const ContactMaterial &material, const Candidates &candidates,
+void ContactSet::find(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<Touch> &touching,
                       View<Vec3> start, View<Vec3> now) {
-    const int edges = int(candidates.edge_edge.size()), all = edges + int(candidates.point_triangle.size());
-    const auto contact_of = [&](int k) {
-        if (k < edges) {
-            const auto [a, b] = candidates.edge_edge[k];
-            return touch(mesh, mesh.edges[a], mesh.edges[b], start, now);
-        }
-        const auto [p, t] = candidates.point_triangle[k - edges];
-        return touch(mesh, std::array{p}, mesh.triangles[t], start, now);
-    };
-    // In chunks of fixed size, put together in order: the same for any number of threads.
-    constexpr int chunk = 1024;
-    const int chunks = (all + chunk - 1) / chunk;
-    std::vector<std::vector<Contact>> found(chunks);
-#pragma omp parallel for schedule(dynamic)
-    for (int c = 0; c < chunks; ++c)
-        for (int k = c * chunk; k < std::min(all, (c + 1) * chunk); ++k) {
-            std::optional<Contact> contact = contact_of(k);
-            if (!contact) continue;
-            if (!early_.empty()) {
-                const auto early = early_.find(k < edges ? name(candidates.edge_edge[k], true)
-                                                         : name(candidates.point_triangle[k - edges], false));
-                if (early != early_.end()) {
-                    contact->distance = std::min(contact->distance, early->second);
-                    contact->barrier_end =
-                        std::min(contact->barrier_end, contact->distance / 64); // the clamp above, for the less distance
-                }
-            }
-            double softness[2] = {0.0, 0.0};
-            for (int i = 0; i < 4; ++i)
-                softness[i >= contact->first] += std::abs(contact->weight[i]) / material.stiffness[contact->vertex[i]];
-            contact->stiffness = 1.0 / std::max({softness[0], softness[1], 1e-12});
-            contact->friction = material.friction[material.material[contact->vertex[0]] * material.materials +
-                                                  material.material[contact->vertex[3]]];
-            contact->creep = material.creep;
-            contact->force = contact_force(*contact, separation(*contact, now));
-            found[c].push_back(*contact);
-        }
-    contacts_.clear();
-    for (const auto &part : found) contacts_.insert(contacts_.end(), part.begin(), part.end());
+    contacts_ = collect<Contact>(int(touching.size()), [&](int k, std::vector<Contact> &contacts) {
+        const Touch &touch = touching[k];
+        const double apart = std::sqrt(touch.nearest.distance2);
+        const auto early = early_.find(name(touch));
+        const double distance = early == early_.end() ? touch.distance : std::min(touch.distance, early->second);
+        if (!(apart > 0.0)) return;
+        Contact contact{};
+        with_vertices(mesh, touch, [&](const auto &a, const auto &b) {
+            std::copy(a.begin(), a.end(), contact.vertex.begin());
+            std::copy(b.begin(), b.end(), contact.vertex.begin() + a.size());
+            contact.first = int(a.size());
+        });
+        contact.weight = touch.nearest.weights;
+        contact.distance = distance;
+        contact.barrier_end = std::min(std::clamp(0.25 * apart, touch.distance / 2000, touch.distance / 64), distance / 64);
+        contact.normal = separation(contact, now) / apart;
+        contact.start = separation(contact, start);
+        double softness[2] = {0.0, 0.0};
+        for (int i = 0; i < 4; ++i)
+            softness[i >= contact.first] += std::abs(contact.weight[i]) / material.stiffness[contact.vertex[i]];
+        contact.stiffness = 1.0 / std::max({softness[0], softness[1], 1e-12});
+        contact.friction =
+            material.friction[material.material[contact.vertex[0]] * material.materials + material.material[contact.vertex[3]]];
+        contact.creep = material.creep;
+        contact.force = contact_force(contact, separation(contact, now));
+        contacts.push_back(contact);
+    });
     index(mesh);
 }
 

@@ -1,8 +1,8 @@
 // All contacts of a scene at the present positions, and how vertices find those that act on them.
 #pragma once
 
-#include "ringlet/contact/broad_phase.h"
 #include "ringlet/contact/contact.h"
+#include "ringlet/contact/near_pairs.h"
 
 #include <unordered_map>
 #include <vector>
@@ -22,11 +22,11 @@ class ContactSet {
 public:
     // Pairs that begin nearer than their contact distance push only from there on, which then grows by `way` a step: nothing
     // pops.
-    void begin(const CollisionMesh &mesh, const Candidates &candidates, View<Vec3> positions);
+    void begin(const std::vector<Touch> &touching);
     void part_early(double way);
 
-    // The candidates that touch at the positions `now`; `start` says where the step began, for what they slid since.
-    void find(const CollisionMesh &mesh, const ContactMaterial &material, const Candidates &candidates, View<Vec3> start,
+    // The contacts of those that touch at the positions `now`; `start` says where the step began, for what they slid since.
+    void find(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<Touch> &touching, View<Vec3> start,
               View<Vec3> now);
 
     const std::vector<Contact> &contacts() const { return contacts_; }

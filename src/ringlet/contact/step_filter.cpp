@@ -1,5 +1,6 @@
 #include "ringlet/contact/step_filter.h"
 
+#include "ringlet/contact/collect.h"
 #include "ringlet/contact/impact.h"
 
 #include <algorithm>
@@ -7,62 +8,16 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <queue>
 
 namespace ringlet {
 namespace {
 
-// Disjoint sets of vertices; a set is named by its smallest member, so that the order of joining does not matter.
-class Zones {
-public:
-    explicit Zones(int vertices) : parent_(vertices) { std::iota(parent_.begin(), parent_.end(), 0); }
-    int find(int v) {
-        while (parent_[v] != v) v = parent_[v] = parent_[parent_[v]];
-        return v;
-    }
-    void join(int a, int b) {
-        a = find(a), b = find(b);
-        parent_[std::max(a, b)] = std::min(a, b);
-    }
-
-private:
-    std::vector<int> parent_;
+struct Met { // a pair that would meet
+    std::array<int, 4> vertices;
+    double time; // until when it keeps its distance
 };
-
-std::array<int, 4> vertices_of(const CollisionMesh &mesh, const Candidates &candidates, int k) {
-    const int edges = int(candidates.edge_edge.size());
-    if (k < edges) {
-        const auto [a, b] = candidates.edge_edge[k];
-        return {mesh.edges[a][0], mesh.edges[a][1], mesh.edges[b][0], mesh.edges[b][1]};
-    }
-    const auto [p, t] = candidates.point_triangle[k - edges];
-    return {p, mesh.triangles[t][0], mesh.triangles[t][1], mesh.triangles[t][2]};
-}
-
-struct Zone { // of one round
-    double mass = 0.0;
-    Vec3 moved = Vec3::Zero(); // Σ mass × displacement
-    int carrier = -1;          // a kinematic vertex that it met
-    double safe = 1.0;         // part of its vertices' own motion
-};
-
-template <size_t N, size_t M>
-double impact_time(const CollisionMesh &mesh, const std::array<int, N> &a, const std::array<int, M> &b, View<Vec3> start,
-                   View<Vec3> end) {
-    Vec3 x[4], p[4];
-    for (size_t i = 0; i < 4; ++i) {
-        const int v = i < N ? a[i] : b[i - N];
-        x[i] = start[v];
-        p[i] = end[v] - start[v];
-    }
-    const double distance = std::sqrt(closest_points(start, a, b).distance2);
-    const double r = contact_distance(mesh, a, b);
-    const double kept = std::min(0.5 * r, 0.2 * distance);
-    if constexpr (N == 2)
-        return edge_edge_impact(x, p, kept);
-    else
-        return point_triangle_impact(x, p, kept);
-}
 
 template <size_t N, size_t M> bool move_as_one(View<int> rigid, const std::array<int, N> &a, const std::array<int, M> &b) {
     bool same = rigid[a[0]] >= 0;
@@ -71,23 +26,38 @@ template <size_t N, size_t M> bool move_as_one(View<int> rigid, const std::array
     return same;
 }
 
-void impact_times(const CollisionMesh &mesh, View<int> rigid, View<Vec3> start, View<Vec3> end, const Candidates &candidates,
-                  std::vector<double> &times) {
-    const int edges = int(candidates.edge_edge.size());
-    times.resize(edges + candidates.point_triangle.size());
-#pragma omp parallel for schedule(dynamic, 256)
-    for (int k = 0; k < int(times.size()); ++k) {
-        const auto of = [&](const auto &a, const auto &b) {
-            return !rigid.empty() && move_as_one(rigid, a, b) ? no_impact : impact_time(mesh, a, b, start, end);
-        };
-        if (k < edges) {
-            const auto [a, b] = candidates.edge_edge[k];
-            times[k] = of(mesh.edges[a], mesh.edges[b]);
-        } else {
-            const auto [p, t] = candidates.point_triangle[k - edges];
-            times[k] = of(std::array{p}, mesh.triangles[t]);
-        }
+// Notes how far the pair is apart at the start.
+template <size_t N, size_t M>
+double impact_time(NearPair &pair, const std::array<int, N> &a, const std::array<int, M> &b, View<Vec3> start, View<Vec3> end) {
+    pair.apart = std::sqrt(closest_points(start, a, b).distance2);
+    const double kept = std::min(0.5 * pair.distance, 0.2 * pair.apart);
+    Vec3 x[4], p[4];
+    for (size_t i = 0; i < 4; ++i) {
+        const int v = i < N ? a[i] : b[i - N];
+        x[i] = start[v];
+        p[i] = end[v] - start[v];
     }
+    double most = 0.0; // that two vertices come nearer
+    for (size_t i = 0; i < N; ++i)
+        for (size_t j = N; j < 4; ++j) most = std::max(most, (p[i] - p[j]).squaredNorm());
+    if (pair.apart - kept > std::sqrt(most)) return no_impact;
+    if constexpr (N == 2)
+        return edge_edge_impact(x, p, kept);
+    else
+        return point_triangle_impact(x, p, kept);
+}
+
+std::vector<Met> find_met(const FilterScene &scene, const NearPairs &near, View<Vec3> start, View<Vec3> end) {
+    const std::vector<NearPair *> &pairs = near.may_meet();
+    return collect<Met>(int(pairs.size()), [&](int k, std::vector<Met> &met) {
+        with_vertices(scene.mesh, *pairs[k], [&](const auto &a, const auto &b) {
+            if (!scene.rigid.empty() && move_as_one(scene.rigid, a, b)) return;
+            const double time = impact_time(*pairs[k], a, b, start, end);
+            if (time > 1.0) return;
+            met.push_back({{}, time});
+            std::copy(b.begin(), b.end(), std::copy(a.begin(), a.end(), met.back().vertices.begin()));
+        });
+    });
 }
 
 // How much a vertex gives up of its own motion for another.
@@ -140,17 +110,17 @@ constexpr double most_strain = 0.05;
 // Strands of pairs that would meet go only as far as that, as a whole; one that could hardly move is in the first rounds held
 // back near the pair alone, so that the rest of it can follow. After some more rounds they stay where they are: two that stay
 // do not meet. A cloth is held back near the pair, and stays as a whole only when all else fails.
-void hold_back(const FilterScene &scene, View<Vec3> start, const std::vector<int> &met, const std::vector<double> &times,
-               const Candidates &candidates, int round, std::vector<Vec3> &end, std::vector<unsigned char> &changed) {
+void hold_back(const FilterScene &scene, View<Vec3> start, const std::vector<Met> &met, int round, std::vector<Vec3> &end,
+               std::vector<unsigned char> &changed) {
     constexpr int local_rounds = 2, rounds = 8, local_rounds_of_cloth = 16;
     constexpr double hardly = 0.2;
     const int strands = int(scene.offsets.size()) - 1;
     std::vector<Pull> pulls(start.size());
     std::map<int, double> parts; // strand → how far it goes as a whole
-    for (const int k : met)
-        for (const int v : vertices_of(scene.mesh, candidates, k))
+    for (const Met &pair : met)
+        for (const int v : pair.vertices)
             if (scene.mesh.moves[v]) {
-                const double part = round < rounds ? times[k] : 0.0;
+                const double part = round < rounds ? pair.time : 0.0;
                 pulls[v].part = std::max(pulls[v].part, 1.0 - part);
                 double &whole = parts.try_emplace(scene.mesh.object[v], 1.0).first->second;
                 whole = std::min(whole, part);
@@ -161,123 +131,126 @@ void hold_back(const FilterScene &scene, View<Vec3> start, const std::vector<int
             for (int v = scene.offsets[strand]; v < scene.offsets[strand + 1]; ++v)
                 if (scene.mesh.moves[v]) pulls[v].part = 1.0 - part;
 #pragma omp parallel for schedule(static)
-    for (int v = 0; v < int(start.size()); ++v)
-        if (pulls[v].part > 0.0) {
-            end[v] += pulls[v].part * (start[v] - end[v]);
-            changed[v] = 1;
-        }
+    for (int v = 0; v < int(start.size()); ++v) {
+        changed[v] = pulls[v].part > 0.0;
+        if (changed[v]) end[v] += pulls[v].part * (start[v] - end[v]);
+    }
 }
 
-// Takes out of `pairs` those of primitives with a changed vertex, and puts `found` in, all in order.
-template <class Changed>
-void replace(std::vector<std::array<int, 2>> &pairs, const Changed &changed, const std::vector<std::array<int, 2>> &found) {
-    std::erase_if(pairs, changed);
-    const size_t kept = pairs.size();
-    pairs.insert(pairs.end(), found.begin(), found.end());
-    std::inplace_merge(pairs.begin(), pairs.begin() + kept, pairs.end());
-}
+// Zones of vertices that would meet; they grow from round to round. A zone is named by its smallest member, so that the order
+// of joining does not matter.
+class Zones {
+public:
+    explicit Zones(const FilterScene &scene)
+        : scene_(scene), parent_(scene.mesh.moves.size()), in_zone_(parent_.size(), 0), carrier_(parent_.size(), -1) {
+        std::iota(parent_.begin(), parent_.end(), 0);
+    }
 
-void replace(const CollisionMesh &mesh, View<unsigned char> changed, Candidates &candidates, const Candidates &found) {
-    const auto any = [&](const auto &primitive) {
-        return std::any_of(primitive.begin(), primitive.end(), [&](int v) { return changed[v] != 0; });
-    };
-    replace(
-        candidates.edge_edge, [&](const auto &pair) { return any(mesh.edges[pair[0]]) || any(mesh.edges[pair[1]]); },
-        found.edge_edge);
-    replace(
-        candidates.point_triangle, [&](const auto &pair) { return changed[pair[0]] || any(mesh.triangles[pair[1]]); },
-        found.point_triangle);
-}
-
-} // namespace
-
-FilterReport filter_step(const FilterScene &scene, BroadPhase &broad_phase, View<Vec3> start, std::vector<Vec3> &end,
-                         Candidates &candidates) {
-    constexpr int to_touch = 3; // rounds in which zones keep some of their own motion
-    const int most_rounds = scene.still ? int(scene.offsets.size() + scene.cloths.size()) + 16 : 16;
-    const CollisionMesh &mesh = scene.mesh;
-    FilterReport report;
-    const int vertices = int(start.size());
-    Zones zones(vertices);
-    std::vector<unsigned char> in_zone(vertices, 0);
-    std::vector<int> carrier(vertices, -1); // a kinematic vertex that it met
-    std::vector<Pull> pulls;
-    std::vector<double> times;
-    std::vector<unsigned char> changed; // since the last round; empty: everything
-    Candidates looked_at;
-    for (;; ++report.rounds) {
-        // What has not changed since the last round has not met.
-        broad_phase.find(start, end, 0.0, looked_at, changed);
-        if (changed.empty())
-            candidates = looked_at;
-        else
-            replace(mesh, changed, candidates, looked_at);
-        impact_times(mesh, scene.rigid, start, end, looked_at, times);
-        std::vector<int> met;
-        for (int k = 0; k < int(times.size()); ++k)
-            if (times[k] <= 1.0) met.push_back(k);
-        if (report.rounds == 0) {
-            report.candidates = int(times.size());
-            report.violations = int(met.size());
-        }
-        if (met.empty()) break;
-        if (report.rounds >= most_rounds) { // no way out was found: everything stops before the first pair meets
-            report.fraction = 0.9 * *std::min_element(times.begin(), times.end());
-            for (int v = 0; v < vertices; ++v) end[v] = start[v] + report.fraction * (end[v] - start[v]);
-            broad_phase.find(start, end, 0.0, candidates);
-            break;
-        }
-
-        // What is kinematic does not join zones: one body would tie together all that touches it.
-        for (const int k : met) {
-            const auto v = vertices_of(mesh, looked_at, k);
-            for (const int i : v)
-                for (const int j : v) {
-                    if (!mesh.moves[i]) continue;
-                    in_zone[i] = 1;
-                    if (mesh.moves[j])
-                        zones.join(i, j);
+    // What is kinematic does not join zones: one body would tie together all that touches it.
+    void join(const std::vector<Met> &met) {
+        for (const Met &pair : met)
+            for (const int i : pair.vertices)
+                for (const int j : pair.vertices) {
+                    if (!scene_.mesh.moves[i]) continue;
+                    in_zone_[i] = 1;
+                    if (scene_.mesh.moves[j])
+                        join(i, j);
                     else
-                        carrier[i] = j;
+                        carrier_[i] = j;
                 }
-        }
-        // Of what a pair's motions differ by only as much is taken as lets the two touch: only then do they push each other
-        // away.
+    }
+
+    // Zones in which a pair would still meet move as one. Of what a pair's motions differ by only as much is taken as lets the
+    // two touch, while that is hoped to do: only then do they push each other away.
+    void move_as_one(View<Vec3> start, const std::vector<Met> &met, bool to_touch, std::vector<Vec3> &end) {
+        struct Zone {
+            double mass = 0.0;
+            Vec3 moved = Vec3::Zero(); // Σ mass × displacement
+            int carrier = -1;          // a kinematic vertex that it met
+            double safe = 1.0;         // part of its vertices' own motion
+        };
         std::map<int, Zone> hit;
-        for (const int k : met)
-            for (const int v : vertices_of(mesh, looked_at, k))
-                if (mesh.moves[v]) {
-                    Zone &zone = hit[zones.find(v)];
-                    if (report.rounds < to_touch)
-                        zone.safe = std::min(zone.safe, times[k]);
-                    else
-                        zone.safe = 0.0;
+        for (const Met &pair : met)
+            for (const int v : pair.vertices)
+                if (scene_.mesh.moves[v]) {
+                    double &safe = hit[find(v)].safe;
+                    safe = to_touch ? std::min(safe, pair.time) : 0.0;
                 }
-        const auto zone_of = [&](int v) { return in_zone[v] ? hit.find(zones.find(v)) : hit.end(); };
+        const auto zone_of = [&](int v) { return in_zone_[v] ? hit.find(find(v)) : hit.end(); };
+        const int vertices = int(start.size());
         for (int v = 0; v < vertices; ++v)
             if (const auto zone = zone_of(v); zone != hit.end()) {
-                zone->second.mass += scene.mass[v];
-                zone->second.moved += scene.mass[v] * (end[v] - start[v]);
-                zone->second.carrier = std::max(zone->second.carrier, carrier[v]);
+                zone->second.mass += scene_.mass[v];
+                zone->second.moved += scene_.mass[v] * (end[v] - start[v]);
+                zone->second.carrier = std::max(zone->second.carrier, carrier_[v]);
             }
-        if (scene.still) {
-            changed.assign(vertices, 0);
-            hold_back(scene, start, met, times, looked_at, report.rounds, end, changed);
-            continue;
-        }
-        pulls.assign(vertices, {});
+        std::vector<Pull> pulls(vertices);
         for (int v = 0; v < vertices; ++v)
             if (const auto found = zone_of(v); found != hit.end()) {
                 const Zone &zone = found->second;
-                pulls[v] = {1.0 - zone.safe, zone.carrier >= 0 ? Vec3(scene.carried_by(zone.carrier, start[v]) - start[v])
+                pulls[v] = {1.0 - zone.safe, zone.carrier >= 0 ? Vec3(scene_.carried_by(zone.carrier, start[v]) - start[v])
                                                                : Vec3(zone.moved / zone.mass)};
             }
-        fade(scene, start, end, {most_strain, most_strain}, pulls);
+        fade(scene_, start, end, {most_strain, most_strain}, pulls);
 #pragma omp parallel for schedule(static)
         for (int v = 0; v < vertices; ++v)
             if (pulls[v].part > 0.0) end[v] += pulls[v].part * (start[v] + pulls[v].motion - end[v]);
     }
-    if (report.violations > 0) report.zone_vertices = int(std::count(in_zone.begin(), in_zone.end(), 1));
+
+private:
+    int find(int v) {
+        while (parent_[v] != v) v = parent_[v] = parent_[parent_[v]];
+        return v;
+    }
+    void join(int a, int b) {
+        a = find(a), b = find(b);
+        parent_[std::max(a, b)] = std::min(a, b);
+    }
+
+    const FilterScene &scene_;
+    std::vector<int> parent_;
+    std::vector<unsigned char> in_zone_;
+    std::vector<int> carrier_; // a kinematic vertex that it met
+};
+
+} // namespace
+
+FilterReport filter_step(const FilterScene &scene, NearPairs &near, View<Vec3> start, std::vector<Vec3> &end) {
+    constexpr int to_touch = 3; // rounds in which zones keep some of their own motion
+    const int most_rounds = scene.still ? int(scene.offsets.size() + scene.cloths.size()) + 16 : 16;
+    FilterReport report;
+    const size_t vertices = start.size();
+    std::vector<unsigned char> changed(vertices, 0), in_the_way(vertices, 0);
+    std::optional<Zones> zones;
+    near.set_out(start, end);
+    for (;; ++report.rounds) {
+        const std::vector<Met> met = find_met(scene, near, start, end);
+        if (report.rounds == 0) {
+            report.candidates = near.count();
+            report.violations = int(met.size());
+        }
+        if (met.empty()) break;
+        for (const Met &pair : met)
+            for (const int v : pair.vertices) in_the_way[v] = scene.mesh.moves[v];
+        if (report.rounds >= most_rounds) { // no way out was found: everything stops before the first pair meets
+            report.fraction = 1.0;
+            for (const Met &pair : met) report.fraction = std::min(report.fraction, 0.9 * pair.time);
+            for (size_t v = 0; v < vertices; ++v) end[v] = start[v] + report.fraction * (end[v] - start[v]);
+            near.set_out(start, end);
+            break;
+        }
+        if (scene.still) { // what has not changed since the last round has not met
+            hold_back(scene, start, met, report.rounds, end, changed);
+            near.set_out_anew(start, end, changed);
+        } else {
+            if (!zones) zones.emplace(scene);
+            zones->join(met);
+            zones->move_as_one(start, met, report.rounds < to_touch, end);
+            near.set_out(start, end);
+        }
+    }
+    near.arrive();
+    report.zone_vertices = int(std::count(in_the_way.begin(), in_the_way.end(), 1));
     return report;
 }
 

@@ -1,7 +1,7 @@
 // The last word on every move: nothing passes through anything.
 #pragma once
 
-#include "ringlet/contact/broad_phase.h"
+#include "ringlet/contact/near_pairs.h"
 #include "ringlet/contact/neighbours.h"
 
 #include <functional>
@@ -42,8 +42,8 @@ struct FilterScene {
 // fades out so slowly that no edge is strained by more than a few per cent. Zones grow while pairs at their border would meet.
 // Where bodies leave no way out, everything goes only a part of its way.
 //
-// Only relative motion counts: a scene that moves as a whole is filtered alike. `candidates` are those of the filtered move.
-FilterReport filter_step(const FilterScene &scene, BroadPhase &broad_phase, View<Vec3> start, std::vector<Vec3> &end,
-                         Candidates &candidates);
+// Only relative motion counts: a scene that moves as a whole is filtered alike. `near` may know pairs only where nothing
+// kinematic moves; it sets out on the filtered move and has arrived afterwards.
+FilterReport filter_step(const FilterScene &scene, NearPairs &near, View<Vec3> start, std::vector<Vec3> &end);
 
 } // namespace ringlet

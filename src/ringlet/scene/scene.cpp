@@ -35,7 +35,7 @@ struct Scene::Parts {
     SceneVertices vertices;
     SceneSystem system;
     SceneSolver solver;
-    BroadPhase broad_phase;
+    NearPairs near;
     Neighbours neighbours; // of the vertices of cloths
 
     std::vector<Embedded::Body> embedded_bodies; // per body
@@ -46,7 +46,6 @@ struct Scene::Parts {
     // Within a step
     std::vector<Vec3> given; // where what is kinematic ends; where the rest began
     std::vector<int> rigid;  // per vertex: the body that it goes along with as one in this step; −1: none
-    Candidates candidates;
     AlignedVector x, direction;
 
     Parts(const StrandModel &model_, StrandState &state_, const std::vector<SceneCloth> &cloths,
@@ -72,7 +71,7 @@ Scene::Parts::Parts(const StrandModel &model_, StrandState &state_, const std::v
                     const std::vector<BodyModel> &bodies, const std::vector<int> &rooted_in, const SceneContact &contact)
     : model(model_), state(state_), settings(contact), root_body(rooted_in),
       vertices(number_vertices(model_, state_, cloths, bodies, rooted_in, contact)), system(model_, cloths, vertices),
-      broad_phase(vertices.mesh), neighbours(vertices.mesh, vertices.cloths.front(), vertices.cloths.back()),
+      near(vertices.mesh), neighbours(vertices.mesh, vertices.cloths.front(), vertices.cloths.back()),
       given(vertices.positions) {
     for (const SceneCloth &cloth : cloths) pinned_to.push_back(cloth.pinned_to);
     for (int b = 0; b < int(bodies.size()); ++b)
@@ -134,7 +133,7 @@ double Scene::Parts::move(std::vector<Vec3> &now, std::vector<Vec3> &to, bool st
                             &neighbours};
     const bool as_one = !still && !rigid.empty() && rigid[0] >= 0 &&
                         std::all_of(rigid.begin(), rigid.end(), [&](int body) { return body == rigid[0]; });
-    const FilterReport filtered = as_one ? FilterReport{} : filter_step(scene, broad_phase, now, to, candidates);
+    const FilterReport filtered = as_one ? FilterReport{} : filter_step(scene, near, now, to);
     report.candidates = filtered.candidates;
     report.violations += filtered.violations;
     report.zone_vertices += filtered.zone_vertices;
@@ -186,7 +185,12 @@ double Scene::Parts::advance(const SceneInput &input, const SceneStep &scene_ste
     std::vector<Vec3> now = vertices.positions, to = given;
     std::vector<int> bodies_of_cloths;
     rigid = carry_rigidly(carry(), View<int>(model.offsets), carriers(bodies_of_cloths, step.dt), to);
+    near.forget();
     const double fraction = move(now, to, false, report);
+    {
+        const Stopwatch watch(report.time_filter);
+        near.note(now, settings.strand_radius);
+    }
     if (fraction < 1.0) {
         for (int v = 0; v < vertices.count(); ++v)
             if (!vertices.mesh.moves[v]) given[v] = now[v];
@@ -211,7 +215,7 @@ double Scene::Parts::advance(const SceneInput &input, const SceneStep &scene_ste
     for (bool arrived = false; iteration < step.newton && !arrived; ++iteration) {
         {
             const Stopwatch watch(report.time_pairs);
-            system.contacts.find(vertices.mesh, vertices.material, candidates, vertices.positions, now);
+            system.contacts.find(vertices.mesh, vertices.material, near.touching(now), vertices.positions, now);
             system.couple_parts();
         }
         {
@@ -272,8 +276,8 @@ SceneReport Scene::Parts::step(const SceneInput &input, const SceneStep &scene_s
         std::copy(system.cloths[c].state().positions.begin(), system.cloths[c].state().positions.end(),
                   vertices.positions.begin() + vertices.cloths[c]);
     if (!begun) {
-        broad_phase.find(vertices.positions, vertices.positions, 0.0, candidates);
-        system.contacts.begin(vertices.mesh, candidates, vertices.positions);
+        near.note(vertices.positions, 0.0);
+        system.contacts.begin(near.touching(vertices.positions));
         begun = true;
     }
     constexpr double parting = 0.002; // [m/s]

@@ -1,0 +1,134 @@
+#include "ringlet/contact/near_pairs.h"
+
+#include "ringlet/contact/collect.h"
+
+#include <cmath>
+
+namespace ringlet {
+namespace {
+
+template <class Pair> bool before(const Pair &a, const Pair &b) { return a.of_edges != b.of_edges ? a.of_edges : a.of < b.of; }
+
+// Puts `more` among `pairs`, both in order.
+template <class Pair> void merge(std::vector<Pair> &pairs, const std::vector<Pair> &more) {
+    const size_t size = pairs.size();
+    pairs.insert(pairs.end(), more.begin(), more.end());
+    std::inplace_merge(pairs.begin(), pairs.begin() + size, pairs.end(), before<Pair>);
+}
+
+} // namespace
+
+NearPairs::NearPairs(const CollisionMesh &mesh)
+    : mesh_(mesh), broad_phase_(mesh), vertices_(mesh.moves.size()), edges_(mesh.edges.size()),
+      triangles_(mesh.triangles.size()), quick_(mesh.moves.size()) {}
+
+bool NearPairs::any_of(const NearPair &pair, View<unsigned char> vertices) const {
+    const auto any = [&](const auto &primitive) {
+        return std::any_of(primitive.begin(), primitive.end(), [&](int v) { return vertices[v] != 0; });
+    };
+    return with_vertices(mesh_, pair, [&](const auto &a, const auto &b) { return any(a) || any(b); });
+}
+
+// What the broad phase finds, with the distances at which they touch.
+std::vector<NearPair> NearPairs::look(View<Vec3> start, View<Vec3> end, double margin, View<unsigned char> which) {
+    Candidates found;
+    broad_phase_.find(start, end, margin, found, which);
+    const int edges = int(found.edge_edge.size()), all = edges + int(found.point_triangle.size());
+    std::vector<NearPair> pairs(all);
+#pragma omp parallel for schedule(static)
+    for (int k = 0; k < all; ++k) {
+        NearPair &pair = pairs[k] = {k < edges ? found.edge_edge[k] : found.point_triangle[k - edges], k < edges, 0.0, 0.0};
+        pair.distance = with_vertices(mesh_, pair, [&](const auto &a, const auto &b) { return contact_distance(mesh_, a, b); });
+    }
+    return pairs;
+}
+
+void NearPairs::note(View<Vec3> positions, double budget) {
+    budget_ = budget;
+    noted_at_.assign(positions.begin(), positions.end());
+    passing_.clear();
+    for (auto *ways : {&vertices_, &edges_, &triangles_}) std::fill(ways->begin(), ways->end(), Way{});
+    const std::vector<NearPair> found = look(positions, positions, 2.0 * budget, {});
+    known_ = collect<NearPair>(int(found.size()), [&](int k, std::vector<NearPair> &known) {
+        NearPair pair = found[k];
+        pair.apart = with_vertices(
+            mesh_, pair, [&](const auto &a, const auto &b) { return std::sqrt(closest_points(positions, a, b).distance2); });
+        if (pair.apart < pair.distance + 2.0 * budget) known.push_back(pair);
+    });
+}
+
+void NearPairs::measure_ways(View<Vec3> start, View<Vec3> end) {
+#pragma omp parallel for schedule(static)
+    for (int v = 0; v < int(start.size()); ++v) vertices_[v] = {(end[v] - start[v]).norm(), quick_[v] != 0};
+    const auto of_primitives = [&](const auto &primitives, std::vector<Way> &ways) {
+#pragma omp parallel for schedule(static)
+        for (int i = 0; i < int(primitives.size()); ++i) {
+            ways[i] = {};
+            for (const int v : primitives[i]) {
+                ways[i].length = std::max(ways[i].length, vertices_[v].length);
+                ways[i].quick |= vertices_[v].quick;
+            }
+        }
+    };
+    of_primitives(mesh_.edges, edges_);
+    of_primitives(mesh_.triangles, triangles_);
+}
+
+void NearPairs::set_out(View<Vec3> start, View<Vec3> end) {
+    bool any_quick = false;
+    const bool nothing_known = noted_at_.empty();
+#pragma omp parallel for schedule(static) reduction(|| : any_quick)
+    for (int v = 0; v < int(start.size()); ++v) {
+        const auto is_far = [&](const Vec3 &x) { return !((x - noted_at_[v]).squaredNorm() <= budget_ * budget_); };
+        quick_[v] = nothing_known ? mesh_.moves[v] : is_far(start[v]) || is_far(end[v]);
+        any_quick = any_quick || quick_[v];
+    }
+    any_quick_ = any_quick;
+    measure_ways(start, end);
+    passing_ = any_quick_ ? look(start, end, 0.0, quick_) : std::vector<NearPair>();
+    may_meet_ = collect<NearPair *>(int(known_.size()), [&](int k, std::vector<NearPair *> &may_meet) {
+        NearPair &pair = known_[k];
+        if (pair.apart - way(pair) < 0.5 * pair.distance && !quick(pair)) may_meet.push_back(&pair);
+    });
+    for (NearPair &pair : passing_) may_meet_.push_back(&pair);
+}
+
+void NearPairs::set_out_anew(View<Vec3> start, View<Vec3> end, View<unsigned char> changed) {
+    measure_ways(start, end);
+    if (any_quick_) {
+        std::erase_if(passing_, [&](const NearPair &pair) { return any_of(pair, changed); });
+        std::vector<NearPair> found = look(start, end, 0.0, changed);
+        std::erase_if(found, [&](const NearPair &pair) { return !quick(pair); });
+        merge(passing_, found);
+    }
+    may_meet_ = collect<NearPair *>(int(known_.size()), [&](int k, std::vector<NearPair *> &may_meet) {
+        NearPair &pair = known_[k];
+        if (pair.apart - way(pair) < 0.5 * pair.distance && !quick(pair) && any_of(pair, changed)) may_meet.push_back(&pair);
+    });
+    for (NearPair &pair : passing_)
+        if (any_of(pair, changed)) may_meet_.push_back(&pair);
+}
+
+void NearPairs::arrive() {
+    for (auto *pairs : {&known_, &passing_})
+#pragma omp parallel for schedule(static)
+        for (int k = 0; k < int(pairs->size()); ++k) (*pairs)[k].apart -= way((*pairs)[k]);
+}
+
+std::vector<Touch> NearPairs::touching(View<Vec3> positions) {
+    const auto among = [&](std::vector<NearPair> &pairs, const auto &counts) {
+        return collect<Touch>(int(pairs.size()), [&](int k, std::vector<Touch> &touching) {
+            NearPair &pair = pairs[k];
+            if (!(pair.apart < pair.distance) || !counts(pair)) return;
+            const ClosestPoints nearest =
+                with_vertices(mesh_, pair, [&](const auto &a, const auto &b) { return closest_points(positions, a, b); });
+            pair.apart = std::sqrt(nearest.distance2);
+            if (pair.apart < pair.distance) touching.push_back({pair.of, pair.of_edges, pair.distance, nearest});
+        });
+    };
+    std::vector<Touch> all = among(known_, [&](const NearPair &pair) { return !quick(pair); });
+    merge(all, among(passing_, [](const NearPair &) { return true; }));
+    return all;
+}
+
+} // namespace ringlet

@@ -1,0 +1,84 @@
+// The pairs that are near one another, found once for the many moves of a step.
+#pragma once
+
+#include "ringlet/contact/broad_phase.h"
+
+#include <limits>
+#include <vector>
+
+namespace ringlet {
+
+struct NearPair {
+    std::array<int, 2> of; // two edges, the lower first; or a vertex and a triangle
+    bool of_edges;
+    double distance; // r: they touch below it [m]
+    double apart;    // no less is between them where things are now [m]
+};
+
+// Two that touch.
+struct Touch {
+    std::array<int, 2> of;
+    bool of_edges;
+    double distance; // r [m]
+    ClosestPoints nearest;
+};
+
+// A pair that is known is apart by what was measured last, less what its two have moved since, each for itself: while that is
+// enough, nothing has to be computed. Pairs are noted so far apart that every vertex may move by `budget`. Vertices that have
+// moved further are quick: their pairs are looked for anew in every move. All this says only what need not be looked at; what
+// is found does not depend on it.
+//
+// Borrows the mesh, which must outlive it.
+class NearPairs {
+public:
+    explicit NearPairs(const CollisionMesh &mesh);
+
+    void forget() { known_.clear(), noted_at_.clear(); } // everything is quick
+    void note(View<Vec3> positions, double budget);      // [m]
+
+    // Everything sets out straight from `start`, where it is, to `end`; or, while it has not arrived, to another end, which
+    // differs where vertices have `changed` and is no further away.
+    void set_out(View<Vec3> start, View<Vec3> end);
+    void set_out_anew(View<Vec3> start, View<Vec3> end, View<unsigned char> changed);
+    // The pairs that may come nearer than half their distance on the way; of those that set out anew, only what has changed.
+    // Whoever measures one may note how far it is apart at the start.
+    const std::vector<NearPair *> &may_meet() const { return may_meet_; }
+    void arrive();
+
+    std::vector<Touch> touching(View<Vec3> positions); // where everything is now, in order
+
+    int count() const { return int(known_.size() + passing_.size()); }
+
+private:
+    struct Way { // of a primitive in this move
+        double length = 0.0;
+        bool quick = false;
+    };
+
+    void measure_ways(View<Vec3> start, View<Vec3> end);
+    double way(const NearPair &pair) const { return first(pair).length + second(pair).length; }
+    bool quick(const NearPair &pair) const { return first(pair).quick || second(pair).quick; }
+    const Way &first(const NearPair &pair) const { return (pair.of_edges ? edges_ : vertices_)[pair.of[0]]; }
+    const Way &second(const NearPair &pair) const { return (pair.of_edges ? edges_ : triangles_)[pair.of[1]]; }
+    bool any_of(const NearPair &pair, View<unsigned char> vertices) const;
+    std::vector<NearPair> look(View<Vec3> start, View<Vec3> end, double margin, View<unsigned char> which);
+
+    const CollisionMesh &mesh_;
+    BroadPhase broad_phase_;
+    double budget_ = 0.0;
+    std::vector<Vec3> noted_at_;    // empty: nothing is known
+    std::vector<NearPair> known_;   // in order
+    std::vector<NearPair> passing_; // in order: of what is quick, those that may touch in this move
+    std::vector<Way> vertices_, edges_, triangles_;
+    std::vector<unsigned char> quick_; // vertices
+    bool any_quick_ = false;
+    std::vector<NearPair *> may_meet_;
+};
+
+// Calls work with the vertices of the two of a pair.
+template <class Pair, class Work> auto with_vertices(const CollisionMesh &mesh, const Pair &pair, const Work &work) {
+    if (pair.of_edges) return work(mesh.edges[pair.of[0]], mesh.edges[pair.of[1]]);
+    return work(std::array{pair.of[0]}, mesh.triangles[pair.of[1]]);
+}
+
+} // namespace ringlet
