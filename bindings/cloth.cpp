@@ -80,6 +80,9 @@ void bind_cloth(nb::module_ &module) {
             },
             "Masses [kg], shape (n,).")
         .def(
+            "scale_rest", [](Cloth &self, double scale) { scale_rest(*self.model, scale); }, "scale"_a,
+            "From now on the rest shape is `scale` times what it was given as.")
+        .def(
             "step",
             [](Cloth &self, Array3<double> targets, Array3<double> forces, double dt, std::array<double, 3> gravity,
                std::array<double, 3> wind, int newton, double tolerance, double linear_tolerance, int linear_iterations) {

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ringlet.groom import Hairs, Recipe
     from ringlet.groom.groom import Groom
     from ringlet.mesh import Clip
-    from ringlet.shot import Obstacle, Shot
+    from ringlet.shot import Garment, Obstacle, Shot
     from ringlet.shot.cache import Cache
     from ringlet.shot.loft import Loft
     from ringlet.validate import Row
@@ -122,13 +122,14 @@ def simulate(
         shot = read_shot(shot)
     if not isinstance(groom, Groom):
         groom = load_groom(groom or shot.groom, progress=progress)
-    rest = _rest_shape(shot, groom, allow_stale)
+    rest, garments = _rest_shape(shot, groom, allow_stale), _garments(shot, groom)
     return shots.simulate(
         shot,
         groom,
         _scalp_clip(groom),
         rest=rest,
-        obstacles=_obstacles(shot, groom),
+        obstacles=_obstacles(shot, groom, garments),
+        garments=garments,
         frames=frames,
         progress=progress,
     )
@@ -191,8 +192,8 @@ def _scalp_clip(groom: Groom) -> Clip:
     return io.read_clip(groom.scalp_file, groom.scalp_prim)
 
 
-def _obstacles(shot: Shot, groom: Groom) -> list[Obstacle]:
-    """What the locks of a shot touch besides one another: of several settings for one mesh, the last."""
+def _obstacles(shot: Shot, groom: Groom, garments: Sequence[Garment]) -> list[Obstacle]:
+    """What locks and cloth of a shot touch besides one another: of several settings for one mesh, the last."""
     from ringlet import io
     from ringlet import shot as shots
 
@@ -203,8 +204,27 @@ def _obstacles(shot: Shot, groom: Groom) -> list[Obstacle]:
         file = collider.file or groom.scalp_file
         assert file is not None  # as for the scalp's clip
         for body in io.read_bodies(file, collider.mesh):
-            found[file.resolve(), body.mesh.name] = shots.Obstacle(body.mesh, body.clip, collider)
+            found[file.resolve(), body.prim] = shots.Obstacle(body.mesh, body.clip, collider)
+    for garment in garments:  # cloth is no obstacle, even where its file is the head's
+        assert garment.file is not None
+        found.pop((garment.file.resolve(), garment.prim), None)
     return list(found.values())
+
+
+def _garments(shot: Shot, groom: Groom) -> list[Garment]:
+    """The meshes that become cloth in a shot."""
+    from ringlet import io
+    from ringlet import shot as shots
+
+    garments: list[Garment] = []
+    for cloth in shot.cloth:
+        file = cloth.file or groom.scalp_file
+        assert file is not None  # as for the scalp's clip
+        body = io.read_body(file, cloth.mesh)
+        garments.append(shots.Garment(body.mesh, body.clip, cloth, file, body.prim))
+        if garments[-1].name in [garment.name for garment in garments[:-1]]:
+            raise UserError(f"shot: two cloths are called '{garments[-1].name}'; give one of them another `name`")
+    return garments
 
 
 def write_cache(cache: Cache, groom: Path | str, path: Path | str) -> None:
@@ -276,7 +296,8 @@ def _within(cache: Cache, frames: tuple[int, int] | None, path: Path | str) -> C
     if not chosen.any():
         held = f"{cache.frames[0]:g} to {cache.frames[-1]:g}"
         raise UserError(f"{path}: has no frame from {frames[0]:g} to {frames[1]:g}; it holds {held}")
-    return replace(cache, frames=cache.frames[chosen], points=cache.points[chosen])
+    cloths = [replace(cloth, points=cloth.points[chosen]) for cloth in cache.cloths]
+    return replace(cache, frames=cache.frames[chosen], points=cache.points[chosen], cloths=cloths)
 
 
 # Pictures

@@ -1,5 +1,6 @@
 // Membrane and hinge of a single stencil: derivatives against differences, Hessians positive semi-definite, rigid motions free,
 // and the forces and energies of shapes that are easy to think about.
+#include "differences.h"
 #include "ringlet/energy/cloth/hinge.h"
 #include "ringlet/energy/cloth/membrane.h"
 
@@ -7,7 +8,6 @@
 #include <algorithm>
 #include <boost/test/unit_test.hpp>
 #include <cmath>
-#include <functional>
 #include <numbers>
 #include <random>
 
@@ -16,26 +16,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
-
-VectorXd differences(const std::function<double(const VectorXd &)> &f, VectorXd x, double h) {
-    VectorXd g(x.size());
-    for (int k = 0; k < x.size(); ++k) {
-        const double at = x[k];
-        x[k] = at + h;
-        const double up = f(x);
-        x[k] = at - h;
-        g[k] = (up - f(x)) / (2 * h);
-        x[k] = at;
-    }
-    return g;
-}
-
-VectorXd random_vector(int size, std::mt19937 &random) {
-    std::normal_distribution<double> normal;
-    VectorXd x(size);
-    for (int k = 0; k < size; ++k) x[k] = normal(random);
-    return x;
-}
 
 const MembraneStiffness stiffness{3.0, 2.0, 1.5};
 

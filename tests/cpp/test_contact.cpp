@@ -67,6 +67,13 @@ double reached(const ClosestPoints &nearest, const Four &x) {
     return between.norm();
 }
 
+// The distance is the one that was searched for, and between the points that the weights give.
+void check_distance(const ClosestPoints &nearest, double searched, const Four &x, int kind) {
+    const double distance = std::sqrt(nearest.distance2);
+    BOOST_TEST(std::abs(distance - searched) < 2e-8, "kind " << kind);
+    BOOST_TEST(std::abs(reached(nearest, x) - distance) < 1e-14);
+}
+
 double distance(bool edges, const Four &x) {
     return std::sqrt((edges ? closest_edge_edge : closest_point_triangle)(x[0], x[1], x[2], x[3]).distance2);
 }
@@ -86,8 +93,7 @@ BOOST_AUTO_TEST_CASE(no_point_of_two_segments_is_nearer_than_their_closest_point
     for (int i = 0; i < 40 * kinds; ++i) {
         const Four x = hard(random, i % kinds);
         const ClosestPoints nearest = closest_edge_edge(x[0], x[1], x[2], x[3]);
-        BOOST_TEST(std::abs(std::sqrt(nearest.distance2) - searched_edge_edge(x)) < 2e-8, "kind " << i % kinds);
-        BOOST_TEST(std::abs(reached(nearest, x) - std::sqrt(nearest.distance2)) < 1e-14);
+        check_distance(nearest, searched_edge_edge(x), x, i % kinds);
         for (int k : {0, 1}) BOOST_TEST((nearest.weights[k] >= 0.0 && nearest.weights[k + 2] <= 0.0));
         BOOST_TEST(nearest.weights[0] + nearest.weights[1] == 1.0);
         BOOST_TEST(nearest.weights[2] + nearest.weights[3] == -1.0);
@@ -99,8 +105,7 @@ BOOST_AUTO_TEST_CASE(no_point_of_a_triangle_is_nearer_than_the_closest) {
     for (int i = 0; i < 40 * kinds; ++i) {
         const Four x = hard(random, i % kinds);
         const ClosestPoints nearest = closest_point_triangle(x[0], x[1], x[2], x[3]);
-        BOOST_TEST(std::abs(std::sqrt(nearest.distance2) - searched_point_triangle(x)) < 2e-8, "kind " << i % kinds);
-        BOOST_TEST(std::abs(reached(nearest, x) - std::sqrt(nearest.distance2)) < 1e-14);
+        check_distance(nearest, searched_point_triangle(x), x, i % kinds);
         BOOST_TEST(nearest.weights[0] == 1.0);
         for (int k : {1, 2, 3}) BOOST_TEST(nearest.weights[k] <= 0.0);
         BOOST_TEST(std::abs(nearest.weights[1] + nearest.weights[2] + nearest.weights[3] + 1.0) < 1e-15);

@@ -1,5 +1,6 @@
 // Stretch, bend and twist of a single stencil: gradients against differences, Hessians positive semi-definite and, where
 // nothing is clamped, exact.
+#include "differences.h"
 #include "ringlet/energy/strand/bend.h"
 #include "ringlet/energy/strand/stretch.h"
 #include "ringlet/energy/strand/twist.h"
@@ -8,36 +9,17 @@
 #include <Eigen/Dense>
 #include <boost/test/unit_test.hpp>
 #include <cmath>
-#include <functional>
 #include <random>
 
 using namespace ringlet::baseline;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using ringlet::differences;
+using ringlet::random_vector;
 
 namespace {
 
 Vec<double> part(const VectorXd &x, int k) { return {x[3 * k], x[3 * k + 1], x[3 * k + 2]}; }
-
-VectorXd differences(const std::function<double(const VectorXd &)> &f, VectorXd x, double h) {
-    VectorXd g(x.size());
-    for (int k = 0; k < x.size(); ++k) {
-        const double at = x[k];
-        x[k] = at + h;
-        const double up = f(x);
-        x[k] = at - h;
-        g[k] = (up - f(x)) / (2 * h);
-        x[k] = at;
-    }
-    return g;
-}
-
-VectorXd random_vector(int size, std::mt19937 &random) {
-    std::normal_distribution<double> normal;
-    VectorXd x(size);
-    for (int k = 0; k < size; ++k) x[k] = normal(random);
-    return x;
-}
 
 struct Edges {
     Vec<double> t0, t1;

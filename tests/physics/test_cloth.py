@@ -241,6 +241,22 @@ def test_a_start_that_is_not_finite_is_reported():
     assert piece.step(mesh.points, FRAME)["nan"] == 1
 
 
+def test_a_rest_shape_that_is_scaled_is_at_rest_in_its_new_size_and_weighs_the_same():
+    mesh = sheet(0.1, 0.1, 4, 4)
+    mesh.points[:, 2] = 0.3 * np.abs(mesh.points[:, 0] - 0.05)  # with a fold
+    piece = cloth(mesh, stretch_warp=500.0, stretch_weft=500.0)
+    mass, area = piece.masses.sum(), 0.01 * np.hypot(1, 0.3)
+    for scale in (0.5, 2.0, 1.0):
+        piece.scale_rest(scale)
+        assert piece.energy(scale * mesh.points)[0] < 1e-20
+        # ½ k (1/s − 1)² along both, over an area that is s² as large
+        expected = area * scale**2 * 500.0 * (1 / scale - 1) ** 2
+        assert abs(piece.energy(mesh.points)[0] - expected) < 1e-9
+        assert piece.masses.sum() == mass
+    with pytest.raises(ValueError, match="above 0"):
+        piece.scale_rest(0.0)
+
+
 def test_the_warp_follows_the_texture():
     """Stretched along u, only the warp resists, whichever way the sheet lies."""
     mesh = sheet(0.1, 0.1, 2, 2)

@@ -195,7 +195,7 @@ def test_the_head_is_a_collider_by_default_and_the_report_tells_of_contact(examp
     result = sim(example, "--json", "--report", example / "report")
     assert result.exit_code == 0, result.output
     told = json.loads(result.stdout)
-    assert told["frames"] == FRAMES and set(told["start"]) == {"inside", "overlapping"}
+    assert told["frames"] == FRAMES and set(told["start"]) == {"inside", "piercing", "overlapping"}
     assert ringlet.read_cache(example / "cache.usdc").start == told["start"]
     statistics = json.loads((example / "report/report.json").read_text())["statistics"]
     assert all(frame["contact"]["candidates"] > 0 for frame in statistics)

@@ -50,6 +50,8 @@ def sim(
             ringlet.write_cache(cache, layer, output)
         run.simulated(cache)
         run.count(locks=len(locks.locks), points=len(locks.locks.points), frames=len(cache.frames))
+        if cache.cloths:
+            run.count(cloths=len(cache.cloths), cloth_points=sum(cloth.points.shape[1] for cloth in cache.cloths))
     for sentence in [] if as_json else run.warnings:
         print(sentence)
     wrote(output, run.counts, as_json, **({"start": cache.start} if cache.start else {}))

@@ -6,7 +6,7 @@ from ringlet.io.usd.cache import CacheWriter, cache_groom_path, read_cache, writ
 from ringlet.io.usd.check import problems
 from ringlet.io.usd.groom import read_groom, write_groom
 from ringlet.io.usd.hairs import HairWriter, read_hairs, read_stage
-from ringlet.io.usd.mesh import Body, read_bodies
+from ringlet.io.usd.mesh import Body, read_bodies, read_body
 from ringlet.io.usd.rest import read_rest, write_rest
 
 __all__ = [
@@ -16,6 +16,7 @@ __all__ = [
     "cache_groom_path",
     "problems",
     "read_bodies",
+    "read_body",
     "read_cache",
     "read_clip",
     "read_curves",

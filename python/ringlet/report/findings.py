@@ -64,6 +64,10 @@ def verdict(statistics: Statistics) -> list[str]:
         highest = max(v for v in stretch if math.isfinite(v))
         at = frame_number(statistics, stretch.index(highest))
         said.append(f"No edge was ever longer than {100 * highest:.2g} % over its rest length (frame {at}).")
+    cloths = dict.fromkeys(name for frame in statistics for name in frame.get("cloth") or {})
+    for name in cloths:
+        highest = max(v for v in series(statistics, f"cloth.{name}.max_stretch") or [0.0] if math.isfinite(v))
+        said.append(f"Cloth '{name}' was stretched or squeezed by at most {100 * highest:.2g} %.")
     if touching:
         kept = total(statistics, "contact.violations") or 0
         said.append(

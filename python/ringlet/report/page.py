@@ -189,8 +189,11 @@ def _simulation(report: RunReport) -> str:
             chart("Curls that changed", "", curl) if any(total(statistics, key) for key in curl) else "",
         )
     )
+    cloths = list(dict.fromkeys(name for frame in statistics for name in frame.get("cloth") or {}))
     charts += "".join(
         (
+            chart("Cloth, stretched at most", "%", {f"cloth.{n}.max_stretch": n for n in cloths}, factor=100.0),
+            chart("Energy of motion of cloth", "J", {f"cloth.{n}.energy.kinetic": n for n in cloths}),
             chart("Contacts", "", {"contact.candidates": "pairs looked at", "contact.contacts": "of them touch"}),
             chart("Closest two that touch", "m", {"contact.closest": "distance"}),
             chart(

@@ -1,8 +1,9 @@
 """Shots: strands that move with an animated scalp."""
 
-from ringlet.shot.cache import Cache
+from ringlet.shot.cache import Cache, CachedCloth
 from ringlet.shot.cloth import Cloth, ClothMaterial, ClothSolver
 from ringlet.shot.collider import Collider, Obstacle, ShotContact
+from ringlet.shot.garment import Garment, Pin, ShotCloth
 from ringlet.shot.loft import Loft, loft
 from ringlet.shot.scene import Body, Contact, Scene
 from ringlet.shot.shot import Forces, Shot, parse_shot, read_shot, schema
@@ -13,17 +14,21 @@ from ringlet.shot.strands import Material, Solver, Strands
 __all__ = [
     "Body",
     "Cache",
+    "CachedCloth",
     "Cloth",
     "ClothMaterial",
     "ClothSolver",
     "Collider",
     "Contact",
     "Forces",
+    "Garment",
     "Loft",
     "Material",
     "Obstacle",
+    "Pin",
     "Scene",
     "Shot",
+    "ShotCloth",
     "ShotContact",
     "Solver",
     "Strands",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -10,16 +11,34 @@ from numpy.typing import NDArray
 
 
 @dataclass
+class CachedCloth:
+    """Simulated cloth over time.
+
+    name:   what the shot calls it
+    file:   the USD file of its mesh, None where it has none
+    prim:   the path of the mesh there
+    points: positions [m], shape (k, n, 3), float32; the same points as the mesh's
+    """
+
+    name: str
+    file: Path | None
+    prim: str
+    points: NDArray[np.float32]
+
+
+@dataclass
 class Cache:
-    """Simulated groom guides over time.
+    """Simulated groom guides over time, and the cloth that moved with them.
 
     frames:     frame numbers (time codes), shape (k,)
     points:     positions [m], shape (k, n, 3), float32; the same points as ``groom.locks``
     statistics: what the solver reports, one dict per frame
     start:      what was in the way when the shot began (see ``shot/start.py``); empty without contact
+    cloths:     each at the same frames
     """
 
     frames: NDArray[np.float64]
     points: NDArray[np.float32]
     statistics: list[dict[str, Any]] = field(default_factory=list)
     start: dict[str, Any] = field(default_factory=dict)
+    cloths: list[CachedCloth] = field(default_factory=list)

@@ -107,6 +107,14 @@ class Cloth:
         """Velocities [m/s], shape (n, 3): the solver's own memory."""
         return self._core.velocities
 
+    def scale_rest(self, scale: float) -> None:
+        """Makes the rest shape ``scale`` times the mesh: elastic that draws together, below 1.
+
+        Masses and the resistance to bend stay. A scene lets the cloth come as near to itself as its rest shape is when
+        the scene is made.
+        """
+        self._core.scale_rest(scale)
+
     @property
     def masses(self) -> NDArray[np.float64]:
         """Mass of each vertex [kg], shape (n,): a third of its triangles'."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -11,19 +12,34 @@ from pydantic import Field
 
 from ringlet.errors import UserError
 from ringlet.mesh import Clip, Mesh
-from ringlet.settings import Section
+from ringlet.settings import Section, did_you_mean
 from ringlet.shot.scene import Body, Contact
 
 
+class Pair(Section):
+    """The friction of two materials on each other, in place of what each of them says."""
+
+    between: tuple[str, str] = Field(
+        description="`locks`, or the names of colliders and cloths; twice the same name: on itself"
+    )
+    friction: float = Field(ge=0, le=10, description="Coulomb's μ")
+
+
 class ShotContact(Contact):
-    """How locks touch one another and the colliders."""
+    """How locks touch one another, the colliders and cloth."""
 
     on: bool = Field(default=True, description="false: everything passes through everything, as without this table")
+    pair: tuple[Pair, ...] = Field(
+        default=(),
+        description="friction of pairs; by default a lock on something has what that says, and two others the "
+        "geometric mean of what both say",
+    )
 
 
 class Collider(Section):
     """Meshes that locks cannot pass through. Where several entries name one mesh, the last of them counts."""
 
+    name: str = Field(default="", description="for pins and friction; by default the last part of each mesh's path")
     file: Path | None = Field(
         default=None,
         description="USD file with the animation of the groom's head; by default that head. A relative name counts "
@@ -39,6 +55,27 @@ class Collider(Section):
     friction: float = Field(default=0.3, ge=0, le=10, description="Coulomb's μ of a lock on it")
 
 
+LOCKS = "locks"  # what they are called where friction is told
+
+
+def with_pairs(friction: NDArray[np.float64], pairs: Sequence[Pair], names: Sequence[str]) -> NDArray[np.float64]:
+    """Friction of materials on one another, shape (k, k), with that of some pairs told by name.
+
+    names: of the materials, k of them; several may have one name
+    """
+    friction = friction.copy()
+    for index, pair in enumerate(pairs):
+        for place, name in enumerate(pair.between):
+            if name not in names:
+                raise UserError(
+                    f"shot: contact.pair[{index}].between[{place}] is '{name}', which nothing is called"
+                    f"{did_you_mean(name, dict.fromkeys(names))}"
+                )
+        one, other = (np.flatnonzero(np.array(names) == name) for name in pair.between)
+        friction[np.ix_(one, other)] = friction[np.ix_(other, one)] = pair.friction
+    return friction
+
+
 @dataclass
 class Obstacle:
     """A mesh in the way of locks.
@@ -51,6 +88,11 @@ class Obstacle:
     mesh: Mesh
     clip: Clip
     settings: Collider = field(default_factory=Collider)
+
+    @property
+    def name(self) -> str:
+        """What it is called in the shot."""
+        return self.settings.name or self.mesh.name.rpartition("/")[2]
 
     def starting_at(self, frame: float) -> Obstacle:
         """The same for a shot that begins at ``frame``: what is not animated stays as it is there."""

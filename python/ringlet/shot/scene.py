@@ -56,6 +56,8 @@ class Scene:
     rooted_in: per strand the body that holds its root, which the held vertices may touch; -1: none. Shape (count,)
     cloths:    in motion as well; contact begins half their thickness from them
     pinned_to: per cloth the body that carries its held vertices, which these may touch; -1: none. Shape (cloths,)
+    friction:  Coulomb's μ of each pair of materials: strands, then each cloth, then each body; by default
+               ``friction_of`` them
     """
 
     strands: Strands = field(default_factory=lambda: Strands(Curves.from_list([]), Material()))
@@ -64,13 +66,15 @@ class Scene:
     rooted_in: NDArray[np.integer] | None = None
     cloths: Sequence[Cloth] = ()
     pinned_to: NDArray[np.integer] | None = None
+    friction: NDArray[np.floating] | None = None
 
     def __post_init__(self) -> None:
         settings = _core.SceneContact()
         settings.strand_radius = self.contact.radius
         settings.stiffness = self.contact.stiffness
         settings.creep_speed = self.contact.creep_speed
-        settings.friction = self._friction().ravel().tolist()
+        friction = friction_of(self.contact, self.cloths, self.bodies) if self.friction is None else self.friction
+        settings.friction = friction.ravel().tolist()
         pinned = [-1] * len(self.cloths) if self.pinned_to is None else [int(body) for body in self.pinned_to]
         cloths = [
             _core.SceneCloth(cloth._core, 1 + k, body)
@@ -88,20 +92,6 @@ class Scene:
         rooted = [] if self.rooted_in is None else [int(body) for body in self.rooted_in]
         self._core = _core.Scene(self.strands._core, cloths, bodies, rooted, settings)
         self._cloth_rows = np.zeros((len(cloths), len(_core.CLOTH_REPORT)))
-
-    def _friction(self) -> NDArray[np.float64]:
-        """μ of each pair of materials: of strands, then of each cloth, then of each body.
-
-        A body and a cloth say what a lock on them has; two of them, the geometric mean. Bodies do not touch each other.
-        """
-        cloths, bodies = len(self.cloths), len(self.bodies)
-        on_it = [cloth.material.friction for cloth in self.cloths] + [body.friction for body in self.bodies]
-        friction = np.zeros((1 + cloths + bodies,) * 2)
-        friction[0, 0] = self.contact.friction
-        friction[0, 1:] = friction[1:, 0] = on_it
-        friction[1:, 1:] = np.sqrt(np.outer(on_it, on_it))
-        friction[1 + cloths :, 1 + cloths :] = 0.0
-        return friction
 
     @property
     def positions(self) -> NDArray[np.float64]:
@@ -190,6 +180,20 @@ class Scene:
             ) from error
         report = dict(zip(_core.SCENE_REPORT, totals.tolist(), strict=True))
         return report, dict(zip(_core.REPORT, rows.T, strict=True))
+
+
+def friction_of(contact: Contact, cloths: Sequence[Cloth], bodies: Sequence[Body]) -> NDArray[np.float64]:
+    """Coulomb's μ of each pair of materials: of strands, then of each cloth, then of each body.
+
+    A body and a cloth say what a lock on them has; two of them, the geometric mean. Bodies do not touch each other.
+    """
+    on_it = [cloth.material.friction for cloth in cloths] + [body.friction for body in bodies]
+    friction = np.zeros((1 + len(on_it),) * 2)
+    friction[0, 0] = contact.friction
+    friction[0, 1:] = friction[1:, 0] = on_it
+    friction[1:, 1:] = np.sqrt(np.outer(on_it, on_it))
+    friction[1 + len(cloths) :, 1 + len(cloths) :] = 0.0
+    return friction
 
 
 def _rows(parts: Sequence[NDArray[np.floating]] | None, otherwise: NDArray[np.float64]) -> NDArray[np.float64]:

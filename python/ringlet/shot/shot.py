@@ -9,6 +9,7 @@ from pydantic import Field, PrivateAttr, ValidationError, ValidationInfo, field_
 
 from ringlet.settings import Section, explain, parse_toml, read_toml, refuse
 from ringlet.shot.collider import Collider, ShotContact
+from ringlet.shot.garment import ShotCloth
 from ringlet.shot.rest import Rest
 from ringlet.shot.strands import Material, Solver
 from ringlet.shot.variation import Variation
@@ -51,6 +52,7 @@ class Shot(Section):
         default=(),
         description="what locks touch besides one another; by default the head with all that is visible there",
     )
+    cloth: tuple[ShotCloth, ...] = Field(default=(), description="cloth that moves with the locks and touches them")
 
     _path: Path | None = PrivateAttr(None)
 
@@ -67,6 +69,16 @@ class Shot(Section):
         if colliders and info.data.get("contact", True) is None:
             raise refuse("is there, but locks touch nothing; add a table [contact]")
         return colliders
+
+    @field_validator("cloth")
+    @classmethod
+    def _worn(cls, cloths: tuple[ShotCloth, ...], info: ValidationInfo) -> tuple[ShotCloth, ...]:
+        contact = info.data.get("contact")
+        if cloths and "contact" in info.data and not (contact and contact.on):
+            raise refuse(
+                "is there, but nothing touches; add a table [contact]" + (" with on = true" if contact else "")
+            )
+        return cloths
 
     @property
     def touching(self) -> ShotContact | None:
@@ -108,7 +120,8 @@ def _shot(data: dict[str, Any], path: Path | None) -> Shot:
     folder = path.parent if path else Path()
     rest = shot.rest.model_copy(update={"file": shot.rest.file and folder / shot.rest.file})
     colliders = tuple(one.model_copy(update={"file": one.file and folder / one.file}) for one in shot.collider)
-    shot = shot.model_copy(update={"groom": folder / shot.groom, "rest": rest, "collider": colliders})
+    cloths = tuple(one.model_copy(update={"file": one.file and folder / one.file}) for one in shot.cloth)
+    shot = shot.model_copy(update={"groom": folder / shot.groom, "rest": rest, "collider": colliders, "cloth": cloths})
     shot._path = path
     return shot
 

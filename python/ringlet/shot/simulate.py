@@ -1,4 +1,4 @@
-"""Running a shot: frame by frame, the scalp moves and the strands follow."""
+"""Running a shot: frame by frame, the scalp moves, and strands and cloth follow."""
 
 from __future__ import annotations
 
@@ -14,12 +14,14 @@ from ringlet.errors import UserError
 from ringlet.groom.groom import Groom
 from ringlet.mesh import Clip
 from ringlet.shot import start
-from ringlet.shot.cache import Cache
-from ringlet.shot.collider import Obstacle
+from ringlet.shot.cache import Cache, CachedCloth
+from ringlet.shot.collider import LOCKS, Obstacle, with_pairs
+from ringlet.shot.garment import Garment
 from ringlet.shot.roots import Roots
-from ringlet.shot.scene import Scene
+from ringlet.shot.scene import Scene, friction_of
 from ringlet.shot.shot import Shot
 from ringlet.shot.strands import Strands
+from ringlet.shot.worn import Worn
 
 Progress = Callable[[str, int, int], None]
 OnFrame = Callable[[float, NDArray[np.float32], dict[str, Any]], None]
@@ -32,6 +34,7 @@ def simulate(
     *,
     rest: Curves | None = None,
     obstacles: Sequence[Obstacle] = (),
+    garments: Sequence[Garment] = (),
     frames: tuple[int, int] | None = None,
     progress: Progress | None = None,
     on_frame: OnFrame | None = None,
@@ -40,6 +43,7 @@ def simulate(
 
     rest:      the shape that the locks remember, in the rest pose of the scalp; the groomed one by default
     obstacles: what the locks touch, where the shot has contact
+    garments:  what becomes cloth there
     frames:    first and last frame, in place of the shot's
     progress:  called as progress("sim", done, total)
     on_frame:  called with each frame's number, positions [m] of shape (n, 3) and statistics, as soon as it is there
@@ -54,11 +58,14 @@ def simulate(
             "hold fewer, or resample the locks"
         )
 
-    motion = Motion(shot, groom, clip, rest, obstacles, first)
+    motion = Motion(shot, groom, clip, rest, obstacles, garments, first)
     numbers = range(first, last + 1)
     total = shot.preroll + len(numbers)
     cache = Cache(np.array(numbers, np.float64), np.empty((len(numbers), len(groom.locks.points), 3), np.float32))
     cache.start = motion.start
+    for worn in motion.worn:
+        moved = np.empty((len(numbers), len(worn.cloth.positions), 3), np.float32)
+        cache.cloths.append(CachedCloth(worn.name, worn.garment.file, worn.garment.prim, moved))
 
     for done in range(shot.preroll):
         motion.advance(first, first)
@@ -67,6 +74,8 @@ def simulate(
     for k, frame in enumerate(numbers):
         statistics = motion.advance(frame - 1 if k else frame, frame)
         cache.points[k] = motion.strands.positions
+        for cached, worn in zip(cache.cloths, motion.worn, strict=True):
+            cached.points[k] = worn.cloth.positions
         cache.statistics.append(statistics)
         if on_frame:
             on_frame(frame, cache.points[k], statistics)
@@ -85,10 +94,18 @@ class Motion:
 
     first: the frame at which everything starts
     start: what was in the way then (see ``start.py``)
+    worn:  the cloths that move with them
     """
 
     def __init__(
-        self, shot: Shot, groom: Groom, clip: Clip, rest: Curves | None, obstacles: Sequence[Obstacle], first: float
+        self,
+        shot: Shot,
+        groom: Groom,
+        clip: Clip,
+        rest: Curves | None,
+        obstacles: Sequence[Obstacle],
+        garments: Sequence[Garment],
+        first: float,
     ) -> None:
         self.shot, self.clip, self.roots = shot, clip, Roots(groom)
         self.strands = make_strands(shot, groom, rest)
@@ -96,18 +113,25 @@ class Motion:
         self.scene: Scene | None = None
         self.start: dict[str, Any] = {}
         self.obstacles = [obstacle.starting_at(first) for obstacle in obstacles]
+        self.worn = [Worn(garment, self.obstacles, first) for garment in garments]
         if shot.touching:
             self._touch(groom, first)
 
     def _touch(self, groom: Groom, first: float) -> None:
-        """Puts the locks into a scene with the obstacles; what starts inside one is excused until it is out."""
+        """Puts locks and cloths into a scene with the obstacles; what starts inside one is excused until it is out."""
         contact = self.shot.touching
         assert contact is not None
         locks = groom.locks.with_points(self.strands.positions.copy())
         carriers = [k for k, obstacle in enumerate(self.obstacles) if obstacle.is_surface_of(groom.scalp)]
         rooted_in = np.full(len(locks), carriers[0] if carriers else -1)
-        bodies = [obstacle.body(first) for obstacle in self.obstacles]
-        self.scene = Scene(self.strands, bodies, contact, rooted_in)
+        bodies, cloths = [obstacle.body(first) for obstacle in self.obstacles], [worn.cloth for worn in self.worn]
+        of_bodies = [obstacle.name for obstacle in self.obstacles]
+        for worn in self.worn:
+            start.refuse_pierced(worn, of_bodies, bodies)
+        names = [LOCKS, *(worn.name for worn in self.worn), *of_bodies]
+        friction = with_pairs(friction_of(contact, cloths, bodies), contact.pair, names)
+        pinned_to = np.array([worn.pinned_to for worn in self.worn])
+        self.scene = Scene(self.strands, bodies, contact, rooted_in, cloths, pinned_to, friction)
         inside = []
         for k, (obstacle, body) in enumerate(zip(self.obstacles, bodies, strict=True)):
             depth = start.depths(locks.points, obstacle.mesh.triangles, body.points)
@@ -115,7 +139,11 @@ class Motion:
             if depth.any():
                 inside.append(start.tell_inside(locks, obstacle.mesh, depth))
                 self.scene.excuse(np.flatnonzero(depth), k)
-        self.start = {"inside": inside, "overlapping": start.tell_overlapping(locks, self.scene, self.shot.solver)}
+        self.start = {
+            "inside": inside,
+            "piercing": start.tell_piercing(locks, self.worn),
+            "overlapping": start.tell_overlapping(locks, self.scene, self.shot.solver),
+        }
 
     def advance(self, begin: float, end: float) -> dict[str, Any]:
         """One frame's time passes while the scalp goes from frame ``begin`` to ``end``; returns what happened."""
@@ -123,6 +151,7 @@ class Motion:
         substeps = self.shot.solver.substeps
         dt = 1.0 / (self.clip.fps * substeps)
         touched: list[dict[str, float]] = []
+        of_cloths: list[list[dict[str, float]]] = []
         reports: list[dict[str, NDArray[np.float64]]] = []
         outside: dict[str, Any] = {
             "gravity": self.shot.forces.gravity,
@@ -134,8 +163,12 @@ class Motion:
             targets = self.roots.carry(self.clip.at(frame), frame)
             if self.scene:
                 ends = [obstacle.at(frame) for obstacle in self.obstacles]
-                contact, report = self.scene.step(targets, dt, bodies=ends, **outside)
+                for worn in self.worn:
+                    worn.draw_together(frame)
+                places = [worn.targets(frame) for worn in self.worn]
+                contact, report = self.scene.step(targets, dt, cloths=places, bodies=ends, **outside)
                 touched.append(contact)
+                of_cloths.append(self.scene.cloth_reports)
             else:
                 report = self.strands.step(targets, dt, **outside)
             reports.append(report)
@@ -145,6 +178,7 @@ class Motion:
             "cpu_ms": 1e3 * (time.process_time() - cpu),
             **_summary(reports, self.strands),
             **(_contact_summary(touched, self.scene) if self.scene else {}),
+            **({"cloth": _cloth_summary(of_cloths, [worn.name for worn in self.worn])} if self.worn else {}),
         }
 
 
@@ -174,6 +208,18 @@ def _summary(reports: list[dict[str, NDArray[np.float64]]], strands: Strands) ->
         "too_straight": total("too_straight"),
         "clamped": total("clamped"),
         "nan": total("nan"),
+    }
+
+
+def _cloth_summary(reports: list[list[dict[str, float]]], names: list[str]) -> dict[str, Any]:
+    """Of each cloth, by name, its worst stretch in a frame's substeps, and its energies at the end of it."""
+    return {
+        name: {
+            "max_stretch": max(report[k]["max_stretch"] for report in reports),
+            "energy": {term: reports[-1][k][term] for term in ("stretch", "bend", "gravity", "kinetic")},
+            "nan": int(sum(report[k]["nan"] for report in reports)),
+        }
+        for k, name in enumerate(names)
     }
 
 

@@ -22,7 +22,9 @@ SAME_PLACE = 1e-6  # points closer than this are the same: a file in single prec
 
 # What a loft does not depend on, besides `rest.gain` and the variation, which are kept as their values at the vertices.
 _FREE = {
-    **dict.fromkeys(("ringlet", "name", "groom", "frames", "preroll", "variation", "contact", "collider"), True),
+    **dict.fromkeys(
+        ("ringlet", "name", "groom", "frames", "preroll", "variation", "contact", "collider", "cloth"), True
+    ),
     "solver": {"newton", "substeps", "tolerance"},
     "rest": {"mode", "file", "gain"},
 }

@@ -1,7 +1,8 @@
-"""How a shot starts: which vertices of locks are inside a collider, and which locks are nearer than they may be."""
+"""How a shot starts: what is inside a collider, what goes through cloth, which locks are nearer than they may be."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -9,9 +10,12 @@ from numpy.typing import NDArray
 
 from ringlet import _core
 from ringlet.curves import Curves
+from ringlet.errors import UserError
 from ringlet.mesh import Mesh
-from ringlet.shot.scene import Scene
+from ringlet.shot.piercing import edges_of, piercings
+from ringlet.shot.scene import Body, Scene
 from ringlet.shot.strands import Solver
+from ringlet.shot.worn import Worn
 
 Array = NDArray[np.float64]
 
@@ -63,9 +67,11 @@ def tell_inside(locks: Curves, mesh: Mesh, depth: Array) -> dict[str, Any]:
 def tell_overlapping(locks: Curves, scene: Scene, solver: Solver) -> dict[str, Any]:
     """Which locks are nearer to one another than they may be, as numbers. The strands are at rest, and stay so."""
     strands = scene.strands
-    before = strands.positions.copy()
+    before, of_cloths = strands.positions.copy(), [cloth.positions.copy() for cloth in scene.cloths]
     scene.step(before, INSTANT, solver=solver.model_copy(update={"newton": 1}))
     strands.place(before)
+    for cloth, positions in zip(scene.cloths, of_cloths, strict=True):
+        cloth.positions[:], cloth.velocities[:] = positions, 0.0
     vertices, values = scene.contacts
     pairs = _lock_of(locks, vertices[:, [0, 3]])
     of_two = (vertices < len(before)).all(axis=1) & (pairs[:, 0] != pairs[:, 1])
@@ -85,6 +91,61 @@ def tell_overlapping(locks: Curves, scene: Scene, solver: Solver) -> dict[str, A
             for k in nearest
         ],
     }
+
+
+def refuse_pierced(worn: Worn, names: Sequence[str], bodies: Sequence[Body]) -> None:
+    """Refuses a cloth that a body goes through or holds inside; but not where it is held by that body."""
+    cloth, triangles = worn.cloth, worn.cloth.mesh.triangles
+    for k, (name, body) in enumerate(zip(names, bodies, strict=True)):
+        free = ~cloth.held if k == worn.pinned_to else np.ones(len(cloth.held), bool)
+        edges, faces = edges_of(triangles), triangles[free[triangles].all(axis=1)]
+        edges = edges[free[edges].all(axis=1)]
+        surface, sides = np.asarray(body.points, np.float64), np.asarray(body.triangles, np.int32)
+        through = piercings(cloth.positions[edges], surface[sides])
+        back = piercings(surface[edges_of(sides)], cloth.positions[faces])
+        places = [edges[through[:, 0], 0], faces[back[:, 1], 0], _inside(cloth.positions, free, sides, surface)]
+        vertices = np.unique(np.concatenate(places))
+        if len(vertices):
+            place = ", ".join(f"{x:.3g}" for x in cloth.positions[vertices[0]])
+            raise UserError(
+                f"shot: cloth '{worn.name}' begins {'through' if len(through) or len(back) else 'inside'} '{name}' at "
+                f"{len(vertices)} of its vertices, such as {vertices[0]} at ({place}) m; move it out, or leave that "
+                "mesh out of the colliders"
+            )
+
+
+def _inside(points: Array, free: NDArray[np.bool_], triangles: NDArray[np.int32], corners: Array) -> NDArray[np.int64]:
+    """Which of the free points are inside a closed mesh."""
+    return np.flatnonzero(free & (depths(points, triangles, corners) > 0.0))
+
+
+def tell_piercing(locks: Curves, worn: Sequence[Worn]) -> list[dict[str, Any]]:
+    """What goes through each cloth, as numbers: locks, itself, other cloths. It stays so."""
+    return [told for one in worn for told in _piercing(locks, one, worn) if told["places"]]
+
+
+def _piercing(locks: Curves, through: Worn, all_worn: Sequence[Worn]) -> Iterator[dict[str, Any]]:
+    triangles = through.cloth.mesh.triangles
+    corners = through.cloth.positions[triangles]
+    segments = np.delete(np.arange(len(locks.points) - 1), locks.offsets[1:-1] - 1)
+    points = np.asarray(locks.points, np.float64)
+    found = np.unique(piercings(points[segments[:, None] + [0, 1]], corners)[:, 0])
+    vertices = segments[found]
+    yield {
+        "what": "locks",
+        "cloth": through.name,
+        "places": len(found),
+        "locks": len(np.unique(_lock_of(locks, vertices))),
+        "worst": [_place(locks, int(vertex)) for vertex in vertices[:WORST]],
+    }
+    for other in all_worn:
+        edges = edges_of(other.cloth.mesh.triangles)
+        pairs = piercings(other.cloth.positions[edges], corners)
+        if other is through:
+            pairs = pairs[~(edges[pairs[:, 0], :, None] == triangles[pairs[:, 1], None, :]).any(axis=(1, 2))]
+        places = other.cloth.positions[edges[pairs[:WORST, 0], 0]]
+        worst = [{"place": place.tolist()} for place in places]
+        yield {"what": other.name, "cloth": through.name, "places": len(pairs), "worst": worst}
 
 
 def _lock_of(locks: Curves, vertices: NDArray[np.integer]) -> NDArray[np.int64]:

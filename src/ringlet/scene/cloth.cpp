@@ -3,6 +3,7 @@
 #include "ringlet/energy/cloth/hinge.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -79,6 +80,19 @@ ClothModel make_cloth_model(View<Triangle> triangles, View<Vec3> rest, View<Vec3
         model.hinge_stiffness.push_back(hinge_stiffness(corners, material.bend));
     }
     return model;
+}
+
+void scale_rest(ClothModel &model, double scale) {
+    if (!(scale > 0) || !std::isfinite(scale))
+        throw std::invalid_argument("cloth: the scale of its rest shape must be above 0");
+    const double grown = scale / model.rest_scale;
+    for (Vec3 &point : model.rest) point *= grown;
+    for (MembraneRest &triangle : model.membrane) {
+        triangle.warp /= grown;
+        triangle.weft /= grown;
+        triangle.area *= grown * grown;
+    }
+    model.rest_scale = scale;
 }
 
 } // namespace ringlet

@@ -37,6 +37,7 @@ struct ClothModel {
     double damping = 0.0;                   // β [s]
     double mass_damping = 0.0;              // α [1/s]
     double thickness = 0.0;                 // [m]
+    double rest_scale = 1.0;                // how large the rest shape is, by what it was given as
 
     int vertex_count() const { return int(mass.size()); }
 };
@@ -51,5 +52,9 @@ struct ClothState {
 // triangle has no area, or a free vertex belongs to no triangle.
 ClothModel make_cloth_model(View<Triangle> triangles, View<Vec3> rest, View<Vec3> warp, View<unsigned char> held,
                             View<double> attachment, const ClothMaterial &material);
+
+// Elastic that draws together, or grows: the rest shape becomes `scale` times what it was given as. Its folds, its masses and
+// its resistance to bend stay.
+void scale_rest(ClothModel &model, double scale);
 
 } // namespace ringlet

@@ -1,8 +1,9 @@
-"""A simulation as USD: a layer over the groom that moves the points of ``/groom/locks``."""
+"""A simulation as USD: a layer over the groom that moves the points of ``/groom/locks``, and those of cloths."""
 
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Self
 
@@ -12,10 +13,11 @@ from pxr import Sdf, Usd, UsdGeom
 
 from ringlet.errors import UserError
 from ringlet.io.space import to_metres
+from ringlet.io.usd.cloths import ClothPrims, read_cloth, set_cloth, told_of
 from ringlet.io.usd.groom import LOCKS, VERSION, groom_prim
 from ringlet.io.usd.stage import parse_json, reading
 from ringlet.io.usd.stream import StreamWriter
-from ringlet.shot.cache import Cache
+from ringlet.shot.cache import Cache, CachedCloth
 from ringlet.stage import StageSpace
 
 
@@ -24,10 +26,11 @@ def write_cache(cache: Cache, groom_path: Path | str, path: Path | str, space: S
 
     space: unit, up-axis and rate of the groom file
     """
-    with CacheWriter(path, groom_path, space) as writer:
+    with CacheWriter(path, groom_path, space, cache.cloths) as writer:
         writer.start = cache.start
         for index, (frame, points) in enumerate(zip(cache.frames, cache.points, strict=True)):
-            writer.add(frame, points, cache.statistics[index] if index < len(cache.statistics) else None)
+            statistics = cache.statistics[index] if index < len(cache.statistics) else None
+            writer.add(frame, points, statistics, [cloth.points[index] for cloth in cache.cloths])
 
 
 def read_cache(path: Path | str) -> Cache:
@@ -50,8 +53,9 @@ def read_cache(path: Path | str) -> Cache:
         kept = [layer.customLayerData.get("ringlet") or {} for layer in source.stage.GetLayerStack()]
         told = {
             name: parse_json(source, next((data[name] for data in kept if name in data), empty), f"ringlet:{name}")
-            for name, empty in (("statistics", "[]"), ("start", "{}"))
+            for name, empty in (("statistics", "[]"), ("start", "{}"), ("cloths", "[]"))
         }
+        told["cloths"] = [read_cloth(source, cloth, frames) for cloth in told["cloths"]]
         return Cache(np.array(frames), points, **told)
 
 
@@ -68,35 +72,54 @@ class CacheWriter(StreamWriter):
 
     Nothing is at ``path`` until the block ends, and nothing new if it fails.
 
-    space: unit, up-axis and rate of the groom file
-    start: what was in the way when the simulation began
+    space:  unit, up-axis and rate of the groom file
+    cloths: what moves besides; only what they are called and where they come from counts
+    start:  what was in the way when the simulation began
     """
 
-    def __init__(self, path: Path | str, groom_path: Path | str, space: StageSpace) -> None:
+    def __init__(
+        self, path: Path | str, groom_path: Path | str, space: StageSpace, cloths: Sequence[CachedCloth] = ()
+    ) -> None:
         super().__init__(path, groom_path, space)
         self.start: dict[str, Any] = {}
+        self._cloths = cloths
         self._statistics: list[dict[str, Any]] = []
 
     def __enter__(self) -> Self:
-        self._curves = UsdGeom.BasisCurves(self.begin().OverridePrim(LOCKS))
+        stage = self.begin()
+        self._curves = UsdGeom.BasisCurves(stage.OverridePrim(LOCKS))
         self._shape = (len(self._curves.GetPointsAttr().Get()), 3)
+        with reading(self.under) as groom:
+            prims = ClothPrims(stage, groom)
+            self._meshes = [prims.over(cloth) for cloth in self._cloths]
         return self
 
-    def add(self, frame: float, points: NDArray, statistics: dict[str, Any] | None = None) -> None:
+    def add(
+        self,
+        frame: float,
+        points: NDArray,
+        statistics: dict[str, Any] | None = None,
+        cloths: Sequence[NDArray] = (),
+    ) -> None:
         """Adds a frame.
 
         points:     where the locks are [m], shape (n, 3), in the order of the groom's locks
         statistics: what the solver reports
+        cloths:     where the vertices of each cloth are [m]
         """
         if points.shape != self._shape:
             raise ValueError(f"cache: points have shape {points.shape}; must be {self._shape}")
         self.put(self._curves, frame, points)
+        for mesh, places in zip(self._meshes, cloths, strict=True):
+            set_cloth(mesh, frame, places, self.space)
         self._statistics.append(statistics or {})
 
     def finish(self) -> None:
         """Adds the statistics to the layer."""
+        folder = self.path.absolute().parent
+        cloths = [told_of(*of, folder) for of in zip(self._cloths, self._meshes, strict=True)]
         told = {
             name: json.dumps(what, separators=(",", ":"), default=lambda value: value.tolist())
-            for name, what in (("statistics", self._statistics), ("start", self.start))
+            for name, what in (("statistics", self._statistics), ("start", self.start), ("cloths", cloths))
         }
         self.layer.customLayerData = {"ringlet": {"version": VERSION, **told}}

@@ -88,7 +88,7 @@ def read_stage(path: Path | str, frame: float | None = None) -> tuple[list[Body]
                 clip = Clip(np.zeros(1), mesh.points[None], source.space.fps)
             else:
                 clip = clip_at(source, prim)
-            bodies.append(Body(mesh, clip))
+            bodies.append(Body(mesh, clip, str(prim.GetPath())))
         return bodies, hairs, frames
 
 

@@ -37,10 +37,11 @@ SCALP = "scalp"
 
 @dataclass
 class Body:
-    """Something solid beside the hair: a mesh in its rest pose and where it goes."""
+    """Something beside the hair: a mesh in its rest pose, where it goes, and its prim's path."""
 
     mesh: Mesh
     clip: Clip
+    prim: str
 
 
 def read_usd_mesh(path: Path | str, prim: str | None = None) -> Mesh:
@@ -60,7 +61,17 @@ def read_bodies(path: Path | str, prim: str | None = None) -> list[Body]:
     (under the root where there is none)."""
     with reading(path) as source:
         meshes = visible_meshes(source) if prim is None else meshes_below(source, prim)
-        return [Body(mesh_at(source, mesh), clip_at(source, mesh)) for mesh in meshes]
+        return [_body_at(source, mesh) for mesh in meshes]
+
+
+def read_body(path: Path | str, prim: str | None = None) -> Body:
+    """Reads a mesh with its clip: that at ``prim``, or the only one there is at or below it."""
+    with reading(path) as source:
+        return _body_at(source, select_mesh(source, prim))
+
+
+def _body_at(source: Source, prim: Usd.Prim) -> Body:
+    return Body(mesh_at(source, prim), clip_at(source, prim), str(prim.GetPath()))
 
 
 def select_mesh(source: Source, name: str | None) -> Usd.Prim:

@@ -1,0 +1,96 @@
+"""Simulated cloth in a cache: an over on the prim of its mesh, in the head's file or in one of its own.
+
+What comes from another file than the head is brought in under ``/groom/cloths``, by reference.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pxr import Sdf, Tf, Usd, UsdGeom
+
+from ringlet.errors import UserError
+from ringlet.io.space import from_metres, to_metres
+from ringlet.io.usd.groom import BODY, GROOM, scalp_source
+from ringlet.io.usd.stage import Source, relative
+from ringlet.io.usd.values import float3
+from ringlet.shot.cache import CachedCloth
+from ringlet.stage import StageSpace
+
+CLOTHS = f"{GROOM}/cloths"
+
+
+class ClothPrims:
+    """Prims of cloths in a stage over a groom.
+
+    groom: the stage of that groom, which tells where the head is
+    """
+
+    def __init__(self, stage: Usd.Stage, groom: Source) -> None:
+        self._stage = stage
+        self._head, scalp = scalp_source(groom)
+        self._head_top = Sdf.Path(scalp).GetPrefixes()[0]
+        self._tops: dict[tuple[Path, Sdf.Path], Sdf.Path] = {}
+
+    def over(self, cloth: CachedCloth) -> UsdGeom.Mesh:
+        """The prim of a cloth, which stands in the space of the stage from now on."""
+        mesh = UsdGeom.Mesh(self._stage.OverridePrim(self._place(cloth)))
+        mesh.ClearXformOpOrder()
+        mesh.SetResetXformStack(True)
+        if mesh.GetNormalsAttr().HasAuthoredValue():
+            mesh.GetNormalsAttr().Block()  # they are those of the rest shape
+        return mesh
+
+    def _place(self, cloth: CachedCloth) -> Sdf.Path:
+        if cloth.file is None:
+            raise UserError(f"cloth '{cloth.name}': comes from no file; write its mesh as USD and read it from there")
+        prim = Sdf.Path(cloth.prim)
+        top = prim.GetPrefixes()[0]
+        if cloth.file.resolve() == self._head.resolve() and top == self._head_top:
+            return prim.ReplacePrefix(top, Sdf.Path(BODY))
+        key = cloth.file.resolve(), top
+        if key not in self._tops:
+            self._tops[key] = self._bring_in(cloth.file, top)
+        return prim.ReplacePrefix(top, self._tops[key])
+
+    def _bring_in(self, file: Path, top: Sdf.Path) -> Sdf.Path:
+        UsdGeom.Scope.Define(self._stage, CLOTHS)
+        place = Sdf.Path(CLOTHS).AppendChild(Tf.MakeValidIdentifier(file.stem))
+        if place in self._tops.values():
+            place = place.ReplaceName(f"{place.name}_{len(self._tops)}")
+        name = relative(file, self._stage.GetRootLayer().realPath)
+        self._stage.DefinePrim(place).GetReferences().AddReference(Sdf.Reference(name, top))
+        return place
+
+
+def set_cloth(mesh: UsdGeom.Mesh, frame: float, points: NDArray[np.floating], space: StageSpace) -> None:
+    """Writes points [m] and their extent at a frame."""
+    value, time = float3(from_metres(points, space)), Usd.TimeCode(float(frame))
+    mesh.CreatePointsAttr().Set(value, time)
+    mesh.CreateExtentAttr().Set(UsdGeom.PointBased.ComputeExtent(value), time)
+
+
+def told_of(cloth: CachedCloth, mesh: UsdGeom.Mesh, folder: Path) -> dict[str, str]:
+    """What the file keeps of a cloth besides its points."""
+    assert cloth.file is not None
+    return {
+        "name": cloth.name,
+        "file": relative(cloth.file, folder / "cache"),
+        "prim": cloth.prim,
+        "at": str(mesh.GetPath()),
+    }
+
+
+def read_cloth(source: Source, told: dict[str, Any], frames: list[float]) -> CachedCloth:
+    """A cloth of a cache, at its frames."""
+    prim = source.stage.GetPrimAtPath(told["at"])
+    if not prim:
+        raise UserError(
+            f"{source.path}: its cloth {told['at']} is not there; put {told['file']} back, or simulate again"
+        )
+    attribute = UsdGeom.PointBased(prim).GetPointsAttr()
+    points = np.stack([to_metres(np.array(attribute.Get(frame)), source.space) for frame in frames])
+    return CachedCloth(told["name"], source.path.parent / told["file"], told["prim"], points.astype(np.float32))

@@ -1,0 +1,124 @@
+"""Cloth in a shot: its settings, and the mesh that it comes from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Annotated, Self
+
+import numpy as np
+from pydantic import Field, ValidationInfo, field_validator, model_validator
+
+from ringlet.mesh import Clip, Mesh
+from ringlet.settings import Section, refuse
+from ringlet.shot.cloth import ClothMaterial
+
+Scale = Annotated[float, Field(gt=0.01, le=100)]
+
+
+class Pin(Section):
+    """Vertices of a cloth that go where they are told: all of it, or those that fulfil every condition here."""
+
+    to: str | None = Field(
+        default=None,
+        description="the collider that they go along with, by its name; by default the cloth's own animation",
+    )
+    subset: str | None = Field(default=None, description="a GeomSubset of faces: only the vertices of these")
+    map: str | None = Field(
+        default=None, description="a primvar of floats: only where it is above 0; `stiffness` is multiplied by it"
+    )
+    within: float | None = Field(
+        default=None, ge=0, le=10, description="[m] only those that begin no farther than this from the surface of `to`"
+    )
+    stiffness: float | None = Field(
+        default=None,
+        gt=0,
+        le=1e6,
+        description="[N/m] of a spring from each to its place; without it they are held there",
+    )
+
+    @field_validator("within")
+    @classmethod
+    def _of_something(cls, within: float | None, info: ValidationInfo) -> float | None:
+        if within is not None and info.data.get("to") is None:
+            raise refuse(f"is {within}, but there is no `to`; name the collider that this is the distance from")
+        return within
+
+
+class ShotCloth(Section):
+    """A cloth that locks, colliders, other cloths and itself touch: the same step moves it with the locks."""
+
+    name: str = Field(
+        default="", pattern="^([A-Za-z_][A-Za-z0-9_]*)?$", description="by default the last part of its prim's path"
+    )
+    file: Path | None = Field(
+        default=None, description="USD file; by default that of the head. A relative name counts from the shot"
+    )
+    mesh: str | None = Field(
+        default=None,
+        description="path of its prim: the mesh there, or the only one below it; without it the only one in `file`",
+    )
+    material: ClothMaterial = Field(default=ClothMaterial(), description="what it is made of")
+    pin: tuple[Pin, ...] = Field(
+        default=(), description="vertices that go where they are told; a later entry counts more"
+    )
+    shrink: Scale | tuple[tuple[float, Scale], ...] = Field(
+        default=1.0,
+        description="how large its rest shape is, by what the mesh is: below 1 it is elastic that draws together. Or "
+        "a list of `[frame, scale]`, straight in between",
+    )
+
+    @field_validator("shrink")
+    @classmethod
+    def _in_order(cls, shrink: float | tuple[tuple[float, float], ...]) -> float | tuple[tuple[float, float], ...]:
+        if isinstance(shrink, tuple):
+            frames = [frame for frame, _ in shrink]
+            if not frames or frames != sorted(set(frames)):
+                raise refuse(f"has the frames {frames}; give at least one, each later than the one before")
+        return shrink
+
+    @model_validator(mode="after")
+    def _somewhere(self) -> Self:
+        if self.file is None and self.mesh is None:
+            raise refuse("names no mesh; give `mesh`, a prim in the file of the head, or `file`")
+        return self
+
+    def scale(self, frame: float) -> float:
+        """How large the rest shape is at a frame, by what the mesh is."""
+        if not isinstance(self.shrink, tuple):
+            return self.shrink
+        frames, scales = zip(*self.shrink, strict=True)
+        return float(np.interp(frame, frames, scales))
+
+    @property
+    def least_scale(self) -> float:
+        """How small the rest shape ever is, by what the mesh is."""
+        return min(scale for _, scale in self.shrink) if isinstance(self.shrink, tuple) else self.shrink
+
+
+@dataclass
+class Garment:
+    """A mesh that becomes cloth.
+
+    mesh:     its rest shape [m]
+    clip:     how its file moves it: where it begins, and where what is pinned to nothing else goes
+    settings: what it is made of, and what pins it
+    file:     the USD file of its mesh, and
+    prim:     its path there
+    """
+
+    mesh: Mesh
+    clip: Clip
+    settings: ShotCloth = field(default_factory=lambda: ShotCloth(mesh="/cloth"))
+    file: Path | None = None
+    prim: str = "/cloth"
+
+    @property
+    def name(self) -> str:
+        """What it is called in the shot, in statistics and in messages."""
+        return self.settings.name or self.prim.rpartition("/")[2]
+
+    @property
+    def is_animated(self) -> bool:
+        """Whether its file moves it."""
+        return len(self.clip.frames) > 1

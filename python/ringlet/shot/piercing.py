@@ -1,0 +1,67 @@
+"""Edges that go through triangles: what is entangled when a shot begins stays so, since nothing passes through it."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import KDTree
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.integer]
+
+PARALLEL = 1e-9  # the sine below which a segment counts as lying in the plane of a triangle
+
+
+def piercings(ends: Array, corners: Array) -> NDArray[np.int64]:
+    """Which segments go through which triangles: rows of (segment, triangle), shape (k, 2).
+
+    ends:    of the segments [m], shape (n, 2, 3)
+    corners: of the triangles [m], shape (m, 3, 3)
+    """
+    pairs = _near(ends, corners)
+    start, way = ends[pairs[:, 0], 0], ends[pairs[:, 0], 1] - ends[pairs[:, 0], 0]
+    a, b, c = (corners[pairs[:, 1], k] for k in range(3))
+    # Möller and Trumbore 1997: start + t way = a + u (b − a) + v (c − a)
+    across, turned = np.cross(way, c - a), np.cross(start - a, b - a)
+    determinant = _dot(b - a, across)
+    sizes = np.linalg.norm(way, axis=1) * np.linalg.norm(b - a, axis=1) * np.linalg.norm(c - a, axis=1)
+    slanted = np.abs(determinant) > PARALLEL * sizes
+    determinant[~slanted] = 1.0
+    u, v = _dot(start - a, across) / determinant, _dot(way, turned) / determinant
+    t = _dot(c - a, turned) / determinant
+    return pairs[slanted & (u >= 0) & (v >= 0) & (u + v <= 1) & (t >= 0) & (t <= 1)]
+
+
+def edges_of(triangles: Indices) -> NDArray[np.int64]:
+    """Every edge of a mesh once, shape (k, 2)."""
+    sides = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+    return np.unique(np.sort(sides.astype(np.int64), axis=1), axis=0)
+
+
+def _near(ends: Array, corners: Array) -> NDArray[np.int64]:
+    """Pairs of a segment and a triangle whose balls overlap, shape (k, 2)."""
+    segments, triangles = _within(ends, corners), _within(corners, ends)
+    none = np.zeros((0, 2), np.int64)
+    if not len(segments) or not len(triangles):
+        return none
+    middles, centres = ends[segments].mean(axis=1), corners[triangles].mean(axis=1)
+    reach = np.linalg.norm(ends[segments, 0] - middles, axis=1)
+    radius = np.linalg.norm(corners[triangles] - centres[:, None], axis=2).max(axis=1)
+    found = KDTree(middles).query_ball_point(centres, radius + reach.max())
+    counts = np.array([len(each) for each in found])
+    if not counts.any():
+        return none
+    near = np.concatenate([np.asarray(each, np.int64) for each in found])
+    return np.stack([segments[near], triangles[np.repeat(np.arange(len(counts)), counts)]], axis=1)
+
+
+def _within(these: Array, others: Array) -> NDArray[np.int64]:
+    """Which of the shapes (n, k, 3) have a box that meets the one around all others."""
+    if not len(these) or not len(others):
+        return np.zeros(0, np.int64)
+    low, high = others.min(axis=(0, 1)), others.max(axis=(0, 1))
+    return np.flatnonzero(((these.min(axis=1) <= high) & (these.max(axis=1) >= low)).all(axis=1))
+
+
+def _dot(a: Array, b: Array) -> Array:
+    return np.einsum("ni,ni->n", a, b)
