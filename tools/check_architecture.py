@@ -25,7 +25,7 @@ CORE = {
 }
 
 # Module of python/ringlet → modules that it may import. DATA is plain data and small helpers, which all may share.
-DATA = {"curves", "mesh", "stage", "files", "errors", "settings", "share", "shot.cache"} | {
+DATA = {"curves", "mesh", "stage", "files", "errors", "settings", "share", "toml", "shot.cache"} | {
     "groom.groom",
     "groom.painted",
     "groom.random",

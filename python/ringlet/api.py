@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import importlib.util
 import inspect
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ringlet.curves import Curves
 from ringlet.errors import UserError
@@ -89,6 +90,64 @@ def read_groom(path: Path | str) -> Groom:
 def load_groom(path: Path | str, *, progress: Progress | None = None) -> Groom:
     """The groom of a recipe (``.toml``) or of a USD file."""
     return build_groom(path, progress=progress) if Path(path).suffix == ".toml" else read_groom(path)
+
+
+# Edits of single locks
+
+
+def edit_lock(
+    recipe: Path | str,
+    lock: int,
+    *,
+    points: NDArray | None = None,
+    stage: Literal["groom", "shape"] = "groom",
+    relative: bool | None = None,
+    settings: dict[str, Any] | None = None,
+) -> None:
+    """Takes a lock out of a recipe, whose line ``edits`` names the file that keeps the change.
+
+    points:   where its points go [m], shape (k, 3), in the rest pose; where they are now when absent
+    stage:    ``shape``: the points are those of the lock before it is curled
+    relative: keep the difference from what the recipe makes, so that the edit goes with all changes of the recipe (so
+              it is for given points); else the curve as it is
+    settings: in place of points: settings of this lock alone, such as ``{"curl.width": "8 mm"}``
+    """
+    from ringlet import groom
+
+    before = read_recipe(recipe)
+    with groom.taken_back(before):
+        if settings is not None:
+            groom.add_settings(before, lock, settings)
+        else:
+            made = build_groom(before)
+            now = (made.shapes if stage == "shape" and made.shapes else made.locks)[groom.row_of(made, lock)]
+            others = [edit for edit in before.edit if edit.lock != lock or edit.stage != stage]
+            plain = build_groom(before.model_copy(update={"edit": others}))
+            relative = points is not None if relative is None else relative
+            groom.add_points(before, plain, lock, now if points is None else points, stage, relative)
+        read_recipe(recipe)
+
+
+def release_locks(recipe: Path | str, locks: Collection[int] | None = None) -> list[int]:
+    """Gives edited locks back to the recipe, all or those named; returns their ids."""
+    from ringlet import groom
+
+    return groom.release(read_recipe(recipe), locks)
+
+
+def list_edits(recipe: Path | str) -> list[dict[str, Any]]:
+    """The edited locks of a recipe: ``lock``, ``stage``, ``what`` was changed, and whether the lock is ``there``."""
+    read = read_recipe(recipe)
+    there = set(build_groom(read).locks.ids.tolist()) if read.edit else set()
+    return [
+        {
+            "lock": edit.lock,
+            "stage": edit.stage,
+            "what": [*edit.set, *(name for name in ("curve", "offsets", "move") if getattr(edit, name))],
+            "there": edit.lock in there,
+        }
+        for edit in read.edit
+    ]
 
 
 # Shot

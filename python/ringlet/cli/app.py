@@ -16,7 +16,7 @@ import typer
 from typer.core import TyperGroup
 
 import ringlet
-from ringlet.cli import bench, demo, groom, hair, loft, picture, schema, sim, validate
+from ringlet.cli import bench, demo, edit, groom, hair, loft, picture, schema, sim, validate
 
 INTERRUPTED = 130  # what typer makes of a KeyboardInterrupt
 
@@ -109,6 +109,7 @@ def front(
 for name, command in {
     "demo": demo.demo,
     "groom": groom.groom,
+    "edit": edit.edit,
     "loft": loft.loft,
     "sim": sim.sim,
     "hair": hair.hair,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -30,5 +31,8 @@ def groom(
         with run.stage("groom", output):
             groom = ringlet.build_groom(recipe, progress=progress)
             ringlet.write_groom(groom, output)
+        for conflict in groom.conflicts:
+            run.warn(conflict)
+            print(f"warning: {conflict}", file=sys.stderr)
         run.count(guides=len(groom.guides), locks=len(groom.locks), points=len(groom.locks.points))
-    wrote(output, run.counts, as_json)
+    wrote(output, run.counts, as_json, conflicts=groom.conflicts)

@@ -1,5 +1,6 @@
 """The groom: from a recipe and a scalp to every hair."""
 
+from ringlet.groom.edits_file import add_points, add_settings, release, row_of, taken_back
 from ringlet.groom.groom import Groom
 from ringlet.groom.hairs import Hairs, HairSettings, make_hairs
 from ringlet.groom.presets import PRESETS
@@ -13,9 +14,14 @@ __all__ = [
     "Hairs",
     "Memory",
     "Recipe",
+    "add_points",
+    "add_settings",
     "make_groom",
     "make_hairs",
     "parse_recipe",
     "read_recipe",
+    "release",
+    "row_of",
     "schema",
+    "taken_back",
 ]

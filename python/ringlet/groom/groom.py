@@ -25,6 +25,8 @@ class Groom:
     space:      unit, up-axis and rate of that file
     hairs:      the ``[hairs]`` settings of the recipe, as plain values
     recipe:     the text of the recipe, kept with the groom
+    shapes:     the locks before they were curled (None for a groom that was read from a file)
+    conflicts:  a sentence for every edit of a lock that is not there
     """
 
     guides: Curves
@@ -36,3 +38,5 @@ class Groom:
     space: StageSpace = field(default_factory=StageSpace)
     hairs: dict[str, Any] = field(default_factory=dict)
     recipe: str | None = None
+    shapes: Curves | None = None
+    conflicts: list[str] = field(default_factory=list)

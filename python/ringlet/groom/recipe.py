@@ -7,12 +7,13 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, PrivateAttr, Tag, ValidationError
 
+from ringlet.groom.edits import Edit
 from ringlet.groom.hairs import HairSettings
 from ringlet.groom.helpers import HelperCurves
+from ringlet.groom.load import load, load_text
 from ringlet.groom.operators import Clean, Curl, Drawn, Grown, Locks, ShapeOperator
 from ringlet.groom.settings import UNITS, Section, explain
 from ringlet.groom.source import Source
-from ringlet.settings import parse_toml, read_toml
 
 
 class ScalpSettings(Source):
@@ -36,6 +37,14 @@ class Recipe(Section):
     name: str = Field(default="", description="what the groom is called")
     seed: int = Field(default=1, ge=0, le=2**31, description="another seed gives another head of hair of the same kind")
     unit: Literal["m", "cm", "mm", "in"] = Field(default="cm", description="unit of lengths that are plain numbers")
+    extends: str | None = Field(
+        default=None,
+        description="another recipe, of which this one changes a few values: tables are merged, `false` takes one "
+        "away, `[shape.NAME]` changes an operator",
+    )
+    edits: str | None = Field(
+        default=None, description="file of edits of single locks, beside the recipe; `ringlet edit` writes it"
+    )
     scalp: ScalpSettings = Field(default=ScalpSettings(), description="where it grows")
     maps: dict[str, str] = Field(
         default={}, description="pictures over the texture coordinates of the scalp, as maps by name: black 0, white 1"
@@ -49,6 +58,7 @@ class Recipe(Section):
     locks: Locks = Field(default=Locks(), description="the locks between the guides")
     shape: list[ShapeOperator] = Field(default=[], description="operators on the shape of the locks, in order")
     curl: Curl | None = Field(default=None, description="the curl; straight hair when absent")
+    edit: list[Edit] = Field(default=[], description="what was done to single locks by hand")
     clean: Clean = Field(default=Clean(), description="keeping out of the head")
     hairs: HairSettings = Field(default=HairSettings(), description="the hairs of each lock")
 
@@ -71,6 +81,11 @@ class Recipe(Section):
         return self._beside(self.scalp.file)
 
     @property
+    def edits_file(self) -> Path | None:
+        """The file of edits of single locks."""
+        return self._beside(self.edits)
+
+    @property
     def guides_file(self) -> Path | None:
         """The file of drawn guides, or None where they are grown."""
         return self._beside(self.guides.file) if isinstance(self.guides, Drawn) else None
@@ -90,13 +105,12 @@ class Recipe(Section):
 def read_recipe(path: Path | str) -> Recipe:
     """Reads a recipe file. Raises UserError with file, setting, value and remedy."""
     path = Path(path)
-    text, data = read_toml(path, "recipe")
-    return _recipe(text, data, path)
+    return _recipe(*load(path), path)
 
 
 def parse_recipe(text: str, path: Path | None = None) -> Recipe:
     """A recipe from its text; ``path`` names it in messages and is where relative file names count from."""
-    return _recipe(text, parse_toml(text, path.name if path else "recipe", "recipe"), path)
+    return _recipe(*load_text(text, path), path)
 
 
 def _recipe(text: str, data: dict[str, Any], path: Path | None) -> Recipe:

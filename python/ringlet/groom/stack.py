@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from hashlib import blake2b
@@ -12,7 +11,9 @@ from numpy.typing import NDArray
 
 from ringlet.curves import Curves
 from ringlet.errors import UserError
+from ringlet.groom.edits import Edit, Edits
 from ringlet.groom.groom import Groom
+from ringlet.groom.load import stage_names
 from ringlet.groom.operators import Context, Drawn, Operator, Resample
 from ringlet.groom.recipe import Recipe
 from ringlet.groom.scalp import Scalp
@@ -67,11 +68,13 @@ def make_groom(
             key = _key(key, name.encode(), helper.points.tobytes(), helper.offsets.tobytes())
         curves = drawn_guides or Curves.from_list([])
         stages = _stages(recipe)
-        guides = curves
+        guides, shapes = curves, None
         for name, operator in stages:
             if progress:
                 progress(name, 0, 1)
-            context = Context(recipe.seed, surface, name, recipe.locks.points, helpers)
+            if name == "curl":
+                shapes = curves
+            context = Context(recipe.seed, surface, name, recipe.locks.points, helpers, shapes)
             curves, key = _run(operator, curves, key, context, memory)
             if name == "guides":
                 guides = curves
@@ -89,19 +92,37 @@ def make_groom(
         space=space or StageSpace(),
         hairs=recipe.hairs.model_dump(mode="json"),
         recipe=recipe.text,
+        shapes=shapes,
+        conflicts=_conflicts(recipe, curves),
     )
 
 
 def _stages(recipe: Recipe) -> list[tuple[str, Operator]]:
     """Every stage with a name that stays its own when others are added: ``scraggle``, a second one ``scraggle 2``."""
     stages: list[tuple[str, Operator]] = [("guides", recipe.guides), ("locks", recipe.locks)]
-    used = Counter[str]()
-    for operator in recipe.shape:
-        used[operator.op] += 1
-        stages.append((operator.op if used[operator.op] == 1 else f"{operator.op} {used[operator.op]}", operator))
+    stages += zip(stage_names(list(recipe.shape)), recipe.shape, strict=True)
+    by_stage = {kind: [e for e in recipe.edit if e.stage == kind and _moves(e)] for kind in ("shape", "groom")}
+    if by_stage["shape"]:
+        stages.append(("edits of shapes", Edits(edits=by_stage["shape"])))
     stages.append(("curl", recipe.curl or Resample(points=recipe.locks.points)))
+    if by_stage["groom"]:
+        stages.append(("edits", Edits(edits=by_stage["groom"])))
     stages.append(("clean", recipe.clean))
     return stages
+
+
+def _moves(edit: Edit) -> bool:
+    """Whether an edit is more than settings, which are in the operators already."""
+    return bool(edit.curve or edit.offsets or edit.move)
+
+
+def _conflicts(recipe: Recipe, curves: Curves) -> list[str]:
+    """A sentence for every edit of a lock that is not there."""
+    gone = sorted({edit.lock for edit in recipe.edit} - set(curves.ids.tolist()))
+    return [
+        f"lock {lock} was edited but is no longer there; its edit is kept: bring the lock back, or release the edit"
+        for lock in gone
+    ]
 
 
 def _run(operator: Operator, curves: Curves, key: str, context: Context, memory: Memory) -> tuple[Curves, str]:

@@ -28,6 +28,7 @@ class Context:
     purpose:     a name of the operator that is its own in the stack; random numbers hang on it
     lock_points: points of a groom guide
     curves:      helper curves by name: partings, ties, what attracts
+    shapes:      the locks before they were curled, once they are
     """
 
     seed: int
@@ -35,6 +36,7 @@ class Context:
     purpose: str
     lock_points: int = 64
     curves: Mapping[str, Curves] = field(default_factory=dict)
+    shapes: Curves | None = None
 
     def random(self, setting: str = "") -> Random:
         """Random numbers for one setting of this operator."""

@@ -1,0 +1,113 @@
+"""Edits of single locks by hand: they outlive every change of what comes before them."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, model_validator
+
+from ringlet import _core
+from ringlet.curves import Curves
+from ringlet.groom.helpers import Place
+from ringlet.groom.operators.operator import Context, Operator, grid, packed, with_grid
+from ringlet.groom.settings import Quantity, Section, refuse
+
+Value = float | int | str
+
+
+class Move(Section):
+    """A place on a lock that was pulled, and how much of the lock came with it."""
+
+    at: Annotated[float, Quantity("", 0.0, 1.0)] = Field(description="place on the lock, from root (0) to tip (1)")
+    by: Place = Field(description="how far: along the two axes across the shape of the lock, and along it")
+    reach: Annotated[float, Quantity("", 0.001, 10.0)] = Field(
+        default=0.2, description="part of the lock on either side that comes with it, less and less"
+    )
+
+
+class Edit(Section):
+    """What was done to one lock by hand.
+
+    Moves and offsets are kept in the frame of the lock's shape before it is curled, relative to what the recipe makes:
+    when that changes, they go with it. A curve is kept in the frame of its root: it goes with the scalp and nothing
+    else.
+    """
+
+    lock: int = Field(description="id of the lock")
+    stage: Literal["shape", "groom"] = Field(
+        default="groom", description="shape: before the lock is curled, groom: the curled lock itself"
+    )
+    set: dict[str, Value] = Field(
+        default={}, description='settings of this lock alone, such as `"curl.width" = "8 mm"`'
+    )
+    curve: list[Place] | None = Field(
+        default=None, description="in place of the lock: points from its root, in tangent, bitangent and normal there"
+    )
+    offsets: list[Place] = Field(default=[], description="how far points at even places from root to tip are moved")
+    move: list[Move] = Field(default=[], description="places that were pulled")
+
+    @model_validator(mode="after")
+    def _says_something(self) -> Edit:
+        if self.curve is not None and len(self.curve) < 2:
+            raise refuse(f"has a curve of {len(self.curve)} point(s); give at least 2")
+        if not (self.set or self.curve or self.offsets or self.move):
+            raise refuse("changes nothing; give it 'set', 'curve', 'offsets' or 'move', or take it away")
+        return self
+
+
+class Edits(Operator):
+    """Edits single locks, one after the other; those that are not there are left to be told of."""
+
+    edits: list[Edit]
+
+    def apply(self, curves: Curves, context: Context) -> Curves:
+        """The same locks, the edited ones changed; roots stay."""
+        points = grid(curves).copy()
+        rows = {int(name): row for row, name in enumerate(curves.ids)}
+        frames = context.scalp.frames(curves)
+        u = np.linspace(0.0, 1.0, points.shape[1])
+        for edit in self.edits:
+            if (row := rows.get(edit.lock)) is None:
+                continue
+            root = points[row, 0].copy()
+            if edit.curve is not None:
+                points[row] = root + resampled(np.array(edit.curve), len(u)) @ frames[row].T
+            by = np.zeros((len(u), 3))
+            if edit.offsets:
+                by += resampled(np.array([(0.0, 0.0, 0.0), *edit.offsets[1:]]), len(u), even=False)
+            for move in edit.move:
+                t = np.clip(1.0 - np.abs(u - move.at) / move.reach, 0.0, 1.0)
+                by += (t * t * (3.0 - 2.0 * t))[:, None] * np.array(move.by)
+            points[row] += np.einsum("nij,nj->ni", shape_frames(context.shapes or curves, row, frames[row], u), by)
+            points[row, 0] = root
+        return with_grid(curves, points)
+
+
+def resampled(points: NDArray, count: int, *, even: bool = True) -> NDArray[np.float64]:
+    """As many points along a curve that begins at 0: evenly spaced, or at even places of its list; shape (count, 3)."""
+    if even:
+        return _core.resample_curves(*packed(Curves.from_list([points - points[0]])), count)
+    at = np.linspace(0.0, len(points) - 1.0, count)
+    return np.stack([np.interp(at, np.arange(len(points)), column) for column in points.T], axis=1)
+
+
+def shape_frames(shapes: Curves, row: int, root: NDArray, u: NDArray) -> NDArray[np.float64]:
+    """The rotation-minimising frames of one lock's shape at places u, shape (len(u), 3, 3); they begin at the tangent
+    of the root's frame."""
+    one = Curves.from_list([np.asarray(shapes[row], np.float64)])
+    frames = _core.curve_frames(*packed(one), np.ascontiguousarray(root[None, :, 0]))
+    at = u * (len(frames) - 1)
+    i = np.minimum(at.astype(int), len(frames) - 2)
+    t = (at - i)[:, None, None]
+    left, _, right = np.linalg.svd((1.0 - t) * frames[i] + t * frames[i + 1])
+    return left @ right  # the nearest rotation
+
+
+def offsets_to(before: Curves, shapes: Curves, row: int, root: NDArray, points: NDArray) -> list[list[float]]:
+    """The offsets that lead from what the recipe makes of a lock to ``points`` (k, 3), in the frame of its shape."""
+    u = np.linspace(0.0, 1.0, len(points))
+    made = resampled(np.asarray(before[row], np.float64), len(points), even=False)
+    frames = shape_frames(shapes, row, root, u)
+    return np.round(np.einsum("nij,ni->nj", frames, points - made), 9).tolist()

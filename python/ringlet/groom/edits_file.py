@@ -1,0 +1,119 @@
+"""The file of edits of single locks: written by programs, readable by people."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ringlet.errors import UserError
+from ringlet.files import replacing
+from ringlet.groom.edits import offsets_to
+from ringlet.groom.groom import Groom
+from ringlet.groom.load import read_edits
+from ringlet.groom.recipe import Recipe
+from ringlet.groom.scalp import Scalp
+from ringlet.settings import did_you_mean
+from ringlet.toml import to_toml
+
+
+def edits_path(recipe: Recipe) -> Path:
+    """Where the edits of a recipe are kept."""
+    if recipe.edits_file is None:
+        stem = (recipe.path.name if recipe.path else "recipe").removesuffix(".toml").removesuffix(".recipe")
+        raise UserError(
+            f'{recipe.path or "recipe"}: names no file for edits; add a line edits = "{stem}.edits.toml" to it'
+        )
+    return recipe.edits_file
+
+
+def write_edits(edits: list[dict[str, Any]], path: Path) -> None:
+    """Writes edits, each as a table ``[[edit]]``."""
+    with replacing(path) as aside:
+        aside.write_text(to_toml({"ringlet": 1, "edit": edits} if edits else {"ringlet": 1}), encoding="utf-8")
+
+
+@contextmanager
+def taken_back(recipe: Recipe) -> Iterator[None]:
+    """Leaves the edits as they were when the block fails."""
+    path = edits_path(recipe)
+    before = path.read_bytes() if path.exists() else None
+    try:
+        yield
+    except UserError:
+        if before is None:
+            path.unlink(missing_ok=True)
+        else:
+            with replacing(path) as aside:
+                aside.write_bytes(before)
+        raise
+
+
+def add_settings(recipe: Recipe, lock: int, settings: dict[str, Any]) -> None:
+    """Gives one lock settings of its own, such as ``{"curl.width": "8 mm"}``."""
+    path = edits_path(recipe)
+    edits = read_edits(path)
+    for edit in edits:
+        if edit.get("lock") == lock and edit.get("set"):
+            edit["set"] = {**edit["set"], **settings}
+            break
+    else:
+        edits.append({"lock": lock, "set": settings})
+    write_edits(edits, path)
+
+
+def add_points(recipe: Recipe, groom: Groom, lock: int, points: NDArray, stage: str, relative: bool) -> None:
+    """Puts the points of one lock where they are to be.
+
+    groom:    what the recipe makes without this edit, just made
+    points:   where the points go [m], shape (k, 3), in the rest pose
+    stage:    ``shape`` before the lock is curled, ``groom`` after
+    relative: keep the difference from what the recipe makes, so that the lock goes with every change; else the curve
+    """
+    path, points = edits_path(recipe), np.asarray(points, np.float64)
+    made = groom.shapes if stage == "shape" else groom.locks
+    row = row_of(groom, lock)
+    assert made is not None and groom.shapes is not None
+    if points.ndim != 2 or points.shape[1:] != (3,) or len(points) < 2 or not np.isfinite(points).all():
+        raise UserError(f"edit of lock {lock}: points have shape {points.shape}; must be finite, of shape (k, 3)")
+    root = Scalp(groom.scalp, groom.region).frames(groom.locks)[row]
+    edit: dict[str, Any] = {"lock": lock, "stage": stage}
+    if relative:
+        edit["offsets"] = _in_metres(offsets_to(made, groom.shapes, row, root, points))
+    else:
+        edit["curve"] = _in_metres(np.round((points - points[0]) @ root, 9).tolist())
+    kept = [e for e in read_edits(path) if e.get("lock") != lock or e.get("stage", "groom") != stage or e.get("set")]
+    write_edits([*kept, edit], path)
+
+
+def release(recipe: Recipe, locks: Collection[int] | None) -> list[int]:
+    """Returns locks to what the recipe makes of them, all or those named; gives the ids that had been edited."""
+    path = edits_path(recipe)
+    edits = read_edits(path)
+    gone = [edit for edit in edits if locks is None or edit.get("lock") in locks]
+    for lock in locks or ():
+        if not any(edit.get("lock") == lock for edit in gone):
+            edited = [str(edit.get("lock")) for edit in edits]
+            hint = did_you_mean(str(lock), edited) if edited else "; nothing is edited there"
+            raise UserError(f"{path}: lock {lock} is not edited{hint}")
+    if gone:
+        write_edits([edit for edit in edits if edit not in gone], path)
+    return sorted({int(edit["lock"]) for edit in gone})
+
+
+def row_of(groom: Groom, lock: int) -> int:
+    """The place of a lock in the list of locks."""
+    found = np.flatnonzero(groom.locks.ids == lock)
+    if not found.size:
+        nearest = groom.locks.ids[np.abs(groom.locks.ids - lock).argmin()]
+        raise UserError(f"edit: there is no lock {lock}; the nearest id is {nearest}")
+    return int(found[0])
+
+
+def _in_metres(points: list[list[float]]) -> list[list[str]]:
+    """Lengths that say their unit, whatever that of the recipe is."""
+    return [[f"{x:.9g} m" for x in point] for point in points]

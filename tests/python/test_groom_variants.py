@@ -1,0 +1,107 @@
+"""Recipes that change a few values of another."""
+
+import numpy as np
+import pytest
+from small_example import write_head
+
+import ringlet
+from ringlet import UserError
+from ringlet.groom import parse_recipe, read_recipe
+
+BASE = """
+ringlet = 1
+name = "base"
+unit = "cm"
+[scalp]
+file = "head.usda"
+region = "scalp"
+[guides]
+count = 8
+length = { value = 6, vary = 0.1 }
+part = { reach = 3 }
+[locks]
+count = 12
+points = 64
+[[shape]]
+op = "scraggle"
+amount = 0.3
+[[shape]]
+op = "loft"
+amount = 0.5
+[[shape]]
+op = "scraggle"
+amount = 0.1
+[curl]
+preset = "3B"
+width = 1
+"""
+
+
+@pytest.fixture
+def folder(tmp_path):
+    write_head(tmp_path / "head.usda")
+    (tmp_path / "base.toml").write_text(BASE)
+    return tmp_path
+
+
+def variant(folder, text, name="down.toml"):
+    (folder / name).parent.mkdir(exist_ok=True)
+    (folder / name).write_text(f"ringlet = 1\n{text}")
+    return folder / name
+
+
+def test_a_variant_changes_what_it_says_and_nothing_else(folder):
+    path = variant(
+        folder, 'extends = "base.toml"\nname = "down"\n[guides]\nlength = 12\n[curl]\nwidth = { vary = 0.3 }\n'
+    )
+    base, down = read_recipe(folder / "base.toml"), read_recipe(path)
+    assert (down.name, down.guides.length.value, down.curl.width.vary) == ("down", 0.12, 0.3)
+    assert down.curl.width.value == base.curl.width.value
+    same = {"name", "guides", "curl", "extends"}
+    assert down.model_dump(exclude=same) == base.model_dump(exclude=same)
+    assert down.guides.count == base.guides.count and down.guides.part == base.guides.part
+
+
+def test_operators_are_changed_by_name_and_taken_away_with_false(folder):
+    text = 'extends = "base.toml"\ncurl = false\n[shape]\nloft = false\n"scraggle 2" = { amount = 0.7 }\n'
+    down = read_recipe(variant(folder, text))
+    assert [op.op for op in down.shape] == ["scraggle", "scraggle"]
+    assert [op.amount.value for op in down.shape] == pytest.approx([0.003, 0.007])
+    assert down.curl is None
+    assert read_recipe(variant(folder, 'extends = "base.toml"\nshape = []\n')).shape == []
+
+
+def test_a_variant_of_a_variant_in_another_folder_finds_the_files_of_the_base(folder):
+    variant(folder, 'extends = "base.toml"\n[guides]\nlength = 9\n', "long.toml")
+    path = variant(folder, 'extends = "../long.toml"\n[curl]\nwidth = 2\n', "variants/wide.toml")
+    recipe = read_recipe(path)
+    assert (recipe.guides.length.value, recipe.curl.width.value) == (0.09, 0.02)
+    assert len(ringlet.build_groom(path).locks) == 12
+
+
+def test_the_text_that_is_kept_with_the_groom_is_a_recipe_of_its_own(folder):
+    groom = ringlet.build_groom(variant(folder, 'extends = "base.toml"\n[guides]\nlength = 9\n'))
+    assert groom.recipe is not None and "extends" not in groom.recipe
+    again = ringlet.build_groom(parse_recipe(groom.recipe, folder / "again.toml"))
+    np.testing.assert_array_equal(again.locks.points, groom.locks.points)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ('extends = "bsae.toml"', "bsae.toml: cannot be read"),
+        ('extends = "down.toml"', "down.toml: extends down.toml, which extends it in turn"),
+        ("extends = 3", "extends is 3; must be the name of a recipe file"),
+        ('extends = "base.toml"\nunit = "m"', "unit is 'm', that of base.toml is 'cm'; must be the same"),
+        (
+            'extends = "base.toml"\n[shape.lofft]\namount = 1',
+            "shape.lofft is no operator of what it extends; did you mean",
+        ),
+        ('extends = "base.toml"\n[shape]\nloft = 3', "shape.loft is 3; must be a table of settings, or false"),
+        ('extends = "base.toml"\n[curl]\nwidht = 3', "curl.widht is not a setting; did you mean 'width'?"),
+    ],
+)
+def test_variants_that_cannot_be_are_refused_in_one_line(folder, text, words):
+    with pytest.raises(UserError) as error:
+        read_recipe(variant(folder, text))
+    assert words in str(error.value) and "\n" not in str(error.value)
