@@ -36,7 +36,8 @@ void bind_contact(nb::module_ &module) {
         .def_rw("strand_material", &SceneContact::strand_material)
         .def_rw("friction", &SceneContact::friction)
         .def_rw("stiffness", &SceneContact::stiffness)
-        .def_rw("creep_speed", &SceneContact::creep_speed);
+        .def_rw("creep_speed", &SceneContact::creep_speed)
+        .def_rw("parting_speed", &SceneContact::parting_speed);
 
     nb::class_<BodyModel>(module, "BodyModel", "A surface that moves as it is told.")
         .def(

@@ -17,6 +17,10 @@ nb::ndarray<nb::numpy, double> state_view(nb::handle self, std::vector<Vec3> &va
     return {values.data()->data(), {values.size(), 3}, self};
 }
 
+nb::ndarray<nb::numpy, const double> model_view(nb::handle self, const std::vector<double> &values) {
+    return {values.data(), {values.size()}, self};
+}
+
 } // namespace
 
 void bind_scene(nb::module_ &module) {
@@ -74,6 +78,22 @@ void bind_scene(nb::module_ &module) {
             "directors", [](nb::object self) { return state_view(self, nb::cast<Strands &>(self).state.directors); },
             "Directors of the material frame, one per edge from the second of each strand on, shape (n, 3): the solver's own "
             "memory.")
+        .def_prop_ro(
+            "masses", [](nb::object self) { return model_view(self, nb::cast<Strands &>(self).model.mass); },
+            "Masses [kg], shape (n,).")
+        .def_prop_ro(
+            "drag", [](nb::object self) { return model_view(self, nb::cast<Strands &>(self).model.drag); },
+            "Air drag [kg/s], shape (n,).")
+        .def_prop_ro(
+            "stretch_stiffness",
+            [](nb::object self) { return model_view(self, nb::cast<Strands &>(self).model.stretch_stiffness); },
+            "EA / l̄ of the edge that begins at each vertex [N/m], shape (n,).")
+        .def_prop_ro(
+            "bend_stiffness", [](nb::object self) { return model_view(self, nb::cast<Strands &>(self).model.bend_stiffness); },
+            "EI / l̄ at each vertex [N m], shape (n,).")
+        .def_prop_ro(
+            "twist_stiffness", [](nb::object self) { return model_view(self, nb::cast<Strands &>(self).model.twist_stiffness); },
+            "c EI / l̄ of the edge that begins at each vertex [N m], shape (n,).")
         .def(
             "place",
             [](Strands &self, Array3<double> positions) {

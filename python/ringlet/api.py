@@ -215,7 +215,7 @@ def loft(
     if not isinstance(groom, Groom):
         groom = load_groom(groom or shot.groom, progress=progress)
     if known is None or not Path(known).exists():
-        return shots.loft(shot, groom, progress=progress)
+        return shots.preload(shot, groom, progress=progress)
     return shots.refresh(shot, groom, *io.read_rest(Path(known)), progress=progress)
 
 
@@ -235,7 +235,9 @@ def _rest_shape(shot: Shot, groom: Groom, allow_stale: bool) -> Curves | None:
     if shot.rest.mode == "none":
         return None
     if shot.rest_file is None:
-        raise UserError("shot: rest.mode is 'lofted', but rest.file is missing; name what ringlet loft wrote")
+        raise UserError(
+            f"shot: rest.mode is '{shot.rest.mode}', but rest.file is missing; name what ringlet loft wrote"
+        )
     if not shot.rest_file.exists():
         raise UserError(f"{shot.rest_file}: there is no lofted shape; make it with: ringlet loft {shot.path}")
     kept, made_from = io.read_rest(shot.rest_file)

@@ -130,3 +130,15 @@ def test_only_locks_that_have_changed_are_lofted_again(folder):
     seen.clear()
     ringlet.loft(shot, groom, known=file, progress=lambda *step: seen.append(step))
     assert not seen
+
+
+def test_a_shot_in_equilibrium_stays_as_groomed_and_knows_how_stiff_its_locks_are(folder):
+    change(folder, "preroll = 0", "preroll = 24\nstrands = { bend_scale = 0.2 }")
+    change(folder, "mode = 'lofted'", "mode = 'equilibrium'")
+    assert run("loft", folder / "small.shot.toml").exit_code == 0
+    rest, _ = read_rest(folder / "small.rest.usdc")
+    assert rest.curve["stiffened"].max() > 1.0
+    assert stay(folder).max() < 1e-5
+    change(folder, "mode = 'equilibrium'", "mode = 'lofted'")
+    result = run("sim", folder / "small.shot.toml", "-o", folder / "cache.usdc")
+    assert result.exit_code == 2 and "rest.mode was equilibrium and is lofted" in result.stderr

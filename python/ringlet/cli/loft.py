@@ -44,7 +44,7 @@ def loft(
     """Pre-bends the shape that the locks of a SHOT remember, so that what hangs under gravity is the groom.
 
     The locks hang still under the forces of the shot, in the rest pose of the scalp. Where REST is there already, only
-    locks that have changed since are lofted. The shot uses it with [rest] mode = "lofted".
+    locks that have changed since are lofted. The shot uses it with [rest] mode = "lofted" or "equilibrium".
 
     Examples: ringlet loft nod.shot.toml · ringlet loft nod.shot.toml --report out
     """
@@ -67,6 +67,11 @@ def loft(
         ]
         columns = ["mm", "mean", "95 % are below", "most"]
         run.table("What gravity takes from the groom", columns, rows)
+        stiffer = made.stiffened[made.stiffened > 1.0] if made.stiffened is not None else made.off[:0]
+        if len(stiffer):
+            run.warn(
+                f"{len(stiffer)} of {len(made.off)} locks were made up to {stiffer.max():.1f} times stiffer to stand."
+            )
         fell, moving = len(made.off) - near, int((made.moving > 1e-6).sum())
         if fell:
             run.warn(f"{fell} of {len(made.off)} locks do not hang as groomed: probably too soft to stand.")

@@ -3,12 +3,13 @@
 from ringlet.shot.cache import Cache, CachedCloth
 from ringlet.shot.cloth import Cloth, ClothMaterial, ClothSolver
 from ringlet.shot.collider import Collider, Obstacle, ShotContact
+from ringlet.shot.equilibrium import equilibrium
 from ringlet.shot.garment import Garment, Pin, ShotCloth
 from ringlet.shot.loft import Loft, loft
 from ringlet.shot.scene import Body, Contact, Scene
 from ringlet.shot.shot import Forces, Shot, parse_shot, read_shot, schema
 from ringlet.shot.simulate import simulate
-from ringlet.shot.stale import check, keep, made_from, refresh
+from ringlet.shot.stale import check, keep, made_from, preload, refresh
 from ringlet.shot.strands import Material, Solver, Strands
 
 __all__ = [
@@ -33,10 +34,12 @@ __all__ = [
     "Solver",
     "Strands",
     "check",
+    "equilibrium",
     "keep",
     "loft",
     "made_from",
     "parse_shot",
+    "preload",
     "read_shot",
     "refresh",
     "schema",

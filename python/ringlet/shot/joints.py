@@ -57,12 +57,12 @@ def measure(curves: Curves, points: Array, directors: Array) -> Joints:
     lengths, tangents = edges(curves, points)
     corner, twisting = corners(curves), twists(curves)
     before, tangent, director = tangents[corner - 1], tangents[corner], directors[corner]
-    turning = _turning(before, tangent)
+    turning = turns(before, tangent)
     joints = Joints(lengths, np.zeros((len(points), 2)), np.zeros(len(points)))
     joints.bend[corner, 0] = _dot(turning, director)
     joints.bend[corner, 1] = _dot(turning, np.cross(tangent, director))
     tangent, director = tangents[twisting], directors[twisting]
-    carried = rotate(directors[twisting + 1], -_turning(tangent, tangents[twisting + 1]))
+    carried = rotate(directors[twisting + 1], -turns(tangent, tangents[twisting + 1]))
     joints.twist[twisting] = np.arctan2(_dot(np.cross(tangent, director), carried), _dot(director, carried))
     return joints
 
@@ -77,7 +77,7 @@ def shape(curves: Curves, joints: Joints, directors: Array) -> tuple[Array, Arra
     begin, counts = curves.offsets[:-1], curves.counts
     tangent = tangents[begin]
     points[begin + 1] = points[begin] + joints.length[begin, None] * tangent
-    director = rotate(directors[begin + 1], -_turning(tangent, tangents[begin + 1]))
+    director = rotate(directors[begin + 1], -turns(tangent, tangents[begin + 1]))
     made = np.zeros_like(points)
     for k in range(1, counts.max() - 1):
         going = counts > k + 1
@@ -131,7 +131,7 @@ def rotate(vectors: Array, turns: Array) -> Array:
     return along + np.cos(angle) * (vectors - along) + np.sin(angle) * np.cross(axis, vectors)
 
 
-def _turning(before: Array, after: Array) -> Array:
+def turns(before: Array, after: Array) -> Array:
     """The turns that carry directions straight into others, shapes (k, 3)."""
     normal = np.cross(before, after)
     sine = np.linalg.norm(normal, axis=1)

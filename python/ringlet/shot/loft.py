@@ -45,6 +45,7 @@ class Loft:
     lofted: how they hang when they remember ``rest``, shape (n, 3)
     off:    how far each hangs from where it should, shape (count,)
     moving: how far each still moved in its last step, of 1 s, shape (count,)
+    stiffened: times that each is stiffer against bend than the shot says, shape (count,); None: none is
     """
 
     groom: Groom
@@ -53,6 +54,7 @@ class Loft:
     lofted: Array
     off: Array
     moving: Array
+    stiffened: Array | None = None
 
     def lost(self) -> dict[str, dict[str, float]]:
         """What is lost of the groom, without and with the loft [m]: ``without mean``, ``with max`` … of each measure.
@@ -135,6 +137,19 @@ def loft(shot: Shot, groom: Groom, *, progress: Progress | None = None) -> Loft:
     if progress:
         progress("loft", shot.rest.iterations, shot.rest.iterations)
     return Loft(groom, tries.rest(best.joints), sagged, best.points, best.off, best.moving)
+
+
+def hang_plain(shot: Shot, groom: Groom) -> Loft:
+    """How locks hang that remember the groom."""
+    sagged = _Tries(shot, groom).sagged
+    return Loft(
+        groom,
+        groom.locks.with_points(np.array(groom.locks.points, np.float64)),
+        sagged.points,
+        sagged.points.copy(),
+        sagged.off,
+        sagged.moving,
+    )
 
 
 class _Tries:

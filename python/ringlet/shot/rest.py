@@ -15,11 +15,16 @@ from ringlet.shot.variation import Mapped
 class Rest(Section):
     """The shape that strands remember."""
 
-    mode: Literal["none", "lofted"] = Field(
-        default="none", description="`none`: the groom, which then sags; `lofted`: what `ringlet loft` made of it"
+    mode: Literal["none", "lofted", "equilibrium"] = Field(
+        default="none",
+        description="`none`: the groom, which then sags; or what `ringlet loft` made of it: `lofted`, pre-bent as far "
+        "as it goes, or `equilibrium`, balanced exactly, what would fall over made stiffer",
     )
     gain: Annotated[Mapped, Quantity("", 0.0, 1.0)] = Field(
-        default=Mapped(), description="the part of the sag that the loft takes away, from 0 to 1"
+        default=Mapped(), description="in `lofted`, the part of the sag to take away, from 0 to 1"
+    )
+    stiffen: float = Field(
+        default=8.0, ge=1.0, le=1e3, description="in `equilibrium`, how many times stiffer a lock may become to stand"
     )
     iterations: int = Field(default=12, ge=1, le=1000, description="times that the loft is corrected at most")
     tolerance: Annotated[float, Quantity("m", 1e-9, 0.1)] = Field(

@@ -29,6 +29,12 @@ class Contact(Section):
     creep_speed: float = Field(
         default=1e-3, gt=0, le=1, description="[m/s] contacts that slide slower than this count as sticking"
     )
+    parting_speed: float = Field(
+        default=2e-3,
+        ge=0,
+        le=1,
+        description="[m/s] at which locks that begin nearer than they may be part; 0: they stay",
+    )
 
 
 @dataclass
@@ -73,6 +79,7 @@ class Scene:
         settings.strand_radius = self.contact.radius
         settings.stiffness = self.contact.stiffness
         settings.creep_speed = self.contact.creep_speed
+        settings.parting_speed = self.contact.parting_speed
         friction = friction_of(self.contact, self.cloths, self.bodies) if self.friction is None else self.friction
         settings.friction = friction.ravel().tolist()
         pinned = [-1] * len(self.cloths) if self.pinned_to is None else [int(body) for body in self.pinned_to]

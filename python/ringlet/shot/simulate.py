@@ -41,7 +41,8 @@ def simulate(
 ) -> Cache:
     """Moves the locks of ``groom`` while its scalp plays ``clip``.
 
-    rest:      the shape that the locks remember, in the rest pose of the scalp; the groomed one by default
+    rest:      the shape that the locks remember, in the rest pose of the scalp; the groomed one by default. Its
+               attribute ``stiffened`` says how many times each is stiffer against bend
     obstacles: what the locks touch, where the shot has contact
     garments:  what becomes cloth there
     frames:    first and last frame, in place of the shot's
@@ -84,9 +85,17 @@ def simulate(
     return cache
 
 
-def make_strands(shot: Shot, groom: Groom, rest: Curves | None = None) -> Strands:
-    """The locks of a groom as strands of a shot's material that remember the groomed shape, or another one."""
-    return Strands(rest or groom.locks, shot.strands, shot.held, shot.variation.factors(groom))
+def make_strands(
+    shot: Shot, groom: Groom, rest: Curves | None = None, stiffened: NDArray[np.float64] | None = None
+) -> Strands:
+    """The locks of a groom as strands of a shot's material that remember the groomed shape, or another one.
+
+    stiffened: times that each lock is stiffer against bend than that material, shape (count,)
+    """
+    factors = shot.variation.factors(groom)
+    if stiffened is not None:
+        factors["bend"] = factors.get("bend", 1.0) * np.repeat(stiffened, groom.locks.counts)
+    return Strands(rest or groom.locks, shot.strands, shot.held, factors)
 
 
 class Motion:
@@ -108,7 +117,7 @@ class Motion:
         first: float,
     ) -> None:
         self.shot, self.clip, self.roots = shot, clip, Roots(groom)
-        self.strands = make_strands(shot, groom, rest)
+        self.strands = make_strands(shot, groom, rest, None if rest is None else rest.curve.get("stiffened"))
         self.strands.place(self.roots.carry(clip.at(first), first))
         self.scene: Scene | None = None
         self.start: dict[str, Any] = {}

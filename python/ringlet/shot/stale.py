@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from ringlet.curves import Curves
 from ringlet.errors import UserError
 from ringlet.groom.groom import Groom
+from ringlet.shot.equilibrium import equilibrium
 from ringlet.shot.loft import Loft, Progress, loft
 from ringlet.shot.shot import Shot
 from ringlet.shot.strands import VARIATIONS
@@ -32,7 +33,18 @@ _FREE = {
 
 def made_from(shot: Shot) -> dict[str, Any]:
     """The settings of a shot that a loft depends on, as plain values."""
-    return shot.model_dump(mode="json", exclude=_FREE)
+    settings = shot.model_dump(mode="json", exclude=_FREE)
+    return {**settings, "rest": {**settings["rest"], "mode": _mode(shot)}}
+
+
+def preload(shot: Shot, groom: Groom, *, progress: Progress | None = None) -> Loft:
+    """The rest shape that a shot asks for; one that asks for none gets a loft."""
+    make = equilibrium if _mode(shot) == "equilibrium" else loft
+    return make(shot, groom, progress=progress)
+
+
+def _mode(shot: Shot) -> str:
+    return "lofted" if shot.rest.mode == "none" else shot.rest.mode
 
 
 def keep(loft: Loft, shot: Shot) -> Curves:
@@ -41,6 +53,8 @@ def keep(loft: Loft, shot: Shot) -> Curves:
     point = {"groomed": loft.groom.locks.points, "sagged": loft.sagged, "lofted": loft.lofted}
     point |= _values(shot, loft.groom)
     curve = {"off": loft.off, "moving": loft.moving}
+    if loft.stiffened is not None:
+        curve["stiffened"] = loft.stiffened
     floats = {name: np.asarray(values, np.float32) for name, values in point.items()}
     return Curves(rest.points, rest.offsets, rest.ids, curve, floats)
 
@@ -48,19 +62,22 @@ def keep(loft: Loft, shot: Shot) -> Curves:
 def recall(kept: Curves, groom: Groom) -> Loft:
     """The loft that ``keep`` kept, of the same locks."""
     sagged, lofted = (np.asarray(kept.point[name], np.float64) for name in ("sagged", "lofted"))
-    return Loft(groom, kept, sagged, lofted, kept.curve["off"].copy(), kept.curve["moving"].copy())
+    stiffened = kept.curve["stiffened"].copy() if "stiffened" in kept.curve else None
+    return Loft(groom, kept, sagged, lofted, kept.curve["off"].copy(), kept.curve["moving"].copy(), stiffened)
 
 
 def refresh(shot: Shot, groom: Groom, kept: Curves, made: dict[str, Any], *, progress: Progress | None = None) -> Loft:
     """The loft of a groom; locks that have not changed since a kept one was made are taken from it."""
     if not same_locks(kept, groom) or made != made_from(shot):
-        return loft(shot, groom, progress=progress)
+        return preload(shot, groom, progress=progress)
     whole, changed = recall(kept, groom), changed_locks(kept, shot, groom)
     if changed.any():
-        part = loft(shot, replace(groom, locks=groom.locks.take(changed)), progress=progress)
+        part = preload(shot, replace(groom, locks=groom.locks.take(changed)), progress=progress)
         rows = np.repeat(changed, groom.locks.counts)
         whole.rest.points[rows], whole.sagged[rows], whole.lofted[rows] = part.rest.points, part.sagged, part.lofted
         whole.off[changed], whole.moving[changed] = part.off, part.moving
+        if whole.stiffened is not None and part.stiffened is not None:
+            whole.stiffened[changed] = part.stiffened
     return whole
 
 

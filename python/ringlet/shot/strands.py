@@ -174,6 +174,21 @@ class Strands:
         own memory. Only ``material_frame`` moves them with the strands."""
         return self._core.directors
 
+    @property
+    def masses(self) -> NDArray[np.float64]:
+        """Mass of each vertex [kg], shape (n,)."""
+        return self._core.masses
+
+    def loads(self, gravity: Vector, wind: Vector = (0.0, 0.0, 0.0)) -> NDArray[np.float64]:
+        """What gravity [m/s²] and wind [m/s] do to strands that are still [N], shape (n, 3)."""
+        return np.outer(self._core.masses, gravity) + np.outer(self._core.drag, wind)
+
+    @property
+    def stiffness(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """Against stretch [N/m] and twist [N m] of the edge that begins at each vertex, against bend [N m] at it:
+        stretch, bend, twist, shapes (n,)."""
+        return self._core.stretch_stiffness, self._core.bend_stiffness, self._core.twist_stiffness
+
     def place(self, positions: NDArray[np.floating]) -> None:
         """Puts the strands at rest at other positions [m], shape (n, 3); the rest shape stays what it was."""
         self._core.place(np.ascontiguousarray(positions, np.float64))

@@ -280,8 +280,7 @@ SceneReport Scene::Parts::step(const SceneInput &input, const SceneStep &scene_s
         system.contacts.begin(near.touching(vertices.positions));
         begun = true;
     }
-    constexpr double parting = 0.002; // [m/s]
-    system.contacts.part_early(parting * scene_step.strands.dt);
+    system.contacts.part_early(settings.parting_speed * scene_step.strands.dt);
     path.clear();
     if (recording) path.push_back(vertices.positions);
     std::vector<Vec3> forces(input.strand_forces.begin(), input.strand_forces.end());

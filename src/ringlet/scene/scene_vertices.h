@@ -32,6 +32,7 @@ struct SceneContact {
     std::vector<double> friction = {0.0}; // μ of each pair of materials, row-major
     double stiffness = 1.0;               // scales how hard contacts push
     double creep_speed = 1e-3;            // slower than this counts as sticking [m/s]
+    double parting_speed = 2e-3;          // at which pairs that begin too near may part [m/s]
 };
 
 struct SceneVertices {
