@@ -44,7 +44,8 @@ PYTHON = {
     "bench": {"_core"},
     "run": DATA | {"_core", "report"},
     "demo": DATA | {"api", "run"},
-    API: DATA | {"api", "run", "demo", "shot", "bench"},
+    "doctor": DATA | {"_core", "api", "shot"},
+    API: DATA | {"api", "run", "demo", "doctor", "shot", "bench"},
     "cli": {API},
 }
 OUTSIDE = ("bench", "examples")  # these use the public API only

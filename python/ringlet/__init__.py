@@ -31,6 +31,7 @@ from ringlet.api import (
 )
 from ringlet.curves import Curves
 from ringlet.demo import run_demo
+from ringlet.doctor import Finding, diagnose
 from ringlet.errors import UserError
 from ringlet.mesh import Clip, Mesh
 from ringlet.run import Run
@@ -58,6 +59,7 @@ __all__ = [
     "Contact",
     "Curves",
     "DirectSolver",
+    "Finding",
     "Groom",
     "Loft",
     "Material",
@@ -71,6 +73,7 @@ __all__ = [
     "__version__",
     "build_groom",
     "build_hairs",
+    "diagnose",
     "edit_lock",
     "list_edits",
     "load_groom",

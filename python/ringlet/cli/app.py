@@ -16,7 +16,7 @@ import typer
 from typer.core import TyperGroup
 
 import ringlet
-from ringlet.cli import bench, demo, edit, groom, hair, loft, picture, schema, sim, validate
+from ringlet.cli import bench, demo, doctor, edit, groom, hair, loft, picture, schema, sim, validate
 
 INTERRUPTED = 130  # what typer makes of a KeyboardInterrupt
 
@@ -116,6 +116,7 @@ for name, command in {
     "picture": picture.picture,
     "validate": validate.validate,
     "schema": schema.schema,
+    "doctor": doctor.doctor,
 }.items():
     app.command(name)(command)
 # What a benchmark takes is the benchmark's own affair.

@@ -52,4 +52,4 @@ def print_table(columns: list[str], rows: list[list[str]], right: tuple[int, ...
         table.add_column(column, justify="right" if index in right else "left", overflow="fold")
     for row in rows:
         table.add_row(*row)
-    Console(width=None if sys.stdout.isatty() else PLAIN_WIDTH).print(table)
+    Console(width=None if sys.stdout.isatty() else PLAIN_WIDTH, markup=False).print(table)

@@ -1,0 +1,40 @@
+"""What the doctor says of an installation."""
+
+import json
+
+from ringlet.cli.app import app
+from typer.testing import CliRunner
+
+import ringlet
+from ringlet import doctor
+
+
+def test_this_installation_works():
+    findings = {finding.name: finding for finding in ringlet.diagnose()}
+    assert {finding.state for finding in findings.values()} <= {"ok", "optional"}
+    assert "known answers hold" in findings["simulation"].found
+    assert "locks groomed" in findings["groom and USD"].found
+    assert findings["picture"].state == "ok"
+
+
+def test_what_breaks_is_told_and_the_rest_still_looked_at(monkeypatch):
+    def broken(folder):
+        raise RuntimeError("out of order")
+
+    monkeypatch.setattr(doctor, "_test_core", broken)
+    monkeypatch.setattr(doctor, "_test_files", lambda folder: doctor.Finding("groom and USD", "ok", "fine"))
+    monkeypatch.setattr(doctor, "_test_picture", broken)
+    monkeypatch.setattr(doctor, "PACKAGES", ("numpy", "no-such-package"))
+    result = CliRunner().invoke(app, ["doctor", "--json"])
+    assert result.exit_code == 1
+    told = {entry["name"]: entry for entry in json.loads(result.stdout)}
+    assert told["numpy"]["state"] == "ok" and told["groom and USD"]["state"] == "ok"
+    assert told["no-such-package"]["state"] == "fails" and "pip install" in told["no-such-package"]["remedy"]
+    assert "out of order" in told["broken"]["found"]
+
+
+def test_without_the_self_test_nothing_is_tried(monkeypatch):
+    monkeypatch.setattr(doctor, "_test_core", None)
+    result = CliRunner().invoke(app, ["doctor", "--no-self-test"])
+    assert result.exit_code == 0 and "processor" in result.stdout and "simulation" not in result.stdout
+    assert "ringlet[direct]" in result.stdout or "opened" in result.stdout
