@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import importlib.util
 import inspect
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -73,18 +73,21 @@ def build_groom(recipe: Recipe | Path | str, *, progress: Progress | None = None
     )
 
 
-def write_groom(groom: Groom, path: Path | str) -> None:
-    """Writes a groom as USD, with the head it grows on by reference."""
+def write_groom(groom: Groom, path: Path | str, *, variants: Mapping[str, Groom] | None = None) -> None:
+    """Writes a groom as USD, with the head it grows on by reference.
+
+    variants: more grooms of the same head, by name: the file has a variant set ``groom``, with ``groom`` as ``base``
+    """
     from ringlet import io
 
-    io.write_groom(groom, Path(path))
+    io.write_groom(groom, Path(path), variants)
 
 
-def read_groom(path: Path | str) -> Groom:
-    """Reads a groom that ``write_groom`` wrote."""
+def read_groom(path: Path | str, *, variant: str | None = None) -> Groom:
+    """Reads a groom that ``write_groom`` wrote, or one of its variants."""
     from ringlet import io
 
-    return io.read_groom(Path(path))
+    return io.read_groom(Path(path), variant)
 
 
 def load_groom(path: Path | str, *, progress: Progress | None = None) -> Groom:

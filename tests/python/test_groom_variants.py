@@ -105,3 +105,48 @@ def test_variants_that_cannot_be_are_refused_in_one_line(folder, text, words):
     with pytest.raises(UserError) as error:
         read_recipe(variant(folder, text))
     assert words in str(error.value) and "\n" not in str(error.value)
+
+
+def test_variants_are_variants_of_the_usd_file(folder):
+    from pxr import Usd, UsdGeom
+
+    down = variant(folder, 'extends = "base.toml"\n[guides]\nlength = 12\n[locks]\npoints = 96\n')
+    base_groom, down_groom = ringlet.build_groom(folder / "base.toml"), ringlet.build_groom(down)
+    ringlet.write_groom(base_groom, folder / "groom.usdc", variants={"down": down_groom})
+    base_locks = ringlet.read_groom(folder / "groom.usdc").locks
+    np.testing.assert_allclose(base_locks.points, base_groom.locks.points, atol=1e-6)
+    again = ringlet.read_groom(folder / "groom.usdc", variant="down")
+    np.testing.assert_allclose(again.locks.points, down_groom.locks.points, atol=1e-6)
+    np.testing.assert_array_equal(again.locks.ids, down_groom.locks.ids)
+    assert again.recipe == down_groom.recipe
+
+    stage = Usd.Stage.Open(str(folder / "groom.usdc"))  # as any other program sees it
+    choice = stage.GetPrimAtPath("/groom").GetVariantSets().GetVariantSet("groom")
+    assert (sorted(choice.GetVariantNames()), choice.GetVariantSelection()) == (["base", "down"], "base")
+    choice.SetVariantSelection("down")
+    locks = UsdGeom.BasisCurves(stage.GetPrimAtPath("/groom/locks"))
+    assert set(locks.GetCurveVertexCountsAttr().Get()) == {96} and len(locks.GetPointsAttr().Get()) == 12 * 96
+    with pytest.raises(UserError, match=r"has no variant 'dwon'; did you mean 'down'"):
+        ringlet.read_groom(folder / "groom.usdc", variant="dwon")
+    with pytest.raises(UserError, match=r"variant 'hair down': is no name for USD"):
+        ringlet.write_groom(base_groom, folder / "groom.usdc", variants={"hair down": down_groom})
+
+
+def test_a_cache_lies_over_the_selected_variant(folder):
+    down = ringlet.build_groom(variant(folder, 'extends = "base.toml"\n[locks]\npoints = 96\n'))
+    base = ringlet.build_groom(folder / "base.toml")
+    ringlet.write_groom(base, folder / "groom.usdc", variants={"down": down})
+    moved = np.stack([base.locks.points, base.locks.points + 0.01]).astype(np.float32)
+    ringlet.write_cache(ringlet.Cache(np.array([1.0, 2.0]), moved), folder / "groom.usdc", folder / "cache.usdc")
+    np.testing.assert_allclose(ringlet.read_cache(folder / "cache.usdc").points, moved, atol=1e-6)
+    assert len(ringlet.read_groom(folder / "cache.usdc").locks) == 12
+
+
+def test_the_example_has_its_hair_down():
+    from pathlib import Path
+
+    child = Path(__file__).parents[2] / "examples" / "child"
+    up, down = ringlet.build_groom(child / "curls.recipe.toml"), ringlet.build_groom(child / "down.recipe.toml")
+    assert np.array_equal(up.locks.ids, down.locks.ids)
+    assert down.locks.points[:, 1].min() < up.locks.points[:, 1].min() - 0.04
+    assert np.median(down.locks.lengths()) > 1.7 * np.median(up.locks.lengths())

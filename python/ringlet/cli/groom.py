@@ -19,6 +19,15 @@ def groom(
     output: Annotated[Path, typer.Option("--output", "-o", metavar="GROOM", help="The USD file to write.")] = Path(
         "groom.usdc"
     ),
+    variant: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--variant",
+            metavar="RECIPE",
+            help="Another recipe for the same head, as a USD variant with the name of its file; may be repeated.",
+            show_default=False,
+        ),
+    ] = None,
     report: Report = None,
     as_json: Json = False,
     threads: Threads = None,
@@ -30,8 +39,12 @@ def groom(
     with ringlet.Run("groom", report) as run, shown_progress() as progress:
         with run.stage("groom", output):
             groom = ringlet.build_groom(recipe, progress=progress)
-            ringlet.write_groom(groom, output)
-        for conflict in groom.conflicts:
+            variants = {
+                path.name.removesuffix(".toml").removesuffix(".recipe"): ringlet.build_groom(path, progress=progress)
+                for path in variant or ()
+            }
+            ringlet.write_groom(groom, output, variants=variants)
+        for conflict in [line for made in (groom, *variants.values()) for line in made.conflicts]:
             run.warn(conflict)
             print(f"warning: {conflict}", file=sys.stderr)
         run.count(guides=len(groom.guides), locks=len(groom.locks), points=len(groom.locks.points))

@@ -3,17 +3,19 @@
 /groom          Xform, with the recipe
 /groom/locks    BasisCurves, one per lock, in the rest pose
 /groom/guides   BasisCurves, the artist's
+                locks and guides are in the variants of the set ``groom`` where there are some
 /groom/body     the head: a reference to its file, or the mesh itself if it came from none
 """
 
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from pxr import Sdf, Usd, UsdGeom
+from pxr import Sdf, Tf, Usd, UsdGeom
 
 from ringlet.curves import Curves
 from ringlet.errors import UserError
@@ -35,14 +37,19 @@ from ringlet.io.usd.stage import (
 )
 from ringlet.io.usd.values import Types, float3
 from ringlet.mesh import Mesh
+from ringlet.settings import did_you_mean
 from ringlet.stage import StageSpace
 
 GROOM, LOCKS, GUIDES, BODY = "/groom", "/groom/locks", "/groom/guides", "/groom/body"
+VARIANTS, BASE = "groom", "base"
 VERSION = 1  # of this layout
 
 
-def write_groom(groom: Groom, path: Path | str) -> None:
-    """Writes a groom in the unit, up-axis and rate of its head, which it references by a path relative to ``path``."""
+def write_groom(groom: Groom, path: Path | str, variants: Mapping[str, Groom] | None = None) -> None:
+    """Writes a groom in the unit, up-axis and rate of its head, which it references by a path relative to ``path``.
+
+    variants: grooms on the same head by name, as a variant set of ``/groom``; ``groom`` is the selection ``base``
+    """
     head = groom.scalp_file if groom.scalp_file and groom.scalp_file.suffix in SUFFIXES else None
     if head:
         refuse_itself(path, head, "head")
@@ -51,26 +58,56 @@ def write_groom(groom: Groom, path: Path | str) -> None:
         stage = new_stage(aside, space)
         root = UsdGeom.Xform.Define(stage, GROOM).GetPrim()
         _set(root, "version", Types.Int, VERSION)
-        _set(root, "hairs", Types.String, json.dumps(groom.hairs))
-        for name, text in (("recipe", groom.recipe), ("region", groom.region)):
-            if text is not None:
-                _set(root, name, Types.String, text)
+        if groom.region is not None:
+            _set(root, "region", Types.String, groom.region)
         scalp = (
             _reference(stage, head, groom.scalp_prim)
             if head
             else define_mesh(stage, BODY, groom.scalp, space).GetPath()
         )
         root.CreateRelationship("ringlet:scalp", custom=True).SetTargets([scalp])
-        _define_guides(stage, LOCKS, groom.locks, groom, space)
-        _define_guides(stage, GUIDES, groom.guides, groom, space)
+        if not variants:
+            _define(stage, groom, space)
+        else:
+            choice = root.GetVariantSets().AddVariantSet(VARIANTS)
+            for name, variant in {BASE: groom, **variants}.items():
+                _refuse_other_head(name, variant, groom)
+                choice.AddVariant(name)
+                choice.SetVariantSelection(name)
+                with choice.GetVariantEditContext():
+                    _define(stage, variant, space)
+            choice.SetVariantSelection(BASE)
         stage.Save()
 
 
-def read_groom(path: Path | str) -> Groom:
-    """Reads a groom, or the groom under a cache or hairs: all that was written, with the scalp from its file."""
+def _define(stage: Usd.Stage, groom: Groom, space: StageSpace) -> None:
+    """Writes what differs from variant to variant."""
+    root = stage.GetPrimAtPath(GROOM)
+    _set(root, "hairs", Types.String, json.dumps(groom.hairs))
+    if groom.recipe is not None:
+        _set(root, "recipe", Types.String, groom.recipe)
+    _define_guides(stage, LOCKS, groom.locks, groom, space)
+    _define_guides(stage, GUIDES, groom.guides, groom, space)
+
+
+def _refuse_other_head(name: str, variant: Groom, groom: Groom) -> None:
+    if not Tf.IsValidIdentifier(name):
+        raise UserError(f"variant '{name}': is no name for USD; use letters, digits and _ only, and no digit first")
+    mine, theirs = ((g.scalp_file, g.scalp_prim, g.region) for g in (groom, variant))
+    if mine != theirs or not np.array_equal(groom.scalp.points, variant.scalp.points):
+        raise UserError(f"variant '{name}': grows on another scalp ({variant.scalp.name}); must be {groom.scalp.name}")
+
+
+def read_groom(path: Path | str, variant: str | None = None) -> Groom:
+    """Reads a groom, or the groom under a cache or hairs: all that was written, with the scalp from its file.
+
+    variant: one of those that the file has, instead of the one that is selected in it
+    """
     path = Path(path)
     with reading(path) as source:
         root = groom_prim(source)
+        if variant is not None:
+            _select(source, variant)
         scalp_file, scalp_prim = scalp_source(source)
         if not scalp_file.exists():
             raise UserError(f"{path}: its head {scalp_file} is not there; put it back or make the groom again")
@@ -103,6 +140,17 @@ def groom_prim(source: Source) -> Usd.Prim:
         if not source.stage.GetPrimAtPath(path):
             raise UserError(f"{source.path}: has no {path}; make the groom again")
     return root
+
+
+def _select(source: Source, variant: str) -> None:
+    """Selects a variant, in the session only."""
+    choice = source.stage.GetPrimAtPath(GROOM).GetVariantSets().GetVariantSet(VARIANTS)
+    names = choice.GetVariantNames()
+    if variant not in names:
+        hint = did_you_mean(variant, names) if names else "; it has none"
+        raise UserError(f"{source.path}: has no variant '{variant}'{hint}")
+    source.stage.SetEditTarget(source.stage.GetSessionLayer())
+    choice.SetVariantSelection(variant)
 
 
 def scalp_source(source: Source) -> tuple[Path, str]:
