@@ -6,6 +6,7 @@
 #include "ringlet/groom/sample.h"
 
 #include <stdexcept>
+#include <string>
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -33,33 +34,69 @@ nb::ndarray<nb::numpy, int> thin_out_samples(const Array3<double> &candidates, d
     return to_numpy<int>(std::move(kept), {size});
 }
 
+// An array among keyword arguments; lives as long as they do.
+template <class Scalar> View<Scalar> named(const nb::kwargs &arrays, const char *name) {
+    if (!arrays.contains(name)) throw std::invalid_argument(std::string(name) + " is missing");
+    const auto array = nb::cast<nb::ndarray<const Scalar, nb::c_contig, nb::device::cpu>>(arrays[name], false);
+    return {array.data(), array.size()};
+}
+
 nb::ndarray<nb::numpy, double> curl_curves(const Array3<double> &points, const Array1<int> &offsets, const Array3<double> &axis,
-                                           const Array1<double> &radius, const Array1<double> &turns,
-                                           const Array1<double> &phase, const Array1<double> &start,
-                                           const Array1<double> &width_ramp, const Array1<double> &rate_ramp,
-                                           const Table<double> &width_noise, const Table<double> &rate_noise,
-                                           const Table<double> &hand, double flatness, bool keep_length, int count) {
+                                           const Array1<int> &leader, bool counted, bool keep_length, int count,
+                                           const nb::kwargs &arrays) {
     const CurveView shapes{vectors<Vec3>(points), view(offsets)};
-    const size_t locks = shapes.count(), noises = hand.shape(1);
-    require(axis.shape(0) == locks && radius.size() == locks && turns.size() == locks && phase.size() == locks &&
-                start.size() == locks,
-            "axis, radius, turns, phase and start need one value a lock");
-    require(noises > 0 && width_noise.shape(0) == locks && rate_noise.shape(0) == locks && hand.shape(0) == locks &&
-                width_noise.shape(1) == noises && rate_noise.shape(1) == noises,
-            "the noises need one row a lock");
-    require(width_ramp.size() > 0 && rate_ramp.size() > 0 && count >= 2, "ramps need a value, and locks 2 points");
+    const size_t locks = shapes.count();
+    require(axis.shape(0) == locks && leader.size() == locks && count >= 2,
+            "axis and leader need a value a lock, locks 2 points");
+    for (const int i : view(leader)) require(i >= 0 && static_cast<size_t>(i) < locks, "a leader is not one of the locks");
+    const auto value = [&](const char *name) {
+        const View<double> values = named<double>(arrays, name);
+        if (values.size() != locks) throw std::invalid_argument(std::string(name) + " needs one value a lock");
+        return values;
+    };
+    const auto ramp = [&](const char *name) {
+        const View<double> values = named<double>(arrays, name);
+        if (values.empty()) throw std::invalid_argument(std::string(name) + " needs a value");
+        return values;
+    };
+    const size_t noises = locks ? named<double>(arrays, "sway").size() / locks : 1;
+    const size_t events = locks ? named<double>(arrays, "skips").size() / locks : 0;
+    const auto rows = [&](const char *name, size_t columns) {
+        const View<double> values = named<double>(arrays, name);
+        if (values.size() != locks * columns) throw std::invalid_argument(std::string(name) + " needs one row a lock");
+        return values;
+    };
+    require(noises > 0, "sway needs a value a lock");
     const CurlSettings settings{.axis = vectors<Vec3>(axis),
-                                .radius = view(radius),
-                                .turns = view(turns),
-                                .phase = view(phase),
-                                .start = view(start),
-                                .width_ramp = view(width_ramp),
-                                .rate_ramp = view(rate_ramp),
-                                .width_noise = numbers(width_noise),
-                                .rate_noise = numbers(rate_noise),
-                                .hand = numbers(hand),
+                                .radius = value("radius"),
+                                .turns = value("turns"),
+                                .phase = value("phase"),
+                                .flip = value("flip"),
+                                .start = value("start"),
+                                .end = value("end"),
+                                .taper = value("taper"),
+                                .flatness = value("flatness"),
+                                .kink = value("kink"),
+                                .wave = value("wave"),
+                                .wave_turns = value("wave_turns"),
+                                .width_ramp = ramp("width_ramp"),
+                                .rate_ramp = ramp("rate_ramp"),
+                                .opening = ramp("opening"),
+                                .closing = ramp("closing"),
+                                .taper_ramp = ramp("taper_ramp"),
+                                .wave_ramp = ramp("wave_ramp"),
+                                .width_noise = rows("width_noise", noises),
+                                .rate_noise = rows("rate_noise", noises),
+                                .sway = rows("sway", noises),
+                                .switchbacks = rows("switchbacks", events),
+                                .skips = rows("skips", events),
+                                .leader = view(leader),
+                                .join = value("join"),
+                                .join_over = value("join_over"),
+                                .cohesion = value("cohesion"),
                                 .noise_count = static_cast<int>(noises),
-                                .flatness = flatness,
+                                .event_count = static_cast<int>(events),
+                                .counted = counted,
                                 .keep_length = keep_length};
     std::vector<Vec3> result;
     {
@@ -83,32 +120,36 @@ nb::ndarray<nb::numpy, double> push_out_curves(const Array3<double> &points, con
     return to_numpy<double>(std::move(result), {curves.points.size(), 3});
 }
 
-nb::ndarray<nb::numpy, float> warp(const Array3<float> &lock_points, const Array1<int> &lock_offsets,
-                                   const Array3<double> &axis, const Array3<float> &root, const Array1<int> &first,
-                                   const Table<float> &offset, const Array1<float> &tip, const Table<float> &frizz,
-                                   const Array1<float> &profile, const Array1<float> &hold) {
+void warp(const Array3<float> &lock_points, const Array1<int> &lock_offsets,
+          nb::ndarray<float, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu> result, const Array3<double> &axis,
+          const Array3<float> &root, const Array1<int> &first, const Table<float> &offset, const Array1<float> &tip,
+          const Array1<float> &taper, const Table<float> &frizz, const Array1<float> &profile, const Array1<float> &hold,
+          const Array1<int> &other, const Array1<float> &share, const Array1<float> &blend) {
     const size_t locks = lock_offsets.size() - 1, points = profile.size(), hairs = first.data()[locks];
     require(first.size() == locks + 1 && axis.shape(0) == locks, "first and axis need one row a lock");
-    require(root.shape(0) == hairs && offset.size() == 2 * hairs && tip.size() == hairs && frizz.shape(0) == hairs,
-            "root, offset, tip and frizz need one row a hair");
+    require(root.shape(0) == hairs && offset.size() == 2 * hairs && tip.size() == hairs && taper.size() == hairs &&
+                frizz.shape(0) == hairs,
+            "root, offset, tip, taper and frizz need one row a hair");
     require(frizz.shape(1) >= 4 && frizz.shape(1) % 2 == 0, "frizz needs at least 2 knots of two numbers");
-    require(hold.size() == points && points >= 2, "profile and hold need one value a point");
+    require(hold.size() == points && blend.size() == points && points >= 2, "profile, hold and blend need one value a point");
+    require(other.size() == share.size() && (other.size() == 0 || other.size() == hairs),
+            "other and share need a value a hair");
+    for (const int lock : view(other)) require(lock >= 0 && static_cast<size_t>(lock) < locks, "other is not one of the locks");
+    require(result.shape(0) == hairs * points, "the result needs one row a point of a hair");
     const HairLayout layout{.first = view(first),
                             .offset = numbers(offset),
                             .tip = view(tip),
+                            .taper = view(taper),
                             .frizz = numbers(frizz),
                             .knots = static_cast<int>(frizz.shape(1) / 2),
                             .profile = view(profile),
-                            .hold = view(hold)};
-    // Not a std::vector, which would first write zeros all over what is written next.
-    auto *result = new float[3 * hairs * points];
-    nb::capsule owner(result, [](void *p) noexcept { delete[] static_cast<float *>(p); });
-    {
-        nb::gil_scoped_release release;
-        warp_hairs(vectors<Vec3f>(lock_points), view(lock_offsets), vectors<Vec3>(axis), {root.data(), 3 * hairs}, layout,
-                   {result, 3 * hairs * points});
-    }
-    return nb::ndarray<nb::numpy, float>(result, {hairs * points, 3}, owner);
+                            .hold = view(hold),
+                            .other = view(other),
+                            .share = view(share),
+                            .blend = view(blend)};
+    nb::gil_scoped_release release;
+    warp_hairs(vectors<Vec3f>(lock_points), view(lock_offsets), vectors<Vec3>(axis), {root.data(), 3 * hairs}, layout,
+               {result.data(), 3 * hairs * points});
 }
 
 } // namespace
@@ -117,13 +158,12 @@ void bind_groom(nb::module_ &module) {
     module.def(
         "thin_out", &thin_out_samples, "candidates"_a, "area"_a, "count"_a,
         "Indices of count evenly spread samples out of a dense cloud of candidates (n, 3) on a surface of that area [m2].");
-    module.def("curl_curves", &curl_curves, "points"_a, "offsets"_a, nb::kw_only(), "axis"_a, "radius"_a, "turns"_a, "phase"_a,
-               "start"_a, "width_ramp"_a, "rate_ramp"_a, "width_noise"_a, "rate_noise"_a, "hand"_a, "flatness"_a,
-               "keep_length"_a, "count"_a,
-               "Winds each shape curve into a curl of count evenly spaced points; see groom/curl.h.");
+    module.def("curl_curves", &curl_curves, "points"_a, "offsets"_a, nb::kw_only(), "axis"_a, "leader"_a, "counted"_a,
+               "keep_length"_a, "count"_a, "arrays"_a,
+               "Winds each shape curve into a curl of count evenly spaced points; the arrays are those of groom/curl.h.");
     module.def("push_out", &push_out_curves, "points"_a, "offsets"_a, "body_points"_a, "body_triangles"_a, "margin"_a,
                "The points of curves moved out of a body, to a margin [m]; roots stay.");
-    module.def("warp_hairs", &warp, "lock_points"_a, "lock_offsets"_a, nb::kw_only(), "axis"_a, "root"_a, "first"_a, "offset"_a,
-               "tip"_a, "frizz"_a, "profile"_a, "hold"_a,
-               "Points of all hairs (hairs * points, 3) around locks where they are now; see groom/hairs.h.");
+    module.def("warp_hairs", &warp, "lock_points"_a, "lock_offsets"_a, "result"_a, nb::kw_only(), "axis"_a, "root"_a, "first"_a,
+               "offset"_a, "tip"_a, "taper"_a, "frizz"_a, "profile"_a, "hold"_a, "other"_a, "share"_a, "blend"_a,
+               "Writes the points of all hairs (hairs * points, 3) around locks where they are now; see groom/hairs.h.");
 }

@@ -308,11 +308,12 @@ def read_cache(path: Path | str) -> Cache:
 # Hairs
 
 
-def build_hairs(groom: Groom, *, fraction: float = 1.0) -> Hairs:
-    """Makes the hairs of every lock. ``fraction`` of them: the same ones every time, in (0, 1]."""
+def build_hairs(groom: Groom, *, fraction: float = 1.0, wider: bool = False) -> Hairs:
+    """Makes the hairs of every lock. ``fraction`` of them: the same ones every time, in (0, 1]; with ``wider`` these
+    make up by their width for those left out."""
     from ringlet import groom as grooms
 
-    return grooms.make_hairs(groom, fraction=fraction)
+    return grooms.make_hairs(groom, fraction=fraction, wider=wider)
 
 
 def write_hairs(
@@ -322,6 +323,7 @@ def write_hairs(
     cache: Path | str | None = None,
     frames: tuple[int, int] | None = None,
     fraction: float = 1.0,
+    wider: bool = False,
     progress: Progress | None = None,
 ) -> dict[str, int]:
     """Writes the hairs of the USD file ``groom``, at rest, or carried by the guides of ``cache`` through ``frames``.
@@ -331,7 +333,7 @@ def write_hairs(
     from ringlet import io
 
     locks = read_groom(groom)
-    hairs = build_hairs(locks, fraction=fraction)
+    hairs = build_hairs(locks, fraction=fraction, wider=wider)
     written = 0
     with io.HairWriter(Path(path), locks, hairs.curves, Path(cache or groom)) as writer:
         if cache is None:
@@ -440,10 +442,11 @@ def write_loft_picture(
     progress: Progress | None = None,
 ) -> None:
     """Draws the hair as groomed, as it hangs without the loft and with it, on one page."""
+    from ringlet import groom as grooms
     from ringlet import picture
 
     groom = loft.groom
-    hairs = build_hairs(groom, fraction=min(1.0, 6000 / max(1, len(groom.locks) * groom.hairs.get("per_lock", 20))))
+    hairs = build_hairs(groom, fraction=min(1.0, 6000 / grooms.hair_count(groom)))
     shapes = {"groomed": groom.locks.points, "hanging, not lofted": loft.sagged, "hanging, lofted": loft.lofted}
     picture.compare(
         {name: hairs.curves.with_points(hairs.at(points, groom.scalp.points)) for name, points in shapes.items()},

@@ -30,8 +30,42 @@ double closest_pair(const std::vector<Vec3> &points, const std::vector<int> &cho
 // Settings of one lock that need an owner for their arrays.
 struct OneCurl {
     std::vector<Vec3> axis{Vec3::UnitX()};
-    std::vector<double> radius{0.004}, turns{5.0}, phase{0.0}, start{0.0}, one{1.0}, zero{0.0};
-    CurlSettings settings() const { return {axis, radius, turns, phase, start, one, one, zero, zero, one, 1, 0.0, false}; }
+    std::vector<double> radius{0.004}, turns{5.0}, start{0.0}, flatness{0.0}, kink{0.0}, flip{-1.0};
+    std::vector<double> switchbacks{1e9}, skips{1e9}, one{1.0}, zero{0.0};
+    std::vector<int> leader{0};
+    bool keep_length = false;
+    CurlSettings settings() const {
+        return {.axis = axis,
+                .radius = radius,
+                .turns = turns,
+                .phase = zero,
+                .flip = flip,
+                .start = start,
+                .end = zero,
+                .taper = zero,
+                .flatness = flatness,
+                .kink = kink,
+                .wave = zero,
+                .wave_turns = zero,
+                .width_ramp = one,
+                .rate_ramp = one,
+                .opening = one,
+                .closing = one,
+                .taper_ramp = zero,
+                .wave_ramp = one,
+                .width_noise = zero,
+                .rate_noise = zero,
+                .sway = zero,
+                .switchbacks = switchbacks,
+                .skips = skips,
+                .leader = leader,
+                .join = zero,
+                .join_over = zero,
+                .cohesion = zero,
+                .noise_count = 1,
+                .event_count = 1,
+                .keep_length = keep_length};
+    }
 };
 
 } // namespace
@@ -95,10 +129,10 @@ BOOST_AUTO_TEST_CASE(a_hair_off_the_middle_runs_beside_a_straight_lock) {
     for (const Vec3 &p : line) lock.push_back(p.cast<float>());
     const std::vector<int> offsets{0, 8}, first{0, 2};
     const std::vector<Vec3> axis{Vec3::UnitX()};
-    const std::vector<float> root(6, 0.0F), offset{0, 0, 0.002F, 0.001F}, tip{1, 1}, frizz(8, 0.0F), profile(8, 1.0F),
-        hold(8, 0.0F);
+    const std::vector<float> root(6, 0.0F), offset{0, 0, 0.002F, 0.001F}, tip{1, 1}, taper(2, 0.0F), frizz(8, 0.0F),
+        profile(8, 1.0F), hold(8, 0.0F);
     std::vector<float> result(size_t{2} * 8 * 3);
-    warp_hairs(lock, offsets, axis, root, {first, offset, tip, frizz, 2, profile, hold}, result);
+    warp_hairs(lock, offsets, axis, root, {first, offset, tip, taper, frizz, 2, profile, hold, {}, {}, {}}, result);
     for (size_t k = 0; k < 8; ++k) {
         BOOST_TEST((Eigen::Map<Vec3f>(&result[3 * k]) == lock[k]));
         const Vec3f beside = lock[k] + Vec3f(0.002F, 0.0F, -0.001F);

@@ -31,12 +31,12 @@ def recipe(text):
         ("[curl]\nwidth = 1", "neither how many curls"),
         ("[locks]\ncount = 0", "locks.count is 0; must be at least 1"),
         ("[locks]\ncount = 5\nspacing = 1", "both 'count' and 'spacing'"),
-        ("[hairs]\nper_lock = 'many'", "hairs.per_lock is 'many'; must be a whole number"),
+        ("[hairs]\nper_lock = 'many'", "hairs.per_lock is 'many'; must be a number"),
         ("[[shape]]\nop = 'scragle'", "shape[0].op is 'scragle'; did you mean 'scraggle'?"),
         ("[[shape]]\nop = 'loft'\namout = 1", "shape[0].amout is not a setting; did you mean 'amount'?"),
         ("[[shape]]\nop = 'loft'\namount = { value = 1, ramp = [[0, 1], [2, 1]] }", "has a place at 2.0"),
         ("[[shape]]\nop = 'loft'\namount = { value = 1, ramp = [[1, 1], [0, 1]] }", "must ascend"),
-        ("[curl]\npreset = '4A'\nrate = [[0, -1]]", "curl.rate has a factor of -1.0"),
+        ("[curl]\npreset = '4A'\nopening = [[0, -1]]", "curl.opening has a factor of -1.0"),
         (f"[curl]\npreset = '4A'\nflatness = {10**400}", "must be a number"),
         ("[guides]\nwhorl = [0, nan, 1]", "guides.whorl[1] is nan; input should be a finite number"),
         ("curl = 3", "curl is 3; must be a table"),
@@ -113,7 +113,7 @@ def test_a_preset_fills_only_what_the_recipe_does_not_say():
         curl = recipe(f"unit = '{unit}'\n[curl]\npreset = '3C'\ncurls = 5\nstart = '2 mm'").curl
         assert curl.width.value == pytest.approx(0.009)
         assert curl.pitch is None and curl.curls.value == 5.0
-        assert curl.start == pytest.approx(0.002)
+        assert curl.start.value == pytest.approx(0.002)
 
 
 def test_a_number_keeps_the_ramp_and_the_variation_of_the_default():

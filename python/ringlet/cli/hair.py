@@ -26,6 +26,9 @@ def hair(
     ] = None,
     frames: Frames = None,
     fraction: Fraction = 1.0,
+    wider: Annotated[
+        bool, typer.Option("--wider", help="With --fraction: wider hairs, which cover as much as all of them.")
+    ] = False,
     report: Report = None,
     as_json: Json = False,
     threads: Threads = None,
@@ -37,7 +40,7 @@ def hair(
     with ringlet.Run("hair", report) as run, shown_progress() as progress:
         with run.stage("hairs", output):
             counts = ringlet.write_hairs(
-                groom, output, cache=cache, frames=frames, fraction=fraction, progress=progress
+                groom, output, cache=cache, frames=frames, fraction=fraction, wider=wider, progress=progress
             )
         run.count(**counts)
     wrote(output, run.counts, as_json)

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from hashlib import blake2b
 from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, ValidationError
+from scipy.spatial import KDTree
 
 from ringlet import _core
 from ringlet.curves import Curves, offsets_from_counts
 from ringlet.errors import UserError
 from ringlet.groom.groom import Groom
-from ringlet.groom.random import Random
-from ringlet.groom.settings import Quantity, Ramped, Section, explain
+from ringlet.groom.random import Random, tipping
+from ringlet.groom.scalp import axes
+from ringlet.groom.settings import Quantity, Ramped, Section, Varied, explain
 
 IDS_PER_LOCK = 10_000  # the id of a hair: id of its lock · 10 000 + number in it
 FRIZZ_KNOTS = 8
@@ -23,8 +26,8 @@ FRIZZ_KNOTS = 8
 class HairSettings(Section):
     """The hairs of each lock."""
 
-    per_lock: int = Field(
-        default=20, ge=1, le=IDS_PER_LOCK, description="hairs of a lock; the first of them is the groom guide itself"
+    per_lock: Annotated[Varied, Quantity("", 1, IDS_PER_LOCK)] = Field(
+        default=Varied(value=20), description="hairs of a lock; the first of them is the groom guide itself"
     )
     points: int | None = Field(
         default=None, ge=2, le=10_000, description="points of a hair; those of the lock when absent"
@@ -33,8 +36,17 @@ class HairSettings(Section):
         default=Ramped(value=0.0012, ramp=[(0, 1), (0.5, 0.8), (1, 0.5)]),
         description="radius of a lock's cross-section",
     )
-    spread: Annotated[float, Quantity("m", 0.0, 0.1)] = Field(
-        default=0.003, description="radius on the scalp that a lock's roots cover"
+    taper: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
+        default=Varied(value=0.0), description="how much narrower a lock gets towards its tip besides: 1 to a point"
+    )
+    flatness: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
+        default=Varied(value=0.0), description="cross-section of a lock: 0 round, 1 a flat ribbon"
+    )
+    hollow: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
+        default=Varied(value=0.0), description="where hairs are in it: 0 everywhere, 1 at the rim"
+    )
+    spread: Annotated[Varied, Quantity("m", 0.0, 0.1)] = Field(
+        default=Varied(value=0.003), description="radius on the scalp that a lock's roots cover"
     )
     gather: Annotated[float, Quantity("", 0.001, 1.0)] = Field(
         default=0.15, description="part of the lock over which they come together"
@@ -42,16 +54,25 @@ class HairSettings(Section):
     width: Annotated[Ramped, Quantity("m", 1e-6, 0.01)] = Field(
         default=Ramped(value=0.00009, vary=0.2, ramp=[(0, 1), (0.7, 0.9), (1, 0.3)]), description="diameter of a hair"
     )
-    shorter: Annotated[float, Quantity("", 0.0, 0.9)] = Field(
-        default=0.08, description="by how much the shortest hairs of a lock are shorter"
+    shorter: Annotated[Varied, Quantity("", 0.0, 0.9)] = Field(
+        default=Varied(value=0.08), description="by how much the shortest hairs of a lock are shorter"
     )
-    frizz: Annotated[float, Quantity("m", 0.0, 0.05)] = Field(
-        default=0.0004, description="how far hairs wander from their place in the lock"
+    frizz: Annotated[Varied, Quantity("m", 0.0, 0.05)] = Field(
+        default=Varied(value=0.0004), description="how far hairs wander from their place in the lock"
     )
-    stray: Annotated[float, Quantity("", 0.0, 1.0)] = Field(
-        default=0.04, description="part of the hairs that leave their lock"
+    stray: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
+        default=Varied(value=0.04), description="part of the hairs that leave their lock"
     )
-    stray_radius: Annotated[float, Quantity("m", 0.0, 0.1)] = Field(default=0.004, description="how far those wander")
+    stray_radius: Annotated[Varied, Quantity("m", 0.0, 0.1)] = Field(
+        default=Varied(value=0.004), description="how far those wander"
+    )
+    blend: Annotated[Ramped, Quantity("", 0.0, 1.0)] = Field(
+        default=Ramped(value=0.0),
+        description="how far hairs between two locks mix both: 0 each follows its own; mixed curls get narrower",
+    )
+    apart: Annotated[float, Quantity("deg", 1.0, 180.0)] = Field(
+        default=60.0, description="locks that lean further apart than this, as across a parting, are not mixed"
+    )
     seed: int = Field(default=1, ge=0, le=2**31, description="another seed, other places in the locks")
 
 
@@ -69,55 +90,104 @@ class Hairs:
     _axis: NDArray[np.float64]  # where each lock's frame starts, in the frame of the scalp at its root
     _layout: dict[str, NDArray]
 
-    def at(self, lock_points: NDArray, scalp_points: NDArray) -> NDArray[np.float32]:
+    def at(
+        self, lock_points: NDArray, scalp_points: NDArray, *, out: NDArray[np.float32] | None = None
+    ) -> NDArray[np.float32]:
         """Where the hairs are when locks and scalp have moved; shape (n, 3) [m], float32.
 
         lock_points:  positions of ``groom.locks`` now [m], shape (locks' points, 3)
         scalp_points: positions of ``groom.scalp`` now [m], shape (scalp points, 3)
+        out:          written to and returned, if given: fresh memory costs more than what is computed
         """
         locks, triangles = self._groom.locks, self._groom.scalp.triangles
         at = np.ascontiguousarray(scalp_points, np.float64)
         lock_roots, frames = _core.root_frames(
             at, triangles, locks.curve["root_triangle"], locks.curve["root_barycentric"]
         )
-        hair_roots = np.einsum(
-            "hc,hcx->hx", self.curves.curve["root_barycentric"], at[triangles[self.curves.curve["root_triangle"]]]
-        )
-        lock = self.curves.curve["lock"]
-        root = (hair_roots - lock_roots[lock]).astype(np.float32)
+        bound = self.curves.curve
+        hair_roots = np.einsum("hc,hcx->hx", bound["root_barycentric"], at[triangles[bound["root_triangle"]]])
+        root = (hair_roots - lock_roots[bound["lock"]]).astype(np.float32)
         root[self._layout["first"][:-1]] = 0.0  # the first hair of a lock is the lock
-        return _core.warp_hairs(
+        if out is None:
+            out = np.empty((int(self.curves.offsets[-1]), 3), np.float32)
+        _core.warp_hairs(
             np.ascontiguousarray(lock_points, np.float32),
             locks.offsets,
+            out,
             axis=np.einsum("lxk,lk->lx", frames, self._axis),
             root=root,
             **self._layout,
         )
+        return out
 
 
-def make_hairs(groom: Groom, *, fraction: float = 1.0) -> Hairs:
+@dataclass
+class HairMemory:
+    """The hairs of the last call, kept to be carried along while the locks change their shape but not their roots."""
+
+    key: bytes = b""
+    hairs: Hairs | None = None
+
+
+def hair_count(groom: Groom) -> int:
+    """About how many hairs the groom has in all."""
+    return max(1, round(len(groom.locks) * _settings(groom.hairs).per_lock.value))
+
+
+def make_hairs(groom: Groom, *, fraction: float = 1.0, wider: bool = False, memory: HairMemory | None = None) -> Hairs:
     """Hairs around every lock of the groom, placed by (seed, lock, number).
 
     fraction: the part of each lock's hairs to make, in (0, 1]; always the first ones of the same hairs
+    wider:    makes up for hairs that are left out by the width of the others, so that a lock covers as much
+    memory:   keeps what depends on neither the shape nor the curl of locks, so that such an edit only carries the
+              hairs; the points of the result are then written over by the next call
     """
     settings = _settings(groom.hairs)
     if not 0.0 < fraction <= 1.0:
         raise UserError(f"hairs: fraction is {fraction}; must be more than 0 and at most 1")
+    memory = memory or HairMemory()
+    key = _key(groom, settings, fraction, wider)
+    if memory.hairs is None or memory.key != key:
+        memory.key, memory.hairs = key, _place(groom, settings, fraction, wider)
+    known, frames = memory.hairs, _root_frames(groom)[1]
+    axis = np.einsum("lxk,lx->lk", frames, axes(groom.locks, frames))
+    hairs = Hairs(known.curves, groom, axis, known._layout)
+    hairs.curves.points = hairs.at(groom.locks.points, groom.scalp.points, out=known.curves.points)
+    return hairs
+
+
+def _key(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -> bytes:
+    """What the places of hairs in their locks hang on."""
     locks, scalp = groom.locks, groom.scalp
-    lock_count = len(locks)
-    each = max(1, round(settings.per_lock * fraction))
-    count = lock_count * each
-    lock = np.repeat(np.arange(lock_count, dtype=np.int32), each)
-    number = np.tile(np.arange(each), lock_count)
+    digest = blake2b(f"{settings.model_dump_json()} {groom.region} {fraction} {wider}".encode(), digest_size=16)
+    for array in (
+        locks.ids,
+        locks.offsets,
+        locks.curve["root_triangle"],
+        locks.curve["root_barycentric"],
+        scalp.points,
+        scalp.triangles,
+        *((locks.points,) if settings.blend.value > 0.0 else ()),
+    ):
+        digest.update(np.ascontiguousarray(array).data)
+    return digest.digest()
+
+
+def _place(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -> Hairs:
+    """Hairs with everything but their points."""
+    locks, scalp = groom.locks, groom.scalp
+    roots, frames = _root_frames(groom)
+    per_lock = _Values(settings, locks)
+    whole = np.maximum(1, np.round(per_lock("per_lock"))).astype(np.int64)
+    each = np.maximum(1, np.round(whole * fraction)).astype(np.int64)
+    lock = np.repeat(np.arange(len(locks), dtype=np.int32), each)
+    first = offsets_from_counts(each)
+    number = np.arange(len(lock)) - first[lock]
     ids = locks.ids[lock] * IDS_PER_LOCK + number
     points = settings.points or int(locks.counts.max())
 
-    roots, frames = _core.root_frames(
-        scalp.points, scalp.triangles, locks.curve["root_triangle"], locks.curve["root_barycentric"]
-    )
-    axis = _start_axes(locks, frames)
-    disk = _disk(settings, ids, number)
-    around = roots[lock] + settings.spread * np.einsum("hxk,hk->hx", frames[lock][:, :, :2], disk)
+    disk = _disk(settings, ids, number, whole[lock])
+    around = roots[lock] + per_lock("spread")[lock, None] * np.einsum("hxk,hk->hx", frames[lock][:, :, :2], disk)
     try:
         region = np.ascontiguousarray(scalp.region(groom.region), np.int32)
     except KeyError as error:
@@ -136,15 +206,34 @@ def make_hairs(groom: Groom, *, fraction: float = 1.0) -> Hairs:
     }
     if scalp.uv is not None:
         attributes["st"] = np.einsum("hc,hcx->hx", root_barycentric, scalp.uv[root_triangle]).astype(np.float32)
-    thickness = settings.width.per_curve(Random(settings.seed, "hairs/width"), ids, roots[lock]).astype(np.float32)
-    widths = (thickness[:, None] * settings.width.along(u).astype(np.float32)).reshape(-1)
+    thickness = settings.width.per_curve(Random(settings.seed, "hairs/width"), ids, roots[lock])
+    if wider:
+        thickness *= (whole / each)[lock]
+    widths = (thickness.astype(np.float32)[:, None] * settings.width.along(u).astype(np.float32)).reshape(-1)
 
     curves = Curves(
-        np.empty((0, 3), np.float32), offsets_from_counts(np.full(count, points)), ids, attributes, {"width": widths}
+        np.empty((len(lock) * points, 3), np.float32),
+        offsets_from_counts(np.full(len(lock), points)),
+        ids,
+        attributes,
+        {"width": widths},
     )
-    hairs = Hairs(curves, groom, axis, _layout(settings, ids, number, disk, roots[lock], u, each, lock_count))
-    curves.points = hairs.at(locks.points, scalp.points)
-    return hairs
+    layout = _layout(settings, per_lock, ids, number, lock, disk, u)
+    layout |= _neighbours(settings, per_lock, groom, curves, is_lock, roots, u)
+    return Hairs(curves, groom, np.empty(0), {"first": first, **layout})
+
+
+@dataclass
+class _Values:
+    """Settings of the hairs, lock by lock."""
+
+    settings: HairSettings
+    locks: Curves
+
+    def __call__(self, name: str) -> NDArray[np.float64]:
+        """The setting of that name for each lock, shape (locks,)."""
+        setting: Varied = getattr(self.settings, name)
+        return setting.per_curve(Random(self.settings.seed, f"hairs/{name}"), self.locks.ids, self.locks.roots)
 
 
 def _settings(values: dict[str, Any]) -> HairSettings:
@@ -154,51 +243,95 @@ def _settings(values: dict[str, Any]) -> HairSettings:
         raise explain(error, "groom: hairs") from error
 
 
-def _start_axes(locks: Curves, frames: NDArray) -> NDArray[np.float64]:
-    """For each lock, a direction across its first edge in the root's frame (count, 3): the tangent of the surface, or
-    its bitangent where the lock runs along the tangent."""
-    first = locks.points[locks.offsets[:-1] + 1] - locks.points[locks.offsets[:-1]]
-    along = np.abs(np.einsum("lxk,lx->lk", frames[:, :, :2], first))
-    return np.where((along[:, :1] <= along[:, 1:]), [[1.0, 0.0, 0.0]], [[0.0, 1.0, 0.0]])
+def _root_frames(groom: Groom) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Roots of the locks [m], shape (locks, 3), and the frames of the scalp there, shape (locks, 3, 3)."""
+    bound = groom.locks.curve
+    return _core.root_frames(
+        groom.scalp.points, groom.scalp.triangles, bound["root_triangle"], bound["root_barycentric"]
+    )
 
 
-def _disk(settings: HairSettings, ids: NDArray, number: NDArray) -> NDArray[np.float64]:
+def _disk(settings: HairSettings, ids: NDArray, number: NDArray, whole: NDArray) -> NDArray[np.float64]:
     """Places in the unit disk (hairs, 2), evenly spread within a lock (a shaken Vogel spiral); 0 for the first hair."""
     random = Random(settings.seed, "hairs/place")
     radius = np.sqrt(
-        (number - random.uniform(ids, 0)) / max(settings.per_lock - 1, 1), where=number > 0, out=np.zeros(len(ids))
+        (number - random.uniform(ids, 0)) / np.maximum(whole - 1, 1), where=number > 0, out=np.zeros(len(ids))
     )
     angle = number * np.pi * (3.0 - np.sqrt(5.0)) + 2.0 * np.pi * random.uniform(ids // IDS_PER_LOCK, 1)
     return radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
 
 
 def _layout(
-    settings: HairSettings,
-    ids: NDArray,
-    number: NDArray,
-    disk: NDArray,
-    roots: NDArray,
-    u: NDArray,
-    each: int,
-    lock_count: int,
+    settings: HairSettings, per_lock: _Values, ids: NDArray, number: NDArray, lock: NDArray, disk: NDArray, u: NDArray
 ) -> dict[str, NDArray]:
     """What the kernel needs (src/ringlet/groom/hairs.h); all zero for the first hair of each lock."""
     random = Random(settings.seed, "hairs")
     free = number > 0
-    radius = settings.radius.per_curve(Random(settings.seed, "hairs/radius"), ids // IDS_PER_LOCK, roots)
-    tip = 1.0 - settings.shorter * free * random.uniform(ids, 0) ** 2
-    reach = np.where(random.uniform(ids, 1) < settings.stray, settings.stray_radius, settings.frizz) * free
+    tip = 1.0 - per_lock("shorter")[lock] * free * random.uniform(ids, 0) ** 2
+    strays = tipping(per_lock("stray")[lock], random.uniform(ids, 1))
+    frizz, stray = per_lock("frizz")[lock], per_lock("stray_radius")[lock]
+    reach = (frizz + strays * (stray - frizz)) * free
     knots = (
         reach[:, None]
         * np.linspace(0.0, 1.0, FRIZZ_KNOTS).repeat(2)
         * (2.0 * Random(settings.seed, "hairs/frizz").uniforms(ids, 2 * FRIZZ_KNOTS) - 1.0)
     )
     near = np.clip(1.0 - u / settings.gather, 0.0, 1.0)
+    section = _section(settings, per_lock, lock, disk)
     return {
-        "first": np.arange(0, lock_count * each + 1, each, dtype=np.int32),
-        "offset": (radius[:, None] * disk).astype(np.float32),
+        "offset": (per_lock("radius")[lock, None] * section).astype(np.float32),
         "tip": tip.astype(np.float32),
+        "taper": per_lock("taper")[lock].astype(np.float32),
         "frizz": knots.astype(np.float32),
         "profile": settings.radius.along(u).astype(np.float32),
         "hold": (near * near * (3.0 - 2.0 * near)).astype(np.float32),
+    }
+
+
+def _section(settings: HairSettings, per_lock: _Values, lock: NDArray, disk: NDArray) -> NDArray[np.float64]:
+    """Places in the cross-section of the locks, as parts of its radius, shape (hairs, 2): the disk drawn to its rim and
+    pressed flat along a direction that is each lock's own."""
+    if settings.hollow.value > 0.0:
+        radius = np.linalg.norm(disk, axis=1)
+        drawn = np.maximum(radius, 1e-9) ** -per_lock("hollow")[lock].clip(0.0, 1.0)
+        disk = disk * drawn[:, None]
+    if settings.flatness.value == 0.0:
+        return disk
+    angle = np.pi * Random(settings.seed, "hairs/ribbon").uniform(per_lock.locks.ids)[lock]
+    thin = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    pressed = per_lock("flatness")[lock].clip(0.0, 1.0) * np.sum(disk * thin, axis=1)
+    return disk - pressed[:, None] * thin
+
+
+def _neighbours(
+    settings: HairSettings,
+    per_lock: _Values,
+    groom: Groom,
+    curves: Curves,
+    is_lock: NDArray,
+    roots: NDArray,
+    u: NDArray,
+) -> dict[str, NDArray]:
+    """The neighbouring lock that each hair is drawn to, and how far: by half where it stands between the two, not at
+    all across a parting."""
+    blend = settings.blend.along(u).astype(np.float32)
+    locks, lock = groom.locks, curves.curve["lock"]
+    if settings.blend.value == 0.0 or len(locks) < 2:
+        return {"other": np.empty(0, np.int32), "share": np.empty(0, np.float32), "blend": blend}
+    bound = curves.curve
+    at = np.einsum(
+        "hc,hcx->hx", bound["root_barycentric"], groom.scalp.points[groom.scalp.triangles[bound["root_triangle"]]]
+    )
+    near = np.asarray(KDTree(roots).query(at, k=2)[1])
+    other = np.where(near[:, 0] == lock, near[:, 1], near[:, 0]).astype(np.int32)
+    own_way, other_way = (np.linalg.norm(at - roots[index], axis=1) for index in (lock, other))
+    middle = np.add.reduceat(locks.points, locks.offsets[:-1], axis=0) / locks.counts[:, None] - locks.roots
+    lean = middle / np.maximum(np.linalg.norm(middle, axis=1, keepdims=True), 1e-12)
+    angle = np.degrees(np.arccos(np.clip(np.sum(lean[lock] * lean[other], axis=1), -1.0, 1.0)))
+    together = np.clip(4.0 * (1.0 - angle / settings.apart), 0.0, 1.0)
+    share = per_lock("blend")[lock] * together * own_way / np.maximum(own_way + other_way, 1e-12)
+    return {
+        "other": other,
+        "share": np.where(is_lock, 0.0, np.minimum(share, 1.0)).astype(np.float32),
+        "blend": blend,
     }

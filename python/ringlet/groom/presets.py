@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Literal
+
+Preset = Literal["3B", "3C", "4A", "4C"]
 
 # Diameters after the hair typing in common use (3B: a marker pen, 3C: a pencil, 4A: a crochet needle, 4C: coils hardly
 # seen). Pitch, the rise from turn to turn, is that of hair that carries little weight: tighter hair stands closer.

@@ -58,3 +58,10 @@ class Random:
             name = (node[:, 0] & 0x1FFFFF) | (node[:, 1] & 0x1FFFFF) << 21 | (node[:, 2] & 0x1FFFFF) << 42
             total += np.prod(np.where(bit, t, 1.0 - t), axis=1) * (2.0 * self.uniform(name) - 1.0)
         return total
+
+
+def tipping(part: NDArray, chance: NDArray) -> NDArray[np.float64]:
+    """1 for that part of the numbers between 0 and 1, 0 for the others, and something between for the few (one in 50)
+    that are about to tip, so that nothing jumps while the part changes."""
+    width = 0.02
+    return np.clip(((1.0 + width) * part - chance) / width, 0.0, 1.0)

@@ -159,6 +159,23 @@ class Scalp:
         return "move the guides onto the scalp, or raise guides.tolerance"
 
 
+def axes(curves: Curves, frames: NDArray) -> NDArray[np.float64]:
+    """For each curve, a unit direction across its first edge, shape (count, 3): the x axis, turned as the y axis is on
+    its way to the normal of the root and then to that edge. Neighbours have much the same, whatever the triangles are,
+    and it does not jump while an edge moves."""
+    normal = frames[:, :, 2]
+    edge = curves.points[curves.offsets[:-1] + 1] - curves.roots
+    edge = edge / np.maximum(np.linalg.norm(edge, axis=1, keepdims=True), 1e-12)
+    across = _turned(np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]), normal)
+    return np.ascontiguousarray(_turned(across, normal, edge))
+
+
+def _turned(vectors: NDArray, start: NDArray, end: NDArray) -> NDArray[np.float64]:
+    """Vectors orthogonal to the unit vectors ``start``, turned by the shortest way that these take to ``end``."""
+    share = np.sum(vectors * end, axis=1) / np.maximum(1.0 + np.sum(start * end, axis=1), 1e-9)
+    return vectors - share[:, None] * (start + end)
+
+
 def _areas(points: NDArray, triangles: NDArray) -> NDArray[np.float64]:
     a, b, c = (points[triangles[:, k]] for k in range(3))
     return 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)

@@ -24,13 +24,14 @@ void space_evenly(View<Vec3> fine, std::span<Vec3> result) {
         const double s = along.back() * static_cast<double>(k) / static_cast<double>(result.size() - 1);
         while (i + 2 < fine.size() && along[i + 1] < s) ++i;
         const double edge = along[i + 1] - along[i];
-        result[k] = fine[i] + (edge > 0.0 ? std::min(1.0, (s - along[i]) / edge) : 0.0) * (fine[i + 1] - fine[i]);
+        result[k] = spline(fine, static_cast<double>(i) + (edge > 0.0 ? std::min(1.0, (s - along[i]) / edge) : 0.0));
     }
+    result.front() = fine.front();
     result.back() = fine.back();
 }
 
 void resample(View<Vec3> points, std::span<Vec3> result) {
-    const size_t fine_count = 8 * std::max(points.size(), result.size());
+    const size_t fine_count = 4 * std::max(points.size(), result.size());
     std::vector<Vec3> fine(fine_count);
     const double last = static_cast<double>(points.size() - 1);
     for (size_t k = 0; k < fine_count; ++k)

@@ -9,10 +9,17 @@
 namespace ringlet {
 namespace {
 
+constexpr double whole_turn = 2.0 * std::numbers::pi;
+
+double eased(double t) { return t * t * (3.0 - 2.0 * t); }
+
+double eased_part(double s, double whole) { return whole > 0.0 ? eased(std::clamp(s / whole, 0.0, 1.0)) : 1.0; }
+
 double lerp_table(View<double> table, double u) {
+    if (table.size() < 2) return table[0];
     const double at = u * static_cast<double>(table.size() - 1);
     const size_t i = std::min(static_cast<size_t>(at), table.size() - 2);
-    return table.size() < 2 ? table[0] : table[i] + (at - static_cast<double>(i)) * (table[i + 1] - table[i]);
+    return table[i] + (at - static_cast<double>(i)) * (table[i + 1] - table[i]);
 }
 
 // Between its values a noise eases in and out, so that it has no corners.
@@ -20,64 +27,204 @@ double eased_table(View<double> table, double u) {
     if (table.size() < 2) return table[0];
     const double at = u * static_cast<double>(table.size() - 1);
     const size_t i = std::min(static_cast<size_t>(at), table.size() - 2);
-    const double t = at - static_cast<double>(i);
-    return table[i] + t * t * (3.0 - 2.0 * t) * (table[i + 1] - table[i]);
+    return table[i] + eased(at - static_cast<double>(i)) * (table[i + 1] - table[i]);
 }
+
+// A shape by the length from its root: the spline through its points with a frame that turns as little as possible.
+class Spine {
+public:
+    void fit(View<Vec3> shape, const Vec3 &axis) {
+        shape_ = shape;
+        const size_t n = 4 * (shape.size() - 1) + 1;
+        for (auto *values : {&points_, &tangents_, &axes_}) values->resize(n);
+        along_.assign(n, 0.0);
+        for (size_t k = 0; k < n; ++k) points_[k] = spline(shape, 0.25 * static_cast<double>(k));
+        for (size_t k = 1; k < n; ++k) along_[k] = along_[k - 1] + (points_[k] - points_[k - 1]).norm();
+        tangents(points_, tangents_);
+        transport(points_, tangents_, axis, axes_);
+        length_ = 0.0;
+        for (size_t i = 1; i < shape.size(); ++i) length_ += (shape[i] - shape[i - 1]).norm();
+        i_ = 0;
+    }
+
+    double length() const { return length_; }
+
+    // The place a part (0…1) of the way along, and the two axes across it. Quick when asked from root to tip.
+    void at(double part, Vec3 &point, Vec3 &a, Vec3 &b) {
+        const double s = part * along_.back();
+        if (s < along_[i_]) i_ = 0;
+        while (i_ + 2 < along_.size() && along_[i_ + 1] < s) ++i_;
+        const double edge = along_[i_ + 1] - along_[i_];
+        const double t = edge > 0.0 ? std::min(1.0, (s - along_[i_]) / edge) : 0.0;
+        point = spline(shape_, 0.25 * (static_cast<double>(i_) + t));
+        const Vec3 tangent = (tangents_[i_] + t * (tangents_[i_ + 1] - tangents_[i_])).stableNormalized();
+        a = orthogonal(axes_[i_] + t * (axes_[i_ + 1] - axes_[i_]), tangent);
+        b = tangent.cross(a);
+    }
+
+private:
+    View<Vec3> shape_;
+    std::vector<Vec3> points_, tangents_, axes_;
+    std::vector<double> along_;
+    double length_ = 0.0;
+    size_t i_ = 0;
+};
+
+// One place on the way of a lock, before it is wound.
+struct Place {
+    Vec3 centre, a, b;
+    double phase, radius;
+};
 
 // One lock being curled; the scratch is kept from lock to lock.
 class Curler {
 public:
-    // Six samples a point: at 12 points a turn the chords between samples miss the curl by a thousandth of its radius.
-    Curler(const CurlSettings &settings, int count)
-        : settings_(settings), fine_(6 * count), centre_(fine_), tangent_(fine_), axis_(fine_), curled_(fine_) {}
+    // Three samples a point, and a spline between them: at 12 points a turn it misses the curl by 1e-5 of its radius.
+    Curler(const CurveView &shapes, const CurlSettings &settings, int count)
+        : shapes_(shapes), settings_(settings), way_(3 * count), leading_(3 * count), curled_(3 * count) {}
 
-    void operator()(int lock, View<Vec3> shape, std::span<Vec3> result) {
-        double length = 0.0;
-        for (size_t i = 1; i < shape.size(); ++i) length += (shape[i] - shape[i - 1]).norm();
-        const double arc = wind(lock, shape, length, 1.0);
-        if (settings_.keep_length && arc > length) {
-            // The part of the shape whose curl is as long as the shape was; arc length grows with it.
-            double low = 0.0, high = 1.0;
-            for (int k = 0; k < 24; ++k) {
-                const double middle = 0.5 * (low + high);
-                (wind(lock, shape, length, middle) > length ? high : low) = middle;
-            }
-            wind(lock, shape, length, high);
-        }
-        space_evenly(curled_, result);
+    void operator()(int lock, std::span<Vec3> result) {
+        lock_ = lock;
+        spine_.fit(shapes_[lock], settings_.axis[lock]);
+        if (const int leader = settings_.leader[lock]; leader != lock)
+            leader_spine_.fit(shapes_[leader], settings_.axis[leader]);
+        const double over = wind(1.0, result) - spine_.length();
+        if (settings_.keep_length && over > 0.0) shorten(over, result);
     }
 
 private:
-    // Curls the first part of the shape, with all turns in it when they are counted per lock; returns the arc length.
-    double wind(int lock, View<Vec3> shape, double length, double part) {
-        const size_t n = curled_.size();
-        const double step = part / static_cast<double>(n - 1), last = static_cast<double>(shape.size() - 1);
-        for (size_t k = 0; k < n; ++k) centre_[k] = spline(shape, std::min(last, last * step * static_cast<double>(k)));
-        tangents(centre_, tangent_);
-        transport(centre_, tangent_, settings_.axis[lock], axis_);
-
-        const size_t noises = settings_.noise_count;
-        const View<double> width_noise = settings_.width_noise.subspan(lock * noises, noises);
-        const View<double> rate_noise = settings_.rate_noise.subspan(lock * noises, noises);
-        const View<double> hand = settings_.hand.subspan(lock * noises, noises);
-        const double per_step = 2.0 * std::numbers::pi * settings_.turns[lock] * step;
-        double phase = settings_.phase[lock], arc = 0.0;
-        for (size_t k = 0; k < n; ++k) {
-            const double u = std::min(1.0, step * static_cast<double>(k));
-            const double opened = settings_.start[lock] > 0.0 ? std::min(1.0, u * length / settings_.start[lock]) : 1.0;
-            const double radius = settings_.radius[lock] * lerp_table(settings_.width_ramp, u) * opened * opened *
-                                  (3.0 - 2.0 * opened) * (1.0 + eased_table(width_noise, u));
-            const Vec3 b = tangent_[k].cross(axis_[k]);
-            curled_[k] = centre_[k] + radius * (std::cos(phase) * axis_[k] + (1.0 - settings_.flatness) * std::sin(phase) * b);
-            if (k > 0) arc += (curled_[k] - curled_[k - 1]).norm();
-            phase += per_step * lerp_table(settings_.rate_ramp, u) * (1.0 + eased_table(rate_noise, u)) * eased_table(hand, u);
+    // Finds the part of the shape whose curl is as long as the shape was, by the secant method with a bracket (Illinois).
+    void shorten(double over_high, std::span<Vec3> result) {
+        double low = 0.0, high = 1.0, over_low = -spine_.length();
+        for (int k = 0; k < 30; ++k) {
+            const double x = (low * over_high - high * over_low) / (over_high - over_low);
+            const double over = wind(x, result) - spine_.length();
+            if (std::abs(over) < 1e-6 * spine_.length()) return;
+            if (over < 0.0) {
+                low = x, over_low = over;
+                over_high *= 0.5;
+            } else {
+                high = x, over_high = over;
+                over_low *= 0.5;
+            }
         }
-        return arc;
     }
 
+    // Curls the first part of the shape; returns the length of the result.
+    double wind(double share, std::span<Vec3> result) {
+        // Counted turns may be too many for the length that is left: they get narrower rather than closer still.
+        constexpr double least = 0.05;
+        const double part = std::max(share, least), narrower = std::min(1.0, share / least);
+        follow(lock_, spine_, part, way_);
+        const int leader = settings_.leader[lock_];
+        if (leader != lock_) {
+            follow(leader, leader_spine_, part, leading_);
+            fall_in(part);
+        }
+        const double flat = 1.0 - settings_.flatness[lock_], kink = settings_.kink[lock_];
+        for (size_t k = 0; k < way_.size(); ++k) {
+            const Place &at = way_[k];
+            const double across = std::cos(at.phase), up = std::sin(at.phase);
+            // A zigzag with corners just round enough to be drawn: its slope turns over a tenth of a period.
+            const double zigzag = kink > 0.0 ? std::asin(0.985 * across) / std::asin(0.985) : 0.0;
+            curled_[k] = at.centre + narrower * at.radius *
+                                         (((1.0 - kink) * across + kink * zigzag) * at.a + (1.0 - kink) * flat * up * at.b);
+        }
+        space_evenly(curled_, result);
+        double length = 0.0;
+        for (size_t k = 1; k < result.size(); ++k) length += (result[k] - result[k - 1]).norm();
+        return length;
+    }
+
+    // Middle line, frame, phase and radius of a lock on the first part of its shape.
+    void follow(int lock, Spine &spine, double part, std::span<Place> way) const {
+        const size_t noises = settings_.noise_count, events = settings_.event_count;
+        const View<double> width_noise = settings_.width_noise.subspan(lock * noises, noises);
+        const View<double> rate_noise = settings_.rate_noise.subspan(lock * noises, noises);
+        const View<double> sway = settings_.sway.subspan(lock * noises, noises);
+        const View<double> switchbacks = settings_.switchbacks.subspan(lock * events, events);
+        const View<double> skips = settings_.skips.subspan(lock * events, events);
+        const double turns = settings_.turns[lock] * (settings_.counted ? 1.0 : part);
+        const double length = part * spine.length(), step = 1.0 / static_cast<double>(way.size() - 1);
+        const double wave_turns = settings_.wave_turns[lock] * part, wave = settings_.wave[lock];
+        const double wave_x = std::cos(settings_.phase[lock]), wave_y = std::sin(settings_.phase[lock]);
+
+        double turned = 0.0, rate_before = 0.0;
+        for (size_t k = 0; k < way.size(); ++k) {
+            const double v = std::min(1.0, step * static_cast<double>(k)), s = v * length;
+            Place &at = way[k];
+            spine.at(v * part, at.centre, at.a, at.b);
+            // A closing over less than 2 mm fades in, lest the tip jump when the first of it is asked for.
+            const double closing = lerp_table(settings_.closing, 1.0 - eased_part(length - s, settings_.end[lock]));
+            const double open = lerp_table(settings_.opening, eased_part(s, settings_.start[lock])) *
+                                (1.0 + std::min(1.0, settings_.end[lock] / 2e-3) * (closing - 1.0));
+            at.radius = settings_.radius[lock] * lerp_table(settings_.width_ramp, v) * open *
+                        (1.0 - settings_.taper[lock] * lerp_table(settings_.taper_ramp, v)) *
+                        (1.0 + eased_table(width_noise, v));
+            const double rate = turns * lerp_table(settings_.rate_ramp, v) * (1.0 + eased_table(rate_noise, v)) *
+                                hand(settings_.flip[lock], switchbacks, turns, v) * pace(skips, turns, v);
+            if (k > 0) turned += 0.5 * step * (rate_before + rate);
+            rate_before = rate;
+            at.phase = settings_.phase[lock] + whole_turn * turned;
+            if (wave > 0.0)
+                at.centre += wave * lerp_table(settings_.wave_ramp, v) * open * std::sin(whole_turn * wave_turns * v) *
+                             (wave_x * at.a + wave_y * at.b);
+            if (const double angle = eased_table(sway, v); angle != 0.0) {
+                const Vec3 a = std::cos(angle) * at.a + std::sin(angle) * at.b;
+                at.b = std::cos(angle) * at.b - std::sin(angle) * at.a;
+                at.a = a;
+            }
+        }
+    }
+
+    // +1 before and -1 after a place where the curl changes its hand, which takes about a turn.
+    static double change(double place, double turns, double v) {
+        return 1.0 - 2.0 * eased(std::clamp(0.5 + (v - place) * std::max(turns, 1.0), 0.0, 1.0));
+    }
+
+    static double hand(double flip, View<double> switchbacks, double turns, double v) {
+        double result = -change(flip, turns, v);
+        for (const double place : switchbacks) {
+            if (place > 2.0) break; // they ascend
+            result *= change(place, turns, v);
+        }
+        return result;
+    }
+
+    // 1, and less for two turns around a skip, so that one turn is left out.
+    static double pace(View<double> skips, double turns, double v) {
+        double left_out = 0.0;
+        for (const double at : skips) {
+            if (at > 2.0) break;
+            const double t = 0.5 * (v - at) * std::max(turns, 1.0); // -½ … ½ over two turns
+            if (std::abs(t) < 0.5) left_out += 0.5 + 0.5 * std::cos(whole_turn * t);
+        }
+        return std::max(0.0, 1.0 - left_out);
+    }
+
+    // Lets phase, radius and middle line go over into the leader's.
+    void fall_in(double part) {
+        const double length = part * spine_.length(), cohesion = settings_.cohesion[lock_];
+        for (size_t k = 0; k < way_.size(); ++k) {
+            const double s = length * static_cast<double>(k) / static_cast<double>(way_.size() - 1);
+            const double weight = settings_.join[lock_] * eased_part(s, settings_.join_over[lock_]);
+            Place &own = way_[k];
+            const Place &other = leading_[k];
+            own.phase += weight * (other.phase - own.phase);
+            own.radius += weight * (other.radius - own.radius);
+            own.centre += weight * cohesion * (other.centre - own.centre);
+            const Vec3 tangent = own.a.cross(own.b);
+            own.a = orthogonal(own.a + weight * (other.a - own.a), tangent);
+            own.b = tangent.cross(own.a);
+        }
+    }
+
+    const CurveView &shapes_;
     const CurlSettings &settings_;
-    size_t fine_;
-    std::vector<Vec3> centre_, tangent_, axis_, curled_;
+    int lock_ = 0;
+    Spine spine_, leader_spine_;
+    std::vector<Place> way_, leading_;
+    std::vector<Vec3> curled_;
 };
 
 } // namespace
@@ -86,10 +233,10 @@ std::vector<Vec3> curl(const CurveView &shapes, const CurlSettings &settings, in
     std::vector<Vec3> result(static_cast<size_t>(shapes.count()) * count);
 #pragma omp parallel
     {
-        Curler curler(settings, count);
+        Curler curler(shapes, settings, count);
 #pragma omp for schedule(dynamic, 16)
         for (int lock = 0; lock < shapes.count(); ++lock)
-            curler(lock, shapes[lock], std::span(result).subspan(static_cast<size_t>(lock) * count, count));
+            curler(lock, std::span(result).subspan(static_cast<size_t>(lock) * count, count));
     }
     return result;
 }

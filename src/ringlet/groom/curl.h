@@ -7,25 +7,42 @@
 
 namespace ringlet {
 
-// One value per lock in each array. Ramps and noises are sampled evenly from root to tip.
+// One value per lock in each array, and a row per lock in each table. Ramps are sampled evenly from root to tip.
 struct CurlSettings {
-    View<Vec3> axis;          // where the phase counts from: a direction that moves with the scalp
-    View<double> radius;      // [m]
-    View<double> turns;       // over the whole shape; negative winds left-handed
-    View<double> phase;       // [rad]
-    View<double> start;       // length over which the curl opens [m]
-    View<double> width_ramp;  // factor on the radius, shared by all locks
-    View<double> rate_ramp;   // factor on the turns per length, shared by all locks
-    View<double> width_noise; // factor - 1 on the radius, `noise_count` values a lock
-    View<double> rate_noise;  // factor - 1 on the turns per length, `noise_count` values a lock
-    View<double> hand;        // +1 or -1 along the lock, `noise_count` values a lock: a change is a switchback
-    int noise_count = 1;
-    double flatness = 0.0;    // 0 round … 1 flat
-    bool keep_length = false; // the curled arc length is that of the shape, and the silhouette shortens; else the reverse
+    View<Vec3> axis;         // where the phase counts from: a direction that moves with the scalp
+    View<double> radius;     // [m]
+    View<double> turns;      // over the whole shape
+    View<double> phase;      // [rad]
+    View<double> flip;       // where the lock, left-handed before, becomes right-handed: -1 from the root on … 2 nowhere
+    View<double> start, end; // length over which the curl opens at the root and closes at the tip [m]
+    View<double> taper;      // how much narrower the curl gets, as taper_ramp goes from 0 to 1
+    View<double> flatness;   // 0 round … 1 flat
+    View<double> kink;       // 0 a helix … 1 a zigzag
+    View<double> wave;       // amplitude of the plane wave under the curl [m]
+    View<double> wave_turns; // periods of that wave over the whole shape
+
+    View<double> width_ramp, rate_ramp; // factors on the radius and on the turns per length, shared by all locks
+    View<double> opening, closing;      // the curl's width over start and end, shared by all locks
+    View<double> taper_ramp, wave_ramp; // factors on taper and wave, shared by all locks
+    View<double> width_noise;           // factor - 1 on the radius, `noise_count` values a lock
+    View<double> rate_noise;            // factor - 1 on the turns per length, `noise_count` values a lock
+    View<double> sway;                  // angle by which the whole turns about the shape [rad], `noise_count` values a lock
+    View<double> switchbacks;           // where the curl changes its hand, 0…1 from root to tip, `event_count` a lock
+    View<double> skips;                 // where it leaves out a turn, 0…1 from root to tip, `event_count` a lock
+
+    View<int> leader;       // the lock in whose phase this one falls; itself where in none
+    View<double> join;      // how far it does, 0…1
+    View<double> join_over; // length from the root over which it does [m]
+    View<double> cohesion;  // how far its middle line is drawn to the leader's, 0…1
+
+    int noise_count = 1, event_count = 0;
+    bool counted = false;     // turns are all there are, however short the curled shape is; else they are per length
+    bool keep_length = false; // the curled length is that of the shape, and the silhouette shortens; else the reverse
 };
 
-// The helix p(u) = c(u) + r(u) (a(u) cos φ(u) + b(u) sin φ(u)) about each shape curve c, where a and b are its
+// The helix p(v) = c(v) + r(v) (a(v) cos φ(v) + b(v) sin φ(v)) about each shape curve c, where a and b are its
 // rotation-minimising frame and φ' the turns per length; `count` points per lock, evenly spaced along the curl.
+// With `kink` cos φ becomes a zigzag in the plane of a; with a leader, φ, r and c go over into the leader's.
 std::vector<Vec3> curl(const CurveView &shapes, const CurlSettings &settings, int count);
 
 } // namespace ringlet

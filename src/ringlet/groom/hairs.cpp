@@ -2,56 +2,52 @@
 
 #include "ringlet/groom/hairs_kernel.h"
 
+#include <algorithm>
+
 namespace ringlet {
 namespace {
 
-// Coordinates apart, with a point more before the root and two after the tip.
-class Table {
+void put(float (&row)[4], const Vec3f &v) {
+    for (int c = 0; c < 3; ++c) row[c] = v[c];
+    row[3] = 0.0f;
+}
+
+// Writes a lock's segments: Catmull–Rom for the points, straight for the frame.
+class Segmenter {
 public:
-    // Rows: x, y, z of the point, of a and of b.
-    LockTable fill(View<Vec3f> source, View<Vec3> axis_seed) {
-        const size_t n = source.size(), stride = n + 3;
-        points_.resize(n);
-        tangents_.resize(n);
-        axes_.resize(n);
-        for (size_t i = 0; i < n; ++i) points_[i] = source[i].cast<double>();
+    void operator()(View<Vec3f> points, const Vec3 &axis, std::span<LockSegment> segments) {
+        const size_t n = points.size();
+        points_.resize(n), tangents_.resize(n), axes_.resize(n);
+        for (size_t i = 0; i < n; ++i) points_[i] = points[i].cast<double>();
         tangents(points_, tangents_);
-        transport(points_, tangents_, axis_seed.front(), axes_);
+        transport(points_, tangents_, axis, axes_);
 
-        numbers_.resize(9 * stride);
-        const auto put = [&](size_t at, const Vec3f &p, const Vec3f &a, const Vec3f &b) {
-            for (size_t c = 0; c < 3; ++c) {
-                numbers_[c * stride + at] = p[c];
-                numbers_[(3 + c) * stride + at] = a[c];
-                numbers_[(6 + c) * stride + at] = b[c];
-            }
-        };
-        for (size_t i = 0; i < n; ++i)
-            put(i + 1, source[i], axes_[i].cast<float>(), tangents_[i].cross(axes_[i]).cast<float>());
         // The curve goes on as a parabola beyond its ends (see resample.cpp).
-        const bool bent = n > 2;
-        const Vec3f before =
-            bent ? Vec3f(3.0f * source[0] - 3.0f * source[1] + source[2]) : Vec3f(2.0f * source[0] - source[1]);
-        const Vec3f after = bent ? Vec3f(3.0f * source[n - 1] - 3.0f * source[n - 2] + source[n - 3])
-                                 : Vec3f(2.0f * source[n - 1] - source[n - 2]);
-        put(0, before, axes_[0].cast<float>(), tangents_[0].cross(axes_[0]).cast<float>());
-        const Vec3f a = axes_[n - 1].cast<float>(), b = tangents_[n - 1].cross(axes_[n - 1]).cast<float>();
-        put(n + 1, after, a, b);
-        put(n + 2, after, a, b);
-
-        LockTable table{};
-        for (size_t c = 0; c < 3; ++c) {
-            table.point[c] = &numbers_[c * stride + 1];
-            table.a[c] = &numbers_[(3 + c) * stride + 1];
-            table.b[c] = &numbers_[(6 + c) * stride + 1];
+        const auto beyond = [&](size_t end, size_t next, size_t third) {
+            return n > 2 ? Vec3f(3.0f * points[end] - 3.0f * points[next] + points[third])
+                         : Vec3f(2.0f * points[end] - points[next]);
+        };
+        const Vec3f before = beyond(0, 1, std::min<size_t>(2, n - 1)), after = beyond(n - 1, n - 2, n > 2 ? n - 3 : 0);
+        for (size_t i = 0; i < n; ++i) {
+            LockSegment &segment = segments[i];
+            const Vec3f a = axes_[i].cast<float>(), b = tangents_[i].cross(axes_[i]).cast<float>();
+            const bool tip = i + 1 == n;
+            const Vec3f &p1 = points[i], &p2 = tip ? points[i] : points[i + 1];
+            const Vec3f &p0 = tip ? p1 : i > 0 ? points[i - 1] : before, &p3 = tip ? p1 : i + 2 < n ? points[i + 2] : after;
+            const size_t next = tip ? i : i + 1;
+            put(segment.c0, p1);
+            put(segment.c1, 0.5f * (p2 - p0));
+            put(segment.c2, 0.5f * (2.0f * p0 - 5.0f * p1 + 4.0f * p2 - p3));
+            put(segment.c3, 0.5f * (3.0f * (p1 - p2) + p3 - p0));
+            put(segment.a, a);
+            put(segment.b, b);
+            put(segment.da, axes_[next].cast<float>() - a);
+            put(segment.db, tangents_[next].cross(axes_[next]).cast<float>() - b);
         }
-        table.last = static_cast<int>(n) - 1;
-        return table;
     }
 
 private:
     std::vector<Vec3> points_, tangents_, axes_;
-    std::vector<float> numbers_;
 };
 
 } // namespace
@@ -59,28 +55,48 @@ private:
 void warp_hairs(View<Vec3f> lock_points, View<int> lock_offsets, View<Vec3> axis, View<float> root, const HairLayout &layout,
                 std::span<float> result) {
     const int locks = static_cast<int>(lock_offsets.size()) - 1, points = static_cast<int>(layout.profile.size());
+    const bool blended = !layout.other.empty();
+    int longest = 0;
+    for (int lock = 0; lock < locks; ++lock) longest = std::max(longest, lock_offsets[lock + 1] - lock_offsets[lock]);
+    // Hairs that are drawn to a neighbour need all locks at once; else each thread keeps the one it works on, in its cache.
+    std::vector<LockSegment> all(blended ? lock_points.size() : 0);
+    std::vector<LockTable> tables(blended ? locks : 0);
 #pragma omp parallel
     {
-        Table table;
-        std::vector<float> scratch(5 * static_cast<size_t>(points));
+        Segmenter fill;
+        std::vector<LockSegment> one(blended ? 0 : longest);
+        std::vector<float> scratch(4 * static_cast<size_t>(points));
+        const auto table = [&](int lock) {
+            const size_t begin = lock_offsets[lock], count = lock_offsets[lock + 1] - begin;
+            const std::span<LockSegment> segments =
+                blended ? std::span(all).subspan(begin, count) : std::span(one).first(count);
+            fill(lock_points.subspan(begin, count), axis[lock], segments);
+            return LockTable{segments.data(), static_cast<int>(count) - 1};
+        };
+        if (blended) {
+#pragma omp for schedule(dynamic, 8)
+            for (int lock = 0; lock < locks; ++lock) tables[lock] = table(lock);
+        }
 #pragma omp for schedule(dynamic, 8)
         for (int lock = 0; lock < locks; ++lock) {
-            const int begin = lock_offsets[lock];
-            const LockTable filled =
-                table.fill(lock_points.subspan(begin, lock_offsets[lock + 1] - begin), axis.subspan(lock, 1));
             const size_t first = layout.first[lock];
             const HairSpan hairs{.count = layout.first[lock + 1] - layout.first[lock],
                                  .points = points,
                                  .knots = layout.knots,
                                  .offset = layout.offset.data() + 2 * first,
                                  .tip = layout.tip.data() + first,
+                                 .taper = layout.taper.data() + first,
                                  .frizz = layout.frizz.data() + 2 * layout.knots * first,
                                  .root = root.data() + 3 * first,
                                  .profile = layout.profile.data(),
                                  .hold = layout.hold.data(),
+                                 .blend = layout.blend.data(),
+                                 .other = blended ? layout.other.data() + first : nullptr,
+                                 .share = blended ? layout.share.data() + first : nullptr,
+                                 .locks = tables.data(),
                                  .scratch = scratch.data(),
                                  .result = result.data() + 3 * first * points};
-            RINGLET_DISPATCH(fill_hairs, filled, hairs);
+            RINGLET_DISPATCH(fill_hairs, blended ? tables[lock] : table(lock), hairs);
         }
     }
 }

@@ -12,55 +12,95 @@ from ringlet import _core
 from ringlet.curves import Curves, offsets_from_counts
 from ringlet.errors import UserError
 from ringlet.groom.operators.operator import Context, Operator, packed
-from ringlet.groom.presets import PRESETS
+from ringlet.groom.operators.phase_lock import PhaseLock
+from ringlet.groom.presets import PRESETS, Preset
+from ringlet.groom.random import tipping
+from ringlet.groom.scalp import axes
 from ringlet.groom.settings import Quantity, Ramp, Ramped, Varied, along, refuse
 
 RAMP_SAMPLES = 128
 NOISE_VALUES = 24
+EVENTS = 12  # switchbacks, and skips, of a lock, at most
+NEVER = 1e9
+LEAST_START = 1e-3  # [m] a curl that opened at once would tear its root off the scalp
 
 
 class Curl(Operator):
-    """Winds each lock about its shape: ``p(u) = c(u) + r(u) (a cos φ + b sin φ)``, with (a, b) the rotation-minimising
-    frame of the shape c, the radius ``r = width/2 · ramp`` opening smoothly from the root, and φ growing by one turn
-    per pitch.
+    """Winds each lock about its shape: ``p(v) = c(v) + r(v) (a cos φ + b sin φ)``, with (a, b) the rotation-minimising
+    frame of the shape c, the radius ``r = width/2 · ramp`` opening smoothly from the root, and φ growing by one turn a
+    pitch, or falling where the curl is left-handed. All ramps go from the root (0) to the tip (1).
 
     ``keep = "silhouette"``: the curl fills the shape's length L, and the hair is longer, by √(1 + (2πr/pitch)²).
-    ``keep = "length"``: the hair has the shape's length, and the silhouette is shorter by the same factor.
+    ``keep = "length"``: the hair has the shape's length, to a thousandth, and the silhouette is shorter instead.
     """
 
-    preset: Literal["3B", "3C", "4A", "4C"] | None = Field(
-        default=None, description="curl type; fills what is not given here"
-    )
+    preset: Preset | None = Field(default=None, description="curl type; fills what is not given here")
     width: Annotated[Ramped, Quantity("m", 0.0, 0.2)] = Field(
         default=Ramped(value=0.008), description="diameter of the curl"
     )
-    pitch: Annotated[Varied | None, Quantity("m", 5e-4, 1.0)] = Field(
+    pitch: Annotated[Ramped | None, Quantity("m", 5e-4, 1.0)] = Field(
         default=None, description="rise per curl, along the shape"
     )
-    curls: Annotated[Varied | None, Quantity("", 0.0, 500.0)] = Field(
-        default=None, description="number of curls of a lock"
+    curls: Annotated[Ramped | None, Quantity("", 0.0, 500.0)] = Field(
+        default=None, description="number of curls of a lock; its ramp says where they are closer"
     )
-    curls_per_cm: Annotated[Varied | None, Quantity("", 0.0, 20.0)] = Field(
+    curls_per_cm: Annotated[Ramped | None, Quantity("", 0.0, 20.0)] = Field(
         default=None, description="number of curls per centimetre of shape"
     )
-    rate: Ramp = Field(default=[(0.0, 1.0), (1.0, 1.0)], description="ramp: [place, factor] on curls per length")
-    start: Annotated[float, Quantity("m", 0.0, 1.0)] = Field(
-        default=0.01, description="length at the root over which the curl opens"
+    start: Annotated[Varied, Quantity("m", 0.0, 1.0)] = Field(
+        default=Varied(value=0.01), description="length at the root over which the curl opens"
     )
-    right_handed: Annotated[float, Quantity("", 0.0, 1.0)] = Field(
-        default=0.5, description="part of the locks that wind right-handed"
+    opening: Ramp = Field(
+        default=[(0.0, 0.0), (1.0, 1.0)], description="ramp over that length: [place, factor on the width]"
     )
-    switchbacks: Annotated[float, Quantity("", 0.0, 5.0)] = Field(
-        default=0.0, description="changes of hand per lock, on average"
+    end: Annotated[Varied, Quantity("m", 0.0, 1.0)] = Field(
+        default=Varied(value=0.0), description="length at the tip over which the curl closes"
     )
-    phase: Annotated[float, Quantity("deg", -360.0, 360.0)] = Field(default=0.0, description="where the curl starts")
-    phase_spread: Annotated[float, Quantity("", 0.0, 1.0)] = Field(
-        default=1.0, description="0: all start alike, 1: anywhere"
+    closing: Ramp = Field(
+        default=[(0.0, 1.0), (1.0, 0.0)], description="ramp over that length: [place, factor on the width]"
     )
-    irregularity: Annotated[float, Quantity("", 0.0, 0.9)] = Field(
-        default=0.2, description="how much width and pitch wander along a lock"
+    taper: Annotated[Ramped, Quantity("", -1.0, 1.0)] = Field(
+        default=Ramped(value=0.0, ramp=[(0, 0), (1, 1)]),
+        description="how much narrower the curl gets: 1 to nothing, -1 to double; the ramp says where",
     )
-    flatness: Annotated[float, Quantity("", 0.0, 1.0)] = Field(default=0.0, description="0 a round curl, 1 a flat wave")
+    right_handed: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
+        default=Varied(value=0.5), description="part of the locks that wind right-handed: 1 all, 0 none"
+    )
+    switchbacks: Annotated[Varied, Quantity("", 0.0, 5.0)] = Field(
+        default=Varied(value=0.0), description="changes of hand per lock, on average"
+    )
+    skips: Annotated[Varied, Quantity("", 0.0, 5.0)] = Field(
+        default=Varied(value=0.0), description="turns that a lock leaves out here and there, on average"
+    )
+    phase: Annotated[Varied, Quantity("deg", -360.0, 360.0)] = Field(
+        default=Varied(value=0.0), description="where the curl starts"
+    )
+    phase_spread: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
+        default=Varied(value=1.0), description="0: all start alike, 1: anywhere"
+    )
+    phase_alike: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
+        default=Varied(value=0.0), description="how much of that spread neighbours share: 0 nothing, 1 all"
+    )
+    phase_size: Annotated[float, Quantity("m", 1e-3, 1.0)] = Field(
+        default=0.03, description="distance over which neighbours forget one another's phase"
+    )
+    phase_lock: PhaseLock | None = Field(default=None, description="neighbours whose curls fall in with one another")
+    irregularity: Annotated[Varied, Quantity("", 0.0, 0.9)] = Field(
+        default=Varied(value=0.2), description="how much width and pitch wander along a lock"
+    )
+    flatness: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
+        default=Varied(value=0.0), description="0 a round curl, between an ellipse, 1 a flat wave"
+    )
+    kink: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
+        default=Varied(value=0.0), description="0 a coil, 1 a zigzag whose plane sways with the irregularity"
+    )
+    wave: Annotated[Ramped, Quantity("m", 0.0, 0.2)] = Field(
+        default=Ramped(value=0.0),
+        description="width of a plane S-wave under the curl, in the plane where the curl starts",
+    )
+    wave_pitch: Annotated[Varied, Quantity("m", 1e-3, 1.0)] = Field(
+        default=Varied(value=0.04), description="length of one such wave"
+    )
     keep: Literal["silhouette", "length"] = Field(default="silhouette", description="what the curl does not change")
 
     @classmethod
@@ -82,54 +122,106 @@ class Curl(Operator):
             )
         return self
 
-    def turns(self, curves: Curves, context: Context) -> NDArray[np.floating]:
-        """Curls of each lock, shape (count,)."""
+    def turns(self, curves: Curves, context: Context, u: NDArray) -> tuple[NDArray[np.floating], NDArray[np.floating]]:
+        """Curls of each lock, shape (count,), and a factor on them at the places ``u`` along it, whose mean is 1."""
         lengths = curves.lengths()
         if self.curls is not None:
-            return context.values("curls", self.curls, curves)
+            turns, rate = context.values("curls", self.curls, curves), self.curls.along(u)
+            return turns, rate / max(float(np.mean(rate)), 1e-9)
         if self.curls_per_cm is not None:
-            return 100.0 * lengths * context.values("curls_per_cm", self.curls_per_cm, curves)
-        assert self.pitch is not None
-        return lengths / context.values("pitch", self.pitch, curves)
+            turns, rate = (
+                100.0 * lengths * context.values("curls_per_cm", self.curls_per_cm, curves),
+                self.curls_per_cm.along(u),
+            )
+        else:
+            assert self.pitch is not None
+            turns, rate = (
+                lengths / context.values("pitch", self.pitch, curves),
+                1.0 / np.maximum(self.pitch.along(u), 0.05),
+            )
+        mean = max(float(np.mean(rate)), 1e-9)
+        return turns * mean, rate / mean
 
     def apply(self, curves: Curves, context: Context) -> Curves:
         """Groom guides, their points evenly spaced along the curl."""
-        turns, points = self.turns(curves, context), context.lock_points
-        if (most := float(turns.max())) > points / 6.0:
-            raise UserError(
-                f"locks.points is {points}: too few for {most:.1f} curls ({points / most:.1f} points a curl); "
-                f"set it to {int(np.ceil(12 * most))} (at least {int(np.ceil(6 * most))}), or ask for fewer curls"
-            )
-        frames = context.scalp.frames(curves)
-        ids, u = curves.ids, np.linspace(0.0, 1.0, RAMP_SAMPLES)
-        right = context.random("hand").uniform(ids) < self.right_handed
-        phase = 360.0 * self.phase_spread * context.random("phase").uniform(ids) + self.phase
+
+        def values(name: str) -> NDArray[np.float64]:
+            return context.values(name, getattr(self, name), curves)
+
+        ids, u, points = curves.ids, np.linspace(0.0, 1.0, RAMP_SAMPLES), context.lock_points
+        turns, rate = self.turns(curves, context, u)
+        width = values("width")
+        self._check_points(turns, width, curves, points)
         # How strongly each lock wanders is its own affair too: some are neat, some are not.
-        wander = self.irregularity * (0.5 + context.random("neatness").uniform(ids))[:, None]
-        width_noise, rate_noise = (
-            np.clip(wander * (2.0 * context.random(name).uniforms(ids, NOISE_VALUES) - 1.0), -0.9, 0.9)
-            for name in ("width", "rate")
-        )
+        wander = (values("irregularity") * (0.5 + context.random("neatness").uniform(ids)))[:, None]
+        noise = {
+            name: np.clip(wander * (2.0 * context.random(name).uniforms(ids, NOISE_VALUES) - 1.0), -0.9, 0.9)
+            for name in ("width", "rate", "sway")
+        }
+        kink = values("kink")
         curled = _core.curl_curves(
             *packed(curves),
-            axis=np.ascontiguousarray(frames[:, :, 0]),
-            radius=0.5 * context.values("width", self.width, curves),
-            turns=np.where(right, turns, -turns),
-            phase=np.radians(phase),
-            start=np.full(len(ids), self.start),
+            axis=axes(curves, context.scalp.frames(curves)),
+            radius=0.5 * width,
+            turns=turns,
+            phase=np.radians(self._phase(curves, context)),
+            # The few that are about to change their hand do so somewhere on their way.
+            flip=2.0 - 3.0 * tipping(values("right_handed"), context.random("hand").uniform(ids)),
+            start=np.hypot(values("start"), LEAST_START),
+            end=values("end"),
+            taper=np.minimum(values("taper"), 1.0),
+            flatness=np.clip(values("flatness"), 0.0, 1.0),
+            kink=np.clip(kink, 0.0, 1.0),
+            wave=0.5 * values("wave"),
+            wave_turns=curves.lengths() / values("wave_pitch"),
             width_ramp=self.width.along(u),
-            rate_ramp=along(self.rate, u),
-            width_noise=width_noise,
-            rate_noise=rate_noise,
-            hand=self._hands(context, ids),
-            flatness=self.flatness,
+            rate_ramp=rate,
+            opening=along(self.opening, u),
+            closing=along(self.closing, u),
+            taper_ramp=self.taper.along(u),
+            wave_ramp=self.wave.along(u),
+            width_noise=noise["width"],
+            rate_noise=noise["rate"],
+            sway=np.pi * np.clip(kink, 0.0, 1.0)[:, None] * noise["sway"],
+            switchbacks=_events(values("switchbacks"), context.random("switchbacks").uniforms(ids, EVENTS)),
+            skips=_events(values("skips"), context.random("skips").uniforms(ids, EVENTS)),
+            **(self.phase_lock.values(curves, context) if self.phase_lock else _alone(len(ids))),
+            counted=self.curls is not None,
             keep_length=self.keep == "length",
             count=points,
         )
         return Curves(curled, offsets_from_counts(np.full(len(ids), points)), ids, curves.curve)
 
-    def _hands(self, context: Context, ids: NDArray) -> NDArray[np.float64]:
-        """+1, and -1 after an odd number of switchbacks; shape (count, NOISE_VALUES)."""
-        turned = context.random("switchbacks").uniforms(ids, NOISE_VALUES) < self.switchbacks / NOISE_VALUES
-        turned[:, 0] = False
-        return np.where(np.cumsum(turned, axis=1) % 2 == 1, -1.0, 1.0)
+    def _check_points(self, turns: NDArray, width: NDArray, curves: Curves, points: int) -> None:
+        """Refuses curls that so few points could not draw."""
+        if self.keep == "length" and self.curls is None:  # the curled part of the shape is shorter
+            turns = turns / np.hypot(1.0, np.pi * width * turns / curves.lengths())
+        if (most := float(turns.max())) > points / 6.0:
+            raise UserError(
+                f"locks.points is {points}: too few for {most:.1f} curls ({points / most:.1f} points a curl); "
+                f"set it to {int(np.ceil(12 * most))} (at least {int(np.ceil(6 * most))}), or ask for fewer curls"
+            )
+
+    def _phase(self, curves: Curves, context: Context) -> NDArray[np.float64]:
+        """Where each curl starts [degrees], shape (count,): by its own chance and one that neighbours share."""
+        spread, alike, phase = (
+            context.values(name, getattr(self, name), curves) for name in ("phase_spread", "phase_alike", "phase")
+        )
+        own = context.random("phase").uniform(curves.ids)
+        shared = context.random("phase_field").field(curves.roots, self.phase_size)
+        return phase + 360.0 * spread * ((1.0 - alike) * own + alike * shared)
+
+
+def _events(rate: NDArray, chance: NDArray) -> NDArray[np.float64]:
+    """Places along each lock, ascending, ``rate`` of them between 0 and 1 on average, shape (count, EVENTS).
+
+    The gaps are exponentially distributed; with a higher rate all move towards the root, and new ones enter at the tip.
+    """
+    gaps = -np.log1p(-np.minimum(chance, 1.0 - 1e-12))
+    return np.minimum(np.cumsum(gaps, axis=1) / np.maximum(rate, 1e-9)[:, None], NEVER)
+
+
+def _alone(count: int) -> dict[str, NDArray]:
+    """Locks that fall in with none."""
+    nothing = np.zeros(count)
+    return {"leader": np.arange(count, dtype=np.int32), "join": nothing, "join_over": nothing, "cohesion": nothing}

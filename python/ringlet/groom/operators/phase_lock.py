@@ -1,0 +1,44 @@
+"""Curls of neighbours that fall in with one another."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+from scipy.spatial import KDTree
+
+from ringlet.curves import Curves
+from ringlet.groom.operators.operator import Context
+from ringlet.groom.settings import Quantity, Section, Varied
+
+
+class PhaseLock(Section):
+    """Neighbouring curls that lie in one another become one: from the root on, phase and width of a lock go over into
+    those of the lock in the middle of its group."""
+
+    size: Annotated[float, Quantity("m", 1e-3, 1.0)] = Field(default=0.01, description="distance of the groups")
+    amount: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
+        default=Varied(value=1.0), description="how far they do: 0 not at all, 1 wholly"
+    )
+    length: Annotated[Varied, Quantity("m", 0.0, 10.0)] = Field(
+        default=Varied(value=0.03), description="length from the root over which they do"
+    )
+    cohesion: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
+        default=Varied(value=0.3), description="how far their middle lines are drawn together as well"
+    )
+
+    def values(self, curves: Curves, context: Context) -> dict[str, NDArray]:
+        """The leader of each lock, and how it is followed, as the core takes them."""
+        scalp = context.scalp
+        _, triangle, barycentric = scalp.sample(scalp.count_for_spacing(self.size), context.seed + 2)
+        _, leaders = KDTree(curves.roots).query(scalp.positions(triangle, barycentric))
+        leaders = np.unique(leaders)
+        _, nearest = KDTree(curves.roots[leaders]).query(curves.roots)
+        return {
+            "leader": leaders[nearest].astype(np.int32),
+            "join": np.minimum(context.values("phase_lock.amount", self.amount, curves), 1.0),
+            "join_over": context.values("phase_lock.length", self.length, curves),
+            "cohesion": np.minimum(context.values("phase_lock.cohesion", self.cohesion, curves), 1.0),
+        }
