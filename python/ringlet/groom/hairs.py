@@ -15,9 +15,11 @@ from ringlet import _core
 from ringlet.curves import Curves, offsets_from_counts
 from ringlet.errors import UserError
 from ringlet.groom.groom import Groom
+from ringlet.groom.painted import per_lock as for_each_lock
 from ringlet.groom.random import Random, tipping
 from ringlet.groom.scalp import axes
 from ringlet.groom.settings import Quantity, Ramped, Section, Varied, explain
+from ringlet.mesh import Mesh
 
 IDS_PER_LOCK = 10_000  # the id of a hair: id of its lock · 10 000 + number in it
 FRIZZ_KNOTS = 8
@@ -167,7 +169,7 @@ def _key(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -> 
         locks.curve["root_barycentric"],
         scalp.points,
         scalp.triangles,
-        *((locks.points,) if settings.blend.value > 0.0 else ()),
+        *((locks.points,) if settings.blend != HairSettings().blend else ()),
     ):
         digest.update(np.ascontiguousarray(array).data)
     return digest.digest()
@@ -177,7 +179,7 @@ def _place(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -
     """Hairs with everything but their points."""
     locks, scalp = groom.locks, groom.scalp
     roots, frames = _root_frames(groom)
-    per_lock = _Values(settings, locks)
+    per_lock = _Values(settings, locks, scalp)
     whole = np.maximum(1, np.round(per_lock("per_lock"))).astype(np.int64)
     each = np.maximum(1, np.round(whole * fraction)).astype(np.int64)
     lock = np.repeat(np.arange(len(locks), dtype=np.int32), each)
@@ -206,7 +208,9 @@ def _place(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -
     }
     if scalp.uv is not None:
         attributes["st"] = np.einsum("hc,hcx->hx", root_barycentric, scalp.uv[root_triangle]).astype(np.float32)
-    thickness = settings.width.per_curve(Random(settings.seed, "hairs/width"), ids, roots[lock])
+    alike = settings.width.model_copy(update={"vary": 0.0})
+    thickness = for_each_lock(alike, Random(settings.seed, "hairs/width"), locks, scalp, "hairs.width")[lock]
+    thickness *= Varied(value=1.0, vary=settings.width.vary).factors(Random(settings.seed, "hairs/width"), ids, ids)
     if wider:
         thickness *= (whole / each)[lock]
     widths = (thickness.astype(np.float32)[:, None] * settings.width.along(u).astype(np.float32)).reshape(-1)
@@ -229,11 +233,14 @@ class _Values:
 
     settings: HairSettings
     locks: Curves
+    scalp: Mesh
 
     def __call__(self, name: str) -> NDArray[np.float64]:
         """The setting of that name for each lock, shape (locks,)."""
         setting: Varied = getattr(self.settings, name)
-        return setting.per_curve(Random(self.settings.seed, f"hairs/{name}"), self.locks.ids, self.locks.roots)
+        return for_each_lock(
+            setting, Random(self.settings.seed, f"hairs/{name}"), self.locks, self.scalp, f"hairs.{name}"
+        )
 
 
 def _settings(values: dict[str, Any]) -> HairSettings:
@@ -277,7 +284,7 @@ def _layout(
         * (2.0 * Random(settings.seed, "hairs/frizz").uniforms(ids, 2 * FRIZZ_KNOTS) - 1.0)
     )
     near = np.clip(1.0 - u / settings.gather, 0.0, 1.0)
-    section = _section(settings, per_lock, lock, disk)
+    section = _section(per_lock, lock, disk)
     return {
         "offset": (per_lock("radius")[lock, None] * section).astype(np.float32),
         "tip": tip.astype(np.float32),
@@ -288,18 +295,14 @@ def _layout(
     }
 
 
-def _section(settings: HairSettings, per_lock: _Values, lock: NDArray, disk: NDArray) -> NDArray[np.float64]:
+def _section(per_lock: _Values, lock: NDArray, disk: NDArray) -> NDArray[np.float64]:
     """Places in the cross-section of the locks, as parts of its radius, shape (hairs, 2): the disk drawn to its rim and
     pressed flat along a direction that is each lock's own."""
-    if settings.hollow.value > 0.0:
-        radius = np.linalg.norm(disk, axis=1)
-        drawn = np.maximum(radius, 1e-9) ** -per_lock("hollow")[lock].clip(0.0, 1.0)
-        disk = disk * drawn[:, None]
-    if settings.flatness.value == 0.0:
-        return disk
-    angle = np.pi * Random(settings.seed, "hairs/ribbon").uniform(per_lock.locks.ids)[lock]
+    radius = np.linalg.norm(disk, axis=1)
+    disk = disk * (np.maximum(radius, 1e-9) ** -np.minimum(per_lock("hollow"), 1.0)[lock])[:, None]
+    angle = np.pi * Random(per_lock.settings.seed, "hairs/ribbon").uniform(per_lock.locks.ids)[lock]
     thin = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    pressed = per_lock("flatness")[lock].clip(0.0, 1.0) * np.sum(disk * thin, axis=1)
+    pressed = np.minimum(per_lock("flatness"), 1.0)[lock] * np.sum(disk * thin, axis=1)
     return disk - pressed[:, None] * thin
 
 
@@ -315,8 +318,8 @@ def _neighbours(
     """The neighbouring lock that each hair is drawn to, and how far: by half where it stands between the two, not at
     all across a parting."""
     blend = settings.blend.along(u).astype(np.float32)
-    locks, lock = groom.locks, curves.curve["lock"]
-    if settings.blend.value == 0.0 or len(locks) < 2:
+    locks, lock, amount = groom.locks, curves.curve["lock"], per_lock("blend")
+    if not amount.any() or len(locks) < 2:
         return {"other": np.empty(0, np.int32), "share": np.empty(0, np.float32), "blend": blend}
     bound = curves.curve
     at = np.einsum(
@@ -329,7 +332,7 @@ def _neighbours(
     lean = middle / np.maximum(np.linalg.norm(middle, axis=1, keepdims=True), 1e-12)
     angle = np.degrees(np.arccos(np.clip(np.sum(lean[lock] * lean[other], axis=1), -1.0, 1.0)))
     together = np.clip(4.0 * (1.0 - angle / settings.apart), 0.0, 1.0)
-    share = per_lock("blend")[lock] * together * own_way / np.maximum(own_way + other_way, 1e-12)
+    share = amount[lock] * together * own_way / np.maximum(own_way + other_way, 1e-12)
     return {
         "other": other,
         "share": np.where(is_lock, 0.0, np.minimum(share, 1.0)).astype(np.float32),
