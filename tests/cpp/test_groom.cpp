@@ -104,6 +104,40 @@ BOOST_AUTO_TEST_CASE(a_curl_without_width_is_its_shape) {
     for (size_t i = 0; i < 10; ++i) BOOST_TEST((result[i] - shape[i]).norm() < 1e-12);
 }
 
+// The largest angle by which the curl's radius turns about a straight middle line from point to point [turns].
+double fastest_turn(const std::vector<Vec3> &points, const Vec3 &middle, const Vec3 &up) {
+    double fastest = 0.0;
+    for (size_t k = 1; k < points.size(); ++k) {
+        const auto off = [&](const Vec3 &p) { return Vec3(p - middle - up.dot(p - middle) * up).normalized(); };
+        fastest = std::max(fastest, std::acos(std::clamp(off(points[k]).dot(off(points[k - 1])), -1.0, 1.0)));
+    }
+    return fastest / (2.0 * std::numbers::pi);
+}
+
+BOOST_AUTO_TEST_CASE(frames_do_not_spin_on_straight_shapes_that_are_straight_but_for_rounding) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> shaken(-1e-14, 1e-14);
+    std::vector<Vec3> shape = straight(20, 0.08);
+    for (Vec3 &p : shape) p += Vec3(shaken(random), shaken(random), shaken(random));
+    const std::vector<int> offsets{0, 20};
+    const OneCurl one;
+    const std::vector<Vec3> result = curl({shape, offsets}, one.settings(), 120);
+    BOOST_TEST(fastest_turn(result, Vec3::Zero(), Vec3::UnitY()) < 1.01 * 5.0 / 119);
+}
+
+BOOST_AUTO_TEST_CASE(frames_do_not_spin_where_a_shape_turns_straight_back) {
+    std::vector<Vec3> shape = straight(10, 0.04);
+    for (int i = 8; i >= 0; --i) shape.push_back(shape[i]);
+    const std::vector<int> offsets{0, static_cast<int>(shape.size())};
+    OneCurl one;
+    one.turns = {6.0};
+    const std::vector<Vec3> result = curl({shape, offsets}, one.settings(), 240);
+    const std::vector<Vec3> up(result.begin(), result.begin() + 110), down(result.begin() + 130, result.end());
+    BOOST_TEST(fastest_turn(up, Vec3::Zero(), Vec3::UnitY()) < 1.02 * 6.0 / 239);
+    BOOST_TEST(fastest_turn(down, Vec3::Zero(), Vec3::UnitY()) < 1.02 * 6.0 / 239);
+    for (const Vec3 &p : result) BOOST_TEST(p.allFinite());
+}
+
 BOOST_AUTO_TEST_CASE(a_curve_through_a_body_comes_out_and_keeps_its_root) {
     const OwnedMesh body = octahedron();
     std::vector<Vec3> curve;

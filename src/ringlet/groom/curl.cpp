@@ -36,12 +36,13 @@ public:
     void fit(View<Vec3> shape, const Vec3 &axis) {
         shape_ = shape;
         const size_t n = 4 * (shape.size() - 1) + 1;
-        for (auto *values : {&points_, &tangents_, &axes_}) values->resize(n);
+        for (auto *values : {&points_, &tangents_, &a_, &b_}) values->resize(n);
         along_.assign(n, 0.0);
         for (size_t k = 0; k < n; ++k) points_[k] = spline(shape, 0.25 * static_cast<double>(k));
         for (size_t k = 1; k < n; ++k) along_[k] = along_[k - 1] + (points_[k] - points_[k - 1]).norm();
         tangents(points_, tangents_);
-        transport(points_, tangents_, axis, axes_);
+        transport(points_, tangents_, axis, a_);
+        for (size_t k = 0; k < n; ++k) b_[k] = tangents_[k].cross(a_[k]);
         length_ = 0.0;
         for (size_t i = 1; i < shape.size(); ++i) length_ += (shape[i] - shape[i - 1]).norm();
         i_ = 0;
@@ -57,14 +58,13 @@ public:
         const double edge = along_[i_ + 1] - along_[i_];
         const double t = edge > 0.0 ? std::min(1.0, (s - along_[i_]) / edge) : 0.0;
         point = spline(shape_, 0.25 * (static_cast<double>(i_) + t));
-        const Vec3 tangent = (tangents_[i_] + t * (tangents_[i_ + 1] - tangents_[i_])).stableNormalized();
-        a = orthogonal(axes_[i_] + t * (axes_[i_ + 1] - axes_[i_]), tangent);
-        b = tangent.cross(a);
+        a = a_[i_] + t * (a_[i_ + 1] - a_[i_]);
+        b = b_[i_] + t * (b_[i_ + 1] - b_[i_]);
     }
 
 private:
     View<Vec3> shape_;
-    std::vector<Vec3> points_, tangents_, axes_;
+    std::vector<Vec3> points_, tangents_, a_, b_;
     std::vector<double> along_;
     double length_ = 0.0;
     size_t i_ = 0;
@@ -81,7 +81,13 @@ class Curler {
 public:
     // Three samples a point, and a spline between them: at 12 points a turn it misses the curl by 1e-5 of its radius.
     Curler(const CurveView &shapes, const CurlSettings &settings, int count)
-        : shapes_(shapes), settings_(settings), way_(3 * count), leading_(3 * count), curled_(3 * count) {}
+        : shapes_(shapes), settings_(settings), way_(3 * count), leading_(3 * count), curled_(3 * count), shared_(3 * count) {
+        for (size_t k = 0; k < shared_.size(); ++k) {
+            const double v = static_cast<double>(k) / static_cast<double>(shared_.size() - 1);
+            shared_[k] = {v, lerp_table(settings.width_ramp, v), lerp_table(settings.rate_ramp, v),
+                          lerp_table(settings.taper_ramp, v), lerp_table(settings.wave_ramp, v)};
+        }
+    }
 
     void operator()(int lock, std::span<Vec3> result) {
         lock_ = lock;
@@ -151,24 +157,23 @@ private:
 
         double turned = 0.0, rate_before = 0.0;
         for (size_t k = 0; k < way.size(); ++k) {
-            const double v = std::min(1.0, step * static_cast<double>(k)), s = v * length;
+            const auto &[v, width_ramp, rate_ramp, taper_ramp, wave_ramp] = shared_[k];
+            const double s = v * length;
             Place &at = way[k];
             spine.at(v * part, at.centre, at.a, at.b);
             // A closing over less than 2 mm fades in, lest the tip jump when the first of it is asked for.
             const double closing = lerp_table(settings_.closing, 1.0 - eased_part(length - s, settings_.end[lock]));
             const double open = lerp_table(settings_.opening, eased_part(s, settings_.start[lock])) *
                                 (1.0 + std::min(1.0, settings_.end[lock] / 2e-3) * (closing - 1.0));
-            at.radius = settings_.radius[lock] * lerp_table(settings_.width_ramp, v) * open *
-                        (1.0 - settings_.taper[lock] * lerp_table(settings_.taper_ramp, v)) *
+            at.radius = settings_.radius[lock] * width_ramp * open * (1.0 - settings_.taper[lock] * taper_ramp) *
                         (1.0 + eased_table(width_noise, v));
-            const double rate = turns * lerp_table(settings_.rate_ramp, v) * (1.0 + eased_table(rate_noise, v)) *
+            const double rate = turns * rate_ramp * (1.0 + eased_table(rate_noise, v)) *
                                 hand(settings_.flip[lock], switchbacks, turns, v) * pace(skips, turns, v);
             if (k > 0) turned += 0.5 * step * (rate_before + rate);
             rate_before = rate;
             at.phase = settings_.phase[lock] + whole_turn * turned;
             if (wave > 0.0)
-                at.centre += wave * lerp_table(settings_.wave_ramp, v) * open * std::sin(whole_turn * wave_turns * v) *
-                             (wave_x * at.a + wave_y * at.b);
+                at.centre += wave * wave_ramp * open * std::sin(whole_turn * wave_turns * v) * (wave_x * at.a + wave_y * at.b);
             if (const double angle = eased_table(sway, v); angle != 0.0) {
                 const Vec3 a = std::cos(angle) * at.a + std::sin(angle) * at.b;
                 at.b = std::cos(angle) * at.b - std::sin(angle) * at.a;
@@ -225,6 +230,10 @@ private:
     Spine spine_, leader_spine_;
     std::vector<Place> way_, leading_;
     std::vector<Vec3> curled_;
+    struct Shared {
+        double v, width_ramp, rate_ramp, taper_ramp, wave_ramp;
+    };
+    std::vector<Shared> shared_; // what all locks have in common, sample by sample
 };
 
 } // namespace

@@ -12,22 +12,24 @@ namespace {
 bool find_pushes(std::span<const Vec3> points, const TriangleTree &tree, View<Vec3> normals, double margin,
                  std::span<Vec3> pushes) {
     bool any = false;
-    double along = 0.0, clear = 0.0; // `clear`: how far the curve can still go before it may come within the margin again
-    double reach = std::numeric_limits<double>::infinity(); // the surface is no farther than this
+    double along = 0.0;
+    // The last place whose distance was looked up: a point that has not moved farther from it than it was clear is clear too.
+    Vec3 known = points[0];
+    SurfacePoint near;
+    double height = -std::numeric_limits<double>::infinity();
     for (size_t k = 1; k < points.size(); ++k) {
-        const double edge = (points[k] - points[k - 1]).norm();
-        along += edge;
-        clear -= edge;
-        reach += edge;
+        along += (points[k] - points[k - 1]).norm();
         pushes[k].setZero();
-        if (clear > 0.0) continue;
-        const SurfacePoint near = tree.closest(points[k], 1.001 * reach);
+        const double moved = (points[k] - known).norm();
+        if (height - moved > margin) continue;
+        double reach = near.distance + moved; // the surface is no farther than this, nor than its last nearest triangle
+        if (near.triangle >= 0) reach = std::min(reach, closest_point(tree.mesh(), near.triangle, points[k]).distance);
+        near = tree.closest(points[k], 1.001 * reach);
         if (near.triangle < 0) continue; // a point that is not finite is near nothing
-        reach = near.distance;
+        known = points[k];
         const Vec3 normal = smooth_normal(tree.mesh(), normals, near.triangle, near.barycentric);
-        const double height = (points[k] - near.position).dot(normal) < 0.0 ? -near.distance : near.distance;
+        height = (points[k] - near.position).dot(normal) < 0.0 ? -near.distance : near.distance;
         const double wanted = std::min(margin, 0.5 * along);
-        clear = height - margin;
         if (height >= wanted) continue;
         pushes[k] = near.position + wanted * normal - points[k];
         any = true;
