@@ -11,6 +11,7 @@ from ringlet.groom.edits import Edit
 from ringlet.groom.hairs import HairSettings
 from ringlet.groom.helpers import HelperCurves
 from ringlet.groom.load import load, load_text
+from ringlet.groom.nails import Nail
 from ringlet.groom.operators import Clean, Curl, Drawn, Grown, Locks, ShapeOperator
 from ringlet.groom.settings import UNITS, Section, explain
 from ringlet.groom.source import Source
@@ -59,6 +60,7 @@ class Recipe(Section):
     shape: list[ShapeOperator] = Field(default=[], description="operators on the shape of the locks, in order")
     curl: Curl | None = Field(default=None, description="the curl; straight hair when absent")
     edit: list[Edit] = Field(default=[], description="what was done to single locks by hand")
+    nail: list[Nail] = Field(default=[], description="hair that is held to the skin")
     clean: Clean = Field(default=Clean(), description="keeping out of the head")
     hairs: HairSettings = Field(default=HairSettings(), description="the hairs of each lock")
 

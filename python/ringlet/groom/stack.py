@@ -14,6 +14,7 @@ from ringlet.errors import UserError
 from ringlet.groom.edits import Edit, Edits
 from ringlet.groom.groom import Groom
 from ringlet.groom.load import stage_names
+from ringlet.groom.nails import nailed
 from ringlet.groom.operators import Context, Drawn, Operator, Resample
 from ringlet.groom.recipe import Recipe
 from ringlet.groom.scalp import Scalp
@@ -80,11 +81,12 @@ def make_groom(
                 guides = curves
             if progress:
                 progress(name, 1, 1)
+        locks = nailed(curves, recipe.nail, scalp, recipe.seed)
     except UserError as error:
         raise UserError(f"{where}: {error}") from error
     return Groom(
         guides=guides,
-        locks=curves,
+        locks=locks,
         scalp=scalp,
         scalp_file=scalp_file,
         scalp_prim=scalp_prim,

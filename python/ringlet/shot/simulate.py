@@ -17,6 +17,7 @@ from ringlet.shot import start
 from ringlet.shot.cache import Cache, CachedCloth
 from ringlet.shot.collider import LOCKS, Obstacle, with_pairs
 from ringlet.shot.garment import Garment
+from ringlet.shot.nails import held_vertices, pull
 from ringlet.shot.roots import Roots
 from ringlet.shot.scene import Scene, friction_of
 from ringlet.shot.shot import Shot
@@ -95,7 +96,7 @@ def make_strands(
     factors = shot.variation.factors(groom)
     if stiffened is not None:
         factors["bend"] = factors.get("bend", 1.0) * np.repeat(stiffened, groom.locks.counts)
-    return Strands(rest or groom.locks, shot.strands, shot.held, factors)
+    return Strands(rest or groom.locks, shot.strands, held_vertices(groom.locks, shot.held), factors)
 
 
 class Motion:
@@ -116,7 +117,7 @@ class Motion:
         garments: Sequence[Garment],
         first: float,
     ) -> None:
-        self.shot, self.clip, self.roots = shot, clip, Roots(groom)
+        self.shot, self.clip, self.locks, self.roots = shot, clip, groom.locks, Roots(groom)
         self.strands = make_strands(shot, groom, rest, None if rest is None else rest.curve.get("stiffened"))
         self.strands.place(self.roots.carry(clip.at(first), first))
         self.scene: Scene | None = None
@@ -170,6 +171,7 @@ class Motion:
         for k in range(1, substeps + 1):
             frame = begin + (end - begin) * k / substeps
             targets = self.roots.carry(self.clip.at(frame), frame)
+            outside["forces"] = pull(self.locks, self.strands, targets, dt, self.shot.forces.gravity)
             if self.scene:
                 ends = [obstacle.at(frame) for obstacle in self.obstacles]
                 for worn in self.worn:

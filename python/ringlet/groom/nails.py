@@ -1,0 +1,53 @@
+"""Nails: hair that is held to the skin, such as a hairline or a bun."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Annotated
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from ringlet.curves import Curves
+from ringlet.groom.mask import Mask
+from ringlet.groom.operators.operator import arc_lengths, grid
+from ringlet.groom.random import Random
+from ringlet.groom.settings import Quantity, Section
+from ringlet.mesh import Mesh
+
+NAIL = "nail"  # point attribute of locks: 0 free … 1 moves rigidly with the place on the skin where the lock is rooted
+
+
+class Nail(Section):
+    """Holds locks where they were groomed: from the root up to ``reach``, less and less over ``fade``. In a simulation,
+    what is held with 1 moves rigidly with the skin, what is held with less is drawn back to where that would be."""
+
+    mask: Annotated[Mask, Quantity("", 0.0, 1.0)] = Field(
+        default=Mask(), description="which locks, and where along them"
+    )
+    firm: Annotated[float, Quantity("", 0.0, 1.0)] = Field(default=1.0, description="1 rigid, less is softer")
+    reach: Annotated[float | None, Quantity("m", 0.0, 10.0)] = Field(
+        default=None, description="length from the root that is held; all of it when absent"
+    )
+    fade: Annotated[float, Quantity("m", 0.0, 10.0)] = Field(
+        default=0.0, description="length beyond it over which the hold fades out"
+    )
+
+    def weights(self, locks: Curves, scalp: Mesh, random: Random, what: str) -> NDArray[np.float64]:
+        """How firmly each point is held, shape (count, points)."""
+        weight = self.firm * self.mask.weights(locks, scalp, random, f"{what}.mask")
+        if self.reach is None:
+            return weight
+        beyond = arc_lengths(grid(locks)) - self.reach
+        t = np.clip(1.0 - beyond / self.fade, 0.0, 1.0) if self.fade > 0.0 else (beyond <= 1e-9).astype(np.float64)
+        return weight * t * t * (3.0 - 2.0 * t)
+
+
+def nailed(locks: Curves, nails: Sequence[Nail], scalp: Mesh, seed: int) -> Curves:
+    """The locks with the point attribute ``nail``: the firmest of all nails."""
+    if not nails:
+        return locks
+    held = [nail.weights(locks, scalp, Random(seed, f"nail[{k}]/mask"), f"nail[{k}]") for k, nail in enumerate(nails)]
+    weight = np.max(held, axis=0).ravel().astype(np.float32)
+    return Curves(locks.points, locks.offsets, locks.ids, locks.curve, {**locks.point, NAIL: weight})

@@ -1,0 +1,40 @@
+"""Locks that are held to the skin beyond their roots: rigidly, or drawn back softly."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ringlet.curves import Curves
+from ringlet.shot.strands import Strands
+
+RIGID = 0.999  # what is held more firmly than this moves rigidly
+HALF_TIME = 0.02  # time in which a place held with 1/2 comes back, but for 1/e [s]
+
+
+def held_vertices(locks: Curves, from_root: int) -> NDArray[np.bool_]:
+    """The vertices that move rigidly with the skin, shape (n,): some from each root, and what is nailed."""
+    number = np.arange(len(locks.points)) - np.repeat(locks.offsets[:-1], locks.counts)
+    held = number < from_root
+    return held | (locks.point["nail"] >= RIGID) if "nail" in locks.point else held
+
+
+def pull(
+    locks: Curves, strands: Strands, targets: NDArray[np.float64], dt: float, gravity: Sequence[float]
+) -> NDArray[np.float64] | None:
+    """The forces [N] that draw softly held vertices to their targets [m], shape (n, 3); None where there are none.
+
+    They lead a vertex that nothing else holds a part ``1 - exp(-dt / τ)`` of the way from where it would be after the
+    step, with ``τ = 0.02 s · (1 - w) / w`` for a hold w. However firm, that never goes beyond the target.
+    """
+    hold = np.asarray(locks.point.get("nail", np.zeros(0)), np.float64)
+    soft = np.flatnonzero((hold > 0.0) & (hold < RIGID))
+    if not soft.size:
+        return None
+    part = 1.0 - np.exp(-dt * hold[soft] / (HALF_TIME * (1.0 - hold[soft])))
+    ahead = strands.positions[soft] + dt * strands.velocities[soft] + dt * dt * np.asarray(gravity)
+    forces = np.zeros_like(targets)
+    forces[soft] = (part * strands.masses[soft])[:, None] / dt**2 * (targets[soft] - ahead)
+    return forces
