@@ -10,12 +10,15 @@ editable := $(pip) --no-build-isolation --config-settings=cmake.define.RINGLET_T
 # What the compiled part of the package is made from; editing Python needs no new build.
 sources := pyproject.toml CMakeLists.txt $(wildcard cmake/*) $(shell find src bindings -type f)
 
-.PHONY: help build demo test bench docs lint clean
+# What the review page is made from.
+page := tools/web.sh $(wildcard web/*.json web/*.ts web/*.html) $(shell find web/src web/public -type f)
+
+.PHONY: help build demo view test bench docs lint clean
 
 help: ## list the targets
 	@grep -E '^[a-z]+:.*##' Makefile | sed -E 's/:.*## /\t/' | expand -t 10
 
-build: .venv/built ## set up .venv and build: gives .venv/bin/ringlet
+build: .venv/built .venv/page ## set up .venv and build: gives .venv/bin/ringlet
 
 .venv/prepared: tools/bootstrap.sh pyproject.toml
 	@tools/bootstrap.sh
@@ -29,13 +32,21 @@ build: .venv/built ## set up .venv and build: gives .venv/bin/ringlet
 	@$(editable) .
 	@touch $@
 
-.venv/tooled: .venv/built
+.venv/page: .venv/prepared $(page)
+	@echo "Building the review page"
+	@tools/web.sh
+	@touch $@
+
+.venv/tooled: .venv/built .venv/page
 	@echo "Installing what tests, lints and documents need"
 	@$(editable) '.[dev]'
 	@touch $@
 
 demo: build ## groom, simulate and picture the example: writes out/demo
 	@.venv/bin/ringlet demo -o out/demo
+
+view: build ## the example's curls in the browser, to be changed
+	@.venv/bin/ringlet view examples/child/curls.recipe.toml
 
 test: .venv/tooled ## everything: C++, Python, known answers, lints, documents
 	@tools/test.sh
@@ -50,4 +61,4 @@ lint: .venv/tooled ## formatting, types, static analysis, who may call whom
 	@tools/lint.sh
 
 clean: ## remove everything that was built
-	rm -rf .venv build dist out docs/_build
+	rm -rf .venv build dist out docs/_build web/node_modules python/ringlet/viewer/static

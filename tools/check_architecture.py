@@ -42,10 +42,11 @@ PYTHON = {
     "report": DATA,
     "api": DATA | {"_core", "groom", "shot", "validate", "io", "picture", "report"},
     "bench": {"_core"},
+    "viewer": DATA | {"_core", "groom", "shot", "io", "picture", "api"},
     "run": DATA | {"_core", "report"},
     "demo": DATA | {"api", "run"},
     "doctor": DATA | {"_core", "api", "shot"},
-    API: DATA | {"api", "run", "demo", "doctor", "shot", "bench"},
+    API: DATA | {"api", "run", "demo", "doctor", "shot", "bench", "viewer"},
     "cli": {API},
 }
 OUTSIDE = ("bench", "examples")  # these use the public API only

@@ -25,6 +25,8 @@ check "python" $bin/ruff check --quiet .
 check "python format" $bin/ruff format --quiet --check .
 check "python types" types
 check "arrows" $bin/python tools/check_architecture.py
+check "page" tools/web.sh check
+check "protocol" $bin/python tools/make_protocol.py --check
 check "c++ format" $bin/clang-format --dry-run -Werror "${cpp[@]}"
 check "c++" tidy
 exit $status

@@ -46,6 +46,7 @@ if TYPE_CHECKING:
     from ringlet.shot.loft import Loft
     from ringlet.shot.scene import Body, Contact, Scene
     from ringlet.shot.strands import Material, Solver, Strands
+    from ringlet.viewer import view
 
 __version__ = version("ringlet")
 __all__ = [
@@ -90,6 +91,7 @@ __all__ = [
     "simulate",
     "solver_counts",
     "use_threads",
+    "view",
     "write_cache",
     "write_groom",
     "write_hairs",
@@ -117,6 +119,7 @@ _SLOW = {
     "Solver": "ringlet.shot.strands",
     "Strands": "ringlet.shot.strands",
     "solver_counts": "ringlet.bench",
+    "view": "ringlet.viewer",
 }
 
 

@@ -45,11 +45,18 @@ def read_recipe(path: Path | str) -> Recipe:
 
 def build_groom(recipe: Recipe | Path | str, *, progress: Progress | None = None) -> Groom:
     """Makes the groom of a recipe: guides grown on the scalp or read from USD, then locks, shape and curl."""
-    from ringlet import groom, io
-    from ringlet.groom.operators import Drawn
+    from ringlet import groom
 
     if not isinstance(recipe, groom.Recipe):
         recipe = read_recipe(recipe)
+    return groom.make_groom(recipe, progress=progress, **groom_inputs(recipe))
+
+
+def groom_inputs(recipe: Recipe) -> dict[str, Any]:
+    """What the files hold that a recipe names: what ``make_groom`` takes besides the recipe."""
+    from ringlet import io
+    from ringlet.groom.operators import Drawn
+
     if recipe.scalp_file is None:
         raise UserError(f"{recipe.path or 'recipe'}: scalp.file is missing; name the file of the head")
     scalp = io.read_mesh(recipe.scalp_file, recipe.scalp.mesh, space=recipe.scalp.space)
@@ -61,16 +68,14 @@ def build_groom(recipe: Recipe | Path | str, *, progress: Progress | None = None
         name: io.read_curves(file, recipe.curves[name].prim, space=recipe.curves[name].space)
         for name, file in recipe.helper_files().items()
     }
-    return groom.make_groom(
-        recipe,
-        scalp,
-        drawn_guides=drawn,
-        helpers=helpers,
-        scalp_file=recipe.scalp_file,
-        scalp_prim=recipe.scalp.mesh,
-        space=io.read_space(recipe.scalp_file, space=recipe.scalp.space),
-        progress=progress,
-    )
+    return {
+        "scalp": scalp,
+        "drawn_guides": drawn,
+        "helpers": helpers,
+        "scalp_file": recipe.scalp_file,
+        "scalp_prim": recipe.scalp.mesh,
+        "space": io.read_space(recipe.scalp_file, space=recipe.scalp.space),
+    }
 
 
 def write_groom(groom: Groom, path: Path | str, *, variants: Mapping[str, Groom] | None = None) -> None:

@@ -16,7 +16,7 @@ import typer
 from typer.core import TyperGroup
 
 import ringlet
-from ringlet.cli import bench, demo, doctor, edit, groom, hair, loft, picture, schema, sim, validate
+from ringlet.cli import bench, demo, doctor, edit, groom, hair, loft, picture, schema, sim, validate, view
 
 INTERRUPTED = 130  # what typer makes of a KeyboardInterrupt
 
@@ -114,6 +114,7 @@ for name, command in {
     "sim": sim.sim,
     "hair": hair.hair,
     "picture": picture.picture,
+    "view": view.view,
     "validate": validate.validate,
     "schema": schema.schema,
     "doctor": doctor.doctor,

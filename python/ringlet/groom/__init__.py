@@ -2,7 +2,7 @@
 
 from ringlet.groom.edits_file import add_points, add_settings, release, row_of, taken_back
 from ringlet.groom.groom import Groom
-from ringlet.groom.hairs import HairMemory, Hairs, HairSettings, hair_count, make_hairs
+from ringlet.groom.hairs import HairMemory, Hairs, HairSettings, hair_count, lay_hairs, make_hairs
 from ringlet.groom.presets import PRESETS
 from ringlet.groom.recipe import Recipe, parse_recipe, read_recipe, schema
 from ringlet.groom.stack import Memory, make_groom
@@ -18,6 +18,7 @@ __all__ = [
     "add_points",
     "add_settings",
     "hair_count",
+    "lay_hairs",
     "make_groom",
     "make_hairs",
     "parse_recipe",

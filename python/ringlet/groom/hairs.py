@@ -101,6 +101,15 @@ class Hairs:
         scalp_points: positions of ``groom.scalp`` now [m], shape (scalp points, 3)
         out:          written to and returned, if given: fresh memory costs more than what is computed
         """
+        if out is None:
+            out = np.empty((int(self.curves.offsets[-1]), 3), np.float32)
+        points = np.ascontiguousarray(lock_points, np.float32)
+        _core.warp_hairs(points, self._groom.locks.offsets, out, **self.carriage(scalp_points))
+        return out
+
+    def carriage(self, scalp_points: NDArray) -> dict[str, NDArray]:
+        """How the hairs sit in their locks when the scalp has moved: what src/ringlet/groom/hairs.h takes besides the
+        locks. ``axis`` (locks, 3) and ``root`` (hairs, 3) [m] follow the scalp; the rest is the same all the time."""
         locks, triangles = self._groom.locks, self._groom.scalp.triangles
         at = np.ascontiguousarray(scalp_points, np.float64)
         lock_roots, frames = _core.root_frames(
@@ -110,17 +119,7 @@ class Hairs:
         hair_roots = np.einsum("hc,hcx->hx", bound["root_barycentric"], at[triangles[bound["root_triangle"]]])
         root = (hair_roots - lock_roots[bound["lock"]]).astype(np.float32)
         root[self._layout["first"][:-1]] = 0.0  # the first hair of a lock is the lock
-        if out is None:
-            out = np.empty((int(self.curves.offsets[-1]), 3), np.float32)
-        _core.warp_hairs(
-            np.ascontiguousarray(lock_points, np.float32),
-            locks.offsets,
-            out,
-            axis=np.einsum("lxk,lk->lx", frames, self._axis),
-            root=root,
-            **self._layout,
-        )
-        return out
+        return {"axis": np.einsum("lxk,lk->lx", frames, self._axis), "root": root, **self._layout}
 
 
 @dataclass
@@ -144,6 +143,13 @@ def make_hairs(groom: Groom, *, fraction: float = 1.0, wider: bool = False, memo
     memory:   keeps what depends on neither the shape nor the curl of locks, so that such an edit only carries the
               hairs; the points of the result are then written over by the next call
     """
+    hairs = lay_hairs(groom, fraction=fraction, wider=wider, memory=memory)
+    hairs.curves.points = hairs.at(groom.locks.points, groom.scalp.points, out=hairs.curves.points)
+    return hairs
+
+
+def lay_hairs(groom: Groom, *, fraction: float = 1.0, wider: bool = False, memory: HairMemory | None = None) -> Hairs:
+    """The same hairs before they are put in their places, for those who do that on their own."""
     settings = _settings(groom.hairs)
     if not 0.0 < fraction <= 1.0:
         raise UserError(f"hairs: fraction is {fraction}; must be more than 0 and at most 1")
@@ -153,9 +159,7 @@ def make_hairs(groom: Groom, *, fraction: float = 1.0, wider: bool = False, memo
         memory.key, memory.hairs = key, _place(groom, settings, fraction, wider)
     known, frames = memory.hairs, _root_frames(groom)[1]
     axis = np.einsum("lxk,lx->lk", frames, axes(groom.locks, frames))
-    hairs = Hairs(known.curves, groom, axis, known._layout)
-    hairs.curves.points = hairs.at(groom.locks.points, groom.scalp.points, out=known.curves.points)
-    return hairs
+    return Hairs(known.curves, groom, axis, known._layout)
 
 
 def _key(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -> bytes:

@@ -1,10 +1,10 @@
 """Pictures: a path-traced still, and a contact sheet of a clip."""
 
-from ringlet.picture.bodies import PosedBody
+from ringlet.picture.bodies import PosedBody, made_of
 from ringlet.picture.camera import VIEWS
 from ringlet.picture.compare import compare
 from ringlet.picture.render import HAIR_COLORS
 from ringlet.picture.sheet import sheet
 from ringlet.picture.still import still
 
-__all__ = ["HAIR_COLORS", "VIEWS", "PosedBody", "compare", "sheet", "still"]
+__all__ = ["HAIR_COLORS", "VIEWS", "PosedBody", "compare", "made_of", "sheet", "still"]

@@ -45,10 +45,14 @@ _MADE_OF = (
 )
 
 
+def made_of(mesh: Mesh) -> str:
+    """What a mesh is made of, guessed from its name: skin, eye, cloth or matte."""
+    name = re.split(r"[/\s]", mesh.name.lower())[-1]
+    return next((kind for kind, pattern in _MADE_OF if re.search(pattern, name)), "matte")
+
+
 def material(mesh: Mesh) -> dict[str, Any]:
     """The Mitsuba material of a mesh, coloured by its display colour and guessed from its name."""
-    name = re.split(r"[/\s]", mesh.name.lower())[-1]
-    made_of = next((kind for kind, pattern in _MADE_OF if re.search(pattern, name)), "matte")
     color: dict[str, Any] = {"type": "rgb", "value": [float(np.clip(c, 0.0, 1.0)) for c in mesh.color]}
     if mesh.colors is not None:
         color = {"type": "mesh_attribute", "name": COLORS}
@@ -59,4 +63,4 @@ def material(mesh: Mesh) -> dict[str, Any]:
         "cloth": {"roughness": 0.9, "specular": 0.15, "sheen": 0.5, "sheen_tint": 0.5},
         "matte": {"roughness": 0.8, "specular": 0.2},
     }
-    return {"type": "twosided", "bsdf": {"type": "principled", "base_color": color, **look[made_of]}}
+    return {"type": "twosided", "bsdf": {"type": "principled", "base_color": color, **look[made_of(mesh)]}}

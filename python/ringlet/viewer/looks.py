@@ -1,0 +1,232 @@
+"""From a recipe to what can be drawn, as little of it anew as possible."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from hashlib import blake2b
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ringlet import api
+from ringlet.curves import Curves
+from ringlet.errors import UserError
+from ringlet.groom import Groom, Hairs, Memory, Recipe, lay_hairs, make_groom
+from ringlet.mesh import Mesh
+from ringlet.viewer import protocol
+from ringlet.viewer.project import Project
+from ringlet.viewer.wire import pack
+
+NONE = 1e-9  # a margin that pushes nothing out [m]
+
+
+@dataclass
+class Look:
+    """A groom as it is looked at.
+
+    hairs: how they sit in the locks; None for curves that are hairs themselves
+    times: of the stages that were computed [ms]
+    """
+
+    groom: Groom
+    hairs: Hairs | None
+    draft: bool
+    times: dict[str, float] = field(default_factory=dict)
+    took: float = 0.0
+
+    def locks(self, side: str) -> bytes:
+        """The message with the locks."""
+        locks = self.groom.locks
+        axis = np.tile([1.0, 0.0, 0.0], (len(locks), 1))
+        if self.hairs is not None:
+            axis = self.hairs.carriage(self.groom.scalp.points)["axis"]
+        return pack(
+            protocol.Locks.model_validate({"side": side, "draft": self.draft}),
+            points=locks.points,
+            offsets=locks.offsets,
+            ids=locks.ids,
+            axis=axis,
+            marked=locks.curve.get("isolated", np.zeros(len(locks))),
+        )
+
+    def layout(self, side: str) -> bytes:
+        """The message that says how hairs sit in the locks."""
+        return hairs_message(side, self.hairs, self.groom.scalp) if self.hairs else bare(side, self.groom.locks)
+
+    def guides(self) -> bytes:
+        """The message with the guides."""
+        return pack(protocol.Guides(), points=self.groom.guides.points, offsets=self.groom.guides.offsets)
+
+    @property
+    def count(self) -> int:
+        """Hairs that are drawn."""
+        return len(self.hairs.curves) if self.hairs else len(self.groom.locks)
+
+
+class Groomer:
+    """Grooms recipe after recipe of one project; what an edit does not touch is kept from before."""
+
+    def __init__(self, project: Project) -> None:
+        self._project = project
+        self._memory = Memory()
+        self._inputs: tuple[str, dict[str, Any]] | None = None
+        self._hairs: tuple[str, Hairs] | None = None
+
+    def groom(
+        self, recipe: Recipe, muted: frozenset[str] = frozenset(), *, draft: bool, fresh: Callable[[], None]
+    ) -> Look:
+        """The look of a recipe. As a draft, locks are not pushed out of the head.
+
+        fresh: called between the stages; what it raises ends the work
+        """
+        began = time.perf_counter()
+        times: dict[str, float] = {}
+        clock = [began]
+
+        def progress(stage: str, done: int, total: int) -> None:
+            if not done:
+                fresh()
+                clock[0] = time.perf_counter()
+            elif (took := 1e3 * (time.perf_counter() - clock[0])) > 0.5:
+                times[stage] = round(took, 1)
+
+        recipe = effective(recipe, muted | ({"clean"} if draft else frozenset()))
+        groom = make_groom(recipe, progress=progress, memory=self._memory, **self._read(recipe))
+        groom.hairs = recipe.hairs.model_dump(mode="json")
+        fresh()
+        clock[0] = time.perf_counter()
+        hairs = self._lay(groom)
+        if (took := 1e3 * (time.perf_counter() - clock[0])) > 0.5:
+            times["hairs"] = round(took, 1)
+        return Look(groom, hairs, draft, times, 1e3 * (time.perf_counter() - began))
+
+    def _read(self, recipe: Recipe) -> dict[str, Any]:
+        """What the recipe's files hold, read again only when one of them has changed."""
+        files = named_files(recipe)
+        for what, file in files.items():
+            self._project.inside(file, f"{recipe.path.name if recipe.path else 'recipe'}: {what}")
+        told = [(what, str(file), _stamp(file)) for what, file in sorted(files.items())]
+        curves = [helper.model_dump_json() for helper in getattr(recipe, "curves", {}).values()]
+        key = repr((told, recipe.scalp, recipe.guides if "file" in type(recipe.guides).model_fields else 0, curves))
+        if self._inputs is None or self._inputs[0] != key:
+            self._inputs = key, api.groom_inputs(recipe)
+        return self._inputs[1]
+
+    def _lay(self, groom: Groom) -> Hairs:
+        """The hairs of a groom; those from before where the locks have only moved."""
+        locks = groom.locks
+        key = _digest(
+            repr(groom.hairs), locks.ids, locks.offsets, locks.curve["root_triangle"], locks.curve["root_barycentric"]
+        )
+        if self._hairs is None or self._hairs[0] != key:
+            self._hairs = key, lay_hairs(groom)
+        else:
+            self._hairs = key, self._hairs[1].around(groom)
+        return self._hairs[1]
+
+
+def effective(recipe: Recipe, muted: frozenset[str]) -> Recipe:
+    """The recipe with muted stages that do nothing, but keep their place, so that the chance of others stays."""
+    changed: dict[str, Any] = {}
+    shape = list(recipe.shape)
+    for k, operator in reversed(list(enumerate(shape))):
+        if f"shape/{k}" not in muted:
+            continue
+        if "blend" in type(operator).model_fields:
+            shape[k] = operator.model_copy(update={"blend": 0.0})
+        else:
+            del shape[k]
+    if len(muted):
+        changed["shape"] = shape
+    if "curl" in muted:
+        changed["curl"] = None
+    if "clean" in muted:
+        changed["clean"] = recipe.clean.model_copy(update={"margin": NONE})
+    return recipe.model_copy(update=changed)
+
+
+def named_files(recipe: Recipe) -> dict[str, Path]:
+    """The files that a recipe names, by their setting."""
+    files: dict[str, Path | None] = {"scalp.file": recipe.scalp_file, "guides.file": recipe.guides_file}
+    for setting, method in (("maps", "map_files"), ("curves", "helper_files")):
+        if hasattr(recipe, method):
+            files |= {f"{setting}.{name}": file for name, file in getattr(recipe, method)().items()}
+    return {what: file for what, file in files.items() if file is not None}
+
+
+def hairs_message(side: str, hairs: Hairs, scalp: Mesh) -> bytes:
+    """Hairs in an order of which every beginning is spread over all locks."""
+    layout = hairs.carriage(scalp.points)
+    count, points = len(hairs.curves), len(layout["profile"])
+    order = spread_order(layout["first"])
+    widths = hairs.curves.point["width"].reshape(count, points)
+    taper = widths[0] / widths[0].max()
+    return pack(
+        protocol.Hairs.model_validate(
+            {"side": side, "count": count, "points": points, "knots": layout["frizz"].shape[1] // 2}
+        ),
+        lock=hairs.curves.curve["lock"][order],
+        offset=layout["offset"][order],
+        tip=layout["tip"][order],
+        frizz=layout["frizz"][order],
+        root=layout["root"][order],
+        profile=layout["profile"],
+        hold=layout["hold"],
+        width=widths.max(axis=1)[order],
+        taper=taper,
+    )
+
+
+def bare(side: str, curves: Curves) -> bytes:
+    """Curves that are hairs themselves: one in the middle of each lock."""
+    count, points = len(curves), int(curves.counts.max())
+    order = np.random.default_rng(0).permutation(count)
+    widths = curves.point.get("width")
+    width = np.full(count, 7e-5) if widths is None else np.maximum.reduceat(widths, curves.offsets[:-1])
+    return pack(
+        protocol.Hairs.model_validate({"side": side, "count": count, "points": points, "knots": 2}),
+        lock=order,
+        offset=np.zeros(2 * count),
+        tip=np.ones(count),
+        frizz=np.zeros(4 * count),
+        root=np.zeros(3 * count),
+        profile=np.zeros(points),
+        hold=np.zeros(points),
+        width=width[order],
+        taper=np.linspace(1.0, 0.4, points),
+    )
+
+
+def spread_order(first: NDArray[np.integer]) -> NDArray[np.intp]:
+    """Indices of hairs: the first of every lock, then the second of every lock, and so on.
+
+    first: the hairs of lock i are first[i] up to first[i + 1]
+    """
+    number = np.arange(first[-1]) - np.repeat(first[:-1], np.diff(first))
+    return np.argsort(number, kind="stable")
+
+
+def penetrations(groom: Groom, depths: Callable[..., NDArray]) -> int:
+    """Vertices of locks that are inside the scalp's mesh, beyond the first two of each, which are rooted in it."""
+    depth = depths(groom.locks.points, groom.scalp.triangles, groom.scalp.points)
+    from_root = np.arange(len(depth)) - np.repeat(groom.locks.offsets[:-1], groom.locks.counts)
+    return int(((depth > 1e-5) & (from_root > 1)).sum())
+
+
+def _digest(text: str, *arrays: NDArray) -> str:
+    digest = blake2b(text.encode(), digest_size=16)
+    for array in arrays:
+        digest.update(np.ascontiguousarray(array).tobytes())
+    return digest.hexdigest()
+
+
+def _stamp(file: Path) -> tuple[int, int]:
+    try:
+        found = file.stat()
+    except OSError as error:
+        raise UserError(f"{file}: cannot be read ({error.strerror}); name a file that is there") from error
+    return found.st_mtime_ns, found.st_size

@@ -1,0 +1,366 @@
+"""What the page and the server say to each other: defined here, and only here.
+
+A message is a JSON header followed by arrays (see ``wire``); ``tools/make_protocol.py`` writes the same as TypeScript.
+``arrays`` names those that a message carries, with their types; all lengths are in metres.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
+
+VERSION = 1
+Place = list[str | int]  # where a setting is in its file: ["shape", 0, "amount"]
+File = Literal["recipe", "shot"]
+Point = tuple[float, float, float]
+
+
+class Message(BaseModel):
+    """One message; ``kind`` says which."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+    arrays: ClassVar[dict[str, str]] = {}
+
+
+# From the page
+
+
+class Hello(Message):
+    """The first message: who is there. ``client`` is a name that a page keeps when it comes back."""
+
+    kind: Literal["hello"] = "hello"
+    version: int
+    client: str = Field(max_length=64)
+
+
+class Lead(Message):
+    """Asks to be the one who edits."""
+
+    kind: Literal["lead"] = "lead"
+
+
+class Set(Message):
+    """Gives settings new values, as TOML would say them; None takes a setting out, so that its default holds.
+
+    gesture: changes of one gesture are undone together
+    resting: whether the gesture has ended, so that quality counts more than speed
+    """
+
+    kind: Literal["set"] = "set"
+    file: File = "recipe"
+    changes: list[tuple[Place, Any]] = Field(max_length=256)
+    gesture: int
+    resting: bool = True
+
+
+class Arrange(Message):
+    """Adds, removes or moves an operator of the recipe's shape."""
+
+    kind: Literal["arrange"] = "arrange"
+    action: Literal["add", "remove", "move"]
+    at: int = Field(ge=0)
+    to: int = Field(default=0, ge=0)
+    op: str = Field(default="", max_length=64)
+
+
+class Mute(Message):
+    """Says which stages have no effect for now: ``shape/0``, ``curl`` …; not kept in the file."""
+
+    kind: Literal["mute"] = "mute"
+    stages: list[str] = Field(max_length=256)
+
+
+class Step(Message):
+    """Goes back or forth in what was done."""
+
+    kind: Literal["undo", "redo", "revert"]
+
+
+class Save(Message):
+    """Writes a file. With a name it is a new one beside the old: a copy, or a variant that extends it."""
+
+    kind: Literal["save"] = "save"
+    file: File = "recipe"
+    name: str = Field(default="", max_length=120)
+    variant: bool = False
+
+
+class Restore(Message):
+    """Gives back a text that a page still had when the server was started anew."""
+
+    kind: Literal["restore"] = "restore"
+    file: File = "recipe"
+    text: str = Field(max_length=900_000)
+
+
+class Compare(Message):
+    """Shows another look beside this one: as it is now, as saved, or another recipe of the project, or none."""
+
+    kind: Literal["compare"] = "compare"
+    to: Literal["now", "saved", "file", "none"]
+    name: str = Field(default="", max_length=240)
+
+
+class Drag(Message):
+    """Moves points of an isolated lock by hand [m]. Its shape becomes the lock's own."""
+
+    kind: Literal["drag"] = "drag"
+    lock: int
+    point: int = Field(ge=0)
+    to: Point
+    reach: float = Field(default=0.2, ge=0.0, le=1.0)
+    gesture: int
+    resting: bool = True
+
+
+class Isolate(Message):
+    """Takes locks out of the procedural to be edited by hand, or returns them."""
+
+    kind: Literal["isolate"] = "isolate"
+    locks: list[int] = Field(max_length=10_000)
+    out: bool = True
+
+
+class Brush(Message):
+    """One dab of a brush on the guides: within ``radius`` [m] of ``at``; ``by`` is how far a hand moved [m]."""
+
+    kind: Literal["brush"] = "brush"
+    tool: Literal["grab", "comb", "cut", "lengthen", "smooth"]
+    at: Point
+    by: Point = (0.0, 0.0, 0.0)
+    radius: float = Field(gt=0.0, le=0.5)
+    strength: float = Field(default=0.5, ge=0.0, le=1.0)
+    mirror: bool = False
+    gesture: int
+    resting: bool = True
+
+
+class Play(Message):
+    """Runs the shot: from its start, on from where it was held, or again from a frame that is there already."""
+
+    kind: Literal["play"] = "play"
+    action: Literal["start", "pause", "go_on", "again_from"]
+    frame: int = 0
+
+
+class Against(Message):
+    """Lays the frames of another cache of the project under the shot, to compare; no name takes it away."""
+
+    kind: Literal["against"] = "against"
+    name: str = Field(default="", max_length=240)
+
+
+FromPage = Annotated[
+    Hello | Lead | Set | Arrange | Mute | Step | Save | Restore | Compare | Drag | Isolate | Brush | Play | Against,
+    Field(discriminator="kind"),
+]
+FROM_PAGE: TypeAdapter[FromPage] = TypeAdapter(FromPage)
+
+
+# From the server
+
+
+class Welcome(Message):
+    """What a page needs to know before anything else.
+
+    session: another one after every start of the server
+    schema:  JSON schemas of ``recipe`` and ``shot``
+    pigments: hair colours by name: eumelanin, pheomelanin, roughness
+    """
+
+    kind: Literal["welcome"] = "welcome"
+    version: int
+    session: str
+    name: str
+    mode: Literal["recipe", "shot", "stage"]
+    schemas: dict[str, Any]
+    operators: list[str]
+    pigments: dict[str, Point]
+    files: list[str]
+
+
+class Role(Message):
+    """Who edits. ``others`` is the number of other pages that look at the session."""
+
+    kind: Literal["role"] = "role"
+    leads: bool
+    others: int
+
+
+class Stage(Message):
+    """A stage of the groom. place: where its settings are in the recipe."""
+
+    name: str
+    op: str
+    place: Place
+    muted: bool = False
+
+
+class Change(Message):
+    """A line of the file that is not as it was saved."""
+
+    sign: Literal["+", "-", " "]
+    line: str
+
+
+class Document(Message):
+    """A file as it stands.
+
+    said:   what the file says
+    values: what holds, with all defaults, in SI units
+    """
+
+    kind: Literal["document"] = "document"
+    file: File
+    name: str
+    text: str
+    said: dict[str, Any]
+    values: dict[str, Any]
+    stages: list[Stage]
+    dirty: bool
+    undo: bool
+    redo: bool
+    changes: list[Change]
+
+
+class Body(Message):
+    """A mesh of the scene, as the eye sees it. made_of: skin, eye, cloth or matte."""
+
+    kind: Literal["body"] = "body"
+    index: int
+    name: str
+    made_of: str
+    color: Point
+    arrays: ClassVar[dict[str, str]] = {"points": "f4", "triangles": "u4", "colors": "f4"}
+
+
+class Locks(Message):
+    """Where the locks are. side: a, or b for the look beside it.
+
+    ``axis`` (locks, 3) is where the frame of each begins; ``marked`` is 1 for isolated ones.
+    """
+
+    kind: Literal["locks"] = "locks"
+    side: Literal["a", "b"]
+    draft: bool
+    arrays: ClassVar[dict[str, str]] = {
+        "points": "f4",
+        "offsets": "i4",
+        "ids": "f8",
+        "axis": "f4",
+        "marked": "u1",
+    }
+
+
+class Hairs(Message):
+    """How hairs sit in their locks; see ``src/ringlet/groom/hairs.h`` for the formula.
+
+    Hairs come in an order of which every beginning is spread over all locks. A field of width ``points`` runs along a
+    hair; ``frizz`` has ``knots`` × 2 numbers a hair; ``root`` is from the lock's root to the hair's.
+    """
+
+    kind: Literal["hairs"] = "hairs"
+    side: Literal["a", "b"]
+    count: int
+    points: int
+    knots: int
+    arrays: ClassVar[dict[str, str]] = {
+        "lock": "u4",
+        "offset": "f4",
+        "tip": "f4",
+        "frizz": "f4",
+        "root": "f4",
+        "profile": "f4",
+        "hold": "f4",
+        "width": "f4",
+        "taper": "f4",
+    }
+
+
+class Guides(Message):
+    """The guides: what the brush works on."""
+
+    kind: Literal["guides"] = "guides"
+    arrays: ClassVar[dict[str, str]] = {"points": "f4", "offsets": "i4"}
+
+
+class Numbers(Message):
+    """What to keep in sight. times: of the stages that were computed [ms]."""
+
+    kind: Literal["numbers"] = "numbers"
+    locks: int
+    hairs: int
+    inside: int
+    groom_ms: float
+    times: dict[str, float]
+    draft: bool
+
+
+class Frame(Message):
+    """A frame of the shot or of a cache. layer: ``shot``, or ``against`` for the cache that it is compared with."""
+
+    kind: Literal["frame"] = "frame"
+    layer: Literal["shot", "against"]
+    frame: float
+    statistics: dict[str, Any]
+    arrays: ClassVar[dict[str, str]] = {
+        "points": "f4",
+        "axis": "f4",
+        "root": "f4",
+        "bodies": "f4",
+        "overlay": "f4",
+    }
+
+
+class Timeline(Message):
+    """Which frames there are to see, and what the simulation does. key: another one when frames have become void."""
+
+    kind: Literal["timeline"] = "timeline"
+    first: float
+    last: float
+    fps: float
+    ready: float | None
+    state: Literal["none", "still", "rolling", "running", "paused", "done"]
+    rolled: int
+    preroll: int
+    key: int
+    against: str = ""
+
+
+class Compared(Message):
+    """What is shown beside the look that is edited; nothing for no name."""
+
+    kind: Literal["compared"] = "compared"
+    name: str
+
+
+class Saved(Message):
+    """A file was written."""
+
+    kind: Literal["saved"] = "saved"
+    name: str
+
+
+class Trouble(Message):
+    """Something that cannot be, in one line."""
+
+    kind: Literal["trouble"] = "trouble"
+    message: str
+
+
+FROM_SERVER: tuple[type[Message], ...] = (
+    Welcome,
+    Role,
+    Document,
+    Body,
+    Locks,
+    Hairs,
+    Guides,
+    Numbers,
+    Frame,
+    Timeline,
+    Compared,
+    Saved,
+    Trouble,
+)

@@ -1,0 +1,80 @@
+"""Starting the server, and opening a browser on it."""
+
+from __future__ import annotations
+
+import secrets
+import socket
+import threading
+import webbrowser
+from collections.abc import Callable
+from pathlib import Path
+
+import uvicorn
+
+from ringlet.errors import UserError
+from ringlet.viewer.project import Project
+from ringlet.viewer.server import LOOPBACK, STATIC, Door, make_app
+from ringlet.viewer.session import Session
+from ringlet.viewer.wire import MOST
+
+DEFAULT_PORT = 8642
+
+
+def view(
+    file: Path | str,
+    *,
+    port: int | None = None,
+    host: str = "127.0.0.1",
+    browser: bool = True,
+    project: Path | str | None = None,
+    told: Callable[[str], None] = print,
+) -> None:
+    """Serves the review page of a recipe, a shot or a USD file with hair, until it is interrupted.
+
+    port:    8642 or, where that is taken, any free one
+    host:    where to listen; elsewhere than on this computer a token is needed, which is part of the address told
+    browser: open one
+    project: the folder that the page may read and write; that of the file by default
+    told:    called with the address
+    """
+    file = Path(file)
+    if not file.is_file():
+        raise UserError(f"{file}: there is no such file; give a recipe, a shot or a USD file")
+    if not (STATIC / "index.html").exists():
+        raise UserError(f"{STATIC}: the page was not built; build it with: make build")
+    token = "" if host in LOOPBACK else secrets.token_urlsafe(18)
+    session = Session(file.resolve(), Project(Path(project) if project else file.resolve().parent))
+    app = make_app(session, Door(host, token))
+    listening = _listen(host, port)
+    address = f"http://{_named(host)}:{listening.getsockname()[1]}/" + (f"#{token}" if token else "")
+    config = uvicorn.Config(
+        app, log_level="error", ws_max_size=MOST, ws_per_message_deflate=False, timeout_graceful_shutdown=1
+    )
+    told(f"ringlet view: {file.name} at {address}  (Ctrl-C ends it)")
+    if browser:
+        threading.Timer(0.5, webbrowser.open, [address]).start()
+    uvicorn.Server(config).run(sockets=[listening])
+
+
+def _listen(host: str, port: int | None) -> socket.socket:
+    """A socket on the port, or near the usual one on any that is free."""
+    for candidate in [DEFAULT_PORT, 0] if port is None else [port]:
+        listening = socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET)
+        listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            listening.bind((host, candidate))
+        except OSError as error:
+            listening.close()
+            if port is not None:
+                raise UserError(
+                    f"--port {port}: cannot be used on {host} ({error.strerror}); choose another"
+                ) from error
+            continue
+        return listening
+    raise UserError(f"--host {host}: cannot be listened on; choose an address of this computer")
+
+
+def _named(host: str) -> str:
+    if host in ("0.0.0.0", "::"):
+        return socket.gethostname()
+    return f"[{host}]" if ":" in host else host

@@ -1,0 +1,147 @@
+"""The server: the page, and one websocket for everything else."""
+
+from __future__ import annotations
+
+import asyncio
+import hmac
+import logging
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager, suppress
+from pathlib import Path
+from urllib.parse import urlsplit
+
+from fastapi import FastAPI, Request, Response, WebSocket, WebSocketDisconnect
+from fastapi.staticfiles import StaticFiles
+from starlette.middleware.base import RequestResponseEndpoint
+
+from ringlet.errors import UserError
+from ringlet.viewer import protocol
+from ringlet.viewer.session import Page, Session
+from ringlet.viewer.wire import pack, unpack
+
+STATIC = Path(__file__).with_name("static")
+LOOPBACK = ("localhost", "127.0.0.1", "[::1]")
+MOST_PAGES = 32
+HELLO_WITHIN = 10.0  # seconds
+MOST_TROUBLES = 20  # messages of a page that may be wrong, before it is sent away
+
+REFUSED, WRONG = 4403, 4400  # close codes that the page knows
+
+# Nothing is loaded from elsewhere, nothing of ours is shown elsewhere.
+POLICY = (
+    "default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; connect-src 'self' ws: wss:; "
+    "frame-ancestors 'none'; base-uri 'none'; form-action 'none'; object-src 'none'"
+)
+
+log = logging.getLogger("ringlet.viewer")
+
+
+class Door:
+    """Who may come in: those who call the server by a name that it has, from a page of its own, with the token.
+
+    host:  the name that the server was told to listen on; others than loopback need the token
+    token: what a page must bring along; nothing is asked for where it is empty
+    """
+
+    def __init__(self, host: str, token: str) -> None:
+        self.names = {*LOOPBACK, host}
+        self.anywhere = host in ("0.0.0.0", "::")
+        self.token = token
+
+    def knows(self, host: str) -> bool:
+        """Whether a Host header names this server. It keeps out pages that point a name of theirs at us."""
+        return self.anywhere or _without_port(host) in self.names
+
+    def lets_in(self, host: str, origin: str | None, token: str) -> bool:
+        """Whether a websocket may open: only for a page from the same place, which has the token."""
+        same = origin is None or urlsplit(origin).netloc == host
+        return self.knows(host) and same and hmac.compare_digest(token.encode(), self.token.encode())
+
+
+def make_app(session: Session, door: Door, static: Path = STATIC) -> FastAPI:
+    """The application of one session."""
+
+    @asynccontextmanager
+    async def life(_: FastAPI) -> AsyncIterator[None]:
+        session.start(asyncio.get_running_loop())
+        yield
+        session.stop()
+
+    app = FastAPI(lifespan=life, openapi_url=None, docs_url=None, redoc_url=None)
+
+    @app.middleware("http")
+    async def guard(request: Request, proceed: RequestResponseEndpoint) -> Response:
+        if not door.knows(request.headers.get("host", "")):
+            return Response("this server does not go by that name\n", status_code=421)
+        response = await proceed(request)
+        response.headers["Content-Security-Policy"] = POLICY
+        response.headers["X-Content-Type-Options"] = "nosniff"
+        response.headers["Referrer-Policy"] = "no-referrer"
+        response.headers["Cache-Control"] = "no-cache"
+        return response
+
+    @app.websocket("/session")
+    async def talk(socket: WebSocket) -> None:
+        headers, token = socket.headers, socket.query_params.get("token", "")
+        await socket.accept()
+        if not door.lets_in(headers.get("host", ""), headers.get("origin"), token):
+            await socket.close(REFUSED, "the token or the origin is wrong")
+            return
+        if len(session.pages) >= MOST_PAGES:
+            await socket.close(REFUSED, "too many pages look at this session")
+            return
+        with suppress(WebSocketDisconnect, RuntimeError):
+            await _serve(socket, session)
+
+    if static.is_dir():
+        app.mount("/", StaticFiles(directory=static, html=True))
+    return app
+
+
+async def _serve(socket: WebSocket, session: Session) -> None:
+    """Talks with one page until it goes."""
+    try:
+        hello = unpack(await asyncio.wait_for(socket.receive_bytes(), HELLO_WITHIN))
+    except (UserError, KeyError, TimeoutError):
+        hello = None
+    if not isinstance(hello, protocol.Hello) or hello.version != protocol.VERSION:
+        await socket.close(WRONG, f"expected hello of version {protocol.VERSION}; reload the page")
+        return
+    page = session.join(hello.client)
+    sending = asyncio.create_task(_send(socket, page))
+    try:
+        await _receive(socket, session, page)
+    finally:
+        sending.cancel()
+        session.leave(page)
+
+
+async def _send(socket: WebSocket, page: Page) -> None:
+    with suppress(WebSocketDisconnect, RuntimeError):
+        while True:
+            await socket.send_bytes(await page.box.next())
+
+
+async def _receive(socket: WebSocket, session: Session, page: Page) -> None:
+    troubles = 0
+    while True:
+        try:
+            session.hear(page, unpack(await socket.receive_bytes()))
+        except KeyError:  # text, which nobody of ours sends
+            await socket.close(WRONG, "messages are binary")
+            return
+        except UserError as error:
+            troubles += 1
+            page.box.put("trouble", pack(protocol.Trouble(message=" ".join(str(error).split()))))
+            if troubles > MOST_TROUBLES and not isinstance(error.__cause__, UserError):
+                await socket.close(WRONG, "too many messages were wrong")
+                return
+        except (WebSocketDisconnect, RuntimeError):
+            raise
+        except Exception:
+            log.exception("a message of %s could not be handled", page.name)
+            page.box.put("trouble", pack(protocol.Trouble(message="this is a mistake in Ringlet; see the terminal")))
+
+
+def _without_port(host: str) -> str:
+    return host.rsplit(":", 1)[0] if host.rsplit(":", 1)[-1].isdigit() else host

@@ -1,0 +1,378 @@
+"""What the pages look at together: files being edited, the groom they make, and who leads."""
+
+from __future__ import annotations
+
+import asyncio
+import secrets
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ringlet import api
+from ringlet.errors import UserError
+from ringlet.groom import Recipe, parse_recipe
+from ringlet.picture import HAIR_COLORS, made_of
+from ringlet.shot.start import depths
+from ringlet.viewer import protocol
+from ringlet.viewer.board import Board, Mailbox
+from ringlet.viewer.document import Document
+from ringlet.viewer.looks import Groomer, Look, named_files, penetrations
+from ringlet.viewer.project import Project
+from ringlet.viewer.scene import body_messages, read_scene
+from ringlet.viewer.wire import pack
+from ringlet.viewer.worker import Latest
+
+
+@dataclass(frozen=True)
+class Work:
+    """A groom that is wanted: a recipe, what is muted in it, and whether only a draft is needed."""
+
+    recipe: Recipe
+    muted: frozenset[str]
+    draft: bool
+    side: str = "a"
+
+
+class Page:
+    """A browser that looks at the session."""
+
+    def __init__(self, name: str, box: Mailbox) -> None:
+        self.name, self.box = name, box
+
+
+class Session:
+    """One file and all pages that look at it. Its methods are called on the event loop; grooming is done beside it."""
+
+    def __init__(self, file: Path, project: Project) -> None:
+        self.project, self.file = project, project.inside(file, "view")
+        self.id = secrets.token_hex(8)
+        self.board = Board()
+        self.pages: list[Page] = []
+        self.leader = ""
+        self.documents: dict[str, Document] = {}
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._groomer = Groomer(project)
+        self._beside = Groomer(project)
+        self._layouts: dict[str, object] = {}
+        self._bodies: object = None
+        self.look: Look | None = None
+        self.mode = "stage"
+        if self.file.suffix == ".toml":
+            self._open()
+        self._worker = Latest[Work](self._groom, "groom")
+
+    def _open(self) -> None:
+        """Opens the recipe, or a shot and the recipe that it names."""
+        from ringlet.settings import read_toml
+
+        _, data = read_toml(self.file, "recipe or shot")
+        recipe = self.file
+        if "groom" in data and "frames" in data:
+            self.mode = "shot"
+            shot = api.read_shot(self.file)
+            self.documents["shot"] = Document(self.file, lambda text: self.parse_shot(text))
+            recipe = self.project.inside(shot.groom, f"{self.file.name}: groom")
+        else:
+            self.mode = "recipe"
+        if recipe.suffix == ".toml":
+            self.documents["recipe"] = Document(recipe, lambda text: self.parse(text, recipe))
+
+    # What the files say
+
+    def parse(self, text: str, path: Path) -> Recipe:
+        """The recipe of a text, which may name files of the project only."""
+        recipe = parse_recipe(text, path)
+        for what, file in named_files(recipe).items():
+            self.project.inside(file, f"{path.name}: {what}")
+        return recipe
+
+    def parse_shot(self, text: str) -> Any:
+        """The shot of a text, which may name files of the project only."""
+        from ringlet.shot import parse_shot
+
+        shot = parse_shot(text, self.file)
+        named = {"groom": shot.groom, "rest.file": shot.rest.file}
+        named |= {f"collider[{k}].file": one.file for k, one in enumerate(shot.collider)}
+        for what, file in named.items():
+            if file is not None:
+                self.project.inside(file, f"{self.file.name}: {what}")
+        return shot
+
+    @property
+    def recipe(self) -> Document:
+        """The recipe that is edited."""
+        if "recipe" not in self.documents:
+            raise UserError(f"{self.file.name}: holds no recipe to edit; open a recipe or a shot that names one")
+        return self.documents["recipe"]
+
+    def document(self, file: str) -> Document:
+        """An open file by its kind."""
+        if file not in self.documents:
+            raise UserError(f"{self.file.name}: no {file} is open; open one with: ringlet view")
+        return self.documents[file]
+
+    # Pages
+
+    def start(self, loop: asyncio.AbstractEventLoop) -> None:
+        """Begins to work, for pages that will come."""
+        self._loop = loop
+        for file in self.documents:
+            self.tell_document(file)
+        if "recipe" in self.documents:
+            self.regroom(resting=True)
+        else:
+            self._show_stage()
+
+    def stop(self) -> None:
+        """Ends what works in the background."""
+        self._worker.stop()
+
+    def join(self, name: str) -> Page:
+        """A page comes in. The first one leads; whoever led before leads again."""
+        page = Page(name, self.board.join(self._welcome()))
+        self.pages.append(page)
+        if not self.leader or not any(other.name == self.leader for other in self.pages):
+            self.leader = name
+        self._tell_roles()
+        return page
+
+    def leave(self, page: Page) -> None:
+        """A page has gone; the lead stays free for it until another one asks."""
+        self.pages.remove(page)
+        self.board.leave(page.box)
+        self._tell_roles()
+
+    def _welcome(self) -> bytes:
+        schemas = api.schema()
+        return pack(
+            protocol.Welcome.model_validate(
+                {
+                    "version": protocol.VERSION,
+                    "session": self.id,
+                    "name": self.file.name,
+                    "mode": self.mode,
+                    "schemas": schemas,
+                    "operators": operator_names(schemas["recipe"]),
+                    "pigments": {
+                        name: (color.eumelanin, color.pheomelanin, color.roughness)
+                        for name, color in HAIR_COLORS.items()
+                    },
+                    "files": self.project.files("*.recipe.toml", "*.usdc", "*.usda", "*.usd"),
+                }
+            )
+        )
+
+    def _tell_roles(self) -> None:
+        others = len({page.name for page in self.pages}) - 1
+        for page in self.pages:
+            page.box.put("role", pack(protocol.Role(leads=page.name == self.leader, others=others)))
+
+    # Messages
+
+    def hear(self, page: Page, message: protocol.FromPage) -> None:
+        """Does what a page asks for. Raises UserError for what cannot be."""
+        if isinstance(message, protocol.Lead):
+            self.leader = page.name
+            self._tell_roles()
+            return
+        if page.name != self.leader:
+            raise UserError("another page leads this session; take the lead to edit")
+        if isinstance(message, protocol.Set):
+            self.document(message.file).set(message.changes, message.gesture)
+            self._edited(message.file, resting=message.resting)
+        elif isinstance(message, protocol.Arrange):
+            entry = {"op": message.op} if message.op else None
+            self.recipe.arrange(message.action, "shape", message.at, message.to, entry)
+            self._edited("recipe")
+        elif isinstance(message, protocol.Mute):
+            self.recipe.become(self.recipe.text, muted=frozenset(message.stages))
+            self._edited("recipe")
+        elif isinstance(message, protocol.Step):
+            self._step(message.kind)
+        elif isinstance(message, protocol.Save):
+            self._save(message)
+        elif isinstance(message, protocol.Restore):
+            self.document(message.file).become(message.text)
+            self._edited(message.file)
+        elif isinstance(message, protocol.Compare):
+            self._compare(message)
+        else:
+            raise UserError(f"message: {message.kind} is not for this file")
+
+    def _step(self, kind: str) -> None:
+        for file, document in self.documents.items():
+            before = document.state
+            if kind == "revert":
+                document.become(document.saved)
+            else:
+                getattr(document, kind)()
+            if document.state != before:
+                self._edited(file)
+                if kind != "revert":
+                    return
+
+    def _save(self, message: protocol.Save) -> None:
+        document = self.document(message.file)
+        if not message.name:
+            path = document.save()
+        else:
+            path = self.project.beside(message.name, f".{message.file}.toml")
+            if path.exists():
+                raise UserError(f"save: {path.name} is there already; give another name")
+            text = variant(document.path, document) if message.variant else document.text
+            if message.file == "recipe":
+                self.parse(text, path)
+            document.save(path, text)
+        self.tell_document(message.file)
+        for page in self.pages:
+            page.box.put("saved", pack(protocol.Saved(name=path.name)))
+
+    def _compare(self, message: protocol.Compare) -> None:
+        self.board.wipe("b/")
+        self._layouts.pop("b", None)
+        if message.to == "none":
+            self.board.post("b/none", pack(protocol.Compared(name="")))
+            return
+        path, text, muted = self.recipe.path, self.recipe.text, self.recipe.state.muted
+        if message.to == "saved":
+            text, muted = self.recipe.saved, frozenset[str]()
+        elif message.to == "file":
+            path = self.project.inside(message.name, "compare")
+            text, muted = path.read_text(encoding="utf-8"), frozenset[str]()
+        work = Work(self.parse(text, path), muted, False, "b")
+        look = self._beside.groom(work.recipe, work.muted, draft=False, fresh=lambda: None)
+        names = {"now": "as it was", "saved": "as saved", "file": path.name}
+        self.board.post("b/none", pack(protocol.Compared(name=names[message.to])))
+        self._show(look, "b")
+
+    # Grooming
+
+    def _edited(self, file: str, *, resting: bool = True) -> None:
+        self.tell_document(file)
+        if file == "recipe":
+            self.regroom(resting=resting)
+
+    def regroom(self, *, resting: bool) -> None:
+        """Makes the groom of the recipe as it stands; while a hand moves, a draft of it."""
+        document = self.recipe
+        self._worker.ask(Work(self.parse(document.text, document.path), document.state.muted, not resting))
+
+    def _groom(self, work: Work) -> None:
+        """In the background: a draft is finished whatever comes, so that something is seen while a hand moves."""
+        fresh: Callable[[], None] = (lambda: None) if work.draft else self._worker.fresh
+        try:
+            look = self._groomer.groom(work.recipe, work.muted, draft=work.draft, fresh=fresh)
+            self._call(self._show, look, work.side)
+            if not work.draft:
+                inside = penetrations(look.groom, depths)
+                self._call(self._tell_numbers, look, inside)
+        except UserError as error:
+            self._call(self.trouble, str(error))
+
+    def _call(self, do: Callable[..., None], *arguments: Any) -> None:
+        if self._loop is not None and not self._loop.is_closed():
+            self._loop.call_soon_threadsafe(do, *arguments)
+
+    def _show(self, look: Look, side: str) -> None:
+        if side == "a":
+            self.look = look
+            if self._bodies is not look.groom.scalp:
+                self._bodies = look.groom.scalp
+                self._show_bodies(look)
+        layout = look.hairs.curves if look.hairs else look.groom.locks
+        if self._layouts.get(side) is not layout:
+            self._layouts[side] = layout
+            self.board.post(f"{side}/hairs", look.layout(side))
+        self.board.post(f"{side}/locks", look.locks(side))
+        if side == "a":
+            self.board.post("a/guides", look.guides())
+            if look.draft:
+                self._tell_numbers(look, -1)
+
+    def _show_bodies(self, look: Look) -> None:
+        self.board.wipe("body/")
+        for index, message in enumerate(body_messages(look.groom.scalp, look.groom.scalp_file, made_of)):
+            self.board.post(f"body/{index}", message)
+
+    def _show_stage(self) -> None:
+        """Hair of a USD file, as it is."""
+        bodies, look = read_scene(self.file)
+        for index, message in enumerate(bodies):
+            self.board.post(f"body/{index}", message)
+        self._show(look, "a")
+        self._tell_numbers(look, -1)
+
+    def _tell_numbers(self, look: Look, inside: int) -> None:
+        numbers = protocol.Numbers(
+            locks=len(look.groom.locks),
+            hairs=look.count,
+            inside=inside,
+            groom_ms=round(look.took, 1),
+            times=look.times,
+            draft=look.draft,
+        )
+        self.board.post("numbers", pack(numbers))
+
+    def trouble(self, message: str) -> None:
+        """Tells everybody what went wrong."""
+        for page in self.pages:
+            page.box.put("trouble", pack(protocol.Trouble(message=" ".join(message.split()))))
+
+    def tell_document(self, file: str) -> None:
+        """Tells everybody what a file says now."""
+        document = self.documents[file]
+        model = self.parse(document.text, document.path) if file == "recipe" else self.parse_shot(document.text)
+        message = protocol.Document.model_validate(
+            {
+                "file": file,
+                "name": document.path.name,
+                "text": document.text,
+                "said": document.said(),
+                "values": model.model_dump(mode="json"),
+                "stages": stages(model, document.state.muted) if file == "recipe" else [],
+                "dirty": document.dirty,
+                "undo": document.can_undo,
+                "redo": document.can_redo,
+                "changes": document.changes(),
+            }
+        )
+        self.board.post(f"document/{file}", pack(message))
+
+
+def stages(recipe: Recipe, muted: frozenset[str]) -> list[protocol.Stage]:
+    """The stages of a recipe in their order."""
+    found: list[tuple[str, str, protocol.Place]] = [("guides", "guides", ["guides"]), ("locks", "locks", ["locks"])]
+    found += [(operator.op, operator.op, ["shape", k]) for k, operator in enumerate(recipe.shape)]
+    for name in ("curl", "clean", "hairs"):
+        found.append((name, name, [name]))
+    return [
+        protocol.Stage(name=name, op=op, place=place, muted="/".join(map(str, place)) in muted)
+        for name, op, place in found
+    ]
+
+
+def operator_names(schema: dict[str, Any]) -> list[str]:
+    """The operators that a recipe's shape may hold."""
+    return list(schema["properties"]["shape"]["items"]["discriminator"]["mapping"])
+
+
+def variant(base: Path, document: Document) -> str:
+    """The text of a recipe that extends another one and says only what differs."""
+    import tomllib
+
+    from ringlet.viewer.document import written
+
+    before, now = tomllib.loads(document.saved), document.said()
+    lines = [f"# {now.get('name') or base.stem}, with other values.", "ringlet = 1", f'extends = "{base.name}"']
+    tables: list[str] = []
+    for name, value in now.items():
+        if name in ("ringlet", "extends") or before.get(name) == value:
+            continue
+        if isinstance(value, dict):
+            old = before.get(name, {})
+            changed = [f"{key} = {written(entry)}" for key, entry in value.items() if old.get(key) != entry]
+            tables += ["", f"[{name}]", *changed]
+        else:
+            lines.append(f"{name} = {written(value)}")
+    return "\n".join([*lines, *tables, ""])

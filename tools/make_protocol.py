@@ -1,0 +1,99 @@
+"""Writes web/src/protocol.ts from python/ringlet/viewer/protocol.py: the messages, as TypeScript has them.
+
+Usage: python tools/make_protocol.py [--check]. With --check nothing is written, and a file that is stale exits with 1.
+"""
+
+from __future__ import annotations
+
+import sys
+import types
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, Literal, Union, get_args, get_origin
+
+from pydantic.fields import FieldInfo
+from ringlet.viewer import protocol
+
+FILE = Path(__file__).parents[1] / "web/src/protocol.ts"
+ARRAYS = {"f4": "Float32Array", "f8": "Float64Array", "i4": "Int32Array", "u4": "Uint32Array", "u1": "Uint8Array"}
+PLAIN: dict[Any, str] = {
+    str: "string",
+    int: "number",
+    float: "number",
+    bool: "boolean",
+    Any: "Json",
+    types.NoneType: "null",
+}
+
+
+def kind(annotation: Any) -> str:
+    """A Python type as TypeScript."""
+    if annotation in PLAIN:
+        return PLAIN[annotation]
+    origin, arguments = get_origin(annotation), get_args(annotation)
+    if origin is Literal:
+        return " | ".join(f'"{value}"' for value in arguments)
+    if origin in (Union, types.UnionType):
+        return " | ".join(kind(argument) for argument in arguments)
+    if origin is list:
+        inner = kind(arguments[0])
+        return f"({inner})[]" if "|" in inner else f"{inner}[]"
+    if origin is tuple:
+        return f"[{', '.join(kind(argument) for argument in arguments)}]"
+    if origin is dict:
+        return f"Record<string, {kind(arguments[1])}>"
+    return annotation.__name__
+
+
+def field(name: str, info: FieldInfo, *, said: bool) -> str:
+    """A line of an interface. What a page may leave out is optional in what it says."""
+    optional = "?" if said and not info.is_required() and name != "kind" else ""
+    return f"  {name}{optional}: {kind(info.annotation)};"
+
+
+def interface(message: type[protocol.Message], *, said: bool) -> Iterator[str]:
+    """The lines of a message's interface."""
+    yield f"/** {(message.__doc__ or '').splitlines()[0]} */"
+    yield f"export interface {message.__name__} {{"
+    for name, info in message.model_fields.items():
+        yield field(name, info, said=said)
+    for name, array in message.arrays.items():
+        yield f"  {name}: {ARRAYS[array]};"
+    yield "}"
+    yield ""
+
+
+def lines() -> Iterator[str]:
+    """The whole file."""
+    union = get_args(get_args(protocol.FromPage)[0])
+    yield "// Made by tools/make_protocol.py from python/ringlet/viewer/protocol.py; change it there."
+    yield ""
+    yield f"export const VERSION = {protocol.VERSION};"
+    yield "export type Json = string | number | boolean | null | Json[] | { [key: string]: Json };"
+    yield ""
+    for message in (protocol.Stage, protocol.Change):
+        yield from interface(message, said=False)
+    for message in union:
+        yield from interface(message, said=True)
+    for message in protocol.FROM_SERVER:
+        yield from interface(message, said=False)
+    for name, messages in (("FromPage", union), ("FromServer", protocol.FROM_SERVER)):
+        yield f"export type {name} ="
+        yield "\n".join(f"  | {message.__name__}" for message in messages) + ";"
+        yield ""
+
+
+def main() -> int:
+    """Writes the file, or compares it."""
+    text = "\n".join(lines()).rstrip() + "\n"
+    if "--check" in sys.argv:
+        if FILE.read_text() != text:
+            print(f"{FILE}: is stale; run: python tools/make_protocol.py")
+            return 1
+        return 0
+    FILE.write_text(text)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,68 @@
+// The connection to the server. It comes back on its own when it is lost.
+
+import { decode, encode } from "./codec";
+import { type FromPage, type FromServer, VERSION } from "./protocol";
+
+const FIRST_WAIT = 300;
+const LONGEST_WAIT = 5000;
+const REFUSED = 4403;
+const WRONG = 4400;
+
+export type LinkState = "open" | "lost" | "refused";
+
+export class Link {
+  private socket: WebSocket | null = null;
+  private wait = FIRST_WAIT;
+
+  constructor(
+    private readonly hear: (message: FromServer) => void,
+    private readonly changed: (state: LinkState, why: string) => void,
+  ) {}
+
+  /** Connects, and keeps at it. */
+  start(): void {
+    const token = location.hash.slice(1);
+    const scheme = location.protocol === "https:" ? "wss" : "ws";
+    const folder = location.pathname.replace(/[^/]*$/, "");
+    const socket = new WebSocket(`${scheme}://${location.host}${folder}session?token=${encodeURIComponent(token)}`);
+    socket.binaryType = "arraybuffer";
+    socket.onopen = () => {
+      this.socket = socket;
+      this.wait = FIRST_WAIT;
+      this.say({ kind: "hello", version: VERSION, client: clientName() });
+      this.changed("open", "");
+    };
+    socket.onmessage = (event) => this.hear(decode(event.data as ArrayBuffer));
+    socket.onclose = (event) => {
+      this.socket = null;
+      if (event.code === REFUSED || event.code === WRONG) {
+        this.changed("refused", event.reason);
+        return;
+      }
+      this.changed("lost", "The server does not answer. Your edits are kept here until it is back.");
+      setTimeout(() => this.start(), this.wait);
+      this.wait = Math.min(2 * this.wait, LONGEST_WAIT);
+    };
+  }
+
+  /** Sends a message; false when there is nobody to hear it. */
+  say(message: FromPage): boolean {
+    if (this.socket?.readyState !== WebSocket.OPEN) return false;
+    this.socket.send(encode(message));
+    return true;
+  }
+
+  /** How many bytes have not left yet: while there are some, dragging can wait. */
+  get pending(): number {
+    return this.socket?.bufferedAmount ?? 0;
+  }
+}
+
+/** A name of this tab that it keeps when it is loaded again. */
+function clientName(): string {
+  const known = sessionStorage.getItem("ringlet-client");
+  if (known) return known;
+  const name = crypto.getRandomValues(new Uint32Array(3)).join("-");
+  sessionStorage.setItem("ringlet-client", name);
+  return name;
+}

@@ -1,0 +1,118 @@
+// The page: connects what the server says with the picture and the panels.
+
+import "./style.css";
+import { h } from "./dom";
+import { Link, type LinkState } from "./link";
+import { Model } from "./model";
+import { Bar } from "./panel/bar";
+import { Settings } from "./panel/settings";
+import { Stack } from "./panel/stack";
+import { Notices, Status } from "./panel/status";
+import { Viewbar } from "./panel/viewbar";
+import type { FromServer } from "./protocol";
+import { Viewer } from "./view/viewer";
+
+class App {
+  readonly model = new Model();
+  readonly viewer: Viewer;
+  private readonly notices = new Notices();
+  private readonly status = new Status(this.model);
+  private session = "";
+  /** What the page had when the connection was lost, to be given back to a server that was started anew. */
+  private kept: Partial<Record<"recipe" | "shot", string>> = {};
+
+  constructor(root: HTMLElement) {
+    const picture = h("main", { class: "picture" });
+    root.append(picture);
+    this.viewer = new Viewer(picture);
+    this.viewer.onDraw = (told) => this.status.drew(told);
+    const name = () => (this.model.welcome?.name ?? "ringlet").split(".")[0];
+    root.append(
+      new Bar(this.model, () => this.setTheme()).element,
+      new Stack(this.model).element,
+      new Settings(this.model).element,
+      new Viewbar(this.model, this.viewer, name).element,
+      this.status.element,
+      this.notices.element,
+    );
+    const preferred = matchMedia("(prefers-color-scheme: light)").matches ? "light" : "dark";
+    this.setTheme((localStorage.getItem("ringlet-theme") as "dark" | "light" | null) ?? preferred);
+    this.model.link = new Link(
+      (message) => this.hear(message),
+      (state, why) => this.connected(state, why),
+    );
+    this.model.link.start();
+  }
+
+  private setTheme(theme?: "dark" | "light"): void {
+    const now = document.documentElement.dataset["theme"];
+    const next = theme ?? (now === "dark" ? "light" : "dark");
+    document.documentElement.dataset["theme"] = next;
+    localStorage.setItem("ringlet-theme", next);
+    this.viewer.setTheme(next);
+  }
+
+  private connected(state: LinkState, why: string): void {
+    document.documentElement.dataset["link"] = state;
+    this.notices.keep(state === "open" ? "" : why);
+    if (state !== "lost") return;
+    for (const [file, known] of Object.entries(this.model.documents))
+      if (known.dirty && this.model.role.leads) this.kept[file as "recipe" | "shot"] = known.text;
+  }
+
+  private hear(message: FromServer): void {
+    const { model, viewer } = this;
+    switch (message.kind) {
+      case "welcome":
+        if (this.session && this.session !== message.session) this.giveBack();
+        this.kept = {};
+        this.session = message.session;
+        model.welcome = message;
+        if (message.mode === "shot" && !model.documents.shot) model.choose("shot", ["strands"]);
+        model.tell("welcome");
+        break;
+      case "document":
+        model.documents[message.file] = message;
+        model.tell("document");
+        break;
+      case "role":
+        model.role = message;
+        model.tell("role");
+        break;
+      case "numbers":
+        model.numbers = message;
+        model.tell("numbers");
+        break;
+      case "body":
+        viewer.setBody(message);
+        break;
+      case "hairs":
+        viewer.setHairs(message);
+        break;
+      case "locks":
+        viewer.setLocks(message);
+        break;
+      case "compared":
+        model.compared = message.name;
+        viewer.compare(message.name !== "");
+        model.tell("compared");
+        break;
+      case "saved":
+        this.notices.show(`${message.name} is saved`);
+        break;
+      case "trouble":
+        this.notices.show(message.message, "bad");
+        model.tell("document"); // controls go back to what holds
+        break;
+    }
+  }
+
+  /** The server was started anew: it gets what had not been saved, as one step that can be undone. */
+  private giveBack(): void {
+    for (const [file, text] of Object.entries(this.kept))
+      this.model.say({ kind: "restore", file: file as "recipe" | "shot", text });
+  }
+}
+
+const app = new App(document.getElementById("app")!);
+Object.assign(window, { ringlet: app });

@@ -1,0 +1,63 @@
+// What the page knows of the session, and whom it tells when that changes.
+
+import type { Link } from "./link";
+import type { Document, FromPage, Json, Numbers, Role, Timeline, Welcome } from "./protocol";
+
+export type File = "recipe" | "shot";
+export type Place = (string | number)[];
+type Topic = "welcome" | "document" | "role" | "numbers" | "timeline" | "compared" | "chosen";
+
+export class Model {
+  welcome: Welcome | null = null;
+  documents: Partial<Record<File, Document>> = {};
+  role: Role = { kind: "role", leads: true, others: 0 };
+  numbers: Numbers | null = null;
+  timeline: Timeline | null = null;
+  compared = "";
+  /** The stage whose settings are shown, and the file that it belongs to. */
+  chosen: { file: File; place: Place } = { file: "recipe", place: ["curl"] };
+  link: Link | null = null;
+  private gesture = Date.now() % 1e9;
+  private readonly listeners = new Map<Topic, (() => void)[]>();
+
+  on(topic: Topic, listener: () => void): void {
+    this.listeners.set(topic, [...(this.listeners.get(topic) ?? []), listener]);
+  }
+
+  tell(topic: Topic): void {
+    for (const listener of this.listeners.get(topic) ?? []) listener();
+  }
+
+  choose(file: File, place: Place): void {
+    this.chosen = { file, place };
+    this.tell("chosen");
+  }
+
+  say(message: FromPage): void {
+    this.link?.say(message);
+  }
+
+  /** A number for what one hand does from pressing to letting go: one step of undo. */
+  newGesture(): number {
+    return ++this.gesture;
+  }
+
+  /** What the file says at a place, or undefined. */
+  said(file: File, place: Place): Json | undefined {
+    return at(this.documents[file]?.said, place);
+  }
+
+  /** What holds at a place, in SI units. */
+  value(file: File, place: Place): Json | undefined {
+    return at(this.documents[file]?.values, place);
+  }
+}
+
+export function at(json: Json | undefined, place: Place): Json | undefined {
+  let value = json;
+  for (const part of place) {
+    if (value === null || typeof value !== "object") return undefined;
+    value = (value as Record<string | number, Json>)[part];
+  }
+  return value;
+}

@@ -1,0 +1,102 @@
+// The bar at the top: the file, what was done to it, who leads, and how the page looks.
+
+import { h, iconButton } from "../dom";
+import type { File, Model } from "../model";
+import { saveAs, showChanges } from "./files";
+
+export class Bar {
+  readonly element = h("header", { class: "bar" });
+  private readonly name = h("button", {
+    type: "button",
+    class: "file-name",
+    title: "What has changed since it was saved",
+  });
+  private readonly undo = iconButton("undo", "Undo (Ctrl+Z)", () => this.model.say({ kind: "undo" }));
+  private readonly redo = iconButton("redo", "Redo (Ctrl+Shift+Z)", () => this.model.say({ kind: "redo" }));
+  private readonly save = h("button", { type: "button", class: "primary", title: "Save (Ctrl+S)" }, "Save");
+  private readonly as = h("button", { type: "button", class: "quiet" }, "Save as…");
+  private readonly role = h("span", { class: "role" });
+  private readonly lead = h("button", { type: "button", class: "quiet" }, "Take the lead");
+  private readonly beside = h("select", { "aria-label": "Show another look beside this one", class: "beside" });
+
+  constructor(
+    private readonly model: Model,
+    setTheme: () => void,
+  ) {
+    this.name.addEventListener("click", () => showChanges(model));
+    this.save.addEventListener("click", () => this.saveAll());
+    this.as.addEventListener("click", () => saveAs(model, this.file));
+    this.lead.addEventListener("click", () => model.say({ kind: "lead" }));
+    this.beside.addEventListener("change", () => this.compare());
+    this.element.append(
+      h("span", { class: "brand" }, "Ringlet"),
+      this.name,
+      h("span", { class: "group" }, this.undo, this.redo),
+      h("span", { class: "group" }, this.save, this.as),
+      this.beside,
+      h("span", { class: "space" }),
+      this.role,
+      this.lead,
+      iconButton("sun", "Dark or light", setTheme),
+    );
+    for (const topic of ["document", "role", "welcome", "compared"] as const) model.on(topic, () => this.update());
+    addEventListener("keydown", (event) => this.key(event));
+  }
+
+  private get file(): File {
+    return this.model.documents.recipe ? "recipe" : "shot";
+  }
+
+  saveAll(): void {
+    for (const file of ["recipe", "shot"] as const)
+      if (this.model.documents[file]?.dirty) this.model.say({ kind: "save", file });
+  }
+
+  private compare(): void {
+    const [to, name] = this.beside.value.split(":");
+    this.model.say({ kind: "compare", to: (to || "none") as "now" | "saved" | "file" | "none", name: name ?? "" });
+  }
+
+  private update(): void {
+    const { documents, role, welcome, compared } = this.model;
+    const open = Object.values(documents);
+    const dirty = open.some((document) => document.dirty);
+    this.name.textContent = `${documents.recipe?.name ?? welcome?.name ?? ""}${dirty ? " ·" : ""}`;
+    this.name.classList.toggle("dirty", dirty);
+    document.title = `${dirty ? "• " : ""}${documents.recipe?.name ?? welcome?.name ?? "Ringlet"}`;
+    this.undo.toggleAttribute("disabled", !role.leads || !open.some((document) => document.undo));
+    this.redo.toggleAttribute("disabled", !role.leads || !open.some((document) => document.redo));
+    this.save.toggleAttribute("disabled", !role.leads || !dirty);
+    for (const part of [this.undo, this.redo, this.save, this.as, this.beside])
+      part.toggleAttribute("hidden", !open.length);
+    this.as.toggleAttribute("disabled", !role.leads);
+    this.lead.toggleAttribute("hidden", role.leads);
+    this.role.textContent = role.leads
+      ? role.others > 0
+        ? `${role.others} ${role.others > 1 ? "others look" : "other looks"} on`
+        : ""
+      : "you are looking on";
+    const files = (welcome?.files ?? []).filter((name) => name.endsWith(".toml") && name !== documents.recipe?.name);
+    const choices: [string, string][] = [
+      ["", "Compare with …"],
+      ["now", "this moment"],
+      ["saved", "as saved"],
+      ...files.map((name): [string, string] => [`file:${name}`, name]),
+    ];
+    if (compared) choices[0][1] = "End the comparison";
+    const { value } = this.beside;
+    this.beside.replaceChildren(...choices.map(([key, label]) => h("option", { value: key }, label)));
+    this.beside.value = compared ? value : "";
+    this.beside.toggleAttribute("disabled", !role.leads);
+  }
+
+  private key(event: KeyboardEvent): void {
+    if (!(event.ctrlKey || event.metaKey)) return;
+    const key = event.key.toLowerCase();
+    if (key === "z") this.model.say({ kind: event.shiftKey ? "redo" : "undo" });
+    else if (key === "y") this.model.say({ kind: "redo" });
+    else if (key === "s") this.saveAll();
+    else return;
+    event.preventDefault();
+  }
+}

@@ -1,0 +1,151 @@
+// The stages of the groom from guides to hairs: choose, mute, solo, move, add and remove.
+
+import { h, ICONS, icon, iconButton } from "../dom";
+import type { Model, Place } from "../model";
+import type { Stage } from "../protocol";
+
+const KEPT = ["guides", "locks", "hairs"]; // without these there is nothing to see
+
+export class Stack {
+  readonly element = h("nav", { class: "panel stack", "aria-label": "Stages of the groom" });
+
+  constructor(private readonly model: Model) {
+    model.on("document", () => this.update());
+    model.on("chosen", () => this.update());
+    model.on("role", () => this.update());
+  }
+
+  update(): void {
+    const document = this.model.documents.recipe;
+    const shot = this.model.documents.shot;
+    this.element.toggleAttribute("hidden", !document && !shot);
+    const focused = (globalThis.document.activeElement as HTMLElement | null)?.dataset["stage"];
+    const parts: HTMLElement[] = [];
+    if (document) {
+      parts.push(h("h2", {}, "groom"), this.row({ name: "recipe", op: "", place: [], muted: false }, document.stages));
+      parts.push(...document.stages.map((stage) => this.row(stage, document.stages)), this.adding());
+    }
+    if (shot) {
+      parts.push(h("h2", {}, "shot"), this.shotRow("shot", []));
+      for (const name of ["strands", "variation", "solver", "forces", "contact"])
+        if (shot.values[name]) parts.push(this.shotRow(name, [name]));
+    }
+    this.element.replaceChildren(...parts);
+    if (focused) this.element.querySelector<HTMLElement>(`[data-stage="${focused}"]`)?.focus();
+    this.element.classList.toggle("follows", !this.model.role.leads);
+  }
+
+  private row(stage: Stage, all: Stage[]): HTMLElement {
+    const key = stage.place.join("/");
+    const { chosen, role } = this.model;
+    const isShape = stage.place[0] === "shape";
+    const index = Number(stage.place[1]);
+    const last = all.filter((one) => one.place[0] === "shape").length - 1;
+    const current = chosen.file === "recipe" && chosen.place.join("/") === key;
+    const choose = h(
+      "button",
+      {
+        type: "button",
+        class: "stage-name",
+        "data-stage": key || "recipe",
+        "aria-current": current ? "true" : undefined,
+        onclick: () => this.model.choose("recipe", stage.place),
+      },
+      stage.name.replaceAll("_", " "),
+    );
+    const canMute = key && !KEPT.includes(key) && role.leads;
+    return h(
+      "div",
+      { class: `stage${current ? " chosen" : ""}${stage.muted ? " muted" : ""}` },
+      choose,
+      isShape && role.leads && index > 0
+        ? iconButton("up", `Move ${stage.name} up`, () => this.move(index, index - 1))
+        : null,
+      isShape && role.leads && index < last
+        ? iconButton("down", `Move ${stage.name} down`, () => this.move(index, index + 1))
+        : null,
+      canMute ? iconButton("solo", `Only ${stage.name}`, () => this.solo(stage, all)) : null,
+      isShape && role.leads ? iconButton("bin", `Remove ${stage.name}`, () => this.remove(index)) : null,
+      canMute
+        ? h(
+            "button",
+            {
+              type: "button",
+              class: "icon-button mute",
+              "aria-pressed": String(stage.muted),
+              "aria-label": `Mute ${stage.name}`,
+              title: stage.muted ? "Let it act again" : "Mute: show the groom without it",
+              onclick: () => this.mute(key, all),
+            },
+            icon(stage.muted ? ICONS.hidden : ICONS.eye),
+          )
+        : null,
+    );
+  }
+
+  private shotRow(name: string, place: Place): HTMLElement {
+    const { chosen } = this.model;
+    const current = chosen.file === "shot" && chosen.place.join("/") === place.join("/");
+    return h(
+      "div",
+      { class: `stage${current ? " chosen" : ""}` },
+      h(
+        "button",
+        {
+          type: "button",
+          class: "stage-name",
+          "data-stage": `shot:${name}`,
+          "aria-current": current ? "true" : undefined,
+          onclick: () => this.model.choose("shot", place),
+        },
+        name === "strands" ? "material" : name,
+      ),
+    );
+  }
+
+  private adding(): HTMLElement {
+    const list = h("select", { class: "add", "aria-label": "Add an operator", disabled: !this.model.role.leads });
+    list.append(h("option", { value: "" }, "+ add an operator"));
+    for (const op of this.model.welcome?.operators ?? [])
+      list.append(h("option", { value: op }, op.replaceAll("_", " ")));
+    list.addEventListener("change", () => {
+      const at = (this.model.documents.recipe?.stages ?? []).filter((stage) => stage.place[0] === "shape").length;
+      if (list.value) this.model.say({ kind: "arrange", action: "add", at, op: list.value });
+      if (list.value) this.model.choose("recipe", ["shape", at]);
+      list.value = "";
+    });
+    return list;
+  }
+
+  private muted(all: Stage[]): string[] {
+    return all.filter((stage) => stage.muted).map((stage) => stage.place.join("/"));
+  }
+
+  private mute(key: string, all: Stage[]): void {
+    const muted = this.muted(all);
+    this.model.say({
+      kind: "mute",
+      stages: muted.includes(key) ? muted.filter((one) => one !== key) : [...muted, key],
+    });
+  }
+
+  /** Mutes all other operators; again, none. */
+  private solo(stage: Stage, all: Stage[]): void {
+    const key = stage.place.join("/");
+    const others = all
+      .map((one) => one.place.join("/"))
+      .filter((one) => one !== key && !KEPT.includes(one) && one !== "clean");
+    const already = others.every((one) => this.muted(all).includes(one));
+    this.model.say({ kind: "mute", stages: already ? [] : others });
+  }
+
+  private move(from: number, to: number): void {
+    this.model.say({ kind: "arrange", action: "move", at: from, to });
+    this.model.choose("recipe", ["shape", to]);
+  }
+
+  private remove(index: number): void {
+    this.model.say({ kind: "arrange", action: "remove", at: index });
+    this.model.choose("recipe", ["curl"]);
+  }
+}

@@ -1,0 +1,75 @@
+// Numbers in sight, and a line for what went wrong.
+
+import { h } from "../dom";
+import type { Model } from "../model";
+import type { Told } from "../view/viewer";
+
+export class Status {
+  readonly element = h("footer", { class: "status" });
+  private readonly parts: Record<string, HTMLElement> = {};
+
+  constructor(private readonly model: Model) {
+    for (const [name, label] of [
+      ["locks", "locks"],
+      ["hairs", "hairs"],
+      ["groom", "groom"],
+      ["draw", "picture"],
+      ["inside", "inside the head"],
+      ["sim", "simulated"],
+    ]) {
+      const value = h("b", {});
+      const part = h("span", { class: "number-told", "data-number": name, hidden: true }, value, ` ${label}`);
+      this.parts[name] = part;
+      this.element.append(part);
+    }
+    model.on("numbers", () => this.update());
+  }
+
+  drew({ drawMs, shown }: Told): void {
+    this.set("draw", `${drawMs.toFixed(0)} ms`);
+    const hairs = this.model.numbers?.hairs ?? 0;
+    if (hairs) this.set("hairs", shown < hairs ? `${count(shown)} of ${count(hairs)}` : count(hairs));
+  }
+
+  simulated(ms: number): void {
+    this.set("sim", `${ms.toFixed(0)} ms/frame`);
+  }
+
+  private update(): void {
+    const { numbers } = this.model;
+    if (!numbers) return;
+    this.set("locks", count(numbers.locks));
+    this.set("hairs", count(numbers.hairs));
+    this.set("groom", `${numbers.groom_ms.toFixed(0)} ms`);
+    const times = Object.entries(numbers.times).map(([stage, ms]) => `${stage} ${ms.toFixed(0)} ms`);
+    this.parts["groom"].title = times.join("\n") || "nothing had to be computed";
+    if (numbers.inside >= 0) this.set("inside", count(numbers.inside));
+    this.parts["inside"].classList.toggle("warn", numbers.inside > 0);
+  }
+
+  private set(name: string, text: string): void {
+    this.parts[name].removeAttribute("hidden");
+    this.parts[name].querySelector("b")!.textContent = text;
+  }
+}
+
+const count = (n: number) => n.toLocaleString("en").replaceAll(",", "\u202f");
+
+/** Short messages that go on their own; a lasting one stays until it is taken back. */
+export class Notices {
+  readonly element = h("div", { class: "notices", role: "status", "aria-live": "polite" });
+  private lasting: HTMLElement | null = null;
+
+  show(text: string, kind: "good" | "bad" = "good"): void {
+    const notice = h("p", { class: `notice ${kind}` }, text);
+    this.element.append(notice);
+    while (this.element.children.length > 4) this.element.firstElementChild?.remove();
+    setTimeout(() => notice.remove(), kind === "bad" ? 9000 : 3500);
+  }
+
+  keep(text: string): void {
+    this.lasting?.remove();
+    this.lasting = text ? h("p", { class: "notice bad" }, text) : null;
+    if (this.lasting) this.element.append(this.lasting);
+  }
+}

@@ -1,0 +1,76 @@
+// What one does with the picture: light, colour, where from, and pictures to keep.
+
+import { h, iconButton } from "../dom";
+import type { Model } from "../model";
+import { Recorder, takePicture } from "../view/capture";
+import { PRESETS } from "../view/lights";
+import type { Viewer } from "../view/viewer";
+
+const VIEWS: [string, number, number][] = [
+  ["Three-quarter", 34, 6],
+  ["Front", 0, 4],
+  ["Left", 90, 4],
+  ["Back", 180, 8],
+  ["Right", -90, 4],
+  ["Above", 20, 60],
+];
+
+export class Viewbar {
+  readonly element = h("div", { class: "viewbar", role: "toolbar", "aria-label": "View" });
+
+  constructor(
+    private readonly model: Model,
+    viewer: Viewer,
+    name: () => string,
+  ) {
+    const light = h("select", { "aria-label": "Light" });
+    for (const [key, preset] of Object.entries(PRESETS)) light.append(h("option", { value: key }, preset.label));
+    light.addEventListener("change", () => viewer.setLights(light.value));
+
+    const color = h("select", { "aria-label": "Hair colour" });
+    color.addEventListener("change", () =>
+      viewer.setPigments(...(model.welcome?.pigments[color.value] ?? [2, 0.35, 0.38])),
+    );
+    model.on("welcome", () => {
+      const names = Object.keys(this.model.welcome?.pigments ?? {});
+      const before = color.value || "dark_brown";
+      color.replaceChildren(...names.map((one) => h("option", { value: one }, one.replaceAll("_", " "))));
+      color.value = before;
+      color.dispatchEvent(new Event("change"));
+    });
+
+    const from = h("select", { "aria-label": "View from" });
+    for (const [label] of VIEWS) from.append(h("option", {}, label));
+    from.addEventListener("change", () => {
+      const [, azimuth, elevation] = VIEWS[from.selectedIndex];
+      viewer.frame(azimuth, elevation);
+    });
+
+    const turn = iconButton("turn", "Turntable", () => {
+      viewer.turntable = !viewer.turntable;
+      turn.setAttribute("aria-pressed", String(viewer.turntable));
+      viewer.move();
+    });
+    turn.setAttribute("aria-pressed", "false");
+
+    const recorder = new Recorder(viewer);
+    const film = iconButton("film", "Record a movie", () => {
+      if (recorder.running) recorder.stop(name());
+      else recorder.start();
+      film.setAttribute("aria-pressed", String(recorder.running));
+    });
+    film.setAttribute("aria-pressed", "false");
+
+    this.element.append(
+      light,
+      color,
+      from,
+      iconButton("frame", "Frame all hair (F)", () =>
+        viewer.frame(...(VIEWS[from.selectedIndex].slice(1) as [number, number])),
+      ),
+      turn,
+      iconButton("camera", "Keep a picture", () => takePicture(viewer, name())),
+      film,
+    );
+  }
+}

@@ -1,0 +1,52 @@
+// Pictures and movies of what is seen, as files.
+
+import type { Viewer } from "./viewer";
+
+function keep(blob: Blob, name: string): void {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(blob);
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+}
+
+export function takePicture(viewer: Viewer, name: string): void {
+  viewer.drawNow(); // what is drawn is there until the browser shows it
+  viewer.renderer.domElement.toBlob((blob) => blob && keep(blob, `${name}.png`));
+}
+
+/** Records what is drawn until it is told to stop. */
+export class Recorder {
+  private recorder: MediaRecorder | null = null;
+  private parts: Blob[] = [];
+
+  constructor(private readonly viewer: Viewer) {}
+
+  get running(): boolean {
+    return this.recorder !== null;
+  }
+
+  start(): void {
+    const types = ["video/mp4;codecs=avc1", "video/webm;codecs=vp9", "video/webm"];
+    const mimeType = types.find((type) => MediaRecorder.isTypeSupported(type));
+    this.parts = [];
+    this.recorder = new MediaRecorder(this.viewer.renderer.domElement.captureStream(30), {
+      mimeType,
+      videoBitsPerSecond: 12e6,
+    });
+    this.recorder.ondataavailable = (event) => this.parts.push(event.data);
+    this.recorder.start(500);
+    this.viewer.move();
+  }
+
+  stop(name: string): void {
+    const recorder = this.recorder;
+    this.recorder = null;
+    if (!recorder) return;
+    recorder.onstop = () => {
+      const type = recorder.mimeType.split(";")[0];
+      keep(new Blob(this.parts, { type }), `${name}.${type.endsWith("mp4") ? "mp4" : "webm"}`);
+    };
+    recorder.stop();
+  }
+}

@@ -1,0 +1,180 @@
+// Puts every hair in its place around its lock, on the graphics card. The formula is that of src/ringlet/groom/hairs.h.
+
+import {
+  FloatType,
+  GLSL3,
+  Mesh,
+  NearestFilter,
+  OrthographicCamera,
+  PlaneGeometry,
+  RawShaderMaterial,
+  RGBAFormat,
+  Scene,
+  type WebGLRenderer,
+  WebGLRenderTarget,
+} from "three";
+import type { Hairs } from "../protocol";
+import { LOOKUP } from "./shaders";
+import type { LockTable } from "./table";
+import { Numbers, WIDTH } from "./textures";
+
+const VERTEX = /* glsl */ `
+in vec3 position;
+void main() { gl_Position = vec4(position.xy, 0.0, 1.0); }
+`;
+
+const FRAGMENT = /* glsl */ `
+precision highp float;
+precision highp int;
+${LOOKUP}
+uniform highp sampler2D lockPoint, lockA, lockB, lockPlace;
+uniform highp sampler2D hairPlace;  // lock, tip, offset
+uniform highp sampler2D hairRoot;   // root, width
+uniform highp sampler2D hairFrizz;  // two knots a texel
+uniform highp sampler2D ramps;      // profile, hold, taper
+uniform int hairs, points, knots;
+out vec4 result;
+
+vec2 knot(int hair, int i) {
+  vec4 two = lookup(hairFrizz, hair * ((knots + 1) / 2) + i / 2);
+  return (i & 1) == 0 ? two.xy : two.zw;
+}
+
+void main() {
+  int index = int(gl_FragCoord.x) + 2048 * int(gl_FragCoord.y);
+  int hair = index / points, k = index - hair * points;
+  if (hair >= hairs) { result = vec4(0.0); return; }
+  vec4 sits = lookup(hairPlace, hair), root = lookup(hairRoot, hair), ramp = lookup(ramps, k);
+  vec4 lock = lookup(lockPlace, int(sits.x));
+  int first = int(lock.x), last = int(lock.y);
+  float u = float(k) / float(points - 1);
+
+  // Across the lock: the offset, and a wander eased from knot to knot.
+  float knotAt = u * float(knots - 1);
+  int i = min(int(knotAt), knots - 2);
+  float ease = knotAt - float(i);
+  ease = ease * ease * (3.0 - 2.0 * ease);
+  vec2 across = (1.0 - ramp.y) * (ramp.x * sits.zw + mix(knot(hair, i), knot(hair, i + 1), ease));
+
+  // Along the lock: Catmull–Rom for the points, straight for the frame.
+  float at = u * float(last) * sits.y;
+  int j = min(int(at), last);
+  float t = at - float(j);
+  int row = first + j;
+  vec3 p0 = lookup(lockPoint, row - 1).xyz, p1 = lookup(lockPoint, row).xyz;
+  vec3 p2 = lookup(lockPoint, row + 1).xyz, p3 = lookup(lockPoint, row + 2).xyz;
+  vec3 on = p1 + 0.5 * t * ((p2 - p0) + t * ((2.0 * p0 - 5.0 * p1 + 4.0 * p2 - p3) + t * (3.0 * (p1 - p2) + p3 - p0)));
+  vec3 a = mix(lookup(lockA, row).xyz, lookup(lockA, row + 1).xyz, t);
+  vec3 b = mix(lookup(lockB, row).xyz, lookup(lockB, row + 1).xyz, t);
+  result = vec4(on + across.x * a + across.y * b + ramp.y * root.xyz, root.w * ramp.z);
+}
+`;
+
+/** The hairs of one look. `points` is a texture with a texel for each point of each hair: its position and width. */
+export class Carry {
+  private target: WebGLRenderTarget;
+  private readonly scene = new Scene();
+  private readonly camera = new OrthographicCamera();
+  private readonly material: RawShaderMaterial;
+  private readonly numbers: Record<string, Numbers> = {};
+
+  constructor(readonly hairs: Hairs) {
+    this.target = target(hairs.count * hairs.points);
+    this.material = new RawShaderMaterial({
+      glslVersion: GLSL3,
+      vertexShader: VERTEX,
+      fragmentShader: FRAGMENT,
+      depthTest: false,
+      uniforms: {
+        hairs: { value: hairs.count },
+        points: { value: hairs.points },
+        knots: { value: hairs.knots },
+      },
+    });
+    this.scene.add(new Mesh(new PlaneGeometry(2, 2), this.material));
+    const { count } = hairs;
+    const place = new Float32Array(4 * count);
+    for (let i = 0; i < count; i++)
+      place.set([hairs.lock[i], hairs.tip[i], hairs.offset[2 * i], hairs.offset[2 * i + 1]], 4 * i);
+    this.put("hairPlace", place);
+    this.put("hairFrizz", evenKnots(hairs));
+    const ramps = new Float32Array(4 * hairs.points);
+    for (let k = 0; k < hairs.points; k++) ramps.set([hairs.profile[k], hairs.hold[k], hairs.taper[k], 0], 4 * k);
+    this.put("ramps", ramps);
+    this.setRoots(hairs.root);
+  }
+
+  get points() {
+    return this.target.texture;
+  }
+
+  /** A texture by the name that it has in the shader. */
+  texture(name: string) {
+    return this.numbers[name]?.texture ?? null;
+  }
+
+  /** Where roots are, from those of their locks: they turn with the head. */
+  setRoots(root: Float32Array): void {
+    const { count, width } = this.hairs;
+    const rows = new Float32Array(4 * count);
+    for (let i = 0; i < count; i++) rows.set([root[3 * i], root[3 * i + 1], root[3 * i + 2], width[i]], 4 * i);
+    this.put("hairRoot", rows);
+  }
+
+  setLocks(table: LockTable): void {
+    this.put("lockPoint", table.point);
+    this.put("lockA", table.a);
+    this.put("lockB", table.b);
+    this.put("lockPlace", table.places);
+  }
+
+  update(renderer: WebGLRenderer): void {
+    if (!this.numbers["lockPoint"]) return;
+    const before = renderer.getRenderTarget();
+    renderer.setRenderTarget(this.target);
+    renderer.render(this.scene, this.camera);
+    renderer.setRenderTarget(before);
+  }
+
+  /** The points of the first hairs, as they are on the card: four numbers a point. */
+  read(renderer: WebGLRenderer, hairs: number): Float32Array {
+    const rows = Math.min(this.target.height, Math.ceil((hairs * this.hairs.points) / WIDTH));
+    const values = new Float32Array(4 * WIDTH * rows);
+    renderer.readRenderTargetPixels(this.target, 0, 0, WIDTH, rows, values);
+    return values.subarray(0, 4 * Math.min(hairs, this.hairs.count) * this.hairs.points);
+  }
+
+  dispose(): void {
+    this.target.dispose();
+    this.material.dispose();
+    for (const numbers of Object.values(this.numbers)) numbers.dispose();
+  }
+
+  private put(name: string, values: Float32Array): void {
+    if (this.numbers[name]) {
+      this.numbers[name].update(values);
+      return;
+    }
+    this.numbers[name] = new Numbers(values);
+    this.material.uniforms[name] = { value: this.numbers[name].texture };
+  }
+}
+
+function target(texels: number): WebGLRenderTarget {
+  return new WebGLRenderTarget(WIDTH, Math.max(1, Math.ceil(texels / WIDTH)), {
+    type: FloatType,
+    format: RGBAFormat,
+    minFilter: NearestFilter,
+    magFilter: NearestFilter,
+    depthBuffer: false,
+    generateMipmaps: false,
+  });
+}
+
+/** Knots of each hair in whole texels: an odd number gets one more at its end, which nobody reads. */
+function evenKnots({ count, knots, frizz }: Hairs): Float32Array {
+  if (knots % 2 === 0) return frizz;
+  const even = new Float32Array(2 * (knots + 1) * count);
+  for (let i = 0; i < count; i++) even.set(frizz.subarray(2 * knots * i, 2 * knots * (i + 1)), 2 * (knots + 1) * i);
+  return even;
+}

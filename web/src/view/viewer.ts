@@ -1,0 +1,291 @@
+// The picture: bodies and hair before a wall. Drawn only when something has changed, so an idle page rests.
+
+import { type Box3, PerspectiveCamera, Scene, Vector2, Vector3, WebGLRenderer } from "three";
+import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import type { Body as BodyMessage, Hairs, Locks } from "../protocol";
+import { Backdrop } from "./backdrop";
+import { Body } from "./body";
+import { Hair } from "./hair";
+import { Lights, PRESETS } from "./lights";
+import { Shadow } from "./shadow";
+
+export type Side = "a" | "b";
+
+const FOV = 24;
+const SLOW = 45; // a picture that takes longer is drawn with less detail while something moves [ms]
+const REST_AFTER = 180; // time without a movement after which all detail is drawn [ms]
+
+export interface Told {
+  drawMs: number;
+  shown: number;
+}
+
+export class Viewer {
+  readonly renderer: WebGLRenderer;
+  readonly camera = new PerspectiveCamera(FOV, 1, 0.02, 20);
+  readonly controls: OrbitControls;
+  readonly lights = new Lights();
+  readonly hair: Record<Side, Hair>;
+  compared = false;
+  turntable = false;
+  onDraw: (told: Told) => void = () => {};
+
+  /** Whether there is no graphics card: then pictures are plainer, so that they come at all. */
+  readonly software: boolean;
+
+  private readonly shadow: Shadow;
+  private readonly backdrop = new Backdrop();
+  private readonly bodies = new Map<number, Body>();
+  private readonly scene = new Scene();
+  private readonly casters = new Scene();
+  private framed = false;
+  private wanted = false;
+  private moved = 0;
+  private detail = 1;
+  private resting = 0;
+  private turned = 0;
+  private drawn = 0;
+
+  constructor(readonly element: HTMLElement) {
+    this.software = drawsInSoftware();
+    this.renderer = new WebGLRenderer({ antialias: !this.software, powerPreference: "high-performance" });
+    this.renderer.autoClear = false;
+    this.renderer.outputColorSpace = "srgb-linear"; // the shaders develop on their own
+    this.renderer.setPixelRatio(this.software ? 1 : Math.min(devicePixelRatio, 2));
+    element.append(this.renderer.domElement);
+    const canvas = this.renderer.domElement;
+    canvas.tabIndex = 0;
+    canvas.setAttribute("role", "img");
+    canvas.setAttribute("aria-label", "The groom. Arrow keys turn, plus and minus move nearer and away, F frames.");
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.enableDamping = false;
+    this.controls.minDistance = 0.08;
+    this.controls.maxDistance = 6;
+    this.controls.addEventListener("change", () => this.move());
+    this.shadow = new Shadow(this.software ? 384 : 1024);
+    this.hair = { a: new Hair(this.lights, this.shadow), b: new Hair(this.lights, this.shadow) };
+    new ResizeObserver(() => this.resize()).observe(element);
+    canvas.addEventListener("keydown", (event) => this.key(event));
+    this.resize();
+  }
+
+  setBody(message: BodyMessage): void {
+    this.bodies.get(message.index)?.dispose();
+    this.bodies.set(message.index, new Body(message, this.lights, this.shadow, [this.scene, this.casters]));
+    this.invalidate();
+  }
+
+  /** Moves all bodies, whose points follow one another; nothing: to where they rest. */
+  placeBodies(points?: Float32Array): void {
+    let at = 0;
+    for (const [, body] of [...this.bodies].sort(([i], [j]) => i - j)) {
+      body.place(points?.length ? points.slice(3 * at, 3 * (at + body.points)) : undefined);
+      at += body.points;
+    }
+    this.invalidate();
+  }
+
+  setHairs(message: Hairs): void {
+    this.hair[message.side].setHairs(message);
+    this.invalidate();
+  }
+
+  setLocks(message: Locks): void {
+    this.hair[message.side].setLocks(message);
+    if (message.draft) this.move();
+    if (!this.framed && message.side === "a") this.frame();
+    this.invalidate();
+  }
+
+  setPigments(eumelanin: number, pheomelanin: number, roughness: number): void {
+    for (const hair of Object.values(this.hair)) hair.setPigments(eumelanin, pheomelanin, roughness);
+    this.invalidate();
+  }
+
+  setLights(name: string): void {
+    this.lights.preset = PRESETS[name] ?? PRESETS["studio"];
+    this.invalidate();
+  }
+
+  setTheme(theme: "dark" | "light"): void {
+    this.backdrop.setTheme(theme);
+    this.invalidate();
+  }
+
+  setOverlay(on: boolean): void {
+    for (const hair of Object.values(this.hair)) hair.showOverlay(on);
+    this.invalidate();
+  }
+
+  /** Shows the other look beside the first, or no more. */
+  compare(on: boolean): void {
+    this.compared = on;
+    this.invalidate();
+  }
+
+  /** The middle of all hair. */
+  get middle(): Vector3 {
+    return this.hair.a.box.getCenter(new Vector3());
+  }
+
+  /** Puts the camera before the subject so that all hair is in the picture; without angles it keeps its direction. */
+  frame(azimuth = 34, elevation = 6): void {
+    const box = this.hair.a.box;
+    if (box.isEmpty()) return;
+    this.framed = true;
+    const size = box.getSize(new Vector3());
+    const target = box.getCenter(new Vector3());
+    target.y -= 0.06 * size.y;
+    const radius = 0.5 * Math.max(size.x, size.z, 1.12 * size.y);
+    const narrow = Math.min(1, this.camera.aspect * (this.compared ? 0.5 : 1));
+    const distance = (1.32 * radius) / Math.tan((0.5 * FOV * Math.PI) / 180) / narrow;
+    const [a, e] = [(azimuth * Math.PI) / 180, (elevation * Math.PI) / 180];
+    this.controls.target.copy(target);
+    this.camera.position
+      .set(Math.sin(a) * Math.cos(e), Math.sin(e), Math.cos(a) * Math.cos(e))
+      .multiplyScalar(distance)
+      .add(target);
+    this.controls.update();
+    this.invalidate();
+  }
+
+  /** Something moves: speed counts more than detail for a moment. */
+  move(): void {
+    this.moved = performance.now();
+    this.invalidate();
+  }
+
+  invalidate(): void {
+    if (this.wanted) return;
+    this.wanted = true;
+    requestAnimationFrame(() => this.draw());
+  }
+
+  /** Draws at once, with all detail: for pictures. */
+  drawNow(): void {
+    this.moved = 0;
+    this.paint(1);
+  }
+
+  get pictures(): number {
+    return this.drawn;
+  }
+
+  private draw(): void {
+    this.wanted = false;
+    const now = performance.now();
+    if (this.turntable) {
+      const passed = this.turned ? Math.min(now - this.turned, 100) : 0;
+      this.turned = now;
+      this.orbit((passed / 1000) * 0.6, 0);
+      this.moved = now;
+    } else this.turned = 0;
+    const moving = now - this.moved < REST_AFTER;
+    this.paint(moving ? this.detail : 1);
+    const took = performance.now() - now;
+    if (moving) {
+      if (took > SLOW) this.detail = Math.max(0.06, this.detail * 0.75);
+      else if (took < 0.4 * SLOW) this.detail = Math.min(1, this.detail * 1.15);
+      clearTimeout(this.resting);
+      this.resting = window.setTimeout(() => this.invalidate(), REST_AFTER + 20);
+    }
+    this.drawn++;
+    this.onDraw({ drawMs: took, shown: Math.round(this.hair.a.count * (moving ? this.detail : 1)) });
+    if (this.turntable) this.invalidate();
+  }
+
+  private paint(detail: number): void {
+    const { renderer, camera, lights } = this;
+    const size = renderer.getSize(new Vector2());
+    camera.updateMatrixWorld();
+    lights.update(camera);
+    this.backdrop.update(size.x / Math.max(size.y, 1));
+    const sides: Side[] = this.compared ? ["a", "b"] : ["a"];
+    const width = size.x / sides.length;
+    camera.aspect = width / Math.max(size.y, 1);
+    camera.updateProjectionMatrix();
+    const pixel = (2 * Math.tan((0.5 * FOV * Math.PI) / 180)) / (size.y * renderer.getPixelRatio());
+    for (const body of this.bodies.values()) body.seenFrom(camera.position);
+    renderer.setScissorTest(sides.length > 1);
+    sides.forEach((side, k) => {
+      const hair = this.hair[side];
+      hair.setDetail(detail, detail < 0.5 ? 2 : 1);
+      hair.update(renderer);
+      hair.seenFrom(camera.position, pixel);
+      hair.litFrom(lights.key, this.shadow.texel);
+      const box = this.lit(hair);
+      renderer.setScissorTest(false);
+      if (!box.isEmpty()) {
+        const casters = { bodies: this.casters, hairDepth: hair.depthScene, hairLayers: hair.layersScene };
+        this.shadow.update(renderer, lights.key, box, casters);
+      }
+      renderer.setScissorTest(sides.length > 1);
+      renderer.setViewport(k * width, 0, width, size.y);
+      renderer.setScissor(k * width, 0, width, size.y);
+      renderer.clear();
+      renderer.render(this.backdrop.scene, camera);
+      renderer.render(this.scene, camera);
+      if (!hair.table) return;
+      renderer.render(hair.firstScene, camera);
+      renderer.render(hair.scene, camera);
+    });
+    renderer.setScissorTest(false);
+    renderer.setViewport(0, 0, size.x, size.y);
+  }
+
+  /** What the key light must cover: the hair, and what it throws shadows on. */
+  private lit(hair: Hair): Box3 {
+    const box = hair.box.clone();
+    if (!box.isEmpty()) box.min.y -= 0.35 * (box.max.y - box.min.y);
+    return box;
+  }
+
+  private resize(): void {
+    const { clientWidth, clientHeight } = this.element;
+    if (!clientWidth || !clientHeight) return;
+    this.renderer.setSize(clientWidth, clientHeight);
+    this.camera.aspect = clientWidth / clientHeight;
+    this.camera.updateProjectionMatrix();
+    this.paint(this.detail); // before the browser shows the emptied canvas
+    this.invalidate();
+  }
+
+  /** Turns about the subject [radians]. */
+  orbit(turn: number, lift: number): void {
+    const away = this.camera.position.clone().sub(this.controls.target);
+    const radius = away.length();
+    const azimuth = Math.atan2(away.x, away.z) + turn;
+    const elevation = Math.min(1.45, Math.max(-1.45, Math.asin(away.y / radius) + lift));
+    away.set(Math.sin(azimuth) * Math.cos(elevation), Math.sin(elevation), Math.cos(azimuth) * Math.cos(elevation));
+    this.camera.position.copy(this.controls.target).addScaledVector(away, radius);
+    this.camera.lookAt(this.controls.target);
+  }
+
+  private key(event: KeyboardEvent): void {
+    const step = 0.1;
+    const turns: Record<string, [number, number]> = {
+      ArrowLeft: [-step, 0],
+      ArrowRight: [step, 0],
+      ArrowUp: [0, step],
+      ArrowDown: [0, -step],
+    };
+    const nearer: Record<string, number> = { "+": 0.9, "=": 0.9, "-": 1.1 };
+    if (turns[event.key]) this.orbit(...turns[event.key]);
+    else if (nearer[event.key]) {
+      const away = this.camera.position.clone().sub(this.controls.target).multiplyScalar(nearer[event.key]);
+      this.camera.position.copy(this.controls.target).add(away);
+    } else if (event.key.toLowerCase() === "f") this.frame();
+    else return;
+    event.preventDefault();
+    this.move();
+  }
+}
+
+function drawsInSoftware(): boolean {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  if (!gl) throw new Error("This browser has no WebGL 2; the review needs it.");
+  const info = gl.getExtension("WEBGL_debug_renderer_info");
+  const name = String(gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
+  gl.getExtension("WEBGL_lose_context")?.loseContext();
+  return /swiftshader|llvmpipe|software/i.test(name);
+}
