@@ -73,7 +73,7 @@ export interface Restore {
   text: string;
 }
 
-/** Shows another look beside this one: as it is now, as saved, or another recipe of the project; nothing: ends it. */
+/** Shows another look beside this one: as it is now, as saved, or another recipe of the project, or none. */
 export interface Compare {
   kind: "compare";
   to: "now" | "saved" | "file" | "none";

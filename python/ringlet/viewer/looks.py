@@ -16,6 +16,7 @@ from ringlet import api
 from ringlet.curves import Curves
 from ringlet.errors import UserError
 from ringlet.groom import Groom, Hairs, Memory, Recipe, lay_hairs, make_groom
+from ringlet.groom.operators import Drawn
 from ringlet.mesh import Mesh
 from ringlet.viewer import protocol
 from ringlet.viewer.project import Project
@@ -29,12 +30,14 @@ class Look:
     """A groom as it is looked at.
 
     hairs: how they sit in the locks; None for curves that are hairs themselves
+    isolated: ids of locks that were edited by hand
     times: of the stages that were computed [ms]
     """
 
     groom: Groom
     hairs: Hairs | None
     draft: bool
+    isolated: frozenset[int] = frozenset()
     times: dict[str, float] = field(default_factory=dict)
     took: float = 0.0
 
@@ -50,7 +53,7 @@ class Look:
             offsets=locks.offsets,
             ids=locks.ids,
             axis=axis,
-            marked=locks.curve.get("isolated", np.zeros(len(locks))),
+            marked=np.isin(locks.ids, list(self.isolated)),
         )
 
     def layout(self, side: str) -> bytes:
@@ -102,7 +105,14 @@ class Groomer:
         hairs = self._lay(groom)
         if (took := 1e3 * (time.perf_counter() - clock[0])) > 0.5:
             times["hairs"] = round(took, 1)
-        return Look(groom, hairs, draft, times, 1e3 * (time.perf_counter() - began))
+        return Look(
+            groom,
+            hairs,
+            draft,
+            frozenset(edit.lock for edit in recipe.edit),
+            times,
+            1e3 * (time.perf_counter() - began),
+        )
 
     def _read(self, recipe: Recipe) -> dict[str, Any]:
         """What the recipe's files hold, read again only when one of them has changed."""
@@ -110,8 +120,8 @@ class Groomer:
         for what, file in files.items():
             self._project.inside(file, f"{recipe.path.name if recipe.path else 'recipe'}: {what}")
         told = [(what, str(file), _stamp(file)) for what, file in sorted(files.items())]
-        curves = [helper.model_dump_json() for helper in getattr(recipe, "curves", {}).values()]
-        key = repr((told, recipe.scalp, recipe.guides if "file" in type(recipe.guides).model_fields else 0, curves))
+        drawn = recipe.guides if isinstance(recipe.guides, Drawn) else None
+        key = repr((told, recipe.scalp, drawn, recipe.curves))
         if self._inputs is None or self._inputs[0] != key:
             self._inputs = key, api.groom_inputs(recipe)
         return self._inputs[1]
@@ -131,17 +141,12 @@ class Groomer:
 
 def effective(recipe: Recipe, muted: frozenset[str]) -> Recipe:
     """The recipe with muted stages that do nothing, but keep their place, so that the chance of others stays."""
-    changed: dict[str, Any] = {}
-    shape = list(recipe.shape)
-    for k, operator in reversed(list(enumerate(shape))):
-        if f"shape/{k}" not in muted:
-            continue
-        if "blend" in type(operator).model_fields:
-            shape[k] = operator.model_copy(update={"blend": 0.0})
-        else:
-            del shape[k]
-    if len(muted):
-        changed["shape"] = shape
+    changed: dict[str, Any] = {
+        "shape": [
+            operator.model_copy(update={"blend": 0.0}) if f"shape/{k}" in muted else operator
+            for k, operator in enumerate(recipe.shape)
+        ]
+    }
     if "curl" in muted:
         changed["curl"] = None
     if "clean" in muted:
@@ -151,10 +156,9 @@ def effective(recipe: Recipe, muted: frozenset[str]) -> Recipe:
 
 def named_files(recipe: Recipe) -> dict[str, Path]:
     """The files that a recipe names, by their setting."""
-    files: dict[str, Path | None] = {"scalp.file": recipe.scalp_file, "guides.file": recipe.guides_file}
-    for setting, method in (("maps", "map_files"), ("curves", "helper_files")):
-        if hasattr(recipe, method):
-            files |= {f"{setting}.{name}": file for name, file in getattr(recipe, method)().items()}
+    files = {"scalp.file": recipe.scalp_file, "guides.file": recipe.guides_file, "edits": recipe.edits_file}
+    files |= {f"maps.{name}": file for name, file in recipe.map_files().items()}
+    files |= {f"curves.{name}": file for name, file in recipe.helper_files().items()}
     return {what: file for what, file in files.items() if file is not None}
 
 

@@ -13,6 +13,7 @@ from ringlet import api
 from ringlet.errors import UserError
 from ringlet.groom import Recipe, parse_recipe
 from ringlet.picture import HAIR_COLORS, made_of
+from ringlet.settings import parse_toml, read_toml
 from ringlet.shot.start import depths
 from ringlet.viewer import protocol
 from ringlet.viewer.board import Board, Mailbox
@@ -64,8 +65,6 @@ class Session:
 
     def _open(self) -> None:
         """Opens the recipe, or a shot and the recipe that it names."""
-        from ringlet.settings import read_toml
-
         _, data = read_toml(self.file, "recipe or shot")
         recipe = self.file
         if "groom" in data and "frames" in data:
@@ -82,10 +81,20 @@ class Session:
 
     def parse(self, text: str, path: Path) -> Recipe:
         """The recipe of a text, which may name files of the project only."""
+        self._confine(parse_toml(text, path.name, "recipe"), path)
         recipe = parse_recipe(text, path)
         for what, file in named_files(recipe).items():
             self.project.inside(file, f"{path.name}: {what}")
         return recipe
+
+    def _confine(self, data: dict[str, Any], path: Path) -> None:
+        """Refuses what a recipe would read of itself outside of the project: what it extends, and edits."""
+        for setting in ("extends", "edits"):
+            if not isinstance(name := data.get(setting), str):
+                continue
+            file = self.project.inside(path.parent / name, f"{path.name}: {setting}")
+            if setting == "extends" and file.is_file() and file != path.resolve():
+                self._confine(read_toml(file, "recipe")[1], file)
 
     def parse_shot(self, text: str) -> Any:
         """The shot of a text, which may name files of the project only."""

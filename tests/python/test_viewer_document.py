@@ -1,0 +1,129 @@
+"""A recipe that is edited setting by setting says what was set, and keeps all else, comments included."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+
+import pytest
+from ringlet.errors import UserError
+from ringlet.viewer.document import Document
+
+from ringlet.groom import parse_recipe
+
+TEXT = """# The head of the file.
+ringlet = 1
+unit = "cm" # of lengths
+
+# Where it starts.
+[guides]
+count = 12
+length = 8 # about a hand
+zone = [
+    { toward = [0, 0, 1], spread = 50 }, # a fringe
+]
+
+[[shape]]
+op = "clump" # neighbours
+size = 2
+
+# None knows where to go.
+[[shape]]
+op = "scraggle"
+amount = 0.5
+
+# The look.
+[curl]
+preset = "3C"
+width = { value = "9 mm", vary = 0.2 } # a pencil
+"""
+
+
+@pytest.fixture
+def document(tmp_path: Path) -> Document:
+    path = tmp_path / "a.recipe.toml"
+    path.write_text(TEXT)
+    return Document(path, lambda text: parse_recipe(text, path))
+
+
+def comments(text: str) -> list[str]:
+    return [line.split("#")[1] for line in text.splitlines() if "#" in line]
+
+
+def test_a_value_is_replaced_where_it_stands(document: Document):
+    document.set([(["curl", "width", "value"], "8 mm"), (["guides", "count"], 20)])
+    assert document.text == TEXT.replace("9 mm", "8 mm").replace("count = 12", "count = 20")
+
+
+def test_a_value_becomes_a_table_when_more_is_said_of_it(document: Document):
+    document.set([(["guides", "length", "vary"], 0.1)])
+    assert document.said()["guides"]["length"] == {"value": 8, "vary": 0.1}
+    assert comments(document.text) == comments(TEXT)
+
+
+def test_a_new_setting_stands_in_its_table_and_not_after_the_next_comment(document: Document):
+    document.set([(["curl", "start"], "12 mm"), (["guides", "whorl_turn"], 10.0), (["seed"], 4)])
+    lines = document.text.splitlines()
+    assert lines.index("whorl_turn = 10.0") < lines.index("[[shape]]")
+    assert lines.index("seed = 4") < lines.index("# Where it starts.")
+    assert document.said()["curl"]["start"] == "12 mm"
+
+
+def test_a_table_that_is_not_there_is_made(document: Document):
+    document.set([(["clean", "margin"], "3 mm"), (["hairs", "radius", "value"], "2 mm")])
+    said = tomllib.loads(document.text)
+    assert said["clean"] == {"margin": "3 mm"} and said["hairs"]["radius"]["value"] == "2 mm"
+
+
+def test_settings_in_lists_and_operators_can_be_set_and_taken_out(document: Document):
+    document.set([(["guides", "zone", 0, "spread"], 30), (["shape", 1, "size"], 2.5), (["shape", 0, "size"], None)])
+    said = document.said()
+    assert said["guides"]["zone"][0]["spread"] == 30
+    assert said["shape"] == [{"op": "clump"}, {"op": "scraggle", "amount": 0.5, "size": 2.5}]
+
+
+def test_operators_move_with_their_comments(document: Document):
+    document.arrange("move", "shape", 1, 0)
+    assert [operator["op"] for operator in document.said()["shape"]] == ["scraggle", "clump"]
+    text = document.text
+    assert text.index("# None knows") < text.index('op = "scraggle"') < text.index("# neighbours")
+    assert text.index("# The look.") < text.index("[curl]")
+
+
+def test_an_operator_is_added_before_the_curl_and_removed_again(document: Document):
+    for _ in range(2):
+        document.arrange("remove", "shape", 0)
+    assert "shape" not in document.said() and "# The look." in document.text
+    document.arrange("add", "shape", 0, entry={"op": "loft"})
+    assert document.said()["shape"] == [{"op": "loft"}]
+    assert document.text.index("[[shape]]") < document.text.index("[curl]")
+
+
+def test_what_is_not_valid_is_refused_and_changes_nothing(document: Document):
+    with pytest.raises(UserError, match="at least 0"):
+        document.set([(["curl", "width", "value"], -1)])
+    with pytest.raises(UserError, match="none at 7"):
+        document.arrange("remove", "shape", 7)
+    with pytest.raises(UserError, match="cannot be set"):
+        document.set([(["guides", "zone", 9, "spread"], 30)])
+    assert document.text == TEXT and not document.can_undo
+
+
+def test_a_gesture_is_one_step_back_and_one_forth(document: Document):
+    for width in ("7 mm", "6 mm", "5 mm"):
+        document.set([(["curl", "width", "value"], width)], gesture=1)
+    document.set([(["guides", "count"], 20)], gesture=2)
+    document.undo()
+    assert document.said()["curl"]["width"]["value"] == "5 mm" and document.said()["guides"]["count"] == 12
+    document.undo()
+    assert document.text == TEXT and not document.dirty
+    document.redo()
+    assert document.said()["curl"]["width"]["value"] == "5 mm" and document.dirty
+
+
+def test_changes_against_the_saved_file_and_saving(document: Document):
+    document.set([(["guides", "count"], 20)])
+    changed = {(change.sign, change.line) for change in document.changes() if change.sign != " "}
+    assert changed == {("-", "count = 12"), ("+", "count = 20")}
+    document.save()
+    assert document.path.read_text() == document.text and not document.dirty and not document.changes()
