@@ -193,12 +193,16 @@ export interface Hairs {
   lock: Uint32Array;
   offset: Float32Array;
   tip: Float32Array;
+  taper: Float32Array;
+  other: Int32Array;
+  share: Float32Array;
   frizz: Float32Array;
   root: Float32Array;
   profile: Float32Array;
   hold: Float32Array;
+  blend: Float32Array;
   width: Float32Array;
-  taper: Float32Array;
+  thinning: Float32Array;
 }
 
 /** The guides: what the brush works on. */

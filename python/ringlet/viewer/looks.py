@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from hashlib import blake2b
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +14,7 @@ from numpy.typing import NDArray
 from ringlet import api
 from ringlet.curves import Curves
 from ringlet.errors import UserError
-from ringlet.groom import Groom, Hairs, Memory, Recipe, lay_hairs, make_groom
+from ringlet.groom import Groom, HairMemory, Hairs, Memory, Recipe, lay_hairs, make_groom
 from ringlet.groom.operators import Drawn
 from ringlet.mesh import Mesh
 from ringlet.viewer import protocol
@@ -77,7 +76,7 @@ class Groomer:
         self._project = project
         self._memory = Memory()
         self._inputs: tuple[str, dict[str, Any]] | None = None
-        self._hairs: tuple[str, Hairs] | None = None
+        self._hairs = HairMemory()
 
     def groom(
         self, recipe: Recipe, muted: frozenset[str] = frozenset(), *, draft: bool, fresh: Callable[[], None]
@@ -102,7 +101,7 @@ class Groomer:
         groom.hairs = recipe.hairs.model_dump(mode="json")
         fresh()
         clock[0] = time.perf_counter()
-        hairs = self._lay(groom)
+        hairs = lay_hairs(groom, memory=self._hairs)
         if (took := 1e3 * (time.perf_counter() - clock[0])) > 0.5:
             times["hairs"] = round(took, 1)
         return Look(
@@ -125,18 +124,6 @@ class Groomer:
         if self._inputs is None or self._inputs[0] != key:
             self._inputs = key, api.groom_inputs(recipe)
         return self._inputs[1]
-
-    def _lay(self, groom: Groom) -> Hairs:
-        """The hairs of a groom; those from before where the locks have only moved."""
-        locks = groom.locks
-        key = _digest(
-            repr(groom.hairs), locks.ids, locks.offsets, locks.curve["root_triangle"], locks.curve["root_barycentric"]
-        )
-        if self._hairs is None or self._hairs[0] != key:
-            self._hairs = key, lay_hairs(groom)
-        else:
-            self._hairs = key, self._hairs[1].around(groom)
-        return self._hairs[1]
 
 
 def effective(recipe: Recipe, muted: frozenset[str]) -> Recipe:
@@ -168,20 +155,18 @@ def hairs_message(side: str, hairs: Hairs, scalp: Mesh) -> bytes:
     count, points = len(hairs.curves), len(layout["profile"])
     order = spread_order(layout["first"])
     widths = hairs.curves.point["width"].reshape(count, points)
-    taper = widths[0] / widths[0].max()
+    alone = {"other": np.zeros(count), "share": np.zeros(count)}
+    mixed = {name: layout[name] if len(layout[name]) else none for name, none in alone.items()}
     return pack(
         protocol.Hairs.model_validate(
             {"side": side, "count": count, "points": points, "knots": layout["frizz"].shape[1] // 2}
         ),
         lock=hairs.curves.curve["lock"][order],
-        offset=layout["offset"][order],
-        tip=layout["tip"][order],
-        frizz=layout["frizz"][order],
-        root=layout["root"][order],
-        profile=layout["profile"],
-        hold=layout["hold"],
+        **{name: layout[name][order] for name in ("offset", "tip", "taper", "frizz", "root")},
+        **{name: values[order] for name, values in mixed.items()},
+        **{name: layout[name] for name in ("profile", "hold", "blend")},
         width=widths.max(axis=1)[order],
-        taper=taper,
+        thinning=widths[0] / widths[0].max(),
     )
 
 
@@ -196,12 +181,16 @@ def bare(side: str, curves: Curves) -> bytes:
         lock=order,
         offset=np.zeros(2 * count),
         tip=np.ones(count),
+        taper=np.zeros(count),
+        other=np.zeros(count),
+        share=np.zeros(count),
         frizz=np.zeros(4 * count),
         root=np.zeros(3 * count),
         profile=np.zeros(points),
         hold=np.zeros(points),
+        blend=np.zeros(points),
         width=width[order],
-        taper=np.linspace(1.0, 0.4, points),
+        thinning=np.linspace(1.0, 0.4, points),
     )
 
 
@@ -219,13 +208,6 @@ def penetrations(groom: Groom, depths: Callable[..., NDArray]) -> int:
     depth = depths(groom.locks.points, groom.scalp.triangles, groom.scalp.points)
     from_root = np.arange(len(depth)) - np.repeat(groom.locks.offsets[:-1], groom.locks.counts)
     return int(((depth > 1e-5) & (from_root > 1)).sum())
-
-
-def _digest(text: str, *arrays: NDArray) -> str:
-    digest = blake2b(text.encode(), digest_size=16)
-    for array in arrays:
-        digest.update(np.ascontiguousarray(array).tobytes())
-    return digest.hexdigest()
 
 
 def _stamp(file: Path) -> tuple[int, int]:

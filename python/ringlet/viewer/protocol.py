@@ -256,8 +256,9 @@ class Locks(Message):
 class Hairs(Message):
     """How hairs sit in their locks; see ``src/ringlet/groom/hairs.h`` for the formula.
 
-    Hairs come in an order of which every beginning is spread over all locks. A field of width ``points`` runs along a
-    hair; ``frizz`` has ``knots`` × 2 numbers a hair; ``root`` is from the lock's root to the hair's.
+    Hairs come in an order of which every beginning is spread over all locks. ``profile``, ``hold``, ``blend`` and
+    ``thinning`` run along all hairs; ``frizz`` has ``knots`` × 2 numbers a hair; ``root`` is from the lock's root to
+    the hair's; ``width`` is the diameter of each, which ``thinning`` goes with.
     """
 
     kind: Literal["hairs"] = "hairs"
@@ -269,12 +270,16 @@ class Hairs(Message):
         "lock": "u4",
         "offset": "f4",
         "tip": "f4",
+        "taper": "f4",
+        "other": "i4",
+        "share": "f4",
         "frizz": "f4",
         "root": "f4",
         "profile": "f4",
         "hold": "f4",
+        "blend": "f4",
         "width": "f4",
-        "taper": "f4",
+        "thinning": "f4",
     }
 
 

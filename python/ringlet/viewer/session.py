@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 import secrets
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -22,7 +23,10 @@ from ringlet.viewer.looks import Groomer, Look, named_files, penetrations
 from ringlet.viewer.project import Project
 from ringlet.viewer.scene import body_messages, read_scene
 from ringlet.viewer.wire import pack
-from ringlet.viewer.worker import Latest
+from ringlet.viewer.worker import Latest, Stale
+
+
+log = logging.getLogger("ringlet.viewer")
 
 
 @dataclass(frozen=True)
@@ -278,6 +282,11 @@ class Session:
                 self._call(self._tell_numbers, look, inside)
         except UserError as error:
             self._call(self.trouble, str(error))
+        except Stale:
+            raise
+        except Exception as error:
+            log.exception("a groom could not be made")
+            self._call(self.trouble, f"this is a mistake in Ringlet ({error}); see the terminal")
 
     def _call(self, do: Callable[..., None], *arguments: Any) -> None:
         if self._loop is not None and not self._loop.is_closed():

@@ -31,7 +31,8 @@ uniform highp sampler2D lockPoint, lockA, lockB, lockPlace;
 uniform highp sampler2D hairPlace;  // lock, tip, offset
 uniform highp sampler2D hairRoot;   // root, width
 uniform highp sampler2D hairFrizz;  // two knots a texel
-uniform highp sampler2D ramps;      // profile, hold, taper
+uniform highp sampler2D hairMix;    // taper, another lock, the share that it has
+uniform highp sampler2D ramps;      // profile, hold, thinning, blend
 uniform int hairs, points, knots;
 out vec4 result;
 
@@ -40,13 +41,24 @@ vec2 knot(int hair, int i) {
   return (i & 1) == 0 ? two.xy : two.zw;
 }
 
+// A place on a lock at so many points from its root. Catmull–Rom for the points, straight for the frame.
+vec3 onLock(vec4 lock, float at, vec2 across) {
+  int last = int(lock.y), j = min(int(at), last), row = int(lock.x) + j;
+  float t = j == last ? 0.0 : at - float(j);
+  vec3 p0 = lookup(lockPoint, row - 1).xyz, p1 = lookup(lockPoint, row).xyz;
+  vec3 p2 = lookup(lockPoint, row + 1).xyz, p3 = lookup(lockPoint, row + 2).xyz;
+  vec3 on = p1 + 0.5 * t * ((p2 - p0) + t * ((2.0 * p0 - 5.0 * p1 + 4.0 * p2 - p3) + t * (3.0 * (p1 - p2) + p3 - p0)));
+  vec3 a = mix(lookup(lockA, row).xyz, lookup(lockA, row + 1).xyz, t);
+  vec3 b = mix(lookup(lockB, row).xyz, lookup(lockB, row + 1).xyz, t);
+  return on + across.x * a + across.y * b;
+}
+
 void main() {
   int index = int(gl_FragCoord.x) + 2048 * int(gl_FragCoord.y);
   int hair = index / points, k = index - hair * points;
   if (hair >= hairs) { result = vec4(0.0); return; }
-  vec4 sits = lookup(hairPlace, hair), root = lookup(hairRoot, hair), ramp = lookup(ramps, k);
+  vec4 sits = lookup(hairPlace, hair), root = lookup(hairRoot, hair), ramp = lookup(ramps, k), mixed = lookup(hairMix, hair);
   vec4 lock = lookup(lockPlace, int(sits.x));
-  int first = int(lock.x), last = int(lock.y);
   float u = float(k) / float(points - 1);
 
   // Across the lock: the offset, and a wander eased from knot to knot.
@@ -54,19 +66,18 @@ void main() {
   int i = min(int(knotAt), knots - 2);
   float ease = knotAt - float(i);
   ease = ease * ease * (3.0 - 2.0 * ease);
-  vec2 across = (1.0 - ramp.y) * (ramp.x * sits.zw + mix(knot(hair, i), knot(hair, i + 1), ease));
+  vec2 wander = mix(knot(hair, i), knot(hair, i + 1), ease);
+  vec2 across = (1.0 - ramp.y) * (ramp.x * (1.0 - mixed.x * u) * sits.zw + wander);
 
-  // Along the lock: Catmull–Rom for the points, straight for the frame.
-  float at = u * float(last) * sits.y;
-  int j = min(int(at), last);
-  float t = at - float(j);
-  int row = first + j;
-  vec3 p0 = lookup(lockPoint, row - 1).xyz, p1 = lookup(lockPoint, row).xyz;
-  vec3 p2 = lookup(lockPoint, row + 1).xyz, p3 = lookup(lockPoint, row + 2).xyz;
-  vec3 on = p1 + 0.5 * t * ((p2 - p0) + t * ((2.0 * p0 - 5.0 * p1 + 4.0 * p2 - p3) + t * (3.0 * (p1 - p2) + p3 - p0)));
-  vec3 a = mix(lookup(lockA, row).xyz, lookup(lockA, row + 1).xyz, t);
-  vec3 b = mix(lookup(lockB, row).xyz, lookup(lockB, row + 1).xyz, t);
-  result = vec4(on + across.x * a + across.y * b + ramp.y * root.xyz, root.w * ramp.z);
+  float at = u * lock.y * sits.y;
+  vec3 place = onLock(lock, at, across) + ramp.y * root.xyz;
+  if (mixed.z > 0.0) { // drawn to a neighbouring lock: the same hair about that one
+    vec4 other = lookup(lockPlace, int(mixed.y));
+    vec3 there = root.xyz + lookup(lockPoint, int(lock.x)).xyz - lookup(lockPoint, int(other.x)).xyz;
+    vec3 theirs = onLock(other, at * other.y / lock.y, across) + ramp.y * there;
+    place += mixed.z * ramp.w * (theirs - place);
+  }
+  result = vec4(place, root.w * ramp.z);
 }
 `;
 
@@ -97,9 +108,13 @@ export class Carry {
     for (let i = 0; i < count; i++)
       place.set([hairs.lock[i], hairs.tip[i], hairs.offset[2 * i], hairs.offset[2 * i + 1]], 4 * i);
     this.put("hairPlace", place);
+    const mix = new Float32Array(4 * count);
+    for (let i = 0; i < count; i++) mix.set([hairs.taper[i], hairs.other[i], hairs.share[i], 0], 4 * i);
+    this.put("hairMix", mix);
     this.put("hairFrizz", evenKnots(hairs));
     const ramps = new Float32Array(4 * hairs.points);
-    for (let k = 0; k < hairs.points; k++) ramps.set([hairs.profile[k], hairs.hold[k], hairs.taper[k], 0], 4 * k);
+    for (let k = 0; k < hairs.points; k++)
+      ramps.set([hairs.profile[k], hairs.hold[k], hairs.thinning[k], hairs.blend[k]], 4 * k);
     this.put("ramps", ramps);
     this.setRoots(hairs.root);
   }
