@@ -5,6 +5,7 @@
 
 #include "ringlet/scene/scene.h"
 
+#include <map>
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/vector.h>
 
@@ -18,6 +19,48 @@ namespace {
 template <class Element, class Scalar, class Array> std::vector<Element> copied(const Array &array) {
     const View<Element> rows = vectors<Element>(array);
     return {rows.begin(), rows.end()};
+}
+
+nb::dict memory_of(const SceneMemory &memory) {
+    std::vector<uint64_t> pairs;
+    std::vector<double> distances, heights;
+    std::vector<int> embedded;
+    for (const auto &[pair, distance] : std::map<uint64_t, double>(memory.early.begin(), memory.early.end())) {
+        pairs.push_back(pair);
+        distances.push_back(distance);
+    }
+    for (const auto &[vertex, height] : memory.embedded) {
+        embedded.push_back(vertex);
+        heights.push_back(height);
+    }
+    const size_t early = pairs.size(), inside = embedded.size(), bodies = memory.bodies.size(), cloths = memory.touched.size();
+    nb::dict arrays;
+    arrays["begun"] = to_numpy<int>(std::vector<int>{memory.begun}, {1});
+    arrays["bodies"] = to_numpy<double>(std::vector<Vec3>(memory.bodies), {bodies, 3});
+    arrays["early_pairs"] = to_numpy<uint64_t>(std::move(pairs), {early});
+    arrays["early_distances"] = to_numpy<double>(std::move(distances), {early});
+    arrays["embedded_vertices"] = to_numpy<int>(std::move(embedded), {inside});
+    arrays["embedded_heights"] = to_numpy<double>(std::move(heights), {inside});
+    arrays["touched"] = to_numpy<int>(std::vector<int>(memory.touched), {cloths});
+    return arrays;
+}
+
+SceneMemory memory_from(const nb::dict &arrays) {
+    const auto pairs = nb::cast<Array1<uint64_t>>(arrays["early_pairs"]);
+    const auto distances = nb::cast<Array1<double>>(arrays["early_distances"]);
+    const auto vertices = nb::cast<Array1<int>>(arrays["embedded_vertices"]);
+    const auto heights = nb::cast<Array1<double>>(arrays["embedded_heights"]);
+    const View<int> begun = view(nb::cast<Array1<int>>(arrays["begun"])),
+                    touched = view(nb::cast<Array1<int>>(arrays["touched"]));
+    if (pairs.shape(0) != distances.shape(0) || vertices.shape(0) != heights.shape(0) || begun.size() != 1)
+        throw std::invalid_argument("scene: what is to be recalled does not fit together");
+    SceneMemory memory;
+    memory.begun = begun[0] != 0;
+    memory.bodies = copied<Vec3, double>(nb::cast<Array3<double>>(arrays["bodies"]));
+    for (size_t k = 0; k < pairs.shape(0); ++k) memory.early[pairs.data()[k]] = distances.data()[k];
+    for (size_t k = 0; k < vertices.shape(0); ++k) memory.embedded.emplace_back(vertices.data()[k], heights.data()[k]);
+    memory.touched.assign(touched.begin(), touched.end());
+    return memory;
 }
 
 } // namespace
@@ -114,6 +157,12 @@ void bind_contact(nb::module_ &module) {
             "vertices"_a, "body"_a,
             "Vertices of strands, shape (k,) int32, may be inside a body until they have been pushed out of it.")
         .def_prop_ro("excused", &Scene::excused, "How many vertices still are.")
+        .def_prop_ro(
+            "memory", [](const Scene &self) { return memory_of(self.memory()); },
+            "All that the next step depends on besides the memories of strands and cloths, as arrays by name.")
+        .def(
+            "recall", [](Scene &self, const nb::dict &memory) { self.recall(memory_from(memory)); }, "memory"_a,
+            "Goes back to a memory of a scene that was made in the same way.")
         .def("record", &Scene::record, "on"_a, "Keeps the path of each step from now on.")
         .def_prop_ro(
             "path",

@@ -3,6 +3,7 @@
 #include "strands.h"
 
 #include <cmath>
+#include <cstring>
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/string.h>
 
@@ -19,6 +20,39 @@ nb::ndarray<nb::numpy, double> state_view(nb::handle self, std::vector<Vec3> &va
 
 nb::ndarray<nb::numpy, const double> model_view(nb::handle self, const std::vector<double> &values) {
     return {values.data(), {values.size()}, self};
+}
+
+// work(name, rows, columns) for everything that a state holds.
+template <class State, class Work> void for_memory(State &state, const Work &work) {
+    work("positions", state.positions, 3);
+    work("velocities", state.velocities, 3);
+    work("normals", state.normals, 3);
+    work("twist", state.twist, 1);
+    work("directors", state.directors, 3);
+    work("last_positions", state.last_positions, 3);
+    work("last_velocities", state.last_velocities, 3);
+    work("last_strains", state.last_strains, 4);
+    work("last_dt", state.last_dt, 1);
+}
+
+nb::dict memory_of(const StrandState &state) {
+    nb::dict memory;
+    for_memory(state, [&](const char *name, const auto &rows, size_t columns) {
+        memory[name] = to_numpy<double>(std::remove_cvref_t<decltype(rows)>(rows), {rows.size(), columns});
+    });
+    return memory;
+}
+
+// All or nothing.
+void recall(StrandState &state, const nb::dict &memory) {
+    StrandState found = state;
+    for_memory(found, [&](const char *name, auto &rows, size_t columns) {
+        const auto values = nb::cast<nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>>(memory[name]);
+        if (values.shape(0) != rows.size() || values.shape(1) != columns)
+            throw std::invalid_argument(std::string("strands: ") + name + " to be recalled is of other strands");
+        std::memcpy(static_cast<void *>(rows.data()), values.data(), values.size() * sizeof(double));
+    });
+    state = std::move(found);
 }
 
 } // namespace
@@ -92,7 +126,8 @@ void bind_scene(nb::module_ &module) {
             "bend_stiffness", [](nb::object self) { return model_view(self, nb::cast<Strands &>(self).model.bend_stiffness); },
             "EI / l̄ at each vertex [N m], shape (n,).")
         .def_prop_ro(
-            "twist_stiffness", [](nb::object self) { return model_view(self, nb::cast<Strands &>(self).model.twist_stiffness); },
+            "twist_stiffness",
+            [](nb::object self) { return model_view(self, nb::cast<Strands &>(self).model.twist_stiffness); },
             "c EI / l̄ of the edge that begins at each vertex [N m], shape (n,).")
         .def(
             "place",
@@ -125,6 +160,12 @@ void bind_scene(nb::module_ &module) {
             "safeguards"_a,
             "One time step; targets: where held vertices are at its end [m], shape (n, 3). Returns one report row per strand "
             "(REPORT).")
+        .def_prop_ro(
+            "memory", [](const Strands &self) { return memory_of(self.state); },
+            "All that the next step depends on besides the model, as arrays by name.")
+        .def(
+            "recall", [](Strands &self, const nb::dict &memory) { recall(self.state, memory); }, "memory"_a,
+            "Goes back to a memory of the same strands.")
         .def(
             "energy",
             [](const Strands &self, Array3<double> positions, Continuation continuation, bool hessian) {

@@ -174,6 +174,8 @@ def simulate(
     *,
     frames: tuple[int, int] | None = None,
     allow_stale: bool = False,
+    checkpoints: Path | str | None = None,
+    resume: bool = False,
     progress: Progress | None = None,
 ) -> Cache:
     """Moves the locks of a groom while the scalp plays its clip.
@@ -181,6 +183,8 @@ def simulate(
     groom:       in place of the one that the shot names
     frames:      first and last frame, in place of the shot's
     allow_stale: use a lofted shape although it was made from another groom, material or forces
+    checkpoints: a folder that keeps what is done while it runs; to be taken away when its result has been written
+    resume:      go on with what a run that was broken off left there, to the same bits
     """
     from ringlet import shot as shots
     from ringlet.groom.groom import Groom
@@ -190,14 +194,21 @@ def simulate(
     if not isinstance(groom, Groom):
         groom = load_groom(groom or shot.groom, progress=progress)
     rest, garments = _rest_shape(shot, groom, allow_stale), _garments(shot, groom)
+    clip, obstacles = _scalp_clip(groom), _obstacles(shot, groom, garments)
+    kept = None
+    if checkpoints is not None:
+        made_from = shots.made_of(shot, groom, clip, rest, obstacles, garments, frames)
+        kept = shots.Checkpoints(Path(checkpoints), made_from)
     return shots.simulate(
         shot,
         groom,
-        _scalp_clip(groom),
+        clip,
         rest=rest,
-        obstacles=_obstacles(shot, groom, garments),
+        obstacles=obstacles,
         garments=garments,
         frames=frames,
+        checkpoints=kept,
+        resume=resume,
         progress=progress,
     )
 

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import shutil
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated
 
@@ -26,6 +30,9 @@ def sim(
     allow_stale: Annotated[
         bool, typer.Option("--allow-stale", help="Use a lofted shape although what it was made from has changed.")
     ] = False,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Go on with a run that was broken off; its result is the same to the bit.")
+    ] = False,
     report: Report = None,
     as_json: Json = False,
     threads: Threads = None,
@@ -33,7 +40,8 @@ def sim(
     """Simulates the groom of a SHOT while the scalp moves.
 
     The cache is a layer over the groom. Where the shot names a recipe, the groom is made first and written beside
-    the cache.
+    the cache. What is done is kept in CACHE.part while it runs; after a run that was killed, or met a full disk,
+    --resume goes on from there.
 
     Examples: ringlet sim nod.shot.toml -o cache.usdc --frames 1:24 · ringlet sim nod.shot.toml --groom groom.usdc
     """
@@ -45,8 +53,16 @@ def sim(
             locks = ringlet.load_groom(source, progress=progress)
             if layer != source:
                 ringlet.write_groom(locks, layer)
-        with run.stage("simulate", output):
-            cache = ringlet.simulate(settings, locks, frames=frames, allow_stale=allow_stale, progress=progress)
+        with run.stage("simulate", output), _kept(output) as folder:
+            cache = ringlet.simulate(
+                settings,
+                locks,
+                frames=frames,
+                allow_stale=allow_stale,
+                checkpoints=folder,
+                resume=resume,
+                progress=progress,
+            )
             ringlet.write_cache(cache, layer, output)
         run.simulated(cache)
         run.count(locks=len(locks.locks), points=len(locks.locks.points), frames=len(cache.frames))
@@ -55,3 +71,16 @@ def sim(
     for sentence in [] if as_json else run.warnings:
         print(sentence)
     wrote(output, run.counts, as_json, **({"start": cache.start} if cache.start else {}))
+
+
+@contextmanager
+def _kept(output: Path) -> Iterator[Path]:
+    """The folder that keeps what is done, until all is; says so where a run is broken off."""
+    folder = output.with_name(f"{output.name}.part")
+    try:
+        yield folder
+    except BaseException:
+        if any(folder.glob("memory.*")):
+            print(f"{folder} keeps what is done: the same command with --resume goes on from there", file=sys.stderr)
+        raise
+    shutil.rmtree(folder, ignore_errors=True)

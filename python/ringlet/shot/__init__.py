@@ -1,6 +1,7 @@
 """Shots: strands that move with an animated scalp."""
 
 from ringlet.shot.cache import Cache, CachedCloth
+from ringlet.shot.checkpoint import Checkpoints
 from ringlet.shot.cloth import Cloth, ClothMaterial, ClothSolver
 from ringlet.shot.collider import Collider, Obstacle, ShotContact
 from ringlet.shot.equilibrium import equilibrium
@@ -8,7 +9,7 @@ from ringlet.shot.garment import Garment, Pin, ShotCloth
 from ringlet.shot.loft import Loft, loft
 from ringlet.shot.scene import Body, Contact, Scene
 from ringlet.shot.shot import Forces, Shot, parse_shot, read_shot, schema
-from ringlet.shot.simulate import simulate
+from ringlet.shot.simulate import made_of, simulate
 from ringlet.shot.stale import check, keep, made_from, preload, refresh
 from ringlet.shot.strands import Material, Solver, Strands
 
@@ -16,6 +17,7 @@ __all__ = [
     "Body",
     "Cache",
     "CachedCloth",
+    "Checkpoints",
     "Cloth",
     "ClothMaterial",
     "ClothSolver",
@@ -38,6 +40,7 @@ __all__ = [
     "keep",
     "loft",
     "made_from",
+    "made_of",
     "parse_shot",
     "preload",
     "read_shot",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -16,6 +16,8 @@ from ringlet.errors import UserError
 from ringlet.settings import Section
 from ringlet.shot.cloth import Cloth
 from ringlet.shot.strands import Material, Solver, Strands, Vector
+
+_OF_CLOTH = ("positions", "velocities")  # all that a cloth remembers
 
 
 class Contact(Section):
@@ -104,6 +106,21 @@ class Scene:
     def positions(self) -> NDArray[np.float64]:
         """Positions [m] of all vertices: those of the strands, then those of each cloth and of each body."""
         return self._core.positions
+
+    @property
+    def memory(self) -> dict[str, NDArray[Any]]:
+        """All that the next step depends on besides the memory of the strands, as arrays by name."""
+        cloths = {
+            f"cloth_{k}_{name}": getattr(cloth, name) for k, cloth in enumerate(self.cloths) for name in _OF_CLOTH
+        }
+        return {**self._core.memory, **{name: values.copy() for name, values in cloths.items()}}
+
+    def recall(self, memory: Mapping[str, NDArray[Any]]) -> None:
+        """Goes back to a memory of a scene that was made in the same way."""
+        self._core.recall({name: values for name, values in memory.items() if not name.startswith("cloth_")})
+        for k, cloth in enumerate(self.cloths):
+            for name in _OF_CLOTH:
+                getattr(cloth, name)[:] = memory[f"cloth_{k}_{name}"]
 
     @property
     def path(self) -> NDArray[np.float64]:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from importlib.metadata import version
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from ringlet.groom.groom import Groom
 from ringlet.mesh import Clip
 from ringlet.shot import start
 from ringlet.shot.cache import Cache, CachedCloth
+from ringlet.shot.checkpoint import Checkpoints, digest
 from ringlet.shot.collider import LOCKS, Obstacle, with_pairs
 from ringlet.shot.garment import Garment
 from ringlet.shot.nails import held_vertices, pull
@@ -25,6 +27,9 @@ from ringlet.shot.strands import Strands
 from ringlet.shot.worn import Worn
 
 Progress = Callable[[str, int, int], None]
+# Where things are read from is not what they are.
+_PLACES = {"groom": True, "rest": {"file"}, "collider": {"__all__": {"file"}}, "cloth": {"__all__": {"file"}}}
+
 OnFrame = Callable[[float, NDArray[np.float32], dict[str, Any]], None]
 
 
@@ -39,6 +44,8 @@ def simulate(
     frames: tuple[int, int] | None = None,
     progress: Progress | None = None,
     on_frame: OnFrame | None = None,
+    checkpoints: Checkpoints | None = None,
+    resume: bool = False,
 ) -> Cache:
     """Moves the locks of ``groom`` while its scalp plays ``clip``.
 
@@ -49,6 +56,8 @@ def simulate(
     frames:    first and last frame, in place of the shot's
     progress:  called as progress("sim", done, total)
     on_frame:  called with each frame's number, positions [m] of shape (n, 3) and statistics, as soon as it is there
+    checkpoints: where to keep what is done, so that ``resume`` goes on after a run that was broken off, to the same
+               bits
     """
     first, last = frames or shot.frames
     if last < first:
@@ -69,21 +78,63 @@ def simulate(
         moved = np.empty((len(numbers), len(worn.cloth.positions), 3), np.float32)
         cache.cloths.append(CachedCloth(worn.name, worn.garment.file, worn.garment.prim, moved))
 
-    for done in range(shot.preroll):
-        motion.advance(first, first)
+    for step in range(_go_on(motion, cache, checkpoints, resume), total):
+        k = step - shot.preroll
+        statistics = motion.advance(first + max(k - 1, 0), first + max(k, 0))
+        if k >= 0:
+            cache.points[k] = motion.strands.positions
+            for cached, worn in zip(cache.cloths, motion.worn, strict=True):
+                cached.points[k] = worn.cloth.positions
+            cache.statistics.append(statistics)
+            if on_frame:
+                on_frame(first + k, cache.points[k], statistics)
+        if checkpoints:
+            checkpoints.keep(step, _frame_of(cache, k), statistics)
+            if (step + 1) % checkpoints.every == 0 and step + 1 < total:
+                checkpoints.remember(step + 1, motion.memory)
         if progress:
-            progress("sim", done + 1, total)
-    for k, frame in enumerate(numbers):
-        statistics = motion.advance(frame - 1 if k else frame, frame)
-        cache.points[k] = motion.strands.positions
-        for cached, worn in zip(cache.cloths, motion.worn, strict=True):
-            cached.points[k] = worn.cloth.positions
-        cache.statistics.append(statistics)
-        if on_frame:
-            on_frame(frame, cache.points[k], statistics)
-        if progress:
-            progress("sim", shot.preroll + k + 1, total)
+            progress("sim", step + 1, total)
     return cache
+
+
+def made_of(
+    shot: Shot,
+    groom: Groom,
+    clip: Clip,
+    rest: Curves | None,
+    obstacles: Sequence[Obstacle],
+    garments: Sequence[Garment],
+    frames: tuple[int, int] | None,
+) -> str:
+    """A digest of all that a run is made from."""
+    curves = [groom.locks] if rest is None else [groom.locks, rest]
+    arrays = [
+        part for c in curves for part in (c.offsets, c.ids, c.points, *(c.curve[name] for name in sorted(c.curve)))
+    ]
+    arrays += [moving.points for moving in (clip, *(o.clip for o in obstacles), *(g.clip for g in garments))]
+    return digest(version("ringlet"), shot.model_dump(mode="json", exclude=_PLACES), frames or shot.frames, *arrays)
+
+
+def _go_on(motion: Motion, cache: Cache, checkpoints: Checkpoints | None, resume: bool) -> int:
+    """Puts everything to where the run was when it was broken off; returns the number of steps that are done."""
+    found = checkpoints.begin(resume) if checkpoints else None
+    if checkpoints is None or found is None:
+        return 0
+    done, memory = found
+    for step, (arrays, statistics) in enumerate(checkpoints.kept(done)):
+        if (k := step - motion.shot.preroll) >= 0:
+            for name, points in _frame_of(cache, k).items():
+                points[:] = arrays[name]
+            cache.statistics.append(statistics)
+    motion.recall(memory)
+    return done
+
+
+def _frame_of(cache: Cache, k: int) -> dict[str, NDArray[np.float32]]:
+    """The points of a frame by name, as in the cache; none in the preroll."""
+    if k < 0:
+        return {}
+    return {"locks": cache.points[k]} | {f"cloth {n}": cloth.points[k] for n, cloth in enumerate(cache.cloths)}
 
 
 def make_strands(
@@ -154,6 +205,24 @@ class Motion:
             "piercing": start.tell_piercing(locks, self.worn),
             "overlapping": start.tell_overlapping(locks, self.scene, self.shot.solver),
         }
+
+    @property
+    def memory(self) -> dict[str, NDArray[Any]]:
+        """All that the next frame depends on besides what this was made from, as arrays by name."""
+        memory = {f"strands {name}": values for name, values in self.strands.memory.items()}
+        if self.scene:
+            memory |= {f"scene {name}": values for name, values in self.scene.memory.items()}
+        return memory
+
+    def recall(self, memory: Mapping[str, NDArray[Any]]) -> None:
+        """Goes back to a memory of a motion that was made from the same."""
+
+        def of(part: str) -> dict[str, NDArray[Any]]:
+            return {name.removeprefix(part): values for name, values in memory.items() if name.startswith(part)}
+
+        self.strands.recall(of("strands "))
+        if self.scene:
+            self.scene.recall(of("scene "))
 
     def advance(self, begin: float, end: float) -> dict[str, Any]:
         """One frame's time passes while the scalp goes from frame ``begin`` to ``end``; returns what happened."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -192,6 +192,15 @@ class Strands:
     def place(self, positions: NDArray[np.floating]) -> None:
         """Puts the strands at rest at other positions [m], shape (n, 3); the rest shape stays what it was."""
         self._core.place(np.ascontiguousarray(positions, np.float64))
+
+    @property
+    def memory(self) -> dict[str, NDArray[Any]]:
+        """All that the next step depends on besides what the strands were made from, as arrays by name."""
+        return self._core.memory
+
+    def recall(self, memory: Mapping[str, NDArray[Any]]) -> None:
+        """Goes back to a memory of strands that were made from the same."""
+        self._core.recall(dict(memory))
 
     def step(
         self,

@@ -24,6 +24,9 @@ public:
     // pops.
     void begin(const std::vector<Touch> &touching);
     void part_early(double way);
+    using Early = std::unordered_map<uint64_t, double>; // pair → distance at which it pushes [m]
+    const Early &early() const { return early_; }
+    void recall(Early early) { early_ = std::move(early); }
 
     // The contacts of those that touch at the positions `now`; `start` says where the step began, for what they slid since.
     void find(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<Touch> &touching, View<Vec3> start,
@@ -41,7 +44,7 @@ public:
 private:
     void index(const CollisionMesh &mesh);
 
-    std::unordered_map<uint64_t, double> early_; // pair → distance at which it pushes [m]
+    Early early_;
     std::vector<Contact> contacts_;
     std::vector<Role> roles_;
     std::vector<int> role_begin_, vertices_;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 #include <memory>
+#include <unordered_map>
 
 namespace ringlet {
 namespace {
@@ -71,10 +72,27 @@ void Embedded::push_out(CollisionMesh &mesh, View<Vec3> positions, View<int> off
         wanted = std::min(std::max(wanted, height) + way, touching);
         if (!out[k]) forces[v] += stiffness[v] * std::max(wanted - height, 0.0) * outward;
     }
+    let_go([&](size_t k) { return out[k] != 0; }, mesh);
+}
+
+template <class Out> void Embedded::let_go(const Out &out, CollisionMesh &mesh) {
     for (size_t k = 0; k < vertices_.size(); ++k)
-        if (out[k]) mesh.anchor[vertices_[k].vertex] = -1;
+        if (out(k)) mesh.anchor[vertices_[k].vertex] = -1;
     size_t k = 0;
-    std::erase_if(vertices_, [&](const Vertex &) { return out[k++] != 0; });
+    std::erase_if(vertices_, [&](const Vertex &) { return out(k++); });
+}
+
+std::vector<std::pair<int, double>> Embedded::heights() const {
+    std::vector<std::pair<int, double>> heights;
+    heights.reserve(vertices_.size());
+    for (const Vertex &v : vertices_) heights.emplace_back(v.vertex, v.height);
+    return heights;
+}
+
+void Embedded::recall(const std::vector<std::pair<int, double>> &heights, CollisionMesh &mesh) {
+    const std::unordered_map<int, double> known(heights.begin(), heights.end());
+    let_go([&](size_t k) { return !known.contains(vertices_[k].vertex); }, mesh);
+    for (Vertex &v : vertices_) v.height = known.at(v.vertex);
 }
 
 } // namespace ringlet

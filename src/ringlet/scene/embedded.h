@@ -3,6 +3,7 @@
 
 #include "ringlet/contact/collision_mesh.h"
 
+#include <utility>
 #include <vector>
 
 namespace ringlet {
@@ -18,6 +19,10 @@ public:
     void add(int vertex, const Body &body, CollisionMesh &mesh);
     int count() const { return int(vertices_.size()); }
 
+    // What it remembers of each of them from step to step: the height over the surface where it is to be by now [m].
+    std::vector<std::pair<int, double>> heights() const;
+    void recall(const std::vector<std::pair<int, double>> &heights, CollisionMesh &mesh); // those that are not named are out
+
     // Lets go of those that are out by now: they and the edges to their neighbours at the contact distance. Adds to `forces`
     // [N] of the others what would move a vertex of that stiffness [N/m] to a height that rises by `way` a step, at most to
     // where it touches. Vertices of one strand follow one another; `offsets` are their ranges.
@@ -29,6 +34,7 @@ private:
         int vertex, body; // index into bodies_
         double height;    // over the surface, where it is to be by now; rises from step to step [m]
     };
+    template <class Out> void let_go(const Out &out, CollisionMesh &mesh); // of those for which out(index) holds
     std::vector<Body> bodies_;
     std::vector<Vertex> vertices_;
 };

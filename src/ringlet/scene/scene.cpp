@@ -32,6 +32,7 @@ struct Scene::Parts {
     SceneContact settings;
     std::vector<int> root_body; // per strand; −1: none
     std::vector<int> pinned_to; // per cloth; −1: none
+    std::vector<int> touched;   // per cloth: the body that it had most contacts with; −1: none
     SceneVertices vertices;
     SceneSystem system;
     SceneSolver solver;
@@ -61,6 +62,7 @@ struct Scene::Parts {
 
     void check(const SceneInput &input) const;
     void set_stiffness(double dt);
+    void note_touched();
     SceneCarriers carriers(std::vector<int> &of_cloths, double dt) const;
     double move(std::vector<Vec3> &now, std::vector<Vec3> &to, bool still, SceneReport &report);
     void begin_strands(const StrandArrays &arrays, const StrandStep &step);
@@ -74,6 +76,7 @@ Scene::Parts::Parts(const StrandModel &model_, StrandState &state_, const std::v
       near(vertices.mesh), neighbours(vertices.mesh, vertices.cloths.front(), vertices.cloths.back()),
       given(vertices.positions) {
     for (const SceneCloth &cloth : cloths) pinned_to.push_back(cloth.pinned_to);
+    touched.assign(cloths.size(), -1);
     for (int b = 0; b < int(bodies.size()); ++b)
         embedded_bodies.push_back({vertices.bodies[b], int(bodies[b].rest.size()), vertices.parts() + b, bodies[b].triangles});
 }
@@ -95,20 +98,26 @@ void Scene::Parts::set_stiffness(double dt) {
     }
 }
 
-// A cloth that is not pinned goes along with the body that it had most contacts with.
-SceneCarriers Scene::Parts::carriers(std::vector<int> &of_cloths, double dt) const {
+// Which body each cloth has most contacts with.
+void Scene::Parts::note_touched() {
     const int bodies = int(embedded_bodies.size()), cloths = int(system.cloths.size());
-    std::vector<int> touching(size_t(bodies) * cloths, 0);
+    std::vector<int> contacts(size_t(bodies) * cloths, 0);
     for (const Contact &c : system.contacts.contacts()) {
         const auto [part, other] = std::minmax(vertices.mesh.object[c.vertex[0]], vertices.mesh.object[c.vertex[3]]);
         if (part >= vertices.strands && part < vertices.parts() && other >= vertices.parts())
-            ++touching[size_t(part - vertices.strands) * bodies + other - vertices.parts()];
+            ++contacts[size_t(part - vertices.strands) * bodies + other - vertices.parts()];
     }
-    of_cloths = pinned_to;
     for (int c = 0; c < cloths; ++c) {
-        const auto begin = touching.begin() + size_t(c) * bodies, most = std::max_element(begin, begin + bodies);
-        if (of_cloths[c] < 0 && most != begin + bodies && *most > 0) of_cloths[c] = int(most - begin);
+        const auto begin = contacts.begin() + size_t(c) * bodies, most = std::max_element(begin, begin + bodies);
+        touched[c] = most != begin + bodies && *most > 0 ? int(most - begin) : -1;
     }
+}
+
+// A cloth that is not pinned goes along with the body that it had most contacts with.
+SceneCarriers Scene::Parts::carriers(std::vector<int> &of_cloths, double dt) const {
+    of_cloths = pinned_to;
+    for (size_t c = 0; c < of_cloths.size(); ++c)
+        if (of_cloths[c] < 0) of_cloths[c] = touched[c];
     double mass = 0.0;
     Vec3 momentum = Vec3::Zero();
     for (const CoupledCloth &cloth : system.cloths)
@@ -250,6 +259,7 @@ double Scene::Parts::advance(const SceneInput &input, const SceneStep &scene_ste
         of.newton = iteration, of.residual = found.largest, of.unconverged = report.unconverged;
         system.cloths[c].end(x.data() + system.unit_begin(system.group_count() + c), of);
     }
+    note_touched();
     vertices.positions = std::move(now);
     return fraction;
 }
@@ -326,6 +336,28 @@ void Scene::excuse(int vertex, int body) {
 }
 
 int Scene::excused() const { return parts_->embedded.count(); }
+
+SceneMemory Scene::memory() const {
+    const View<Vec3> all = parts_->positions();
+    const int bodies = parts_->vertices.moving_vertices();
+    return {parts_->begun,
+            {all.begin() + bodies, all.end()},
+            parts_->system.contacts.early(),
+            parts_->embedded.heights(),
+            parts_->touched};
+}
+
+void Scene::recall(const SceneMemory &memory) {
+    Parts &parts = *parts_;
+    if (memory.bodies.size() != size_t(parts.vertices.count() - parts.vertices.moving_vertices()) ||
+        memory.touched.size() != parts.touched.size())
+        throw std::invalid_argument("scene: what is to be recalled is of another scene");
+    parts.begun = memory.begun;
+    std::copy(memory.bodies.begin(), memory.bodies.end(), parts.vertices.positions.begin() + parts.vertices.moving_vertices());
+    parts.system.contacts.recall(memory.early);
+    parts.embedded.recall(memory.embedded, parts.vertices.mesh);
+    parts.touched = memory.touched;
+}
 
 void Scene::record(bool on) { parts_->recording = on; }
 

@@ -4,6 +4,7 @@
 #include "ringlet/scene/scene_solver.h"
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace ringlet {
@@ -34,6 +35,15 @@ struct SceneReport {
 };
 inline constexpr int scene_report_columns = sizeof(SceneReport) / sizeof(double);
 
+// What a scene remembers from step to step, besides the states of its strands and cloths.
+struct SceneMemory {
+    bool begun = false;
+    std::vector<Vec3> bodies;                     // where their vertices are [m]
+    ContactSet::Early early;                      // pairs that began too near
+    std::vector<std::pair<int, double>> embedded; // vertices that are still inside a body, and how high they are to be [m]
+    std::vector<int> touched;                     // per cloth: the body that it had most contacts with; −1: none
+};
+
 class Scene {
 public:
     // Borrows strands and cloths, which must outlive it. Bodies that `rooted_in` names (per strand, −1: none) carry the held
@@ -55,6 +65,10 @@ public:
     // every vertex goes straight from one to the next.
     void record(bool on);
     const std::vector<std::vector<Vec3>> &path() const;
+
+    // To go on elsewhere: a scene that was made in the same way, with its states and this memory, does the same, to the bit.
+    SceneMemory memory() const;
+    void recall(const SceneMemory &memory);
 
     View<Vec3> positions() const;                 // of all vertices: strands, cloths, bodies
     const std::vector<Contact> &contacts() const; // of the last step

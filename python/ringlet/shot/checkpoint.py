@@ -1,0 +1,125 @@
+"""Checkpoints: what a run has done so far, in a folder, so that a run that was killed goes on where it was.
+
+Every frame is kept as soon as it is there, and every few frames all that the next one depends on. A file is written
+aside and renamed, and begins with a digest of the rest: half a file is never read, and one that was damaged is noticed.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import json
+import shutil
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ringlet.errors import UserError
+from ringlet.files import replacing
+
+VERSION = b"ringlet checkpoint 1\n"
+EVERY = 10  # frames from one memory to the next
+KEPT = 2  # memories: where the last is damaged, the one before is used
+
+Arrays = Mapping[str, NDArray[Any]]
+
+
+class DamagedError(ValueError):
+    """A file is not what was written."""
+
+
+@dataclass
+class Checkpoints:
+    """The folder of a run.
+
+    folder: where everything is kept
+    made_from: a digest of all that the run is made from; what another run left behind is not gone on with
+    every:  frames from one memory to the next
+    """
+
+    folder: Path
+    made_from: str
+    every: int = EVERY
+
+    def begin(self, resume: bool) -> tuple[int, dict[str, NDArray[Any]]] | None:
+        """Where to go on: the steps that are done, and the memory after them; None where it is to begin anew.
+
+        Without ``resume`` what is there is thrown away. Raises UserError where it is of another run.
+        """
+        if not resume:
+            shutil.rmtree(self.folder, ignore_errors=True)
+        key = self.folder / "made_from"
+        if key.exists() and key.read_text() != self.made_from:
+            raise UserError(
+                f"{self.folder}: was left by a run with other settings, another groom or other frames; "
+                "run without --resume to start over"
+            )
+        with replacing(key) as aside:
+            aside.write_text(self.made_from)
+        for path in sorted(self.folder.glob("memory.*"), reverse=True):
+            try:
+                memory = read(path)
+            except DamagedError:
+                path.unlink()
+                continue
+            done = int(path.suffix[1:])
+            if all(self._has(step) for step in range(done)):
+                return done, memory
+        return None
+
+    def keep(self, step: int, arrays: Arrays, statistics: dict[str, Any]) -> None:
+        """Keeps what a step gave."""
+        write(self._frame(step), {**arrays, "statistics": np.array(json.dumps(statistics))})
+
+    def remember(self, done: int, memory: Arrays) -> None:
+        """Keeps a memory after so many steps, and drops those that are too old to be wanted."""
+        write(self.folder / f"memory.{done:06d}", memory)
+        for path in sorted(self.folder.glob("memory.*"))[:-KEPT]:
+            path.unlink()
+
+    def kept(self, done: int) -> Iterator[tuple[dict[str, NDArray[Any]], dict[str, Any]]]:
+        """What the first steps gave: their arrays and statistics."""
+        for step in range(done):
+            arrays = read(self._frame(step))
+            yield arrays, json.loads(str(arrays.pop("statistics")))
+
+    def _frame(self, step: int) -> Path:
+        return self.folder / f"step.{step:06d}"
+
+    def _has(self, step: int) -> bool:
+        try:
+            read(self._frame(step))
+        except (DamagedError, OSError):
+            return False
+        return True
+
+
+def digest(*parts: Any) -> str:
+    """A digest of arrays and of plain values."""
+    found = hashlib.sha256(VERSION)
+    for part in parts:
+        array = isinstance(part, np.ndarray)
+        found.update(np.ascontiguousarray(part).tobytes() if array else json.dumps(part, sort_keys=True).encode())
+    return found.hexdigest()
+
+
+def write(path: Path, arrays: Arrays) -> None:
+    """Writes arrays by name, all or nothing."""
+    content = io.BytesIO()
+    np.savez(content, allow_pickle=False, **arrays)
+    with replacing(path) as aside:
+        aside.write_bytes(VERSION + hashlib.sha256(content.getvalue()).digest() + content.getvalue())
+
+
+def read(path: Path) -> dict[str, NDArray[Any]]:
+    """Reads what ``write`` wrote; raises DamagedError where it is not that."""
+    content = path.read_bytes()
+    begin = len(VERSION) + hashlib.sha256().digest_size
+    if content[: len(VERSION)] != VERSION or hashlib.sha256(content[begin:]).digest() != content[len(VERSION) : begin]:
+        raise DamagedError(f"{path}: is damaged")
+    with np.load(io.BytesIO(content[begin:]), allow_pickle=False) as arrays:
+        return dict(arrays)

@@ -1,0 +1,135 @@
+"""A run that is killed goes on to the same result; what was damaged on the way is noticed."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+from ringlet.cli.app import app
+from ringlet.io import read_cache
+from ringlet.shot import checkpoint
+from small_example import write_example
+from typer.testing import CliRunner
+
+import ringlet
+
+CONTACT = "\n[contact]\nradius = 1e-3\n"
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """The small example with contact, for 40 frames."""
+    write_example(tmp_path)
+    shot = tmp_path / "small.shot.toml"
+    shot.write_text(shot.read_text().replace("[1, 4]", "[1, 40]") + CONTACT)
+    return tmp_path
+
+
+def sim(folder, *more):
+    return CliRunner().invoke(app, ["sim", str(folder / "small.shot.toml"), "-o", str(folder / "cache.usdc"), *more])
+
+
+def killed(folder, until):
+    """Runs the shot in a process of its own and kills it when ``until`` holds."""
+    command = [
+        sys.executable,
+        "-c",
+        "from ringlet.cli import main; main()",
+        "sim",
+        "small.shot.toml",
+        "-o",
+        "cache.usdc",
+    ]
+    process = subprocess.Popen(
+        command, cwd=folder, env={**os.environ, "OMP_NUM_THREADS": "1"}, stderr=subprocess.DEVNULL
+    )
+    while process.poll() is None and not until():
+        time.sleep(0.002)
+    assert process.poll() is None, "it was done before it could be killed"
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+
+
+def whole(folder):
+    """The result of a run that nothing breaks off."""
+    assert sim(folder).exit_code == 0
+    points = read_cache(folder / "cache.usdc").points
+    (folder / "cache.usdc").unlink()
+    return points
+
+
+def test_a_killed_run_goes_on_to_the_same_bits(folder):
+    expected, part = whole(folder), folder / "cache.usdc.part"
+    assert not part.exists()
+    killed(folder, lambda: (part / "memory.000020").exists())
+    assert not (folder / "cache.usdc").exists()
+    before = {path.name: path.stat().st_mtime_ns for path in part.glob("step.*")}
+    result = sim(folder, "--resume")
+    assert result.exit_code == 0 and len(before) >= 20
+    assert (read_cache(folder / "cache.usdc").points == expected).all()
+    assert not part.exists()
+
+
+def broken_off(folder, monkeypatch, after):
+    """Runs the shot until the disk is full."""
+    keep = checkpoint.Checkpoints.keep
+
+    def full(self, step, *rest):
+        if step >= after:
+            raise OSError(28, "No space left on device")
+        keep(self, step, *rest)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(checkpoint.Checkpoints, "keep", full)
+        return sim(folder)
+
+
+def test_after_a_full_disk_the_run_goes_on(folder, monkeypatch):
+    expected = whole(folder)
+    result = broken_off(folder, monkeypatch, 25)
+    assert result.exit_code == 2
+    assert "No space left" in result.stderr and "--resume" in result.stderr
+    assert sim(folder, "--resume").exit_code == 0
+    assert (read_cache(folder / "cache.usdc").points == expected).all()
+
+
+@pytest.mark.parametrize("damage", ["cut", "changed", "frame"])
+def test_what_is_damaged_is_noticed_and_the_memory_before_is_used(folder, monkeypatch, damage):
+    shot, part = ringlet.read_shot(folder / "small.shot.toml"), folder / "cache.usdc.part"
+    expected = ringlet.simulate(shot).points
+    broken_off(folder, monkeypatch, 25)
+    name = "step.000015" if damage == "frame" else "memory.000020"
+    content = (part / name).read_bytes()
+    middle = len(content) // 2
+    flipped = content[:middle] + bytes([content[middle] ^ 1]) + content[middle + 1 :]
+    (part / name).write_bytes(content[:middle] if damage == "cut" else flipped)
+    with pytest.raises(checkpoint.DamagedError):
+        checkpoint.read(part / name)
+    seen = []
+    cache = ringlet.simulate(shot, checkpoints=part, resume=True, progress=lambda *step: seen.append(step))
+    steps = [done for name, done, _ in seen if name == "sim"]
+    assert steps[0] == 11
+    assert (cache.points == expected).all()
+
+
+def test_what_another_run_left_is_not_gone_on_with(folder, monkeypatch):
+    broken_off(folder, monkeypatch, 25)
+    shot = folder / "small.shot.toml"
+    shot.write_text(shot.read_text() + "friction = 0.1\n")
+    result = sim(folder, "--resume")
+    assert result.exit_code == 2 and "other settings" in result.stderr and (folder / "cache.usdc.part").exists()
+    assert sim(folder).exit_code == 0 and not (folder / "cache.usdc.part").exists()
+
+
+def test_without_anything_to_go_on_with_it_begins_anew(folder):
+    assert sim(folder, "--resume").exit_code == 0
+
+
+def test_a_file_of_arrays_comes_back_as_it_was(tmp_path):
+    arrays = {"a": np.arange(6.0).reshape(2, 3), "b": np.array("text"), "c": np.zeros((0, 3), np.float32)}
+    checkpoint.write(tmp_path / "some.000001", arrays)
+    back = checkpoint.read(tmp_path / "some.000001")
+    assert back.keys() == arrays.keys() and all((back[name] == arrays[name]).all() for name in arrays)
