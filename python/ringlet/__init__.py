@@ -28,6 +28,8 @@ from ringlet.api import (
     write_loft_picture,
     write_sheet,
     write_still,
+    write_touches,
+    write_touches_picture,
 )
 from ringlet.curves import Curves
 from ringlet.demo import run_demo
@@ -99,6 +101,8 @@ __all__ = [
     "write_loft_picture",
     "write_sheet",
     "write_still",
+    "write_touches",
+    "write_touches_picture",
 ]
 
 

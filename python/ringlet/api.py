@@ -176,6 +176,7 @@ def simulate(
     allow_stale: bool = False,
     checkpoints: Path | str | None = None,
     resume: bool = False,
+    touches: bool = False,
     progress: Progress | None = None,
 ) -> Cache:
     """Moves the locks of a groom while the scalp plays its clip.
@@ -185,6 +186,7 @@ def simulate(
     allow_stale: use a lofted shape although it was made from another groom, material or forces
     checkpoints: a folder that keeps what is done while it runs; to be taken away when its result has been written
     resume:      go on with what a run that was broken off left there, to the same bits
+    touches:     keep what touches in every frame, for ``write_touches``
     """
     from ringlet import shot as shots
     from ringlet.groom.groom import Groom
@@ -209,6 +211,7 @@ def simulate(
         frames=frames,
         checkpoints=kept,
         resume=resume,
+        touches=touches,
         progress=progress,
     )
 
@@ -314,6 +317,13 @@ def write_cache(cache: Cache, groom: Path | str, path: Path | str) -> None:
     io.write_cache(cache, Path(groom), Path(path), io.read_space(Path(groom)))
 
 
+def write_touches(cache: Cache, cache_path: Path | str, path: Path | str) -> None:
+    """Writes what touched in a simulation as coloured points: a USD layer over the file of its cache."""
+    from ringlet import io
+
+    io.write_touches(cache, Path(cache_path), Path(path), io.read_space(Path(cache_path)))
+
+
 def read_cache(path: Path | str) -> Cache:
     """Reads simulated guides that ``write_cache`` wrote."""
     from ringlet import io
@@ -416,6 +426,56 @@ def write_still(
         samples=samples,
         view=view,
         color=color,
+        seconds=seconds,
+        progress=progress,
+    )
+
+
+def write_touches_picture(
+    stage: Path | str,
+    path: Path | str,
+    *,
+    show: str = "force",
+    frame: float | None = None,
+    width: int = 900,
+    height: int = 1000,
+    samples: int = 40,
+    view: str = "three_quarter",
+    seconds: float | None = None,
+    progress: Progress | None = None,
+) -> None:
+    """Draws what ``write_touches`` wrote, with the locks and the bodies around it, as coloured beads.
+
+    show:  ``force``: where how hard, from blue to red over three decades; ``gap``: red where hardly anything is left;
+           ``start``: the worst places that were in the way when the shot began
+    frame: the first by default
+    """
+    from ringlet import io, picture
+
+    _known(show, ("force", "gap", "start"), "picture", "way to show contacts")
+    stage = Path(stage)
+    touches, colors = io.read_touches(stage, frame)
+    cache, locks = read_cache(stage), read_groom(stage).locks
+    index = 0 if frame is None else int(np.flatnonzero(cache.frames == frame)[0])
+    places, part = touches.places, 0.006  # of the picture's size
+    if show == "gap":
+        colors = io.heat(1.0 - np.clip(touches.gap, 0.0, 1.0))
+    elif show == "start":
+        places, depth = io.worst_starts(cache.start)
+        colors, part = io.heat(depth), 0.015
+    bodies, _, _ = io.read_stage(stage, float(cache.frames[index]))
+    posed = [picture.PosedBody(body.mesh, body.clip.points[0]) for body in bodies]
+    if len(places):
+        posed.append(picture.beads(places, colors, part * float(np.ptp(cache.points[index], axis=0).max())))
+    picture.still(
+        posed,
+        Curves(cache.points[index], locks.offsets, locks.ids),
+        Path(path),
+        width=width,
+        height=height,
+        samples=samples,
+        view=view,
+        color="gray",
         seconds=seconds,
         progress=progress,
     )

@@ -434,3 +434,80 @@ def test_cloth_that_cannot_be_used_is_refused_and_leaves_nothing(example, tmp_pa
     result = run("sim", folder / "small.shot.toml", "--groom", example / "groom.usdc", "-o", tmp_path / "cache.usdc")
     refused(result, *words)
     assert not (tmp_path / "cache.usdc").exists()
+
+
+# What touches, to be looked at
+
+
+@pytest.fixture(scope="module")
+def touched(example):
+    """The example's contacts, with a sheet that begins on the scalp's locks."""
+    result = sim(example, "small.shot.toml", "--contacts", example / "contacts.usdc")
+    assert result.exit_code == 0, result.output
+    return example / "contacts.usdc"
+
+
+def test_what_touches_is_written_as_points_that_keep_the_rules_of_usd(touched):
+    assert io.problems(touched) == []
+    stage = Usd.Stage.Open(str(touched))
+    points = UsdGeom.Points(stage.GetPrimAtPath("/groom/touches"))
+    assert points.GetPointsAttr().GetTimeSamples() == [float(f) for f in range(1, FRAMES + 1)]
+    counts = [frame["contact"]["contacts"] for frame in ringlet.read_cache(touched).statistics]
+    assert max(counts) > 0
+    for frame, count in enumerate(counts, 1):
+        assert len(points.GetPointsAttr().Get(float(frame))) == count
+    touches, colors = io.read_touches(touched, 4)
+    assert touches.places.shape == colors.shape == (counts[3], 3)
+    assert (touches.gap > 0).all() and (touches.gap < 1.001).all() and (touches.force >= 0).all()
+    head = np.linalg.norm(touches.places - [0, 0, 0], axis=1)
+    assert (head < 0.2).all()  # metres, on and around the ball of 9 cm
+
+
+def test_colours_tell_forces_apart():
+    warm = io.heat(np.array([0.0, 0.5, 1.0]))
+    assert warm[0, 2] > warm[0, 0] and warm[2, 0] > warm[2, 2]  # blue, red
+    touches = simulated(garment(), text=LONG).touches
+    assert touches == []  # only when asked for
+    made = groom()
+    obstacle = Obstacle(floor(), still(floor()))
+    cache = simulate(parse_shot(LONG), made, still(floor()), obstacles=[obstacle], garments=[garment()], touches=True)
+    last = cache.touches[-1]
+    # In the end it lies still: contacts with the floor bear the weight of the sheet.
+    on_floor = last.places[:, 1] < 1e-3
+    weight = 9.81 * 0.15 * 0.08**2
+    assert 0.3 * weight < last.force[on_floor].sum() < 3 * weight
+
+
+def test_a_picture_shows_what_touches_and_where_the_start_was_worst(touched, tmp_path):
+    pictures = {}
+    for what in ("force", "gap", "start"):
+        path = tmp_path / f"{what}.png"
+        small = ("--samples", 2, "--width", 180, "--height", 200)
+        result = run("picture", touched, "--contacts", what, "--frame", 4, "-o", path, *small)
+        assert result.exit_code == 0, result.output
+        pictures[what] = path.read_bytes()
+    assert len(set(pictures.values())) == 3
+    refused(run("picture", touched, "--contacts", "forse", "-o", tmp_path / "a.png"), "forse", "did you mean 'force'?")
+    refused(run("picture", touched, "--contacts", "gap", "--frame", 40, "-o", tmp_path / "a.png"), "frame 40", "1 to 4")
+
+
+def test_a_stage_without_contacts_is_refused(example, tmp_path):
+    assert sim(example).exit_code == 0
+    refused(
+        run("picture", example / "cache.usdc", "--contacts", "gap", "-o", tmp_path / "a.png"),
+        "no contacts",
+        "--contacts",
+    )
+
+
+def test_beads_are_round_and_face_outwards():
+    from ringlet.picture import beads
+
+    made = beads(np.array([[0.0, 0, 0], [1, 2, 3]]), np.array([[1.0, 0, 0], [0, 1, 0]]), 0.1)
+    assert len(made.mesh.triangles) == 40
+    assert np.allclose(np.linalg.norm(made.points[12:] - [1, 2, 3], axis=1), 0.1)
+    corners = made.points[made.mesh.triangles]
+    centres = np.repeat([[0.0, 0, 0], [1, 2, 3]], 20, axis=0)
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    assert (np.einsum("ni,ni->n", normals, corners.mean(axis=1) - centres) > 0).all()
+    assert np.allclose(made.mesh.colors[12:], [0, 1, 0])

@@ -35,17 +35,42 @@ def picture(
         float | None, typer.Option("--seconds", min=1, help="Stop adding samples after that long.", show_default=False)
     ] = None,
     sheet: Annotated[bool, typer.Option("--sheet", help="A contact sheet of the clip in place of a still.")] = False,
+    contacts: Annotated[
+        str | None,
+        typer.Option(
+            "--contacts",
+            metavar="WHAT",
+            help="What touches, in place of hairs: force, gap or start. STAGE is what ringlet sim --contacts wrote.",
+            show_default=False,
+        ),
+    ] = None,
     frames: Frames = None,
     report: Report = None,
     as_json: Json = False,
 ) -> None:
     """Pictures a STAGE: one frame, path-traced, or with --sheet a page of small ones.
 
+    With --contacts, beads show where things touch: blue to red by force, over three decades up to the greatest; by gap,
+    red where hardly any is left; or the worst places that were in the way at the start.
+
     Examples: ringlet picture hair.usdc -o still.png --frame 24 --view side · ringlet picture hair.usdc --sheet
     """
     with ringlet.Run("picture", report) as run, shown_progress() as progress:
         with run.stage("sheet" if sheet else "still", output):
-            if sheet:
+            if contacts is not None:
+                ringlet.write_touches_picture(
+                    stage,
+                    output,
+                    show=contacts,
+                    frame=frame,
+                    view=view,
+                    width=width,
+                    height=height,
+                    samples=samples,
+                    seconds=seconds,
+                    progress=progress,
+                )
+            elif sheet:
                 ringlet.write_sheet(stage, output, frames=frames, color=color, progress=progress)
             else:
                 ringlet.write_still(

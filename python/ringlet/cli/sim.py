@@ -33,6 +33,15 @@ def sim(
     resume: Annotated[
         bool, typer.Option("--resume", help="Go on with a run that was broken off; its result is the same to the bit.")
     ] = False,
+    contacts: Annotated[
+        Path | None,
+        typer.Option(
+            "--contacts",
+            metavar="FILE",
+            help="A USD file to write what touches to, as coloured points over the cache.",
+            show_default=False,
+        ),
+    ] = None,
     report: Report = None,
     as_json: Json = False,
     threads: Threads = None,
@@ -47,6 +56,12 @@ def sim(
     """
     with ringlet.Run("sim", report) as run, shown_progress() as progress:
         settings = ringlet.read_shot(shot)
+        if contacts is not None and resume:
+            raise ringlet.UserError(
+                "sim: contacts of frames that are done are not kept; leave out --contacts or --resume"
+            )
+        if contacts is not None and not settings.touching:
+            raise ringlet.UserError(f"{shot}: nothing touches, --contacts has nothing to write; add [contact]")
         source = groom or settings.groom
         layer = source if source.suffix != ".toml" else output.with_name(f"{output.stem}.groom.usdc")
         with run.stage("groom", None if layer == source else layer):
@@ -61,9 +76,13 @@ def sim(
                 allow_stale=allow_stale,
                 checkpoints=folder,
                 resume=resume,
+                touches=contacts is not None,
                 progress=progress,
             )
             ringlet.write_cache(cache, layer, output)
+        if contacts is not None:
+            with run.stage("contacts", contacts, "what touches, frame by frame"):
+                ringlet.write_touches(cache, output, contacts)
         run.simulated(cache)
         run.count(locks=len(locks.locks), points=len(locks.locks.points), frames=len(cache.frames))
         if cache.cloths:

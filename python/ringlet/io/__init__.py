@@ -8,12 +8,14 @@ from ringlet.io.usd.groom import read_groom, write_groom
 from ringlet.io.usd.hairs import HairWriter, read_hairs, read_stage
 from ringlet.io.usd.mesh import Body, read_bodies, read_body
 from ringlet.io.usd.rest import read_rest, write_rest
+from ringlet.io.usd.touches import heat, read_touches, worst_starts, write_touches
 
 __all__ = [
     "Body",
     "CacheWriter",
     "HairWriter",
     "cache_groom_path",
+    "heat",
     "problems",
     "read_bodies",
     "read_body",
@@ -27,7 +29,10 @@ __all__ = [
     "read_space",
     "read_stage",
     "read_texture",
+    "read_touches",
+    "worst_starts",
     "write_cache",
     "write_groom",
     "write_rest",
+    "write_touches",
 ]

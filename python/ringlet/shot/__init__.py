@@ -1,6 +1,6 @@
 """Shots: strands that move with an animated scalp."""
 
-from ringlet.shot.cache import Cache, CachedCloth
+from ringlet.shot.cache import Cache, CachedCloth, Touches
 from ringlet.shot.checkpoint import Checkpoints
 from ringlet.shot.cloth import Cloth, ClothMaterial, ClothSolver
 from ringlet.shot.collider import Collider, Obstacle, ShotContact
@@ -35,6 +35,7 @@ __all__ = [
     "ShotContact",
     "Solver",
     "Strands",
+    "Touches",
     "check",
     "equilibrium",
     "keep",

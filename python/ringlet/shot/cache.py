@@ -27,6 +27,20 @@ class CachedCloth:
 
 
 @dataclass
+class Touches:
+    """What touches at one time.
+
+    places: in the middle between the two that touch [m], shape (k, 3), float32
+    force:  with which they push each other away [N], shape (k,), float32
+    gap:    between them, as a part of the distance at which they begin to push, from 0 to 1, shape (k,), float32
+    """
+
+    places: NDArray[np.float32]
+    force: NDArray[np.float32]
+    gap: NDArray[np.float32]
+
+
+@dataclass
 class Cache:
     """Simulated groom guides over time, and the cloth that moved with them.
 
@@ -35,6 +49,7 @@ class Cache:
     statistics: what the solver reports, one dict per frame
     start:      what was in the way when the shot began (see ``shot/start.py``); empty without contact
     cloths:     each at the same frames
+    touches:    what touches at the end of each frame, where that was asked for
     """
 
     frames: NDArray[np.float64]
@@ -42,3 +57,4 @@ class Cache:
     statistics: list[dict[str, Any]] = field(default_factory=list)
     start: dict[str, Any] = field(default_factory=dict)
     cloths: list[CachedCloth] = field(default_factory=list)
+    touches: list[Touches] = field(default_factory=list)

@@ -14,6 +14,7 @@ from ringlet import _core
 from ringlet.curves import Curves
 from ringlet.errors import UserError
 from ringlet.settings import Section
+from ringlet.shot.cache import Touches
 from ringlet.shot.cloth import Cloth
 from ringlet.shot.strands import Material, Solver, Strands, Vector
 
@@ -147,6 +148,15 @@ class Scene:
     def contacts(self) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
         """The last step's contacts: their vertices (k, 4); weights, normal, distance [m] and force [N], (k, 9)."""
         return self._core.contacts
+
+    @property
+    def touches(self) -> Touches:
+        """Where the last step's contacts are, how near, and how hard they push."""
+        vertices, values = self.contacts
+        at, weights = self.positions[vertices], values[:, :4]
+        one, other = (np.einsum("kv,kvi->ki", np.maximum(sign * weights, 0.0), at) for sign in (1.0, -1.0))
+        gap = np.linalg.norm(one - other, axis=1) / values[:, 7]
+        return Touches(*(np.asarray(part, np.float32) for part in (0.5 * (one + other), values[:, 8], gap)))
 
     @property
     def cloth_reports(self) -> list[dict[str, float]]:

@@ -42,6 +42,7 @@ def simulate(
     obstacles: Sequence[Obstacle] = (),
     garments: Sequence[Garment] = (),
     frames: tuple[int, int] | None = None,
+    touches: bool = False,
     progress: Progress | None = None,
     on_frame: OnFrame | None = None,
     checkpoints: Checkpoints | None = None,
@@ -54,6 +55,7 @@ def simulate(
     obstacles: what the locks touch, where the shot has contact
     garments:  what becomes cloth there
     frames:    first and last frame, in place of the shot's
+    touches:   keep what touches in every frame
     progress:  called as progress("sim", done, total)
     on_frame:  called with each frame's number, positions [m] of shape (n, 3) and statistics, as soon as it is there
     checkpoints: where to keep what is done, so that ``resume`` goes on after a run that was broken off, to the same
@@ -86,6 +88,8 @@ def simulate(
             for cached, worn in zip(cache.cloths, motion.worn, strict=True):
                 cached.points[k] = worn.cloth.positions
             cache.statistics.append(statistics)
+            if touches and motion.scene:
+                cache.touches.append(motion.scene.touches)
             if on_frame:
                 on_frame(first + k, cache.points[k], statistics)
         if checkpoints:

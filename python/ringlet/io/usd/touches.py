@@ -1,0 +1,102 @@
+"""What touches in a simulation, as points over its cache: the contacts of every frame, and the worst starts.
+
+/groom/touches   Points, coloured by their force: blue, a thousandth of the greatest; red, the greatest of all frames
+/groom/start     Points where locks began inside something, through it or too near, coloured by their depth
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pxr import Usd, UsdGeom
+
+from ringlet.errors import UserError
+from ringlet.io.space import from_metres, to_metres
+from ringlet.io.usd.groom import GROOM
+from ringlet.io.usd.stage import new_stage, reading, refuse_itself, writing
+from ringlet.io.usd.values import Types, float3, to_usd
+from ringlet.shot.cache import Cache, Touches
+from ringlet.stage import StageSpace
+
+TOUCHES, START = f"{GROOM}/touches", f"{GROOM}/start"
+SIZE = 1e-3  # diameter of a point [m]
+DECADES = 3.0  # of forces that colours tell apart
+RAMP = np.array([[0.05, 0.15, 0.9], [0.1, 0.8, 0.5], [1.0, 0.85, 0.1], [0.9, 0.05, 0.02]])  # from weak to strong
+
+
+def heat(strength: NDArray[np.floating]) -> NDArray[np.float32]:
+    """Colours from blue to red of strengths from 0 to 1, shape (k, 3)."""
+    at = np.linspace(0.0, 1.0, len(RAMP))
+    return np.stack([np.interp(strength, at, channel) for channel in RAMP.T], axis=-1).astype(np.float32)
+
+
+def strengths(force: NDArray[np.floating], greatest: float) -> NDArray[np.float64]:
+    """Forces on a logarithmic scale from 0 to 1."""
+    part = np.maximum(np.asarray(force, np.float64), 0.0) / max(greatest, 1e-300)
+    return np.clip(1.0 + np.log10(np.maximum(part, 1e-30)) / DECADES, 0.0, 1.0)
+
+
+def write_touches(cache: Cache, cache_path: Path | str, path: Path | str, space: StageSpace) -> None:
+    """Writes what touches as a layer over the cache."""
+    refuse_itself(path, cache_path, "cache")
+    greatest = max((float(t.force.max(initial=0.0)) for t in cache.touches), default=0.0)
+    with writing(path) as aside:
+        stage = new_stage(aside, space, over=cache_path)
+        prim = UsdGeom.Points.Define(stage, TOUCHES)
+        for frame, touches in zip(cache.frames, cache.touches, strict=True):
+            time = Usd.TimeCode(float(frame))
+            _put(prim, touches.places, heat(strengths(touches.force, greatest)), space, time)
+            for name in ("force", "gap"):
+                kind, value = to_usd(getattr(touches, name))
+                primvar = UsdGeom.PrimvarsAPI(prim).CreatePrimvar(f"ringlet:{name}", kind, "vertex")
+                primvar.Set(value, time)
+        places, depth = worst_starts(cache.start)
+        _put(UsdGeom.Points.Define(stage, START), places, heat(depth), space, Usd.TimeCode.Default())
+        if len(cache.frames):
+            stage.SetStartTimeCode(float(cache.frames[0]))
+            stage.SetEndTimeCode(float(cache.frames[-1]))
+        stage.GetRootLayer().Save()
+
+
+def read_touches(path: Path | str, frame: float | None = None) -> tuple[Touches, NDArray[np.float32]]:
+    """Reads what touches at a frame, by default the first, with colours that tell the force, shape (k, 3)."""
+    with reading(path) as source:
+        prim = source.stage.GetPrimAtPath(TOUCHES)
+        points = UsdGeom.Points(prim) if prim else None
+        times = points.GetPointsAttr().GetTimeSamples() if points else []
+        if points is None or not times:
+            raise UserError(f"{path}: holds no contacts; make them with: ringlet sim SHOT.toml --contacts FILE")
+        chosen = times[0] if frame is None else frame
+        if chosen not in times:
+            raise UserError(f"{path}: has no contacts at frame {chosen:g}; it holds {times[0]:g} to {times[-1]:g}")
+        time, api = Usd.TimeCode(chosen), UsdGeom.PrimvarsAPI(prim)
+        places = to_metres(np.array(points.GetPointsAttr().Get(time), np.float32).reshape(-1, 3), source.space)
+        force, gap = (np.array(api.GetPrimvar(f"ringlet:{name}").Get(time), np.float32) for name in ("force", "gap"))
+        colors = np.array(points.GetDisplayColorAttr().Get(time), np.float32).reshape(-1, 3)
+        return Touches(places, force, gap), colors
+
+
+def worst_starts(start: dict[str, Any]) -> tuple[NDArray[np.float32], NDArray[np.float64]]:
+    """Where the worst is that was in the way [m], shape (k, 3), and how bad by the worst of its kind, from 0 to 1."""
+    places: list[list[float]] = []
+    depth: list[float] = []
+    for found in [*start.get("inside", []), *start.get("piercing", []), start.get("overlapping", {})]:
+        for one in found.get("worst", []):
+            places.append(one["place"])
+            depth.append(one.get("depth", 1.0) / max(found.get("depth", 1.0), 1e-12) if "depth" in one else 1.0)
+    return np.array(places, np.float32).reshape(-1, 3), np.array(depth, np.float64)
+
+
+def _put(prim: UsdGeom.Points, places: NDArray, colors: NDArray, space: StageSpace, time: Usd.TimeCode) -> None:
+    value = float3(from_metres(np.asarray(places, np.float32), space))
+    width = np.full(len(places), SIZE / space.meters_per_unit, np.float32)
+    _, widths = to_usd(width)
+    prim.CreatePointsAttr().Set(value, time)
+    prim.CreateWidthsAttr().Set(widths, time)
+    prim.SetWidthsInterpolation(UsdGeom.Tokens.vertex)
+    prim.CreateExtentAttr().Set(UsdGeom.Points.ComputeExtent(value, widths), time)
+    api = UsdGeom.PrimvarsAPI(prim)
+    api.CreatePrimvar("displayColor", Types.Color3fArray, "vertex").Set(float3(colors), time)
