@@ -17,7 +17,6 @@ import numpy as np
 
 from ringlet import _core, api
 from ringlet.share import share
-from ringlet.shot.direct import open_pardiso
 
 PACKAGES = ("numpy", "usd-core", "mitsuba", "pydantic", "typer")
 ENOUGH_MEMORY = 4 * 2**30  # for the example and its picture
@@ -89,6 +88,8 @@ def _package(name: str) -> Callable[[], Finding]:
 
 
 def _pardiso() -> Finding:
+    from ringlet.shot.direct import open_pardiso  # not before it is asked for: it brings all of the simulation in
+
     if open_pardiso():
         return Finding("MKL PARDISO", "ok", "opened")
     return Finding(
