@@ -27,15 +27,19 @@ cpp_tests() {
 # Two tests at a time, each on one thread: threads that wait for one another would take the processors from the other test.
 pytests() { OMP_NUM_THREADS=1 $bin/python -m pytest -n 2 --durations 8 "$@"; }
 
+# The review page in headless Chromium; where there is none these are skipped, and say so.
+browser_tests() { OMP_NUM_THREADS=1 $bin/python -m pytest -rs tests/browser; }
+
 step "C++ tests" cpp_tests
 step "Python tests" pytests tests/python
 step "physics tests" pytests tests/physics
+step "browser tests" browser_tests
 step "known answers (ringlet validate)" $bin/ringlet validate
 step "lints" tools/lint.sh
 step "documents" tools/docs.sh
 
 if ((${#failed[@]})); then
-    printf '\nRinglet: %d of 6 steps failed: %s\n' ${#failed[@]} "$(IFS=,; echo "${failed[*]}")"
+    printf '\nRinglet: %d of 7 steps failed: %s\n' ${#failed[@]} "$(IFS=,; echo "${failed[*]}")"
     exit 1
 fi
 printf '\nRinglet: everything holds (%d s).\n' $SECONDS

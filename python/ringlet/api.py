@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from ringlet.groom import Hairs, Recipe
     from ringlet.groom.groom import Groom
     from ringlet.mesh import Clip
-    from ringlet.shot import Garment, Obstacle, Shot
+    from ringlet.shot import Garment, Motion, Obstacle, Shot
     from ringlet.shot.cache import Cache
     from ringlet.shot.loft import Loft
     from ringlet.validate import Row
@@ -196,7 +196,7 @@ def simulate(
     if not isinstance(groom, Groom):
         groom = load_groom(groom or shot.groom, progress=progress)
     rest, garments = _rest_shape(shot, groom, allow_stale), _garments(shot, groom)
-    clip, obstacles = _scalp_clip(groom), _obstacles(shot, groom, garments)
+    clip, obstacles = scalp_clip(groom), _obstacles(shot, groom, garments)
     kept = None
     if checkpoints is not None:
         made_from = shots.made_of(shot, groom, clip, rest, obstacles, garments, frames)
@@ -214,6 +214,15 @@ def simulate(
         touches=touches,
         progress=progress,
     )
+
+
+def start_motion(shot: Shot, groom: Groom, *, allow_stale: bool = False) -> Motion:
+    """The locks of a groom at the start of a shot, to be moved frame by frame by who wants to see each."""
+    from ringlet import shot as shots
+
+    rest, garments = _rest_shape(shot, groom, allow_stale), _garments(shot, groom)
+    obstacles = _obstacles(shot, groom, garments)
+    return shots.Motion(shot, groom, scalp_clip(groom), rest, obstacles, garments, shot.frames[0])
 
 
 def loft(
@@ -266,7 +275,7 @@ def _rest_shape(shot: Shot, groom: Groom, allow_stale: bool) -> Curves | None:
     return shots.check(kept, made_from, shot, groom, shot.rest_file, allow_stale=allow_stale)
 
 
-def _scalp_clip(groom: Groom) -> Clip:
+def scalp_clip(groom: Groom) -> Clip:
     """How the scalp of a groom moves."""
     from ringlet import io
 
@@ -366,7 +375,7 @@ def write_hairs(
             writer.add(None, hairs.curves.points)
         else:
             moved = _within(read_cache(cache), frames, cache)
-            clip = _scalp_clip(locks)
+            clip = scalp_clip(locks)
             for frame, points in zip(moved.frames, moved.points, strict=True):
                 writer.add(frame, hairs.at(points, clip.at(frame)))
                 written += 1

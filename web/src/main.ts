@@ -5,9 +5,11 @@ import { h } from "./dom";
 import { Link, type LinkState } from "./link";
 import { Model } from "./model";
 import { Bar } from "./panel/bar";
+import { LockTool } from "./panel/lock";
 import { Settings } from "./panel/settings";
 import { Stack } from "./panel/stack";
 import { Notices, Status } from "./panel/status";
+import { TimelineBar } from "./panel/timeline";
 import { Viewbar } from "./panel/viewbar";
 import type { FromServer } from "./protocol";
 import { Viewer } from "./view/viewer";
@@ -15,6 +17,8 @@ import { Viewer } from "./view/viewer";
 class App {
   readonly model = new Model();
   readonly viewer: Viewer;
+  readonly timeline: TimelineBar;
+  readonly lock: LockTool;
   private readonly notices = new Notices();
   private readonly status = new Status(this.model);
   private session = "";
@@ -25,13 +29,24 @@ class App {
     const picture = h("main", { class: "picture" });
     root.append(picture);
     this.viewer = new Viewer(picture);
-    this.viewer.onDraw = (told) => this.status.drew(told);
+    this.lock = new LockTool(this.model, this.viewer);
+    this.timeline = new TimelineBar(this.model, this.viewer, (frame) => {
+      const ms = frame.statistics["wall_ms"];
+      if (typeof ms === "number") this.status.simulated(ms);
+    });
+    picture.append(this.lock.handles);
+    this.viewer.onDraw = (told) => {
+      this.status.drew(told);
+      this.lock.place();
+    };
     const name = () => (this.model.welcome?.name ?? "ringlet").split(".")[0];
     root.append(
       new Bar(this.model, () => this.setTheme()).element,
       new Stack(this.model).element,
       new Settings(this.model).element,
       new Viewbar(this.model, this.viewer, name).element,
+      this.lock.element,
+      this.timeline.element,
       this.status.element,
       this.notices.element,
     );
@@ -91,6 +106,14 @@ class App {
         break;
       case "locks":
         viewer.setLocks(message);
+        if (message.side === "a") this.lock.arrived();
+        break;
+      case "timeline":
+        model.timeline = message;
+        model.tell("timeline");
+        break;
+      case "frame":
+        this.timeline.add(message);
         break;
       case "compared":
         model.compared = message.name;

@@ -60,9 +60,13 @@ class Board:
         for box in self._boxes:
             box.put(subject, message)
 
+    def subjects(self, beginning: str) -> list[str]:
+        """What there is that begins so."""
+        return [subject for subject in self._latest if subject.startswith(beginning)]
+
     def wipe(self, beginning: str) -> None:
         """Takes down what begins so."""
-        for subject in [name for name in self._latest if name.startswith(beginning)]:
+        for subject in self.subjects(beginning):
             del self._latest[subject]
         for box in self._boxes:
             box.drop(beginning)

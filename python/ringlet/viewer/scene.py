@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -37,23 +38,32 @@ def read_bodies(scalp: Mesh, file: Path | None) -> list[tuple[Mesh, Clip | None]
     return [(body.mesh, body.clip) for body in io.read_bodies(file)]
 
 
-def body_messages(scalp: Mesh, file: Path | None, of: Callable[[Mesh], str] = made_of) -> list[bytes]:
-    """The bodies in their rest pose."""
-    return [body_message(k, mesh, mesh.points, of) for k, (mesh, _) in enumerate(read_bodies(scalp, file))]
-
-
-def read_scene(file: Path) -> tuple[list[bytes], Look]:
+def read_scene(file: Path) -> tuple[list[tuple[Mesh, Clip | None]], Look]:
     """Bodies and hair of a USD file: a groom with all its hairs, or any curves as they are."""
     if file.suffix not in USD:
         raise UserError(f"{file.name}: is no recipe, shot or USD file; give one of them")
     try:
         groom = io.read_groom(file)
     except UserError:
-        bodies, curves, frames = io.read_stage(file)
+        bodies, curves, _ = io.read_stage(file)
         if curves is None:
             raise UserError(f"{file.name}: has no hair; give a recipe, a shot or a USD file with curves") from None
-        at = frames[0] if len(frames) else 0.0
+        seen: list[tuple[Mesh, Clip | None]] = [(body.mesh, body.clip) for body in bodies]
         mesh = bodies[0].mesh if bodies else Mesh("none", np.zeros((0, 3)), np.zeros((0, 3), np.int32))
-        messages = [body_message(k, body.mesh, body.clip.at(at)) for k, body in enumerate(bodies)]
-        return messages, Look(Groom(curves, curves, mesh), None, False)
-    return body_messages(groom.scalp, groom.scalp_file), Look(groom, lay_hairs(groom), False)
+        return seen, Look(Groom(curves, curves, mesh), None, False)
+    return read_bodies(groom.scalp, groom.scalp_file), Look(groom, lay_hairs(groom), False)
+
+
+def read_frames(file: Path, look: Look) -> tuple[np.ndarray | None, Iterator[tuple[float, np.ndarray, dict[str, Any]]]]:
+    """The frames of a file whose locks move, and an iterator over them: number, points [m], statistics."""
+    if look.hairs is None:
+        frames = io.read_stage(file)[2]
+        moving = ((float(frame), io.read_stage(file, float(frame))[1], {}) for frame in frames)
+        posed = ((frame, curves.points, told) for frame, curves, told in moving if curves is not None)
+        return (frames if len(frames) > 1 else None), posed
+    try:
+        cache = io.read_cache(file)
+    except UserError:
+        return None, iter(())
+    told = cache.statistics or [{}] * len(cache.frames)
+    return cache.frames, zip(cache.frames.tolist(), cache.points, told, strict=True)

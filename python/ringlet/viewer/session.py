@@ -10,10 +10,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from ringlet import api
 from ringlet.errors import UserError
-from ringlet.groom import Recipe, parse_recipe
-from ringlet.picture import HAIR_COLORS, made_of
+from ringlet.groom import Recipe, parse_recipe, row_of
+from ringlet.mesh import Clip, Mesh
+from ringlet.picture import HAIR_COLORS
 from ringlet.settings import parse_toml, read_toml
 from ringlet.shot.start import depths
 from ringlet.viewer import protocol
@@ -21,10 +24,11 @@ from ringlet.viewer.board import Board, Mailbox
 from ringlet.viewer.document import Document
 from ringlet.viewer.looks import Groomer, Look, named_files, penetrations
 from ringlet.viewer.project import Project
-from ringlet.viewer.scene import body_messages, read_scene
+from ringlet.viewer.pull import pulled
+from ringlet.viewer.scene import body_message, read_bodies, read_frames, read_scene
+from ringlet.viewer.simulation import Simulation, Stage
 from ringlet.viewer.wire import pack
 from ringlet.viewer.worker import Latest, Stale
-
 
 log = logging.getLogger("ringlet.viewer")
 
@@ -61,7 +65,14 @@ class Session:
         self._beside = Groomer(project)
         self._layouts: dict[str, object] = {}
         self._bodies: object = None
+        self._held: tuple[int, int, np.ndarray] | None = None
+        self._moves: tuple[int, list[dict[str, Any]]] | None = None
+        self._frames: np.ndarray | None = None
         self.look: Look | None = None
+        self.stage: Stage | None = None
+        self.simulation = Simulation(self._post, lambda: self._call(self.tell_timeline), self._failed)
+        self.against = ""
+        self._seen: list[tuple[Mesh, Clip | None]] = []
         self.mode = "stage"
         if self.file.suffix == ".toml":
             self._open()
@@ -139,6 +150,8 @@ class Session:
 
     def stop(self) -> None:
         """Ends what works in the background."""
+        self._loop = None
+        self.simulation.stop()
         self._worker.stop()
 
     def join(self, name: str) -> Page:
@@ -210,6 +223,14 @@ class Session:
             self._edited(message.file)
         elif isinstance(message, protocol.Compare):
             self._compare(message)
+        elif isinstance(message, protocol.Isolate):
+            self._isolate(message)
+        elif isinstance(message, protocol.Drag):
+            self._drag(message)
+        elif isinstance(message, protocol.Play):
+            self._play(message)
+        elif isinstance(message, protocol.Against):
+            self._lay_against(message.name)
         else:
             raise UserError(f"message: {message.kind} is not for this file")
 
@@ -259,12 +280,128 @@ class Session:
         self.board.post("b/none", pack(protocol.Compared(name=names[message.to])))
         self._show(look, "b")
 
+    # Single locks
+
+    def _isolate(self, message: protocol.Isolate) -> None:
+        """Takes locks out of the procedural, or returns them. What is taken out begins where it is."""
+        document = self.recipe
+        edits = document.said().get("edit", [])
+        if message.out:
+            known = {edit.get("lock") for edit in edits}
+            for lock in message.locks:
+                if lock not in known:
+                    still = {"lock": lock, "move": [{"at": 1.0, "by": [0.0, 0.0, 0.0]}]}
+                    document.arrange("add", "edit", len(document.said().get("edit", [])), entry=still)
+        else:
+            for k in reversed(range(len(edits))):
+                if edits[k].get("lock") in message.locks:
+                    document.arrange("remove", "edit", k)
+        self._edited("recipe")
+
+    def _drag(self, message: protocol.Drag) -> None:
+        """Pulls a place of an isolated lock to where the hand is: in the frame of the lock's shape."""
+        look = self.look
+        edits = self.recipe.said().get("edit", [])
+        index = next((k for k, edit in enumerate(edits) if edit.get("lock") == message.lock), None)
+        if look is None or index is None:
+            raise UserError(f"lock {message.lock} is not isolated; isolate it before it is dragged")
+        row = row_of(look.groom, message.lock)
+        count = int(look.groom.locks.counts[row])
+        if not 0 < message.point < count:
+            raise UserError(
+                f"lock {message.lock} has points 1 to {count - 1} to drag; there is none at {message.point}"
+            )
+        at = round(message.point / (count - 1), 4)
+        if self._held is None or self._held[:2] != (message.gesture, message.point):
+            self._held = (message.gesture, message.point, np.array(look.groom.locks[row][message.point]))
+        shift = pulled(look.groom, row, at, np.array(message.to) - self._held[2])
+        moves = [move for move in self._before(message.gesture, edits[index]) if any(move["by"])]
+        by = [f"{1e3 * x:.2f} mm" for x in shift]
+        moves = [*moves, {"at": at, "by": by, "reach": max(round(message.reach, 3), 0.001)}]
+        self.recipe.set([(["edit", index, "move"], moves)], message.gesture)
+        self._edited("recipe", resting=message.resting)
+
+    def _before(self, gesture: int, edit: dict[str, Any]) -> list[dict[str, Any]]:
+        """The moves of a lock as they were before a gesture began."""
+        if self._moves is None or self._moves[0] != gesture:
+            self._moves = (gesture, edit.get("move", []))
+        return self._moves[1]
+
+    # Shots
+
+    def _play(self, message: protocol.Play) -> None:
+        if message.action == "pause":
+            self.simulation.pause()
+        elif message.action == "go_on":
+            self.simulation.go_on()
+        else:
+            shot = self.parse_shot(self.document("shot").text)
+            if self.stage is None:
+                raise UserError("shot: its groom is not made yet; wait until it is seen")
+            again = message.frame if message.action == "again_from" else None
+            for name in [n for n in self.board.subjects("frame/shot/") if again is None or frame_of(n) > again]:
+                self.board.wipe(name)
+            self.simulation.start(shot, self.stage, again)
+
+    def _lay_against(self, name: str) -> None:
+        """Shows the frames of a cache beside the shot."""
+        self.board.wipe("frame/against/")
+        self.board.wipe("b/")
+        self._layouts.pop("b", None)
+        self.against = name
+        if name:
+            path = self.project.inside(name, "against")
+            cache = api.read_cache(path)
+            if self.stage is None or self.look is None or cache.points.shape[1] != len(self.stage.groom.locks.points):
+                raise UserError(f"{name}: is of another groom than that of the shot; choose a cache of the same groom")
+            self._show(self.look, "b")
+            for k, frame in enumerate(cache.frames):
+                told = cache.statistics[k] if k < len(cache.statistics) else {}
+                subject = f"frame/against/{frame:g}"
+                self.board.post(subject, self.stage.frame("against", float(frame), cache.points[k], told))
+        self.board.post("b/none", pack(protocol.Compared(name=name)))
+        self.tell_timeline()
+
+    def tell_timeline(self) -> None:
+        """Tells everybody which frames there are, and what the simulation does."""
+        if self.mode != "shot" and self._frames is None:
+            return
+        if self.mode == "shot":
+            shot = self.parse_shot(self.document("shot").text)
+            first, last, preroll = float(shot.frames[0]), float(shot.frames[1]), shot.preroll
+        else:
+            assert self._frames is not None
+            first, last, preroll = float(self._frames[0]), float(self._frames[-1]), 0
+        simulation = self.simulation
+        timeline = protocol.Timeline.model_validate(
+            {
+                "first": first,
+                "last": last,
+                "fps": self.stage.clip.fps if self.stage else 24.0,
+                "ready": simulation.ready if self.mode == "shot" else last,
+                "state": simulation.state if self.mode == "shot" else "none",
+                "rolled": simulation.rolled,
+                "preroll": preroll,
+                "key": simulation.key,
+                "against": self.against,
+            }
+        )
+        self.board.post("timeline", pack(timeline))
+
+    def _post(self, subject: str, message: bytes) -> None:
+        self._call(self.board.post, subject, message)
+
+    def _failed(self, message: str) -> None:
+        self._call(self.trouble, message)
+
     # Grooming
 
     def _edited(self, file: str, *, resting: bool = True) -> None:
         self.tell_document(file)
         if file == "recipe":
             self.regroom(resting=resting)
+        elif self.mode == "shot":
+            self.tell_timeline()
 
     def regroom(self, *, resting: bool) -> None:
         """Makes the groom of the recipe as it stands; while a hand moves, a draft of it."""
@@ -298,6 +435,8 @@ class Session:
             if self._bodies is not look.groom.scalp:
                 self._bodies = look.groom.scalp
                 self._show_bodies(look)
+            if self.mode == "shot" and not look.draft:
+                self._set_stage(look)
         layout = look.hairs.curves if look.hairs else look.groom.locks
         if self._layouts.get(side) is not layout:
             self._layouts[side] = layout
@@ -310,16 +449,36 @@ class Session:
 
     def _show_bodies(self, look: Look) -> None:
         self.board.wipe("body/")
-        for index, message in enumerate(body_messages(look.groom.scalp, look.groom.scalp_file, made_of)):
-            self.board.post(f"body/{index}", message)
+        self._seen = read_bodies(look.groom.scalp, look.groom.scalp_file)
+        for index, (mesh, _) in enumerate(self._seen):
+            self.board.post(f"body/{index}", body_message(index, mesh, mesh.points))
+
+    def _set_stage(self, look: Look) -> None:
+        """The groom has changed: frames of the one before are void."""
+        if self.stage is None or self.stage.groom.locks.points is not look.groom.locks.points:
+            self.simulation.stop()
+            self.simulation.reset()
+            self.board.wipe("frame/")
+            self.against = ""
+            self.stage = Stage(look.groom, look.hairs, api.scalp_clip(look.groom), self._seen)
+        self.tell_timeline()
 
     def _show_stage(self) -> None:
-        """Hair of a USD file, as it is."""
-        bodies, look = read_scene(self.file)
-        for index, message in enumerate(bodies):
-            self.board.post(f"body/{index}", message)
+        """Hair of a USD file, as it is, with its frames if it has some."""
+        self._seen, look = read_scene(self.file)
+        for index, (mesh, clip) in enumerate(self._seen):
+            self.board.post(f"body/{index}", body_message(index, mesh, clip.points[0] if clip else mesh.points))
         self._show(look, "a")
         self._tell_numbers(look, -1)
+        self._frames, moving = read_frames(self.file, look)
+        if self._frames is None:
+            return
+        still = Clip(np.zeros(1), look.groom.scalp.points[None], 24.0)
+        clip = api.scalp_clip(look.groom) if look.groom.scalp_file else still
+        self.stage = Stage(look.groom, look.hairs, clip, self._seen)
+        for frame, points, told in moving:
+            self.board.post(f"frame/shot/{frame:g}", self.stage.frame("shot", frame, points, told))
+        self.tell_timeline()
 
     def _tell_numbers(self, look: Look, inside: int) -> None:
         numbers = protocol.Numbers(
@@ -356,6 +515,11 @@ class Session:
             }
         )
         self.board.post(f"document/{file}", pack(message))
+
+
+def frame_of(subject: str) -> float:
+    """The frame that a subject is about."""
+    return float(subject.rsplit("/", 1)[1])
 
 
 def stages(recipe: Recipe, muted: frozenset[str]) -> list[protocol.Stage]:

@@ -1,0 +1,196 @@
+"""A shot that runs beside the page: frame by frame, held and gone on with, or run again from a frame that is there."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ringlet import api
+from ringlet.curves import Curves
+from ringlet.errors import UserError
+from ringlet.groom import Groom, Hairs
+from ringlet.mesh import Clip, Mesh
+from ringlet.shot import Shot
+from ringlet.shot.simulate import Motion
+from ringlet.viewer import protocol
+from ringlet.viewer.wire import pack
+
+MOST_KEPT = 1_500_000_000  # bytes of what frames can be gone on from
+STRETCH_SHOWN = 0.2  # the overlay goes from this part shorter to this part longer
+
+log = logging.getLogger("ringlet.viewer")
+
+
+@dataclass
+class Stage:
+    """What is seen with the locks while they move: hairs, bodies and how those move."""
+
+    groom: Groom
+    hairs: Hairs | None
+    clip: Clip
+    bodies: list[tuple[Mesh, Clip | None]]
+
+    def frame(self, layer: str, frame: float, points: NDArray, statistics: dict[str, Any]) -> bytes:
+        """The message of a frame whose locks are at points [m]."""
+        axis, root = np.empty(0), np.empty(0)
+        if self.hairs is not None:
+            carriage = self.hairs.carriage(self.clip.at(frame))
+            order = np.argsort(_number(carriage["first"]), kind="stable")
+            axis, root = carriage["axis"], carriage["root"][order]
+        bodies = [clip.at(frame) if clip else mesh.points for mesh, clip in self.bodies]
+        return pack(
+            protocol.Frame.model_validate({"layer": layer, "frame": frame, "statistics": told(statistics)}),
+            points=points,
+            axis=axis,
+            root=root,
+            bodies=np.concatenate([np.empty((0, 3)), *bodies]),
+            overlay=stretch(self.groom.locks, points),
+        )
+
+
+def told(statistics: dict[str, Any]) -> dict[str, Any]:
+    """The numbers of a frame that are kept in sight."""
+    contact = statistics.get("contact", {})
+    return {
+        "wall_ms": statistics.get("wall_ms"),
+        "max_stretch": statistics.get("max_stretch"),
+        "newton": statistics.get("newton"),
+        "nan": statistics.get("nan", 0),
+        "contacts": contact.get("contacts"),
+        "inside": contact.get("excused"),
+    }
+
+
+def stretch(locks: Curves, points: NDArray) -> NDArray[np.float64]:
+    """How far each point's edge is stretched against the groom, from 0 (shorter) over 1/2 (as it was) to 1 (longer)."""
+    now, rest = (np.linalg.norm(np.diff(np.asarray(p, np.float64), axis=0), axis=1) for p in (points, locks.points))
+    change = np.zeros(len(locks.points))
+    change[:-1] = now / np.maximum(rest, 1e-12) - 1.0
+    tips = locks.offsets[1:] - 1
+    change[tips] = change[tips - 1]
+    return np.clip(0.5 + 0.5 * change / STRETCH_SHOWN, 0.0, 1.0)
+
+
+def _number(first: NDArray[np.integer]) -> NDArray[np.int64]:
+    return np.arange(first[-1]) - np.repeat(first[:-1], np.diff(first))
+
+
+class Simulation:
+    """Runs in a thread of its own.
+
+    post:    called with (subject, message) for every frame
+    changed: called when the state has changed
+    failed:  called with what went wrong
+    """
+
+    def __init__(
+        self, post: Callable[[str, bytes], None], changed: Callable[[], None], failed: Callable[[str], None]
+    ) -> None:
+        self._post, self._changed, self._failed = post, changed, failed
+        self.state = "still"
+        self.ready: float | None = None
+        self.rolled = 0
+        self.key = 0
+        self._go = threading.Event()
+        self._end = threading.Event()
+        self._thread: threading.Thread | None = None
+        self._memories: dict[int, dict[str, NDArray[Any]]] = {}
+
+    def start(self, shot: Shot, stage: Stage, again_from: int | None = None) -> None:
+        """Runs a shot from its start, or from a frame that was reached before, with what it says now."""
+        self.stop()
+        memory = None
+        if again_from is not None:
+            there = [frame for frame in self._memories if frame <= again_from]
+            if not there:
+                raise UserError(f"shot: frame {again_from} cannot be gone on from; run it from its start")
+            again_from = max(there)
+            memory = self._memories[again_from]
+            self._memories = {frame: kept for frame, kept in self._memories.items() if frame <= again_from}
+        else:
+            self._memories = {}
+        self.ready = None if again_from is None else float(again_from)
+        self.rolled, self.key, self.state = 0, self.key + 1, "rolling"
+        self._end.clear()
+        self._go.set()
+        self._thread = threading.Thread(target=self._run, args=(shot, stage, again_from, memory), daemon=True)
+        self._thread.start()
+        self._changed()
+
+    def pause(self) -> None:
+        """Holds after the frame that is being computed."""
+        if self.state in ("rolling", "running"):
+            self._go.clear()
+            self.state = "paused"
+            self._changed()
+
+    def go_on(self) -> None:
+        """Goes on from where it was held."""
+        if self.state == "paused":
+            self.state = "running"
+            self._go.set()
+            self._changed()
+
+    def stop(self) -> None:
+        """Ends it; frames that are there stay."""
+        self._end.set()
+        self._go.set()
+        if self._thread is not None:
+            self._thread.join(timeout=60.0)
+        self._thread = None
+
+    def reset(self) -> None:
+        """Forgets all frames."""
+        self._memories.clear()
+        self.state, self.ready, self.rolled, self.key = "still", None, 0, self.key + 1
+
+    def _run(self, shot: Shot, stage: Stage, again_from: int | None, memory: dict[str, NDArray[Any]] | None) -> None:
+        try:
+            self._simulate(shot, stage, again_from, memory)
+        except UserError as error:
+            self.state = "still"
+            self._failed(str(error))
+        except Exception as error:
+            log.exception("a shot could not be run")
+            self.state = "still"
+            self._failed(f"this is a mistake in Ringlet ({error}); see the terminal")
+        self._changed()
+
+    def _simulate(
+        self, shot: Shot, stage: Stage, again_from: int | None, memory: dict[str, NDArray[Any]] | None
+    ) -> None:
+        first, last = shot.frames
+        motion = api.start_motion(shot, stage.groom)
+        if memory is not None:
+            motion.recall(memory)
+        begin = 0 if again_from is None else shot.preroll + again_from - first + 1
+        for step in range(begin, shot.preroll + last - first + 1):
+            self._go.wait()
+            if self._end.is_set():
+                return
+            k = step - shot.preroll
+            statistics = motion.advance(first + max(k - 1, 0), first + max(k, 0))
+            if k < 0:
+                self.rolled = step + 1
+            else:
+                self._keep(first + k, motion)
+                self.ready = float(first + k)
+                if self.state == "rolling":
+                    self.state = "running"
+                points = np.asarray(motion.strands.positions, np.float32)
+                self._post(f"frame/shot/{first + k}", stage.frame("shot", first + k, points, statistics))
+            self._changed()
+        self.state = "done"
+
+    def _keep(self, frame: int, motion: Motion) -> None:
+        memory = {name: np.array(values) for name, values in motion.memory.items()}
+        self._memories[frame] = memory
+        size = sum(values.nbytes for values in memory.values())
+        while len(self._memories) > 1 and size * len(self._memories) > MOST_KEPT:
+            del self._memories[min(self._memories)]

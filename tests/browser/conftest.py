@@ -1,0 +1,201 @@
+"""The review page in a real browser, against the real server, drawn in software."""
+
+from __future__ import annotations
+
+import base64
+import io
+import os
+import shutil
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "python"))
+from small_example import write_example
+
+STATIC = Path(__file__).parents[2] / "python/ringlet/viewer/static/index.html"
+CHROMIUM = next(
+    (found for name in ("chromium", "chromium-browser", "google-chrome") if (found := shutil.which(name))), None
+)
+REQUIRED = os.environ.get("RINGLET_BROWSER") == "required"  # so in continuous integration
+FLAGS = [
+    "--no-sandbox",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--ignore-gpu-blocklist",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+]
+PATIENCE = 90.0  # seconds; a loaded machine draws slowly in software
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    reason = ""
+    if CHROMIUM is None:
+        reason = "there is no Chromium here: apt-get install chromium"
+    elif not STATIC.exists():
+        reason = "the page was not built: make build"
+    else:
+        try:
+            import playwright.sync_api  # noqa: F401
+        except ImportError:
+            reason = "playwright is not installed: pip install playwright"
+    if reason and REQUIRED:
+        pytest.exit(f"browser tests: {reason}", returncode=1)
+    for item in items:
+        if reason and Path(__file__).parent in item.path.parents:
+            item.add_marker(pytest.mark.skip(reason=reason))
+
+
+class Server:
+    """``ringlet view`` as a process of its own."""
+
+    def __init__(self, file: Path) -> None:
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            self.port = free.getsockname()[1]
+        self.file = file
+        self.process: subprocess.Popen[bytes] | None = None
+
+    @property
+    def address(self) -> str:
+        return f"http://127.0.0.1:{self.port}/"
+
+    def start(self) -> None:
+        program = "from ringlet.cli import main; main()"
+        arguments = ["view", str(self.file), "--port", str(self.port), "--no-browser"]
+        environment = {**os.environ, "OMP_NUM_THREADS": "1", "OMP_WAIT_POLICY": "passive"}
+        self.process = subprocess.Popen(
+            [sys.executable, "-c", program, *arguments], env=environment, stdout=subprocess.DEVNULL
+        )
+        deadline = time.monotonic() + PATIENCE
+        while time.monotonic() < deadline:
+            try:
+                socket.create_connection(("127.0.0.1", self.port), 1.0).close()
+                return
+            except OSError:
+                time.sleep(0.1)
+        raise AssertionError("the server did not start")
+
+    def kill(self) -> None:
+        if self.process:
+            self.process.kill()
+            self.process.wait()
+
+
+class Review:
+    """A page of the review, as a person has it before them."""
+
+    def __init__(self, page: Any, address: str) -> None:
+        self.page = page
+        self.wrong: list[str] = []
+        page.on("pageerror", lambda error: self.wrong.append(str(error)))
+        page.on("console", lambda told: self.wrong.append(told.text) if "shader" in told.text.lower() else None)
+        page.goto(address)
+        self.until("window.ringlet?.viewer.hair.a.table && ringlet.model.numbers && !ringlet.model.numbers.draft")
+
+    def get(self, expression: str) -> Any:
+        return self.page.evaluate(f"() => {expression}")
+
+    def until(self, expression: str, patience: float = PATIENCE) -> None:
+        """Waits until an expression holds on the page."""
+        deadline = time.monotonic() + patience
+        while time.monotonic() < deadline:
+            if self.get(f"Boolean({expression})"):
+                return
+            time.sleep(0.05)
+        raise AssertionError(f"did not come to be: {expression}; {self.wrong}")
+
+    def text(self, file: str = "recipe") -> str:
+        return self.get(f"ringlet.model.documents.{file}.text")
+
+    def settled(self) -> None:
+        """Waits until what was asked for is made and drawn."""
+        before = self.get("ringlet.viewer.pictures")
+        self.until("!ringlet.model.numbers.draft")
+        self.get("ringlet.viewer.invalidate()")
+        self.until(f"ringlet.viewer.pictures > {before}")
+
+    def picture(self) -> np.ndarray:
+        """What the canvas shows, (height, width, 3)."""
+        self.get("ringlet.viewer.drawNow()")
+        data = self.page.evaluate(
+            "() => { ringlet.viewer.drawNow(); return ringlet.viewer.renderer.domElement.toDataURL('image/png') }"
+        )
+        return np.asarray(Image.open(io.BytesIO(base64.b64decode(data.split(",")[1]))).convert("RGB"), np.float64)
+
+    def choose(self, stage: str) -> None:
+        self.page.locator(f'[data-stage="{stage}"]').click()
+
+    def slider(self, setting: str) -> Any:
+        return self.page.locator(f'[data-setting="{setting}"] > input[type=range]')
+
+    def drag(self, locator: Any, *places: float) -> None:
+        """Drags along an element, from part to part of its width."""
+        box = locator.bounding_box()
+        mouse = self.page.mouse
+        mouse.move(box["x"] + places[0] * box["width"], box["y"] + box["height"] / 2)
+        mouse.down()
+        for place in places[1:]:
+            mouse.move(box["x"] + place * box["width"], box["y"] + box["height"] / 2, steps=4)
+        mouse.up()
+
+
+def different(a: np.ndarray, b: np.ndarray) -> float:
+    """The part of the pixels that differ."""
+    return float((np.abs(a - b).max(axis=2) > 12).mean())
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Any]:
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    return write_example(tmp_path / "project")
+
+
+@pytest.fixture
+def serve(folder: Path) -> Iterator[Callable[[str], Server]]:
+    servers: list[Server] = []
+
+    def start(file: str) -> Server:
+        servers.append(Server(folder / file))
+        servers[-1].start()
+        return servers[-1]
+
+    yield start
+    for server in servers:
+        server.kill()
+
+
+@pytest.fixture
+def opened(browser: Any, serve: Callable[[str], Server]) -> Iterator[Callable[..., Review]]:
+    contexts: list[Any] = []
+
+    def open_page(server: Server | str = "small.recipe.toml") -> Review:
+        address = (serve(server) if isinstance(server, str) else server).address
+        contexts.append(browser.new_context(viewport={"width": 1000, "height": 640}, color_scheme="dark"))
+        contexts[-1].set_default_timeout(1000 * PATIENCE)
+        return Review(contexts[-1].new_page(), address)
+
+    yield open_page
+    for context in contexts:
+        context.close()

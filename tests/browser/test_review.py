@@ -1,0 +1,210 @@
+"""What a designer does on the page, and what comes of it."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from conftest import Review, different
+
+from ringlet import build_groom, build_hairs
+
+
+def test_hairs_on_the_graphics_card_are_those_of_the_core(opened: Any, folder: Path):
+    """The shader carries hairs as src/ringlet/groom/hairs.cpp does."""
+    recipe = folder / "small.recipe.toml"
+    recipe.write_text(
+        recipe.read_text().replace("per_lock = 3", "per_lock = 7\nfrizz = 0.3\nspread = 0.4\nblend = 0.6\ntaper = 0.4")
+    )
+    review: Review = opened()
+    review.picture()
+    hairs = build_hairs(build_groom(recipe))
+    count, points = len(hairs.curves), int(hairs.curves.counts[0])
+    read = review.get("Array.from(ringlet.viewer.hair.a.read(ringlet.viewer.renderer, 1e6))")
+    drawn = np.array(read).reshape(count, points, 4)
+    number = hairs.curves.ids % 10_000
+    order = np.argsort(number, kind="stable")
+    expected = hairs.curves.points.reshape(count, points, 3)[order]
+    assert np.abs(drawn[:, :, :3] - expected).max() < 2e-6
+    widths = hairs.curves.point["width"].reshape(count, points)[order]
+    assert np.allclose(drawn[:, :, 3], widths, rtol=1e-4)
+    assert not review.wrong
+
+
+def test_a_slider_changes_the_picture_and_the_recipe_and_undo_takes_it_back(opened: Any):
+    review: Review = opened()
+    before, text = review.picture(), review.text()
+    review.drag(review.slider("curl.width"), 0.35, 0.6, 0.9)
+    review.until("ringlet.model.documents.recipe.dirty")
+    review.until("ringlet.model.numbers && !ringlet.model.numbers.draft")
+    assert tomllib.loads(review.text())["curl"]["width"] > 1.5
+    review.settled()
+    assert different(review.picture(), before) > 0.005
+    review.page.keyboard.press("Control+z")
+    review.until("!ringlet.model.documents.recipe.dirty")
+    assert review.text() == text
+    review.settled()
+    assert different(review.picture(), before) < 0.002
+    assert not review.wrong
+
+
+def test_a_ramp_is_drawn_by_its_points(opened: Any):
+    review: Review = opened()
+    ramp = review.page.locator('[data-setting="curl.width.ramp"] svg.ramp')
+    box = ramp.bounding_box()
+    review.page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 0.3 * box["height"])
+    review.page.mouse.down()
+    review.page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 0.8 * box["height"], steps=3)
+    review.page.mouse.up()
+    review.until("ringlet.model.documents.recipe.dirty")
+    width = tomllib.loads(review.text())["curl"]["width"]
+    assert width["value"] == 1.0 and len(width["ramp"]) == 3
+    assert abs(width["ramp"][1][0] - 0.5) < 0.05 and width["ramp"][1][1] < 0.4
+    ramp.locator("circle").nth(1).focus()
+    review.page.keyboard.press("Delete")
+    review.until("ringlet.model.documents.recipe.said.curl.width.ramp.length == 2")
+
+
+def test_operators_are_added_muted_moved_and_removed(opened: Any):
+    review: Review = opened()
+    page = review.page
+    for name in ("scraggle", "loft"):
+        page.get_by_label("Add an operator").select_option(name)
+        review.until(f"ringlet.model.documents.recipe.stages.some(stage => stage.op == '{name}')")
+    page.locator('[data-stage="shape/1"]').hover()
+    page.get_by_label("Move loft up").click()
+    review.until("ringlet.model.documents.recipe.stages[2].op == 'loft'")
+    page.locator('[data-stage="shape/1"]').hover()
+    page.get_by_label("Mute scraggle").click()
+    review.until("ringlet.model.documents.recipe.stages[3].muted")
+    assert [operator["op"] for operator in tomllib.loads(review.text())["shape"]] == ["loft", "scraggle"]
+    page.locator('[data-stage="shape/0"]').hover()
+    page.get_by_label("Remove loft").click()
+    review.until("ringlet.model.documents.recipe.stages[2].op == 'scraggle'")
+    assert not review.wrong
+
+
+def test_a_lock_is_isolated_dragged_and_returned(opened: Any):
+    review: Review = opened()
+    page = review.page
+    review.get("ringlet.lock.choose(2)")
+    before = review.get("Array.from(ringlet.viewer.hair.a.locks.points)")
+    page.get_by_role("button", name="Isolate").click()
+    review.until("ringlet.viewer.hair.a.locks.marked[2] == 1")
+    review.settled()
+    dot = page.locator(".handles circle").nth(4)
+    box = dot.bounding_box()
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 40, box["y"] - 30, steps=4)
+    page.mouse.up()
+    review.until("ringlet.model.documents.recipe.said.edit?.[0]?.move?.some(move => move.reach)")
+    review.settled()
+    after = np.array(review.get("Array.from(ringlet.viewer.hair.a.locks.points)")).reshape(8, -1, 3)
+    moved = np.linalg.norm(after - np.array(before).reshape(8, -1, 3), axis=2)
+    assert moved[2, -1] > 0.005 and moved[2, 0] == 0.0
+    assert np.delete(moved, 2, axis=0).max() < 1e-6
+    page.get_by_role("button", name="Return to the recipe").click()
+    review.until("!ringlet.model.documents.recipe.said.edit")
+    assert not review.wrong
+
+
+def test_saving_writes_the_file_and_a_new_page_sees_what_was_saved(opened: Any, folder: Path, serve: Any):
+    server = serve("small.recipe.toml")
+    review: Review = opened(server)
+    field = review.page.locator('[data-setting="curl.pitch"] > .field-head input.number')
+    field.fill("2.25")
+    field.press("Enter")
+    review.until("ringlet.model.documents.recipe.dirty")
+    review.page.get_by_role("button", name="Save", exact=True).click()
+    review.until("!ringlet.model.documents.recipe.dirty")
+    text = (folder / "small.recipe.toml").read_text()
+    assert "pitch = 2.25" in text and text.count("\n") == review.text().count("\n")
+    review.page.reload()
+    review.until("window.ringlet?.model.documents.recipe?.said.curl.pitch == 2.25")
+
+
+def test_ten_frames_are_simulated_and_scrubbed(opened: Any, folder: Path):
+    shot = folder / "small.shot.toml"
+    shot.write_text(shot.read_text().replace("frames = [1, 4]", "frames = [1, 10]"))
+    review: Review = opened("small.shot.toml")
+    review.page.get_by_role("button", name="Run", exact=True).click()
+    review.until("ringlet.timeline.count == 10 && ringlet.model.timeline.state == 'done'")
+    review.get("ringlet.timeline.show(1)")
+    first = review.picture()
+    review.drag(review.page.get_by_label("Frame", exact=True), 0.02, 0.98)
+    review.until("ringlet.timeline.frame == 10")
+    assert different(review.picture(), first) > 0.002
+    review.choose("shot:strands")
+    field = review.page.locator('[data-setting="strands.bend_scale"] > .field-head input.number')
+    field.fill("20")
+    field.press("Enter")
+    review.until("ringlet.model.documents.shot.dirty")
+    review.get("ringlet.timeline.show(5)")
+    review.page.get_by_label("Run again from this frame", exact=False).click()
+    review.until("ringlet.model.timeline.key == 3 || ringlet.model.timeline.state == 'done'")
+    review.until("ringlet.timeline.count == 10 && ringlet.model.timeline.state == 'done'")
+    assert not review.wrong
+
+
+def test_one_edits_and_the_other_follows(opened: Any, serve: Any):
+    server = serve("small.recipe.toml")
+    one: Review = opened(server)
+    two: Review = opened(server)
+    assert one.get("ringlet.model.role.leads") and not two.get("ringlet.model.role.leads")
+    before = two.picture()
+    one.drag(one.slider("curl.width"), 0.35, 0.9)
+    two.until("ringlet.model.documents.recipe.dirty")
+    two.settled()
+    assert different(two.picture(), before) > 0.005
+    two.page.get_by_role("button", name="Take the lead").click()
+    two.until("ringlet.model.role.leads")
+    one.until("!ringlet.model.role.leads")
+
+
+def test_a_killed_server_loses_nothing(opened: Any, serve: Any):
+    server = serve("small.recipe.toml")
+    review: Review = opened(server)
+    review.drag(review.slider("curl.width"), 0.35, 0.9)
+    review.until("ringlet.model.documents.recipe.dirty && !ringlet.model.numbers.draft")
+    text = review.text()
+    server.kill()
+    review.until("document.documentElement.dataset.link == 'lost'")
+    server.start()
+    review.until("document.documentElement.dataset.link == 'open'")
+    review.until("ringlet.model.documents.recipe.dirty")
+    assert review.text() == text
+    assert review.page.get_by_role("button", name="Save", exact=True).is_enabled()
+
+
+def test_an_idle_page_draws_nothing(opened: Any):
+    review: Review = opened()
+    review.settled()
+    review.page.wait_for_timeout(600)
+    before = review.get("ringlet.viewer.pictures")
+    review.page.wait_for_timeout(1500)
+    assert review.get("ringlet.viewer.pictures") == before
+
+
+def test_controls_have_names_and_keys_reach_them(opened: Any):
+    review: Review = opened()
+    nameless = review.get(
+        "[...document.querySelectorAll('button, input, select')].filter(e => !(e.labels?.length || e.ariaLabel || "
+        "e.getAttribute('aria-label') || e.textContent.trim())).map(e => e.outerHTML)"
+    )
+    assert nameless == []
+    review.slider("curl.width").focus()
+    review.page.keyboard.press("ArrowRight")
+    review.until("ringlet.model.documents.recipe.dirty")
+    eye = review.get("ringlet.viewer.camera.position.toArray()")
+    review.page.locator("main canvas").focus()
+    review.page.keyboard.press("ArrowLeft")
+    assert review.get("ringlet.viewer.camera.position.toArray()") != eye
+
+
+def test_nothing_is_loaded_from_elsewhere(opened: Any):
+    review: Review = opened()
+    names = review.get("performance.getEntriesByType('resource').map(entry => new URL(entry.name).host)")
+    assert set(names) == {review.get("location.host")}
