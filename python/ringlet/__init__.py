@@ -42,6 +42,7 @@ from ringlet.stage import StageSpace
 if TYPE_CHECKING:
     from ringlet.bench import Clock, solver_counts
     from ringlet.groom.groom import Groom
+    from ringlet.groom.stack import Memory
     from ringlet.shot.cache import Cache
     from ringlet.shot.cloth import Cloth, ClothMaterial, ClothSolver
     from ringlet.shot.direct import DirectSolver
@@ -66,6 +67,7 @@ __all__ = [
     "Groom",
     "Loft",
     "Material",
+    "Memory",
     "Mesh",
     "Run",
     "Scene",
@@ -119,6 +121,7 @@ _SLOW = {
     "Groom": "ringlet.groom.groom",
     "Loft": "ringlet.shot.loft",
     "Material": "ringlet.shot.strands",
+    "Memory": "ringlet.groom.stack",
     "Scene": "ringlet.shot.scene",
     "Solver": "ringlet.shot.strands",
     "Strands": "ringlet.shot.strands",

@@ -22,7 +22,7 @@ from ringlet.settings import did_you_mean
 from ringlet.share import share
 
 if TYPE_CHECKING:
-    from ringlet.groom import Hairs, Recipe
+    from ringlet.groom import Hairs, Memory, Recipe
     from ringlet.groom.groom import Groom
     from ringlet.mesh import Clip
     from ringlet.shot import Garment, Motion, Obstacle, Shot
@@ -46,6 +46,15 @@ def read_recipe(path: Path | str) -> Recipe:
 def build_groom(recipe: Recipe | Path | str, *, progress: Progress | None = None) -> Groom:
     """Makes the groom of a recipe: guides grown on the scalp or read from USD, then locks, shape and curl."""
     from ringlet import groom
+def build_groom(
+    recipe: Recipe | Path | str, *, progress: Progress | None = None, memory: Memory | None = None
+) -> Groom:
+    """Makes the groom of a recipe: guides grown on the scalp or read from USD, then locks, shape and curl.
+
+    memory: keeps results between calls, so that an edit recomputes only what follows it
+    """
+    from ringlet import groom, io
+    from ringlet.groom.operators import Drawn
 
     if not isinstance(recipe, groom.Recipe):
         recipe = read_recipe(recipe)
@@ -59,7 +68,9 @@ def groom_inputs(recipe: Recipe) -> dict[str, Any]:
 
     if recipe.scalp_file is None:
         raise UserError(f"{recipe.path or 'recipe'}: scalp.file is missing; name the file of the head")
-    scalp = io.read_mesh(recipe.scalp_file, recipe.scalp.mesh, space=recipe.scalp.space)
+    scalp = _kept(
+        memory, recipe.scalp_file, lambda file: io.read_mesh(file, recipe.scalp.mesh, space=recipe.scalp.space)
+    )
     scalp.textures = {name: io.read_texture(file) for name, file in recipe.map_files().items()}
     drawn = None
     if isinstance(recipe.guides, Drawn) and recipe.guides_file is not None:
@@ -76,6 +87,27 @@ def groom_inputs(recipe: Recipe) -> dict[str, Any]:
         "scalp_prim": recipe.scalp.mesh,
         "space": io.read_space(recipe.scalp_file, space=recipe.scalp.space),
     }
+    return groom.make_groom(
+        recipe,
+        scalp,
+        drawn_guides=drawn,
+        helpers=helpers,
+        scalp_file=recipe.scalp_file,
+        scalp_prim=recipe.scalp.mesh,
+        space=io.read_space(recipe.scalp_file, space=recipe.scalp.space),
+        progress=progress,
+        memory=memory,
+    )
+
+
+def _kept(memory: Memory | None, file: Path, read: Callable[[Path], Any]) -> Any:
+    """What is in a file, from memory while it has not changed."""
+    changed = file.stat().st_mtime_ns if file.exists() else 0
+    if memory is None:
+        return read(file)
+    if memory.files.get(str(file), (None, None))[0] != changed:
+        memory.files[str(file)] = (changed, read(file))
+    return memory.files[str(file)][1]
 
 
 def write_groom(groom: Groom, path: Path | str, *, variants: Mapping[str, Groom] | None = None) -> None:
@@ -343,12 +375,16 @@ def read_cache(path: Path | str) -> Cache:
 # Hairs
 
 
-def build_hairs(groom: Groom, *, fraction: float = 1.0, wider: bool = False) -> Hairs:
+def build_hairs(groom: Groom, *, fraction: float = 1.0, wider: bool = False, memory: Memory | None = None) -> Hairs:
     """Makes the hairs of every lock. ``fraction`` of them: the same ones every time, in (0, 1]; with ``wider`` these
-    make up by their width for those left out."""
+    make up by their width for those left out.
+
+    memory: that of ``build_groom``: hairs are only carried along when nothing but the shape of locks has changed, and
+            the next call writes over their points
+    """
     from ringlet import groom as grooms
 
-    return grooms.make_hairs(groom, fraction=fraction, wider=wider)
+    return grooms.make_hairs(groom, fraction=fraction, wider=wider, memory=memory.hairs if memory else None)
 
 
 def write_hairs(

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from shapes import ball, rotation
+from shapes import ball, rotation, sheet
 
-from ringlet import UserError
-from ringlet.groom import make_groom, make_hairs, parse_recipe
+from ringlet import Curves, UserError
+from ringlet.groom import HairMemory, make_groom, make_hairs, parse_recipe
 
 RECIPE = """
 ringlet = 1
@@ -25,7 +25,9 @@ per_lock = 12
 
 
 def groom(hairs=""):
-    return make_groom(parse_recipe(RECIPE + hairs), ball())
+    """A groom with those settings of its hairs; 12 of them a lock unless they say it."""
+    said = RECIPE if "per_lock" not in hairs else RECIPE.replace("per_lock = 12\n", "")
+    return make_groom(parse_recipe(said + hairs), ball())
 
 
 def test_the_first_hair_of_a_lock_is_the_groom_guide_bit_for_bit():
@@ -104,3 +106,125 @@ def test_settings_that_came_from_a_file_are_checked():
     made.hairs["per_lock"] = 0
     with pytest.raises(UserError, match=r"groom: hairs: per_lock is 0; must be at least 1"):
         make_hairs(made)
+
+
+def test_single_locks_have_their_own_number_of_hairs():
+    lock = groom().locks.ids[7]
+    hairs = make_hairs(groom(f"per_lock = {{ value = 12, lock = {{ {lock} = 3 }} }}\n"))
+    count = np.bincount(hairs.curves.curve["lock"])
+    assert count[7] == 3 and (np.delete(count, 7) == 12).all()
+
+
+def section(hairs):
+    """Places of the hairs about the first lock near its middle, in the two directions in which they spread most [m]."""
+    bundle = make_hairs(groom("radius = '1 mm'\nstray = 0\nfrizz = 0\nshorter = 0\nper_lock = 200\n" + hairs))
+    points = bundle.curves.points.reshape(40, 200, 60, 3)[0, :, 20].astype(float)
+    off = points - points[0]
+    return off @ np.linalg.svd(off)[2].T[:, :2]
+
+
+def test_the_cross_section_is_round_or_a_ribbon():
+    widths = np.ptp(section(""), axis=0)
+    assert widths[1] > 0.9 * widths[0]
+    for flatness in (0.7, 1.0):
+        widths = np.ptp(section(f"flatness = {flatness}\n"), axis=0)
+        assert widths[1] == pytest.approx((1.0 - flatness) * widths[0], abs=0.05 * widths[0])
+
+
+def test_hairs_of_a_hollow_lock_are_at_its_rim():
+    filled, hollow = (np.linalg.norm(section(f"hollow = {value}\n"), axis=1)[1:] for value in (0, 1))
+    assert np.ptp(hollow) < 1e-6 < 1e-4 < np.ptp(filled)
+
+
+def test_a_taper_draws_hairs_together_at_the_tip():
+    settings = "radius = { value = '1 mm', ramp = [[0, 1]] }\nstray = 0\nfrizz = 0\nshorter = 0\n"
+    for taper, left in ((0.0, 1.0), (0.6, 0.4), (1.0, 0.0)):
+        bundle = make_hairs(groom(settings + f"taper = {taper}\n")).curves.points.reshape(40, 12, 60, 3)
+        away = np.linalg.norm(bundle - bundle[:, :1], axis=3).max(axis=(0, 1))
+        assert away[-1] == pytest.approx(left * away[20] / (1.0 - taper * 20 / 59), abs=1e-5)
+
+
+def test_strays_leave_their_lock_and_do_not_jump_while_their_part_changes():
+    def at(stray):
+        return make_hairs(groom(f"stray = {stray}\nstray_radius = '9 mm'\nfrizz = 0\nshorter = 0\n")).curves.points
+
+    tips = at(0.25).reshape(40, 12, 60, 3)[:, 1:, -1] - at(0.0).reshape(40, 12, 60, 3)[:, 1:, -1]
+    assert np.mean(np.linalg.norm(tips, axis=2) > 0.001) == pytest.approx(0.25, abs=0.08)
+    moves = [np.linalg.norm(at(0.25 + step) - at(0.25), axis=1).max() for step in (2e-3, 2e-4)]
+    assert moves[1] < 0.2 * moves[0]
+
+
+def two_locks(lean, blend):
+    """Hairs of two straight locks 8 mm apart that lean by so much to either side [degrees]; points (2, 50, 40, 3)."""
+    up = np.linspace(0.0, 0.06, 12)
+    angle = np.radians([-lean, lean])
+    lines = [
+        np.stack([x + up * np.sin(a), up * np.cos(a), 0.0 * up], axis=1)
+        for x, a in zip((-0.004, 0.004), angle, strict=True)
+    ]
+    text = f"""
+ringlet = 1
+[guides]
+file = "g.usda"
+[locks]
+points = 40
+[hairs]
+per_lock = 50
+spread = "6 mm"
+radius = "1 mm"
+stray = 0
+frizz = 0
+shorter = 0
+blend = {blend}
+"""
+    made = make_groom(parse_recipe(text), sheet(), drawn_guides=Curves.from_list(lines, ids=[0, 1]))
+    return make_hairs(made).curves.points.reshape(2, 50, 40, 3)
+
+
+def test_hairs_between_two_locks_mix_both_but_not_across_a_parting():
+    apart, mixed = two_locks(0.0, 0.0)[:, :, 20, 0], two_locks(0.0, 1.0)[:, :, 20, 0]
+    assert np.abs(apart).min() > 0.0029  # a gap between the locks
+    assert np.abs(mixed).min() < 0.0015  # which mixed hairs fill
+    assert np.allclose(mixed[:, 0], [-0.004, 0.004], atol=1e-6)  # the locks themselves stay
+    assert np.array_equal(two_locks(40.0, 0.0), two_locks(40.0, 1.0))
+
+
+def test_mixed_hairs_stand_on_their_own_roots():
+    assert np.allclose(two_locks(0.0, 0.0)[:, :, 0], two_locks(0.0, 1.0)[:, :, 0], atol=1e-7)
+
+
+def test_wider_hairs_make_up_for_those_left_out():
+    made = groom("width = { value = 0.01, vary = 0 }\n")
+    every, few = make_hairs(made).curves, make_hairs(made, fraction=0.25, wider=True).curves
+    assert len(few) == len(every) // 4
+    assert few.point["width"].sum() == pytest.approx(every.point["width"].sum(), rel=1e-5)
+
+
+def test_remembered_hairs_are_those_that_would_be_made_anew():
+    memory = HairMemory()
+    make_hairs(groom(), memory=memory)
+    kept = memory.hairs
+    wide = make_groom(parse_recipe(RECIPE.replace('preset = "3C"', 'preset = "3C"\nwidth = 1.4')), ball())
+    again = make_hairs(wide, memory=memory).curves.points.copy()
+    assert memory.hairs is kept
+    assert np.array_equal(again, make_hairs(wide).curves.points)
+    make_hairs(groom("spread = '5 mm'\n"), memory=memory)
+    assert memory.hairs is not kept
+
+
+def test_the_curl_of_hairs_survives_a_hard_motion_of_their_locks():
+    made = groom("radius = '0.3 mm'\nstray = 0\nfrizz = 0\nshorter = 0\n")
+    hairs = make_hairs(made)
+    bent = made.locks.points.copy()
+    for i, lock in enumerate(made.locks.points.reshape(40, 60, 3)):  # every lock swings about its root by 140 degrees
+        bent[60 * i : 60 * i + 60] = lock[0] + (lock - lock[0]) @ rotation((1.0, 0.2, 0.3), 140.0).T
+    now = hairs.at(bent, made.scalp.points).reshape(40, 12, 60, 3).astype(float)
+    rest = hairs.curves.points.reshape(40, 12, 60, 3).astype(float)
+    assert np.linalg.norm(now - rest, axis=3).max() > 0.03
+
+    def bends(points):
+        edges = np.diff(points[:, :, 12:], axis=2)
+        edges /= np.linalg.norm(edges, axis=3, keepdims=True)
+        return np.arccos(np.clip(np.sum(edges[:, :, 1:] * edges[:, :, :-1], axis=3), -1.0, 1.0)).sum(axis=2)
+
+    assert np.allclose(bends(now), bends(rest), rtol=0.02)

@@ -26,7 +26,10 @@ def recipe(text):
         ("[curl]\npreset = '4A'\nwidth = nan", "curl.width is nan; must be finite"),
         ("[curl]\npreset = '4A'\nwidth = '5 furlong'", "curl.width is '5 furlong'; must be a number or a length"),
         ("[curl]\npitch = { vary = 0.1 }", "curl.pitch is missing"),
-        ("[curl]\npreset = '5Z'", "curl.preset is '5Z'; must be '3B', '3C', '4A' or '4C'"),
+        (
+            "[curl]\npreset = '5Z'",
+            "curl.preset is '5Z'; must be '1', '2A', '2B', '2C', '3A', '3B', '3C', '4A', '4B' or '4C'",
+        ),
         ("[curl]\npitch = 1\ncurls = 3", "give exactly one of"),
         ("[curl]\nwidth = 1", "neither how many curls"),
         ("[locks]\ncount = 0", "locks.count is 0; must be at least 1"),
@@ -127,11 +130,17 @@ def test_a_number_keeps_the_ramp_and_the_variation_of_the_default():
     assert scraggle.along(0.0) == 0.0 and scraggle.along(1.0) == 1.0
 
 
-def test_presets_are_ordered_from_wide_to_tight():
-    widths = [recipe(f"[curl]\npreset = '{name}'").curl.width.value for name in PRESETS]
-    assert list(PRESETS) == ["3B", "3C", "4A", "4C"]
-    assert widths == sorted(widths, reverse=True)
-    assert widths[0] == pytest.approx(0.016) and widths[-1] < 0.004
+def test_presets_have_their_documented_diameters_and_get_tighter():
+    curls = {name: recipe(f"[curl]\npreset = '{name}'").curl for name in PRESETS}
+    assert list(curls) == ["1", "2A", "2B", "2C", "3A", "3B", "3C", "4A", "4B", "4C"]
+    millimetres = {name: 1e3 * curl.width.value for name, curl in curls.items()}
+    for name, documented in {"3A": 25, "3B": 16, "3C": 9, "4A": 5}.items():
+        assert millimetres[name] == pytest.approx(documented)
+    assert millimetres["4C"] < 4
+    pitches = [curl.pitch.value for curl in curls.values()]
+    assert pitches == sorted(pitches, reverse=True)
+    assert curls["4B"].kink.value > 0.5 and curls["4C"].kink.value == 0.0
+    assert [name for name, curl in curls.items() if curl.flatness.value > 0.4] == ["1", "2A", "2B", "2C"]
 
 
 def test_a_ramp_passes_through_its_knots_and_never_overshoots():

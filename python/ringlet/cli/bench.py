@@ -18,7 +18,7 @@ def bench(
     context: typer.Context,
     name: Annotated[
         str,
-        typer.Argument(metavar="NAME", help="What to measure: cloth, direct, groom, head, strands, twirl …"),
+        typer.Argument(metavar="NAME", help="What to measure: cloth, direct, groom, head, slider, strands, twirl …"),
     ],
     as_json: Json = False,
     threads: Threads = None,

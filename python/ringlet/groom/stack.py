@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from hashlib import blake2b
 from pathlib import Path
+from typing import Any
 
 from numpy.typing import NDArray
 
@@ -13,6 +14,7 @@ from ringlet.curves import Curves
 from ringlet.errors import UserError
 from ringlet.groom.edits import Edit, Edits
 from ringlet.groom.groom import Groom
+from ringlet.groom.hairs import HairMemory
 from ringlet.groom.load import stage_names
 from ringlet.groom.nails import nailed
 from ringlet.groom.operators import Context, Drawn, Operator, Resample
@@ -26,10 +28,16 @@ Progress = Callable[[str, int, int], None]
 
 @dataclass
 class Memory:
-    """Results of the last run, stage by stage: changing one operator recomputes from there."""
+    """Results of the last run, stage by stage: changing one operator recomputes from there.
+
+    files: what was read, by file, as long as it does not change
+    hairs: the hairs, which are only carried along while the locks stay where they are
+    """
 
     results: dict[str, tuple[str, Curves]] = field(default_factory=dict)
     scalp: tuple[str, Scalp] | None = None
+    files: dict[str, tuple[int, Any]] = field(default_factory=dict)
+    hairs: HairMemory = field(default_factory=HairMemory)
 
 
 def make_groom(

@@ -65,7 +65,7 @@ void warp_hairs(View<Vec3f> lock_points, View<int> lock_offsets, View<Vec3> axis
     {
         Segmenter fill;
         std::vector<LockSegment> one(blended ? 0 : longest);
-        std::vector<float> scratch(4 * static_cast<size_t>(points));
+        std::vector<float> scratch(6 * static_cast<size_t>(points));
         const auto table = [&](int lock) {
             const size_t begin = lock_offsets[lock], count = lock_offsets[lock + 1] - begin;
             const std::span<LockSegment> segments =

@@ -21,34 +21,37 @@ Float4 on_lock(const LockSegment &lock, float t, float x, float y) {
 } // namespace
 
 void fill_hairs(const LockTable &lock, const HairSpan &hairs) {
-    const int n = hairs.points;
-    float *__restrict x = hairs.scratch, *__restrict y = x + n, *__restrict along = y + n;
-    int *__restrict segment = reinterpret_cast<int *>(along + n);
+    const int n = hairs.points, last = lock.last, last_knot = hairs.knots - 2;
+    float *__restrict x = hairs.scratch, *__restrict y = x + n, *__restrict along = y + n, *__restrict eased = along + n;
+    int *__restrict segment = reinterpret_cast<int *>(eased + n), *__restrict knot = segment + n;
     const float *__restrict profile = hairs.profile, *__restrict hold = hairs.hold;
     const float per_point = 1.0f / static_cast<float>(n - 1);
 
+    // The wander of a hair eases from knot to knot; the knots are where they are in every hair.
+    for (int k = 0; k < n; ++k) {
+        const float at = static_cast<float>(k) * (static_cast<float>(last_knot + 1) * per_point);
+        const int i = static_cast<int>(at);
+        knot[k] = 2 * (i < last_knot ? i : last_knot);
+        const float t = at - static_cast<float>(i < last_knot ? i : last_knot);
+        eased[k] = t * t * (3.0f - 2.0f * t);
+    }
+
     for (int hair = 0; hair < hairs.count; ++hair) {
-        const float *offset = hairs.offset + 2 * hair;
         const float *__restrict frizz = hairs.frizz + 2 * hairs.knots * hair;
-        const float offset_x = offset[0], offset_y = offset[1], taper = hairs.taper[hair] * per_point;
-        const float knot_step = static_cast<float>(hairs.knots - 1) * per_point;
-        const float step = hairs.tip[hair] * (static_cast<float>(lock.last) * per_point);
-        for (int k = 0; k < n; ++k) {
-            // Across the lock: the offset, and a wander eased from knot to knot.
-            const float knot = static_cast<float>(k) * knot_step;
-            int i = static_cast<int>(knot);
-            i = i < hairs.knots - 2 ? i : hairs.knots - 2;
-            float t = knot - static_cast<float>(i);
-            t = t * t * (3.0f - 2.0f * t);
-            const float follow = 1.0f - hold[k], wide = profile[k] * (1.0f - taper * static_cast<float>(k));
-            x[k] = follow * (wide * offset_x + (1.0f - t) * frizz[2 * i] + t * frizz[2 * i + 2]);
-            y[k] = follow * (wide * offset_y + (1.0f - t) * frizz[2 * i + 1] + t * frizz[2 * i + 3]);
-            // Along the lock.
+        const float offset_x = hairs.offset[2 * hair], offset_y = hairs.offset[2 * hair + 1];
+        const float taper = hairs.taper[hair] * per_point;
+        for (int k = 0; k < n; ++k) { // across the lock
+            const int i = knot[k];
+            const float t = eased[k], follow = 1.0f - hold[k], wide = profile[k] * (1.0f - taper * static_cast<float>(k));
+            x[k] = follow * (wide * offset_x + frizz[i] + t * (frizz[i + 2] - frizz[i]));
+            y[k] = follow * (wide * offset_y + frizz[i + 1] + t * (frizz[i + 3] - frizz[i + 1]));
+        }
+        const float step = hairs.tip[hair] * (static_cast<float>(last) * per_point);
+        for (int k = 0; k < n; ++k) { // along it
             const float at = static_cast<float>(k) * step;
-            i = static_cast<int>(at);
-            i = i < lock.last ? i : lock.last;
-            segment[k] = i;
-            along[k] = at - static_cast<float>(i);
+            const int i = static_cast<int>(at);
+            segment[k] = i < last ? i : last;
+            along[k] = at - static_cast<float>(i < last ? i : last);
         }
 
         const Float4 root{hairs.root[3 * hair], hairs.root[3 * hair + 1], hairs.root[3 * hair + 2], 0.0f};

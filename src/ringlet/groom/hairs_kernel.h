@@ -24,7 +24,7 @@ struct HairSpan {
     const int *other;                                 // a neighbouring lock for each hair, or null
     const float *share;                               // how much of it the hair takes
     const LockTable *locks;                           // where those are
-    float *scratch;                                   // 4 × points
+    float *scratch;                                   // 6 × points
     float *result;                                    // 3 × points a hair
 };
 

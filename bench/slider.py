@@ -1,0 +1,137 @@
+"""Speed of a slider: the width of the curl is moved, and every hair is there again; after a cold start of the whole."""
+
+from __future__ import annotations
+
+import statistics
+import tempfile
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ringlet import Clock, Memory, build_groom, build_hairs, read_recipe
+
+HEAD = Path(__file__).parents[1] / "examples" / "child" / "head.usdc"
+
+RECIPE = """
+ringlet = 1
+[scalp]
+file = '{head}'
+mesh = "/child/skin"
+region = "scalp"
+[guides]
+count = {guides}
+length = {{ value = 8, vary = 0.1, noise = 0.2 }}
+[locks]
+count = {locks}
+points = {points}
+[[shape]]
+op = "clump"
+[[shape]]
+op = "scraggle"
+[curl]
+preset = "3C"
+width = "{width} mm"
+curls = {{ value = {curls}, vary = 0.1 }}
+[hairs]
+per_lock = {per_lock}
+"""
+
+
+def run(guides: int = 500, locks: int = 2000, points: int = 60, hairs: int = 50_000, moves: int = 10) -> dict[str, Any]:
+    """Grooms the example head once, then moves the slider ``moves`` times.
+
+    guides: curves that the locks take their shape from
+    locks:  groom guides
+    points: points of a guide and of a hair
+    hairs:  render hairs in all
+    moves:  how often the slider is moved, after two moves that warm up
+    """
+    clock, cold = Clock(), Clock()
+    per_lock = max(1, round(hairs / locks))
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "slider.recipe.toml"
+
+        def evaluate(width: float, memory: Memory, clock: Clock, name: str) -> Any:
+            path.write_text(
+                RECIPE.format(
+                    head=HEAD.as_posix(),
+                    guides=guides,
+                    locks=locks,
+                    points=points,
+                    curls=points / 12,
+                    per_lock=per_lock,
+                    width=width,
+                )
+            )
+            stages = Stages(clock)
+            with clock(name):
+                with clock("recipe"):
+                    recipe = read_recipe(path)
+                with clock("groom"):
+                    groom = build_groom(recipe, memory=memory, progress=stages)
+                with clock("hairs"):
+                    hair = build_hairs(groom, memory=memory)
+            return groom, hair
+
+        evaluate(9.0, Memory(), Clock(), "cold")  # libraries are loaded, pages are there
+        for _ in range(3):
+            memory = Memory()
+            evaluate(9.0, memory, cold, "cold")
+        for width in np.linspace(6.0, 12.0, moves + 2):
+            groom, hair = evaluate(float(width), memory, clock, "slider")
+            before = hair.curves.points
+            with clock("warp"):
+                hair.at(groom.locks.points, groom.scalp.points, out=before)
+
+    count = len(hair.curves)
+    moved = 12.0 * len(hair.curves.points) + 12.0 * len(groom.locks.points) + 4.0 * count * (2 + 1 + 1 + 16 + 3)
+    reached = moved / (1e-3 * statistics.median(clock.cpu["warp"][2:]))
+    memory_rate = copy_rate()
+    return clock.result(
+        "slider",
+        {"guides": guides, "locks": locks, "points": points, "hairs": hairs, "moves": moves},
+        per="slider",
+        warm_up=2,
+        cold_cpu_ms=statistics.median(cold.cpu["cold"]),
+        cold_wall_ms=statistics.median(cold.wall["cold"]),
+        cold_stages={name: statistics.median(times) for name, times in cold.cpu.items()},
+        locks=len(groom.locks),
+        hairs=count,
+        hair_vertices=len(hair.curves.points),
+        warp_gb_per_cpu_s=1e-9 * reached,
+        copy_gb_per_cpu_s=1e-9 * memory_rate,
+        bandwidth_share=reached / memory_rate,
+        nan=int(np.count_nonzero(~np.isfinite(hair.curves.points))),
+    )
+
+
+class Stages:
+    """Clocks the stages of a groom by its progress."""
+
+    def __init__(self, clock: Clock) -> None:
+        self.clock = clock
+        self.running: Any = None
+
+    def __call__(self, stage: str, done: int, total: int) -> None:
+        """Called by ``build_groom`` before and after each stage."""
+        if done == 0:
+            self.running = self.clock(stage)
+            self.running.__enter__()
+        elif self.running is not None:
+            self.running.__exit__(None, None, None)
+            self.running = None
+
+
+def copy_rate(megabytes: int = 256) -> float:
+    """Bytes read and written a second of one thread that copies memory: the best of five."""
+    source = np.ones(megabytes * 2**17)
+    target = np.empty_like(source)
+    target[:] = source
+    best = np.inf
+    for _ in range(5):
+        start = time.thread_time()
+        np.copyto(target, source)
+        best = min(best, time.thread_time() - start)
+    return 2.0 * source.nbytes / best
