@@ -46,7 +46,7 @@ PYTHON = {
     "run": DATA | {"_core", "report"},
     "demo": DATA | {"api", "run"},
     "doctor": DATA | {"_core", "api", "shot"},
-    API: DATA | {"api", "run", "demo", "doctor", "shot", "bench", "viewer"},
+    API: DATA | {"api", "run", "demo", "doctor", "groom", "shot", "bench", "viewer"},
     "cli": {API},
 }
 OUTSIDE = ("bench", "examples")  # these use the public API only

@@ -43,9 +43,6 @@ def read_recipe(path: Path | str) -> Recipe:
     return groom.read_recipe(Path(path))
 
 
-def build_groom(recipe: Recipe | Path | str, *, progress: Progress | None = None) -> Groom:
-    """Makes the groom of a recipe: guides grown on the scalp or read from USD, then locks, shape and curl."""
-    from ringlet import groom
 def build_groom(
     recipe: Recipe | Path | str, *, progress: Progress | None = None, memory: Memory | None = None
 ) -> Groom:
@@ -53,15 +50,14 @@ def build_groom(
 
     memory: keeps results between calls, so that an edit recomputes only what follows it
     """
-    from ringlet import groom, io
-    from ringlet.groom.operators import Drawn
+    from ringlet import groom
 
     if not isinstance(recipe, groom.Recipe):
         recipe = read_recipe(recipe)
-    return groom.make_groom(recipe, progress=progress, **groom_inputs(recipe))
+    return groom.make_groom(recipe, progress=progress, memory=memory, **groom_inputs(recipe, memory))
 
 
-def groom_inputs(recipe: Recipe) -> dict[str, Any]:
+def groom_inputs(recipe: Recipe, memory: Memory | None = None) -> dict[str, Any]:
     """What the files hold that a recipe names: what ``make_groom`` takes besides the recipe."""
     from ringlet import io
     from ringlet.groom.operators import Drawn
@@ -87,17 +83,6 @@ def groom_inputs(recipe: Recipe) -> dict[str, Any]:
         "scalp_prim": recipe.scalp.mesh,
         "space": io.read_space(recipe.scalp_file, space=recipe.scalp.space),
     }
-    return groom.make_groom(
-        recipe,
-        scalp,
-        drawn_guides=drawn,
-        helpers=helpers,
-        scalp_file=recipe.scalp_file,
-        scalp_prim=recipe.scalp.mesh,
-        space=io.read_space(recipe.scalp_file, space=recipe.scalp.space),
-        progress=progress,
-        memory=memory,
-    )
 
 
 def _kept(memory: Memory | None, file: Path, read: Callable[[Path], Any]) -> Any:
