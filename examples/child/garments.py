@@ -1,0 +1,79 @@
+"""What the garments of the example share: places along the body, strips of triangles, and the file they go into."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import head_shape
+import numpy as np
+from distances import Array
+from numpy.typing import NDArray
+from pxr import Gf, Kind, Usd, UsdGeom, Vt
+
+GROUND = np.array([0.0, 38.0, 0.0])  # as of the head
+FPS = 24.0
+
+
+def body(points: Array) -> Array:
+    """Distance to the child in its shirt [cm]."""
+    return np.minimum(head_shape.skin(points), head_shape.shirt(points))
+
+
+def strip(columns: int, rows: int, closed: bool = False) -> NDArray[np.int32]:
+    """Triangles of a grid whose vertices are numbered column by column; diagonals alternate."""
+    triangles = []
+    for i in range(columns if closed else columns - 1):
+        for j in range(rows - 1):
+            a, b = i * rows + j, (i + 1) % columns * rows + j
+            triangles += [(a, b, b + 1), (a, b + 1, a + 1)] if (i + j) % 2 else [(a, b, a + 1), (b, b + 1, a + 1)]
+    return np.array(triangles, np.int32)
+
+
+def without(points: Array, triangles: NDArray[np.int32], kept: NDArray[np.bool_]) -> tuple[Array, NDArray[np.int32]]:
+    """A mesh with only some of its vertices."""
+    number = np.cumsum(kept) - 1
+    return points[kept], number[triangles[kept[triangles].all(axis=1)]].astype(np.int32)
+
+
+def write_garment(
+    path: Path,
+    name: str,
+    points: Array,
+    triangles: NDArray[np.int32],
+    color: Array,
+    *,
+    subsets: Mapping[str, NDArray[np.int64]] | None = None,
+    lifts: Mapping[int, float] | None = None,
+) -> None:
+    """Writes a mesh [cm] at ``/NAME`` with subsets of its faces, lifted by so much at frames."""
+    stage = Usd.Stage.CreateNew(str(path))
+    UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.y)
+    UsdGeom.SetStageMetersPerUnit(stage, UsdGeom.LinearUnits.centimeters)
+    stage.SetTimeCodesPerSecond(FPS)
+    stage.SetFramesPerSecond(FPS)
+    mesh = UsdGeom.Mesh.Define(stage, f"/{name}")
+    stage.SetDefaultPrim(mesh.GetPrim())
+    Usd.ModelAPI(mesh).SetKind(Kind.Tokens.component)
+    mesh.CreateSubdivisionSchemeAttr(UsdGeom.Tokens.none)
+    mesh.CreateDoubleSidedAttr(True)
+    mesh.CreateFaceVertexCountsAttr(Vt.IntArray.FromNumpy(np.full(len(triangles), 3, np.int32)))
+    mesh.CreateFaceVertexIndicesAttr(Vt.IntArray.FromNumpy(triangles.ravel()))
+    mesh.CreateDisplayColorPrimvar(UsdGeom.Tokens.vertex).Set(
+        Vt.Vec3fArray.FromNumpy(np.broadcast_to(color, points.shape).astype(np.float32))
+    )
+    for subset, faces in (subsets or {}).items():
+        UsdGeom.Subset.CreateGeomSubset(
+            mesh, subset, UsdGeom.Tokens.face, Vt.IntArray.FromNumpy(faces.astype(np.int32))
+        )
+    values = (points + GROUND).astype(np.float32)
+    mesh.CreatePointsAttr(Vt.Vec3fArray.FromNumpy(values))
+    mesh.CreateExtentAttr(Vt.Vec3fArray.FromNumpy(np.stack([values.min(axis=0), values.max(axis=0)])))
+    if lifts:
+        stage.SetStartTimeCode(min(lifts))
+        stage.SetEndTimeCode(max(lifts))
+        lift = mesh.AddTranslateOp()
+        for frame, height in lifts.items():
+            lift.Set(Gf.Vec3d(0.0, float(height), 0.0), frame)
+    stage.GetRootLayer().Save()
+    print(f"{path}: {len(points)} vertices, {path.stat().st_size / 1e3:.0f} kB")

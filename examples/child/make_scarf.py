@@ -1,0 +1,93 @@
+"""Makes the example's scarf: it winds around the neck more than once, and both ends hang over the chest.
+
+    python examples/child/make_scarf.py [-o scarf.usdc]
+
+The result is kept beside this file; nobody has to run it.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+from distances import Array
+from garments import body, strip, without, write_garment
+from numpy.typing import NDArray
+
+TURN = 440.0  # from end to end, over the left of the chest, the nape and once around to the right of it [degrees]
+START = 42.0  # where the inner end hangs: to the child's left of the front [degrees]
+END = 34.0  # how much of either end hangs down [degrees]
+AXIS = np.array([0.0, 0.0, -2.7])  # of the neck
+FRONT, NAPE = -12.0, -9.3  # heights of the upper edge: under the chin, and at the back
+WIDTH, LENGTH = 7.5, 17.0  # down the body, around the neck and at the ends [cm]
+OFF, LAYER = 0.55, 1.0  # off the body, and of a turn off the one below [cm]
+FOLDS, DEPTH = 3.0, 0.22  # folds along the scarf in its width, and how deep they are [cm]
+SPACING = 0.52
+
+RED, CREAM = np.array([0.42, 0.035, 0.03]), np.array([0.62, 0.52, 0.40])
+
+
+def make() -> tuple[Array, NDArray[np.int32], Array]:
+    """Points [cm], triangles and colours."""
+    turns = np.linspace(0.0, TURN, round(TURN / 360.0 * 2 * np.pi * 5.6 / SPACING))
+    down = np.arange(0.0, LENGTH, SPACING)
+    points = laid_on_body(START - turns, heights_off(turns[:, None], down))
+    at_ends = (np.minimum(turns, TURN - turns) < END)[:, None]
+    kept = (at_ends | (down <= WIDTH)).ravel()
+    striped = at_ends & (down > WIDTH) & (np.mod(down - WIDTH, 3.2) > 2.2)
+    colors = np.where(striped[:, :, None], CREAM, RED).reshape(-1, 3)
+    flat, triangles = without(points.reshape(-1, 3), strip(len(turns), len(down)), kept)
+    return flat, triangles, colors[kept]
+
+
+def heights_off(turns: Array, down: Array) -> Array:
+    """How far off the body the scarf is [cm]: each turn over the one before, in soft folds, shape (turns, down)."""
+    wave = np.sin(2 * np.pi * FOLDS * down / WIDTH + 2.0 * np.sin(np.radians(1.5 * turns)) + 0.011 * turns)
+    hanging = np.clip((down - WIDTH) / 2.0, 0.0, 1.0)  # ends hang smooth
+    return OFF + LAYER * turns / 360.0 + DEPTH * (1.0 + wave * (1.0 - hanging))
+
+
+def laid_on_body(angles: Array, off: Array) -> Array:
+    """Points down the body at angles from the front [degrees], at heights off it; shape (angles, down, 3).
+
+    Every column is drawn in a half-plane through the neck's axis, from the upper edge down along the surface.
+    """
+    out = np.stack([np.sin(np.radians(angles)), 0.0 * angles, np.cos(np.radians(angles))], axis=1)
+
+    def place(q: Array) -> Array:
+        return AXIS + q[:, :1] * out + q[:, 1:] * [0.0, 1.0, 0.0]
+
+    def distance(q: Array) -> Array:
+        return body(place(q))
+
+    def normal(q: Array) -> Array:
+        h = 1e-3
+        slopes = [distance(q + np.array(step)) - distance(q - np.array(step)) for step in ((h, 0.0), (0.0, h))]
+        slope = np.stack(slopes, axis=1)
+        return slope / np.linalg.norm(slope, axis=1, keepdims=True)
+
+    rays = np.arange(1.0, 12.0, 0.05)
+    top = FRONT + (NAPE - FRONT) * np.abs(np.sin(np.radians(0.5 * angles))) ** 2
+    clear = np.stack([body(place(np.stack([0.0 * top + r, top], axis=1))) > off[:, 0] for r in rays])
+    q = np.stack([rays[clear.argmax(axis=0)], top], axis=1)
+    columns = [place(q)]
+    for before, now in zip(off.T[:-1], off.T[1:], strict=True):
+        n = normal(q)
+        way = np.sqrt(np.maximum(SPACING**2 - (now - before) ** 2, (0.5 * SPACING) ** 2))
+        q = q + way[:, None] * np.stack([n[:, 1], -n[:, 0]], axis=1)  # outwards where the body is level, else down
+        for _ in range(3):
+            q = q - (distance(q) - now)[:, None] * normal(q)
+        columns.append(place(q))
+    return np.stack(columns, axis=1)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("-o", "--output", type=Path, default=Path(__file__).with_name("scarf.usdc"))
+    output = parser.parse_args().output
+    write_garment(output, "scarf", *make())
+
+
+if __name__ == "__main__":
+    main()

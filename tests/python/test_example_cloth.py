@@ -1,0 +1,64 @@
+"""The example's garments: their files are what their scripts say, nothing in them is entangled, and their shots run."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from ringlet.shot.piercing import edges_of, piercings
+
+import ringlet
+from ringlet import io
+
+CHILD = Path(__file__).parents[2] / "examples" / "child"
+GARMENTS = ("scarf", "hat", "tie")
+
+
+def entangled(points, triangles):
+    """Edges that go through triangles of the same mesh which they do not touch."""
+    edges = edges_of(triangles)
+    pairs = piercings(points[edges], points[triangles])
+    return pairs[~(edges[pairs[:, 0], :, None] == triangles[pairs[:, 1], None, :]).any(axis=(1, 2))]
+
+
+@pytest.mark.parametrize("name", GARMENTS)
+def test_a_garment_is_fit_to_be_cloth(name):
+    mesh = io.read_body(CHILD / f"{name}.usdc").mesh
+    assert not len(entangled(mesh.points, mesh.triangles))
+    sides = mesh.points[mesh.triangles] - mesh.points[np.roll(mesh.triangles, 1, axis=1)]
+    areas = 0.5 * np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
+    assert areas.min() > 0.1 * np.median(areas)
+    assert (CHILD / f"{name}.usdc").stat().st_size < 100e3
+    assert io.problems(CHILD / f"{name}.usdc") == []
+
+
+@pytest.mark.parametrize("name", GARMENTS)
+def test_its_script_makes_it(name, tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(str(CHILD))
+    monkeypatch.setattr(sys, "argv", [f"make_{name}.py", "-o", str(tmp_path / "made.usdc")])
+    __import__(f"make_{name}").main()
+    made, kept = (io.read_body(path).mesh for path in (tmp_path / "made.usdc", CHILD / f"{name}.usdc"))
+    assert (made.triangles == kept.triangles).all()
+    assert np.abs(made.points - kept.points).max() < 1e-6
+
+
+@pytest.mark.parametrize("name", GARMENTS)
+def test_its_shot_runs_and_nothing_is_pierced(name):
+    shot = ringlet.read_shot(CHILD / f"{name}.shot.toml").model_copy(update={"preroll": 0})
+    groom = ringlet.build_groom(shot.groom)
+    cache = ringlet.simulate(shot, groom, frames=(1, 2))
+    assert cache.start["inside"] == []
+    (cloth,) = cache.cloths
+    triangles = io.read_body(cloth.file).mesh.triangles
+    told = sum(found["places"] for found in cache.start["piercing"] if found["what"] == "locks")
+    locks = groom.locks
+    segments = np.delete(np.arange(len(locks.points) - 1), locks.offsets[1:-1] - 1)[:, None] + [0, 1]
+    for k, statistics in enumerate(cache.statistics):
+        places = cloth.points[k].astype(float)
+        assert not len(entangled(places, triangles))
+        through = piercings(cache.points[k].astype(float)[segments], places[triangles])
+        assert len(through) <= told  # what began through it stays so
+        assert statistics["contact"]["fraction"] == 1.0 and statistics["nan"] == 0
+        # What is made smaller than its mesh begins as stretched as that.
+        begun = 1.0 / shot.cloth[0].scale(cache.frames[k]) - 1.0
+        assert statistics["cloth"][cloth.name]["max_stretch"] < begun + 0.3
