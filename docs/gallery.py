@@ -20,10 +20,10 @@ IMAGES = Path(__file__).parent / "images" / "gallery"
 
 # How hair of a type stands and holds together: straight hair lies, hangs and spreads, tight coils carry themselves.
 STAND = {
-    "1": {"lift": 0.3, "droop": 2.2, "fringe": 0.36, "wander": 0.5, "radius": 4.5, "blend": 0.7},
-    "2": {"lift": 0.4, "droop": 1.8, "fringe": 0.36, "wander": 0.5, "radius": 3.5, "blend": 0.5},
-    "3": {"lift": 0.7, "droop": 0.9, "fringe": 0.6, "wander": 0.7, "radius": 1.6, "blend": 0},
-    "4": {"lift": 0.85, "droop": 0.3, "fringe": 0.7, "wander": 1.6, "radius": 1.8, "blend": 0},
+    "1": {"lift": 0.3, "droop": 2.2, "fringe": 0.24, "wander": 0.5, "radius": 2.6, "blend": 0.3, "frizz": 0.15},
+    "2": {"lift": 0.4, "droop": 1.8, "fringe": 0.26, "wander": 0.5, "radius": 2.4, "blend": 0.2, "frizz": 0.2},
+    "3": {"lift": 0.7, "droop": 0.9, "fringe": 0.6, "wander": 0.7, "radius": 1.6, "blend": 0, "frizz": 0.4},
+    "4": {"lift": 0.85, "droop": 0.3, "fringe": 0.7, "wander": 1.6, "radius": 1.8, "blend": 0, "frizz": 0.5},
 }
 
 RECIPE = """
@@ -60,7 +60,7 @@ keep = "length"
 per_lock = 22
 radius = {{ value = "{radius} mm", vary = 0.3, ramp = [[0, 0.9], [0.25, 1], [0.75, 0.9], [1, 0.3]] }}
 spread = "4 mm"
-frizz = "0.5 mm"
+frizz = "{frizz} mm"
 blend = {blend}
 """
 
@@ -74,7 +74,7 @@ def picture(preset: str, folder: Path) -> None:
     groom, hair, still = (folder / f"{preset}.{kind}" for kind in ("usdc", "hair.usdc", "png"))
     ringlet.write_groom(ringlet.build_groom(recipe), groom)
     ringlet.write_hairs(groom, hair)
-    ringlet.write_still(hair, still, width=480, height=540, samples=24)
+    ringlet.write_still(hair, still, width=400, height=450, samples=10)
     IMAGES.mkdir(exist_ok=True)
     Image.open(still).convert("RGB").resize((320, 360), Image.Resampling.LANCZOS).save(
         IMAGES / f"{preset}.jpg", quality=82

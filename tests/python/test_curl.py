@@ -54,6 +54,19 @@ def test_the_width_is_the_diameter_and_its_ramp_goes_from_root_to_tip():
         assert np.allclose(at, 0.005 * (1.0 - 0.5 * height), atol=3e-5)
 
 
+def test_the_width_is_painted_set_in_a_region_and_overridden_for_a_lock():
+    scalp = sheet()
+    left = np.flatnonzero(scalp.points[scalp.triangles][:, :, 0].mean(axis=1) < -0.01).astype(np.int32)
+    scalp.regions["left"] = left
+    scalp.maps["paint"] = np.where(scalp.points[scalp.triangles][:, :, 0] > 0.03, 0.5, 1.0)
+    guides = straight(5, apart=0.03)
+    width = "curls = 6\nwidth = { value = 1, map = 'paint', region = { left = 0.6 }, lock = { 7 = 0.2 } }"
+    recipe = f"ringlet = 1\n[guides]\nfile='g.usda'\n[locks]\npoints = 240\n[clean]\nmargin = 0\n[curl]\n{PLAIN}{width}"
+    locks = make_groom(parse_recipe(recipe), scalp, drawn_guides=guides).locks.points.reshape(5, 240, 3)
+    off = locks - guides.roots[:, None]  # the fourth stands a fifth of the way from paint 1 to paint 0.5
+    assert np.allclose(np.hypot(off[:, -1, 0], off[:, -1, 2]), [0.003, 0.003, 0.001, 0.0045, 0.0025], rtol=1e-3)
+
+
 # How many
 
 

@@ -18,7 +18,9 @@ def bench(
     context: typer.Context,
     name: Annotated[
         str,
-        typer.Argument(metavar="NAME", help="What to measure: cloth, direct, groom, head, slider, strands, twirl …"),
+        typer.Argument(
+            metavar="NAME", help="What to measure: cloth, direct, groom, head, slider, strands, twirl, warp …"
+        ),
     ],
     as_json: Json = False,
     threads: Threads = None,
