@@ -206,7 +206,7 @@ BOOST_AUTO_TEST_CASE(what_is_known_of_pairs_changes_nothing_that_is_found) {
     Scene scene(6, 0.0);
     const CollisionMesh &mesh = scene.mesh;
     for (size_t v = 0; v < scene.end.size(); ++v)
-        scene.end[v] = scene.start[v] + scene.anywhere(!mesh.moves[v] ? 0.0 : v % 10 == 0 ? 0.1 : 0.01);
+        scene.end[v] = scene.start[v] + scene.anywhere(!mesh.moves[v] ? 0.0 : v % 50 == 0 ? 0.1 : 0.005);
     std::vector<Vec3> middle = scene.end;
     for (size_t v = 0; v < middle.size(); ++v) middle[v] = 0.5 * (scene.start[v] + scene.end[v]);
     NearPairs knowing(mesh), unknowing(mesh);

@@ -19,7 +19,7 @@ void compare(const MovingTree &a, const MovingTree &b, Pair pair, const Nodes &n
     const bool itself = &a == &b && i == j, leaf_a = a.is_leaf(i), leaf_b = b.is_leaf(j);
     unsigned any = 0;
     for (int k = 0; k < a.size(i); ++k) {
-        unsigned which = which_may_meet(a.boxes(i), k, b.boxes(j));
+        unsigned which = which_may_meet(a.boxes(i).box(k), b.boxes(j));
         if (itself) {
             if (!leaf_a) nodes({a.child(i, k), a.child(i, k)});
             which &= ~1u << k; // each pair once
@@ -80,28 +80,56 @@ BroadPhase::BroadPhase(const CollisionMesh &mesh) : mesh_(mesh) {
 void BroadPhase::find(View<Vec3> start, View<Vec3> end, double margin, Candidates &candidates, View<unsigned char> changed) {
     // Pairs of two that do not count are left out: of those whose motions are given, or that have not changed.
     const View<unsigned char> counts = changed.empty() ? View<unsigned char>(mesh_.moves) : changed;
-    place(start, end);
-    fit(edge_tree_, mesh_.edges, margin, counts);
-    search(edge_tree_, mesh_.edges, edge_tree_, mesh_.edges);
-    gather(mesh_.edges.size(), candidates.edge_edge);
-
-    candidates.point_triangle.clear();
-    if (points_.empty() || mesh_.triangles.empty()) return;
-    fit(point_tree_, points_, margin, counts);
-    fit(triangle_tree_, mesh_.triangles, margin, counts);
-    search(point_tree_, points_, triangle_tree_, mesh_.triangles);
-    for (Pairs &found : found_)
-        for (auto &pair : found) pair[0] = mesh_.points[pair[0]];
-    gather(start.size(), candidates.point_triangle);
+    // In the frame of the first vertex: where the scene is and how fast it flies as a whole costs no precision.
+    if (!start.empty()) place(start, end, start[0], end[0]);
+    const auto fit = [&](MovingTree &tree, const auto &primitives) {
+        tree.fit(int(primitives.size()),
+                 [&](int i) { return box(starts_, ends_, primitives[i], margin, any_of(counts, primitives[i])); });
+    };
+    fit(edge_tree_, mesh_.edges);
+    fit(point_tree_, points_);
+    fit(triangle_tree_, mesh_.triangles);
+    search_all(candidates);
+    origin_ = start.empty() ? Vec3(Vec3::Zero()) : start[0];
+    home_ = starts_;
+    margin_ = margin;
+    for (MovingTree *tree : {&edge_tree_, &point_tree_, &triangle_tree_}) tree->discount();
+    away_.assign(start.size(), !changed.empty());
 }
 
-// In the frame of the first vertex: where the scene is and how fast it flies as a whole costs no precision.
-void BroadPhase::place(View<Vec3> start, View<Vec3> end) {
-    const int count = static_cast<int>(start.size());
+void BroadPhase::find_quick(View<Vec3> start, View<Vec3> end, View<unsigned char> quick, View<unsigned char> changed,
+                            Candidates &candidates) {
+    place(start, end, origin_, origin_);
+    stale_ = away_;
+    for (size_t v = 0; v < start.size(); ++v) {
+        away_[v] = quick[v] || changed[v];
+        stale_[v] |= away_[v];
+    }
+    const auto refit = [&](MovingTree &tree, const auto &primitives) {
+        if (primitives.empty()) return;
+        tree.refit(
+            [&](int i) {
+                const auto &primitive = primitives[i];
+                const bool counts = any_of(changed, primitive);
+                return any_of(quick, primitive) ? box(starts_, ends_, primitive, 0.0, counts)
+                                                : box(home_, home_, primitive, margin_, counts);
+            },
+            [&](int i) { return any_of(stale_, primitives[i]); });
+    };
+    refit(edge_tree_, mesh_.edges);
+    refit(point_tree_, points_);
+    refit(triangle_tree_, mesh_.triangles);
+    search_all(candidates);
+    const auto neither = [&](const auto &a, const auto &b) { return !any_of(quick, a) && !any_of(quick, b); };
+    std::erase_if(candidates.edge_edge, [&](const Pair &pair) { return neither(mesh_.edges[pair[0]], mesh_.edges[pair[1]]); });
+    std::erase_if(candidates.point_triangle,
+                  [&](const Pair &pair) { return neither(std::array{pair[0]}, mesh_.triangles[pair[1]]); });
+}
+
+void BroadPhase::place(View<Vec3> start, View<Vec3> end, const Vec3 &origin, const Vec3 &end_origin) {
+    const int count = int(start.size());
     starts_.resize(count);
     ends_.resize(count);
-    if (count == 0) return;
-    const Vec3 origin = start[0], end_origin = end[0];
 #pragma omp parallel for schedule(static)
     for (int v = 0; v < count; ++v) {
         starts_[v] << (start[v] - origin).cast<float>().array(), 0.0f;
@@ -109,16 +137,25 @@ void BroadPhase::place(View<Vec3> start, View<Vec3> end) {
     }
 }
 
-template <class Primitives>
-void BroadPhase::fit(MovingTree &tree, const Primitives &primitives, double margin, View<unsigned char> counts) {
-    tree.fit(static_cast<int>(primitives.size()), [&](int i) {
-        const auto &primitive = primitives[i];
-        const auto at = [&](int v) -> MovingBox { return {starts_[v], starts_[v], ends_[v], ends_[v]}; };
-        MovingBox box = at(primitive[0]);
-        for (size_t k = 1; k < primitive.size(); ++k) box.include(at(primitive[k]));
-        box.widen(static_cast<float>(mean_radius(mesh_, primitive) + 0.5 * margin), any_of(counts, primitive));
-        return box;
-    });
+template <class Primitive>
+MovingBox BroadPhase::box(const Places &starts, const Places &ends, const Primitive &primitive, double margin,
+                          bool counts) const {
+    const auto at = [&](int v) -> MovingBox { return {starts[v], starts[v], ends[v], ends[v]}; };
+    MovingBox box = at(primitive[0]);
+    for (size_t k = 1; k < primitive.size(); ++k) box.include(at(primitive[k]));
+    box.widen(float(mean_radius(mesh_, primitive) + 0.5 * margin), counts);
+    return box;
+}
+
+void BroadPhase::search_all(Candidates &candidates) {
+    search(edge_tree_, mesh_.edges, edge_tree_, mesh_.edges);
+    gather(mesh_.edges.size(), candidates.edge_edge);
+    candidates.point_triangle.clear();
+    if (points_.empty() || mesh_.triangles.empty()) return;
+    search(point_tree_, points_, triangle_tree_, mesh_.triangles);
+    for (Pairs &found : found_)
+        for (auto &pair : found) pair[0] = mesh_.points[pair[0]];
+    gather(mesh_.moves.size(), candidates.point_triangle);
 }
 
 template <class A, class B>

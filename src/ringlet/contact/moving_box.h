@@ -13,6 +13,7 @@ namespace ringlet {
 // each axis the distance of two points that move straight is never less than the lesser of the two. The fourth lane tells who
 // counts: who moves, say.
 struct MovingBox {
+    static constexpr float does_not_count = 1.0f; // the sum of two is positive where neither counts
     Eigen::Array4f low, high, end_low, end_high;
 
     static MovingBox nothing() { // apart from everything
@@ -36,7 +37,7 @@ struct MovingBox {
         high += by;
         end_low -= by;
         end_high += by;
-        low[3] = counts ? -2.0f : 1.0f; // the sum of two is positive where neither counts
+        low[3] = counts ? -2.0f : does_not_count;
     }
 };
 
@@ -63,13 +64,13 @@ struct MovingQuad {
     }
 };
 
-// With which boxes of b box k of a overlaps on each axis at some time: a bit for each. What is in the others never comes
-// together with what is in that one.
-[[gnu::always_inline]] inline unsigned which_may_meet(const MovingQuad &a, int k, const MovingQuad &b) {
-    Eigen::Array4f apart = b.who_counts + a.who_counts[k]; // above 0: never
+// With which boxes of b another overlaps on each axis at some time: a bit for each. What is in the rest never comes together
+// with what is in that one.
+[[gnu::always_inline]] inline unsigned which_may_meet(const MovingBox &a, const MovingQuad &b) {
+    Eigen::Array4f apart = b.who_counts + a.low[3]; // above 0: never
     for (int axis = 0; axis < 3; ++axis) {
-        const Eigen::Array4f above = (b.low[axis] - a.high[axis][k]).min(b.end_low[axis] - a.end_high[axis][k]);
-        const Eigen::Array4f below = (a.low[axis][k] - b.high[axis]).min(a.end_low[axis][k] - b.end_high[axis]);
+        const Eigen::Array4f above = (b.low[axis] - a.high[axis]).min(b.end_low[axis] - a.end_high[axis]);
+        const Eigen::Array4f below = (a.low[axis] - b.high[axis]).min(a.end_low[axis] - b.end_high[axis]);
         apart = apart.max(above.max(below));
     }
     unsigned which = 0;

@@ -16,6 +16,14 @@ public:
     // Takes box(i) for each of `count` primitives i.
     template <class Box> void fit(int count, const Box &box);
 
+    // Takes box(i) anew only of primitives where changed(i).
+    template <class Box, class Changed> void refit(const Box &box, const Changed &changed);
+
+    // Until it is taken anew no primitive counts.
+    void discount() {
+        for (MovingQuad &boxes : nodes_) boxes.who_counts.setConstant(MovingBox::does_not_count);
+    }
+
     bool empty() const { return count_ == 0; }
     bool is_leaf(int node) const { return node >= first_leaf_; }
     static int child(int node, int k) { return 4 * node + 1 + k; }
@@ -37,7 +45,6 @@ private:
 
     template <class Box> void build(const Box &box);
     void arrange(std::vector<Centre> &centres);
-    template <class Box> void refit(const Box &box);
     void refit_inner();
     double looseness() const;
     int begin(int64_t share, int depth) const { return static_cast<int>(share * count_ >> depth); }
@@ -57,11 +64,12 @@ template <class Box> void MovingTree::fit(int count, const Box &box) {
     const bool fresh = count != count_;
     count_ = count;
     if (count == 0) return;
+    const auto all = [](int) { return true; };
     if (fresh) build(box);
-    refit(box);
+    refit(box, all);
     if (!fresh && looseness() > worn_out * built_looseness_) {
         build(box);
-        refit(box);
+        refit(box, all);
         built_looseness_ = looseness();
     } else if (fresh)
         built_looseness_ = looseness();
@@ -78,18 +86,23 @@ template <class Box> void MovingTree::build(const Box &box) {
     ++built_;
 }
 
-template <class Box> void MovingTree::refit(const Box &box) {
-#pragma omp parallel for schedule(static) if (count_ > small)
+template <class Box, class Changed> void MovingTree::refit(const Box &box, const Changed &changed) {
+    bool any = false;
+#pragma omp parallel for schedule(static) reduction(|| : any) if (count_ > small)
     for (int leaf = first_leaf_; leaf < first_leaf_ + leaves(); ++leaf) {
+        bool here = false;
+        for (int k = 0; k < size(leaf); ++k)
+            if (changed(primitive(leaf, k))) {
+                nodes_[leaf].set(k, box(primitive(leaf, k)));
+                here = true;
+            }
+        if (!here) continue;
         MovingBox all = MovingBox::nothing();
-        for (int k = 0; k < size(leaf); ++k) {
-            const MovingBox one = box(primitive(leaf, k));
-            nodes_[leaf].set(k, one);
-            all.include(one);
-        }
+        for (int k = 0; k < size(leaf); ++k) all.include(nodes_[leaf].box(k));
         put(leaf, all);
+        any = true;
     }
-    refit_inner();
+    if (any) refit_inner();
 }
 
 } // namespace ringlet

@@ -29,10 +29,8 @@ bool NearPairs::any_of(const NearPair &pair, View<unsigned char> vertices) const
     return with_vertices(mesh_, pair, [&](const auto &a, const auto &b) { return any(a) || any(b); });
 }
 
-// What the broad phase finds, with the distances at which they touch.
-std::vector<NearPair> NearPairs::look(View<Vec3> start, View<Vec3> end, double margin, View<unsigned char> which) {
-    Candidates found;
-    broad_phase_.find(start, end, margin, found, which);
+// With the distances at which they touch.
+std::vector<NearPair> NearPairs::pairs_of(const Candidates &found) const {
     const int edges = int(found.edge_edge.size()), all = edges + int(found.point_triangle.size());
     std::vector<NearPair> pairs(all);
 #pragma omp parallel for schedule(static)
@@ -43,12 +41,23 @@ std::vector<NearPair> NearPairs::look(View<Vec3> start, View<Vec3> end, double m
     return pairs;
 }
 
+std::vector<NearPair> NearPairs::look_for_quick(View<Vec3> start, View<Vec3> end, View<unsigned char> changed) {
+    Candidates found;
+    if (noted_at_.empty())
+        broad_phase_.find(start, end, 0.0, found, changed);
+    else
+        broad_phase_.find_quick(start, end, quick_, changed, found);
+    return pairs_of(found);
+}
+
 void NearPairs::note(View<Vec3> positions, double budget) {
     budget_ = budget;
     noted_at_.assign(positions.begin(), positions.end());
     passing_.clear();
     for (auto *ways : {&vertices_, &edges_, &triangles_}) std::fill(ways->begin(), ways->end(), Way{});
-    const std::vector<NearPair> found = look(positions, positions, 2.0 * budget, {});
+    Candidates candidates;
+    broad_phase_.find(positions, positions, 2.0 * budget, candidates);
+    const std::vector<NearPair> found = pairs_of(candidates);
     known_ = collect<NearPair>(int(found.size()), [&](int k, std::vector<NearPair> &known) {
         NearPair pair = found[k];
         pair.apart = with_vertices(
@@ -85,7 +94,7 @@ void NearPairs::set_out(View<Vec3> start, View<Vec3> end) {
     }
     any_quick_ = any_quick;
     measure_ways(start, end);
-    passing_ = any_quick_ ? look(start, end, 0.0, quick_) : std::vector<NearPair>();
+    passing_ = any_quick_ ? look_for_quick(start, end, quick_) : std::vector<NearPair>();
     may_meet_ = collect<NearPair *>(int(known_.size()), [&](int k, std::vector<NearPair *> &may_meet) {
         NearPair &pair = known_[k];
         if (pair.apart - way(pair) < 0.5 * pair.distance && !quick(pair)) may_meet.push_back(&pair);
@@ -97,9 +106,7 @@ void NearPairs::set_out_anew(View<Vec3> start, View<Vec3> end, View<unsigned cha
     measure_ways(start, end);
     if (any_quick_) {
         std::erase_if(passing_, [&](const NearPair &pair) { return any_of(pair, changed); });
-        std::vector<NearPair> found = look(start, end, 0.0, changed);
-        std::erase_if(found, [&](const NearPair &pair) { return !quick(pair); });
-        merge(passing_, found);
+        merge(passing_, look_for_quick(start, end, changed));
     }
     may_meet_ = collect<NearPair *>(int(known_.size()), [&](int k, std::vector<NearPair *> &may_meet) {
         NearPair &pair = known_[k];

@@ -61,7 +61,8 @@ private:
     const Way &first(const NearPair &pair) const { return (pair.of_edges ? edges_ : vertices_)[pair.of[0]]; }
     const Way &second(const NearPair &pair) const { return (pair.of_edges ? edges_ : triangles_)[pair.of[1]]; }
     bool any_of(const NearPair &pair, View<unsigned char> vertices) const;
-    std::vector<NearPair> look(View<Vec3> start, View<Vec3> end, double margin, View<unsigned char> which);
+    std::vector<NearPair> pairs_of(const Candidates &found) const;
+    std::vector<NearPair> look_for_quick(View<Vec3> start, View<Vec3> end, View<unsigned char> changed);
 
     const CollisionMesh &mesh_;
     BroadPhase broad_phase_;
