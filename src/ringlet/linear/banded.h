@@ -47,21 +47,26 @@ public:
         }
     }
 
-    // Solves A x = b in place, after factor(); b has room for `padding` entries behind its last.
-    void solve(T *b) {
+    // Solves A x = b in place, after factor(); b has room for `padding` entries behind its last. What later rows wait for, and
+    // on the way back what was solved last, stays in registers.
+    void solve(T *b) const {
         for (int k = 0; k < padding; ++k) b[columns_ + k] = T{};
+        T near[band];
+        for (int k = 0; k < band; ++k) near[k] = b[k];
         for (int c = 0; c < columns_; ++c) {
-            const T *column = entry(c);
-            const T value = b[c];
-            for (int k = 1; k < band; ++k) b[c + k] -= column[k] * value;
+            const T *column = entries_ + c * band;
+            const T value = near[0];
+            for (int k = 1; k < band; ++k) near[k - 1] = near[k] - column[k] * value;
+            near[band - 1] = b[c + band];
             b[c] = value * column[0];
         }
-        for (int k = 0; k < padding; ++k) b[columns_ + k] = T{};
+        for (int k = 0; k < band; ++k) near[k] = T{};
         for (int c = columns_ - 1; c >= 0; --c) {
-            const T *column = entry(c);
+            const T *column = entries_ + c * band;
             T value = b[c];
-            for (int k = 1; k < band; ++k) value -= column[k] * b[c + k];
-            b[c] = value;
+            for (int k = 1; k < band; ++k) value -= column[k] * near[k - 1];
+            for (int k = band - 1; k > 0; --k) near[k] = near[k - 1];
+            near[0] = b[c] = value;
         }
     }
 

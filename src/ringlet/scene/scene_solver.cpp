@@ -2,6 +2,7 @@
 
 #include "ringlet/scene/scene_matrix.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -15,14 +16,9 @@ System choose(const SceneSystem &system, System how) {
     return system.any_coupled() ? System::conjugate_gradient : System::banded;
 }
 
-// Work for every unknown of a unit, in order.
-template <class Work> void each(const SceneSystem &system, int unit, const Work &work) {
-    for (size_t i = system.unit_begin(unit); i < system.unit_end(unit); ++i) work(i);
-}
-
-double dot(const SceneSystem &system, int unit, const AlignedVector &a, const AlignedVector &b) {
+double dot(const AlignedVector &a, const AlignedVector &b, size_t first, size_t count) {
     double value = 0.0;
-    each(system, unit, [&](size_t i) { value += a[i] * b[i]; });
+    for (size_t i = first; i < first + count; ++i) value += a[i] * b[i];
     return value;
 }
 
@@ -51,64 +47,71 @@ SceneSolver::Result SceneSolver::solve(SceneSystem &system, System how, double t
     return conjugate_gradient(system, tolerance, direction);
 }
 
-// Solves by P. That is the direction of what nothing couples, and where conjugate gradients begin for the rest.
+// What nothing couples is solved by P. For the rest conjugate gradients begin at 0.
 void SceneSolver::begin(SceneSystem &system, AlignedVector &direction) {
     system.for_units([&](int u) {
+        const size_t first = system.unit_begin(u), count = system.unit_end(u) - first;
         system.factor(u);
-        each(system, u, [&](size_t i) { solved_[i] = residual_[i] = -system.gradient(i, u); });
-        system.precondition(u, solved_);
-        each(system, u, [&](size_t i) { direction[i] = takes_part(system, u) ? 0.0 : solved_[i]; });
+        if (takes_part(system, u)) {
+            system.negative_gradient(u, residual_);
+            for (AlignedVector *vector : {&direction, &searched_, &image_}) std::fill_n(vector->data() + first, count, 0.0);
+        } else {
+            system.negative_gradient(u, direction);
+            system.precondition(u, direction);
+        }
     });
 }
 
-// Preconditioned by P. Strands' P is factored exactly: P p follows from P z = r by the same recursion as p from z, so that no
-// product with it is ever formed. Of a cloth P has only an incomplete factor: there the product is.
+// Preconditioned by P. Strands' P is factored: P p follows from P z = r by the same recursion as p from z, so that no product
+// with it is ever formed. (The factor is rounded; the P that it is the exact factor of is then also that of A.) Of a cloth P
+// has only an incomplete factor: there the product is.
 SceneSolver::Result SceneSolver::conjugate_gradient(SceneSystem &system, double tolerance, AlignedVector &direction) {
     constexpr int most = 2000;
-    const auto for_coupled = [&](const auto &work) {
-        system.for_units([&](int u) {
-            if (takes_part(system, u)) work(u);
+    // Σ over the units that take part.
+    const auto sum = [&](const auto &of) {
+        return system.sum([&](int u) {
+            const size_t first = system.unit_begin(u);
+            return takes_part(system, u) ? of(u, first, system.unit_end(u) - first) : 0.0;
         });
     };
-    const auto sum = [&](const auto &of) { return system.sum([&](int u) { return takes_part(system, u) ? of(u) : 0.0; }); };
-    const auto follow = [&](double beta) { // p = z + β p, and P p
-        for_coupled([&](int u) {
-            each(system, u, [&](size_t i) {
-                searched_[i] = solved_[i] + beta * searched_[i];
-                image_[i] = residual_[i] + beta * image_[i];
-            });
-        });
+    const auto precondition = [&](int u, size_t first, size_t count) { // says what r · z is
+        std::copy_n(residual_.data() + first, count, solved_.data() + first);
+        system.precondition(u, solved_);
+        return dot(residual_, solved_, first, count);
     };
-    searched_.fill(0.0);
-    image_.fill(0.0);
-    double rho = sum([&](int u) { return dot(system, u, residual_, solved_); });
-    follow(0.0);
+    const auto search = [&](int u, double beta) { // p = z + β p, and P p
+        const size_t first = system.unit_begin(u), count = system.unit_end(u) - first;
+        double *p = searched_.data() + first, *Pp = image_.data() + first, *Ap = product_.data() + first;
+        const double *z = solved_.data() + first, *r = residual_.data() + first;
+        for (size_t i = 0; i < count; ++i) p[i] = z[i] + beta * p[i];
+        for (size_t i = 0; i < count; ++i) Pp[i] = r[i] + beta * Pp[i];
+        if (u < system.group_count()) {
+            std::copy_n(Pp, count, Ap);
+        } else {
+            std::fill_n(Ap, count, 0.0);
+            system.cloths[u - system.group_count()].multiply_add(p, Ap);
+        }
+    };
+    double rho = sum(precondition), beta = 0.0;
     const double enough = tolerance * tolerance * rho;
     Result result;
     for (; rho > enough && result.iterations < most; ++result.iterations) {
-        for_coupled([&](int u) {
-            const bool exact = u < system.group_count();
-            each(system, u, [&](size_t i) { product_[i] = exact ? image_[i] : 0.0; });
-            if (!exact)
-                system.cloths[u - system.group_count()].multiply_add(searched_.data() + system.unit_begin(u),
-                                                                     product_.data() + system.unit_begin(u));
+        system.for_units([&](int u) {
+            if (takes_part(system, u)) search(u, beta);
         });
         system.couple(searched_, product_);
-        const double curvature = sum([&](int u) { return dot(system, u, searched_, product_); });
+        const double curvature = sum([&](int, size_t first, size_t count) { return dot(searched_, product_, first, count); });
         if (!(curvature > 0.0)) break;
         const double alpha = rho / curvature;
-        const double next = sum([&](int u) {
-            each(system, u, [&](size_t i) {
-                direction[i] += alpha * searched_[i];
-                residual_[i] -= alpha * product_[i];
-                solved_[i] = residual_[i];
-            });
-            system.precondition(u, solved_);
-            return dot(system, u, residual_, solved_);
+        const double next = sum([&](int u, size_t first, size_t count) {
+            double *d = direction.data() + first, *r = residual_.data() + first;
+            const double *p = searched_.data() + first, *Ap = product_.data() + first;
+            for (size_t i = 0; i < count; ++i) d[i] += alpha * p[i];
+            for (size_t i = 0; i < count; ++i) r[i] -= alpha * Ap[i];
+            return precondition(u, first, count);
         });
-        const double beta = next / rho;
+        beta = next / rho;
         rho = next;
-        follow(beta);
     }
     result.residual = enough > 0.0 ? tolerance * std::sqrt(std::max(rho, 0.0) / enough) : 0.0;
     return result;

@@ -34,8 +34,8 @@ void SceneSystem::couple_parts() {
     std::fill(coupled_.begin() + group_count(), coupled_.end(), 1);
     together_.assign(vertices.parts(), 0);
     for (const Contact &c : contacts.contacts()) {
+        if (!couples(c)) continue;
         const int a = vertices.part_of(c.vertex[0]), b = vertices.part_of(c.vertex[3]);
-        if (a < 0 || b < 0) continue;
         coupled_[unit_of(a)] = coupled_[unit_of(b)] = 1;
         together_[a] = together_[b] = 1;
     }
@@ -142,6 +142,21 @@ double SceneSystem::gradient(size_t i, int unit) const {
     return in_unit < size_t(system.freedoms) * system.vertices * system.lanes ? system.gradient[in_unit] : 0.0;
 }
 
+void SceneSystem::negative_gradient(int unit, AlignedVector &into) const {
+    double *to = into.data() + unit_begin(unit), *const end = into.data() + unit_end(unit);
+    const auto negate = [&](const double *from, size_t count) {
+        for (const double *const last = from + count; from < last; ++from) *to++ = -*from;
+    };
+    if (unit < group_count()) {
+        const StrandGroupSystem &system = strands.system(unit);
+        negate(system.gradient, size_t(system.freedoms) * system.vertices * system.lanes);
+        std::fill(to, end, 0.0);
+    } else {
+        const CoupledCloth &cloth = cloths[unit - group_count()];
+        negate(cloth.gradient.data()->data(), cloth.size());
+    }
+}
+
 void SceneSystem::factor(int unit) {
     if (unit < group_count())
         strands.factor(unit);
@@ -161,6 +176,8 @@ void SceneSystem::couple(const AlignedVector &p, AlignedVector &q) {
     const CollisionMesh &mesh = vertices.mesh;
 #pragma omp parallel for schedule(static)
     for (int c = 0; c < int(all.size()); ++c) {
+        pushes_[c] = {Vec3::Zero(), Vec3::Zero()};
+        if (!couples(all[c])) continue;
         Vec3 side[2] = {Vec3::Zero(), Vec3::Zero()};
         for (int i = 0; i < 4; ++i)
             if (mesh.moves[all[c].vertex[i]]) side[i >= all[c].first] += all[c].weight[i] * position(p, all[c].vertex[i]);

@@ -77,14 +77,16 @@ public:
 
     void assemble(const AlignedVector &x);     // the gradient and A where the energies were asked last
     double gradient(size_t i, int unit) const; // its entry i of the whole vector, which is the unit's; 0 of padding
+    void negative_gradient(int unit, AlignedVector &into) const;
 
     void factor(int unit);                                 // of P, exactly or nearly
-    void precondition(int unit, AlignedVector &b) const;   // in place
+    void precondition(int unit, AlignedVector &b) const;   // by it, in place
     void couple(const AlignedVector &p, AlignedVector &q); // q += C p
 
     const ContactValue &value(int contact) const { return values_[contact]; }
 
 private:
+    bool couples(const Contact &c) const { return vertices.part_of(c.vertex[0]) >= 0 && vertices.part_of(c.vertex[3]) >= 0; }
     Vec3 separation_at(const Contact &contact, const AlignedVector &x) const;
     void add_to_strand(int vertex);
     void add_to_cloth(int vertex);
