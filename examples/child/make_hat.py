@@ -15,9 +15,9 @@ from distances import Array
 from garments import strip, write_garment
 from numpy.typing import NDArray
 
-CENTRE = np.array([0.0, 2.6, -1.6])  # of the rim, where it sits in the end
-RIM = np.array([10.2, 11.0])  # its half-widths, across and along the head
-HEIGHT = 9.5  # of the crown over the rim
+CENTRE = np.array([0.0, 4.2, -1.6])  # of the rim, where it sits in the end
+RIM = np.array([11.6, 12.4])  # its half-widths, across and along the head
+HEIGHT = 11.0  # of the crown over the rim
 BRIM = 2.6  # width of the brim
 TILT = np.radians(-14.0)  # the back is lower than the front
 LIFT = 20.0  # how far above it begins
