@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from ringlet.api import (
     build_groom,
     build_hairs,
+    check_groom,
     edit_lock,
     list_edits,
     load_groom,
@@ -78,6 +79,7 @@ __all__ = [
     "__version__",
     "build_groom",
     "build_hairs",
+    "check_groom",
     "diagnose",
     "edit_lock",
     "list_edits",

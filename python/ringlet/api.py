@@ -24,7 +24,7 @@ from ringlet.share import share
 if TYPE_CHECKING:
     from ringlet.groom import Hairs, Memory, Recipe
     from ringlet.groom.groom import Groom
-    from ringlet.mesh import Clip
+    from ringlet.mesh import Clip, Mesh
     from ringlet.shot import Garment, Motion, Obstacle, Shot
     from ringlet.shot.cache import Cache
     from ringlet.shot.loft import Loft
@@ -173,6 +173,61 @@ def list_edits(recipe: Path | str) -> list[dict[str, Any]]:
         }
         for edit in read.edit
     ]
+
+
+# Check
+
+
+def check_groom(
+    groom: Groom | Path | str,
+    *,
+    root_depth: float = 5e-4,
+    root_length: float = 5e-3,
+    thickness: float = 1e-4,
+    fixed: Path | str | None = None,
+    picture: Path | str | None = None,
+    progress: Progress | None = None,
+) -> dict[str, Any]:
+    """What of a groom is in the scalp, in the body and in other locks: places, locks, greatest depth [m], worst places.
+
+    Returns ``found``; with ``fixed`` also ``left``, what could not be repaired, and ``repair``, what was moved.
+
+    root_depth:  how deep a lock may be in the skin up to ``root_length`` from its root [m]
+    thickness:   two locks nearer than this are in one another [m]
+    fixed:       where to write the repaired groom
+    picture:     where to write a picture of the places: of those that are left, if it is repaired
+    """
+    from ringlet import groom as grooms
+    from ringlet.groom.groom import Groom
+
+    if not isinstance(groom, Groom):
+        groom = load_groom(groom, progress=progress)
+    allowed = grooms.Allowed(root_depth, root_length, thickness)
+    others = _beside_scalp(groom)
+    findings = grooms.check_groom(groom, others, allowed)
+    told: dict[str, Any] = {"locks": len(groom.locks), "points": len(groom.locks.points), "found": findings.told()}
+    if fixed is not None:
+        repair = grooms.fix_groom(groom, others, allowed, progress)
+        write_groom(repair.groom, fixed)
+        findings = repair.left
+        told |= {"left": findings.told(), "repair": repair.told()}
+    if picture is not None:
+        from ringlet.picture import write_places
+
+        body = np.concatenate([mesh.points for mesh in (groom.scalp, *others)])
+        title = "left after the repair" if fixed is not None else "found"
+        write_places(body, findings.locks.points, findings.by_kind(), picture, title)
+    return told
+
+
+def _beside_scalp(groom: Groom) -> list[Mesh]:
+    """The visible meshes in the file of the scalp, but for the scalp."""
+    from ringlet import io
+
+    if groom.scalp_file is None or groom.scalp_file.suffix == ".obj":
+        return []
+    meshes = [body.mesh for body in io.read_bodies(groom.scalp_file)]
+    return [mesh for mesh in meshes if mesh.name != groom.scalp.name]
 
 
 # Shot

@@ -16,7 +16,7 @@ import typer
 from typer.core import TyperGroup
 
 import ringlet
-from ringlet.cli import bench, demo, doctor, edit, groom, hair, loft, picture, schema, sim, validate, view
+from ringlet.cli import bench, check, demo, doctor, edit, groom, hair, loft, picture, schema, sim, validate, view
 
 INTERRUPTED = 130  # what typer makes of a KeyboardInterrupt
 
@@ -110,6 +110,7 @@ for name, command in {
     "demo": demo.demo,
     "groom": groom.groom,
     "edit": edit.edit,
+    "check": check.check,
     "loft": loft.loft,
     "sim": sim.sim,
     "hair": hair.hair,

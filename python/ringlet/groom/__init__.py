@@ -1,6 +1,8 @@
 """The groom: from a recipe and a scalp to every hair."""
 
+from ringlet.groom.check import Allowed, check_groom
 from ringlet.groom.edits_file import add_points, add_settings, release, row_of, taken_back
+from ringlet.groom.fix import fix_groom
 from ringlet.groom.groom import Groom
 from ringlet.groom.hairs import HairMemory, Hairs, HairSettings, hair_count, lay_hairs, make_hairs
 from ringlet.groom.presets import PRESETS
@@ -9,6 +11,7 @@ from ringlet.groom.stack import Memory, make_groom
 
 __all__ = [
     "PRESETS",
+    "Allowed",
     "Groom",
     "HairMemory",
     "HairSettings",
@@ -17,6 +20,8 @@ __all__ = [
     "Recipe",
     "add_points",
     "add_settings",
+    "check_groom",
+    "fix_groom",
     "hair_count",
     "lay_hairs",
     "make_groom",

@@ -1,0 +1,62 @@
+"""``ringlet check``: what of a groom goes through the head or through other hair, and its repair."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+import ringlet
+from ringlet.cli.options import Json, Threads
+from ringlet.cli.output import print_json, print_table
+from ringlet.cli.progress import shown_progress
+
+
+def check(
+    groom: Annotated[Path, typer.Argument(metavar="GROOM", help="A groom, or a recipe to make it from.")],
+    fix: Annotated[bool, typer.Option("--fix", help="Repair it, with the least change of shape.")] = False,
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", metavar="FIXED", help="Where the repaired groom goes.", show_default=False),
+    ] = None,
+    picture: Annotated[
+        Path | None,
+        typer.Option("--picture", metavar="PNG", help="A picture of the places.", show_default=False),
+    ] = None,
+    root_depth: Annotated[
+        float, typer.Option("--root-depth", metavar="MM", help="How deep roots may be in the skin.")
+    ] = 0.5,
+    root_length: Annotated[
+        float, typer.Option("--root-length", metavar="MM", help="How far from the root that goes, along the lock.")
+    ] = 5.0,
+    thickness: Annotated[
+        float, typer.Option("--thickness", metavar="MM", help="Locks nearer than this are in one another.")
+    ] = 0.1,
+    as_json: Json = False,
+    threads: Threads = None,
+) -> None:
+    """Counts what of a GROOM is in the scalp, in the body and in other hair, how deep and where.
+
+    Exits with 1 if something is. Example: ringlet check groom.usdc --fix -o fixed.usdc --picture check.png
+    """
+    if fix and output is None:
+        raise ringlet.UserError("--fix: needs --output FIXED for the repaired groom")
+    allowed = {
+        "root_depth": 1e-3 * root_depth,
+        "root_length": 1e-3 * root_length,
+        "thickness": 1e-3 * thickness,
+    }
+    with shown_progress() as progress:
+        told = ringlet.check_groom(groom, fixed=output if fix else None, picture=picture, progress=progress, **allowed)
+    if as_json:
+        print_json(told)
+    else:
+        for name in ("found", "left") if fix else ("found",):
+            rows = [
+                [kind, f"{of['places']:,}", f"{of['locks']:,}", f"{1e3 * of['depth']:.3g} mm"]
+                for kind, of in told[name].items()
+            ]
+            print_table([name, "places", "locks", "depth"], rows, right=(1, 2, 3))
+    if any(of["places"] for of in told["left" if fix else "found"].values()):
+        raise typer.Exit(1)
