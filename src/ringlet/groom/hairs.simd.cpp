@@ -58,12 +58,12 @@ void fill_hairs(const LockTable &lock, const HairSpan &hairs) {
         float *result = hairs.result + 3L * n * hair;
         // A row of four is written over the first number of the next point, which comes after it.
         const auto put = [&](int k, Float4 point) { std::memcpy(result + 3 * k, &point, k + 1 < n ? 16 : 12); };
-        const float share = hairs.other ? hairs.share[hair] : 0.0f;
-        if (share == 0.0f) {
+        if (hairs.other == nullptr || hairs.share[hair] == 0.0f) {
             for (int k = 0; k + 1 < n; ++k) put(k, on_lock(lock.segments[segment[k]], along[k], x[k], y[k]) + hold[k] * root);
             put(n - 1, on_lock(lock.segments[segment[n - 1]], along[n - 1], x[n - 1], y[n - 1]) + hold[n - 1] * root);
             continue;
         }
+        const float share = hairs.share[hair];
         const LockTable &other = hairs.locks[hairs.other[hair]];
         const Float4 other_root = root + row(lock.segments[0].c0) - row(other.segments[0].c0);
         const float rescale = static_cast<float>(other.last) / static_cast<float>(lock.last);
