@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import importlib.util
 import inspect
+import sys
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -656,7 +657,11 @@ def run_bench(name: str, **params: Any) -> dict[str, Any]:
     spec = importlib.util.spec_from_file_location(f"ringlet_bench_{name}", files[name])
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
+    sys.path.insert(0, str(folder))  # as for a script: benchmarks may share what is in this folder
+    try:
+        spec.loader.exec_module(module)
+    finally:
+        sys.path.remove(str(folder))
     taken = inspect.signature(module.run).parameters
     for key in params:
         _known(key, taken, f"bench {name}", "parameter")

@@ -38,6 +38,8 @@ class Answer:
     [
         (["groom", "--locks", "20", "--hairs", "60"], {"locks": 20, "hairs": 60}),
         (["cloth", "--side", "5", "--steps", "3"], {"side": 5, "steps": 3}),
+        (["cloth", "--side", "6", "--steps", "3", "--contacts", "on"], {"side": 6, "contacts": "on"}),
+        (["mixed", "--strands", "3", "--side", "6", "--steps", "3"], {"strands": 3, "side": 6}),
         (["direct", "--strands", "4", "--vertices", "12", "--method", "builtin"], {"strands": 4, "method": "builtin"}),
         (["memory", "--strands", "20"], {"strands": 20}),
         (["strands", "--strands", "4", "--steps", "3"], {"strands": 4, "steps": 3}),
