@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import pytest
 from test_cli import run
@@ -41,6 +42,7 @@ class Answer:
         (["cloth", "--side", "6", "--steps", "3", "--contacts", "on"], {"side": 6, "contacts": "on"}),
         (["mixed", "--strands", "3", "--side", "6", "--steps", "3"], {"strands": 3, "side": 6}),
         (["direct", "--strands", "4", "--vertices", "12", "--method", "builtin"], {"strands": 4, "method": "builtin"}),
+        (["growth", "--least", "2", "--most", "4", "--steps", "4"], {"least": 2, "most": 4}),
         (["memory", "--strands", "20"], {"strands": 20}),
         (["strands", "--strands", "4", "--steps", "3"], {"strands": 4, "steps": 3}),
         (["head", "--locks", "30", "--points", "30", "--frames", "2", "--preroll", "0"], {"locks": 30, "points": 30}),
@@ -59,6 +61,14 @@ def test_bench_prints_the_object_that_was_agreed(arguments, asked):
     for times in (told["cpu_ms"], told["wall_ms"]):
         assert 0 < times["min"] <= times["median"] <= times["max"]
     assert all(time >= 0 for time in told["stages"].values())
+
+
+def test_bench_growth_fits_a_power_to_the_times_of_all_sizes():
+    result = run("bench", "growth", "--least", "2", "--most", "9", "--steps", "4", "--json", "--threads", "1")
+    told = json.loads(result.stdout)
+    assert [size["strands"] for size in told["sizes"]] == [2, 4, 8]
+    steps = [math.log2(b["cpu_ms"] / a["cpu_ms"]) for a, b in pairwise(told["sizes"])]
+    assert min(steps) - 1e-9 <= told["exponent"] <= max(steps) + 1e-9
 
 
 def test_validate_prints_rows_and_succeeds_when_all_hold():
