@@ -46,6 +46,13 @@ class Page:
                 return message
         raise AssertionError(f"no {kind} among {[m['kind'] for m in self.heard]}")
 
+    def been_told(self, kind: str, **wanted: Any) -> dict[str, Any]:
+        """The same, of those that were heard already, too: subjects come in no order of their own."""
+        for message in reversed(self.heard):
+            if message["kind"] == kind and all(message[name] == value for name, value in wanted.items()):
+                return message
+        return self.hear(kind, **wanted)
+
 
 def read(data: bytes) -> dict[str, Any]:
     length = struct.unpack_from("<I", data)[0]
@@ -256,3 +263,50 @@ def test_while_a_hand_moves_drafts_are_made_and_the_whole_when_it_rests(folder: 
 def test_a_file_outside_of_the_project_is_not_opened(folder: Path):
     with pytest.raises(UserError, match="outside of the project"):
         Session(folder / "small.recipe.toml", Project(folder / "elsewhere"))
+
+
+def test_a_shot_runs_and_its_frames_come(folder: Path):
+    with serving(folder, "small.shot.toml") as client, page(client) as one:
+        assert one.hear("welcome")["mode"] == "shot"
+        one.been_told("timeline", state="still")
+        one.say(kind="play", action="start")
+        frames = [one.hear("frame") for _ in range(4)]
+        assert [frame["frame"] for frame in frames] == [1, 2, 3, 4]
+        assert frames[0]["points"].shape == (8 * 40 * 3,) and np.all(frames[0]["overlay"] <= 1.0)
+        assert np.abs(frames[3]["points"] - frames[0]["points"]).max() > 1e-3
+        one.been_told("timeline", state="done")
+        one.say(kind="set", file="shot", changes=[[["strands", "bend_scale"], 30.0]], gesture=1)
+        one.say(kind="play", action="again_from", frame=2)
+        again = [one.hear("frame") for _ in range(2)]
+        assert [frame["frame"] for frame in again] == [3, 4]
+        assert np.abs(again[1]["points"] - frames[3]["points"]).max() > 1e-6
+
+
+def test_a_groom_and_its_cache_are_shown_as_they_are(folder: Path):
+    import ringlet
+
+    groom = ringlet.build_groom(folder / "small.recipe.toml")
+    ringlet.write_groom(groom, folder / "groom.usda")
+    ringlet.write_cache(
+        ringlet.simulate(folder / "small.shot.toml", groom), folder / "groom.usda", folder / "cache.usda"
+    )
+    with serving(folder, "groom.usda") as client, page(client) as one:
+        assert one.hear("welcome")["mode"] == "stage"
+        assert len(one.hear("locks")["ids"]) == 8
+        one.say(kind="set", changes=[[["curl", "width"], 2.0]], gesture=1)
+        assert "no recipe" in one.hear("trouble")["message"]
+    with serving(folder, "cache.usda") as client, page(client) as one:
+        assert one.hear("frame", frame=4)["points"].shape == (8 * 40 * 3,)
+        assert one.been_told("timeline", state="none")["last"] == 4
+
+
+def test_a_lock_that_is_not_isolated_is_not_dragged(folder: Path):
+    with serving(folder) as client, page(client) as one:
+        lock = int(one.hear("locks")["ids"][0])
+        one.hear("numbers")
+        one.say(kind="drag", lock=lock, point=20, to=[0, 0.2, 0], gesture=1)
+        assert "isolate" in one.hear("trouble")["message"]
+        one.say(kind="isolate", locks=[lock])
+        assert one.hear("locks", draft=False)["marked"][0] == 1
+        one.say(kind="isolate", locks=[lock], out=False)
+        assert one.hear("locks", draft=False)["marked"][0] == 0

@@ -98,19 +98,6 @@ export interface Isolate {
   out?: boolean;
 }
 
-/** One dab of a brush on the guides: within ``radius`` [m] of ``at``; ``by`` is how far a hand moved [m]. */
-export interface Brush {
-  kind: "brush";
-  tool: "grab" | "comb" | "cut" | "lengthen" | "smooth";
-  at: [number, number, number];
-  by?: [number, number, number];
-  radius: number;
-  strength?: number;
-  mirror?: boolean;
-  gesture: number;
-  resting?: boolean;
-}
-
 /** Runs the shot: from its start, on from where it was held, or again from a frame that is there already. */
 export interface Play {
   kind: "play";
@@ -205,13 +192,6 @@ export interface Hairs {
   thinning: Float32Array;
 }
 
-/** The guides: what the brush works on. */
-export interface Guides {
-  kind: "guides";
-  points: Float32Array;
-  offsets: Int32Array;
-}
-
 /** What to keep in sight. times: of the stages that were computed [ms]. */
 export interface Numbers {
   kind: "numbers";
@@ -280,7 +260,6 @@ export type FromPage =
   | Compare
   | Drag
   | Isolate
-  | Brush
   | Play
   | Against;
 
@@ -291,7 +270,6 @@ export type FromServer =
   | Body
   | Locks
   | Hairs
-  | Guides
   | Numbers
   | Frame
   | Timeline

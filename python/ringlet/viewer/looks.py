@@ -15,13 +15,19 @@ from ringlet import api
 from ringlet.curves import Curves
 from ringlet.errors import UserError
 from ringlet.groom import Groom, HairMemory, Hairs, Memory, Recipe, lay_hairs, make_groom
-from ringlet.groom.operators import Drawn
+from ringlet.groom.operators import Clean, Context, Drawn
 from ringlet.mesh import Mesh
 from ringlet.viewer import protocol
 from ringlet.viewer.project import Project
 from ringlet.viewer.wire import pack
 
-NONE = 1e-9  # a margin that pushes nothing out [m]
+
+class Unclean(Clean):
+    """Leaves locks where they are. Its margin is one that no recipe has, so that its results are told apart."""
+
+    def apply(self, curves: Curves, context: Context) -> Curves:
+        """The same curves."""
+        return curves
 
 
 @dataclass
@@ -58,10 +64,6 @@ class Look:
     def layout(self, side: str) -> bytes:
         """The message that says how hairs sit in the locks."""
         return hairs_message(side, self.hairs, self.groom.scalp) if self.hairs else bare(side, self.groom.locks)
-
-    def guides(self) -> bytes:
-        """The message with the guides."""
-        return pack(protocol.Guides(), points=self.groom.guides.points, offsets=self.groom.guides.offsets)
 
     @property
     def count(self) -> int:
@@ -137,7 +139,7 @@ def effective(recipe: Recipe, muted: frozenset[str]) -> Recipe:
     if "curl" in muted:
         changed["curl"] = None
     if "clean" in muted:
-        changed["clean"] = recipe.clean.model_copy(update={"margin": NONE})
+        changed["clean"] = Unclean.model_construct(margin=-1.0)
     return recipe.model_copy(update=changed)
 
 

@@ -122,20 +122,6 @@ class Isolate(Message):
     out: bool = True
 
 
-class Brush(Message):
-    """One dab of a brush on the guides: within ``radius`` [m] of ``at``; ``by`` is how far a hand moved [m]."""
-
-    kind: Literal["brush"] = "brush"
-    tool: Literal["grab", "comb", "cut", "lengthen", "smooth"]
-    at: Point
-    by: Point = (0.0, 0.0, 0.0)
-    radius: float = Field(gt=0.0, le=0.5)
-    strength: float = Field(default=0.5, ge=0.0, le=1.0)
-    mirror: bool = False
-    gesture: int
-    resting: bool = True
-
-
 class Play(Message):
     """Runs the shot: from its start, on from where it was held, or again from a frame that is there already."""
 
@@ -152,7 +138,7 @@ class Against(Message):
 
 
 FromPage = Annotated[
-    Hello | Lead | Set | Arrange | Mute | Step | Save | Restore | Compare | Drag | Isolate | Brush | Play | Against,
+    Hello | Lead | Set | Arrange | Mute | Step | Save | Restore | Compare | Drag | Isolate | Play | Against,
     Field(discriminator="kind"),
 ]
 FROM_PAGE: TypeAdapter[FromPage] = TypeAdapter(FromPage)
@@ -283,13 +269,6 @@ class Hairs(Message):
     }
 
 
-class Guides(Message):
-    """The guides: what the brush works on."""
-
-    kind: Literal["guides"] = "guides"
-    arrays: ClassVar[dict[str, str]] = {"points": "f4", "offsets": "i4"}
-
-
 class Numbers(Message):
     """What to keep in sight. times: of the stages that were computed [ms]."""
 
@@ -361,7 +340,6 @@ FROM_SERVER: tuple[type[Message], ...] = (
     Body,
     Locks,
     Hairs,
-    Guides,
     Numbers,
     Frame,
     Timeline,

@@ -442,10 +442,8 @@ class Session:
             self._layouts[side] = layout
             self.board.post(f"{side}/hairs", look.layout(side))
         self.board.post(f"{side}/locks", look.locks(side))
-        if side == "a":
-            self.board.post("a/guides", look.guides())
-            if look.draft:
-                self._tell_numbers(look, -1)
+        if side == "a" and look.draft:
+            self._tell_numbers(look, -1)
 
     def _show_bodies(self, look: Look) -> None:
         self.board.wipe("body/")

@@ -22,7 +22,7 @@ from ringlet.viewer import protocol
 from ringlet.viewer.wire import pack
 
 MOST_KEPT = 1_500_000_000  # bytes of what frames can be gone on from
-STRETCH_SHOWN = 0.2  # the overlay goes from this part shorter to this part longer
+STRETCH_SHOWN = 0.02  # the overlay goes from this part shorter to this part longer
 
 log = logging.getLogger("ringlet.viewer")
 

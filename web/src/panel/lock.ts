@@ -31,7 +31,7 @@ export class LockTool {
     this.element.append(
       this.title,
       h("div", { class: "group" }, this.isolate, this.back, close),
-      h("div", { class: "field-head reach" }, h("label", { for: "lock-reach" }, "how much comes along"), this.reach),
+      h("div", { class: "field-head reach" }, h("label", { for: "lock-reach", title: "How much of the lock comes along with a point" }, "reach"), this.reach),
     );
     this.isolate.addEventListener("click", () => model.say({ kind: "isolate", locks: [this.id] }));
     this.back.addEventListener("click", () => model.say({ kind: "isolate", locks: [this.id], out: false }));

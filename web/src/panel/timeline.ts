@@ -31,7 +31,7 @@ export class TimelineBar {
   ) {
     for (const [key, label] of [
       ["", "no overlay"],
-      ["stretch", "stretch, ±20 %"],
+      ["stretch", "stretch, ±2 %"],
     ])
       this.overlay.append(h("option", { value: key }, label));
     this.overlay.addEventListener("change", () => viewer.setOverlay(this.overlay.value !== ""));

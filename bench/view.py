@@ -1,0 +1,102 @@
+"""How long an edit on the review page takes until its locks are with the page: a slider is dragged and let go."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import re
+import shutil
+import socket
+import struct
+import tempfile
+import threading
+import time
+from pathlib import Path
+from typing import Any
+
+from websockets.asyncio.client import ClientConnection, connect
+
+import ringlet
+
+EXAMPLE = Path(__file__).parents[1] / "examples/child"
+
+
+def run(locks: int = 1389, per_lock: int = 36, points: int = 60, steps: int = 12, warm_up: int = 2) -> dict[str, Any]:
+    """Drags the width of the curls of the example in ``steps`` steps, and lets go after each.
+
+    The stage ``drag`` is from saying a value to having heard the draft's locks, ``rest`` from letting go to having
+    heard the whole. What the browser then does with them, it does on the graphics card: it is not measured here.
+    """
+    clock = ringlet.Clock()
+    with tempfile.TemporaryDirectory() as folder:
+        recipe = _recipe(Path(folder), locks, per_lock, points)
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            port = free.getsockname()[1]
+        threading.Thread(
+            target=ringlet.view,
+            args=(recipe,),
+            kwargs={"port": port, "browser": False, "told": lambda _: None},
+            daemon=True,
+        ).start()
+        heard = asyncio.run(_drag(port, clock, steps))
+    asked = {"locks": locks, "per_lock": per_lock, "points": points, "steps": steps}
+    return clock.result("view", asked, per="drag", warm_up=warm_up, **heard)
+
+
+def _recipe(folder: Path, locks: int, per_lock: int, points: int) -> Path:
+    """The example with so many locks and hairs."""
+    shutil.copy(EXAMPLE / "head.usdc", folder)
+    text = (EXAMPLE / "curls.recipe.toml").read_text()
+    text = re.sub(r"(\[locks\]\ncount = )\d+(\npoints = )\d+", rf"\g<1>{locks}\g<2>{max(points, 96)}", text)
+    text = re.sub(r"per_lock = \d+", f"per_lock = {per_lock}\npoints = {points}", text)
+    path = folder / "curls.recipe.toml"
+    path.write_text(text)
+    return path
+
+
+async def _drag(port: int, clock: ringlet.Clock, steps: int) -> dict[str, Any]:
+    address = f"ws://127.0.0.1:{port}/session"
+    deadline = time.monotonic() + 30.0
+    while True:
+        try:
+            page = await connect(address, max_size=None, compression=None)
+            break
+        except OSError:
+            if time.monotonic() > deadline:
+                raise
+            await asyncio.sleep(0.1)
+    async with page:
+        await _say(page, kind="hello", version=1, client="bench")
+        hairs, _ = await _hear(page, "hairs")
+        _, size = await _hear(page, "locks")
+        await _hear(page, "numbers")
+        for step in range(steps):
+            change = [[["curl", "width", "value"], round(1.0 + 0.02 * step, 3)]]
+            with clock("drag"):
+                await _say(page, kind="set", changes=change, gesture=step, resting=False)
+                while not (await _hear(page, "locks"))[0]["draft"]:
+                    pass
+            change[0][1] = round(1.01 + 0.02 * step, 3)
+            with clock("rest"):
+                await _say(page, kind="set", changes=change, gesture=step)
+                while (await _hear(page, "locks"))[0]["draft"]:
+                    pass
+            await _hear(page, "numbers")
+    return {"hairs": hairs["count"], "locks_bytes": size, "rest_wall_ms": sorted(clock.wall["rest"])[steps // 2]}
+
+
+async def _say(page: ClientConnection, **message: Any) -> None:
+    text = json.dumps(message).encode()
+    await page.send(struct.pack("<I", len(text)) + text)
+
+
+async def _hear(page: ClientConnection, kind: str) -> tuple[dict[str, Any], int]:
+    """The next message of a kind, and how many bytes it has."""
+    while True:
+        data = await asyncio.wait_for(page.recv(), 60.0)
+        assert isinstance(data, bytes)
+        length = struct.unpack_from("<I", data)[0]
+        message = json.loads(data[4 : 4 + length])
+        if message["kind"] == kind and not (kind == "numbers" and message["draft"]):
+            return message, len(data)
