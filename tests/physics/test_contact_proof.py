@@ -17,11 +17,6 @@ from ringlet.validate.friction import CREEP, speeds_on_a_slope
 
 outcome = cache(lambda name, newton: act(SCENES[name](), newton))
 
-# Wound six times round one another they jam: five iterations do not find out how the coils could slip.
-JAMMED = pytest.mark.xfail(
-    reason="coils wound round each other jam, and a few edges take all the stretch", strict=False
-)
-
 
 @pytest.mark.parametrize("newton", [1, 5])
 @pytest.mark.parametrize("name", SCENES)
@@ -31,10 +26,11 @@ def test_nothing_passes_through_anything(name, newton):
     assert np.abs(result.links[1] - result.links[0]).max(initial=0.0) < 1e-6
 
 
-@pytest.mark.parametrize("name", [pytest.param(n, marks=JAMMED) if n == "wound_coils" else n for n in SCENES])
-def test_no_edge_is_torn(name):
+@pytest.mark.parametrize("newton", [1, 5])
+@pytest.mark.parametrize("name", SCENES)
+def test_no_edge_is_torn(name, newton):
     """What is pulled is pulled to less than twice its length: no edge may take all of it."""
-    assert outcome(name, 5).stretch < 4.0
+    assert outcome(name, newton).stretch < 3.0
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -79,7 +75,7 @@ def test_a_scene_that_moves_as_a_whole_does_the_same():
         play.scene.strands.velocities[:] += speed
         play, contacts = play.moved(speed), 0
         for k in range(1, play.steps + 1):
-            contacts += play.step(k, Solver(newton=60, tolerance=1e-12))["contacts"]
+            contacts += play.step(k, Solver(newton=150, tolerance=1e-12))["contacts"]
         assert contacts > 0
         positions.append(play.scene.positions - speed * k * play.dt)
     # It ends 21 m away, where positions are rounded to 4e-15 m; an edge's k dt² / m is about a million.

@@ -102,7 +102,7 @@ def thrown_at_a_strand(friction):
     scene = Scene(strand, cloths=[cloth], contact=Contact(radius=1e-3, friction=friction))
     masses = np.concatenate([mass, cloth.masses])[:, None]
     # The material frame converges too slowly for a sum to be seen to vanish.
-    solver = Solver(newton=60, tolerance=1e-12, continuation="history")
+    solver = Solver(newton=150, tolerance=1e-12, continuation="history")
     for _ in range(4):
         before = np.concatenate([strand.velocities, cloth.velocities])
         report, _ = scene.step(None, dt, solver=solver, system_tolerance=1e-8)

@@ -69,7 +69,7 @@ def test_cloth_falls_onto_locks_and_the_floor_and_through_neither():
     cloth, alone = cache.cloths[0].points.astype(float), simulated(text=LONG)
     assert cloth.shape == (30, 81, 3)
     assert cloth[:, :, 1].min() > 0  # above the floor
-    assert cloth[-1, :, 1].max() < 0.012 and cloth[0, :, 1].max() > 0.015  # it did fall, and lies on locks
+    assert cloth[-1, :, 1].max() < 0.012 < sheet().points[:, 1].min()  # it did fall, and lies on locks
     triangles = sheet().triangles
     segments = np.delete(np.arange(92), [30, 61])[:, None] + [0, 1]
     for locks, places in zip(cache.points, cloth, strict=True):

@@ -11,6 +11,7 @@ namespace ringlet {
 
 struct CollisionMesh {
     std::vector<std::array<int, 2>> edges;     // of strands, cloth and bodies alike
+    int strand_edges = 0;                      // of them: the first are those of strands
     std::vector<std::array<int, 3>> triangles; // of cloth and bodies
     std::vector<int> points;                   // the vertices that are tested against triangles
 

@@ -5,11 +5,12 @@
 #include "ringlet/math/types.h"
 
 #include <array>
+#include <cstdint>
 
 namespace ringlet {
 
 // With c_a − c_b = Σ wᵢ xᵢ between the points that touch: gap g = n · (c_a − c_b), slid distance u = (1 − n nᵀ) of what c_a −
-// c_b changed by in the step. Energy k φ(g) + μ N ψ(‖u‖), N being the force of the contact where it was linearised (lagged):
+// c_b changed by in the step. Energy k φ(g) + μ N ψ(‖u‖), N being what the contact is expected to bear (lagged):
 // convex in the positions.
 struct Contact {
     std::array<int, 4> vertex;
@@ -22,7 +23,10 @@ struct Contact {
     double friction;              // μ
     double creep;                 // a contact that slid less in the step counts as sticking [m]
     Vec3 start;                   // c_a − c_b as the step began [m]
-    double force = 0.0;           // N [N]
+    double force = 0.0;           // with which it pushes where it was linearised [N]
+    double grip = 0.0;            // N [N]
+    double expected = 0.0;        // what the next grip is to be [N]
+    uint64_t pair = 0;            // which two touch
 
     bool of_edges() const { return first == 2; }
 };
@@ -44,22 +48,27 @@ inline double contact_force(const Contact &c, const Vec3 &separation) {
     return -c.stiffness * contact_potential(c.normal.dot(separation), c.distance, c.barrier_end).first;
 }
 
+inline double push_energy(const Contact &c, const Vec3 &separation) {
+    return c.stiffness * contact_potential(c.normal.dot(separation), c.distance, c.barrier_end).value;
+}
+
+inline double friction_energy(const Contact &c, const Vec3 &separation) {
+    if (!(c.friction > 0.0 && c.grip > 0.0)) return 0.0;
+    const Vec3 moved = separation - c.start, slid = moved - c.normal.dot(moved) * c.normal;
+    return c.friction * c.grip * friction_potential(slid.norm(), c.creep).value;
+}
+
 inline double contact_energy(const Contact &c, const Vec3 &separation) {
-    double energy = c.stiffness * contact_potential(c.normal.dot(separation), c.distance, c.barrier_end).value;
-    if (c.friction > 0.0 && c.force > 0.0) {
-        const Vec3 moved = separation - c.start, slid = moved - c.normal.dot(moved) * c.normal;
-        energy += c.friction * c.force * friction_potential(slid.norm(), c.creep).value;
-    }
-    return energy;
+    return push_energy(c, separation) + friction_energy(c, separation);
 }
 
 inline ContactValue contact_value(const Contact &c, const Vec3 &separation) {
     const Potential push = contact_potential(c.normal.dot(separation), c.distance, c.barrier_end);
     ContactValue value{c.stiffness * push.value, c.stiffness * push.first * c.normal,
                        c.stiffness * push.second * c.normal * c.normal.transpose()};
-    if (!(c.friction > 0.0 && c.force > 0.0)) return value;
+    if (!(c.friction > 0.0 && c.grip > 0.0)) return value;
     const Vec3 moved = separation - c.start, slid = moved - c.normal.dot(moved) * c.normal;
-    const double length = slid.norm(), most = c.friction * c.force;
+    const double length = slid.norm(), most = c.friction * c.grip;
     const Potential rub = friction_potential(length, c.creep);
     value.energy += most * rub.value;
     const Mat3 plane = Mat3::Identity() - c.normal * c.normal.transpose();

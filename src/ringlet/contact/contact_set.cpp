@@ -8,8 +8,51 @@
 namespace ringlet {
 namespace {
 
-uint64_t name(const Touch &touch) {
-    return uint64_t(touch.of_edges) << 63 | uint64_t(touch.of[0]) << 32 | uint64_t(touch.of[1]);
+// Ascending as pairs are, and as the contacts of one pair are.
+uint64_t name(const Touch &touch, int which = 0) {
+    return uint64_t(!touch.of_edges) << 63 | uint64_t(touch.of[0]) << 33 | uint64_t(touch.of[1]) << 3 | uint64_t(which);
+}
+
+// Where a pair pushes, and with what share of its stiffness.
+struct Place {
+    ClosestPoints nearest;
+    double share;
+    int which;
+};
+
+// The nearest points of two edges that are almost parallel jump from end to end as they turn. What pushes there is shared out
+// among the ends of both, each with what is nearest on the other edge, and nothing jumps. On a surface, points do this.
+std::vector<Place> places(const CollisionMesh &mesh, const Touch &touch, View<Vec3> now) {
+    constexpr double almost = 0.01; // sin² of the angle
+    if (!touch.of_edges || std::max(touch.of[0], touch.of[1]) >= mesh.strand_edges) return {{touch.nearest, 1.0, 0}};
+    const auto [a0, a1] = mesh.edges[touch.of[0]];
+    const auto [b0, b1] = mesh.edges[touch.of[1]];
+    const Vec3 a = now[a1] - now[a0], b = now[b1] - now[b0];
+    const double aa = a.squaredNorm(), bb = b.squaredNorm(), sine2 = a.cross(b).squaredNorm();
+    const double s = std::min(sine2 / (almost * aa * bb + 1e-300), 1.0), crossing = s * s * (3.0 - 2.0 * s);
+    std::vector<Place> all;
+    if (crossing > 0.0) all.push_back({touch.nearest, crossing, 0});
+    if (crossing == 1.0) return all;
+    const double share = 0.5 * (1.0 - crossing); // two of the four ends are beside the other edge, as a rule
+    const auto add = [&](double u, double v, int which) {
+        all.push_back({{{1.0 - u, u, v - 1.0, -v}, (now[a0] + u * a - now[b0] - v * b).squaredNorm()}, share, which});
+    };
+    for (const double end : {0.0, 1.0}) {
+        add(end, closest::fraction((now[a0] + end * a - now[b0]).dot(b), bb), 1 + int(end));
+        add(closest::fraction((now[b0] + end * b - now[a0]).dot(a), aa), end, 3 + int(end));
+    }
+    std::sort(all.begin(), all.end(), [](const Place &p, const Place &q) { return p.which < q.which; });
+    return all;
+}
+
+// Work for those of `now` whose pairs `before` has, both in order.
+template <class Work> void for_known(const std::vector<Contact> &before, std::vector<Contact> &now, const Work &work) {
+    auto known = before.begin();
+    for (Contact &contact : now) {
+        while (known != before.end() && known->pair < contact.pair) ++known;
+        if (known == before.end()) return;
+        if (known->pair == contact.pair) work(*known, contact);
+    }
 }
 
 } // namespace
@@ -23,35 +66,53 @@ void ContactSet::part_early(double way) {
     for (auto &[pair, distance] : early_) distance += way;
 }
 
-void ContactSet::find(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<Touch> &touching,
-                      View<Vec3> start, View<Vec3> now) {
-    contacts_ = collect<Contact>(int(touching.size()), [&](int k, std::vector<Contact> &contacts) {
+std::vector<Contact> ContactSet::of_touching(const CollisionMesh &mesh, const ContactMaterial &material,
+                                             const std::vector<Touch> &touching, View<Vec3> start, View<Vec3> now) const {
+    return collect<Contact>(int(touching.size()), [&](int k, std::vector<Contact> &contacts) {
         const Touch &touch = touching[k];
-        const double apart = std::sqrt(touch.nearest.distance2);
         const auto early = early_.find(name(touch));
         const double distance = early == early_.end() ? touch.distance : std::min(touch.distance, early->second);
-        if (!(apart > 0.0)) return;
-        Contact contact{};
-        with_vertices(mesh, touch, [&](const auto &a, const auto &b) {
-            std::copy(a.begin(), a.end(), contact.vertex.begin());
-            std::copy(b.begin(), b.end(), contact.vertex.begin() + a.size());
-            contact.first = int(a.size());
-        });
-        contact.weight = touch.nearest.weights;
-        contact.distance = distance;
-        contact.barrier_end = std::min(std::clamp(0.25 * apart, touch.distance / 2000, touch.distance / 64), distance / 64);
-        contact.normal = separation(contact, now) / apart;
-        contact.start = separation(contact, start);
-        double softness[2] = {0.0, 0.0};
-        for (int i = 0; i < 4; ++i)
-            softness[i >= contact.first] += std::abs(contact.weight[i]) / material.stiffness[contact.vertex[i]];
-        contact.stiffness = 1.0 / std::max({softness[0], softness[1], 1e-12});
-        contact.friction =
-            material.friction[material.material[contact.vertex[0]] * material.materials + material.material[contact.vertex[3]]];
-        contact.creep = material.creep;
-        contact.force = contact_force(contact, separation(contact, now));
-        contacts.push_back(contact);
+        for (const Place &place : places(mesh, touch, now)) {
+            const double apart = std::sqrt(place.nearest.distance2);
+            if (!(apart > 0.0 && apart < distance)) continue;
+            Contact contact{};
+            with_vertices(mesh, touch, [&](const auto &a, const auto &b) {
+                std::copy(a.begin(), a.end(), contact.vertex.begin());
+                std::copy(b.begin(), b.end(), contact.vertex.begin() + a.size());
+                contact.first = int(a.size());
+            });
+            contact.weight = place.nearest.weights;
+            contact.distance = distance;
+            contact.barrier_end = distance / 2000;
+            contact.normal = separation(contact, now) / apart;
+            contact.start = separation(contact, start);
+            double softness[2] = {0.0, 0.0};
+            for (int i = 0; i < 4; ++i)
+                softness[i >= contact.first] += std::abs(contact.weight[i]) / material.stiffness[contact.vertex[i]];
+            contact.stiffness = place.share / std::max({softness[0], softness[1], 1e-12});
+            contact.friction =
+                material
+                    .friction[material.material[contact.vertex[0]] * material.materials + material.material[contact.vertex[3]]];
+            contact.creep = material.creep;
+            contact.force = contact_force(contact, separation(contact, now));
+            contact.pair = name(touch, place.which);
+            contacts.push_back(contact);
+        }
     });
+}
+
+std::vector<Contact> ContactSet::pushing(const CollisionMesh &mesh, const ContactMaterial &material,
+                                         const std::vector<Touch> &touching, View<Vec3> start, View<Vec3> elsewhere) const {
+    std::vector<Contact> found = of_touching(mesh, material, touching, start, elsewhere);
+    for_known(contacts_, found, [](const Contact &contact, Contact &there) { there.stiffness = contact.stiffness; });
+    return found;
+}
+
+void ContactSet::find(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<Touch> &touching,
+                      View<Vec3> start, View<Vec3> now) {
+    std::vector<Contact> found = of_touching(mesh, material, touching, start, now);
+    for_known(contacts_, found, [](const Contact &before, Contact &now) { now.grip = now.expected = before.expected; });
+    contacts_ = std::move(found);
     index(mesh);
 }
 

@@ -28,9 +28,17 @@ public:
     const Early &early() const { return early_; }
     void recall(Early early) { early_ = std::move(early); }
 
-    // The contacts of those that touch at the positions `now`; `start` says where the step began, for what they slid since.
+    // What pushes elsewhere: those that touch there. What is a contact is as stiff as here, so that energies can be compared.
+    std::vector<Contact> pushing(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<Touch> &touching,
+                                 View<Vec3> start, View<Vec3> elsewhere) const;
+
+    // Goes over to the contacts of those that touch at the positions `now`; `start` says where the step began, for what they
+    // slid since. Friction's normal force is what was expected of the pair before, nothing if it is new: what a contact pushes
+    // with on the way to balance says little of what it will bear.
     void find(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<Touch> &touching, View<Vec3> start,
               View<Vec3> now);
+
+    void expect(int contact, double force) { contacts_[contact].expected = force; }
 
     const std::vector<Contact> &contacts() const { return contacts_; }
 
@@ -42,6 +50,8 @@ public:
     const std::vector<int> &vertices() const { return vertices_; } // those that move and have contacts
 
 private:
+    std::vector<Contact> of_touching(const CollisionMesh &mesh, const ContactMaterial &material,
+                                     const std::vector<Touch> &touching, View<Vec3> start, View<Vec3> now) const;
     void index(const CollisionMesh &mesh);
 
     Early early_;

@@ -3,6 +3,7 @@
 #include "ringlet/contact/collect.h"
 
 #include <cmath>
+#include <type_traits>
 
 namespace ringlet {
 namespace {
@@ -122,20 +123,27 @@ void NearPairs::arrive() {
         for (int k = 0; k < int(pairs->size()); ++k) (*pairs)[k].apart -= way((*pairs)[k]);
 }
 
-std::vector<Touch> NearPairs::touching(View<Vec3> positions) {
-    const auto among = [&](std::vector<NearPair> &pairs, const auto &counts) {
+// Pairs that may be changed are noted to be as far apart as they are found to be.
+template <class Pairs>
+std::vector<Touch> NearPairs::touching(Pairs &known, Pairs &passing, const NearPairs &near, View<Vec3> at) {
+    const auto among = [&](Pairs &pairs, const auto &counts) {
         return collect<Touch>(int(pairs.size()), [&](int k, std::vector<Touch> &touching) {
-            NearPair &pair = pairs[k];
+            auto &pair = pairs[k];
             if (!(pair.apart < pair.distance) || !counts(pair)) return;
             const ClosestPoints nearest =
-                with_vertices(mesh_, pair, [&](const auto &a, const auto &b) { return closest_points(positions, a, b); });
-            pair.apart = std::sqrt(nearest.distance2);
-            if (pair.apart < pair.distance) touching.push_back({pair.of, pair.of_edges, pair.distance, nearest});
+                with_vertices(near.mesh_, pair, [&](const auto &a, const auto &b) { return closest_points(at, a, b); });
+            const double apart = std::sqrt(nearest.distance2);
+            if constexpr (!std::is_const_v<Pairs>) pair.apart = apart;
+            if (apart < pair.distance) touching.push_back({pair.of, pair.of_edges, pair.distance, nearest});
         });
     };
-    std::vector<Touch> all = among(known_, [&](const NearPair &pair) { return !quick(pair); });
-    merge(all, among(passing_, [](const NearPair &) { return true; }));
+    std::vector<Touch> all = among(known, [&](const NearPair &pair) { return !near.quick(pair); });
+    merge(all, among(passing, [](const NearPair &) { return true; }));
     return all;
 }
+
+std::vector<Touch> NearPairs::touching(View<Vec3> positions) { return touching(known_, passing_, *this, positions); }
+
+std::vector<Touch> NearPairs::would_touch(View<Vec3> on_the_way) const { return touching(known_, passing_, *this, on_the_way); }
 
 } // namespace ringlet

@@ -45,7 +45,8 @@ public:
     const std::vector<NearPair *> &may_meet() const { return may_meet_; }
     void arrive();
 
-    std::vector<Touch> touching(View<Vec3> positions); // where everything is now, in order
+    std::vector<Touch> touching(View<Vec3> positions);           // where everything is now, in order
+    std::vector<Touch> would_touch(View<Vec3> on_the_way) const; // somewhere on the last move
 
     int count() const { return int(known_.size() + passing_.size()); }
 
@@ -55,6 +56,8 @@ private:
         bool quick = false;
     };
 
+    template <class Pairs>
+    static std::vector<Touch> touching(Pairs &known, Pairs &passing, const NearPairs &near, View<Vec3> at);
     void measure_ways(View<Vec3> start, View<Vec3> end);
     double way(const NearPair &pair) const { return first(pair).length + second(pair).length; }
     bool quick(const NearPair &pair) const { return first(pair).quick || second(pair).quick; }

@@ -30,7 +30,7 @@ template <size_t N, size_t M> bool move_as_one(View<int> rigid, const std::array
 template <size_t N, size_t M>
 double impact_time(NearPair &pair, const std::array<int, N> &a, const std::array<int, M> &b, View<Vec3> start, View<Vec3> end) {
     pair.apart = std::sqrt(closest_points(start, a, b).distance2);
-    const double kept = std::min(0.5 * pair.distance, 0.2 * pair.apart);
+    const double kept = std::min({0.5 * pair.distance, std::max(0.2 * pair.apart, pair.distance / 250), 0.9 * pair.apart});
     Vec3 x[4], p[4];
     for (size_t i = 0; i < 4; ++i) {
         const int v = i < N ? a[i] : b[i - N];
@@ -108,28 +108,44 @@ void fade(const FilterScene &scene, View<Vec3> start, View<Vec3> end, const Fade
 constexpr double most_strain = 0.05;
 
 // Strands of pairs that would meet go only as far as that, as a whole; one that could hardly move is in the first rounds held
-// back near the pair alone, so that the rest of it can follow. After some more rounds they stay where they are: two that stay
-// do not meet. A cloth is held back near the pair, and stays as a whole only when all else fails.
-void hold_back(const FilterScene &scene, View<Vec3> start, const std::vector<Met> &met, int round, std::vector<Vec3> &end,
-               std::vector<unsigned char> &changed) {
+// back near the pair alone, so that the rest of it can follow. Of two strands that do not go equally far, the one ahead is
+// first made to. After some more rounds they stay where they are: two that stay do not meet. A cloth is held back near the
+// pair, and stays as a whole only when all else fails. `go`: per strand, how much of its way is left to it as a whole.
+void hold_back(const FilterScene &scene, View<Vec3> start, const std::vector<Met> &met, int round, std::vector<double> &go,
+               std::vector<Vec3> &end, std::vector<unsigned char> &changed) {
     constexpr int local_rounds = 2, rounds = 8, local_rounds_of_cloth = 16;
     constexpr double hardly = 0.2;
     const int strands = int(scene.offsets.size()) - 1;
     std::vector<Pull> pulls(start.size());
-    std::map<int, double> parts; // strand → how far it goes as a whole
-    for (const Met &pair : met)
+    std::map<int, double> parts; // object → how much of what is left to it now
+    const auto keep = [&](int object, double part) {
+        double &whole = parts.try_emplace(object, 1.0).first->second;
+        whole = std::min(whole, part);
+    };
+    const auto strand_of = [&](int v, int w) { // an edge's
+        const bool moves = scene.mesh.moves[v] || scene.mesh.moves[w];
+        return moves && scene.mesh.object[v] < strands ? scene.mesh.object[v] : -1;
+    };
+    for (const Met &pair : met) {
+        const int a = strand_of(pair.vertices[0], pair.vertices[1]), b = strand_of(pair.vertices[3], pair.vertices[2]);
+        if (a >= 0 && b >= 0 && go[a] != go[b] && round < rounds) {
+            keep(go[a] > go[b] ? a : b, std::min(go[a], go[b]) / std::max(go[a], go[b]));
+            continue;
+        }
+        const double part = round < rounds ? pair.time : 0.0;
         for (const int v : pair.vertices)
             if (scene.mesh.moves[v]) {
-                const double part = round < rounds ? pair.time : 0.0;
                 pulls[v].part = std::max(pulls[v].part, 1.0 - part);
-                double &whole = parts.try_emplace(scene.mesh.object[v], 1.0).first->second;
-                whole = std::min(whole, part);
+                keep(scene.mesh.object[v], part);
             }
+    }
     fade(scene, start, end, {most_strain, round < local_rounds_of_cloth ? most_strain : 0.0}, pulls);
     for (const auto &[strand, part] : parts)
-        if (strand < strands && (round >= local_rounds || part > hardly))
+        if (strand < strands && (scene.whole || round >= local_rounds || part > hardly)) {
+            go[strand] *= part;
             for (int v = scene.offsets[strand]; v < scene.offsets[strand + 1]; ++v)
                 if (scene.mesh.moves[v]) pulls[v].part = 1.0 - part;
+        }
 #pragma omp parallel for schedule(static)
     for (int v = 0; v < int(start.size()); ++v) {
         changed[v] = pulls[v].part > 0.0;
@@ -221,6 +237,7 @@ FilterReport filter_step(const FilterScene &scene, NearPairs &near, View<Vec3> s
     FilterReport report;
     const size_t vertices = start.size();
     std::vector<unsigned char> changed(vertices, 0), in_the_way(vertices, 0);
+    std::vector<double> go(scene.offsets.size(), 1.0);
     std::optional<Zones> zones;
     near.set_out(start, end);
     for (;; ++report.rounds) {
@@ -240,7 +257,7 @@ FilterReport filter_step(const FilterScene &scene, NearPairs &near, View<Vec3> s
             break;
         }
         if (scene.still) { // what has not changed since the last round has not met
-            hold_back(scene, start, met, report.rounds, end, changed);
+            hold_back(scene, start, met, report.rounds, go, end, changed);
             near.set_out_anew(start, end, changed);
         } else {
             if (!zones) zones.emplace(scene);

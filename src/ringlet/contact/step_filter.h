@@ -28,19 +28,21 @@ struct FilterScene {
     View<int>
         rigid; // per vertex: vertices of one number ≥ 0 are moved by one and the same affine map, so that none of them meet
     bool still = false; // nothing kinematic moves: staying is safe
+    bool whole = false; // strands then only go a part of their way as a whole, and none is held back near a pair alone
     // Where each cloth begins among the vertices, and the end; object numbers of cloths follow those of strands.
     View<int> cloths = {};
     const Neighbours *neighbours = nullptr; // of the vertices of cloths
 };
 
 // Changes where a move ends (`end`, rows of vertices that move) so that no pair meets while every vertex goes straight from
-// `start` to `end`: none comes nearer than half its contact distance or a fifth of its distance at the start, whichever is
-// less. Where nothing kinematic moves, a strand that would meet another goes only as far as where they touch, as a whole, so
-// that its shape is one on the way, or is held back near the pair alone if it could hardly move; of a cloth only what is in the
-// way, and less and less around it. What is still in the way after some rounds stays. Else vertices of pairs that would meet
-// form zones, which share one motion: that of the body they touch, or their mean. Along a strand and over a cloth the change
-// fades out so slowly that no edge is strained by more than a few per cent. Zones grow while pairs at their border would meet.
-// Where bodies leave no way out, everything goes only a part of its way.
+// `start` to `end`: none comes nearer than half its contact distance or, if that is less, a fifth of its distance at the start,
+// but no more than a little below 1/250 of its contact distance. Where nothing kinematic moves, a strand that would meet
+// another goes only as far as where they touch, as a whole, so that its shape is one on the way, and both go equally far, so
+// that what one does for the other still fits; or it is held back near the pair alone if it could hardly move. Of a cloth only
+// what is in the way is held back, and less and less around it. What is still in the way after some rounds stays. Else vertices
+// of pairs that would meet form zones, which share one motion: that of the body they touch, or their mean. Along a strand and
+// over a cloth the change fades out so slowly that no edge is strained by more than a few per cent. Zones grow while pairs at
+// their border would meet. Where bodies leave no way out, everything goes only a part of its way.
 //
 // Only relative motion counts: a scene that moves as a whole is filtered alike. `near` may know pairs only where nothing
 // kinematic moves; it sets out on the filtered move and has arrived afterwards.

@@ -3,6 +3,7 @@
 #include "ringlet/contact/step_filter.h"
 #include "ringlet/scene/embedded.h"
 #include "ringlet/scene/scene_carry.h"
+#include "ringlet/scene/scene_progress.h"
 #include "ringlet/scene/scene_search.h"
 
 #include <algorithm>
@@ -22,6 +23,11 @@ public:
 private:
     double &sum_;
     std::chrono::steady_clock::time_point start_;
+};
+
+struct MoveKind {
+    bool still; // what is kinematic stays
+    bool whole; // strands only go a part of their way as a whole
 };
 
 } // namespace
@@ -48,6 +54,7 @@ struct Scene::Parts {
     std::vector<Vec3> given; // where what is kinematic ends; where the rest began
     std::vector<int> rigid;  // per vertex: the body that it goes along with as one in this step; −1: none
     AlignedVector x, direction;
+    std::vector<double> reach; // per part: how far Newton's method would last have gone [m]
 
     Parts(const StrandModel &model_, StrandState &state_, const std::vector<SceneCloth> &cloths,
           const std::vector<BodyModel> &bodies, const std::vector<int> &rooted_in, const SceneContact &contact);
@@ -64,7 +71,11 @@ struct Scene::Parts {
     void set_stiffness(double dt);
     void note_touched();
     SceneCarriers carriers(std::vector<int> &of_cloths, double dt) const;
-    double move(std::vector<Vec3> &now, std::vector<Vec3> &to, bool still, SceneReport &report);
+    double filter(View<Vec3> now, std::vector<Vec3> &to, const MoveKind &kind, SceneReport &report);
+    void arrive(std::vector<Vec3> &now, const std::vector<Vec3> &to);
+    int newton(const SceneStep &scene_step, const StrandStep &step, std::vector<Vec3> &now, SceneProgress &progress,
+               SceneReport &report);
+    void take(View<Vec3> now, View<Vec3> wanted, View<Vec3> to);
     void begin_strands(const StrandArrays &arrays, const StrandStep &step);
     void begin_cloths(const SceneInput &input, const StrandStep &step, View<Vec3> now);
 };
@@ -128,27 +139,32 @@ SceneCarriers Scene::Parts::carriers(std::vector<int> &of_cloths, double dt) con
     return {root_body, of_cloths, mass > 0.0 ? Vec3(dt * momentum / mass) : Vec3(Vec3::Zero())};
 }
 
-// Everything goes from `now` to `to`, or as near as nothing passes through anything; says what part of the way that is.
-double Scene::Parts::move(std::vector<Vec3> &now, std::vector<Vec3> &to, bool still, SceneReport &report) {
+// Everything is to go from `now` to `to`: this becomes a place as near as nothing passes through anything. Returns what part of
+// the way that is.
+double Scene::Parts::filter(View<Vec3> now, std::vector<Vec3> &to, const MoveKind &kind, SceneReport &report) {
     const Stopwatch watch(report.time_filter);
     const SceneCarry with = carry();
     const FilterScene scene{vertices.mesh,
                             vertices.mass,
                             View<int>(model.offsets),
                             [&](int vertex, const Vec3 &point) { return with.carried(vertex, point); },
-                            still ? View<int>() : View<int>(rigid),
-                            still,
+                            kind.still ? View<int>() : View<int>(rigid),
+                            kind.still,
+                            kind.whole,
                             View<int>(vertices.cloths),
                             &neighbours};
-    const bool as_one = !still && !rigid.empty() && rigid[0] >= 0 &&
+    const bool as_one = !kind.still && !rigid.empty() && rigid[0] >= 0 &&
                         std::all_of(rigid.begin(), rigid.end(), [&](int body) { return body == rigid[0]; });
     const FilterReport filtered = as_one ? FilterReport{} : filter_step(scene, near, now, to);
     report.candidates = filtered.candidates;
     report.violations += filtered.violations;
     report.zone_vertices += filtered.zone_vertices;
+    return filtered.fraction;
+}
+
+void Scene::Parts::arrive(std::vector<Vec3> &now, const std::vector<Vec3> &to) {
     now = to;
     if (recording) path.push_back(now);
-    return filtered.fraction;
 }
 
 void Scene::Parts::begin_strands(const StrandArrays &arrays, const StrandStep &step) {
@@ -174,6 +190,83 @@ void Scene::Parts::begin_cloths(const SceneInput &input, const StrandStep &step,
     }
 }
 
+// What a filter left of a move is taken of the direction that led there, of all that it says of a vertex.
+void Scene::Parts::take(View<Vec3> now, View<Vec3> wanted, View<Vec3> to) {
+    for (int v = 0; v < vertices.moving_vertices(); ++v) {
+        const Vec3 way = wanted[v] - now[v];
+        const double part = to[v] == wanted[v] ? 1.0 : way.dot(to[v] - now[v]) / way.squaredNorm();
+        for (int k = 0; k < system.freedoms(v); ++k) direction[system.slot(v) + k * system.stride(v)] *= part;
+    }
+}
+
+// Newton's method from x, which is `now`; says how many iterations it took.
+int Scene::Parts::newton(const SceneStep &scene_step, const StrandStep &step, std::vector<Vec3> &now, SceneProgress &progress,
+                         SceneReport &report) {
+    constexpr int most_more = 60; // for strands that were held back
+    std::vector<unsigned char> changed(system.unit_count(), 1);
+    std::vector<double> unused;
+    reach.assign(vertices.parts(), 0.0);
+    int iteration = 0;
+    for (bool arrived = false; !arrived; ++iteration) {
+        if (iteration >= step.newton && (iteration >= step.newton + most_more || !progress.narrow(system, now))) break;
+        {
+            const Stopwatch watch(report.time_pairs);
+            system.touch(near.touching(now), now);
+        }
+        {
+            const Stopwatch watch(report.time_assemble);
+            system.energies(x, &near, changed, unused);
+            system.assemble(x);
+        }
+        {
+            const Stopwatch watch(report.time_solve);
+            const SceneSolver::Result solved = solver.solve(system, scene_step.system, scene_step.system_tolerance, direction);
+            report.linear_iterations += solved.iterations;
+            report.linear_residual = solved.residual;
+            measure(system, direction, reach);
+            system.expect(direction);
+        }
+        const bool small = std::all_of(reach.begin(), reach.end(), [&](double far) { return far <= step.tolerance; });
+        // A cloth that is held back here and there is strained there, so that its energy rises for once: where there is one,
+        // the search comes before the filter, and knows of the contacts alone.
+        if (!system.cloths.empty()) {
+            const Stopwatch watch(report.time_search);
+            AlignedVector tried(system.size());
+            std::copy_n(x.data(), x.size(), tried.data());
+            if (!search(system, nullptr, direction, small, tried).moved) break;
+            for (size_t i = 0; i < system.size(); ++i) direction[i] = tried[i] - x[i];
+            system.energies(x, &near, std::vector<unsigned char>(system.unit_count(), 1), unused);
+        }
+        std::vector<Vec3> wanted = now;
+        for (int v = 0; v < vertices.moving_vertices(); ++v) wanted[v] += system.position(direction, v);
+        std::vector<Vec3> to = wanted;
+        // The first time what can hardly move is held back where it meets something, so that the rest of it comes along; then
+        // shape counts.
+        filter(now, to, {true, iteration > 0}, report);
+        progress.moved(now, wanted, to);
+        take(now, wanted, to);
+        arrived = small && progress.all_went();
+        SceneSearch found;
+        {
+            const Stopwatch watch(report.time_search);
+            found = search(system, &near, direction, small || !system.cloths.empty(), x);
+            report.cuts += found.cuts;
+        }
+        if (!found.moved) break;
+        progress.cut(found.step);
+        progress.judge(step.tolerance);
+        if (found.cuts > 0) { // not all go equally far then
+            to = now;
+            system.gather(x, to);
+            filter(now, to, {true, true}, report);
+        }
+        changed.assign(system.unit_count(), found.cuts > 0);
+        arrive(now, to);
+        system.scatter(now, x);
+    }
+    return iteration;
+}
+
 // One step as far as it goes; says what part of it that was.
 double Scene::Parts::advance(const SceneInput &input, const SceneStep &scene_step, StrandStep &step, SceneReport &report,
                              std::vector<StrandReport> &of_strands, std::vector<ClothReport> &of_cloths) {
@@ -195,7 +288,8 @@ double Scene::Parts::advance(const SceneInput &input, const SceneStep &scene_ste
     std::vector<int> bodies_of_cloths;
     rigid = carry_rigidly(carry(), View<int>(model.offsets), carriers(bodies_of_cloths, step.dt), to);
     near.forget();
-    const double fraction = move(now, to, false, report);
+    const double fraction = filter(now, to, {false, false}, report);
+    arrive(now, to);
     {
         const Stopwatch watch(report.time_filter);
         near.note(now, settings.strand_radius);
@@ -214,49 +308,23 @@ double Scene::Parts::advance(const SceneInput &input, const SceneStep &scene_ste
             if (!vertices.mesh.moves[v]) to[v] = now[v];
     };
     keep_held();
-    move(now, to, true, report);
+    const std::vector<Vec3> guess = to;
+    filter(now, to, {true, false}, report);
+    SceneProgress progress(system);
+    progress.moved(now, guess, to);
+    progress.judge(step.tolerance);
+    arrive(now, to);
     system.scatter(now, x);
-
-    const std::vector<unsigned char> every(system.unit_count(), 1);
-    std::vector<double> unused;
-    SceneSearch found;
-    int iteration = 0;
-    for (bool arrived = false; iteration < step.newton && !arrived; ++iteration) {
-        {
-            const Stopwatch watch(report.time_pairs);
-            system.contacts.find(vertices.mesh, vertices.material, near.touching(now), vertices.positions, now);
-            system.couple_parts();
-        }
-        {
-            const Stopwatch watch(report.time_assemble);
-            system.energies(x, every, unused);
-            system.assemble(x);
-        }
-        {
-            const Stopwatch watch(report.time_solve);
-            const SceneSolver::Result solved = solver.solve(system, scene_step.system, scene_step.system_tolerance, direction);
-            report.linear_iterations += solved.iterations;
-            report.linear_residual = solved.residual;
-        }
-        {
-            const Stopwatch watch(report.time_search);
-            found = search(system, direction, step.tolerance, x);
-            report.cuts += found.cuts;
-        }
-        if (!found.moved) break;
-        arrived = found.largest <= step.tolerance;
-        system.gather(x, to);
-        move(now, to, true, report);
-        system.scatter(now, x);
-    }
+    const int iteration = newton(scene_step, step, now, progress, report);
+    system.touch(near.touching(now), now);
     report.newton += iteration;
-    report.residual = found.largest;
-    report.unconverged = found.largest > step.tolerance;
+    report.residual = reach.empty() ? 0.0 : *std::max_element(reach.begin(), reach.end());
+    report.unconverged = report.residual > step.tolerance;
     report.contacts = double(system.contacts.contacts().size());
-    system.strands.end(x, {double(iteration), report.cuts, found.largest}, of_strands);
+    system.strands.end(x, {double(iteration), report.cuts, report.residual}, of_strands);
     for (int c = 0; c < int(system.cloths.size()); ++c) {
         ClothReport &of = of_cloths[c] = {};
-        of.newton = iteration, of.residual = found.largest, of.unconverged = report.unconverged;
+        of.newton = iteration, of.residual = report.residual, of.unconverged = report.unconverged;
         system.cloths[c].end(x.data() + system.unit_begin(system.group_count() + c), of);
     }
     note_touched();

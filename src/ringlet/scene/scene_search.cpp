@@ -17,28 +17,52 @@ template <class Work> void for_parts(const SceneSystem &system, int unit, const 
         work(group.strands[lane], system.unit_begin(unit) + lane, size_t(of.lanes), size_t(of.freedoms) * of.vertices);
 }
 
+// Of those that touch one another, marks all that touch one that is marked.
+void mark_touched(const SceneSystem &system, std::vector<unsigned char> &marked) {
+    std::vector<unsigned char> touched = marked;
+    for (const Contact &c : system.contacts.contacts()) {
+        const int a = system.vertices.part_of(c.vertex[0]), b = system.vertices.part_of(c.vertex[3]);
+        if (a < 0 || b < 0) continue;
+        if (marked[a]) touched[b] = 1;
+        if (marked[b]) touched[a] = 1;
+    }
+    marked = std::move(touched);
+}
+
 } // namespace
 
-SceneSearch search(SceneSystem &system, AlignedVector &direction, double tolerance, AlignedVector &x) {
-    constexpr double least_decrease = 1e-4, rounding = 1e-13;
-    constexpr int most_cuts = 20, most_halvings = 12; // after which a part stays
-    SceneSearch result;
-    const int parts = system.vertices.parts();
-    std::vector<double> step(parts, 1.0), slope(parts, 0.0), largest(parts, 0.0), now, before;
-    std::vector<unsigned char> changed(system.unit_count(), 0);
-    system.energies(x, changed, before); // units were asked at x already
+void measure(const SceneSystem &system, AlignedVector &direction, std::vector<double> &reach) {
+    reach.resize(system.vertices.parts(), 0.0);
     system.for_units([&](int u) {
         for_parts(system, u, [&](int part, size_t first, size_t stride, size_t count) {
+            reach[part] = 0.0;
+            double sum = 0.0;
             for (size_t i = first; i < first + count * stride; i += stride) {
-                slope[part] += system.gradient(i, u) * direction[i];
-                largest[part] = std::max(largest[part], std::abs(direction[i]));
+                reach[part] = std::max(reach[part], std::abs(direction[i]));
+                sum += direction[i];
             }
-            if (std::isfinite(slope[part])) return;
-            slope[part] = largest[part] = 0.0;
+            if (std::isfinite(sum)) return;
+            reach[part] = 0.0;
             for (size_t i = first; i < first + count * stride; i += stride) direction[i] = 0.0;
         });
     });
-    for (const double of : largest) result.largest = std::max(result.largest, of);
+}
+
+SceneSearch search(SceneSystem &system, const NearPairs *near, const AlignedVector &direction, bool as_it_is,
+                   AlignedVector &x) {
+    constexpr double least_decrease = 1e-4, rounding = 1e-13;
+    constexpr int most_cuts = 20, most_halvings = 12; // after which a part stays
+    const int parts = system.vertices.parts();
+    SceneSearch result{false, 0, std::vector<double>(parts, 1.0)};
+    std::vector<double> &step = result.step;
+    std::vector<double> slope(parts, 0.0), now, before;
+    std::vector<unsigned char> changed(system.unit_count(), 0), rises(parts);
+    system.energies(x, near, changed, before); // units were asked at x already
+    system.for_units([&](int u) {
+        for_parts(system, u, [&](int part, size_t first, size_t stride, size_t count) {
+            for (size_t i = first; i < first + count * stride; i += stride) slope[part] += system.gradient(i, u) * direction[i];
+        });
+    });
 
     const auto allowed = [&](int part) { // of the energy, were it alone
         return before[part] + least_decrease * step[part] * slope[part] + rounding * std::abs(before[part]);
@@ -53,26 +77,29 @@ SceneSearch search(SceneSystem &system, AlignedVector &direction, double toleran
                     for (size_t i = first; i < first + count * stride; i += stride) trial[i] = x[i] + step[part] * direction[i];
                 });
         });
-        system.energies(trial, changed, now);
+        system.energies(trial, near, changed, now);
         double sum = 0.0, bound = 0.0;
         for (int p = 0; p < parts; ++p)
             if (system.together(p)) sum += now[p], bound += allowed(p);
-        const bool sum_falls = sum <= bound, near = cut == 0 && result.largest <= tolerance;
+        const bool sum_falls = sum <= bound;
+        bool any_together = false;
+        for (int p = 0; p < parts; ++p) {
+            const bool may_rise = as_it_is || step[p] == 0.0 || (system.together(p) && sum_falls);
+            rises[p] = !may_rise && !(now[p] <= allowed(p));
+            any_together |= rises[p] && system.together(p);
+        }
+        if (any_together) mark_touched(system, rises);
+        if (!any_together && !sum_falls && !as_it_is)
+            for (int p = 0; p < parts; ++p) rises[p] |= system.together(p);
+
         std::fill(changed.begin(), changed.end(), 0);
-        bool any = false, any_together = false;
-        const auto halve = [&](int part) {
-            step[part] *= cut < most_halvings ? 0.5 : 0.0;
-            changed[system.unit_of(part)] = any = true;
-            ++result.cuts;
-        };
-        for (int p = 0; p < parts && !near; ++p)
-            if (step[p] > 0.0 && !(system.together(p) && sum_falls) && !(now[p] <= allowed(p))) {
-                any_together |= system.together(p);
-                halve(p);
+        bool any = false;
+        for (int p = 0; p < parts; ++p)
+            if (rises[p] && step[p] > 0.0) {
+                step[p] *= cut < most_halvings ? 0.5 : 0.0;
+                changed[system.unit_of(p)] = any = true;
+                ++result.cuts;
             }
-        if (!sum_falls && !near && !any_together)
-            for (int p = 0; p < parts; ++p)
-                if (system.together(p) && step[p] > 0.0) halve(p);
         if (!any) {
             std::swap(x, trial);
             result.moved = true;
@@ -80,7 +107,7 @@ SceneSearch search(SceneSystem &system, AlignedVector &direction, double toleran
         }
     }
     changed.assign(system.unit_count(), 1);
-    system.energies(x, changed, now);
+    system.energies(x, near, changed, now);
     return result;
 }
 

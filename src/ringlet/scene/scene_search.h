@@ -5,16 +5,20 @@
 
 namespace ringlet {
 
+// The largest coordinate of each part's direction [m]; those of parts that are not active stay as they are in `reach`. A part
+// whose direction is not finite, its system being too ill-conditioned to solve, stays: its direction becomes zero.
+void measure(const SceneSystem &system, AlignedVector &direction, std::vector<double> &reach);
+
 struct SceneSearch {
-    bool moved = false; // false: no way was found on which the energy falls
-    double largest = 0; // coordinate of the direction [m]
-    int cuts = 0;       // halvings
+    bool moved = false;       // false: no way was found on which the energy falls
+    int cuts = 0;             // halvings
+    std::vector<double> step; // per part: how much of its direction it went
 };
 
-// Goes from x along the direction, every part as far as is good for it. One that touches nothing that moves goes half as far
-// until its energy falls as it should. The energies of those that touch, contacts shared out evenly, need only fall in sum;
-// where they do not, those whose own rises go half as far. A direction that nowhere exceeds the tolerance [m] is gone as it is;
-// a part whose direction is not finite, its system being too ill-conditioned to solve, stays.
-SceneSearch search(SceneSystem &system, AlignedVector &direction, double tolerance, AlignedVector &x);
+// Goes from x along the direction, which is that of the last move, every part as far as is good for it. One that touches
+// nothing that moves goes half as far until its energy falls as it should. The energies of those that touch, contacts shared
+// out evenly, need only fall in sum; where they do not, those whose own rises go half as far, and so do those that they touch:
+// what a direction does on both sides of a contact belongs together. `as_it_is`: all of it is gone, whatever the energy.
+SceneSearch search(SceneSystem &system, const NearPairs *near, const AlignedVector &direction, bool as_it_is, AlignedVector &x);
 
 } // namespace ringlet

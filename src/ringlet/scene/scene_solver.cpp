@@ -27,6 +27,9 @@ double dot(const AlignedVector &a, const AlignedVector &b, size_t first, size_t 
 SceneSolver::Result SceneSolver::solve(SceneSystem &system, System how, double tolerance, AlignedVector &direction) {
     all_ = how == System::conjugate_gradient || how == System::direct;
     how = choose(system, how);
+    // The matrix of what is not active is not assembled.
+    if (how == System::direct && std::count(system.active.begin(), system.active.end(), 0) > 0)
+        how = System::conjugate_gradient;
     if (residual_.size() != system.size())
         for (AlignedVector *vector : {&residual_, &solved_, &searched_, &image_, &product_})
             *vector = AlignedVector(system.size());
@@ -49,6 +52,7 @@ SceneSolver::Result SceneSolver::solve(SceneSystem &system, System how, double t
 
 // What nothing couples is solved by P. For the rest conjugate gradients begin at 0.
 void SceneSolver::begin(SceneSystem &system, AlignedVector &direction) {
+    for (AlignedVector *vector : {&direction, &searched_}) vector->fill(0.0); // of what is not active too
     system.for_units([&](int u) {
         const size_t first = system.unit_begin(u), count = system.unit_end(u) - first;
         system.factor(u);

@@ -13,6 +13,7 @@ void SceneSystem::begin(const StrandArrays &arrays, const StrandStep &step, View
     strands.begin(arrays, step);
     given_ = given;
     own_energies_.assign(vertices.parts(), 0.0);
+    active.assign(unit_count(), 1);
 }
 
 void SceneSystem::gather(const AlignedVector &at, std::vector<Vec3> &into) const {
@@ -24,6 +25,11 @@ void SceneSystem::scatter(View<Vec3> from, AlignedVector &into) const {
 #pragma omp parallel for schedule(static)
     for (int v = 0; v < vertices.moving_vertices(); ++v)
         for (int k = 0; k < 3; ++k) into[slot(v) + k * stride(v)] = from[v][k];
+}
+
+void SceneSystem::touch(const std::vector<Touch> &touching, View<Vec3> now) {
+    contacts.find(vertices.mesh, vertices.material, touching, vertices.positions, now);
+    couple_parts();
 }
 
 // Nothing but the incomplete factor is known of a cloth: it counts as coupled whatever touches it.
@@ -52,7 +58,8 @@ Vec3 SceneSystem::separation_at(const Contact &c, const AlignedVector &x) const 
     return sum;
 }
 
-void SceneSystem::energies(const AlignedVector &x, const std::vector<unsigned char> &changed, std::vector<double> &of) {
+void SceneSystem::energies(const AlignedVector &x, const NearPairs *near, const std::vector<unsigned char> &changed,
+                           std::vector<double> &of) {
     for_units([&](int u) {
         if (!changed[u]) return;
         if (u >= group_count()) {
@@ -66,14 +73,32 @@ void SceneSystem::energies(const AlignedVector &x, const std::vector<unsigned ch
         for (int lane = 0; lane < group.count; ++lane) own_energies_[group.strands[lane]] = energy[lane];
     });
     of = own_energies_;
+    places_.assign(given_.begin(), given_.end());
+    gather(x, places_);
+    const auto share = [&](const Contact &c, double energy) {
+        const int a = vertices.part_of(c.vertex[0]), b = vertices.part_of(c.vertex[3]);
+        if (a >= 0) of[a] += b >= 0 ? 0.5 * energy : energy;
+        if (b >= 0) of[b] += a >= 0 ? 0.5 * energy : energy;
+    };
+    if (near != nullptr) {
+        const std::vector<Touch> touching = near->would_touch(places_);
+        for (const Contact &c : contacts.pushing(vertices.mesh, vertices.material, touching, vertices.positions, places_))
+            share(c, push_energy(c, separation(c, places_)));
+    } else {
+        for (const Contact &c : contacts.contacts()) share(c, push_energy(c, separation(c, places_)));
+    }
+    for (const Contact &c : contacts.contacts()) share(c, friction_energy(c, separation(c, places_)));
+}
+
+void SceneSystem::expect(const AlignedVector &direction) {
     const std::vector<Contact> &all = contacts.contacts();
-    std::vector<double> energy(all.size());
-#pragma omp parallel for schedule(static)
-    for (int c = 0; c < int(all.size()); ++c) energy[c] = contact_energy(all[c], separation_at(all[c], x));
-    for (int c = 0; c < int(all.size()); ++c) {
-        const int a = vertices.part_of(all[c].vertex[0]), b = vertices.part_of(all[c].vertex[3]);
-        if (a >= 0) of[a] += b >= 0 ? 0.5 * energy[c] : energy[c];
-        if (b >= 0) of[b] += a >= 0 ? 0.5 * energy[c] : energy[c];
+    for (int k = 0; k < int(all.size()); ++k) {
+        const Contact &c = all[k];
+        Vec3 change = Vec3::Zero();
+        for (int i = 0; i < 4; ++i)
+            if (vertices.mesh.moves[c.vertex[i]] && c.weight[i] != 0.0)
+                change += c.weight[i] * position(direction, c.vertex[i]);
+        contacts.expect(k, std::max(0.0, c.force - c.normal.dot(values_[k].hessian * change)));
     }
 }
 
@@ -90,6 +115,7 @@ void SceneSystem::assemble(const AlignedVector &x) {
     const std::vector<int> &touched = contacts.vertices();
 #pragma omp parallel for schedule(static)
     for (int k = 0; k < int(touched.size()); ++k) {
+        if (!is_active(vertices.part_of(touched[k]))) continue;
         if (touched[k] < vertices.strand_vertices())
             add_to_strand(touched[k]);
         else
@@ -186,6 +212,7 @@ void SceneSystem::couple(const AlignedVector &p, AlignedVector &q) {
     const std::vector<int> &touched = contacts.vertices();
 #pragma omp parallel for schedule(static)
     for (int k = 0; k < int(touched.size()); ++k) {
+        if (!is_active(vertices.part_of(touched[k]))) continue;
         Vec3 force = Vec3::Zero();
         for (const ContactSet::Role &role : contacts.of(touched[k])) {
             const Contact &c = all[role.contact];

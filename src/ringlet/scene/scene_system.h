@@ -25,6 +25,9 @@ public:
     // Opens a step of the strands; each cloth has its own begin(). `given` says where what is kinematic is, of all vertices.
     void begin(const StrandArrays &arrays, const StrandStep &step, View<Vec3> given);
 
+    std::vector<unsigned char> active; // per unit; the others stay where they are, and are not asked
+    bool is_active(int part) const { return active[unit_of(part)]; }
+
     // Units are what is computed at once, each with its range of the unknowns: groups of strands, then cloths.
     int group_count() const { return strands.group_count(); }
     int unit_count() const { return group_count() + int(cloths.size()); }
@@ -41,8 +44,10 @@ public:
     size_t size() const { return strands.size() + 3 * size_t(vertices.cloths.back() - vertices.cloths[0]); }
     template <class Work> void for_units(const Work &work) const {
 #pragma omp parallel for schedule(dynamic)
-        for (int u = 0; u < group_count(); ++u) work(u);
-        for (int u = group_count(); u < unit_count(); ++u) work(u); // parallel inside
+        for (int u = 0; u < group_count(); ++u)
+            if (active[u]) work(u);
+        for (int u = group_count(); u < unit_count(); ++u)
+            if (active[u]) work(u); // parallel inside
     }
     // Σ over units of what `of` says, in a fixed order.
     template <class Of> double sum(const Of &of) const {
@@ -51,12 +56,15 @@ public:
         return std::accumulate(values.begin(), values.end(), 0.0);
     }
 
-    // Coordinate k of a part's vertex stands at slot + k · stride.
+    // Coordinate k of a part's vertex stands at slot + k · stride; a strand's may have more than three.
     size_t slot(int vertex) const {
         const int in_cloths = vertex - vertices.strand_vertices();
         return in_cloths < 0 ? strands.slot(vertex) : strands.size() + 3 * size_t(in_cloths);
     }
     size_t stride(int vertex) const { return vertex < vertices.strand_vertices() ? strands.stride() : 1; }
+    int freedoms(int vertex) const {
+        return vertex < vertices.strand_vertices() ? strands.system(unit_of(vertices.part_of(vertex))).freedoms : 3;
+    }
     Vec3 position(const AlignedVector &at, int vertex) const {
         if (vertex >= vertices.moving_vertices()) return given_[vertex];
         const size_t first = slot(vertex), step = stride(vertex);
@@ -65,19 +73,24 @@ public:
     void gather(const AlignedVector &at, std::vector<Vec3> &into) const; // positions of the vertices of parts
     void scatter(View<Vec3> from, AlignedVector &into) const;
 
-    // To be called when the contacts have changed: finds what they couple.
-    void couple_parts();
+    // Goes over to the contacts of what touches where everything is now.
+    void touch(const std::vector<Touch> &touching, View<Vec3> now);
     bool together(int part) const { return together_[part]; }  // something that moves touches it
     bool is_coupled(int unit) const { return coupled_[unit]; } // its own factor does not solve it
     bool any_coupled() const;
 
-    // Energies [J] of the parts at x, each with its share of those of its contacts; only units that have `changed` since this
-    // was last asked are asked again.
-    void energies(const AlignedVector &x, const std::vector<unsigned char> &changed, std::vector<double> &of_parts);
+    // Energies [J] of the parts at x, somewhere on the last move: each with its share of what pushes there, be it a contact yet
+    // or not (without `near`: of what its contacts push, by their planes), and of the contacts' friction. Only units that have
+    // `changed` since this was last asked are asked again.
+    void energies(const AlignedVector &x, const NearPairs *near, const std::vector<unsigned char> &changed,
+                  std::vector<double> &of_parts);
 
     void assemble(const AlignedVector &x);     // the gradient and A where the energies were asked last
     double gradient(size_t i, int unit) const; // its entry i of the whole vector, which is the unit's; 0 of padding
     void negative_gradient(int unit, AlignedVector &into) const;
+
+    // Expects the contacts to bear what they push with where the direction ends, by their matrix: there, all forces balance.
+    void expect(const AlignedVector &direction);
 
     void factor(int unit);                                 // of P, exactly or nearly
     void precondition(int unit, AlignedVector &b) const;   // by it, in place
@@ -87,6 +100,7 @@ public:
 
 private:
     bool couples(const Contact &c) const { return vertices.part_of(c.vertex[0]) >= 0 && vertices.part_of(c.vertex[3]) >= 0; }
+    void couple_parts();
     Vec3 separation_at(const Contact &contact, const AlignedVector &x) const;
     void add_to_strand(int vertex);
     void add_to_cloth(int vertex);
@@ -96,6 +110,7 @@ private:
     std::vector<std::array<Vec3, 2>> pushes_; // on the two sides of each
     std::vector<unsigned char> coupled_, together_;
     std::vector<double> own_energies_; // per part, without contacts
+    std::vector<Vec3> places_;         // of all vertices, where energies were asked last
 };
 
 } // namespace ringlet

@@ -86,6 +86,7 @@ SceneVertices number_vertices(const StrandModel &strands, const StrandState &sta
         const int anchor = object_of_body(s < int(rooted_in.size()) ? rooted_in[s] : -1);
         add_strand(all, strands, state, s, {contact.strand_radius, s, anchor, contact.strand_material});
     }
+    all.mesh.strand_edges = int(all.mesh.edges.size());
     for (int c = 0; c < int(cloths.size()); ++c) {
         all.cloths.push_back(all.count());
         add_cloth(all, cloths[c],
