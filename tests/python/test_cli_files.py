@@ -61,6 +61,7 @@ def test_groom_tells_what_it_made(example):
         "guides": 6,
         "locks": len(groom.locks),
         "points": len(groom.locks.points),
+        "conflicts": [],
     }
     assert len(groom.locks) == 8
 
