@@ -15,7 +15,8 @@ struct ContactMaterial {
     std::vector<int> material;     // which material a vertex is made of
     std::vector<double> friction;  // μ of a pair of materials, row-major, materials × materials
     int materials = 1;
-    double creep = 0.0; // [m]
+    double creep = 0.0;    // [m]
+    bool overstep = false; // a search goes by the contacts' planes, which are overstepped then: barriers end early
 };
 
 class ContactSet {
