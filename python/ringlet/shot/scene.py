@@ -199,11 +199,7 @@ class Scene:
                 dt,
                 gravity,
                 wind,
-                solver.iterations,
-                solver.tolerance,
-                getattr(_core.Continuation, solver.continuation),
-                getattr(_core.Integrator, solver.integrator),
-                solver.core_safeguards(),
+                *solver.for_core(),
                 getattr(_core.System, solver.system),
                 system_tolerance,
             )

@@ -116,12 +116,13 @@ class Solver(Section):
         """Newton iterations per step, at most."""
         return MOST_ITERATIONS if self.until_converged else self.newton
 
-    def core_safeguards(self) -> _core.Safeguards:
-        """Which safeguards are on, for the core."""
+    def for_core(self) -> tuple[int, float, _core.Continuation, _core.Integrator, _core.Safeguards]:
+        """Iterations, tolerance, model, integrator and safeguards, as a step of the core takes them."""
         safeguards = _core.Safeguards()
         for name in SAFEGUARDS:
             setattr(safeguards, name, name in self.safeguards)
-        return safeguards
+        continuation = getattr(_core.Continuation, self.continuation)
+        return self.iterations, self.tolerance, continuation, getattr(_core.Integrator, self.integrator), safeguards
 
 
 VARIATIONS = ("radius", "stretch", "bend", "twist", "damping")
@@ -224,11 +225,7 @@ class Strands:
             dt,
             gravity,
             wind,
-            solver.iterations,
-            solver.tolerance,
-            getattr(_core.Continuation, solver.continuation),
-            getattr(_core.Integrator, solver.integrator),
-            solver.core_safeguards(),
+            *solver.for_core(),
         )
         return dict(zip(_core.REPORT, rows.T, strict=True))
 
