@@ -26,12 +26,13 @@ if TYPE_CHECKING:
     from ringlet.groom import Hairs, Memory, Recipe
     from ringlet.groom.groom import Groom
     from ringlet.mesh import Clip, Mesh
-    from ringlet.shot import Garment, Motion, Obstacle, Shot
-    from ringlet.shot.cache import Cache
+    from ringlet.shot import Checkpoints, Garment, Motion, Obstacle, Shot
+    from ringlet.shot.cache import Cache, Told
     from ringlet.shot.loft import Loft
     from ringlet.validate import Row
 
 Progress = Callable[[str, int, int], None]
+OnFrame = Callable[[float, dict[str, Any]], None]
 
 
 # Groom
@@ -268,34 +269,87 @@ def simulate(
         shot = read_shot(shot)
     if not isinstance(groom, Groom):
         groom = load_groom(groom or shot.groom, progress=progress)
-    rest, garments = _rest_shape(shot, groom, allow_stale), _garments(shot, groom)
-    clip, obstacles = scalp_clip(groom), _obstacles(shot, groom, garments)
-    kept = None
-    if checkpoints is not None:
-        made_from = shots.made_of(shot, groom, clip, rest, obstacles, garments, frames)
-        kept = shots.Checkpoints(Path(checkpoints), made_from)
+    inputs = _inputs(shot, groom, allow_stale)
     return shots.simulate(
         shot,
         groom,
-        clip,
-        rest=rest,
-        obstacles=obstacles,
-        garments=garments,
         frames=frames,
-        checkpoints=kept,
+        checkpoints=_checkpoints(checkpoints, shot, groom, inputs, frames) if checkpoints else None,
         resume=resume,
         touches=touches,
         progress=progress,
+        **inputs,
     )
+
+
+def write_simulation(
+    shot: Shot,
+    groom: Groom,
+    under: Path | str,
+    path: Path | str,
+    *,
+    checkpoints: Path | str,
+    frames: tuple[int, int] | None = None,
+    allow_stale: bool = False,
+    resume: bool = False,
+    touches: bool = False,
+    progress: Progress | None = None,
+    on_frame: OnFrame | None = None,
+) -> Told:
+    """``simulate`` and ``write_cache`` in one, with one frame at a time in memory, however long the shot is.
+
+    under:       the USD file that ``write_groom`` made of the groom, over which the cache is laid
+    checkpoints: the folder that keeps the frames; they go to ``path`` when all are there
+    touches:     keep what touches in every frame, for ``write_touches``
+    on_frame:    called with each frame's number and statistics, as soon as it is there
+    """
+    from ringlet import io
+    from ringlet import shot as shots
+
+    inputs = _inputs(shot, groom, allow_stale)
+    kept = _checkpoints(checkpoints, shot, groom, inputs, frames)
+    first, last = frames or shot.frames
+    motion = shots.Motion(shot, groom, first=first, **inputs)
+    told = shots.Told(start=motion.start, cloths={worn.name: len(worn.cloth.positions) for worn in motion.worn})
+    for frame in shots.play(motion, last, touches=touches, progress=progress, checkpoints=kept, resume=resume):
+        told.frames.append(frame.number)
+        told.statistics.append(frame.statistics)
+        if frame.touches:
+            told.touches.append(frame.touches)
+        if on_frame:
+            on_frame(frame.number, frame.statistics)
+    with io.CacheWriter(path, under, io.read_space(Path(under)), motion.cloths(0)) as writer:
+        writer.start = motion.start
+        for frame in shots.played(motion, kept, shot.preroll + len(told.frames)):
+            writer.add(frame.number, frame.points, frame.statistics, frame.cloths)
+    return told
 
 
 def start_motion(shot: Shot, groom: Groom, *, allow_stale: bool = False) -> Motion:
     """The locks of a groom at the start of a shot, to be moved frame by frame by who wants to see each."""
     from ringlet import shot as shots
 
-    rest, garments = _rest_shape(shot, groom, allow_stale), _garments(shot, groom)
-    obstacles = _obstacles(shot, groom, garments)
-    return shots.Motion(shot, groom, scalp_clip(groom), rest, obstacles, garments, shot.frames[0])
+    return shots.Motion(shot, groom, first=shot.frames[0], **_inputs(shot, groom, allow_stale))
+
+
+def _inputs(shot: Shot, groom: Groom, allow_stale: bool) -> dict[str, Any]:
+    """What files hold that a shot and its groom name: what ``shots.simulate`` takes besides the two."""
+    garments = _garments(shot, groom)
+    return {
+        "clip": scalp_clip(groom),
+        "rest": _rest_shape(shot, groom, allow_stale),
+        "obstacles": _obstacles(shot, groom, garments),
+        "garments": garments,
+    }
+
+
+def _checkpoints(
+    folder: Path | str, shot: Shot, groom: Groom, inputs: dict[str, Any], frames: tuple[int, int] | None
+) -> Checkpoints:
+    """The folder that keeps what a run has done."""
+    from ringlet import shot as shots
+
+    return shots.Checkpoints(Path(folder), shots.made_of(shot, groom, frames=frames, **inputs))
 
 
 def loft(
@@ -399,7 +453,7 @@ def write_cache(cache: Cache, groom: Path | str, path: Path | str) -> None:
     io.write_cache(cache, Path(groom), Path(path), io.read_space(Path(groom)))
 
 
-def write_touches(cache: Cache, cache_path: Path | str, path: Path | str) -> None:
+def write_touches(cache: Cache | Told, cache_path: Path | str, path: Path | str) -> None:
     """Writes what touched in a simulation as coloured points: a USD layer over the file of its cache."""
     from ringlet import io
 

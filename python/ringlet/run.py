@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Self
 from ringlet.errors import UserError
 
 if TYPE_CHECKING:
-    from ringlet.shot.cache import Cache
+    from ringlet.shot.cache import Cache, Told
 
 FREE = "Contact was off: locks may pass through the head and one another. A table [contact] in the shot turns it on."
 CARRIED = "Locks touch, single hairs do not: they go with their lock, and may dip into what it touches."
@@ -58,7 +58,8 @@ class Run:
         self.pictures: dict[Path, str] = {}
         self.tables: list[tuple[str, list[str], list[list[str]]]] = []
         self.warnings: list[str] = []
-        self.cache: Cache | None = None
+        self.cache: Cache | Told | None = None
+        self.slowest: str | None = None
         if self.folder is not None:
             check_place(self.folder / "report.html")
 
@@ -86,11 +87,12 @@ class Run:
         """Notes how many there are of what was made: ``run.count(locks=1200)``."""
         self.counts |= counts
 
-    def simulated(self, cache: Cache) -> None:
+    def simulated(self, cache: Cache | Told) -> None:
         """Notes a simulation, for the charts of its statistics, and what was in the way when it started."""
-        from ringlet.report import start_table, start_warnings
+        from ringlet.report import explain_slowest, start_table, start_warnings
 
         self.cache = cache
+        self.slowest = explain_slowest(cache.statistics)
         self.warnings += start_warnings(cache.start)
         if cache.start:
             self.table("How it started", *start_table(cache.start))

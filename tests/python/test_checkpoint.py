@@ -133,3 +133,22 @@ def test_a_file_of_arrays_comes_back_as_it_was(tmp_path):
     checkpoint.write(tmp_path / "some.000001", arrays)
     back = checkpoint.read(tmp_path / "some.000001")
     assert back.keys() == arrays.keys() and all((back[name] == arrays[name]).all() for name in arrays)
+
+
+def test_a_run_that_was_broken_off_gives_the_frames_that_it_has(folder, monkeypatch):
+    expected = whole(folder)
+    broken_off(folder, monkeypatch, 25)
+    assert sim(folder, "--resume", "--frames", "1:18").exit_code == 0
+    assert (read_cache(folder / "cache.usdc").points == expected[:18]).all()
+
+
+def test_frames_that_go_to_the_file_one_by_one_are_those_of_a_simulation_in_memory(folder):
+    groom = ringlet.build_groom(folder / "small.recipe.toml")
+    ringlet.write_groom(groom, folder / "groom.usdc")
+    shot, path = ringlet.read_shot(folder / "small.shot.toml"), folder / "cache.usdc"
+    told = ringlet.write_simulation(shot, groom, folder / "groom.usdc", path, checkpoints=folder / "part")
+    assert told.frames == list(range(1, 41))
+    ringlet.write_cache(ringlet.simulate(shot, groom), folder / "groom.usdc", folder / "whole.usdc")
+    cache, at_once = read_cache(path), read_cache(folder / "whole.usdc")
+    assert (cache.points == at_once.points).all() and (cache.frames == at_once.frames).all()
+    assert cache.statistics == told.statistics and cache.start == told.start == at_once.start

@@ -13,7 +13,8 @@ from PIL import Image
 from ringlet.errors import UserError
 from ringlet.report import Machine, MadeFile, Picture, RunReport, Stage, write_report
 from ringlet.report.charts import line_chart, nice_ticks
-from ringlet.report.findings import explain_worst, verdict
+from ringlet.report.findings import explain_slowest, explain_worst, verdict
+from ringlet.report.model import plain
 
 
 def frames(count: int = 6) -> list[dict]:
@@ -144,3 +145,13 @@ def test_a_line_is_interrupted_where_a_value_is_missing_and_its_unit_suits_it() 
     svg = line_chart("Energy", "J", [1, 2, 3, 4, 5], {"bend": [1e-6, 2e-6, float("nan"), 3e-6, 1e-6]})
     assert svg.count("<polyline") == 2
     assert "µJ" in svg
+
+
+def test_the_slowest_frame_is_explained_by_what_it_had_more_of() -> None:
+    many = plain(frames())
+    many[2] |= {"wall_ms": 900.0, "newton": 7.5}
+    said = explain_slowest(many)
+    assert said is not None
+    assert said.startswith("Frame 3 took longest, 0.90 s; half of the frames took 0.02 s or less")
+    assert "Newton iterations 7.5 instead of 2.5" in said and "cut short" not in said
+    assert explain_slowest(many[:2]) is None and explain_slowest([{"frame": 1.0}] * 5) is None

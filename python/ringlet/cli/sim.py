@@ -69,9 +69,11 @@ def sim(
             if layer != source:
                 ringlet.write_groom(locks, layer)
         with run.stage("simulate", output), _kept(output) as folder:
-            cache = ringlet.simulate(
+            told = ringlet.write_simulation(
                 settings,
                 locks,
+                layer,
+                output,
                 frames=frames,
                 allow_stale=allow_stale,
                 checkpoints=folder,
@@ -79,17 +81,16 @@ def sim(
                 touches=contacts is not None,
                 progress=progress,
             )
-            ringlet.write_cache(cache, layer, output)
         if contacts is not None:
             with run.stage("contacts", contacts, "what touches, frame by frame"):
-                ringlet.write_touches(cache, output, contacts)
-        run.simulated(cache)
-        run.count(locks=len(locks.locks), points=len(locks.locks.points), frames=len(cache.frames))
-        if cache.cloths:
-            run.count(cloths=len(cache.cloths), cloth_points=sum(cloth.points.shape[1] for cloth in cache.cloths))
-    for sentence in [] if as_json else run.warnings:
+                ringlet.write_touches(told, output, contacts)
+        run.simulated(told)
+        run.count(locks=len(locks.locks), points=len(locks.locks.points), frames=len(told.frames))
+        if told.cloths:
+            run.count(cloths=len(told.cloths), cloth_points=sum(told.cloths.values()))
+    for sentence in [] if as_json else filter(None, [*run.warnings, run.slowest]):
         print(sentence)
-    wrote(output, run.counts, as_json, **({"start": cache.start} if cache.start else {}))
+    wrote(output, run.counts, as_json, slowest=run.slowest, **({"start": told.start} if told.start else {}))
 
 
 @contextmanager

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from statistics import median
 from typing import Any
 
 Statistics = Sequence[dict[str, Any]]
+PHASES = ("pairs", "assemble", "solve", "search", "filter")  # of a step with contact
 
 
 def series(statistics: Statistics, key: str) -> list[float] | None:
@@ -106,6 +108,37 @@ def explain_worst(statistics: Statistics) -> str | None:
     known = [phrases[key](frame[key]) for key in phrases if isinstance(frame.get(key), int | float)]
     told = [phrase for phrase in known if phrase]
     return f"Frame {frame_number(statistics, index)} is the hardest: {', '.join(told)}." if told else None
+
+
+def explain_slowest(statistics: Statistics) -> str | None:
+    """Which frame took longest, how long next to the others, and what there was more of; None without times."""
+    times = series(statistics, "wall_ms")
+    if times is None or len(times) < 3:
+        return None
+    index = max(range(len(times)), key=lambda k: times[k] if math.isfinite(times[k]) else -math.inf)
+    usual = median(time for time in times if math.isfinite(time))
+    more = []
+    for key, (name, factor, digits) in _COSTS.items():
+        values = [v for v in series(statistics, key) or [] if math.isfinite(v)]
+        here = value(statistics[index], key)
+        if values and isinstance(here, int | float) and here > 1.2 * (middle := median(values)):
+            more.append(f"{name} {factor * here:.{digits}f} instead of {factor * middle:.{digits}f}")
+    said = (
+        f"Frame {frame_number(statistics, index)} took longest, {1e-3 * times[index]:.2f} s; "
+        f"half of the frames took {1e-3 * usual:.2f} s or less"
+    )
+    return f"{said}: {', '.join(more)}." if more else f"{said}."
+
+
+# What a frame's time goes into, as it is told, its factor and its digits.
+_COSTS = {
+    "newton": ("Newton iterations", 1.0, 1),
+    "line_search_cuts": ("steps cut short", 1.0, 0),
+    "contact.candidates": ("pairs looked at", 1.0, 0),
+    "contact.contacts": ("contacts", 1.0, 0),
+    "contact.linear_iterations": ("iterations of conjugate gradients", 1.0, 0),
+    **{f"contact.{name}_ms": (f"seconds of {name}", 1e-3, 2) for name in PHASES},
+}
 
 
 def _strands(count: int) -> str:

@@ -12,7 +12,7 @@ from PIL import Image
 
 from ringlet.errors import UserError
 from ringlet.report.charts import line_chart
-from ringlet.report.findings import explain_worst, series, total, value, verdict
+from ringlet.report.findings import PHASES, explain_slowest, explain_worst, series, total, value, verdict
 from ringlet.report.model import MadeFile, Picture, RunReport, Stage, Table
 
 STYLE = Path(__file__).with_name("style.css")
@@ -40,8 +40,6 @@ _COLUMNS = {
     "contact.zone_vertices": "Held back",
     "contact.linear_iterations": "CG",
 }
-
-_PHASES = ("pairs", "assemble", "solve", "search", "filter")  # of a step with contact
 
 
 def page(report: RunReport) -> str:
@@ -202,11 +200,10 @@ def _simulation(report: RunReport) -> str:
                 {"contact.violations": "pairs", "contact.zone_vertices": "vertices held back"},
             ),
             chart("Conjugate gradients", "", {"contact.linear_iterations": "iterations"}),
-            chart("Where a frame's time goes", "s", {f"contact.{p}_ms": p for p in _PHASES}, factor=1e-3),
+            chart("Where a frame's time goes", "s", {f"contact.{p}_ms": p for p in PHASES}, factor=1e-3),
         )
     )
-    worst = explain_worst(statistics)
-    lead = f"<p>{escape(worst)}</p>" if worst else ""
+    lead = "".join(f"<p>{escape(said)}</p>" for tell in (explain_worst, explain_slowest) if (said := tell(statistics)))
     settings = _facts({key.replace("_", " "): f"{value}" for key, value in report.settings.items()})
     return (
         f"<section><h2>The simulation</h2>{lead}{settings}<div class='charts'>{charts}</div>"

@@ -1,6 +1,6 @@
 """Shots: strands that move with an animated scalp."""
 
-from ringlet.shot.cache import Cache, CachedCloth, Touches
+from ringlet.shot.cache import Cache, CachedCloth, Told, Touches
 from ringlet.shot.checkpoint import Checkpoints
 from ringlet.shot.cloth import Cloth, ClothMaterial, ClothSolver
 from ringlet.shot.collider import Collider, Obstacle, ShotContact
@@ -9,7 +9,7 @@ from ringlet.shot.garment import Garment, Pin, ShotCloth
 from ringlet.shot.loft import Loft, loft
 from ringlet.shot.scene import Body, Contact, Scene
 from ringlet.shot.shot import Forces, Shot, parse_shot, read_shot, schema
-from ringlet.shot.simulate import Motion, made_of, simulate
+from ringlet.shot.simulate import Motion, made_of, play, played, simulate
 from ringlet.shot.stale import check, keep, made_from, preload, refresh
 from ringlet.shot.strands import Material, Solver, Strands
 
@@ -36,6 +36,7 @@ __all__ = [
     "ShotContact",
     "Solver",
     "Strands",
+    "Told",
     "Touches",
     "check",
     "equilibrium",
@@ -44,6 +45,8 @@ __all__ = [
     "made_from",
     "made_of",
     "parse_shot",
+    "play",
+    "played",
     "preload",
     "read_shot",
     "refresh",

@@ -58,3 +58,17 @@ class Cache:
     start: dict[str, Any] = field(default_factory=dict)
     cloths: list[CachedCloth] = field(default_factory=list)
     touches: list[Touches] = field(default_factory=list)
+
+
+@dataclass
+class Told:
+    """What a simulation tells besides where everything is; see ``Cache``.
+
+    cloths: how many points each has, by name
+    """
+
+    frames: list[float] = field(default_factory=list)
+    statistics: list[dict[str, Any]] = field(default_factory=list)
+    start: dict[str, Any] = field(default_factory=dict)
+    cloths: dict[str, int] = field(default_factory=dict)
+    touches: list[Touches] = field(default_factory=list)

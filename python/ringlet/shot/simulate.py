@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from importlib.metadata import version
 from typing import Any
 
@@ -15,7 +16,7 @@ from ringlet.errors import UserError
 from ringlet.groom.groom import Groom
 from ringlet.mesh import Clip
 from ringlet.shot import start
-from ringlet.shot.cache import Cache, CachedCloth
+from ringlet.shot.cache import Cache, CachedCloth, Touches
 from ringlet.shot.checkpoint import Checkpoints, digest
 from ringlet.shot.collider import LOCKS, Obstacle, with_pairs
 from ringlet.shot.garment import Garment
@@ -27,8 +28,14 @@ from ringlet.shot.strands import Strands
 from ringlet.shot.worn import Worn
 
 Progress = Callable[[str, int, int], None]
-# Where things are read from is not what they are.
-_PLACES = {"groom": True, "rest": {"file"}, "collider": {"__all__": {"file"}}, "cloth": {"__all__": {"file"}}}
+# Where things are read from is not what they are, and neither is how far a run goes.
+_PLACES = {
+    "groom": True,
+    "frames": True,
+    "rest": {"file"},
+    "collider": {"__all__": {"file"}},
+    "cloth": {"__all__": {"file"}},
+}
 
 OnFrame = Callable[[float, NDArray[np.float32], dict[str, Any]], None]
 
@@ -62,43 +69,80 @@ def simulate(
                bits
     """
     first, last = frames or shot.frames
-    if last < first:
-        raise UserError(f"sim: frames are {first}:{last}; the last must not come before the first")
-    groom.locks.check("sim: locks")
-    if (groom.locks.counts <= shot.held).any():
-        raise UserError(
-            f"sim: held is {shot.held}, but a lock has {groom.locks.counts.min()} points; "
-            "hold fewer, or resample the locks"
-        )
-
     motion = Motion(shot, groom, clip, rest, obstacles, garments, first)
-    numbers = range(first, last + 1)
-    total = shot.preroll + len(numbers)
-    cache = Cache(np.array(numbers, np.float64), np.empty((len(numbers), len(groom.locks.points), 3), np.float32))
-    cache.start = motion.start
-    for worn in motion.worn:
-        moved = np.empty((len(numbers), len(worn.cloth.positions), 3), np.float32)
-        cache.cloths.append(CachedCloth(worn.name, worn.garment.file, worn.garment.prim, moved))
+    numbers = np.arange(first, max(first, last) + 1, dtype=np.float64)
+    points = np.empty((len(numbers), len(groom.locks.points), 3), np.float32)
+    cache = Cache(numbers, points, start=motion.start, cloths=motion.cloths(len(numbers)))
+    run = play(motion, last, touches=touches, progress=progress, checkpoints=checkpoints, resume=resume)
+    for k, frame in enumerate(run):
+        cache.points[k] = frame.points
+        for cloth, places in zip(cache.cloths, frame.cloths, strict=True):
+            cloth.points[k] = places
+        cache.statistics.append(frame.statistics)
+        if frame.touches:
+            cache.touches.append(frame.touches)
+        if on_frame:
+            on_frame(frame.number, cache.points[k], frame.statistics)
+    return cache
 
-    for step in range(_go_on(motion, cache, checkpoints, resume), total):
-        k = step - shot.preroll
-        statistics = motion.advance(first + max(k - 1, 0), first + max(k, 0))
-        if k >= 0:
-            cache.points[k] = motion.strands.positions
-            for cached, worn in zip(cache.cloths, motion.worn, strict=True):
-                cached.points[k] = worn.cloth.positions
-            cache.statistics.append(statistics)
-            if touches and motion.scene:
-                cache.touches.append(motion.scene.touches)
-            if on_frame:
-                on_frame(first + k, cache.points[k], statistics)
+
+@dataclass
+class Frame:
+    """What a run gives at one frame.
+
+    number:     of the frame
+    points:     positions of the locks [m], shape (n, 3), float32
+    cloths:     those of each cloth
+    statistics: what the solver reports
+    touches:    what touches, where that was asked for; not of frames that an earlier run had done
+    """
+
+    number: float
+    points: NDArray[np.float32]
+    cloths: list[NDArray[np.float32]]
+    statistics: dict[str, Any]
+    touches: Touches | None = None
+
+
+def play(
+    motion: Motion,
+    last: int,
+    *,
+    touches: bool = False,
+    progress: Progress | None = None,
+    checkpoints: Checkpoints | None = None,
+    resume: bool = False,
+) -> Iterator[Frame]:
+    """Yields the frames from the first of a motion to ``last``, each as soon as it is there; see ``simulate``."""
+    if last < motion.first:
+        raise UserError(f"sim: frames are {motion.first}:{last}; the last must not come before the first")
+    before = motion.shot.preroll
+    total = before + last - motion.first + 1
+    done, memory = (checkpoints.begin(resume) if checkpoints else None) or (0, {})
+    done = min(done, total)
+    if checkpoints and done:
+        yield from played(motion, checkpoints, done)
+        motion.recall(memory)
+    for step in range(done, total):
+        k = step - before
+        statistics = motion.advance(motion.first + max(k - 1, 0), motion.first + max(k, 0))
+        moved = {name: np.asarray(points, np.float32) for name, points in motion.positions.items()} if k >= 0 else {}
         if checkpoints:
-            checkpoints.keep(step, _frame_of(cache, k), statistics)
+            checkpoints.keep(step, moved, statistics)
             if (step + 1) % checkpoints.every == 0 and step + 1 < total:
                 checkpoints.remember(step + 1, motion.memory)
         if progress:
             progress("sim", step + 1, total)
-    return cache
+        if k >= 0:
+            touching = motion.scene.touches if touches and motion.scene else None
+            yield Frame(motion.first + k, moved.pop("locks"), list(moved.values()), statistics, touching)
+
+
+def played(motion: Motion, checkpoints: Checkpoints, steps: int) -> Iterator[Frame]:
+    """The frames among the first steps of a motion, from where they are kept."""
+    for k, (arrays, statistics) in enumerate(checkpoints.kept(steps), -motion.shot.preroll):
+        if k >= 0:
+            yield Frame(motion.first + k, arrays.pop("locks"), list(arrays.values()), statistics)
 
 
 def made_of(
@@ -116,29 +160,8 @@ def made_of(
         part for c in curves for part in (c.offsets, c.ids, c.points, *(c.curve[name] for name in sorted(c.curve)))
     ]
     arrays += [moving.points for moving in (clip, *(o.clip for o in obstacles), *(g.clip for g in garments))]
-    return digest(version("ringlet"), shot.model_dump(mode="json", exclude=_PLACES), frames or shot.frames, *arrays)
-
-
-def _go_on(motion: Motion, cache: Cache, checkpoints: Checkpoints | None, resume: bool) -> int:
-    """Puts everything to where the run was when it was broken off; returns the number of steps that are done."""
-    found = checkpoints.begin(resume) if checkpoints else None
-    if checkpoints is None or found is None:
-        return 0
-    done, memory = found
-    for step, (arrays, statistics) in enumerate(checkpoints.kept(done)):
-        if (k := step - motion.shot.preroll) >= 0:
-            for name, points in _frame_of(cache, k).items():
-                points[:] = arrays[name]
-            cache.statistics.append(statistics)
-    motion.recall(memory)
-    return done
-
-
-def _frame_of(cache: Cache, k: int) -> dict[str, NDArray[np.float32]]:
-    """The points of a frame by name, as in the cache; none in the preroll."""
-    if k < 0:
-        return {}
-    return {"locks": cache.points[k]} | {f"cloth {n}": cloth.points[k] for n, cloth in enumerate(cache.cloths)}
+    first, _ = frames or shot.frames  # how far it goes changes nothing before
+    return digest(version("ringlet"), shot.model_dump(mode="json", exclude=_PLACES), first, *arrays)
 
 
 def make_strands(
@@ -170,9 +193,15 @@ class Motion:
         rest: Curves | None,
         obstacles: Sequence[Obstacle],
         garments: Sequence[Garment],
-        first: float,
+        first: int,
     ) -> None:
-        self.shot, self.clip, self.locks, self.roots = shot, clip, groom.locks, Roots(groom)
+        groom.locks.check("sim: locks")
+        if (groom.locks.counts <= shot.held).any():
+            raise UserError(
+                f"sim: held is {shot.held}, but a lock has {groom.locks.counts.min()} points; "
+                "hold fewer, or resample the locks"
+            )
+        self.first, self.shot, self.clip, self.locks, self.roots = first, shot, clip, groom.locks, Roots(groom)
         self.strands = make_strands(shot, groom, rest, None if rest is None else rest.curve.get("stiffened"))
         self.strands.place(self.roots.carry(clip.at(first), first))
         self.scene: Scene | None = None
@@ -209,6 +238,24 @@ class Motion:
             "piercing": start.tell_piercing(locks, self.worn),
             "overlapping": start.tell_overlapping(locks, self.scene, self.shot.solver),
         }
+
+    def cloths(self, frames: int) -> list[CachedCloth]:
+        """The cloths as a cache has them, with room for so many frames."""
+        return [
+            CachedCloth(
+                worn.name,
+                worn.garment.file,
+                worn.garment.prim,
+                np.empty((frames, len(worn.cloth.positions), 3), np.float32),
+            )
+            for worn in self.worn
+        ]
+
+    @property
+    def positions(self) -> dict[str, NDArray[np.float64]]:
+        """Where everything is [m]: ``locks``, shape (n, 3), and each cloth."""
+        cloths = {f"cloth {n}": worn.cloth.positions for n, worn in enumerate(self.worn)}
+        return {"locks": self.strands.positions, **cloths}
 
     @property
     def memory(self) -> dict[str, NDArray[Any]]:

@@ -18,7 +18,7 @@ from ringlet.io.space import from_metres, to_metres
 from ringlet.io.usd.groom import GROOM
 from ringlet.io.usd.stage import new_stage, reading, refuse_itself, writing
 from ringlet.io.usd.values import Types, float3, to_usd
-from ringlet.shot.cache import Cache, Touches
+from ringlet.shot.cache import Cache, Told, Touches
 from ringlet.stage import StageSpace
 
 TOUCHES, START = f"{GROOM}/touches", f"{GROOM}/start"
@@ -39,7 +39,7 @@ def strengths(force: NDArray[np.floating], greatest: float) -> NDArray[np.float6
     return np.clip(1.0 + np.log10(np.maximum(part, 1e-30)) / DECADES, 0.0, 1.0)
 
 
-def write_touches(cache: Cache, cache_path: Path | str, path: Path | str, space: StageSpace) -> None:
+def write_touches(cache: Cache | Told, cache_path: Path | str, path: Path | str, space: StageSpace) -> None:
     """Writes what touches as a layer over the cache."""
     refuse_itself(path, cache_path, "cache")
     greatest = max((float(t.force.max(initial=0.0)) for t in cache.touches), default=0.0)
