@@ -1,4 +1,4 @@
-"""The file of edits of single locks: written by programs, readable by people."""
+"""The file of edits by hand: written by programs, readable by people."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ringlet.errors import UserError
 from ringlet.files import replacing
 from ringlet.groom.edits import offsets_to
 from ringlet.groom.groom import Groom
-from ringlet.groom.load import read_edits
+from ringlet.groom.load import EDITS, read_edits
 from ringlet.groom.recipe import Recipe
 from ringlet.groom.scalp import Scalp
 from ringlet.settings import did_you_mean
@@ -32,9 +32,14 @@ def edits_path(recipe: Recipe) -> Path:
 
 
 def write_edits(edits: list[dict[str, Any]], path: Path) -> None:
-    """Writes edits, each as a table ``[[edit]]``."""
+    """Writes edits of locks, each as a table ``[[edit]]``; what the file says of guides stays."""
     with replacing(path) as aside:
-        aside.write_text(to_toml({"ringlet": 1, "edit": edits} if edits else {"ringlet": 1}), encoding="utf-8")
+        aside.write_text(edits_text({**read_edits(path), "edit": edits}), encoding="utf-8")
+
+
+def edits_text(edits: dict[str, list[dict[str, Any]]]) -> str:
+    """The text of a file of edits."""
+    return to_toml({"ringlet": 1, **{kind: edits[kind] for kind in EDITS if edits[kind]}})
 
 
 @contextmanager
@@ -56,7 +61,7 @@ def taken_back(recipe: Recipe) -> Iterator[None]:
 def add_settings(recipe: Recipe, lock: int, settings: dict[str, Any]) -> None:
     """Gives one lock settings of its own, such as ``{"curl.width": "8 mm"}``."""
     path = edits_path(recipe)
-    edits = read_edits(path)
+    edits = read_edits(path)["edit"]
     for edit in edits:
         if edit.get("lock") == lock and edit.get("set"):
             edit["set"] = {**edit["set"], **settings}
@@ -86,14 +91,15 @@ def add_points(recipe: Recipe, groom: Groom, lock: int, points: NDArray, stage: 
         edit["offsets"] = _in_metres(offsets_to(made, groom.shapes, row, root, points))
     else:
         edit["curve"] = _in_metres(np.round((points - points[0]) @ root, 9).tolist())
-    kept = [e for e in read_edits(path) if e.get("lock") != lock or e.get("stage", "groom") != stage or e.get("set")]
+    edits = read_edits(path)["edit"]
+    kept = [e for e in edits if e.get("lock") != lock or e.get("stage", "groom") != stage or e.get("set")]
     write_edits([*kept, edit], path)
 
 
 def release(recipe: Recipe, locks: Collection[int] | None) -> list[int]:
     """Returns locks to what the recipe makes of them, all or those named; gives the ids that had been edited."""
     path = edits_path(recipe)
-    edits = read_edits(path)
+    edits = read_edits(path)["edit"]
     gone = [edit for edit in edits if locks is None or edit.get("lock") in locks]
     for lock in locks or ():
         if not any(edit.get("lock") == lock for edit in gone):

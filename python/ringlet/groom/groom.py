@@ -27,7 +27,8 @@ class Groom:
     hairs:      the ``[hairs]`` settings of the recipe, as plain values
     recipe:     the text of the recipe, kept with the groom
     shapes:     the locks before they were curled (None for a groom that was read from a file)
-    conflicts:  a sentence for every edit of a lock that is not there
+    unsculpted: the guides before they were sculpted by hand (None for a groom that was read from a file)
+    conflicts:  a sentence for every edit of a guide or a lock that is not there
     """
 
     guides: Curves
@@ -40,4 +41,5 @@ class Groom:
     hairs: dict[str, Any] = field(default_factory=dict)
     recipe: str | None = None
     shapes: Curves | None = None
+    unsculpted: Curves | None = None
     conflicts: list[str] = field(default_factory=list)

@@ -1,4 +1,4 @@
-"""From files to the tables of one recipe: what it extends, and the edits of single locks."""
+"""From files to the tables of one recipe: what it extends, and what was done by hand."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from ringlet.settings import did_you_mean, parse_toml, read_toml
 from ringlet.toml import to_toml
 
 FILES = (("scalp", "file"), ("guides", "file"))
+EDITS = ("edit", "sculpt")  # tables of a file of edits: of locks, of guides
 
 
 def load(path: Path) -> tuple[str, dict[str, Any]]:
@@ -20,33 +21,40 @@ def load(path: Path) -> tuple[str, dict[str, Any]]:
     return resolve(text, data, path, ())
 
 
-def load_text(text: str, path: Path | None) -> tuple[str, dict[str, Any]]:
-    """The same for a recipe from its text; names in it count from ``path``."""
-    return resolve(text, parse_toml(text, path.name if path else "recipe", "recipe"), path or Path("recipe"), ())
+def load_text(text: str, path: Path | None, edits: str | None = None) -> tuple[str, dict[str, Any]]:
+    """The same for a recipe from its text; names in it count from ``path``. ``edits`` stands for its file of edits."""
+    data = parse_toml(text, path.name if path else "recipe", "recipe")
+    return resolve(text, data, path or Path("recipe"), (), edits)
 
 
-def resolve(text: str, data: dict[str, Any], path: Path, below: tuple[Path, ...]) -> tuple[str, dict[str, Any]]:
+def resolve(
+    text: str, data: dict[str, Any], path: Path, below: tuple[Path, ...], edits: str | None = None
+) -> tuple[str, dict[str, Any]]:
     """The recipe with its base and its edits in it; ``below``: the files that extend it."""
     told = data
     if "extends" in data:
         told = _extended(data, path, (*below, path.resolve()))
     if "edits" in told and not below:
-        told = _with_edits(told, path)
+        told = _with_edits(told, path, edits)
     told = _with_settings_of_locks(told, path)
     if {"extends", "edits"} & data.keys():
         text = to_toml({key: value for key, value in told.items() if key != "edits"})
     return text, told
 
 
-def read_edits(path: Path) -> list[dict[str, Any]]:
-    """The edits of a file, none where it is not there yet."""
-    if not path.exists():
-        return []
-    _, data = read_toml(path, "file of edits")
-    edits, more = data.get("edit", []), sorted(data.keys() - {"ringlet", "edit"})
-    if more or not isinstance(edits, list):
+def read_edits(path: Path) -> dict[str, list[dict[str, Any]]]:
+    """What a file of edits says of locks (``edit``) and of guides (``sculpt``); nothing where it is not there yet."""
+    return parse_edits(read_toml(path, "file of edits")[0] if path.exists() else "ringlet = 1", path)
+
+
+def parse_edits(text: str, path: Path) -> dict[str, list[dict[str, Any]]]:
+    """The same for the text of such a file."""
+    data = parse_toml(text, path.name, "file of edits")
+    edits = {kind: data.get(kind, []) for kind in EDITS}
+    wrong = sorted(data.keys() - {"ringlet", *EDITS}) + [kind for kind in EDITS if not isinstance(edits[kind], list)]
+    if wrong:
         raise UserError(
-            f"{path.name}: {', '.join(more) or 'edit'} does not belong there; it holds [[edit]] tables only"
+            f"{path.name}: {', '.join(wrong)} does not belong there; it holds [[edit]] and [[sculpt]] tables only"
         )
     return edits
 
@@ -76,7 +84,7 @@ def _merged(base: dict[str, Any], changes: dict[str, Any], where: str, place: st
         name = f"{place}.{key}".removeprefix(".")
         if name == "shape" and isinstance(value, dict):
             result[key] = _merged_shape(old if isinstance(old, list) else [], value, where)
-        elif name == "edit" and isinstance(value, list) and isinstance(old, list):
+        elif name in EDITS and isinstance(value, list) and isinstance(old, list):
             result[key] = old + value
         elif value is False and isinstance(old, dict):
             del result[key]
@@ -117,12 +125,17 @@ def stage_names(shape: list[Any]) -> list[str]:
     return names
 
 
-def _with_edits(data: dict[str, Any], path: Path) -> dict[str, Any]:
+def _with_edits(data: dict[str, Any], path: Path, text: str | None) -> dict[str, Any]:
     """The tables with the edits of the file that ``edits`` names, after those in the recipe."""
     if not isinstance(name := data["edits"], str):
         raise UserError(f"{path.name}: edits is {name!r}; must be the name of a file")
-    own = data.get("edit", [])
-    return {**data, "edit": [*(own if isinstance(own, list) else []), *read_edits(path.parent / name)]}
+    file = path.parent / name
+    edits = read_edits(file) if text is None else parse_edits(text, file)
+    own = {kind: data.get(kind, []) for kind in EDITS}
+    return {
+        **data,
+        **{kind: [*own[kind], *edits[kind]] for kind in EDITS if isinstance(own[kind], list) and edits[kind]},
+    }
 
 
 def _with_settings_of_locks(data: dict[str, Any], path: Path) -> dict[str, Any]:

@@ -13,6 +13,7 @@ from ringlet.groom.helpers import HelperCurves
 from ringlet.groom.load import load, load_text
 from ringlet.groom.nails import Nail
 from ringlet.groom.operators import Clean, Curl, Drawn, Grown, Locks, ShapeOperator
+from ringlet.groom.sculpt import Sculpt
 from ringlet.groom.settings import UNITS, Section, explain
 from ringlet.groom.source import Source
 
@@ -44,7 +45,9 @@ class Recipe(Section):
         "away, `[shape.NAME]` changes an operator",
     )
     edits: str | None = Field(
-        default=None, description="file of edits of single locks, beside the recipe; `ringlet edit` writes it"
+        default=None,
+        description="file of what was done by hand to locks and guides, beside the recipe; `ringlet edit` and "
+        "`ringlet view` write it",
     )
     scalp: ScalpSettings = Field(default=ScalpSettings(), description="where it grows")
     maps: dict[str, str] = Field(
@@ -56,6 +59,7 @@ class Recipe(Section):
     ] = Field(
         default=Grown(), description="the curves that give silhouette and length: grown, or drawn and read from a file"
     )
+    sculpt: list[Sculpt] = Field(default=[], description="what was done to single guides by hand")
     locks: Locks = Field(default=Locks(), description="the locks between the guides")
     shape: list[ShapeOperator] = Field(default=[], description="operators on the shape of the locks, in order")
     curl: Curl | None = Field(default=None, description="the curl; straight hair when absent")
@@ -84,7 +88,7 @@ class Recipe(Section):
 
     @property
     def edits_file(self) -> Path | None:
-        """The file of edits of single locks."""
+        """The file of edits by hand."""
         return self._beside(self.edits)
 
     @property
@@ -110,9 +114,12 @@ def read_recipe(path: Path | str) -> Recipe:
     return _recipe(*load(path), path)
 
 
-def parse_recipe(text: str, path: Path | None = None) -> Recipe:
-    """A recipe from its text; ``path`` names it in messages and is where relative file names count from."""
-    return _recipe(*load_text(text, path), path)
+def parse_recipe(text: str, path: Path | None = None, edits: str | None = None) -> Recipe:
+    """A recipe from its text; ``path`` names it in messages and is where relative file names count from.
+
+    edits: what the file of edits holds, in place of what it does
+    """
+    return _recipe(*load_text(text, path, edits), path)
 
 
 def _recipe(text: str, data: dict[str, Any], path: Path | None) -> Recipe:

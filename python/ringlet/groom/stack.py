@@ -20,6 +20,7 @@ from ringlet.groom.nails import nailed
 from ringlet.groom.operators import Context, Drawn, Operator, Resample
 from ringlet.groom.recipe import Recipe
 from ringlet.groom.scalp import Scalp
+from ringlet.groom.sculpt import Sculpted
 from ringlet.mesh import Mesh
 from ringlet.stage import StageSpace
 
@@ -77,7 +78,7 @@ def make_groom(
             key = _key(key, name.encode(), helper.points.tobytes(), helper.offsets.tobytes())
         curves = drawn_guides or Curves.from_list([])
         stages = _stages(recipe)
-        guides, shapes = curves, None
+        guides, unsculpted, shapes = curves, curves, None
         for name, operator in stages:
             if progress:
                 progress(name, 0, 1)
@@ -86,6 +87,8 @@ def make_groom(
             context = Context(recipe.seed, surface, name, recipe.locks.points, helpers, shapes)
             curves, key = _run(operator, curves, key, context, memory)
             if name == "guides":
+                guides = unsculpted = curves
+            if name == "sculpt":
                 guides = curves
             if progress:
                 progress(name, 1, 1)
@@ -103,13 +106,17 @@ def make_groom(
         hairs=recipe.hairs.model_dump(mode="json"),
         recipe=recipe.text,
         shapes=shapes,
-        conflicts=_conflicts(recipe, curves),
+        unsculpted=unsculpted,
+        conflicts=_conflicts(recipe, unsculpted, curves),
     )
 
 
 def _stages(recipe: Recipe) -> list[tuple[str, Operator]]:
     """Every stage with a name that stays its own when others are added: ``scraggle``, a second one ``scraggle 2``."""
-    stages: list[tuple[str, Operator]] = [("guides", recipe.guides), ("locks", recipe.locks)]
+    stages: list[tuple[str, Operator]] = [("guides", recipe.guides)]
+    if recipe.sculpt:
+        stages.append(("sculpt", Sculpted(sculpts=recipe.sculpt)))
+    stages.append(("locks", recipe.locks))
     stages += zip(stage_names(list(recipe.shape)), recipe.shape, strict=True)
     by_stage = {kind: [e for e in recipe.edit if e.stage == kind and _moves(e)] for kind in ("shape", "groom")}
     if by_stage["shape"]:
@@ -126,12 +133,16 @@ def _moves(edit: Edit) -> bool:
     return bool(edit.curve or edit.offsets or edit.move)
 
 
-def _conflicts(recipe: Recipe, curves: Curves) -> list[str]:
-    """A sentence for every edit of a lock that is not there."""
-    gone = sorted({edit.lock for edit in recipe.edit} - set(curves.ids.tolist()))
+def _conflicts(recipe: Recipe, guides: Curves, locks: Curves) -> list[str]:
+    """A sentence for every edit of a guide or a lock that is not there."""
+    sculpted = sorted({sculpt.guide for sculpt in recipe.sculpt} - set(guides.ids.tolist()))
+    edited = sorted({edit.lock for edit in recipe.edit} - set(locks.ids.tolist()))
     return [
-        f"lock {lock} was edited but is no longer there; its edit is kept: bring the lock back, or release the edit"
-        for lock in gone
+        *(f"guide {guide} was sculpted but is no longer there; its shape is kept until it is" for guide in sculpted),
+        *(
+            f"lock {lock} was edited but is no longer there; its edit is kept: bring the lock back, or release the edit"
+            for lock in edited
+        ),
     ]
 
 
