@@ -69,8 +69,10 @@ def read_hair(path: Path, space: StageSpace) -> Curves:
     }
     if colors is not None:
         attributes["color"] = colors.reshape(-1, 3)
+    with np.errstate(invalid="ignore"):  # what is no number is refused below
+        points_of_hairs = to_metres(places.reshape(-1, 3).astype(np.float64), space)
     curves = Curves(
-        to_metres(places.reshape(-1, 3).astype(np.float64), space),
+        points_of_hairs,
         offsets_from_counts(counts),
         np.arange(hairs, dtype=np.int64),
         point=attributes,

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ringlet.curves import Curves
 from ringlet.errors import UserError
@@ -16,6 +17,9 @@ from ringlet.io.polygons import check_polygons, fans
 from ringlet.io.space import check_points, to_metres
 from ringlet.mesh import Mesh
 from ringlet.stage import StageSpace
+
+MOST_POINTS = 2**31 - 1
+MOST_GROUPS = 100  # that a face can be in
 
 
 @dataclass
@@ -52,10 +56,15 @@ def read_obj_mesh(path: Path, space: StageSpace) -> Mesh:
         triangles=indices[corners].astype(np.int32),
         uv=uv[uv_indices][corners] if len(uv_indices) == len(indices) else None,
         faces=faces.astype(np.int32),
-        regions={
-            name: np.flatnonzero(np.isin(faces, chosen)).astype(np.int32) for name, chosen in content.groups.items()
-        },
+        regions={name: _triangles_of(np.unique(chosen), faces) for name, chosen in content.groups.items()},
     )
+
+
+def _triangles_of(chosen: NDArray[np.integer], faces: NDArray[np.integer]) -> NDArray[np.int32]:
+    """The triangles of polygons, both in order. ``faces``: the polygon of each triangle."""
+    begin, end = np.searchsorted(faces, chosen), np.searchsorted(faces, chosen, side="right")
+    before = np.cumsum(end - begin) - (end - begin)
+    return (np.repeat(begin - before, end - begin) + np.arange((end - begin).sum())).astype(np.int32)
 
 
 def read_obj_curves(path: Path, space: StageSpace) -> Curves:
@@ -89,10 +98,12 @@ def _parse(path: Path) -> _Content:
                 content.face_uv.append([_index(part[1], len(content.uv)) for part in parts if part[1:] and part[1]])
                 for name in named:
                     content.groups.setdefault(name, []).append(len(content.faces) - 1)
-            elif key == "l":
+            elif key == "l" and words:
                 content.lines.append([_index(word.split("/")[0], len(content.points)) for word in words])
             elif key in ("g", "o"):
-                named = words
+                named = list(dict.fromkeys(words))
+                if len(named) > MOST_GROUPS:
+                    raise UserError(f"{path}: line {number} names {len(named)} groups; must be at most {MOST_GROUPS}")
         except ValueError:
             raise UserError(f"{path}: line {number} is '{line.strip()[:60]}'; must be numbers after '{key}'") from None
     return content
@@ -101,4 +112,6 @@ def _parse(path: Path) -> _Content:
 def _index(word: str, count: int) -> int:
     """An index that counts from 1, or back from the last one there is so far, as one that counts from 0."""
     index = int(word)
+    if abs(index) > MOST_POINTS:
+        raise ValueError
     return index - 1 if index > 0 else count + index if index < 0 else -1

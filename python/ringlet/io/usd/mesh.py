@@ -33,6 +33,8 @@ from ringlet.mesh import Clip, Mesh
 from ringlet.stage import StageSpace
 
 SCALP = "scalp"
+MOST_FRAMES = 100_000
+MOST_PLACES = 2**28  # of the points of a mesh at all its frames: 6 GiB
 
 
 @dataclass
@@ -149,6 +151,11 @@ def clip_at(source: Source, prim: Usd.Prim, frames: tuple[float, float] | None =
     for frame in times:
         time = Usd.TimeCode(frame)
         points = to_metres(transformed(read_points(prim, time, where), prim, time), source.space)
+        if len(points) * len(times) > MOST_PLACES:
+            raise UserError(
+                f"{where}: has {len(points):,} points at {len(times):,} frames, more than {MOST_PLACES:,} places; "
+                "shorten its range, or leave it out"
+            )
         if samples and len(points) != len(samples[0]):
             raise UserError(
                 f"{where}: has {len(points)} points at frame {frame:g}, {len(samples[0])} before; must not change"
@@ -159,6 +166,8 @@ def clip_at(source: Source, prim: Usd.Prim, frames: tuple[float, float] | None =
 
 def whole_frames(first: float, last: float, where: str) -> NDArray[np.float64]:
     """The frames from the first to the last, shape (k,)."""
+    if not last - first < MOST_FRAMES:  # nor where one of them is no number
+        raise UserError(f"{where}: moves from {first:g} to {last:g}; must be fewer than {MOST_FRAMES:,} frames")
     frames = np.arange(math.ceil(first), math.floor(last) + 1, dtype=np.float64)
     if len(frames) == 0:
         raise UserError(f"{where}: there is no whole frame from {first:g} to {last:g}; give a longer range")
