@@ -12,8 +12,11 @@ from coils import helix, rotation
 from crossings import Judge
 from linking import closed, linking
 from ringlet.curves import Curves
+from ringlet.mesh import Mesh
 from ringlet.shot import Material, Solver, Strands
+from ringlet.shot.cloth import Cloth, ClothMaterial
 from ringlet.shot.scene import Body, Contact, Scene
+from scipy.interpolate import CubicSpline
 
 FRAME = 1 / 24
 AWAY = 10.0  # [m] where the ends of strands are joined to make loops of them
@@ -25,6 +28,7 @@ class Play:
 
     targets: where all vertices of strands are told to be at a time [s], shape (n, 3) [m]; only held ones follow
     bodies:  where each body's points are at a time [s]; None: they stay
+    scale:   how large the rest shapes of cloths are at a time [s], by their meshes; None: as these
     loops:   per strand the direction in which its ends are joined far away, to count linking; None: open
     """
 
@@ -33,6 +37,7 @@ class Play:
     steps: int
     targets: Callable[[float], np.ndarray] | None = None
     bodies: Callable[[float], list[np.ndarray]] | None = None
+    scale: Callable[[float], float] | None = None
     loops: list[np.ndarray] = field(default_factory=list)
     gravity: tuple[float, float, float] = (0.0, -9.81, 0.0)
     wind: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -40,6 +45,8 @@ class Play:
     def step(self, k, solver):
         """Step k = 1, 2 …; the scene's report."""
         start = self.scene.strands.curves.points
+        for cloth in self.scene.cloths if self.scale else ():
+            cloth.scale_rest(self.scale(k * self.dt))
         return self.scene.step(
             start if self.targets is None else self.targets(k * self.dt),
             self.dt,
@@ -70,12 +77,13 @@ class Play:
         return np.array([linking(a, b) for k, a in enumerate(loops) for b in loops[:k]])
 
     def stretch(self):
-        """The longest edge by its length at rest."""
+        """The longest edge by its length at rest; of cloths, by that in their meshes."""
         curves, at = self.scene.strands.curves, self.scene.strands.positions
-        inside = np.ones(len(at) - 1, bool)
-        inside[curves.offsets[1:-1] - 1] = False
-        lengths = (np.linalg.norm(np.diff(points, axis=0), axis=1)[inside] for points in (at, curves.points))
-        return float(np.divide(*lengths).max())
+        first = np.delete(np.arange(len(at)), curves.offsets[1:] - 1)
+        edges = [(np.c_[first, first + 1], at, curves.points)]
+        edges += [(sides_of(c.mesh.triangles), c.positions, c.mesh.points) for c in self.scene.cloths]
+        lengths = ([np.linalg.norm(x[pair[:, 1]] - x[pair[:, 0]], axis=1) for x in of] for pair, *of in edges)
+        return max(float((now / rest).max(initial=0.0)) for now, rest in lengths)
 
 
 @dataclass
@@ -165,6 +173,21 @@ def wound_coils():
     return Play(scene, FRAME / 4, 20, lambda t: rest + 0.5 * 2.0 * min(t, 0.05) * side, loops=[SIDE, -SIDE])
 
 
+def knotted_coils():
+    """Two coils tied into each other, over and under in turn, pulled tight at 1 m/s."""
+    width, reach, leg = 0.01, 0.012, 0.045
+    half = np.array([[-leg, 0.5], [-2 * reach, 0.5], [-reach, 0.6], [0.0, 1.0], [0.8 * reach, 1.3], [reach, 0.5]])
+    x, y = np.r_[half[:, 0], half[::-1, 0]], width * np.r_[half[:, 1], -half[::-1, 1]]
+    over = 4e-3 * np.array([0, 0, 1, -1, 0, 1, -1, 0, 1, -1, 0, 0])  # where it crosses the other
+    first = coiled(np.c_[x, y, over], radius=1.2e-3, pitch=4e-3)
+    second = coiled(np.c_[-x, -y, over], radius=1.2e-3, pitch=4e-3)
+    scene = Scene(
+        Strands(Curves.from_list([first, second]), Material(), ends_held([first, second])), contact=Contact(radius=2e-4)
+    )
+    rest, side = scene.strands.curves.points, np.repeat([-SIDE, SIDE], len(first), axis=0)
+    return Play(scene, FRAME / 4, 24, lambda t: rest + 0.5 * 1.0 * min(t, 0.1) * side, loops=[-SIDE, SIDE])
+
+
 def thrown(strands, moving, held, bodies=()):
     """The first ``moving`` vertices fly down at 20 m/s; what is held of them stops 5 cm below."""
     scene = Scene(Strands(Curves.from_list(strands), Material(), held), bodies)
@@ -188,6 +211,49 @@ def onto_a_strand():
     other = np.c_[0.06 + 0 * along, 0 * along, along - 0.05]
     held = np.concatenate([np.arange(51) < 3, ends_held([other])])
     return thrown([strand, other], 51, held)
+
+
+def cloth_thrown(onto, bodies=(), steps=12):
+    """A tilted sheet of cloth flies at 20 m/s onto what is below it."""
+    mesh = as_mesh(sheet([-0.04, 0.03, -0.04], [0.08, 0.012, 0], [0, 0.005, 0.08], 8))
+    cloth = Cloth(mesh, ClothMaterial(thickness=2e-3))
+    scene = Scene(cloths=[cloth, *onto], bodies=bodies)
+    cloth.velocities[:] = -20.0 * UP
+    return Play(scene, FRAME / 4, steps)
+
+
+def cloth_onto_cloth():
+    """A sheet of cloth at 20 m/s onto another, whose corners are held."""
+    mesh = as_mesh(sheet([-0.06, 0, -0.06], [0.12, 0, 0], [0, 0, 0.12], 9))
+    return cloth_thrown([Cloth(mesh, ClothMaterial(thickness=2e-3), [0, 9, 90, 99])])
+
+
+def cloth_onto_a_body():
+    """A sheet of cloth at 20 m/s onto the corner of a block."""
+    return cloth_thrown([], bodies=[rod([-0.015, 0.0, -0.03], [0, 0, 0.05], 0.02)])
+
+
+def strand_onto_cloth():
+    """A strand at 20 m/s onto a sheet of cloth whose corners are held; its root goes past it."""
+    along = np.linspace(0, 0.1, 51)
+    play = thrown([np.c_[along - 0.05, 0.03 + 0.1 * along, 0.3 * along]], 51, np.arange(51) < 3)
+    mesh = as_mesh(sheet([-0.03, 0, -0.06], [0.12, 0, 0], [0, 0, 0.12], 9))
+    cloth = Cloth(mesh, ClothMaterial(thickness=2e-3), [0, 9, 90, 99])
+    return replace(play, scene=Scene(play.scene.strands, cloths=[cloth]))
+
+
+def tightened():
+    """Seven curls through a ring of elastic that draws together to a quarter."""
+    around = np.linspace(0, 2 * np.pi, 7)[:-1]
+    middles = np.c_[np.zeros(7), np.zeros(7), np.zeros(7)]
+    middles[1:] = 0.011 * np.c_[np.cos(around), 0 * around, np.sin(around)]
+    curls = [helix(80, radius=4e-3, pitch=5e-3) + middle for middle in middles]
+    mesh = band([0, -0.02, 0], 0.02, 5e-3, 36, 3)
+    elastic = ClothMaterial(stretch_warp=100, stretch_weft=100, friction=0.5)
+    ring = Cloth(mesh, elastic, attachment=np.full(len(mesh.points), 0.05))  # it does not fall before it has hold
+    ring.scale_rest(0.25)  # as near as it may then come to itself
+    scene = Scene(Strands(Curves.from_list(curls), Material(), 3), cloths=[ring], contact=Contact(radius=3e-4))
+    return Play(scene, FRAME / 2, 24, scale=lambda t: max(1.0 - 2.0 * t, 0.25))
 
 
 def combed():
@@ -217,6 +283,22 @@ def spun_head():
         return rotation(UP, 0.5 * (2.0 / HEAD) / 0.25 * spin**2).T
 
     return Play(scene, FRAME / 2, 24, lambda t: rest @ turned(t), lambda t: [head.points @ turned(t)])
+
+
+def run_through():
+    """Curls and a ball of 50 000 triangles that flies through them at 20 m/s and changes its shape all the way."""
+    rows, columns = 125, 201
+    points, triangles = sphere(0.03, rows, columns)
+    around = np.arctan2(points[:, 2], points[:, 0])
+
+    def moved(t):
+        swollen = points * (1.0 + 0.1 * np.sin(5 * around + 600 * t) * (1.0 - (points[:, 1] / 0.03) ** 2))[:, None]
+        return [swollen + [20.0 * t - 0.15, -0.04, 0]]
+
+    curls = [helix(100, radius=2e-3, pitch=8e-3) + [0, 0, 0.008 * k - 0.02] for k in range(6)]
+    ball = Body(moved(0.0)[0], triangles, friction=0.2)
+    scene = Scene(Strands(Curves.from_list(curls), Material(), 3), [ball], Contact(radius=2e-4))
+    return Play(scene, FRAME / 8, 3, None, moved)
 
 
 def squeezed():
@@ -265,19 +347,15 @@ def rod(start, way, radius):
     return Body(np.concatenate([ring, ring + way]), np.array(triangles))
 
 
-def head_of_curls(count, spread=1.0, vertices=60):
-    """A ball and curls that stand on it; ``spread``: how far they are around it from +z, 1: all around."""
-    rows, columns = 16, 24
+def sphere(radius, rows, columns):
+    """Points and triangles of a ball about the origin."""
     polar, around = np.meshgrid(
         np.linspace(0, np.pi, rows + 1)[1:-1], 2 * np.pi * np.arange(columns) / columns, indexing="ij"
     )
-    points = (
-        HEAD
-        * np.c_[
-            (np.sin(polar) * np.cos(around)).ravel(), np.cos(polar).ravel(), (np.sin(polar) * np.sin(around)).ravel()
-        ]
-    )
-    points = np.concatenate([points, [[0, HEAD, 0], [0, -HEAD, 0]]])
+    points = np.c_[
+        (np.sin(polar) * np.cos(around)).ravel(), np.cos(polar).ravel(), (np.sin(polar) * np.sin(around)).ravel()
+    ]
+    points = radius * np.concatenate([points, [UP, -UP]])
     at = np.arange((rows - 1) * columns).reshape(rows - 1, columns)
     a, b, c, d = (x.ravel() for x in (at[:-1], np.roll(at, -1, axis=1)[:-1], np.roll(at, -1, axis=1)[1:], at[1:]))
     top, bottom = len(points) - 2, len(points) - 1
@@ -285,7 +363,46 @@ def head_of_curls(count, spread=1.0, vertices=60):
         np.c_[np.full(columns, top), np.roll(at[0], -1), at[0]],
         np.c_[np.full(columns, bottom), at[-1], np.roll(at[-1], -1)],
     ]
-    head = Body(points, np.concatenate([np.c_[a, b, c], np.c_[a, c, d], *fans]))
+    return points, np.concatenate([np.c_[a, b, c], np.c_[a, c, d], *fans])
+
+
+def as_mesh(body):
+    """The surface of a body, to make cloth of."""
+    return Mesh("cloth", np.asarray(body.points, float), np.asarray(body.triangles, np.int32))
+
+
+def band(centre, radius, height, columns, rows):
+    """An upright ring of cloth: ``columns`` around, ``rows`` of triangles high."""
+    turn, up = np.meshgrid(2 * np.pi * np.arange(columns) / columns, np.linspace(0, height, rows + 1), indexing="ij")
+    points = np.c_[radius * np.cos(turn).ravel(), up.ravel(), radius * np.sin(turn).ravel()] + centre
+    at = np.arange(len(points)).reshape(columns, rows + 1)
+    a, b, c, d = (x.ravel() for x in (at[:, :-1], np.roll(at, -1, 0)[:, :-1], np.roll(at, -1, 0)[:, 1:], at[:, 1:]))
+    return Mesh("band", points, np.concatenate([np.c_[a, b, c], np.c_[a, c, d]]).astype(np.int32))
+
+
+def sides_of(triangles):
+    """Every edge of triangles once, shape (k, 2)."""
+    return np.unique(
+        np.sort(np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])), axis=0
+    )
+
+
+def coiled(knots, radius, pitch, per_turn=10):
+    """A coil along the smooth curve through points [m], shape (n, 3)."""
+    spline = CubicSpline(np.arange(len(knots)), knots)
+    fine = np.linspace(0, len(knots) - 1, 4000)
+    way = np.r_[0, np.cumsum(np.linalg.norm(np.diff(spline(fine), axis=0), axis=1))]
+    at = np.interp(np.arange(0, way[-1], pitch / per_turn), way, fine)
+    along = spline(at, 1) / np.linalg.norm(spline(at, 1), axis=1)[:, None]
+    out = np.cross(along, [0.0, 0.0, 1.0])
+    out /= np.linalg.norm(out, axis=1)[:, None]
+    turn = 2 * np.pi * np.arange(len(at))[:, None] / per_turn
+    return spline(at) + radius * (np.cos(turn) * out + np.sin(turn) * np.cross(along, out))
+
+
+def head_of_curls(count, spread=1.0, vertices=60):
+    """A ball and curls that stand on it; ``spread``: how far they are around it from +z, 1: all around."""
+    head = Body(*sphere(HEAD, 16, 24))
     # Fibonacci's spiral: evenly over the part of the sphere that is left.
     k = np.arange(count) + 0.5
     z, turn = 1 - spread * 2 * k / count, np.pi * (3 - np.sqrt(5)) * k
@@ -306,11 +423,17 @@ SCENES = {
         hooked_strands,
         chain_of_loops,
         wound_coils,
+        knotted_coils,
         onto_a_sheet,
         onto_a_strand,
+        strand_onto_cloth,
+        cloth_onto_cloth,
+        cloth_onto_a_body,
         combed,
         spun_head,
+        run_through,
         squeezed,
+        tightened,
         over_an_edge,
     )
 }

@@ -9,7 +9,7 @@ from functools import cache
 import numpy as np
 import pytest
 from coils import helix
-from contact_scenes import SCENES, act, hooked_strands, onto_a_sheet
+from contact_scenes import SCENES, act, hooked_strands, onto_a_sheet, tightened
 from crossings import Judge
 from linking import linking
 from ringlet.shot import Solver
@@ -37,6 +37,23 @@ def test_no_edge_is_torn(name, newton):
 def test_positions_stay_finite(name):
     assert outcome(name, 1).finite
     assert outcome(name, 5).finite
+
+
+def test_a_tie_that_tightens_gathers_curls():
+    """All of them go through it to the end, and where it is they are in a third of the room."""
+    play = tightened()
+    curls, ring = play.scene.strands, play.scene.cloths[0]
+
+    def reach():
+        middle = ring.positions.mean(axis=0)
+        near = np.abs(curls.positions[:, 1] - middle[1]) < 5e-4
+        assert len(np.unique(np.searchsorted(curls.curves.offsets, np.flatnonzero(near), side="right"))) == 7
+        return np.linalg.norm((curls.positions[near] - middle)[:, [0, 2]], axis=1).max()
+
+    before = reach()
+    for k in range(1, play.steps + 1):
+        play.step(k, Solver())
+    assert reach() < before / 2.5
 
 
 @pytest.mark.parametrize("load", [0.1, 0.5, 0.9])
