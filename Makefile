@@ -13,7 +13,7 @@ sources := pyproject.toml CMakeLists.txt $(wildcard cmake/*) $(shell find src bi
 # What the review page is made from.
 page := tools/web.sh $(wildcard web/*.json web/*.ts web/*.html) $(shell find web/src web/public -type f)
 
-.PHONY: help build demo view test bench docs lint clean
+.PHONY: help build demo view test blender bench docs lint clean
 
 help: ## list the targets
 	@grep -E '^[a-z]+:.*##' Makefile | sed -E 's/:.*## /\t/' | expand -t 10
@@ -50,6 +50,10 @@ view: build ## the example's curls in the browser, to be changed
 
 test: .venv/tooled ## everything: C++, Python, known answers, lints, documents
 	@tools/test.sh
+
+blender: ## Blender's Python module in .venv-blender, 374 MB, for the tests that open files with it
+	python3.11 -m venv .venv-blender
+	.venv-blender/bin/pip install --quiet bpy==5.0.1
 
 bench: build ## speed, as JSON
 	@for name in groom strands; do .venv/bin/ringlet bench $$name --json; done

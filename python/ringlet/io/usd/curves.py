@@ -33,6 +33,7 @@ from ringlet.stage import StageSpace
 
 OWN = "ringlet:"
 ID_NAMES = ("ringlet:id", "groom_id", "id", "hair_id", "hairid", "curve_id")
+ID_HALVES = ("id_high", "id_low")  # of ids of 64 bits, for programs that know none, such as Blender
 HAIR_WIDTH = 70e-6  # diameter of a hair that says nothing else [m]
 
 
@@ -125,8 +126,10 @@ def define_curves(
     for name, values in curves.point.items():
         if name != "width":  # which is in ``widths``
             set_primvar(prim, OWN + name, "vertex", values)
-    short = curves.ids if np.abs(curves.ids).max(initial=0) < 2**31 else np.arange(len(curves))
-    set_primvar(prim, "groom_id", "uniform", short.astype(np.int32))
+    fits = np.abs(curves.ids).max(initial=0) < 2**31
+    set_primvar(prim, "groom_id", "uniform", (curves.ids if fits else np.arange(len(curves))).astype(np.int32))
+    for name, half in zip(ID_HALVES, (curves.ids >> 32, curves.ids & 0xFFFFFFFF), strict=True):
+        set_primvar(prim, name, "uniform", half.astype(np.uint32).view(np.int32))
     set_primvar(prim, "groom_group_id", "uniform", np.zeros(len(curves), np.int32))
     set_primvar(prim, "groom_guide", "uniform", np.full(len(curves), guide, np.int32))
     return defined
@@ -214,6 +217,10 @@ def _add_maps(curves: Curves, prim: Usd.Prim, where: str) -> None:
 
 def _name(curves: Curves) -> None:
     """Takes the names of curves from the first attribute that can be one."""
+    halves = [curves.curve.pop(name, None) for name in ID_HALVES]
+    if "id" not in curves.curve and all(half is not None and half.dtype == np.int32 for half in halves):
+        high, low = (np.asarray(half, np.int64) for half in halves)
+        curves.curve["id"] = (high << 32) | (low & 0xFFFFFFFF)
     for name in (known.removeprefix(OWN) for known in ID_NAMES):
         ids = curves.curve.get(name)
         if ids is not None and ids.dtype.kind in "iu" and ids.ndim == 1 and len(np.unique(ids)) == len(ids):

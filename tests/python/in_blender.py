@@ -1,0 +1,99 @@
+"""Run by Blender's Python, not ours: opens files in a way that is asked for, and writes what is in the scene as JSON.
+
+in_blender.py SAID.json WAY [FILE …]
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+
+import bpy
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "integrations/blender"))
+import ringlet_groom
+
+VALUES = {"FLOAT_VECTOR": ("vector", 3), "FLOAT2": ("vector", 2), "FLOAT": ("value", 1), "INT": ("value", 1)}
+
+
+def scene(frames: list[int]) -> dict:
+    """What there is: rate and range, and every object, curves with attributes and their points in the world [m]."""
+    told = {}
+    for thing in bpy.data.objects:
+        one = told[thing.name] = {"type": thing.type, "hidden": thing.hide_get(), "frames": {}}
+        if thing.type == "CURVES":
+            one["counts"] = [len(curve.points) for curve in thing.data.curves]
+            one["kinds"] = (
+                sorted({value.value for value in thing.data.attributes["curve_type"].data})
+                if ("curve_type" in thing.data.attributes)
+                else [0]
+            )
+            one["attributes"] = {a.name: [a.domain, values(a)] for a in thing.data.attributes if a.data_type in VALUES}
+            one["scale"] = list(thing.matrix_world.to_scale())
+            one["surface"] = thing.data.surface and thing.data.surface.name
+            one["uv_map"] = thing.data.surface_uv_map
+    for frame in frames:
+        bpy.context.scene.frame_set(frame)
+        for thing in bpy.data.objects:
+            if thing.type in ("CURVES", "MESH"):
+                told[thing.name]["frames"][str(frame)] = world(thing)
+    settings = bpy.context.scene
+    return {"fps": settings.render.fps, "range": [settings.frame_start, settings.frame_end], "objects": told}
+
+
+def values(attribute: bpy.types.Attribute) -> list:
+    """The values of an attribute, a row for each element."""
+    name, size = VALUES[attribute.data_type]
+    flat = np.empty(size * len(attribute.data), np.int32 if attribute.data_type == "INT" else np.float32)
+    attribute.data.foreach_get(name, flat)
+    return (flat if size == 1 else flat.reshape(-1, size)).tolist()
+
+
+def world(thing: bpy.types.Object) -> list:
+    """The points of an object as they are seen now, in metres with Z up."""
+    seen = thing.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    points = np.array(values(seen.data.attributes["position"]))
+    matrix = np.array(seen.matrix_world)
+    return (points @ matrix[:3, :3].T + matrix[:3, 3]).tolist()
+
+
+def refused(operator, **settings) -> str:
+    """The message with which an operator refuses; empty where it does not."""
+    try:
+        operator(**settings)
+    except RuntimeError as error:
+        return str(error)
+    return ""
+
+
+def main(way: str, *files: str) -> dict:
+    """One way to open files; ``files`` as that way takes them."""
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    ringlet_groom.register()
+    if way == "plain":
+        bpy.ops.wm.usd_import(filepath=files[0], import_guide=True)
+    elif way == "add-on":
+        bpy.ops.ringlet.import_groom(filepath=files[0])
+        if len(files) > 1:
+            bpy.ops.ringlet.play_cache(filepath=files[1])
+    elif way == "refused":
+        return {
+            "no file": refused(bpy.ops.ringlet.import_groom, filepath=files[0]),
+            "no groom": refused(bpy.ops.ringlet.import_groom, filepath=files[1]),
+            "nothing to play": refused(bpy.ops.ringlet.play_cache, filepath=files[1]),
+            "objects": len(bpy.data.objects),
+        }
+    elif way == "back":
+        bpy.ops.ringlet.import_groom(filepath=files[0])
+        for thing in bpy.data.objects:
+            thing.select_set(thing.name == "guides")
+        for point in bpy.data.objects["guides"].data.points:
+            point.position.x += 1.0
+        bpy.ops.wm.usd_export(filepath=files[1], selected_objects_only=True)
+    return scene([1, 2, 3])
+
+
+if __name__ == "__main__":
+    Path(sys.argv[1]).write_text(json.dumps(main(*sys.argv[2:])))

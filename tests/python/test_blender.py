@@ -1,0 +1,129 @@
+"""Blender opens what Ringlet writes, and Ringlet what Blender gives back. Needs bpy in an environment of its own, since
+it is large and pins libraries: make blender."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+from ringlet.io import HairWriter, read_curves, read_space, write_cache, write_groom
+from test_io_groom import hairs_of
+from usd_scenes import make_groom, write_head
+
+from ringlet import Cache
+
+ROOT = Path(__file__).parents[2]
+BLENDER = Path(os.environ.get("RINGLET_BLENDER_PYTHON", ROOT / ".venv-blender/bin/python"))
+
+pytestmark = pytest.mark.skipif(not BLENDER.exists(), reason=f"Blender is not installed at {BLENDER}: make blender")
+
+
+@pytest.fixture(params=[(0.01, "Y"), (1.0, "Z")], ids=["cm-Y", "m-Z"])
+def groom(tmp_path, request):
+    """A groom, and beside it a cache in which the locks rise 0.01 m a frame, and hairs over that."""
+    unit, axis = request.param
+    head = write_head(tmp_path / "head.usdc", unit=unit, axis=axis)
+    groom = make_groom(head)
+    groom.guides.ids[:] = 4_711_000_003, -1 - 4_711_000_003  # Blender knows no numbers of 64 bits
+    write_groom(groom, tmp_path / "groom.usdc")
+    rise = np.array([[0, 0.01 * k, 0] for k in range(3)], np.float32)
+    moved = (groom.locks.points + rise[:, None]).astype(np.float32)
+    cache = Cache(np.array([1.0, 2.0, 3.0]), moved)
+    write_cache(cache, tmp_path / "groom.usdc", tmp_path / "cache.usdc", read_space(head))
+    hairs = hairs_of(groom)
+    with HairWriter(tmp_path / "hair.usdc", groom, hairs, tmp_path / "cache.usdc") as writer:
+        for k in range(3):
+            writer.add(k + 1.0, hairs.points + rise[k])
+    return groom
+
+
+@pytest.fixture
+def blender(tmp_path):
+    """Says what is in Blender's scene after it has opened files in a way (tests/python/in_blender.py)."""
+    # what the environment says of the Python that runs the tests is not for Blender's
+    clean = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
+
+    def said(*arguments: object) -> dict:
+        script = Path(__file__).with_name("in_blender.py")
+        command = [str(part) for part in (BLENDER, script, tmp_path / "said.json", *arguments)]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=120, env=clean, check=False)
+        assert done.returncode == 0, done.stderr[-2000:]
+        return json.loads((tmp_path / "said.json").read_text())
+
+    return said
+
+
+def z_up(points: np.ndarray) -> np.ndarray:
+    """Points with Y up as Blender has them."""
+    return np.stack([points[:, 0], -points[:, 2], points[:, 1]], axis=1)
+
+
+def test_curves_attributes_units_and_motion_arrive_in_blender(groom, blender, tmp_path):
+    scene, hairs = blender("plain", tmp_path / "hair.usdc"), hairs_of(groom)
+    assert (scene["fps"], scene["range"]) == (24, [1, 3])
+    for name, curves in (("locks", groom.locks), ("hairs", hairs)):
+        seen = scene["objects"][name]
+        assert seen["counts"] == curves.counts.tolist()
+        assert seen["kinds"] == [0]  # Catmull-Rom
+        for k in range(3):
+            there = z_up(curves.points + [0, 0.01 * k, 0])
+            np.testing.assert_allclose(seen["frames"][str(k + 1)], there, atol=1e-6)
+        radius = np.array(seen["attributes"]["radius"][1]) * seen["scale"][0]
+        np.testing.assert_allclose(radius, curves.point["width"] / 2, rtol=1e-4)
+        uv = np.einsum("kc,kcx->kx", curves.curve["root_barycentric"], groom.scalp.uv[curves.curve["root_triangle"]])
+        for attribute, expected in {
+            "groom_id": curves.ids if name == "hairs" else np.arange(5),
+            "skinprim": groom.scalp.faces[curves.curve["root_triangle"]],
+            "st": uv,
+            "surface_uv_coordinate": uv,
+            "groom_guide": np.full(len(curves), name == "locks"),
+        }.items():
+            domain, values = seen["attributes"][attribute]
+            assert domain == "CURVE"
+            np.testing.assert_allclose(values, expected, atol=1e-6, err_msg=attribute)
+    domain, rest = scene["objects"]["locks"]["attributes"]["rest"]
+    assert domain == "POINT" and len(rest) == len(groom.locks.points)
+    domain, lock = scene["objects"]["hairs"]["attributes"]["guide_curve_index"]
+    assert domain == "CURVE" and lock == hairs.curve["lock"].tolist()
+
+
+def test_the_add_on_sets_the_surface_and_plays_what_is_in_the_file(groom, blender, tmp_path):
+    objects = blender("add-on", tmp_path / "hair.usdc")["objects"]
+    for name in ("locks", "guides", "hairs"):
+        assert (objects[name]["surface"], objects[name]["uv_map"]) == ("skin", "st")
+    assert [objects[name]["hidden"] for name in ("locks", "guides", "hairs")] == [True, True, False]
+    first, last = (np.array(objects["hairs"]["frames"][frame]) for frame in ("1", "3"))
+    np.testing.assert_allclose(last - first, np.tile([0, 0, 0.02], (len(first), 1)), atol=1e-6)
+
+
+def test_the_add_on_lets_a_groom_play_a_cache(groom, blender, tmp_path):
+    still = blender("add-on", tmp_path / "groom.usdc")["objects"]
+    moving = blender("add-on", tmp_path / "groom.usdc", tmp_path / "cache.usdc")["objects"]
+    assert not moving["locks"]["hidden"]
+    for frame in (1, 2, 3):
+        np.testing.assert_allclose(still["locks"]["frames"][str(frame)], z_up(groom.locks.points), atol=1e-6)
+        risen = z_up(groom.locks.points + [0, 0.01 * (frame - 1), 0])
+        np.testing.assert_allclose(moving["locks"]["frames"][str(frame)], risen, atol=1e-6)
+        slid = np.array(moving["skin"]["frames"][str(frame)]) - moving["skin"]["frames"]["1"]
+        np.testing.assert_allclose(slid, np.tile([0.01 * (frame - 1), 0, 0], (len(slid), 1)), atol=1e-6)
+
+
+def test_the_add_on_refuses_what_is_no_groom_and_leaves_the_scene_alone(groom, blender, tmp_path):
+    said = blender("refused", tmp_path / "nowhere.usdc", tmp_path / "head.usdc")
+    assert "there is no such file" in said["no file"]
+    assert "head.usdc: is no groom of Ringlet's" in said["no groom"]
+    assert "There is no groom in the scene" in said["nothing to play"]
+    assert said["objects"] == 0
+
+
+def test_guides_come_back_from_blender_with_their_names(groom, blender, tmp_path):
+    blender("back", tmp_path / "groom.usdc", tmp_path / "edited.usdc")
+    back = read_curves(tmp_path / "edited.usdc")
+    assert back.ids.tolist() == groom.guides.ids.tolist()
+    assert back.counts.tolist() == groom.guides.counts.tolist()
+    moved = groom.guides.points + np.array([read_space(tmp_path / "groom.usdc").meters_per_unit, 0, 0])
+    np.testing.assert_allclose(back.points, moved, atol=1e-6)
