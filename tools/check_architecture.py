@@ -43,10 +43,11 @@ PYTHON = {
     "api": DATA | {"_core", "groom", "shot", "validate", "io", "picture", "report"},
     "bench": {"_core"},
     "viewer": DATA | {"_core", "groom", "shot", "io", "picture", "api"},
+    "farm": DATA | {"groom", "shot", "report", "api"},
     "run": DATA | {"_core", "report"},
     "demo": DATA | {"api", "run"},
     "doctor": DATA | {"_core", "api", "shot"},
-    API: DATA | {"api", "run", "demo", "doctor", "groom", "shot", "bench", "viewer"},
+    API: DATA | {"api", "run", "demo", "doctor", "groom", "shot", "bench", "viewer", "farm"},
     "cli": {API},
 }
 OUTSIDE = ("bench", "examples")  # these use the public API only

@@ -43,6 +43,7 @@ from ringlet.stage import StageSpace
 
 if TYPE_CHECKING:
     from ringlet.bench import Clock, solver_counts
+    from ringlet.farm import compare_wedge, wedge, write_wedge_template
     from ringlet.groom.groom import Groom
     from ringlet.groom.stack import Memory
     from ringlet.shot.cache import Cache
@@ -81,6 +82,7 @@ __all__ = [
     "build_groom",
     "build_hairs",
     "check_groom",
+    "compare_wedge",
     "diagnose",
     "edit_lock",
     "list_edits",
@@ -99,6 +101,7 @@ __all__ = [
     "solver_counts",
     "use_threads",
     "view",
+    "wedge",
     "write_cache",
     "write_groom",
     "write_hairs",
@@ -109,6 +112,7 @@ __all__ = [
     "write_still",
     "write_touches",
     "write_touches_picture",
+    "write_wedge_template",
 ]
 
 
@@ -129,8 +133,11 @@ _SLOW = {
     "Scene": "ringlet.shot.scene",
     "Solver": "ringlet.shot.strands",
     "Strands": "ringlet.shot.strands",
+    "compare_wedge": "ringlet.farm",
     "solver_counts": "ringlet.bench",
     "view": "ringlet.viewer",
+    "wedge": "ringlet.farm",
+    "write_wedge_template": "ringlet.farm",
 }
 
 

@@ -325,6 +325,13 @@ def write_simulation(
     return told
 
 
+def made_from(shot: Shot, groom: Groom, *, frames: tuple[int, int] | None = None) -> str:
+    """A digest of all that the frames of a simulation depend on: two runs with the same give the same bits."""
+    from ringlet import shot as shots
+
+    return shots.made_of(shot, groom, frames=frames, **_inputs(shot, groom, False))
+
+
 def start_motion(shot: Shot, groom: Groom, *, allow_stale: bool = False) -> Motion:
     """The locks of a groom at the start of a shot, to be moved frame by frame by who wants to see each."""
     from ringlet import shot as shots

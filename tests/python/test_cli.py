@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 
 import ringlet
 
-COMMANDS = ["demo", "groom", "edit", "check", "loft", "sim", "hair", "picture", "validate", "bench", "schema"]
+COMMANDS = ["demo", "groom", "edit", "check", "loft", "sim", "wedge", "hair", "picture", "validate", "bench", "schema"]
 
 
 def run(*arguments: object):

@@ -16,7 +16,7 @@ import typer
 from typer.core import TyperGroup
 
 import ringlet
-from ringlet.cli import bench, check, demo, doctor, edit, groom, hair, loft, picture, schema, sim, validate, view
+from ringlet.cli import bench, check, demo, doctor, edit, groom, hair, loft, picture, schema, sim, validate, view, wedge
 
 INTERRUPTED = 130  # what typer makes of a KeyboardInterrupt
 
@@ -113,6 +113,7 @@ for name, command in {
     "check": check.check,
     "loft": loft.loft,
     "sim": sim.sim,
+    "wedge": wedge.wedge,
     "hair": hair.hair,
     "picture": picture.picture,
     "view": view.view,

@@ -1,7 +1,9 @@
 """The report of a run: what was asked, what was made, how long it took, and how the simulation behaved."""
 
+from ringlet.report.charts import line_chart
 from ringlet.report.findings import explain_slowest
 from ringlet.report.model import Machine, MadeFile, Picture, RunReport, Stage, Table
+from ringlet.report.page import document, figure, table
 from ringlet.report.start import start_table, start_warnings
 from ringlet.report.write import write_report
 
@@ -12,8 +14,12 @@ __all__ = [
     "RunReport",
     "Stage",
     "Table",
+    "document",
     "explain_slowest",
+    "figure",
+    "line_chart",
     "start_table",
     "start_warnings",
+    "table",
     "write_report",
 ]

@@ -49,8 +49,8 @@ def page(report: RunReport) -> str:
         for section in (
             _header(report),
             _outcome(report),
-            *(_picture(picture) for picture in report.pictures[1:]),
-            *(_table(table) for table in report.tables),
+            *(figure(picture) for picture in report.pictures[1:]),
+            *(table(each) for each in report.tables),
             _timings(report.stages),
             _simulation(report),
             _files(report),
@@ -58,11 +58,16 @@ def page(report: RunReport) -> str:
         )
         if section
     )
+    return document(report.name, body)
+
+
+def document(title: str, body: str) -> str:
+    """A page in the style of our reports."""
     return (
         '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8"/>\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1"/>\n'
         '<meta name="color-scheme" content="light dark"/>\n'
-        f"<title>Ringlet · {escape(report.name)}</title>\n"
+        f"<title>Ringlet · {escape(title)}</title>\n"
         f"<style>\n{STYLE.read_text(encoding='utf-8')}</style>\n</head>\n<body>\n<main>\n{body}\n</main>\n</body>\n</html>\n"
     )
 
@@ -98,12 +103,13 @@ def _outcome(report: RunReport) -> str:
     said = "".join(f"<p>{escape(sentence)}</p>" for sentence in verdict(report.statistics))
     warned = "".join(f'<p class="warning">{escape(warning)}</p>' for warning in report.warnings)
     text = (f'<dl class="counts">{numbers}</dl>' if numbers else "") + warned + said
-    hero = _picture(report.pictures[0]) if report.pictures else ""
+    hero = figure(report.pictures[0]) if report.pictures else ""
     beside = f"<div><h2>What was made</h2>{text}</div>" if text else ""
     return f'<section class="outcome">{hero}{beside}</section>' if hero or beside else ""
 
 
-def _picture(picture: Picture) -> str:
+def figure(picture: Picture) -> str:
+    """A picture with its caption, all of it in the page."""
     path = Path(picture.path)
     try:
         with Image.open(path) as image:
@@ -120,14 +126,15 @@ def _picture(picture: Picture) -> str:
     )
 
 
-def _table(table: Table) -> str:
-    head = "".join(f"<th scope='col'>{escape(name)}</th>" for name in table.columns)
+def table(told: Table) -> str:
+    """A table under its title."""
+    head = "".join(f"<th scope='col'>{escape(name)}</th>" for name in told.columns)
     rows = "".join(
         f"<tr><th scope='row'>{escape(row[0])}</th>{''.join(f'<td>{escape(cell)}</td>' for cell in row[1:])}</tr>"
-        for row in table.rows
+        for row in told.rows
     )
     return (
-        f"<section><h2>{escape(table.title)}</h2><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
+        f"<section><h2>{escape(told.title)}</h2><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
         "</section>"
     )
 

@@ -1,0 +1,123 @@
+"""The page that compares the tasks of a wedge: a picture of each, its numbers, and how it went frame by frame."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from html import escape
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ringlet.farm.task import RESULT, Result, read_result
+from ringlet.files import replacing
+from ringlet.report import Picture, Table, document, figure, line_chart, table
+
+MOST_LINES = 6  # that a chart tells apart
+MOST_COLUMNS = 6
+
+
+def read_results(folder: Path) -> dict[Path, Result]:
+    """What all tasks in a folder gave, by their folders, in the order of their settings."""
+    found = {file.parent: result for file in folder.glob(f"*/{RESULT}") if (result := read_result(file.parent))}
+    return dict(sorted(found.items(), key=lambda item: [_order(value) for value in item[1].settings.values()]))
+
+
+def write_page(folder: Path, title: str) -> dict[Path, Result]:
+    """Writes ``wedge.html`` and ``wedge.json`` from all that is in a folder; returns it."""
+    results = read_results(folder)
+    away = distances(results)
+    with replacing(folder / "wedge.html") as aside:
+        aside.write_text(page(results, away, title), encoding="utf-8")
+    told = [{"folder": at.name, **vars(result), "away": away.get(at)} for at, result in results.items()]
+    with replacing(folder / "wedge.json") as aside:
+        aside.write_text(json.dumps({"ringlet": 1, "tasks": told}, indent=1), encoding="utf-8")
+    return results
+
+
+def page(results: dict[Path, Result], away: dict[Path, float], title: str) -> str:
+    """The whole page. ``away``: see ``distances``."""
+    done = sum(result.state == "done" for result in results.values())
+    lead = f"<p>{done} of {len(results)} tasks are done.</p>"
+    troubles = "".join(
+        f'<p class="warning">{escape(_name(result))}: {escape(result.message)}</p>'
+        for result in results.values()
+        if result.state != "done"
+    )
+    head = f"<header>\n<p class='brand'>Ringlet</p>\n<h1>{escape(title)}</h1>\n{lead}{troubles}</header>"
+    return document(title, "\n".join((head, _pictures(results), _numbers(results, away), _charts(results))))
+
+
+def distances(results: dict[Path, Result]) -> dict[Path, float]:
+    """How far the locks of each task are from those of the first, at the frame that is compared: the root mean square
+    over all vertices [m], for those with the same locks."""
+    places = {at: np.load(at / "places.npy") for at, result in results.items() if result.state == "done"}
+    first = next(iter(places.values()), None)
+    return {
+        at: float(np.sqrt(((points - first) ** 2).sum(axis=1).mean()))
+        for at, points in places.items()
+        if first is not None and points.shape == first.shape
+    }
+
+
+def _pictures(results: dict[Path, Result]) -> str:
+    drawn = {at: result for at, result in results.items() if (at / "still.png").exists()}
+    if not drawn:
+        return ""
+    figures = "".join(
+        figure(Picture(path=str(at / "still.png"), caption=_name(result))) for at, result in drawn.items()
+    )
+    return (
+        f'<section><div class="wedge" style="--columns: {_columns(list(results.values()))}">{figures}</div></section>'
+    )
+
+
+def _numbers(results: dict[Path, Result], away: dict[Path, float]) -> str:
+    done = {at: result for at, result in results.items() if result.numbers}
+    names = list(dict.fromkeys(name for result in done.values() for name in result.numbers or {}))
+    rows = [
+        [
+            _name(result),
+            f"{1e3 * away[at]:.3g}" if at in away else "",
+            *(f"{(result.numbers or {}).get(name, float('nan')):.4g}" for name in names),
+        ]
+        for at, result in done.items()
+    ]
+    return table(Table(title="In numbers", columns=["", "from the first, mm", *names], rows=rows)) if rows else ""
+
+
+def _charts(results: dict[Path, Result]) -> str:
+    told = [result for result in results.values() if result.series][:MOST_LINES]
+
+    def chart(title: str, unit: str, name: str, factor: float) -> str:
+        lines = {_name(result): [factor * value for value in (result.series or {})[name]] for result in told}
+        longest = max(map(len, lines.values()), default=0)
+        even = {name: values + [float("nan")] * (longest - len(values)) for name, values in lines.items()}
+        return line_chart(title, unit, range(1, longest + 1), even)
+
+    if not told:
+        return ""
+    charts = chart("Time for a frame", "s", "wall_ms", 1e-3) + chart("Longest edge", "%", "max_stretch", 100.0)
+    some = f" (the first {len(told)} tasks)" if len(told) < len(results) else ""
+    return f"<section><h2>Frame by frame{some}</h2><div class='charts'>{charts}</div></section>"
+
+
+def _name(result: Result) -> str:
+    return ", ".join(f"{name} = {value}" for name, value in result.settings.items()) or "as it is"
+
+
+def _columns(results: Sequence[Result]) -> int:
+    """How many pictures stand side by side: the values of the last setting, where the grid is whole."""
+    names = list(results[0].settings)
+    if names and all(list(result.settings) == names for result in results):
+        values = {str(result.settings[names[-1]]) for result in results}
+        if len(results) % len(values) == 0 and 1 < len(values) <= MOST_COLUMNS:
+            return len(values)
+    return min(len(results), 4)
+
+
+def _order(value: Any) -> tuple[int, float, str]:
+    """Numbers by size, before all else by its text."""
+    number = isinstance(value, int | float)
+    return (0, float(value), "") if number else (1, 0.0, str(value))

@@ -1,0 +1,110 @@
+"""A wedge: one shot with several values of some settings, each simulated, drawn and compared with the others."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from ringlet import api
+from ringlet.errors import UserError
+from ringlet.farm.cluster import run_on_workers
+from ringlet.farm.grid import Choice, Task, choose, make_tasks
+from ringlet.farm.openjd import write_template
+from ringlet.farm.page import read_results, write_page
+from ringlet.farm.task import Result, Wanted, run_task
+
+
+def wedge(
+    shot: Path | str,
+    settings: Mapping[str, Sequence[Any] | str],
+    folder: Path | str,
+    *,
+    frames: tuple[int, int] | None = None,
+    frame: int | None = None,
+    picture: bool = True,
+    scheduler: str | None = None,
+    here: bool = False,
+    workers: int | None = None,
+    threads: int | None = None,
+    retries: int = 2,
+    progress: api.Progress | None = None,
+) -> list[dict[str, Any]]:
+    """Simulates a shot with every combination of settings, and writes a page that compares them to ``folder``.
+
+    What is there already is kept, and what was broken off goes on. Returns ``folder``, ``settings``, ``state``
+    (``done``, ``refused`` or ``failed``), ``message`` and ``numbers`` of each task.
+
+    settings:  values by the name of the setting: ``{"strands.bend_scale": [1, 2, 4], "contact.friction": "0.1,0.3"}``
+    frame:     that is drawn and compared; the last by default
+    scheduler: address of a dask.distributed scheduler whose workers see the same folders; workers here by default
+    here:      in this process, one after the other, without dask
+    workers:   how many processes here
+    threads:   of each task; by default the processors are shared out among the workers
+    retries:   how often a task may break off or lose its worker
+    """
+    folder = Path(folder).absolute()
+    tasks = make_tasks(Path(shot).absolute(), _choices(settings), folder)
+    wanted = Wanted(frames, frame, picture, threads)
+    if here:
+        results = [run_task(task, wanted, _frames_of(task, progress)) for task in tasks]
+    else:
+        if scheduler is None:
+            processors = os.cpu_count() or 1
+            workers = workers or min(len(tasks), processors)
+            wanted = replace(wanted, threads=threads or max(1, processors // workers))
+        results = run_on_workers(
+            tasks, wanted, scheduler=scheduler, workers=workers, retries=retries, told=progress or _say_nothing
+        )
+    write_page(folder, f"Wedge of {Path(shot).name}")
+    return [_told(task.folder, result) for task, result in zip(tasks, results, strict=True)]
+
+
+def compare_wedge(shot: Path | str, folder: Path | str) -> list[dict[str, Any]]:
+    """Writes the page again from all that is in the folder of a wedge; returns what ``wedge`` does."""
+    folder = Path(folder)
+    if not read_results(folder):
+        raise UserError(f"{folder}: holds no results of a wedge; make them with: ringlet wedge SHOT --set …")
+    return [_told(at, result) for at, result in write_page(folder, f"Wedge of {Path(shot).name}").items()]
+
+
+def write_wedge_template(
+    path: Path | str,
+    shot: Path | str,
+    settings: Mapping[str, Sequence[Any] | str],
+    *,
+    frames: tuple[int, int] | None = None,
+    frame: int | None = None,
+    picture: bool = True,
+    threads: int | None = None,
+) -> int:
+    """Writes a wedge as a template of Open Job Description, for a render farm; returns the number of its tasks."""
+    choices = _choices(settings)
+    tasks = make_tasks(Path(shot).absolute(), choices, Path(path).absolute().parent)  # checked before it is sent
+    write_template(Path(path), Path(shot), choices, Wanted(frames, frame, picture, threads))
+    return len(tasks)
+
+
+def _choices(settings: Mapping[str, Sequence[Any] | str]) -> list[Choice]:
+    return [choose(name, values) for name, values in settings.items()]
+
+
+def _say_nothing(name: str, done: int, total: int) -> None:
+    """Progress that nobody wants."""
+
+
+def _frames_of(task: Task, progress: api.Progress | None) -> Any:
+    return (lambda done, total: progress(task.name, done, total)) if progress else None
+
+
+def _told(folder: Path, result: Result) -> dict[str, Any]:
+    return {
+        "folder": str(folder),
+        "settings": result.settings,
+        "state": result.state,
+        "message": result.message,
+        "seconds": result.seconds,
+        "numbers": result.numbers,
+    }
