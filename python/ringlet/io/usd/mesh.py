@@ -166,7 +166,7 @@ def clip_at(source: Source, prim: Usd.Prim, frames: tuple[float, float] | None =
 
 def whole_frames(first: float, last: float, where: str) -> NDArray[np.float64]:
     """The frames from the first to the last, shape (k,)."""
-    if not last - first < MOST_FRAMES:  # nor where one of them is no number
+    if not abs(last - first) < MOST_FRAMES:  # nor where one of them is no number
         raise UserError(f"{where}: moves from {first:g} to {last:g}; must be fewer than {MOST_FRAMES:,} frames")
     frames = np.arange(math.ceil(first), math.floor(last) + 1, dtype=np.float64)
     if len(frames) == 0:
