@@ -341,13 +341,10 @@ def start_motion(shot: Shot, groom: Groom, *, allow_stale: bool = False) -> Moti
 
 def _inputs(shot: Shot, groom: Groom, allow_stale: bool) -> dict[str, Any]:
     """What files hold that a shot and its groom name: what ``shots.simulate`` takes besides the two."""
-    garments = _garments(shot, groom)
-    return {
-        "clip": scalp_clip(groom),
-        "rest": _rest_shape(shot, groom, allow_stale),
-        "obstacles": _obstacles(shot, groom, garments),
-        "garments": garments,
-    }
+    clip, garments = scalp_clip(groom), _garments(shot, groom)
+    obstacles = _obstacles(shot, groom, garments)
+    rest = _rest_shape(shot, groom, obstacles, allow_stale)
+    return {"clip": clip, "rest": rest, "obstacles": obstacles, "garments": garments}
 
 
 def _checkpoints(
@@ -379,9 +376,10 @@ def loft(
         shot = read_shot(shot)
     if not isinstance(groom, Groom):
         groom = load_groom(groom or shot.groom, progress=progress)
+    obstacles = _lain_on(shot, groom)
     if known is None or not Path(known).exists():
-        return shots.preload(shot, groom, progress=progress)
-    return shots.refresh(shot, groom, *io.read_rest(Path(known)), progress=progress)
+        return shots.preload(shot, groom, obstacles=obstacles, progress=progress)
+    return shots.refresh(shot, groom, *io.read_rest(Path(known)), obstacles=obstacles, progress=progress)
 
 
 def write_loft(loft: Loft, shot: Shot, path: Path | str) -> None:
@@ -389,10 +387,18 @@ def write_loft(loft: Loft, shot: Shot, path: Path | str) -> None:
     from ringlet import io
     from ringlet import shot as shots
 
-    io.write_rest(shots.keep(loft, shot), shots.made_from(shot), Path(path), loft.groom.space)
+    made_from = shots.made_from(shot, _lain_on(shot, loft.groom))
+    io.write_rest(shots.keep(loft, shot), made_from, Path(path), loft.groom.space)
 
 
-def _rest_shape(shot: Shot, groom: Groom, allow_stale: bool) -> Curves | None:
+def _lain_on(shot: Shot, groom: Groom) -> list[Obstacle]:
+    """The bodies that a groom may lie on, as far as its rest shape asks for them."""
+    if shot.rest.mode != "equilibrium" or groom.scalp_file is None:
+        return []
+    return _obstacles(shot, groom, _garments(shot, groom))
+
+
+def _rest_shape(shot: Shot, groom: Groom, obstacles: Sequence[Obstacle], allow_stale: bool) -> Curves | None:
     """What the locks remember: nothing but the groom, or a lofted shape that fits."""
     from ringlet import io
     from ringlet import shot as shots
@@ -406,7 +412,7 @@ def _rest_shape(shot: Shot, groom: Groom, allow_stale: bool) -> Curves | None:
     if not shot.rest_file.exists():
         raise UserError(f"{shot.rest_file}: there is no lofted shape; make it with: ringlet loft {shot.path}")
     kept, made_from = io.read_rest(shot.rest_file)
-    return shots.check(kept, made_from, shot, groom, shot.rest_file, allow_stale=allow_stale)
+    return shots.check(kept, made_from, shot, groom, shot.rest_file, obstacles=obstacles, allow_stale=allow_stale)
 
 
 def scalp_clip(groom: Groom) -> Clip:

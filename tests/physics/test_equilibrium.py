@@ -5,9 +5,12 @@ import pytest
 from coils import helix, rotation
 from ringlet.curves import Curves
 from ringlet.errors import UserError
-from ringlet.shot import Material, equilibrium, loft
+from ringlet.groom.groom import Groom
+from ringlet.mesh import Clip, Mesh
+from ringlet.shot import Material, Obstacle, equilibrium, loft
 from ringlet.shot.balance import balance
 from ringlet.shot.joints import Joints, measure, shape
+from ringlet.shot.scene import Scene
 from ringlet.shot.simulate import make_strands
 from ringlet.shot.strands import Solver, Strands
 from test_lofted_strands import GRAVITY, STRAIGHT, arc, curl, first_frequency, sag, scene
@@ -81,6 +84,70 @@ def test_it_takes_up_what_the_loft_leaves():
     standing = helix(80, radius=4e-3, pitch=6e-3) @ rotation((0, 0, 1), np.radians(110)).T
     lofted, balanced = loft(*scene(standing)), equilibrium(*scene(standing, more=MODE))
     assert balanced.off[0] < 1e-6 < lofted.off[0]
+
+
+FLOOR = Mesh(
+    "/floor", 0.1 * np.array([[-1, 0, -1], [1, 0, -1], [1, 0, 1], [-1, 0, 1.0]]), np.array([[0, 2, 1], [0, 3, 2]])
+)
+REACH = 1e-3  # how near contact begins, of a lock on a body
+
+
+def lying():
+    """A wavy strand of 8 cm that comes down to the floor and lies on it."""
+    t = np.linspace(0, 1, 60)
+    return np.c_[0.08 * t - 0.04, 0.9 * REACH + 6e-3 * np.exp(-((t / 0.08) ** 2)), 4e-3 * np.sin(12 * t)]
+
+
+def over(height=0.0):
+    """The floor as something to lie on, at a height."""
+    mesh = Mesh(FLOOR.name, FLOOR.points + [0, height, 0], FLOOR.triangles.astype(np.int32))
+    return Obstacle(mesh, Clip(np.array([1.0]), mesh.points[None], 24.0))
+
+
+def test_what_lies_on_a_body_remembers_lying_and_stays():
+    """Balanced against gravity alone it would have to stand up from where it lies."""
+    shot, groom = scene(lying(), more=MODE + "[strands]\nbend_scale = 4\n[contact]\nradius = 5e-4\n")
+    hovering, resting = equilibrium(shot, groom), equilibrium(shot, groom, obstacles=[over()])
+    assert sag(resting.rest.points, lying()) < 0.01 * sag(hovering.rest.points, lying())
+    assert sag(hovering.rest.points, lying()) > 0.01
+    strands = make_strands(shot, groom, resting.rest, resting.stiffened)
+    strands.place(lying())
+    floor = over()
+    touching = Scene(strands, [floor.body(1.0)], shot.touching)
+    for _ in range(48):
+        touching.step(lying(), 1 / 24, gravity=GRAVITY)
+    assert sag(strands.positions, lying()) < shot.strands.radius
+
+
+@pytest.mark.parametrize(
+    ("points", "body", "contact"),
+    [
+        (lying() * [1, -1, 1], over(), "radius = 5e-4"),  # hanging under it, where it could only pull
+        (lying(), over(-0.3 * REACH), "radius = 5e-4"),  # out of reach
+        (lying(), over(), "on = false"),
+    ],
+)
+def test_what_cannot_push_bears_nothing(points, body, contact):
+    shot, groom = scene(points, more=MODE + f"[strands]\nbend_scale = 4\n[contact]\n{contact}\n")
+    free, beside = equilibrium(shot, groom), equilibrium(shot, groom, obstacles=[body])
+    assert (free.rest.points == beside.rest.points).all()
+
+
+def test_a_lock_hangs_from_its_nails_too():
+    """Nailed near its tip it need not hold itself up, and does not move."""
+    nail = np.zeros(len(STRAIGHT), np.float32)
+    nail[-3] = 1.0
+    shot, groom = scene(STRAIGHT, more=MODE)
+    free = equilibrium(shot, groom)
+    locks = Curves(groom.locks.points, groom.locks.offsets, groom.locks.ids, {}, {"nail": nail})
+    groom = Groom(locks, locks, groom.scalp)
+    nailed = equilibrium(shot, groom)
+    assert sag(nailed.rest.points, STRAIGHT) < 0.1 * sag(free.rest.points, STRAIGHT)
+    strands = make_strands(shot, groom, nailed.rest, nailed.stiffened)
+    strands.place(STRAIGHT)
+    for _ in range(48):
+        strands.step(STRAIGHT, 1 / 24, gravity=GRAVITY)
+    assert sag(strands.positions, STRAIGHT) < 1e-6
 
 
 @pytest.mark.parametrize(

@@ -142,3 +142,14 @@ def test_a_shot_in_equilibrium_stays_as_groomed_and_knows_how_stiff_its_locks_ar
     change(folder, "mode = 'equilibrium'", "mode = 'lofted'")
     result = run("sim", folder / "small.shot.toml", "-o", folder / "cache.usdc")
     assert result.exit_code == 2 and "rest.mode was equilibrium and is lofted" in result.stderr
+
+
+def test_a_shape_that_lies_on_a_body_is_stale_when_contact_is_other(folder):
+    change(folder, "mode = 'lofted'", "mode = 'equilibrium'")
+    shot = folder / "small.shot.toml"
+    shot.write_text(shot.read_text() + "[contact]\nradius = 1e-3\n")
+    assert run("loft", shot).exit_code == 0
+    assert run("sim", shot, "-o", folder / "cache.usdc").exit_code == 0
+    change(folder, "radius = 1e-3", "radius = 2e-3")
+    result = run("sim", shot, "-o", folder / "cache.usdc")
+    assert result.exit_code == 2 and "contact.radius was 0.001 and is 0.002" in result.stderr

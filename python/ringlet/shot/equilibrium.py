@@ -1,12 +1,14 @@
 """Equilibrium: rest shapes from which a groom hangs as it was groomed, exactly, and stands where it is put.
 
-What a strand must hold inside is known from the loads alone (``balance``). Divided by the stiffness these are
-strains, and the groom less its strains is what the strand has to remember. A lock that is too soft for its load, which
-would have to be bent into itself or would fall over however it is pre-bent, is made stiffer until it stands.
+What a strand must hold inside is known from the loads alone (``balance``): its weight, and what bears it where it lies
+(``support``). Divided by the stiffness these are strains, and the groom less its strains is what the strand has to
+remember. A lock that is too soft for its load, which would have to be bent into itself or would fall over however it is
+pre-bent, is made stiffer until it stands.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,11 +18,13 @@ from ringlet.curves import Curves
 from ringlet.errors import UserError
 from ringlet.groom.groom import Groom
 from ringlet.shot.balance import balance
+from ringlet.shot.collider import Obstacle
 from ringlet.shot.joints import Joints, measure, shape
 from ringlet.shot.loft import STILL, Loft, Progress, hang_plain, per_lock
 from ringlet.shot.shot import Shot
 from ringlet.shot.simulate import make_strands
 from ringlet.shot.strands import Strands
+from ringlet.shot.support import support
 from ringlet.shot.variation import Mapped
 
 Array = NDArray[np.float64]
@@ -45,8 +49,12 @@ class _Try:
     good: Locks
 
 
-def equilibrium(shot: Shot, groom: Groom, *, progress: Progress | None = None) -> Loft:
+def equilibrium(
+    shot: Shot, groom: Groom, *, obstacles: Sequence[Obstacle] = (), progress: Progress | None = None
+) -> Loft:
     """Finds what the locks of ``groom`` must remember to be still as groomed, under the forces of ``shot``.
+
+    obstacles: what locks may lie on, where the shot has contact, in the rest pose
 
     A lock that would fall is stiffened, up to ``rest.stiffen`` times; one that falls even so keeps its stiffness and
     its groomed shape.
@@ -54,12 +62,12 @@ def equilibrium(shot: Shot, groom: Groom, *, progress: Progress | None = None) -
     locks = groom.locks
     locks.check("loft: locks")
     _check(shot, locks)
-    made, stiffened = hang_plain(shot, groom), np.ones(len(locks))
+    made, stiffened, borne = hang_plain(shot, groom), np.ones(len(locks)), _borne(shot, groom, obstacles)
     going, factor = np.ones(len(locks), bool), 1.0
     while going.any() and factor <= shot.rest.stiffen:
         if progress:
             progress("loft", int((~going).sum()), len(locks))
-        tried = _try(shot, replace(groom, locks=locks.take(going)), factor)
+        tried = _try(shot, replace(groom, locks=locks.take(going)), borne[np.repeat(going, locks.counts)], factor)
         found = going.copy()
         found[going] = tried.good
         rows, among = np.repeat(found, locks.counts), np.repeat(tried.good, locks.counts[going])
@@ -91,29 +99,42 @@ def _check(shot: Shot, locks: Curves) -> None:
         raise UserError(f"loft: held is {shot.held}, but a lock has {locks.counts.min()} points; hold fewer")
 
 
-def _try(shot: Shot, groom: Groom, factor: float) -> _Try:
+def _borne(shot: Shot, groom: Groom, obstacles: Sequence[Obstacle]) -> Array:
+    """What bears the locks where they were groomed [N], shape (n, 3)."""
+    strands = make_strands(shot, groom)
+    return support(shot, groom.locks, strands, _loads(shot, strands), obstacles)
+
+
+def _loads(shot: Shot, strands: Strands) -> Array:
+    """What pulls at the vertices that move [N], shape (n, 3)."""
+    loads = strands.loads(shot.forces.gravity, shot.forces.wind)
+    loads[strands.held] = 0.0
+    return loads
+
+
+def _try(shot: Shot, groom: Groom, borne: Array, factor: float) -> _Try:
     """Balances locks that are ``factor`` times as stiff against bend, and nudges them to see whether they stand."""
     locks, stiffened = groom.locks, np.full(len(groom.locks), factor)
-    rest, good = _balanced(shot, groom, stiffened)
+    rest, good = _balanced(shot, groom, borne, stiffened)
     strands = make_strands(shot, groom, rest, stiffened)
     groomed = np.asarray(locks.points, np.float64)
     nudge = NUDGE * np.random.default_rng(1).standard_normal(groomed.shape)
     strands.place(groomed + np.where(np.asarray(strands.held)[:, None], 0.0, nudge))
-    moving = _let_fall(strands, shot)
+    moving = _let_fall(strands, shot, borne)
     off = per_lock(locks, np.linalg.norm(strands.positions - groomed, axis=1))
     return _Try(np.asarray(rest.points, np.float64), strands.positions.copy(), moving, off, good & (off < FALLING))
 
 
-def _let_fall(strands: Strands, shot: Shot) -> Array:
+def _let_fall(strands: Strands, shot: Shot, borne: Array) -> Array:
     """Lets strands go where they want; returns how far each moved in the last step [m]."""
     gravity, wind = shot.forces.gravity, shot.forces.wind
-    strands.settle(gravity=gravity, wind=wind, tolerance=STILL, steps=FALL - 1)
+    strands.settle(gravity=gravity, wind=wind, forces=borne, tolerance=STILL, steps=FALL - 1)
     before = strands.positions.copy()
-    strands.settle(gravity=gravity, wind=wind, tolerance=STILL, steps=1)
+    strands.settle(gravity=gravity, wind=wind, forces=borne, tolerance=STILL, steps=1)
     return per_lock(strands.curves, np.linalg.norm(strands.positions - before, axis=1))
 
 
-def _balanced(shot: Shot, groom: Groom, stiffened: Array) -> tuple[Curves, Locks]:
+def _balanced(shot: Shot, groom: Groom, borne: Array, stiffened: Array) -> tuple[Curves, Locks]:
     """The shape that locks must remember to balance their loads as groomed, and for which of them there is one.
 
     Stiffness and mass depend a little on the rest shape, so it takes some rounds.
@@ -126,8 +147,7 @@ def _balanced(shot: Shot, groom: Groom, stiffened: Array) -> tuple[Curves, Locks
         rows = np.repeat(going, locks.counts)
         part = replace(groom, locks=locks.take(going))
         strands = make_strands(shot, part, part.locks.with_points(rest[rows]), stiffened[going])
-        loads = strands.loads(shot.forces.gravity, shot.forces.wind)
-        loads[strands.held] = 0.0
+        loads = _loads(shot, strands) + borne[rows]
         now = _strain(strands, balance(part.locks, groomed[rows], frames[rows], loads, shot.held))
         joints = shaped.take(rows).plus(now, -1.0)
         rest[rows], _ = shape(part.locks, joints, frames[rows])

@@ -36,7 +36,8 @@ class Contact(Section):
         default=2e-3,
         ge=0,
         le=1,
-        description="[m/s] at which locks that begin nearer than they may be part; 0: they stay",
+        description="[m/s] at which locks that begin nearer than they may be part; 0, which is the default where "
+        "rest.mode is 'equilibrium': they stay",
     )
 
 

@@ -82,8 +82,11 @@ class Shot(Section):
 
     @property
     def touching(self) -> ShotContact | None:
-        """How locks touch, if they do."""
-        return self.contact if self.contact and self.contact.on else None
+        """How locks touch, if they do. What is to stay as it was groomed does not part unless it is told to."""
+        if not (self.contact and self.contact.on):
+            return None
+        stays = self.rest.mode == "equilibrium" and "parting_speed" not in self.contact.model_fields_set
+        return self.contact.model_copy(update={"parting_speed": 0.0}) if stays else self.contact
 
     @property
     def rest_file(self) -> Path | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 from ringlet.curves import Curves
 from ringlet.errors import UserError
 from ringlet.groom.groom import Groom
+from ringlet.shot.checkpoint import digest
+from ringlet.shot.collider import Obstacle
 from ringlet.shot.equilibrium import equilibrium
 from ringlet.shot.loft import Loft, Progress, loft
 from ringlet.shot.shot import Shot
@@ -31,16 +33,27 @@ _FREE = {
 }
 
 
-def made_from(shot: Shot) -> dict[str, Any]:
-    """The settings of a shot that a loft depends on, as plain values."""
+def made_from(shot: Shot, obstacles: Sequence[Obstacle] = ()) -> dict[str, Any]:
+    """The settings of a shot that a loft depends on, and what locks may lie on, as plain values."""
     settings = shot.model_dump(mode="json", exclude=_FREE)
-    return {**settings, "rest": {**settings["rest"], "mode": _mode(shot)}}
+    made = {**settings, "rest": {**settings["rest"], "mode": _mode(shot)}}
+    if shot.touching and _mode(shot) == "equilibrium":
+        made["contact"] = {"radius": shot.touching.radius}
+        made["bodies"] = {one.name: _told(one) for one in obstacles}
+    return made
 
 
-def preload(shot: Shot, groom: Groom, *, progress: Progress | None = None) -> Loft:
+def _told(body: Obstacle) -> dict[str, Any]:
+    """What of a body bears locks."""
+    points = np.asarray(body.mesh.points, np.float32)
+    return {"thickness": body.settings.thickness, "shape": digest(points, body.mesh.triangles)[:8]}
+
+
+def preload(shot: Shot, groom: Groom, *, obstacles: Sequence[Obstacle] = (), progress: Progress | None = None) -> Loft:
     """The rest shape that a shot asks for; one that asks for none gets a loft."""
-    make = equilibrium if _mode(shot) == "equilibrium" else loft
-    return make(shot, groom, progress=progress)
+    if _mode(shot) == "equilibrium":
+        return equilibrium(shot, groom, obstacles=obstacles, progress=progress)
+    return loft(shot, groom, progress=progress)
 
 
 def _mode(shot: Shot) -> str:
@@ -66,13 +79,22 @@ def recall(kept: Curves, groom: Groom) -> Loft:
     return Loft(groom, kept, sagged, lofted, kept.curve["off"].copy(), kept.curve["moving"].copy(), stiffened)
 
 
-def refresh(shot: Shot, groom: Groom, kept: Curves, made: dict[str, Any], *, progress: Progress | None = None) -> Loft:
+def refresh(
+    shot: Shot,
+    groom: Groom,
+    kept: Curves,
+    made: dict[str, Any],
+    *,
+    obstacles: Sequence[Obstacle] = (),
+    progress: Progress | None = None,
+) -> Loft:
     """The loft of a groom; locks that have not changed since a kept one was made are taken from it."""
-    if not same_locks(kept, groom) or made != made_from(shot):
-        return preload(shot, groom, progress=progress)
+    if not same_locks(kept, groom) or made != made_from(shot, obstacles):
+        return preload(shot, groom, obstacles=obstacles, progress=progress)
     whole, changed = recall(kept, groom), changed_locks(kept, shot, groom)
     if changed.any():
-        part = preload(shot, replace(groom, locks=groom.locks.take(changed)), progress=progress)
+        part = replace(groom, locks=groom.locks.take(changed))
+        part = preload(shot, part, obstacles=obstacles, progress=progress)
         rows = np.repeat(changed, groom.locks.counts)
         whole.rest.points[rows], whole.sagged[rows], whole.lofted[rows] = part.rest.points, part.sagged, part.lofted
         whole.off[changed], whole.moving[changed] = part.off, part.moving
@@ -96,14 +118,23 @@ def changed_locks(kept: Curves, shot: Shot, groom: Groom) -> NDArray[np.bool_]:
     return np.logical_or.reduceat(changed, groom.locks.offsets[:-1])
 
 
-def check(kept: Curves, made: dict[str, Any], shot: Shot, groom: Groom, path: Path, *, allow_stale: bool) -> Curves:
+def check(
+    kept: Curves,
+    made: dict[str, Any],
+    shot: Shot,
+    groom: Groom,
+    path: Path,
+    *,
+    obstacles: Sequence[Obstacle] = (),
+    allow_stale: bool,
+) -> Curves:
     """The kept shape, as long as it fits; refuses one that was made from another groom, material or forces."""
     again = f"make it again with: ringlet loft {shot.path or 'SHOT.toml'}"
     if not same_locks(kept, groom):
         raise UserError(f"{path}: was made from other locks ({len(kept)}, the groom has {len(groom.locks)}); {again}")
     if allow_stale:
         return kept
-    reason = next(_differences(made, made_from(shot)), None)
+    reason = next(_differences(made, made_from(shot, obstacles)), None)
     if reason is None and (changed := changed_locks(kept, shot, groom)).any():
         reason = f"{changed.sum()} of {len(changed)} locks or their material have changed"
     if reason is not None:
