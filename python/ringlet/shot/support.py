@@ -3,7 +3,8 @@
 A lock that lies on a body need not hold up all of its weight, and one that is nailed hangs from its nails too. Statics
 alone does not say how much each of these bears. Here it is what strains the lock least, by the sum over its joints of
 moment² / stiffness, while bodies can only push. To first order this is what they would bear if the lock remembered the
-groom and were let go: of all ways to carry a load what is elastic takes that of least energy.
+groom and were let go: of all ways to carry a load what is elastic takes that of least energy. Forces count a little
+themselves, or a body would press on a lock near its root with many times its weight, as on a lever.
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ from ringlet.shot.strands import Strands
 
 Array = NDArray[np.float64]
 
+SHY = 0.1  # of the strain energy under the loads: what it counts to be borne by one's whole weight in one place
 ALL_WAYS = np.concatenate([np.eye(3), -np.eye(3)])
 
 
@@ -101,13 +103,19 @@ class _Give:
         )
 
     def least(self, lock: int, vertex: NDArray[np.int64], way: Array, loads: Array) -> Array:
-        """The forces [N] along ``way`` at vertices of a lock, none negative, with which it is strained least."""
+        """The forces [N] along ``way`` at vertices of a lock, none negative, with which it is strained least.
+
+        Minimises, with forces f in units of the lock's weight: Σ strain² stiffness + SHY · E · Σ f², where E is the
+        first sum without them.
+        """
         rows = slice(self._locks.offsets[lock], self._locks.offsets[lock + 1])
         weight = np.linalg.norm(loads[rows], axis=1).sum()
         if weight == 0.0:
             return np.zeros(len(vertex))
         by_loads = self._strains(rows, np.arange(rows.start, rows.stop), loads[rows]).sum(axis=1)
-        found, _ = nnls(self._strains(rows, vertex, weight * way), -by_loads)
+        shy = np.sqrt(SHY) * np.linalg.norm(by_loads) * np.eye(len(vertex))
+        of_each = np.concatenate([self._strains(rows, vertex, weight * way), shy])
+        found, _ = nnls(of_each, np.concatenate([-by_loads, np.zeros(len(vertex))]))
         return weight * found
 
     def _strains(self, rows: slice, vertex: NDArray[np.int64], force: Array) -> Array:
