@@ -69,8 +69,7 @@ def float_primvars(prim: Usd.Prim) -> Iterator[tuple[str, str, NDArray[np.float6
     for primvar in UsdGeom.PrimvarsAPI(prim).GetPrimvarsWithAuthoredValues():
         kind = primvar.GetTypeName().scalarType
         if kind in (Types.Float, Types.Double, Types.Half):
-            value = primvar.ComputeFlattened(Usd.TimeCode.EarliestTime())
-            yield primvar.GetPrimvarName(), primvar.GetInterpolation(), np.atleast_1d(np.array(value, np.float64))
+            yield primvar.GetPrimvarName(), primvar.GetInterpolation(), np.atleast_1d(_flattened(primvar))
 
 
 def vector_primvars(prim: Usd.Prim) -> Iterator[tuple[str, str, NDArray[np.float64]]]:
@@ -78,8 +77,15 @@ def vector_primvars(prim: Usd.Prim) -> Iterator[tuple[str, str, NDArray[np.float
     floats), at rest."""
     for primvar in UsdGeom.PrimvarsAPI(prim).GetPrimvarsWithAuthoredValues():
         if primvar.GetTypeName().scalarType in _DIRECTIONS:
-            value = primvar.ComputeFlattened(Usd.TimeCode.EarliestTime())
-            yield primvar.GetPrimvarName(), primvar.GetInterpolation(), np.array(value, np.float64).reshape(-1, 3)
+            yield primvar.GetPrimvarName(), primvar.GetInterpolation(), _flattened(primvar).reshape(-1, 3)
+
+
+def _flattened(primvar: UsdGeom.Primvar) -> NDArray[np.float64]:
+    """The values of a primvar at rest, also of one with indices."""
+    value = primvar.ComputeFlattened(Usd.TimeCode.EarliestTime())
+    if value is None:
+        raise UserError(f"{primvar.GetAttr().GetPath()}: has indices that are not among its values; write it again")
+    return np.array(value, np.float64)
 
 
 def float3(values: NDArray) -> Vt.Vec3fArray:
