@@ -1,6 +1,7 @@
 #include "arrays.h"
 
 #include "ringlet/geometry/resample.h"
+#include "ringlet/geometry/solid.h"
 #include "ringlet/geometry/triangle_tree.h"
 
 #include <nanobind/stl/optional.h>
@@ -52,6 +53,28 @@ nb::tuple bind_roots(const Array3<double> &points, const Array3<int> &triangles,
     }
     return nb::make_tuple(to_numpy<int>(std::move(triangle), {count}), to_numpy<double>(std::move(barycentric), {count, 3}),
                           to_numpy<double>(std::move(distance), {count}));
+}
+
+// (height (k,), foot (k, 3), normal (k, 3), triangle (k,)) of the place on the surface nearest to each place.
+nb::tuple above_solid(const Solid &solid, const Array3<double> &places) {
+    const View<Vec3> at = vectors<Vec3>(places);
+    const size_t count = at.size();
+    std::vector<double> height(count);
+    std::vector<Vec3> foot(count), normal(count);
+    std::vector<int> triangle(count);
+    {
+        nb::gil_scoped_release release;
+#pragma omp parallel for schedule(dynamic, 64)
+        for (size_t i = 0; i < count; ++i) {
+            const Above found = solid.above(at[i]);
+            height[i] = found.height;
+            foot[i] = found.foot;
+            normal[i] = found.normal;
+            triangle[i] = found.triangle;
+        }
+    }
+    return nb::make_tuple(to_numpy<double>(std::move(height), {count}), to_numpy<double>(std::move(foot), {count, 3}),
+                          to_numpy<double>(std::move(normal), {count, 3}), to_numpy<int>(std::move(triangle), {count}));
 }
 
 using RowMajor3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
@@ -130,6 +153,17 @@ nb::ndarray<nb::numpy, double> resample_curves(const Array3<double> &points, con
 } // namespace
 
 void bind_geometry(nb::module_ &module) {
+    nb::class_<Solid>(module, "Solid",
+                      "A triangle mesh as a solid, with a tree to find the nearest place on it; keeps a copy of the mesh.")
+        .def(
+            "__init__",
+            [](Solid *solid, const Array3<double> &points, const Array3<int> &triangles) {
+                if (triangles.shape(0) == 0) throw std::invalid_argument("a solid needs triangles");
+                new (solid) Solid(mesh_of(points, triangles));
+            },
+            "points"_a, "triangles"_a)
+        .def("above", &above_solid, "places"_a,
+             "Height above the surface (k,) [m], negative inside; nearest place (k, 3), outward normal there, and triangle.");
     module.def("bind_roots", &bind_roots, "points"_a, "triangles"_a, "roots"_a, "allowed_triangles"_a = nb::none(),
                "The point of a triangle mesh nearest to each root: triangle (k,), barycentric (k, 3), distance (k,) [m].\n"
                "points (n, 3) [m], triangles (m, 3), roots (k, 3) [m], allowed_triangles: indices to search, or None for all.");

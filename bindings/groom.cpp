@@ -3,6 +3,7 @@
 #include "ringlet/groom/curl.h"
 #include "ringlet/groom/hairs.h"
 #include "ringlet/groom/push_out.h"
+#include "ringlet/groom/repair.h"
 #include "ringlet/groom/sample.h"
 
 #include <stdexcept>
@@ -106,18 +107,68 @@ nb::ndarray<nb::numpy, double> curl_curves(const Array3<double> &points, const A
     return to_numpy<double>(std::move(result), {locks * static_cast<size_t>(count), 3});
 }
 
-nb::ndarray<nb::numpy, double> push_out_curves(const Array3<double> &points, const Array1<int> &offsets,
-                                               const Array3<double> &body_points, const Array3<int> &body_triangles,
+nb::ndarray<nb::numpy, double> push_out_curves(const Array3<double> &points, const Array1<int> &offsets, const Solid &body,
                                                double margin) {
     const CurveView curves{vectors<Vec3>(points), view(offsets)};
-    const TriangleMesh body{vectors<Vec3>(body_points), vectors<Triangle>(body_triangles)};
-    require(!body.triangles.empty(), "the body has no triangles");
     std::vector<Vec3> result;
     {
         nb::gil_scoped_release release;
         result = push_out(curves, body, margin);
     }
     return to_numpy<double>(std::move(result), {curves.points.size(), 3});
+}
+
+std::vector<const Solid *> solids(const nb::list &bodies) {
+    std::vector<const Solid *> result;
+    for (const nb::handle body : bodies) result.push_back(nb::cast<const Solid *>(body));
+    return result;
+}
+
+// (body (k,), point (k,), triangle (k,), place (k, 3), depth (k,)) of what is in a body.
+nb::tuple sunk_places(const Array3<double> &points, const Array1<int> &offsets, const nb::list &bodies, double root_depth,
+                      double root_length) {
+    const CurveView curves{vectors<Vec3>(points), view(offsets)};
+    const std::vector<const Solid *> all = solids(bodies);
+    std::vector<Sunk> found;
+    {
+        nb::gil_scoped_release release;
+        found = find_sunk(curves, all, {root_depth, root_length, 0.0});
+    }
+    const size_t count = found.size();
+    std::vector<int> body, point, triangle;
+    std::vector<Vec3> place;
+    std::vector<double> depth;
+    for (const Sunk &one : found) {
+        body.push_back(one.body);
+        point.push_back(one.point);
+        triangle.push_back(one.triangle);
+        place.push_back(one.place);
+        depth.push_back(one.depth);
+    }
+    return nb::make_tuple(to_numpy<int>(std::move(body), {count}), to_numpy<int>(std::move(point), {count}),
+                          to_numpy<int>(std::move(triangle), {count}), to_numpy<double>(std::move(place), {count, 3}),
+                          to_numpy<double>(std::move(depth), {count}));
+}
+
+// (first points of the two segments (k, 2), the middle between them (k, 3), distance (k,)) of what is too near.
+nb::tuple crossings(const Array3<double> &points, const Array1<int> &offsets, double thickness) {
+    const CurveView curves{vectors<Vec3>(points), view(offsets)};
+    std::vector<Crossing> found;
+    {
+        nb::gil_scoped_release release;
+        found = find_crossings(curves, thickness);
+    }
+    const size_t count = found.size();
+    std::vector<std::array<int, 2>> pair;
+    std::vector<Vec3> place;
+    std::vector<double> distance;
+    for (const Crossing &one : found) {
+        pair.push_back({one.a, one.b});
+        place.push_back((1.0 - one.s) * curves.points[one.a] + one.s * curves.points[one.a + 1] + 0.5 * one.apart);
+        distance.push_back(one.distance);
+    }
+    return nb::make_tuple(to_numpy<int>(std::move(pair), {count, 2}), to_numpy<double>(std::move(place), {count, 3}),
+                          to_numpy<double>(std::move(distance), {count}));
 }
 
 void warp(const Array3<float> &lock_points, const Array1<int> &lock_offsets,
@@ -161,8 +212,34 @@ void bind_groom(nb::module_ &module) {
     module.def("curl_curves", &curl_curves, "points"_a, "offsets"_a, nb::kw_only(), "axis"_a, "leader"_a, "counted"_a,
                "keep_length"_a, "count"_a, "arrays"_a,
                "Winds each shape curve into a curl of count evenly spaced points; the arrays are those of groom/curl.h.");
-    module.def("push_out", &push_out_curves, "points"_a, "offsets"_a, "body_points"_a, "body_triangles"_a, "margin"_a,
-               "The points of curves moved out of a body, to a margin [m]; roots stay.");
+    module.def("push_out", &push_out_curves, "points"_a, "offsets"_a, "body"_a, "margin"_a,
+               "The points of curves led around a Solid, to a margin [m]; roots stay.");
+    module.def(
+        "sunk_places", &sunk_places, "points"_a, "offsets"_a, "bodies"_a, "root_depth"_a, "root_length"_a,
+        "Places on curves that are in Solids: body (k,), point before it (k,), triangle (k,), place (k, 3), depth (k,) [m].");
+    module.def("crossings", &crossings, "points"_a, "offsets"_a, "thickness"_a,
+               "Pairs of segments nearer than a thickness [m]: first points (k, 2), middles (k, 3), distances (k,) [m].");
+    nb::class_<Repair>(module, "Repair", "Moves curves out of Solids and apart, round by round; see groom/repair.h.")
+        .def(
+            "__init__",
+            [](Repair *repair, const Array3<double> &points, const Array1<int> &offsets, const nb::list &bodies,
+               double root_depth, double root_length, double thickness) {
+                const CurveView curves{vectors<Vec3>(points), view(offsets)};
+                const std::vector<const Solid *> all = solids(bodies);
+                nb::gil_scoped_release release;
+                new (repair) Repair(curves, all, {root_depth, root_length, thickness});
+            },
+            "points"_a, "offsets"_a, "bodies"_a, "root_depth"_a, "root_length"_a, "thickness"_a, nb::keep_alive<1, 4>())
+        .def("round", &Repair::round, nb::call_guard<nb::gil_scoped_release>(),
+             "How many places are wrong; if any are, moves what is.")
+        .def(
+            "points",
+            [](const Repair &repair) {
+                std::vector<Vec3> points(repair.points().begin(), repair.points().end());
+                const size_t count = points.size();
+                return to_numpy<double>(std::move(points), {count, 3});
+            },
+            "The points of the round that left the fewest (n, 3) [m].");
     module.def("warp_hairs", &warp, "lock_points"_a, "lock_offsets"_a, "result"_a, nb::kw_only(), "axis"_a, "root"_a, "first"_a,
                "offset"_a, "tip"_a, "taper"_a, "frizz"_a, "profile"_a, "hold"_a, "other"_a, "share"_a, "blend"_a,
                "Writes the points of all hairs (hairs * points, 3) around locks where they are now; see groom/hairs.h.");

@@ -1,6 +1,6 @@
 // Distances, impacts, and which pairs can meet.
-#include "ringlet/contact/distance.h"
 #include "ringlet/contact/impact.h"
+#include "ringlet/geometry/distance.h"
 
 #include <boost/test/unit_test.hpp>
 #include <functional>

@@ -1,6 +1,9 @@
 // Frames, normals and nearest points.
+#include "ringlet/geometry/distance.h"
 #include "ringlet/geometry/frames.h"
+#include "ringlet/geometry/near_segments.h"
 #include "ringlet/geometry/resample.h"
+#include "ringlet/geometry/solid.h"
 #include "ringlet/geometry/triangle_tree.h"
 #include "shapes.h"
 
@@ -86,6 +89,50 @@ BOOST_AUTO_TEST_CASE(the_spline_passes_through_its_points_and_reproduces_a_parab
     for (int i = 0; i < 6; ++i) points.emplace_back(i, 0.5 * i * i, 2.0);
     for (int i = 0; i < 6; ++i) BOOST_TEST((spline(points, i) - points[i]).norm() < 1e-14);
     for (double at = 0.0; at <= 5.0; at += 0.1) BOOST_TEST((spline(points, at) - Vec3(at, 0.5 * at * at, 2.0)).norm() < 1e-12);
+}
+
+BOOST_AUTO_TEST_CASE(near_segments_are_those_that_looking_at_every_pair_finds) {
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> in(0.0, 1.0), step(-0.1, 0.1);
+    std::vector<Vec3> points;
+    std::vector<int> offsets{0};
+    for (int curve = 0; curve < 20; ++curve) {
+        Vec3 at(in(random), in(random), in(random));
+        for (int i = 0; i < 12; ++i) {
+            points.push_back(at);
+            at += (i == 5 ? 4.0 : 1.0) * Vec3(step(random), step(random), step(random)); // one of them is long
+        }
+        offsets.push_back(static_cast<int>(points.size()));
+    }
+    const double within = 0.08, along = 0.2;
+    std::vector<std::array<int, 2>> expected;
+    for (int i = 0; i < 20; ++i)
+        for (int j = i; j < 20; ++j)
+            for (int a = offsets[i]; a + 1 < offsets[i + 1]; ++a)
+                for (int b = i == j ? a + 2 : offsets[j]; b + 1 < offsets[j + 1]; ++b) {
+                    double between = 0.0;
+                    for (int k = a + 1; i == j && k < b; ++k) between += (points[k + 1] - points[k]).norm();
+                    const double distance2 = closest_edge_edge(points[a], points[a + 1], points[b], points[b + 1]).distance2;
+                    if ((i != j || between > along) && distance2 < within * within) expected.push_back({a, b});
+                }
+    std::sort(expected.begin(), expected.end());
+    BOOST_TEST(expected.size() > 50u);
+    BOOST_TEST((near_segments({points, offsets}, within, along) == expected));
+}
+
+BOOST_AUTO_TEST_CASE(a_solid_is_what_is_behind_its_faces_edges_and_corners) {
+    const OwnedMesh mesh = octahedron();
+    const Solid solid(mesh.view());
+    std::mt19937 random(6);
+    std::uniform_real_distribution<double> in(-1.5, 1.5);
+    for (int i = 0; i < 500; ++i) {
+        const Vec3 p(in(random), in(random), in(random));
+        const Above above = solid.above(p);
+        BOOST_TEST((above.height < 0.0) == (p.lpNorm<1>() < 1.0));
+        BOOST_TEST(std::abs(above.height) == (p - above.foot).norm(), boost::test_tools::tolerance(1e-12));
+        BOOST_TEST(solid.above(p, std::numeric_limits<double>::infinity(), i % 8).height == above.height);
+    }
+    BOOST_TEST(solid.above({3.0, 0.0, 0.0}, 1.0).triangle == -1);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -2,6 +2,7 @@
 #include "ringlet/groom/curl.h"
 #include "ringlet/groom/hairs.h"
 #include "ringlet/groom/push_out.h"
+#include "ringlet/groom/repair.h"
 #include "ringlet/groom/sample.h"
 #include "shapes.h"
 
@@ -148,7 +149,7 @@ BOOST_AUTO_TEST_CASE(a_curve_through_a_body_comes_out_and_keeps_its_root) {
     std::vector<Vec3> curve;
     for (int i = 0; i <= 40; ++i) curve.emplace_back(0.05 + 0.02 * i, 0.95 - 0.02 * i, 0.02); // goes down inside, near a face
     const std::vector<int> offsets{0, static_cast<int>(curve.size())};
-    const std::vector<Vec3> result = push_out({curve, offsets}, body.view(), 0.01);
+    const std::vector<Vec3> result = push_out({curve, offsets}, Solid(body.view()), 0.01);
     BOOST_TEST(result.front() == curve.front());
     for (size_t i = 1; i < result.size(); ++i) BOOST_TEST(result[i].lpNorm<1>() >= 1.0 - 1e-9); // outside of the octahedron
 }
@@ -158,8 +159,53 @@ BOOST_AUTO_TEST_CASE(curves_that_keep_clear_are_left_alone) {
     std::vector<Vec3> curve = straight(20, 1.0);
     for (Vec3 &p : curve) p.y() += 1.0;
     const std::vector<int> offsets{0, 20};
-    const std::vector<Vec3> result = push_out({curve, offsets}, body.view(), 0.01);
+    const std::vector<Vec3> result = push_out({curve, offsets}, Solid(body.view()), 0.01);
     BOOST_TEST(std::equal(result.begin(), result.end(), curve.begin()));
+}
+
+BOOST_AUTO_TEST_CASE(a_curl_that_falls_into_a_body_goes_around_it_as_long_as_it_was) {
+    OwnedMesh body = octahedron();
+    for (Vec3 &p : body.points) p *= 0.1;
+    std::vector<Vec3> curve; // from a face down through the body, and out of it farther down
+    for (int i = 0; i <= 300; ++i) {
+        const double s = 0.12 * i / 300.0, phase = 2.0 * std::numbers::pi * s / 6.5e-3;
+        curve.emplace_back(0.03 + 0.1 * s + 2.5e-3 * std::sin(phase), 0.05 - s, 0.02 + 2.5e-3 * (std::cos(phase) - 1.0));
+    }
+    const std::vector<int> offsets{0, static_cast<int>(curve.size())};
+    const std::vector<Vec3> result = push_out({curve, offsets}, Solid(body.view()), 1e-3);
+    double before = 0.0, after = 0.0;
+    for (size_t i = 1; i < result.size(); ++i) {
+        BOOST_TEST(result[i].lpNorm<1>() >= 0.1 - 1e-9);
+        const double was = (curve[i] - curve[i - 1]).norm(), is = (result[i] - result[i - 1]).norm();
+        BOOST_TEST(is < 2.0 * was); // not torn, though the body has sharp edges
+        before += was, after += is;
+    }
+    BOOST_TEST(after == before, boost::test_tools::tolerance(0.1));
+}
+
+BOOST_AUTO_TEST_CASE(curves_through_a_body_and_one_another_are_free_after_a_few_rounds) {
+    const OwnedMesh mesh = octahedron();
+    const Solid body(mesh.view());
+    std::vector<Vec3> points;
+    std::vector<int> offsets{0};
+    for (int lock = 0; lock < 6; ++lock) { // from outside they meet just above a face, and go in
+        for (int i = 0; i <= 60; ++i) {
+            const double s = 0.01 * (i - 30), turn = 0.3 * lock;
+            points.emplace_back(0.52 - s * std::cos(turn), 0.2 - s * std::sin(turn), 0.3 + 1e-4 * lock);
+        }
+        offsets.push_back(static_cast<int>(points.size()));
+    }
+    const CurveView curves{points, offsets};
+    const Allowed allowed{.thickness = 1e-3};
+    BOOST_TEST(!find_sunk(curves, {&body}, allowed).empty());
+    BOOST_TEST(!find_crossings(curves, 1e-3).empty());
+    Repair repair(curves, {&body}, allowed);
+    for (int round = 0; round < 100 && repair.round() > 0; ++round) {
+    }
+    const CurveView after{repair.points(), offsets};
+    BOOST_TEST(find_crossings(after, 1e-3).empty());
+    for (const Sunk &place : find_sunk(after, {&body}, allowed)) BOOST_TEST(place.point == -1);
+    for (int i = 0; i < 6; ++i) BOOST_TEST(after[i][0] == curves[i][0]);
 }
 
 BOOST_AUTO_TEST_CASE(a_hair_off_the_middle_runs_beside_a_straight_lock) {

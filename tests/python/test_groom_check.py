@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from ringlet.cli.app import app
 from ringlet.groom.groom import Groom
-from ringlet.groom.inside import Surface
 from shapes import ball
 from small_example import write_example
 from typer.testing import CliRunner
@@ -45,13 +44,13 @@ def test_inside_is_inside_also_where_the_mesh_has_a_sharp_edge():
     faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
     triangles = np.array([t for a, b, c, d in faces for t in ((a, b, c), (a, c, d))], np.int32)
     places = np.random.default_rng(1).uniform(-0.5, 1.5, (4000, 3))
-    height, foot, _, _ = Surface(corners, triangles).nearest(places)
+    height, foot, _, _ = _core.Solid(corners, triangles).above(places)
     truly = ((places > 0) & (places < 1)).all(axis=1)
     np.testing.assert_array_equal(height < 0, truly)
     np.testing.assert_allclose(np.abs(height), np.linalg.norm(places - foot, axis=1), atol=1e-12)
-    open_box = Surface(corners, triangles[2:])  # without a side
+    open_box = _core.Solid(corners, np.ascontiguousarray(triangles[2:]))  # without a side
     beyond = places[:, 0] < -0.05
-    assert not (open_box.nearest(places[beyond])[0] < 0).any()
+    assert not (open_box.above(places[beyond])[0] < 0).any()
 
 
 def test_a_lock_that_dips_under_the_skin_is_found_with_its_depth_and_place():
@@ -65,7 +64,7 @@ def test_a_lock_that_dips_under_the_skin_is_found_with_its_depth_and_place():
 
 def test_an_edge_that_goes_through_between_its_points_is_found():
     chord = np.array([[0, RADIUS, 0], [0, RADIUS + 0.01, 0], [0.0505, 0.0805, 0], [0.09, 0.03, 0], [0.1, 0.02, 0]])
-    height = Surface(ball(RADIUS, 32).points, ball(RADIUS, 32).triangles).nearest(chord[1:])[0]
+    height = _core.Solid(ball(RADIUS, 32).points, ball(RADIUS, 32).triangles).above(chord[1:])[0]
     assert (height > 0).all()  # every point is outside
     assert check_groom(groom_of([chord])).told()["scalp"]["places"] > 0
 

@@ -9,19 +9,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ringlet import _core
 from ringlet.curves import Curves
 from ringlet.errors import UserError
-from ringlet.groom.crossings import Neighbours
 from ringlet.groom.groom import Groom
-from ringlet.groom.inside import Surface
+from ringlet.groom.operators.operator import packed
 from ringlet.mesh import Mesh
 
 Array = NDArray[np.float64]
 
 KINDS = ("scalp", "body", "hair")
 WORST = 10  # places that are told
-SAMPLE, MOST_SAMPLES = 5e-4, 100  # places on an edge that are looked at are no farther apart [m], but no more than that
-ROUNDING = 1e-9  # a depth below this is none [m]
 
 
 @dataclass(frozen=True)
@@ -41,10 +39,6 @@ class Allowed:
         for name in ("root_depth", "root_length", "thickness"):
             if not 0.0 <= (value := getattr(self, name)) < 1.0:
                 raise UserError(f"check: {name} is {value:g} m; must be at least 0 and under 1 m")
-
-    def depth(self, locks: Curves) -> Array:
-        """How deep each point of the locks may be, shape (n,)."""
-        return np.where(along(locks) <= self.root_length, self.root_depth, 0.0)
 
 
 @dataclass
@@ -106,59 +100,21 @@ class Findings:
         return told if other < 0 else {**told, "other": int(self.locks.ids[lock_of(self.locks, np.array([other]))[0]])}
 
 
-@dataclass
-class Near:
-    """Places on the locks that are inside a body, or nearer to it than asked.
-
-    point:    the point of the lock that each place is behind, shape (k,), and ``at``, how far on to the next, 0 to 1
-    place:    where it is [m], shape (k, 3)
-    height:   above the surface [m], negative inside, shape (k,)
-    foot:     the nearest place on the surface [m], with ``normal`` outward there, shape (k, 3)
-    on_scalp: whether that is in the region that carries hair, shape (k,)
-    """
-
-    point: NDArray[np.int64]
-    at: Array
-    place: Array
-    height: Array
-    foot: Array
-    normal: Array
-    on_scalp: NDArray[np.bool_]
-
-
 class Bodies:
-    """What locks may not go through: the mesh they grow on, and others beside it. It remembers how far places were from
-    it: those that cannot have come near are not looked at again."""
+    """What locks may not go through: the mesh they grow on, and others beside it."""
 
     def __init__(self, groom: Groom, others: Sequence[Mesh]) -> None:
         try:
             region = groom.scalp.region(groom.region)
         except KeyError as error:
             raise UserError(f"check: {error.args[0]}") from None
-        self._on_scalp = np.zeros(len(groom.scalp.triangles), bool)
-        self._on_scalp[region] = True
-        places = groom.scalp.points[groom.scalp.triangles[region]].reshape(-1, 3)
-        self.middle = 0.5 * (places.min(axis=0) + places.max(axis=0))
-        self.surfaces = [Surface(mesh.points, mesh.triangles) for mesh in (groom.scalp, *others)]
-        self._edge, self._at = _samples(groom.locks)
-        self._seen = [(np.full((len(self._edge), 3), np.inf), np.zeros(len(self._edge))) for _ in self.surfaces]
-
-    def near(self, locks: Curves, margin: float) -> list[Near]:
-        """For each body the places on the locks whose height is under ``margin`` [m]."""
-        points = np.asarray(locks.points, np.float64)
-        places = points[self._edge] + self._at[:, None] * (points[self._edge + 1] - points[self._edge])
-        return [self._near(k, places, margin) for k in range(len(self.surfaces))]
-
-    def _near(self, k: int, places: Array, margin: float) -> Near:
-        surface, (seen, height) = self.surfaces[k], self._seen[k]
-        moved = np.linalg.norm(places - seen, axis=1)  # infinite for what was never looked at
-        ask = np.flatnonzero(~(height - moved > margin) & _in_box(places, surface.points, margin))
-        found, foot, normal, triangle = surface.nearest(places[ask])
-        seen[ask], height[ask] = places[ask], found
-        low = np.flatnonzero(found < margin)
-        rows = ask[low]
-        on_scalp = self._on_scalp[triangle[low]] if k == 0 else np.zeros(len(low), bool)
-        return Near(self._edge[rows], self._at[rows], places[rows], found[low], foot[low], normal[low], on_scalp)
+        self.on_scalp = np.zeros(len(groom.scalp.triangles), bool)
+        self.on_scalp[region] = True
+        self.solids = [
+            _core.Solid(np.ascontiguousarray(mesh.points, np.float64), np.ascontiguousarray(mesh.triangles, np.int32))
+            for mesh in (groom.scalp, *others)
+            if len(mesh.triangles)
+        ]
 
 
 def check_groom(groom: Groom, others: Sequence[Mesh] = (), allowed: Allowed | None = None) -> Findings:
@@ -166,60 +122,23 @@ def check_groom(groom: Groom, others: Sequence[Mesh] = (), allowed: Allowed | No
 
     others: meshes beside the one of the scalp, in metres
     """
-    allowed, locks = allowed or Allowed(), groom.locks.check("check: locks")
-    return find(locks, Bodies(groom, others), Neighbours(locks, allowed.thickness), allowed)
+    return find(groom.locks.check("check: locks"), Bodies(groom, others), allowed or Allowed())
 
 
-def find(locks: Curves, bodies: Bodies, neighbours: Neighbours, allowed: Allowed) -> Findings:
+def find(locks: Curves, bodies: Bodies, allowed: Allowed) -> Findings:
     """Everything that is not allowed."""
     findings = Findings(locks)
-    may = allowed.depth(locks)
-    for near in bodies.near(locks, 0.0):
-        depth = -near.height - may[near.point]
-        for kind, rows in (
-            ("scalp", np.flatnonzero((depth > ROUNDING) & near.on_scalp)),
-            ("body", np.flatnonzero((depth > ROUNDING) & ~near.on_scalp)),
-        ):
-            rows = _deepest(near.point[rows], depth[rows], rows)
-            findings.add(kind, near.point[rows], near.place[rows], depth[rows])
-    close = neighbours.close(locks.points).within(allowed.thickness)
-    first, way = close.edges[:, 0], locks.points[close.edges[:, 0] + 1] - locks.points[close.edges[:, 0]]
-    place = locks.points[first] + close.at[:, :1] * way + 0.5 * close.apart
-    findings.add("hair", first, place, allowed.thickness - close.distance, close.edges[:, 1])
+    sunk = _core.sunk_places(*packed(locks), bodies.solids, allowed.root_depth, allowed.root_length)
+    body, point, triangle, place, depth = sunk
+    on_scalp = body == 0
+    on_scalp[on_scalp] = bodies.on_scalp[triangle[on_scalp]]
+    for kind, rows in (("scalp", on_scalp), ("body", ~on_scalp)):
+        findings.add(kind, point[rows], place[rows], depth[rows])
+    pair, place, distance = _core.crossings(*packed(locks), allowed.thickness)
+    findings.add("hair", pair[:, 0], place, allowed.thickness - distance, pair[:, 1])
     return findings
-
-
-def _samples(locks: Curves) -> tuple[NDArray[np.int64], Array]:
-    """Places on the locks, the points and more between them: the point that each is behind, and how far on to the next
-    it is, 0 to 1. Roots are left out: they are on the skin."""
-    points = np.asarray(locks.points, np.float64)
-    first = np.setdiff1d(np.arange(len(points)), locks.offsets[1:] - 1)
-    length = np.linalg.norm(points[first + 1] - points[first], axis=1)
-    pieces = np.clip(np.ceil(length / SAMPLE), 1, MOST_SAMPLES).astype(int)
-    edge = np.repeat(np.arange(len(first)), pieces)
-    step = np.arange(len(edge)) - np.repeat(np.cumsum(pieces) - pieces, pieces) + 1
-    return first[edge], step / pieces[edge]
-
-
-def along(locks: Curves) -> Array:
-    """Length from the root to every point [m], shape (n,)."""
-    steps = np.linalg.norm(np.diff(locks.points, axis=0, prepend=locks.points[:1]), axis=1)
-    steps[locks.offsets[:-1]] = 0.0
-    run = np.cumsum(steps)
-    return run - np.repeat(run[locks.offsets[:-1]], locks.counts)
 
 
 def lock_of(locks: Curves, points: NDArray) -> NDArray[np.int64]:
     """The place in the list of the lock that each point belongs to."""
     return np.searchsorted(locks.offsets, points, side="right") - 1
-
-
-def _deepest(points: NDArray, depth: Array, rows: NDArray) -> NDArray:
-    """Of several places at one point, the deepest."""
-    order = np.lexsort((-depth, points))
-    _, first = np.unique(points[order], return_index=True)
-    return rows[order[first]]
-
-
-def _in_box(places: Array, points: Array, margin: float) -> NDArray[np.bool_]:
-    return ((places >= points.min(axis=0) - margin) & (places <= points.max(axis=0) + margin)).all(axis=1)

@@ -36,6 +36,11 @@ class Scalp:
         _check_region(self)
 
     @cached_property
+    def solid(self) -> _core.Solid:
+        """The mesh as what hair may not go into."""
+        return _core.Solid(self.points, self.triangles)
+
+    @cached_property
     def areas(self) -> NDArray[np.float64]:
         """Area of each triangle of the region [m²]."""
         return _areas(self.points, self.triangles[self.region])

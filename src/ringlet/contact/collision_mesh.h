@@ -1,7 +1,7 @@
 // What can touch: strands, cloth and bodies in one list of vertices, and how near two of its primitives may come.
 #pragma once
 
-#include "ringlet/contact/distance.h"
+#include "ringlet/geometry/distance.h"
 
 #include <array>
 #include <cmath>

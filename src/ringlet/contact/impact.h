@@ -8,7 +8,7 @@
 // motion which all four vertices share changes nothing.
 #pragma once
 
-#include "ringlet/contact/distance.h"
+#include "ringlet/geometry/distance.h"
 
 #include <algorithm>
 #include <cmath>

@@ -22,5 +22,4 @@ class Clean(Operator):
 
     def apply(self, curves: Curves, context: Context) -> Curves:
         """The same curves, outside of the mesh."""
-        scalp = context.scalp
-        return curves.with_points(_core.push_out(*packed(curves), scalp.points, scalp.triangles, self.margin))
+        return curves.with_points(_core.push_out(*packed(curves), context.scalp.solid, self.margin))
