@@ -213,3 +213,23 @@ def test_the_command_edits_lists_and_gives_back(recipe):
     assert [edit["what"] for edit in json.loads(out)["edits"]] == [["curl.width"], ["curve"]]
     assert run("--set", "nonsense")[0] == 2
     assert run("--release", str(lock)) == (0, "no lock is edited\n", "")
+
+
+def test_the_hairs_of_an_edited_lock_go_with_it_and_may_have_settings_of_their_own(recipe, tmp_path):
+    lock = int(locks(recipe).ids[4])
+    change(recipe, "[curl]", '[hairs]\nper_lock = 5\nwidth = "0.1 mm"\n[curl]')
+    ringlet.edit_lock(recipe, lock, points=locks(recipe)[4] + np.linspace(0, 0.01, 64)[:, None])
+    ringlet.edit_lock(recipe, lock, settings={"hairs.width": "0.3 mm", "hairs.per_lock": 9})
+    ringlet.write_groom(ringlet.build_groom(recipe), tmp_path / "groom.usdc")
+    groom = ringlet.read_groom(tmp_path / "groom.usdc")
+    hairs = ringlet.build_hairs(groom).curves
+    own = hairs.curve["guide_id"] == lock
+    assert own.sum() == 9 and (~own).sum() == 5 * 11
+    first, widths = np.flatnonzero(own)[0], hairs.point["width"][hairs.offsets[:-1]]
+    np.testing.assert_allclose(hairs[first], groom.locks[4], atol=1e-6)
+    assert widths[own].mean() == pytest.approx(3e-4, rel=0.15) and widths[~own].mean() == pytest.approx(1e-4, rel=0.1)
+
+
+def test_a_setting_of_no_stage_is_refused_with_what_was_probably_meant(recipe):
+    with pytest.raises(UserError, match=r"hair.width is no setting of an operator.*hairs"):
+        ringlet.edit_lock(recipe, int(locks(recipe).ids[0]), settings={"hair.width": "1 mm"})

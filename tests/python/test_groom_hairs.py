@@ -2,8 +2,11 @@
 
 import numpy as np
 import pytest
+from PIL import Image
 from shapes import ball, rotation, sheet
+from usd_scenes import write_head
 
+import ringlet
 from ringlet import Curves, UserError
 from ringlet.groom import HairMemory, make_groom, make_hairs, parse_recipe
 
@@ -228,3 +231,18 @@ def test_the_curl_of_hairs_survives_a_hard_motion_of_their_locks():
         return np.arccos(np.clip(np.sum(edges[:, :, 1:] * edges[:, :, :-1], axis=3), -1.0, 1.0)).sum(axis=2)
 
     assert np.allclose(bends(now), bends(rest), rtol=0.02)
+
+
+def test_pictures_that_hairs_ask_for_go_with_the_groom_file(tmp_path):
+    write_head(tmp_path / "head.usdc")
+    Image.fromarray(np.array([[255], [64]], np.uint8).repeat(2, axis=1)).save(tmp_path / "thick.png")
+    (tmp_path / "a.recipe.toml").write_text(
+        "ringlet = 1\n[scalp]\nfile = 'head.usdc'\nregion = 'scalp'\n[maps]\nthick = 'thick.png'\n"
+        "[guides]\ncount = 10\n[locks]\ncount = 10\n"
+        "[hairs]\nper_lock = 2\nwidth = { value = '0.1 mm', map = 'thick' }\n"
+    )
+    made = ringlet.build_groom(tmp_path / "a.recipe.toml")
+    ringlet.write_groom(made, tmp_path / "groom.usdc")
+    back = ringlet.build_hairs(ringlet.read_groom(tmp_path / "groom.usdc")).curves
+    np.testing.assert_allclose(back.point["width"], ringlet.build_hairs(made).curves.point["width"], rtol=1e-5)
+    assert np.ptp(back.point["width"]) > 3e-5

@@ -6,7 +6,7 @@ import shutil
 
 import numpy as np
 import pytest
-from pxr import Usd, UsdGeom
+from pxr import Sdf, Usd, UsdGeom
 from ringlet.io import (
     CacheWriter,
     HairWriter,
@@ -24,7 +24,7 @@ from ringlet.io import (
 )
 from usd_scenes import make_groom, write_head
 
-from ringlet import Cache, Curves, UserError
+from ringlet import Cache, Curves, UserError, build_groom
 
 
 @pytest.fixture(params=[(0.01, "Y"), (1.0, "Z")], ids=["cm-Y", "m-Z"])
@@ -166,6 +166,42 @@ def test_the_written_roots_are_where_the_locks_begin(folder):
     for name in ("st", "surface_uv_coordinate", "groom_root_uv"):
         np.testing.assert_allclose(value(name) * 0.1, groom.locks.roots[:, :2], atol=1e-7)
     assert UsdGeom.Imageable(locks).ComputePurpose() == UsdGeom.Tokens.guide
+
+
+def test_drawn_guides_keep_their_names_and_primvars_on_the_way_through(tmp_path):
+    write_head(tmp_path / "head.usdc")
+    stage = Usd.Stage.CreateNew(str(tmp_path / "drawn.usda"))
+    UsdGeom.SetStageMetersPerUnit(stage, 0.01)
+    drawn = UsdGeom.BasisCurves.Define(stage, "/guides")
+    drawn.CreateTypeAttr("linear")
+    drawn.CreateCurveVertexCountsAttr([3, 3])
+    drawn.CreatePointsAttr([(3, 3, 10), (3, 3, 12), (3, 4, 14), (6, 6, 10), (6, 6, 12), (6, 7, 14)])
+    said = {
+        "groom_id": ("int[]", "uniform", [70, 7]),
+        "style": ("int[]", "uniform", [2, 9]),
+        "artist": ("string[]", "uniform", ["ada", "bo"]),
+        "weight": ("float[]", "vertex", [0, 0.5, 1, 0, 0.25, 1]),
+        "flow": ("float3[]", "vertex", [(k, 0, 1) for k in range(6)]),
+        "density": ("float", "constant", 0.5),
+    }
+    for name, (kind, interpolation, values) in said.items():
+        primvar = UsdGeom.PrimvarsAPI(drawn).CreatePrimvar(name, Sdf.ValueTypeNames.Find(kind), interpolation)
+        primvar.Set(values)
+    stage.Save()
+    (tmp_path / "a.recipe.toml").write_text(
+        "ringlet = 1\n[scalp]\nfile = 'head.usdc'\nregion = 'scalp'\n[guides]\nfile = 'drawn.usda'\n"
+    )
+    for path in (tmp_path / "once.usdc", tmp_path / "twice.usdc"):
+        once = path.name == "once.usdc"
+        write_groom(build_groom(tmp_path / "a.recipe.toml") if once else read_groom(tmp_path / "once.usdc"), path)
+        stage = Usd.Stage.Open(str(path))
+        guides = UsdGeom.PrimvarsAPI(stage.GetPrimAtPath("/groom/guides"))
+        for name, (_, interpolation, values) in said.items():
+            kept = guides.GetPrimvar(name)
+            if name == "density":  # one value for all is kept as one for each
+                interpolation, values = "uniform", [0.5, 0.5]
+            assert kept.GetInterpolation() == interpolation, name
+            assert [tuple(v) if name == "flow" else v for v in kept.Get()] == values, name
 
 
 def test_other_programs_can_read_the_locks_as_plain_curves(folder):

@@ -153,8 +153,8 @@ def _with_lock(data: dict[str, Any], name: str, lock: str, value: Any, path: Pat
     stage, _, setting = name.rpartition(".")
     shape = data.get("shape", [])
     names = stage_names(shape) if isinstance(shape, list) else []
-    if stage not in (*names, "curl"):
-        hint = did_you_mean(stage, [*names, "curl"])
+    if stage not in (*names, "curl", "hairs"):
+        hint = did_you_mean(stage, [*names, "curl", "hairs"])
         raise UserError(f"{path.name}: edit of lock {lock}: {name} is no setting of an operator{hint}")
     table = shape[names.index(stage)] if stage in names else data.get(stage, {})
     old = table.get(setting, {}) if isinstance(table, dict) else {}

@@ -8,19 +8,22 @@ from hashlib import blake2b
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from numpy.typing import NDArray
 
 from ringlet.curves import Curves
 from ringlet.errors import UserError
 from ringlet.groom.edits import Edit, Edits
 from ringlet.groom.groom import Groom
-from ringlet.groom.hairs import HairMemory
+from ringlet.groom.hairs import HairMemory, HairSettings
 from ringlet.groom.load import stage_names
 from ringlet.groom.nails import nailed
 from ringlet.groom.operators import Context, Drawn, Operator, Resample
+from ringlet.groom.painted import painted
 from ringlet.groom.recipe import Recipe
 from ringlet.groom.scalp import Scalp
 from ringlet.groom.sculpt import Sculpted
+from ringlet.groom.settings import Varied
 from ringlet.mesh import Mesh
 from ringlet.stage import StageSpace
 
@@ -92,7 +95,7 @@ def make_groom(
                 guides = curves
             if progress:
                 progress(name, 1, 1)
-        locks = nailed(curves, recipe.nail, scalp, recipe.seed)
+        locks = _with_textures_of_hairs(nailed(curves, recipe.nail, scalp, recipe.seed), recipe.hairs, scalp)
     except UserError as error:
         raise UserError(f"{where}: {error}") from error
     return Groom(
@@ -109,6 +112,14 @@ def make_groom(
         unsculpted=unsculpted,
         conflicts=_conflicts(recipe, unsculpted, curves),
     )
+
+
+def _with_textures_of_hairs(locks: Curves, hairs: HairSettings, scalp: Mesh) -> Curves:
+    """The locks with what the pictures of ``[maps]`` that hairs ask for are at their roots, as attributes: a groom file
+    holds no pictures, and hairs are made from it."""
+    asked = {value.map for _, value in hairs if isinstance(value, Varied) and value.map in scalp.textures}
+    told = {name: painted(name, locks, scalp, "hairs").astype(np.float32) for name in sorted(asked - {None})}
+    return Curves(locks.points, locks.offsets, locks.ids, {**locks.curve, **told}, locks.point) if told else locks
 
 
 def _stages(recipe: Recipe) -> list[tuple[str, Operator]]:

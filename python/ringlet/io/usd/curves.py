@@ -1,7 +1,8 @@
 """Curves from USD, of every type, basis and wrap; and Ringlet's own curves into USD and back.
 
-Ringlet writes Catmull-Rom curves that are pinned, so that their vertices are the points of the polyline. What has no
-place in USD's schema goes into primvars called ``ringlet:…``, as it is inside: SI units, Y-up.
+Ringlet writes Catmull-Rom curves that are pinned, so that their vertices are the points of the polyline. What only
+Ringlet knows goes into primvars called ``ringlet:…``, as it is inside: SI units, Y-up. Attributes that came with drawn
+guides keep their names.
 """
 
 from __future__ import annotations
@@ -20,7 +21,6 @@ from ringlet.io.usd.stage import Source, choose, find_prim, prims, reading
 from ringlet.io.usd.values import (
     Types,
     float3,
-    float_primvars,
     from_usd,
     read_integers,
     read_points,
@@ -34,6 +34,11 @@ from ringlet.stage import StageSpace
 OWN = "ringlet:"
 ID_NAMES = ("ringlet:id", "groom_id", "id", "hair_id", "hairid", "curve_id")
 ID_HALVES = ("id_high", "id_low")  # of ids of 64 bits, for programs that know none, such as Blender
+# What the schema and other programs know by these names is written by them, and our attributes of the same name apart.
+COMMON = {"rest", "skinprim", "skinprimuv", "st", "surface_uv_coordinate", "guide_curve_index", "clumpid", *ID_HALVES}
+COMMON |= {"groom_id", "groom_group_id", "groom_guide", "groom_root_uv", "groom_color"}
+COMMON |= {"displayColor", "displayOpacity"}
+INNER = {"root_triangle", "root_barycentric", "lock", "guide_id", "nail", "groomed", "stiffened", "off", "moving"}
 HAIR_WIDTH = 70e-6  # diameter of a hair that says nothing else [m]
 
 
@@ -59,8 +64,8 @@ def curves_at(source: Source, prim: Usd.Prim, time: Usd.TimeCode) -> Curves:
 
     for primvar in UsdGeom.PrimvarsAPI(prim).GetPrimvarsWithAuthoredValues():
         name = primvar.GetPrimvarName().removeprefix(OWN)
-        values = from_usd(primvar.ComputeFlattened(time))
-        if values.dtype.kind not in "bifuSU" or values.ndim == 0:
+        values = np.atleast_1d(from_usd(primvar.ComputeFlattened(time)))
+        if values.dtype.kind not in "bifuSU":
             continue
         if primvar.GetTypeName().role == Sdf.ValueRoleNames.Point:
             values = to_metres(transformed(np.asarray(values, np.float64), prim, time), source.space)
@@ -84,17 +89,8 @@ def own_curves(source: Source, prim: Usd.Prim, time: Usd.TimeCode | None = None,
         raise UserError(f"{where}: has no ringlet:id for each of its {len(counts)} curves; write the file again")
     curves = Curves(points, offsets_from_counts(counts), np.array(ids, np.int64))
     for primvar in UsdGeom.PrimvarsAPI(prim).GetPrimvarsWithAuthoredValues():
-        name = primvar.GetPrimvarName()
-        if not name.startswith(OWN) or name == f"{OWN}id":
-            continue
-        values = from_usd(primvar.Get())
-        per_curve = primvar.GetInterpolation() == UsdGeom.Tokens.uniform
-        if len(values) != (len(curves) if per_curve else len(points)):
-            raise UserError(
-                f"{where}: {name} has {len(values)} values; must have one for each curve or point; write it again"
-            )
-        (curves.curve if per_curve else curves.point)[name.removeprefix(OWN)] = values
-    _add_maps(curves, prim, where)
+        if (name := primvar.GetPrimvarName()) not in (f"{OWN}id", *COMMON):
+            _add_own(curves, primvar, name.removeprefix(OWN), where)
     schema = UsdGeom.BasisCurves(prim)
     if schema.GetWidthsInterpolation() == UsdGeom.Tokens.vertex and "width" not in curves.curve:
         widths = np.array(schema.GetWidthsAttr().Get() or [], np.float32)
@@ -121,11 +117,11 @@ def define_curves(
 
     prim = defined.GetPrim()
     set_primvar(prim, f"{OWN}id", "uniform", curves.ids)
-    for name, values in curves.curve.items():
-        set_primvar(prim, OWN + name, "uniform", values)
-    for name, values in curves.point.items():
-        if name != "width":  # which is in ``widths``
-            set_primvar(prim, OWN + name, "vertex", values)
+    for interpolation, attributes in (("uniform", curves.curve), ("vertex", curves.point)):
+        for name, values in attributes.items():
+            if interpolation == "uniform" or name != "width":  # that of points is in ``widths``
+                own = name in COMMON | INNER | {"width"}
+                set_primvar(prim, OWN + name if own else name, interpolation, values)
     fits = np.abs(curves.ids).max(initial=0) < 2**31
     set_primvar(prim, "groom_id", "uniform", (curves.ids if fits else np.arange(len(curves))).astype(np.int32))
     for name, half in zip(ID_HALVES, (curves.ids >> 32, curves.ids & 0xFFFFFFFF), strict=True):
@@ -201,18 +197,23 @@ def _add(curves: Curves, sampling: Sampling, name: str, values: NDArray, interpo
         )
 
 
-def _add_maps(curves: Curves, prim: Usd.Prim, where: str) -> None:
-    """Takes what others painted on our curves, primvars of floats, as attributes."""
-    for name, interpolation, values in float_primvars(prim):
-        if name.startswith(OWN) or name in curves.curve or name in curves.point:
-            continue
-        per_curve = interpolation in (UsdGeom.Tokens.constant, UsdGeom.Tokens.uniform)
-        expected = len(curves) if per_curve else len(curves.points)
-        if interpolation == UsdGeom.Tokens.constant and len(values) == 1:
-            values = np.repeat(values, expected)
-        if len(values) != expected:
-            raise UserError(f"{where}: {name} has {len(values)} values; must have {expected}, being {interpolation}")
-        (curves.curve if per_curve else curves.point)[name] = values
+def _add_own(curves: Curves, primvar: UsdGeom.Primvar, name: str, where: str) -> None:
+    """Keeps a primvar of our own curves, whoever wrote it, as an attribute of curves or of points."""
+    values, interpolation = np.atleast_1d(from_usd(primvar.ComputeFlattened())), primvar.GetInterpolation()
+    if values.dtype.kind not in "bifuSU":
+        return
+    per_curve = interpolation in (UsdGeom.Tokens.constant, UsdGeom.Tokens.uniform)
+    expected = len(curves) if per_curve else len(curves.points)
+    if interpolation == UsdGeom.Tokens.constant:
+        if len(values) != 1:
+            return  # a list that belongs to the whole prim
+        values = np.repeat(values, expected, axis=0)
+    if len(values) != expected:
+        raise UserError(
+            f"{where}: {primvar.GetPrimvarName()} has {len(values)} values; must have {expected}, being "
+            f"{interpolation}: one for each curve or point; write it again"
+        )
+    (curves.curve if per_curve else curves.point)[name] = values
 
 
 def _name(curves: Curves) -> None:
