@@ -43,7 +43,7 @@ width = { value = "9 mm", vary = 0.2 } # a pencil
 def document(tmp_path: Path) -> Document:
     path = tmp_path / "a.recipe.toml"
     path.write_text(TEXT)
-    return Document(path, lambda text: parse_recipe(text, path))
+    return Document(path, lambda text, edits: parse_recipe(text, path, edits or None))
 
 
 def comments(text: str) -> list[str]:
@@ -113,11 +113,11 @@ def test_a_gesture_is_one_step_back_and_one_forth(document: Document):
     for width in ("7 mm", "6 mm", "5 mm"):
         document.set([(["curl", "width", "value"], width)], gesture=1)
     document.set([(["guides", "count"], 20)], gesture=2)
-    document.undo()
+    document.history.undo()
     assert document.said()["curl"]["width"]["value"] == "5 mm" and document.said()["guides"]["count"] == 12
-    document.undo()
+    document.history.undo()
     assert document.text == TEXT and not document.dirty
-    document.redo()
+    document.history.redo()
     assert document.said()["curl"]["width"]["value"] == "5 mm" and document.dirty
 
 

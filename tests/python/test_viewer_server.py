@@ -44,6 +44,7 @@ class Page:
             self.heard.append(message)
             if message["kind"] == kind and all(message[name] == value for name, value in wanted.items()):
                 return message
+            assert message["kind"] != "trouble", message["message"]
         raise AssertionError(f"no {kind} among {[m['kind'] for m in self.heard]}")
 
     def been_told(self, kind: str, **wanted: Any) -> dict[str, Any]:
@@ -272,7 +273,7 @@ def test_a_shot_runs_and_its_frames_come(folder: Path):
         one.say(kind="play", action="start")
         frames = [one.hear("frame") for _ in range(4)]
         assert [frame["frame"] for frame in frames] == [1, 2, 3, 4]
-        assert frames[0]["points"].shape == (8 * 40 * 3,) and np.all(frames[0]["overlay"] <= 1.0)
+        assert frames[0]["points"].shape == (8 * 40 * 3,) and len(frames[0]["curl"]) == 8 * 40
         assert np.abs(frames[3]["points"] - frames[0]["points"]).max() > 1e-3
         one.been_told("timeline", state="done")
         one.say(kind="set", file="shot", changes=[[["strands", "bend_scale"], 30.0]], gesture=1)
@@ -310,3 +311,181 @@ def test_a_lock_that_is_not_isolated_is_not_dragged(folder: Path):
         assert one.hear("locks", draft=False)["marked"][0] == 1
         one.say(kind="isolate", locks=[lock], out=False)
         assert one.hear("locks", draft=False)["marked"][0] == 0
+
+
+def stroke(one: Page, guides: dict[str, Any], gesture: int = 7, **more: Any) -> None:
+    """Combs the tip of the first guide 1 cm aside, in two messages."""
+    tip = guides["points"].reshape(-1, 3)[guides["offsets"][1] - 1].tolist()
+    told = {"tool": "comb", "radius": 0.02, "gesture": gesture, **more}
+    one.say(kind="sculpt", at=tip, by=[0, 0, 0], resting=False, **told)
+    one.say(kind="sculpt", at=tip, by=[0.01, 0, 0], **told)
+
+
+def test_a_stroke_of_the_brush_is_one_step_and_is_saved_beside_the_recipe(folder: Path):
+    with serving(folder) as client, page(client) as one:
+        guides = one.hear("guides")
+        before = one.been_told("locks")["points"]
+        one.been_told("numbers", draft=False)
+        stroke(one, guides)
+        document = one.hear("document", dirty=True)
+        assert document["said"]["edits"] == "small.edits.toml" and "[[sculpt]]" in document["edits"]
+        after = one.hear("locks", draft=False)["points"]
+        assert np.abs(after - before).max() > 0.002
+        assert one.been_told("guides")["changed"].tolist() == [1, 0, 0, 0, 0, 0]
+        assert not (folder / "small.edits.toml").exists()
+        one.say(kind="undo")
+        assert "edits" not in one.hear("document", dirty=False)["said"]
+        assert np.array_equal(one.hear("locks", draft=False)["points"], before)
+        one.say(kind="redo")
+        one.say(kind="save")
+        one.hear("saved")
+    assert (folder / "small.edits.toml").read_text().count("guide = ") == 1
+    with serving(folder) as client, page(client) as one:
+        assert one.hear("guides")["changed"][0] == 1
+        one.say(kind="unsculpt")
+        assert one.hear("guides")["changed"].sum() == 0
+        assert np.array_equal(one.been_told("guides")["points"], guides["points"])
+
+
+def test_what_was_sculpted_is_given_back_to_a_server_that_was_started_anew(folder: Path):
+    with serving(folder) as client, page(client) as one:
+        stroke(one, one.hear("guides"))
+        document = one.hear("document", dirty=True)
+    with serving(folder) as client, page(client) as one:
+        assert one.hear("guides")["changed"].sum() == 0
+        one.say(kind="restore", text=document["text"], edits=document["edits"])
+        assert one.hear("guides")["changed"][0] == 1
+        one.say(kind="undo")
+        assert one.hear("guides")["changed"].sum() == 0
+
+
+def test_steps_are_undone_in_the_order_in_which_they_were_done_whatever_the_file(folder: Path):
+    with serving(folder, "small.shot.toml") as client, page(client) as one:
+        for file in ("recipe", "shot"):
+            one.been_told("document", file=file)
+        one.say(kind="set", file="recipe", changes=[[["curl", "width"], 1.5]], gesture=1)
+        one.hear("document", file="recipe", dirty=True)
+        one.say(kind="set", file="shot", changes=[[["held"], 3]], gesture=2)
+        one.hear("document", file="shot", dirty=True)
+        one.say(kind="undo")
+        one.hear("document", file="shot", dirty=False)
+        assert one.been_told("document", file="recipe")["dirty"]
+        one.say(kind="undo")
+        one.hear("document", file="recipe", dirty=False)
+        one.say(kind="redo")
+        assert one.hear("document", file="recipe", dirty=True)["said"]["curl"]["width"] == 1.5
+
+
+SHAPES = """
+[[shape]]
+op = "scraggle"
+amount = 0.2
+[[shape]]
+op = "clump"
+size = 3
+[[shape]]
+op = "scraggle"
+amount = 0.1
+"""
+
+
+@pytest.fixture
+def extended(folder: Path) -> Path:
+    """A recipe that extends one with three operators."""
+    base = folder / "small.recipe.toml"
+    base.write_text(base.read_text() + SHAPES)
+    (folder / "more.recipe.toml").write_text('ringlet = 1\nextends = "small.recipe.toml"\n[curl]\nwidth = 1.3\n')
+    return folder
+
+
+def test_operators_of_a_base_are_changed_and_removed_by_name(extended: Path):
+    with serving(extended, "more.recipe.toml") as client, page(client) as one:
+        assert [stage["op"] for stage in one.hear("document")["stages"]][2:5] == ["scraggle", "clump", "scraggle"]
+        one.say(kind="set", changes=[[["shape", 2, "amount"], 0.4]], gesture=1)
+        document = one.hear("document", dirty=True)
+        assert document["said"]["shape"] == [{}, {}, {"amount": 0.4}]
+        assert document["values"]["shape"][2]["amount"]["value"] == 0.004
+        one.say(kind="arrange", action="remove", at=0)
+        document = one.hear("document")
+        assert [stage["op"] for stage in document["stages"]][2:4] == ["clump", "scraggle"]
+        assert document["values"]["shape"][1]["amount"]["value"] == 0.004
+        one.say(kind="arrange", action="remove", at=1)
+        assert [stage["op"] for stage in one.hear("document")["stages"]][2:4] == ["clump", "curl"]
+        one.say(kind="arrange", action="move", at=0, to=0)
+        assert "neither move nor add" in one.hear("trouble")["message"]
+        one.say(kind="save")
+        one.hear("saved")
+    text = (extended / "more.recipe.toml").read_text()
+    assert "scraggle = false" in text and '"scraggle 2" = false' in text
+
+
+@pytest.mark.parametrize(
+    "say",
+    [
+        {"kind": "set", "changes": [[["hairs"], None]]},
+        {"kind": "set", "changes": [[["locks", "points"], None]]},
+        {"kind": "set", "changes": [[["curl", "width"], None]]},
+        {"kind": "set", "changes": [[["curl"], None]]},
+        {
+            "kind": "set",
+            "changes": [[["shape", 1, "size"], None], [["shape", 2, "amount"], {"value": 0.3, "vary": 0.1}]],
+        },
+        {"kind": "arrange", "action": "remove", "at": 0},
+        {"kind": "arrange", "action": "move", "at": 0, "to": 1},
+    ],
+)
+def test_a_variant_makes_what_was_seen_also_where_something_was_taken_out(extended: Path, say: dict[str, Any]):
+    from ringlet.groom import read_recipe
+
+    with serving(extended) as client, page(client) as one:
+        one.hear("document")
+        one.say(**say, **({"gesture": 1} if say["kind"] == "set" else {}))
+        values = one.hear("document", dirty=True)["values"]
+        one.say(kind="save", name="other", variant=True)
+        one.hear("saved")
+    made = read_recipe(extended / "other.recipe.toml").model_dump(mode="json")
+    assert {**made, "extends": None, "sculpt": None} == {**values, "sculpt": None}
+    assert "count = 6" not in (extended / "other.recipe.toml").read_text()
+
+
+def test_a_variant_that_cannot_say_what_was_changed_is_not_written(folder: Path):
+    with serving(folder) as client, page(client) as one:
+        one.say(kind="set", changes=[[["locks", "count"], None]], gesture=1)  # a variant cannot say "no count"
+        one.hear("document", dirty=True)
+        one.say(kind="save", name="other", variant=True)
+        assert "save a copy instead" in one.hear("trouble")["message"]
+    assert not (folder / "other.recipe.toml").exists()
+
+
+def test_a_setting_of_one_lock_alone_changes_that_lock_and_no_other(folder: Path):
+    with serving(folder) as client, page(client) as one:
+        locks = one.hear("locks")
+        one.been_told("numbers", draft=False)
+        lock = int(locks["ids"][3])
+        one.say(kind="set", changes=[[["curl", "width", "lock", str(lock)], 2.5]], gesture=1)
+        assert one.hear("document", dirty=True)["said"]["curl"]["width"] == {"value": 1.0, "lock": {str(lock): 2.5}}
+        moved = np.abs(one.hear("locks", draft=False)["points"] - locks["points"]).reshape(8, -1).max(axis=1)
+        assert moved[3] > 0.002 and np.delete(moved, 3).max() == 0.0
+
+
+def test_the_page_is_told_what_settings_may_name(folder: Path):
+    recipe = folder / "small.recipe.toml"
+    recipe.write_text(recipe.read_text() + "[curves.tie]\npoints = [[0, 12, 0], [1, 12, 0]]\n")
+    with serving(folder) as client, page(client) as one:
+        names = one.hear("names")
+        assert names["regions"] == ["scalp"] and names["curves"] == ["tie"]
+
+
+def test_nails_and_what_is_in_the_head_are_measured_at_rest(folder: Path):
+    recipe = folder / "small.recipe.toml"
+    recipe.write_text(recipe.read_text() + '[[nail]]\nreach = "1 cm"\n[clean]\nmargin = 0\n')
+    text = recipe.read_text().replace("[clean]\nmargin = 0\n", "").replace("length = 5", "length = 5\ndroop = 3")
+    with serving(folder) as client, page(client) as one:
+        measured = one.hear("measured")
+        nail = measured["nail"].reshape(8, 40)
+        assert np.all(nail[:, 0] == 255) and np.all(nail[:, -1] == 0)
+        one.say(kind="restore", text=text)
+        one.say(kind="mute", stages=["clean"])
+        one.hear("numbers", draft=False)
+        inside = one.hear("measured")
+        assert inside["inside"] > 0 and inside["depth"].max() > 0

@@ -5,6 +5,7 @@ import { h } from "./dom";
 import { Link, type LinkState } from "./link";
 import { Model } from "./model";
 import { Bar } from "./panel/bar";
+import { BrushTool } from "./panel/brush";
 import { LockTool } from "./panel/lock";
 import { Settings } from "./panel/settings";
 import { Stack } from "./panel/stack";
@@ -19,22 +20,23 @@ class App {
   readonly viewer: Viewer;
   readonly timeline: TimelineBar;
   readonly lock: LockTool;
+  readonly brush: BrushTool;
   private readonly notices = new Notices();
   private readonly status = new Status(this.model);
   private session = "";
   /** What the page had when the connection was lost, to be given back to a server that was started anew. */
-  private kept: Partial<Record<"recipe" | "shot", string>> = {};
+  private kept: Partial<Record<"recipe" | "shot", { text: string; edits: string }>> = {};
 
   constructor(root: HTMLElement) {
     const picture = h("main", { class: "picture" });
     root.append(picture);
     this.viewer = new Viewer(picture);
     this.lock = new LockTool(this.model, this.viewer);
-    this.timeline = new TimelineBar(this.model, this.viewer, (frame) => {
-      const ms = frame.statistics["wall_ms"];
-      if (typeof ms === "number") this.status.simulated(ms);
-    });
-    picture.append(this.lock.handles);
+    this.timeline = new TimelineBar(this.model, this.viewer, (frame) => this.status.simulated(frame.statistics));
+    this.brush = new BrushTool(this.model, this.viewer);
+    this.brush.changed.push((on) => on && this.lock.choose(-1));
+    this.lock.busy = () => this.brush.on;
+    picture.append(this.lock.handles, this.brush.ring);
     this.viewer.onDraw = (told) => {
       this.status.drew(told);
       this.lock.place();
@@ -44,8 +46,9 @@ class App {
       new Bar(this.model, () => this.setTheme()).element,
       new Stack(this.model).element,
       new Settings(this.model).element,
-      new Viewbar(this.model, this.viewer, name).element,
+      new Viewbar(this.model, this.viewer, this.brush, name).element,
       this.lock.element,
+      this.brush.element,
       this.timeline.element,
       this.status.element,
       this.notices.element,
@@ -72,7 +75,10 @@ class App {
     this.notices.keep(state === "open" ? "" : why);
     if (state !== "lost") return;
     for (const [file, known] of Object.entries(this.model.documents))
-      if (known.dirty && this.model.role.leads) this.kept[file as "recipe" | "shot"] = known.text;
+      if (known.dirty && this.model.role.leads) {
+        const { text, edits } = known;
+        this.kept[file as "recipe" | "shot"] = { text, edits };
+      }
   }
 
   private hear(message: FromServer): void {
@@ -97,6 +103,21 @@ class App {
       case "numbers":
         model.numbers = message;
         model.tell("numbers");
+        break;
+      case "names":
+        model.names = message;
+        model.tell("names");
+        break;
+      case "guides":
+        model.guides = message;
+        viewer.guides.set(message);
+        model.tell("guides");
+        viewer.invalidate();
+        break;
+      case "measured":
+        model.measured = message;
+        model.tell("measured");
+        if (model.overlay) this.timeline.overlay();
         break;
       case "body":
         viewer.setBody(message);
@@ -132,8 +153,8 @@ class App {
 
   /** The server was started anew: it gets what had not been saved, as one step that can be undone. */
   private giveBack(): void {
-    for (const [file, text] of Object.entries(this.kept))
-      this.model.say({ kind: "restore", file: file as "recipe" | "shot", text });
+    for (const [file, kept] of Object.entries(this.kept))
+      this.model.say({ kind: "restore", file: file as "recipe" | "shot", ...kept });
   }
 }
 

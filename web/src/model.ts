@@ -1,21 +1,39 @@
 // What the page knows of the session, and whom it tells when that changes.
 
 import type { Link } from "./link";
-import type { Document, FromPage, Json, Numbers, Role, Timeline, Welcome } from "./protocol";
+import type { Document, FromPage, Guides, Json, Measured, Names, Numbers, Role, Timeline, Welcome } from "./protocol";
+import type { OverlayName } from "./view/overlays";
 
 export type File = "recipe" | "shot";
 export type Place = (string | number)[];
-type Topic = "welcome" | "document" | "role" | "numbers" | "timeline" | "compared" | "chosen";
+type Topic =
+  | "welcome"
+  | "document"
+  | "role"
+  | "names"
+  | "guides"
+  | "numbers"
+  | "measured"
+  | "timeline"
+  | "compared"
+  | "chosen"
+  | "overlay";
 
 export class Model {
   welcome: Welcome | null = null;
   documents: Partial<Record<File, Document>> = {};
   role: Role = { kind: "role", leads: true, others: 0 };
   numbers: Numbers | null = null;
+  names: Names = { kind: "names", regions: [], maps: [], vectors: [], curves: [] };
+  guides: Guides | null = null;
+  measured: Measured | null = null;
+  overlay: OverlayName | "" = "";
   timeline: Timeline | null = null;
   compared = "";
   /** The stage whose settings are shown, and the file that it belongs to. */
   chosen: { file: File; place: Place } = { file: "recipe", place: ["curl"] };
+  /** The lock whose own values are edited, in place of those of all locks. */
+  lock: number | null = null;
   link: Link | null = null;
   private gesture = Date.now() % 1e9;
   private readonly listeners = new Map<Topic, (() => void)[]>();

@@ -1,6 +1,6 @@
 // Made by tools/make_protocol.py from python/ringlet/viewer/protocol.py; change it there.
 
-export const VERSION = 1;
+export const VERSION = 2;
 export type Json = string | number | boolean | null | Json[] | { [key: string]: Json };
 
 /** A stage of the groom. place: where its settings are in the recipe. */
@@ -66,11 +66,12 @@ export interface Save {
   variant?: boolean;
 }
 
-/** Gives back a text that a page still had when the server was started anew. */
+/** Gives back a text that a page still had when the server was started anew, and that of its file of edits. */
 export interface Restore {
   kind: "restore";
   file?: "recipe" | "shot";
   text: string;
+  edits?: string;
 }
 
 /** Shows another look beside this one: as it is now, as saved, or another recipe of the project, or none. */
@@ -96,6 +97,23 @@ export interface Isolate {
   kind: "isolate";
   locks: number[];
   out?: boolean;
+}
+
+/** Moves a brush over the guides, or gives them back to the recipe. */
+export interface Sculpt {
+  kind: "sculpt";
+  tool: "grab" | "comb" | "smooth" | "cut" | "lengthen" | "return";
+  at: [number, number, number];
+  by: [number, number, number];
+  radius: number;
+  mirrored?: boolean;
+  gesture: number;
+  resting?: boolean;
+}
+
+/** Gives all guides back to the recipe. */
+export interface Unsculpt {
+  kind: "unsculpt";
 }
 
 /** Runs the shot: from its start, on from where it was held, or again from a frame that is there already. */
@@ -137,6 +155,7 @@ export interface Document {
   file: "recipe" | "shot";
   name: string;
   text: string;
+  edits: string;
   said: Record<string, Json>;
   values: Record<string, Json>;
   stages: Stage[];
@@ -170,6 +189,24 @@ export interface Locks {
   marked: Uint8Array;
 }
 
+/** Where the guides are; ``changed`` is 1 for those that were sculpted by hand. */
+export interface Guides {
+  kind: "guides";
+  middle: [number, number, number];
+  points: Float32Array;
+  offsets: Int32Array;
+  changed: Uint8Array;
+}
+
+/** What settings may name: regions, maps and directions of the scalp, and helper curves. */
+export interface Names {
+  kind: "names";
+  regions: string[];
+  maps: string[];
+  vectors: string[];
+  curves: string[];
+}
+
 /** How hairs sit in their locks; see ``src/ringlet/groom/hairs.h`` for the formula. */
 export interface Hairs {
   kind: "hairs";
@@ -197,10 +234,17 @@ export interface Numbers {
   kind: "numbers";
   locks: number;
   hairs: number;
-  inside: number;
   groom_ms: number;
   times: Record<string, number>;
   draft: boolean;
+}
+
+/** What is only measured at rest. inside: points of locks that are in the head. */
+export interface Measured {
+  kind: "measured";
+  inside: number;
+  depth: Uint8Array;
+  nail: Uint8Array;
 }
 
 /** A frame of the shot or of a cache. layer: ``shot``, or ``against`` for the cache that it is compared with. */
@@ -213,7 +257,10 @@ export interface Frame {
   axis: Float32Array;
   root: Float32Array;
   bodies: Float32Array;
-  overlay: Float32Array;
+  stretch: Uint8Array;
+  contact: Uint8Array;
+  depth: Uint8Array;
+  curl: Uint8Array;
 }
 
 /** Which frames there are to see, and what the simulation does. key: another one when frames have become void. */
@@ -260,6 +307,8 @@ export type FromPage =
   | Compare
   | Drag
   | Isolate
+  | Sculpt
+  | Unsculpt
   | Play
   | Against;
 
@@ -269,8 +318,11 @@ export type FromServer =
   | Document
   | Body
   | Locks
+  | Guides
+  | Names
   | Hairs
   | Numbers
+  | Measured
   | Frame
   | Timeline
   | Compared

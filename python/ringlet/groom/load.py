@@ -114,6 +114,18 @@ def _merged_shape(base: list[Any], changes: dict[str, Any], where: str) -> list[
     return [operator for operator in result if operator is not None]
 
 
+def inherited(data: dict[str, Any], path: Path) -> list[str] | None:
+    """The names of the operators that a recipe has from the one that it extends; None where all are its own.
+
+    data: its own tables
+    """
+    own = data.get("shape", {})
+    if not isinstance(data.get("extends"), str) or isinstance(own, list):
+        return None
+    base = load(path.parent / data["extends"])[1].get("shape", [])
+    return [name for name in stage_names(base) if own.get(name) is not False]
+
+
 def stage_names(shape: list[Any]) -> list[str]:
     """The names of operators: that of their kind, ``scraggle 2`` for the second of a kind."""
     used = Counter[str]()

@@ -15,6 +15,7 @@ from tomlkit.exceptions import TOMLKitError
 
 from ringlet.errors import UserError
 from ringlet.files import replacing
+from ringlet.toml import toml_key
 from ringlet.viewer import blocks
 from ringlet.viewer.protocol import Change, Place
 
@@ -23,27 +24,70 @@ MOST_STEPS = 500  # that can be undone
 
 @dataclass(frozen=True)
 class State:
-    """What undo goes back to: the text, and the stages that have no effect for now."""
+    """What undo goes back to: the text, the stages that have no effect for now, and the text of the file of edits."""
 
     text: str
     muted: frozenset[str] = frozenset()
+    edits: str = ""
+
+
+class History:
+    """What was done to files that are edited together, in the order in which it was done."""
+
+    def __init__(self) -> None:
+        self.before: list[tuple[Document, State]] = []
+        self.after: list[tuple[Document, State]] = []
+        self._gesture: tuple[Document, int] | None = None
+
+    def note(self, document: Document, gesture: int | None) -> None:
+        """Keeps what a document is before it changes; one gesture is one step."""
+        this = None if gesture is None else (document, gesture)
+        if this is None or this != self._gesture:
+            self.before = [*self.before, (document, document.state)][-MOST_STEPS:]
+        self._gesture = this
+        self.after.clear()
+
+    def undo(self) -> Document | None:
+        """Goes back a step; tells which document has changed."""
+        return self._go(self.before, self.after)
+
+    def redo(self) -> Document | None:
+        """Goes forth again."""
+        return self._go(self.after, self.before)
+
+    def _go(self, there: list[tuple[Document, State]], back: list[tuple[Document, State]]) -> Document | None:
+        if not there:
+            return None
+        document, state = there[-1]
+        now = document.state
+        document.take(state)
+        there.pop()
+        back.append((document, now))
+        self._gesture = None
+        return document
 
 
 class Document:
     """A file as it stands, with what it was before. Nothing gets in that ``check`` does not accept.
 
-    check: raises UserError for a text that is not valid
+    check:   makes of a text and that of its file of edits what they mean; raises UserError where they are not valid
+    edits:   what the file of edits holds
+    history: that of the files that are undone together
+    model:   what ``check`` made of it
     """
 
-    def __init__(self, path: Path, check: Callable[[str], object]) -> None:
-        self.path = path
-        self.saved = path.read_text(encoding="utf-8")
-        check(self.saved)
-        self.state = State(self.saved)
+    def __init__(
+        self, path: Path, check: Callable[[str, str], Any], edits: str = "", history: History | None = None
+    ) -> None:
+        self.path, self.history = path, history or History()
+        self.saved, self.saved_edits = path.read_text(encoding="utf-8"), edits
         self._check = check
-        self._before: list[State] = []
-        self._after: list[State] = []
-        self._gesture: int | None = None
+        self.take(State(self.saved, edits=edits))
+
+    def take(self, state: State) -> None:
+        """Is as it says, if that is valid."""
+        self.model = self._check(state.text, state.edits)
+        self.state = state
 
     @property
     def text(self) -> str:
@@ -53,40 +97,40 @@ class Document:
     @property
     def dirty(self) -> bool:
         """Whether there is something to save."""
-        return self.text != self.saved
+        return self.text != self.saved or self.state.edits != self.saved_edits
 
     @property
     def can_undo(self) -> bool:
         """Whether there is something to go back to."""
-        return bool(self._before)
+        return bool(self.history.before)
 
     @property
     def can_redo(self) -> bool:
         """Whether something was undone."""
-        return bool(self._after)
+        return bool(self.history.after)
 
     def set(self, changes: Sequence[tuple[Place, Any]], gesture: int | None = None) -> None:
         """Gives settings new values; None takes a setting out. One gesture is one step of undo."""
         text = self.text
         for place, value in changes:
             try:
-                text = _put(text, place, value)
+                text = put(text, place, value)
             except (TOMLKitError, KeyError, IndexError, TypeError, ValueError) as error:
                 where = ".".join(str(part) for part in place)
                 raise UserError(f"{self.path.name}: {where} cannot be set ({error}); undo, or edit the file") from None
         self.become(text, gesture=gesture)
 
-    def arrange(self, action: str, key: str, at: int, to: int = 0, entry: dict[str, Any] | None = None) -> None:
-        """Adds, removes or moves a table of the array of tables ``key``, with the comment above it."""
+    def arrange(self, action: str, name: str, at: int, to: int = 0, entry: dict[str, Any] | None = None) -> None:
+        """Adds, removes or moves a table of the array of tables ``name``, with the comment above it."""
         parts = blocks.split(self.text)
-        places = [k for k, block in enumerate(parts) if block.name == key and block.many]
-        if len(places) != len(self.said().get(key, [])):
-            raise UserError(f"{self.path.name}: {key} is not written as tables [[{key}]]; edit it in the file")
+        places = [k for k, block in enumerate(parts) if block.name == name and block.many]
+        if len(places) != len(self.said().get(name, [])):
+            raise UserError(f"{self.path.name}: {name} is not written as tables [[{name}]]; edit it in the file")
         if not 0 <= at < len(places) + (action == "add") or not 0 <= to < max(len(places), 1):
-            raise UserError(f"{self.path.name}: {key} has {len(places)} operators; there is none at {max(at, to)}")
+            raise UserError(f"{self.path.name}: {name} has {len(places)} operators; there is none at {max(at, to)}")
         if action == "add":
-            lines = [f"[[{key}]]", *(f"{name} = {written(value)}" for name, value in (entry or {}).items())]
-            parts.insert(self._new_place(parts, places, at), blocks.Block(key, True, lines))
+            lines = [f"[[{name}]]", *(f"{toml_key(part)} = {written(value)}" for part, value in (entry or {}).items())]
+            parts.insert(self._new_place(parts, places, at), blocks.Block(name, True, lines))
         else:
             chosen = [parts[k] for k in places]
             moved = chosen.pop(at)
@@ -105,37 +149,24 @@ class Document:
             return places[at] if at < len(places) else places[-1] + 1
         return next((k for k, block in enumerate(parts) if block.name == "curl"), len(parts))
 
-    def become(self, text: str, *, muted: frozenset[str] | None = None, gesture: int | None = None) -> None:
-        """Takes another text, if it is valid."""
-        state = State(text, self.state.muted if muted is None else muted)
-        if state == self.state:
+    def become(
+        self, text: str, *, muted: frozenset[str] | None = None, edits: str | None = None, gesture: int | None = None
+    ) -> None:
+        """Takes another text, other muted stages or other edits, if they are valid."""
+        now = self.state
+        state = State(text, now.muted if muted is None else muted, now.edits if edits is None else edits)
+        if state == now:
             return
-        self._check(text)
-        if gesture is None or gesture != self._gesture:
-            self._before = [*self._before, self.state][-MOST_STEPS:]
-        self._gesture = gesture
-        self._after.clear()
-        self.state = state
-
-    def undo(self) -> None:
-        """Goes back a step."""
-        self._go(self._before, self._after)
-
-    def redo(self) -> None:
-        """Goes forth again."""
-        self._go(self._after, self._before)
-
-    def _go(self, there: list[State], back: list[State]) -> None:
-        if there:
-            back.append(self.state)
-            self.state, self._gesture = there.pop(), None
+        model = self._check(state.text, state.edits)
+        self.history.note(self, gesture)
+        self.model, self.state = model, state
 
     def save(self, path: Path | None = None, text: str | None = None) -> Path:
         """Writes it to its file, or a text to another one."""
         with replacing(path or self.path) as aside:
             aside.write_text(self.text if text is None else text, encoding="utf-8")
         if path is None:
-            self.saved = self.text
+            self.saved, self.saved_edits = self.text, self.state.edits
         return path or self.path
 
     def said(self) -> dict[str, Any]:
@@ -144,21 +175,25 @@ class Document:
 
     def changes(self) -> list[Change]:
         """The lines that are not as they were saved, with a line of context."""
-        lines = difflib.unified_diff(self.saved.splitlines(), self.text.splitlines(), lineterm="", n=1)
-        told = [line for line in lines if not line.startswith(("---", "+++", "@@"))]
-        return [Change.model_validate({"sign": line[0], "line": line[1:]}) for line in told[:400]]
+        told = [*_differing(self.saved, self.text), *_differing(self.saved_edits, self.state.edits)]
+        return [Change.model_validate({"sign": line[0], "line": line[1:120]}) for line in told[:400]]
+
+
+def _differing(before: str, now: str) -> list[str]:
+    lines = difflib.unified_diff(before.splitlines(), now.splitlines(), lineterm="", n=1)
+    return [line for line in lines if not line.startswith(("---", "+++", "@@"))]
 
 
 def written(value: Any) -> str:
     """A value as TOML says it inside a line."""
     if isinstance(value, dict):
-        return "{ " + ", ".join(f"{name} = {written(entry)}" for name, entry in value.items()) + " }"
+        return "{ " + ", ".join(f"{toml_key(name)} = {written(entry)}" for name, entry in value.items()) + " }"
     if isinstance(value, list | tuple):
         return "[" + ", ".join(written(entry) for entry in value) + "]"
     return tomlkit.item(value).as_string()
 
 
-def _put(text: str, place: Place, value: Any) -> str:
+def put(text: str, place: Place, value: Any) -> str:
     """The text with a value at a place, and the tables on the way to it."""
     if not place or not isinstance(place[0], str):
         raise KeyError("it is nowhere")
@@ -207,7 +242,7 @@ def _add(text: str, place: Place, value: Any) -> str:
         if not there:
             there = [blocks.Block(name, False, [f"[{name}]"])]
             parts += there
-        blocks.insert_line(there[index or 0], f"{rest[0]} = {written(_nested(rest[1:], value))}")
+        blocks.insert_line(there[index or 0], f"{toml_key(str(rest[0]))} = {written(_nested(rest[1:], value))}")
     return blocks.join(parts)
 
 

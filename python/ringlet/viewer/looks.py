@@ -36,6 +36,7 @@ class Look:
 
     hairs: how they sit in the locks; None for curves that are hairs themselves
     isolated: ids of locks that were edited by hand
+    curves: names of helper curves
     times: of the stages that were computed [ms]
     """
 
@@ -43,6 +44,7 @@ class Look:
     hairs: Hairs | None
     draft: bool
     isolated: frozenset[int] = frozenset()
+    curves: frozenset[str] = frozenset()
     times: dict[str, float] = field(default_factory=dict)
     took: float = 0.0
 
@@ -111,6 +113,7 @@ class Groomer:
             hairs,
             draft,
             frozenset(edit.lock for edit in recipe.edit),
+            frozenset(recipe.curves),
             times,
             1e3 * (time.perf_counter() - began),
         )
@@ -120,7 +123,7 @@ class Groomer:
         files = named_files(recipe)
         for what, file in files.items():
             self._project.inside(file, f"{recipe.path.name if recipe.path else 'recipe'}: {what}")
-        told = [(what, str(file), _stamp(file)) for what, file in sorted(files.items())]
+        told = [(what, str(file), _stamp(file)) for what, file in sorted(files.items()) if what != "edits"]
         drawn = recipe.guides if isinstance(recipe.guides, Drawn) else None
         key = repr((told, recipe.scalp, drawn, recipe.curves))
         if self._inputs is None or self._inputs[0] != key:
@@ -203,13 +206,6 @@ def spread_order(first: NDArray[np.integer]) -> NDArray[np.intp]:
     """
     number = np.arange(first[-1]) - np.repeat(first[:-1], np.diff(first))
     return np.argsort(number, kind="stable")
-
-
-def penetrations(groom: Groom, depths: Callable[..., NDArray]) -> int:
-    """Vertices of locks that are inside the scalp's mesh, beyond the first two of each, which are rooted in it."""
-    depth = depths(groom.locks.points, groom.scalp.triangles, groom.scalp.points)
-    from_root = np.arange(len(depth)) - np.repeat(groom.locks.offsets[:-1], groom.locks.counts)
-    return int(((depth > 1e-5) & (from_root > 1)).sum())
 
 
 def _stamp(file: Path) -> tuple[int, int]:

@@ -10,7 +10,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
-VERSION = 1
+VERSION = 2
 Place = list[str | int]  # where a setting is in its file: ["shape", 0, "amount"]
 File = Literal["recipe", "shot"]
 Point = tuple[float, float, float]
@@ -87,11 +87,12 @@ class Save(Message):
 
 
 class Restore(Message):
-    """Gives back a text that a page still had when the server was started anew."""
+    """Gives back a text that a page still had when the server was started anew, and that of its file of edits."""
 
     kind: Literal["restore"] = "restore"
     file: File = "recipe"
     text: str = Field(max_length=900_000)
+    edits: str = Field(default="", max_length=900_000)
 
 
 class Compare(Message):
@@ -122,6 +123,30 @@ class Isolate(Message):
     out: bool = True
 
 
+class Sculpt(Message):
+    """Moves a brush over the guides, or gives them back to the recipe.
+
+    at, by:   where the brush is and how far it came since the last message of this gesture [m]
+    radius:   of the ball that it acts in [m]
+    mirrored: does the same on the other side of the head
+    """
+
+    kind: Literal["sculpt"] = "sculpt"
+    tool: Literal["grab", "comb", "smooth", "cut", "lengthen", "return"]
+    at: Point
+    by: Point
+    radius: float = Field(gt=0.0, le=1.0)
+    mirrored: bool = False
+    gesture: int
+    resting: bool = True
+
+
+class Unsculpt(Message):
+    """Gives all guides back to the recipe."""
+
+    kind: Literal["unsculpt"] = "unsculpt"
+
+
 class Play(Message):
     """Runs the shot: from its start, on from where it was held, or again from a frame that is there already."""
 
@@ -138,7 +163,21 @@ class Against(Message):
 
 
 FromPage = Annotated[
-    Hello | Lead | Set | Arrange | Mute | Step | Save | Restore | Compare | Drag | Isolate | Play | Against,
+    Hello
+    | Lead
+    | Set
+    | Arrange
+    | Mute
+    | Step
+    | Save
+    | Restore
+    | Compare
+    | Drag
+    | Isolate
+    | Sculpt
+    | Unsculpt
+    | Play
+    | Against,
     Field(discriminator="kind"),
 ]
 FROM_PAGE: TypeAdapter[FromPage] = TypeAdapter(FromPage)
@@ -193,14 +232,16 @@ class Change(Message):
 class Document(Message):
     """A file as it stands.
 
-    said:   what the file says
+    said:   what the file says; operators of a recipe that is extended have the places that they have in the whole
     values: what holds, with all defaults, in SI units
+    edits:  what its file of edits holds, where that is not saved
     """
 
     kind: Literal["document"] = "document"
     file: File
     name: str
     text: str
+    edits: str
     said: dict[str, Any]
     values: dict[str, Any]
     stages: list[Stage]
@@ -239,6 +280,24 @@ class Locks(Message):
     }
 
 
+class Guides(Message):
+    """Where the guides are; ``changed`` is 1 for those that were sculpted by hand."""
+
+    kind: Literal["guides"] = "guides"
+    middle: Point
+    arrays: ClassVar[dict[str, str]] = {"points": "f4", "offsets": "i4", "changed": "u1"}
+
+
+class Names(Message):
+    """What settings may name: regions, maps and directions of the scalp, and helper curves."""
+
+    kind: Literal["names"] = "names"
+    regions: list[str]
+    maps: list[str]
+    vectors: list[str]
+    curves: list[str]
+
+
 class Hairs(Message):
     """How hairs sit in their locks; see ``src/ringlet/groom/hairs.h`` for the formula.
 
@@ -275,14 +334,27 @@ class Numbers(Message):
     kind: Literal["numbers"] = "numbers"
     locks: int
     hairs: int
-    inside: int
     groom_ms: float
     times: dict[str, float]
     draft: bool
 
 
+class Measured(Message):
+    """What is only measured at rest. inside: points of locks that are in the head.
+
+    ``depth`` and ``nail`` are overlays: a byte for each point of the locks, 255 for all that is shown; empty for none.
+    """
+
+    kind: Literal["measured"] = "measured"
+    inside: int
+    arrays: ClassVar[dict[str, str]] = {"depth": "u1", "nail": "u1"}
+
+
 class Frame(Message):
-    """A frame of the shot or of a cache. layer: ``shot``, or ``against`` for the cache that it is compared with."""
+    """A frame of the shot or of a cache. layer: ``shot``, or ``against`` for the cache that it is compared with.
+
+    ``stretch``, ``contact``, ``depth`` and ``curl`` are overlays (see ``Measured``); what is not known is empty.
+    """
 
     kind: Literal["frame"] = "frame"
     layer: Literal["shot", "against"]
@@ -293,7 +365,10 @@ class Frame(Message):
         "axis": "f4",
         "root": "f4",
         "bodies": "f4",
-        "overlay": "f4",
+        "stretch": "u1",
+        "contact": "u1",
+        "depth": "u1",
+        "curl": "u1",
     }
 
 
@@ -339,8 +414,11 @@ FROM_SERVER: tuple[type[Message], ...] = (
     Document,
     Body,
     Locks,
+    Guides,
+    Names,
     Hairs,
     Numbers,
+    Measured,
     Frame,
     Timeline,
     Compared,

@@ -6,23 +6,22 @@ import logging
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ringlet import api
-from ringlet.curves import Curves
 from ringlet.errors import UserError
 from ringlet.groom import Groom, Hairs
 from ringlet.mesh import Clip, Mesh
 from ringlet.shot import Shot
 from ringlet.shot.simulate import Motion
-from ringlet.viewer import protocol
+from ringlet.viewer import overlays, protocol
 from ringlet.viewer.wire import pack
 
 MOST_KEPT = 1_500_000_000  # bytes of what frames can be gone on from
-STRETCH_SHOWN = 0.02  # the overlay goes from this part shorter to this part longer
 
 log = logging.getLogger("ringlet.viewer")
 
@@ -36,21 +35,37 @@ class Stage:
     clip: Clip
     bodies: list[tuple[Mesh, Clip | None]]
 
-    def frame(self, layer: str, frame: float, points: NDArray, statistics: dict[str, Any]) -> bytes:
-        """The message of a frame whose locks are at points [m]."""
+    @cached_property
+    def turning(self) -> NDArray[np.float64]:
+        """How the groomed locks turn."""
+        return overlays.turning(self.groom.locks, self.groom.locks.points)
+
+    def frame(
+        self, layer: str, frame: float, points: NDArray, statistics: dict[str, Any], motion: Motion | None = None
+    ) -> bytes:
+        """The message of a frame whose locks are at points [m]; what touches is known while ``motion`` is there."""
         axis, root = np.empty(0), np.empty(0)
+        corners, locks = self.clip.at(frame), self.groom.locks
         if self.hairs is not None:
-            carriage = self.hairs.carriage(self.clip.at(frame))
+            carriage = self.hairs.carriage(corners)
             order = np.argsort(_number(carriage["first"]), kind="stable")
             axis, root = carriage["axis"], carriage["root"][order]
         bodies = [clip.at(frame) if clip else mesh.points for mesh, clip in self.bodies]
+        kept, contact, depth = told(statistics), np.empty(0), np.empty(0)
+        if motion is not None:
+            contact = overlays.contact(motion)
+            depth = np.concatenate(list(overlays.depths(self.groom.scalp, corners, locks, points)))
+            kept["inside"] = int(np.count_nonzero(depth))
         return pack(
-            protocol.Frame.model_validate({"layer": layer, "frame": frame, "statistics": told(statistics)}),
+            protocol.Frame.model_validate({"layer": layer, "frame": frame, "statistics": kept}),
             points=points,
             axis=axis,
             root=root,
             bodies=np.concatenate([np.empty((0, 3)), *bodies]),
-            overlay=stretch(self.groom.locks, points),
+            stretch=overlays.stretch(locks, points),
+            contact=contact,
+            depth=overlays.as_bytes(depth / overlays.DEPTH_SHOWN),
+            curl=overlays.curl_loss(locks, self.turning, points),
         )
 
 
@@ -63,18 +78,8 @@ def told(statistics: dict[str, Any]) -> dict[str, Any]:
         "newton": statistics.get("newton"),
         "nan": statistics.get("nan", 0),
         "contacts": contact.get("contacts"),
-        "inside": contact.get("excused"),
+        "inside": None,
     }
-
-
-def stretch(locks: Curves, points: NDArray) -> NDArray[np.float64]:
-    """How far each point's edge is stretched against the groom, from 0 (shorter) over 1/2 (as it was) to 1 (longer)."""
-    now, rest = (np.linalg.norm(np.diff(np.asarray(p, np.float64), axis=0), axis=1) for p in (points, locks.points))
-    change = np.zeros(len(locks.points))
-    change[:-1] = now / np.maximum(rest, 1e-12) - 1.0
-    tips = locks.offsets[1:] - 1
-    change[tips] = change[tips - 1]
-    return np.clip(0.5 + 0.5 * change / STRETCH_SHOWN, 0.0, 1.0)
 
 
 def _number(first: NDArray[np.integer]) -> NDArray[np.int64]:
@@ -184,7 +189,7 @@ class Simulation:
                 if self.state == "rolling":
                     self.state = "running"
                 points = np.asarray(motion.strands.positions, np.float32)
-                self._post(f"frame/shot/{first + k}", stage.frame("shot", first + k, points, statistics))
+                self._post(f"frame/shot/{first + k}", stage.frame("shot", first + k, points, statistics, motion))
             self._changed()
         self.state = "done"
 

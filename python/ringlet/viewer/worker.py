@@ -22,7 +22,7 @@ class Latest(Generic[Task]):
     def __init__(self, do: Callable[[Task], None], name: str) -> None:
         self._do = do
         self._next: Task | None = None
-        self._stop = False
+        self._stop = self._dropped = False
         self._changed = threading.Condition()
         self._thread = threading.Thread(target=self._run, name=name, daemon=True)
         self._thread.start()
@@ -33,9 +33,14 @@ class Latest(Generic[Task]):
             self._next = task
             self._changed.notify()
 
+    def drop(self) -> None:
+        """Wants nothing of it for now."""
+        with self._changed:
+            self._next, self._dropped = None, True
+
     def fresh(self) -> None:
         """Raises Stale when what is done now is wanted no more."""
-        if self._next is not None or self._stop:
+        if self._next is not None or self._dropped or self._stop:
             raise Stale
 
     def stop(self) -> None:
@@ -51,7 +56,7 @@ class Latest(Generic[Task]):
                 self._changed.wait_for(lambda: self._stop or self._next is not None)
                 if self._stop:
                     return
-                task, self._next = self._next, None
+                task, self._next, self._dropped = self._next, None, False
             try:
                 assert task is not None
                 self._do(task)

@@ -21,6 +21,8 @@ export class LockTool {
   private held = -1;
   private gesture = 0;
   private sending = 0;
+  /** Whether another tool has the pointer. */
+  busy = () => false;
 
   constructor(
     private readonly model: Model,
@@ -104,7 +106,7 @@ export class LockTool {
 
   private click(event: MouseEvent): void {
     const { locks } = this.viewer.hair.a;
-    if (!locks || this.viewer.compared || !this.model.documents.recipe) return;
+    if (!locks || this.viewer.compared || !this.model.documents.recipe || this.busy()) return;
     const box = this.viewer.element.getBoundingClientRect();
     const at = { x: event.clientX - box.left, y: event.clientY - box.top };
     this.choose(pick(locks.points, locks.offsets, this.viewer.camera, this.size, at)?.lock ?? -1);

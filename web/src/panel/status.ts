@@ -2,6 +2,7 @@
 
 import { h } from "../dom";
 import type { Model } from "../model";
+import type { Json } from "../protocol";
 import type { Told } from "../view/viewer";
 
 export class Status {
@@ -14,7 +15,8 @@ export class Status {
       ["hairs", "hairs"],
       ["groom", "groom"],
       ["draw", "picture"],
-      ["inside", "inside the head"],
+      ["inside", "points inside the head"],
+      ["contacts", "contacts"],
       ["sim", "simulated"],
     ]) {
       const value = h("b", {});
@@ -23,6 +25,7 @@ export class Status {
       this.element.append(part);
     }
     model.on("numbers", () => this.update());
+    model.on("measured", () => this.inside(model.measured?.inside ?? 0));
   }
 
   drew({ drawMs, shown }: Told): void {
@@ -31,8 +34,17 @@ export class Status {
     if (hairs) this.set("hairs", shown < hairs ? `${count(shown)} of ${count(hairs)}` : count(hairs));
   }
 
-  simulated(ms: number): void {
-    this.set("sim", `${ms.toFixed(0)} ms/frame`);
+  /** A frame is seen: what its simulation told. */
+  simulated(statistics: Record<string, Json>): void {
+    const { wall_ms: ms, inside, contacts } = statistics;
+    if (typeof ms === "number") this.set("sim", `${ms.toFixed(0)} ms/frame`);
+    if (typeof contacts === "number") this.set("contacts", count(contacts));
+    if (typeof inside === "number") this.inside(inside);
+  }
+
+  private inside(points: number): void {
+    this.set("inside", count(points));
+    this.parts["inside"].classList.toggle("warn", points > 0);
   }
 
   private update(): void {
@@ -43,8 +55,6 @@ export class Status {
     this.set("groom", `${numbers.groom_ms.toFixed(0)} ms`);
     const times = Object.entries(numbers.times).map(([stage, ms]) => `${stage} ${ms.toFixed(0)} ms`);
     this.parts["groom"].title = times.join("\n") || "nothing had to be computed";
-    if (numbers.inside >= 0) this.set("inside", count(numbers.inside));
-    this.parts["inside"].classList.toggle("warn", numbers.inside > 0);
   }
 
   private set(name: string, text: string): void {

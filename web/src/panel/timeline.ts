@@ -3,6 +3,7 @@
 import { h, iconButton } from "../dom";
 import type { Model } from "../model";
 import type { Frame } from "../protocol";
+import { OVERLAYS, overlayValues } from "../view/overlays";
 import type { Viewer } from "../view/viewer";
 
 type Layer = "shot" | "against";
@@ -17,7 +18,6 @@ export class TimelineBar {
     this.model.say({ kind: "play", action: "again_from", frame: this.frame }),
   );
   private readonly watch = iconButton("play", "Play what is there (space)", () => this.toggle());
-  private readonly overlay = h("select", { "aria-label": "Overlay" });
   private readonly against = h("select", { "aria-label": "Compare with a cache" });
   private frame = 1;
   private key = -1;
@@ -27,21 +27,16 @@ export class TimelineBar {
   constructor(
     private readonly model: Model,
     private readonly viewer: Viewer,
-    private readonly simulated: (frame: Frame) => void,
+    private readonly seen: (frame: Frame) => void,
   ) {
-    for (const [key, label] of [
-      ["", "no overlay"],
-      ["stretch", "stretch, ±2 %"],
-    ])
-      this.overlay.append(h("option", { value: key }, label));
-    this.overlay.addEventListener("change", () => viewer.setOverlay(this.overlay.value !== ""));
+    model.on("overlay", () => this.overlay());
     this.against.addEventListener("change", () => model.say({ kind: "against", name: this.against.value }));
     this.slider.addEventListener("input", () => {
       this.follows = false;
       this.show(Number(this.slider.value));
     });
     this.run.addEventListener("click", () => this.press());
-    this.element.append(this.run, this.again, this.watch, this.slider, this.told, this.overlay, this.against);
+    this.element.append(this.run, this.again, this.watch, this.slider, this.told, this.against);
     model.on("timeline", () => this.update());
     model.on("role", () => this.update());
     addEventListener("keydown", (event) => {
@@ -56,10 +51,7 @@ export class TimelineBar {
   add(frame: Frame): void {
     this.frames[frame.layer].set(frame.frame, frame);
     if (frame.layer === "against") this.show(this.frame);
-    else {
-      this.simulated(frame);
-      if (this.follows) this.show(frame.frame);
-    }
+    else if (this.follows) this.show(frame.frame);
   }
 
   /** How many frames there are. */
@@ -138,11 +130,26 @@ export class TimelineBar {
     ] as const) {
       const known = this.frames[layer].get(nearest(this.frames[layer], frame));
       if (!known) continue;
-      hair.place(known.points, known.axis, known.root, known.overlay);
+      this.tint(layer);
+      hair.place(known.points, known.axis, known.root);
       if (layer === "shot") this.viewer.placeBodies(known.bodies);
     }
     this.viewer.move();
     this.tell();
+  }
+
+  /** Another overlay is wanted, or what it shows has come. */
+  overlay(): void {
+    this.tint("shot");
+    this.tint("against");
+    this.viewer.invalidate();
+  }
+
+  private tint(layer: Layer): void {
+    const { overlay, measured } = this.model;
+    const frame = this.frames[layer].get(nearest(this.frames[layer], this.frame));
+    const hair = layer === "shot" ? this.viewer.hair.a : this.viewer.hair.b;
+    hair.setOverlay(overlayValues(overlay, frame, measured), overlay !== "" && OVERLAYS[overlay].diverging);
   }
 
   private tell(): void {
@@ -150,6 +157,7 @@ export class TimelineBar {
     if (!timeline) return;
     const known = this.frames.shot.get(this.frame);
     const stretch = known?.statistics["max_stretch"];
+    if (known) this.seen(known);
     const parts = [`frame ${this.frame}`];
     if (timeline.state === "rolling") parts[0] = `before the first frame: ${timeline.rolled} of ${timeline.preroll}`;
     else if (!known && timeline.ready === null) parts[0] = "not run yet";

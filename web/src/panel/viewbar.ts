@@ -2,8 +2,10 @@
 
 import { h, iconButton } from "../dom";
 import type { Model } from "../model";
+import type { BrushTool } from "./brush";
 import { Recorder, takePicture } from "../view/capture";
 import { PRESETS } from "../view/lights";
+import { OVERLAYS, type OverlayName } from "../view/overlays";
 import type { Viewer } from "../view/viewer";
 
 const VIEWS: [string, number, number][] = [
@@ -21,6 +23,7 @@ export class Viewbar {
   constructor(
     private readonly model: Model,
     viewer: Viewer,
+    brush: BrushTool,
     name: () => string,
   ) {
     const light = h("select", { "aria-label": "Light" });
@@ -46,6 +49,33 @@ export class Viewbar {
       viewer.frame(azimuth, elevation);
     });
 
+    const overlay = h("select", { "aria-label": "Overlay" });
+    const legend = h("div", { class: "legend", hidden: true, role: "note" });
+    overlay.addEventListener("change", () => {
+      model.overlay = overlay.value as OverlayName | "";
+      model.tell("overlay");
+      this.explain(legend);
+    });
+    const offer = () => {
+      const known = Object.entries(OVERLAYS).filter(([, one]) => !one.moving || model.timeline);
+      overlay.replaceChildren(
+        h("option", { value: "" }, "no overlay"),
+        ...known.map(([key, one]) => h("option", { value: key }, one.label)),
+      );
+      overlay.value = model.overlay;
+    };
+    offer();
+    model.on("timeline", () => {
+      if (overlay.options.length < 5) offer();
+    });
+
+    const sculpt = iconButton("brush", "Sculpt guides", () => brush.show(!brush.on));
+    sculpt.setAttribute("aria-pressed", "false");
+    for (const topic of ["guides", "document"] as const)
+      model.on(topic, () => sculpt.toggleAttribute("hidden", !model.guides || !model.documents.recipe));
+    sculpt.toggleAttribute("hidden", true);
+    brush.changed.push((on) => sculpt.setAttribute("aria-pressed", String(on)));
+
     const turn = iconButton("turn", "Turntable", () => {
       viewer.turntable = !viewer.turntable;
       turn.setAttribute("aria-pressed", String(viewer.turntable));
@@ -62,15 +92,28 @@ export class Viewbar {
     film.setAttribute("aria-pressed", "false");
 
     this.element.append(
+      sculpt,
       light,
       color,
       from,
+      overlay,
       iconButton("frame", "Frame all hair (F)", () =>
         viewer.frame(...(VIEWS[from.selectedIndex].slice(1) as [number, number])),
       ),
       turn,
       iconButton("camera", "Keep a picture", () => takePicture(viewer, name())),
       film,
+      legend,
     );
+  }
+
+  /** What the colours of the overlay say. */
+  private explain(legend: HTMLElement): void {
+    const { overlay } = this.model;
+    legend.toggleAttribute("hidden", overlay === "");
+    if (overlay === "") return;
+    const { low, high, diverging } = OVERLAYS[overlay];
+    const scale = h("span", { class: `scale${diverging ? " diverging" : ""}` });
+    legend.replaceChildren(low, scale, high);
   }
 }

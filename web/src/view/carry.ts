@@ -140,6 +140,11 @@ export class Carry {
     this.put("lockPoint", table.point);
     this.put("lockA", table.a);
     this.put("lockB", table.b);
+    this.setPlaces(table);
+  }
+
+  /** Where the rows of each lock are, and how it is marked. */
+  setPlaces(table: LockTable): void {
     this.put("lockPlace", table.places);
   }
 

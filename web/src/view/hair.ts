@@ -46,6 +46,7 @@ export class Hair {
   private readonly first: RawShaderMaterial;
   private stale = true;
   private stride = 1;
+  private overlay: Uint8Array | undefined;
 
   constructor(lights: Lights, shadow: Shadow) {
     this.shared = {
@@ -117,11 +118,11 @@ export class Hair {
   }
 
   /** Puts the locks where they are in a frame; `root` where the hairs' roots are from those of their locks. */
-  place(points: Float32Array, axis: Float32Array, root?: Float32Array, overlay?: Float32Array): void {
+  place(points: Float32Array, axis: Float32Array, root?: Float32Array): void {
     if (!this.locks || points.length !== this.locks.points.length) return;
     this.table = lockTable(points, this.locks.offsets, axis);
-    this.mark(this.locks.marked);
-    if (overlay?.length) spread(this.table, this.locks.offsets, overlay);
+    this.setMarks(this.locks.marked);
+    this.spread();
     if (root?.length) this.carry?.setRoots(root);
     measure(this.box, points);
     (this.material.uniforms["middle"].value as Vector3).copy(this.box.getCenter(new Vector3()));
@@ -131,9 +132,8 @@ export class Hair {
 
   /** Sets which locks are marked: 1 isolated, 2 chosen. */
   mark(marked: ArrayLike<number>): void {
-    if (!this.table) return;
-    for (let lock = 0; lock < marked.length; lock++) this.table.places[4 * lock + 2] = marked[lock];
-    this.carry?.setLocks(this.table);
+    this.setMarks(marked);
+    if (this.table) this.carry?.setPlaces(this.table);
     this.stale = true;
   }
 
@@ -144,8 +144,32 @@ export class Hair {
     this.material.uniforms["roughness"].value = roughness;
   }
 
-  showOverlay(on: boolean): void {
-    this.material.uniforms["showOverlay"].value = on ? 1 : 0;
+  /** Tints the hair by a value for each point of the locks; nothing: the hair as it is. */
+  setOverlay(values: Uint8Array | undefined, diverging: boolean): void {
+    this.material.uniforms["showOverlay"].value = values?.length ? (diverging ? 1 : 2) : 0;
+    if (values === this.overlay) return;
+    this.overlay = values;
+    this.spread();
+    if (this.table) this.carry?.setLocks(this.table);
+    this.stale = true;
+  }
+
+  private setMarks(marked: ArrayLike<number>): void {
+    if (!this.table) return;
+    for (let lock = 0; lock < marked.length; lock++) this.table.places[4 * lock + 2] = marked[lock];
+  }
+
+  /** Puts the overlay's values into the rows of the table. */
+  private spread(): void {
+    const { table, overlay, locks } = this;
+    if (!table || !locks || overlay?.length !== locks.points.length / 3) return;
+    const { offsets } = locks;
+    for (let lock = 0; lock + 1 < offsets.length; lock++) {
+      const first = offsets[lock] + 3 * lock + 1;
+      const count = offsets[lock + 1] - offsets[lock];
+      for (let i = -1; i < count + 2; i++)
+        table.point[4 * (first + i) + 3] = overlay[offsets[lock] + Math.min(Math.max(i, 0), count - 1)] / 255;
+    }
   }
 
   /** Draws only a part of the hairs, wider, so that the whole keeps its weight. */
@@ -224,18 +248,6 @@ function view(parallel = 0): Uniforms {
     parallel: { value: parallel },
     eyeward: { value: new Vector3(0, 0, 1) },
   };
-}
-
-/** Puts a value for each point of the locks into the rows of their table. */
-function spread(table: LockTable, offsets: Int32Array, overlay: Float32Array): void {
-  for (let lock = 0; lock + 1 < offsets.length; lock++) {
-    const first = offsets[lock] + 3 * lock + 1;
-    const count = offsets[lock + 1] - offsets[lock];
-    for (let i = -1; i < count + 2; i++) {
-      const from = offsets[lock] + Math.min(Math.max(i, 0), count - 1);
-      table.point[4 * (first + i) + 3] = overlay[from];
-    }
-  }
 }
 
 function measure(box: Box3, points: Float32Array): void {

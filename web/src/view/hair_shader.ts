@@ -75,6 +75,10 @@ vec3 fibre(vec3 T, vec3 V, vec3 L, vec3 C, float through) {
   return S;
 }
 
+vec3 heat(float x) { // from pale over orange to dark red
+  return x < 0.5 ? mix(vec3(0.72, 0.70, 0.62), vec3(0.86, 0.36, 0.06), 2.0 * x) : mix(vec3(0.86, 0.36, 0.06), vec3(0.42, 0.01, 0.03), 2.0 * x - 1.0);
+}
+
 vec3 ramp(float x) { // from blue over pale to red
   return x < 0.5 ? mix(vec3(0.10, 0.28, 0.62), vec3(0.72, 0.70, 0.62), 2.0 * x) : mix(vec3(0.72, 0.70, 0.62), vec3(0.80, 0.10, 0.06), 2.0 * x - 1.0);
 }
@@ -91,7 +95,7 @@ void main() {
     light += lightStrength[k] * through * fibre(T, V, lightFrom[k], C, through);
   }
   if (showOverlay > 0.5) {
-    vec3 tint = ramp(clamp(overlay, 0.0, 1.0));
+    vec3 tint = showOverlay > 1.5 ? heat(clamp(overlay, 0.0, 1.0)) : ramp(clamp(overlay, 0.0, 1.0));
     light = tint * (0.3 + 0.7 * open) * (0.35 + 0.65 * clamp(dot(normalize(V - T * dot(T, V)), lightFrom[0]) * 0.5 + 0.5, 0.0, 1.0));
   }
   if (mark > 0.5) light = mix(light, highlight * (0.25 + 0.75 * open) + light, mark > 1.5 ? 0.85 : 0.45);

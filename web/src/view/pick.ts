@@ -7,7 +7,7 @@ export interface Picked {
   point: number; // from its root
 }
 
-/** The lock nearest to a place on the screen [pixels], of those within reach the one in front. */
+/** The curve nearest to a place on the screen [pixels], of those within reach that count the one in front. */
 export function pick(
   points: Float32Array,
   offsets: Int32Array,
@@ -15,6 +15,7 @@ export function pick(
   size: { width: number; height: number },
   at: { x: number; y: number },
   reach = 9,
+  counts: (x: number, y: number, z: number) => boolean = () => true,
 ): Picked | null {
   const m = camera.projectionMatrix.clone().multiply(camera.matrixWorldInverse).elements;
   let best: Picked | null = null;
@@ -27,7 +28,7 @@ export function pick(
       const dx = (0.5 + (0.5 * (m[0] * x + m[4] * y + m[8] * z + m[12])) / w) * size.width - at.x;
       const dy = (0.5 - (0.5 * (m[1] * x + m[5] * y + m[9] * z + m[13])) / w) * size.height - at.y;
       const distance = Math.hypot(dx, dy);
-      if (distance > reach) continue;
+      if (distance > reach || !counts(x, y, z)) continue;
       const cost = w + 0.004 * distance; // metres in front count as much as a few pixels beside
       if (cost < nearest) {
         nearest = cost;
@@ -41,6 +42,12 @@ export function pick(
 export function onScreen(point: Vector3, camera: PerspectiveCamera, size: { width: number; height: number }) {
   const seen = point.clone().project(camera);
   return { x: (0.5 + 0.5 * seen.x) * size.width, y: (0.5 - 0.5 * seen.y) * size.height };
+}
+
+/** How many pixels a metre has at a place. */
+export function pixelsPerMetre(place: Vector3, camera: PerspectiveCamera, height: number): number {
+  const away = place.clone().sub(camera.position).dot(camera.getWorldDirection(new Vector3()));
+  return height / (2 * Math.tan((0.5 * camera.fov * Math.PI) / 180) * Math.max(away, 1e-6));
 }
 
 /** Where a place on the screen is in the plane through `through` that faces the camera. */

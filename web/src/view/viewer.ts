@@ -5,6 +5,7 @@ import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import type { Body as BodyMessage, Hairs, Locks } from "../protocol";
 import { Backdrop } from "./backdrop";
 import { Body } from "./body";
+import { GuideLines } from "./guides";
 import { Hair } from "./hair";
 import { Lights, PRESETS } from "./lights";
 import { Shadow } from "./shadow";
@@ -26,6 +27,7 @@ export class Viewer {
   readonly controls: OrbitControls;
   readonly lights = new Lights();
   readonly hair: Record<Side, Hair>;
+  readonly guides = new GuideLines();
   compared = false;
   turntable = false;
   onDraw: (told: Told) => void = () => {};
@@ -39,6 +41,7 @@ export class Viewer {
   private readonly scene = new Scene();
   private readonly casters = new Scene();
   private framed = false;
+  private hairShown = true;
   private wanted = false;
   private moved = 0;
   private detail = 1;
@@ -112,8 +115,9 @@ export class Viewer {
     this.invalidate();
   }
 
-  setOverlay(on: boolean): void {
-    for (const hair of Object.values(this.hair)) hair.showOverlay(on);
+  /** Shows the hair, or leaves it out so that its guides are seen. */
+  showHair(on: boolean): void {
+    this.hairShown = on;
     this.invalidate();
   }
 
@@ -215,7 +219,7 @@ export class Viewer {
       hair.litFrom(lights.key, this.shadow.texel);
       const box = this.lit(hair);
       renderer.setScissorTest(false);
-      if (!box.isEmpty()) {
+      if (!box.isEmpty() && this.hairShown) {
         const casters = { bodies: this.casters, hairDepth: hair.depthScene, hairLayers: hair.layersScene };
         this.shadow.update(renderer, lights.key, box, casters);
       }
@@ -225,9 +229,15 @@ export class Viewer {
       renderer.clear();
       renderer.render(this.backdrop.scene, camera);
       renderer.render(this.scene, camera);
-      if (!hair.table) return;
-      renderer.render(hair.firstScene, camera);
-      renderer.render(hair.scene, camera);
+      if (hair.table && this.hairShown) {
+        renderer.render(hair.firstScene, camera);
+        renderer.render(hair.scene, camera);
+      }
+      if (side === "a" && this.guides.shown) {
+        renderer.clearDepth();
+        renderer.render(this.casters, camera);
+        renderer.render(this.guides.scene, camera);
+      }
     });
     renderer.setScissorTest(false);
     renderer.setViewport(0, 0, size.x, size.y);

@@ -1,0 +1,252 @@
+"""The files that are edited: a recipe with its file of edits, or a shot and the recipe that it names."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from ringlet.errors import UserError
+from ringlet.files import replacing
+from ringlet.groom import Recipe, parse_recipe
+from ringlet.groom.edits_file import edits_text
+from ringlet.groom.load import inherited, parse_edits
+from ringlet.settings import parse_toml, read_toml
+from ringlet.shot import Shot, parse_shot
+from ringlet.viewer import protocol
+from ringlet.viewer.document import Document, History, put
+from ringlet.viewer.looks import named_files
+from ringlet.viewer.project import Project
+from ringlet.viewer.protocol import Place
+from ringlet.viewer.variant import variant
+from ringlet.viewer.wire import pack
+
+
+class Files:
+    """What is edited, and undone together. Nothing outside of the project is read or written.
+
+    mode: what was opened: a ``recipe``, a ``shot``, or a ``stage`` that is only looked at
+    """
+
+    def __init__(self, file: Path, project: Project) -> None:
+        self.project, self.file = project, project.inside(file, "view")
+        self.documents: dict[str, Document] = {}
+        self.mode = "stage"
+        self._history = History()
+        if self.file.suffix == ".toml":
+            self._open()
+
+    def _open(self) -> None:
+        """Opens the recipe, or a shot and the recipe that it names."""
+        _, data = read_toml(self.file, "recipe or shot")
+        self.mode, recipe = "recipe", self.file
+        if "groom" in data and "frames" in data:
+            self.mode = "shot"
+            self.documents["shot"] = Document(self.file, lambda text, _: self.parse_shot(text), history=self._history)
+            recipe = self.project.inside(self.shot.groom, f"{self.file.name}: groom")
+        if recipe.suffix == ".toml":
+            edits = _text_of(self.parse(recipe.read_text(encoding="utf-8"), recipe).edits_file)
+            self.documents["recipe"] = Document(
+                recipe, lambda text, edits: self.parse(text, recipe, edits), edits, self._history
+            )
+
+    # What they say
+
+    def parse(self, text: str, path: Path, edits: str = "") -> Recipe:
+        """The recipe of a text, which may name files of the project only; ``edits`` stands for its file of edits."""
+        self._confine(parse_toml(text, path.name, "recipe"), path)
+        recipe = parse_recipe(text, path, edits or None)
+        for what, file in named_files(recipe).items():
+            self.project.inside(file, f"{path.name}: {what}")
+        return recipe
+
+    def _confine(self, data: dict[str, Any], path: Path) -> None:
+        """Refuses what a recipe would read of itself outside of the project: what it extends, and edits."""
+        for setting in ("extends", "edits"):
+            if not isinstance(name := data.get(setting), str):
+                continue
+            file = self.project.inside(path.parent / name, f"{path.name}: {setting}")
+            if setting == "extends" and file.is_file() and file != path.resolve():
+                self._confine(read_toml(file, "recipe")[1], file)
+
+    def parse_shot(self, text: str) -> Shot:
+        """The shot of a text, which may name files of the project only."""
+        shot = parse_shot(text, self.file)
+        named = {"groom": shot.groom, "rest.file": shot.rest.file}
+        named |= {f"collider[{k}].file": one.file for k, one in enumerate(shot.collider)}
+        named |= {f"cloth[{k}].file": one.file for k, one in enumerate(shot.cloth)}
+        for what, file in named.items():
+            if file is not None:
+                self.project.inside(file, f"{self.file.name}: {what}")
+        return shot
+
+    def document(self, file: str) -> Document:
+        """An open file by its kind."""
+        if file not in self.documents:
+            raise UserError(f"{self.file.name}: no {file} is open; open one with: ringlet view")
+        return self.documents[file]
+
+    @property
+    def recipe(self) -> Document:
+        """The recipe that is edited."""
+        if "recipe" not in self.documents:
+            raise UserError(f"{self.file.name}: holds no recipe to edit; open a recipe or a shot that names one")
+        return self.documents["recipe"]
+
+    @property
+    def shot(self) -> Shot:
+        """The shot as it stands."""
+        return self.document("shot").model
+
+    # Changes
+
+    def set(self, file: str, changes: list[tuple[Place, Any]], gesture: int) -> None:
+        """Gives settings new values; None takes a setting out."""
+        document = self.document(file)
+        before = document.model
+        names = self._inherited(document) if file == "recipe" else None
+        if names is not None:
+            changes = [(_by_name(place, names), value) for place, value in changes]
+        document.set(changes, gesture)
+        if file == "recipe" and document.model.edits_file != before.edits_file:
+            document.become(document.text, edits=_text_of(document.model.edits_file), gesture=gesture)
+
+    def arrange(self, action: str, at: int, to: int, op: str) -> None:
+        """Adds, removes or moves an operator of the recipe's shape; muted ones stay muted."""
+        document = self.recipe
+        names = self._inherited(document)
+        order = [f"shape/{k}" for k in range(len(document.model.shape))]
+        if names is None:
+            document.arrange(action, "shape", at, to, {"op": op} if op else None)
+        elif action == "remove" and at < len(names):
+            document.set([(["shape", names[at]], None), (["shape", names[at]], False)])
+        else:
+            base = document.said()["extends"]
+            raise UserError(
+                f"{document.path.name}: changes and removes operators of {base}, and does neither move nor add any; "
+                f"do that in {base}, or give it [[shape]] tables of its own"
+            )
+        muted = document.state.muted
+        if muted & set(order):
+            if action == "add":
+                order.insert(at, "")
+            else:
+                moved = order.pop(at)
+                order[to:to] = [moved] if action == "move" else []
+            kept = {f"shape/{k}" for k, was in enumerate(order) if was in muted}
+            document.become(document.text, muted=frozenset(kept | {one for one in muted if "/" not in one}))
+
+    def write_edits(self, kind: str, tables: list[dict[str, Any]], gesture: int | None = None) -> None:
+        """Puts tables into the recipe's file of edits; it gets one where it has none of its own."""
+        document = self.recipe
+        edits = parse_edits(document.state.edits or "ringlet = 1", document.path)
+        text = edits_text({**edits, kind: tables})
+        if not document.said().get("edits"):
+            document.set([(["edits"], self._free(document.path, ".edits.toml"))], gesture)
+        document.become(document.text, edits=text, gesture=gesture)
+
+    def go(self, kind: str) -> list[str]:
+        """Undoes, does again, or goes back to what was saved; tells which files have changed."""
+        if kind == "revert":
+            before = {name: document.state for name, document in self.documents.items()}
+            for document in self.documents.values():
+                document.become(document.saved, edits=document.saved_edits)
+            return [name for name, document in self.documents.items() if document.state != before[name]]
+        changed = self._history.undo() if kind == "undo" else self._history.redo()
+        return [name for name, document in self.documents.items() if document is changed]
+
+    def _inherited(self, document: Document) -> list[str] | None:
+        return inherited(document.said(), document.path)
+
+    # Saving
+
+    def save(self, file: str, name: str = "", as_variant: bool = False) -> Path:
+        """Writes a file and what was done by hand; with a name a new one beside it, which may extend the old."""
+        document = self.document(file)
+        if not name:
+            if document.state.edits != document.saved_edits:
+                _write(document.model.edits_file, document.state.edits)
+            return document.save()
+        path = self.project.beside(name, f".{file}.toml")
+        if path.exists():
+            raise UserError(f"save: {path.name} is there already; give another name")
+        text = document.text
+        if file == "recipe":
+            edits = None
+            if document.state.edits != document.saved_edits:
+                edits = path.with_name(self._free(path, ".edits.toml"))
+            text = variant(document, self.parse, path, edits) if as_variant else copied(document, edits)
+            self.parse(text, path, document.state.edits)
+            if edits is not None:
+                _write(edits, document.state.edits)
+        return document.save(path, text)
+
+    def _free(self, path: Path, suffix: str) -> str:
+        """The name of a file that is not there yet, after that of a recipe."""
+        stem = path.name.removesuffix(".toml").removesuffix(".recipe")
+        names = [f"{stem}{suffix}", *(f"{stem}-{k}{suffix}" for k in range(2, 100))]
+        return next(name for name in names if not path.with_name(name).exists())
+
+    # Telling
+
+    def told(self, file: str) -> bytes:
+        """The message that says how a file stands."""
+        document = self.documents[file]
+        said, model = document.said(), document.model
+        if file == "recipe" and (names := self._inherited(document)) is not None:
+            said = {**said, "shape": [said.get("shape", {}).get(name, {}) for name in names]}
+        return pack(
+            protocol.Document.model_validate(
+                {
+                    "file": file,
+                    "name": document.path.name,
+                    "text": document.text,
+                    "edits": document.state.edits if document.state.edits != document.saved_edits else "",
+                    "said": said,
+                    "values": model.model_dump(mode="json", exclude={"sculpt"}),
+                    "stages": stages(model, document.state.muted) if file == "recipe" else [],
+                    "dirty": document.dirty,
+                    "undo": document.can_undo,
+                    "redo": document.can_redo,
+                    "changes": document.changes(),
+                }
+            )
+        )
+
+
+def stages(recipe: Recipe, muted: frozenset[str]) -> list[protocol.Stage]:
+    """The stages of a recipe in their order."""
+    found: list[tuple[str, str, Place]] = [("guides", "guides", ["guides"]), ("locks", "locks", ["locks"])]
+    found += [(operator.op, operator.op, ["shape", k]) for k, operator in enumerate(recipe.shape)]
+    for name in ("curl", "clean", "hairs"):
+        found.append((name, name, [name]))
+    return [
+        protocol.Stage(name=name, op=op, place=place, muted="/".join(map(str, place)) in muted)
+        for name, op, place in found
+    ]
+
+
+def operator_names(schema: dict[str, Any]) -> list[str]:
+    """The operators that a recipe's shape may hold."""
+    return list(schema["properties"]["shape"]["items"]["discriminator"]["mapping"])
+
+
+def copied(document: Document, edits: Path | None) -> str:
+    """The text of a document, with another file of edits where there is one."""
+    return document.text if edits is None else put(document.text, ["edits"], edits.name)
+
+
+def _by_name(place: Place, names: list[str]) -> Place:
+    """A place in the operators of the whole as one in those that a recipe changes."""
+    if len(place) > 1 and place[0] == "shape" and isinstance(place[1], int) and place[1] < len(names):
+        return ["shape", names[place[1]], *place[2:]]
+    return place
+
+
+def _text_of(file: Path | None) -> str:
+    return file.read_text(encoding="utf-8") if file is not None and file.is_file() else ""
+
+
+def _write(file: Path | None, text: str) -> None:
+    if file is not None:
+        with replacing(file) as aside:
+            aside.write_text(text or "ringlet = 1\n", encoding="utf-8")

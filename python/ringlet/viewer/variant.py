@@ -1,0 +1,135 @@
+"""The text of a recipe that extends another one and says only what differs."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel
+
+from ringlet.errors import UserError
+from ringlet.groom import Recipe
+from ringlet.groom.load import stage_names
+from ringlet.groom.settings import Quantity
+from ringlet.toml import toml_key
+from ringlet.viewer.document import Document, written
+
+OWN = ("ringlet", "extends", "edits")  # what every recipe says for itself
+Tables = dict[str, Any]
+
+
+def variant(document: Document, parse: Callable[[str, Path, str], Recipe], path: Path, edits: Path | None) -> str:
+    """The text of a variant, at ``path``, of a recipe as it was saved, that makes what the recipe makes now.
+
+    edits: the file of edits that the variant gets, if it gets one of its own
+    """
+    try:
+        text = _text(document, edits)
+        same = _plain(parse(text, path, document.state.edits)) == _plain(document.model)
+    except UserError:
+        same = False
+    if not same:
+        raise UserError(f"save: a variant of {document.path.name} cannot say all that was changed; save a copy instead")
+    return text
+
+
+def _text(document: Document, edits: Path | None) -> str:
+    before, now = tomllib.loads(document.saved), document.said()
+    changes = _differing(_without(before), _without(now), document.model)
+    lines = [f"# {now.get('name') or document.path.stem}, with other values.", "ringlet = 1"]
+    lines.append(f'extends = "{document.path.name}"')
+    if edits is not None:
+        lines.append(f'edits = "{edits.name}"')
+    lines += [f"{toml_key(name)} = {written(value)}" for name, value in changes.items() if not _is_table(name, value)]
+    for name, value in changes.items():
+        if _is_table(name, value):
+            lines += _table(name, value)
+    return "\n".join([*lines, ""])
+
+
+def _differing(before: Tables, now: Tables, model: Any) -> Tables:
+    """What must be said on top of ``before`` to have ``now``. What is said no more gets what holds in its place, since
+    a variant takes away tables and nothing else.
+
+    model: what holds now, with all defaults
+    """
+    changes: Tables = {}
+    for name, value in now.items():
+        old, inner = before.get(name), getattr(model, name, None)
+        if name == "shape" and isinstance(value, list) and isinstance(old, list):
+            if old != value:
+                changes[name] = _operators(old, value, inner or [])
+        elif isinstance(value, dict) and isinstance(old, dict):
+            if more := _differing(old, value, inner):
+                changes[name] = more
+        elif name == "edit" and isinstance(old, list):
+            if more := [edit for edit in value if edit not in old]:
+                changes[name] = more
+        elif value != old:
+            changes[name] = value
+    for name in before.keys() - now.keys():
+        changes[name] = False if isinstance(before[name], dict) else _held(model, name)
+    return changes
+
+
+def _operators(before: list[Tables], now: list[Tables], models: list[Any]) -> Any:
+    """Changes of operators by their names, where none was added or moved; else all of them."""
+    kept: dict[int, int] = {}
+    for k, operator in enumerate(now):
+        after = max(kept, default=-1) + 1
+        fits = [i for i in range(after, len(before)) if before[i].get("op") == operator.get("op")]
+        if not fits:
+            return now
+        kept[next((i for i in fits if before[i] == operator), fits[0])] = k
+    changes: Tables = {}
+    for i, name in enumerate(stage_names(before)):
+        if i not in kept:
+            changes[name] = False
+        elif more := _differing(before[i], now[kept[i]], models[kept[i]]):
+            changes[name] = more
+    return changes
+
+
+def _held(model: Any, name: str) -> Any:
+    """The value that a setting has, as a recipe says it."""
+    value, field = getattr(model, name, None), type(model).model_fields.get(name)
+    length = field is not None and any(isinstance(part, Quantity) and part.unit == "m" for part in field.metadata)
+    if isinstance(value, BaseModel):
+        said = value.model_dump(mode="json", exclude_defaults=True)
+        return {**said, "value": f"{said['value']!r} m"} if length and "value" in said else said
+    if value is None:
+        raise UserError(f"{name} cannot be taken out")  # TOML says no nothing
+    return f"{value!r} m" if length and isinstance(value, float) else value
+
+
+def _is_table(name: str, value: Any) -> bool:
+    return isinstance(value, dict) or (
+        isinstance(value, list) and name in ("shape", "edit", "nail") and all(isinstance(one, dict) for one in value)
+    )
+
+
+def _table(name: str, value: Any) -> list[str]:
+    """The lines of a table, of a list of tables, or of changes of operators."""
+    if isinstance(value, list):
+        return [line for one in value for line in ("", f"[[{name}]]", *_entries(one))]
+    if name != "shape":
+        return ["", f"[{toml_key(name)}]", *_entries(value)]
+    gone = [f"{toml_key(one)} = false" for one, change in value.items() if change is False]
+    changed = [(one, change) for one, change in value.items() if change is not False]
+    lines = ["", "[shape]", *gone] if gone else []
+    return lines + [line for one, change in changed for line in ("", f"[shape.{toml_key(one)}]", *_entries(change))]
+
+
+def _entries(table: Tables) -> list[str]:
+    return [f"{toml_key(name)} = {written(value)}" for name, value in table.items()]
+
+
+def _without(data: Tables) -> Tables:
+    return {name: value for name, value in data.items() if name not in OWN}
+
+
+def _plain(recipe: BaseModel) -> Tables:
+    """What a recipe makes, whatever it is called and wherever it says so."""
+    return recipe.model_dump(mode="json", exclude=set(OWN))
