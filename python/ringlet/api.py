@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from ringlet.curves import Curves
 from ringlet.errors import UserError
+from ringlet.files import within
 from ringlet.settings import did_you_mean
 from ringlet.share import share
 
@@ -380,6 +381,12 @@ def loft(
     if known is None or not Path(known).exists():
         return shots.preload(shot, groom, obstacles=obstacles, progress=progress)
     return shots.refresh(shot, groom, *io.read_rest(Path(known)), obstacles=obstacles, progress=progress)
+
+
+def rest_place(shot: Shot) -> Path:
+    """Where the loft of a shot goes when nobody says otherwise: beside the shot or below, whatever it says."""
+    assert shot.path is not None and shot.rest_file is not None  # a shot from a file has a place for it
+    return within(shot.rest_file, shot.path.parent, f"{shot.path.name}: rest.file")
 
 
 def write_loft(loft: Loft, shot: Shot, path: Path | str) -> None:

@@ -14,7 +14,8 @@ from ringlet.errors import UserError
 def replacing(path: Path | str) -> Iterator[Path]:
     """Yields a path beside ``path`` to write to; it takes the place of ``path`` only when the block succeeds.
 
-    The suffix is kept, since writers choose their format by it. Raises UserError where the place cannot be written.
+    The suffix is kept, since writers choose their format by it. A link at ``path`` is replaced, not followed. Raises
+    UserError where the place cannot be written.
     """
     path = Path(path)
     aside = path.with_name(f".{path.stem}.{os.getpid()}{path.suffix}")
@@ -22,7 +23,8 @@ def replacing(path: Path | str) -> Iterator[Path]:
         path.parent.mkdir(parents=True, exist_ok=True)
         if path.is_dir():
             raise UserError(f"{path}: is a folder; give a file name")
-        aside.touch()
+        aside.unlink(missing_ok=True)
+        os.close(os.open(aside, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))  # ours, and no link to elsewhere
         yield aside
         aside.replace(path)
     except OSError as error:
@@ -30,3 +32,13 @@ def replacing(path: Path | str) -> Iterator[Path]:
     finally:
         with suppress(OSError):  # where the folder is no folder there is nothing to take away
             aside.unlink()
+
+
+def within(path: Path, folder: Path, what: str) -> Path:
+    """The path, where it is in a folder or below, links followed; for places that a file names and we would write to.
+
+    what: says in the message who names it: ``curls.recipe.toml: edits``
+    """
+    if not path.resolve().is_relative_to(folder.resolve()):
+        raise UserError(f"{what} is '{path}', outside of {folder.resolve()}; name a file in that folder, or below it")
+    return path

@@ -13,6 +13,9 @@ from pydantic_core import PydanticCustomError
 
 from ringlet.errors import UserError
 
+FORMAT = 1  # of recipes, shots and files of edits
+MOST_TEXT = 256e6  # bytes of such a file
+
 Location = tuple[int | str, ...]  # where in a model pydantic found a mistake
 
 
@@ -46,6 +49,8 @@ def did_you_mean(name: str, valid: Iterable[str]) -> str:
 
 def read_toml(path: Path, kind: str) -> tuple[str, dict[str, Any]]:
     """Text and tables of a TOML file that begins with ``ringlet = 1``; ``kind`` (recipe, shot) is for messages."""
+    if path.exists() and not path.is_dir() and not (path.is_file() and path.stat().st_size <= MOST_TEXT):
+        raise UserError(f"{path}: is no file of at most {MOST_TEXT / 1e6:.0f} MB; give a {kind} file")
     try:
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
@@ -60,8 +65,12 @@ def parse_toml(text: str, where: str, kind: str) -> dict[str, Any]:
         data = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise UserError(f"{where}: is not valid TOML: {str(error)[0].lower()}{str(error)[1:]}") from error
+    except (RecursionError, ValueError):  # of lists in lists without end, or of numbers with thousands of digits
+        raise UserError(f"{where}: is not valid TOML: lists too deep, or a number too long") from None
     if "ringlet" not in data:
         raise UserError(f"{where}: is not a Ringlet {kind}; its first line must be 'ringlet = 1'")
+    if isinstance(version := data["ringlet"], int) and version > FORMAT:
+        raise UserError(f"{where}: ringlet is {version}; this Ringlet reads {kind} files up to {FORMAT}: update it")
     return data
 
 

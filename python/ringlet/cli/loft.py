@@ -50,8 +50,7 @@ def loft(
     """
     with ringlet.Run("loft", report) as run, shown_progress() as progress:
         settings = ringlet.read_shot(shot)
-        path = output or settings.rest_file
-        assert path is not None  # a shot from a file has a place for it
+        path = output or ringlet.rest_place(settings)
         with run.stage("groom"):
             locks = ringlet.load_groom(groom or settings.groom, progress=progress)
         with run.stage("loft", path, "the shape that locks remember"):

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ringlet.errors import UserError
-from ringlet.files import replacing
+from ringlet.files import replacing, within
 from ringlet.groom.edits import offsets_to
 from ringlet.groom.groom import Groom
 from ringlet.groom.load import EDITS, read_edits
@@ -22,13 +22,13 @@ from ringlet.toml import to_toml
 
 
 def edits_path(recipe: Recipe) -> Path:
-    """Where the edits of a recipe are kept."""
+    """Where the edits of a recipe are kept: beside it or below, whatever it says."""
     if recipe.edits_file is None:
         stem = (recipe.path.name if recipe.path else "recipe").removesuffix(".toml").removesuffix(".recipe")
         raise UserError(
             f'{recipe.path or "recipe"}: names no file for edits; add a line edits = "{stem}.edits.toml" to it'
         )
-    return recipe.edits_file
+    return within(recipe.edits_file, recipe.path.parent if recipe.path else Path(), f"{recipe.path or 'recipe'}: edits")
 
 
 def write_edits(edits: list[dict[str, Any]], path: Path) -> None:

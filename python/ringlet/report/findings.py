@@ -121,8 +121,9 @@ def explain_slowest(statistics: Statistics) -> str | None:
     for key, (name, factor, digits) in _COSTS.items():
         values = [v for v in series(statistics, key) or [] if math.isfinite(v)]
         here = value(statistics[index], key)
-        if values and isinstance(here, int | float) and here > 1.2 * (middle := median(values)):
-            more.append(f"{name} {factor * here:.{digits}f} instead of {factor * middle:.{digits}f}")
+        if values and isinstance(here, int | float) and here > 1.2 * median(values):
+            told, usually = (f"{factor * number:.{digits}f}" for number in (here, median(values)))
+            more += [f"{name} {told} instead of {usually}"] if told != usually else []
     said = (
         f"Frame {frame_number(statistics, index)} took longest, {1e-3 * times[index]:.2f} s; "
         f"half of the frames took {1e-3 * usual:.2f} s or less"

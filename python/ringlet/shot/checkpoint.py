@@ -55,7 +55,7 @@ class Checkpoints:
         key = self.folder / "made_from"
         if key.exists() and key.read_text() != self.made_from:
             raise UserError(
-                f"{self.folder}: was left by a run with other settings, another groom or other frames; "
+                f"{self.folder}: was left by a run with other settings, another groom, first frame or Ringlet; "
                 "run without --resume to start over"
             )
         with replacing(key) as aside:

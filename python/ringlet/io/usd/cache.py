@@ -14,7 +14,7 @@ from pxr import Sdf, Usd, UsdGeom
 from ringlet.errors import UserError
 from ringlet.io.space import to_metres
 from ringlet.io.usd.cloths import ClothPrims, read_cloth, set_cloth, told_of
-from ringlet.io.usd.groom import LOCKS, VERSION, groom_prim
+from ringlet.io.usd.groom import LOCKS, VERSION, check_version, groom_prim
 from ringlet.io.usd.stage import parse_json, reading
 from ringlet.io.usd.stream import StreamWriter
 from ringlet.shot.cache import Cache, CachedCloth
@@ -51,6 +51,8 @@ def read_cache(path: Path | str) -> Cache:
                 raise UserError(f"{path}: has {len(moved)} points at frame {frame:g}, its groom {rest}; simulate again")
             points[index] = to_metres(moved, source.space)
         kept = [layer.customLayerData.get("ringlet") or {} for layer in source.stage.GetLayerStack()]
+        for data in kept:
+            check_version(source, data.get("version", VERSION))
         told = {
             name: parse_json(source, next((data[name] for data in kept if name in data), empty), f"ringlet:{name}")
             for name, empty in (("statistics", "[]"), ("start", "{}"), ("cloths", "[]"))

@@ -43,6 +43,7 @@ from ringlet.stage import StageSpace
 GROOM, LOCKS, GUIDES, BODY = "/groom", "/groom/locks", "/groom/guides", "/groom/body"
 VARIANTS, BASE = "groom", "base"
 VERSION = 1  # of this layout
+BESIDE = 1e-3  # how far weights of a root may be from those of a place in its triangle
 
 
 def write_groom(groom: Groom, path: Path | str, variants: Mapping[str, Groom] | None = None) -> None:
@@ -134,12 +135,17 @@ def groom_prim(source: Source) -> Usd.Prim:
         raise UserError(
             f"{source.path}: is no groom of Ringlet's; make one with: ringlet groom RECIPE.toml -o groom.usdc"
         )
-    if version > VERSION:
-        raise UserError(f"{source.path}: has layout {version}; this Ringlet reads up to {VERSION}: update it")
+    check_version(source, version)
     for path in (LOCKS, GUIDES):
         if not source.stage.GetPrimAtPath(path):
             raise UserError(f"{source.path}: has no {path}; make the groom again")
     return root
+
+
+def check_version(source: Source, version: Any) -> None:
+    """Refuses a file of a later layout than we know."""
+    if not isinstance(version, int) or version > VERSION:
+        raise UserError(f"{source.path}: has layout {version}; this Ringlet reads up to {VERSION}: update it")
 
 
 def _select(source: Source, variant: str) -> None:
@@ -201,6 +207,13 @@ def _bound(source: Source, path: str, scalp: Mesh) -> Curves:
         raise UserError(
             f"{source.path}: {path} has a root on triangle {triangles[bad[0]]}, but {scalp.name} has "
             f"{len(scalp.triangles)}; the head has changed: make the groom again"
+        )
+    weights = np.asarray(curves.curve.get("root_barycentric", np.full((1, 3), 1 / 3)))
+    off = np.abs(weights - weights.clip(0.0, 1.0)).max(axis=1) + np.abs(weights.sum(axis=1) - 1.0)
+    if (bad := np.flatnonzero(~(off <= BESIDE))).size:  # nor where one is no number
+        raise UserError(
+            f"{source.path}: {path} has the root of lock {curves.ids[bad[0]]} beside its triangle of {scalp.name} "
+            f"(weights {', '.join(f'{w:g}' for w in weights[bad[0]])}): it is not on the scalp; make the groom again"
         )
     return curves
 

@@ -14,7 +14,7 @@ from pxr import Usd, UsdGeom, UsdSkel, Vt
 
 from ringlet.errors import UserError
 from ringlet.io.polygons import check_polygons, fans
-from ringlet.io.space import from_metres, to_metres
+from ringlet.io.space import check_points, from_metres, to_metres
 from ringlet.io.usd.stage import Source, choose, find_prim, prims, reading
 from ringlet.io.usd.values import (
     Types,
@@ -150,7 +150,9 @@ def clip_at(source: Source, prim: Usd.Prim, frames: tuple[float, float] | None =
     samples = []
     for frame in times:
         time = Usd.TimeCode(frame)
-        points = to_metres(transformed(read_points(prim, time, where), prim, time), source.space)
+        at = f"{where} at frame {frame:g}"
+        points = to_metres(transformed(read_points(prim, time, at), prim, time), source.space)
+        check_points(points, at)  # a transform may be no number either
         if len(points) * len(times) > MOST_PLACES:
             raise UserError(
                 f"{where}: has {len(points):,} points at {len(times):,} frames, more than {MOST_PLACES:,} places; "

@@ -11,7 +11,7 @@ from pxr import Usd, UsdGeom
 from ringlet.curves import Curves
 from ringlet.errors import UserError
 from ringlet.io.usd.curves import define_curves, own_curves, set_points
-from ringlet.io.usd.groom import GROOM, LOCKS, VERSION
+from ringlet.io.usd.groom import GROOM, LOCKS, VERSION, check_version
 from ringlet.io.usd.stage import new_stage, parse_json, reading, writing
 from ringlet.stage import StageSpace
 
@@ -30,7 +30,9 @@ def write_rest(rest: Curves, made_from: dict[str, Any], path: Path | str, space:
 def read_rest(path: Path | str) -> tuple[Curves, dict[str, Any]]:
     """Reads a rest shape and the settings that it was made from."""
     with reading(path) as source:
-        made_from = (source.stage.GetRootLayer().customLayerData.get("ringlet") or {}).get("made_from")
+        told = source.stage.GetRootLayer().customLayerData.get("ringlet") or {}
+        check_version(source, told.get("version", VERSION))
+        made_from = told.get("made_from")
         prim = source.stage.GetPrimAtPath(LOCKS)
         if made_from is None or not prim:
             raise UserError(f"{path}: is no lofted shape; make one with: ringlet loft SHOT.toml")
