@@ -55,6 +55,12 @@ blender: ## Blender's Python module in .venv-blender, 374 MB, for the tests that
 	python3.11 -m venv .venv-blender
 	.venv-blender/bin/pip install --quiet bpy==5.0.1
 
+sanitize: .venv/tooled ## the C++ tests with the sanitizers of addresses, undefined behaviour and threads
+	@tools/sanitize.sh
+
+wheel: .venv/tooled ## a wheel for this Python in dist, audited, and tried out in an environment of its own
+	@tools/wheel.sh
+
 bench: build ## speed, as JSON
 	@for name in groom strands; do .venv/bin/ringlet bench $$name --json; done
 

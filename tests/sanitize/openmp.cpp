@@ -1,0 +1,174 @@
+// The part of GCC's OpenMP runtime that the core uses, made of what the thread sanitizer can see.
+//
+// libgomp waits by futexes of its own, of which the sanitizer knows nothing: every loop would be reported as a race. With
+// this in its place it sees who waits for whom, and nothing more: chunks of a loop are handed out by a relaxed counter, so that
+// no order is made up between iterations that have none.
+
+#include <algorithm>
+#include <atomic>
+#include <condition_variable>
+#include <cstdlib>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace {
+
+int max_threads = [] {
+    const char *given = std::getenv("OMP_NUM_THREADS");
+    const int count = given != nullptr ? std::atoi(given) : 0;
+    return count > 0 ? count : 4;
+}();
+
+// A loop of which threads take chunks until there are none.
+struct Loop {
+    std::atomic<long> next;
+    long end, step;
+};
+
+// The threads of a parallel region.
+struct Team {
+    int size;
+    std::mutex mutex;
+    std::condition_variable arrival;
+    int arrived = 0, barriers = 0;
+    std::deque<Loop> loops;
+
+    explicit Team(int count) : size(count) {}
+
+    void wait_for_all() {
+        std::unique_lock lock(mutex);
+        const int here = barriers;
+        if (++arrived == size) {
+            arrived = 0;
+            ++barriers;
+            arrival.notify_all();
+        } else {
+            arrival.wait(lock, [&] { return barriers != here; });
+        }
+    }
+};
+
+thread_local Team *team = nullptr;
+thread_local int number = 0;
+thread_local size_t loops_begun = 0;
+thread_local Loop *loop = nullptr;
+
+void work(Team &in, int as, void (*body)(void *), void *data) {
+    Team *const outer = team;
+    const int outer_number = number;
+    const size_t outer_loops = loops_begun;
+    team = &in, number = as, loops_begun = 0;
+    body(data);
+    team = outer, number = outer_number, loops_begun = outer_loops;
+}
+
+// Threads that wait for regions.
+class Pool {
+public:
+    ~Pool() {
+        {
+            const std::scoped_lock lock(mutex_);
+            over_ = true;
+        }
+        begun_.notify_all();
+        for (std::thread &thread : threads_) thread.join();
+    }
+
+    void run(int count, void (*body)(void *), void *data) {
+        const std::scoped_lock alone(region_); // of another thread that begins a region of its own
+        Team here(count);
+        {
+            const std::scoped_lock lock(mutex_);
+            while (int(threads_.size()) < count - 1)
+                threads_.emplace_back([this, as = int(threads_.size()) + 1, seen = region_count_] { serve(as, seen); });
+            job_ = [&here, body, data](int as) { work(here, as, body, data); };
+            wanted_ = count, left_ = count - 1;
+            ++region_count_;
+        }
+        begun_.notify_all();
+        work(here, 0, body, data);
+        std::unique_lock lock(mutex_);
+        ended_.wait(lock, [&] { return left_ == 0; });
+    }
+
+private:
+    void serve(int as, long seen) {
+        for (;;) {
+            std::function<void(int)> job;
+            {
+                std::unique_lock lock(mutex_);
+                begun_.wait(lock, [&] { return over_ || region_count_ != seen; });
+                if (over_) return;
+                seen = region_count_;
+                if (as >= wanted_) continue;
+                job = job_;
+            }
+            job(as);
+            const std::scoped_lock lock(mutex_);
+            if (--left_ == 0) ended_.notify_all();
+        }
+    }
+
+    std::mutex region_, mutex_;
+    std::condition_variable begun_, ended_;
+    std::function<void(int)> job_;
+    std::vector<std::thread> threads_;
+    int wanted_ = 0, left_ = 0;
+    long region_count_ = 0;
+    bool over_ = false;
+};
+
+Pool pool;
+
+bool take(long *begin, long *end) {
+    *begin = loop->next.fetch_add(loop->step, std::memory_order_relaxed);
+    *end = std::min(*begin + loop->step, loop->end);
+    return *begin < loop->end;
+}
+
+bool begin_loop(long first, long last, long chunk, long *begin, long *end) {
+    const std::scoped_lock lock(team->mutex);
+    if (loops_begun == team->loops.size()) team->loops.emplace_back(first, last, chunk);
+    loop = &team->loops[loops_begun++];
+    return take(begin, end);
+}
+
+} // namespace
+
+extern "C" {
+
+int omp_get_max_threads() { return max_threads; }
+int omp_get_num_threads() { return team != nullptr ? team->size : 1; }
+int omp_get_thread_num() { return number; }
+void omp_set_num_threads(int count) { max_threads = count; }
+
+void GOMP_parallel(void (*body)(void *), void *data, unsigned count, unsigned) {
+    const int threads = team != nullptr ? 1 : count != 0 ? int(count) : max_threads;
+    if (threads == 1) {
+        Team alone(1);
+        work(alone, 0, body, data);
+    } else {
+        pool.run(threads, body, data);
+    }
+}
+
+// The core's loops count upwards by one.
+bool GOMP_loop_nonmonotonic_dynamic_start(long first, long last, long, long chunk, long *begin, long *end) {
+    return begin_loop(first, last, chunk, begin, end);
+}
+bool GOMP_loop_nonmonotonic_dynamic_next(long *begin, long *end) { return take(begin, end); }
+
+using Count = unsigned long long;
+bool GOMP_loop_ull_nonmonotonic_dynamic_start(bool, Count first, Count last, Count, Count chunk, Count *begin, Count *end) {
+    return begin_loop(long(first), long(last), long(chunk), reinterpret_cast<long *>(begin), reinterpret_cast<long *>(end));
+}
+bool GOMP_loop_ull_nonmonotonic_dynamic_next(Count *begin, Count *end) {
+    return take(reinterpret_cast<long *>(begin), reinterpret_cast<long *>(end));
+}
+
+void GOMP_loop_end() { team->wait_for_all(); }
+void GOMP_loop_end_nowait() {}
+}
