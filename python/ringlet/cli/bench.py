@@ -19,7 +19,8 @@ def bench(
     name: Annotated[
         str,
         typer.Argument(
-            metavar="NAME", help="What to measure: clean, cloth, direct, groom, head, mixed, slider, strands, twirl, warp …"
+            metavar="NAME",
+            help="What to measure: clean, cloth, direct, groom, growth, head, mixed, slider, strands, twirl, view, warp …",
         ),
     ],
     as_json: Json = False,
