@@ -43,7 +43,7 @@ class Finding:
 
 def diagnose(*, self_test: bool = True, progress: api.Progress | None = None) -> list[Finding]:
     """Looks at the installation and, with ``self_test``, lets it groom, simulate, write, read and draw a little."""
-    looks = [_ringlet, _processor, _memory, *(_package(name) for name in PACKAGES), _pardiso]
+    looks = [_ringlet, _processor, _memory, *(_package(name) for name in PACKAGES), _pardiso, _dask]
     tests: list[Callable[[Path], Finding]] = [_test_core, _test_files, _test_picture] if self_test else []
     findings = [look() for look in looks]
     with tempfile.TemporaryDirectory(prefix="ringlet-") as folder:
@@ -95,6 +95,13 @@ def _pardiso() -> Finding:
     return Finding(
         "MKL PARDISO", "optional", "is not installed", "for large direct solves: pip install 'ringlet[direct]'"
     )
+
+
+def _dask() -> Finding:
+    try:
+        return Finding("dask.distributed", "ok", version("distributed"))
+    except PackageNotFoundError:
+        return Finding("dask.distributed", "optional", "is not installed", "for wedges: pip install 'ringlet[farm]'")
 
 
 def _guarded(test: Callable[[Path], Finding], folder: Path) -> Finding:

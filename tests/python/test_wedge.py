@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import logging
 import os
 import re
 import shutil
@@ -15,6 +16,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from distributed import LocalCluster
 from ringlet.farm.grid import choose, folder_name, make_tasks
 from ringlet.farm.openjd import template
 from ringlet.farm.page import distances, read_results
@@ -172,6 +174,24 @@ def test_a_worker_that_dies_costs_only_the_time_of_its_task(shot, tmp_path):
     assert (
         ringlet.read_cache(victim / "cache.usdc").points == ringlet.read_cache(alone.folder / "cache.usdc").points
     ).all()
+
+
+def test_a_scheduler_that_is_there_already_is_used_and_left_running(shot, tmp_path):
+    with LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address="", silence_logs=logging.ERROR) as cluster:
+        address = cluster.scheduler_address
+        for value in (1, 2):
+            told = run(
+                "wedge",
+                shot,
+                "--set",
+                f"strands.bend={value}",
+                "--no-picture",
+                "--scheduler",
+                address,
+                "-o",
+                tmp_path / "out",
+            )
+            assert told.exit_code == 0, told.output
 
 
 def test_a_task_that_breaks_off_is_given_up_and_told(shot, tmp_path):
