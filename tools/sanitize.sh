@@ -14,6 +14,10 @@ sanitized() { # folder, sanitizers, then options of the tests
         -D CMAKE_MAKE_PROGRAM="$bin/ninja" -D Python_EXECUTABLE="$bin/python" -D SKBUILD_PROJECT_VERSION=0 -D RINGLET_TESTS=ON \
         -D RINGLET_SANITIZE="$sanitizers" >"$folder.log" 2>&1 || { cat "$folder.log" >&2; return 1; }
     "$bin/cmake" --build "$folder" --target ringlet_tests -j "${JOBS:-2}"
+    if [ "$sanitizers" = thread ] && nm "$folder/ringlet_tests" | grep -E ' U (GOMP|omp)_'; then
+        echo "error: tests/sanitize/openmp.cpp lacks what is named above" >&2
+        return 1
+    fi
     echo "sanitize: $sanitizers"
     ASAN_OPTIONS=detect_leaks=1:strict_init_order=1 UBSAN_OPTIONS=print_stacktrace=1 \
         TSAN_OPTIONS=second_deadlock_stack=1 OMP_NUM_THREADS=${OMP_NUM_THREADS:-4} OMP_WAIT_POLICY=passive \

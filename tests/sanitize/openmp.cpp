@@ -35,6 +35,7 @@ struct Team {
     std::condition_variable arrival;
     int arrived = 0, barriers = 0;
     std::deque<Loop> loops;
+    size_t begun_with = 0; // loops that are there before the first thread
 
     explicit Team(int count) : size(count) {}
 
@@ -60,9 +61,11 @@ void work(Team &in, int as, void (*body)(void *), void *data) {
     Team *const outer = team;
     const int outer_number = number;
     const size_t outer_loops = loops_begun;
-    team = &in, number = as, loops_begun = 0;
+    Loop *const outer_loop = loop;
+    team = &in, number = as, loops_begun = in.begun_with;
+    if (in.begun_with > 0) loop = &in.loops.front();
     body(data);
-    team = outer, number = outer_number, loops_begun = outer_loops;
+    team = outer, number = outer_number, loops_begun = outer_loops, loop = outer_loop;
 }
 
 // Threads that wait for regions.
@@ -77,9 +80,9 @@ public:
         for (std::thread &thread : threads_) thread.join();
     }
 
-    void run(int count, void (*body)(void *), void *data) {
+    void run(Team &here, void (*body)(void *), void *data) {
         const std::scoped_lock alone(region_); // of another thread that begins a region of its own
-        Team here(count);
+        const int count = here.size;
         {
             const std::scoped_lock lock(mutex_);
             while (int(threads_.size()) < count - 1)
@@ -136,6 +139,18 @@ bool begin_loop(long first, long last, long chunk, long *begin, long *end) {
     return take(begin, end);
 }
 
+int size_of_team(unsigned wanted) {
+    if (team != nullptr) return 1;
+    return wanted != 0 ? int(wanted) : max_threads;
+}
+
+void run(Team &here, void (*body)(void *), void *data) {
+    if (here.size == 1)
+        work(here, 0, body, data);
+    else
+        pool.run(here, body, data);
+}
+
 } // namespace
 
 extern "C" {
@@ -146,18 +161,19 @@ int omp_get_thread_num() { return number; }
 void omp_set_num_threads(int count) { max_threads = count; }
 
 void GOMP_parallel(void (*body)(void *), void *data, unsigned count, unsigned) {
-    const int threads = team != nullptr ? 1 : count != 0 ? int(count) : max_threads;
-    if (threads == 1) {
-        Team alone(1);
-        work(alone, 0, body, data);
-    } else {
-        pool.run(threads, body, data);
-    }
+    Team here(size_of_team(count));
+    run(here, body, data);
 }
 
 // The core's loops count upwards by one.
 bool GOMP_loop_nonmonotonic_dynamic_start(long first, long last, long, long chunk, long *begin, long *end) {
     return begin_loop(first, last, chunk, begin, end);
+}
+void GOMP_parallel_loop_nonmonotonic_dynamic(void (*body)(void *), void *data, unsigned count, long first, long last, long,
+                                             long chunk, unsigned) {
+    Team here(size_of_team(count));
+    here.loops.emplace_back(first, last, chunk), here.begun_with = 1;
+    run(here, body, data);
 }
 bool GOMP_loop_nonmonotonic_dynamic_next(long *begin, long *end) { return take(begin, end); }
 
