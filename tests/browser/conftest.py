@@ -135,6 +135,16 @@ class Review:
         )
         return np.asarray(Image.open(io.BytesIO(base64.b64decode(data.split(",")[1]))).convert("RGB"), np.float64)
 
+    def place(self, point: np.ndarray) -> tuple[float, float]:
+        """Where a point [m] is on the page."""
+        self.get("ringlet.viewer.camera.updateMatrixWorld()")
+        x, y = self.page.evaluate(
+            "(p) => { const v = ringlet.viewer, to = v.camera.position.clone().fromArray(p).project(v.camera); "
+            "return [(0.5 + 0.5 * to.x) * v.element.clientWidth, (0.5 - 0.5 * to.y) * v.element.clientHeight]; }",
+            point.tolist(),
+        )
+        return x, y
+
     def choose(self, stage: str) -> None:
         self.page.locator(f'[data-stage="{stage}"]').click()
 
@@ -190,9 +200,10 @@ def serve(folder: Path) -> Iterator[Callable[[str], Server]]:
 def opened(browser: Any, serve: Callable[[str], Server]) -> Iterator[Callable[..., Review]]:
     contexts: list[Any] = []
 
-    def open_page(server: Server | str = "small.recipe.toml") -> Review:
+    def open_page(server: Server | str = "small.recipe.toml", **more: Any) -> Review:
         address = (serve(server) if isinstance(server, str) else server).address
-        contexts.append(browser.new_context(viewport={"width": 1000, "height": 640}, color_scheme="dark"))
+        how = {"viewport": {"width": 1000, "height": 640}, "color_scheme": "dark", **more}
+        contexts.append(browser.new_context(**how))
         contexts[-1].set_default_timeout(1000 * PATIENCE)
         return Review(contexts[-1].new_page(), address)
 

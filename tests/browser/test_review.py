@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
 from conftest import Review, different
 
 from ringlet import build_groom, build_hairs
@@ -177,24 +178,36 @@ def test_a_killed_server_loses_nothing(opened: Any, serve: Any):
     review.until("ringlet.model.documents.recipe.dirty")
     assert review.text() == text
     assert review.page.get_by_role("button", name="Save", exact=True).is_enabled()
+    review.page.keyboard.press("Control+z")  # what was given back is a step of its own
+    review.until("!ringlet.model.documents.recipe.dirty")
 
 
 def test_an_idle_page_draws_nothing(opened: Any):
     review: Review = opened()
     review.settled()
-    review.page.wait_for_timeout(600)
+    review.until("ringlet.model.measured")
+    review.page.wait_for_timeout(800)
     before = review.get("ringlet.viewer.pictures")
     review.page.wait_for_timeout(1500)
     assert review.get("ringlet.viewer.pictures") == before
 
 
+REACH = (Path(__file__).parent / "reach.js").read_text()
+
+
 def test_controls_have_names_and_keys_reach_them(opened: Any):
     review: Review = opened()
-    nameless = review.get(
-        "[...document.querySelectorAll('button, input, select')].filter(e => !(e.labels?.length || e.ariaLabel || "
-        "e.getAttribute('aria-label') || e.textContent.trim())).map(e => e.outerHTML)"
-    )
-    assert nameless == []
+    review.get("ringlet.lock.choose(2)")
+    assert review.page.evaluate(REACH) == {"nameless": [], "faint": []}
+    review.get("ringlet.brush.show(true)")
+    assert review.page.evaluate(REACH) == {"nameless": [], "faint": []}
+    review.page.keyboard.press("Escape")
+    assert not review.get("ringlet.brush.on")
+    dark = review.picture().mean()
+    review.page.get_by_label("Dark or light").press("Enter")
+    assert review.get("document.documentElement.dataset.theme") == "light"
+    assert review.page.evaluate(REACH) == {"nameless": [], "faint": []}
+    assert review.picture().mean() > dark + 20
     review.slider("curl.width").focus()
     review.page.keyboard.press("ArrowRight")
     review.until("ringlet.model.documents.recipe.dirty")
@@ -208,3 +221,150 @@ def test_nothing_is_loaded_from_elsewhere(opened: Any):
     review: Review = opened()
     names = review.get("performance.getEntriesByType('resource').map(entry => new URL(entry.name).host)")
     assert set(names) == {review.get("location.host")}
+
+
+def test_guides_are_sculpted_with_a_brush(opened: Any):
+    review: Review = opened()
+    page = review.page
+    page.get_by_role("button", name="Sculpt guides").click()
+    page.get_by_label("both sides").check()
+    before = np.array(review.get("Array.from(ringlet.model.guides.points)")).reshape(-1, 3)
+    offsets = review.get("Array.from(ringlet.model.guides.offsets)")
+    front = int(np.argmax(before[np.array(offsets[1:]) - 1] @ review.get("ringlet.viewer.camera.position.toArray()")))
+    at = review.place(before[offsets[front + 1] - 1])
+    page.mouse.move(*at)
+    page.mouse.down()
+    page.mouse.move(at[0] + 50, at[1] - 20, steps=4)
+    page.mouse.up()
+    review.until("ringlet.model.documents.recipe.edits.includes('[[sculpt]]')")
+    review.settled()
+    after = np.array(review.get("Array.from(ringlet.model.guides.points)")).reshape(-1, 3)
+    assert np.linalg.norm(after - before, axis=1)[offsets[front + 1] - 1] > 0.003
+    assert np.array_equal(after[offsets[:-1]], before[offsets[:-1]])  # roots stay
+    eye = review.get("ringlet.viewer.camera.position.toArray()")
+    page.mouse.move(260, 600)  # beside the hair the hand turns the head
+    page.mouse.down()
+    page.mouse.move(300, 600, steps=2)
+    page.mouse.up()
+    assert review.get("ringlet.viewer.camera.position.toArray()") != eye
+    page.keyboard.press("Control+z")
+    review.until("!ringlet.model.documents.recipe.dirty && !ringlet.model.guides.changed.some(one => one)")
+    page.keyboard.press("Control+Shift+z")
+    review.until("ringlet.model.guides.changed.some(one => one)")
+    page.get_by_role("button", name="Return all guides").click()
+    review.until("!ringlet.model.guides.changed.some(one => one)")
+    assert not review.wrong
+
+
+def test_a_value_is_given_to_one_lock_alone_and_taken_back(opened: Any):
+    review: Review = opened()
+    before = np.array(review.get("Array.from(ringlet.viewer.hair.a.locks.points)")).reshape(8, -1)
+    review.get("ringlet.lock.choose(2)")
+    review.page.get_by_role("switch", name="values of this lock alone").check()
+    review.drag(review.slider("curl.width"), 0.35, 0.9)
+    review.until("ringlet.model.documents.recipe.said.curl.width.lock")
+    review.settled()
+    after = np.array(review.get("Array.from(ringlet.viewer.hair.a.locks.points)")).reshape(8, -1)
+    moved = np.abs(after - before).max(axis=1)
+    assert moved[2] > 0.001 and np.delete(moved, 2).max() == 0.0
+    review.page.get_by_label("Not its own curl width").click()
+    review.until("!Object.keys(ringlet.model.documents.recipe.said.curl.width.lock ?? {}).length")
+    assert not review.wrong
+
+
+def test_regions_and_overlays_are_chosen_from_lists(opened: Any, folder: Path):
+    recipe = folder / "small.recipe.toml"
+    recipe.write_text(recipe.read_text() + '[[nail]]\nreach = "2 cm"\n[[shape]]\nop = "scraggle"\n')
+    review: Review = opened()
+    review.choose("shape/0")
+    review.page.locator('[data-setting="shape.0.mask"] summary').first.click()
+    review.page.locator('[data-setting="shape.0.mask.region"] select').select_option("scalp")
+    review.until("ringlet.model.documents.recipe.said.shape[0].mask?.region === 'scalp'")
+    review.settled()
+    plain = review.picture()
+    review.until("ringlet.model.measured?.nail.length")
+    review.page.get_by_label("Overlay").select_option("nail")
+    assert review.page.get_by_role("note").inner_text().split() == ["free", "held"]
+    assert different(review.picture(), plain) > 0.002  # few hairs cover little of the picture
+    assert not review.wrong
+
+
+def test_two_looks_side_by_side(opened: Any):
+    review: Review = opened()
+    beside = review.page.get_by_label("Show another look beside this one")
+    beside.select_option("now")
+    review.until("ringlet.viewer.compared && ringlet.viewer.hair.b.table")
+    review.drag(review.slider("curl.width"), 0.35, 0.95)
+    review.until("ringlet.model.documents.recipe.dirty")
+    review.settled()
+    left, right = np.split(review.picture(), 2, axis=1)
+    assert different(left, right) > 0.005
+    beside.select_option("")
+    review.until("!ringlet.viewer.compared")
+
+
+def test_pictures_and_movies_are_kept(opened: Any):
+    review: Review = opened()
+    with review.page.expect_download() as picture:
+        review.page.get_by_label("Keep a picture").click()
+    assert picture.value.suggested_filename == "small.png"
+    assert Path(picture.value.path()).read_bytes()[:4] == b"\x89PNG"
+    film = review.page.get_by_label("Record a movie")
+    film.click()
+    for turn in (0.3, 0.6):
+        review.get(f"(ringlet.viewer.orbit({turn}, 0), ringlet.viewer.move())")
+        review.page.wait_for_timeout(700)
+    with review.page.expect_download() as movie:
+        film.click()
+    assert Path(movie.value.path()).stat().st_size > 1000
+
+
+@pytest.mark.parametrize("width, height", [(820, 1180), (1180, 820)])
+def test_on_a_tablet_every_control_can_be_reached(opened: Any, width: int, height: int):
+    review: Review = opened(viewport={"width": width, "height": height})
+    review.get("ringlet.lock.choose(2)")
+    outside = review.get(
+        "[...document.querySelectorAll('.bar, .panel, .viewbar, .status, .bar button, .viewbar button')].filter(e => "
+        "e.checkVisibility()).map(e => [e.className, e.getBoundingClientRect()]).filter(([, box]) => box.width && ("
+        "box.left < -0.5 || box.top < -0.5 || box.right > innerWidth + 0.5 || box.bottom > innerHeight + 0.5))"
+        ".map(([name]) => name)"
+    )
+    assert outside == []
+    hidden = review.get(
+        "[...document.querySelectorAll('.bar button, .viewbar button, .viewbar select, .lock button')].filter(e => "
+        "e.checkVisibility() && e.getBoundingClientRect().width).filter(e => { const box = e.getBoundingClientRect(); "
+        "return !e.contains(document.elementFromPoint(box.x + box.width / 2, box.y + box.height / 2)); })"
+        ".map(e => e.ariaLabel || e.textContent)"
+    )
+    assert hidden == []
+
+
+def test_a_shot_beside_another_cache_with_overlays(opened: Any, folder: Path):
+    import ringlet
+
+    groom = ringlet.build_groom(folder / "small.recipe.toml")
+    ringlet.write_groom(groom, folder / "groom.usda")
+    cache = ringlet.simulate(folder / "small.shot.toml", groom)
+    ringlet.write_cache(cache, folder / "groom.usda", folder / "cache.usda")
+    review: Review = opened("small.shot.toml")
+    field = "strands.bend_scale"
+    review.choose("shot:strands")
+    review.page.locator(f'[data-setting="{field}"] > .field-head input.number').fill("0.02")
+    review.page.locator(f'[data-setting="{field}"] > .field-head input.number').press("Enter")
+    review.until("ringlet.model.documents.shot.dirty")
+    review.page.get_by_role("button", name="Run", exact=True).click()
+    review.until("ringlet.timeline.count == 4 && ringlet.model.timeline.state == 'done'")
+    review.get("ringlet.timeline.show(4)")
+    plain = review.picture()
+    for overlay in ("stretch", "curl"):
+        review.page.get_by_label("Overlay").select_option(overlay)
+        assert different(review.picture(), plain) > 0.002  # few hairs cover little of the picture
+    assert review.page.locator('[data-number="inside"]').is_visible()
+    review.page.get_by_label("Compare with a cache").select_option("cache.usda")
+    review.until("ringlet.viewer.compared && ringlet.model.timeline.against == 'cache.usda'")
+    review.until("ringlet.viewer.hair.b.table")
+    review.page.get_by_label("Overlay").select_option("")
+    review.get("ringlet.timeline.show(4)")
+    left, right = np.split(review.picture(), 2, axis=1)
+    assert different(left, right) > 0.002
+    assert not review.wrong

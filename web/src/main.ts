@@ -44,11 +44,9 @@ class App {
     const name = () => (this.model.welcome?.name ?? "ringlet").split(".")[0];
     root.append(
       new Bar(this.model, () => this.setTheme()).element,
-      new Stack(this.model).element,
+      h("div", { class: "left" }, new Stack(this.model).element, this.lock.element, this.brush.element),
       new Settings(this.model).element,
       new Viewbar(this.model, this.viewer, this.brush, name).element,
-      this.lock.element,
-      this.brush.element,
       this.timeline.element,
       this.status.element,
       this.notices.element,

@@ -25,6 +25,7 @@ def variant(document: Document, parse: Callable[[str, Path, str], Recipe], path:
 
     edits: the file of edits that the variant gets, if it gets one of its own
     """
+    text = ""
     try:
         text = _text(document, edits)
         same = _plain(parse(text, path, document.state.edits)) == _plain(document.model)

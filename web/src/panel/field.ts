@@ -25,9 +25,12 @@ export abstract class Field {
     protected readonly place: Place,
     protected readonly setting: Setting,
   ) {
-    this.reset = iconButton("reset", `Back to the default of ${setting.label}`, () => this.send(null, true), {
-      class: "icon-button reset",
-    });
+    this.reset = iconButton(
+      "reset",
+      `Back to the default of ${setting.label}`,
+      () => this.send(null, true, this.target),
+      { class: "icon-button reset" },
+    );
     this.element = h("div", { class: `field field-${setting.kind}`, "data-setting": place.join(".") });
   }
 
@@ -44,9 +47,14 @@ export abstract class Field {
     return this.model.value(this.file, this.place);
   }
 
+  /** What is edited, and may be taken out. */
+  protected get target(): Place {
+    return this.place;
+  }
+
   /** Shows what the file says now. */
   update(): void {
-    const said = this.said !== undefined;
+    const said = this.model.said(this.file, this.target) !== undefined;
     this.element.classList.toggle("said", said);
     this.reset.toggleAttribute("hidden", !said);
     this.show();
@@ -79,6 +87,7 @@ export class NumberField extends Field {
   private readonly unit = h("span", { class: "unit" });
   private range: Range = { least: 0, most: 1, step: 0.01 };
   private held = false;
+  private more: HTMLElement[] = [];
   private readonly inner: Field[];
 
   constructor(model: Model, file: File, place: Place, setting: Setting) {
@@ -103,12 +112,22 @@ export class NumberField extends Field {
       const details = h("details", { class: "varies" }, h("summary", {}, "varies"));
       for (const field of this.inner) details.append(field.element);
       const ramp = this.inner.find((field) => field instanceof RampField);
-      if (ramp) this.element.append(ramp.element);
-      this.element.append(details);
+      this.more = ramp ? [ramp.element, details] : [details];
+      this.element.append(...this.more);
     }
   }
 
+  /** The lock whose own value this is, if one is chosen. */
+  private get lock(): string | null {
+    return this.setting.perLock && this.model.lock !== null ? String(this.model.lock) : null;
+  }
+
+  protected override get target(): Place {
+    return this.lock === null ? this.place : [...this.place, "lock", this.lock];
+  }
+
   private get valuePlace(): Place {
+    if (this.lock !== null) return this.target;
     const said = this.said;
     return said !== null && typeof said === "object" ? [...this.place, "value"] : this.place;
   }
@@ -135,9 +154,11 @@ export class NumberField extends Field {
 
   protected show(): void {
     for (const field of this.inner) field.update();
+    for (const element of this.more) element.toggleAttribute("hidden", this.lock !== null);
     if (this.held) return;
     const { factor, unit } = this.shown;
-    const value = this.setting.varied ? at(this.value, ["value"]) : this.value;
+    const own = this.lock === null ? undefined : at(this.value, ["lock", this.lock]);
+    const value = own ?? (this.setting.varied ? at(this.value, ["value"]) : this.value);
     const given = this.setting.varied ? at(this.setting.fallback, ["value"]) : this.setting.fallback;
     const fallback = typeof given === "number" ? given * factor : 0;
     this.unit.textContent = unit;
@@ -237,6 +258,72 @@ class TextField extends Field {
   protected show(): void {
     if (document.activeElement !== this.input) this.input.value = String(this.value ?? "");
   }
+}
+
+/** The name of something that there is: a region or a map of the scalp, or a helper curve. */
+class NameField extends Field {
+  private readonly list = h("select", { id: this.id });
+
+  constructor(model: Model, file: File, place: Place, setting: Setting) {
+    super(model, file, place, setting);
+    this.element.append(this.head(this.list));
+    this.list.addEventListener("change", () => this.send(this.list.value || null, true));
+  }
+
+  protected show(): void {
+    const value = String(this.value ?? "");
+    offer(this.list, this.model.names[this.setting.named], value, this.setting.optional ? "none" : "choose …");
+  }
+}
+
+/** The value in named regions of the scalp. */
+class RegionsField extends Field {
+  private readonly rows = h("div", { class: "regions" });
+  private readonly add = h("select", { "aria-label": "Another value in a region" });
+
+  constructor(model: Model, file: File, place: Place, setting: Setting) {
+    super(model, file, place, setting);
+    this.element.append(h("div", { class: "field-head" }, h("span", { class: "label" }, "in a region"), this.add), this.rows);
+    this.add.addEventListener("change", () => {
+      const value = at(this.model.value(file, place.slice(0, -1)), ["value"]);
+      if (this.add.value) this.put(this.add.value, (typeof value === "number" ? value : 1) * this.shown(undefined).factor);
+    });
+  }
+
+  private shown(said: Json | undefined) {
+    return shownAs(this.setting.unit, said, String(this.model.value(this.file, ["unit"]) ?? "m"));
+  }
+
+  private put(region: string, value: number | null): void {
+    const said = at(this.said, [region]);
+    this.send(value === null ? null : this.shown(said).write(rounded(value, 1e-4)), true, [...this.place, region]);
+  }
+
+  protected show(): void {
+    const values = (this.value ?? {}) as Record<string, number>;
+    this.element.toggleAttribute("hidden", !this.model.names.regions.length && !Object.keys(values).length);
+    const free = this.model.names.regions.filter((name) => !(name in values));
+    offer(this.add, free, "", "add …");
+    if (this.rows.contains(document.activeElement)) return;
+    this.rows.replaceChildren(
+      ...Object.entries(values).map(([region, value]) => {
+        const { factor, unit } = this.shown(at(this.said, [region]));
+        const input = h("input", { type: "number", step: "any", class: "number", "aria-label": `In ${region}` });
+        input.value = String(rounded(value * factor, 1e-4));
+        input.addEventListener("change", () => this.put(region, Number(input.value)));
+        const box = h("span", { class: "number-box" }, input, h("span", { class: "unit" }, unit));
+        const remove = iconButton("bin", `Not another value in ${region}`, () => this.put(region, null));
+        return h("div", { class: "field-head" }, h("span", { class: "label" }, region), box, remove);
+      }),
+    );
+  }
+}
+
+/** Fills a list with names; what is chosen stays, also where there is nothing of that name. */
+function offer(list: HTMLSelectElement, names: string[], chosen: string, none: string): void {
+  const all = names.includes(chosen) || !chosen ? names : [...names, chosen];
+  list.replaceChildren(h("option", { value: "" }, none), ...all.map((name) => h("option", { value: name }, name)));
+  list.value = chosen;
 }
 
 class VectorField extends Field {
@@ -340,6 +427,8 @@ export function makeField(model: Model, file: File, place: Place, setting: Setti
     toggle: ToggleField,
     choice: ChoiceField,
     text: TextField,
+    name: NameField,
+    regions: RegionsField,
     vector: VectorField,
     table: TableField,
     list: TableField,

@@ -1,8 +1,9 @@
 // One lock: click it to choose it, isolate it, drag its points, return it.
 
 import { Vector3 } from "three";
-import { h } from "../dom";
-import type { Model } from "../model";
+import { h, iconButton } from "../dom";
+import type { Model, Place } from "../model";
+import type { Json } from "../protocol";
 import { inPlane, onScreen, pick } from "../view/pick";
 import type { Viewer } from "../view/viewer";
 
@@ -17,6 +18,8 @@ export class LockTool {
   private readonly isolate = h("button", { type: "button", class: "quiet" }, "Isolate");
   private readonly back = h("button", { type: "button", class: "quiet" }, "Return to the recipe");
   private readonly reach = h("input", { type: "range", min: 0.05, max: 0.8, step: 0.05, value: 0.3, id: "lock-reach" });
+  private readonly alone = h("input", { type: "checkbox", role: "switch", class: "switch", id: "lock-alone" });
+  private readonly own = h("ul", { class: "own", "aria-label": "Values of this lock alone" });
   private row = -1;
   private held = -1;
   private gesture = 0;
@@ -35,6 +38,16 @@ export class LockTool {
       h("div", { class: "group" }, this.isolate, this.back, close),
       h("div", { class: "field-head reach" }, h("label", { for: "lock-reach", title: "How much of the lock comes along with a point" }, "reach"), this.reach),
     );
+    this.element.append(
+      h(
+        "div",
+        { class: "field-head" },
+        h("label", { for: "lock-alone", title: "Settings on the right are those of this lock" }, "values of this lock alone"),
+        this.alone,
+      ),
+      this.own,
+    );
+    this.alone.addEventListener("change", () => this.scope(this.alone.checked));
     this.isolate.addEventListener("click", () => model.say({ kind: "isolate", locks: [this.id] }));
     this.back.addEventListener("click", () => model.say({ kind: "isolate", locks: [this.id], out: false }));
     this.reach.style.setProperty("--part", "33%");
@@ -58,8 +71,31 @@ export class LockTool {
   /** Chooses a lock by its place in the list; -1: none. */
   choose(row: number): void {
     this.row = row;
+    this.scope(row >= 0 && this.alone.checked);
     this.update();
     this.mark();
+  }
+
+  /** Settings are those of this lock, or of all again. */
+  private scope(alone: boolean): void {
+    this.alone.checked = alone;
+    this.model.lock = alone ? this.id : null;
+    this.model.tell("chosen");
+  }
+
+  /** What was given to this lock alone, each with a way to take it out. */
+  private tellOwn(): void {
+    const said = this.model.documents.recipe?.said ?? {};
+    const found = this.row < 0 ? [] : [...ownValues(said, String(this.id))];
+    this.own.toggleAttribute("hidden", !found.length);
+    this.own.replaceChildren(
+      ...found.map(([place, value]) => {
+        const name = named(said, place.slice(0, -2));
+        const take = () =>
+          this.model.say({ kind: "set", changes: [[place, null]], gesture: this.model.newGesture(), resting: true });
+        return h("li", {}, h("span", {}, `${name} ${String(value)}`), iconButton("bin", `Not its own ${name}`, take));
+      }),
+    );
   }
 
   /** Locks have come: the chosen one may be another row, or gone. */
@@ -128,6 +164,7 @@ export class LockTool {
     this.back.toggleAttribute("hidden", !this.isolated);
     this.element.querySelector(".reach")!.toggleAttribute("hidden", !this.isolated);
     this.element.toggleAttribute("inert", !this.model.role.leads);
+    this.tellOwn();
     this.place();
   }
 
@@ -197,4 +234,23 @@ export class LockTool {
     if (resting) message();
     else this.sending = requestAnimationFrame(message);
   }
+}
+
+/** Where a recipe gives a lock a value of its own, and which. */
+function* ownValues(said: Json, lock: string, place: Place = []): Generator<[Place, Json]> {
+  if (said === null || typeof said !== "object") return;
+  for (const [key, value] of Object.entries(said)) {
+    const here = [...place, Array.isArray(said) ? Number(key) : key];
+    const own = key === "lock" && value !== null && typeof value === "object" ? (value as Record<string, Json>) : {};
+    if (lock in own) yield [[...here, lock], own[lock]];
+    else yield* ownValues(value, lock, here);
+  }
+}
+
+/** A setting as a person calls it: the operator in place of its number. */
+function named(said: Json, place: Place): string {
+  const [first, second, ...rest] = place;
+  if (first !== "shape" || typeof second !== "number") return place.join(" ");
+  const operator = (said as { shape: { op?: string }[] }).shape[second];
+  return [operator?.op ?? `shape ${second + 1}`, ...rest].join(" ");
 }

@@ -1,14 +1,38 @@
 // From the JSON schema of a recipe or a shot to what kind of control each setting gets.
 
-import type { Json } from "../protocol";
+import type { Json, Names } from "../protocol";
 
 type Schema = Record<string, Json>;
+export type Named = Exclude<keyof Names, "kind">;
+
+/** What settings of these names hold the name of. */
+const NAMED: Record<string, Named> = {
+  region: "regions",
+  map: "maps",
+  density: "maps",
+  direction: "vectors",
+  curve: "curves",
+  tie: "curves",
+  line: "curves",
+};
 
 export interface Setting {
   name: string;
   label: string;
   description: string;
-  kind: "number" | "integer" | "toggle" | "choice" | "text" | "ramp" | "vector" | "table" | "list" | "other";
+  kind:
+    | "number"
+    | "integer"
+    | "toggle"
+    | "choice"
+    | "text"
+    | "name"
+    | "regions"
+    | "ramp"
+    | "vector"
+    | "table"
+    | "list"
+    | "other";
   unit: string;
   least: number;
   most: number;
@@ -19,6 +43,9 @@ export interface Setting {
   inner: Setting[];
   /** Whether it is a value that may also be a table of `inner`. */
   varied: boolean;
+  /** Whether a single lock may have a value of its own. */
+  perLock: boolean;
+  named: Named;
 }
 
 export class Schemas {
@@ -81,6 +108,8 @@ export class Schemas {
       choices: [],
       inner: [],
       varied: false,
+      perLock: false,
+      named: NAMED[name] ?? "maps",
     };
     const number = real.find((part) => part["type"] === "number" || part["type"] === "integer");
     const table = real.find((part) => part["$ref"] || part["properties"]);
@@ -93,6 +122,8 @@ export class Schemas {
         setting.inner = this.of(this.resolve(table, null)).filter(
           (inner) => inner.name !== "value" && inner.kind !== "other",
         );
+        for (const inner of setting.inner) if (inner.kind === "regions") inner.unit = setting.unit;
+        setting.perLock = "lock" in (this.resolve(table, null)["properties"] as Schema);
       }
       return setting;
     }
@@ -100,7 +131,8 @@ export class Schemas {
     const items = only["items"] as Schema | undefined;
     if (only["type"] === "boolean") setting.kind = "toggle";
     else if (only["enum"]) Object.assign(setting, { kind: "choice", choices: only["enum"] });
-    else if (only["type"] === "string") setting.kind = "text";
+    else if (only["type"] === "string") setting.kind = name in NAMED ? "name" : "text";
+    else if (only["type"] === "object" && name === "region") setting.kind = "regions";
     else if (only["type"] === "array" && items && isPair(items)) setting.kind = "ramp";
     else if (only["type"] === "array" && isVector(only)) setting.kind = "vector";
     else if (only["type"] === "array" && items && this.resolve(items, null)["properties"])

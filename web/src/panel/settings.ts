@@ -14,6 +14,7 @@ export class Settings {
     model.on("document", () => this.update());
     model.on("chosen", () => this.update());
     model.on("role", () => this.update());
+    model.on("names", () => this.update());
   }
 
   update(): void {
@@ -23,16 +24,20 @@ export class Settings {
     if (!welcome || !document) return;
     const values = this.model.value(chosen.file, chosen.place) ?? null;
     const schemas = new Schemas(welcome.schemas[chosen.file] as ConstructorParameters<typeof Schemas>[0]);
-    const settings = schemas.settings(chosen.place, values);
-    const built = JSON.stringify([chosen, settings.map((setting) => [setting.name, setting.kind])]);
+    const alone = chosen.file === "recipe" ? this.model.lock : null;
+    const settings = schemas.settings(chosen.place, values).filter((setting) => alone === null || setting.perLock);
+    const built = JSON.stringify([chosen, alone, settings.map((setting) => [setting.name, setting.kind])]);
     if (built !== this.built) {
       this.built = built;
       this.fields = settings.map((setting) =>
         makeField(this.model, chosen.file, [...chosen.place, setting.name], setting),
       );
       const title = stageTitle(this.model);
+      const nothing = alone !== null && !settings.length;
       this.element.replaceChildren(
         h("h2", {}, title),
+        alone === null ? "" : h("p", { class: "alone" }, `of lock ${alone} alone`),
+        nothing ? h("p", { class: "told" }, "Nothing here can be another for a single lock.") : "",
         h("div", { class: "fields" }, ...this.fields.map((field) => field.element)),
       );
     }
