@@ -10,6 +10,7 @@ from ringlet.mesh import Clip, Mesh
 from ringlet.shot import Material, Obstacle, equilibrium, loft
 from ringlet.shot.balance import balance
 from ringlet.shot.joints import Joints, measure, shape
+from ringlet.shot.nails import pull
 from ringlet.shot.scene import Scene
 from ringlet.shot.simulate import make_strands
 from ringlet.shot.strands import Solver, Strands
@@ -133,14 +134,29 @@ def test_what_cannot_push_bears_nothing(points, body, contact):
     assert (free.rest.points == beside.rest.points).all()
 
 
+def nailed_near_tip(groom, firm):
+    nail = np.zeros(len(groom.locks.points), np.float32)
+    nail[-3] = firm
+    locks = Curves(groom.locks.points, groom.locks.offsets, groom.locks.ids, {}, {"nail": nail})
+    return Groom(locks, locks, groom.scalp)
+
+
+def test_a_soft_nail_bears_its_part_of_the_weight():
+    shot, groom = scene(STRAIGHT, more=MODE)
+    groom = nailed_near_tip(groom, 0.5)
+    made = equilibrium(shot, groom)
+    strands = make_strands(shot, groom, made.rest, made.stiffened)
+    strands.place(STRAIGHT)
+    for _ in range(48):
+        forces = pull(groom.locks, strands, STRAIGHT, 1 / 24, GRAVITY)
+        strands.step(STRAIGHT, 1 / 24, gravity=GRAVITY, forces=forces)
+    assert sag(strands.positions, STRAIGHT) < 1e-6
+
+
 def test_a_lock_hangs_from_its_nails_too():
     """Nailed near its tip it need not hold itself up, and does not move."""
-    nail = np.zeros(len(STRAIGHT), np.float32)
-    nail[-3] = 1.0
     shot, groom = scene(STRAIGHT, more=MODE)
-    free = equilibrium(shot, groom)
-    locks = Curves(groom.locks.points, groom.locks.offsets, groom.locks.ids, {}, {"nail": nail})
-    groom = Groom(locks, locks, groom.scalp)
+    free, groom = equilibrium(shot, groom), nailed_near_tip(groom, 1.0)
     nailed = equilibrium(shot, groom)
     assert sag(nailed.rest.points, STRAIGHT) < 0.1 * sag(free.rest.points, STRAIGHT)
     strands = make_strands(shot, groom, nailed.rest, nailed.stiffened)

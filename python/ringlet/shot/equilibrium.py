@@ -21,6 +21,7 @@ from ringlet.shot.balance import balance
 from ringlet.shot.collider import Obstacle
 from ringlet.shot.joints import Joints, measure, shape
 from ringlet.shot.loft import STILL, Loft, Progress, hang_plain, per_lock
+from ringlet.shot.nails import softly
 from ringlet.shot.shot import Shot
 from ringlet.shot.simulate import make_strands
 from ringlet.shot.strands import Strands
@@ -100,9 +101,11 @@ def _check(shot: Shot, locks: Curves) -> None:
 
 
 def _borne(shot: Shot, groom: Groom, obstacles: Sequence[Obstacle]) -> Array:
-    """What bears the locks where they were groomed [N], shape (n, 3)."""
+    """What bears the locks where they were groomed [N], shape (n, 3); a soft nail, that part of the weight it does."""
     strands = make_strands(shot, groom)
-    return support(shot, groom.locks, strands, _loads(shot, strands), obstacles)
+    drawn = softly(groom.locks, 1.0 / (groom.space.fps * shot.solver.substeps))
+    drawn = -np.outer(drawn * strands.masses, shot.forces.gravity)
+    return drawn + support(shot, groom.locks, strands, _loads(shot, strands) + drawn, obstacles)
 
 
 def _loads(shot: Shot, strands: Strands) -> Array:

@@ -29,12 +29,19 @@ def pull(
     They lead a vertex that nothing else holds a part ``1 - exp(-dt / τ)`` of the way from where it would be after the
     step, with ``τ = 0.02 s · (1 - w) / w`` for a hold w. However firm, that never goes beyond the target.
     """
-    hold = np.asarray(locks.point.get("nail", np.zeros(0)), np.float64)
-    soft = np.flatnonzero((hold > 0.0) & (hold < RIGID))
+    part = softly(locks, dt)
+    soft = np.flatnonzero(part)
     if not soft.size:
         return None
-    part = 1.0 - np.exp(-dt * hold[soft] / (HALF_TIME * (1.0 - hold[soft])))
+    part = part[soft]
     ahead = strands.positions[soft] + dt * strands.velocities[soft] + dt * dt * np.asarray(gravity)
     forces = np.zeros_like(targets)
     forces[soft] = (part * strands.masses[soft])[:, None] / dt**2 * (targets[soft] - ahead)
     return forces
+
+
+def softly(locks: Curves, dt: float) -> NDArray[np.float64]:
+    """The part of the way to its target that a vertex is led in a step of ``dt`` [s], shape (n,); 0 of what is held."""
+    hold = np.asarray(locks.point.get("nail", np.zeros(len(locks.points))), np.float64)
+    hold = np.where(hold < RIGID, hold, 0.0)
+    return 1.0 - np.exp(-dt * hold / (HALF_TIME * (1.0 - hold)))

@@ -17,10 +17,12 @@ from ringlet.shot.checkpoint import digest
 from ringlet.shot.collider import Obstacle
 from ringlet.shot.equilibrium import equilibrium
 from ringlet.shot.loft import Loft, Progress, loft
+from ringlet.shot.nails import softly
 from ringlet.shot.shot import Shot
 from ringlet.shot.strands import VARIATIONS
 from ringlet.shot.variation import at_vertices
 
+NAILED = ("nail", "led_by_nail")  # how firmly, and what comes of it in a step
 SAME_PLACE = 1e-6  # points closer than this are the same: a file in single precision rounds them [m]
 
 # What a loft does not depend on, besides `rest.gain` and the variation, which are kept as their values at the vertices.
@@ -112,8 +114,8 @@ def changed_locks(kept: Curves, shot: Shot, groom: Groom) -> NDArray[np.bool_]:
     """Which locks of a groom, the same ones, are not those that a kept shape was made from, shape (count,)."""
     changed = np.linalg.norm(kept.point["groomed"] - groom.locks.points, axis=1) > SAME_PLACE
     values = _values(shot, groom)
-    for name in ("gain", *VARIATIONS):
-        old, now = (np.asarray(of.get(name, np.ones(len(changed)))) for of in (kept.point, values))
+    for name, default in {"gain": 1.0, **dict.fromkeys(VARIATIONS, 1.0), **dict.fromkeys(NAILED, 0.0)}.items():
+        old, now = (np.asarray(of.get(name, np.full(len(changed), default))) for of in (kept.point, values))
         changed |= np.abs(old - now) > 1e-5 * np.maximum(now, 1e-3)
     return np.logical_or.reduceat(changed, groom.locks.offsets[:-1])
 
@@ -143,7 +145,12 @@ def check(
 
 
 def _values(shot: Shot, groom: Groom) -> dict[str, NDArray[np.float64]]:
-    return {"gain": at_vertices(shot.rest.gain, groom, "rest.gain"), **shot.variation.factors(groom)}
+    """What a lock's rest shape depends on besides its points, at the vertices, shape (n,) each."""
+    values = {"gain": at_vertices(shot.rest.gain, groom, "rest.gain"), **shot.variation.factors(groom)}
+    if "nail" in groom.locks.point:
+        led = softly(groom.locks, 1.0 / (groom.space.fps * shot.solver.substeps))
+        values |= dict(zip(NAILED, (groom.locks.point["nail"], led), strict=True))
+    return values
 
 
 def _differences(old: Any, now: Any, name: str = "") -> Iterator[str]:
