@@ -135,6 +135,15 @@ def test_one_task_that_is_refused_does_not_stop_the_others(shot, tmp_path):
     assert "held is 60" in (tmp_path / "out/wedge.html").read_text()
 
 
+def test_texts_stand_in_the_order_in_which_they_were_given_and_numbers_by_size(shot, tmp_path):
+    choices = [choose("rest.mode", "none,lofted,equilibrium"), choose("strands.bend", [2, 10])]
+    tasks = make_tasks(shot, choices, tmp_path / "out")
+    for task in reversed(tasks):
+        task.folder.mkdir(parents=True)
+        write_result(task.folder, Result(task.settings, "refused", order=task.order))
+    assert list(read_results(tmp_path / "out")) == [task.folder for task in tasks]
+
+
 def test_places_are_compared_with_those_of_the_first(tmp_path):
     for k, shift in enumerate((0.0, 3.0)):
         folder = tmp_path / f"{k}"

@@ -67,7 +67,8 @@ def _in_worker(task: Task, wanted: Wanted) -> Result:
 def _failed(task: Task, error: Any) -> Result:
     """What to say of a task that was given up."""
     told = " ".join(str(error).split())
-    result = Result(task.settings, "failed", f"{type(error).__name__}: {told}; {task.folder / 'log.txt'} tells more")
+    message = f"{type(error).__name__}: {told}; {task.folder / 'log.txt'} tells more"
+    result = Result(task.settings, "failed", message, order=task.order)
     task.folder.mkdir(parents=True, exist_ok=True)
     write_result(task.folder, result)
     return result

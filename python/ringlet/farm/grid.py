@@ -40,11 +40,13 @@ class Task:
 
     folder:   where all of it is written
     settings: its values by their names
+    order:    which of its values each setting has, counted from 0
     shot:     the text of its shot, whose relative names count from the folder
     """
 
     folder: Path
     settings: dict[str, Any]
+    order: tuple[int, ...]
     shot: str
 
     @property
@@ -91,23 +93,21 @@ def make_tasks(shot: Path, choices: Sequence[Choice], folder: Path) -> list[Task
         raise UserError(f"wedge: these are {count:,} combinations; must be at most {MOST_TASKS:,}")
     _, tables = read_toml(shot, "shot")
     tasks: dict[str, Task] = {}
-    for values in itertools.product(*(choice.values for choice in choices)):
-        settings = {choice.name: value for choice, value in zip(choices, values, strict=True)}
-        task = _task(shot, tables, choices, settings, folder)
+    for order in itertools.product(*(range(len(choice.values)) for choice in choices)):
+        task = _task(shot, tables, choices, order, folder)
         tasks[task.name] = task
     return list(tasks.values())
 
 
-def _task(
-    shot: Path, tables: dict[str, Any], choices: Sequence[Choice], settings: dict[str, Any], folder: Path
-) -> Task:
+def _task(shot: Path, tables: dict[str, Any], choices: Sequence[Choice], order: tuple[int, ...], folder: Path) -> Task:
+    settings = {choice.name: choice.values[k] for choice, k in zip(choices, order, strict=True)}
     for choice in choices:
         tables = _with(tables, choice.place, settings[choice.name], choice.name)
     parse_shot(to_toml(tables), shot)  # tells what is wrong with a value by the name of the shot
     own = folder / folder_name(settings)
     text = to_toml(_moved(tables, shot.parent, own))
     parse_shot(text, own / "shot.toml")
-    return Task(own, settings, text)
+    return Task(own, settings, order, text)
 
 
 def folder_name(settings: dict[str, Any]) -> str:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from html import escape
+from itertools import zip_longest
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -21,7 +21,7 @@ MOST_COLUMNS = 6
 def read_results(folder: Path) -> dict[Path, Result]:
     """What all tasks in a folder gave, by their folders, in the order of their settings."""
     found = {file.parent: result for file in folder.glob(f"*/{RESULT}") if (result := read_result(file.parent))}
-    return dict(sorted(found.items(), key=lambda item: [_order(value) for value in item[1].settings.values()]))
+    return dict(sorted(found.items(), key=lambda item: _order(item[1])))
 
 
 def write_page(folder: Path, title: str) -> dict[Path, Result]:
@@ -117,7 +117,9 @@ def _columns(results: Sequence[Result]) -> int:
     return min(len(results), 4)
 
 
-def _order(value: Any) -> tuple[int, float, str]:
-    """Numbers by size, before all else by its text."""
-    number = isinstance(value, int | float)
-    return (0, float(value), "") if number else (1, 0.0, str(value))
+def _order(result: Result) -> list[tuple[int, float, str]]:
+    """Numbers by size; before all else in the order in which they were given, where that is known."""
+    return [
+        (0, float(value), "") if isinstance(value, int | float) else (1, float(k), str(value))
+        for k, value in zip_longest(result.order, result.settings.values(), fillvalue=0)
+    ]

@@ -16,7 +16,7 @@ import shutil
 import socket
 import time
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
@@ -65,6 +65,7 @@ class Result:
     seconds:  that this took
     numbers:  the outcome, by name
     series:   numbers of every frame, by name
+    order:    see ``Task``
     """
 
     settings: dict[str, Any]
@@ -74,6 +75,7 @@ class Result:
     seconds: float = 0.0
     numbers: dict[str, float] | None = None
     series: dict[str, list[float]] | None = None
+    order: Sequence[int] = ()
 
 
 def run_task(task: Task, wanted: Wanted, tell: Tell | None = None) -> Result:
@@ -91,7 +93,7 @@ def run_task(task: Task, wanted: Wanted, tell: Tell | None = None) -> Result:
         result = _done(task, wanted, log, tell or (lambda done, total: None))
     except UserError as error:
         log(f"refused: {error}")
-        result = Result(task.settings, "refused", str(error))
+        result = Result(task.settings, "refused", str(error), order=task.order)
     except Exception:
         log(f"failed:\n{traceback.format_exc()}")
         raise
@@ -162,7 +164,7 @@ def _done(task: Task, wanted: Wanted, log: Log, tell: Tell) -> Result:
         _draw(task.folder, groom, under, cache, frame)
     shutil.rmtree(part, ignore_errors=True)
     series = {name: [float(frame[name]) for frame in told.statistics] for name in SERIES}
-    return Result(task.settings, "done", "", made_from, round(seconds, 3), numbers, series)
+    return Result(task.settings, "done", "", made_from, round(seconds, 3), numbers, series, task.order)
 
 
 def _groom(shot: Shot, folder: Path, log: Log) -> tuple[Groom, Path]:
