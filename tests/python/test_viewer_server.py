@@ -489,3 +489,17 @@ def test_nails_and_what_is_in_the_head_are_measured_at_rest(folder: Path):
         one.hear("numbers", draft=False)
         inside = one.hear("measured")
         assert inside["inside"] > 0 and inside["depth"].max() > 0
+
+
+def test_frames_tell_what_touches_and_what_is_in_the_head(folder: Path):
+    shot = folder / "small.shot.toml"
+    shot.write_text(shot.read_text().replace("frames = [1, 4]", "frames = [1, 2]") + "[contact]\nradius = 0.004\n")
+    recipe = folder / "small.recipe.toml"
+    recipe.write_text(recipe.read_text().replace("length = 5", "length = 5\ndroop = 3"))  # locks lie on the head
+    with serving(folder, "small.shot.toml") as client, page(client) as one:
+        one.been_told("timeline", state="still")
+        one.say(kind="play", action="start")
+        frame = one.hear("frame", frame=2)
+        assert len(frame["contact"]) == len(frame["depth"]) == 8 * 40
+        assert frame["statistics"]["contacts"] > 0 and frame["contact"].max() > 0
+        assert frame["statistics"]["inside"] == 0 and frame["depth"].max() == 0

@@ -110,16 +110,25 @@ class Hairs:
     def carriage(self, scalp_points: NDArray) -> dict[str, NDArray]:
         """How the hairs sit in their locks when the scalp has moved: what src/ringlet/groom/hairs.h takes besides the
         locks. ``axis`` (locks, 3) and ``root`` (hairs, 3) [m] follow the scalp; the rest is the same all the time."""
-        locks, triangles = self._groom.locks, self._groom.scalp.triangles
-        at = np.ascontiguousarray(scalp_points, np.float64)
-        lock_roots, frames = _core.root_frames(
-            at, triangles, locks.curve["root_triangle"], locks.curve["root_barycentric"]
-        )
+        triangles, at = self._groom.scalp.triangles, np.ascontiguousarray(scalp_points, np.float64)
+        lock_roots, axis = self._frames(at)
         bound = self.curves.curve
         hair_roots = np.einsum("hc,hcx->hx", bound["root_barycentric"], at[triangles[bound["root_triangle"]]])
         root = (hair_roots - lock_roots[bound["lock"]]).astype(np.float32)
         root[self._layout["first"][:-1]] = 0.0  # the first hair of a lock is the lock
-        return {"axis": np.einsum("lxk,lk->lx", frames, self._axis), "root": root, **self._layout}
+        return {"axis": axis, "root": root, **self._layout}
+
+    def axes(self, scalp_points: NDArray) -> NDArray[np.float64]:
+        """The ``axis`` of ``carriage`` alone, which is quick."""
+        return self._frames(np.ascontiguousarray(scalp_points, np.float64))[1]
+
+    def _frames(self, at: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Roots of the locks and where their frames start, each of shape (locks, 3)."""
+        bound = self._groom.locks.curve
+        roots, frames = _core.root_frames(
+            at, self._groom.scalp.triangles, bound["root_triangle"], bound["root_barycentric"]
+        )
+        return roots, np.einsum("lxk,lk->lx", frames, self._axis)
 
 
 @dataclass

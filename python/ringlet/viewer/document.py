@@ -257,7 +257,23 @@ def _add_inside(text: str, place: Place, value: Any) -> str:
 
 
 def _replace(text: str, place: Place, value: Any) -> str:
-    """Replaces what is there, or takes it out."""
+    """Replaces what is there, or takes it out. Only the lines of its table are read: the rest need not be understood
+    anew for every step of a slider."""
+    parts = blocks.split(text)
+    index = place[1] if len(place) > 2 and isinstance(place[1], int) else None
+    own = [block for block in parts if block.name == place[0]]
+    if len(place) > 1 and len(own) > (index or 0):
+        block = own[index or 0]
+        inside = [place[0], *([] if index is None else [0]), *place[1 if index is None else 2 :]]
+        try:
+            block.lines = _replaced("\n".join(block.lines), inside, value).split("\n")
+        except KeyError:  # it is in a table of its own, elsewhere
+            return _replaced(text, place, value)
+        return "\n".join(line for part in parts for line in part.lines) + ("\n" if text.endswith("\n") else "")
+    return _replaced(text, place, value)
+
+
+def _replaced(text: str, place: Place, value: Any) -> str:
     document = tomlkit.parse(text)
     table: Any = document
     for part in place[:-1]:
@@ -265,6 +281,8 @@ def _replace(text: str, place: Place, value: Any) -> str:
     if value is None:
         table.pop(place[-1])
         return re.sub(r"(?<=\S) {2,}}", " }", tomlkit.dumps(document))
+    if place[-1] not in table:
+        raise KeyError(place[-1])
     table[place[-1]] = _item(value)
     return tomlkit.dumps(document)
 

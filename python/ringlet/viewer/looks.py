@@ -53,7 +53,7 @@ class Look:
         locks = self.groom.locks
         axis = np.tile([1.0, 0.0, 0.0], (len(locks), 1))
         if self.hairs is not None:
-            axis = self.hairs.carriage(self.groom.scalp.points)["axis"]
+            axis = self.hairs.axes(self.groom.scalp.points)
         return pack(
             protocol.Locks.model_validate({"side": side, "draft": self.draft}),
             points=locks.points,
