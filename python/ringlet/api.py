@@ -115,9 +115,13 @@ def read_groom(path: Path | str, *, variant: str | None = None) -> Groom:
     return io.read_groom(Path(path), variant)
 
 
-def load_groom(path: Path | str, *, progress: Progress | None = None) -> Groom:
-    """The groom of a recipe (``.toml``) or of a USD file."""
-    return build_groom(path, progress=progress) if Path(path).suffix == ".toml" else read_groom(path)
+def load_groom(path: Path | str, *, variant: str | None = None, progress: Progress | None = None) -> Groom:
+    """The groom of a recipe (``.toml``) or of a USD file, or a variant of the latter."""
+    if Path(path).suffix != ".toml":
+        return read_groom(path, variant=variant)
+    if variant is not None:
+        raise UserError(f"variant '{variant}': {path} is a recipe; name the recipe of the variant instead")
+    return build_groom(path, progress=progress)
 
 
 # Edits of single locks
@@ -189,6 +193,7 @@ def check_groom(
     thickness: float = 1e-4,
     fixed: Path | str | None = None,
     picture: Path | str | None = None,
+    variant: str | None = None,
     progress: Progress | None = None,
 ) -> dict[str, Any]:
     """What of a groom is in the scalp, in the body and in other locks: places, locks, greatest depth [m], worst places.
@@ -199,12 +204,13 @@ def check_groom(
     thickness:   two locks nearer than this are in one another [m]
     fixed:       where to write the repaired groom
     picture:     where to write a picture of the places: of those that are left, if it is repaired
+    variant:     of the groom file, in place of the one that is selected in it
     """
     from ringlet import groom as grooms
     from ringlet.groom.groom import Groom
 
     if not isinstance(groom, Groom):
-        groom = load_groom(groom, progress=progress)
+        groom = load_groom(groom, variant=variant, progress=progress)
     allowed = grooms.Allowed(root_depth, root_length, thickness)
     others = _beside_scalp(groom)
     findings = grooms.check_groom(groom, others, allowed)
@@ -319,7 +325,7 @@ def write_simulation(
             told.touches.append(frame.touches)
         if on_frame:
             on_frame(frame.number, frame.statistics)
-    with io.CacheWriter(path, under, io.read_space(Path(under)), motion.cloths(0)) as writer:
+    with io.CacheWriter(path, under, io.read_space(Path(under)), motion.cloths(0), groom.variant) as writer:
         writer.start = motion.start
         for frame in shots.played(motion, kept, shot.preroll + len(told.frames)):
             writer.add(frame.number, frame.points, frame.statistics, frame.cloths)
@@ -466,11 +472,11 @@ def _garments(shot: Shot, groom: Groom) -> list[Garment]:
     return garments
 
 
-def write_cache(cache: Cache, groom: Path | str, path: Path | str) -> None:
-    """Writes simulated guides as a USD layer over the file ``groom``."""
+def write_cache(cache: Cache, groom: Path | str, path: Path | str, *, variant: str | None = None) -> None:
+    """Writes simulated guides as a USD layer over the file ``groom``, or over one of its variants."""
     from ringlet import io
 
-    io.write_cache(cache, Path(groom), Path(path), io.read_space(Path(groom)))
+    io.write_cache(cache, Path(groom), Path(path), io.read_space(Path(groom)), variant)
 
 
 def write_touches(cache: Cache | Told, cache_path: Path | str, path: Path | str) -> None:
@@ -510,15 +516,20 @@ def write_hairs(
     frames: tuple[int, int] | None = None,
     fraction: float = 1.0,
     wider: bool = False,
+    variant: str | None = None,
     progress: Progress | None = None,
 ) -> dict[str, int]:
     """Writes the hairs of the USD file ``groom``, at rest, or carried by the guides of ``cache`` through ``frames``.
+
+    variant: of the groom, in place of the one that is selected in it, or that the cache was made of
 
     Returns how many ``locks``, ``hairs``, ``points`` and ``frames`` there are.
     """
     from ringlet import io
 
-    locks = read_groom(groom)
+    if variant is None and cache is not None:
+        variant = read_groom(cache).variant
+    locks = read_groom(groom, variant=variant)
     hairs = build_hairs(locks, fraction=fraction, wider=wider)
     written = 0
     with io.HairWriter(Path(path), locks, hairs.curves, Path(cache or groom)) as writer:

@@ -1,8 +1,13 @@
 """Recipes that change a few values of another."""
 
+import json
+
 import numpy as np
 import pytest
+from ringlet.cli.app import app
+from ringlet.io import read_rest
 from small_example import write_head
+from typer.testing import CliRunner
 
 import ringlet
 from ringlet import UserError
@@ -150,3 +155,30 @@ def test_the_example_has_its_hair_down():
     assert np.array_equal(up.locks.ids, down.locks.ids)
     assert down.locks.points[:, 1].min() < up.locks.points[:, 1].min() - 0.04
     assert np.median(down.locks.lengths()) > 1.7 * np.median(up.locks.lengths())
+
+
+def test_every_command_takes_a_variant_of_a_groom_file_and_what_is_made_of_it_remembers_which(folder):
+    down = ringlet.build_groom(variant(folder, 'extends = "base.toml"\n[locks]\npoints = 96\n'))
+    file, cache, hair = (folder / f"{name}.usdc" for name in ("groom", "cache", "hair"))
+    ringlet.write_groom(ringlet.build_groom(folder / "base.toml"), file, variants={"down": down})
+    (folder / "a.shot.toml").write_text("ringlet = 1\ngroom = 'groom.usdc'\nframes = [1, 2]\npreroll = 0\n")
+    chosen = ["--variant", "down"]
+    told = json.loads(run("check", file, *chosen, "--json"))
+    assert told["points"] == 12 * 96
+    run("loft", folder / "a.shot.toml", "-o", folder / "rest.usdc", *chosen)
+    assert len(read_rest(folder / "rest.usdc")[0].points) == 12 * 96
+    run("sim", folder / "a.shot.toml", "-o", cache, *chosen)
+    assert (ringlet.read_groom(cache).variant, ringlet.read_cache(cache).points.shape[1]) == ("down", 12 * 96)
+    run("hair", file, "--cache", cache, "-o", hair)  # that of the cache, without being told
+    assert ringlet.read_groom(hair).variant == "down" and len(ringlet.read_groom(hair).locks.points) == 12 * 96
+    run("hair", file, *chosen, "-o", hair)
+    assert ringlet.read_groom(hair).variant == "down"
+    assert ringlet.read_groom(file).variant == "base"
+    with pytest.raises(UserError, match=r"variant 'down': .*base.toml is a recipe; name the recipe of the variant"):
+        ringlet.load_groom(folder / "base.toml", variant="down")
+
+
+def run(*arguments):
+    result = CliRunner().invoke(app, [str(argument) for argument in arguments])
+    assert result.exit_code in (0, 1), result.output
+    return result.stdout

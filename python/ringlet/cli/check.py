@@ -8,13 +8,14 @@ from typing import Annotated
 import typer
 
 import ringlet
-from ringlet.cli.options import Json, Threads
+from ringlet.cli.options import Json, Threads, Variant
 from ringlet.cli.output import print_json, print_table
 from ringlet.cli.progress import shown_progress
 
 
 def check(
     groom: Annotated[Path, typer.Argument(metavar="GROOM", help="A groom, or a recipe to make it from.")],
+    variant: Variant = None,
     fix: Annotated[bool, typer.Option("--fix", help="Repair it, with the least change of shape.")] = False,
     output: Annotated[
         Path | None,
@@ -48,7 +49,9 @@ def check(
         "thickness": 1e-3 * thickness,
     }
     with shown_progress() as progress:
-        told = ringlet.check_groom(groom, fixed=output if fix else None, picture=picture, progress=progress, **allowed)
+        told = ringlet.check_groom(
+            groom, fixed=output if fix else None, picture=picture, variant=variant, progress=progress, **allowed
+        )
     if as_json:
         print_json(told)
     else:

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 import ringlet
-from ringlet.cli.options import Fraction, Frames, Json, Report, Threads
+from ringlet.cli.options import Fraction, Frames, Json, Report, Threads, Variant
 from ringlet.cli.output import wrote
 from ringlet.cli.progress import shown_progress
 
@@ -24,6 +24,7 @@ def hair(
             "--cache", metavar="CACHE", help="Simulated guides; without them the hairs are at rest.", show_default=False
         ),
     ] = None,
+    variant: Variant = None,
     frames: Frames = None,
     fraction: Fraction = 1.0,
     wider: Annotated[
@@ -40,7 +41,14 @@ def hair(
     with ringlet.Run("hair", report) as run, shown_progress() as progress:
         with run.stage("hairs", output):
             counts = ringlet.write_hairs(
-                groom, output, cache=cache, frames=frames, fraction=fraction, wider=wider, progress=progress
+                groom,
+                output,
+                cache=cache,
+                frames=frames,
+                fraction=fraction,
+                wider=wider,
+                variant=variant,
+                progress=progress,
             )
         run.count(**counts)
     wrote(output, run.counts, as_json)

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 import ringlet
-from ringlet.cli.options import Json, Report, Threads
+from ringlet.cli.options import Json, Report, Threads, Variant
 from ringlet.cli.output import print_json, print_table, size
 from ringlet.cli.progress import shown_progress
 
@@ -36,6 +36,7 @@ def loft(
         Path | None,
         typer.Option("--groom", metavar="GROOM", help="A groom to use in place of the shot's.", show_default=False),
     ] = None,
+    variant: Variant = None,
     again: Annotated[bool, typer.Option("--again", help="Loft all locks, also those that have not changed.")] = False,
     report: Report = None,
     as_json: Json = False,
@@ -52,7 +53,7 @@ def loft(
         settings = ringlet.read_shot(shot)
         path = output or ringlet.rest_place(settings)
         with run.stage("groom"):
-            locks = ringlet.load_groom(groom or settings.groom, progress=progress)
+            locks = ringlet.load_groom(groom or settings.groom, variant=variant, progress=progress)
         with run.stage("loft", path, "the shape that locks remember"):
             made = ringlet.loft(settings, locks, known=None if again else path, progress=progress)
             ringlet.write_loft(made, settings, path)

@@ -29,6 +29,10 @@ Report = Annotated[
         "--report", metavar="FOLDER", help="Write report.json and report.html to this folder.", show_default=False
     ),
 ]
+Variant = Annotated[
+    str | None,
+    typer.Option("--variant", metavar="NAME", help="A variant of the groom file.", show_default=False),
+]
 Fraction = Annotated[
     float, typer.Option("--fraction", min=0.001, max=1.0, help="Share of the hairs to make, for a quick look.")
 ]

@@ -12,7 +12,7 @@ from typing import Annotated
 import typer
 
 import ringlet
-from ringlet.cli.options import Frames, Json, Report, Threads
+from ringlet.cli.options import Frames, Json, Report, Threads, Variant
 from ringlet.cli.output import wrote
 from ringlet.cli.progress import shown_progress
 
@@ -26,6 +26,7 @@ def sim(
         Path | None,
         typer.Option("--groom", metavar="GROOM", help="A groom to use in place of the shot's.", show_default=False),
     ] = None,
+    variant: Variant = None,
     frames: Frames = None,
     allow_stale: Annotated[
         bool, typer.Option("--allow-stale", help="Use a lofted shape although what it was made from has changed.")
@@ -65,7 +66,7 @@ def sim(
         source = groom or settings.groom
         layer = source if source.suffix != ".toml" else output.with_name(f"{output.stem}.groom.usdc")
         with run.stage("groom", None if layer == source else layer):
-            locks = ringlet.load_groom(source, progress=progress)
+            locks = ringlet.load_groom(source, variant=variant, progress=progress)
             if layer != source:
                 ringlet.write_groom(locks, layer)
         with run.stage("simulate", output), _kept(output) as folder:

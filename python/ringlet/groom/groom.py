@@ -28,6 +28,7 @@ class Groom:
     recipe:     the text of the recipe, kept with the groom
     shapes:     the locks before they were curled (None for a groom that was read from a file)
     unsculpted: the guides before they were sculpted by hand (None for a groom that was read from a file)
+    variant:    which variant of the file it was read from (None where that has none)
     conflicts:  a sentence for every edit of a guide or a lock that is not there
     """
 
@@ -42,4 +43,5 @@ class Groom:
     recipe: str | None = None
     shapes: Curves | None = None
     unsculpted: Curves | None = None
+    variant: str | None = None
     conflicts: list[str] = field(default_factory=list)

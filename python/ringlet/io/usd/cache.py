@@ -21,12 +21,15 @@ from ringlet.shot.cache import Cache, CachedCloth
 from ringlet.stage import StageSpace
 
 
-def write_cache(cache: Cache, groom_path: Path | str, path: Path | str, space: StageSpace) -> None:
+def write_cache(
+    cache: Cache, groom_path: Path | str, path: Path | str, space: StageSpace, variant: str | None = None
+) -> None:
     """Writes a simulation as a layer over the groom file.
 
-    space: unit, up-axis and rate of the groom file
+    space:   unit, up-axis and rate of the groom file
+    variant: of the groom, where it has some
     """
-    with CacheWriter(path, groom_path, space, cache.cloths) as writer:
+    with CacheWriter(path, groom_path, space, cache.cloths, variant) as writer:
         writer.start = cache.start
         for index, (frame, points) in enumerate(zip(cache.frames, cache.points, strict=True)):
             statistics = cache.statistics[index] if index < len(cache.statistics) else None
@@ -76,13 +79,19 @@ class CacheWriter(StreamWriter):
 
     space:  unit, up-axis and rate of the groom file
     cloths: what moves besides; only what they are called and where they come from counts
+    variant: of the groom, where it has some
     start:  what was in the way when the simulation began
     """
 
     def __init__(
-        self, path: Path | str, groom_path: Path | str, space: StageSpace, cloths: Sequence[CachedCloth] = ()
+        self,
+        path: Path | str,
+        groom_path: Path | str,
+        space: StageSpace,
+        cloths: Sequence[CachedCloth] = (),
+        variant: str | None = None,
     ) -> None:
-        super().__init__(path, groom_path, space)
+        super().__init__(path, groom_path, space, variant)
         self.start: dict[str, Any] = {}
         self._cloths = cloths
         self._statistics: list[dict[str, Any]] = []

@@ -123,6 +123,7 @@ def read_groom(path: Path | str, variant: str | None = None) -> Groom:
             space=source.space,
             hairs=parse_json(source, _get(root, "hairs") or "{}", "ringlet:hairs"),
             recipe=_get(root, "recipe"),
+            variant=root.GetVariantSets().GetVariantSet(VARIANTS).GetVariantSelection() or None,
         )
 
 
@@ -156,7 +157,12 @@ def _select(source: Source, variant: str) -> None:
         hint = did_you_mean(variant, names) if names else "; it has none"
         raise UserError(f"{source.path}: has no variant '{variant}'{hint}")
     source.stage.SetEditTarget(source.stage.GetSessionLayer())
-    choice.SetVariantSelection(variant)
+    choose_variant(source.stage, variant)
+
+
+def choose_variant(stage: Usd.Stage, variant: str) -> None:
+    """Selects a variant of the groom in the layer that is edited."""
+    stage.GetPrimAtPath(GROOM).GetVariantSets().GetVariantSet(VARIANTS).SetVariantSelection(variant)
 
 
 def scalp_source(source: Source) -> tuple[Path, str]:

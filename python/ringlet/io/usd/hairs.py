@@ -38,7 +38,7 @@ class HairWriter(StreamWriter):
     """
 
     def __init__(self, path: Path | str, groom: Groom, curves: Curves, groom_path: Path | str) -> None:
-        super().__init__(path, groom_path, groom.space)
+        super().__init__(path, groom_path, groom.space, groom.variant)
         self._groom, self._hairs = groom, curves
 
     def __enter__(self) -> Self:

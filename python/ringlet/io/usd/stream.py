@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from pxr import Sdf, Usd, UsdGeom
 
 from ringlet.io.usd.curves import set_points
-from ringlet.io.usd.groom import groom_prim
+from ringlet.io.usd.groom import choose_variant, groom_prim
 from ringlet.io.usd.stage import new_stage, reading, refuse_itself, writing
 from ringlet.stage import StageSpace
 
@@ -20,9 +20,9 @@ FLUSH = 64e6  # bytes of points held in memory before they go to the file
 class StreamWriter:
     """A layer over another file that grows frame by frame, and is put in its place when the block ends well."""
 
-    def __init__(self, path: Path | str, under: Path | str, space: StageSpace) -> None:
+    def __init__(self, path: Path | str, under: Path | str, space: StageSpace, variant: str | None = None) -> None:
         refuse_itself(path, under, "file")
-        self.path, self.under, self.space = Path(path), Path(under), space
+        self.path, self.under, self.space, self.variant = Path(path), Path(under), space, variant
         self._frames: list[float] = []
         self._held = 0
 
@@ -34,6 +34,8 @@ class StreamWriter:
                 raise ValueError(f"{self.under}: has {source.space}; must be {self.space}")
         with ExitStack() as opened:
             self._stage = new_stage(opened.enter_context(writing(self.path)), self.space, over=self.under)
+            if self.variant is not None:
+                choose_variant(self._stage, self.variant)
             self._opened = opened.pop_all()
         return self._stage
 

@@ -1,0 +1,63 @@
+"""Memory and disk of a shot: what the process holds, frame by frame, and at most."""
+
+from __future__ import annotations
+
+import os
+import resource
+import tempfile
+import time
+from pathlib import Path
+from typing import Any
+
+from head import EXAMPLE, SHOT
+
+from ringlet import build_groom, read_recipe, read_shot, write_groom, write_simulation
+
+SELF = Path("/proc/self/statm")
+
+
+def run(
+    locks: int = 60, points: int = 40, frames: int = 2000, newton: int = 3, every: int = 50, folder: str = ""
+) -> dict[str, Any]:
+    """Runs a shot of the example with contact in wind, whose clip ends at frame 48, and writes its cache.
+
+    every:  frames from one look at the memory to the next
+    folder: where its files go for the while; a temporary one by default
+    """
+    text = (EXAMPLE / "light.recipe.toml").read_text()
+    text = text.replace("count = 300", f"count = {locks}").replace("points = 60", f"points = {points}")
+    text = text.replace("curls = { value = 5,", f"curls = {{ value = {points / 12},")
+    text = text.replace('"head.usdc"', f'"{(EXAMPLE / "head.usdc").as_posix()}"')
+    megabytes: list[float] = []
+    wall: list[float] = []
+
+    def look(frame: float, statistics: dict[str, Any]) -> None:
+        wall.append(statistics["wall_ms"])
+        if len(wall) % every == 1 or every == 1:
+            megabytes.append(round(resident(), 1))
+
+    with tempfile.TemporaryDirectory(dir=folder or None) as place:
+        recipe, shot, groom_file = (Path(place) / name for name in ("a.recipe.toml", "a.shot.toml", "groom.usdc"))
+        recipe.write_text(text)
+        settings = SHOT.format(groom=recipe.as_posix(), frames=frames, preroll=0, newton=newton, radius=4e-4)
+        shot.write_text(settings + "[forces]\nwind = [2.0, 0.0, 1.0]\n")
+        groom = build_groom(read_recipe(recipe))
+        write_groom(groom, groom_file)
+        begin, cache, part = time.perf_counter(), Path(place) / "cache.usdc", Path(place) / "part"
+        write_simulation(read_shot(shot), groom, groom_file, cache, checkpoints=part, on_frame=look)
+        return {
+            "bench": "frames",
+            "params": {"locks": locks, "points": points, "frames": frames, "newton": newton, "every": every},
+            "megabytes": megabytes,
+            "megabytes_after": round(resident(), 1),
+            "megabytes_most": round(1.024e-3 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, 1),
+            "megabytes_of_cache": round(1e-6 * cache.stat().st_size, 1),
+            "megabytes_of_checkpoints": round(1e-6 * sum(file.stat().st_size for file in part.iterdir()), 1),
+            "seconds": round(time.perf_counter() - begin, 1),
+            "slowest_frame_ms": round(max(wall), 1),
+        }
+
+
+def resident() -> float:
+    """Memory that the process holds now [MB]."""
+    return 1e-6 * int(SELF.read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
