@@ -6,7 +6,7 @@ import difflib
 import tomllib
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
 from pydantic_core import PydanticCustomError
@@ -29,6 +29,8 @@ class Section(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
+    gone: ClassVar[dict[str, str]] = {}  # settings of earlier versions, and what to write in their place
+
     @model_validator(mode="before")
     @classmethod
     def _only_known_settings(cls, data: Any) -> Any:
@@ -36,7 +38,8 @@ class Section(BaseModel):
             known = [field.alias or name for name, field in cls.model_fields.items()]
             for key in data:
                 if key not in known:
-                    raise PydanticCustomError("unknown", "{key}{hint}", {"key": key, "hint": did_you_mean(key, known)})
+                    hint = f" any more; {cls.gone[key]}" if key in cls.gone else did_you_mean(key, known)
+                    raise PydanticCustomError("unknown", "{key}{hint}", {"key": key, "hint": hint})
         return data
 
 

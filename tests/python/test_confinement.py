@@ -138,6 +138,11 @@ def test_a_recipe_and_a_shot_of_a_later_format_say_what_to_do(project, command, 
     refused(run(command, path, "-o", project / "out.usdc"), file, "ringlet is 2", "update it")
 
 
+def test_a_setting_of_an_earlier_version_says_what_stands_for_it_now(project):
+    recipe = add_line(project / "small.recipe.toml", "rate = [[0, 1], [1, 2]]", below="[curl]")
+    refused(run("groom", recipe, "-o", project / "groom.usdc"), "curl.rate", "any more", "give curls", "pitch a ramp")
+
+
 def as_version(path: Path, version: object) -> Path:
     """Gives the layer of a cache or a rest shape another version."""
     layer = Sdf.Layer.FindOrOpen(str(path))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +33,8 @@ class Curl(Operator):
     ``keep = "silhouette"``: the curl fills the shape's length L, and the hair is longer, by √(1 + (2πr/pitch)²).
     ``keep = "length"``: the hair has the shape's length, to a thousandth, and the silhouette is shorter instead.
     """
+
+    gone: ClassVar[dict[str, str]] = {"rate": "give curls, curls_per_cm or pitch a ramp"}
 
     preset: Preset | None = Field(default=None, description="curl type; fills what is not given here")
     width: Annotated[Ramped, Quantity("m", 0.0, 0.2)] = Field(
