@@ -6,6 +6,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent))
 
+from benchmarks import write_benchmarks
 from docstrings import as_list
 from plots import write_convergence, write_release
 from reference import write_references
@@ -32,6 +33,7 @@ html_theme_options = {
 
 def setup(app):
     write_references(Path(app.srcdir) / "_generated")
+    write_benchmarks(Path(app.srcdir) / "_generated" / "benchmarks.md")
     write_convergence(Path(app.srcdir) / "_generated" / "convergence.svg")
     write_release(Path(app.srcdir) / "_generated" / "release.svg")
     app.connect("autodoc-process-docstring", as_list)

@@ -76,8 +76,8 @@ PRESETS: dict[str, dict[str, Any]] = {
         "pitch": {"value": "5.5 mm", "vary": 0.25},
         "start": "5 mm",
         "irregularity": 0.5,
-        "kink": {"value": 0.8, "vary": 0.2},
-        "skips": 0.5,
+        "kink": {"value": 0.95, "vary": 0.1},
+        "skips": 0.2,
     },
     "4C": {
         "width": {"value": "3.5 mm", "vary": 0.3, "ramp": [(0, 0.8), (0.3, 1), (1, 0.9)]},
