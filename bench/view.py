@@ -67,7 +67,7 @@ async def _drag(port: int, clock: ringlet.Clock, steps: int) -> dict[str, Any]:
                 raise
             await asyncio.sleep(0.1)
     async with page:
-        await _say(page, kind="hello", version=1, client="bench")
+        await _say(page, kind="hello", version=2, client="bench")
         hairs, _ = await _hear(page, "hairs")
         _, size = await _hear(page, "locks")
         await _hear(page, "numbers")
@@ -82,7 +82,7 @@ async def _drag(port: int, clock: ringlet.Clock, steps: int) -> dict[str, Any]:
                 await _say(page, kind="set", changes=change, gesture=step)
                 while (await _hear(page, "locks"))[0]["draft"]:
                     pass
-            await _hear(page, "numbers")
+            await _hear(page, "measured")  # what waits for a hand that rests
     return {"hairs": hairs["count"], "locks_bytes": size, "rest_wall_ms": sorted(clock.wall["rest"])[steps // 2]}
 
 

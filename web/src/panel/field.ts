@@ -176,7 +176,8 @@ export class NumberField extends Field {
       this.setRange(sliderRange(this.setting, shown, fallback, factor));
     this.element.dataset["ranged"] = "yes";
     this.slider.value = String(shown);
-    this.number.value = String(rounded(shown, this.range.step / 10));
+    const exact = rounded(shown, this.range.step / 10);
+    this.number.value = Math.abs(exact) < 1e6 ? String(exact) : exact.toExponential();
     this.slider.style.setProperty("--part", `${this.part(shown)}%`);
   }
 
