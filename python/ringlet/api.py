@@ -618,7 +618,7 @@ def write_touches_picture(
     """Draws what ``write_touches`` wrote, with the locks and the bodies around it, as coloured beads.
 
     show:  ``force``: where how hard, from blue to red over three decades; ``gap``: red where hardly anything is left;
-           ``start``: the worst places that were in the way when the shot began
+           ``start``: all places that were in the way when the shot began, red where worst
     frame: the first by default
     """
     from ringlet import io, picture
@@ -632,8 +632,8 @@ def write_touches_picture(
     if show == "gap":
         colors = io.heat(1.0 - np.clip(touches.gap, 0.0, 1.0))
     elif show == "start":
-        places, depth = io.worst_starts(cache.start)
-        colors, part = io.heat(depth), 0.015
+        places, depth = io.start_marks(cache.start)
+        colors = io.heat(depth)
     bodies, _, _ = io.read_stage(stage, float(cache.frames[index]))
     posed = [picture.PosedBody(body.mesh, body.clip.points[0]) for body in bodies]
     if len(places):

@@ -44,11 +44,11 @@ def test_a_tie_that_tightens_gathers_curls():
     play = tightened()
     curls, ring = play.scene.strands, play.scene.cloths[0]
 
-    def reach():
+    def reach():  # of the curl that is farthest from the ring's middle where it goes through its plane
         middle = ring.positions.mean(axis=0)
-        near = np.abs(curls.positions[:, 1] - middle[1]) < 5e-4
-        assert len(np.unique(np.searchsorted(curls.curves.offsets, np.flatnonzero(near), side="right"))) == 7
-        return np.linalg.norm((curls.positions[near] - middle)[:, [0, 2]], axis=1).max()
+        strands = np.split(curls.positions - middle, curls.curves.offsets[1:-1])
+        through = [strand[:-1][strand[:-1, 1] * strand[1:, 1] <= 0] for strand in strands]
+        return max(np.hypot(points[:, 0], points[:, 2]).min() for points in through)
 
     before = reach()
     for k in range(1, play.steps + 1):

@@ -129,6 +129,9 @@ def test_locks_that_start_too_near_each_other_are_told_and_part():
     told = cache.start["overlapping"]
     assert told["locks"] == 3 and told["places"] >= 2 * (POINTS - 4)
     assert np.isclose(told["depth"], 1.5e-3, atol=1e-5)
+    marks = np.array(cache.start["marks"])  # all of them, the worst being worth 1
+    assert marks.shape == (told["places"], 4) and marks[:, 3].max() == 1.0
+    assert np.abs(marks[:, None, :3] - groom(apart=5e-4).locks.points).max(axis=2).min(axis=1).max() < 1e-4
     assert {told["worst"][0]["lock"], told["worst"][0]["other"]} in ({11, 12}, {12, 13})
     tips = cache.points[-1].reshape(3, POINTS, 3)[:, -1]
     # From 0.5 mm; the distance at which they push grows by 2 mm a second, which is 1 mm in this shot.
@@ -196,7 +199,7 @@ def test_the_head_is_a_collider_by_default_and_the_report_tells_of_contact(examp
     assert result.exit_code == 0, result.output
     told = json.loads(result.stdout)
     assert told["frames"] == FRAMES and set(told["start"]) == {"inside", "piercing", "overlapping"}
-    assert ringlet.read_cache(example / "cache.usdc").start == told["start"]
+    assert ringlet.read_cache(example / "cache.usdc").start == {**told["start"], "marks": []}
     statistics = json.loads((example / "report/report.json").read_text())["statistics"]
     assert all(frame["contact"]["candidates"] > 0 for frame in statistics)
     html = (example / "report/report.html").read_text()

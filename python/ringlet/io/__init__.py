@@ -8,7 +8,7 @@ from ringlet.io.usd.groom import read_groom, write_groom
 from ringlet.io.usd.hairs import HairWriter, read_hairs, read_stage
 from ringlet.io.usd.mesh import Body, read_bodies, read_body
 from ringlet.io.usd.rest import read_rest, write_rest
-from ringlet.io.usd.touches import heat, read_touches, worst_starts, write_touches
+from ringlet.io.usd.touches import heat, read_touches, start_marks, write_touches
 
 __all__ = [
     "Body",
@@ -30,7 +30,7 @@ __all__ = [
     "read_stage",
     "read_texture",
     "read_touches",
-    "worst_starts",
+    "start_marks",
     "write_cache",
     "write_groom",
     "write_rest",

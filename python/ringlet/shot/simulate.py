@@ -233,11 +233,11 @@ class Motion:
             if depth.any():
                 inside.append(start.tell_inside(locks, obstacle.mesh, depth))
                 self.scene.excuse(np.flatnonzero(depth), k)
-        self.start = {
-            "inside": inside,
-            "piercing": start.tell_piercing(locks, self.worn),
-            "overlapping": start.tell_overlapping(locks, self.scene, self.shot.solver),
-        }
+        self.start = start.told(
+            inside,
+            start.tell_piercing(locks, self.worn),
+            start.tell_overlapping(locks, self.scene, self.shot.solver),
+        )
 
     def cloths(self, frames: int) -> list[CachedCloth]:
         """The cloths as a cache has them, with room for so many frames."""

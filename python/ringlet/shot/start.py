@@ -61,6 +61,7 @@ def tell_inside(locks: Curves, mesh: Mesh, depth: Array) -> dict[str, Any]:
         "locks": len(np.unique(_lock_of(locks, inside))),
         "depth": float(depth.max(initial=0.0)),
         "worst": [{**_place(locks, vertex), "depth": float(depth[vertex])} for vertex in deepest],
+        "marks": _marks(locks.points[inside], depth[inside]),
     }
 
 
@@ -90,6 +91,7 @@ def tell_overlapping(locks: Curves, scene: Scene, solver: Solver) -> dict[str, A
             }
             for k in nearest
         ],
+        "marks": _marks(locks.points[vertices[:, 0]], 2.0 * scene.contact.radius - distance),
     }
 
 
@@ -137,15 +139,29 @@ def _piercing(locks: Curves, through: Worn, all_worn: Sequence[Worn]) -> Iterato
         "places": len(found),
         "locks": len(np.unique(_lock_of(locks, vertices))),
         "worst": [_place(locks, int(vertex)) for vertex in vertices[:WORST]],
+        "marks": _marks(locks.points[vertices], np.ones(len(vertices))),
     }
     for other in all_worn:
         edges = edges_of(other.cloth.mesh.triangles)
         pairs = piercings(other.cloth.positions[edges], corners)
         if other is through:
             pairs = pairs[~(edges[pairs[:, 0], :, None] == triangles[pairs[:, 1], None, :]).any(axis=(1, 2))]
-        places = other.cloth.positions[edges[pairs[:WORST, 0], 0]]
-        worst = [{"place": place.tolist()} for place in places]
-        yield {"what": other.name, "cloth": through.name, "places": len(pairs), "worst": worst}
+        places = other.cloth.positions[edges[pairs[:, 0], 0]]
+        worst = [{"place": place.tolist()} for place in places[:WORST]]
+        marks = _marks(places, np.ones(len(places)))
+        yield {"what": other.name, "cloth": through.name, "places": len(pairs), "worst": worst, "marks": marks}
+
+
+def told(inside: list[dict[str, Any]], piercing: list[dict[str, Any]], overlapping: dict[str, Any]) -> dict[str, Any]:
+    """All that there is to tell of a start, with the ``marks`` of every place in one list."""
+    marks = [mark for found in (*inside, *piercing, overlapping) for mark in found.pop("marks")]
+    return {"inside": inside, "piercing": piercing, "overlapping": overlapping, "marks": marks}
+
+
+def _marks(places: NDArray[np.floating], depth: Array) -> list[list[float]]:
+    """Rows of a place [m], to a tenth of a millimetre, and how bad it is by the worst of its kind, from 0 to 1."""
+    bad = np.clip(depth / max(float(depth.max(initial=0.0)), 1e-12), 0.0, 1.0)
+    return [[*(round(float(x), 4) for x in place), round(float(b), 3)] for place, b in zip(places, bad, strict=True)]
 
 
 def _lock_of(locks: Curves, vertices: NDArray[np.integer]) -> NDArray[np.int64]:

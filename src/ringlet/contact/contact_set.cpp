@@ -84,7 +84,7 @@ std::vector<Contact> ContactSet::of_touching(const CollisionMesh &mesh, const Co
             contact.weight = place.nearest.weights;
             contact.distance = distance;
             contact.barrier_end = distance / 2000;
-            if (material.overstep)
+            if (goes_by_planes(mesh.object[contact.vertex[0]]) || goes_by_planes(mesh.object[contact.vertex[3]]))
                 contact.barrier_end =
                     std::min(std::clamp(0.25 * apart, contact.barrier_end, touch.distance / 64), distance / 64);
             contact.normal = separation(contact, now) / apart;

@@ -15,8 +15,7 @@ struct ContactMaterial {
     std::vector<int> material;     // which material a vertex is made of
     std::vector<double> friction;  // μ of a pair of materials, row-major, materials × materials
     int materials = 1;
-    double creep = 0.0;    // [m]
-    bool overstep = false; // a search goes by the contacts' planes, which are overstepped then: barriers end early
+    double creep = 0.0; // [m]
 };
 
 class ContactSet {
@@ -28,6 +27,10 @@ public:
     using Early = std::unordered_map<uint64_t, double>; // pair → distance at which it pushes [m]
     const Early &early() const { return early_; }
     void recall(Early early) { early_ = std::move(early); }
+
+    // Of objects that go by planes (per object; beyond the end: none), a search knows the contacts by their planes alone, which
+    // are overstepped then: their barriers end early.
+    void go_by_planes(View<unsigned char> objects) { by_planes_.assign(objects.begin(), objects.end()); }
 
     // What pushes elsewhere: those that touch there. What is a contact is as stiff as here, so that energies can be compared.
     std::vector<Contact> pushing(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<Touch> &touching,
@@ -54,8 +57,10 @@ private:
     std::vector<Contact> of_touching(const CollisionMesh &mesh, const ContactMaterial &material,
                                      const std::vector<Touch> &touching, View<Vec3> start, View<Vec3> now) const;
     void index(const CollisionMesh &mesh);
+    bool goes_by_planes(int object) const { return size_t(object) < by_planes_.size() && by_planes_[object]; }
 
     Early early_;
+    std::vector<unsigned char> by_planes_;
     std::vector<Contact> contacts_;
     std::vector<Role> roles_;
     std::vector<int> role_begin_, vertices_;

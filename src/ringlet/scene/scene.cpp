@@ -227,13 +227,16 @@ int Scene::Parts::newton(const SceneStep &scene_step, const StrandStep &step, st
             system.expect(direction);
         }
         const bool small = std::all_of(reach.begin(), reach.end(), [&](double far) { return far <= step.tolerance; });
-        // A cloth that is held back here and there is strained there, so that its energy rises for once: where there is one,
-        // the search comes before the filter, and knows of the contacts alone.
+        // A cloth that is held back here and there is strained there, so that its energy rises for once: for it and what
+        // touches it the search comes before the filter, and knows of the contacts alone.
+        const std::vector<unsigned char> &by_planes = system.by_planes();
+        std::vector<unsigned char> before(by_planes.size(), 1), after(by_planes.size(), 1); // that are not searched
+        for (size_t p = 0; p < by_planes.size() && !small; ++p) before[p] = !by_planes[p], after[p] = by_planes[p];
         if (!system.cloths.empty()) {
             const Stopwatch watch(report.time_search);
             AlignedVector tried(system.size());
             std::copy_n(x.data(), x.size(), tried.data());
-            if (!search(system, nullptr, direction, small, tried).moved) break;
+            if (!search(system, nullptr, direction, before, tried).moved) break;
             for (size_t i = 0; i < system.size(); ++i) direction[i] = tried[i] - x[i];
             system.energies(x, &near, std::vector<unsigned char>(system.unit_count(), 1), unused);
         }
@@ -249,7 +252,7 @@ int Scene::Parts::newton(const SceneStep &scene_step, const StrandStep &step, st
         SceneSearch found;
         {
             const Stopwatch watch(report.time_search);
-            found = search(system, &near, direction, small || !system.cloths.empty(), x);
+            found = search(system, &near, direction, after, x);
             report.cuts += found.cuts;
         }
         if (!found.moved) break;

@@ -48,8 +48,8 @@ void measure(const SceneSystem &system, AlignedVector &direction, std::vector<do
     });
 }
 
-SceneSearch search(SceneSystem &system, const NearPairs *near, const AlignedVector &direction, bool as_it_is,
-                   AlignedVector &x) {
+SceneSearch search(SceneSystem &system, const NearPairs *near, const AlignedVector &direction,
+                   const std::vector<unsigned char> &all_of_it, AlignedVector &x) {
     constexpr double least_decrease = 1e-4, rounding = 1e-13;
     constexpr int most_cuts = 20, most_halvings = 12; // after which a part stays
     const int parts = system.vertices.parts();
@@ -80,22 +80,22 @@ SceneSearch search(SceneSystem &system, const NearPairs *near, const AlignedVect
         system.energies(trial, near, changed, now);
         double sum = 0.0, bound = 0.0;
         for (int p = 0; p < parts; ++p)
-            if (system.together(p)) sum += now[p], bound += allowed(p);
+            if (system.together(p) && !all_of_it[p]) sum += now[p], bound += allowed(p);
         const bool sum_falls = sum <= bound;
         bool any_together = false;
         for (int p = 0; p < parts; ++p) {
-            const bool may_rise = as_it_is || step[p] == 0.0 || (system.together(p) && sum_falls);
+            const bool may_rise = all_of_it[p] || step[p] == 0.0 || (system.together(p) && sum_falls);
             rises[p] = !may_rise && !(now[p] <= allowed(p));
             any_together |= rises[p] && system.together(p);
         }
         if (any_together) mark_touched(system, rises);
-        if (!any_together && !sum_falls && !as_it_is)
+        if (!any_together && !sum_falls)
             for (int p = 0; p < parts; ++p) rises[p] |= system.together(p);
 
         std::fill(changed.begin(), changed.end(), 0);
         bool any = false;
         for (int p = 0; p < parts; ++p)
-            if (rises[p] && step[p] > 0.0) {
+            if (rises[p] && !all_of_it[p] && step[p] > 0.0) {
                 step[p] *= cut < most_halvings ? 0.5 : 0.0;
                 changed[system.unit_of(p)] = any = true;
                 ++result.cuts;

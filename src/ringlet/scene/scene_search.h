@@ -18,7 +18,8 @@ struct SceneSearch {
 // Goes from x along the direction, which is that of the last move, every part as far as is good for it. One that touches
 // nothing that moves goes half as far until its energy falls as it should. The energies of those that touch, contacts shared
 // out evenly, need only fall in sum; where they do not, those whose own rises go half as far, and so do those that they touch:
-// what a direction does on both sides of a contact belongs together. `as_it_is`: all of it is gone, whatever the energy.
-SceneSearch search(SceneSystem &system, const NearPairs *near, const AlignedVector &direction, bool as_it_is, AlignedVector &x);
+// what a direction does on both sides of a contact belongs together. Parts that are to go `all_of_it` do, whatever the energy.
+SceneSearch search(SceneSystem &system, const NearPairs *near, const AlignedVector &direction,
+                   const std::vector<unsigned char> &all_of_it, AlignedVector &x);
 
 } // namespace ringlet

@@ -28,8 +28,22 @@ void SceneSystem::scatter(View<Vec3> from, AlignedVector &into) const {
 }
 
 void SceneSystem::touch(const std::vector<Touch> &touching, View<Vec3> now) {
+    find_planes(touching);
     contacts.find(vertices.mesh, vertices.material, touching, vertices.positions, now);
     couple_parts();
+}
+
+void SceneSystem::find_planes(const std::vector<Touch> &touching) {
+    by_planes_.assign(vertices.parts(), 0);
+    std::fill(by_planes_.begin() + vertices.strands, by_planes_.end(), 1);
+    if (cloths.empty()) return;
+    for (const Touch &touch : touching)
+        with_vertices(vertices.mesh, touch, [&](const auto &a, const auto &b) {
+            const int one = vertices.part_of(a[0]), other = vertices.part_of(b[0]);
+            if (one >= vertices.strands && other >= 0) by_planes_[other] = 1;
+            if (other >= vertices.strands && one >= 0) by_planes_[one] = 1;
+        });
+    contacts.go_by_planes(by_planes_);
 }
 
 // Nothing but the incomplete factor is known of a cloth: it counts as coupled whatever touches it.

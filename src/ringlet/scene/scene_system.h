@@ -78,6 +78,8 @@ public:
     bool together(int part) const { return together_[part]; }  // something that moves touches it
     bool is_coupled(int unit) const { return coupled_[unit]; } // its own factor does not solve it
     bool any_coupled() const;
+    // Per part, whether it is a cloth or touches one, so that a search goes by planes: see scene_search.h.
+    const std::vector<unsigned char> &by_planes() const { return by_planes_; }
 
     // Energies [J] of the parts at x, somewhere on the last move: each with its share of what pushes there, be it a contact yet
     // or not (without `near`: of what its contacts push, by their planes), and of the contacts' friction. Only units that have
@@ -101,6 +103,7 @@ public:
 private:
     bool couples(const Contact &c) const { return vertices.part_of(c.vertex[0]) >= 0 && vertices.part_of(c.vertex[3]) >= 0; }
     void couple_parts();
+    void find_planes(const std::vector<Touch> &touching);
     Vec3 separation_at(const Contact &contact, const AlignedVector &x) const;
     void add_to_strand(int vertex);
     void add_to_cloth(int vertex);
@@ -108,7 +111,7 @@ private:
     View<Vec3> given_;
     std::vector<ContactValue> values_;        // of the contacts
     std::vector<std::array<Vec3, 2>> pushes_; // on the two sides of each
-    std::vector<unsigned char> coupled_, together_;
+    std::vector<unsigned char> coupled_, together_, by_planes_;
     std::vector<double> own_energies_; // per part, without contacts
     std::vector<Vec3> places_;         // of all vertices, where energies were asked last
 };

@@ -99,7 +99,6 @@ SceneVertices number_vertices(const StrandModel &strands, const StrandState &sta
     }
     all.bodies.push_back(all.count());
 
-    all.material.overstep = !cloths.empty();
     all.material.friction = contact.friction;
     all.material.materials = int(std::lround(std::sqrt(double(contact.friction.size()))));
     if (all.material.materials * all.material.materials != int(contact.friction.size()))

@@ -1,4 +1,4 @@
-"""What touches in a simulation, as points over its cache: the contacts of every frame, and the worst starts.
+"""What touches in a simulation, as points over its cache: the contacts of every frame, and how it started.
 
 /groom/touches   Points, coloured by their force: blue, a thousandth of the greatest; red, the greatest of all frames
 /groom/start     Points where locks began inside something, through it or too near, coloured by their depth
@@ -53,7 +53,7 @@ def write_touches(cache: Cache | Told, cache_path: Path | str, path: Path | str,
                 kind, value = to_usd(getattr(touches, name))
                 primvar = UsdGeom.PrimvarsAPI(prim).CreatePrimvar(f"ringlet:{name}", kind, "vertex")
                 primvar.Set(value, time)
-        places, depth = worst_starts(cache.start)
+        places, depth = start_marks(cache.start)
         _put(UsdGeom.Points.Define(stage, START), places, heat(depth), space, Usd.TimeCode.Default())
         if len(cache.frames):
             stage.SetStartTimeCode(float(cache.frames[0]))
@@ -79,15 +79,10 @@ def read_touches(path: Path | str, frame: float | None = None) -> tuple[Touches,
         return Touches(places, force, gap), colors
 
 
-def worst_starts(start: dict[str, Any]) -> tuple[NDArray[np.float32], NDArray[np.float64]]:
-    """Where the worst is that was in the way [m], shape (k, 3), and how bad by the worst of its kind, from 0 to 1."""
-    places: list[list[float]] = []
-    depth: list[float] = []
-    for found in [*start.get("inside", []), *start.get("piercing", []), start.get("overlapping", {})]:
-        for one in found.get("worst", []):
-            places.append(one["place"])
-            depth.append(one.get("depth", 1.0) / max(found.get("depth", 1.0), 1e-12) if "depth" in one else 1.0)
-    return np.array(places, np.float32).reshape(-1, 3), np.array(depth, np.float64)
+def start_marks(start: dict[str, Any]) -> tuple[NDArray[np.float32], NDArray[np.float64]]:
+    """Where anything was in the way [m], shape (k, 3), and how bad by the worst of its kind, from 0 to 1."""
+    marks = np.array(start.get("marks", []), np.float64).reshape(-1, 4)
+    return marks[:, :3].astype(np.float32), marks[:, 3]
 
 
 def _put(prim: UsdGeom.Points, places: NDArray, colors: NDArray, space: StageSpace, time: Usd.TimeCode) -> None:
