@@ -20,57 +20,70 @@ export function lockTable(points: Float32Array, offsets: Int32Array, axis: Float
     b: new Float32Array(4 * rows),
     places: new Float32Array(4 * locks),
   };
-  for (let lock = 0; lock < locks; lock++) fill(table, points, offsets[lock], offsets[lock + 1], lock, axis);
+  const tangents = new Float64Array(points.length);
+  for (let lock = 0; lock < locks; lock++) fill(table, points, offsets[lock], offsets[lock + 1], lock, axis, tangents);
   return table;
 }
 
-function fill(table: LockTable, points: Float32Array, from: number, to: number, lock: number, axis: Float32Array) {
+type Vector = Float64Array;
+
+// Vectors that are used again and again: this runs for every point while a hand moves, and new ones would be garbage.
+const [before, after, sum, t, next, moved, edge, turned] = Array.from({ length: 8 }, () => new Float64Array(3));
+
+function fill(
+  table: LockTable,
+  points: Float32Array,
+  from: number,
+  to: number,
+  lock: number,
+  axis: Float32Array,
+  tangents: Float64Array,
+) {
   const n = to - from;
   const first = from + 3 * lock;
-  table.places.set([first + 1, n - 1, 0, 0], 4 * lock);
+  table.places[4 * lock] = first + 1;
+  table.places[4 * lock + 1] = n - 1;
   const { point, a, b } = table;
 
   // Tangents: the mean of the two directions that meet.
-  const tangent = new Float64Array(3 * n);
-  const before = [0, 0, 0];
+  before.fill(0);
   for (let i = 0; i < n; i++) {
-    const at = 3 * (from + i);
-    const after = [0, 0, 0];
+    after.fill(0);
     if (i + 1 < n) {
-      for (let c = 0; c < 3; c++) after[c] = points[at + 3 + c] - points[at + c];
+      between(after, points, from + i);
       normalise(after);
     }
-    const sum = [before[0] + after[0], before[1] + after[1], before[2] + after[2]];
+    for (let c = 0; c < 3; c++) sum[c] = before[c] + after[c];
     if (dot(sum, sum) > 1e-20) normalise(sum);
-    else if (i > 0) for (let c = 0; c < 3; c++) sum[c] = tangent[3 * (i - 1) + c];
+    else if (i > 0) read(sum, tangents, i - 1);
     else sum[1] = 1;
-    tangent.set(sum, 3 * i);
-    if (dot(after, after) > 0.5) for (let c = 0; c < 3; c++) before[c] = after[c];
+    for (let c = 0; c < 3; c++) tangents[3 * i + c] = sum[c];
+    if (dot(after, after) > 0.5) before.set(after);
   }
 
   // The frame: mirrored along each edge and back (double reflection).
-  let moved = orthogonal([axis[3 * lock], axis[3 * lock + 1], axis[3 * lock + 2]], row(tangent, 0));
+  read(moved, axis, lock);
+  read(t, tangents, 0);
+  orthogonal(moved, t);
   for (let i = 0; i < n; i++) {
-    const t = row(tangent, i);
-    const side = [
-      t[1] * moved[2] - t[2] * moved[1],
-      t[2] * moved[0] - t[0] * moved[2],
-      t[0] * moved[1] - t[1] * moved[0],
-    ];
+    read(t, tangents, i);
     const at = 4 * (first + 1 + i);
     for (let c = 0; c < 3; c++) {
+      const d = (c + 1) % 3;
+      const e = (c + 2) % 3;
       point[at + c] = points[3 * (from + i) + c];
       a[at + c] = moved[c];
-      b[at + c] = side[c];
+      b[at + c] = t[d] * moved[e] - t[e] * moved[d];
     }
     if (i + 1 === n) break;
-    const edge = [0, 1, 2].map((c) => points[3 * (from + i + 1) + c] - points[3 * (from + i) + c]);
-    const next = row(tangent, i + 1);
-    const turned = mirror(t, edge);
-    moved = orthogonal(
-      mirror(mirror(moved, edge), [next[0] - turned[0], next[1] - turned[1], next[2] - turned[2]]),
-      next,
-    );
+    between(edge, points, from + i);
+    read(next, tangents, i + 1);
+    turned.set(t);
+    mirror(turned, edge);
+    for (let c = 0; c < 3; c++) turned[c] = next[c] - turned[c];
+    mirror(moved, edge);
+    mirror(moved, turned);
+    orthogonal(moved, next);
   }
 
   // The curve goes on as a parabola beyond its ends.
@@ -90,27 +103,43 @@ function fill(table: LockTable, points: Float32Array, from: number, to: number, 
   }
 }
 
-const row = (values: Float64Array, i: number) => [values[3 * i], values[3 * i + 1], values[3 * i + 2]];
-const dot = (u: number[], v: number[]) => u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+/** The vector of a row. */
+function read(v: Vector, values: Float32Array | Float64Array, row: number): void {
+  for (let c = 0; c < 3; c++) v[c] = values[3 * row + c];
+}
 
-function normalise(v: number[]): number[] {
+/** From a point to the next. */
+function between(v: Vector, points: Float32Array, i: number): void {
+  for (let c = 0; c < 3; c++) v[c] = points[3 * (i + 1) + c] - points[3 * i + c];
+}
+
+function dot(u: Vector, v: Vector): number {
+  return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+}
+
+function normalise(v: Vector): void {
   const length = Math.sqrt(dot(v, v));
   if (length > 0) for (let c = 0; c < 3; c++) v[c] /= length;
-  return v;
 }
 
-function mirror(v: number[], across: number[]): number[] {
+function mirror(v: Vector, across: Vector): void {
   const square = dot(across, across);
-  if (square < 1e-30) return v;
+  if (square < 1e-30) return;
   const k = (2 * dot(v, across)) / square;
-  return [v[0] - k * across[0], v[1] - k * across[1], v[2] - k * across[2]];
+  for (let c = 0; c < 3; c++) v[c] -= k * across[c];
 }
 
-function orthogonal(v: number[], t: number[]): number[] {
-  const k = dot(v, t);
-  const left = [v[0] - k * t[0], v[1] - k * t[1], v[2] - k * t[2]];
-  if (dot(left, left) > 1e-12) return normalise(left);
-  const other = Math.abs(t[0]) < 0.9 ? [1, 0, 0] : [0, 1, 0];
-  const m = dot(other, t);
-  return normalise([other[0] - m * t[0], other[1] - m * t[1], other[2] - m * t[2]]);
+/** Takes the part along the unit vector away; of a vector along it nothing is left, and another takes its place. */
+function orthogonal(v: Vector, along: Vector): void {
+  const k = dot(v, along);
+  for (let c = 0; c < 3; c++) v[c] -= k * along[c];
+  if (dot(v, v) > 1e-12) {
+    normalise(v);
+    return;
+  }
+  v.fill(0);
+  v[Math.abs(along[0]) < 0.9 ? 0 : 1] = 1;
+  const m = dot(v, along);
+  for (let c = 0; c < 3; c++) v[c] -= m * along[c];
+  normalise(v);
 }
