@@ -137,6 +137,15 @@ def test_variants_are_variants_of_the_usd_file(folder):
         ringlet.write_groom(base_groom, folder / "groom.usdc", variants={"hair down": down_groom})
 
 
+def test_the_head_of_a_variant_in_another_folder_is_the_same_head(folder, monkeypatch):
+    monkeypatch.chdir(folder)
+    (folder / "other").mkdir()
+    (folder / "other/down.toml").write_text("ringlet = 1\nextends = '../base.toml'\n[locks]\npoints = 96\n")
+    down = ringlet.build_groom("other/down.toml")
+    ringlet.write_groom(ringlet.build_groom("base.toml"), "groom.usdc", variants={"down": down})
+    assert len(ringlet.read_groom("groom.usdc", variant="down").locks.points) == 12 * 96
+
+
 def test_a_cache_lies_over_the_selected_variant(folder):
     down = ringlet.build_groom(variant(folder, 'extends = "base.toml"\n[locks]\npoints = 96\n'))
     base = ringlet.build_groom(folder / "base.toml")
