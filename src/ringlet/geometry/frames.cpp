@@ -5,18 +5,22 @@
 namespace ringlet {
 namespace {
 
-// Mirrors v in the plane orthogonal to `across`; leaves it where there is no such plane.
-Vec3 mirror(const Vec3 &v, const Vec3 &across) {
+// Of length 1, or 0. Quick where the length is neither huge nor tiny.
+Vec3 unit(const Vec3 &v) {
+    const double length2 = v.squaredNorm();
+    return length2 > 1e-200 && length2 < 1e200 ? Vec3(v / std::sqrt(length2)) : Vec3(v.stableNormalized());
+}
+
+// What to take of `across` for each part of a vector along it, to mirror that in the plane orthogonal to it; 0 where there is
+// none.
+double mirroring(const Vec3 &across) {
     const double length2 = across.squaredNorm();
-    return length2 > 1e-30 ? Vec3(v - (2.0 * across.dot(v) / length2) * across) : v;
+    return length2 > 1e-30 ? 2.0 / length2 : 0.0;
 }
 
 } // namespace
 
-Vec3 orthogonal(const Vec3 &axis, const Vec3 &tangent) {
-    const Vec3 rest = axis - tangent.dot(axis) * tangent;
-    const double length = rest.norm();
-    if (length > 1e-9) return rest / length;
+Vec3 any_orthogonal(const Vec3 &tangent) {
     int smallest = 0;
     tangent.cwiseAbs().minCoeff(&smallest);
     return tangent.cross(Vec3::Unit(smallest)).normalized();
@@ -27,7 +31,7 @@ void tangents(View<Vec3> points, std::span<Vec3> result) {
     Vec3 before = Vec3::Zero();
     for (size_t i = 0; i < n; ++i) {
         Vec3 after = Vec3::Zero();
-        if (i + 1 < n) after = (points[i + 1] - points[i]).stableNormalized();
+        if (i + 1 < n) after = unit(points[i + 1] - points[i]);
         const Vec3 sum = before + after;
         // Where the curve turns straight back, or two points coincide, the last good direction is as right as any.
         if (sum.squaredNorm() > 1e-20)
@@ -43,8 +47,11 @@ void transport(View<Vec3> points, View<Vec3> tangents, const Vec3 &axis, std::sp
     result[0] = orthogonal(axis, tangents[0]);
     for (size_t i = 0; i + 1 < points.size(); ++i) {
         const Vec3 edge = points[i + 1] - points[i];
-        const Vec3 tangent = mirror(tangents[i], edge), moved = mirror(result[i], edge);
-        result[i + 1] = orthogonal(mirror(moved, tangents[i + 1] - tangent), tangents[i + 1]);
+        const double by = mirroring(edge);
+        const Vec3 tangent = tangents[i] - by * edge.dot(tangents[i]) * edge,
+                   moved = result[i] - by * edge.dot(result[i]) * edge;
+        const Vec3 turn = tangents[i + 1] - tangent;
+        result[i + 1] = orthogonal(moved - mirroring(turn) * turn.dot(moved) * turn, tangents[i + 1]);
     }
 }
 

@@ -24,7 +24,14 @@ void tangents(View<Vec3> points, std::span<Vec3> result);
 // The first axis is `axis` made orthogonal to the first tangent; all are unit vectors orthogonal to theirs.
 void transport(View<Vec3> points, View<Vec3> tangents, const Vec3 &axis, std::span<Vec3> result);
 
+// Some unit vector orthogonal to a unit vector.
+Vec3 any_orthogonal(const Vec3 &tangent);
+
 // `axis` without its part along the unit vector `tangent`, of length 1; any orthogonal vector where nothing is left.
-Vec3 orthogonal(const Vec3 &axis, const Vec3 &tangent);
+inline Vec3 orthogonal(const Vec3 &axis, const Vec3 &tangent) {
+    const Vec3 rest = axis - tangent.dot(axis) * tangent;
+    const double length = rest.norm();
+    return length > 1e-9 ? Vec3(rest / length) : any_orthogonal(tangent);
+}
 
 } // namespace ringlet

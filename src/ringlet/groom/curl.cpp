@@ -22,23 +22,30 @@ double lerp_table(View<double> table, double u) {
     return table[i] + (at - static_cast<double>(i)) * (table[i + 1] - table[i]);
 }
 
-// Between its values a noise eases in and out, so that it has no corners.
-double eased_table(View<double> table, double u) {
-    if (table.size() < 2) return table[0];
-    const double at = u * static_cast<double>(table.size() - 1);
-    const size_t i = std::min(static_cast<size_t>(at), table.size() - 2);
-    return table[i] + eased(at - static_cast<double>(i)) * (table[i + 1] - table[i]);
-}
+// A place in a table of noise, which is the same in the tables of all locks. Between its values a noise eases in and out, so
+// that it has no corners.
+struct Between {
+    size_t i, next;
+    double t;
+    Between(size_t size, double u) {
+        const double at = u * static_cast<double>(size - 1);
+        i = std::min(static_cast<size_t>(at), size > 1 ? size - 2 : 0);
+        next = std::min(i + 1, size - 1);
+        t = eased(at - static_cast<double>(i));
+    }
+    double operator()(View<double> table) const { return table[i] + t * (table[next] - table[i]); }
+};
 
 // A shape by the length from its root: the spline through its points with a frame that turns as little as possible.
 class Spine {
 public:
     void fit(View<Vec3> shape, const Vec3 &axis) {
-        shape_ = shape;
+        pieces_.clear();
+        for (size_t i = 0; i + 1 < shape.size(); ++i) pieces_.push_back(spline_piece(shape, static_cast<int>(i)));
         const size_t n = 4 * (shape.size() - 1) + 1;
         for (auto *values : {&points_, &tangents_, &a_, &b_}) values->resize(n);
         along_.assign(n, 0.0);
-        for (size_t k = 0; k < n; ++k) points_[k] = spline(shape, 0.25 * static_cast<double>(k));
+        for (size_t k = 0; k < n; ++k) points_[k] = on_piece(k, 0.0);
         for (size_t k = 1; k < n; ++k) along_[k] = along_[k - 1] + (points_[k] - points_[k - 1]).norm();
         tangents(points_, tangents_);
         transport(points_, tangents_, axis, a_);
@@ -57,13 +64,19 @@ public:
         while (i_ + 2 < along_.size() && along_[i_ + 1] < s) ++i_;
         const double edge = along_[i_ + 1] - along_[i_];
         const double t = edge > 0.0 ? std::min(1.0, (s - along_[i_]) / edge) : 0.0;
-        point = spline(shape_, 0.25 * (static_cast<double>(i_) + t));
+        point = on_piece(i_, t);
         a = a_[i_] + t * (a_[i_ + 1] - a_[i_]);
         b = b_[i_] + t * (b_[i_ + 1] - b_[i_]);
     }
 
 private:
-    View<Vec3> shape_;
+    // A part of the way on from one of the points, of which there are four to a piece of the spline.
+    Vec3 on_piece(size_t point, double part) const {
+        const size_t piece = std::min(point / 4, pieces_.size() - 1);
+        return pieces_[piece](0.25 * (static_cast<double>(point - 4 * piece) + part));
+    }
+
+    std::vector<Cubic> pieces_;
     std::vector<Vec3> points_, tangents_, a_, b_;
     std::vector<double> along_;
     double length_ = 0.0;
@@ -79,13 +92,14 @@ struct Place {
 // One lock being curled; the scratch is kept from lock to lock.
 class Curler {
 public:
-    // Three samples a point, and a spline between them: at 12 points a turn it misses the curl by 1e-5 of its radius.
+    // Two samples a point, and a spline between them: at 12 points a turn it misses the curl by 1e-4 of its radius.
     Curler(const CurveView &shapes, const CurlSettings &settings, int count)
-        : shapes_(shapes), settings_(settings), way_(3 * count), leading_(3 * count), curled_(3 * count), shared_(3 * count) {
-        for (size_t k = 0; k < shared_.size(); ++k) {
-            const double v = static_cast<double>(k) / static_cast<double>(shared_.size() - 1);
-            shared_[k] = {v, lerp_table(settings.width_ramp, v), lerp_table(settings.rate_ramp, v),
-                          lerp_table(settings.taper_ramp, v), lerp_table(settings.wave_ramp, v)};
+        : shapes_(shapes), settings_(settings), way_(2 * count), leading_(2 * count), curled_(2 * count) {
+        for (size_t k = 0; k < way_.size(); ++k) {
+            const double v = static_cast<double>(k) / static_cast<double>(way_.size() - 1);
+            shared_.push_back({v, lerp_table(settings.width_ramp, v), lerp_table(settings.rate_ramp, v),
+                               lerp_table(settings.taper_ramp, v), lerp_table(settings.wave_ramp, v),
+                               Between(settings.noise_count, v)});
         }
     }
 
@@ -157,24 +171,26 @@ private:
 
         double turned = 0.0, rate_before = 0.0;
         for (size_t k = 0; k < way.size(); ++k) {
-            const auto &[v, width_ramp, rate_ramp, taper_ramp, wave_ramp] = shared_[k];
+            const auto &[v, width_ramp, rate_ramp, taper_ramp, wave_ramp, noise] = shared_[k];
             const double s = v * length;
             Place &at = way[k];
             spine.at(v * part, at.centre, at.a, at.b);
             // A closing over less than 2 mm fades in, lest the tip jump when the first of it is asked for.
-            const double closing = lerp_table(settings_.closing, 1.0 - eased_part(length - s, settings_.end[lock]));
-            const double open = lerp_table(settings_.opening, eased_part(s, settings_.start[lock])) *
-                                (1.0 + std::min(1.0, settings_.end[lock] / 2e-3) * (closing - 1.0));
+            double open = lerp_table(settings_.opening, eased_part(s, settings_.start[lock]));
+            if (const double end = settings_.end[lock]; end > 0.0) {
+                const double closing = lerp_table(settings_.closing, 1.0 - eased_part(length - s, end));
+                open *= 1.0 + std::min(1.0, end / 2e-3) * (closing - 1.0);
+            }
             at.radius = settings_.radius[lock] * width_ramp * open * (1.0 - settings_.taper[lock] * taper_ramp) *
-                        (1.0 + eased_table(width_noise, v));
-            const double rate = turns * rate_ramp * (1.0 + eased_table(rate_noise, v)) *
+                        (1.0 + noise(width_noise));
+            const double rate = turns * rate_ramp * (1.0 + noise(rate_noise)) *
                                 hand(settings_.flip[lock], switchbacks, turns, v) * pace(skips, turns, v);
             if (k > 0) turned += 0.5 * step * (rate_before + rate);
             rate_before = rate;
             at.phase = settings_.phase[lock] + whole_turn * turned;
             if (wave > 0.0)
                 at.centre += wave * wave_ramp * open * std::sin(whole_turn * wave_turns * v) * (wave_x * at.a + wave_y * at.b);
-            if (const double angle = eased_table(sway, v); angle != 0.0) {
+            if (const double angle = noise(sway); angle != 0.0) {
                 const Vec3 a = std::cos(angle) * at.a + std::sin(angle) * at.b;
                 at.b = std::cos(angle) * at.b - std::sin(angle) * at.a;
                 at.a = a;
@@ -232,6 +248,7 @@ private:
     std::vector<Vec3> curled_;
     struct Shared {
         double v, width_ramp, rate_ramp, taper_ramp, wave_ramp;
+        Between noise;
     };
     std::vector<Shared> shared_; // what all locks have in common, sample by sample
 };

@@ -6,16 +6,15 @@
 namespace ringlet {
 namespace {
 
-constexpr double stride = 2e-3; // [m] places that are looked at are no farther apart: none gets deeper in unseen
 constexpr double coming = 6e-3; // [m] length over which a move begins before it is needed
 constexpr double going = 0.1;   // [m] length over which it dies away after
 
 // Finds the moves of the points of one curve that keep it out; returns whether any moves. From the first that does, its edges
 // are drawn to the lengths that are given, if they are: edge k ends in point k.
-bool follow(std::span<const Vec3> points, std::span<const double> lengths, const Solid &body, double margin,
-            const Allowed &allowed, std::span<Vec3> moves) {
+bool follow(std::span<const Vec3> points, std::span<const double> lengths, const Solid &body, const NearCells &cells,
+            double margin, const Allowed &allowed, std::span<Vec3> moves) {
     bool any = false;
-    Sounding sounding(body);
+    Sounding sounding(body, cells);
     Vec3 move = Vec3::Zero(), before = points[0];
     double along = 0.0;
     moves[0].setZero();
@@ -63,6 +62,7 @@ void ease(std::span<const Vec3> points, std::span<Vec3> moves, std::vector<Vec3>
 
 std::vector<Vec3> push_out(const CurveView &curves, const Solid &body, double margin, const Allowed &allowed) {
     constexpr int rounds = 4;
+    const NearCells cells(body.mesh(), std::max(margin, band));
     std::vector<Vec3> result(curves.points.begin(), curves.points.end());
 #pragma omp parallel
     {
@@ -76,7 +76,7 @@ std::vector<Vec3> push_out(const CurveView &curves, const Solid &body, double ma
             for (size_t k = 1; k < points.size(); ++k) lengths[k] = (points[k] - points[k - 1]).norm();
             for (int round = 1; round <= rounds; ++round) {
                 const bool last = round == rounds; // what is left by then is little; it is only cleared
-                if (!follow(points, last ? std::span<double>() : lengths, body, margin, allowed, moves)) break;
+                if (!follow(points, last ? std::span<double>() : lengths, body, cells, margin, allowed, moves)) break;
                 if (!last) ease(points, moves, scratch);
                 for (size_t k = 1; k < points.size(); ++k) points[k] += moves[k];
             }

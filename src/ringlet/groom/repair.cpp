@@ -78,24 +78,26 @@ private:
 std::vector<Sunk> find_sunk(const CurveView &curves, const std::vector<const Solid *> &bodies, const Allowed &allowed) {
     std::vector<Sunk> result;
     const auto floor = [&](double along) { return -may(allowed, along) - rounding; };
-    for (size_t body = 0; body < bodies.size(); ++body)
+    for (size_t body = 0; body < bodies.size(); ++body) {
+        const NearCells cells(bodies[body]->mesh(), band);
 #pragma omp parallel
-    {
-        std::vector<Sunk> found;
+        {
+            std::vector<Sunk> found;
 #pragma omp for schedule(dynamic, 16) nowait
-        for (int i = 0; i < curves.count(); ++i)
-            sound(curves[i], *bodies[body], 0.0, floor,
-                  [&](size_t k, double, double along, const Vec3 &place, const Above &above) {
-                      const int point = curves.offsets[i] + static_cast<int>(k);
-                      const Sunk here{static_cast<int>(body), point, above.triangle, place,
-                                      -above.height - may(allowed, along)};
-                      if (found.empty() || found.back().point != point)
-                          found.push_back(here);
-                      else if (found.back().depth < here.depth) // of several on one segment the deepest
-                          found.back() = here;
-                  });
+            for (int i = 0; i < curves.count(); ++i)
+                sound(curves[i], *bodies[body], cells, 0.0, floor,
+                      [&](size_t k, double, double along, const Vec3 &place, const Above &above) {
+                          const int point = curves.offsets[i] + static_cast<int>(k);
+                          const Sunk here{static_cast<int>(body), point, above.triangle, place,
+                                          -above.height - may(allowed, along)};
+                          if (found.empty() || found.back().point != point)
+                              found.push_back(here);
+                          else if (found.back().depth < here.depth) // of several on one segment the deepest
+                              found.back() = here;
+                      });
 #pragma omp critical
-        result.insert(result.end(), found.begin(), found.end());
+            result.insert(result.end(), found.begin(), found.end());
+        }
     }
     std::sort(result.begin(), result.end(),
               [](const Sunk &a, const Sunk &b) { return std::tie(a.body, a.point) < std::tie(b.body, b.point); });
@@ -113,7 +115,10 @@ Repair::Repair(const CurveView &curves, std::vector<const Solid *> bodies, const
     : offsets_(curves.offsets.begin(), curves.offsets.end()), bodies_(std::move(bodies)), allowed_(allowed),
       points_(curves.points.begin(), curves.points.end()), best_(points_), least_(std::numeric_limits<size_t>::max()),
       wanted_(points_.size()), weight_(points_.size()) {
-    for (const Solid *body : bodies_) points_ = push_out(this->curves(), *body, clear, allowed_);
+    for (const Solid *body : bodies_) {
+        cells_.emplace_back(body->mesh(), band);
+        points_ = push_out(this->curves(), *body, clear, allowed_);
+    }
 }
 
 int Repair::round() {
@@ -157,10 +162,10 @@ int Repair::push_out_of_bodies() {
         return may(allowed_, along) > 0.0 ? -0.5 * may(allowed_, along) : std::min(clear, 0.5 * along);
     };
     const auto floor = [&](double along) { return (goal(along) < 0.0 ? 1.5 : 0.5) * goal(along); };
-    for (const Solid *body : bodies_)
+    for (size_t body = 0; body < bodies_.size(); ++body)
 #pragma omp parallel for schedule(dynamic, 16) reduction(+ : wrong)
         for (int i = 0; i < curves().count(); ++i)
-            sound(curves()[i], *body, 0.5 * clear, floor,
+            sound(curves()[i], *bodies_[body], cells_[body], 0.5 * clear, floor,
                   [&](size_t k, double at, double along, const Vec3 &place, const Above &above) {
                       wrong += above.height < -may(allowed_, along) - rounding;
                       const Vec3 way = above.foot + goal(along) * above.normal - place;

@@ -48,6 +48,7 @@ private:
 
     std::vector<int> offsets_;
     std::vector<const Solid *> bodies_;
+    std::vector<NearCells> cells_; // of each
     Allowed allowed_;
     std::vector<Vec3> points_, best_;
     size_t least_;

@@ -1,0 +1,34 @@
+// Which places are certainly farther from a mesh than a distance, by a grid of cells: much quicker than to look for the
+// nearest.
+#pragma once
+
+#include "ringlet/geometry/triangle_mesh.h"
+
+#include <vector>
+
+namespace ringlet {
+
+class NearCells {
+public:
+    NearCells(const TriangleMesh &mesh, double distance);
+
+    double distance() const { return distance_; }
+    bool may_be_near(const Vec3 &place) const {
+        const Eigen::Array3d at = (place - low_).array() * per_length_;
+        if (!((at >= 0.0).all() && (at < size_.cast<double>()).all())) return false;
+        return near_[index(at.cast<int>())] != 0;
+    }
+
+private:
+    size_t index(const Eigen::Array3i &cell) const {
+        return (static_cast<size_t>(cell[0]) * size_[1] + cell[1]) * size_[2] + cell[2];
+    }
+
+    double distance_;
+    Vec3 low_ = Vec3::Zero();
+    double per_length_ = 1.0;
+    Eigen::Array3i size_ = Eigen::Array3i::Zero();
+    std::vector<unsigned char> near_;
+};
+
+} // namespace ringlet
