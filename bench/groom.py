@@ -19,7 +19,7 @@ file = '{head}'
 mesh = "/child/skin"
 region = "scalp"
 [guides]
-count = 100
+count = {guides}
 length = {{ value = 8, vary = 0.1, noise = 0.2 }}
 [locks]
 count = {locks}
@@ -30,10 +30,24 @@ op = "clump"
 op = "scraggle"
 [curl]
 preset = "3C"
+width = {{ value = "{width} mm", vary = 0.2, ramp = [[0, 0.8], [0.3, 1], [1, 0.8]] }}
 curls = {{ value = {curls}, vary = 0.1 }}
 [hairs]
 per_lock = {per_lock}
 """
+
+
+def recipe_text(guides: int, locks: int, points: int, hairs: int, width: float = 9.0) -> str:
+    """A recipe of the example head, with curls of that width [mm] and 12 points a curl."""
+    return RECIPE.format(
+        head=HEAD.as_posix(),
+        guides=guides,
+        locks=locks,
+        points=points,
+        curls=points / 12,
+        per_lock=max(1, round(hairs / locks)),
+        width=width,
+    )
 
 
 def run(locks: int = 2000, points: int = 60, hairs: int = 50_000, repeat: int = 5) -> dict[str, Any]:
@@ -44,11 +58,9 @@ def run(locks: int = 2000, points: int = 60, hairs: int = 50_000, repeat: int = 
     hairs:  render hairs in all
     repeat: evaluations that the times are taken over, after one that warms up
     """
-    per_lock = max(1, round(hairs / locks))
-    text = RECIPE.format(head=HEAD.as_posix(), locks=locks, points=points, curls=points / 12, per_lock=per_lock)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "bench.recipe.toml"
-        path.write_text(text)
+        path.write_text(recipe_text(100, locks, points, hairs))
         recipe = read_recipe(path)
 
     clock = Clock()

@@ -9,34 +9,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from groom import recipe_text
 
 from ringlet import Clock, Memory, build_groom, build_hairs, read_recipe
-
-HEAD = Path(__file__).parents[1] / "examples" / "child" / "head.usdc"
-
-RECIPE = """
-ringlet = 1
-[scalp]
-file = '{head}'
-mesh = "/child/skin"
-region = "scalp"
-[guides]
-count = {guides}
-length = {{ value = 8, vary = 0.1, noise = 0.2 }}
-[locks]
-count = {locks}
-points = {points}
-[[shape]]
-op = "clump"
-[[shape]]
-op = "scraggle"
-[curl]
-preset = "3C"
-width = "{width} mm"
-curls = {{ value = {curls}, vary = 0.1 }}
-[hairs]
-per_lock = {per_lock}
-"""
 
 
 def run(guides: int = 500, locks: int = 2000, points: int = 60, hairs: int = 50_000, moves: int = 10) -> dict[str, Any]:
@@ -49,22 +24,11 @@ def run(guides: int = 500, locks: int = 2000, points: int = 60, hairs: int = 50_
     moves:  how often the slider is moved, after two moves that warm up
     """
     clock, cold = Clock(), Clock()
-    per_lock = max(1, round(hairs / locks))
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "slider.recipe.toml"
 
         def evaluate(width: float, memory: Memory, clock: Clock, name: str) -> Any:
-            path.write_text(
-                RECIPE.format(
-                    head=HEAD.as_posix(),
-                    guides=guides,
-                    locks=locks,
-                    points=points,
-                    curls=points / 12,
-                    per_lock=per_lock,
-                    width=width,
-                )
-            )
+            path.write_text(recipe_text(guides, locks, points, hairs, width))
             stages = Stages(clock)
             with clock(name):
                 with clock("recipe"):

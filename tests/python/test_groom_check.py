@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 
 import ringlet
 from ringlet import Curves, Mesh, UserError, _core
-from ringlet.groom import Allowed, check_groom, fix_groom
+from ringlet.groom import Allowed, check_groom, fix_groom, make_groom, parse_recipe
 
 RADIUS = 0.09
 
@@ -111,6 +111,24 @@ def test_the_repair_leaves_nothing_and_moves_no_more_than_it_must(kind):
     assert repair.moved.max() < (6e-4 if kind == "hair" else 3.5e-3)
     assert not repair.moved[made.locks.offsets[-2] :].any()  # a lock that was in nothing stays
     np.testing.assert_allclose(repair.groom.locks.lengths(), made.locks.lengths(), rtol=0.05)
+
+
+@pytest.mark.parametrize("dragged", ["width", "margin"])
+def test_locks_that_are_led_around_the_head_do_not_pop_while_a_value_is_dragged(dragged):
+    recipe = (
+        "ringlet = 1\n[scalp]\nregion = 'scalp'\n[guides]\ncount = 20\nlength = 6\nlift = 0.15\ndroop = 0.6\n"
+        "[locks]\npoints = 160\n[curl]\nwidth = {width}\npitch = 1\n[clean]\nmargin = {margin}\n"
+    )
+
+    def at(value):
+        text = recipe.format(**{"width": 0.6, "margin": 0.2, dragged: repr(float(value))})
+        return make_groom(parse_recipe(text), ball(RADIUS, 32)).locks.points
+
+    def worst_move(step):  # [m] for a step in centimetres
+        return max(np.linalg.norm(at(v + step) - at(v), axis=1).max() for v in np.linspace(0.1, 0.9, 8))
+
+    coarse, fine = worst_move(1e-3), worst_move(1e-5)
+    assert coarse < 1e-4 and fine < 1e-6  # at most ten times as far as the value: no jump, however small the step
 
 
 def test_what_cannot_be_repaired_is_told():

@@ -91,6 +91,7 @@ class Hairs:
     _groom: Groom
     _axis: NDArray[np.float64]  # where each lock's frame starts, in the frame of the scalp at its root
     _layout: dict[str, NDArray]
+    _root: NDArray[np.float32] | None = None  # from the roots of locks to those of hairs while the scalp is at rest
 
     def at(
         self, lock_points: NDArray, scalp_points: NDArray, *, out: NDArray[np.float32] | None = None
@@ -110,12 +111,11 @@ class Hairs:
     def carriage(self, scalp_points: NDArray) -> dict[str, NDArray]:
         """How the hairs sit in their locks when the scalp has moved: what src/ringlet/groom/hairs.h takes besides the
         locks. ``axis`` (locks, 3) and ``root`` (hairs, 3) [m] follow the scalp; the rest is the same all the time."""
-        triangles, at = self._groom.scalp.triangles, np.ascontiguousarray(scalp_points, np.float64)
+        at = np.ascontiguousarray(scalp_points, np.float64)
         lock_roots, axis = self._frames(at)
-        bound = self.curves.curve
-        hair_roots = np.einsum("hc,hcx->hx", bound["root_barycentric"], at[triangles[bound["root_triangle"]]])
-        root = (hair_roots - lock_roots[bound["lock"]]).astype(np.float32)
-        root[self._layout["first"][:-1]] = 0.0  # the first hair of a lock is the lock
+        root = self._root if scalp_points is self._groom.scalp.points else None
+        if root is None:
+            root = self._from_locks(at, lock_roots)
         return {"axis": axis, "root": root, **self._layout}
 
     def axes(self, scalp_points: NDArray) -> NDArray[np.float64]:
@@ -129,6 +129,14 @@ class Hairs:
             at, self._groom.scalp.triangles, bound["root_triangle"], bound["root_barycentric"]
         )
         return roots, np.einsum("lxk,lk->lx", frames, self._axis)
+
+    def _from_locks(self, scalp_points: NDArray, lock_roots: NDArray) -> NDArray[np.float32]:
+        """From the root of its lock to that of each hair [m], shape (hairs, 3)."""
+        bound = self.curves.curve
+        corners = scalp_points[self._groom.scalp.triangles[bound["root_triangle"]]]
+        root = np.einsum("hc,hcx->hx", bound["root_barycentric"], corners) - lock_roots[bound["lock"]]
+        root[self._layout["first"][:-1]] = 0.0  # the first hair of a lock is the lock
+        return root.astype(np.float32)
 
 
 @dataclass
@@ -168,7 +176,7 @@ def lay_hairs(groom: Groom, *, fraction: float = 1.0, wider: bool = False, memor
         memory.key, memory.hairs = key, _place(groom, settings, fraction, wider)
     known, frames = memory.hairs, _root_frames(groom)[1]
     axis = np.einsum("lxk,lx->lk", frames, axes(groom.locks, frames))
-    return Hairs(known.curves, groom, axis, known._layout)
+    return Hairs(known.curves, groom, axis, known._layout, known._root)
 
 
 def _key(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -> bytes:
@@ -237,7 +245,9 @@ def _place(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -
     )
     layout = _layout(settings, per_lock, ids, number, lock, disk, u)
     layout |= _neighbours(settings, per_lock, groom, curves, is_lock, roots, u)
-    return Hairs(curves, groom, np.empty(0), {"first": first, **layout})
+    hairs = Hairs(curves, groom, np.empty(0), {"first": first, **layout})
+    hairs._root = hairs._from_locks(scalp.points, roots)
+    return hairs
 
 
 @dataclass

@@ -9,11 +9,11 @@ namespace {
 constexpr double coming = 6e-3; // [m] length over which a move begins before it is needed
 constexpr double going = 0.1;   // [m] length over which it dies away after
 
-// Finds the moves of the points of one curve that keep it out; returns whether any moves. From the first that does, its edges
-// are drawn to the lengths that are given, if they are: edge k ends in point k.
+// Finds the moves of the points of one curve that keep it out; returns whether it came too near anywhere. Edges are drawn to
+// the lengths that are given, if they are: edge k ends in point k.
 bool follow(std::span<const Vec3> points, std::span<const double> lengths, const Solid &body, const NearCells &cells,
             double margin, const Allowed &allowed, std::span<Vec3> moves) {
-    bool any = false;
+    bool near = false;
     Sounding sounding(body, cells);
     Vec3 move = Vec3::Zero(), before = points[0];
     double along = 0.0;
@@ -22,35 +22,36 @@ bool follow(std::span<const Vec3> points, std::span<const double> lengths, const
         const Vec3 edge = points[k] - points[k - 1];
         const double length = edge.norm();
         const int steps = std::max(1, static_cast<int>(std::ceil(length / stride)));
-        const double step = length / steps, fade = 1.0 - std::min(1.0, step / going);
+        const double step = length / steps, wanted_step = lengths.empty() ? 0.0 : lengths[k] / steps;
         for (int i = 1; i <= steps; ++i) {
             along += step;
-            move *= fade;
+            if (!move.isZero(0.0)) move *= std::exp(-step / going);
             const Vec3 unmoved = points[k - 1] + (static_cast<double>(i) / steps) * edge;
             Vec3 place = unmoved + move;
             const double wanted = along <= allowed.root_length ? -allowed.root_depth : std::min(margin, 0.5 * along);
             Above above;
             if (sounding.below(place, margin, above) && above.height < wanted) {
-                place = above.foot + wanted * above.smooth;
-                any = true;
+                place += (wanted - above.height) * above.smooth; // only what is missing: it begins with nothing
+                near = true;
             }
-            if (any && !lengths.empty()) { // where the way goes straight in, little of it is left: it is not drawn out at once
+            if (!lengths.empty()) { // where the way goes straight in, little of it is left: it is not drawn out at once
                 const Vec3 way = place - before;
-                place = before + std::min(2.0, lengths[k] / steps / std::max(way.norm(), 1e-12)) * way;
+                place = before + std::min(2.0, wanted_step / std::max(way.norm(), 1e-12)) * way;
             }
-            if (any) move = place - unmoved;
+            move = place - unmoved;
             before = place;
         }
         moves[k] = move;
     }
-    return any;
+    return near;
 }
 
 // Lets moves begin before they are needed, and smooths where they end.
 void ease(std::span<const Vec3> points, std::span<Vec3> moves, std::vector<Vec3> &scratch) {
     for (size_t k = points.size() - 1; k-- > 1;) {
-        const double fade = std::exp(-(points[k + 1] - points[k]).norm() / coming);
-        if (const Vec3 before = fade * moves[k + 1]; before.squaredNorm() > moves[k].squaredNorm()) moves[k] = before;
+        const Vec3 before = std::exp(-(points[k + 1] - points[k]).norm() / coming) * moves[k + 1];
+        const double length = before.norm(), more = length - moves[k].norm();
+        if (more > 0.0) moves[k] += more / length * before;
     }
     for (int pass = 0; pass < 3; ++pass) {
         scratch.assign(moves.begin(), moves.end());
@@ -74,9 +75,11 @@ std::vector<Vec3> push_out(const CurveView &curves, const Solid &body, double ma
             moves.resize(points.size());
             lengths.assign(points.size(), 0.0);
             for (size_t k = 1; k < points.size(); ++k) lengths[k] = (points[k] - points[k - 1]).norm();
+            // All rounds or none: what changes by a little should not change how many there are.
+            if (!follow(points, {}, body, cells, margin, allowed, moves)) continue;
             for (int round = 1; round <= rounds; ++round) {
                 const bool last = round == rounds; // what is left by then is little; it is only cleared
-                if (!follow(points, last ? std::span<double>() : lengths, body, cells, margin, allowed, moves)) break;
+                follow(points, last ? std::span<double>() : lengths, body, cells, margin, allowed, moves);
                 if (!last) ease(points, moves, scratch);
                 for (size_t k = 1; k < points.size(); ++k) points[k] += moves[k];
             }
