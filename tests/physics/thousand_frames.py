@@ -34,8 +34,10 @@ def main():
     judge = Judge(motion.scene)
 
     print(f"{len(groom.locks)} locks, {len(groom.locks.points)} vertices")
-    print("| frames | crossings | CPU a frame, median [ms] | most [ms] | worst stretch | held back | closest [mm] |")
-    print("|---|---|---|---|---|---|---|", flush=True)
+    print(
+        "| frames | crossings | CPU, median [ms] | most [ms] | pairs | iterations | strain | held back | closest [mm] |"
+    )
+    print("|---|---|---|---|---|---|---|---|---|", flush=True)
     for first in range(0, options.frames, clip):
         crossings, frames = 0, []
         for k in range(first, min(first + clip, options.frames)):
@@ -47,11 +49,14 @@ def main():
                 crossings += sum(judge.crossings(*move) for move in itertools.pairwise(motion.scene.path))
         cpu = [frame["cpu_ms"] for frame in frames]
         stretch = max(frame["max_stretch"] for frame in frames)
+        pairs, iterations = (
+            np.median([f["contact"][name] for f in frames]) for name in ("candidates", "linear_iterations")
+        )
         held_back = sum(frame["contact"]["violations"] for frame in frames)
-        closest = min(frame["contact"]["closest"] for frame in frames)
+        closest = min(frame["contact"]["closest"] or np.inf for frame in frames)
         print(
             f"| {first + 1}–{first + len(frames)} | {crossings} | {np.median(cpu):.0f} | {max(cpu):.0f} "
-            f"| {stretch:.3g} | {held_back} | {1e3 * closest:.2g} |",
+            f"| {pairs:.0f} | {iterations:.0f} | {stretch:.3g} | {held_back} | {1e3 * closest:.2g} |",
             flush=True,
         )
 
