@@ -67,6 +67,13 @@ void NearPairs::note(View<Vec3> positions, double budget) {
     });
 }
 
+bool NearPairs::are_away(View<Vec3> positions) const {
+    constexpr size_t few = 16; // one in
+    size_t away = 0;
+    for (size_t v = 0; v < noted_at_.size(); ++v) away += (positions[v] - noted_at_[v]).squaredNorm() > budget_ * budget_;
+    return few * away > noted_at_.size();
+}
+
 void NearPairs::measure_ways(View<Vec3> start, View<Vec3> end) {
 #pragma omp parallel for schedule(static)
     for (int v = 0; v < int(start.size()); ++v) vertices_[v] = {(end[v] - start[v]).norm(), quick_[v] != 0};
@@ -124,12 +131,13 @@ void NearPairs::arrive() {
 }
 
 // Pairs that may be changed are noted to be as far apart as they are found to be.
-template <class Pairs>
-std::vector<Touch> NearPairs::touching(Pairs &known, Pairs &passing, const NearPairs &near, View<Vec3> at) {
-    const auto among = [&](Pairs &pairs, const auto &counts) {
+template <class Pairs, class Counts>
+std::vector<Touch> NearPairs::touching(Pairs &known, Pairs &passing, const NearPairs &near, View<Vec3> at,
+                                       const Counts &counts) {
+    const auto among = [&](Pairs &pairs, bool are_known) {
         return collect<Touch>(int(pairs.size()), [&](int k, std::vector<Touch> &touching) {
             auto &pair = pairs[k];
-            if (!(pair.apart < pair.distance) || !counts(pair)) return;
+            if (!(pair.apart < pair.distance) || (are_known && near.quick(pair)) || !counts(pair)) return;
             const ClosestPoints nearest =
                 with_vertices(near.mesh_, pair, [&](const auto &a, const auto &b) { return closest_points(at, a, b); });
             const double apart = std::sqrt(nearest.distance2);
@@ -137,13 +145,23 @@ std::vector<Touch> NearPairs::touching(Pairs &known, Pairs &passing, const NearP
             if (apart < pair.distance) touching.push_back({pair.of, pair.of_edges, pair.distance, nearest});
         });
     };
-    std::vector<Touch> all = among(known, [&](const NearPair &pair) { return !near.quick(pair); });
-    merge(all, among(passing, [](const NearPair &) { return true; }));
+    std::vector<Touch> all = among(known, true);
+    merge(all, among(passing, false));
     return all;
 }
 
-std::vector<Touch> NearPairs::touching(View<Vec3> positions) { return touching(known_, passing_, *this, positions); }
+std::vector<Touch> NearPairs::touching(View<Vec3> positions) {
+    return touching(known_, passing_, *this, positions, [](const NearPair &) { return true; });
+}
 
-std::vector<Touch> NearPairs::would_touch(View<Vec3> on_the_way) const { return touching(known_, passing_, *this, on_the_way); }
+std::vector<Touch> NearPairs::would_touch(View<Vec3> on_the_way, View<unsigned char> objects) const {
+    return touching(known_, passing_, *this, on_the_way, [&](const NearPair &pair) {
+        const auto counts = [&](int v) {
+            const auto object = size_t(mesh_.object[v]);
+            return object < objects.size() && objects[object] != 0;
+        };
+        return with_vertices(mesh_, pair, [&](const auto &a, const auto &b) { return counts(a[0]) || counts(b[0]); });
+    });
+}
 
 } // namespace ringlet

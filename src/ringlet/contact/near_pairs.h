@@ -35,6 +35,7 @@ public:
 
     void forget() { known_.clear(), noted_at_.clear(); } // everything is quick
     void note(View<Vec3> positions, double budget);      // [m]
+    bool are_away(View<Vec3> positions) const; // so many from where pairs were noted that noting them anew is worth it
 
     // Everything sets out straight from `start`, where it is, to `end`; or, while it has not arrived, to another end, which
     // differs where vertices have `changed` and is no further away.
@@ -45,8 +46,9 @@ public:
     const std::vector<NearPair *> &may_meet() const { return may_meet_; }
     void arrive();
 
-    std::vector<Touch> touching(View<Vec3> positions);           // where everything is now, in order
-    std::vector<Touch> would_touch(View<Vec3> on_the_way) const; // somewhere on the last move
+    std::vector<Touch> touching(View<Vec3> positions); // where everything is now, in order
+    // Somewhere on the last move, of the objects that count: the first of all.
+    std::vector<Touch> would_touch(View<Vec3> on_the_way, View<unsigned char> objects) const;
 
     int count() const { return int(known_.size() + passing_.size()); }
 
@@ -56,8 +58,9 @@ private:
         bool quick = false;
     };
 
-    template <class Pairs>
-    static std::vector<Touch> touching(Pairs &known, Pairs &passing, const NearPairs &near, View<Vec3> at);
+    template <class Pairs, class Counts>
+    static std::vector<Touch> touching(Pairs &known, Pairs &passing, const NearPairs &near, View<Vec3> at,
+                                       const Counts &counts);
     void measure_ways(View<Vec3> start, View<Vec3> end);
     double way(const NearPair &pair) const { return first(pair).length + second(pair).length; }
     bool quick(const NearPair &pair) const { return first(pair).quick || second(pair).quick; }

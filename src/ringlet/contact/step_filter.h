@@ -1,37 +1,18 @@
 // The last word on every move: nothing passes through anything.
 #pragma once
 
+#include "ringlet/contact/filter_scene.h"
 #include "ringlet/contact/near_pairs.h"
-#include "ringlet/contact/neighbours.h"
 
-#include <functional>
 #include <vector>
 
 namespace ringlet {
-
-// How what is kinematic moves near one of its vertices: where a point that goes along with it ends.
-using CarriedBy = std::function<Vec3(int vertex, const Vec3 &point)>;
 
 struct FilterReport {
     int candidates = 0; // pairs near one another's paths
     int violations = 0; // of them, how many would have met
     int zone_vertices = 0, rounds = 0;
     double fraction = 1.0; // of the move that everything goes; 1 unless no way out was found
-};
-
-// What a filter knows of a scene besides its mesh.
-struct FilterScene {
-    const CollisionMesh &mesh;
-    View<double> mass; // per vertex
-    View<int> offsets; // where each strand begins among the vertices, and the end
-    CarriedBy carried_by;
-    View<int>
-        rigid; // per vertex: vertices of one number ≥ 0 are moved by one and the same affine map, so that none of them meet
-    bool still = false; // nothing kinematic moves: staying is safe
-    bool whole = false; // strands then only go a part of their way as a whole, and none is held back near a pair alone
-    // Where each cloth begins among the vertices, and the end; object numbers of cloths follow those of strands.
-    View<int> cloths = {};
-    const Neighbours *neighbours = nullptr; // of the vertices of cloths
 };
 
 // Changes where a move ends (`end`, rows of vertices that move) so that no pair meets while every vertex goes straight from

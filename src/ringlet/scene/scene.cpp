@@ -202,13 +202,19 @@ void Scene::Parts::take(View<Vec3> now, View<Vec3> wanted, View<Vec3> to) {
 // Newton's method from x, which is `now`; says how many iterations it took.
 int Scene::Parts::newton(const SceneStep &scene_step, const StrandStep &step, std::vector<Vec3> &now, SceneProgress &progress,
                          SceneReport &report) {
-    constexpr int most_more = 60; // for strands that were held back
+    constexpr int most_more = 60;   // for strands that were held back
+    constexpr double farther = 4.0; // than the search went last is not tried, but where a way is short
+    std::vector<double> gone(vertices.parts(), 1.0), tried(vertices.parts(), 1.0);
     std::vector<unsigned char> changed(system.unit_count(), 1);
     std::vector<double> unused;
     reach.assign(vertices.parts(), 0.0);
     int iteration = 0;
     for (bool arrived = false; !arrived; ++iteration) {
         if (iteration >= step.newton && (iteration >= step.newton + most_more || !progress.narrow(system, now))) break;
+        if (near.are_away(now)) {
+            const Stopwatch watch(report.time_filter);
+            near.note(now, settings.strand_radius);
+        }
         {
             const Stopwatch watch(report.time_pairs);
             system.touch(near.touching(now), now);
@@ -234,12 +240,18 @@ int Scene::Parts::newton(const SceneStep &scene_step, const StrandStep &step, st
         for (size_t p = 0; p < by_planes.size() && !small; ++p) before[p] = !by_planes[p], after[p] = by_planes[p];
         if (!system.cloths.empty()) {
             const Stopwatch watch(report.time_search);
-            AlignedVector tried(system.size());
-            std::copy_n(x.data(), x.size(), tried.data());
-            if (!search(system, nullptr, direction, before, tried).moved) break;
-            for (size_t i = 0; i < system.size(); ++i) direction[i] = tried[i] - x[i];
+            AlignedVector found(system.size());
+            std::copy_n(x.data(), x.size(), found.data());
+            if (!search(system, nullptr, direction, before, found).moved) break;
+            for (size_t i = 0; i < system.size(); ++i) direction[i] = found[i] - x[i];
             system.energies(x, &near, std::vector<unsigned char>(system.unit_count(), 1), unused);
         }
+        if (system.cloths.empty())
+            for (size_t p = 0; p < tried.size(); ++p)
+                tried[p] = iteration >= step.newton
+                               ? 1.0
+                               : std::min(1.0, std::max(farther * gone[p], settings.strand_radius / reach[p]));
+        shorten(system, tried, direction);
         std::vector<Vec3> wanted = now;
         for (int v = 0; v < vertices.moving_vertices(); ++v) wanted[v] += system.position(direction, v);
         std::vector<Vec3> to = wanted;
@@ -247,6 +259,7 @@ int Scene::Parts::newton(const SceneStep &scene_step, const StrandStep &step, st
         // shape counts.
         filter(now, to, {true, iteration > 0}, report);
         progress.moved(now, wanted, to);
+        progress.cut(tried);
         take(now, wanted, to);
         arrived = small && progress.all_went();
         SceneSearch found;
@@ -257,6 +270,8 @@ int Scene::Parts::newton(const SceneStep &scene_step, const StrandStep &step, st
         }
         if (!found.moved) break;
         progress.cut(found.step);
+        for (size_t p = 0; p < tried.size(); ++p)
+            if (system.is_active(int(p))) gone[p] = tried[p] * found.step[p];
         progress.judge(step.tolerance);
         if (found.cuts > 0) { // not all go equally far then
             to = now;
@@ -293,10 +308,6 @@ double Scene::Parts::advance(const SceneInput &input, const SceneStep &scene_ste
     near.forget();
     const double fraction = filter(now, to, {false, false}, report);
     arrive(now, to);
-    {
-        const Stopwatch watch(report.time_filter);
-        near.note(now, settings.strand_radius);
-    }
     if (fraction < 1.0) {
         for (int v = 0; v < vertices.count(); ++v)
             if (!vertices.mesh.moves[v]) given[v] = now[v];
@@ -317,6 +328,10 @@ double Scene::Parts::advance(const SceneInput &input, const SceneStep &scene_ste
     progress.moved(now, guess, to);
     progress.judge(step.tolerance);
     arrive(now, to);
+    {
+        const Stopwatch watch(report.time_filter);
+        near.note(now, settings.strand_radius);
+    }
     system.scatter(now, x);
     const int iteration = newton(scene_step, step, now, progress, report);
     system.touch(near.touching(now), now);

@@ -48,6 +48,15 @@ void measure(const SceneSystem &system, AlignedVector &direction, std::vector<do
     });
 }
 
+void shorten(const SceneSystem &system, const std::vector<double> &parts, AlignedVector &direction) {
+    system.for_units([&](int u) {
+        for_parts(system, u, [&](int part, size_t first, size_t stride, size_t count) {
+            if (parts[part] < 1.0)
+                for (size_t i = first; i < first + count * stride; i += stride) direction[i] *= parts[part];
+        });
+    });
+}
+
 SceneSearch search(SceneSystem &system, const NearPairs *near, const AlignedVector &direction,
                    const std::vector<unsigned char> &all_of_it, AlignedVector &x) {
     constexpr double least_decrease = 1e-4, rounding = 1e-13;

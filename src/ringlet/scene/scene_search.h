@@ -9,6 +9,9 @@ namespace ringlet {
 // whose direction is not finite, its system being too ill-conditioned to solve, stays: its direction becomes zero.
 void measure(const SceneSystem &system, AlignedVector &direction, std::vector<double> &reach);
 
+// Every part goes only so much of its direction.
+void shorten(const SceneSystem &system, const std::vector<double> &parts, AlignedVector &direction);
+
 struct SceneSearch {
     bool moved = false;       // false: no way was found on which the energy falls
     int cuts = 0;             // halvings

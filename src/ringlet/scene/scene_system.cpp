@@ -30,6 +30,7 @@ void SceneSystem::scatter(View<Vec3> from, AlignedVector &into) const {
 void SceneSystem::touch(const std::vector<Touch> &touching, View<Vec3> now) {
     find_planes(touching);
     contacts.find(vertices.mesh, vertices.material, touching, vertices.positions, now);
+    contacts_found_ = true;
     couple_parts();
 }
 
@@ -86,22 +87,48 @@ void SceneSystem::energies(const AlignedVector &x, const NearPairs *near, const 
         const StrandGroup group = strands.strands_of(u);
         for (int lane = 0; lane < group.count; ++lane) own_energies_[group.strands[lane]] = energy[lane];
     });
+    places_.resize(given_.size());
+    for (size_t v = vertices.moving_vertices(); v < given_.size(); ++v) places_[v] = given_[v];
+#pragma omp parallel for schedule(static)
+    for (int v = 0; v < vertices.moving_vertices(); ++v)
+        if (changed[unit_of(vertices.part_of(v))]) places_[v] = position(x, v);
+    share_contacts(near, changed);
     of = own_energies_;
-    places_.assign(given_.begin(), given_.end());
-    gather(x, places_);
-    const auto share = [&](const Contact &c, double energy) {
-        const int a = vertices.part_of(c.vertex[0]), b = vertices.part_of(c.vertex[3]);
+    const auto share = [&](int a, int b, double energy) {
         if (a >= 0) of[a] += b >= 0 ? 0.5 * energy : energy;
         if (b >= 0) of[b] += a >= 0 ? 0.5 * energy : energy;
     };
+    for (const Shared &push : pushed_) share(push.a, push.b, push.energy);
+    const std::vector<Contact> &all = contacts.contacts();
+    for (size_t c = 0; c < all.size(); ++c)
+        share(vertices.part_of(all[c].vertex[0]), vertices.part_of(all[c].vertex[3]), rubbed_[c]);
+}
+
+// Energies of contacts, anew where one of the two parts has changed.
+void SceneSystem::share_contacts(const NearPairs *near, const std::vector<unsigned char> &changed) {
+    const std::vector<Contact> &all = contacts.contacts();
+    if (contacts_found_) rubbed_.assign(all.size(), 0.0);
+    const bool of_all = contacts_found_ || asked_planes_ != (near == nullptr);
+    contacts_found_ = false;
+    asked_planes_ = near == nullptr;
+    std::vector<unsigned char> anew(vertices.parts());
+    for (int p = 0; p < vertices.parts(); ++p) anew[p] = is_active(p) && (of_all || changed[unit_of(p)]);
+    const auto is_anew = [&](int a, int b) { return (a >= 0 && anew[a]) || (b >= 0 && anew[b]); };
+    std::erase_if(pushed_, [&](const Shared &push) { return is_anew(push.a, push.b); });
+    const auto push = [&](const Contact &c) {
+        const int a = vertices.part_of(c.vertex[0]), b = vertices.part_of(c.vertex[3]);
+        if (is_anew(a, b)) pushed_.push_back({a, b, push_energy(c, separation(c, places_))});
+    };
     if (near != nullptr) {
-        const std::vector<Touch> touching = near->would_touch(places_);
+        const std::vector<Touch> touching = near->would_touch(places_, anew);
         for (const Contact &c : contacts.pushing(vertices.mesh, vertices.material, touching, vertices.positions, places_))
-            share(c, push_energy(c, separation(c, places_)));
+            push(c);
     } else {
-        for (const Contact &c : contacts.contacts()) share(c, push_energy(c, separation(c, places_)));
+        for (const Contact &c : all) push(c);
     }
-    for (const Contact &c : contacts.contacts()) share(c, friction_energy(c, separation(c, places_)));
+    for (size_t c = 0; c < all.size(); ++c)
+        if (is_anew(vertices.part_of(all[c].vertex[0]), vertices.part_of(all[c].vertex[3])))
+            rubbed_[c] = friction_energy(all[c], separation(all[c], places_));
 }
 
 void SceneSystem::expect(const AlignedVector &direction) {

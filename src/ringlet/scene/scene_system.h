@@ -83,7 +83,7 @@ public:
 
     // Energies [J] of the parts at x, somewhere on the last move: each with its share of what pushes there, be it a contact yet
     // or not (without `near`: of what its contacts push, by their planes), and of the contacts' friction. Only units that have
-    // `changed` since this was last asked are asked again.
+    // `changed` since this was last asked are asked again, and contacts only of these.
     void energies(const AlignedVector &x, const NearPairs *near, const std::vector<unsigned char> &changed,
                   std::vector<double> &of_parts);
 
@@ -104,6 +104,7 @@ private:
     bool couples(const Contact &c) const { return vertices.part_of(c.vertex[0]) >= 0 && vertices.part_of(c.vertex[3]) >= 0; }
     void couple_parts();
     void find_planes(const std::vector<Touch> &touching);
+    void share_contacts(const NearPairs *near, const std::vector<unsigned char> &changed);
     Vec3 separation_at(const Contact &contact, const AlignedVector &x) const;
     void add_to_strand(int vertex);
     void add_to_cloth(int vertex);
@@ -114,6 +115,14 @@ private:
     std::vector<unsigned char> coupled_, together_, by_planes_;
     std::vector<double> own_energies_; // per part, without contacts
     std::vector<Vec3> places_;         // of all vertices, where energies were asked last
+    struct Shared {                    // by two parts; −1: by one and what is kinematic
+        int a, b;
+        double energy; // [J]
+    };
+    std::vector<Shared> pushed_;  // where energies were asked last
+    std::vector<double> rubbed_;  // the contacts' friction there [J]
+    bool contacts_found_ = false; // since then
+    bool asked_planes_ = false;   // what pushed
 };
 
 } // namespace ringlet

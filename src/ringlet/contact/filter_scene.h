@@ -1,0 +1,28 @@
+// What a filter knows of a scene besides where its vertices are.
+#pragma once
+
+#include "ringlet/contact/collision_mesh.h"
+#include "ringlet/contact/neighbours.h"
+
+#include <functional>
+
+namespace ringlet {
+
+// How what is kinematic moves near one of its vertices: where a point that goes along with it ends.
+using CarriedBy = std::function<Vec3(int vertex, const Vec3 &point)>;
+
+struct FilterScene {
+    const CollisionMesh &mesh;
+    View<double> mass; // per vertex
+    View<int> offsets; // where each strand begins among the vertices, and the end
+    CarriedBy carried_by;
+    View<int>
+        rigid; // per vertex: vertices of one number ≥ 0 are moved by one and the same affine map, so that none of them meet
+    bool still = false; // nothing kinematic moves: staying is safe
+    bool whole = false; // strands then only go a part of their way as a whole, and none is held back near a pair alone
+    // Where each cloth begins among the vertices, and the end; object numbers of cloths follow those of strands.
+    View<int> cloths = {};
+    const Neighbours *neighbours = nullptr; // of the vertices of cloths
+};
+
+} // namespace ringlet

@@ -1,0 +1,58 @@
+#include "ringlet/contact/meeting.h"
+
+#include "ringlet/contact/collect.h"
+#include "ringlet/contact/impact.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ringlet {
+namespace {
+
+template <size_t N, size_t M> bool move_as_one(View<int> rigid, const std::array<int, N> &a, const std::array<int, M> &b) {
+    bool same = rigid[a[0]] >= 0;
+    for (const int v : a) same &= rigid[v] == rigid[a[0]];
+    for (const int v : b) same &= rigid[v] == rigid[a[0]];
+    return same;
+}
+
+template <size_t N, size_t M>
+double impact_time(NearPair &pair, const std::array<int, N> &a, const std::array<int, M> &b, View<Vec3> start, View<Vec3> end) {
+    pair.apart = std::sqrt(closest_points(start, a, b).distance2);
+    const double kept = std::min({0.5 * pair.distance, std::max(0.2 * pair.apart, pair.distance / 250), 0.9 * pair.apart});
+    Vec3 x[4], p[4];
+    for (size_t i = 0; i < 4; ++i) {
+        const int v = i < N ? a[i] : b[i - N];
+        x[i] = start[v];
+        p[i] = end[v] - start[v];
+    }
+    double most = 0.0; // that two vertices come nearer
+    for (size_t i = 0; i < N; ++i)
+        for (size_t j = N; j < 4; ++j) most = std::max(most, (p[i] - p[j]).squaredNorm());
+    if (pair.apart - kept > std::sqrt(most)) return no_impact;
+    if constexpr (N == 2)
+        return edge_edge_impact(x, p, kept);
+    else
+        return point_triangle_impact(x, p, kept);
+}
+
+} // namespace
+
+double meeting_time(const CollisionMesh &mesh, NearPair &pair, View<Vec3> start, View<Vec3> end) {
+    return with_vertices(mesh, pair, [&](const auto &a, const auto &b) { return impact_time(pair, a, b, start, end); });
+}
+
+std::vector<Met> find_met(const FilterScene &scene, const NearPairs &near, View<Vec3> start, View<Vec3> end) {
+    const std::vector<NearPair *> &pairs = near.may_meet();
+    return collect<Met>(int(pairs.size()), [&](int k, std::vector<Met> &met) {
+        with_vertices(scene.mesh, *pairs[k], [&](const auto &a, const auto &b) {
+            if (!scene.rigid.empty() && move_as_one(scene.rigid, a, b)) return;
+            const double time = impact_time(*pairs[k], a, b, start, end);
+            if (time > 1.0) return;
+            met.push_back({{}, time});
+            std::copy(b.begin(), b.end(), std::copy(a.begin(), a.end(), met.back().vertices.begin()));
+        });
+    });
+}
+
+} // namespace ringlet
