@@ -29,7 +29,7 @@ import ringlet
 Array = NDArray[np.float64]
 
 HEAD = Path(__file__).parents[2] / "examples" / "child" / "head.usdc"
-TIE, IN_TIE = np.array([0.0, 0.17, -0.115]), 0.02  # of the bun, on the example head, and how far its nails reach [m]
+TIE, IN_TIE = np.array([0.0, 0.44, -0.102]), 0.02  # of the bun, on the example head, and how far its nails reach [m]
 MODES = ("none", "lofted", "equilibrium")
 HANGS = 3.0  # what does not stay has sagged by then [s]
 FPS, FINE = 24.0, 96.0  # steps a second for the drift and for the bounce
@@ -70,14 +70,14 @@ tie = 'bun'
 radius = 1.5
 rise = 0.2
 [curves.bun]
-points = [[0, 17, -11.5], [0, 19, -14], [2, 18, -15], [1, 16, -14.5], [-1, 16, -14]]
+points = [[0, 44, -10.2], [0, 46, -12], [2, 45, -13.5], [1, 43, -13.5], [-1, 43, -12.5], [-1, 45, -12]]
 """
 STYLES = {
     "demo": {"length": 8.4, "lift": 0.86, "droop": 0.48, "points": 72, "more": CURL.format(1.12, 6)},
     "afro 4A": {"length": 5, "lift": 0.9, "droop": 0.2, "points": 96, "more": CURL.format(0.5, 9)},
     "long 3B": {"length": 20, "lift": 0.4, "droop": 2.6, "points": 96, "more": CURL.format(1.5, 8)},
     "down": {"length": 17, "lift": 0.3, "droop": 2.2, "points": 72, "more": CURL.format(0.8, 6)},
-    "bun": {"length": 16, "lift": 0.3, "droop": 1.0, "points": 72, "more": BUN + CURL.format(0.3, 6)},
+    "bun": {"length": 20, "lift": 0.3, "droop": 1.0, "points": 72, "more": BUN + CURL.format(0.3, 6)},
 }
 
 SHOT = """

@@ -35,6 +35,7 @@ SAME = 1e-4  # change of a lock's strains from round to round, by their size, at
 SHARPEST = 2.6  # bend of a corner at rest above which a lock counts as too soft [rad]
 NUDGE = 1e-6  # by which a lock is disturbed to see whether it stands [m]
 FALLING = 1e-5  # a lock that is farther away than this after that falls [m]
+MUCH_LESS = 0.1  # of how far it is away by now: what does not stand is kept if it is that near
 FALL = 12  # steps of 1 s in which it falls
 STIFFER = 1.5  # from one try to the next
 
@@ -58,7 +59,7 @@ def equilibrium(
     obstacles: what locks may lie on, where the shot has contact, in the rest pose
 
     A lock that would fall is stiffened, up to ``rest.stiffen`` times; one that falls even so keeps its stiffness and
-    its groomed shape.
+    its groomed shape, or what hangs ten times nearer to it.
     """
     locks = groom.locks
     locks.check("loft: locks")
@@ -69,13 +70,14 @@ def equilibrium(
         if progress:
             progress("loft", int((~going).sum()), len(locks))
         tried = _try(shot, replace(groom, locks=locks.take(going)), borne[np.repeat(going, locks.counts)], factor)
+        better = tried.good | (tried.off < MUCH_LESS * made.off[going])
         found = going.copy()
-        found[going] = tried.good
-        rows, among = np.repeat(found, locks.counts), np.repeat(tried.good, locks.counts[going])
+        found[going] = better
+        rows, among = np.repeat(found, locks.counts), np.repeat(better, locks.counts[going])
         made.rest.points[rows], made.lofted[rows] = tried.rest[among], tried.points[among]
-        made.off[found], made.moving[found] = tried.off[tried.good], tried.moving[tried.good]
+        made.off[found], made.moving[found] = tried.off[better], tried.moving[better]
         stiffened[found] = factor
-        going &= ~found
+        going[going] = ~tried.good
         factor *= STIFFER
     if progress:
         progress("loft", len(locks), len(locks))
@@ -168,6 +170,16 @@ def _balanced(shot: Shot, groom: Groom, borne: Array, stiffened: Array) -> tuple
 
 
 def _strain(strands: Strands, forces: Joints) -> Joints:
-    """By how much lengths, bends and twists differ from rest where they hold these forces."""
-    stretch, bend, twist = (np.where(stiffness > 0.0, stiffness, np.inf) for stiffness in strands.stiffness)
+    """By how much lengths, bends and twists differ from rest where they hold these forces.
+
+    What lies between held vertices need not hold any; it stays as groomed, which is how the core knows its frames.
+    """
+    held = np.asarray(strands.held)
+    held_edge = held & np.append(held[1:], False)
+    held_corner = held_edge & np.append(False, held[:-1])
+    held_twist = held_corner & np.append(held_corner[1:], False)
+    stretch, bend, twist = (
+        np.where((stiffness > 0.0) & ~fixed, stiffness, np.inf)
+        for stiffness, fixed in zip(strands.stiffness, (held_edge, held_corner, held_twist), strict=True)
+    )
     return Joints(forces.length / stretch, forces.bend / bend[:, None], forces.twist / twist)
