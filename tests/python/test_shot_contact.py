@@ -185,7 +185,7 @@ def example(tmp_path_factory):
     """The small example in contact, with its groom."""
     folder = write_example(tmp_path_factory.mktemp("contact"))
     shot = folder / "small.shot.toml"
-    shot.write_text(shot.read_text() + "[contact]\n")
+    shot.write_text(shot.read_text() + CONTACT)
     assert run("groom", folder / "small.recipe.toml", "-o", folder / "groom.usdc").exit_code == 0
     return folder
 
