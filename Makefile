@@ -7,8 +7,8 @@ python := .venv/bin/python
 pip := $(python) -m pip install --quiet
 editable := $(pip) --no-build-isolation --config-settings=cmake.define.RINGLET_TESTS=OFF --editable
 
-# What the compiled part of the package is made from; editing Python needs no new build.
-sources := pyproject.toml CMakeLists.txt $(wildcard cmake/*) $(shell find src bindings -type f)
+# What the compiled part of the package is made from, and which packages there are; editing Python needs no new build.
+sources := pyproject.toml CMakeLists.txt $(wildcard cmake/* python/ringlet/*/__init__.py) $(shell find src bindings -type f)
 
 # What the review page is made from.
 page := tools/web.sh $(wildcard web/*.json web/*.ts web/*.html) $(shell find web/src web/public -type f)

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import statistics
 from typing import Any
 
 import numpy as np
-from cloth import PHASES, sheet
+from cloth import sheet
 from twirl import RADIUS, sphere
 
-from ringlet import Body, Clock, Cloth, ClothMaterial, Contact, Curves, Material, Scene, Solver, Strands
+from ringlet import Body, Clock, Cloth, ClothMaterial, Contact, Curves, Material, Scene, Solver, Strands, solver_counts
 
 WIDTH = 0.4  # of the sheet [m]
 
@@ -31,23 +30,21 @@ def run(
     body = Body(ball, triangles)
     scene = Scene(moving, [body], Contact(radius=4e-4), np.zeros(strands, int), [cloth])
     solver = Solver(newton=newton)
-    clock, reports = Clock(), []
+    clock, reports, touched = Clock(), [], []
     for _ in range(steps):
         with clock("step"):
-            report, _ = scene.step(None, 1 / fps, gravity=(0.0, -9.81, 0.0), solver=solver)
+            contact, report = scene.step(None, 1 / fps, gravity=(0.0, -9.81, 0.0), solver=solver)
         reports.append(report)
-    names = ("contacts", "candidates", "violations", "linear_iterations", "newton")
+        touched.append(contact)
     return clock.result(
         "mixed",
         {"strands": strands, "points": points, "side": side, "newton": newton, "steps": steps, "fps": fps},
         per="step",
         warm_up=2,
         vertices=len(scene.positions),
-        **{name: statistics.mean(report[name] for report in reports) for name in names},
-        closest=min(report["closest"] for report in reports),
-        fraction=min(report["fraction"] for report in reports),
+        **solver_counts(reports, touched),
+        fraction=min(contact["fraction"] for contact in touched),
         cloth_stretch=scene.cloth_reports[0]["max_stretch"],
-        phases_wall_ms={name: 1e3 * statistics.mean(report[f"time_{name}"] for report in reports) for name in PHASES},
     )
 
 

@@ -50,6 +50,12 @@ def did_you_mean(name: str, valid: Iterable[str]) -> str:
     return f"; did you mean '{near[0]}'?" if near else f"; there are: {', '.join(valid)}"
 
 
+def check_name(name: str, names: Iterable[str], where: str, what: str) -> None:
+    """Refuses a name that is not among ``names``, with the nearest one that is."""
+    if name not in names:
+        raise UserError(f"{where}: {name} is not a {what}{did_you_mean(name, names)}")
+
+
 def read_toml(path: Path, kind: str) -> tuple[str, dict[str, Any]]:
     """Text and tables of a TOML file that begins with ``ringlet = 1``; ``kind`` (recipe, shot) is for messages."""
     if path.exists() and not path.is_dir() and not (path.is_file() and path.stat().st_size <= MOST_TEXT):

@@ -245,13 +245,13 @@ int Scene::Parts::newton(const SceneStep &scene_step, const StrandStep &step, st
             if (!search(system, nullptr, direction, before, found).moved) break;
             for (size_t i = 0; i < system.size(); ++i) direction[i] = found[i] - x[i];
             system.energies(x, &near, std::vector<unsigned char>(system.unit_count(), 1), unused);
-        }
-        if (system.cloths.empty())
+        } else {
             for (size_t p = 0; p < tried.size(); ++p)
                 tried[p] = iteration >= step.newton
                                ? 1.0
                                : std::min(1.0, std::max(farther * gone[p], settings.strand_radius / reach[p]));
-        shorten(system, tried, direction);
+            shorten(system, tried, direction);
+        }
         std::vector<Vec3> wanted = now;
         for (int v = 0; v < vertices.moving_vertices(); ++v) wanted[v] += system.position(direction, v);
         std::vector<Vec3> to = wanted;

@@ -1,0 +1,212 @@
+"""Recipes and grooms: read, made, edited, checked and written."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ringlet.api.progress import Progress
+from ringlet.errors import UserError
+
+if TYPE_CHECKING:
+    from ringlet.groom import Memory, Recipe
+    from ringlet.groom.groom import Groom
+    from ringlet.mesh import Mesh
+
+
+def read_recipe(path: Path | str) -> Recipe:
+    """Reads a recipe from a TOML file, with every setting checked."""
+    from ringlet import groom
+
+    return groom.read_recipe(Path(path))
+
+
+def build_groom(
+    recipe: Recipe | Path | str, *, progress: Progress | None = None, memory: Memory | None = None
+) -> Groom:
+    """Makes the groom of a recipe: guides grown on the scalp or read from USD, then locks, shape and curl.
+
+    memory: keeps results between calls, so that an edit recomputes only what follows it
+    """
+    from ringlet import groom
+
+    if not isinstance(recipe, groom.Recipe):
+        recipe = read_recipe(recipe)
+    return groom.make_groom(recipe, progress=progress, memory=memory, **groom_inputs(recipe, memory))
+
+
+def groom_inputs(recipe: Recipe, memory: Memory | None = None) -> dict[str, Any]:
+    """What the files hold that a recipe names: what ``make_groom`` takes besides the recipe."""
+    from ringlet import io
+    from ringlet.groom.operators import Drawn
+
+    if recipe.scalp_file is None:
+        raise UserError(f"{recipe.path or 'recipe'}: scalp.file is missing; name the file of the head")
+    scalp = _kept(
+        memory, recipe.scalp_file, lambda file: io.read_mesh(file, recipe.scalp.mesh, space=recipe.scalp.space)
+    )
+    scalp.textures = {name: io.read_texture(file) for name, file in recipe.map_files().items()}
+    drawn = None
+    if isinstance(recipe.guides, Drawn) and recipe.guides_file is not None:
+        drawn = io.read_curves(recipe.guides_file, recipe.guides.prim, space=recipe.guides.space)
+    helpers = {
+        name: io.read_curves(file, recipe.curves[name].prim, space=recipe.curves[name].space)
+        for name, file in recipe.helper_files().items()
+    }
+    return {
+        "scalp": scalp,
+        "drawn_guides": drawn,
+        "helpers": helpers,
+        "scalp_file": recipe.scalp_file,
+        "scalp_prim": recipe.scalp.mesh,
+        "space": io.read_space(recipe.scalp_file, space=recipe.scalp.space),
+    }
+
+
+def _kept(memory: Memory | None, file: Path, read: Callable[[Path], Any]) -> Any:
+    """What is in a file, from memory while it has not changed."""
+    changed = file.stat().st_mtime_ns if file.exists() else 0
+    if memory is None:
+        return read(file)
+    if memory.files.get(str(file), (None, None))[0] != changed:
+        memory.files[str(file)] = (changed, read(file))
+    return memory.files[str(file)][1]
+
+
+def write_groom(groom: Groom, path: Path | str, *, variants: Mapping[str, Groom] | None = None) -> None:
+    """Writes a groom as USD, with the head it grows on by reference.
+
+    variants: more grooms of the same head, by name: the file has a variant set ``groom``, with ``groom`` as ``base``
+    """
+    from ringlet import io
+
+    io.write_groom(groom, Path(path), variants)
+
+
+def read_groom(path: Path | str, *, variant: str | None = None) -> Groom:
+    """Reads a groom that ``write_groom`` wrote, or one of its variants."""
+    from ringlet import io
+
+    return io.read_groom(Path(path), variant)
+
+
+def load_groom(path: Path | str, *, variant: str | None = None, progress: Progress | None = None) -> Groom:
+    """The groom of a recipe (``.toml``) or of a USD file, or a variant of the latter."""
+    if Path(path).suffix != ".toml":
+        return read_groom(path, variant=variant)
+    if variant is not None:
+        raise UserError(f"variant '{variant}': {path} is a recipe; name the recipe of the variant instead")
+    return build_groom(path, progress=progress)
+
+
+def edit_lock(
+    recipe: Path | str,
+    lock: int,
+    *,
+    points: NDArray | None = None,
+    stage: Literal["groom", "shape"] = "groom",
+    relative: bool | None = None,
+    settings: dict[str, Any] | None = None,
+) -> None:
+    """Takes a lock out of a recipe, whose line ``edits`` names the file that keeps the change.
+
+    points:   where its points go [m], shape (k, 3), in the rest pose; where they are now when absent
+    stage:    ``shape``: the points are those of the lock before it is curled
+    relative: keep the difference from what the recipe makes, so that the edit goes with all changes of the recipe (so
+              it is for given points); else the curve as it is
+    settings: in place of points: settings of this lock alone, such as ``{"curl.width": "8 mm"}``
+    """
+    from ringlet import groom
+
+    before = read_recipe(recipe)
+    with groom.taken_back(before):
+        if settings is not None:
+            groom.add_settings(before, lock, settings)
+        else:
+            made = build_groom(before)
+            now = (made.shapes if stage == "shape" and made.shapes else made.locks)[groom.row_of(made, lock)]
+            others = [edit for edit in before.edit if edit.lock != lock or edit.stage != stage]
+            plain = build_groom(before.model_copy(update={"edit": others}))
+            relative = points is not None if relative is None else relative
+            groom.add_points(before, plain, lock, now if points is None else points, stage, relative)
+        read_recipe(recipe)
+
+
+def release_locks(recipe: Path | str, locks: Collection[int] | None = None) -> list[int]:
+    """Gives edited locks back to the recipe, all or those named; returns their ids."""
+    from ringlet import groom
+
+    return groom.release(read_recipe(recipe), locks)
+
+
+def list_edits(recipe: Path | str) -> list[dict[str, Any]]:
+    """The edited locks of a recipe: ``lock``, ``stage``, ``what`` was changed, and whether the lock is ``there``."""
+    read = read_recipe(recipe)
+    there = set(build_groom(read).locks.ids.tolist()) if read.edit else set()
+    return [
+        {
+            "lock": edit.lock,
+            "stage": edit.stage,
+            "what": [*edit.set, *(name for name in ("curve", "offsets", "move") if getattr(edit, name))],
+            "there": edit.lock in there,
+        }
+        for edit in read.edit
+    ]
+
+
+def check_groom(
+    groom: Groom | Path | str,
+    *,
+    root_depth: float = 5e-4,
+    root_length: float = 5e-3,
+    thickness: float = 1e-4,
+    fixed: Path | str | None = None,
+    picture: Path | str | None = None,
+    variant: str | None = None,
+    progress: Progress | None = None,
+) -> dict[str, Any]:
+    """What of a groom is in the scalp, in the body and in other locks: places, locks, greatest depth [m], worst places.
+
+    Returns ``found``; with ``fixed`` also ``left``, what could not be repaired, and ``repair``, what was moved.
+
+    root_depth:  how deep a lock may be in the skin up to ``root_length`` from its root [m]
+    thickness:   two locks nearer than this are in one another [m]
+    fixed:       where to write the repaired groom
+    picture:     where to write a picture of the places: of those that are left, if it is repaired
+    variant:     of the groom file, in place of the one that is selected in it
+    """
+    from ringlet import groom as grooms
+    from ringlet.groom.groom import Groom
+
+    if not isinstance(groom, Groom):
+        groom = load_groom(groom, variant=variant, progress=progress)
+    allowed = grooms.Allowed(root_depth, root_length, thickness)
+    others = _beside_scalp(groom)
+    findings = grooms.check_groom(groom, others, allowed)
+    told: dict[str, Any] = {"locks": len(groom.locks), "points": len(groom.locks.points), "found": findings.told()}
+    if fixed is not None:
+        repair = grooms.fix_groom(groom, others, allowed, progress)
+        write_groom(repair.groom, fixed)
+        findings = repair.left
+        told |= {"left": findings.told(), "repair": repair.told()}
+    if picture is not None:
+        from ringlet.picture import write_places
+
+        body = np.concatenate([mesh.points for mesh in (groom.scalp, *others)])
+        title = "left after the repair" if fixed is not None else "found"
+        write_places(body, findings.locks.points, findings.by_kind(), picture, title)
+    return told
+
+
+def _beside_scalp(groom: Groom) -> list[Mesh]:
+    """The visible meshes in the file of the scalp, but for the scalp."""
+    from ringlet import io
+
+    if groom.scalp_file is None or groom.scalp_file.suffix == ".obj":
+        return []
+    meshes = [body.mesh for body in io.read_bodies(groom.scalp_file)]
+    return [mesh for mesh in meshes if mesh.name != groom.scalp.name]

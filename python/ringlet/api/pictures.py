@@ -1,0 +1,169 @@
+"""Pictures of what is in a USD stage, and of lofts."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ringlet.api.grooms import read_groom
+from ringlet.api.hairs import build_hairs
+from ringlet.api.progress import Progress
+from ringlet.api.shots import read_cache
+from ringlet.curves import Curves
+from ringlet.errors import UserError
+from ringlet.settings import check_name
+
+if TYPE_CHECKING:
+    from ringlet.shot.loft import Loft
+
+
+def write_still(
+    stage: Path | str,
+    path: Path | str,
+    *,
+    frame: float | None = None,
+    width: int = 900,
+    height: int = 1000,
+    samples: int = 40,
+    view: str = "three_quarter",
+    color: str = "dark_brown",
+    seconds: float | None = None,
+    progress: Progress | None = None,
+) -> None:
+    """Path-traces one frame of a USD stage to a PNG: the hairs and the bodies in it, framed on their own.
+
+    frame:   the first of the stage by default
+    view:    ``three_quarter``, ``front``, ``side`` or ``back``
+    seconds: stop adding samples after that long
+    """
+    from ringlet import picture
+
+    bodies, hairs = _posed(Path(stage), frame)
+    picture.still(
+        bodies,
+        hairs,
+        Path(path),
+        width=width,
+        height=height,
+        samples=samples,
+        view=view,
+        color=color,
+        seconds=seconds,
+        progress=progress,
+    )
+
+
+def write_touches_picture(
+    stage: Path | str,
+    path: Path | str,
+    *,
+    show: str = "force",
+    frame: float | None = None,
+    width: int = 900,
+    height: int = 1000,
+    samples: int = 40,
+    view: str = "three_quarter",
+    seconds: float | None = None,
+    progress: Progress | None = None,
+) -> None:
+    """Draws what ``write_touches`` wrote, with the locks and the bodies around it, as coloured beads.
+
+    show:  ``force``: where how hard, from blue to red over three decades; ``gap``: red where hardly anything is left;
+           ``start``: all places that were in the way when the shot began, red where worst
+    frame: the first by default
+    """
+    from ringlet import io, picture
+
+    check_name(show, ("force", "gap", "start"), "picture", "way to show contacts")
+    stage = Path(stage)
+    touches, colors = io.read_touches(stage, frame)
+    cache, locks = read_cache(stage), read_groom(stage).locks
+    index = 0 if frame is None else int(np.flatnonzero(cache.frames == frame)[0])
+    places, part = touches.places, 0.006  # of the picture's size
+    if show == "gap":
+        colors = io.heat(1.0 - np.clip(touches.gap, 0.0, 1.0))
+    elif show == "start":
+        places, depth = io.start_marks(cache.start)
+        colors = io.heat(depth)
+    bodies, _, _ = io.read_stage(stage, float(cache.frames[index]))
+    posed = [picture.PosedBody(body.mesh, body.clip.points[0]) for body in bodies]
+    if len(places):
+        posed.append(picture.beads(places, colors, part * float(np.ptp(cache.points[index], axis=0).max())))
+    picture.still(
+        posed,
+        Curves(cache.points[index], locks.offsets, locks.ids),
+        Path(path),
+        width=width,
+        height=height,
+        samples=samples,
+        view=view,
+        color="gray",
+        seconds=seconds,
+        progress=progress,
+    )
+
+
+def write_sheet(
+    stage: Path | str,
+    path: Path | str,
+    *,
+    frames: tuple[int, int] | None = None,
+    count: int = 12,
+    title: str = "",
+    color: str = "dark_brown",
+    progress: Progress | None = None,
+) -> None:
+    """Draws ``count`` frames of a USD stage, evenly spread, on one page, under a title if there is one."""
+    from ringlet import io, picture
+
+    _, _, held = io.read_stage(Path(stage))
+    chosen = [f for f in held if frames is None or frames[0] <= f <= frames[1]]
+    if not chosen:
+        raise UserError(f"{stage}: has no frames to draw a sheet of; give hairs made with --cache, or other frames")
+    spread = [chosen[i] for i in np.unique(np.linspace(0, len(chosen) - 1, count).round().astype(int))]
+    picture.sheet(
+        ((frame, *_posed(Path(stage), frame)) for frame in spread),
+        Path(path),
+        title=title,
+        fps=io.read_space(Path(stage)).fps,
+        color=color,
+        progress=progress,
+    )
+
+
+def write_loft_picture(
+    loft: Loft,
+    path: Path | str,
+    *,
+    title: str = "",
+    view: str = "three_quarter",
+    progress: Progress | None = None,
+) -> None:
+    """Draws the hair as groomed, as it hangs without the loft and with it, on one page."""
+    from ringlet import groom as grooms
+    from ringlet import picture
+
+    groom = loft.groom
+    hairs = build_hairs(groom, fraction=min(1.0, 6000 / grooms.hair_count(groom)))
+    shapes = {"groomed": groom.locks.points, "hanging, not lofted": loft.sagged, "hanging, lofted": loft.lofted}
+    picture.compare(
+        {name: hairs.curves.with_points(hairs.at(points, groom.scalp.points)) for name, points in shapes.items()},
+        [picture.PosedBody(groom.scalp, groom.scalp.points)],
+        Path(path),
+        title=title,
+        view=view,
+        progress=progress,
+    )
+
+
+def _posed(stage: Path, frame: float | None) -> tuple[list[Any], Any]:
+    """Bodies and hairs of a stage at a frame, as the pictures take them."""
+    from ringlet import io, picture
+
+    bodies, hairs, frames = io.read_stage(stage, frame)
+    if hairs is None:
+        raise UserError(f"{stage}: has no hairs; make them with: ringlet hair {stage} -o hair.usdc")
+    at = frame if frame is not None else frames[0] if len(frames) else 0.0
+    return [picture.PosedBody(body.mesh, body.clip.at(at)) for body in bodies], hairs

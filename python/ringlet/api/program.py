@@ -1,0 +1,64 @@
+"""What is about Ringlet itself: known answers, benchmarks, schemas, threads."""
+
+from __future__ import annotations
+
+import importlib.util
+import inspect
+import sys
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from ringlet.api.progress import Progress
+from ringlet.settings import check_name
+from ringlet.share import share
+
+if TYPE_CHECKING:
+    from ringlet.validate import Row
+
+
+def run_validation(cases: Sequence[str] | None = None, *, progress: Progress | None = None) -> list[Row]:
+    """Compares the simulator with known answers: all cases, or the named ones."""
+    from ringlet import validate
+
+    chosen = list(validate.CASES) if cases is None else list(cases)
+    for name in chosen:
+        check_name(name, validate.CASES, "validate", "case")
+    rows = []
+    for index, name in enumerate(chosen):
+        rows += validate.run_case(name)
+        if progress:
+            progress("known answers", index + 1, len(chosen))
+    return rows
+
+
+def run_bench(name: str, **params: Any) -> dict[str, Any]:
+    """Runs the benchmark of that name with its parameters; returns what it measured."""
+    folder = share("bench")
+    files = {file.stem: file for file in sorted(folder.glob("*.py"))}
+    check_name(name, files, "bench", "benchmark")
+    spec = importlib.util.spec_from_file_location(f"ringlet_bench_{name}", files[name])
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.path.insert(0, str(folder))  # as for a script: benchmarks may share what is in this folder
+    try:
+        spec.loader.exec_module(module)
+    finally:
+        sys.path.remove(str(folder))
+    taken = inspect.signature(module.run).parameters
+    for key in params:
+        check_name(key, taken, f"bench {name}", "parameter")
+    return module.run(**params)
+
+
+def schema() -> dict[str, Any]:
+    """JSON schemas of what people write: ``recipe`` and ``shot``."""
+    from ringlet import groom, shot
+
+    return {"recipe": groom.schema(), "shot": shot.schema()}
+
+
+def use_threads(count: int) -> None:
+    """Limits the core to so many threads."""
+    from ringlet import _core
+
+    _core.set_thread_count(count)

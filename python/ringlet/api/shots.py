@@ -1,0 +1,271 @@
+"""Shots: read, lofted and simulated, and the caches that come of them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ringlet.api.grooms import load_groom
+from ringlet.api.progress import OnFrame, Progress
+from ringlet.curves import Curves
+from ringlet.errors import UserError
+from ringlet.files import within
+
+if TYPE_CHECKING:
+    from ringlet.groom.groom import Groom
+    from ringlet.mesh import Clip
+    from ringlet.shot import Checkpoints, Garment, Motion, Obstacle, Shot
+    from ringlet.shot.cache import Cache, Told
+    from ringlet.shot.loft import Loft
+
+
+def read_shot(path: Path | str) -> Shot:
+    """Reads a shot from a TOML file, with every setting checked."""
+    from ringlet import shot
+
+    return shot.read_shot(Path(path))
+
+
+def simulate(
+    shot: Shot | Path | str,
+    groom: Groom | Path | str | None = None,
+    *,
+    frames: tuple[int, int] | None = None,
+    allow_stale: bool = False,
+    checkpoints: Path | str | None = None,
+    resume: bool = False,
+    touches: bool = False,
+    progress: Progress | None = None,
+) -> Cache:
+    """Moves the locks of a groom while the scalp plays its clip.
+
+    groom:       in place of the one that the shot names
+    frames:      first and last frame, in place of the shot's
+    allow_stale: use a lofted shape although it was made from another groom, material or forces
+    checkpoints: a folder that keeps what is done while it runs; to be taken away when its result has been written
+    resume:      go on with what a run that was broken off left there, to the same bits
+    touches:     keep what touches in every frame, for ``write_touches``
+    """
+    from ringlet import shot as shots
+    from ringlet.groom.groom import Groom
+
+    if not isinstance(shot, shots.Shot):
+        shot = read_shot(shot)
+    if not isinstance(groom, Groom):
+        groom = load_groom(groom or shot.groom, progress=progress)
+    inputs = _inputs(shot, groom, allow_stale)
+    return shots.simulate(
+        shot,
+        groom,
+        frames=frames,
+        checkpoints=_checkpoints(checkpoints, shot, groom, inputs, frames) if checkpoints else None,
+        resume=resume,
+        touches=touches,
+        progress=progress,
+        **inputs,
+    )
+
+
+def write_simulation(
+    shot: Shot,
+    groom: Groom,
+    under: Path | str,
+    path: Path | str,
+    *,
+    checkpoints: Path | str,
+    frames: tuple[int, int] | None = None,
+    allow_stale: bool = False,
+    resume: bool = False,
+    touches: bool = False,
+    progress: Progress | None = None,
+    on_frame: OnFrame | None = None,
+) -> Told:
+    """``simulate`` and ``write_cache`` in one, with one frame at a time in memory, however long the shot is.
+
+    under:       the USD file that ``write_groom`` made of the groom, over which the cache is laid
+    checkpoints: the folder that keeps the frames; they go to ``path`` when all are there
+    touches:     keep what touches in every frame, for ``write_touches``
+    on_frame:    called with each frame's number and statistics, as soon as it is there
+    """
+    from ringlet import io
+    from ringlet import shot as shots
+
+    inputs = _inputs(shot, groom, allow_stale)
+    kept = _checkpoints(checkpoints, shot, groom, inputs, frames)
+    first, last = frames or shot.frames
+    motion = shots.Motion(shot, groom, first=first, **inputs)
+    told = shots.Told(start=motion.start, cloths={worn.name: len(worn.cloth.positions) for worn in motion.worn})
+    for frame in shots.play(motion, last, touches=touches, progress=progress, checkpoints=kept, resume=resume):
+        told.frames.append(frame.number)
+        told.statistics.append(frame.statistics)
+        if frame.touches:
+            told.touches.append(frame.touches)
+        if on_frame:
+            on_frame(frame.number, frame.statistics)
+    with io.CacheWriter(path, under, io.read_space(Path(under)), motion.cloths(0), groom.variant) as writer:
+        writer.start = motion.start
+        for frame in shots.played(motion, kept, shot.preroll + len(told.frames)):
+            writer.add(frame.number, frame.points, frame.statistics, frame.cloths)
+    return told
+
+
+def made_from(shot: Shot, groom: Groom, *, frames: tuple[int, int] | None = None) -> str:
+    """A digest of all that the frames of a simulation depend on: two runs with the same give the same bits."""
+    from ringlet import shot as shots
+
+    return shots.made_of(shot, groom, frames=frames, **_inputs(shot, groom, False))
+
+
+def start_motion(shot: Shot, groom: Groom, *, allow_stale: bool = False) -> Motion:
+    """The locks of a groom at the start of a shot, to be moved frame by frame by who wants to see each."""
+    from ringlet import shot as shots
+
+    return shots.Motion(shot, groom, first=shot.frames[0], **_inputs(shot, groom, allow_stale))
+
+
+def _inputs(shot: Shot, groom: Groom, allow_stale: bool) -> dict[str, Any]:
+    """What files hold that a shot and its groom name: what ``shots.simulate`` takes besides the two."""
+    clip, garments = scalp_clip(groom), _garments(shot, groom)
+    obstacles = _obstacles(shot, groom, garments)
+    rest = _rest_shape(shot, groom, obstacles, allow_stale)
+    return {"clip": clip, "rest": rest, "obstacles": obstacles, "garments": garments}
+
+
+def _checkpoints(
+    folder: Path | str, shot: Shot, groom: Groom, inputs: dict[str, Any], frames: tuple[int, int] | None
+) -> Checkpoints:
+    """The folder that keeps what a run has done."""
+    from ringlet import shot as shots
+
+    return shots.Checkpoints(Path(folder), shots.made_of(shot, groom, frames=frames, **inputs))
+
+
+def loft(
+    shot: Shot | Path | str,
+    groom: Groom | Path | str | None = None,
+    *,
+    known: Path | str | None = None,
+    progress: Progress | None = None,
+) -> Loft:
+    """Pre-bends the shape that the locks remember, so that the groom is what hangs under the forces of the shot.
+
+    groom: in place of the one that the shot names
+    known: a file that ``write_loft`` wrote: locks that have not changed since are taken from it
+    """
+    from ringlet import io
+    from ringlet import shot as shots
+    from ringlet.groom.groom import Groom
+
+    if not isinstance(shot, shots.Shot):
+        shot = read_shot(shot)
+    if not isinstance(groom, Groom):
+        groom = load_groom(groom or shot.groom, progress=progress)
+    obstacles = _lain_on(shot, groom)
+    if known is None or not Path(known).exists():
+        return shots.preload(shot, groom, obstacles=obstacles, progress=progress)
+    return shots.refresh(shot, groom, *io.read_rest(Path(known)), obstacles=obstacles, progress=progress)
+
+
+def rest_place(shot: Shot) -> Path:
+    """Where the loft of a shot goes when nobody says otherwise: beside the shot or below, whatever it says."""
+    assert shot.path is not None and shot.rest_file is not None  # a shot from a file has a place for it
+    return within(shot.rest_file, shot.path.parent, f"{shot.path.name}: rest.file")
+
+
+def write_loft(loft: Loft, shot: Shot, path: Path | str) -> None:
+    """Writes the shape that locks remember, with what it was made from, for ``simulate``."""
+    from ringlet import io
+    from ringlet import shot as shots
+
+    made_from = shots.made_from(shot, _lain_on(shot, loft.groom))
+    io.write_rest(shots.keep(loft, shot), made_from, Path(path), loft.groom.space)
+
+
+def _lain_on(shot: Shot, groom: Groom) -> list[Obstacle]:
+    """The bodies that a groom may lie on, as far as its rest shape asks for them."""
+    if shot.rest.mode != "equilibrium" or groom.scalp_file is None:
+        return []
+    return _obstacles(shot, groom, _garments(shot, groom))
+
+
+def _rest_shape(shot: Shot, groom: Groom, obstacles: Sequence[Obstacle], allow_stale: bool) -> Curves | None:
+    """What the locks remember: nothing but the groom, or a lofted shape that fits."""
+    from ringlet import io
+    from ringlet import shot as shots
+
+    if shot.rest.mode == "none":
+        return None
+    if shot.rest_file is None:
+        raise UserError(
+            f"shot: rest.mode is '{shot.rest.mode}', but rest.file is missing; name what ringlet loft wrote"
+        )
+    if not shot.rest_file.exists():
+        raise UserError(f"{shot.rest_file}: there is no lofted shape; make it with: ringlet loft {shot.path}")
+    kept, made_from = io.read_rest(shot.rest_file)
+    return shots.check(kept, made_from, shot, groom, shot.rest_file, obstacles=obstacles, allow_stale=allow_stale)
+
+
+def scalp_clip(groom: Groom) -> Clip:
+    """How the scalp of a groom moves."""
+    from ringlet import io
+
+    if groom.scalp_file is None:
+        raise UserError("groom: names no file for its scalp; write the head as USD and name it in the recipe")
+    return io.read_clip(groom.scalp_file, groom.scalp_prim)
+
+
+def _obstacles(shot: Shot, groom: Groom, garments: Sequence[Garment]) -> list[Obstacle]:
+    """What locks and cloth of a shot touch besides one another: of several settings for one mesh, the last."""
+    from ringlet import io
+    from ringlet import shot as shots
+
+    if not shot.touching:
+        return []
+    found: dict[tuple[Path, str], Obstacle] = {}
+    for collider in shot.collider or (shots.Collider(),):
+        file = collider.file or groom.scalp_file
+        assert file is not None  # as for the scalp's clip
+        for body in io.read_bodies(file, collider.mesh):
+            found[file.resolve(), body.prim] = shots.Obstacle(body.mesh, body.clip, collider)
+    for garment in garments:  # cloth is no obstacle, even where its file is the head's
+        assert garment.file is not None
+        found.pop((garment.file.resolve(), garment.prim), None)
+    return list(found.values())
+
+
+def _garments(shot: Shot, groom: Groom) -> list[Garment]:
+    """The meshes that become cloth in a shot."""
+    from ringlet import io
+    from ringlet import shot as shots
+
+    garments: list[Garment] = []
+    for cloth in shot.cloth:
+        file = cloth.file or groom.scalp_file
+        assert file is not None  # as for the scalp's clip
+        body = io.read_body(file, cloth.mesh)
+        garments.append(shots.Garment(body.mesh, body.clip, cloth, file, body.prim))
+        if garments[-1].name in [garment.name for garment in garments[:-1]]:
+            raise UserError(f"shot: two cloths are called '{garments[-1].name}'; give one of them another `name`")
+    return garments
+
+
+def write_cache(cache: Cache, groom: Path | str, path: Path | str, *, variant: str | None = None) -> None:
+    """Writes simulated guides as a USD layer over the file ``groom``, or over one of its variants."""
+    from ringlet import io
+
+    io.write_cache(cache, Path(groom), Path(path), io.read_space(Path(groom)), variant)
+
+
+def write_touches(cache: Cache | Told, cache_path: Path | str, path: Path | str) -> None:
+    """Writes what touched in a simulation as coloured points: a USD layer over the file of its cache."""
+    from ringlet import io
+
+    io.write_touches(cache, Path(cache_path), Path(path), io.read_space(Path(cache_path)))
+
+
+def read_cache(path: Path | str) -> Cache:
+    """Reads simulated guides that ``write_cache`` wrote."""
+    from ringlet import io
+
+    return io.read_cache(Path(path))
