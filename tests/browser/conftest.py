@@ -103,7 +103,7 @@ class Review:
         page.on("pageerror", lambda error: self.wrong.append(str(error)))
         page.on("console", lambda told: self.wrong.append(told.text) if "shader" in told.text.lower() else None)
         page.goto(address)
-        self.until("window.ringlet?.viewer.hair.a.table && ringlet.model.numbers && !ringlet.model.numbers.draft")
+        self.until("window.ringlet?.viewer.hair.a.table && ringlet.model.settled")
 
     def get(self, expression: str) -> Any:
         return self.page.evaluate(f"() => {expression}")
@@ -120,10 +120,15 @@ class Review:
     def text(self, file: str = "recipe") -> str:
         return self.get(f"ringlet.model.documents.{file}.text")
 
+    def answered(self) -> None:
+        """Waits until the server has heard all that was said so far: it answers in the order in which it hears."""
+        self.get("(window.role = ringlet.model.role, ringlet.model.say({ kind: 'lead' }))")
+        self.until("ringlet.model.role !== role")
+
     def settled(self) -> None:
         """Waits until what was asked for is made and drawn."""
         before = self.get("ringlet.viewer.pictures")
-        self.until("!ringlet.model.numbers.draft")
+        self.until("ringlet.model.settled")
         self.get("ringlet.viewer.invalidate()")
         self.until(f"ringlet.viewer.pictures > {before}")
 
@@ -152,7 +157,7 @@ class Review:
         return self.page.locator(f'[data-setting="{setting}"] > input[type=range]')
 
     def drag(self, locator: Any, *places: float) -> None:
-        """Drags along an element, from part to part of its width."""
+        """Drags along an element, from part to part of its width, until the server has heard of it."""
         box = locator.bounding_box()
         mouse = self.page.mouse
         mouse.move(box["x"] + places[0] * box["width"], box["y"] + box["height"] / 2)
@@ -160,6 +165,7 @@ class Review:
         for place in places[1:]:
             mouse.move(box["x"] + place * box["width"], box["y"] + box["height"] / 2, steps=4)
         mouse.up()
+        self.answered()
 
 
 def different(a: np.ndarray, b: np.ndarray) -> float:

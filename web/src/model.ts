@@ -65,6 +65,12 @@ export class Model {
     return at(this.documents[file]?.said, place);
   }
 
+  /** Whether what is seen is what the recipe says, in full. */
+  get settled(): boolean {
+    const { numbers, documents } = this;
+    return numbers !== null && !numbers.draft && numbers.revision === (documents.recipe?.revision ?? 0);
+  }
+
   /** What holds at a place, in SI units. */
   value(file: File, place: Place): Json | undefined {
     return at(this.documents[file]?.values, place);

@@ -1,6 +1,6 @@
 // Made by tools/make_protocol.py from python/ringlet/viewer/protocol.py; change it there.
 
-export const VERSION = 2;
+export const VERSION = 3;
 export type Json = string | number | boolean | null | Json[] | { [key: string]: Json };
 
 /** A stage of the groom. place: where its settings are in the recipe. */
@@ -154,6 +154,7 @@ export interface Document {
   kind: "document";
   file: "recipe" | "shot";
   name: string;
+  revision: number;
   text: string;
   edits: string;
   said: Record<string, Json>;
@@ -229,9 +230,10 @@ export interface Hairs {
   thinning: Float32Array;
 }
 
-/** What to keep in sight. times: of the stages that were computed [ms]. */
+/** What to keep in sight. revision: of the recipe that is shown; times: of the stages that were computed [ms]. */
 export interface Numbers {
   kind: "numbers";
+  revision: number;
   locks: number;
   hairs: number;
   groom_ms: number;

@@ -74,6 +74,7 @@ class Document:
     edits:   what the file of edits holds
     history: that of the files that are undone together
     model:   what ``check`` made of it
+    revision: grows with each change
     """
 
     def __init__(
@@ -81,13 +82,14 @@ class Document:
     ) -> None:
         self.path, self.history = path, history or History()
         self.saved, self.saved_edits = path.read_text(encoding="utf-8"), edits
-        self._check = check
+        self._check, self.revision = check, 0
         self.take(State(self.saved, edits=edits))
 
     def take(self, state: State) -> None:
         """Is as it says, if that is valid."""
         self.model = self._check(state.text, state.edits)
         self.state = state
+        self.revision += 1
 
     @property
     def text(self) -> str:
@@ -160,6 +162,7 @@ class Document:
         model = self._check(state.text, state.edits)
         self.history.note(self, gesture)
         self.model, self.state = model, state
+        self.revision += 1
 
     def save(self, path: Path | None = None, text: str | None = None) -> Path:
         """Writes it to its file, or a text to another one."""

@@ -199,6 +199,7 @@ class Files:
                 {
                     "file": file,
                     "name": document.path.name,
+                    "revision": document.revision,
                     "text": document.text,
                     "edits": document.state.edits if document.state.edits != document.saved_edits else "",
                     "said": said,

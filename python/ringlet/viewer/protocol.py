@@ -10,7 +10,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
-VERSION = 2
+VERSION = 3
 Place = list[str | int]  # where a setting is in its file: ["shape", 0, "amount"]
 File = Literal["recipe", "shot"]
 Point = tuple[float, float, float]
@@ -232,14 +232,16 @@ class Change(Message):
 class Document(Message):
     """A file as it stands.
 
-    said:   what the file says; operators of a recipe that is extended have the places that they have in the whole
-    values: what holds, with all defaults, in SI units
-    edits:  what its file of edits holds, where that is not saved
+    revision: grows with each change
+    said:     what the file says; operators of a recipe that is extended have the places that they have in the whole
+    values:   what holds, with all defaults, in SI units
+    edits:    what its file of edits holds, where that is not saved
     """
 
     kind: Literal["document"] = "document"
     file: File
     name: str
+    revision: int
     text: str
     edits: str
     said: dict[str, Any]
@@ -329,9 +331,10 @@ class Hairs(Message):
 
 
 class Numbers(Message):
-    """What to keep in sight. times: of the stages that were computed [ms]."""
+    """What to keep in sight. revision: of the recipe that is shown; times: of the stages that were computed [ms]."""
 
     kind: Literal["numbers"] = "numbers"
+    revision: int
     locks: int
     hairs: int
     groom_ms: float

@@ -34,9 +34,10 @@ log = logging.getLogger("ringlet.viewer")
 
 @dataclass(frozen=True)
 class Work:
-    """A groom that is wanted: a recipe, what is muted in it, and whether only a draft is needed."""
+    """A groom that is wanted: a recipe, its revision, what is muted in it, and whether only a draft is needed."""
 
     recipe: Recipe
+    revision: int
     muted: frozenset[str]
     draft: bool
 
@@ -188,7 +189,8 @@ class Session:
             self._edited("recipe")
         else:
             document = self.files.recipe
-            self._worker.ask(Work(self._sculptor.preview(document.model), document.state.muted, True))
+            sculpted = self._sculptor.preview(document.model)
+            self._worker.ask(Work(sculpted, document.revision, document.state.muted, True))
 
     def _compare(self, message: protocol.Compare) -> None:
         self._showing.clear_beside()
@@ -220,7 +222,7 @@ class Session:
     def regroom(self, *, draft: bool = False) -> None:
         """Makes the groom of the recipe as it stands; while a hand moves, a draft of it."""
         document = self.files.recipe
-        self._worker.ask(Work(document.model, document.state.muted, draft))
+        self._worker.ask(Work(document.model, document.revision, document.state.muted, draft))
 
     def _groom(self, work: Work) -> None:
         """In the background: a draft is finished whatever comes, so that something is seen while a hand moves."""
@@ -228,7 +230,7 @@ class Session:
         self._measurer.drop()
         try:
             look = self._groomer.groom(work.recipe, work.muted, draft=work.draft, fresh=fresh)
-            self._call(self._show, look)
+            self._call(self._show, look, work.revision)
             if not work.draft:
                 self._measurer.ask(look)
         except UserError as error:
@@ -247,9 +249,9 @@ class Session:
             parts.append(part)
         self._call(self.board.post, "measured", measured(groom, np.concatenate([np.empty(0), *parts])))
 
-    def _show(self, look: Look) -> None:
+    def _show(self, look: Look, revision: int) -> None:
         before = self._showing.look
-        self._showing.show(look, "a")
+        self._showing.show(look, "a", revision)
         guides_changed = before is None or before.groom.guides is not look.groom.guides
         if guides_changed and look.groom.unsculpted is not None and not self._sculptor.busy:
             self.board.post("guides", self._sculptor.told(look.groom.guides, look.groom))

@@ -31,8 +31,8 @@ class Showing:
         self._layouts: dict[str, Curves] = {}
         self._names: protocol.Names | None = None
 
-    def show(self, look: Look, side: str) -> None:
-        """Shows a look on one side."""
+    def show(self, look: Look, side: str, revision: int = 0) -> None:
+        """Shows a look on one side. revision: of the recipe that it comes from."""
         if side == "a":
             self.look = look
             self._show_scalp(look)
@@ -43,7 +43,7 @@ class Showing:
             self._board.post(f"{side}/hairs", look.layout(side))
         self._board.post(f"{side}/locks", look.locks(side))
         if side == "a":
-            self._tell_numbers(look)
+            self._tell_numbers(look, revision)
 
     def stage(self, look: Look, bodies: list[tuple[Mesh, Clip | None]]) -> None:
         """Shows what a USD file holds."""
@@ -79,8 +79,9 @@ class Showing:
             self._names = names
             self._board.post("names", pack(names))
 
-    def _tell_numbers(self, look: Look) -> None:
+    def _tell_numbers(self, look: Look, revision: int) -> None:
         numbers = protocol.Numbers(
+            revision=revision,
             locks=len(look.groom.locks),
             hairs=look.count,
             groom_ms=round(look.took, 1),

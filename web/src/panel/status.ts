@@ -25,6 +25,7 @@ export class Status {
       this.element.append(part);
     }
     model.on("numbers", () => this.update());
+    for (const topic of ["numbers", "document"] as const) model.on(topic, () => this.wait());
     model.on("measured", () => this.inside(model.measured?.inside ?? 0));
   }
 
@@ -45,6 +46,11 @@ export class Status {
   private inside(points: number): void {
     this.set("inside", count(points));
     this.parts["inside"].classList.toggle("warn", points > 0);
+  }
+
+  /** While a newer groom is being made, what it took to make the one that is seen stands back. */
+  private wait(): void {
+    this.parts["groom"].classList.toggle("waiting", !this.model.settled);
   }
 
   private update(): void {
