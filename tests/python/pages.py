@@ -1,0 +1,75 @@
+"""The review's server, and pages without a browser."""
+
+from __future__ import annotations
+
+import json
+import struct
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from fastapi.testclient import TestClient
+from ringlet.viewer.project import Project
+from ringlet.viewer.protocol import VERSION
+from ringlet.viewer.server import Door, make_app
+from ringlet.viewer.session import Session
+from starlette.testclient import WebSocketTestSession
+
+HOST = {"host": "localhost"}
+
+
+class Page:
+    """A page without a browser."""
+
+    def __init__(self, socket: WebSocketTestSession) -> None:
+        self.socket = socket
+        self.heard: list[dict[str, Any]] = []
+
+    def say(self, **message: Any) -> None:
+        text = json.dumps(message).encode()
+        self.socket.send_bytes(struct.pack("<I", len(text)) + text)
+
+    def hear(self, kind: str, **wanted: Any) -> dict[str, Any]:
+        """The next message of a kind that has the wanted values."""
+        for _ in range(200):
+            message = read(self.socket.receive_bytes())
+            self.heard.append(message)
+            if message["kind"] == kind and all(message[name] == value for name, value in wanted.items()):
+                return message
+            assert message["kind"] != "trouble", message["message"]
+        raise AssertionError(f"no {kind} among {[m['kind'] for m in self.heard]}")
+
+    def been_told(self, kind: str, **wanted: Any) -> dict[str, Any]:
+        """The same, of those that were heard already, too: subjects come in no order of their own."""
+        for message in reversed(self.heard):
+            if message["kind"] == kind and all(message[name] == value for name, value in wanted.items()):
+                return message
+        return self.hear(kind, **wanted)
+
+
+def read(data: bytes) -> dict[str, Any]:
+    length = struct.unpack_from("<I", data)[0]
+    message = json.loads(data[4 : 4 + length])
+    at = 4 + length
+    for name, kind, size in message.pop("arrays"):
+        message[name] = np.frombuffer(data, np.dtype(kind), size, at)
+        at += -(-size * np.dtype(kind).itemsize // 8) * 8
+    return message
+
+
+@contextmanager
+def serving(folder: Path, file: str = "small.recipe.toml", door: Door | None = None) -> Iterator[TestClient]:
+    session = Session(folder / file, Project(folder))
+    with TestClient(make_app(session, door or Door("127.0.0.1", "")), base_url="http://localhost") as client:
+        yield client
+
+
+@contextmanager
+def page(client: TestClient, name: str = "one", hello: bool = True, **headers: str) -> Iterator[Page]:
+    with client.websocket_connect("/session", headers={**HOST, **headers}) as socket:
+        found = Page(socket)
+        if hello:
+            found.say(kind="hello", version=VERSION, client=name)
+        yield found

@@ -1,0 +1,99 @@
+"""A variant that is saved from the review says what differs, and makes what was seen."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from pages import page, serving
+
+
+def test_a_variant_says_only_what_differs(folder: Path):
+    with serving(folder) as client, page(client) as one:
+        one.say(kind="set", changes=[[["curl", "width"], 1.5]], gesture=1)
+        one.say(kind="save", name="wide", variant=True)
+        one.hear("saved")
+    text = (folder / "wide.recipe.toml").read_text()
+    assert 'extends = "small.recipe.toml"' in text and "width = 1.5" in text and "pitch" not in text
+
+
+SHAPES = """
+[[shape]]
+op = "scraggle"
+amount = 0.2
+[[shape]]
+op = "clump"
+size = 3
+[[shape]]
+op = "scraggle"
+amount = 0.1
+"""
+
+
+@pytest.fixture
+def extended(folder: Path) -> Path:
+    """A recipe that extends one with three operators."""
+    base = folder / "small.recipe.toml"
+    base.write_text(base.read_text() + SHAPES)
+    (folder / "more.recipe.toml").write_text('ringlet = 1\nextends = "small.recipe.toml"\n[curl]\nwidth = 1.3\n')
+    return folder
+
+
+def test_operators_of_a_base_are_changed_and_removed_by_name(extended: Path):
+    with serving(extended, "more.recipe.toml") as client, page(client) as one:
+        assert [stage["op"] for stage in one.hear("document")["stages"]][2:5] == ["scraggle", "clump", "scraggle"]
+        one.say(kind="set", changes=[[["shape", 2, "amount"], 0.4]], gesture=1)
+        document = one.hear("document", dirty=True)
+        assert document["said"]["shape"] == [{}, {}, {"amount": 0.4}]
+        assert document["values"]["shape"][2]["amount"]["value"] == 0.004
+        one.say(kind="arrange", action="remove", at=0)
+        document = one.hear("document")
+        assert [stage["op"] for stage in document["stages"]][2:4] == ["clump", "scraggle"]
+        assert document["values"]["shape"][1]["amount"]["value"] == 0.004
+        one.say(kind="arrange", action="remove", at=1)
+        assert [stage["op"] for stage in one.hear("document")["stages"]][2:4] == ["clump", "curl"]
+        one.say(kind="arrange", action="move", at=0, to=0)
+        assert "neither move nor add" in one.hear("trouble")["message"]
+        one.say(kind="save")
+        one.hear("saved")
+    text = (extended / "more.recipe.toml").read_text()
+    assert "scraggle = false" in text and '"scraggle 2" = false' in text
+
+
+@pytest.mark.parametrize(
+    "say",
+    [
+        {"kind": "set", "changes": [[["hairs"], None]]},
+        {"kind": "set", "changes": [[["locks", "points"], None]]},
+        {"kind": "set", "changes": [[["curl", "width"], None]]},
+        {"kind": "set", "changes": [[["curl"], None]]},
+        {
+            "kind": "set",
+            "changes": [[["shape", 1, "size"], None], [["shape", 2, "amount"], {"value": 0.3, "vary": 0.1}]],
+        },
+        {"kind": "arrange", "action": "remove", "at": 0},
+        {"kind": "arrange", "action": "move", "at": 0, "to": 1},
+    ],
+)
+def test_a_variant_makes_what_was_seen_also_where_something_was_taken_out(extended: Path, say: dict[str, Any]):
+    from ringlet.groom import read_recipe
+
+    with serving(extended) as client, page(client) as one:
+        one.hear("document")
+        one.say(**say, **({"gesture": 1} if say["kind"] == "set" else {}))
+        values = one.hear("document", dirty=True)["values"]
+        one.say(kind="save", name="other", variant=True)
+        one.hear("saved")
+    made = read_recipe(extended / "other.recipe.toml").model_dump(mode="json")
+    assert {**made, "extends": None, "sculpt": None} == {**values, "sculpt": None}
+    assert "count = 6" not in (extended / "other.recipe.toml").read_text()
+
+
+def test_a_variant_that_cannot_say_what_was_changed_is_not_written(folder: Path):
+    with serving(folder) as client, page(client) as one:
+        one.say(kind="set", changes=[[["locks", "count"], None]], gesture=1)  # a variant cannot say "no count"
+        one.hear("document", dirty=True)
+        one.say(kind="save", name="other", variant=True)
+        assert "save a copy instead" in one.hear("trouble")["message"]
+    assert not (folder / "other.recipe.toml").exists()
