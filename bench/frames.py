@@ -1,4 +1,4 @@
-"""Memory and disk of a shot: what the process holds, frame by frame, and at most."""
+"""Memory and disk of a shot: what the process holds, frame by frame, and at most; then of its hairs."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Any
 
 from head import EXAMPLE, SHOT
 
-from ringlet import build_groom, read_recipe, read_shot, write_groom, write_simulation
+from ringlet import build_groom, read_recipe, read_shot, write_groom, write_hairs, write_simulation
 
 SELF = Path("/proc/self/statm")
 
@@ -19,7 +19,7 @@ SELF = Path("/proc/self/statm")
 def run(
     locks: int = 60, points: int = 40, frames: int = 2000, newton: int = 3, every: int = 50, folder: str = ""
 ) -> dict[str, Any]:
-    """Runs a shot of the example with contact in wind, whose clip ends at frame 48, and writes its cache.
+    """Runs a shot of the example with contact in wind, whose clip ends at frame 48, and writes its cache and its hairs.
 
     every:  frames from one look at the memory to the next
     folder: where its files go for the while; a temporary one by default
@@ -29,6 +29,7 @@ def run(
     text = text.replace("curls = { value = 5,", f"curls = {{ value = {points / 12},")
     text = text.replace('"head.usdc"', f'"{(EXAMPLE / "head.usdc").as_posix()}"')
     megabytes: list[float] = []
+    of_hairs: list[float] = []
     wall: list[float] = []
 
     def look(frame: float, statistics: dict[str, Any]) -> None:
@@ -45,15 +46,30 @@ def run(
         write_groom(groom, groom_file)
         begin, cache, part = time.perf_counter(), Path(place) / "cache.usdc", Path(place) / "part"
         write_simulation(read_shot(shot), groom, groom_file, cache, checkpoints=part, on_frame=look)
+        after, most, seconds = (
+            resident(),
+            resource.getrusage(resource.RUSAGE_SELF).ru_maxrss,
+            time.perf_counter() - begin,
+        )
+
+        def look_at_hairs(_: str, done: int, total: int) -> None:
+            if done % every == 1 or every == 1:
+                of_hairs.append(round(resident(), 1))
+
+        hairs = write_hairs(groom_file, Path(place) / "hair.usdc", cache=cache, fraction=0.1, progress=look_at_hairs)[
+            "hairs"
+        ]
         return {
             "bench": "frames",
             "params": {"locks": locks, "points": points, "frames": frames, "newton": newton, "every": every},
             "megabytes": megabytes,
-            "megabytes_after": round(resident(), 1),
-            "megabytes_most": round(1.024e-3 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, 1),
+            "megabytes_after": round(after, 1),
+            "megabytes_hairs": of_hairs,
+            "megabytes_most": round(1.024e-3 * most, 1),
             "megabytes_of_cache": round(1e-6 * cache.stat().st_size, 1),
             "megabytes_of_checkpoints": round(1e-6 * sum(file.stat().st_size for file in part.iterdir()), 1),
-            "seconds": round(time.perf_counter() - begin, 1),
+            "hairs": hairs,
+            "seconds": round(seconds, 1),
             "slowest_frame_ms": round(max(wall), 1),
         }
 

@@ -30,18 +30,19 @@ def run_demo(folder: Path | str, *, progress: api.Progress | None = None) -> Run
             groom = api.build_groom(example / "curls.recipe.toml", progress=_overall("groom", progress))
             api.write_groom(groom, groom_file)
             run.count(guides=len(groom.guides), locks=len(groom.locks))
-        with run.stage("simulate", cache_file, "the guides in motion"):
-            cache = api.simulate(example / "nod.shot.toml", groom, progress=_overall("simulate", progress))
-            api.write_cache(cache, groom_file, cache_file)
-            run.count(frames=len(cache.frames))
-            run.simulated(cache)
+        with run.stage("simulate", cache_file, "the guides in motion"), _aside(folder) as kept:
+            shot, part = api.read_shot(example / "nod.shot.toml"), _overall("simulate", progress)
+            told = api.write_simulation(shot, groom, groom_file, cache_file, checkpoints=kept, progress=part)
+            run.count(frames=len(told.frames))
+            run.simulated(told)
         with run.stage("hairs", hair_file, f"hairs in motion, {MOVING:.0%} of all"):
             part = _overall("hairs", progress)
             api.write_hairs(groom_file, hair_file, cache=cache_file, fraction=MOVING, progress=part)
         with (
             run.stage("still", still_file, f"frame {STILL_FRAME} with all hairs, path-traced"),
-            _aside(folder) as all_hairs,
+            _aside(folder) as aside,
         ):
+            all_hairs = aside / "hair.usdc"
             counts = api.write_hairs(groom_file, all_hairs, cache=cache_file, frames=(STILL_FRAME, STILL_FRAME))
             api.write_still(
                 all_hairs,
@@ -62,9 +63,9 @@ def run_demo(folder: Path | str, *, progress: api.Progress | None = None) -> Run
 
 @contextmanager
 def _aside(folder: Path) -> Iterator[Path]:
-    """A USD file beside the others that is gone in the end."""
+    """A folder beside the files that is gone in the end."""
     with tempfile.TemporaryDirectory(dir=folder) as aside:
-        yield Path(aside) / "hair.usdc"
+        yield Path(aside)
 
 
 def _overall(part: str, progress: api.Progress | None) -> api.Progress | None:

@@ -9,7 +9,7 @@ import time
 import numpy as np
 import pytest
 from ringlet.cli.app import app
-from ringlet.io import read_cache
+from ringlet.io import open_cache, read_cache, read_touches
 from ringlet.shot import checkpoint
 from small_example import write_example
 from typer.testing import CliRunner
@@ -73,7 +73,7 @@ def test_a_killed_run_goes_on_to_the_same_bits(folder):
     assert not part.exists()
 
 
-def broken_off(folder, monkeypatch, after):
+def broken_off(folder, monkeypatch, after, *more):
     """Runs the shot until the disk is full."""
     keep = checkpoint.Checkpoints.keep
 
@@ -84,7 +84,7 @@ def broken_off(folder, monkeypatch, after):
 
     with monkeypatch.context() as patch:
         patch.setattr(checkpoint.Checkpoints, "keep", full)
-        return sim(folder)
+        return sim(folder, *more)
 
 
 def test_after_a_full_disk_the_run_goes_on(folder, monkeypatch):
@@ -152,3 +152,28 @@ def test_frames_that_go_to_the_file_one_by_one_are_those_of_a_simulation_in_memo
     cache, at_once = read_cache(path), read_cache(folder / "whole.usdc")
     assert (cache.points == at_once.points).all() and (cache.frames == at_once.frames).all()
     assert cache.statistics == told.statistics and cache.start == told.start == at_once.start
+
+
+def touches(folder):
+    with open_cache(folder / "cache.usdc") as cache:
+        return [read_touches(folder / "touches.usdc", frame)[0] for frame in cache.frames]
+
+
+def test_what_touched_before_a_run_was_broken_off_is_kept_with_the_frames(folder, monkeypatch):
+    asked, shot = ("--contacts", str(folder / "touches.usdc")), folder / "small.shot.toml"
+    shot.write_text(shot.read_text().replace("radius = 1e-3", "radius = 1e-2"))
+    assert sim(folder, *asked).exit_code == 0
+    expected = touches(folder)
+    assert any(len(frame.force) for frame in expected[:20])
+    broken_off(folder, monkeypatch, 25, *asked)
+    assert sim(folder, "--resume", *asked).exit_code == 0
+    for frame, before in zip(touches(folder)[:20], expected[:20], strict=True):
+        for name in ("places", "force", "gap"):
+            assert (getattr(frame, name) == getattr(before, name)).all()
+
+
+def test_what_touched_is_not_made_up_where_it_was_not_kept(folder, monkeypatch):
+    broken_off(folder, monkeypatch, 25)
+    result = sim(folder, "--resume", "--contacts", str(folder / "touches.usdc"))
+    assert result.exit_code == 2 and "did not keep what touched; leave out --contacts" in result.stderr
+    assert sim(folder, "--resume").exit_code == 0

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+import tracemalloc
 from pathlib import Path
 
 import numpy as np
@@ -51,6 +52,22 @@ def told(example: Path, name: str) -> dict:
 
 
 # What works
+
+
+def test_hairs_of_a_long_cache_are_made_with_a_few_frames_in_memory(example, tmp_path):
+    groom, frames, hair = ringlet.read_groom(example / "groom.usdc"), 1500, tmp_path / "hair.usdc"
+    points = groom.locks.points.astype(np.float32)
+    shapes = np.broadcast_to(points, (frames, *points.shape))
+    cache = ringlet.Cache(np.arange(1.0, frames + 1), shapes)
+    ringlet.write_cache(cache, example / "groom.usdc", example / "long.usdc")
+    tracemalloc.start()
+    counts = ringlet.write_hairs(example / "groom.usdc", hair, cache=example / "long.usdc")
+    _, most = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert counts["frames"] == frames
+    assert most < 0.5 * shapes.nbytes
+    with ringlet.open_cache(hair) as back:  # a layer over the cache
+        assert back.points(frames).shape == points.shape
 
 
 def test_groom_tells_what_it_made(example):

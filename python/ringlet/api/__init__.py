@@ -41,6 +41,7 @@ from ringlet.api.progress import (
 from ringlet.api.shots import (
     loft,
     made_from,
+    open_cache,
     read_cache,
     read_shot,
     rest_place,
@@ -65,6 +66,7 @@ __all__ = [
     "load_groom",
     "loft",
     "made_from",
+    "open_cache",
     "read_cache",
     "read_groom",
     "read_recipe",

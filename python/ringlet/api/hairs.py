@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ringlet.api.grooms import read_groom
 from ringlet.api.progress import Progress
-from ringlet.api.shots import read_cache, scalp_clip
-from ringlet.errors import UserError
+from ringlet.api.shots import scalp_clip
 
 if TYPE_CHECKING:
     from ringlet.groom import Hairs, Memory
     from ringlet.groom.groom import Groom
-    from ringlet.shot.cache import Cache
 
 
 def build_hairs(groom: Groom, *, fraction: float = 1.0, wider: bool = False, memory: Memory | None = None) -> Hairs:
@@ -53,32 +50,21 @@ def write_hairs(
     locks = read_groom(groom, variant=variant)
     hairs = build_hairs(locks, fraction=fraction, wider=wider)
     written = 0
-    with io.HairWriter(Path(path), locks, hairs.curves, Path(cache or groom)) as writer:
-        if cache is None:
+    if cache is None:
+        with io.HairWriter(Path(path), locks, hairs.curves, Path(groom)) as writer:
             writer.add(None, hairs.curves.points)
-        else:
-            moved = _within(read_cache(cache), frames, cache)
-            clip = scalp_clip(locks)
-            for frame, points in zip(moved.frames, moved.points, strict=True):
-                writer.add(frame, hairs.at(points, clip.at(frame)))
+    else:
+        clip = scalp_clip(locks)
+        with io.open_cache(cache) as moved, io.HairWriter(Path(path), locks, hairs.curves, Path(cache)) as writer:
+            chosen = moved.within(frames)
+            for frame in chosen:
+                writer.add(frame, hairs.at(moved.points(frame), clip.at(frame)))
                 written += 1
                 if progress:
-                    progress("hairs", written, len(moved.frames))
+                    progress("hairs", written, len(chosen))
     return {
         "locks": len(locks.locks),
         "hairs": len(hairs.curves),
         "points": len(hairs.curves.points),
         "frames": written,
     }
-
-
-def _within(cache: Cache, frames: tuple[int, int] | None, path: Path | str) -> Cache:
-    """The frames of a cache from the first to the last of ``frames``."""
-    if frames is None:
-        return cache
-    chosen = (cache.frames >= frames[0]) & (cache.frames <= frames[1])
-    if not chosen.any():
-        held = f"{cache.frames[0]:g} to {cache.frames[-1]:g}"
-        raise UserError(f"{path}: has no frame from {frames[0]:g} to {frames[1]:g}; it holds {held}")
-    cloths = [replace(cloth, points=cloth.points[chosen]) for cloth in cache.cloths]
-    return replace(cache, frames=cache.frames[chosen], points=cache.points[chosen], cloths=cloths)

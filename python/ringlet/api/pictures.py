@@ -10,7 +10,6 @@ import numpy as np
 from ringlet.api.grooms import read_groom
 from ringlet.api.hairs import build_hairs
 from ringlet.api.progress import Progress
-from ringlet.api.shots import read_cache
 from ringlet.curves import Curves
 from ringlet.errors import UserError
 from ringlet.settings import check_name
@@ -79,21 +78,23 @@ def write_touches_picture(
     check_name(show, ("force", "gap", "start"), "picture", "way to show contacts")
     stage = Path(stage)
     touches, colors = io.read_touches(stage, frame)
-    cache, locks = read_cache(stage), read_groom(stage).locks
-    index = 0 if frame is None else int(np.flatnonzero(cache.frames == frame)[0])
+    locks = read_groom(stage).locks
+    with io.open_cache(stage) as cache:
+        at = cache.frames[0] if frame is None else frame
+        posed_locks, start = cache.points(at), cache.start
     places, part = touches.places, 0.006  # of the picture's size
     if show == "gap":
         colors = io.heat(1.0 - np.clip(touches.gap, 0.0, 1.0))
     elif show == "start":
-        places, depth = io.start_marks(cache.start)
+        places, depth = io.start_marks(start)
         colors = io.heat(depth)
-    bodies, _, _ = io.read_stage(stage, float(cache.frames[index]))
+    bodies, _, _ = io.read_stage(stage, float(at))
     posed = [picture.PosedBody(body.mesh, body.clip.points[0]) for body in bodies]
     if len(places):
-        posed.append(picture.beads(places, colors, part * float(np.ptp(cache.points[index], axis=0).max())))
+        posed.append(picture.beads(places, colors, part * float(np.ptp(posed_locks, axis=0).max())))
     picture.still(
         posed,
-        Curves(cache.points[index], locks.offsets, locks.ids),
+        Curves(posed_locks, locks.offsets, locks.ids),
         Path(path),
         width=width,
         height=height,
@@ -118,8 +119,7 @@ def write_sheet(
     """Draws ``count`` frames of a USD stage, evenly spread, on one page, under a title if there is one."""
     from ringlet import io, picture
 
-    _, _, held = io.read_stage(Path(stage))
-    chosen = [f for f in held if frames is None or frames[0] <= f <= frames[1]]
+    chosen = [f for f in io.read_hair_frames(Path(stage)) if frames is None or frames[0] <= f <= frames[1]]
     if not chosen:
         raise UserError(f"{stage}: has no frames to draw a sheet of; give hairs made with --cache, or other frames")
     spread = [chosen[i] for i in np.unique(np.linspace(0, len(chosen) - 1, count).round().astype(int))]
@@ -162,8 +162,9 @@ def _posed(stage: Path, frame: float | None) -> tuple[list[Any], Any]:
     """Bodies and hairs of a stage at a frame, as the pictures take them."""
     from ringlet import io, picture
 
-    bodies, hairs, frames = io.read_stage(stage, frame)
+    if frame is None and len(frames := io.read_hair_frames(stage)):
+        frame = float(frames[0])
+    bodies, hairs, _ = io.read_stage(stage, frame)
     if hairs is None:
         raise UserError(f"{stage}: has no hairs; make them with: ringlet hair {stage} -o hair.usdc")
-    at = frame if frame is not None else frames[0] if len(frames) else 0.0
-    return [picture.PosedBody(body.mesh, body.clip.at(at)) for body in bodies], hairs
+    return [picture.PosedBody(body.mesh, body.clip.points[0]) for body in bodies], hairs

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +15,7 @@ from ringlet.files import within
 
 if TYPE_CHECKING:
     from ringlet.groom.groom import Groom
+    from ringlet.io import CacheFile
     from ringlet.mesh import Clip
     from ringlet.shot import Checkpoints, Garment, Motion, Obstacle, Shot
     from ringlet.shot.cache import Cache, Told
@@ -85,7 +87,7 @@ def write_simulation(
 
     under:       the USD file that ``write_groom`` made of the groom, over which the cache is laid
     checkpoints: the folder that keeps the frames; they go to ``path`` when all are there
-    touches:     keep what touches in every frame, for ``write_touches``
+    touches:     keep what touches in every frame there too, for ``write_touches``
     on_frame:    called with each frame's number and statistics, as soon as it is there
     """
     from ringlet import io
@@ -95,17 +97,20 @@ def write_simulation(
     kept = _checkpoints(checkpoints, shot, groom, inputs, frames)
     first, last = frames or shot.frames
     motion = shots.Motion(shot, groom, first=first, **inputs)
-    told = shots.Told(start=motion.start, cloths={worn.name: len(worn.cloth.positions) for worn in motion.worn})
     for frame in shots.play(motion, last, touches=touches, progress=progress, checkpoints=kept, resume=resume):
-        told.frames.append(frame.number)
-        told.statistics.append(frame.statistics)
-        if frame.touches:
-            told.touches.append(frame.touches)
         if on_frame:
             on_frame(frame.number, frame.statistics)
+    steps = shot.preroll + last - first + 1
+    told = shots.Told(
+        start=motion.start,
+        cloths={worn.name: len(worn.cloth.positions) for worn in motion.worn},
+        touches=shots.KeptTouches(motion, kept, steps) if touches else (),
+    )
     with io.CacheWriter(path, under, io.read_space(Path(under)), motion.cloths(0), groom.variant) as writer:
         writer.start = motion.start
-        for frame in shots.played(motion, kept, shot.preroll + len(told.frames)):
+        for frame in shots.played(motion, kept, steps):
+            told.frames.append(frame.number)
+            told.statistics.append(frame.statistics)
             writer.add(frame.number, frame.points, frame.statistics, frame.cloths)
     return told
 
@@ -264,8 +269,25 @@ def write_touches(cache: Cache | Told, cache_path: Path | str, path: Path | str)
     io.write_touches(cache, Path(cache_path), Path(path), io.read_space(Path(cache_path)))
 
 
+def open_cache(path: Path | str) -> AbstractContextManager[CacheFile]:
+    """Opens simulated guides to read one frame at a time, however many there are.
+
+    What it gives has ``frames``, ``size`` (points of all locks), ``statistics`` and ``start``, and
+    ``points(frame)``: positions [m], shape (size, 3).
+
+    Example::
+
+        with ringlet.open_cache("cache.usdc") as cache:
+            for frame in cache.frames:
+                print(frame, cache.points(frame).max(axis=0))
+    """
+    from ringlet import io
+
+    return io.open_cache(Path(path))
+
+
 def read_cache(path: Path | str) -> Cache:
-    """Reads simulated guides that ``write_cache`` wrote."""
+    """Reads simulated guides that ``write_cache`` wrote, all frames of them."""
     from ringlet import io
 
     return io.read_cache(Path(path))

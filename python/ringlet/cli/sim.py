@@ -57,10 +57,6 @@ def sim(
     """
     with ringlet.Run("sim", report) as run, shown_progress() as progress:
         settings = ringlet.read_shot(shot)
-        if contacts is not None and resume:
-            raise ringlet.UserError(
-                "sim: contacts of frames that are done are not kept; leave out --contacts or --resume"
-            )
         if contacts is not None and not settings.touching:
             raise ringlet.UserError(f"{shot}: nothing touches, --contacts has nothing to write; add [contact]")
         source = groom or settings.groom
@@ -69,22 +65,23 @@ def sim(
             locks = ringlet.load_groom(source, variant=variant, progress=progress)
             if layer != source:
                 ringlet.write_groom(locks, layer)
-        with run.stage("simulate", output), _kept(output) as folder:
-            told = ringlet.write_simulation(
-                settings,
-                locks,
-                layer,
-                output,
-                frames=frames,
-                allow_stale=allow_stale,
-                checkpoints=folder,
-                resume=resume,
-                touches=contacts is not None,
-                progress=progress,
-            )
-        if contacts is not None:
-            with run.stage("contacts", contacts, "what touches, frame by frame"):
-                ringlet.write_touches(told, output, contacts)
+        with _kept(output) as folder:
+            with run.stage("simulate", output):
+                told = ringlet.write_simulation(
+                    settings,
+                    locks,
+                    layer,
+                    output,
+                    frames=frames,
+                    allow_stale=allow_stale,
+                    checkpoints=folder,
+                    resume=resume,
+                    touches=contacts is not None,
+                    progress=progress,
+                )
+            if contacts is not None:
+                with run.stage("contacts", contacts, "what touches, frame by frame"):
+                    ringlet.write_touches(told, output, contacts)
         run.simulated(told)
         run.count(locks=len(locks.locks), points=len(locks.locks.points), frames=len(told.frames))
         if told.cloths:

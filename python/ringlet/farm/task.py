@@ -203,14 +203,22 @@ def _of_statistics(statistics: list[dict[str, Any]]) -> dict[str, float]:
 
 def _of_places(folder: Path, groom: Groom, cache: Path, frame: int) -> dict[str, float]:
     """How the locks hang at a frame, and how far they bounce; keeps where they are there."""
-    moved, offsets = api.read_cache(cache), groom.locks.offsets
-    if frame not in moved.frames:
-        held = f"{moved.frames[0]:g} to {moved.frames[-1]:g}"
-        raise UserError(f"wedge: frame {frame} is not among those simulated, {held}; choose another with --frame")
-    with replacing(folder / "places.npy") as aside, aside.open("wb") as file:
-        np.save(file, moved.points[int(np.flatnonzero(moved.frames == frame)[0])])
-    reach = np.linalg.norm(moved.points[:, offsets[1:] - 1] - moved.points[:, offsets[:-1]], axis=2)  # root to tip
-    return {"bounce, mm": float(1e3 * np.ptp(reach, axis=0).mean()), "root to tip, mm": float(1e3 * reach[-1].mean())}
+    offsets = groom.locks.offsets
+    reach: list[np.ndarray] = []  # from root to tip, frame by frame
+    with api.open_cache(cache) as moved:
+        if frame not in moved.frames:
+            held = f"{moved.frames[0]:g} to {moved.frames[-1]:g}"
+            raise UserError(f"wedge: frame {frame} is not among those simulated, {held}; choose another with --frame")
+        for at in moved.frames:
+            points = moved.points(at)
+            reach.append(np.linalg.norm(points[offsets[1:] - 1] - points[offsets[:-1]], axis=1))
+            if at == frame:
+                with replacing(folder / "places.npy") as aside, aside.open("wb") as file:
+                    np.save(file, points)
+    return {
+        "bounce, mm": float(1e3 * np.ptp(reach, axis=0).mean()),
+        "root to tip, mm": float(1e3 * reach[-1].mean()),
+    }
 
 
 def _draw(folder: Path, groom: Groom, under: Path, cache: Path, frame: int) -> None:

@@ -2,20 +2,22 @@
 
 from ringlet.io.read import read_clip, read_curves, read_mesh, read_space
 from ringlet.io.texture import read_texture
-from ringlet.io.usd.cache import CacheWriter, cache_groom_path, read_cache, write_cache
+from ringlet.io.usd.cache import CacheFile, CacheWriter, cache_groom_path, open_cache, read_cache, write_cache
 from ringlet.io.usd.check import problems
 from ringlet.io.usd.groom import read_groom, write_groom
-from ringlet.io.usd.hairs import HairWriter, read_hairs, read_stage
+from ringlet.io.usd.hairs import HairWriter, read_hair_frames, read_hairs, read_stage
 from ringlet.io.usd.mesh import Body, read_bodies, read_body
 from ringlet.io.usd.rest import read_rest, write_rest
 from ringlet.io.usd.touches import heat, read_touches, start_marks, write_touches
 
 __all__ = [
     "Body",
+    "CacheFile",
     "CacheWriter",
     "HairWriter",
     "cache_groom_path",
     "heat",
+    "open_cache",
     "problems",
     "read_bodies",
     "read_body",
@@ -23,6 +25,7 @@ __all__ = [
     "read_clip",
     "read_curves",
     "read_groom",
+    "read_hair_frames",
     "read_hairs",
     "read_mesh",
     "read_rest",

@@ -9,7 +9,7 @@ from ringlet.shot.garment import Garment, Pin, ShotCloth
 from ringlet.shot.loft import Loft, loft
 from ringlet.shot.scene import Body, Contact, Scene
 from ringlet.shot.shot import Forces, Shot, parse_shot, read_shot, schema
-from ringlet.shot.simulate import Motion, made_of, play, played, simulate
+from ringlet.shot.simulate import KeptTouches, Motion, made_of, play, played, simulate
 from ringlet.shot.stale import check, keep, made_from, preload, refresh
 from ringlet.shot.strands import Material, Solver, Strands
 
@@ -25,6 +25,7 @@ __all__ = [
     "Contact",
     "Forces",
     "Garment",
+    "KeptTouches",
     "Loft",
     "Material",
     "Motion",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -64,11 +65,12 @@ class Cache:
 class Told:
     """What a simulation tells besides where everything is; see ``Cache``.
 
-    cloths: how many points each has, by name
+    cloths:  how many points each has, by name
+    touches: read from where they are kept each time they are gone through, since they may be many
     """
 
     frames: list[float] = field(default_factory=list)
     statistics: list[dict[str, Any]] = field(default_factory=list)
     start: dict[str, Any] = field(default_factory=dict)
     cloths: dict[str, int] = field(default_factory=dict)
-    touches: list[Touches] = field(default_factory=list)
+    touches: Iterable[Touches] = ()

@@ -37,6 +37,8 @@ _PLACES = {
     "cloth": {"__all__": {"file"}},
 }
 
+TOUCHES = "touches "  # before the names of arrays that tell what touches
+
 OnFrame = Callable[[float, NDArray[np.float32], dict[str, Any]], None]
 
 
@@ -94,7 +96,7 @@ class Frame:
     points:     positions of the locks [m], shape (n, 3), float32
     cloths:     those of each cloth
     statistics: what the solver reports
-    touches:    what touches, where that was asked for; not of frames that an earlier run had done
+    touches:    what touches, where that was asked for
     """
 
     number: float
@@ -121,20 +123,27 @@ def play(
     done, memory = (checkpoints.begin(resume) if checkpoints else None) or (0, {})
     done = min(done, total)
     if checkpoints and done:
-        yield from played(motion, checkpoints, done)
+        for frame in played(motion, checkpoints, done):
+            if touches and not frame.touches:
+                raise UserError(
+                    f"{checkpoints.folder}: the run that left it did not keep what touched; "
+                    "leave out --contacts, or run without --resume to start over"
+                )
+            yield frame
         motion.recall(memory)
     for step in range(done, total):
         k = step - before
         statistics = motion.advance(motion.first + max(k - 1, 0), motion.first + max(k, 0))
         moved = {name: np.asarray(points, np.float32) for name, points in motion.positions.items()} if k >= 0 else {}
+        touching = motion.scene.touches if touches and motion.scene and k >= 0 else None
         if checkpoints:
-            checkpoints.keep(step, moved, statistics)
+            kept = {f"{TOUCHES}{name}": values for name, values in vars(touching).items()} if touching else {}
+            checkpoints.keep(step, moved | kept, statistics)
             if (step + 1) % checkpoints.every == 0 and step + 1 < total:
                 checkpoints.remember(step + 1, motion.memory)
         if progress:
             progress("sim", step + 1, total)
         if k >= 0:
-            touching = motion.scene.touches if touches and motion.scene else None
             yield Frame(motion.first + k, moved.pop("locks"), list(moved.values()), statistics, touching)
 
 
@@ -142,7 +151,23 @@ def played(motion: Motion, checkpoints: Checkpoints, steps: int) -> Iterator[Fra
     """The frames among the first steps of a motion, from where they are kept."""
     for k, (arrays, statistics) in enumerate(checkpoints.kept(steps), -motion.shot.preroll):
         if k >= 0:
-            yield Frame(motion.first + k, arrays.pop("locks"), list(arrays.values()), statistics)
+            touching = {name: arrays.pop(name) for name in [*arrays] if name.startswith(TOUCHES)}
+            touches = (
+                Touches(**{name.removeprefix(TOUCHES): values for name, values in touching.items()})
+                if touching
+                else None
+            )
+            yield Frame(motion.first + k, arrays.pop("locks"), list(arrays.values()), statistics, touches)
+
+
+class KeptTouches:
+    """What touched in the first steps of a motion, frame by frame, from where it is kept."""
+
+    def __init__(self, motion: Motion, checkpoints: Checkpoints, steps: int) -> None:
+        self._of = motion, checkpoints, steps
+
+    def __iter__(self) -> Iterator[Touches]:
+        return (frame.touches for frame in played(*self._of) if frame.touches)
 
 
 def made_of(

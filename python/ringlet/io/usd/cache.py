@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Self
 
@@ -15,7 +16,7 @@ from ringlet.errors import UserError
 from ringlet.io.space import to_metres
 from ringlet.io.usd.cloths import ClothPrims, read_cloth, set_cloth, told_of
 from ringlet.io.usd.groom import LOCKS, VERSION, check_version, groom_prim
-from ringlet.io.usd.stage import parse_json, reading
+from ringlet.io.usd.stage import Source, parse_json, reading, reading_more
 from ringlet.io.usd.stream import StreamWriter
 from ringlet.shot.cache import Cache, CachedCloth
 from ringlet.stage import StageSpace
@@ -37,31 +38,75 @@ def write_cache(
 
 
 def read_cache(path: Path | str) -> Cache:
-    """Reads a simulation, or the one under hairs."""
+    """Reads a simulation, or the one under hairs, with all of its frames."""
+    with open_cache(path) as cache:
+        points = np.empty((len(cache.frames), cache.size, 3), np.float32)
+        for index, frame in enumerate(cache.frames):
+            points[index] = cache.points(frame)
+        return Cache(cache.frames, points, cache.statistics, cache.start, cache.cloths())
+
+
+@contextmanager
+def open_cache(path: Path | str) -> Iterator[CacheFile]:
+    """Opens a simulation, or the one under hairs, to read one frame at a time."""
     with reading(path) as source:
+        yield CacheFile(source)
+
+
+class CacheFile:
+    """A simulation in a file, of which no more is in memory than the frame that is asked for.
+
+    frames:     frame numbers (time codes), shape (k,)
+    size:       how many points the locks have together
+    statistics: what the solver reported, one dict per frame
+    start:      what was in the way when the shot began
+    """
+
+    def __init__(self, source: Source) -> None:
         groom_prim(source)
-        attribute = UsdGeom.PointBased(source.stage.GetPrimAtPath(LOCKS)).GetPointsAttr()
-        frames = attribute.GetTimeSamples()
-        if not frames:
+        self._source = source
+        self._points = UsdGeom.PointBased(source.stage.GetPrimAtPath(LOCKS)).GetPointsAttr()
+        self.frames = np.array(self._points.GetTimeSamples(), np.float64)
+        if not len(self.frames):
             raise UserError(
-                f"{path}: holds no simulated frames; make a cache with: ringlet sim SHOT.toml -o cache.usdc"
+                f"{source.path}: holds no simulated frames; make a cache with: ringlet sim SHOT.toml -o cache.usdc"
             )
-        rest = len(attribute.Get(Usd.TimeCode.Default()))
-        points = np.empty((len(frames), rest, 3), np.float32)
-        for index, frame in enumerate(frames):
-            moved = np.array(attribute.Get(frame))
-            if len(moved) != rest:
-                raise UserError(f"{path}: has {len(moved)} points at frame {frame:g}, its groom {rest}; simulate again")
-            points[index] = to_metres(moved, source.space)
+        self.size = len(self._points.Get(Usd.TimeCode.Default()))
         kept = [layer.customLayerData.get("ringlet") or {} for layer in source.stage.GetLayerStack()]
         for data in kept:
             check_version(source, data.get("version", VERSION))
-        told = {
-            name: parse_json(source, next((data[name] for data in kept if name in data), empty), f"ringlet:{name}")
-            for name, empty in (("statistics", "[]"), ("start", "{}"), ("cloths", "[]"))
-        }
-        told["cloths"] = [read_cloth(source, cloth, frames) for cloth in told["cloths"]]
-        return Cache(np.array(frames), points, **told)
+
+        def told(name: str, empty: str) -> Any:
+            return parse_json(source, next((data[name] for data in kept if name in data), empty), f"ringlet:{name}")
+
+        self.statistics: list[dict[str, Any]] = told("statistics", "[]")
+        self.start: dict[str, Any] = told("start", "{}")
+        self._cloths: list[dict[str, Any]] = told("cloths", "[]")
+
+    def points(self, frame: float) -> NDArray[np.float32]:
+        """Where the locks are at a frame [m], shape (n, 3), in the order of the groom's locks."""
+        with reading_more(self._source.path):
+            moved = np.array(self._points.Get(Usd.TimeCode(float(frame))), np.float32).reshape(-1, 3)
+        if len(moved) != self.size:
+            raise UserError(
+                f"{self._source.path}: has {len(moved)} points at frame {frame:g}, its groom {self.size}; "
+                "simulate again"
+            )
+        return to_metres(moved, self._source.space)
+
+    def within(self, frames: tuple[int, int] | None) -> NDArray[np.float64]:
+        """Its frames from the first to the last of ``frames``, all for None."""
+        if frames is None:
+            return self.frames
+        chosen = self.frames[(self.frames >= frames[0]) & (self.frames <= frames[1])]
+        if not len(chosen):
+            held = f"{self.frames[0]:g} to {self.frames[-1]:g}"
+            raise UserError(f"{self._source.path}: has no frame from {frames[0]:g} to {frames[1]:g}; it holds {held}")
+        return chosen
+
+    def cloths(self) -> list[CachedCloth]:
+        """The cloths that moved with the locks, at all frames."""
+        return [read_cloth(self._source, cloth, self.frames.tolist()) for cloth in self._cloths]
 
 
 def cache_groom_path(path: Path | str) -> Path:

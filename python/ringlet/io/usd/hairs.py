@@ -76,20 +76,30 @@ def read_stage(path: Path | str, frame: float | None = None) -> tuple[list[Body]
     frame: hairs and clips at this frame only; without one, whole clips and the hairs of the first frame
     """
     with reading(path) as source:
-        hair_prims, hairs = _hair_prims(source), _hairs(source, frame)
-        samples = [time for prim in hair_prims for time in UsdGeom.PointBased(prim).GetPointsAttr().GetTimeSamples()]
-        frames = whole_frames(min(samples), max(samples), str(path)) if samples else np.empty(0)
+        hairs, frames = _hairs(source, frame), _frames(source)
         bodies = []
         for prim in visible_meshes(source):
             mesh = mesh_at(source, prim)
             if frame is not None:
                 clip = clip_at(source, prim, (frame, frame))
-            elif hairs is not None and not samples:  # hairs at rest are on a head at rest
+            elif hairs is not None and not len(frames):  # hairs at rest are on a head at rest
                 clip = Clip(np.zeros(1), mesh.points[None], source.space.fps)
             else:
                 clip = clip_at(source, prim)
             bodies.append(Body(mesh, clip, str(prim.GetPath())))
         return bodies, hairs, frames
+
+
+def read_hair_frames(path: Path | str) -> NDArray[np.float64]:
+    """The whole frames of a stage in which hairs move, none where they are at rest."""
+    with reading(path) as source:
+        return _frames(source)
+
+
+def _frames(source: Source) -> NDArray[np.float64]:
+    points = (UsdGeom.PointBased(prim).GetPointsAttr() for prim in _hair_prims(source))
+    samples = [time for attribute in points for time in attribute.GetTimeSamples()]
+    return whole_frames(min(samples), max(samples), str(source.path)) if samples else np.empty(0)
 
 
 def _hair_prims(source: Source) -> list[Usd.Prim]:

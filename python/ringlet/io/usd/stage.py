@@ -52,13 +52,20 @@ def reading(path: Path | str) -> Iterator[Source]:
         raise UserError(f"{path}: there is no such file; check the name")
     if path.is_dir():
         raise UserError(f"{path}: is a folder; give a USD file")
-    warnings = UsdUtils.CoalescingDiagnosticDelegate()  # takes what USD would print
-    try:
+    with reading_more(path):
         stage = Usd.Stage.Open(str(path))
         for layer in stage.GetUsedLayers():
             if not layer.anonymous and Path(layer.realPath).exists():
                 layer.Reload()  # what something else holds open may be older than the file
         yield Source(path, stage, _space(stage, path))
+
+
+@contextmanager
+def reading_more(path: Path | str) -> Iterator[None]:
+    """Reading from a stage that is open, where the block around it writes another: whose error it is must be told."""
+    warnings = UsdUtils.CoalescingDiagnosticDelegate()  # takes what USD would print
+    try:
+        yield
     except Tf.ErrorException as error:
         raise UserError(f"{path}: cannot be read as USD ({_reason(error)}); write it again or choose another") from None
     except UnicodeDecodeError:

@@ -46,10 +46,14 @@ class StreamWriter:
 
     def put(self, curves: UsdGeom.BasisCurves, frame: float | None, points: NDArray) -> None:
         """Sets the points [m] of curves at a frame; at rest for None."""
+        set_points(curves, points, self.space, Usd.TimeCode.Default() if frame is None else Usd.TimeCode(float(frame)))
+        self.grown(frame, points.size * 4)
+
+    def grown(self, frame: float | None, size: int) -> None:
+        """Notes that something was set at a frame, of so many bytes."""
         if frame is not None:
             self._frames.append(float(frame))
-        set_points(curves, points, self.space, Usd.TimeCode.Default() if frame is None else Usd.TimeCode(float(frame)))
-        self._held += points.size * 4
+        self._held += size
         # A binary layer lets go of what it has saved; a text layer would be written anew each time.
         if self._held > FLUSH and self.path.suffix != ".usda":
             self.layer.Save()

@@ -7,7 +7,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +16,8 @@ from pxr import Usd, UsdGeom
 from ringlet.errors import UserError
 from ringlet.io.space import from_metres, to_metres
 from ringlet.io.usd.groom import GROOM
-from ringlet.io.usd.stage import new_stage, reading, refuse_itself, writing
+from ringlet.io.usd.stage import reading
+from ringlet.io.usd.stream import StreamWriter
 from ringlet.io.usd.values import Types, float3, to_usd
 from ringlet.shot.cache import Cache, Told, Touches
 from ringlet.stage import StageSpace
@@ -41,24 +42,33 @@ def strengths(force: NDArray[np.floating], greatest: float) -> NDArray[np.float6
 
 def write_touches(cache: Cache | Told, cache_path: Path | str, path: Path | str, space: StageSpace) -> None:
     """Writes what touches as a layer over the cache."""
-    refuse_itself(path, cache_path, "cache")
     greatest = max((float(t.force.max(initial=0.0)) for t in cache.touches), default=0.0)
-    with writing(path) as aside:
-        stage = new_stage(aside, space, over=cache_path)
-        prim = UsdGeom.Points.Define(stage, TOUCHES)
+    with TouchesWriter(path, cache_path, space) as writer:
+        writer.mark(*start_marks(cache.start))
         for frame, touches in zip(cache.frames, cache.touches, strict=True):
-            time = Usd.TimeCode(float(frame))
-            _put(prim, touches.places, heat(strengths(touches.force, greatest)), space, time)
-            for name in ("force", "gap"):
-                kind, value = to_usd(getattr(touches, name))
-                primvar = UsdGeom.PrimvarsAPI(prim).CreatePrimvar(f"ringlet:{name}", kind, "vertex")
-                primvar.Set(value, time)
-        places, depth = start_marks(cache.start)
-        _put(UsdGeom.Points.Define(stage, START), places, heat(depth), space, Usd.TimeCode.Default())
-        if len(cache.frames):
-            stage.SetStartTimeCode(float(cache.frames[0]))
-            stage.SetEndTimeCode(float(cache.frames[-1]))
-        stage.GetRootLayer().Save()
+            writer.add(frame, touches, heat(strengths(touches.force, greatest)))
+
+
+class TouchesWriter(StreamWriter):
+    """Writes what touches, frame by frame, as a layer over the cache."""
+
+    def __enter__(self) -> Self:
+        stage = self.begin()
+        self._touches, self._start = (UsdGeom.Points.Define(stage, name) for name in (TOUCHES, START))
+        return self
+
+    def mark(self, places: NDArray, depth: NDArray) -> None:
+        """Adds what was in the way at the start: places [m], shape (k, 3), and how bad each is, from 0 to 1."""
+        _put(self._start, places, heat(depth), self.space, Usd.TimeCode.Default())
+
+    def add(self, frame: float, touches: Touches, colors: NDArray) -> None:
+        """Adds a frame; colours have shape (k, 3)."""
+        time = Usd.TimeCode(float(frame))
+        _put(self._touches, touches.places, colors, self.space, time)
+        for name in ("force", "gap"):
+            kind, value = to_usd(getattr(touches, name))
+            UsdGeom.PrimvarsAPI(self._touches).CreatePrimvar(f"ringlet:{name}", kind, "vertex").Set(value, time)
+        self.grown(frame, 36 * len(colors))
 
 
 def read_touches(path: Path | str, frame: float | None = None) -> tuple[Touches, NDArray[np.float32]]:
