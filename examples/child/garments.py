@@ -36,6 +36,13 @@ def without(points: Array, triangles: NDArray[np.int32], kept: NDArray[np.bool_]
     return points[kept], number[triangles[kept[triangles].all(axis=1)]].astype(np.int32)
 
 
+def shifted(by: Array) -> Array:
+    """The matrix that moves points by so much."""
+    matrix = np.eye(4)
+    matrix[:3, 3] = by
+    return matrix
+
+
 def write_garment(
     path: Path,
     name: str,
@@ -44,9 +51,9 @@ def write_garment(
     color: Array,
     *,
     subsets: Mapping[str, NDArray[np.int64]] | None = None,
-    lifts: Mapping[int, float] | None = None,
+    motion: Mapping[int, Array] | None = None,
 ) -> None:
-    """Writes a mesh [cm] at ``/NAME`` with subsets of its faces, lifted by so much at frames."""
+    """Writes a mesh [cm] at ``/NAME`` with subsets of its faces; ``motion``: 4 × 4 matrices by frame, for columns."""
     stage = Usd.Stage.CreateNew(str(path))
     UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.y)
     UsdGeom.SetStageMetersPerUnit(stage, UsdGeom.LinearUnits.centimeters)
@@ -69,11 +76,11 @@ def write_garment(
     values = (points + GROUND).astype(np.float32)
     mesh.CreatePointsAttr(Vt.Vec3fArray.FromNumpy(values))
     mesh.CreateExtentAttr(Vt.Vec3fArray.FromNumpy(np.stack([values.min(axis=0), values.max(axis=0)])))
-    if lifts:
-        stage.SetStartTimeCode(min(lifts))
-        stage.SetEndTimeCode(max(lifts))
-        lift = mesh.AddTranslateOp()
-        for frame, height in lifts.items():
-            lift.Set(Gf.Vec3d(0.0, float(height), 0.0), frame)
+    if motion:
+        stage.SetStartTimeCode(min(motion))
+        stage.SetEndTimeCode(max(motion))
+        operation, up = mesh.AddTransformOp(), shifted(GROUND)
+        for frame, matrix in motion.items():
+            operation.Set(Gf.Matrix4d(*(up @ matrix @ np.linalg.inv(up)).T.ravel().tolist()), frame)
     stage.GetRootLayer().Save()
     print(f"{path}: {len(points)} vertices, {path.stat().st_size / 1e3:.0f} kB")

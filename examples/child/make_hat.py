@@ -1,4 +1,4 @@
-"""Makes the example's hat: a stiff felt cap that is put on from above and presses the hair down.
+"""Makes the example's hat: a stiff felt cap that is put on from above, follows the head, and presses the hair down.
 
     python examples/child/make_hat.py [-o hat.usdc]
 
@@ -12,7 +12,8 @@ from pathlib import Path
 
 import numpy as np
 from distances import Array
-from garments import strip, write_garment
+from garments import shifted, strip, write_garment
+from motion import FRAMES, head_matrix
 from numpy.typing import NDArray
 
 CENTRE = np.array([0.0, 4.2, -1.6])  # of the rim, where it sits in the end
@@ -23,7 +24,6 @@ TILT = np.radians(-14.0)  # the back is lower than the front
 LIFT = 20.0  # how far above it begins
 AROUND, UP = 72, 20  # vertices
 BAND = 3  # rows at the rim that go where they are told
-FRAMES = np.arange(1, 31)
 ARRIVES = 22.0  # frame
 
 FELT, RIBBON = np.array([0.10, 0.16, 0.24]), np.array([0.45, 0.05, 0.04])
@@ -58,10 +58,10 @@ def make() -> tuple[Array, NDArray[np.int32], Array, NDArray[np.int64]]:
     return tilted + CENTRE, triangles, colors, band
 
 
-def height(frame: int) -> float:
-    """How far above its place the hat is [cm]: it comes down, slower in the end, and stays."""
+def place(frame: int) -> Array:
+    """Where the hat is: a 4 × 4 matrix. Seen from the head it comes down, slower in the end, and stays."""
     left = np.clip((ARRIVES - frame) / (ARRIVES - FRAMES[0]), 0.0, 1.0)
-    return float(LIFT * left**2 * (3.0 - 2.0 * left))
+    return head_matrix(frame) @ shifted(np.array([0.0, LIFT * left**2 * (3.0 - 2.0 * left), 0.0]))
 
 
 def main() -> None:
@@ -75,7 +75,7 @@ def main() -> None:
         triangles,
         colors,
         subsets={"band": band},
-        lifts={int(frame): height(frame) for frame in FRAMES},
+        motion={int(frame): place(int(frame)) for frame in FRAMES},
     )
 
 

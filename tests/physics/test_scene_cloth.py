@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from coils import rotation
 from crossings import Judge
 from ringlet.curves import Curves
 from ringlet.errors import UserError
@@ -148,6 +149,19 @@ def ends_of(make, system, tolerance):
         if system == "conjugate_gradient":
             assert report["linear_iterations"] > 0
     return scene
+
+
+@pytest.mark.parametrize("held", ["corner", "edge"])
+def test_cloth_goes_along_with_what_is_held_of_it_as_one(held):
+    """In the first move, so that a turn as such brings nothing of it together; an edge leaves no turn about it open."""
+    mesh = level(0.1, 6, 0.0)
+    row, column = np.divmod(np.arange(49), 7)
+    cloth = Cloth(mesh, ClothMaterial(), row + column < 3 if held == "corner" else row == 0)
+    scene = Scene(cloths=[cloth])
+    scene.record()
+    turned = mesh.points @ rotation([0.0, 1.0, 0.0], 0.6).T + [0.0, 0.03, 0.01]
+    scene.step(None, FRAME, cloths=[turned])
+    assert np.abs(scene.path[1] - turned).max() < 1e-8
 
 
 def test_all_ways_to_solve_the_system_agree_where_things_touch():

@@ -20,7 +20,7 @@ GRAVITY, STEP = 9.81, 1 / 240  # [m/s²], [s]
 DISTANCE = 1e-3  # [m] where contact begins
 CREEP = 1e-3  # [m/s] slower than this counts as sticking
 CONTACT = Contact(radius=DISTANCE / 2, creep_speed=CREEP)
-SOLVER = Solver(newton=30, tolerance=1e-12)
+SOLVER = Solver(tolerance=1e-12)
 
 
 def speeds_on_a_slope(friction: float, slope: float, seconds: tuple[float, ...]) -> list[float]:
@@ -65,7 +65,8 @@ def tension_ratio(friction: float) -> tuple[float, float]:
 
     The drum turns under a strand that is held at one end and pulled at the other.
     """
-    radius, facets, width, speed, dt, steps = 10e-3, 96, 5e-3, 0.05, STEP / 4, 120
+    # Corners are 0.6 µm high. Those of 96 facets are 5 µm, and change what contacts bear by about as much as it is.
+    radius, facets, width, speed, dt, steps = 10e-3, 288, 5e-3, 0.05, STEP / 4, 120
     way = radius + 0.95 * DISTANCE
     over = np.pi - np.linspace(0.0, np.pi, 36)
     leg = -way * np.pi / 35 * np.arange(1, 12)

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
@@ -22,14 +23,37 @@ Vec3 carried_by_triangle(const Vec3 from[3], const Vec3 to[3], const Vec3 &point
     return carried.allFinite() ? carried : translated;
 }
 
-// Mean displacement of what is kinematic among some vertices; false where nothing is.
-bool mean_motion(const SceneCarry &carry, int begin, int end, Vec3 &mean) {
-    int count = 0;
-    Vec3 sum = Vec3::Zero();
+// A rotation about a place that goes somewhere else.
+struct RigidMotion {
+    Mat3 turn = Mat3::Identity();
+    Vec3 from = Vec3::Zero(), to = Vec3::Zero();
+
+    Vec3 operator()(const Vec3 &point) const { return to + turn * (point - from); }
+};
+
+// The motion of what is kinematic among some vertices as one, by least squares (Kabsch 1976); false where nothing is. Where
+// that leaves a rotation open, as about a line, it turns as little as may be.
+bool mean_motion(const SceneCarry &carry, int begin, int end, RigidMotion &motion) {
+    constexpr double hardly = 1e-9;
+    std::vector<int> told;
     for (int v = begin; v < end; ++v)
-        if (!carry.all.mesh.moves[v]) sum += carry.given[v] - carry.start[v], ++count;
-    if (count > 0) mean = sum / count;
-    return count > 0;
+        if (!carry.all.mesh.moves[v]) told.push_back(v);
+    if (told.empty()) return false;
+    motion = {};
+    for (const int v : told)
+        motion.from += carry.start[v] / double(told.size()), motion.to += carry.given[v] / double(told.size());
+    Mat3 spread = Mat3::Zero();
+    double size = 0.0;
+    for (const int v : told) {
+        const Vec3 before = carry.start[v] - motion.from, after = carry.given[v] - motion.to;
+        spread += after * before.transpose();
+        size += before.squaredNorm();
+    }
+    if (size == 0.0) return true;
+    const Eigen::JacobiSVD<Mat3> svd(spread + hardly * size * Mat3::Identity(), Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const double mirror = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
+    motion.turn = svd.matrixU() * Vec3(1.0, 1.0, mirror).asDiagonal() * svd.matrixV().transpose();
+    return true;
 }
 
 // Whether all held vertices of a range go along with a vertex of a rigid body.
@@ -86,9 +110,13 @@ std::vector<int> carry_rigidly(const SceneCarry &carry, View<int> offsets, const
             go(begin, end, body, [&](const Vec3 &point) { return carry.carried(leaders[body], point); });
             continue;
         }
-        Vec3 mean = carriers.drift;
-        if (!mean_motion(carry, begin, end, mean)) mean_motion(carry, 0, all.count(), mean);
-        go(begin, end, -1, [&](const Vec3 &point) -> Vec3 { return point + mean; });
+        RigidMotion motion;
+        motion.to = carriers.drift;
+        if (!mean_motion(carry, begin, end, motion)) {
+            mean_motion(carry, 0, all.count(), motion);
+            motion.turn = Mat3::Identity(); // that of others would carry it off
+        }
+        go(begin, end, -1, motion);
     }
     return rigid;
 }
