@@ -8,8 +8,9 @@ sys.path.insert(0, str(Path(__file__).parent))
 
 from benchmarks import write_benchmarks
 from docstrings import as_list
-from plots import write_convergence, write_release
+from plots import write_convergence, write_memory, write_release
 from reference import write_references
+from theory import write_theory
 
 project = "Ringlet"
 author = copyright = "The Ringlet authors"
@@ -35,5 +36,7 @@ def setup(app):
     write_references(Path(app.srcdir) / "_generated")
     write_benchmarks(Path(app.srcdir) / "_generated" / "benchmarks.md")
     write_convergence(Path(app.srcdir) / "_generated" / "convergence.svg")
+    write_memory(Path(app.srcdir) / "_generated" / "memory.svg")
     write_release(Path(app.srcdir) / "_generated" / "release.svg")
+    write_theory(Path(app.srcdir) / "_generated")
     app.connect("autodoc-process-docstring", as_list)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import sys
 from collections import defaultdict
@@ -19,6 +20,7 @@ from ringlet import validate
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "physics"))
 from stability import HELD, scenes
 
+FRAMES = Path(__file__).parents[1] / "bench" / "results" / "frames.json"
 RESOLUTION = re.compile(r"(?P<curve>.*), (?P<n>\d+) (edges|vertices a turn)$")
 
 
@@ -53,6 +55,25 @@ def write_convergence(path: Path) -> None:
         panel.remove()
     figure.supxlabel("edges, or vertices a turn", fontsize=9)
     figure.supylabel("relative error", fontsize=9)
+    with replacing(path) as aside:
+        figure.savefig(aside)
+
+
+def write_memory(path: Path) -> None:
+    """Resident memory over the frames of a long shot and of its hairs, and what all frames together would take."""
+    result = json.loads(FRAMES.read_text())["result"]
+    frames = np.arange(len(result["megabytes"])) * result["params"]["every"] + 1
+    all_kept = result["megabytes"][0] + frames / result["params"]["frames"] * result["megabytes_of_checkpoints"]
+    figure = Figure(figsize=(8, 3.2), layout="constrained")
+    axes = figure.subplots()
+    axes.plot(frames, result["megabytes"], color="#8c3b2a", label="while it is simulated")
+    axes.plot(frames, result["megabytes_hairs"], color="#2a5b8c", label="then, while its hairs are written")
+    axes.plot(frames, all_kept, ":", color="gray", label="simulated with all frames kept (reckoned)")
+    axes.set_ylim(0, None)
+    axes.set_xlabel("frame", fontsize=9)
+    axes.set_ylabel("resident memory [MB]", fontsize=9)
+    axes.grid(alpha=0.3)
+    axes.legend(fontsize=8, frameon=False, loc="lower right")
     with replacing(path) as aside:
         figure.savefig(aside)
 
