@@ -14,11 +14,11 @@ import time
 from pathlib import Path
 from typing import Any
 
-from ringlet.viewer.protocol import VERSION
 from websockets.asyncio.client import ClientConnection, connect
 
 import ringlet
 
+PROTOCOL = 3  # that of python/ringlet/viewer/protocol.py
 EXAMPLE = Path(__file__).parents[1] / "examples/child"
 
 
@@ -68,7 +68,7 @@ async def _drag(port: int, clock: ringlet.Clock, steps: int) -> dict[str, Any]:
                 raise
             await asyncio.sleep(0.1)
     async with page:
-        await _say(page, kind="hello", version=VERSION, client="bench")
+        await _say(page, kind="hello", version=PROTOCOL, client="bench")
         hairs, _ = await _hear(page, "hairs")
         _, size = await _hear(page, "locks")
         await _hear(page, "numbers")
