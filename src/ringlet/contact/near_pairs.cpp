@@ -19,6 +19,13 @@ template <class Pair> void merge(std::vector<Pair> &pairs, const std::vector<Pai
 
 } // namespace
 
+bool many_are_away(View<Vec3> from, View<Vec3> now, double budget) {
+    constexpr size_t few = 16; // one in
+    size_t away = 0;
+    for (size_t v = 0; v < from.size(); ++v) away += (now[v] - from[v]).squaredNorm() > budget * budget;
+    return few * away > from.size();
+}
+
 NearPairs::NearPairs(const CollisionMesh &mesh)
     : mesh_(mesh), broad_phase_(mesh), vertices_(mesh.moves.size()), edges_(mesh.edges.size()),
       triangles_(mesh.triangles.size()), quick_(mesh.moves.size()) {}
@@ -68,10 +75,7 @@ void NearPairs::note(View<Vec3> positions, double budget) {
 }
 
 bool NearPairs::are_away(View<Vec3> positions) const {
-    constexpr size_t few = 16; // one in
-    size_t away = 0;
-    for (size_t v = 0; v < noted_at_.size(); ++v) away += (positions[v] - noted_at_[v]).squaredNorm() > budget_ * budget_;
-    return few * away > noted_at_.size();
+    return noted_at_.empty() || many_are_away(noted_at_, positions, budget_);
 }
 
 void NearPairs::measure_ways(View<Vec3> start, View<Vec3> end) {

@@ -23,6 +23,9 @@ struct Touch {
     ClosestPoints nearest;
 };
 
+// Whether more than a few vertices are further than a budget [m] from where they were.
+bool many_are_away(View<Vec3> from, View<Vec3> now, double budget);
+
 // A pair that is known is apart by what was measured last, less what its two have moved since, each for itself: while that is
 // enough, nothing has to be computed. Pairs are noted so far apart that every vertex may move by `budget`. Vertices that have
 // moved further are quick: their pairs are looked for anew in every move. All this says only what need not be looked at; what
@@ -35,7 +38,7 @@ public:
 
     void forget() { known_.clear(), noted_at_.clear(); } // everything is quick
     void note(View<Vec3> positions, double budget);      // [m]
-    bool are_away(View<Vec3> positions) const; // so many from where pairs were noted that noting them anew is worth it
+    bool are_away(View<Vec3> positions) const; // many from where pairs were noted, or none were: worth noting them anew
 
     // Everything sets out straight from `start`, where it is, to `end`; or, while it has not arrived, to another end, which
     // differs where vertices have `changed` and is no further away.

@@ -246,10 +246,9 @@ int Scene::Parts::newton(const SceneStep &scene_step, const StrandStep &step, st
             for (size_t i = 0; i < system.size(); ++i) direction[i] = found[i] - x[i];
             system.energies(x, &near, std::vector<unsigned char>(system.unit_count(), 1), unused);
         } else {
-            for (size_t p = 0; p < tried.size(); ++p)
-                tried[p] = iteration >= step.newton
-                               ? 1.0
-                               : std::min(1.0, std::max(farther * gone[p], settings.strand_radius / reach[p]));
+            tried = worth_going(system, x, direction);
+            for (size_t p = 0; p < tried.size() && iteration < step.newton; ++p)
+                tried[p] = std::min(tried[p], std::max(farther * gone[p], settings.strand_radius / reach[p]));
             shorten(system, tried, direction);
         }
         std::vector<Vec3> wanted = now;
@@ -323,15 +322,17 @@ double Scene::Parts::advance(const SceneInput &input, const SceneStep &scene_ste
     };
     keep_held();
     const std::vector<Vec3> guess = to;
+    const auto note_pairs = [&] {
+        const Stopwatch watch(report.time_filter);
+        near.note(now, settings.strand_radius);
+    };
+    if (!many_are_away(now, guess, settings.strand_radius)) note_pairs(); // else they are noted where it leads
     filter(now, to, {true, false}, report);
     SceneProgress progress(system);
     progress.moved(now, guess, to);
     progress.judge(step.tolerance);
     arrive(now, to);
-    {
-        const Stopwatch watch(report.time_filter);
-        near.note(now, settings.strand_radius);
-    }
+    if (near.are_away(now)) note_pairs();
     system.scatter(now, x);
     const int iteration = newton(scene_step, step, now, progress, report);
     system.touch(near.touching(now), now);

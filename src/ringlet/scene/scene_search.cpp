@@ -57,6 +57,21 @@ void shorten(const SceneSystem &system, const std::vector<double> &parts, Aligne
     });
 }
 
+std::vector<double> worth_going(const SceneSystem &system, const AlignedVector &x, const AlignedVector &direction) {
+    const StrandModel &model = system.model;
+    std::vector<double> parts(system.vertices.parts(), 1.0);
+#pragma omp parallel for schedule(static)
+    for (int s = 0; s < system.vertices.strands; ++s)
+        for (int v = model.offsets[s]; v + 1 < model.offsets[s + 1]; ++v) {
+            const auto edge = [&](const AlignedVector &of) {
+                return (system.position(of, v + 1) - system.position(of, v)).norm();
+            };
+            const double most = 2.0 * std::max(model.rest_length[v], edge(x)), way = edge(direction);
+            if (parts[s] * way > most) parts[s] = most / way;
+        }
+    return parts;
+}
+
 SceneSearch search(SceneSystem &system, const NearPairs *near, const AlignedVector &direction,
                    const std::vector<unsigned char> &all_of_it, AlignedVector &x) {
     constexpr double least_decrease = 1e-4, rounding = 1e-13;

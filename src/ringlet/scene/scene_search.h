@@ -12,6 +12,10 @@ void measure(const SceneSystem &system, AlignedVector &direction, std::vector<do
 // Every part goes only so much of its direction.
 void shorten(const SceneSystem &system, const std::vector<double> &parts, AlignedVector &direction);
 
+// Per part, how much of its direction from x is worth going. No edge of a strand is to change by more than twice its length, as
+// it does when it turns round: of what goes further, what is linear says nothing.
+std::vector<double> worth_going(const SceneSystem &system, const AlignedVector &x, const AlignedVector &direction);
+
 struct SceneSearch {
     bool moved = false;       // false: no way was found on which the energy falls
     int cuts = 0;             // halvings
