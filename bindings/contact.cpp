@@ -22,23 +22,30 @@ template <class Element, class Scalar, class Array> std::vector<Element> copied(
 }
 
 nb::dict memory_of(const SceneMemory &memory) {
-    std::vector<uint64_t> pairs;
-    std::vector<double> distances, heights;
+    std::vector<uint64_t> pairs, bearing;
+    std::vector<double> distances, heights, forces;
     std::vector<int> embedded;
     for (const auto &[pair, distance] : std::map<uint64_t, double>(memory.early.begin(), memory.early.end())) {
         pairs.push_back(pair);
         distances.push_back(distance);
     }
+    for (const auto &[pair, force] : memory.expected) {
+        bearing.push_back(pair);
+        forces.push_back(force);
+    }
     for (const auto &[vertex, height] : memory.embedded) {
         embedded.push_back(vertex);
         heights.push_back(height);
     }
-    const size_t early = pairs.size(), inside = embedded.size(), bodies = memory.bodies.size(), cloths = memory.touched.size();
+    const size_t early = pairs.size(), inside = embedded.size(), bodies = memory.bodies.size(), cloths = memory.touched.size(),
+                 expected = bearing.size();
     nb::dict arrays;
     arrays["begun"] = to_numpy<int>(std::vector<int>{memory.begun}, {1});
     arrays["bodies"] = to_numpy<double>(std::vector<Vec3>(memory.bodies), {bodies, 3});
     arrays["early_pairs"] = to_numpy<uint64_t>(std::move(pairs), {early});
     arrays["early_distances"] = to_numpy<double>(std::move(distances), {early});
+    arrays["expected_pairs"] = to_numpy<uint64_t>(std::move(bearing), {expected});
+    arrays["expected_forces"] = to_numpy<double>(std::move(forces), {expected});
     arrays["embedded_vertices"] = to_numpy<int>(std::move(embedded), {inside});
     arrays["embedded_heights"] = to_numpy<double>(std::move(heights), {inside});
     arrays["touched"] = to_numpy<int>(std::vector<int>(memory.touched), {cloths});
@@ -48,16 +55,19 @@ nb::dict memory_of(const SceneMemory &memory) {
 SceneMemory memory_from(const nb::dict &arrays) {
     const auto pairs = nb::cast<Array1<uint64_t>>(arrays["early_pairs"]);
     const auto distances = nb::cast<Array1<double>>(arrays["early_distances"]);
+    const auto bearing = nb::cast<Array1<uint64_t>>(arrays["expected_pairs"]);
+    const auto forces = nb::cast<Array1<double>>(arrays["expected_forces"]);
     const auto vertices = nb::cast<Array1<int>>(arrays["embedded_vertices"]);
     const auto heights = nb::cast<Array1<double>>(arrays["embedded_heights"]);
     const View<int> begun = view(nb::cast<Array1<int>>(arrays["begun"])),
                     touched = view(nb::cast<Array1<int>>(arrays["touched"]));
-    if (pairs.shape(0) != distances.shape(0) || vertices.shape(0) != heights.shape(0) || begun.size() != 1)
+    if (pairs.shape(0) != distances.shape(0) || bearing.shape(0) != forces.shape(0) || vertices.shape(0) != heights.shape(0) || begun.size() != 1)
         throw std::invalid_argument("scene: what is to be recalled does not fit together");
     SceneMemory memory;
     memory.begun = begun[0] != 0;
     memory.bodies = copied<Vec3, double>(nb::cast<Array3<double>>(arrays["bodies"]));
     for (size_t k = 0; k < pairs.shape(0); ++k) memory.early[pairs.data()[k]] = distances.data()[k];
+    for (size_t k = 0; k < bearing.shape(0); ++k) memory.expected.push_back({bearing.data()[k], forces.data()[k]});
     for (size_t k = 0; k < vertices.shape(0); ++k) memory.embedded.emplace_back(vertices.data()[k], heights.data()[k]);
     memory.touched.assign(touched.begin(), touched.end());
     return memory;

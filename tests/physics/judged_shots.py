@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import itertools
+import json
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -53,6 +54,15 @@ def judged(motion, frames: int | None = None, every: int = 1) -> Iterator[Judged
         yield Judged(sum(judge.crossings(*move) for move in moves) if asked else None, statistics)
 
 
+def logged(frames: Iterator[Judged], path: Path | None) -> Iterator[Judged]:
+    """The same, and a line of JSON for each."""
+    for frame in frames:
+        if path is not None:
+            with path.open("a") as file:
+                print(json.dumps({"crossings": frame.crossings, **frame.statistics}), file=file)
+        yield frame
+
+
 def row(name: str, frames: list[Judged]) -> str:
     """What there is to tell of some frames."""
     of = [frame.statistics for frame in frames]
@@ -81,6 +91,7 @@ def main():
     parser.add_argument("--frames", type=int, help="in place of the shot's")
     parser.add_argument("--locks", type=int, help="of the groom, evenly over the head, in place of the recipe's")
     parser.add_argument("--rows", type=int, default=1, help="in how many parts the table tells of a shot")
+    parser.add_argument("--log", type=Path, help="a file for the statistics of every frame, a line of JSON each")
     parser.add_argument("--judge", type=int, default=1, help="every which frame is judged by ipctk, all moves of it")
     options = parser.parse_args()
     print(
@@ -91,7 +102,7 @@ def main():
     for shot in options.shots:
         motion, begun = start(shot, options.recipe, options.locks), time.process_time()
         count = options.frames or motion.shot.frames[1] - motion.shot.frames[0]
-        frames = judged(motion, count, options.judge)
+        frames = logged(judged(motion, count, options.judge), options.log)
         title = f"{shot}{f' of {options.recipe}' if options.recipe else ''}"
         for part in np.array_split(np.arange(count), options.rows):
             done = list(itertools.islice(frames, len(part)))

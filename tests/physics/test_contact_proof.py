@@ -99,6 +99,20 @@ def test_a_scene_that_moves_as_a_whole_does_the_same():
     assert np.abs(positions[1] - positions[0]).max() < 4e-9
 
 
+@pytest.mark.parametrize("name", ["squeezed", "tightened"])
+def test_what_a_scene_remembers_is_all_that_its_next_step_depends_on(name):
+    """To the last bit, friction included."""
+    play, other = SCENES[name](), SCENES[name]()
+    for k in range(1, 9):
+        report = play.step(k, Solver())
+    assert report["contacts"] > 0
+    other.scene.recall(play.scene.memory)
+    other.scene.strands.recall(play.scene.strands.memory)
+    for each in (play, other):
+        each.step(9, Solver())
+    assert (play.scene.positions == other.scene.positions).all()
+
+
 def test_the_number_of_threads_does_not_matter():
     """To the last bit."""
     program = """

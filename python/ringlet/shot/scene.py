@@ -192,9 +192,9 @@ class Scene:
         moving = strands + sum(len(cloth.positions) for cloth in self.cloths)
         try:
             totals, rows, self._cloth_rows = self._core.step(
-                _rows(None if targets is None else [targets], now[:strands]),
+                _rows(None if targets is None else [targets], self.strands.positions),
                 _rows(None if forces is None else [forces], np.zeros((strands, 3))),
-                _rows(cloths, now[strands:moving]),
+                _rows([cloth.positions for cloth in self.cloths] if cloths is None else cloths, np.zeros((0, 3))),
                 _rows(cloth_forces, np.zeros((moving - strands, 3))),
                 _rows(bodies, now[moving:]),
                 dt,

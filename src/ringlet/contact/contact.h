@@ -25,7 +25,6 @@ struct Contact {
     Vec3 start;                   // c_a − c_b as the step began [m]
     double force = 0.0;           // with which it pushes where it was linearised [N]
     double grip = 0.0;            // N [N]
-    double expected = 0.0;        // what the next grip is to be [N]
     uint64_t pair = 0;            // which two touch
 
     bool of_edges() const { return first == 2; }

@@ -46,7 +46,8 @@ std::vector<Place> places(const CollisionMesh &mesh, const Touch &touch, View<Ve
 }
 
 // Work for those of `now` whose pairs `before` has, both in order.
-template <class Work> void for_known(const std::vector<Contact> &before, std::vector<Contact> &now, const Work &work) {
+template <class Known, class Work>
+void for_known(const std::vector<Known> &before, std::vector<Contact> &now, const Work &work) {
     auto known = before.begin();
     for (Contact &contact : now) {
         while (known != before.end() && known->pair < contact.pair) ++known;
@@ -114,8 +115,10 @@ std::vector<Contact> ContactSet::pushing(const CollisionMesh &mesh, const Contac
 void ContactSet::find(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<Touch> &touching,
                       View<Vec3> start, View<Vec3> now) {
     std::vector<Contact> found = of_touching(mesh, material, touching, start, now);
-    for_known(contacts_, found, [](const Contact &before, Contact &now) { now.grip = now.expected = before.expected; });
+    for_known(expected_, found, [](const Expected &before, Contact &now) { now.grip = before.force; });
     contacts_ = std::move(found);
+    expected_.clear();
+    for (const Contact &c : contacts_) expected_.push_back({c.pair, c.grip});
     index(mesh);
 }
 

@@ -28,6 +28,14 @@ public:
     const Early &early() const { return early_; }
     void recall(Early early) { early_ = std::move(early); }
 
+    // What pairs that were contacts last are expected to bear, in the order of their names: friction's next normal force.
+    struct Expected {
+        uint64_t pair;
+        double force; // [N]
+    };
+    const std::vector<Expected> &expected() const { return expected_; }
+    void recall(std::vector<Expected> expected) { expected_ = std::move(expected); }
+
     // Of objects that go by planes (per object; beyond the end: none), a search knows the contacts by their planes alone, which
     // are overstepped then: their barriers end early.
     void go_by_planes(View<unsigned char> objects) { by_planes_.assign(objects.begin(), objects.end()); }
@@ -42,7 +50,7 @@ public:
     void find(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<Touch> &touching, View<Vec3> start,
               View<Vec3> now);
 
-    void expect(int contact, double force) { contacts_[contact].expected = force; }
+    void expect(int contact, double force) { expected_[contact].force = force; }
 
     const std::vector<Contact> &contacts() const { return contacts_; }
 
@@ -62,6 +70,7 @@ private:
     Early early_;
     std::vector<unsigned char> by_planes_;
     std::vector<Contact> contacts_;
+    std::vector<Expected> expected_; // of each of them
     std::vector<Role> roles_;
     std::vector<int> role_begin_, vertices_;
 };

@@ -79,20 +79,19 @@ ClothModel make_cloth_model(View<Triangle> triangles, View<Vec3> rest, View<Vec3
         model.rest_angle.push_back(hinge_angle(corners));
         model.hinge_stiffness.push_back(hinge_stiffness(corners, material.bend));
     }
+    model.given_rest = model.rest;
+    model.given_membrane = model.membrane;
     return model;
 }
 
 void scale_rest(ClothModel &model, double scale) {
     if (!(scale > 0) || !std::isfinite(scale))
         throw std::invalid_argument("cloth: the scale of its rest shape must be above 0");
-    const double grown = scale / model.rest_scale;
-    for (Vec3 &point : model.rest) point *= grown;
-    for (MembraneRest &triangle : model.membrane) {
-        triangle.warp /= grown;
-        triangle.weft /= grown;
-        triangle.area *= grown * grown;
+    for (size_t v = 0; v < model.rest.size(); ++v) model.rest[v] = scale * model.given_rest[v];
+    for (size_t t = 0; t < model.membrane.size(); ++t) {
+        const MembraneRest &given = model.given_membrane[t];
+        model.membrane[t] = {given.warp / scale, given.weft / scale, given.area * scale * scale};
     }
-    model.rest_scale = scale;
 }
 
 } // namespace ringlet

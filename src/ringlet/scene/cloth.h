@@ -37,7 +37,9 @@ struct ClothModel {
     double damping = 0.0;                   // β [s]
     double mass_damping = 0.0;              // α [1/s]
     double thickness = 0.0;                 // [m]
-    double rest_scale = 1.0;                // how large the rest shape is, by what it was given as
+
+    std::vector<Vec3> given_rest; // the rest shape before it was scaled
+    std::vector<MembraneRest> given_membrane;
 
     int vertex_count() const { return int(mass.size()); }
 };

@@ -430,6 +430,7 @@ SceneMemory Scene::memory() const {
     return {parts_->begun,
             {all.begin() + bodies, all.end()},
             parts_->system.contacts.early(),
+            parts_->system.contacts.expected(),
             parts_->embedded.heights(),
             parts_->touched};
 }
@@ -442,6 +443,7 @@ void Scene::recall(const SceneMemory &memory) {
     parts.begun = memory.begun;
     std::copy(memory.bodies.begin(), memory.bodies.end(), parts.vertices.positions.begin() + parts.vertices.moving_vertices());
     parts.system.contacts.recall(memory.early);
+    parts.system.contacts.recall(memory.expected);
     parts.embedded.recall(memory.embedded, parts.vertices.mesh);
     parts.touched = memory.touched;
 }
