@@ -24,16 +24,16 @@ IMAGES = Path(__file__).parent / "images" / "gallery"
 # How hair of a type stands and holds together: straight hair lies, parts, hangs and spreads; tight coils carry
 # themselves, stand as a ball, and hold together in locks so thin that their turns are seen.
 STAND = {
-    "1": {"length": 15, "lift": 0.06, "droop": 6, "felt": 5, "fringe": 0.6, "fall": 0.35, "vary": 0.1}
+    "1": {"length": 15, "lift": 0.06, "droop": 6, "felt": 5, "fringe": 0.6, "brow": 0.5, "fall": 0.35, "vary": 0.1}
     | {"clump": 0.25, "wander": 0.3, "locks": 1300, "per_lock": 26, "radius": 2.6, "tip": 0.3}
     | {"blend": 0.6, "frizz": 0.12},
-    "2": {"length": 15, "lift": 0.12, "droop": 4.5, "felt": 5, "fringe": 0.6, "fall": 0.35, "vary": 0.1}
+    "2": {"length": 15, "lift": 0.12, "droop": 4.5, "felt": 5, "fringe": 0.6, "brow": 0.5, "fall": 0.35, "vary": 0.1}
     | {"clump": 0.35, "wander": 0.4, "locks": 1300, "per_lock": 26, "radius": 2.2, "tip": 0.3}
     | {"blend": 0.3, "frizz": 0.15},
-    "3": {"length": 15, "lift": 0.6, "droop": 1.1, "felt": 1, "fringe": 0.55, "fall": 1, "vary": 0.12}
+    "3": {"length": 15, "lift": 0.6, "droop": 1.1, "felt": 1, "fringe": 0.55, "brow": 1, "fall": 1, "vary": 0.12}
     | {"clump": 0.35, "wander": 0.7, "locks": 1300, "per_lock": 22, "radius": 1.6, "tip": 0.3}
     | {"blend": 0, "frizz": 0.35},
-    "4": {"length": 11, "lift": 0.85, "droop": 0.3, "felt": 0.1, "fringe": 0.7, "fall": 1.3, "vary": 0.05}
+    "4": {"length": 11, "lift": 0.85, "droop": 0.3, "felt": 0.1, "fringe": 0.7, "brow": 1, "fall": 1.3, "vary": 0.05}
     | {"clump": 0.15, "wander": 1.4, "locks": 2200, "per_lock": 12, "radius": 1.1, "tip": 0.7}
     | {"blend": 0, "frizz": 0.25},
 }
@@ -53,6 +53,7 @@ droop = {droop}
 part = {{ offset = 1.5, reach = {felt} }}
 zone = [
     {{ toward = [0, 0.2, 1], spread = 55, length = {fringe}, droop = {fall} }},
+    {{ toward = [0.15, 0.6, 1], spread = 34, length = {brow} }}, # not over the eyes
     {{ toward = [0, -0.8, -1], spread = 55, length = 0.8 }},
 ]
 [locks]

@@ -4,21 +4,22 @@ from __future__ import annotations
 
 import os
 import platform
+import re
 import sys
 import tempfile
 import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
-from importlib.metadata import PackageNotFoundError, version
+from importlib.metadata import PackageNotFoundError, requires, version
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ringlet import _core, api
+from ringlet.curves import Curves
 from ringlet.share import share
 
-PACKAGES = ("numpy", "usd-core", "mitsuba", "pydantic", "typer")
 ENOUGH_MEMORY = 4 * 2**30  # for the example and its picture
 PICTURE = 96  # height of the self-test's picture [pixels]
 
@@ -43,8 +44,10 @@ class Finding:
 
 def diagnose(*, self_test: bool = True, progress: api.Progress | None = None) -> list[Finding]:
     """Looks at the installation and, with ``self_test``, lets it groom, simulate, write, read and draw a little."""
-    looks = [_ringlet, _processor, _memory, *(_package(name) for name in PACKAGES), _pardiso, _dask]
-    tests: list[Callable[[Path], Finding]] = [_test_core, _test_files, _test_picture] if self_test else []
+    looks = [_ringlet, _processor, _memory, *(_package(name) for name in _needed()), _pardiso, _dask, _openjd, _page]
+    tests: list[Callable[[Path], Finding]] = (
+        [_test_core, _test_contact, _test_files, _test_picture] if self_test else []
+    )
     findings = [look() for look in looks]
     with tempfile.TemporaryDirectory(prefix="ringlet-") as folder:
         for done, test in enumerate(tests):
@@ -73,6 +76,12 @@ def _memory() -> Finding:
     enough = total >= ENOUGH_MEMORY
     remedy = "" if enough else "the example takes up to 4 GiB; simulate fewer locks and draw fewer hairs"
     return Finding("memory", "ok" if enough else "fails", f"{total / 2**30:.1f} GiB", remedy)
+
+
+def _needed() -> list[str]:
+    """Packages that Ringlet does not run without."""
+    lines = [line for line in requires("ringlet") or [] if "extra ==" not in line]
+    return [re.split(r"[ <>=!~;\[]", line)[0] for line in lines]
 
 
 def _package(name: str) -> Callable[[], Finding]:
@@ -104,6 +113,21 @@ def _dask() -> Finding:
         return Finding("dask.distributed", "optional", "is not installed", "for wedges: pip install 'ringlet[farm]'")
 
 
+def _openjd() -> Finding:
+    try:
+        return Finding("Open Job Description", "ok", version("openjd-cli"))
+    except PackageNotFoundError:
+        return Finding(
+            "Open Job Description", "optional", "is not installed", "to run templates: pip install 'ringlet[farm]'"
+        )
+
+
+def _page() -> Finding:
+    if (Path(__file__).parent / "viewer" / "static" / "index.html").exists():
+        return Finding("review page", "ok", "built")
+    return Finding("review page", "optional", "is not built", "for ringlet view, in a clone: make build")
+
+
 def _guarded(test: Callable[[Path], Finding], folder: Path) -> Finding:
     """The finding of a test, also where it breaks off."""
     try:
@@ -121,6 +145,29 @@ def _test_core(_: Path) -> Finding:
     state = "ok" if held == len(rows) else "fails"
     remedy = "" if state == "ok" else "run: ringlet validate, and report it"
     return Finding("simulation", state, f"{held} of {len(rows)} known answers hold, {took}", remedy)
+
+
+def _test_contact(_: Path) -> Finding:
+    """A strand that falls onto another has to stay above it."""
+    from ringlet.shot import Contact, Material, Scene, Strands
+
+    start = time.perf_counter()
+    x = np.linspace(-0.02, 0.02, 9)
+    below, above = np.c_[x, 0 * x, 0 * x], np.c_[0 * x, 0 * x + 5e-3, x]
+    held = np.isin(np.arange(2 * len(x)), (0, 8, 9))
+    strands = Strands(Curves.from_list([below, above]), Material(bend_scale=0.0), held)
+    scene, touched = Scene(strands, contact=Contact()), False
+    for _step in range(24):
+        scene.step(strands.curves.points, 1 / 240, gravity=(0.0, -98.1, 0.0))
+        touched = touched or len(scene.contacts[0]) > 0
+    gap = strands.positions[13, 1] - strands.positions[4, 1]
+    works = touched and bool(gap > 0.0)
+    found = (
+        f"a strand fell onto another and {'stopped' if works else 'went through'}, {time.perf_counter() - start:.1f} s"
+    )
+    return Finding(
+        "contact", "ok" if works else "fails", found, "" if works else "run: ringlet validate, and report it"
+    )
 
 
 def _test_files(folder: Path) -> Finding:

@@ -51,6 +51,25 @@ def told(example: Path, name: str) -> dict:
     return json.loads((example / f"{name}.json").read_text())
 
 
+@pytest.mark.parametrize(
+    ("command", "allowed"),
+    [
+        (["groom", "small.recipe.toml", "-o", "out.obj"], ".usdc, .usd or .usda"),
+        (["sim", "small.shot.toml", "-o", "out.obj"], ".usdc, .usd or .usda"),
+        (["sim", "small.shot.toml", "--contacts", "out.obj"], ".usdc, .usd or .usda"),
+        (["hair", "groom.usdc", "-o", "out.abc"], ".usdc, .usd or .usda"),
+        (["picture", "hair.usdc", "-o", "out.gif"], "must end in .png, .jpg or .jpeg"),
+        (["check", "small.recipe.toml", "--fix", "-o", "out.obj"], ".usdc, .usd or .usda"),
+    ],
+)
+def test_a_file_that_would_not_be_written_in_the_end_is_refused_at_once(copy, monkeypatch, command, allowed):
+    monkeypatch.chdir(copy)
+    result = run(*command)
+    refused(result, "out.", allowed)
+    assert "1/1" not in result.stderr  # no stage has run
+    assert sorted(path.name for path in copy.iterdir()) == ["head.usda", "small.recipe.toml", "small.shot.toml"]
+
+
 # What works
 
 

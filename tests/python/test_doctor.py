@@ -13,6 +13,8 @@ def test_this_installation_works():
     findings = {finding.name: finding for finding in ringlet.diagnose()}
     assert {finding.state for finding in findings.values()} <= {"ok", "optional"}
     assert "known answers hold" in findings["simulation"].found
+    assert "stopped" in findings["contact"].found
+    assert {"numpy", "scipy", "fastapi", "usd-core"} <= findings.keys()
     assert "locks groomed" in findings["groom and USD"].found
     assert findings["picture"].state == "ok"
 
@@ -24,7 +26,8 @@ def test_what_breaks_is_told_and_the_rest_still_looked_at(monkeypatch):
     monkeypatch.setattr(doctor, "_test_core", broken)
     monkeypatch.setattr(doctor, "_test_files", lambda folder: doctor.Finding("groom and USD", "ok", "fine"))
     monkeypatch.setattr(doctor, "_test_picture", broken)
-    monkeypatch.setattr(doctor, "PACKAGES", ("numpy", "no-such-package"))
+    monkeypatch.setattr(doctor, "_test_contact", broken)
+    monkeypatch.setattr(doctor, "_needed", lambda: ["numpy", "no-such-package"])
     result = CliRunner().invoke(app, ["doctor", "--json"])
     assert result.exit_code == 1
     told = {entry["name"]: entry for entry in json.loads(result.stdout)}

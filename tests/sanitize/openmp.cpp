@@ -22,6 +22,8 @@ int max_threads = [] {
     return count > 0 ? count : 4;
 }();
 
+std::mutex critical; // sections without a name share one
+
 // A loop of which threads take chunks until there are none.
 struct Loop {
     std::atomic<long> next;
@@ -184,6 +186,9 @@ bool GOMP_loop_ull_nonmonotonic_dynamic_start(bool, Count first, Count last, Cou
 bool GOMP_loop_ull_nonmonotonic_dynamic_next(Count *begin, Count *end) {
     return take(reinterpret_cast<long *>(begin), reinterpret_cast<long *>(end));
 }
+
+void GOMP_critical_start() { critical.lock(); }
+void GOMP_critical_end() { critical.unlock(); }
 
 void GOMP_loop_end() { team->wait_for_all(); }
 void GOMP_loop_end_nowait() {}

@@ -93,6 +93,7 @@ def write_simulation(
     from ringlet import io
     from ringlet import shot as shots
 
+    io.check_target(path, under)
     inputs = _inputs(shot, groom, allow_stale)
     kept = _checkpoints(checkpoints, shot, groom, inputs, frames)
     first, last = frames or shot.frames

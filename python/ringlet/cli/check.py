@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 import ringlet
-from ringlet.cli.options import Json, Threads, Variant
+from ringlet.cli.options import Json, Threads, Variant, picture_file, usd_file
 from ringlet.cli.output import print_json, print_table
 from ringlet.cli.progress import shown_progress
 
@@ -19,11 +19,20 @@ def check(
     fix: Annotated[bool, typer.Option("--fix", help="Repair it, with the least change of shape.")] = False,
     output: Annotated[
         Path | None,
-        typer.Option("--output", "-o", metavar="FIXED", help="Where the repaired groom goes.", show_default=False),
+        typer.Option(
+            "--output",
+            "-o",
+            callback=usd_file,
+            metavar="FIXED",
+            help="Where the repaired groom goes.",
+            show_default=False,
+        ),
     ] = None,
     picture: Annotated[
         Path | None,
-        typer.Option("--picture", metavar="PNG", help="A picture of the places.", show_default=False),
+        typer.Option(
+            "--picture", callback=picture_file, metavar="PNG", help="A picture of the places.", show_default=False
+        ),
     ] = None,
     root_depth: Annotated[
         float, typer.Option("--root-depth", metavar="MM", help="How deep roots may be in the skin.")

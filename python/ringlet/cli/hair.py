@@ -8,16 +8,16 @@ from typing import Annotated
 import typer
 
 import ringlet
-from ringlet.cli.options import Fraction, Frames, Json, Report, Threads, Variant
+from ringlet.cli.options import Fraction, Frames, Json, Report, Threads, Variant, usd_file
 from ringlet.cli.output import wrote
 from ringlet.cli.progress import shown_progress
 
 
 def hair(
     groom: Annotated[Path, typer.Argument(metavar="GROOM", help="The groom, a USD file.")],
-    output: Annotated[Path, typer.Option("--output", "-o", metavar="HAIR", help="The USD file to write.")] = Path(
-        "hair.usdc"
-    ),
+    output: Annotated[
+        Path, typer.Option("--output", "-o", callback=usd_file, metavar="HAIR", help="The USD file to write.")
+    ] = Path("hair.usdc"),
     cache: Annotated[
         Path | None,
         typer.Option(

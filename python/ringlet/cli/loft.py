@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 import ringlet
-from ringlet.cli.options import Json, Report, Threads, Variant
+from ringlet.cli.options import Json, Report, Threads, Variant, usd_file
 from ringlet.cli.output import print_json, print_table, size
 from ringlet.cli.progress import shown_progress
 
@@ -27,6 +27,7 @@ def loft(
         typer.Option(
             "--output",
             "-o",
+            callback=usd_file,
             metavar="REST",
             help="The USD file to write; by default where the shot will look for it.",
             show_default=False,

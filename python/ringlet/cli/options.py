@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -36,6 +37,21 @@ Variant = Annotated[
 Fraction = Annotated[
     float, typer.Option("--fraction", min=0.001, max=1.0, help="Share of the hairs to make, for a quick look.")
 ]
+
+
+def ending_in(*suffixes: str) -> Callable[[Path | None], Path | None]:
+    """Refuses a file to be written whose name ends otherwise, before the work for it is done."""
+
+    def checked(path: Path | None) -> Path | None:
+        if path is not None and path.suffix not in suffixes:
+            allowed = f"{', '.join(suffixes[:-1])} or {suffixes[-1]}"
+            raise ringlet.UserError(f"{path}: ends in '{path.suffix}'; must end in {allowed}")
+        return path
+
+    return checked
+
+
+usd_file, picture_file = ending_in(".usdc", ".usd", ".usda"), ending_in(".png", ".jpg", ".jpeg")
 
 
 def parse_frames(text: str) -> tuple[int, int]:

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 import ringlet
-from ringlet.cli.options import Frames, Json, Report
+from ringlet.cli.options import Frames, Json, Report, picture_file
 from ringlet.cli.output import wrote
 from ringlet.cli.progress import shown_progress
 
@@ -17,9 +17,9 @@ def picture(
     stage: Annotated[
         Path, typer.Argument(metavar="STAGE", help="A USD file with hairs, and with the head if it is to be seen.")
     ],
-    output: Annotated[Path, typer.Option("--output", "-o", metavar="PICTURE", help="The PNG file to write.")] = Path(
-        "still.png"
-    ),
+    output: Annotated[
+        Path, typer.Option("--output", "-o", callback=picture_file, metavar="PICTURE", help="The PNG file to write.")
+    ] = Path("still.png"),
     frame: Annotated[
         float | None,
         typer.Option("--frame", metavar="F", help="Frame of the still; the first by default.", show_default=False),

@@ -12,16 +12,16 @@ from typing import Annotated
 import typer
 
 import ringlet
-from ringlet.cli.options import Frames, Json, Report, Threads, Variant
+from ringlet.cli.options import Frames, Json, Report, Threads, Variant, usd_file
 from ringlet.cli.output import wrote
 from ringlet.cli.progress import shown_progress
 
 
 def sim(
     shot: Annotated[Path, typer.Argument(metavar="SHOT", help="The shot, a TOML file.")],
-    output: Annotated[Path, typer.Option("--output", "-o", metavar="CACHE", help="The USD file to write.")] = Path(
-        "cache.usdc"
-    ),
+    output: Annotated[
+        Path, typer.Option("--output", "-o", callback=usd_file, metavar="CACHE", help="The USD file to write.")
+    ] = Path("cache.usdc"),
     groom: Annotated[
         Path | None,
         typer.Option("--groom", metavar="GROOM", help="A groom to use in place of the shot's.", show_default=False),
@@ -38,6 +38,7 @@ def sim(
         Path | None,
         typer.Option(
             "--contacts",
+            callback=usd_file,
             metavar="FILE",
             help="A USD file to write what touches to, as coloured points over the cache.",
             show_default=False,

@@ -8,6 +8,7 @@ from ringlet.io.usd.groom import read_groom, write_groom
 from ringlet.io.usd.hairs import HairWriter, read_hair_frames, read_hairs, read_stage
 from ringlet.io.usd.mesh import Body, read_bodies, read_body
 from ringlet.io.usd.rest import read_rest, write_rest
+from ringlet.io.usd.stage import check_target
 from ringlet.io.usd.touches import heat, read_touches, start_marks, write_touches
 
 __all__ = [
@@ -16,6 +17,7 @@ __all__ = [
     "CacheWriter",
     "HairWriter",
     "cache_groom_path",
+    "check_target",
     "heat",
     "open_cache",
     "problems",

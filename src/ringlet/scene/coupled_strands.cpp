@@ -58,7 +58,9 @@ void CoupledStrands::evaluate(int group, const AlignedVector &x, double *energie
     RINGLET_DISPATCH(evaluate_strand_group, memory_[group].get(), x.data() + begin_[group], energies);
 }
 
-void CoupledStrands::assemble(int group) const { RINGLET_DISPATCH(assemble_strand_group, memory_[group].get()); }
+void CoupledStrands::assemble(int group, const AlignedVector &x) const {
+    RINGLET_DISPATCH(assemble_strand_group, memory_[group].get(), x.data() + begin_[group]);
+}
 
 void CoupledStrands::factor(int group) const { RINGLET_DISPATCH(factor_strand_group, memory_[group].get()); }
 

@@ -146,7 +146,7 @@ void SceneSystem::expect(const AlignedVector &direction) {
 void SceneSystem::assemble(const AlignedVector &x) {
     for_units([&](int u) {
         if (u < group_count())
-            strands.assemble(u);
+            strands.assemble(u, x);
         else
             cloths[u - group_count()].assemble(x.data() + unit_begin(u));
     });

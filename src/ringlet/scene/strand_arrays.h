@@ -91,7 +91,7 @@ RINGLET_DECLARE(
     size_t strand_group_bytes(const StrandStep &step, int vertices);
     StrandGroupSystem begin_strand_group(const StrandArrays &arrays, const StrandStep &step, StrandGroup group, void *memory);
     void evaluate_strand_group(void *memory, const double *x, double *energies); // one energy a lane
-    void assemble_strand_group(void *memory);                                     // gradient and matrix at the x evaluated last
+    void assemble_strand_group(void *memory, const double *x);                    // gradient and matrix where that was last
     void factor_strand_group(void *memory);
     void solve_strand_group(void *memory, double *b); // in place
     void end_strand_group(void *memory, const double *x, const StrandEffort &effort, StrandReport *reports);

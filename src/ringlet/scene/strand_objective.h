@@ -30,6 +30,9 @@ public:
 
     int size() const { return freedoms * vertices_; }
 
+    // What was evaluated last stands there now: the same numbers in other memory.
+    void find_at(const T *x) { positions_ = x; }
+
     static Vec<T> position(const T *x, int i) { return {x[freedoms * i], x[freedoms * i + 1], x[freedoms * i + 2]}; }
 
 protected:

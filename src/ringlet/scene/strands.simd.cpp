@@ -61,7 +61,7 @@ struct OpenGroup {
     virtual ~OpenGroup() = default;
     virtual StrandGroupSystem begin() = 0;
     virtual void evaluate(const Pack *x, double *energies) = 0;
-    virtual void assemble() = 0;
+    virtual void assemble(const Pack *x) = 0;
     virtual void factor() = 0;
     virtual void solve(Pack *b) = 0;
     virtual void end(const Pack *x, const StrandEffort &effort, StrandReport *reports) = 0;
@@ -110,8 +110,9 @@ public:
         for (int lane = 0; lane < lanes; ++lane) energies[lane] = lane < group_.count ? energy[lane] : 0.0;
     }
 
-    void assemble() override {
+    void assemble(const Pack *x) override {
         Matrix hessian = matrix();
+        objective_.find_at(x);
         objective_.assemble(space_.newton.gradient, hessian);
     }
 
@@ -537,7 +538,7 @@ StrandGroupSystem begin_strand_group(const StrandArrays &arrays, const StrandSte
 void evaluate_strand_group(void *memory, const double *x, double *energies) {
     open_group(memory).evaluate(reinterpret_cast<const Pack *>(x), energies);
 }
-void assemble_strand_group(void *memory) { open_group(memory).assemble(); }
+void assemble_strand_group(void *memory, const double *x) { open_group(memory).assemble(reinterpret_cast<const Pack *>(x)); }
 void factor_strand_group(void *memory) { open_group(memory).factor(); }
 void solve_strand_group(void *memory, double *b) { open_group(memory).solve(reinterpret_cast<Pack *>(b)); }
 

@@ -74,12 +74,23 @@ def reading_more(path: Path | str) -> Iterator[None]:
         del warnings
 
 
+def check_name(path: Path | str) -> None:
+    """Refuses a file to be written whose name is not one of USD's."""
+    if Path(path).suffix not in SUFFIXES[:3]:
+        raise UserError(f"{path}: ends in '{Path(path).suffix}'; must end in .usdc, .usd or .usda")
+
+
+def check_target(path: Path | str, under: Path | str) -> None:
+    """Refuses what a layer over another file cannot be called, before there is anything to write."""
+    check_name(path)
+    refuse_itself(path, under, "file")
+
+
 @contextmanager
 def writing(path: Path | str) -> Iterator[Path]:
     """``replacing`` for stages: yields the path beside ``path`` to write to; USD's errors become a UserError."""
     path = Path(path)
-    if path.suffix not in SUFFIXES[:3]:
-        raise UserError(f"{path}: ends in '{path.suffix}'; must end in .usdc, .usd or .usda")
+    check_name(path)
     warnings = UsdUtils.CoalescingDiagnosticDelegate()
     try:
         with replacing(path) as aside:

@@ -11,7 +11,7 @@ from pxr import Sdf, Usd, UsdGeom
 
 from ringlet.io.usd.curves import set_points
 from ringlet.io.usd.groom import choose_variant, groom_prim
-from ringlet.io.usd.stage import new_stage, reading, refuse_itself, writing
+from ringlet.io.usd.stage import check_target, new_stage, reading, writing
 from ringlet.stage import StageSpace
 
 FLUSH = 64e6  # bytes of points held in memory before they go to the file
@@ -21,7 +21,7 @@ class StreamWriter:
     """A layer over another file that grows frame by frame, and is put in its place when the block ends well."""
 
     def __init__(self, path: Path | str, under: Path | str, space: StageSpace, variant: str | None = None) -> None:
-        refuse_itself(path, under, "file")
+        check_target(path, under)
         self.path, self.under, self.space, self.variant = Path(path), Path(under), space, variant
         self._frames: list[float] = []
         self._held = 0
