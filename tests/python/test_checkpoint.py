@@ -167,7 +167,7 @@ def test_what_touched_before_a_run_was_broken_off_is_kept_with_the_frames(folder
     assert any(len(frame.force) for frame in expected[:20])
     broken_off(folder, monkeypatch, 25, *asked)
     assert sim(folder, "--resume", *asked).exit_code == 0
-    for frame, before in zip(touches(folder)[:20], expected[:20], strict=True):
+    for frame, before in zip(touches(folder), expected, strict=True):
         for name in ("places", "force", "gap"):
             assert (getattr(frame, name) == getattr(before, name)).all()
 
