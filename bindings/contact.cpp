@@ -61,7 +61,8 @@ SceneMemory memory_from(const nb::dict &arrays) {
     const auto heights = nb::cast<Array1<double>>(arrays["embedded_heights"]);
     const View<int> begun = view(nb::cast<Array1<int>>(arrays["begun"])),
                     touched = view(nb::cast<Array1<int>>(arrays["touched"]));
-    if (pairs.shape(0) != distances.shape(0) || bearing.shape(0) != forces.shape(0) || vertices.shape(0) != heights.shape(0) || begun.size() != 1)
+    if (pairs.shape(0) != distances.shape(0) || bearing.shape(0) != forces.shape(0) || vertices.shape(0) != heights.shape(0) ||
+        begun.size() != 1)
         throw std::invalid_argument("scene: what is to be recalled does not fit together");
     SceneMemory memory;
     memory.begun = begun[0] != 0;

@@ -44,14 +44,16 @@ void Embedded::add(int vertex, const Body &body, CollisionMesh &mesh) {
     mesh.anchor[vertex] = body.object;
 }
 
-void Embedded::push_out(CollisionMesh &mesh, View<Vec3> positions, View<int> offsets, View<double> stiffness, double way,
-                        std::vector<Vec3> &forces) {
-    if (vertices_.empty()) return;
+std::vector<Lift> Embedded::push_out(CollisionMesh &mesh, View<Vec3> positions, View<int> offsets, View<double> stiffness,
+                                     double way) {
+    constexpr double nearly = 0.9; // as high as they touch: what resists keeps them a little below
+    if (vertices_.empty()) return {};
     std::vector<std::unique_ptr<Surface>> surfaces(bodies_.size());
     for (size_t b = 0; b < bodies_.size(); ++b)
         surfaces[b] = std::make_unique<Surface>(
             TriangleMesh{positions.subspan(bodies_[b].first, bodies_[b].count), View<Triangle>(bodies_[b].triangles)});
     std::vector<unsigned char> out(vertices_.size(), 0);
+    std::vector<Lift> lifts(vertices_.size());
 #pragma omp parallel for schedule(dynamic, 16)
     for (int k = 0; k < int(vertices_.size()); ++k) {
         const int v = vertices_[k].vertex;
@@ -60,7 +62,7 @@ void Embedded::push_out(CollisionMesh &mesh, View<Vec3> positions, View<int> off
         const double touching = mesh.radius[v] + mesh.radius[body.first];
         Vec3 outward = Vec3::Zero();
         const double height = surface.height(positions[v], outward);
-        if (height >= touching) {
+        if (height >= nearly * touching) {
             const int strand = mesh.object[v];
             double least = height;
             for (const int next : {v - 1, v + 1})
@@ -70,9 +72,12 @@ void Embedded::push_out(CollisionMesh &mesh, View<Vec3> positions, View<int> off
         }
         double &wanted = vertices_[k].height;
         wanted = std::min(std::max(wanted, height) + way, touching);
-        if (!out[k]) forces[v] += stiffness[v] * std::max(wanted - height, 0.0) * outward;
+        lifts[k] = {v, outward, outward.dot(positions[v]) + wanted - height, stiffness[v]};
     }
     let_go([&](size_t k) { return out[k] != 0; }, mesh);
+    size_t k = 0;
+    std::erase_if(lifts, [&](const Lift &) { return out[k++] != 0; });
+    return lifts;
 }
 
 template <class Out> void Embedded::let_go(const Out &out, CollisionMesh &mesh) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ringlet/contact/collision_mesh.h"
+#include "ringlet/scene/lift.h"
 
 #include <utility>
 #include <vector>
@@ -23,11 +24,11 @@ public:
     std::vector<std::pair<int, double>> heights() const;
     void recall(const std::vector<std::pair<int, double>> &heights, CollisionMesh &mesh); // those that are not named are out
 
-    // Lets go of those that are out by now: they and the edges to their neighbours at the contact distance. Adds to `forces`
-    // [N] of the others what would move a vertex of that stiffness [N/m] to a height that rises by `way` a step, at most to
-    // where it touches. Vertices of one strand follow one another; `offsets` are their ranges.
-    void push_out(CollisionMesh &mesh, View<Vec3> positions, View<int> offsets, View<double> stiffness, double way,
-                  std::vector<Vec3> &forces);
+    // Lets go of those that are out by now: they and the edges to their neighbours at the contact distance. The others are to
+    // be lifted, as hard as their `stiffness` [N/m] says, to a height that rises by `way` a step, at most to where they touch.
+    // Vertices of one strand follow one another; `offsets` are their ranges.
+    std::vector<Lift> push_out(CollisionMesh &mesh, View<Vec3> positions, View<int> offsets, View<double> stiffness,
+                               double way);
 
 private:
     struct Vertex {

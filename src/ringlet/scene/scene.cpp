@@ -312,6 +312,9 @@ double Scene::Parts::advance(const SceneInput &input, const SceneStep &scene_ste
             if (!vertices.mesh.moves[v]) given[v] = now[v];
         step.dt *= fraction;
     }
+    constexpr double speed = 0.02; // [m/s] of what began inside a body, out of it
+    system.lifts =
+        embedded.push_out(vertices.mesh, now, View<int>(model.offsets), vertices.material.stiffness, speed * step.dt);
     // Then to where Newton's method begins.
     begin_cloths(input, step, now);
     to = now;
@@ -380,20 +383,11 @@ SceneReport Scene::Parts::step(const SceneInput &input, const SceneStep &scene_s
     system.contacts.part_early(settings.parting_speed * scene_step.strands.dt);
     path.clear();
     if (recording) path.push_back(vertices.positions);
-    std::vector<Vec3> forces(input.strand_forces.begin(), input.strand_forces.end());
-    if (embedded.count() > 0) {
-        constexpr double speed = 0.02; // [m/s]
-        set_stiffness(scene_step.strands.dt);
-        embedded.push_out(vertices.mesh, vertices.positions, View<int>(model.offsets), vertices.material.stiffness,
-                          speed * scene_step.strands.dt, forces);
-    }
-    SceneInput pushed = input;
-    pushed.strand_forces = forces;
     double left = 1.0;
     for (int part = 0; part < scene_step.most_substeps && left > 1e-9; ++part) {
         StrandStep step = scene_step.strands;
         step.dt *= left;
-        const double fraction = advance(pushed, scene_step, step, report, of_strands, of_cloths);
+        const double fraction = advance(input, scene_step, step, report, of_strands, of_cloths);
         left = fraction < 1.0 ? left * (1.0 - fraction) : 0.0;
         ++report.substeps;
     }

@@ -94,6 +94,10 @@ void SceneSystem::energies(const AlignedVector &x, const NearPairs *near, const 
         if (changed[unit_of(vertices.part_of(v))]) places_[v] = position(x, v);
     share_contacts(near, changed);
     of = own_energies_;
+    for (const Lift &lift : lifts) {
+        const double below = lift.below(places_[lift.vertex]);
+        of[vertices.part_of(lift.vertex)] += 0.5 * lift.stiffness * below * below;
+    }
     const auto share = [&](int a, int b, double energy) {
         if (a >= 0) of[a] += b >= 0 ? 0.5 * energy : energy;
         if (b >= 0) of[b] += a >= 0 ? 0.5 * energy : energy;
@@ -162,6 +166,18 @@ void SceneSystem::assemble(const AlignedVector &x) {
         else
             add_to_cloth(touched[k]);
     }
+    for (const Lift &lift : lifts)
+        if (is_active(vertices.part_of(lift.vertex))) add_lift(lift, x);
+}
+
+void SceneSystem::add_lift(const Lift &lift, const AlignedVector &x) {
+    const double below = lift.below(position(x, lift.vertex));
+    if (below == 0.0) return;
+    const int strand = vertices.part_of(lift.vertex), group = strands.group_of(strand);
+    const StrandGroupSystem &system = strands.system(group);
+    const size_t slot = strands.slot(lift.vertex) - strands.group_begin(group);
+    for (int i = 0; i < 3; ++i) system.gradient[slot + i * strands.stride()] -= lift.stiffness * below * lift.normal[i];
+    strands.add_block(strand, lift.vertex, lift.vertex, lift.stiffness * lift.normal * lift.normal.transpose());
 }
 
 // What contacts do to a vertex and, by edges, from it to the next.

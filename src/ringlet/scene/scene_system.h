@@ -5,6 +5,7 @@
 
 #include "ringlet/scene/coupled_cloth.h"
 #include "ringlet/scene/coupled_strands.h"
+#include "ringlet/scene/lift.h"
 #include "ringlet/scene/scene_vertices.h"
 
 #include <numeric>
@@ -19,6 +20,7 @@ public:
     CoupledStrands strands;
     std::vector<CoupledCloth> cloths;
     ContactSet contacts;
+    std::vector<Lift> lifts; // of vertices of strands
     const SceneVertices &vertices;
     const StrandModel &model;
 
@@ -107,6 +109,7 @@ private:
     void share_contacts(const NearPairs *near, const std::vector<unsigned char> &changed);
     Vec3 separation_at(const Contact &contact, const AlignedVector &x) const;
     void add_to_strand(int vertex);
+    void add_lift(const Lift &lift, const AlignedVector &x);
     void add_to_cloth(int vertex);
 
     View<Vec3> given_;
