@@ -47,6 +47,12 @@ def edit(file: Path, old: str, new: str) -> Path:
     return file
 
 
+def made(folder: Path) -> Path:
+    """The groom of the small example."""
+    assert run("groom", folder / "small.recipe.toml", "-o", folder / "groom.usdc").exit_code == 0
+    return folder / "groom.usdc"
+
+
 def told(example: Path, name: str) -> dict:
     return json.loads((example / f"{name}.json").read_text())
 
@@ -100,6 +106,21 @@ def test_groom_tells_what_it_made(example):
         "conflicts": [],
     }
     assert len(groom.locks) == 8
+
+
+def test_a_head_that_an_obj_has_stands_still_and_locks_touch_it(copy):
+    mesh = ringlet.read_groom(made(copy)).scalp
+    corners = [f"f {a} {b} {c}" for a, b, c in (mesh.triangles + 1).tolist()]
+    lines = [f"v {x} {y} {z}" for x, y, z in (100 * mesh.points).tolist()] + corners  # in centimetres
+    (copy / "head.obj").write_text("\n".join(lines))
+    edit(copy / "small.recipe.toml", 'file = "head.usda"\nregion = "scalp"', 'file = "head.obj"\nunit = "cm"')
+    (copy / "small.shot.toml").write_text((copy / "small.shot.toml").read_text() + "[contact]\nradius = 2e-3\n")
+    result = run("sim", copy / "small.shot.toml", "-o", copy / "cache.usdc")
+    assert result.exit_code == 0, result.output
+    cache, groom = ringlet.read_cache(copy / "cache.usdc"), ringlet.read_groom(copy / "cache.groom.usdc")
+    roots = cache.points[:, groom.locks.offsets[:-1]]
+    assert np.abs(roots - roots[0]).max() < 1e-6 and np.abs(np.linalg.norm(roots, axis=2) - 0.09).max() < 0.01
+    assert np.linalg.norm(cache.points[-1], axis=1).min() > 0.085  # no lock is inside the ball
 
 
 def test_sim_writes_every_frame_and_the_locks_follow_the_scalp(example):

@@ -7,6 +7,8 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from ringlet.api.grooms import load_groom
 from ringlet.api.progress import OnFrame, Progress
 from ringlet.curves import Curves
@@ -213,12 +215,20 @@ def _rest_shape(shot: Shot, groom: Groom, obstacles: Sequence[Obstacle], allow_s
 
 
 def scalp_clip(groom: Groom) -> Clip:
-    """How the scalp of a groom moves."""
+    """How the scalp of a groom moves; one that an OBJ has stands still."""
     from ringlet import io
+    from ringlet.mesh import Clip
 
     if groom.scalp_file is None:
         raise UserError("groom: names no file for its scalp; write the head as USD and name it in the recipe")
+    if _is_still(groom):
+        return Clip(np.zeros(1), groom.scalp.points[None], groom.space.fps)
     return io.read_clip(groom.scalp_file, groom.scalp_prim)
+
+
+def _is_still(groom: Groom) -> bool:
+    """Whether the scalp is of a file that says nothing of motion."""
+    return groom.scalp_file is not None and groom.scalp_file.suffix.lower() == ".obj"
 
 
 def _obstacles(shot: Shot, groom: Groom, garments: Sequence[Garment]) -> list[Obstacle]:
@@ -232,7 +242,11 @@ def _obstacles(shot: Shot, groom: Groom, garments: Sequence[Garment]) -> list[Ob
     for collider in shot.collider or (shots.Collider(),):
         file = collider.file or groom.scalp_file
         assert file is not None  # as for the scalp's clip
-        for body in io.read_bodies(file, collider.mesh):
+        if collider.file is None and _is_still(groom):
+            bodies = [io.Body(groom.scalp, scalp_clip(groom), groom.scalp.name)]
+        else:
+            bodies = io.read_bodies(file, collider.mesh)
+        for body in bodies:
             found[file.resolve(), body.prim] = shots.Obstacle(body.mesh, body.clip, collider)
     for garment in garments:  # cloth is no obstacle, even where its file is the head's
         assert garment.file is not None
