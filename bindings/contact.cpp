@@ -21,13 +21,24 @@ template <class Element, class Scalar, class Array> std::vector<Element> copied(
     return {rows.begin(), rows.end()};
 }
 
+constexpr size_t values_of_hold = 6; // shear, normal
+
+using Rows = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+
 nb::dict memory_of(const SceneMemory &memory) {
     std::vector<uint64_t> pairs, bearing;
     std::vector<double> distances, heights, forces;
     std::vector<int> embedded;
-    for (const auto &[pair, distance] : std::map<uint64_t, double>(memory.early.begin(), memory.early.end())) {
+    for (const auto &[pair, of] : std::map<uint64_t, ContactSet::Distances>(memory.early.begin(), memory.early.end())) {
         pairs.push_back(pair);
-        distances.push_back(distance);
+        distances.insert(distances.end(), {of.began, of.push});
+    }
+    std::vector<uint64_t> held_pairs;
+    std::vector<double> held_values;
+    for (const Hold &hold : memory.held) {
+        held_pairs.push_back(hold.pair);
+        held_values.insert(held_values.end(), hold.shear.begin(), hold.shear.end());
+        held_values.insert(held_values.end(), hold.normal.begin(), hold.normal.end());
     }
     for (const auto &[pair, force] : memory.expected) {
         bearing.push_back(pair);
@@ -43,9 +54,11 @@ nb::dict memory_of(const SceneMemory &memory) {
     arrays["begun"] = to_numpy<int>(std::vector<int>{memory.begun}, {1});
     arrays["bodies"] = to_numpy<double>(std::vector<Vec3>(memory.bodies), {bodies, 3});
     arrays["early_pairs"] = to_numpy<uint64_t>(std::move(pairs), {early});
-    arrays["early_distances"] = to_numpy<double>(std::move(distances), {early});
     arrays["expected_pairs"] = to_numpy<uint64_t>(std::move(bearing), {expected});
     arrays["expected_forces"] = to_numpy<double>(std::move(forces), {expected});
+    arrays["early_distances"] = to_numpy<double>(std::move(distances), {early, 2});
+    arrays["held_pairs"] = to_numpy<uint64_t>(std::move(held_pairs), {memory.held.size()});
+    arrays["held_values"] = to_numpy<double>(std::move(held_values), {memory.held.size(), values_of_hold});
     arrays["embedded_vertices"] = to_numpy<int>(std::move(embedded), {inside});
     arrays["embedded_heights"] = to_numpy<double>(std::move(heights), {inside});
     arrays["touched"] = to_numpy<int>(std::vector<int>(memory.touched), {cloths});
@@ -54,21 +67,29 @@ nb::dict memory_of(const SceneMemory &memory) {
 
 SceneMemory memory_from(const nb::dict &arrays) {
     const auto pairs = nb::cast<Array1<uint64_t>>(arrays["early_pairs"]);
-    const auto distances = nb::cast<Array1<double>>(arrays["early_distances"]);
     const auto bearing = nb::cast<Array1<uint64_t>>(arrays["expected_pairs"]);
     const auto forces = nb::cast<Array1<double>>(arrays["expected_forces"]);
+    const auto distances = nb::cast<Rows>(arrays["early_distances"]);
+    const auto held_pairs = nb::cast<Array1<uint64_t>>(arrays["held_pairs"]);
+    const auto held = nb::cast<Rows>(arrays["held_values"]);
     const auto vertices = nb::cast<Array1<int>>(arrays["embedded_vertices"]);
     const auto heights = nb::cast<Array1<double>>(arrays["embedded_heights"]);
     const View<int> begun = view(nb::cast<Array1<int>>(arrays["begun"])),
                     touched = view(nb::cast<Array1<int>>(arrays["touched"]));
-    if (pairs.shape(0) != distances.shape(0) || bearing.shape(0) != forces.shape(0) || vertices.shape(0) != heights.shape(0) ||
-        begun.size() != 1)
+    if (pairs.shape(0) != distances.shape(0) || distances.shape(1) != 2 || vertices.shape(0) != heights.shape(0) ||
+        bearing.shape(0) != forces.shape(0) || begun.size() != 1 || held.shape(0) != held_pairs.shape(0) ||
+        held.shape(1) != values_of_hold)
         throw std::invalid_argument("scene: what is to be recalled does not fit together");
     SceneMemory memory;
     memory.begun = begun[0] != 0;
     memory.bodies = copied<Vec3, double>(nb::cast<Array3<double>>(arrays["bodies"]));
-    for (size_t k = 0; k < pairs.shape(0); ++k) memory.early[pairs.data()[k]] = distances.data()[k];
     for (size_t k = 0; k < bearing.shape(0); ++k) memory.expected.push_back({bearing.data()[k], forces.data()[k]});
+    for (size_t k = 0; k < pairs.shape(0); ++k)
+        memory.early[pairs.data()[k]] = {distances.data()[2 * k], distances.data()[2 * k + 1]};
+    for (size_t k = 0; k < held.shape(0); ++k) {
+        const double *values = held.data() + values_of_hold * k;
+        memory.held.push_back({held_pairs.data()[k], Vec3(values), Vec3(values + 3)});
+    }
     for (size_t k = 0; k < vertices.shape(0); ++k) memory.embedded.emplace_back(vertices.data()[k], heights.data()[k]);
     memory.touched.assign(touched.begin(), touched.end());
     return memory;

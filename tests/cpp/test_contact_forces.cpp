@@ -25,7 +25,7 @@ Contact some_contact(Random &random) {
     contact.barrier_end = 1e-3 / 64;
     contact.stiffness = random(0.1, 10.0);
     contact.friction = random(0.0, 1.0);
-    contact.creep = 2e-5;
+    contact.give = 2e-5;
     contact.start = random.vector(1e-3);
     contact.force = random(0.0, 1e-3);
     return contact;

@@ -15,7 +15,7 @@ from linking import linking
 from ringlet.curves import Curves
 from ringlet.shot import Material, Solver, Strands
 from ringlet.shot.scene import Contact, Scene
-from ringlet.validate.friction import CREEP, speeds_on_a_slope
+from ringlet.validate.friction import CREEP, STEP, on_a_slope
 
 outcome = cache(lambda name, newton: act(SCENES[name](), newton))
 
@@ -59,10 +59,11 @@ def test_a_tie_that_tightens_gathers_curls():
 
 
 @pytest.mark.parametrize("load", [0.1, 0.5, 0.9])
-def test_what_sticks_creeps_less_than_smoothed_friction_does_at_its_first_slope(load):
-    """Below W ε / 2μN for a load W and a creep speed ε."""
-    speed = speeds_on_a_slope(0.4, 0.4 * load, (0.25,))[0]
-    assert 0 < speed < 0.5 * load * CREEP
+def test_what_sticks_gives_way_a_little_and_stays_there(load):
+    """By less than W ε / 2μN for a load W and a creep speed ε times a step; a hundred times less in the next second."""
+    (soon, _), (late, _) = on_a_slope(0.4, 0.4 * load, (0.25, 1.25))
+    assert 0 < soon < 0.5 * load * CREEP * STEP
+    assert abs(late - soon) < 0.01 * soon
 
 
 @pytest.mark.parametrize("turns", [1, 2, 3])
@@ -97,8 +98,9 @@ def test_a_scene_that_moves_as_a_whole_does_the_same():
             contacts += play.step(k, Solver(newton=150, tolerance=1e-12))["contacts"]
         assert contacts > 0
         positions.append(play.scene.positions - speed * k * play.dt)
-    # It ends 21 m away, where positions are rounded to 4e-15 m; an edge's k dt² / m is about a million.
-    assert np.abs(positions[1] - positions[0]).max() < 4e-9
+    # It ends 21 m away, where positions are rounded to 4e-15 m, and an edge, a difference of two, to twice that; its
+    # k dt² / m is about a million.
+    assert np.abs(positions[1] - positions[0]).max() < 8e-9
 
 
 @pytest.mark.parametrize("name", ["squeezed", "tightened"])
@@ -121,7 +123,6 @@ def test_the_number_of_threads_does_not_matter():
 import hashlib
 from contact_scenes import SCENES
 from ringlet.shot import Solver
-from ringlet.validate.friction import CREEP, speeds_on_a_slope
 for name in ("combed", "spun_head", "wound_coils"):
     play = SCENES[name]()
     for k in range(1, 8):

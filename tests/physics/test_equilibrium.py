@@ -7,7 +7,7 @@ from ringlet.curves import Curves
 from ringlet.errors import UserError
 from ringlet.groom.groom import Groom
 from ringlet.mesh import Clip, Mesh
-from ringlet.shot import Material, Obstacle, equilibrium, loft
+from ringlet.shot import Material, Obstacle, equilibrium, loft, with_sag
 from ringlet.shot.balance import balance
 from ringlet.shot.joints import Joints, measure, shape
 from ringlet.shot.nails import pull
@@ -39,7 +39,7 @@ def test_balance_is_the_gradient_of_the_energy_turned_round(points):
 
 def test_locks_stay_where_they_were_groomed_for_ten_seconds():
     shot, groom = scene(curl(), arc(), STRAIGHT, helix(60) * [1, 1, 1], more=MODE)
-    made = equilibrium(shot, groom)
+    made = with_sag(equilibrium(shot, groom), shot)
     strands = make_strands(shot, groom, made.rest, made.stiffened)
     strands.place(groom.locks.points)
     for _ in range(240):
@@ -74,7 +74,7 @@ def test_what_falls_however_stiff_it_may_be_keeps_its_shape_and_is_told():
 
 def test_a_curl_in_equilibrium_swings_as_fast_as_it_did():
     shot, groom = scene(helix(60, radius=4e-3, pitch=4e-3), more="[strands]\ndamping = 0\ndrag = 0\n" + MODE)
-    made = equilibrium(shot, groom)
+    made = with_sag(equilibrium(shot, groom), shot)
     plain = first_frequency(make_strands(shot, groom), made.sagged)
     balanced = first_frequency(make_strands(shot, groom, made.rest, made.stiffened), made.lofted)
     assert balanced == pytest.approx(plain, rel=0.1)

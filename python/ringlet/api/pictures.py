@@ -141,13 +141,14 @@ def write_loft_picture(
     view: str = "three_quarter",
     progress: Progress | None = None,
 ) -> None:
-    """Draws the hair as groomed, as it hangs without the loft and with it, on one page."""
+    """Draws the hair as groomed, as it hangs without the loft, where that is known, and with it, on one page."""
     from ringlet import groom as grooms
     from ringlet import picture
 
     groom = loft.groom
     hairs = build_hairs(groom, fraction=min(1.0, 6000 / grooms.hair_count(groom)))
     shapes = {"groomed": groom.locks.points, "hanging, not lofted": loft.sagged, "hanging, lofted": loft.lofted}
+    shapes = {name: points for name, points in shapes.items() if points is not None}
     picture.compare(
         {name: hairs.curves.with_points(hairs.at(points, groom.scalp.points)) for name, points in shapes.items()},
         [picture.PosedBody(groom.scalp, groom.scalp.points)],

@@ -154,12 +154,14 @@ def loft(
     groom: Groom | Path | str | None = None,
     *,
     known: Path | str | None = None,
+    sag: bool = False,
     progress: Progress | None = None,
 ) -> Loft:
     """Pre-bends the shape that the locks remember, so that the groom is what hangs under the forces of the shot.
 
     groom: in place of the one that the shot names
     known: a file that ``write_loft`` wrote: locks that have not changed since are taken from it
+    sag:   look how the locks hang without it too, which equilibrium need not know
     """
     from ringlet import io
     from ringlet import shot as shots
@@ -171,8 +173,10 @@ def loft(
         groom = load_groom(groom or shot.groom, progress=progress)
     obstacles = _lain_on(shot, groom)
     if known is None or not Path(known).exists():
-        return shots.preload(shot, groom, obstacles=obstacles, progress=progress)
-    return shots.refresh(shot, groom, *io.read_rest(Path(known)), obstacles=obstacles, progress=progress)
+        made = shots.preload(shot, groom, obstacles=obstacles, progress=progress)
+    else:
+        made = shots.refresh(shot, groom, *io.read_rest(Path(known)), obstacles=obstacles, progress=progress)
+    return shots.with_sag(made, shot) if sag else made
 
 
 def rest_place(shot: Shot) -> Path:

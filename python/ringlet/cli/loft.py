@@ -50,13 +50,14 @@ def loft(
 
     Examples: ringlet loft nod.shot.toml · ringlet loft nod.shot.toml --report out
     """
+    shown = report is not None
     with ringlet.Run("loft", report) as run, shown_progress() as progress:
         settings = ringlet.read_shot(shot)
         path = output or ringlet.rest_place(settings)
         with run.stage("groom"):
             locks = ringlet.load_groom(groom or settings.groom, variant=variant, progress=progress)
         with run.stage("loft", path, "the shape that locks remember"):
-            made = ringlet.loft(settings, locks, known=None if again else path, progress=progress)
+            made = ringlet.loft(settings, locks, known=None if again else path, sag=shown or as_json, progress=progress)
             ringlet.write_loft(made, settings, path)
         near = int((made.off < NEAR).sum())
         run.count(locks=len(locks.locks), points=len(locks.locks.points), held=near)
@@ -65,6 +66,7 @@ def loft(
             [f"{what}, {when} loft", *(f"{1e3 * lost[name][f'{when} {k}']:.2f}" for k in ("mean", "95", "max"))]
             for name, what in MEASURES.items()
             for when in ("without", "with")
+            if f"{when} mean" in lost[name]
         ]
         columns = ["mm", "mean", "95 % are below", "most"]
         run.table("What gravity takes from the groom", columns, rows)
@@ -78,7 +80,7 @@ def loft(
             run.warn(f"{fell} of {len(made.off)} locks do not hang as groomed: probably too soft to stand.")
         if moving:
             run.warn(f"{moving} of {len(made.off)} locks were not quite still when they were measured.")
-        if report is not None:
+        if shown:
             picture = report / "loft.png"
             with run.stage("picture", picture, "the groom, and how it hangs"):
                 ringlet.write_loft_picture(made, picture, title=f"{shot.name}: the loft", progress=progress)

@@ -6,7 +6,7 @@ from ringlet.shot.cloth import Cloth, ClothMaterial, ClothSolver
 from ringlet.shot.collider import Collider, Obstacle, ShotContact
 from ringlet.shot.equilibrium import equilibrium
 from ringlet.shot.garment import Garment, Pin, ShotCloth
-from ringlet.shot.loft import Loft, loft
+from ringlet.shot.loft import Loft, loft, with_sag
 from ringlet.shot.scene import Body, Contact, Scene
 from ringlet.shot.shot import Forces, Shot, parse_shot, read_shot, schema
 from ringlet.shot.simulate import KeptTouches, Motion, made_of, play, played, simulate
@@ -53,4 +53,5 @@ __all__ = [
     "refresh",
     "schema",
     "simulate",
+    "with_sag",
 ]

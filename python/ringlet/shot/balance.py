@@ -17,12 +17,15 @@ from ringlet.shot.joints import Joints, corners, edges, rotate, turns, twists
 Array = NDArray[np.float64]
 
 
-def balance(curves: Curves, points: Array, directors: Array, loads: Array, held: int) -> Joints:
+def balance(
+    curves: Curves, points: Array, directors: Array, loads: Array, held: int, twisting: Array | None = None
+) -> Joints:
     """Forces [N] along edges, moments [N m] at corners and about edges that balance loads.
 
     points, directors: where the strands are still [m] and their directors, shapes (n, 3)
     loads:             what pulls at each vertex [N], shape (n, 3)
-    held:              vertices of each strand that are held; at least three, which hold its frame
+    held:              vertices of each strand that are held from its root; at least three, which hold its frame
+    twisting:          what turns the director of each edge besides, as a nail does [N m], shape (n,)
     Each is the derivative of the elastic energy by the quantity of the same name in ``Joints``. Exact, whatever the
     shape and the stiffness; what happens between held vertices is not asked for, and zero.
     """
@@ -32,21 +35,23 @@ def balance(curves: Curves, points: Array, directors: Array, loads: Array, held:
     binormal = _binormals(curves, tangent)
     found = Joints(np.zeros(len(points)), np.zeros((len(points), 2)), np.zeros(len(points)))
     beyond = np.zeros((len(curves), 3))
+    twisting = np.zeros(len(points)) if twisting is None else twisting
     for k in range(curves.counts.max() - 2, held - 2, -1):
         going = curves.counts > k + 1
         edge = curves.offsets[:-1][going] + k
         beyond[going] += loads[edge + 1]
         # What the corner at its end and the twist of the edge itself take of it is known; of the twist before, that it
-        # differs by what the bend does to the director.
+        # differs by what the bend and what else turns it do to the director.
         before = binormal[edge - 1] / length[edge, None]
         left = beyond[going] - np.einsum("ni,nij->nj", found.bend[edge + 1], bending[edge + 1, :, 0])
-        left -= found.twist[edge, None] * (binormal[edge] / length[edge, None] + before)
+        behind = found.twist[edge] + twisting[edge]
+        left -= found.twist[edge, None] * binormal[edge] / length[edge, None] + behind[:, None] * before
         matrix = np.empty((len(edge), 3, 3))
         matrix[:, :, 0] = tangent[edge]
         matrix[:, :, 1:] = np.swapaxes(bending[edge, :, 1] - by_frame[edge, :, None] * before[:, None], 1, 2)
         solved = np.linalg.solve(matrix, left[:, :, None])[:, :, 0]
         found.length[edge], found.bend[edge] = solved[:, 0], solved[:, 1:]
-        found.twist[edge - 1] = found.twist[edge] - np.einsum("ni,ni->n", solved[:, 1:], by_frame[edge])
+        found.twist[edge - 1] = behind - np.einsum("ni,ni->n", solved[:, 1:], by_frame[edge])
     return found
 
 

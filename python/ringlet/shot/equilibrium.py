@@ -8,8 +8,9 @@ pre-bent, is made stiffer until it stands.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +22,7 @@ from ringlet.shot.balance import balance
 from ringlet.shot.collider import Obstacle
 from ringlet.shot.joints import Joints, measure, shape
 from ringlet.shot.loft import STILL, Loft, Progress, hang_plain, per_lock
-from ringlet.shot.nails import softly
+from ringlet.shot.nails import fixed, softly
 from ringlet.shot.shot import Shot
 from ringlet.shot.simulate import make_strands
 from ringlet.shot.strands import Strands
@@ -31,19 +32,21 @@ from ringlet.shot.variation import Mapped
 Array = NDArray[np.float64]
 Locks = NDArray[np.bool_]
 
-SAME = 1e-4  # change of a lock's strains from round to round, by their size, at which they are found
+SAME = 1e-5  # change of a lock's strains from round to round, by their size, at which they are found
 SHARPEST = 2.6  # bend of a corner at rest above which a lock counts as too soft [rad]
-NUDGE = 1e-6  # by which a lock is disturbed to see whether it stands [m]
-FALLING = 1e-5  # a lock that is farther away than this after that falls [m]
-MUCH_LESS = 0.1  # of how far it is away by now: what does not stand is kept if it is that near
-FALL = 12  # steps of 1 s in which it falls
+PUSH = 1e-5  # of its weight: with so much a lock is pushed to see whether it stands
+BACK = 2  # steps of 1 s in which one that stands comes back
+FALL = 12  # such steps in which it falls
+FALLING = 1e-5  # a lock that hangs farther away than this from the groom that it remembers falls [m]
+MUCH_LESS = 0.1  # of how far it is away: so near is what comes back, and what is kept though it does not stand
 STIFFER = 1.5  # from one try to the next
 
 
 @dataclass
 class _Try:
-    """Locks that remember some shape: their points, the strands, and whether each balances and stands."""
+    """Locks that remember some shape, some times as stiff: where they come to rest, and which balance and stand."""
 
+    factor: float
     rest: Array
     points: Array
     moving: Array
@@ -52,11 +55,17 @@ class _Try:
 
 
 def equilibrium(
-    shot: Shot, groom: Groom, *, obstacles: Sequence[Obstacle] = (), progress: Progress | None = None
+    shot: Shot,
+    groom: Groom,
+    *,
+    obstacles: Sequence[Obstacle] = (),
+    borne: Array | None = None,
+    progress: Progress | None = None,
 ) -> Loft:
     """Finds what the locks of ``groom`` must remember to be still as groomed, under the forces of ``shot``.
 
     obstacles: what locks may lie on, where the shot has contact, in the rest pose
+    borne:     what ``bearing`` says of these locks, where they are some of a groom [N], shape (n, 3)
 
     A lock that would fall is stiffened, up to ``rest.stiffen`` times; one that falls even so keeps its stiffness and
     its groomed shape, or what hangs ten times nearer to it.
@@ -64,24 +73,52 @@ def equilibrium(
     locks = groom.locks
     locks.check("loft: locks")
     _check(shot, locks)
-    made, stiffened, borne = hang_plain(shot, groom), np.ones(len(locks)), _borne(shot, groom, obstacles)
-    going, factor = np.ones(len(locks), bool), 1.0
-    while going.any() and factor <= shot.rest.stiffen:
+    borne = bearing(shot, groom, obstacles) if borne is None else borne
+    made, held_up = _nothing_tried(groom, borne), borne + _drawn(shot, groom)
+    going = np.ones(len(locks), bool)
+    for factor in STIFFER ** np.arange(1 + int(np.log(shot.rest.stiffen) / np.log(STIFFER))):
         if progress:
             progress("loft", int((~going).sum()), len(locks))
-        tried = _try(shot, replace(groom, locks=locks.take(going)), borne[np.repeat(going, locks.counts)], factor)
-        better = tried.good | (tried.off < MUCH_LESS * made.off[going])
-        found = going.copy()
-        found[going] = better
-        rows, among = np.repeat(found, locks.counts), np.repeat(better, locks.counts[going])
-        made.rest.points[rows], made.lofted[rows] = tried.rest[among], tried.points[among]
-        made.off[found], made.moving[found] = tried.off[better], tried.moving[better]
-        stiffened[found] = factor
+        last = factor * STIFFER > shot.rest.stiffen
+        part, rows = replace(groom, locks=locks.take(going)), np.repeat(going, locks.counts)
+        tried = _try(shot, part, held_up[rows], factor, to_the_end=last)
+        _put(made, going, tried, tried.good | last)
         going[going] = ~tried.good
-        factor *= STIFFER
+        if not going.any():
+            break
+    if going.any():
+        plain = _plain(shot, replace(groom, locks=locks.take(going)))
+        _put(made, going, plain, made.off[going] >= MUCH_LESS * plain.off)
     if progress:
         progress("loft", len(locks), len(locks))
-    return replace(made, stiffened=stiffened)
+    return made
+
+
+def _nothing_tried(groom: Groom, borne: Array) -> Loft:
+    count, points = len(groom.locks), np.array(groom.locks.points, np.float64)
+    nowhere = np.full(count, np.inf)
+    return Loft(
+        groom, groom.locks.with_points(points), None, points.copy(), nowhere, nowhere.copy(), nowhere.copy(), borne
+    )
+
+
+def _put(made: Loft, going: Locks, tried: _Try, better: Locks) -> None:
+    """Takes over what was tried of the locks that are still going where it is better."""
+    assert made.stiffened is not None
+    found, counts = going.copy(), made.rest.counts
+    found[going] = better
+    rows, among = np.repeat(found, counts), np.repeat(better, counts[going])
+    made.rest.points[rows], made.lofted[rows] = tried.rest[among], tried.points[among]
+    made.off[found], made.moving[found] = tried.off[better], tried.moving[better]
+    made.stiffened[found] = tried.factor
+
+
+def _plain(shot: Shot, groom: Groom) -> _Try:
+    """How locks hang that remember the groom."""
+    plain = hang_plain(shot, groom)
+    return _Try(
+        1.0, np.array(groom.locks.points, np.float64), plain.points, plain.moving, plain.off, plain.off < FALLING
+    )
 
 
 def _check(shot: Shot, locks: Curves) -> None:
@@ -102,40 +139,61 @@ def _check(shot: Shot, locks: Curves) -> None:
         raise UserError(f"loft: held is {shot.held}, but a lock has {locks.counts.min()} points; hold fewer")
 
 
-def _borne(shot: Shot, groom: Groom, obstacles: Sequence[Obstacle]) -> Array:
-    """What bears the locks where they were groomed [N], shape (n, 3); a soft nail, that part of the weight it does."""
+def bearing(shot: Shot, groom: Groom, obstacles: Sequence[Obstacle]) -> Array:
+    """What bears the locks of a groom where they were groomed: bodies, nails and one another [N], shape (n, 3)."""
     strands = make_strands(shot, groom)
-    drawn = softly(groom.locks, 1.0 / (groom.space.fps * shot.solver.substeps))
-    drawn = -np.outer(drawn * strands.masses, shot.forces.gravity)
-    return drawn + support(shot, groom.locks, strands, _loads(shot, strands) + drawn, obstacles)
+    return support(shot, groom.locks, strands, loads(shot, strands) + _drawn(shot, groom), obstacles)
 
 
-def _loads(shot: Shot, strands: Strands) -> Array:
+def _drawn(shot: Shot, groom: Groom) -> Array:
+    """What soft nails bear of the weight [N], shape (n, 3)."""
+    part = softly(groom.locks, 1.0 / (groom.space.fps * shot.solver.substeps))
+    return -np.outer(part * make_strands(shot, groom).masses, shot.forces.gravity)
+
+
+def loads(shot: Shot, strands: Strands) -> Array:
     """What pulls at the vertices that move [N], shape (n, 3)."""
-    loads = strands.loads(shot.forces.gravity, shot.forces.wind)
-    loads[strands.held] = 0.0
-    return loads
+    pulls = strands.loads(shot.forces.gravity, shot.forces.wind)
+    pulls[strands.held] = 0.0
+    return pulls
 
 
-def _try(shot: Shot, groom: Groom, borne: Array, factor: float) -> _Try:
-    """Balances locks that are ``factor`` times as stiff against bend, and nudges them to see whether they stand."""
+def _try(shot: Shot, groom: Groom, borne: Array, factor: float, to_the_end: bool) -> _Try:
+    """Balances locks that are ``factor`` times as stiff against bend, and pushes them to see whether they stand.
+
+    to_the_end: let those that fall do so until they hang
+    """
     locks, stiffened = groom.locks, np.full(len(groom.locks), factor)
     rest, good = _balanced(shot, groom, borne, stiffened)
-    strands = make_strands(shot, groom, rest, stiffened)
     groomed = np.asarray(locks.points, np.float64)
-    nudge = NUDGE * np.random.default_rng(1).standard_normal(groomed.shape)
-    strands.place(groomed + np.where(np.asarray(strands.held)[:, None], 0.0, nudge))
-    moving = _let_fall(strands, shot, borne)
+    strands = make_strands(shot, groom, rest, stiffened)
+    strands.place(groomed)
+    _let_go(strands, shot, borne + _push(loads(shot, strands), locks), 1)
+    pushed = per_lock(locks, np.linalg.norm(strands.positions - groomed, axis=1))
+    moving = _let_go(strands, shot, borne, BACK)
     off = per_lock(locks, np.linalg.norm(strands.positions - groomed, axis=1))
-    return _Try(np.asarray(rest.points, np.float64), strands.positions.copy(), moving, off, good & (off < FALLING))
+    stands = off < np.maximum(MUCH_LESS * pushed, 0.1 * STILL)
+    if to_the_end and not stands.all():
+        moving = _let_go(strands, shot, borne, FALL)
+        off = per_lock(locks, np.linalg.norm(strands.positions - groomed, axis=1))
+    return _Try(factor, np.asarray(rest.points, np.float64), strands.positions.copy(), moving, off, good & stands)
 
 
-def _let_fall(strands: Strands, shot: Shot, borne: Array) -> Array:
-    """Lets strands go where they want; returns how far each moved in the last step [m]."""
+def _push(pulls: Array, locks: Curves) -> Array:
+    """A small part of the size of what pulls at each lock [N], each in some direction of its own, shape (n, 3)."""
+    way = np.random.default_rng(1).standard_normal((len(locks), 3))
+    way /= np.linalg.norm(way, axis=1, keepdims=True)
+    return PUSH * np.linalg.norm(pulls, axis=1, keepdims=True) * np.repeat(way, locks.counts, axis=0)
+
+
+def _let_go(strands: Strands, shot: Shot, borne: Array, steps: int) -> Array:
+    """Lets strands go where they want for a time; returns how far each moved in the last step [m]."""
     gravity, wind = shot.forces.gravity, shot.forces.wind
-    strands.settle(gravity=gravity, wind=wind, forces=borne, tolerance=STILL, steps=FALL - 1)
+    settle = partial(strands.settle, gravity=gravity, wind=wind, forces=borne, tolerance=STILL)
+    if steps > 1:
+        settle(steps=steps - 1)
     before = strands.positions.copy()
-    strands.settle(gravity=gravity, wind=wind, forces=borne, tolerance=STILL, steps=1)
+    settle(steps=1)
     return per_lock(strands.curves, np.linalg.norm(strands.positions - before, axis=1))
 
 
@@ -152,8 +210,9 @@ def _balanced(shot: Shot, groom: Groom, borne: Array, stiffened: Array) -> tuple
         rows = np.repeat(going, locks.counts)
         part = replace(groom, locks=locks.take(going))
         strands = make_strands(shot, part, part.locks.with_points(rest[rows]), stiffened[going])
-        loads = _loads(shot, strands) + borne[rows]
-        now = _strain(strands, balance(part.locks, groomed[rows], frames[rows], loads, shot.held))
+        pulls = loads(shot, strands) + borne[rows]
+        balanced = partial(balance, part.locks, groomed[rows], frames[rows], pulls, shot.held)
+        now = _strain_between_nails(strands, balanced)
         joints = shaped.take(rows).plus(now, -1.0)
         rest[rows], _ = shape(part.locks, joints, frames[rows])
         size, change, sharp = (
@@ -174,12 +233,56 @@ def _strain(strands: Strands, forces: Joints) -> Joints:
 
     What lies between held vertices need not hold any; it stays as groomed, which is how the core knows its frames.
     """
-    held = np.asarray(strands.held)
-    held_edge = held & np.append(held[1:], False)
-    held_corner = held_edge & np.append(False, held[:-1])
-    held_twist = held_corner & np.append(held_corner[1:], False)
     stretch, bend, twist = (
-        np.where((stiffness > 0.0) & ~fixed, stiffness, np.inf)
-        for stiffness, fixed in zip(strands.stiffness, (held_edge, held_corner, held_twist), strict=True)
+        np.where((stiffness > 0.0) & ~never, stiffness, np.inf)
+        for stiffness, never in zip(strands.stiffness, fixed(np.asarray(strands.held)), strict=True)
     )
     return Joints(forces.length / stretch, forces.bend / bend[:, None], forces.twist / twist)
+
+
+def _strain_between_nails(strands: Strands, balanced: Callable[[Array], Joints]) -> Joints:
+    """The strains that balance the loads, with nails that turn edges about themselves such that these stay.
+
+    The director of an edge between nails is where twist at rest leads it from the root. In the groom it is there too if
+    the twists by which these two differ cancel from the root to the nail; twist is linear in what nails turn with.
+
+    balanced: the forces and moments that balance the loads with what turns each edge's director besides [N m], (n,)
+    """
+    locks, stiffness = strands.curves, strands.stiffness[2]
+    turning = np.zeros(len(stiffness))
+    strain = _strain(strands, balanced(turning))
+    nailed = _first_nailed(strands)
+    if not nailed.any():
+        return strain
+    lock, which = np.searchsorted(locks.offsets, np.flatnonzero(nailed), side="right") - 1, np.cumsum(nailed)
+    which = (which - np.append(0, which)[locks.offsets[:-1]].repeat(locks.counts))[nailed] - 1
+    place, rows = np.flatnonzero(nailed), which.max() + 1
+
+    def turned(strain: Joints) -> Array:
+        """By how much the first edge of each row of nails is turned, shape (count, rows)."""
+        angle, sums = np.zeros((len(locks), rows)), np.append(0.0, np.cumsum(strain.twist))
+        angle[lock, which] = sums[place] - sums[locks.offsets[lock]]
+        return angle
+
+    by_loads, by_each = turned(strain), np.tile(np.eye(rows), (len(locks), 1, 1))
+    for k in range(rows):
+        of = which == k
+        turning[:] = 0.0
+        turning[place[of]] = stiffness[place[of] - 1]
+        by_each[lock[of], :, k] = (turned(_strain(strands, balanced(turning))) - by_loads)[lock[of]]
+    turning[place] = np.linalg.solve(by_each, -by_loads[:, :, None])[lock, which, 0] * stiffness[place - 1]
+    return _strain(strands, balanced(turning))
+
+
+def _first_nailed(strands: Strands) -> Locks:
+    """The edges at which a row of nails begins that hold them, shape (n,)."""
+    held_edge, _, _ = fixed(np.asarray(strands.held))
+    held_edge[strands.curves.offsets[1:] - 1] = False
+    return held_edge & ~np.append(True, held_edge[:-1]) & ~_at(strands.curves.offsets[:-1], len(held_edge))
+
+
+def _at(rows: NDArray[np.integer], count: int) -> Locks:
+    """Some of so many rows, as a mask."""
+    mask = np.zeros(count, bool)
+    mask[rows] = True
+    return mask

@@ -41,23 +41,25 @@ class Loft:
 
     groom:  what was lofted
     rest:   what the locks are to remember
-    sagged: how they hang when they remember the groom, shape (n, 3)
+    sagged: how they hang when they remember the groom, shape (n, 3); None: nobody has looked, see ``with_sag``
     lofted: how they hang when they remember ``rest``, shape (n, 3)
     off:    how far each hangs from where it should, shape (count,)
     moving: how far each still moved in its last step, of 1 s, shape (count,)
     stiffened: times that each is stiffer against bend than the shot says, shape (count,); None: none is
+    borne:  what was taken to bear them, besides their roots [N], shape (n, 3); None: nothing
     """
 
     groom: Groom
     rest: Curves
-    sagged: Array
+    sagged: Array | None
     lofted: Array
     off: Array
     moving: Array
     stiffened: Array | None = None
+    borne: Array | None = None
 
     def lost(self) -> dict[str, dict[str, float]]:
-        """What is lost of the groom, without and with the loft [m]: ``without mean``, ``with max`` … of each measure.
+        """What is lost of the groom, with the loft and, if known, without [m]: ``with max`` … of each measure.
 
         away:   how far the vertices hang from where they were groomed
         drop:   how much deeper the tips of the locks hang
@@ -78,6 +80,8 @@ class Loft:
 
         lost: dict[str, dict[str, float]] = {}
         for when, points in (("without", self.sagged), ("with", self.lofted)):
+            if points is None:
+                continue
             for name, values in measured(points).items():
                 size = np.abs(values)
                 summary = {"mean": size.mean(), "95": np.percentile(size, 95), "max": size.max()}
@@ -86,7 +90,7 @@ class Loft:
 
 
 @dataclass
-class _Hanging:
+class Hanging:
     """Strands that hang still from the rest shape ``joints``: where, with what strains, and how far from their goal."""
 
     joints: Joints
@@ -95,12 +99,12 @@ class _Hanging:
     off: Array
     moving: Array
 
-    def take(self, locks: Locks, vertices: Locks) -> _Hanging:
+    def take(self, locks: Locks, vertices: Locks) -> Hanging:
         """Some of the locks, given also by their vertices."""
         joints, strain = self.joints.take(vertices), self.strain.take(vertices)
-        return _Hanging(joints, self.points[vertices], strain, self.off[locks], self.moving[locks])
+        return Hanging(joints, self.points[vertices], strain, self.off[locks], self.moving[locks])
 
-    def put(self, locks: Locks, vertices: Locks, other: _Hanging) -> None:
+    def put(self, locks: Locks, vertices: Locks, other: Hanging) -> None:
         """Sets some of the locks."""
         self.joints.put(vertices, other.joints)
         self.strain.put(vertices, other.strain)
@@ -139,17 +143,14 @@ def loft(shot: Shot, groom: Groom, *, progress: Progress | None = None) -> Loft:
     return Loft(groom, tries.rest(best.joints), sagged, best.points, best.off, best.moving)
 
 
-def hang_plain(shot: Shot, groom: Groom) -> Loft:
+def hang_plain(shot: Shot, groom: Groom) -> Hanging:
     """How locks hang that remember the groom."""
-    sagged = _Tries(shot, groom).sagged
-    return Loft(
-        groom,
-        groom.locks.with_points(np.array(groom.locks.points, np.float64)),
-        sagged.points,
-        sagged.points.copy(),
-        sagged.off,
-        sagged.moving,
-    )
+    return _Tries(shot, groom).sagged
+
+
+def with_sag(loft: Loft, shot: Shot) -> Loft:
+    """The same, which knows how its locks hang when they remember the groom."""
+    return loft if loft.sagged is not None else replace(loft, sagged=hang_plain(shot, loft.groom).points)
 
 
 class _Tries:
@@ -176,12 +177,12 @@ class _Tries:
         """The groom less what holds it, from a small part of the load."""
         return self._groomed.plus(self.hang(self._groomed, self._all, SMALL).strain, -self._gain / SMALL)
 
-    def next_guess(self, now: _Hanging, pace: Array) -> Joints:
+    def next_guess(self, now: Hanging, pace: Array) -> Joints:
         """From where they are now, a part of the way to the groom less what holds them now."""
         wanted = self._groomed.plus(now.strain, -self._gain)
         return now.joints.plus(wanted.minus(now.joints), np.repeat(pace, self._groom.locks.counts))
 
-    def hang(self, joints: Joints, chosen: Locks, load: float = 1.0) -> _Hanging:
+    def hang(self, joints: Joints, chosen: Locks, load: float = 1.0) -> Hanging:
         """Lets the chosen locks hang still from the groom, remembering ``joints``, under a part of the load."""
         rows = self.vertices(chosen)
         groom = replace(self._groom, locks=self._groom.locks.take(chosen))
@@ -197,7 +198,7 @@ class _Tries:
         _, tangents = edges(locks, hung)
         strain = measure(locks, hung, rotate(strands.directors, -turn[:, None] * tangents)).minus(joints)
         goal, _ = shape(locks, self._groomed.take(rows).plus(strain, 1.0 - self._gain[rows]), frames)
-        return _Hanging(joints, hung, strain, per_lock(locks, np.linalg.norm(hung - goal, axis=1)), moving)
+        return Hanging(joints, hung, strain, per_lock(locks, np.linalg.norm(hung - goal, axis=1)), moving)
 
 
 def _angle(locks: Curves, points: Array, ours: Array, theirs: Array) -> Array:

@@ -21,6 +21,16 @@ def held_vertices(locks: Curves, from_root: int) -> NDArray[np.bool_]:
     return held | (locks.point["nail"] >= RIGID) if "nail" in locks.point else held
 
 
+def fixed(held: NDArray[np.bool_]) -> tuple[NDArray[np.bool_], NDArray[np.bool_], NDArray[np.bool_]]:
+    """Which edges, corners and twists lie between held vertices alone, and never change; shapes (n,).
+
+    An edge that is held at both ends holds its director too.
+    """
+    before, behind = np.append(False, held[:-1]), np.append(held[1:], False)
+    edge = held & behind
+    return edge, edge & before, edge & np.append(edge[1:], False)
+
+
 def pull(
     locks: Curves, strands: Strands, targets: NDArray[np.float64], dt: float, gravity: Sequence[float]
 ) -> NDArray[np.float64] | None:

@@ -30,7 +30,10 @@ class Contact(Section):
     friction: float = Field(default=0.3, ge=0, le=10, description="Coulomb's μ of lock on lock")
     stiffness: float = Field(default=1.0, gt=0, le=1e6, description="scales how hard contacts push")
     creep_speed: float = Field(
-        default=1e-3, gt=0, le=1, description="[m/s] contacts that slide slower than this count as sticking"
+        default=1e-3,
+        gt=0,
+        le=1,
+        description="[m/s] times a step: what is sheared less than that sticks",
     )
     parting_speed: float = Field(
         default=2e-3,

@@ -15,14 +15,17 @@ from ringlet.errors import UserError
 from ringlet.groom.groom import Groom
 from ringlet.shot.checkpoint import digest
 from ringlet.shot.collider import Obstacle
-from ringlet.shot.equilibrium import equilibrium
-from ringlet.shot.loft import Loft, Progress, loft
+from ringlet.shot.equilibrium import bearing, equilibrium, loads
+from ringlet.shot.loft import Loft, Progress, loft, per_lock
 from ringlet.shot.nails import softly
 from ringlet.shot.shot import Shot
+from ringlet.shot.simulate import make_strands
 from ringlet.shot.strands import VARIATIONS
 from ringlet.shot.variation import at_vertices
 
 NAILED = ("nail", "led_by_nail")  # how firmly, and what comes of it in a step
+KNOWN_OR_NOT = ("sagged", "borne")  # of a loft
+BARELY = 1e-4  # of a lock's weight: how much of it may be borne otherwise before it counts as changed
 SAME_PLACE = 1e-6  # points closer than this are the same: a file in single precision rounds them [m]
 
 # What a loft does not depend on, besides `rest.gain` and the variation, which are kept as their values at the vertices.
@@ -40,7 +43,8 @@ def made_from(shot: Shot, obstacles: Sequence[Obstacle] = ()) -> dict[str, Any]:
     settings = shot.model_dump(mode="json", exclude=_FREE)
     made = {**settings, "rest": {**settings["rest"], "mode": _mode(shot)}}
     if shot.touching and _mode(shot) == "equilibrium":
-        made["contact"] = {"radius": shot.touching.radius}
+        of_locks = {"radius", "friction", "pair"}
+        made["contact"] = shot.touching.model_dump(mode="json", include=of_locks)
         made["bodies"] = {one.name: _told(one) for one in obstacles}
     return made
 
@@ -48,13 +52,21 @@ def made_from(shot: Shot, obstacles: Sequence[Obstacle] = ()) -> dict[str, Any]:
 def _told(body: Obstacle) -> dict[str, Any]:
     """What of a body bears locks."""
     points = np.asarray(body.mesh.points, np.float32)
-    return {"thickness": body.settings.thickness, "shape": digest(points, body.mesh.triangles)[:8]}
+    told = {"thickness": body.settings.thickness, "friction": body.settings.friction}
+    return {**told, "shape": digest(points, body.mesh.triangles)[:8]}
 
 
-def preload(shot: Shot, groom: Groom, *, obstacles: Sequence[Obstacle] = (), progress: Progress | None = None) -> Loft:
-    """The rest shape that a shot asks for; one that asks for none gets a loft."""
+def preload(
+    shot: Shot,
+    groom: Groom,
+    *,
+    obstacles: Sequence[Obstacle] = (),
+    borne: NDArray[np.float64] | None = None,
+    progress: Progress | None = None,
+) -> Loft:
+    """The rest shape that a shot asks for; one that asks for none gets a loft. See ``equilibrium``."""
     if _mode(shot) == "equilibrium":
-        return equilibrium(shot, groom, obstacles=obstacles, progress=progress)
+        return equilibrium(shot, groom, obstacles=obstacles, borne=borne, progress=progress)
     return loft(shot, groom, progress=progress)
 
 
@@ -65,8 +77,8 @@ def _mode(shot: Shot) -> str:
 def keep(loft: Loft, shot: Shot) -> Curves:
     """The rest shape of a loft with all that it was made from, and what it does, as attributes."""
     rest = loft.rest
-    point = {"groomed": loft.groom.locks.points, "sagged": loft.sagged, "lofted": loft.lofted}
-    point |= _values(shot, loft.groom)
+    point = {"groomed": loft.groom.locks.points, "lofted": loft.lofted, **_values(shot, loft.groom)}
+    point |= {name: values for name in KNOWN_OR_NOT if (values := getattr(loft, name)) is not None}
     curve = {"off": loft.off, "moving": loft.moving}
     if loft.stiffened is not None:
         curve["stiffened"] = loft.stiffened
@@ -76,9 +88,11 @@ def keep(loft: Loft, shot: Shot) -> Curves:
 
 def recall(kept: Curves, groom: Groom) -> Loft:
     """The loft that ``keep`` kept, of the same locks."""
-    sagged, lofted = (np.asarray(kept.point[name], np.float64) for name in ("sagged", "lofted"))
+    lofted, off, moving = kept.point["lofted"], kept.curve["off"].copy(), kept.curve["moving"].copy()
     stiffened = kept.curve["stiffened"].copy() if "stiffened" in kept.curve else None
-    return Loft(groom, kept, sagged, lofted, kept.curve["off"].copy(), kept.curve["moving"].copy(), stiffened)
+    known = (np.asarray(kept.point[name], np.float64) if name in kept.point else None for name in KNOWN_OR_NOT)
+    sagged, borne = known
+    return Loft(groom, kept, sagged, np.asarray(lofted, np.float64), off, moving, stiffened, borne)
 
 
 def refresh(
@@ -91,18 +105,46 @@ def refresh(
     progress: Progress | None = None,
 ) -> Loft:
     """The loft of a groom; locks that have not changed since a kept one was made are taken from it."""
-    if not same_locks(kept, groom) or made != made_from(shot, obstacles):
+    if not same_locks(kept, groom):
         return preload(shot, groom, obstacles=obstacles, progress=progress)
     whole, changed = recall(kept, groom), changed_locks(kept, shot, groom)
-    if changed.any():
-        part = replace(groom, locks=groom.locks.take(changed))
-        part = preload(shot, part, obstacles=obstacles, progress=progress)
-        rows = np.repeat(changed, groom.locks.counts)
-        whole.rest.points[rows], whole.sagged[rows], whole.lofted[rows] = part.rest.points, part.sagged, part.lofted
-        whole.off[changed], whole.moving[changed] = part.off, part.moving
-        if whole.stiffened is not None and part.stiffened is not None:
-            whole.stiffened[changed] = part.stiffened
-    return whole
+    if made != (now := made_from(shot, obstacles)):
+        same = not changed.any() and _weight_and_rests(made) == _weight_and_rests(now)
+        return preload(shot, groom, obstacles=obstacles, borne=whole.borne if same else None, progress=progress)
+    if not changed.any():
+        return whole
+    borne = None
+    if whole.borne is not None:
+        borne = bearing(shot, groom, obstacles)
+        changed |= _borne_otherwise(shot, groom, whole.borne, borne)
+    rows = np.repeat(changed, groom.locks.counts)
+    part = replace(groom, locks=groom.locks.take(changed))
+    part = preload(shot, part, obstacles=obstacles, borne=borne if borne is None else borne[rows], progress=progress)
+    whole.rest.points[rows], whole.lofted[rows] = part.rest.points, part.lofted
+    whole.off[changed], whole.moving[changed] = part.off, part.moving
+    if whole.stiffened is not None and part.stiffened is not None:
+        whole.stiffened[changed] = part.stiffened
+    if whole.sagged is not None and part.sagged is not None:
+        whole.sagged[rows] = part.sagged
+    return replace(whole, borne=borne, sagged=None if part.sagged is None else whole.sagged)
+
+
+def _weight_and_rests(made: dict[str, Any]) -> dict[str, Any]:
+    """Of the settings that a loft was made from, those that say how heavy locks are and what they rest on.
+
+    Where only stiffness has changed, what bore the locks can bear them still.
+    """
+    of_weight = {name: made["strands"][name] for name in ("radius", "density", "drag", "correct_resolution")}
+    return {**{name: made[name] for name in made if name not in ("rest", "solver")}, "strands": of_weight}
+
+
+def _borne_otherwise(
+    shot: Shot, groom: Groom, before: NDArray[np.float64], now: NDArray[np.float64]
+) -> NDArray[np.bool_]:
+    """Which locks are borne otherwise than before, since those that they touch have changed, shape (count,)."""
+    pull = np.linalg.norm(loads(shot, make_strands(shot, groom)), axis=1)
+    weight = np.add.reduceat(pull, groom.locks.offsets[:-1])
+    return per_lock(groom.locks, np.linalg.norm(now - before, axis=1)) > BARELY * weight
 
 
 def same_locks(kept: Curves, groom: Groom) -> bool:

@@ -1,10 +1,11 @@
-"""What a groom rests on: the forces with which bodies and nails bear locks where they lie.
+"""What a groom rests on: the forces with which nails, bodies and other locks bear locks where they lie.
 
-A lock that lies on a body need not hold up all of its weight, and one that is nailed hangs from its nails too. Statics
-alone does not say how much each of these bears. Here it is what strains the lock least, by the sum over its joints of
-moment² / stiffness, while bodies can only push. To first order this is what they would bear if the lock remembered the
-groom and were let go: of all ways to carry a load what is elastic takes that of least energy. Forces count a little
-themselves, or a body would press on a lock near its root with many times its weight, as on a lever.
+A lock that lies on a body or on another lock need not hold up all of its weight, and one that is nailed hangs from its
+nails too. Statics alone does not say how much each of these bears. Here it is what strains the locks least, by the sum
+over their joints of moment² / stiffness, while what touches only pushes, and holds by friction no more than a part of
+that. To first order this is what they would bear if the locks remembered the groom and were let go: of all ways to
+carry a load what is elastic takes that of least energy. Forces count a little themselves, or a body would press on a
+lock near its root with many times its weight, as on a lever.
 """
 
 from __future__ import annotations
@@ -14,65 +15,106 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import nnls
+from scipy.sparse import coo_array
 
 from ringlet import _core
 from ringlet.curves import Curves
-from ringlet.shot.collider import Obstacle
+from ringlet.shot.collider import LOCKS, Obstacle, ShotContact, with_pairs
 from ringlet.shot.joints import corners, edges, twists
+from ringlet.shot.nails import fixed
+from ringlet.shot.pushing import least_pushing
+from ringlet.shot.scene import Scene, friction_of
 from ringlet.shot.shot import Shot
-from ringlet.shot.start import depths
-from ringlet.shot.strands import Strands
+from ringlet.shot.start import INSTANT, depths
+from ringlet.shot.strands import Solver, Strands
 
 Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
 
 SHY = 0.1  # of the strain energy under the loads: what it counts to be borne by one's whole weight in one place
-ALL_WAYS = np.concatenate([np.eye(3), -np.eye(3)])
+FIRM = 1e-6  # the same of nails, which may pull as hard as they like
+HOLDS = 0.1  # of Coulomb's friction: what it is counted on for
+ARM = 0.01  # a nail's couple of 1 is one newton on this arm [m]
 
 
 @dataclass
-class Rests:
-    """Places where locks are borne: vertices, shape (k,), and unit forces that may act there, shape (k, 3)."""
+class Ways:
+    """Ways in which locks may be borne, each by a force that is to be found, of 1 N where it is 1.
 
-    vertex: NDArray[np.int64]
-    way: Array
+    of:     which force, shape (k,): each is told by one row or more
+    vertex: on what it acts, shape (k,)
+    force:  how, shape (k, 3)
+    couple: about the edge that begins there, times ARM, shape (k,)
+    free:   of each force, whether it may be negative, shape (forces,)
+    """
+
+    of: Indices
+    vertex: Indices
+    force: Array
+    couple: Array
+    free: NDArray[np.bool_]
 
 
 def support(shot: Shot, locks: Curves, strands: Strands, loads: Array, obstacles: Sequence[Obstacle]) -> Array:
     """The forces [N] that bear locks where they were groomed, at their vertices, shape (n, 3).
 
-    strands: the locks, with their stiffness
+    strands: the locks, with their stiffness, where they were groomed
     loads:   what pulls at them besides [N], shape (n, 3)
     """
-    forces, points = np.zeros_like(loads), np.asarray(locks.points, np.float64)
-    rests = _joined(_nailed(shot, locks, strands), *_lying(shot, points, strands, obstacles))
-    give = _Give(shot.held, locks, points, strands)
-    lock = np.searchsorted(locks.offsets, rests.vertex, side="right") - 1
-    order = np.argsort(lock, kind="stable")
-    for chosen in np.split(order, np.flatnonzero(np.diff(lock[order])) + 1):
-        if chosen.size:
-            vertex, way = rests.vertex[chosen], rests.way[chosen]
-            np.add.at(forces, vertex, give.least(int(lock[chosen[0]]), vertex, way, loads)[:, None] * way)
+    forces, contact = np.zeros_like(loads), shot.touching
+    ways = [_nails(shot.held, locks, np.asarray(strands.held))]
+    if contact is not None:
+        friction = HOLDS * _friction(contact, obstacles)
+        ways += _bodies(contact, friction[0, 1:], np.asarray(locks.points, np.float64), strands, obstacles)
+        ways.append(_neighbours(contact, friction[0, 0], locks, strands))
+    all_ways = _joined(ways)
+    if all_ways.free.size:
+        found = _least(all_ways, shot.held, locks, strands, loads)
+        np.add.at(forces, all_ways.vertex, found[all_ways.of, None] * all_ways.force)
     return forces
 
 
-def _joined(*rests: Rests) -> Rests:
-    return Rests(np.concatenate([one.vertex for one in rests]), np.concatenate([one.way for one in rests]))
+def _joined(parts: Sequence[Ways]) -> Ways:
+    begin = np.cumsum([0, *(len(part.free) for part in parts)])
+    return Ways(
+        np.concatenate([part.of + first for part, first in zip(parts, begin[:-1], strict=True)]),
+        np.concatenate([part.vertex for part in parts]),
+        np.concatenate([part.force for part in parts]),
+        np.concatenate([part.couple for part in parts]),
+        np.concatenate([part.free for part in parts]),
+    )
 
 
-def _nailed(shot: Shot, locks: Curves, strands: Strands) -> Rests:
-    """Nails hold in every direction."""
-    number = np.arange(len(locks.points)) - np.repeat(locks.offsets[:-1], locks.counts)
-    vertex = np.flatnonzero(np.asarray(strands.held) & (number >= shot.held))
-    return Rests(np.repeat(vertex, len(ALL_WAYS)), np.tile(ALL_WAYS, (len(vertex), 1)))
+def _nails(from_root: int, locks: Curves, held: NDArray[np.bool_]) -> Ways:
+    """Nails hold in every direction; several in a row, of which the first two tell all, hold what is between too."""
+    number = np.arange(len(held)) - np.repeat(locks.offsets[:-1], locks.counts)
+    nailed = held & (number >= from_root)
+    first = nailed & ~np.append(False, held[:-1])
+    second = np.append(False, first[:-1]) & nailed
+    vertex, clamped = np.flatnonzero(first | second), np.flatnonzero(second) - 1
+    pushed, turned = 3 * len(vertex), len(clamped)
+    return Ways(
+        np.arange(pushed + turned),
+        np.concatenate([np.repeat(vertex, 3), clamped]),
+        np.concatenate([np.tile(np.eye(3), (len(vertex), 1)), np.zeros((turned, 3))]),
+        np.append(np.zeros(pushed), np.ones(turned)),
+        np.ones(pushed + turned, bool),
+    )
 
 
-def _lying(shot: Shot, points: Array, strands: Strands, obstacles: Sequence[Obstacle]) -> Iterator[Rests]:
+def _friction(contact: ShotContact, obstacles: Sequence[Obstacle]) -> Array:
+    """Coulomb's μ of each pair of materials: locks, then each obstacle."""
+    names = [LOCKS, *(obstacle.name for obstacle in obstacles)]
+    told = [pair for pair in contact.pair if set(pair.between) <= set(names)]
+    return with_pairs(friction_of(contact, [], [one.body(0.0) for one in obstacles]), told, names)
+
+
+def _bodies(
+    contact: ShotContact, friction: Array, points: Array, strands: Strands, obstacles: Sequence[Obstacle]
+) -> Iterator[Ways]:
     """Bodies push away from them what is as near as they touch it; not what begins inside."""
-    contact, free = shot.touching, ~np.asarray(strands.held)
-    if contact is None:
-        return
-    for obstacle in obstacles:
+    free = ~np.asarray(strands.held)
+    for obstacle, rough in zip(obstacles, friction, strict=True):
         surface, triangles = np.asarray(obstacle.mesh.points, np.float64), obstacle.mesh.triangles
         reach = contact.radius + obstacle.settings.thickness
         low, high = surface.min(axis=0) - reach, surface.max(axis=0) + reach
@@ -82,53 +124,107 @@ def _lying(shot: Shot, points: Array, strands: Strands, obstacles: Sequence[Obst
         touching[touching] = depths(points[near[touching]], triangles, surface) == 0.0
         foot = np.einsum("ki,kij->kj", barycentric[touching], surface[triangles[triangle[touching]]])
         away = points[near[touching]] - foot
-        yield Rests(near[touching], away / np.linalg.norm(away, axis=1, keepdims=True))
+        yield _pushing(away, rough, near[touching][:, None], np.ones((len(away), 1)))
+
+
+def _neighbours(contact: ShotContact, friction: float, locks: Curves, strands: Strands) -> Ways:
+    """Locks that are as near to one another as they touch push each other away."""
+    scene = Scene(strands, [], contact.model_copy(update={"parting_speed": 1.0}))  # or they would not push yet
+    before = strands.positions.copy()
+    scene.step(before, INSTANT, solver=Solver(newton=1))
+    vertices, values = scene.contacts
+    strands.place(before)
+    of = np.searchsorted(locks.offsets, vertices, side="right") - 1
+    of_two = of[:, 0] != of[:, 3]
+    return _pushing(values[of_two, 4:7], friction, vertices[of_two].astype(np.int64), values[of_two, :4])
+
+
+def _pushing(away: Array, friction: float, vertex: Indices, weight: Array) -> Ways:
+    """Pushes along ``away``, shape (k, 3), on vertices with weights, shapes (k, m), and holds by friction across.
+
+    A cone of friction has four edges here; a force within is a sum of pushes along them.
+    """
+    normal = away / np.linalg.norm(away, axis=1, keepdims=True)
+    across = np.cross(normal, np.eye(3)[np.abs(normal).argmin(axis=1)])
+    across /= np.linalg.norm(across, axis=1, keepdims=True)
+    sides = np.stack([across, -across, np.cross(normal, across), -np.cross(normal, across)], axis=1)
+    way = normal[:, None] + friction * sides if friction > 0.0 else normal[:, None]
+    each, parts = way.shape[0] * way.shape[1], vertex.shape[1]
+    force = np.einsum("kwi,kv->kwvi", way, weight).reshape(-1, 3)
+    of = np.repeat(np.arange(each), parts)
+    vertices = np.repeat(vertex[:, None], way.shape[1], axis=1).reshape(-1)
+    return Ways(of, vertices, force, np.zeros(len(of)), np.zeros(each, bool))
+
+
+def _least(ways: Ways, held: int, locks: Curves, strands: Strands, loads: Array) -> Array:
+    """The forces with which locks are strained least, shape (forces,).
+
+    Minimises Σ strain² stiffness + SHY · E · Σ (f / weight)², where E is the first sum of a lock under its loads alone.
+    """
+    give, count = _Give(held, locks, strands), len(ways.free)
+    by_loads = give.by_loads(loads)
+    shy = np.where(ways.free, FIRM, SHY)
+    row, column, entries, slope = [], [], [], np.zeros(count)
+    lock = np.searchsorted(locks.offsets, ways.vertex, side="right") - 1
+    order = np.argsort(lock, kind="stable")
+    for chosen in np.split(order, np.flatnonzero(np.diff(lock[order])) + 1):
+        rows = slice(*locks.offsets[lock[chosen[0]] :][:2])
+        alone, weight = by_loads[rows].ravel(), np.linalg.norm(loads[rows], axis=1).sum()
+        force, place = np.unique(ways.of[chosen], return_inverse=True)
+        by_each = np.zeros((len(force), len(alone)))
+        strains = give.by_force(rows, ways.vertex[chosen], ways.force[chosen], ways.couple[chosen])
+        np.add.at(by_each, place, strains)
+        square = by_each @ by_each.T + np.diag(shy[force] * (alone @ alone / max(weight, 1e-300) ** 2))
+        slope[force] += by_each @ alone
+        row.append(np.repeat(force, len(force)))
+        column.append(np.tile(force, len(force)))
+        entries.append(square.ravel())
+    matrix = coo_array((np.concatenate(entries), (np.concatenate(row), np.concatenate(column))), (count, count))
+    return least_pushing(matrix.tocsr(), slope, ways.free)
 
 
 class _Give:
-    """How locks give way to forces at their vertices, as beams that are clamped at their roots."""
+    """How locks give way to forces at their vertices, as beams that are clamped at their roots.
 
-    def __init__(self, held: int, locks: Curves, points: Array, strands: Strands) -> None:
-        self._locks, self._points, self._tangents = locks, points, edges(locks, points)[1]
-        number = np.arange(len(points)) - np.repeat(locks.offsets[:-1], locks.counts)
-        stretch, bend, twist = strands.stiffness
-        everywhere = np.arange(len(points))
+    Strains are times √stiffness: three of bend, one of twist and one of stretch at each vertex.
+    """
+
+    def __init__(self, held: int, locks: Curves, strands: Strands) -> None:
+        self._locks, self._points = locks, np.asarray(locks.points, np.float64)
+        self._tangents = edges(locks, self._points)[1]
+        number = np.arange(len(self._points)) - np.repeat(locks.offsets[:-1], locks.counts)
+        everywhere = np.arange(len(self._points))
         self._stretch, self._bend, self._twist = (
-            np.where(np.isin(everywhere, of) & (number >= first) & (stiffness > 0.0), stiffness, np.inf) ** -0.5
-            for of, first, stiffness in (
-                (everywhere, held - 1, stretch),
-                (corners(locks), held - 1, bend),
-                (twists(locks), held - 2, twist),
+            np.where(np.isin(everywhere, of) & (number >= first) & (of_all > 0.0) & ~never, of_all, np.inf) ** -0.5
+            for of, first, of_all, never in zip(
+                (everywhere, corners(locks), twists(locks)),
+                (held - 1, held - 1, held - 2),
+                strands.stiffness,
+                fixed(np.asarray(strands.held)),
+                strict=True,
             )
         )
 
-    def least(self, lock: int, vertex: NDArray[np.int64], way: Array, loads: Array) -> Array:
-        """The forces [N] along ``way`` at vertices of a lock, none negative, with which it is strained least.
+    def by_loads(self, loads: Array) -> Array:
+        """Strains under loads at all vertices [N], shape (n, 5)."""
+        force, moment = self._beyond(loads), self._beyond(np.cross(self._points, loads))
+        return self._strains(slice(None), moment - np.cross(self._points, force), force)
 
-        Minimises, with forces f in units of the lock's weight: Σ strain² stiffness + SHY · E · Σ f², where E is the
-        first sum without them.
-        """
-        rows = slice(self._locks.offsets[lock], self._locks.offsets[lock + 1])
-        weight = np.linalg.norm(loads[rows], axis=1).sum()
-        if weight == 0.0:
-            return np.zeros(len(vertex))
-        by_loads = self._strains(rows, np.arange(rows.start, rows.stop), loads[rows]).sum(axis=1)
-        shy = np.sqrt(SHY) * np.linalg.norm(by_loads) * np.eye(len(vertex))
-        of_each = np.concatenate([self._strains(rows, vertex, weight * way), shy])
-        found, _ = nnls(of_each, np.concatenate([-by_loads, np.zeros(len(vertex))]))
-        return weight * found
+    def by_force(self, rows: slice, vertex: Indices, force: Array, couple: Array) -> Array:
+        """Strains of a lock under each of some forces and couples, shape (k, 5 rows)."""
+        beyond = (np.arange(rows.start, rows.stop) < vertex[:, None])[:, :, None]
+        turning = np.cross(self._points[vertex], force) + (ARM * couple)[:, None] * self._tangents[vertex]
+        moment = turning[:, None] - np.cross(self._points[None, rows], force[:, None])
+        strains = self._strains(rows, np.where(beyond, moment, 0.0), np.where(beyond, force[:, None], 0.0))
+        return strains.reshape(len(vertex), -1)
 
-    def _strains(self, rows: slice, vertex: NDArray[np.int64], force: Array) -> Array:
-        """Strains of a lock under each of some forces at its vertices, times √stiffness; shape (strains, k)."""
-        points, tangent = self._points[rows], self._tangents[rows]
-        beyond = (np.arange(rows.start, rows.stop)[:, None] < vertex)[:, :, None]
-        moment = np.where(beyond, np.cross(self._points[vertex] - points[:, None], force), 0.0)
-        about, along = (np.einsum("nki,ni->nk", of, tangent) for of in (moment, np.where(beyond, force, 0.0)))
-        bend = self._bend[rows, None, None] * (moment - about[:, :, None] * tangent[:, None])
-        return np.concatenate(
-            [
-                np.moveaxis(bend, 2, 0).reshape(-1, len(vertex)),
-                self._twist[rows, None] * about,
-                self._stretch[rows, None] * along,
-            ]
-        )
+    def _beyond(self, values: Array) -> Array:
+        """Of each vertex, the sum of the values of those of its lock that come after it."""
+        sums = np.cumsum(values, axis=0)
+        return np.repeat(sums[self._locks.offsets[1:] - 1], self._locks.counts, axis=0) - sums
+
+    def _strains(self, rows: slice, moment: Array, force: Array) -> Array:
+        tangent = self._tangents[rows]
+        about, along = (np.einsum("...i,...i->...", of, tangent)[..., None] for of in (moment, force))
+        bend, twist, stretch = (of[rows, None] for of in (self._bend, self._twist, self._stretch))
+        return np.concatenate([bend * (moment - about * tangent), twist * about, stretch * along], axis=-1)

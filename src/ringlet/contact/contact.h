@@ -9,9 +9,9 @@
 
 namespace ringlet {
 
-// With c_a − c_b = Σ wᵢ xᵢ between the points that touch: gap g = n · (c_a − c_b), slid distance u = (1 − n nᵀ) of what c_a −
-// c_b changed by in the step. Energy k φ(g) + μ N ψ(‖u‖), N being what the contact is expected to bear (lagged):
-// convex in the positions.
+// With c_a − c_b = Σ wᵢ xᵢ between the points that touch: gap g = n · (c_a − c_b), shear u = (1 − n nᵀ) of what c_a − c_b
+// changed by in the step, and the shear that was there before. Energy k φ(g) + μ N ψ(‖u‖), N being what the contact is
+// expected to bear (lagged): convex in the positions.
 struct Contact {
     std::array<int, 4> vertex;
     std::array<double, 4> weight; // those of the first primitive sum to 1, of the second to −1
@@ -21,8 +21,8 @@ struct Contact {
     double barrier_end;           // below this gap the barrier ends in a parabola [m]
     double stiffness;             // k [N/m]
     double friction;              // μ
-    double creep;                 // a contact that slid less in the step counts as sticking [m]
-    Vec3 start;                   // c_a − c_b as the step began [m]
+    double give;                  // a contact that is sheared less than this sticks [m]
+    Vec3 start;                   // c_a − c_b as the step began, less the shear that was there [m]
     double force = 0.0;           // with which it pushes where it was linearised [N]
     double grip = 0.0;            // N [N]
     uint64_t pair = 0;            // which two touch
@@ -51,10 +51,15 @@ inline double push_energy(const Contact &c, const Vec3 &separation) {
     return c.stiffness * contact_potential(c.normal.dot(separation), c.distance, c.barrier_end).value;
 }
 
+// u, how far the two are sheared at a separation c_a − c_b [m].
+inline Vec3 shear(const Contact &c, const Vec3 &separation) {
+    const Vec3 moved = separation - c.start;
+    return moved - c.normal.dot(moved) * c.normal;
+}
+
 inline double friction_energy(const Contact &c, const Vec3 &separation) {
     if (!(c.friction > 0.0 && c.grip > 0.0)) return 0.0;
-    const Vec3 moved = separation - c.start, slid = moved - c.normal.dot(moved) * c.normal;
-    return c.friction * c.grip * friction_potential(slid.norm(), c.creep).value;
+    return c.friction * c.grip * friction_potential(shear(c, separation).norm(), c.give).value;
 }
 
 inline double contact_energy(const Contact &c, const Vec3 &separation) {
@@ -66,16 +71,16 @@ inline ContactValue contact_value(const Contact &c, const Vec3 &separation) {
     ContactValue value{c.stiffness * push.value, c.stiffness * push.first * c.normal,
                        c.stiffness * push.second * c.normal * c.normal.transpose()};
     if (!(c.friction > 0.0 && c.grip > 0.0)) return value;
-    const Vec3 moved = separation - c.start, slid = moved - c.normal.dot(moved) * c.normal;
-    const double length = slid.norm(), most = c.friction * c.grip;
-    const Potential rub = friction_potential(length, c.creep);
+    const Vec3 sheared = shear(c, separation);
+    const double length = sheared.norm(), most = c.friction * c.grip;
+    const Potential rub = friction_potential(length, c.give);
     value.energy += most * rub.value;
     const Mat3 plane = Mat3::Identity() - c.normal * c.normal.transpose();
-    if (length < 1e-9 * c.creep) {
-        value.hessian += (4.0 * most / c.creep) * plane; // ψ'/y → 4/creep
+    if (length < 1e-9 * c.give) {
+        value.hessian += (4.0 * most / c.give) * plane; // ψ'/y → 4/give
         return value;
     }
-    const Vec3 way = slid / length;
+    const Vec3 way = sheared / length;
     value.gradient += most * rub.first * way;
     value.hessian += most * (rub.first / length * (plane - way * way.transpose()) + rub.second * way * way.transpose());
     return value;

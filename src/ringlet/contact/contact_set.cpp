@@ -2,6 +2,7 @@
 
 #include "ringlet/contact/collect.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -9,6 +10,7 @@ namespace ringlet {
 namespace {
 
 // Ascending as pairs are, and as the contacts of one pair are.
+constexpr int places_of_pair = 7; // at most
 uint64_t name(const Touch &touch, int which = 0) {
     return uint64_t(!touch.of_edges) << 63 | uint64_t(touch.of[0]) << 33 | uint64_t(touch.of[1]) << 3 | uint64_t(which);
 }
@@ -56,23 +58,53 @@ void for_known(const std::vector<Known> &before, std::vector<Contact> &now, cons
     }
 }
 
+// A pair goes on from what it held as the step began, which turns with it.
+void go_on(const Hold &held, Contact &contact) {
+    const Mat3 turn = Eigen::Quaterniond::FromTwoVectors(held.normal, contact.normal).toRotationMatrix();
+    contact.start = turn * (contact.start - held.shear);
+}
+
 } // namespace
 
 void ContactSet::begin(const std::vector<Touch> &touching) {
     early_.clear();
-    for (const Touch &touch : touching) early_[name(touch)] = std::sqrt(touch.nearest.distance2);
+    for (const Touch &touch : touching) {
+        const double apart = std::sqrt(touch.nearest.distance2);
+        early_[name(touch)] = {apart, apart};
+    }
 }
 
 void ContactSet::part_early(double way) {
-    for (auto &[pair, distance] : early_) distance += way;
+    for (auto &[pair, distances] : early_) distances.push += way;
+}
+
+void ContactSet::stay_early(View<Vec3> now) {
+    for (auto &[pair, distances] : early_) distances.push = distances.began;
+    for (const Contact &contact : contacts_) {
+        const auto early = early_.find(contact.pair & ~uint64_t(places_of_pair));
+        if (early == early_.end()) continue;
+        Distances &distances = early->second;
+        const double nearer = contact.distance - contact.normal.dot(separation(contact, now));
+        distances.push = std::max(distances.push, distances.began + nearer);
+    }
+}
+
+void ContactSet::hold(View<Vec3> now) {
+    held_.clear();
+    for (const Contact &contact : contacts_) {
+        const Vec3 sheared = shear(contact, separation(contact, now));
+        const double length = sheared.norm();
+        held_.push_back(
+            {contact.pair, length > contact.give ? Vec3(contact.give / length * sheared) : sheared, contact.normal});
+    }
 }
 
 std::vector<Contact> ContactSet::of_touching(const CollisionMesh &mesh, const ContactMaterial &material,
                                              const std::vector<Touch> &touching, View<Vec3> start, View<Vec3> now) const {
-    return collect<Contact>(int(touching.size()), [&](int k, std::vector<Contact> &contacts) {
+    std::vector<Contact> found = collect<Contact>(int(touching.size()), [&](int k, std::vector<Contact> &contacts) {
         const Touch &touch = touching[k];
         const auto early = early_.find(name(touch));
-        const double distance = early == early_.end() ? touch.distance : std::min(touch.distance, early->second);
+        const double distance = early == early_.end() ? touch.distance : std::min(touch.distance, early->second.push);
         for (const Place &place : places(mesh, touch, now)) {
             const double apart = std::sqrt(place.nearest.distance2);
             if (!(apart > 0.0 && apart < distance)) continue;
@@ -97,12 +129,14 @@ std::vector<Contact> ContactSet::of_touching(const CollisionMesh &mesh, const Co
             contact.friction =
                 material
                     .friction[material.material[contact.vertex[0]] * material.materials + material.material[contact.vertex[3]]];
-            contact.creep = material.creep;
+            contact.give = material.give;
             contact.force = contact_force(contact, separation(contact, now));
             contact.pair = name(touch, place.which);
             contacts.push_back(contact);
         }
     });
+    for_known(held_, found, go_on);
+    return found;
 }
 
 std::vector<Contact> ContactSet::pushing(const CollisionMesh &mesh, const ContactMaterial &material,

@@ -15,16 +15,27 @@ struct ContactMaterial {
     std::vector<int> material;     // which material a vertex is made of
     std::vector<double> friction;  // μ of a pair of materials, row-major, materials × materials
     int materials = 1;
-    double creep = 0.0; // [m]
+    double give = 0.0; // [m]
+};
+
+// What a pair that touched as a step ended remembers of it.
+struct Hold {
+    uint64_t pair;
+    Vec3 shear, normal; // [m], 1
 };
 
 class ContactSet {
 public:
     // Pairs that begin nearer than their contact distance push only from there on, which then grows by `way` a step: nothing
-    // pops.
+    // pops. Or they stay: what comes nearer than it began pushes from so much further on, until it bears what it has to where
+    // it began.
     void begin(const std::vector<Touch> &touching);
     void part_early(double way);
-    using Early = std::unordered_map<uint64_t, double>; // pair → distance at which it pushes [m]
+    void stay_early(View<Vec3> now);
+    struct Distances {
+        double began, push; // how near they began, and from where on they push [m]
+    };
+    using Early = std::unordered_map<uint64_t, Distances>; // by pair
     const Early &early() const { return early_; }
     void recall(Early early) { early_ = std::move(early); }
 
@@ -35,6 +46,10 @@ public:
     };
     const std::vector<Expected> &expected() const { return expected_; }
     void recall(std::vector<Expected> expected) { expected_ = std::move(expected); }
+    // Keeps how far the contacts are sheared where a step ends. One that is sheared further than it gives has slid.
+    void hold(View<Vec3> now);
+    const std::vector<Hold> &held() const { return held_; } // in the order of pairs
+    void recall(std::vector<Hold> held) { held_ = std::move(held); }
 
     // Of objects that go by planes (per object; beyond the end: none), a search knows the contacts by their planes alone, which
     // are overstepped then: their barriers end early.
@@ -44,9 +59,9 @@ public:
     std::vector<Contact> pushing(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<Touch> &touching,
                                  View<Vec3> start, View<Vec3> elsewhere) const;
 
-    // Goes over to the contacts of those that touch at the positions `now`; `start` says where the step began, for what they
-    // slid since. Friction's normal force is what was expected of the pair before, nothing if it is new: what a contact pushes
-    // with on the way to balance says little of what it will bear.
+    // Goes over to the contacts of those that touch at the positions `now`; `start` says where the step began, for how they
+    // were sheared since. Friction's normal force is what was expected of the pair before, nothing if it is new: what a contact
+    // pushes with on the way to balance says little of what it will bear.
     void find(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<Touch> &touching, View<Vec3> start,
               View<Vec3> now);
 
@@ -68,6 +83,7 @@ private:
     bool goes_by_planes(int object) const { return size_t(object) < by_planes_.size() && by_planes_[object]; }
 
     Early early_;
+    std::vector<Hold> held_;
     std::vector<unsigned char> by_planes_;
     std::vector<Contact> contacts_;
     std::vector<Expected> expected_; // of each of them

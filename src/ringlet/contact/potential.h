@@ -25,13 +25,13 @@ inline Potential contact_potential(double g, double r, double end) {
     return {value + first * below + 0.5 * second * below * below, first + second * below, second};
 }
 
-// Friction per force μN after sliding a distance y ≥ 0 in a step: |force| rises smoothly to 1 at y = creep and stays there
-// (after Li et al. 2020, steeper at the start: what holds creeps by less than half of its part of the most, times `creep`, up
-// to 0.9 of it). `first` is that force, `second` its slope.
-inline Potential friction_potential(double y, double creep) {
-    if (y >= creep) return {y, 1.0, 0.0};
-    const double q = y / creep, left = 1.0 - q, left3 = left * left * left;
-    return {creep * (q + left3 * left * left / 5.0), 1.0 - left3 * left, 4.0 * left3 / creep};
+// Friction per force μN of a contact that is sheared by a distance y ≥ 0: |force| rises smoothly to 1 at y = give and stays
+// there (after Li et al. 2020, steeper at the start: what holds gives way by less than half of its part of the most, times
+// `give`, up to 0.9 of it). `first` is that force, `second` its slope.
+inline Potential friction_potential(double y, double give) {
+    if (y >= give) return {y, 1.0, 0.0};
+    const double q = y / give, left = 1.0 - q, left3 = left * left * left;
+    return {give * (q + left3 * left * left / 5.0), 1.0 - left3 * left, 4.0 * left3 / give};
 }
 
 } // namespace ringlet

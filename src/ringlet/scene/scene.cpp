@@ -95,7 +95,7 @@ Scene::Parts::Parts(const StrandModel &model_, StrandState &state_, const std::v
 void Scene::Parts::set_stiffness(double dt) {
     ContactMaterial &material = vertices.material;
     material.stiffness.assign(vertices.count(), std::numeric_limits<double>::infinity());
-    material.creep = settings.creep_speed * dt;
+    material.give = settings.creep_speed * dt;
     for (int v = 0; v < vertices.strand_vertices(); ++v) {
         if (model.held[v]) continue;
         const double length = std::max(model.rest_length[v], model.rest_length[v - 1]);
@@ -339,6 +339,8 @@ double Scene::Parts::advance(const SceneInput &input, const SceneStep &scene_ste
     system.scatter(now, x);
     const int iteration = newton(scene_step, step, now, progress, report);
     system.touch(near.touching(now), now);
+    system.contacts.hold(now);
+    if (settings.parting_speed == 0.0) system.contacts.stay_early(now);
     report.newton += iteration;
     report.residual = reach.empty() ? 0.0 : *std::max_element(reach.begin(), reach.end());
     report.unconverged = report.residual > step.tolerance;
@@ -380,7 +382,7 @@ SceneReport Scene::Parts::step(const SceneInput &input, const SceneStep &scene_s
         system.contacts.begin(near.touching(vertices.positions));
         begun = true;
     }
-    system.contacts.part_early(settings.parting_speed * scene_step.strands.dt);
+    if (settings.parting_speed > 0.0) system.contacts.part_early(settings.parting_speed * scene_step.strands.dt);
     path.clear();
     if (recording) path.push_back(vertices.positions);
     double left = 1.0;
@@ -425,6 +427,7 @@ SceneMemory Scene::memory() const {
             {all.begin() + bodies, all.end()},
             parts_->system.contacts.early(),
             parts_->system.contacts.expected(),
+            parts_->system.contacts.held(),
             parts_->embedded.heights(),
             parts_->touched};
 }
@@ -438,6 +441,7 @@ void Scene::recall(const SceneMemory &memory) {
     std::copy(memory.bodies.begin(), memory.bodies.end(), parts.vertices.positions.begin() + parts.vertices.moving_vertices());
     parts.system.contacts.recall(memory.early);
     parts.system.contacts.recall(memory.expected);
+    parts.system.contacts.recall(memory.held);
     parts.embedded.recall(memory.embedded, parts.vertices.mesh);
     parts.touched = memory.touched;
 }

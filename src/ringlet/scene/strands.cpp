@@ -202,7 +202,8 @@ StrandState make_strand_state(const StrandModel &model, View<Vec3> positions) {
     };
     StrandState by_normals = state;
     for (int s = 0; s < model.strand_count(); ++s)
-        for (int i = model.offsets[s] + 2; i + 1 < model.offsets[s + 1]; ++i) by_normals.directors[i] = now.normal[i];
+        for (int i = model.offsets[s] + 2; i + 1 < model.offsets[s + 1]; ++i)
+            if (!(model.held[i] && model.held[i + 1])) by_normals.directors[i] = now.normal[i];
     const std::vector<double> untwisted = relax(state), normal = relax(by_normals);
     for (int s = 0; s < model.strand_count(); ++s)
         if (normal[s] < untwisted[s])

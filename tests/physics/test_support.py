@@ -1,0 +1,124 @@
+"""What bears locks where they were groomed: nails, bodies with friction, and one another; and they stay so."""
+
+import numpy as np
+import pytest
+from coils import helix, rotation
+from ringlet.curves import Curves
+from ringlet.groom.groom import Groom
+from ringlet.mesh import Clip, Mesh
+from ringlet.shot import Obstacle, equilibrium, keep, made_from, refresh
+from ringlet.shot.equilibrium import bearing
+from ringlet.shot.pushing import least_pushing
+from ringlet.shot.scene import Scene
+from ringlet.shot.simulate import make_strands
+from scipy.optimize import nnls
+from scipy.sparse import block_diag
+from test_lofted_strands import GRAVITY, sag, scene
+
+MODE = "[rest]\nmode = 'equilibrium'\n"
+SOFT = MODE + "[strands]\nbend_scale = 4\n[contact]\nradius = 5e-4\n"
+REACH = 1e-3  # at which two locks touch, and a lock and a body
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_forces_that_only_push_are_those_of_least_squares(seed):
+    """Of several problems at once; in the last, half of them may pull."""
+    random = np.random.default_rng(seed)
+    parts = [(random.normal(size=(12, 8)), random.normal(size=12)) for _ in range(4)]
+    free = np.zeros(32, bool)
+    free[24:28] = True
+    found = least_pushing(
+        block_diag([a.T @ a for a, _ in parts], "csr"), np.concatenate([-a.T @ b for a, b in parts]), free
+    )
+    pulls = np.concatenate([parts[3][0], -parts[3][0][:, :4]], axis=1)
+    (*first, last), both = (nnls(a, b)[0] for a, b in parts), nnls(pulls, parts[3][1])[0]
+    both[:4] -= both[8:]
+    assert found == pytest.approx(np.concatenate([*first, both[:8]]), abs=1e-9)
+    assert (last == 0).any() and (found == 0).any()
+
+
+def crossed():
+    """A beam, and across it a longer one that lies on it."""
+    t = np.linspace(0, 1, 30)[:, None]
+    below = [0, 0, 0] + t * [0.04, 0, 0]
+    above = [0.02, 0.95 * REACH, -0.03] + t * [0, 0, 0.06]
+    return below, above
+
+
+def stays(shot, groom, made, bodies=(), steps=48):
+    """How far locks go from where they were groomed in 2 s [m]."""
+    strands = make_strands(shot, groom, made.rest, made.stiffened)
+    strands.place(groom.locks.points)
+    touching = Scene(strands, bodies, shot.touching)
+    for _ in range(steps):
+        touching.step(groom.locks.points, 1 / 24, gravity=GRAVITY)
+    return sag(strands.positions, groom.locks.points)
+
+
+def test_a_lock_that_lies_on_another_is_borne_by_it():
+    """What one gains the other loses; each need remember less than if it bore itself, or more. And they stay."""
+    shot, groom = scene(*crossed(), more=SOFT)
+    borne, upper = bearing(shot, groom, []), slice(30, 60)
+    assert np.abs(borne.sum(axis=0)).max() < 1e-12
+    strands = make_strands(shot, groom)
+    assert 0.1 < borne[upper, 1].sum() / (9.81 * strands.masses[upper].sum()) < 1
+    together = equilibrium(shot, groom)
+    alone = equilibrium(*scene(*crossed(), more=SOFT.replace("radius = 5e-4", "on = false")))
+    assert sag(together.rest.points[upper], crossed()[1]) < 0.5 * sag(alone.rest.points[upper], crossed()[1])
+    assert (together.stiffened == 1).all()
+    assert stays(shot, groom, together) < 0.2 * shot.strands.radius
+
+
+def on_slope(friction):
+    """A strand that comes down to a slope of 4° and lies on it across, and the slope."""
+    t = np.linspace(0, 1, 60)
+    turn = rotation((0, 0, 1), np.radians(4)).T
+    lying = np.c_[6e-3 * np.exp(-((t / 0.08) ** 2))[:, None] * [0, 1, 0]] + np.c_[0 * t, 0.9 * REACH + 0 * t, 0.08 * t]
+    mesh = Mesh(
+        "/slope",
+        0.1 * np.array([[-1, 0, -1], [1, 0, -1], [1, 0, 1], [-1, 0, 1.0]]) @ turn,
+        np.array([[0, 2, 1], [0, 3, 2]], np.int32),
+    )
+    obstacle = Obstacle(mesh, Clip(np.array([1.0]), mesh.points[None], 24.0))
+    obstacle.settings = obstacle.settings.model_copy(update={"friction": friction})
+    return lying @ turn, obstacle
+
+
+def test_friction_holds_what_lies_on_a_slope():
+    """Counted on, the strand need not remember reaching uphill; and it does hold, without creeping."""
+    lying, rough = on_slope(1.0)
+    shot, groom = scene(lying, more=SOFT)
+    smooth, held = (equilibrium(shot, groom, obstacles=[on_slope(mu)[1]]) for mu in (0.0, 1.0))
+    assert sag(held.rest.points, lying) < 0.1 * sag(smooth.rest.points, lying)
+    soon, late = (stays(shot, groom, held, [rough.body(1.0)], steps) for steps in (48, 240))
+    assert late < shot.strands.radius
+    assert late - soon < 0.05 * shot.strands.radius
+
+
+def test_a_curl_that_is_nailed_in_rows_hangs_between_them():
+    """Nails in a row hold what is between as a clamp does, twist as well: it is as still as any other."""
+    curl = helix(60, radius=4e-3, pitch=4e-3) @ rotation((0, 0, 1), np.radians(70)).T
+    shot, groom = scene(curl, more=MODE)
+    nail = np.zeros(60, np.float32)
+    nail[25:31] = nail[44:48] = 1.0
+    locks = Curves(groom.locks.points, groom.locks.offsets, groom.locks.ids, {}, {"nail": nail})
+    groom = Groom(locks, locks, groom.scalp)
+    made = equilibrium(shot, groom)
+    assert made.off[0] < 1e-7 and made.stiffened[0] == 1
+    assert sag(made.rest.points, curl) > 1e-4
+    strands = make_strands(shot, groom, made.rest)
+    strands.place(curl)
+    for _ in range(48):
+        strands.step(curl, 1 / 24, gravity=GRAVITY)
+    assert sag(strands.positions, curl) < 1e-7
+
+
+def test_who_is_borne_by_what_has_changed_is_balanced_anew():
+    """The lower beam goes away: the upper one, which has not changed, has to bear itself."""
+    shot, groom = scene(*crossed(), more=SOFT)
+    kept = keep(equilibrium(shot, groom), shot)
+    groom.locks.points[3:30, 1] -= np.linspace(0, 2 * REACH, 27)
+    before, again, anew = kept.points.copy(), refresh(shot, groom, kept, made_from(shot)), equilibrium(shot, groom)
+    upper = slice(30, 60)
+    assert np.abs(again.rest.points - anew.rest.points).max() < 1e-6
+    assert sag(again.rest.points[upper], before[upper]) > 1e-3
