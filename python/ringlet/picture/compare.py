@@ -13,11 +13,8 @@ from ringlet.curves import Curves
 from ringlet.files import replacing
 from ringlet.picture.bodies import PosedBody
 from ringlet.picture.camera import Camera
-from ringlet.picture.camera import frame as frame_camera
-from ringlet.picture.render import Progress, build_scene, hair_color, over_backdrop, trace
-from ringlet.picture.sheet import THINNEST, lay_out, thin_out
-from ringlet.picture.still import subject
-from ringlet.picture.tone import develop
+from ringlet.picture.render import Progress, hair_color
+from ringlet.picture.sheet import draw_tile, lay_out, see_all, thin_out
 
 OUTLINE = (255, 176, 59)
 CLOSE = 7  # gaps between curls up to so many pixels are no part of an outline
@@ -42,17 +39,11 @@ def compare(
     bodies, tile, title, hairs, samples, view, color, progress: as in ``sheet``
     """
     thinned = {name: thin_out(curves, hairs) for name, curves in shapes.items()}
-    camera = frame_camera(
-        (points for curves in thinned.values() for points in subject(bodies, curves)),
-        view=view,
-        aspect=tile[0] / tile[1],
-        margin=0.04,
-    )
+    camera, pigments = see_all([(bodies, curves) for curves in thinned.values()], tile, view), hair_color(color)
     tiles: list[tuple[str, str, NDArray[np.uint8]]] = []
     outline = None
     for name, curves in thinned.items():
-        scene = build_scene(bodies, curves, camera, size=tile, color=hair_color(color), max_depth=4, thinnest=THINNEST)
-        pixels = develop(over_backdrop(trace(scene, samples=samples)))
+        pixels = draw_tile(bodies, curves, camera, tile, pigments, samples)
         if outline is None:
             outline = _outline(curves, bodies, camera, tile)
         else:

@@ -6,14 +6,16 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
 from ringlet.curves import Curves
 from ringlet.errors import UserError
 from ringlet.files import replacing
 from ringlet.picture.bodies import PosedBody
+from ringlet.picture.camera import Camera
 from ringlet.picture.camera import frame as frame_camera
-from ringlet.picture.render import Progress, build_scene, hair_color, over_backdrop, trace
+from ringlet.picture.render import HairColor, Progress, build_scene, hair_color, over_backdrop, trace
 from ringlet.picture.still import subject
 from ringlet.picture.tone import develop
 
@@ -60,17 +62,10 @@ def sheet(
     for number, _, curves in shots:
         if len(curves):
             curves.check(f"frame {number:g}: hairs")
-    pigments = hair_color(color)
-    camera = frame_camera(
-        (points for _, bodies, curves in shots for points in subject(bodies, curves)),
-        view=view,
-        aspect=tile[0] / tile[1],
-        margin=0.04,
-    )
+    pigments, camera = hair_color(color), see_all([shot[1:] for shot in shots], tile, view)
     tiles = []
     for number, bodies, curves in shots:
-        scene = build_scene(bodies, curves, camera, size=tile, color=pigments, max_depth=4, thinnest=THINNEST)
-        tiles.append((number, develop(over_backdrop(trace(scene, samples=samples)))))
+        tiles.append((number, draw_tile(bodies, curves, camera, tile, pigments, samples)))
         if progress:
             progress("sheet", len(tiles), len(shots))
     first, last = tiles[0][0], tiles[-1][0]
@@ -87,6 +82,27 @@ def thin_out(hairs: Curves, wanted: int) -> Curves:
     if len(hairs) <= wanted:
         return hairs
     return hairs.take(np.linspace(0, len(hairs) - 1, wanted).round().astype(np.int64))
+
+
+def see_all(
+    scenes: Iterable[tuple[Sequence[PosedBody], Curves]], tile: tuple[int, int], view: str | tuple[float, float]
+) -> Camera:
+    """A camera that sees bodies and hairs of all tiles."""
+    seen = (points for bodies, curves in scenes for points in subject(bodies, curves))
+    return frame_camera(seen, view=view, aspect=tile[0] / tile[1], margin=0.04)
+
+
+def draw_tile(
+    bodies: Sequence[PosedBody],
+    hairs: Curves,
+    camera: Camera,
+    tile: tuple[int, int],
+    pigments: HairColor,
+    samples: int,
+) -> NDArray[np.uint8]:
+    """The pixels of a tile, shape (height, width, 3)."""
+    scene = build_scene(bodies, hairs, camera, size=tile, color=pigments, max_depth=4, thinnest=THINNEST)
+    return develop(over_backdrop(trace(scene, samples=samples)))
 
 
 def lay_out(
