@@ -239,12 +239,12 @@ BOOST_AUTO_TEST_CASE(what_is_known_of_pairs_changes_nothing_that_is_found) {
     const std::vector<unsigned char> changed(scene.start.size(), 1);
     for (NearPairs *near : {&knowing, &unknowing}) near->set_out_anew(scene.start, middle, changed);
     BOOST_TEST((coming_near(knowing, scene.start, middle) == coming_near(unknowing, scene.start, middle)));
-    for (NearPairs *near : {&knowing, &unknowing}) near->arrive();
+    for (NearPairs *near : {&knowing, &unknowing}) near->arrive(scene.start, middle);
     BOOST_TEST(touching(knowing, middle).size() > 10);
     BOOST_TEST((touching(knowing, middle) == touching(unknowing, middle)));
     for (NearPairs *near : {&knowing, &unknowing}) {
         near->set_out(middle, scene.start);
-        near->arrive();
+        near->arrive(middle, scene.start);
     }
     BOOST_TEST((touching(knowing, scene.start) == touching(unknowing, scene.start)));
 }

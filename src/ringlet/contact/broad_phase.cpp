@@ -1,60 +1,38 @@
 #include "ringlet/contact/broad_phase.h"
 
 #include <algorithm>
-#include <bit>
+#include <limits>
 #include <numeric>
 
 namespace ringlet {
 namespace {
 
-using Pair = std::array<int, 2>; // two nodes
+using Pair = std::array<int, 2>; // two primitives
 
 constexpr size_t tasks = 256; // at least, where there are as many: the same for any number of threads
 
-// Compares the four boxes of node i of a with those of node j of b. Calls nodes(i', j') for pairs below them that may meet, and
-// primitives(i, k, j, l) where both are leaves.
-template <class Nodes, class Primitives>
-void compare(const MovingTree &a, const MovingTree &b, Pair pair, const Nodes &nodes, const Primitives &primitives) {
-    const auto [i, j] = pair;
-    const bool itself = &a == &b && i == j, leaf_a = a.is_leaf(i), leaf_b = b.is_leaf(j);
-    unsigned any = 0;
-    for (int k = 0; k < a.size(i); ++k) {
-        unsigned which = which_may_meet(a.boxes(i).box(k), b.boxes(j));
-        if (itself) {
-            if (!leaf_a) nodes({a.child(i, k), a.child(i, k)});
-            which &= ~1u << k; // each pair once
-        }
-        any |= which;
-        if (which != 0 && !leaf_a && leaf_b) nodes({a.child(i, k), j});
-        if (leaf_a != leaf_b) continue;
-        for (; which != 0; which &= which - 1) {
-            const int l = std::countr_zero(which);
-            if (leaf_a)
-                primitives(i, k, j, l);
-            else
-                nodes({a.child(i, k), b.child(j, l)});
-        }
-    }
-    if (leaf_a && !leaf_b)
-        for (; any != 0; any &= any - 1) nodes({i, b.child(j, std::countr_zero(any))});
-}
-
-template <class Primitives> void descend(const MovingTree &a, const MovingTree &b, Pair pair, const Primitives &primitives) {
-    compare(a, b, pair, [&](Pair below) { descend(a, b, below, primitives); }, primitives);
+Descent descent(const MovingTree &a, const MovingTree &b) {
+    Descent descent;
+    descent.a = a.boxes(), descent.b = b.boxes(), descent.one_tree = &a == &b;
+    descent.left = descent.found = 0;
+    return descent;
 }
 
 // The pairs of nodes to descend from, one for each task.
-std::vector<Pair> split(const MovingTree &a, const MovingTree &b) {
-    std::vector<Pair> pairs = {{0, 0}};
+std::vector<BoxPair> split(const MovingTree &a, const MovingTree &b) {
+    std::vector<BoxPair> pairs = {{{0, 0}}};
+    Descent below = descent(a, b);
     for (bool split = true; split && pairs.size() < tasks;) {
         split = false;
-        std::vector<Pair> finer;
-        for (Pair pair : pairs)
-            if (a.is_leaf(pair[0]) && b.is_leaf(pair[1]))
+        std::vector<BoxPair> finer;
+        for (const BoxPair &pair : pairs)
+            if (a.is_leaf(pair.of[0]) && b.is_leaf(pair.of[1]))
                 finer.push_back(pair);
             else {
                 split = true;
-                compare(a, b, pair, [&](Pair below) { finer.push_back(below); }, [](auto &&...) {});
+                below.nodes[0] = pair, below.left = 1;
+                RINGLET_DISPATCH(descend, below, 1);
+                finer.insert(finer.end(), below.nodes, below.nodes + below.left);
             }
         pairs = std::move(finer);
     }
@@ -162,20 +140,32 @@ template <class A, class B>
 void BroadPhase::search(const MovingTree &tree_a, const A &all_a, const MovingTree &tree_b, const B &all_b) {
     for (Pairs &found : found_) found.clear();
     if (tree_a.empty()) return;
-    const std::vector<Pair> starts = split(tree_a, tree_b);
+    const std::vector<BoxPair> starts = split(tree_a, tree_b);
     if (found_.size() < starts.size()) found_.resize(starts.size());
-#pragma omp parallel for schedule(dynamic, 1)
-    for (size_t task = 0; task < starts.size(); ++task)
-        descend(tree_a, tree_b, starts[task], [&](int i, int k, int j, int l) {
-            int p = tree_a.primitive(i, k), q = tree_b.primitive(j, l);
-            const auto &a = all_a[p];
-            const auto &b = all_b[q];
-            if (share_vertex(a, b) || carries(mesh_, a, b)) return;
-            if (!any_of(mesh_.moves, a) && !any_of(mesh_.moves, b)) return;
-            if (!meet_at_one_time(tree_a.boxes(i).box(k), tree_b.boxes(j).box(l), less(mesh_, a, b))) return;
-            if (&tree_a == &tree_b && p > q) std::swap(p, q);
-            found_[task].push_back({p, q});
-        });
+    const auto take = [&](const BoxPair &slots, Pairs &found) {
+        const auto [i, j] = slots.of;
+        int p = tree_a.primitive(i), q = tree_b.primitive(j);
+        const auto &a = all_a[p];
+        const auto &b = all_b[q];
+        if (share_vertex(a, b) || carries(mesh_, a, b)) return;
+        if (!any_of(mesh_.moves, a) && !any_of(mesh_.moves, b)) return;
+        const float by = less(mesh_, a, b);
+        if (by > 0.0f && !meet_at_one_time(tree_a.box(i), tree_b.box(j), by)) return;
+        if (&tree_a == &tree_b && p > q) std::swap(p, q);
+        found.push_back({p, q});
+    };
+#pragma omp parallel
+    {
+        Descent here = descent(tree_a, tree_b);
+#pragma omp for schedule(dynamic, 1)
+        for (size_t task = 0; task < starts.size(); ++task) {
+            here.nodes[0] = starts[task];
+            for (here.left = 1; here.left > 0; here.found = 0) {
+                RINGLET_DISPATCH(descend, here, std::numeric_limits<int>::max());
+                for (int k = 0; k < here.found; ++k) take(here.boxes[k], found_[task]);
+            }
+        }
+    }
 }
 
 // Sorts what the tasks have found: by the first of a pair, whose number is below `firsts`, into bins, and then each bin.

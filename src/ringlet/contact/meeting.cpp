@@ -18,18 +18,17 @@ template <size_t N, size_t M> bool move_as_one(View<int> rigid, const std::array
 
 template <size_t N, size_t M>
 double impact_time(NearPair &pair, const std::array<int, N> &a, const std::array<int, M> &b, View<Vec3> start, View<Vec3> end) {
+    const double nearer = most_nearer(a, b, start, end);
+    if (pair.apart - 0.5 * pair.distance > nearer) return no_impact;
     pair.apart = std::sqrt(closest_points(start, a, b).distance2);
     const double kept = std::min({0.5 * pair.distance, std::max(0.2 * pair.apart, pair.distance / 250), 0.9 * pair.apart});
+    if (pair.apart - kept > nearer) return no_impact;
     Vec3 x[4], p[4];
     for (size_t i = 0; i < 4; ++i) {
         const int v = i < N ? a[i] : b[i - N];
         x[i] = start[v];
         p[i] = end[v] - start[v];
     }
-    double most = 0.0; // that two vertices come nearer
-    for (size_t i = 0; i < N; ++i)
-        for (size_t j = N; j < 4; ++j) most = std::max(most, (p[i] - p[j]).squaredNorm());
-    if (pair.apart - kept > std::sqrt(most)) return no_impact;
     if constexpr (N == 2)
         return edge_edge_impact(x, p, kept);
     else

@@ -14,7 +14,8 @@ struct Met { // a pair that would meet
     double time; // until when it keeps its distance
 };
 
-// Until when a pair keeps its distance; above 1: to the end. Notes how far it is apart at the start.
+// Until when a pair keeps its distance; above 1: to the end. What is known of how far it is apart may say so; else
+// this is noted anew, as at the start.
 double meeting_time(const CollisionMesh &mesh, NearPair &pair, View<Vec3> start, View<Vec3> end);
 
 // Of those that may meet, in order.

@@ -1,6 +1,7 @@
 // A box around something at the start of its motion, and one around it at the end; in between all goes straight.
 #pragma once
 
+#include "ringlet/contact/overlap_kernel.h"
 #include "ringlet/math/types.h"
 
 #include <algorithm>
@@ -41,41 +42,22 @@ struct MovingBox {
     }
 };
 
-// Four boxes side by side: lane k of each array is of box k.
-struct MovingQuad {
-    std::array<Eigen::Array4f, 3> low, high, end_low, end_high;
-    Eigen::Array4f who_counts;
-
-    void set(int k, const MovingBox &box) {
-        for (int axis = 0; axis < 3; ++axis) {
-            low[axis][k] = box.low[axis];
-            high[axis][k] = box.high[axis];
-            end_low[axis][k] = box.end_low[axis];
-            end_high[axis][k] = box.end_high[axis];
-        }
-        who_counts[k] = box.low[3];
-    }
-
-    MovingBox box(int k) const {
-        return {{low[0][k], low[1][k], low[2][k], who_counts[k]},
-                {high[0][k], high[1][k], high[2][k], 0.0f},
-                {end_low[0][k], end_low[1][k], end_low[2][k], 0.0f},
-                {end_high[0][k], end_high[1][k], end_high[2][k], 0.0f}};
-    }
-};
-
-// With which boxes of b another overlaps on each axis at some time: a bit for each. What is in the rest never comes together
-// with what is in that one.
-[[gnu::always_inline]] inline unsigned which_may_meet(const MovingBox &a, const MovingQuad &b) {
-    Eigen::Array4f apart = b.who_counts + a.low[3]; // above 0: never
+inline void set_box(BoxQuad &quad, int k, const MovingBox &box) {
     for (int axis = 0; axis < 3; ++axis) {
-        const Eigen::Array4f above = (b.low[axis] - a.high[axis]).min(b.end_low[axis] - a.end_high[axis]);
-        const Eigen::Array4f below = (a.low[axis] - b.high[axis]).min(a.end_low[axis] - b.end_high[axis]);
-        apart = apart.max(above.max(below));
+        quad.low[axis][k] = box.low[axis];
+        quad.high[axis][k] = box.high[axis];
+        quad.end_low[axis][k] = box.end_low[axis];
+        quad.end_high[axis][k] = box.end_high[axis];
     }
-    unsigned which = 0;
-    for (int l = 0; l < 4; ++l) which |= unsigned(apart[l] <= 0.0f) << l;
-    return which;
+    quad.who_counts[k] = box.low[3];
+}
+
+inline MovingBox box_of(const BoxQuad &quad, int k) {
+    const auto corner = [&](const float (&rows)[3][4], float last) -> Eigen::Array4f {
+        return {rows[0][k], rows[1][k], rows[2][k], last};
+    };
+    return {corner(quad.low, quad.who_counts[k]), corner(quad.high, 0.0f), corner(quad.end_low, 0.0f),
+            corner(quad.end_high, 0.0f)};
 }
 
 // Whether two boxes overlap on all three axes at one and the same time, after they have been drawn in by `less` in all.

@@ -28,8 +28,8 @@ void MovingTree::arrange(std::vector<Centre> &centres) {
 
     first_leaf_ = 0;
     for (int level = 0; level < (depth_ + 1) / 2; ++level) first_leaf_ = child(first_leaf_, 0);
-    MovingQuad empty;
-    for (int k = 0; k < 4; ++k) empty.set(k, MovingBox::nothing());
+    BoxQuad empty;
+    for (int k = 0; k < 4; ++k) set_box(empty, k, MovingBox::nothing());
     nodes_.assign(size_t(first_leaf_) + leaves(), empty);
     primitives_.assign(size_t(4) * leaves(), -1);
     for (int leaf = 0; leaf < leaves(); ++leaf)
@@ -45,8 +45,8 @@ void MovingTree::refit_inner() {
         count /= 4;
 #pragma omp parallel for schedule(static) if (count > small)
         for (int node = first; node < first + count; ++node) {
-            MovingBox all = nodes_[node].box(0);
-            for (int k = 1; k < 4; ++k) all.include(nodes_[node].box(k));
+            MovingBox all = box_of(nodes_[node], 0);
+            for (int k = 1; k < 4; ++k) all.include(box_of(nodes_[node], k));
             put(node, all);
         }
     }
@@ -56,7 +56,7 @@ void MovingTree::refit_inner() {
 double MovingTree::looseness() const {
     double sum = 0.0;
     for (int leaf = first_leaf_; leaf < first_leaf_ + leaves() && leaf > 0; ++leaf) {
-        const MovingQuad &parent = nodes_[(leaf - 1) / 4];
+        const BoxQuad &parent = nodes_[(leaf - 1) / 4];
         const int k = (leaf - 1) % 4;
         for (int axis = 0; axis < 3; ++axis) sum += parent.high[axis][k] - parent.low[axis][k];
     }

@@ -21,19 +21,20 @@ public:
 
     // Until it is taken anew no primitive counts.
     void discount() {
-        for (MovingQuad &boxes : nodes_) boxes.who_counts.setConstant(MovingBox::does_not_count);
+        for (BoxQuad &boxes : nodes_) std::fill_n(boxes.who_counts, 4, MovingBox::does_not_count);
     }
 
     bool empty() const { return count_ == 0; }
     bool is_leaf(int node) const { return node >= first_leaf_; }
     static int child(int node, int k) { return 4 * node + 1 + k; }
-    const MovingQuad &boxes(int node) const { return nodes_[node]; } // of its children or, in a leaf, of its primitives
-    int size(int node) const {                                       // how many these are
+    BoxTree boxes() const { return {nodes_.data(), first_leaf_, size(0)}; } // of each node's children or, in a leaf, primitives
+    MovingBox box(int slot) const { return box_of(nodes_[slot / 4], slot % 4); }  // by lane and four times the leaf
+    int primitive(int slot) const { return primitives_[slot - 4 * first_leaf_]; } // likewise
+    int size(int node) const {                                                    // how many boxes it has
         return is_leaf(node)             ? begin(node - first_leaf_ + 1, depth_) - begin(node - first_leaf_, depth_)
                : node == 0 && depth_ % 2 ? 2
                                          : 4;
     }
-    int primitive(int leaf, int k) const { return primitives_[4 * (leaf - first_leaf_) + k]; }
     int built() const { return built_; } // how often
 
 private:
@@ -50,11 +51,11 @@ private:
     int begin(int64_t share, int depth) const { return static_cast<int>(share * count_ >> depth); }
     int leaves() const { return 1 << depth_; }
     void put(int node, const MovingBox &all) { // into its parent
-        if (node > 0) nodes_[(node - 1) / 4].set((node - 1) % 4, all);
+        if (node > 0) set_box(nodes_[(node - 1) / 4], (node - 1) % 4, all);
     }
 
     std::vector<int> primitives_; // four to a leaf, the last of which may be missing
-    std::vector<MovingQuad> nodes_;
+    std::vector<BoxQuad> nodes_;
     int count_ = 0, depth_ = 0, first_leaf_ = 0, built_ = 0;
     double built_looseness_ = 0.0;
 };
@@ -92,13 +93,13 @@ template <class Box, class Changed> void MovingTree::refit(const Box &box, const
     for (int leaf = first_leaf_; leaf < first_leaf_ + leaves(); ++leaf) {
         bool here = false;
         for (int k = 0; k < size(leaf); ++k)
-            if (changed(primitive(leaf, k))) {
-                nodes_[leaf].set(k, box(primitive(leaf, k)));
+            if (changed(primitive(4 * leaf + k))) {
+                set_box(nodes_[leaf], k, box(primitive(4 * leaf + k)));
                 here = true;
             }
         if (!here) continue;
         MovingBox all = MovingBox::nothing();
-        for (int k = 0; k < size(leaf); ++k) all.include(nodes_[leaf].box(k));
+        for (int k = 0; k < size(leaf); ++k) all.include(box_of(nodes_[leaf], k));
         put(leaf, all);
         any = true;
     }

@@ -128,10 +128,16 @@ void NearPairs::set_out_anew(View<Vec3> start, View<Vec3> end, View<unsigned cha
         if (any_of(pair, changed)) may_meet_.push_back(&pair);
 }
 
-void NearPairs::arrive() {
+void NearPairs::arrive(View<Vec3> start, View<Vec3> end) {
     for (auto *pairs : {&known_, &passing_})
 #pragma omp parallel for schedule(static)
-        for (int k = 0; k < int(pairs->size()); ++k) (*pairs)[k].apart -= way((*pairs)[k]);
+        for (int k = 0; k < int(pairs->size()); ++k) {
+            NearPair &pair = (*pairs)[k];
+            pair.apart -=
+                with_vertices(mesh_, pair, [&](const auto &a, const auto &b) { return most_nearer(a, b, start, end); });
+        }
+    for (auto *ways : {&vertices_, &edges_, &triangles_})
+        for (Way &way : *ways) way.length = 0.0;
 }
 
 // Pairs that may be changed are noted to be as far apart as they are found to be.
@@ -141,7 +147,7 @@ std::vector<Touch> NearPairs::touching(Pairs &known, Pairs &passing, const NearP
     const auto among = [&](Pairs &pairs, bool are_known) {
         return collect<Touch>(int(pairs.size()), [&](int k, std::vector<Touch> &touching) {
             auto &pair = pairs[k];
-            if (!(pair.apart < pair.distance) || (are_known && near.quick(pair)) || !counts(pair)) return;
+            if (!(pair.apart - near.way(pair) < pair.distance) || (are_known && near.quick(pair)) || !counts(pair)) return;
             const ClosestPoints nearest =
                 with_vertices(near.mesh_, pair, [&](const auto &a, const auto &b) { return closest_points(at, a, b); });
             const double apart = std::sqrt(nearest.distance2);

@@ -3,7 +3,8 @@
 
 #include "ringlet/contact/broad_phase.h"
 
-#include <limits>
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace ringlet {
@@ -12,7 +13,7 @@ struct NearPair {
     std::array<int, 2> of; // two edges, the lower first; or a vertex and a triangle
     bool of_edges;
     double distance; // r: they touch below it [m]
-    double apart;    // no less is between them where things are now [m]
+    double apart;    // no less is between them where things were when they last arrived [m]
 };
 
 // Two that touch.
@@ -26,10 +27,10 @@ struct Touch {
 // Whether more than a few vertices are further than a budget [m] from where they were.
 bool many_are_away(View<Vec3> from, View<Vec3> now, double budget);
 
-// A pair that is known is apart by what was measured last, less what its two have moved since, each for itself: while that is
-// enough, nothing has to be computed. Pairs are noted so far apart that every vertex may move by `budget`. Vertices that have
-// moved further are quick: their pairs are looked for anew in every move. All this says only what need not be looked at; what
-// is found does not depend on it.
+// A pair that is known is apart by what was measured last, less what its two have moved since, on each move by themselves or,
+// once they have arrived, relative to one another: while that is enough, nothing has to be computed. Pairs are noted so far
+// apart that every vertex may move by `budget`. Vertices that have moved further are quick: their pairs are looked for anew in
+// every move. All this says only what need not be looked at; what is found does not depend on it.
 //
 // Borrows the mesh, which must outlive it.
 class NearPairs {
@@ -47,7 +48,7 @@ public:
     // The pairs that may come nearer than half their distance on the way; of those that set out anew, only what has changed.
     // Whoever measures one may note how far it is apart at the start.
     const std::vector<NearPair *> &may_meet() const { return may_meet_; }
-    void arrive();
+    void arrive(View<Vec3> start, View<Vec3> end); // all of it, or any part of its last way
 
     std::vector<Touch> touching(View<Vec3> positions); // where everything is now, in order
     // Somewhere on the last move, of the objects that count: the first of all.
@@ -84,6 +85,15 @@ private:
     bool any_quick_ = false;
     std::vector<NearPair *> may_meet_;
 };
+
+// By how much two primitives that move straight can at most come nearer: what they move by together does not count [m].
+template <size_t N, size_t M>
+double most_nearer(const std::array<int, N> &a, const std::array<int, M> &b, View<Vec3> start, View<Vec3> end) {
+    double most = 0.0;
+    for (const int v : a)
+        for (const int w : b) most = std::max(most, ((end[v] - start[v]) - (end[w] - start[w])).squaredNorm());
+    return std::sqrt(most);
+}
 
 // Calls work with the vertices of the two of a pair.
 template <class Pair, class Work> auto with_vertices(const CollisionMesh &mesh, const Pair &pair, const Work &work) {

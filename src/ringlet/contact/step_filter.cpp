@@ -45,7 +45,6 @@ FilterReport filter_step(const FilterScene &scene, NearPairs &near, View<Vec3> s
             near.set_out(start, end);
         }
     }
-    near.arrive();
     report.zone_vertices = int(std::count(in_the_way.begin(), in_the_way.end(), 1));
     return report;
 }

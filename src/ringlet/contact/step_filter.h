@@ -26,7 +26,7 @@ struct FilterReport {
 // their border would meet. Where bodies leave no way out, everything goes only a part of its way.
 //
 // Only relative motion counts: a scene that moves as a whole is filtered alike. `near` may know pairs only where nothing
-// kinematic moves; it sets out on the filtered move and has arrived afterwards.
+// kinematic moves; it sets out on the filtered move.
 FilterReport filter_step(const FilterScene &scene, NearPairs &near, View<Vec3> start, std::vector<Vec3> &end);
 
 } // namespace ringlet

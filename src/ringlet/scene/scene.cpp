@@ -163,6 +163,7 @@ double Scene::Parts::filter(View<Vec3> now, std::vector<Vec3> &to, const MoveKin
 }
 
 void Scene::Parts::arrive(std::vector<Vec3> &now, const std::vector<Vec3> &to) {
+    near.arrive(now, to);
     now = to;
     if (recording) path.push_back(now);
 }

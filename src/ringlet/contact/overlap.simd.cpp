@@ -1,0 +1,132 @@
+#include "ringlet/contact/overlap_kernel.h"
+
+#include <cstring>
+
+namespace ringlet::RINGLET_SIMD {
+namespace {
+
+// The sixteen pairs of two quads' boxes, 4k + l being box k of the one and l of the other, are looked at in parts of a width.
+#if defined(RINGLET_SIMD_avx512)
+constexpr int width = 16;
+#define RINGLET_FIRST 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3
+#define RINGLET_SECOND 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3
+#elif defined(RINGLET_SIMD_avx2)
+constexpr int width = 8;
+#define RINGLET_FIRST 0, 0, 0, 0, 1, 1, 1, 1
+#define RINGLET_SECOND 0, 1, 2, 3, 0, 1, 2, 3
+#else
+constexpr int width = 4;
+#define RINGLET_FIRST 0, 0, 0, 0
+#define RINGLET_SECOND 0, 1, 2, 3
+#endif
+using Floats = float __attribute__((vector_size(4 * width)));
+using Bits = int __attribute__((vector_size(4 * width)));
+
+constexpr int parts = 16 / width;
+constexpr unsigned each_once = 0x08ce; // l > k
+
+Floats read(const float *numbers) {
+    Floats result;
+    std::memcpy(&result, numbers, sizeof(result));
+    return result;
+}
+
+// Of a row of the first quad, or of the second, what belongs to the pairs of a part.
+Floats of_first(const float *row, int part) {
+    const Floats x = read(row + part * width / 4);
+    return __builtin_shufflevector(x, x, RINGLET_FIRST);
+}
+Floats of_second(const float *row) {
+    const Floats x = read(row);
+    return __builtin_shufflevector(x, x, RINGLET_SECOND);
+}
+
+Floats lesser(Floats a, Floats b) { return a < b ? a : b; }
+Floats greater(Floats a, Floats b) { return a > b ? a : b; }
+
+unsigned lanes(Bits where) {
+#if defined(RINGLET_SIMD_avx512)
+    return __builtin_ia32_cvtd2mask512(where);
+#elif defined(RINGLET_SIMD_avx2)
+    return unsigned(__builtin_ia32_movmskps256(reinterpret_cast<Floats>(where)));
+#else
+    unsigned all = 0;
+    for (int lane = 0; lane < width; ++lane) all |= unsigned(where[lane] & 1) << lane;
+    return all;
+#endif
+}
+
+// Calls gaps(gap, end_gap) for what is between the boxes of a part's pairs on each axis, from both sides, at the start and at
+// the end.
+template <class Gaps> void for_gaps(const BoxQuad &a, const BoxQuad &b, int part, const Gaps &gaps) {
+    for (int axis = 0; axis < 3; ++axis) {
+        gaps(of_second(b.low[axis]) - of_first(a.high[axis], part),
+             of_second(b.end_low[axis]) - of_first(a.end_high[axis], part));
+        gaps(of_first(a.low[axis], part) - of_second(b.high[axis]),
+             of_first(a.end_low[axis], part) - of_second(b.end_high[axis]));
+    }
+}
+
+// Which boxes overlap on each axis at some time. What is in the rest never comes together.
+unsigned may_meet(const BoxQuad &a, const BoxQuad &b) {
+    unsigned which = 0;
+    for (int part = 0; part < parts; ++part) {
+        Floats apart = of_first(a.who_counts, part) + of_second(b.who_counts); // above 0: never
+        for_gaps(a, b, part, [&](Floats gap, Floats end_gap) { apart = greater(apart, lesser(gap, end_gap)); });
+        which |= lanes(apart <= 0.0f) << part * width;
+    }
+    return which;
+}
+
+// Which overlap on all three axes at one and the same time.
+unsigned meet_at_one_time(const BoxQuad &a, const BoxQuad &b) {
+    const Floats none = {}, one = none + 1.0f, never = none + 2.0f, rounding = none + 1e-6f;
+    unsigned which = 0;
+    for (int part = 0; part < parts; ++part) {
+        Floats from = none, to = one;
+        for_gaps(a, b, part, [&](Floats gap, Floats end_gap) { // (1 − t) gap + t end_gap ≤ 0
+            const Floats t = gap / (gap - end_gap);
+            const Floats opens = end_gap <= none ? t : never, closes = end_gap <= none ? one : t;
+            from = gap > none ? greater(from, opens) : from;
+            to = gap > none ? to : lesser(to, closes);
+        });
+        which |= lanes(from <= to + rounding) << part * width;
+    }
+    return which;
+}
+
+} // namespace
+
+void descend(Descent &d, int most_visits) {
+    const auto leave = [&](int i, int j) { d.nodes[d.left++] = {{i, j}}; };
+    for (int visit = 0; visit < most_visits && d.left > 0 && d.found + 16 <= Descent::room; ++visit) {
+        const auto [i, j] = d.nodes[--d.left].of;
+        const BoxQuad &a = d.a.nodes[i], &b = d.b.nodes[j];
+        const bool itself = d.one_tree && i == j, leaf_a = i >= d.a.first_leaf, leaf_b = j >= d.b.first_leaf;
+        unsigned which = may_meet(a, b);
+        if (itself) {
+            which &= each_once;
+            for (int k = 0; !leaf_a && k < (i == 0 ? d.a.children_of_root : 4); ++k) leave(4 * i + 1 + k, 4 * i + 1 + k);
+        }
+        if (leaf_a && leaf_b) {
+            if (which != 0) which &= meet_at_one_time(a, b);
+            for (; which != 0; which &= which - 1) {
+                const int lane = __builtin_ctz(which);
+                d.boxes[d.found++] = {{4 * i + lane / 4, 4 * j + lane % 4}};
+            }
+        } else if (leaf_a) {
+            for (int l = 0; l < 4; ++l)
+                if (which & (0x1111u << l)) leave(i, 4 * j + 1 + l);
+        } else if (leaf_b) {
+            for (int k = 0; k < 4; ++k)
+                if (which & (0xfu << 4 * k)) leave(4 * i + 1 + k, j);
+        } else {
+            for (; which != 0; which &= which - 1) {
+                const int lane = __builtin_ctz(which);
+                leave(4 * i + 1 + lane / 4, 4 * j + 1 + lane % 4);
+            }
+        }
+    }
+}
+
+} // namespace ringlet::RINGLET_SIMD
