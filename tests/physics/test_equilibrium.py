@@ -80,6 +80,35 @@ def test_a_curl_in_equilibrium_swings_as_fast_as_it_did():
     assert balanced == pytest.approx(plain, rel=0.1)
 
 
+def stiffness_at(strands, points):
+    """The second derivative of the energy by the free coordinates, frames following [N/m]; by differences."""
+    step, size = 1e-6, points.size
+    rows = np.empty((size - 9, size))
+    for row, i in enumerate(range(9, size)):
+        aside = step * np.eye(1, size, i).reshape(points.shape)
+        there, back = strands.energy(points + aside)[1], strands.energy(points - aside)[1]
+        rows[row] = ((there - back) / (2 * step)).ravel()
+    return 0.5 * (rows[:, 9:] + rows[:, 9:].T)
+
+
+@pytest.mark.parametrize(("angle", "slower"), [(110, True), (0, False)])
+def test_what_weight_adds_to_the_square_of_a_frequency_is_the_same_however_stiff_a_lock_is(angle, slower):
+    """What stands up swings slower than without weight, what hangs swings faster, by g over a length."""
+    groomed, added = helix(20, radius=4e-3, pitch=6e-3, per_turn=10) @ rotation((0, 0, 1), np.radians(angle)).T, []
+    for scale in (8, 32):
+        shot, groom = scene(groomed, more=MODE + f"[strands]\nbend_scale = {scale}\ncorrect_resolution = false\n")
+        made = equilibrium(shot, groom)
+        assert made.stiffened[0] == 1
+        plain, balanced = make_strands(shot, groom), make_strands(shot, groom, made.rest)
+        balanced.place(groomed)
+        mass = np.repeat(plain.masses[3:], 3)
+        before, after = stiffness_at(plain, groomed), stiffness_at(balanced, groomed)
+        mode = np.linalg.eigh(before / np.sqrt(np.outer(mass, mass)))[1][:, 0] / np.sqrt(mass)
+        added.append(mode @ (after - before) @ mode)
+    assert (added[0] < 0) == slower and abs(added[0]) > 9.81 / 0.1
+    assert added[1] == pytest.approx(added[0], rel=0.02)
+
+
 def test_it_takes_up_what_the_loft_leaves():
     """The loft corrects a shape by how it hangs, and cannot where it falls."""
     standing = helix(80, radius=4e-3, pitch=6e-3) @ rotation((0, 0, 1), np.radians(110)).T

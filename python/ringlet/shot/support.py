@@ -128,15 +128,19 @@ def _bodies(
 
 
 def _neighbours(contact: ShotContact, friction: float, locks: Curves, strands: Strands) -> Ways:
-    """Locks that are as near to one another as they touch push each other away."""
+    """Locks that are as near to one another as they touch push each other away, each two where they are nearest."""
     scene = Scene(strands, [], contact.model_copy(update={"parting_speed": 1.0}))  # or they would not push yet
     before = strands.positions.copy()
     scene.step(before, INSTANT, solver=Solver(newton=1))
     vertices, values = scene.contacts
     strands.place(before)
-    of = np.searchsorted(locks.offsets, vertices, side="right") - 1
-    of_two = of[:, 0] != of[:, 3]
-    return _pushing(values[of_two, 4:7], friction, vertices[of_two].astype(np.int64), values[of_two, :4])
+    pairs = np.sort(np.searchsorted(locks.offsets, vertices[:, [0, 3]], side="right") - 1, axis=1)
+    of_two = np.flatnonzero(pairs[:, 0] != pairs[:, 1])
+    apart = np.linalg.norm(np.einsum("kv,kvi->ki", values[of_two, :4], before[vertices[of_two]]), axis=1)
+    by_distance = of_two[np.argsort(apart, kind="stable")]
+    _, first = np.unique(pairs[by_distance], axis=0, return_index=True)
+    nearest = by_distance[first]
+    return _pushing(values[nearest, 4:7], friction, vertices[nearest].astype(np.int64), values[nearest, :4])
 
 
 def _pushing(away: Array, friction: float, vertex: Indices, weight: Array) -> Ways:
