@@ -175,6 +175,27 @@ BOOST_AUTO_TEST_CASE(a_move_that_meets_nothing_is_left_alone) {
     BOOST_TEST((filtered == crowd.end));
 }
 
+// Strands in a row, 4 mm apart, that are drawn together towards the first, which stays: every one is in the way of the next.
+BOOST_AUTO_TEST_CASE(a_chain_of_strands_stops_in_one_round) {
+    constexpr int strands = 20;
+    Crowd crowd(strands, 0.02, 0.03, 0);
+    for (int v = 0; v < 3 * strands; ++v) {
+        const int strand = v / 3;
+        crowd.start[v] = crowd.mesh.rest[v] = {4e-3 * strand, 0.01 * (v % 3), 1e-4 * strand};
+        crowd.end[v] = crowd.start[v] - Vec3(4.5e-3 * strand, 0.0, 0.0);
+    }
+    std::vector<Vec3> filtered;
+    const FilterReport report = crowd.filter(true, filtered);
+    BOOST_TEST(report.violations >= strands - 1);
+    BOOST_TEST(report.rounds == 1);
+    BOOST_TEST(report.fraction == 1.0);
+    BOOST_TEST(crowd.least_kept(filtered) > 1.0 - 1e-9);
+    const double part = (filtered[3] - crowd.start[3]).norm() / 4.5e-3;
+    BOOST_TEST(part > 0.6);
+    for (int v = 3; v < 3 * strands; ++v) // each as a whole, and all the same part of their ways
+        BOOST_TEST((filtered[v] - crowd.start[v] - part * (crowd.end[v] - crowd.start[v])).norm() < 1e-12);
+}
+
 BOOST_AUTO_TEST_CASE(only_relative_motion_is_filtered) {
     Crowd crowd(12, 0.02, 0.03, 5);
     std::vector<Vec3> filtered, filtered_flying;
