@@ -4,8 +4,9 @@
 
 namespace ringlet {
 
-CoupledStrands::CoupledStrands(const StrandModel &model)
-    : model_(model), lanes_(RINGLET_DISPATCH(strand_lanes)), order_(by_length(model)), place_(model.strand_count()) {
+CoupledStrands::CoupledStrands(const StrandModel &model, View<Vec3> positions)
+    : model_(model), lanes_(RINGLET_DISPATCH(strand_lanes)), order_(by_length_and_place(model, positions)),
+      place_(model.strand_count()) {
     const int strands = model.strand_count();
     for (int i = 0; i < strands; ++i) place_[order_[i]] = i;
     for (int first = 0; first < strands; first += lanes_)
@@ -48,7 +49,7 @@ void CoupledStrands::begin(const StrandArrays &arrays, const StrandStep &step) {
 void CoupledStrands::end(const AlignedVector &x, const StrandEffort &effort, std::vector<StrandReport> &reports) {
 #pragma omp parallel for schedule(dynamic)
     for (int g = 0; g < group_count(); ++g) {
-        StrandReport of_group[16];
+        StrandReport of_group[most_lanes];
         RINGLET_DISPATCH(end_strand_group, memory_[g].get(), x.data() + begin_[g], effort, of_group);
         for (int lane = 0; lane < groups_[g].count; ++lane) reports[groups_[g].strands[lane]] = of_group[lane];
     }

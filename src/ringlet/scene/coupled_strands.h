@@ -28,7 +28,7 @@ private:
 // Unknowns stand group by group as the kernels have them: coordinate k of vertex v at slot(v) + k · stride(v).
 class CoupledStrands {
 public:
-    explicit CoupledStrands(const StrandModel &model);
+    CoupledStrands(const StrandModel &model, View<Vec3> positions);
 
     // Opens a step. What is given must live until end().
     void begin(const StrandArrays &arrays, const StrandStep &step);

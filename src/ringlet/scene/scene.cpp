@@ -206,8 +206,6 @@ int Scene::Parts::newton(const SceneStep &scene_step, const StrandStep &step, st
     constexpr int most_more = 60;   // for strands that were held back
     constexpr double farther = 4.0; // than the search went last is not tried, but where a way is short
     std::vector<double> gone(vertices.parts(), 1.0), tried(vertices.parts(), 1.0);
-    std::vector<unsigned char> changed(system.unit_count(), 1);
-    std::vector<double> unused;
     reach.assign(vertices.parts(), 0.0);
     int iteration = 0;
     for (bool arrived = false; !arrived; ++iteration) {
@@ -222,12 +220,11 @@ int Scene::Parts::newton(const SceneStep &scene_step, const StrandStep &step, st
         }
         {
             const Stopwatch watch(report.time_assemble);
-            system.energies(x, &near, changed, unused);
-            system.assemble(x);
+            solver.prepare(system, x, scene_step.system);
         }
         {
             const Stopwatch watch(report.time_solve);
-            const SceneSolver::Result solved = solver.solve(system, scene_step.system, scene_step.system_tolerance, direction);
+            const SceneSolver::Result solved = solver.solve(system, scene_step.system_tolerance, direction);
             report.linear_iterations += solved.iterations;
             report.linear_residual = solved.residual;
             measure(system, direction, reach);
@@ -245,7 +242,8 @@ int Scene::Parts::newton(const SceneStep &scene_step, const StrandStep &step, st
             std::copy_n(x.data(), x.size(), found.data());
             if (!search(system, nullptr, direction, before, found).moved) break;
             for (size_t i = 0; i < system.size(); ++i) direction[i] = found[i] - x[i];
-            system.energies(x, &near, std::vector<unsigned char>(system.unit_count(), 1), unused);
+            std::vector<double> unused;
+            system.energies(x, &near, std::vector<unsigned char>(vertices.parts(), 1), unused);
         } else {
             tried = worth_going(system, x, direction);
             for (size_t p = 0; p < tried.size() && iteration < step.newton; ++p)
@@ -278,7 +276,6 @@ int Scene::Parts::newton(const SceneStep &scene_step, const StrandStep &step, st
             system.gather(x, to);
             filter(now, to, {true, true}, report);
         }
-        changed.assign(system.unit_count(), found.cuts > 0);
         arrive(now, to);
         system.scatter(now, x);
     }

@@ -1,10 +1,14 @@
 #include "ringlet/scene/scene_search.h"
 
+#include "ringlet/scene/lane_vectors.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace ringlet {
 namespace {
+
+constexpr double rounding = 1e-13; // of an energy
 
 // work(part, the unit's unknowns that are its own: first, stride, count).
 template <class Work> void for_parts(const SceneSystem &system, int unit, const Work &work) {
@@ -27,6 +31,49 @@ void mark_touched(const SceneSystem &system, std::vector<unsigned char> &marked)
         if (marked[b]) touched[a] = 1;
     }
     marked = std::move(touched);
+}
+
+// Of each part the slope of its energy along its direction [J].
+std::vector<double> slopes(const SceneSystem &system, const AlignedVector &direction) {
+    std::vector<double> slope(system.vertices.parts(), 0.0);
+    system.for_units([&](int u) {
+        for_parts(system, u, [&](int part, size_t first, size_t stride, size_t count) {
+            for (size_t i = first; i < first + count * stride; i += stride) slope[part] += system.gradient(i, u) * direction[i];
+        });
+    });
+    return slope;
+}
+
+// Clusters whose direction, as the filter left it of one that was to go as a whole, leads nowhere down: no part of it is any
+// good.
+std::vector<unsigned char> lead_uphill(const SceneSystem &system, const std::vector<double> &slope,
+                                       const std::vector<double> &energy, const std::vector<unsigned char> &left_out) {
+    const int parts = system.vertices.parts();
+    std::vector<double> slopes(parts, 0.0), sizes(parts, 0.0);
+    for (int p = 0; p < parts; ++p)
+        if (!left_out[p]) slopes[system.clusters()[p]] += slope[p], sizes[system.clusters()[p]] += std::abs(energy[p]);
+    std::vector<unsigned char> uphill(parts);
+    for (int p = 0; p < parts; ++p) uphill[p] = slopes[p] > rounding * sizes[p];
+    return uphill;
+}
+
+// Of units with parts that have `changed`: to = x + step · direction.
+void move(const SceneSystem &system, const AlignedVector &x, const std::vector<double> &step, const AlignedVector &direction,
+          const std::vector<unsigned char> &changed, AlignedVector &to) {
+    std::vector<unsigned char> asked(system.unit_count(), 0);
+    for (size_t p = 0; p < changed.size(); ++p)
+        if (changed[p]) asked[system.unit_of(int(p))] = 1;
+    system.for_units([&](int u) {
+        if (!asked[u]) return;
+        const size_t first = system.unit_begin(u), count = system.unit_end(u) - first;
+        double steps[most_lanes] = {};
+        system.to_lanes(u, step, steps);
+        if (u < system.group_count())
+            RINGLET_DISPATCH(lane_move, x.data() + first, steps, direction.data() + first, int(count / system.strands.stride()),
+                             to.data() + first);
+        else
+            for (size_t i = first; i < first + count; ++i) to[i] = x[i] + steps[0] * direction[i];
+    });
 }
 
 } // namespace
@@ -74,54 +121,49 @@ std::vector<double> worth_going(const SceneSystem &system, const AlignedVector &
 
 SceneSearch search(SceneSystem &system, const NearPairs *near, const AlignedVector &direction,
                    const std::vector<unsigned char> &all_of_it, AlignedVector &x) {
-    constexpr double least_decrease = 1e-4, rounding = 1e-13;
-    constexpr int most_cuts = 20, most_halvings = 12; // after which a part stays
+    constexpr double least_decrease = 1e-4;
+    constexpr int halvings = 4, most_shorter = 8; // then it goes a quarter as far, and after these it stays
+    constexpr int most_cuts = 20;
     const int parts = system.vertices.parts();
     SceneSearch result{false, 0, std::vector<double>(parts, 1.0)};
     std::vector<double> &step = result.step;
-    std::vector<double> slope(parts, 0.0), now, before;
-    std::vector<unsigned char> changed(system.unit_count(), 0), rises(parts);
-    system.energies(x, near, changed, before); // units were asked at x already
-    system.for_units([&](int u) {
-        for_parts(system, u, [&](int part, size_t first, size_t stride, size_t count) {
-            for (size_t i = first; i < first + count * stride; i += stride) slope[part] += system.gradient(i, u) * direction[i];
-        });
-    });
-
+    std::vector<double> now, before;
+    std::vector<unsigned char> changed(parts, 0), rises(parts), any_rises(parts);
+    system.energies(x, near, changed, before); // parts were asked at x already
+    const std::vector<double> slope = slopes(system, direction);
+    const std::vector<unsigned char> uphill = lead_uphill(system, slope, before, all_of_it);
     const auto allowed = [&](int part) { // of the energy, were it alone
         return before[part] + least_decrease * step[part] * slope[part] + rounding * std::abs(before[part]);
     };
+    const std::vector<int> &cluster = system.clusters();
+    for (int p = 0; p < parts; ++p)
+        if (!all_of_it[p] && uphill[cluster[p]]) step[p] = 0.0, ++result.cuts;
+    std::vector<double> excess(parts); // of clusters
     AlignedVector trial(system.size());
-    std::copy_n(x.data(), x.size(), trial.data()); // lanes without a strand too
-    changed.assign(system.unit_count(), 1);
+    std::copy_n(x.data(), x.size(), trial.data()); // what is not active too
+    changed.assign(parts, 1);
     for (int cut = 0; cut <= most_cuts; ++cut) {
-        system.for_units([&](int u) {
-            if (changed[u])
-                for_parts(system, u, [&](int part, size_t first, size_t stride, size_t count) {
-                    for (size_t i = first; i < first + count * stride; i += stride) trial[i] = x[i] + step[part] * direction[i];
-                });
-        });
+        move(system, x, step, direction, changed, trial);
         system.energies(trial, near, changed, now);
-        double sum = 0.0, bound = 0.0;
+        std::fill(excess.begin(), excess.end(), 0.0);
+        std::fill(any_rises.begin(), any_rises.end(), 0);
         for (int p = 0; p < parts; ++p)
-            if (system.together(p) && !all_of_it[p]) sum += now[p], bound += allowed(p);
-        const bool sum_falls = sum <= bound;
-        bool any_together = false;
+            if (!all_of_it[p]) excess[cluster[p]] += now[p] - allowed(p);
         for (int p = 0; p < parts; ++p) {
-            const bool may_rise = all_of_it[p] || step[p] == 0.0 || (system.together(p) && sum_falls);
+            const bool may_rise = all_of_it[p] || step[p] == 0.0 || excess[cluster[p]] <= 0.0;
             rises[p] = !may_rise && !(now[p] <= allowed(p));
-            any_together |= rises[p] && system.together(p);
+            any_rises[cluster[p]] |= rises[p];
         }
-        if (any_together) mark_touched(system, rises);
-        if (!any_together && !sum_falls)
-            for (int p = 0; p < parts; ++p) rises[p] |= system.together(p);
+        mark_touched(system, rises);
+        for (int p = 0; p < parts; ++p)
+            if (!any_rises[cluster[p]] && !(excess[cluster[p]] <= 0.0)) rises[p] = 1;
 
         std::fill(changed.begin(), changed.end(), 0);
         bool any = false;
         for (int p = 0; p < parts; ++p)
             if (rises[p] && !all_of_it[p] && step[p] > 0.0) {
-                step[p] *= cut < most_halvings ? 0.5 : 0.0;
-                changed[system.unit_of(p)] = any = true;
+                step[p] *= cut < halvings ? 0.5 : cut < most_shorter ? 0.25 : 0.0;
+                changed[p] = any = true;
                 ++result.cuts;
             }
         if (!any) {
@@ -130,7 +172,7 @@ SceneSearch search(SceneSystem &system, const NearPairs *near, const AlignedVect
             return result;
         }
     }
-    changed.assign(system.unit_count(), 1);
+    changed.assign(parts, 1);
     system.energies(x, near, changed, now);
     return result;
 }

@@ -18,14 +18,15 @@ std::vector<double> worth_going(const SceneSystem &system, const AlignedVector &
 
 struct SceneSearch {
     bool moved = false;       // false: no way was found on which the energy falls
-    int cuts = 0;             // halvings
+    int cuts = 0;             // times that a part went less far
     std::vector<double> step; // per part: how much of its direction it went
 };
 
 // Goes from x along the direction, which is that of the last move, every part as far as is good for it. One that touches
-// nothing that moves goes half as far until its energy falls as it should. The energies of those that touch, contacts shared
-// out evenly, need only fall in sum; where they do not, those whose own rises go half as far, and so do those that they touch:
-// what a direction does on both sides of a contact belongs together. Parts that are to go `all_of_it` do, whatever the energy.
+// nothing that moves goes half as far, later a quarter, until its energy falls as it should. The energies of a cluster,
+// contacts shared out evenly, need only fall in sum; where they do not, those whose own rises go less far, and so do those that
+// they touch: what a direction does on both sides of a contact belongs together. A cluster stays where what the filter left of
+// its direction leads nowhere down. Parts that are to go `all_of_it` do, whatever the energy.
 SceneSearch search(SceneSystem &system, const NearPairs *near, const AlignedVector &direction,
                    const std::vector<unsigned char> &all_of_it, AlignedVector &x);
 

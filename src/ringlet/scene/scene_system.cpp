@@ -1,11 +1,13 @@
 #include "ringlet/scene/scene_system.h"
 
+#include "ringlet/scene/lane_vectors.h"
+
 #include <algorithm>
 
 namespace ringlet {
 
 SceneSystem::SceneSystem(const StrandModel &model_, const std::vector<SceneCloth> &cloths_, const SceneVertices &vertices_)
-    : strands(model_), vertices(vertices_), model(model_) {
+    : strands(model_, vertices_.positions), vertices(vertices_), model(model_) {
     for (const SceneCloth &cloth : cloths_) cloths.emplace_back(*cloth.model, *cloth.state);
 }
 
@@ -49,49 +51,81 @@ void SceneSystem::find_planes(const std::vector<Touch> &touching) {
 
 // Nothing but the incomplete factor is known of a cloth: it counts as coupled whatever touches it.
 void SceneSystem::couple_parts() {
-    values_.resize(contacts.contacts().size());
-    pushes_.resize(values_.size());
-    coupled_.assign(unit_count(), 0);
-    std::fill(coupled_.begin() + group_count(), coupled_.end(), 1);
+    const std::vector<Contact> &all = contacts.contacts();
+    values_.resize(all.size());
+    pushes_.assign(all.size(), {Vec3::Zero(), Vec3::Zero()});
     together_.assign(vertices.parts(), 0);
-    for (const Contact &c : contacts.contacts()) {
-        if (!couples(c)) continue;
-        const int a = vertices.part_of(c.vertex[0]), b = vertices.part_of(c.vertex[3]);
-        coupled_[unit_of(a)] = coupled_[unit_of(b)] = 1;
+    clusters_.resize(vertices.parts());
+    std::iota(clusters_.begin(), clusters_.end(), 0);
+    const auto find = [&](int part) {
+        while (clusters_[part] != part) part = clusters_[part] = clusters_[clusters_[part]];
+        return part;
+    };
+    couplings_.clear();
+    for (int k = 0; k < int(all.size()); ++k) {
+        if (!couples(all[k])) continue;
+        couplings_.push_back(k);
+        const int a = vertices.part_of(all[k].vertex[0]), b = vertices.part_of(all[k].vertex[3]);
         together_[a] = together_[b] = 1;
+        const int first = find(a), other = find(b);
+        clusters_[std::max(first, other)] = std::min(first, other);
     }
+    for (int part = 0; part < vertices.parts(); ++part) clusters_[part] = find(part);
+    list_touched();
+}
+
+void SceneSystem::list_touched() {
+    touched_begin_.assign(unit_count() + 1, 0);
+    for (const int v : contacts.vertices()) ++touched_begin_[unit_of(vertices.part_of(v)) + 1];
+    std::partial_sum(touched_begin_.begin(), touched_begin_.end(), touched_begin_.begin());
+    touched_.resize(contacts.vertices().size());
+    std::vector<int> next(touched_begin_.begin(), touched_begin_.end() - 1);
+    for (const int v : contacts.vertices()) touched_[next[unit_of(vertices.part_of(v))]++] = v;
 }
 
 bool SceneSystem::any_coupled() const {
-    return std::any_of(coupled_.begin(), coupled_.end(), [](unsigned char coupled) { return coupled != 0; });
+    return !cloths.empty() ||
+           std::any_of(together_.begin(), together_.end(), [](unsigned char coupled) { return coupled != 0; });
 }
 
-Vec3 SceneSystem::separation_at(const Contact &c, const AlignedVector &x) const {
-    Vec3 sum = Vec3::Zero();
-    for (int i = 0; i < 4; ++i)
-        if (c.weight[i] != 0.0) sum += c.weight[i] * position(x, c.vertex[i]);
-    return sum;
+void SceneSystem::to_lanes(int unit, const std::vector<double> &of_parts, double *of_lanes) const {
+    if (unit >= group_count()) {
+        of_lanes[0] = of_parts[vertices.strands + unit - group_count()];
+        return;
+    }
+    const StrandGroup group = strands.strands_of(unit);
+    for (int lane = 0; lane < group.count; ++lane) of_lanes[lane] = of_parts[group.strands[lane]];
+}
+
+void SceneSystem::from_lanes(int unit, const double *of_lanes, std::vector<double> &of_parts) const {
+    if (unit >= group_count()) {
+        of_parts[vertices.strands + unit - group_count()] = of_lanes[0];
+        return;
+    }
+    const StrandGroup group = strands.strands_of(unit);
+    for (int lane = 0; lane < group.count; ++lane) of_parts[group.strands[lane]] = of_lanes[lane];
+}
+
+void SceneSystem::evaluate(int unit, const AlignedVector &x) {
+    double energies[most_lanes] = {};
+    if (unit < group_count())
+        strands.evaluate(unit, x, energies);
+    else
+        energies[0] = cloths[unit - group_count()].energy(x.data() + unit_begin(unit));
+    from_lanes(unit, energies, own_energies_);
 }
 
 void SceneSystem::energies(const AlignedVector &x, const NearPairs *near, const std::vector<unsigned char> &changed,
                            std::vector<double> &of) {
+    std::vector<unsigned char> asked(unit_count(), 0);
+    for (int p = 0; p < vertices.parts(); ++p)
+        if (changed[p]) asked[unit_of(p)] = 1;
     for_units([&](int u) {
-        if (!changed[u]) return;
-        if (u >= group_count()) {
-            const int cloth = u - group_count();
-            own_energies_[vertices.strands + cloth] = cloths[cloth].energy(x.data() + unit_begin(u));
-            return;
-        }
-        double energy[16];
-        strands.evaluate(u, x, energy);
-        const StrandGroup group = strands.strands_of(u);
-        for (int lane = 0; lane < group.count; ++lane) own_energies_[group.strands[lane]] = energy[lane];
+        if (asked[u]) evaluate(u, x);
     });
-    places_.resize(given_.size());
-    for (size_t v = vertices.moving_vertices(); v < given_.size(); ++v) places_[v] = given_[v];
 #pragma omp parallel for schedule(static)
     for (int v = 0; v < vertices.moving_vertices(); ++v)
-        if (changed[unit_of(vertices.part_of(v))]) places_[v] = position(x, v);
+        if (changed[vertices.part_of(v)]) places_[v] = position(x, v);
     share_contacts(near, changed);
     of = own_energies_;
     for (const Lift &lift : lifts) {
@@ -116,7 +150,7 @@ void SceneSystem::share_contacts(const NearPairs *near, const std::vector<unsign
     contacts_found_ = false;
     asked_planes_ = near == nullptr;
     std::vector<unsigned char> anew(vertices.parts());
-    for (int p = 0; p < vertices.parts(); ++p) anew[p] = is_active(p) && (of_all || changed[unit_of(p)]);
+    for (int p = 0; p < vertices.parts(); ++p) anew[p] = is_active(p) && (of_all || changed[p]);
     const auto is_anew = [&](int a, int b) { return (a >= 0 && anew[a]) || (b >= 0 && anew[b]); };
     std::erase_if(pushed_, [&](const Shared &push) { return is_anew(push.a, push.b); });
     const auto push = [&](const Contact &c) {
@@ -147,27 +181,30 @@ void SceneSystem::expect(const AlignedVector &direction) {
     }
 }
 
-void SceneSystem::assemble(const AlignedVector &x) {
-    for_units([&](int u) {
-        if (u < group_count())
-            strands.assemble(u, x);
-        else
-            cloths[u - group_count()].assemble(x.data() + unit_begin(u));
-    });
+void SceneSystem::linearise(const AlignedVector &x) {
+    places_.resize(given_.size());
+    std::copy(given_.begin() + vertices.moving_vertices(), given_.end(), places_.begin() + vertices.moving_vertices());
+    gather(x, places_);
+    contacts_found_ = true;
     const std::vector<Contact> &all = contacts.contacts();
 #pragma omp parallel for schedule(static)
-    for (int c = 0; c < int(all.size()); ++c) values_[c] = contact_value(all[c], separation_at(all[c], x));
-    const std::vector<int> &touched = contacts.vertices();
-#pragma omp parallel for schedule(static)
-    for (int k = 0; k < int(touched.size()); ++k) {
-        if (!is_active(vertices.part_of(touched[k]))) continue;
-        if (touched[k] < vertices.strand_vertices())
-            add_to_strand(touched[k]);
+    for (int c = 0; c < int(all.size()); ++c) values_[c] = contact_value(all[c], separation(all[c], places_));
+}
+
+void SceneSystem::assemble(int unit, const AlignedVector &x) {
+    evaluate(unit, x);
+    if (unit < group_count())
+        strands.assemble(unit, x);
+    else
+        cloths[unit - group_count()].assemble(x.data() + unit_begin(unit));
+    for (const int v : touched(unit)) {
+        if (unit < group_count())
+            add_to_strand(v);
         else
-            add_to_cloth(touched[k]);
+            add_to_cloth(v);
     }
     for (const Lift &lift : lifts)
-        if (is_active(vertices.part_of(lift.vertex))) add_lift(lift, x);
+        if (unit_of(vertices.part_of(lift.vertex)) == unit) add_lift(lift, x);
 }
 
 void SceneSystem::add_lift(const Lift &lift, const AlignedVector &x) {
@@ -254,29 +291,34 @@ void SceneSystem::precondition(int unit, AlignedVector &b) const {
         cloths[unit - group_count()].precondition(b.data() + unit_begin(unit));
 }
 
-void SceneSystem::couple(const AlignedVector &p, AlignedVector &q) {
+void SceneSystem::couple(const AlignedVector &p, const std::vector<unsigned char> &busy, std::vector<double> &of_clusters) {
     const std::vector<Contact> &all = contacts.contacts();
     const CollisionMesh &mesh = vertices.mesh;
+    std::vector<double> curvatures(couplings_.size());
 #pragma omp parallel for schedule(static)
-    for (int c = 0; c < int(all.size()); ++c) {
-        pushes_[c] = {Vec3::Zero(), Vec3::Zero()};
-        if (!couples(all[c])) continue;
+    for (int k = 0; k < int(couplings_.size()); ++k) {
+        const Contact &c = all[couplings_[k]];
+        if (!busy[vertices.part_of(c.vertex[0])] && !busy[vertices.part_of(c.vertex[3])]) continue;
         Vec3 side[2] = {Vec3::Zero(), Vec3::Zero()};
         for (int i = 0; i < 4; ++i)
-            if (mesh.moves[all[c].vertex[i]]) side[i >= all[c].first] += all[c].weight[i] * position(p, all[c].vertex[i]);
-        pushes_[c] = {values_[c].hessian * side[1], values_[c].hessian * side[0]};
+            if (mesh.moves[c.vertex[i]]) side[i >= c.first] += c.weight[i] * position(p, c.vertex[i]);
+        const Mat3 &hessian = values_[couplings_[k]].hessian;
+        pushes_[couplings_[k]] = {hessian * side[1], hessian * side[0]};
+        curvatures[k] = 2.0 * side[0].dot(hessian * side[1]);
     }
-    const std::vector<int> &touched = contacts.vertices();
-#pragma omp parallel for schedule(static)
-    for (int k = 0; k < int(touched.size()); ++k) {
-        if (!is_active(vertices.part_of(touched[k]))) continue;
-        Vec3 force = Vec3::Zero();
-        for (const ContactSet::Role &role : contacts.of(touched[k])) {
-            const Contact &c = all[role.contact];
-            force += c.weight[role.as] * pushes_[role.contact][role.as >= c.first];
-        }
-        const size_t first = slot(touched[k]), step = stride(touched[k]);
-        for (int i = 0; i < 3; ++i) q[first + i * step] += force[i];
+    for (size_t k = 0; k < couplings_.size(); ++k)
+        of_clusters[clusters_[vertices.part_of(all[couplings_[k]].vertex[0])]] += curvatures[k];
+}
+
+void SceneSystem::subtract_pushes(int unit, const std::vector<double> &alpha, AlignedVector &r) const {
+    for (const int v : touched(unit)) {
+        const double part = alpha[vertices.part_of(v)];
+        if (part == 0.0) continue;
+        Vec3 push = Vec3::Zero();
+        for (const ContactSet::Role &role : contacts.of(v))
+            push += contacts.contacts()[role.contact].weight[role.as] *
+                    pushes_[role.contact][role.as >= contacts.contacts()[role.contact].first];
+        for (int i = 0; i < 3; ++i) r[slot(v) + i * stride(v)] -= part * push[i];
     }
 }
 

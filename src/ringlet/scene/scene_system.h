@@ -77,45 +77,61 @@ public:
 
     // Goes over to the contacts of what touches where everything is now.
     void touch(const std::vector<Touch> &touching, View<Vec3> now);
-    bool together(int part) const { return together_[part]; }  // something that moves touches it
-    bool is_coupled(int unit) const { return coupled_[unit]; } // its own factor does not solve it
-    bool any_coupled() const;
+    bool together(int part) const { return together_[part]; } // something that moves touches it
+    bool any_coupled() const;                                 // their own factors do not solve all
+    bool is_alone(int part) const { return part < vertices.strands && !together_[part]; }
+    // Parts that touch one another, directly or by others: of each part the first of those that it is so joined with.
+    const std::vector<int> &clusters() const { return clusters_; }
     // Per part, whether it is a cloth or touches one, so that a search goes by planes: see scene_search.h.
     const std::vector<unsigned char> &by_planes() const { return by_planes_; }
 
     // Energies [J] of the parts at x, somewhere on the last move: each with its share of what pushes there, be it a contact yet
-    // or not (without `near`: of what its contacts push, by their planes), and of the contacts' friction. Only units that have
-    // `changed` since this was last asked are asked again, and contacts only of these.
+    // or not (without `near`: of what its contacts push, by their planes), and of the contacts' friction. Only parts that have
+    // `changed` since this was last asked, or since they were assembled, are asked again, and contacts only of these.
     void energies(const AlignedVector &x, const NearPairs *near, const std::vector<unsigned char> &changed,
                   std::vector<double> &of_parts);
 
-    void assemble(const AlignedVector &x);     // the gradient and A where the energies were asked last
-    double gradient(size_t i, int unit) const; // its entry i of the whole vector, which is the unit's; 0 of padding
+    void linearise(const AlignedVector &x);          // the contacts, before units are assembled
+    void assemble(int unit, const AlignedVector &x); // its own energy, the gradient and A
+    double gradient(size_t i, int unit) const;       // its entry i of the whole vector, which is the unit's; 0 of padding
     void negative_gradient(int unit, AlignedVector &into) const;
 
     // Expects the contacts to bear what they push with where the direction ends, by their matrix: there, all forces balance.
     void expect(const AlignedVector &direction);
 
-    void factor(int unit);                                 // of P, exactly or nearly
-    void precondition(int unit, AlignedVector &b) const;   // by it, in place
-    void couple(const AlignedVector &p, AlignedVector &q); // q += C p
+    void factor(int unit);                               // of P, exactly or nearly
+    void precondition(int unit, AlignedVector &b) const; // by it, in place
+    // The pushes C p, and p · C p, which is added to that of each cluster; of those that are busy (per part).
+    void couple(const AlignedVector &p, const std::vector<unsigned char> &busy, std::vector<double> &of_clusters);
+    void subtract_pushes(int unit, const std::vector<double> &alpha, AlignedVector &r) const; // r −= α C p, α per part
+
+    // Numbers of a unit's parts, a lane each (lane_vectors.h).
+    void to_lanes(int unit, const std::vector<double> &of_parts, double *of_lanes) const;
+    void from_lanes(int unit, const double *of_lanes, std::vector<double> &of_parts) const;
 
     const ContactValue &value(int contact) const { return values_[contact]; }
 
 private:
     bool couples(const Contact &c) const { return vertices.part_of(c.vertex[0]) >= 0 && vertices.part_of(c.vertex[3]) >= 0; }
     void couple_parts();
+    void list_touched();
+    View<int> touched(int unit) const {
+        return {touched_.data() + touched_begin_[unit], touched_.data() + touched_begin_[unit + 1]};
+    }
     void find_planes(const std::vector<Touch> &touching);
     void share_contacts(const NearPairs *near, const std::vector<unsigned char> &changed);
-    Vec3 separation_at(const Contact &contact, const AlignedVector &x) const;
+    void evaluate(int unit, const AlignedVector &x);
     void add_to_strand(int vertex);
     void add_lift(const Lift &lift, const AlignedVector &x);
     void add_to_cloth(int vertex);
 
     View<Vec3> given_;
-    std::vector<ContactValue> values_;        // of the contacts
-    std::vector<std::array<Vec3, 2>> pushes_; // on the two sides of each
-    std::vector<unsigned char> coupled_, together_, by_planes_;
+    std::vector<ContactValue> values_;                // of the contacts
+    std::vector<std::array<Vec3, 2>> pushes_;         // on the two sides of each
+    std::vector<int> couplings_;                      // contacts between two parts
+    std::vector<int> touched_, touched_begin_;        // vertices that contacts act on, unit by unit
+    std::vector<unsigned char> together_, by_planes_; // per part
+    std::vector<int> clusters_;
     std::vector<double> own_energies_; // per part, without contacts
     std::vector<Vec3> places_;         // of all vertices, where energies were asked last
     struct Shared {                    // by two parts; −1: by one and what is kinematic

@@ -52,13 +52,39 @@ std::vector<int> by_length(const StrandModel &model) {
 
 namespace {
 
+// Where a place is on a curve through the box of all of them that keeps what is near together (Morton's).
+uint32_t on_the_curve(const Eigen::Array3d &part) {
+    constexpr int bits = 10;
+    uint32_t place = 0;
+    for (int bit = bits - 1; bit >= 0; --bit)
+        for (int k = 0; k < 3; ++k) place = place << 1 | (uint32_t(part[k] * ((1 << bits) - 1)) >> bit & 1);
+    return place;
+}
+
+} // namespace
+
+std::vector<int> by_length_and_place(const StrandModel &model, View<Vec3> positions) {
+    Eigen::AlignedBox3d box;
+    for (int s = 0; s < model.strand_count(); ++s) box.extend(positions[model.offsets[s]]);
+    std::vector<uint32_t> place(model.strand_count());
+    for (int s = 0; s < model.strand_count(); ++s) {
+        const Eigen::Array3d part = (positions[model.offsets[s]] - box.min()).array() / (box.sizes().array() + 1e-300);
+        place[s] = on_the_curve(part.min(1.0));
+    }
+    std::vector<int> order = by_length(model);
+    const auto length = [&](int s) { return model.offsets[s + 1] - model.offsets[s]; };
+    std::stable_sort(order.begin(), order.end(),
+                     [&](int a, int b) { return length(a) != length(b) ? length(a) > length(b) : place[a] < place[b]; });
+    return order;
+}
+
+namespace {
+
 int longest_strand(const StrandModel &model) {
     int most = 3;
     for (int s = 0; s < model.strand_count(); ++s) most = std::max(most, model.offsets[s + 1] - model.offsets[s]);
     return most;
 }
-
-constexpr int most_lanes = 8;
 
 // work(group, workspace) for groups of as many strands as there are lanes, in parallel.
 template <class Work> void for_each_group(const StrandModel &model, const Work &work) {
