@@ -100,7 +100,8 @@ unsigned meet_at_one_time(const BoxQuad &a, const BoxQuad &b) {
 void descend(Descent &d, int most_visits) {
     const auto leave = [&](int i, int j) { d.nodes[d.left++] = {{i, j}}; };
     for (int visit = 0; visit < most_visits && d.left > 0 && d.found + 16 <= Descent::room; ++visit) {
-        const auto [i, j] = d.nodes[--d.left].of;
+        const BoxPair node = d.nodes[--d.left];
+        const int i = node.of[0], j = node.of[1];
         const BoxQuad &a = d.a.nodes[i], &b = d.b.nodes[j];
         const bool itself = d.one_tree && i == j, leaf_a = i >= d.a.first_leaf, leaf_b = j >= d.b.first_leaf;
         unsigned which = may_meet(a, b);
