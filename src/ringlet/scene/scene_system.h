@@ -77,8 +77,7 @@ public:
 
     // Goes over to the contacts of what touches where everything is now.
     void touch(const std::vector<Touch> &touching, View<Vec3> now);
-    bool together(int part) const { return together_[part]; } // something that moves touches it
-    bool any_coupled() const;                                 // their own factors do not solve all
+    bool any_coupled() const; // their own factors do not solve all
     bool is_alone(int part) const { return part < vertices.strands && !together_[part]; }
     // Parts that touch one another, directly or by others: of each part the first of those that it is so joined with.
     const std::vector<int> &clusters() const { return clusters_; }
