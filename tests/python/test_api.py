@@ -5,10 +5,12 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
-from small_example import write_example
+from small_example import write_example, write_head
 
 import ringlet
+from ringlet import api, io
 
 ROOT = Path(__file__).parents[2]
 
@@ -47,6 +49,37 @@ def test_a_groom_made_in_memory_says_what_a_simulation_lacks(tmp_path):
     groom.scalp_file = None
     with pytest.raises(ringlet.UserError, match="scalp"):
         ringlet.simulate(example / "small.shot.toml", groom)
+
+
+@pytest.mark.parametrize(("unit", "up", "head"), [(0.01, "Y", "usda"), (0.0254, "Z", "usda"), (1.0, "Z", "obj")])
+def test_a_recipe_moves_as_the_groom_that_was_written_of_it_to_the_bit(tmp_path, unit, up, head):
+    example = write_example(tmp_path)
+    write_head(example / "head.usda", unit=unit, up=up)
+    if head == "obj":
+        write_obj(example, unit, up)
+    shot = example / "small.shot.toml"
+    ringlet.write_groom(ringlet.build_groom(example / "small.recipe.toml"), example / "groom.usdc")
+
+    made = [ringlet.simulate(shot, example / name).points for name in ("small.recipe.toml", "groom.usdc")]
+    assert made[0].shape[0] > 1 and np.array_equal(*made)
+    recipe, groom = (ringlet.load_groom(example / name) for name in ("small.recipe.toml", "groom.usdc"))
+    lofts = [ringlet.loft(shot, groom).rest.points for groom in (recipe, groom)]
+    assert not np.array_equal(recipe.locks.points, groom.locks.points) and np.array_equal(*lofts)
+    settings = ringlet.read_shot(shot)
+    assert api.made_from(settings, recipe) == api.made_from(settings, groom)
+
+
+def write_obj(example, unit, up):
+    """The head as an OBJ, of places that single precision does not hold, in place of the USD file."""
+    head = io.read_mesh(example / "head.usda")
+    places = head.points * (1.0 + 1e-9) / unit
+    if up == "Z":
+        places = places[:, [0, 2, 1]] * (1, -1, 1)
+    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in places.tolist()]
+    lines += ["f " + " ".join(map(str, triangle + 1)) for triangle in head.triangles]
+    (example / "head.obj").write_text("\n".join(lines))
+    recipe = (example / "small.recipe.toml").read_text().replace('region = "scalp"', f'unit = "m"\nup = "{up}"')
+    (example / "small.recipe.toml").write_text(recipe.replace("head.usda", "head.obj"))
 
 
 def test_a_run_times_its_stages_and_refuses_a_bad_place_before_the_work(tmp_path):

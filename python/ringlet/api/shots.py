@@ -52,12 +52,10 @@ def simulate(
     touches:     keep what touches in every frame, for ``write_touches``
     """
     from ringlet import shot as shots
-    from ringlet.groom.groom import Groom
 
     if not isinstance(shot, shots.Shot):
         shot = read_shot(shot)
-    if not isinstance(groom, Groom):
-        groom = load_groom(groom or shot.groom, progress=progress)
+    groom = _taken(groom or shot.groom, progress)
     inputs = _inputs(shot, groom, allow_stale)
     return shots.simulate(
         shot,
@@ -96,6 +94,7 @@ def write_simulation(
     from ringlet import shot as shots
 
     io.check_target(path, under)
+    groom = _taken(groom)
     inputs = _inputs(shot, groom, allow_stale)
     kept = _checkpoints(checkpoints, shot, groom, inputs, frames)
     first, last = frames or shot.frames
@@ -122,6 +121,7 @@ def made_from(shot: Shot, groom: Groom, *, frames: tuple[int, int] | None = None
     """A digest of all that the frames of a simulation depend on: two runs with the same give the same bits."""
     from ringlet import shot as shots
 
+    groom = _taken(groom)
     return shots.made_of(shot, groom, frames=frames, **_inputs(shot, groom, False))
 
 
@@ -129,7 +129,19 @@ def start_motion(shot: Shot, groom: Groom, *, allow_stale: bool = False) -> Moti
     """The locks of a groom at the start of a shot, to be moved frame by frame by who wants to see each."""
     from ringlet import shot as shots
 
+    groom = _taken(groom)
     return shots.Motion(shot, groom, first=shot.frames[0], **_inputs(shot, groom, allow_stale))
+
+
+def _taken(groom: Groom | Path | str, progress: Progress | None = None) -> Groom:
+    """The groom as a shot takes it: with the numbers of its file, also where it comes from a recipe.
+
+    Steps end before they have converged to the last digit, and what differs there grows.
+    """
+    from ringlet import io
+    from ringlet.groom.groom import Groom
+
+    return io.as_written(groom if isinstance(groom, Groom) else load_groom(groom, progress=progress))
 
 
 def _inputs(shot: Shot, groom: Groom, allow_stale: bool) -> dict[str, Any]:
@@ -165,12 +177,10 @@ def loft(
     """
     from ringlet import io
     from ringlet import shot as shots
-    from ringlet.groom.groom import Groom
 
     if not isinstance(shot, shots.Shot):
         shot = read_shot(shot)
-    if not isinstance(groom, Groom):
-        groom = load_groom(groom or shot.groom, progress=progress)
+    groom = _taken(groom or shot.groom, progress)
     obstacles = _lain_on(shot, groom)
     if known is None or not Path(known).exists():
         made = shots.preload(shot, groom, obstacles=obstacles, progress=progress)

@@ -4,7 +4,7 @@ from ringlet.io.read import read_clip, read_curves, read_mesh, read_space
 from ringlet.io.texture import read_texture
 from ringlet.io.usd.cache import CacheFile, CacheWriter, cache_groom_path, open_cache, read_cache, write_cache
 from ringlet.io.usd.check import problems
-from ringlet.io.usd.groom import read_groom, write_groom
+from ringlet.io.usd.groom import as_written, read_groom, write_groom
 from ringlet.io.usd.hairs import HairWriter, read_hair_frames, read_hairs, read_stage
 from ringlet.io.usd.mesh import Body, read_bodies, read_body
 from ringlet.io.usd.rest import read_rest, write_rest
@@ -16,6 +16,7 @@ __all__ = [
     "CacheFile",
     "CacheWriter",
     "HairWriter",
+    "as_written",
     "cache_groom_path",
     "check_target",
     "heat",

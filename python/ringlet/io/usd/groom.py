@@ -11,16 +11,18 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from pxr import Sdf, Tf, Usd, UsdGeom
 
 from ringlet.curves import Curves
 from ringlet.errors import UserError
 from ringlet.groom.groom import Groom
-from ringlet.io.space import from_metres
+from ringlet.io.space import from_metres, to_metres
 from ringlet.io.usd.curves import define_curves, own_curves, set_points, set_roots
 from ringlet.io.usd.mesh import define_mesh, read_usd_mesh, select_mesh
 from ringlet.io.usd.stage import (
@@ -51,7 +53,7 @@ def write_groom(groom: Groom, path: Path | str, variants: Mapping[str, Groom] | 
 
     variants: grooms on the same head by name, as a variant set of ``/groom``; ``groom`` is the selection ``base``
     """
-    head = groom.scalp_file if groom.scalp_file and groom.scalp_file.suffix in SUFFIXES else None
+    head = _head_file(groom)
     if head:
         refuse_itself(path, head, "head")
     space = read_usd_space(head) if head else groom.space
@@ -79,6 +81,36 @@ def write_groom(groom: Groom, path: Path | str, variants: Mapping[str, Groom] | 
                     _define(stage, variant, space)
             choice.SetVariantSelection(BASE)
         stage.Save()
+
+
+def as_written(groom: Groom) -> Groom:
+    """The groom with the numbers that it has when it is read from its file: to the same bits, and so are its motions.
+
+    Points and widths are in single precision there, in the unit of the head; a head that is not USD goes with it.
+    """
+    head, scalp = _head_file(groom), groom.scalp
+    space = read_usd_space(head) if head else groom.space
+    if head is None:
+        scalp = replace(scalp, points=_points_written(scalp.points, space))
+    guides, locks = (_curves_written(curves, space) for curves in (groom.guides, groom.locks))
+    return replace(groom, guides=guides, locks=locks, scalp=scalp)
+
+
+def _curves_written(curves: Curves, space: StageSpace) -> Curves:
+    written = curves.with_points(_points_written(curves.points, space))
+    if "width" in curves.point:
+        widths = np.asarray(curves.point["width"] / space.meters_per_unit, np.float32)
+        written.point = {**curves.point, "width": widths * np.float32(space.meters_per_unit)}
+    return written
+
+
+def _points_written(points: NDArray[np.floating], space: StageSpace) -> NDArray[np.float64]:
+    return to_metres(from_metres(points, space).astype(np.float64), space)
+
+
+def _head_file(groom: Groom) -> Path | None:
+    """The USD file of the head, which a file of the groom refers to; None where it has the head in itself."""
+    return groom.scalp_file if groom.scalp_file and groom.scalp_file.suffix in SUFFIXES else None
 
 
 def _define(stage: Usd.Stage, groom: Groom, space: StageSpace) -> None:
