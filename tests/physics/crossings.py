@@ -23,12 +23,21 @@ class Judge:
             moves.append(np.zeros(len(body.points), bool))
         sides = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
         edges = np.concatenate([edges, np.unique(np.sort(sides, axis=1), axis=0)])
-        patches = np.arange(begin)  # what moves as it is told is of one patch, every other vertex of its own
-        patches[~np.concatenate(moves)] = begin
         self.mesh = ipctk.CollisionMesh(scene.positions, edges.astype(np.int32), triangles.astype(np.int32))
-        self.mesh.can_collide = ipctk.make_vertex_patches_filter(patches.astype(np.int32))
+        self._strands, self._told = scene.strands.curves, ~np.concatenate(moves)
+        self.excuse(np.zeros(0, int))
         # Additive advancement: what comes nearer than a ten-thousandth of its distance at the start has met.
         self.ccd = ipctk.AdditiveCCD(max_iterations=100_000, conservative_rescaling=0.9999)
+
+    def excuse(self, vertices):
+        """Does not look, from now on, at these vertices of strands and those beside them where they meet bodies."""
+        patches = np.arange(len(self._told))  # what moves as it is told is of one patch, every other vertex of its own
+        patches[self._told] = len(patches)
+        lock = np.searchsorted(self._strands.offsets, vertices, side="right")
+        for step in (-1, 0, 1):
+            beside = np.clip(vertices + step, 0, len(self._strands.points) - 1)
+            patches[beside[np.searchsorted(self._strands.offsets, beside, side="right") == lock]] = len(patches)
+        self.mesh.can_collide = ipctk.make_vertex_patches_filter(patches.astype(np.int32))
 
     def crossings(self, before, after):
         """How many pairs meet while every vertex goes straight from ``before`` to ``after`` [m], shape (n, 3)."""

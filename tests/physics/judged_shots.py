@@ -43,11 +43,18 @@ def start(shot: str, recipe: str | None = None, locks: int | None = None):
 
 
 def judged(motion, frames: int | None = None, every: int = 1) -> Iterator[Judged]:
-    """Plays the frames of a shot, or so many, and judges every which of them, all moves of it."""
+    """Plays the frames of a shot, or so many, and judges every which of them, all moves of it.
+
+    What begins inside a body may come out through its surface: it is judged there from the frame on after it is out.
+    """
     judge, (first, last) = Judge(motion.scene), motion.shot.frames
+    excused = motion.scene.memory["embedded_vertices"]
     for k in range(last - first if frames is None else frames):
         motion.scene.record(asked := k % every == 0)
         begin = first + k % (last - first)
+        before, excused = excused, motion.scene.memory["embedded_vertices"]
+        assert np.isin(excused, before).all(), f"frame {k}: what was not inside a body is excused from it"
+        judge.excuse(excused)
         statistics = motion.advance(begin, begin + 1)
         assert np.isfinite(motion.scene.positions).all(), f"frame {k}: not a number"
         moves = itertools.pairwise(motion.scene.path) if asked else ()

@@ -12,3 +12,11 @@ def test_nothing_passes_through_anything_in_a_shot_of_the_example(shot):
     assert len(frames) == 3
     assert all(frame.crossings == 0 and frame.statistics["nan"] == 0 for frame in frames)
     assert all(frame.statistics["contact"]["candidates"] > 0 for frame in frames)
+
+
+def test_what_begins_in_the_shirt_comes_out_and_passes_through_nothing_else():
+    """Hair that hangs down: some of it starts inside, and is judged against bodies once it is out."""
+    motion = start("nod", "down", locks=100)
+    frames = list(judged(motion, 3))
+    assert 0 < frames[-1].statistics["contact"]["excused"] < sum(found["vertices"] for found in motion.start["inside"])
+    assert all(frame.crossings == 0 and frame.statistics["nan"] == 0 for frame in frames)
