@@ -136,7 +136,7 @@ void bind_contact(nb::module_ &module) {
             "__init__",
             [](Scene *self, Strands &strands, const std::vector<SceneCloth> &cloths, const std::vector<BodyModel> &bodies,
                const std::vector<int> &rooted_in, const SceneContact &contact) {
-                new (self) Scene(strands.model, strands.state, cloths, bodies, rooted_in, contact);
+                new (self) Scene(strands.model, strands.state(), cloths, bodies, rooted_in, contact);
             },
             "strands"_a, "cloths"_a, "bodies"_a, "rooted_in"_a, "contact"_a, nb::keep_alive<1, 2>())
         .def(

@@ -12,6 +12,7 @@ void bind_cloth(nb::module_ &module);
 void bind_geometry(nb::module_ &module);
 void bind_groom(nb::module_ &module);
 void bind_linear(nb::module_ &module);
+void bind_rest(nb::module_ &module);
 void bind_scene(nb::module_ &module);
 void bind_contact(nb::module_ &module);
 
@@ -26,6 +27,7 @@ NB_MODULE(_core, module) {
     bind_geometry(module);
     bind_groom(module);
     bind_linear(module);
+    bind_rest(module);
     bind_scene(module);
     bind_contact(module);
 }

@@ -1,5 +1,6 @@
 // ringlet._core: strands and their steps.
 #include "arrays.h"
+#include "ringlet/rest/standing.h"
 #include "strands.h"
 
 #include <cmath>
@@ -95,21 +96,20 @@ void bind_scene(nb::module_ &module) {
                Array1<double> twist, Array1<double> damping) {
                 const StrandVariation variation{view(radius), view(stretch), view(bend), view(twist), view(damping)};
                 StrandModel model = make_strand_model(view(offsets), vectors<Vec3>(rest), view(held), material, variation);
-                StrandState state = make_strand_state(model, vectors<Vec3>(rest));
-                new (self) Strands{std::move(model), std::move(state), {}};
+                new (self) Strands(std::move(model), vectors<Vec3>(rest));
             },
             "offsets"_a, "rest"_a, "held"_a, "material"_a, "radius"_a, "stretch"_a, "bend"_a, "twist"_a, "damping"_a,
             "offsets: shape (count + 1,) int32; rest: rest shape [m], shape (n, 3); held: 1 where a vertex follows its target, "
             "(n,) uint8; "
             "then factors on the material, each of shape (n,) or empty.")
         .def_prop_ro(
-            "positions", [](nb::object self) { return state_view(self, nb::cast<Strands &>(self).state.positions); },
+            "positions", [](nb::object self) { return state_view(self, nb::cast<Strands &>(self).state().positions); },
             "Positions [m], shape (n, 3): the solver's own memory, changed by step().")
         .def_prop_ro(
-            "velocities", [](nb::object self) { return state_view(self, nb::cast<Strands &>(self).state.velocities); },
+            "velocities", [](nb::object self) { return state_view(self, nb::cast<Strands &>(self).state().velocities); },
             "Velocities [m/s], shape (n, 3): the solver's own memory.")
         .def_prop_ro(
-            "directors", [](nb::object self) { return state_view(self, nb::cast<Strands &>(self).state.directors); },
+            "directors", [](nb::object self) { return state_view(self, nb::cast<Strands &>(self).state().directors); },
             "Directors of the material frame, one per edge from the second of each strand on, shape (n, 3): the solver's own "
             "memory.")
         .def_prop_ro(
@@ -130,11 +130,8 @@ void bind_scene(nb::module_ &module) {
             [](nb::object self) { return model_view(self, nb::cast<Strands &>(self).model.twist_stiffness); },
             "c EI / l̄ of the edge that begins at each vertex [N m], shape (n,).")
         .def(
-            "place",
-            [](Strands &self, Array3<double> positions) {
-                self.state = make_strand_state(self.model, vectors<Vec3>(positions));
-            },
-            "positions"_a, "Puts the strands at rest at these positions [m], shape (n, 3), and forgets their history.")
+            "place", [](Strands &self, Array3<double> positions) { self.place(vectors<Vec3>(positions)); }, "positions"_a,
+            "Puts the strands at rest at these positions [m], shape (n, 3), and forgets their history.")
         .def(
             "step",
             [](Strands &self, Array3<double> targets, Array3<double> forces, double dt, std::array<double, 3> gravity,
@@ -151,7 +148,7 @@ void bind_scene(nb::module_ &module) {
                 step.safeguards = safeguards;
                 {
                     nb::gil_scoped_release release;
-                    step_strands(self.model, self.state, vectors<Vec3>(targets), vectors<Vec3>(forces), step, self.reports);
+                    step_strands(self.model, self.state(), vectors<Vec3>(targets), vectors<Vec3>(forces), step, self.reports);
                 }
                 const size_t rows = self.reports.size();
                 return to_numpy<double>(std::vector<StrandReport>(self.reports), {rows, size_t(strand_report_columns)});
@@ -161,17 +158,45 @@ void bind_scene(nb::module_ &module) {
             "One time step; targets: where held vertices are at its end [m], shape (n, 3). Returns one report row per strand "
             "(REPORT).")
         .def_prop_ro(
-            "memory", [](const Strands &self) { return memory_of(self.state); },
+            "memory", [](Strands &self) { return memory_of(self.state()); },
             "All that the next step depends on besides the model, as arrays by name.")
         .def(
-            "recall", [](Strands &self, const nb::dict &memory) { recall(self.state, memory); }, "memory"_a,
+            "recall", [](Strands &self, const nb::dict &memory) { recall(self.state(), memory); }, "memory"_a,
             "Goes back to a memory of the same strands.")
         .def(
+            "stiffness_to_stand",
+            [](Strands &self, Array1<double> left, double most) {
+                const StrandModel &m = self.model;
+                if (int(left.shape(0)) != m.strand_count()) throw std::invalid_argument("strands: left does not fit them");
+                const StrandState &state = self.state();
+                const StillStrands still{m.offsets.data(),
+                                         m.held.data(),
+                                         state.positions.data()->data(),
+                                         state.directors.data()->data(),
+                                         m.rest_length.data(),
+                                         m.rest_angle.data(),
+                                         m.rest_dihedral.data(),
+                                         m.stretch_stiffness.data(),
+                                         m.bend_stiffness.data(),
+                                         m.twist_stiffness.data()};
+                std::vector<double> factors(m.strand_count());
+                {
+                    nb::gil_scoped_release release;
+                    stiffness_to_stand(m.strand_count(), still, left.data(), most, factors.data());
+                }
+                const size_t count = factors.size();
+                return to_numpy<double>(std::move(factors), {count});
+            },
+            "left"_a, "most"_a,
+            "How many times stiffer against bend and twist each strand, still where it is now, must be to stand and to keep "
+            "its "
+            "part of `left`, shape (count,), of how it resists these without load; infinite where `most` times are not enough.")
+        .def(
             "energy",
-            [](const Strands &self, Array3<double> positions, Continuation continuation, bool hessian) {
+            [](Strands &self, Array3<double> positions, Continuation continuation, bool hessian) {
                 std::vector<Vec3> gradient;
                 std::vector<double> dense;
-                const double energy = strand_energy(self.model, self.state, continuation, vectors<Vec3>(positions), gradient,
+                const double energy = strand_energy(self.model, self.state(), continuation, vectors<Vec3>(positions), gradient,
                                                     hessian ? &dense : nullptr);
                 const size_t n = positions.shape(0), size = hessian ? size_t(std::lround(std::sqrt(double(dense.size())))) : 0;
                 return nb::make_tuple(energy, to_numpy<double>(std::move(gradient), {n, 3}),

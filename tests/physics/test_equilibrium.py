@@ -17,6 +17,7 @@ from ringlet.shot.strands import Solver, Strands
 from test_lofted_strands import GRAVITY, STRAIGHT, arc, curl, first_frequency, sag, scene
 
 MODE = "[rest]\nmode = 'equilibrium'\n"
+BARELY = MODE + "spring = 0.1\n"  # stiffened only as far as standing takes
 
 
 @pytest.mark.parametrize("points", [curl(), arc(), STRAIGHT, helix(30, per_turn=5, hand=-1)])
@@ -51,14 +52,14 @@ def test_locks_stay_where_they_were_groomed_for_ten_seconds():
 def test_a_lock_that_would_fall_is_stiffened_until_it_stands():
     """A coil that stands upright; nudged, it comes back."""
     standing = helix(100) * [1, -1, 1]
-    shot, groom = scene(standing, curl(), more=MODE)
+    shot, groom = scene(standing, curl(), more=BARELY)
     made = equilibrium(shot, groom)
     assert made.stiffened[0] > 1.5 and made.stiffened[1] == 1.0
     strands = make_strands(shot, groom, made.rest, made.stiffened)
     strands.place(groom.locks.points + np.where(strands.held[:, None], 0, 1e-4 * rotation((0, 1, 0), 0.3)[0]))
     assert strands.settle(gravity=GRAVITY, tolerance=1e-8)
     assert sag(strands.positions, groom.locks.points) < 1e-6
-    soft = make_strands(shot, groom, equilibrium(*scene(standing, curl(), more=MODE + "stiffen = 1")).rest)
+    soft = make_strands(shot, groom, equilibrium(*scene(standing, curl(), more=BARELY + "stiffen = 1")).rest)
     soft.place(groom.locks.points)
     soft.settle(gravity=GRAVITY, tolerance=1e-8)
     assert sag(soft.positions, groom.locks.points) > 0.01
@@ -107,6 +108,48 @@ def test_what_weight_adds_to_the_square_of_a_frequency_is_the_same_however_stiff
         added.append(mode @ (after - before) @ mode)
     assert (added[0] < 0) == slower and abs(added[0]) > 9.81 / 0.1
     assert added[1] == pytest.approx(added[0], rel=0.02)
+
+
+STANDING = helix(70, pitch=9e-3) * [1, -1, 1]
+LEANING = helix(50, pitch=9e-3, per_turn=8) @ rotation((0, 0, 1), 2).T
+
+
+def balanced_at(scale, points):
+    """A lock of some ``bend_scale`` that remembers what it must to be still as groomed, whether it stands or not."""
+    shot, groom = scene(points, more=f"[strands]\ncorrect_resolution = false\nbend_scale = {scale}\n")
+    strands, locks = make_strands(shot, groom), groom.locks
+    frames = strands.directors.copy()
+    for _ in range(4):  # a rest shape has other lengths, and stiffness with them
+        forces = balance(locks, points, frames, strands.loads(GRAVITY), 3)
+        stretch, bend, twist = (np.where(stiffness > 0, stiffness, np.inf) for stiffness in strands.stiffness)
+        strain = Joints(forces.length / stretch, forces.bend / bend[:, None], forces.twist / twist)
+        rest, _ = shape(locks, measure(locks, points, frames).plus(strain, -1.0), frames)
+        strands = make_strands(shot, groom, locks.with_points(rest))
+    strands.place(points)
+    return strands
+
+
+@pytest.mark.parametrize("points", [STANDING, LEANING])
+def test_the_stiffness_to_stand_is_where_the_least_eigenvalue_changes_sign(points):
+    needed = balanced_at(1, points).stiffness_to_stand(np.zeros(1), 1e4)[0]
+    assert needed > 1.2
+    for part, stands in ((0.96, False), (1.02, True)):
+        strands = balanced_at(part * needed, points)
+        assert (np.linalg.eigvalsh(stiffness_at(strands, points))[0] > 0) == stands
+        assert (strands.stiffness_to_stand(np.zeros(1), 1e4)[0] == 1) == stands
+    assert np.isinf(balanced_at(1, points).stiffness_to_stand(np.zeros(1), 0.9 * needed)[0])
+
+
+@pytest.mark.parametrize("spring", [0.3, 0.7])
+def test_weight_leaves_a_lock_its_part_of_its_stiffness(spring):
+    """The part is that of the square of its frequency without weight. It is made no stiffer than that takes."""
+    shot, groom = scene(STANDING, more=MODE + f"spring = {spring}\n[strands]\ncorrect_resolution = false\n")
+    made = equilibrium(shot, groom)
+    assert made.stiffened[0] > 1.1
+    plain, balanced = make_strands(shot, groom), make_strands(shot, groom, made.rest, made.stiffened)
+    balanced.place(STANDING)
+    without, under_weight = (np.linalg.eigvalsh(stiffness_at(strands, STANDING))[0] for strands in (plain, balanced))
+    assert 0.95 * spring < under_weight / without < spring + 0.1
 
 
 def test_it_takes_up_what_the_loft_leaves():

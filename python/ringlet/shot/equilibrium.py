@@ -34,24 +34,28 @@ Locks = NDArray[np.bool_]
 
 SAME = 1e-5  # change of a lock's strains from round to round, by their size, at which they are found
 SHARPEST = 2.6  # bend of a corner at rest above which a lock counts as too soft [rad]
-PUSH = 1e-5  # of its weight: with so much a lock is pushed to see whether it stands
-BACK = 2  # steps of 1 s in which one that stands comes back
-FALL = 12  # such steps in which it falls
+STIFFER = 1.5  # a lock that does not balance becomes so much stiffer at once
+TRIES = 20  # to make locks stiff enough
+PUSH = 1e-5  # of its weight: with so much a lock is pushed that falls, to begin with
+FALL = 12  # steps of 1 s in which it falls
 FALLING = 1e-5  # a lock that hangs farther away than this from the groom that it remembers falls [m]
-MUCH_LESS = 0.1  # of how far it is away: so near is what comes back, and what is kept though it does not stand
-STIFFER = 1.5  # from one try to the next
+MUCH_LESS = 0.1  # of how far it is away: so near is what is kept though it does not stand
 
 
 @dataclass
 class _Try:
-    """Locks that remember some shape, some times as stiff: where they come to rest, and which balance and stand."""
+    """Locks that remember some shape, some times as stiff: where they come to rest, and which balance and stand.
 
-    factor: float
+    needed: times that each must be stiffer still, as far as is known
+    """
+
+    factor: Array
     rest: Array
     points: Array
     moving: Array
     off: Array
     good: Locks
+    needed: Array
 
 
 def equilibrium(
@@ -74,21 +78,32 @@ def equilibrium(
     locks.check("loft: locks")
     _check(shot, locks)
     borne = bearing(shot, groom, obstacles) if borne is None else borne
-    made, held_up = _nothing_tried(groom, borne), borne + _drawn(shot, groom)
-    going = np.ones(len(locks), bool)
-    for factor in STIFFER ** np.arange(1 + int(np.log(shot.rest.stiffen) / np.log(STIFFER))):
+    held_up = borne + _drawn(shot, groom)
+    frames, most = make_strands(shot, groom).directors, shot.rest.stiffen
+    going, soft, factor = np.ones(len(locks), bool), np.zeros(len(locks), bool), np.ones(len(locks))
+    made = _nothing_tried(groom, borne)
+
+    def tried(which: Locks, fall: bool = False) -> _Try:
+        part, rows = replace(groom, locks=locks.take(which)), np.repeat(which, locks.counts)
+        return _try(shot, part, frames[rows], held_up[rows], factor[which], fall)
+
+    for _ in range(TRIES):
         if progress:
             progress("loft", int((~going).sum()), len(locks))
-        last = factor * STIFFER > shot.rest.stiffen
-        part, rows = replace(groom, locks=locks.take(going)), np.repeat(going, locks.counts)
-        tried = _try(shot, part, held_up[rows], factor, to_the_end=last)
-        _put(made, going, tried, tried.good | last)
-        going[going] = ~tried.good
+        found = tried(going)
+        _put(made, going, found, found.good)
+        factor[going] *= found.needed
+        going[going] = ~found.good
+        soft |= going & (factor > most)
+        going &= ~soft
         if not going.any():
             break
-    if going.any():
-        plain = _plain(shot, replace(groom, locks=locks.take(going)))
-        _put(made, going, plain, made.off[going] >= MUCH_LESS * plain.off)
+    soft |= going
+    if soft.any():
+        factor[soft] = most
+        _put(made, soft, tried(soft, fall=True), np.ones(soft.sum(), bool))
+        plain = _plain(shot, replace(groom, locks=locks.take(soft)))
+        _put(made, soft, plain, made.off[soft] >= MUCH_LESS * plain.off)
     if progress:
         progress("loft", len(locks), len(locks))
     return made
@@ -110,15 +125,14 @@ def _put(made: Loft, going: Locks, tried: _Try, better: Locks) -> None:
     rows, among = np.repeat(found, counts), np.repeat(better, counts[going])
     made.rest.points[rows], made.lofted[rows] = tried.rest[among], tried.points[among]
     made.off[found], made.moving[found] = tried.off[better], tried.moving[better]
-    made.stiffened[found] = tried.factor
+    made.stiffened[found] = tried.factor[better]
 
 
 def _plain(shot: Shot, groom: Groom) -> _Try:
     """How locks hang that remember the groom."""
-    plain = hang_plain(shot, groom)
-    return _Try(
-        1.0, np.array(groom.locks.points, np.float64), plain.points, plain.moving, plain.off, plain.off < FALLING
-    )
+    plain, ones = hang_plain(shot, groom), np.ones(len(groom.locks))
+    rest = np.array(groom.locks.points, np.float64)
+    return _Try(ones, rest, plain.points, plain.moving, plain.off, plain.off < FALLING, ones)
 
 
 def _check(shot: Shot, locks: Curves) -> None:
@@ -158,25 +172,25 @@ def loads(shot: Shot, strands: Strands) -> Array:
     return pulls
 
 
-def _try(shot: Shot, groom: Groom, borne: Array, factor: float, to_the_end: bool) -> _Try:
-    """Balances locks that are ``factor`` times as stiff against bend, and pushes them to see whether they stand.
+def _try(shot: Shot, groom: Groom, frames: Array, borne: Array, factor: Array, fall: bool) -> _Try:
+    """Balances locks that are some times as stiff against bend, and sees whether they stand and are still.
 
-    to_the_end: let those that fall do so until they hang
+    frames: the directors of the locks where they were groomed, shape (n, 3)
+    fall:   push them and let them fall, until they hang
     """
-    locks, stiffened = groom.locks, np.full(len(groom.locks), factor)
-    rest, good = _balanced(shot, groom, borne, stiffened)
-    groomed = np.asarray(locks.points, np.float64)
-    strands = make_strands(shot, groom, rest, stiffened)
+    locks, groomed = groom.locks, np.asarray(groom.locks.points, np.float64)
+    rest, balanced = _balanced(shot, groom, frames, borne, factor)
+    strands = make_strands(shot, groom, rest, factor)
     strands.place(groomed)
-    _let_go(strands, shot, borne + _push(loads(shot, strands), locks), 1)
-    pushed = per_lock(locks, np.linalg.norm(strands.positions - groomed, axis=1))
-    moving = _let_go(strands, shot, borne, BACK)
+    needed = strands.stiffness_to_stand(shot.rest.spring / factor, shot.rest.stiffen)
+    if fall:
+        _let_go(strands, shot, borne + _push(loads(shot, strands), locks), 1)
+    moving = _let_go(strands, shot, borne, FALL if fall else 1)
     off = per_lock(locks, np.linalg.norm(strands.positions - groomed, axis=1))
-    stands = off < np.maximum(MUCH_LESS * pushed, 0.1 * STILL)
-    if to_the_end and not stands.all():
-        moving = _let_go(strands, shot, borne, FALL)
-        off = per_lock(locks, np.linalg.norm(strands.positions - groomed, axis=1))
-    return _Try(factor, np.asarray(rest.points, np.float64), strands.positions.copy(), moving, off, good & stands)
+    still = balanced & (off < FALLING)
+    good = still & (needed == 1.0)
+    needed = np.where(still, needed, np.maximum(needed, STIFFER))
+    return _Try(factor, np.asarray(rest.points, np.float64), strands.positions.copy(), moving, off, good, needed)
 
 
 def _push(pulls: Array, locks: Curves) -> Array:
@@ -197,13 +211,12 @@ def _let_go(strands: Strands, shot: Shot, borne: Array, steps: int) -> Array:
     return per_lock(strands.curves, np.linalg.norm(strands.positions - before, axis=1))
 
 
-def _balanced(shot: Shot, groom: Groom, borne: Array, stiffened: Array) -> tuple[Curves, Locks]:
+def _balanced(shot: Shot, groom: Groom, frames: Array, borne: Array, stiffened: Array) -> tuple[Curves, Locks]:
     """The shape that locks must remember to balance their loads as groomed, and for which of them there is one.
 
     Stiffness and mass depend a little on the rest shape, so it takes some rounds.
     """
     locks, groomed = groom.locks, np.asarray(groom.locks.points, np.float64)
-    frames = make_strands(shot, groom).directors.copy()
     shaped, strain = measure(locks, groomed, frames), measure(locks, groomed, frames)
     rest, going, good = groomed.copy(), np.ones(len(locks), bool), np.zeros(len(locks), bool)
     for done in range(shot.rest.iterations):

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ringlet import _core
 from ringlet.curves import Curves
 
 Array = NDArray[np.float64]
@@ -72,22 +73,9 @@ def shape(curves: Curves, joints: Joints, directors: Array) -> tuple[Array, Arra
 
     directors: those of ``curves``, of which each strand takes over its first
     """
-    points = np.array(curves.points, np.float64)
-    _, tangents = edges(curves, points)
-    begin, counts = curves.offsets[:-1], curves.counts
-    tangent = tangents[begin]
-    points[begin + 1] = points[begin] + joints.length[begin, None] * tangent
-    director = rotate(directors[begin + 1], -turns(tangent, tangents[begin + 1]))
-    made = np.zeros_like(points)
-    for k in range(1, counts.max() - 1):
-        going = counts > k + 1
-        at = begin[going] + k
-        t, d = tangent[going], director[going]
-        d = rotate(d, joints.twist[at - 1, None] * t)
-        turning = joints.bend[at, :1] * d + joints.bend[at, 1:] * np.cross(t, d)
-        t, d = rotate(t, turning), rotate(d, turning)
-        tangent[going], director[going], made[at] = t, d, d
-        points[at + 1] = points[at] + joints.length[at, None] * t
+    numbers = (np.ascontiguousarray(of, np.float64) for of in (joints.length, joints.bend, joints.twist))
+    begin = (np.ascontiguousarray(of, np.float64) for of in (curves.points, directors))
+    points, made = _core.shape_of_joints(curves.offsets, *numbers, *begin)
     return points, made
 
 

@@ -26,6 +26,12 @@ class Rest(Section):
     stiffen: float = Field(
         default=8.0, ge=1.0, le=1e3, description="in `equilibrium`, how many times stiffer a lock may become to stand"
     )
+    spring: float = Field(
+        default=0.5,
+        ge=0.0,
+        lt=1.0,
+        description="in `equilibrium`, the part of its stiffness that weight must leave a lock, or it is made stiffer",
+    )
     iterations: int = Field(default=12, ge=1, le=1000, description="times that the loft is corrected at most")
     tolerance: Annotated[float, Quantity("m", 1e-9, 0.1)] = Field(
         default=2e-5, description="a lock is done when no vertex hangs farther than this from where it should"

@@ -236,6 +236,16 @@ class Strands:
         points = np.ascontiguousarray(positions, np.float64)
         return self._core.energy(points, getattr(_core.Continuation, continuation), hessian)
 
+    def stiffness_to_stand(self, left: NDArray[np.float64], most: float) -> NDArray[np.float64]:
+        """How many times stiffer against bend and twist each strand must be, at least 1, to stand where it is still.
+
+        It stands where all of its energy's second derivative is positive, whatever it is nudged by.
+        left: the part of its resistance to bend and twist without load that it must keep, in every direction; from 0
+              below 1, shape (count,)
+        most: infinite where so much does not suffice
+        """
+        return self._core.stiffness_to_stand(np.ascontiguousarray(left, np.float64), most)
+
     def settle(
         self,
         *,

@@ -46,7 +46,9 @@ class Variation(Section):
         """The factors that differ from 1 at the vertices of the locks, by name, shape (n,) each."""
         factors: dict[str, NDArray[np.float64]] = {}
         for name in VARIATIONS:
-            factor = at_vertices(getattr(self, name), groom, f"variation.{name}", self.seed)
+            if (varied := getattr(self, name)) == Mapped():
+                continue
+            factor = at_vertices(varied, groom, f"variation.{name}", self.seed)
             if name in ("radius", "stretch") and not factor.min() > 0.0:
                 raise UserError(f"shot: variation.{name} is 0 somewhere; it must be above 0, raise its ramp or map")
             if (factor != 1.0).any():

@@ -1,0 +1,204 @@
+#include "ringlet/rest/standing.h"
+
+#include "ringlet/energy/strand/frame.h"
+#include "ringlet/energy/strand/stretch.h"
+#include "ringlet/linear/banded.h"
+#include "ringlet/math/dual.h"
+
+namespace ringlet::RINGLET_SIMD {
+namespace {
+
+constexpr int freedoms = 4;   // of a vertex: its position, and the turn of the director of the edge that begins there [rad]
+constexpr int reach = 11;     // unknowns of two edges that follow one another: three vertices and two directors
+constexpr double near = 0.01; // how near to the least stiffness is found, of it
+using Matrix = Banded<double, reach>;
+
+Vec<double> row(const double *values, int i) { return {values[3 * i], values[3 * i + 1], values[3 * i + 2]}; }
+Vec<Dual> known_row(Vec<double> v) { return {known(v.x), known(v.y), known(v.z)}; }
+
+// An edge with its director, by three unknowns of its vector and the turn of the director.
+struct Edge {
+    Vec<Dual> before, tangent; // where it is, and as it would move
+    Dual length;
+    Vec<Dual> director, across; // across: tangent × director
+
+    Edge(Vec<double> vector, Vec<double> at, int number, int turn) {
+        const Vec<Dual> e{unknown(vector.x, number), unknown(vector.y, number + 1), unknown(vector.z, number + 2)};
+        length = norm(e);
+        tangent = (1.0 / length) * e;
+        before = known_row({tangent.x.value, tangent.y.value, tangent.z.value});
+        const Vec<Dual> carried = transport(known_row(at), before, tangent);
+        director = carried + unknown(0.0, turn) * cross(tangent, carried); // to first order, as far as its use here goes
+        across = cross(tangent, director);
+    }
+    Vec<Dual> spin_of() const { return spin(before, tangent, length); }
+};
+
+// A residual of two edges' energy by their unknowns: two vectors and two turns.
+struct Residual {
+    double value;
+    Vec<Dual> first, second; // its gradient, of which the dual numbers know the derivative
+    Dual turn0, turn1;
+};
+
+// Two edges that follow one another: what bends the corner between them and twists the first.
+class Joint {
+public:
+    Joint(const StillStrands &strands, int i)
+        : strands_(strands), i_(i), e0_(edge(i), row(strands.directors, i), 0, 6),
+          e1_(edge(i + 1), row(strands.directors, i + 1), 3, 7), corner_(corner(e0_.tangent, e1_.tangent)),
+          turning_(turning(corner_, e0_.tangent, e1_.tangent)) {}
+
+    Residual across() const { return bend(e1_.director, dot(turning_, e1_.across), strands_.rest_angle[i_ + 1]); }
+    Residual along() const { return bend(e1_.across, -dot(turning_, e1_.director), 0.0); }
+
+    Residual twist() const {
+        const auto g = frame_twist_gradient(corner_, e0_.tangent, e1_.tangent, e0_.length, e1_.length);
+        const Dual angle = frame_twist(e0_.director, e0_.tangent, e1_.director, e1_.tangent);
+        return {wrap(angle.value - strands_.rest_dihedral[i_]), g.first - e0_.spin_of(), g.second + e1_.spin_of(), known(-1.0),
+                known(1.0)};
+    }
+
+private:
+    Vec<double> edge(int i) const { return row(strands_.positions, i + 1) - row(strands_.positions, i); }
+
+    Residual bend(Vec<Dual> axis, Dual by_turn, double rest) const {
+        const auto g = turning_gradient(corner_, e0_.tangent, e1_.tangent, e0_.length, e1_.length, axis);
+        return {dot(turning_, axis).value - rest, g.first, g.second + by_turn * e1_.spin_of(), known(0.0), by_turn};
+    }
+
+    const StillStrands &strands_;
+    int i_;
+    Edge e0_, e1_;
+    Corner<Dual> corner_;
+    Vec<Dual> turning_;
+};
+
+// The second derivative of a strand's energy, and what of it grows as the strand is made stiffer.
+class Standing {
+public:
+    Standing(const StillStrands &strands, int strand, double *room)
+        : strands_(strands), begin_(strands.offsets[strand]), count_(strands.offsets[strand + 1] - begin_),
+          growing_(room, size()), fixed_(room + entries(), size()), sum_(room + 2 * entries(), size()) {}
+
+    static size_t room(int vertices) { return 3 * size_t(Matrix::entries(freedoms * vertices)); }
+
+    void assemble() {
+        growing_.set_zero();
+        fixed_.set_zero();
+        for (int i = 0; i + 1 < count_; ++i) add_stretch(i);
+        for (int i = 0; i + 2 < count_; ++i) {
+            const Joint joint(strands_, begin_ + i);
+            const double bend = strands_.bend_stiffness[begin_ + i + 1], twist = strands_.twist_stiffness[begin_ + i];
+            add(i, joint.across(), bend);
+            add(i, joint.along(), bend);
+            if (twist > 0.0) add(i, joint.twist(), twist);
+            growing_.entry(freedoms * (i + 1) + 3)[0] += 1e-9 * bend; // where nothing holds a director
+        }
+        hold();
+    }
+
+    // The least of 1 … most at which growing_ · (factor − left) + fixed_ is positive definite.
+    double least(double left, double most) {
+        if (stands(1.0 - left)) return 1.0;
+        if (!stands(most - left)) return __builtin_inf();
+        double falls = 1.0;
+        while (most > (1.0 + near) * falls) {
+            const double middle = __builtin_sqrt(most * falls);
+            (stands(middle - left) ? most : falls) = middle;
+        }
+        return most;
+    }
+
+private:
+    int size() const { return freedoms * count_; }
+    int entries() const { return Matrix::entries(size()); }
+    bool held(int i) const { return strands_.held[begin_ + i] != 0; }
+
+    // The turn of a director is free from the second edge on, but where its edge is held.
+    bool is_free(int unknown) const {
+        const int i = unknown / freedoms;
+        if (unknown % freedoms < 3) return !held(i);
+        return i > 0 && i + 1 < count_ && !(held(i) && held(i + 1));
+    }
+
+    void add_stretch(int i) {
+        const int at = begin_ + i;
+        const Vec<double> e = row(strands_.positions, at + 1) - row(strands_.positions, at);
+        const double length = norm(e), k = strands_.stretch_stiffness[at];
+        const double across = k * (1.0 - strands_.rest_length[at] / length);
+        const Vec<double> tangent = (1.0 / length) * e;
+        for (int a = 0; a < 3; ++a)
+            for (int b = 0; b < 3; ++b) {
+                const double value = (k - across) * tangent[a] * tangent[b] + (a == b ? across : 0.0);
+                for (int p = 0; p < 2; ++p)
+                    for (int q = 0; q < 2; ++q)
+                        put(fixed_, freedoms * (i + p) + a, freedoms * (i + q) + b, p == q ? value : -value);
+            }
+    }
+
+    void add(int i, const Residual &residual, double stiffness) {
+        // The two edges' unknowns by those of three vertices: an edge is the difference of its ends.
+        const Dual rows[reach] = {-residual.first.x,
+                                  -residual.first.y,
+                                  -residual.first.z,
+                                  residual.turn0,
+                                  residual.first.x - residual.second.x,
+                                  residual.first.y - residual.second.y,
+                                  residual.first.z - residual.second.z,
+                                  residual.turn1,
+                                  residual.second.x,
+                                  residual.second.y,
+                                  residual.second.z};
+        const double holds = stiffness * residual.value;
+        for (int r = 0; r < reach; ++r) {
+            const Dual::Derivatives &by = rows[r].by;
+            const double second[reach] = {-by[0],        -by[1], -by[2], by[6], by[0] - by[3], by[1] - by[4],
+                                          by[2] - by[5], by[7],  by[3],  by[4], by[5]};
+            for (int c = 0; c <= r; ++c) {
+                put(growing_, freedoms * i + r, freedoms * i + c, stiffness * rows[r].value * rows[c].value);
+                put(fixed_, freedoms * i + r, freedoms * i + c, holds * second[c]);
+            }
+        }
+    }
+
+    // The lower half is kept.
+    static void put(Matrix &matrix, int r, int c, double value) {
+        if (r >= c) matrix.entry(c)[r - c] += value;
+    }
+
+    // What is held has nothing to do with the rest, and stands.
+    void hold() {
+        for (int c = 0; c < size(); ++c) {
+            const bool free = is_free(c);
+            for (int k = 0; k < reach; ++k)
+                if (!free || !(c + k < size() && is_free(c + k))) growing_.entry(c)[k] = fixed_.entry(c)[k] = 0.0;
+            if (!free) fixed_.entry(c)[0] = 1.0;
+        }
+    }
+
+    // Whether the sum is positive definite: by its factor, of which every pivot must be positive.
+    bool stands(double factor) {
+        for (int k = 0; k < entries(); ++k) sum_.entry(0)[k] = factor * growing_.entry(0)[k] + fixed_.entry(0)[k];
+        sum_.factor();
+        for (int c = 0; c < size(); ++c)
+            if (!(sum_.entry(c)[0] > 0.0)) return false;
+        return true;
+    }
+
+    const StillStrands &strands_;
+    int begin_, count_;
+    Matrix growing_, fixed_, sum_;
+};
+
+} // namespace
+
+size_t standing_room(int vertices) { return Standing::room(vertices); }
+
+double stiffness_to_stand(const StillStrands &strands, int strand, double left, double most, double *room) {
+    Standing standing(strands, strand, room);
+    standing.assemble();
+    return standing.least(left, most);
+}
+
+} // namespace ringlet::RINGLET_SIMD
