@@ -18,7 +18,7 @@ from websockets.asyncio.client import ClientConnection, connect
 
 import ringlet
 
-PROTOCOL = 3  # that of python/ringlet/viewer/protocol.py
+PROTOCOL = 4  # that of python/ringlet/viewer/protocol.py
 EXAMPLE = Path(__file__).parents[1] / "examples/child"
 
 
@@ -34,13 +34,19 @@ def run(locks: int = 1389, per_lock: int = 36, points: int = 60, steps: int = 12
         with socket.socket() as free:
             free.bind(("127.0.0.1", 0))
             port = free.getsockname()[1]
-        threading.Thread(
+        ended = threading.Event()
+        server = threading.Thread(
             target=ringlet.view,
             args=(recipe,),
-            kwargs={"port": port, "browser": False, "told": lambda _: None},
+            kwargs={"port": port, "browser": False, "told": lambda _: None, "until": ended},
             daemon=True,
-        ).start()
-        heard = asyncio.run(_drag(port, clock, steps))
+        )
+        server.start()
+        try:
+            heard = asyncio.run(_drag(port, clock, steps))
+        finally:
+            ended.set()
+            server.join()
     asked = {"locks": locks, "per_lock": per_lock, "points": points, "steps": steps}
     return clock.result("view", asked, per="drag", warm_up=warm_up, **heard)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -133,9 +134,10 @@ def test_ten_frames_are_simulated_and_scrubbed(opened: Any, folder: Path):
     review.page.get_by_role("button", name="Run", exact=True).click()
     review.until("ringlet.timeline.count == 10 && ringlet.model.timeline.state == 'done'")
     review.get("ringlet.timeline.show(1)")
+    review.until("ringlet.timeline.settled")
     first = review.picture()
     review.drag(review.page.get_by_label("Frame", exact=True), 0.02, 0.98)
-    review.until("ringlet.timeline.frame == 10")
+    review.until("ringlet.timeline.frame == 10 && ringlet.timeline.settled")
     assert different(review.picture(), first) > 0.002
     review.choose("shot:strands")
     field = review.page.locator('[data-setting="strands.bend_scale"] > .field-head input.number')
@@ -180,6 +182,47 @@ def test_a_killed_server_loses_nothing(opened: Any, serve: Any):
     assert review.page.get_by_role("button", name="Save", exact=True).is_enabled()
     review.page.keyboard.press("Control+z")  # what was given back is a step of its own
     review.until("!ringlet.model.documents.recipe.dirty")
+
+
+def test_what_a_killed_server_had_not_answered_is_said_again(opened: Any, serve: Any):
+    server = serve("small.recipe.toml")
+    review: Review = opened(server)
+    session = review.get("ringlet.model.welcome.session")
+
+    def fill(setting: str, value: str) -> None:
+        field = review.page.locator(f'[data-setting="{setting}"] > .field-head input.number')
+        field.fill(value)
+        field.press("Enter")
+
+    server.process.send_signal(signal.SIGSTOP)  # it hears nothing more
+    fill("curl.width", "1.75")
+    server.kill()
+    review.until("document.documentElement.dataset.link == 'lost'")
+    fill("curl.pitch", "2.25")
+    server.start()
+    review.until(f"ringlet.model.welcome.session != '{session}'")
+    review.until("ringlet.model.documents.recipe.said.curl.pitch == 2.25")
+    assert review.get("ringlet.model.documents.recipe.said.curl.width") == 1.75
+    review.until("ringlet.model.settled")
+
+
+def test_of_a_long_cache_the_page_keeps_the_frames_about_the_one_that_is_seen(opened: Any, folder: Path):
+    import ringlet
+
+    groom = ringlet.build_groom(folder / "small.recipe.toml")
+    ringlet.write_groom(groom, folder / "groom.usda")
+    numbers = np.arange(1.0, 301.0)
+    points = (groom.locks.points + 1e-4 * numbers[:, None, None] * (0, 1, 0)).astype(np.float32)
+    ringlet.write_cache(ringlet.Cache(numbers, points), folder / "groom.usda", folder / "cache.usda")
+    review: Review = opened("cache.usda")
+    review.until("ringlet.timeline.count == 300 && ringlet.timeline.settled")
+    review.get("ringlet.timeline.show(100)")
+    review.until("ringlet.timeline.settled && ringlet.timeline.frames.shot.has(115)")
+    kept = review.get("[...ringlet.timeline.frames.shot.keys()].filter((frame) => frame > 20 && frame < 299)")
+    assert sorted(kept) == list(range(100, 116))
+    review.page.get_by_label("Play what is there").click()
+    review.until("ringlet.timeline.frame > 130 && ringlet.timeline.frame < 300")
+    assert not review.wrong
 
 
 def test_an_idle_page_draws_nothing(opened: Any):
@@ -355,6 +398,7 @@ def test_a_shot_beside_another_cache_with_overlays(opened: Any, folder: Path):
     review.page.get_by_role("button", name="Run", exact=True).click()
     review.until("ringlet.timeline.count == 4 && ringlet.model.timeline.state == 'done'")
     review.get("ringlet.timeline.show(4)")
+    review.until("ringlet.timeline.settled")
     plain = review.picture()
     for overlay in ("stretch", "curl"):
         review.page.get_by_label("Overlay").select_option(overlay)
@@ -365,6 +409,7 @@ def test_a_shot_beside_another_cache_with_overlays(opened: Any, folder: Path):
     review.until("ringlet.viewer.hair.b.table")
     review.page.get_by_label("Overlay").select_option("")
     review.get("ringlet.timeline.show(4)")
+    review.until("ringlet.timeline.settled")
     left, right = np.split(review.picture(), 2, axis=1)
     assert different(left, right) > 0.002
     assert not review.wrong

@@ -41,6 +41,14 @@ class Page:
             assert message["kind"] != "trouble", message["message"]
         raise AssertionError(f"no {kind} among {[m['kind'] for m in self.heard]}")
 
+    def watch(self, *frames: float) -> list[dict[str, Any]]:
+        """The frames of the shot with these numbers, once they are there."""
+        there = self.been_told("timeline")
+        while not set(frames) <= set(there["frames"].tolist()):
+            there = self.hear("timeline")
+        self.say(kind="watch", shot=frames)
+        return [self.hear("frame") for _ in frames]
+
     def been_told(self, kind: str, **wanted: Any) -> dict[str, Any]:
         """The same, of those that were heard already, too: subjects come in no order of their own."""
         for message in reversed(self.heard):

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import math
+import subprocess
+import sys
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -61,6 +63,13 @@ def test_bench_prints_the_object_that_was_agreed(arguments, asked):
     for times in (told["cpu_ms"], told["wall_ms"]):
         assert 0 < times["min"] <= times["median"] <= times["max"]
     assert all(time >= 0 for time in told["stages"].values())
+
+
+def test_bench_view_ends_its_server_and_says_nothing_besides():
+    program = "import sys; from ringlet.cli import main; sys.argv[0] = 'ringlet'; main()"
+    arguments = ["bench", "view", "--locks", "12", "--per_lock", "3", "--steps", "3", "--json"]
+    done = subprocess.run([sys.executable, "-c", program, *arguments], capture_output=True, text=True, timeout=120)
+    assert done.stderr == "" and json.loads(done.stdout)["hairs"] == 36
 
 
 def test_bench_growth_fits_a_power_to_the_times_of_all_sizes():

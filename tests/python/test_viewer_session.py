@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from pages import Page, page, serving
+from pages import Page, page, read, serving
 
 
 def test_an_edit_changes_the_groom_and_the_document_and_saving_writes_it(folder: Path):
@@ -55,6 +55,20 @@ def test_a_server_that_was_started_anew_takes_back_what_a_page_still_had(folder:
         one.say(kind="restore", text=text)
         document = one.hear("document", dirty=True)
         assert document["said"]["curl"]["width"] == 1.7 and document["undo"]
+
+
+def test_a_page_that_comes_back_is_told_how_much_of_what_it_said_was_heard(folder: Path):
+    with serving(folder) as client:
+        with page(client) as one:
+            assert one.hear("welcome")["heard"] == 0
+            one.say(kind="set", changes=[[["curl", "width"], 1.7]], gesture=1)
+            one.say(kind="set", changes=[[["no", "such"], 1.7]], gesture=2)  # refused, and heard
+            while (message := read(one.socket.receive_bytes()))["kind"] != "heard" or message["count"] < 2:
+                pass
+        with page(client) as one:
+            assert one.hear("welcome")["heard"] == 2
+        with page(client, "other") as other:
+            assert other.hear("welcome")["heard"] == 0
 
 
 def test_while_a_hand_moves_drafts_are_made_and_the_whole_when_it_rests(folder: Path):

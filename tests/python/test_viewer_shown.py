@@ -5,7 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import pytest
 from pages import page, serving
+from pxr import Usd
+from ringlet.errors import UserError
+from ringlet.viewer.reel import Run
+
+from ringlet import io
 
 
 def test_hairs_come_in_an_order_of_which_the_beginning_is_spread_over_the_locks(folder: Path):
@@ -20,14 +26,15 @@ def test_a_shot_runs_and_its_frames_come(folder: Path):
         assert one.hear("welcome")["mode"] == "shot"
         one.been_told("timeline", state="still")
         one.say(kind="play", action="start")
-        frames = [one.hear("frame") for _ in range(4)]
+        frames = one.watch(1, 2, 3, 4)
         assert [frame["frame"] for frame in frames] == [1, 2, 3, 4]
         assert frames[0]["points"].shape == (8 * 40 * 3,) and len(frames[0]["curl"]) == 8 * 40
         assert np.abs(frames[3]["points"] - frames[0]["points"]).max() > 1e-3
         one.been_told("timeline", state="done")
         one.say(kind="set", file="shot", changes=[[["strands", "bend_scale"], 30.0]], gesture=1)
         one.say(kind="play", action="again_from", frame=2)
-        again = [one.hear("frame") for _ in range(2)]
+        one.hear("timeline", key=3)
+        again = one.watch(3, 4)
         assert [frame["frame"] for frame in again] == [3, 4]
         assert np.abs(again[1]["points"] - frames[3]["points"]).max() > 1e-6
 
@@ -46,8 +53,71 @@ def test_a_groom_and_its_cache_are_shown_as_they_are(folder: Path):
         one.say(kind="set", changes=[[["curl", "width"], 2.0]], gesture=1)
         assert "no recipe" in one.hear("trouble")["message"]
     with serving(folder, "cache.usda") as client, page(client) as one:
-        assert one.hear("frame", frame=4)["points"].shape == (8 * 40 * 3,)
-        assert one.been_told("timeline", state="none")["last"] == 4
+        assert one.hear("timeline", state="none")["frames"].tolist() == [1, 2, 3, 4]
+        last, second = one.watch(4, 2)
+        assert (last["frame"], second["frame"]) == (4, 2) and last["points"].shape == (8 * 40 * 3,)
+        assert np.abs(last["points"] - second["points"]).max() > 1e-3
+
+
+def test_of_a_cache_no_frame_is_read_but_those_that_are_looked_at(folder: Path, monkeypatch: pytest.MonkeyPatch):
+    read: list[float] = []
+    points = io.CacheFile.points
+    monkeypatch.setattr(io.CacheFile, "points", lambda self, frame: (read.append(frame), points(self, frame))[1])
+    write_long_cache(folder, 300)
+    with serving(folder, "cache.usda") as client, page(client) as one:
+        assert len(one.hear("timeline")["frames"]) == 300
+        assert not read and not any(message["kind"] == "frame" for message in one.heard)
+        assert one.watch(17, 250)[1]["points"].reshape(-1, 3)[0, 1] > 1.0
+        assert read == [17, 250]
+    with serving(folder, "small.shot.toml") as client, page(client) as one:
+        one.been_told("timeline")
+        one.been_told("numbers", draft=False)
+        one.say(kind="against", name="cache.usda")
+        assert len(one.hear("timeline", against="cache.usda")["beside"]) == 300
+        one.say(kind="watch", against=[99])
+        assert one.hear("frame")["layer"] == "against" and read == [17, 250, 99]
+
+
+def test_a_frame_that_cannot_be_read_is_told_and_the_others_are_seen(folder: Path):
+    write_long_cache(folder, 3)
+    stage = Usd.Stage.Open(str(folder / "cache.usda"))
+    stage.GetPrimAtPath("/groom/locks").GetAttribute("points").Set([(0, 0, 0)], 2.0)
+    stage.Save()
+    with serving(folder, "cache.usda") as client, page(client) as one:
+        assert len(one.hear("timeline")["frames"]) == 3
+        one.say(kind="watch", shot=[2, 3])
+        assert "1 points at frame 2" in one.hear("trouble")["message"]
+        assert one.hear("frame")["frame"] == 3
+
+
+def write_long_cache(folder: Path, frames: int) -> None:
+    """A cache in which all rise by 1 cm a frame."""
+    import ringlet
+
+    groom = ringlet.build_groom(folder / "small.recipe.toml")
+    ringlet.write_groom(groom, folder / "groom.usda")
+    numbers = np.arange(1.0, frames + 1)
+    points = (groom.locks.points + 0.01 * numbers[:, None, None] * (0, 1, 0)).astype(np.float32)
+    ringlet.write_cache(ringlet.Cache(numbers, points), folder / "groom.usda", folder / "cache.usda")
+
+
+def test_frames_that_are_run_are_kept_in_a_file_and_told_where_that_is_full(monkeypatch: pytest.MonkeyPatch):
+    run = Run()
+    for frame in (1.0, 2.0, 3.0):
+        run.add(frame, bytes([int(frame)]) * 1000)
+    run.cut(after=2.0)
+    run.add(3.0, b"again")
+    assert run.frames.tolist() == [1, 2, 3]
+    assert (run.message(2.0), run.message(3.0)) == (b"\2" * 1000, b"again")
+    run.cut()
+    assert not len(run.frames)
+    with pytest.raises(UserError, match="no more"):
+        run.message(2.0)
+    with Path("/dev/full").open("wb", buffering=0) as full:
+        monkeypatch.setattr(run, "_file", full)
+        with pytest.raises(UserError, match="frame 1 cannot be kept there"):
+            run.add(1.0, b"much")
+    assert not len(run.frames)
 
 
 def test_the_page_is_told_what_settings_may_name(folder: Path):
@@ -81,7 +151,7 @@ def test_frames_tell_what_touches_and_what_is_in_the_head(folder: Path):
     with serving(folder, "small.shot.toml") as client, page(client) as one:
         one.been_told("timeline", state="still")
         one.say(kind="play", action="start")
-        frame = one.hear("frame", frame=2)
+        frame = one.watch(2)[0]
         assert len(frame["contact"]) == len(frame["depth"]) == 8 * 40
         assert frame["statistics"]["contacts"] > 0 and frame["contact"].max() > 0
         assert frame["statistics"]["inside"] == 0 and frame["depth"].max() == 0

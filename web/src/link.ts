@@ -8,11 +8,19 @@ const LONGEST_WAIT = 5000;
 const REFUSED = 4403;
 const WRONG = 4400;
 
+// What changes something: it is said again to a server that has not heard it.
+const CHANGES = ["set", "arrange", "mute", "save", "restore", "isolate", "drag", "sculpt", "unsculpt"];
+
 export type LinkState = "open" | "lost" | "refused";
 
 export class Link {
   private socket: WebSocket | null = null;
   private wait = FIRST_WAIT;
+  /** What was said and not heard yet, oldest first; also what was said while nobody was there. */
+  private owed: FromPage[] = [];
+  private heard = 0;
+  /** What was said before and has to be said again. */
+  private again: FromPage[] = [];
 
   constructor(
     private readonly hear: (message: FromServer) => void,
@@ -29,7 +37,7 @@ export class Link {
     socket.onopen = () => {
       this.socket = socket;
       this.wait = FIRST_WAIT;
-      this.say({ kind: "hello", version: VERSION, client: clientName() });
+      this.send({ kind: "hello", version: VERSION, client: clientName() });
       this.changed("open", "");
     };
     socket.onmessage = (event) => this.hear(decode(event.data as ArrayBuffer));
@@ -45,11 +53,32 @@ export class Link {
     };
   }
 
-  /** Sends a message; false when there is nobody to hear it. */
-  say(message: FromPage): boolean {
-    if (this.socket?.readyState !== WebSocket.OPEN) return false;
-    this.socket.send(encode(message));
-    return true;
+  /** Sends a message; it is kept as long as nobody has heard it. */
+  say(message: FromPage): void {
+    this.owed.push(message);
+    this.send(message);
+  }
+
+  /** A server is there, which has heard so many messages of this page. */
+  met(heard: number): void {
+    this.noteHeard(heard);
+    this.again = [...this.owed.filter(({ kind }) => CHANGES.includes(kind)), ...this.again];
+    this.owed = [];
+  }
+
+  /** The server has heard so many messages of this page, in the order in which they were said. */
+  noteHeard(count: number): void {
+    this.owed.splice(0, Math.max(0, count - this.heard));
+    this.heard = count;
+  }
+
+  /** Says again what the server before has not heard. */
+  sayAgain(): void {
+    for (const message of this.again.splice(0)) this.say(message);
+  }
+
+  private send(message: FromPage): void {
+    if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(encode(message));
   }
 
   /** How many bytes have not left yet: while there are some, dragging can wait. */

@@ -83,12 +83,20 @@ class App {
     const { model, viewer } = this;
     switch (message.kind) {
       case "welcome":
-        if (this.session && this.session !== message.session) this.giveBack();
+        model.link?.met(message.heard);
+        if (this.session && this.session !== message.session) {
+          model.numbers = null;
+          this.giveBack();
+        }
         this.kept = {};
         this.session = message.session;
         model.welcome = message;
         if (message.mode === "shot" && !model.documents.shot) model.choose("shot", ["strands"]);
         model.tell("welcome");
+        this.timeline.found();
+        break;
+      case "heard":
+        model.link?.noteHeard(message.count);
         break;
       case "document":
         model.documents[message.file] = message;
@@ -101,6 +109,7 @@ class App {
       case "numbers":
         model.numbers = message;
         model.tell("numbers");
+        if (model.settled) model.link?.sayAgain();
         break;
       case "names":
         model.names = message;
@@ -122,9 +131,11 @@ class App {
         break;
       case "hairs":
         viewer.setHairs(message);
+        this.timeline.displaced(message.side);
         break;
       case "locks":
         viewer.setLocks(message);
+        this.timeline.displaced(message.side);
         if (message.side === "a") this.lock.arrived();
         break;
       case "timeline":

@@ -1,6 +1,6 @@
 // Made by tools/make_protocol.py from python/ringlet/viewer/protocol.py; change it there.
 
-export const VERSION = 3;
+export const VERSION = 4;
 export type Json = string | number | boolean | null | Json[] | { [key: string]: Json };
 
 /** A stage of the groom. place: where its settings are in the recipe. */
@@ -129,11 +129,19 @@ export interface Against {
   name?: string;
 }
 
+/** Asks for frames, the one that is looked at first, in place of those that were asked for and have not come yet. */
+export interface Watch {
+  kind: "watch";
+  shot?: number[];
+  against?: number[];
+}
+
 /** What a page needs to know before anything else. */
 export interface Welcome {
   kind: "welcome";
   version: number;
   session: string;
+  heard: number;
   name: string;
   mode: "recipe" | "shot" | "stage";
   schemas: Record<string, Json>;
@@ -265,24 +273,31 @@ export interface Frame {
   curl: Uint8Array;
 }
 
-/** Which frames there are to see, and what the simulation does. key: another one when frames have become void. */
+/** What the simulation does, and which frames there are to see: of the shot, and of the cache beside it. */
 export interface Timeline {
   kind: "timeline";
   first: number;
   last: number;
   fps: number;
-  ready: number | null;
   state: "none" | "still" | "rolling" | "running" | "paused" | "done";
   rolled: number;
   preroll: number;
   key: number;
   against: string;
+  frames: Float64Array;
+  beside: Float64Array;
 }
 
 /** What is shown beside the look that is edited; nothing for no name. */
 export interface Compared {
   kind: "compared";
   name: string;
+}
+
+/** How many messages of a page of this name were heard: what they asked for was done, begun or refused. */
+export interface Heard {
+  kind: "heard";
+  count: number;
 }
 
 /** A file was written. */
@@ -312,7 +327,8 @@ export type FromPage =
   | Sculpt
   | Unsculpt
   | Play
-  | Against;
+  | Against
+  | Watch;
 
 export type FromServer =
   | Welcome
@@ -328,5 +344,6 @@ export type FromServer =
   | Frame
   | Timeline
   | Compared
+  | Heard
   | Saved
   | Trouble;

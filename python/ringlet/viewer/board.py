@@ -7,18 +7,26 @@ nothing but what is no longer true.
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Callable
 
 
 class Mailbox:
-    """What one page has yet to be sent, oldest subject first."""
+    """What one page has yet to be sent, oldest subject first, and then what it asked for, made when it is its turn."""
 
     def __init__(self) -> None:
         self._waiting: dict[str, bytes] = {}
+        self._wanted: dict[str, Callable[[], bytes]] = {}
         self._some = asyncio.Event()
 
     def put(self, subject: str, message: bytes) -> None:
-        """Sends a message, in place of an earlier one of the same subject that is still waiting."""
+        """Sends a message after all others, in place of one of the same subject that is still waiting."""
+        self._waiting.pop(subject, None)
         self._waiting[subject] = message
+        self._some.set()
+
+    def want(self, wanted: dict[str, Callable[[], bytes]]) -> None:
+        """Sends messages that are made by what is given, in place of those that were wanted before."""
+        self._wanted = wanted
         self._some.set()
 
     def drop(self, beginning: str) -> None:
@@ -28,10 +36,12 @@ class Mailbox:
 
     async def next(self) -> bytes:
         """The next message to send."""
-        while not self._waiting:
+        while not self._waiting and not self._wanted:
             self._some.clear()
             await self._some.wait()
-        return self._waiting.pop(next(iter(self._waiting)))
+        if self._waiting:
+            return self._waiting.pop(next(iter(self._waiting)))
+        return await asyncio.to_thread(self._wanted.pop(next(iter(self._wanted))))
 
 
 class Board:

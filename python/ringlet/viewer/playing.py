@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import ExitStack
+from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,10 +17,14 @@ from ringlet.viewer import protocol
 from ringlet.viewer.board import Board
 from ringlet.viewer.files import Files
 from ringlet.viewer.looks import Look
-from ringlet.viewer.scene import read_frames
+from ringlet.viewer.reel import Read, Reel, Run
+from ringlet.viewer.scene import open_frames
 from ringlet.viewer.showing import Showing
 from ringlet.viewer.simulation import Simulation, Stage
-from ringlet.viewer.wire import pack
+from ringlet.viewer.wire import pack, trouble
+
+# Makes the message of a frame of its number, where its points are [m], and its statistics.
+PackFrame = Callable[[float, np.ndarray, dict[str, Any]], bytes]
 
 
 class Playing:
@@ -32,18 +39,36 @@ class Playing:
         failed: Callable[[str], None],
     ) -> None:
         self._files, self._board, self._showing = files, board, showing
-        self._frames: np.ndarray | None = None
+        self._run, self._shown, self._beside = Run(), Opened(), Opened()
         self._stage: Stage | None = None
         self._against = ""
         self._simulation = Simulation(
-            lambda subject, message: call(board.post, subject, message),
+            self._run,
             lambda: call(self.tell),
             lambda message: call(failed, message),
         )
 
     def stop(self) -> None:
-        """Ends what runs."""
+        """Ends what runs, and closes what is open."""
         self._simulation.stop()
+        self._shown.close()
+        self._beside.close()
+
+    def wanted(self, message: protocol.Watch) -> dict[str, Callable[[], bytes]]:
+        """What makes the messages of the frames that a page wants and that are there, by their subjects."""
+        wanted: dict[str, Callable[[], bytes]] = {}
+        for layer, reel, frames in (
+            ("shot", self._shot, message.shot),
+            ("against", self._beside.reel, message.against),
+        ):
+            if reel is not None:
+                there = set(reel.frames.tolist())
+                wanted |= {f"{layer}/{frame:g}": partial(told, reel, frame) for frame in frames if frame in there}
+        return wanted
+
+    @property
+    def _shot(self) -> Reel | None:
+        return self._run if self._files.mode == "shot" else self._shown.reel
 
     def play(self, message: protocol.Play) -> None:
         """Runs the shot, holds it, or goes on with it."""
@@ -56,8 +81,6 @@ class Playing:
             if self._stage is None:
                 raise UserError("shot: its groom is not made yet; wait until it is seen")
             again = message.frame if message.action == "again_from" else None
-            for name in [n for n in self._board.subjects("frame/shot/") if again is None or frame_of(n) > again]:
-                self._board.wipe(name)
             self._simulation.start(shot, self._stage, again)
 
     def set_groom(self, look: Look) -> None:
@@ -65,39 +88,34 @@ class Playing:
         if self._stage is None or self._stage.groom.locks.points is not look.groom.locks.points:
             self._simulation.stop()
             self._simulation.reset()
-            self._board.wipe("frame/")
+            self._beside.close()
             self._against = ""
             self._stage = Stage(look.groom, look.hairs, api.scalp_clip(look.groom), self._showing.bodies)
         self.tell()
 
     def read(self, look: Look) -> None:
-        """Reads the frames of a USD file, if it has some."""
-        self._frames, moving = read_frames(self._files.file, look)
-        if self._frames is None:
-            return
+        """Opens the frames of a USD file, if it has some."""
         still = Clip(np.zeros(1), look.groom.scalp.points[None], 24.0)
         clip = api.scalp_clip(look.groom) if look.groom.scalp_file else still
         self._stage = Stage(look.groom, look.hairs, clip, self._showing.bodies)
-        for frame, points, told in moving:
-            self._board.post(f"frame/shot/{frame:g}", self._stage.frame("shot", frame, points, told))
+        try:
+            self._shown.open(self._files.file, look, partial(self._stage.frame, "shot"))
+        except UserError:  # a groom that does not move
+            return
         self.tell()
 
     def lay_against(self, name: str) -> None:
         """Shows the frames of a cache beside the shot."""
-        self._board.wipe("frame/against/")
+        self._beside.close()
         self._showing.clear_beside()
         self._against = ""
         if name:
-            cache = api.read_cache(self._files.project.inside(name, "against"))
             stage, look = self._stage, self._showing.look
-            if stage is None or look is None or cache.points.shape[1] != len(stage.groom.locks.points):
-                raise UserError(f"{name}: is of another groom than that of the shot; choose a cache of the same groom")
+            if stage is None or look is None:
+                raise UserError("shot: its groom is not made yet; wait until it is seen")
+            self._beside.open(self._files.project.inside(name, "against"), look, partial(stage.frame, "against"))
             self._against = name
             self._showing.show(look, "b")
-            for k, frame in enumerate(cache.frames):
-                told: dict[str, Any] = cache.statistics[k] if k < len(cache.statistics) else {}
-                message = stage.frame("against", float(frame), cache.points[k], told)
-                self._board.post(f"frame/against/{frame:g}", message)
         self._board.post("b/none", pack(protocol.Compared(name=name)))
         self.tell()
 
@@ -106,8 +124,8 @@ class Playing:
         if self._files.mode == "shot":
             shot = self._files.shot
             first, last, preroll = float(shot.frames[0]), float(shot.frames[1]), shot.preroll
-        elif self._frames is not None:
-            first, last, preroll = float(self._frames[0]), float(self._frames[-1]), 0
+        elif self._shown.reel is not None:
+            first, last, preroll = float(self._shown.reel.frames[0]), float(self._shown.reel.frames[-1]), 0
         else:
             return
         simulation, runs = self._simulation, self._files.mode == "shot"
@@ -116,7 +134,6 @@ class Playing:
                 "first": first,
                 "last": last,
                 "fps": self._stage.clip.fps if self._stage else 24.0,
-                "ready": simulation.ready if runs else last,
                 "state": simulation.state if runs else "none",
                 "rolled": simulation.rolled,
                 "preroll": preroll,
@@ -124,9 +141,33 @@ class Playing:
                 "against": self._against,
             }
         )
-        self._board.post("timeline", pack(timeline))
+        frames, beside = (reel.frames if reel else np.empty(0) for reel in (self._shot, self._beside.reel))
+        self._board.post("timeline", pack(timeline, frames=frames, beside=beside))
 
 
-def frame_of(subject: str) -> float:
-    """The frame that a subject is about."""
-    return float(subject.rsplit("/", 1)[1])
+class Opened:
+    """The frames of a file, open as long as they may be looked at."""
+
+    def __init__(self) -> None:
+        self._files = ExitStack()
+        self.reel: Reel | None = None
+
+    def open(self, file: Path, look: Look, pack: PackFrame) -> None:
+        """Opens a file with the frames of a look, in place of the one before."""
+        self.close()
+        frames, read = self._files.enter_context(open_frames(file, look))
+        if len(frames):
+            self.reel = Read(frames, read, pack)
+
+    def close(self) -> None:
+        """Closes the file."""
+        self.reel = None
+        self._files.close()
+
+
+def told(reel: Reel, frame: float) -> bytes:
+    """The message of a frame, or what is wrong with it."""
+    try:
+        return reel.message(frame)
+    except UserError as error:
+        return trouble(str(error))

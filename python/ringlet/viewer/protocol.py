@@ -10,7 +10,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
-VERSION = 3
+VERSION = 4
 Place = list[str | int]  # where a setting is in its file: ["shape", 0, "amount"]
 File = Literal["recipe", "shot"]
 Point = tuple[float, float, float]
@@ -162,6 +162,14 @@ class Against(Message):
     name: str = Field(default="", max_length=240)
 
 
+class Watch(Message):
+    """Asks for frames, the one that is looked at first, in place of those that were asked for and have not come yet."""
+
+    kind: Literal["watch"] = "watch"
+    shot: list[float] = Field(default_factory=list, max_length=64)
+    against: list[float] = Field(default_factory=list, max_length=64)
+
+
 FromPage = Annotated[
     Hello
     | Lead
@@ -177,7 +185,8 @@ FromPage = Annotated[
     | Sculpt
     | Unsculpt
     | Play
-    | Against,
+    | Against
+    | Watch,
     Field(discriminator="kind"),
 ]
 FROM_PAGE: TypeAdapter[FromPage] = TypeAdapter(FromPage)
@@ -190,6 +199,7 @@ class Welcome(Message):
     """What a page needs to know before anything else.
 
     session: another one after every start of the server
+    heard:   how many messages of a page of this name it has heard before
     schema:  JSON schemas of ``recipe`` and ``shot``
     pigments: hair colours by name: eumelanin, pheomelanin, roughness
     """
@@ -197,6 +207,7 @@ class Welcome(Message):
     kind: Literal["welcome"] = "welcome"
     version: int
     session: str
+    heard: int
     name: str
     mode: Literal["recipe", "shot", "stage"]
     schemas: dict[str, Any]
@@ -376,18 +387,21 @@ class Frame(Message):
 
 
 class Timeline(Message):
-    """Which frames there are to see, and what the simulation does. key: another one when frames have become void."""
+    """What the simulation does, and which frames there are to see: of the shot, and of the cache beside it.
+
+    key: another one when frames have become void
+    """
 
     kind: Literal["timeline"] = "timeline"
     first: float
     last: float
     fps: float
-    ready: float | None
     state: Literal["none", "still", "rolling", "running", "paused", "done"]
     rolled: int
     preroll: int
     key: int
     against: str = ""
+    arrays: ClassVar[dict[str, str]] = {"frames": "f8", "beside": "f8"}
 
 
 class Compared(Message):
@@ -395,6 +409,13 @@ class Compared(Message):
 
     kind: Literal["compared"] = "compared"
     name: str
+
+
+class Heard(Message):
+    """How many messages of a page of this name were heard: what they asked for was done, begun or refused."""
+
+    kind: Literal["heard"] = "heard"
+    count: int
 
 
 class Saved(Message):
@@ -425,6 +446,7 @@ FROM_SERVER: tuple[type[Message], ...] = (
     Frame,
     Timeline,
     Compared,
+    Heard,
     Saved,
     Trouble,
 )

@@ -28,6 +28,7 @@ def view(
     browser: bool = True,
     project: Path | str | None = None,
     told: Callable[[str], None] = print,
+    until: threading.Event | None = None,
 ) -> None:
     """Serves the review page of a recipe, a shot or a USD file with hair, until it is interrupted.
 
@@ -36,6 +37,7 @@ def view(
     browser: open one
     project: the folder that the page may read and write; that of the file by default
     told:    called with the address
+    until:   ends it too, when it is set, where it runs in a thread of its own
     """
     file = Path(file)
     if not file.is_file():
@@ -53,7 +55,15 @@ def view(
     told(f"ringlet view: {file.name} at {address}  (Ctrl-C ends it)")
     if browser:
         threading.Timer(0.5, webbrowser.open, [address]).start()
-    uvicorn.Server(config).run(sockets=[listening])
+    server = uvicorn.Server(config)
+    if until is not None:
+        threading.Thread(target=_end, args=(server, until), daemon=True).start()
+    server.run(sockets=[listening])
+
+
+def _end(server: uvicorn.Server, until: threading.Event) -> None:
+    until.wait()
+    server.should_exit = True
 
 
 def _listen(host: str, port: int | None) -> socket.socket:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,8 @@ from ringlet.viewer import protocol
 from ringlet.viewer.looks import Look
 from ringlet.viewer.wire import pack
 
+# Where the points of a frame are [m], and its statistics.
+ReadFrame = Callable[[float], tuple[np.ndarray, dict[str, Any]]]
 USD = (".usd", ".usda", ".usdc", ".usdz")
 
 
@@ -54,16 +57,22 @@ def read_scene(file: Path) -> tuple[list[tuple[Mesh, Clip | None]], Look]:
     return read_bodies(groom.scalp, groom.scalp_file), Look(groom, lay_hairs(groom), False)
 
 
-def read_frames(file: Path, look: Look) -> tuple[np.ndarray | None, Iterator[tuple[float, np.ndarray, dict[str, Any]]]]:
-    """The frames of a file whose locks move, and an iterator over them: number, points [m], statistics."""
+@contextmanager
+def open_frames(file: Path, look: Look) -> Iterator[tuple[np.ndarray, ReadFrame]]:
+    """The frames of a file whose locks move: their numbers, and what reads one of them while the file is open."""
     if look.hairs is None:
-        frames = io.read_stage(file)[2]
-        moving = ((float(frame), io.read_stage(file, float(frame))[1], {}) for frame in frames)
-        posed = ((frame, curves.points, told) for frame, curves, told in moving if curves is not None)
-        return (frames if len(frames) > 1 else None), posed
-    try:
-        cache = io.read_cache(file)
-    except UserError:
-        return None, iter(())
-    told = cache.statistics or [{}] * len(cache.frames)
-    return cache.frames, zip(cache.frames.tolist(), cache.points, told, strict=True)
+        frames = io.read_hair_frames(file)
+        yield frames if len(frames) > 1 else frames[:0], lambda frame: (_hairs_at(file, frame, look), {})
+        return
+    with io.open_cache(file) as cache:
+        if cache.size != len(look.groom.locks.points):
+            raise UserError(f"{file.name}: is of another groom than that of the shot; choose a cache of the same groom")
+        told = dict(zip(cache.frames.tolist(), cache.statistics, strict=False))
+        yield cache.frames, lambda frame: (cache.points(frame), told.get(frame, {}))
+
+
+def _hairs_at(file: Path, frame: float, look: Look) -> np.ndarray:
+    points, first = io.read_hairs(file, frame).points, look.groom.locks
+    if len(points) != len(first.points):
+        raise UserError(f"{file.name}: has {len(points)} points at frame {frame:g}, {len(first.points)} at its first")
+    return points

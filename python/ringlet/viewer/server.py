@@ -17,7 +17,7 @@ from starlette.middleware.base import RequestResponseEndpoint
 from ringlet.errors import UserError
 from ringlet.viewer import protocol
 from ringlet.viewer.session import Page, Session
-from ringlet.viewer.wire import pack, unpack
+from ringlet.viewer.wire import trouble, unpack
 
 STATIC = Path(__file__).with_name("static")
 LOOPBACK = ("localhost", "127.0.0.1", "[::1]")
@@ -132,7 +132,7 @@ async def _receive(socket: WebSocket, session: Session, page: Page) -> None:
             return
         except UserError as error:
             troubles += 1
-            page.box.put("trouble", pack(protocol.Trouble(message=" ".join(str(error).split()))))
+            page.box.put("trouble", trouble(str(error)))
             if troubles > MOST_TROUBLES and not isinstance(error.__cause__, UserError):
                 await socket.close(WRONG, "too many messages were wrong")
                 return
@@ -140,7 +140,7 @@ async def _receive(socket: WebSocket, session: Session, page: Page) -> None:
             raise
         except Exception:
             log.exception("a message of %s could not be handled", page.name)
-            page.box.put("trouble", pack(protocol.Trouble(message="this is a mistake in Ringlet; see the terminal")))
+            page.box.put("trouble", trouble("this is a mistake in Ringlet; see the terminal"))
 
 
 def _without_port(host: str) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 import secrets
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -26,7 +27,7 @@ from ringlet.viewer.project import Project
 from ringlet.viewer.scene import read_scene
 from ringlet.viewer.sculpting import Sculptor
 from ringlet.viewer.showing import Showing, measured
-from ringlet.viewer.wire import pack
+from ringlet.viewer.wire import pack, trouble
 from ringlet.viewer.worker import Latest, Stale
 
 log = logging.getLogger("ringlet.viewer")
@@ -58,6 +59,7 @@ class Session:
         self.board = Board()
         self.pages: list[Page] = []
         self.leader = ""
+        self._heard = Counter[str]()
         self._loop: asyncio.AbstractEventLoop | None = None
         self._groomer, self._beside = Groomer(project), Groomer(project)
         self._showing = Showing(self.board)
@@ -89,7 +91,7 @@ class Session:
 
     def join(self, name: str) -> Page:
         """A page comes in. The first one leads; whoever led before leads again."""
-        page = Page(name, self.board.join(self._welcome()))
+        page = Page(name, self.board.join(self._welcome(self._heard[name])))
         self.pages.append(page)
         if not self.leader or not any(other.name == self.leader for other in self.pages):
             self.leader = name
@@ -102,13 +104,14 @@ class Session:
         self.board.leave(page.box)
         self._tell_roles()
 
-    def _welcome(self) -> bytes:
+    def _welcome(self, heard: int) -> bytes:
         schemas = api.schema()
         return pack(
             protocol.Welcome.model_validate(
                 {
                     "version": protocol.VERSION,
                     "session": self.id,
+                    "heard": heard,
                     "name": self.files.file.name,
                     "mode": self.files.mode,
                     "schemas": schemas,
@@ -130,10 +133,20 @@ class Session:
     # Messages
 
     def hear(self, page: Page, message: protocol.FromPage) -> None:
-        """Does what a page asks for. Raises UserError for what cannot be."""
+        """Does what a page asks for, and tells it how much was heard. Raises UserError for what cannot be."""
+        try:
+            self._do(page, message)
+        finally:
+            self._heard[page.name] += 1
+            page.box.put("heard", pack(protocol.Heard(count=self._heard[page.name])))
+
+    def _do(self, page: Page, message: protocol.FromPage) -> None:
         if isinstance(message, protocol.Lead):
             self.leader = page.name
             self._tell_roles()
+            return
+        if isinstance(message, protocol.Watch):
+            page.box.want(self._playing.wanted(message))
             return
         if page.name != self.leader:
             raise UserError("another page leads this session; take the lead to edit")
@@ -265,4 +278,4 @@ class Session:
     def trouble(self, message: str) -> None:
         """Tells everybody what went wrong."""
         for page in self.pages:
-            page.box.put("trouble", pack(protocol.Trouble(message=" ".join(message.split()))))
+            page.box.put("trouble", trouble(message))

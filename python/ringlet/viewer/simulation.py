@@ -19,6 +19,7 @@ from ringlet.mesh import Clip, Mesh
 from ringlet.shot import Shot
 from ringlet.shot.simulate import Motion
 from ringlet.viewer import overlays, protocol
+from ringlet.viewer.reel import Run
 from ringlet.viewer.wire import pack
 
 MOST_KEPT = 1_500_000_000  # bytes of what frames can be gone on from
@@ -89,17 +90,14 @@ def _number(first: NDArray[np.integer]) -> NDArray[np.int64]:
 class Simulation:
     """Runs in a thread of its own.
 
-    post:    called with (subject, message) for every frame
+    run:     keeps the frames
     changed: called when the state has changed
     failed:  called with what went wrong
     """
 
-    def __init__(
-        self, post: Callable[[str, bytes], None], changed: Callable[[], None], failed: Callable[[str], None]
-    ) -> None:
-        self._post, self._changed, self._failed = post, changed, failed
+    def __init__(self, run: Run, changed: Callable[[], None], failed: Callable[[str], None]) -> None:
+        self._kept, self._changed, self._failed = run, changed, failed
         self.state = "still"
-        self.ready: float | None = None
         self.rolled = 0
         self.key = 0
         self._go = threading.Event()
@@ -120,7 +118,7 @@ class Simulation:
             self._memories = {frame: kept for frame, kept in self._memories.items() if frame <= again_from}
         else:
             self._memories = {}
-        self.ready = None if again_from is None else float(again_from)
+        self._kept.cut(again_from)
         self.rolled, self.key, self.state = 0, self.key + 1, "rolling"
         self._end.clear()
         self._go.set()
@@ -153,7 +151,8 @@ class Simulation:
     def reset(self) -> None:
         """Forgets all frames."""
         self._memories.clear()
-        self.state, self.ready, self.rolled, self.key = "still", None, 0, self.key + 1
+        self._kept.cut()
+        self.state, self.rolled, self.key = "still", 0, self.key + 1
 
     def _run(self, shot: Shot, stage: Stage, again_from: int | None, memory: dict[str, NDArray[Any]] | None) -> None:
         try:
@@ -185,11 +184,10 @@ class Simulation:
                 self.rolled = step + 1
             else:
                 self._keep(first + k, motion)
-                self.ready = float(first + k)
                 if self.state == "rolling":
                     self.state = "running"
                 points = np.asarray(motion.strands.positions, np.float32)
-                self._post(f"frame/shot/{first + k}", stage.frame("shot", first + k, points, statistics, motion))
+                self._kept.add(first + k, stage.frame("shot", first + k, points, statistics, motion))
             self._changed()
         self.state = "done"
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from pydantic import ValidationError
 
 from ringlet.errors import UserError
-from ringlet.viewer.protocol import FROM_PAGE, FromPage, Message
+from ringlet.viewer.protocol import FROM_PAGE, FromPage, Message, Trouble
 
 MOST = 1_000_000  # bytes of a message from a page
 
@@ -51,6 +51,11 @@ def unpack(data: bytes) -> FromPage:
         first = error.errors(include_url=False, include_context=False, include_input=False)[0]
         where = ".".join(str(part) for part in first["loc"]) or "message"
         raise UserError(f"message: {where}: {first['msg'].lower()}"[:400]) from None
+
+
+def trouble(message: str) -> bytes:
+    """What a page is sent of something that cannot be."""
+    return pack(Trouble(message=" ".join(message.split())))
 
 
 def _plain(value: Any) -> Any:

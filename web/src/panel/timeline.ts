@@ -1,4 +1,5 @@
 // The frames of a shot or a cache: run, hold, go on, run again from a frame, scrub, and compare with another cache.
+// They are with the server: here are those about the one that is seen, as many as fit.
 
 import { h, iconButton } from "../dom";
 import type { Model } from "../model";
@@ -7,6 +8,9 @@ import { OVERLAYS, overlayValues } from "../view/overlays";
 import type { Viewer } from "../view/viewer";
 
 type Layer = "shot" | "against";
+const LAYERS: Layer[] = ["shot", "against"];
+const AHEAD = 16; // frames after the one that is seen that are asked for
+const MOST = 256e6; // bytes of frames of a layer that are kept
 
 export class TimelineBar {
   readonly element = h("section", { class: "timeline", hidden: true, "aria-label": "Frames" });
@@ -19,8 +23,12 @@ export class TimelineBar {
   );
   private readonly watch = iconButton("play", "Play what is there (space)", () => this.toggle());
   private readonly against = h("select", { "aria-label": "Compare with a cache" });
+  /** What was asked for and has not come. */
+  private readonly asked: Record<Layer, Set<number>> = { shot: new Set(), against: new Set() };
   private frame = 1;
   private key = -1;
+  private beside = "";
+  private drawn: Partial<Record<Layer, Frame>> = {};
   private playing = 0;
   private follows = true;
 
@@ -47,16 +55,72 @@ export class TimelineBar {
     });
   }
 
-  /** A frame has come. The latest is shown as long as nobody has gone elsewhere. */
+  /** A frame has come. */
   add(frame: Frame): void {
-    this.frames[frame.layer].set(frame.frame, frame);
-    if (frame.layer === "against") this.show(this.frame);
-    else if (this.follows) this.show(frame.frame);
+    const { layer } = frame;
+    this.frames[layer].set(frame.frame, frame);
+    this.asked[layer].delete(frame.frame);
+    this.forget(layer);
+    if (frame.frame === this.nearest(layer)) this.draw();
+    else this.ask();
   }
 
   /** How many frames there are. */
   get count(): number {
-    return this.frames.shot.size;
+    return this.model.timeline?.frames.length ?? 0;
+  }
+
+  /** Whether what is to be seen is here. */
+  get settled(): boolean {
+    return LAYERS.every((layer) => !this.there(layer).length || this.known(layer));
+  }
+
+  private there(layer: Layer): ArrayLike<number> {
+    const { timeline } = this.model;
+    return (layer === "shot" ? timeline?.frames : timeline?.beside) ?? [];
+  }
+
+  /** The frame of a layer that is seen: the nearest that there is. */
+  private nearest(layer: Layer): number {
+    const there = this.there(layer);
+    return there[closest(there, this.frame)];
+  }
+
+  private known(layer: Layer): Frame | undefined {
+    return this.frames[layer].get(this.nearest(layer));
+  }
+
+  /** Asks for the frames that are seen, and those after them, that are not here. */
+  private ask(): void {
+    const wanted = { shot: this.missing("shot"), against: this.missing("against") };
+    if (!wanted.shot.length && !wanted.against.length) return;
+    const onTheirWay = LAYERS.every((layer) => this.known(layer) || this.asked[layer].has(this.nearest(layer)));
+    if (onTheirWay && LAYERS.some((layer) => this.asked[layer].size)) return;
+    for (const layer of LAYERS) this.asked[layer] = new Set(wanted[layer]);
+    this.model.say({ kind: "watch", ...wanted });
+  }
+
+  private missing(layer: Layer): number[] {
+    const there = this.there(layer);
+    const first = closest(there, this.frame);
+    const some = this.frames[layer].values().next().value;
+    const fit = some ? Math.max(1, Math.floor(MOST / 2 / some.points.buffer.byteLength)) : 1;
+    return Array.from({ length: Math.min(AHEAD, fit, there.length) }, (_, k) => there[(first + k) % there.length]).filter(
+      (frame) => !this.frames[layer].has(frame),
+    );
+  }
+
+  /** Lets go of the frames farthest from the one that is seen, where there are too many. */
+  private forget(layer: Layer): void {
+    const held = this.frames[layer];
+    let size = 0;
+    for (const frame of held.values()) size += frame.points.buffer.byteLength;
+    const seen = this.nearest(layer);
+    for (const [number, frame] of [...held].sort(([a], [b]) => Math.abs(b - seen) - Math.abs(a - seen))) {
+      if (size <= MOST || number === seen) return;
+      held.delete(number);
+      size -= frame.points.buffer.byteLength;
+    }
   }
 
   private press(): void {
@@ -74,14 +138,17 @@ export class TimelineBar {
     if (!timeline) return;
     if (timeline.key !== this.key) {
       this.key = timeline.key;
-      for (const frame of this.frames.shot.keys())
-        if (timeline.ready === null || frame > timeline.ready) this.frames.shot.delete(frame);
+      this.drop("shot");
     }
-    if (!timeline.against) this.frames.against.clear();
+    if (timeline.against !== this.beside) {
+      this.beside = timeline.against;
+      this.drop("against");
+    }
+    const ready = timeline.frames.at(-1);
     this.slider.min = String(timeline.first);
     this.slider.max = String(timeline.last);
     const there =
-      timeline.ready === null ? 0 : (timeline.ready - timeline.first) / Math.max(1, timeline.last - timeline.first);
+      ready === undefined ? 0 : (ready - timeline.first) / Math.max(1, timeline.last - timeline.first);
     this.slider.style.setProperty("--part", `${100 * there}%`);
     const label = { none: "", still: "Run", rolling: "Pause", running: "Pause", paused: "Continue", done: "Run again" }[
       timeline.state
@@ -90,7 +157,7 @@ export class TimelineBar {
     this.run.toggleAttribute("hidden", timeline.state === "none");
     this.run.toggleAttribute("disabled", !role.leads);
     this.again.toggleAttribute("hidden", timeline.state === "none");
-    this.again.toggleAttribute("disabled", !role.leads || timeline.ready === null || timeline.state === "rolling");
+    this.again.toggleAttribute("disabled", !role.leads || ready === undefined || timeline.state === "rolling");
     const caches = (welcome?.files ?? []).filter((name) => /\.usd[ac]?$/.test(name));
     const value = timeline.against;
     this.against.replaceChildren(
@@ -100,7 +167,25 @@ export class TimelineBar {
     this.against.value = value;
     this.against.toggleAttribute("hidden", timeline.state === "none");
     this.against.toggleAttribute("disabled", !role.leads);
-    this.tell();
+    if (this.follows && ready !== undefined) this.show(ready);
+    else this.draw();
+  }
+
+  /** What is here of a layer is no longer true. */
+  private drop(layer: Layer): void {
+    this.frames[layer].clear();
+    this.asked[layer].clear();
+  }
+
+  /** Hair has gone from where a frame had put it. */
+  displaced(side: "a" | "b"): void {
+    delete this.drawn[side === "a" ? "shot" : "against"];
+  }
+
+  /** A server that knows nothing of what was asked for has been found. */
+  found(): void {
+    for (const layer of LAYERS) this.asked[layer].clear();
+    this.ask();
   }
 
   private toggle(): void {
@@ -115,27 +200,34 @@ export class TimelineBar {
     this.watch.setAttribute("aria-pressed", String(this.playing !== 0));
   }
 
+  /** The next frame, once this one is here. */
   private next(): void {
-    const numbers = [...this.frames.shot.keys()].sort((a, b) => a - b);
-    if (numbers.length) this.show(numbers.find((frame) => frame > this.frame) ?? numbers[0]);
+    const { frames } = this.model.timeline ?? {};
+    if (frames?.length && this.settled) this.show(frames.find((frame) => frame > this.frame) ?? frames[0]);
   }
 
-  /** Shows a frame, or the nearest that is there. */
+  /** Shows a frame, or the nearest that is there, as soon as it has come. */
   show(frame: number): void {
     this.frame = frame;
     this.slider.value = String(frame);
+    this.draw();
+  }
+
+  private draw(): void {
     for (const [layer, hair] of [
       ["shot", this.viewer.hair.a],
       ["against", this.viewer.hair.b],
     ] as const) {
-      const known = this.frames[layer].get(nearest(this.frames[layer], frame));
-      if (!known) continue;
+      const known = this.known(layer);
+      if (!known || known === this.drawn[layer]) continue;
+      this.drawn[layer] = known;
       this.tint(layer);
       hair.place(known.points, known.axis, known.root);
       if (layer === "shot") this.viewer.placeBodies(known.bodies);
+      this.viewer.move();
     }
-    this.viewer.move();
     this.tell();
+    this.ask();
   }
 
   /** Another overlay is wanted, or what it shows has come. */
@@ -147,7 +239,7 @@ export class TimelineBar {
 
   private tint(layer: Layer): void {
     const { overlay, measured } = this.model;
-    const frame = this.frames[layer].get(nearest(this.frames[layer], this.frame));
+    const frame = this.known(layer);
     const hair = layer === "shot" ? this.viewer.hair.a : this.viewer.hair.b;
     hair.setOverlay(overlayValues(overlay, frame, measured), overlay !== "" && OVERLAYS[overlay].diverging);
   }
@@ -155,19 +247,21 @@ export class TimelineBar {
   private tell(): void {
     const { timeline } = this.model;
     if (!timeline) return;
-    const known = this.frames.shot.get(this.frame);
+    const known = this.known("shot");
     const stretch = known?.statistics["max_stretch"];
     if (known) this.seen(known);
     const parts = [`frame ${this.frame}`];
     if (timeline.state === "rolling") parts[0] = `before the first frame: ${timeline.rolled} of ${timeline.preroll}`;
-    else if (!known && timeline.ready === null) parts[0] = "not run yet";
+    else if (!timeline.frames.length) parts[0] = "not run yet";
     else if (typeof stretch === "number") parts.push(`stretched ${(100 * stretch).toFixed(1)} % at most`);
     this.told.textContent = parts.join(" · ");
   }
 }
 
-function nearest(frames: Map<number, Frame>, frame: number): number {
-  let best = Number.NaN;
-  for (const one of frames.keys()) if (!(Math.abs(best - frame) <= Math.abs(one - frame))) best = one;
+/** The place of the number that is nearest to another; numbers are in order. */
+function closest(numbers: ArrayLike<number>, to: number): number {
+  let best = 0;
+  for (let k = 1; k < numbers.length; k++)
+    if (Math.abs(numbers[k] - to) <= Math.abs(numbers[best] - to)) best = k;
   return best;
 }

@@ -1,0 +1,98 @@
+"""Frames that can be seen. They are in files, and in memory only while somebody is shown one."""
+
+from __future__ import annotations
+
+import errno
+import os
+import tempfile
+import threading
+from collections.abc import Callable
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ringlet.errors import UserError
+
+
+class Reel(Protocol):
+    """Frames in the order of their numbers."""
+
+    @property
+    def frames(self) -> NDArray[np.float64]:
+        """Their numbers, shape (k,)."""
+        ...
+
+    def message(self, frame: float) -> bytes:
+        """What a page is sent of a frame. Raises UserError where it cannot be read."""
+        ...
+
+
+class Read:
+    """Frames that a file holds. One is read at a time, whoever asks.
+
+    read: gives where a frame's points are [m], and its statistics
+    pack: makes the message of a frame of them
+    """
+
+    def __init__(
+        self,
+        frames: NDArray[np.float64],
+        read: Callable[[float], tuple[NDArray, dict[str, Any]]],
+        pack: Callable[[float, NDArray, dict[str, Any]], bytes],
+    ) -> None:
+        self.frames = frames
+        self._read, self._pack = read, pack
+        self._one = threading.Lock()
+
+    def message(self, frame: float) -> bytes:
+        """Reads a frame."""
+        with self._one:
+            points, statistics = self._read(frame)
+        return self._pack(frame, points, statistics)
+
+
+class Run:
+    """Frames that are simulated here, kept in a file without a name that ends with the program."""
+
+    def __init__(self) -> None:
+        self._file = tempfile.TemporaryFile(prefix="ringlet-", buffering=0)  # noqa: SIM115
+        self._places: dict[float, tuple[int, int]] = {}
+        self._end = 0
+        self._one = threading.Lock()
+
+    @property
+    def frames(self) -> NDArray[np.float64]:
+        """Their numbers, shape (k,)."""
+        return np.array(sorted(self._places), np.float64)
+
+    def add(self, frame: float, message: bytes) -> None:
+        """Adds the next frame."""
+        with self._one:
+            try:
+                self._file.seek(self._end)
+                if self._file.write(message) < len(message):
+                    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+            except OSError as error:
+                raise UserError(
+                    f"{tempfile.gettempdir()}: frame {frame:g} cannot be kept there ({error.strerror}); make room, or "
+                    "name another folder by the variable TMPDIR"
+                ) from error
+            self._places[frame] = self._end, len(message)
+            self._end += len(message)
+
+    def cut(self, after: float | None = None) -> None:
+        """Forgets all frames, or those after one."""
+        with self._one:
+            self._places = {frame: at for frame, at in self._places.items() if after is not None and frame <= after}
+            self._end = max((start + size for start, size in self._places.values()), default=0)
+            self._file.truncate(self._end)
+
+    def message(self, frame: float) -> bytes:
+        """Reads a frame."""
+        with self._one:
+            if frame not in self._places:
+                raise UserError(f"frame {frame:g} is there no more; run the shot again")
+            start, size = self._places[frame]
+            self._file.seek(start)
+            return self._file.read(size)
