@@ -53,6 +53,29 @@ def made(folder: Path) -> Path:
     return folder / "groom.usdc"
 
 
+@pytest.mark.parametrize(("unit", "size"), [(1.0, "18 m"), (0.001, "0.018 m")])
+def test_a_head_in_another_unit_than_it_says_is_told(copy, unit, size):
+    stage = Usd.Stage.Open(str(copy / "head.usda"))
+    UsdGeom.SetStageMetersPerUnit(stage, unit)
+    stage.Save()
+    result = run("groom", copy / "small.recipe.toml", "-o", copy / "groom.usdc")
+    assert result.exit_code == 0
+    assert f"warning: the scalp is {size} across" in result.stderr and "metersPerUnit" in result.stderr
+
+
+def test_more_frames_than_a_shot_can_have_are_refused_before_the_first(copy):
+    for frames in ("1:100001", "1:99999999999999999999", "20000000:20000001"):
+        refused(run("sim", copy / "small.shot.toml", "-o", copy / "cache.usdc", "--frames", frames), frames, "must be")
+    assert not list(copy.glob("cache.usdc*"))
+
+
+def test_what_the_review_cannot_show_is_told_before_there_is_a_server(copy):
+    (copy / "empty.usdc").touch()
+    (copy / "dir.usdc").mkdir()
+    for name, words in {"empty.usdc": "is empty", "dir.usdc": "is a folder", "head.usda": "has no hair"}.items():
+        refused(run("view", copy / name, "--no-browser"), name, words)
+
+
 def told(example: Path, name: str) -> dict:
     return json.loads((example / f"{name}.json").read_text())
 

@@ -57,6 +57,23 @@ def test_a_server_that_was_started_anew_takes_back_what_a_page_still_had(folder:
         assert document["said"]["curl"]["width"] == 1.7 and document["undo"]
 
 
+def test_why_there_is_no_groom_is_told_to_every_page_until_there_is_one(folder: Path):
+    recipe = folder / "small.recipe.toml"
+    recipe.write_text(recipe.read_text().replace('region = "scalp"', 'region = "gone"'))
+    with serving(folder) as client:
+        for name in ("one", "two"):
+            with page(client, name) as one:
+                while (message := read(one.socket.receive_bytes()))["kind"] != "trouble":
+                    pass
+                assert "no region 'gone'" in message["message"]
+        with page(client, "one") as one:
+            one.say(kind="restore", text=recipe.read_text().replace("gone", "scalp"))
+            while read(one.socket.receive_bytes())["kind"] != "numbers":
+                pass
+        with page(client, "one") as one:
+            assert one.hear("numbers")["locks"] == 8  # and no trouble before it
+
+
 def test_a_page_that_comes_back_is_told_how_much_of_what_it_said_was_heard(folder: Path):
     with serving(folder) as client:
         with page(client) as one:

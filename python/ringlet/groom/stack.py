@@ -29,6 +29,8 @@ from ringlet.stage import StageSpace
 
 Progress = Callable[[str, int, int], None]
 
+SIZES = (0.03, 2.0)  # of a scalp, at its widest [m]; ten times less or more than a head is another unit
+
 
 @dataclass
 class Memory:
@@ -110,7 +112,7 @@ def make_groom(
         recipe=recipe.text,
         shapes=shapes,
         unsculpted=unsculpted,
-        conflicts=_conflicts(recipe, unsculpted, curves),
+        conflicts=[*_conflicts(recipe, unsculpted, curves), *_odd_size(scalp, recipe.scalp.region)],
     )
 
 
@@ -155,6 +157,16 @@ def _conflicts(recipe: Recipe, guides: Curves, locks: Curves) -> list[str]:
             for lock in edited
         ),
     ]
+
+
+def _odd_size(mesh: Mesh, region: str | None) -> Iterator[str]:
+    """A sentence for a scalp that is larger or smaller than any head: its file may name a wrong unit."""
+    size = float(np.ptp(mesh.points[mesh.triangles[mesh.region(region)]].reshape(-1, 3), axis=0).max())
+    if not SIZES[0] <= size <= SIZES[1]:
+        yield (
+            f"the scalp is {size:.2g} m across; see whether its file names the unit in which it was made "
+            "(metersPerUnit, or `unit` under [scalp] for an OBJ)"
+        )
 
 
 def _run(operator: Operator, curves: Curves, key: str, context: Context, memory: Memory) -> tuple[Curves, str]:

@@ -14,6 +14,9 @@ from ringlet.shot.rest import Rest
 from ringlet.shot.strands import Material, Solver
 from ringlet.shot.variation import Variation
 
+MOST_FRAMES = 100_000  # of a shot
+FARTHEST_FRAME = 10_000_000  # from zero, either way
+
 
 class Forces(Section):
     """What acts on the strands from outside, in metres and Y-up whatever the files use."""
@@ -59,8 +62,8 @@ class Shot(Section):
     @field_validator("frames")
     @classmethod
     def _in_order(cls, frames: tuple[int, int]) -> tuple[int, int]:
-        if frames[1] < frames[0]:
-            raise refuse(f"is {list(frames)}; the last must not come before the first")
+        if wrong := wrong_frames(*frames):
+            raise refuse(f"is {list(frames)}; {wrong}")
         return frames
 
     @field_validator("collider")
@@ -132,3 +135,14 @@ def _shot(data: dict[str, Any], path: Path | None) -> Shot:
 def schema() -> dict[str, Any]:
     """The JSON schema of a shot: types, bounds, defaults and descriptions of all settings."""
     return Shot.model_json_schema()
+
+
+def wrong_frames(first: int, last: int) -> str:
+    """What must be otherwise in a range of frames; nothing for one that a shot can have."""
+    if last < first:
+        return "the last must not come before the first"
+    if last - first >= MOST_FRAMES:
+        return f"must be at most {MOST_FRAMES:,} frames"
+    if max(-first, last) > FARTHEST_FRAME:
+        return f"must be from {-FARTHEST_FRAME:,} to {FARTHEST_FRAME:,}"
+    return ""

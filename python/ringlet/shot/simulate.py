@@ -23,7 +23,7 @@ from ringlet.shot.garment import Garment
 from ringlet.shot.nails import held_vertices, pull
 from ringlet.shot.roots import Roots
 from ringlet.shot.scene import Scene, friction_of
-from ringlet.shot.shot import Shot
+from ringlet.shot.shot import Shot, wrong_frames
 from ringlet.shot.strands import Strands
 from ringlet.shot.worn import Worn
 
@@ -72,7 +72,8 @@ def simulate(
     """
     first, last = frames or shot.frames
     motion = Motion(shot, groom, clip, rest, obstacles, garments, first)
-    numbers = np.arange(first, max(first, last) + 1, dtype=np.float64)
+    _check_frames(first, last)
+    numbers = np.arange(first, last + 1, dtype=np.float64)
     points = np.empty((len(numbers), len(groom.locks.points), 3), np.float32)
     cache = Cache(numbers, points, start=motion.start, cloths=motion.cloths(len(numbers)))
     run = play(motion, last, touches=touches, progress=progress, checkpoints=checkpoints, resume=resume)
@@ -86,6 +87,11 @@ def simulate(
         if on_frame:
             on_frame(frame.number, cache.points[k], frame.statistics)
     return cache
+
+
+def _check_frames(first: int, last: int) -> None:
+    if wrong := wrong_frames(first, last):
+        raise UserError(f"sim: frames are {first}:{last}; {wrong}")
 
 
 @dataclass
@@ -116,8 +122,7 @@ def play(
     resume: bool = False,
 ) -> Iterator[Frame]:
     """Yields the frames from the first of a motion to ``last``, each as soon as it is there; see ``simulate``."""
-    if last < motion.first:
-        raise UserError(f"sim: frames are {motion.first}:{last}; the last must not come before the first")
+    _check_frames(motion.first, last)
     before = motion.shot.preroll
     total = before + last - motion.first + 1
     done, memory = (checkpoints.begin(resume) if checkpoints else None) or (0, {})

@@ -41,7 +41,8 @@ def view(
     """
     file = Path(file)
     if not file.is_file():
-        raise UserError(f"{file}: there is no such file; give a recipe, a shot or a USD file")
+        wrong = "is a folder" if file.is_dir() else "there is no such file"
+        raise UserError(f"{file}: {wrong}; give a recipe, a shot or a USD file")
     if not (STATIC / "index.html").exists():
         raise UserError(f"{STATIC}: the page was not built; build it with: make build")
     token = "" if host in LOOPBACK else secrets.token_urlsafe(18)

@@ -30,6 +30,8 @@ from ringlet.viewer.showing import Showing, measured
 from ringlet.viewer.wire import pack, trouble
 from ringlet.viewer.worker import Latest, Stale
 
+NO_GROOM = "groom/trouble"  # the subject of why no groom is made
+
 log = logging.getLogger("ringlet.viewer")
 
 
@@ -65,6 +67,10 @@ class Session:
         self._showing = Showing(self.board)
         self._playing = Playing(self.files, self.board, self._showing, self._call, self.trouble)
         self._hand, self._sculptor = Hand(self.files), Sculptor(self.files)
+        if "recipe" not in self.files.documents:  # what cannot be read is told before there is a server
+            bodies, look = read_scene(file)
+            self._showing.stage(look, bodies)
+            self._playing.read(look)
         self._worker = Latest[Work](self._groom, "groom")
         self._measurer = Latest[Look](self._measure, "measure")
 
@@ -77,10 +83,6 @@ class Session:
             self.board.post(f"document/{file}", self.files.told(file))
         if "recipe" in self.files.documents:
             self.regroom()
-        else:
-            bodies, look = read_scene(self.files.file)
-            self._showing.stage(look, bodies)
-            self._playing.read(look)
 
     def stop(self) -> None:
         """Ends what works in the background."""
@@ -243,11 +245,12 @@ class Session:
         self._measurer.drop()
         try:
             look = self._groomer.groom(work.recipe, work.muted, draft=work.draft, fresh=fresh)
+            self._call(self.board.wipe, NO_GROOM)
             self._call(self._show, look, work.revision)
             if not work.draft:
                 self._measurer.ask(look)
-        except UserError as error:
-            self._call(self.trouble, str(error))
+        except UserError as error:  # told to pages that come later, too: it is why they see no hair
+            self._call(self.board.post, NO_GROOM, trouble(str(error)))
         except Stale:
             raise
         except Exception as error:
