@@ -32,8 +32,8 @@ def sim(folder, *more):
     return CliRunner().invoke(app, ["sim", str(folder / "small.shot.toml"), "-o", str(folder / "cache.usdc"), *more])
 
 
-def killed(folder, until):
-    """Runs the shot in a process of its own and kills it when ``until`` holds."""
+def started(folder):
+    """The shot as it runs in a process of its own."""
     command = [
         sys.executable,
         "-c",
@@ -43,9 +43,18 @@ def killed(folder, until):
         "-o",
         "cache.usdc",
     ]
-    process = subprocess.Popen(
-        command, cwd=folder, env={**os.environ, "OMP_NUM_THREADS": "1"}, stderr=subprocess.DEVNULL
+    return subprocess.Popen(
+        command,
+        cwd=folder,
+        env={**os.environ, "OMP_NUM_THREADS": "1"},
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
     )
+
+
+def killed(folder, until):
+    """Runs the shot and kills it when ``until`` holds."""
+    process = started(folder)
     while process.poll() is None and not until():
         time.sleep(0.002)
     assert process.poll() is None, "it was done before it could be killed"
@@ -122,6 +131,20 @@ def test_what_another_run_left_is_not_gone_on_with(folder, monkeypatch):
     result = sim(folder, "--resume")
     assert result.exit_code == 2 and "other settings" in result.stderr and (folder / "cache.usdc.part").exists()
     assert sim(folder).exit_code == 0 and not (folder / "cache.usdc.part").exists()
+
+
+def test_a_run_whose_files_another_run_is_at_is_refused_and_the_other_goes_on(folder):
+    expected, part = whole(folder), folder / "cache.usdc.part"
+    with started(folder) as other:
+        while not (part / "step.000000").exists():
+            assert other.poll() is None
+            time.sleep(0.01)
+        other.send_signal(signal.SIGSTOP)
+        refused = [sim(folder, *more) for more in ([], ["--resume"])]
+        other.send_signal(signal.SIGCONT)
+        assert other.wait(120) == 0
+    assert all(one.exit_code == 2 and "is of a run that goes on" in one.stderr for one in refused)
+    assert (read_cache(folder / "cache.usdc").points == expected).all()
 
 
 def test_without_anything_to_go_on_with_it_begins_anew(folder):

@@ -95,11 +95,11 @@ def _client(scheduler: str | None, workers: int | None, retries: int) -> Iterato
                 "dask scheduler"
             ) from None
         return
-    quiet = {"distributed.logging.distributed": "error", "distributed.scheduler.allowed-failures": retries}
+    quiet = {"distributed.logging.distributed": "critical", "distributed.scheduler.allowed-failures": retries}
     with (
         config.set(quiet),
         LocalCluster(
-            n_workers=workers, threads_per_worker=1, processes=True, dashboard_address="", silence_logs=logging.ERROR
+            n_workers=workers, threads_per_worker=1, processes=True, dashboard_address="", silence_logs=logging.CRITICAL
         ) as cluster,
         Client(cluster, set_as_default=False) as client,
     ):

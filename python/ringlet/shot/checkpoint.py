@@ -2,18 +2,19 @@
 
 Every frame is kept as soon as it is there, and every few frames all that the next one depends on. A file is written
 aside and renamed, and begins with a digest of the rest: half a file is never read, and one that was damaged is noticed.
+A folder is of one program at a time.
 """
 
 from __future__ import annotations
 
+import fcntl
 import hashlib
 import io
 import json
-import shutil
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +24,7 @@ from ringlet.files import replacing
 
 VERSION = b"ringlet checkpoint 1\n"
 EVERY = 10  # frames from one memory to the next
+HELD = "held"  # the file that a program holds while it runs
 KEPT = 2  # memories: where the last is damaged, the one before is used
 
 Arrays = Mapping[str, NDArray[Any]]
@@ -44,14 +46,18 @@ class Checkpoints:
     folder: Path
     made_from: str
     every: int = EVERY
+    _held: BinaryIO | None = field(default=None, repr=False)
 
     def begin(self, resume: bool) -> tuple[int, dict[str, NDArray[Any]]] | None:
         """Where to go on: the steps that are done, and the memory after them; None where it is to begin anew.
 
         Without ``resume`` what is there is thrown away. Raises UserError where it is of another run.
         """
+        self._hold()
         if not resume:
-            shutil.rmtree(self.folder, ignore_errors=True)
+            for path in self.folder.iterdir():
+                if path.name != HELD:
+                    path.unlink()
         key = self.folder / "made_from"
         if key.exists() and key.read_text() != self.made_from:
             raise UserError(
@@ -70,6 +76,20 @@ class Checkpoints:
             if all(self._has(step) for step in range(done)):
                 return done, memory
         return None
+
+    def _hold(self) -> None:
+        """Keeps other programs out of the folder as long as this one runs."""
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            self._held = (self.folder / HELD).open("ab")
+        except OSError as error:
+            raise UserError(f"{self.folder}: cannot be written ({error.strerror}); choose another place") from error
+        try:
+            fcntl.lockf(self._held, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except (BlockingIOError, PermissionError):
+            raise UserError(f"{self.folder}: is of a run that goes on; let it end, or choose another place") from None
+        except OSError:  # the disk knows no locks
+            return
 
     def keep(self, step: int, arrays: Arrays, statistics: dict[str, Any]) -> None:
         """Keeps what a step gave."""
