@@ -5,7 +5,8 @@
 Every style grows on a head that stands still while the drift is measured: in equilibrium for 10 s, otherwise for 3 s,
 when it hangs. Then the head drops by 5 cm in a tenth of a second and the tips go on: for each lock its main frequency
 and how far it goes, beside those of the plain shape that hangs as it sags, and of the plain shape without weight, which
-looks like the groom. Not a test: a style takes a minute and more.
+looks like the groom. Last, nothing weighs any more for half a second: what lay on the head and was bent too far against
+gravity rises. Not a test: a style takes a minute and more.
 """
 
 from __future__ import annotations
@@ -22,9 +23,11 @@ from numpy.typing import NDArray
 from ringlet.groom.groom import Groom
 from ringlet.mesh import Clip
 from ringlet.shot import Collider, Motion, Obstacle, Shot, parse_shot, preload
+from ringlet.shot.nails import held_vertices
 from ringlet.shot.stale import keep
 
 import ringlet
+from ringlet import _core
 
 Array = NDArray[np.float64]
 
@@ -33,6 +36,7 @@ TIE, IN_TIE = np.array([0.0, 0.44, -0.102]), 0.02  # of the bun, on the example 
 MODES = ("none", "lofted", "equilibrium")
 HANGS = 3.0  # what does not stay has sagged by then [s]
 FPS, FINE = 24.0, 96.0  # steps a second for the drift and for the bounce
+WEIGHTLESS = 0.5  # so long nothing weighs [s]
 DROP, FALL, SWING = 0.05, 0.1, 1.2  # how far [m] and how long [s] the head drops, and how long tips are looked at [s]
 
 BASE = """
@@ -77,6 +81,7 @@ STYLES = {
     "afro 4A": {"length": 5, "lift": 0.9, "droop": 0.2, "points": 96, "more": CURL.format(0.5, 9)},
     "long 3B": {"length": 20, "lift": 0.4, "droop": 2.6, "points": 96, "more": CURL.format(1.5, 8)},
     "down": {"length": 17, "lift": 0.3, "droop": 2.2, "points": 72, "more": CURL.format(0.8, 6)},
+    "lying": {"length": 9, "lift": 0.02, "droop": 3, "points": 72, "more": CURL.format(0.15, 6)},
     "bun": {"length": 20, "lift": 0.3, "droop": 1.0, "points": 72, "more": BUN + CURL.format(0.3, 6)},
 }
 
@@ -139,6 +144,20 @@ class Style:
         spectrum = np.abs(np.fft.rfft((up - up.mean(axis=0)) * fade, 16 * len(up), axis=0))
         return np.fft.rfftfreq(16 * len(up), 1 / FINE)[spectrum.argmax(axis=0)], np.abs(up).max(axis=0)
 
+    def weightless(self, mode: str, rest: ringlet.Curves | None) -> Array:
+        """Where the locks are when nothing has weighed for a while."""
+        *_, end = self.still(self.shot(mode, 0.0), rest, WEIGHTLESS)
+        return end
+
+    def lying(self) -> NDArray[np.bool_]:
+        """The vertices that touch the head, shape (n,), but those that are held."""
+        scalp, locks = self.groom.scalp, self.groom.locks
+        reach = LYING.thickness + self.shot("none").contact.radius
+        _, _, distance = _core.bind_roots(
+            np.asarray(scalp.points, np.float64), scalp.triangles, np.asarray(locks.points, np.float64)
+        )
+        return (distance < reach) & ~held_vertices(locks, self.shot("none").held)
+
 
 def grown(name: str, locks: int, head: Path, region: str) -> Style:
     """The groom of a style."""
@@ -156,6 +175,7 @@ def grown(name: str, locks: int, head: Path, region: str) -> Style:
 def table(name: str, style: Style, seconds: float, picture: Path | None) -> None:
     """Prints the rows of a style, one for each kind of rest shape."""
     groomed, ends, swings = np.asarray(style.groom.locks.points, np.float64), {}, {}
+    lying, risen = style.lying(), {}
     for mode in MODES:
         shot, began = style.shot(mode), time.process_time()
         made = None if mode == "none" else preload(shot, style.groom, obstacles=[style.head(np.zeros(1), FPS)])
@@ -166,6 +186,12 @@ def table(name: str, style: Style, seconds: float, picture: Path | None) -> None
         off = np.linalg.norm(ends[mode] - groomed, axis=1)
         if mode != "lofted":
             swings[mode] = style.bounce(shot, rest, ends[mode])
+        if rest is not None:
+            risen[f"{mode}, weightless"] = style.weightless(mode, rest)
+            remembered = 1e3 * np.linalg.norm(rest.points - groomed, axis=1)[lying].mean()
+            print(
+                f"{name}, {mode}: {lying.mean():.2%} lie on the head, and remember {remembered:.3g} mm away", flush=True
+            )
         stiffened = 0 if made is None or made.stiffened is None else int((made.stiffened > 1).sum())
         away = 0.0 if rest is None else np.linalg.norm(rest.points - groomed, axis=1).mean()
         columns = [1e3 * off.mean(), *(1e6 * np.percentile(off, [99, 100])), 1e3 * away, took]
@@ -175,8 +201,12 @@ def table(name: str, style: Style, seconds: float, picture: Path | None) -> None
         ratios = (mine / theirs for mine, theirs in zip(swings["equilibrium"], swings[plain], strict=True))
         often, far = (float(np.median(ratio)) for ratio in ratios)
         print(f"{name}, bounce beside {plain}: frequency x {often:.2f}, amplitude x {far:.2f}", flush=True)
+    for told, points in risen.items():
+        rise = 1e3 * np.linalg.norm(points - groomed, axis=1)[lying].mean()
+        print(f"{name}, {told}: what lay on the head is {rise:.3g} mm away", flush=True)
     if picture is not None:
         draw(name, style.groom, {"groomed": groomed, **ends}, picture)
+        draw(f"{name} weightless", style.groom, {"groomed": groomed, **risen}, picture)
 
 
 def draw(name: str, groom: Groom, shapes: dict[str, Array], folder: Path) -> None:

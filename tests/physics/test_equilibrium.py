@@ -192,6 +192,29 @@ def test_what_lies_on_a_body_remembers_lying_and_stays():
     assert sag(strands.positions, lying()) < shot.strands.radius
 
 
+def pressed_and_lifted(shot, groom, made):
+    """With what part of its weight a strand presses on the floor, and how far it rises when nothing weighs any more."""
+    strands, floor = make_strands(shot, groom, made.rest, made.stiffened), over()
+    strands.place(groom.locks.points)
+    touching, pressed = Scene(strands, [floor.body(1.0)], shot.touching), []
+    for _ in range(24):
+        touching.step(groom.locks.points, 1 / 24, gravity=GRAVITY)
+        _, values = touching.contacts
+        pressed.append((values[:, 8] * values[:, 5]).sum() / (9.81 * strands.masses.sum()))
+    for _ in range(12):
+        touching.step(groom.locks.points, 1 / 24)
+    return np.median(pressed), (strands.positions - groom.locks.points)[:, 1].max()
+
+
+def test_what_lies_on_a_body_presses_on_it_and_does_not_rise():
+    """Bent against gravity alone it hardly presses, and stands up as soon as it weighs less."""
+    shot, groom = scene(lying(), more=MODE + "[strands]\nbend_scale = 4\n[contact]\nradius = 5e-4\n")
+    pressed, lifted = pressed_and_lifted(shot, groom, loft(shot, groom))
+    assert pressed < 0.1 and lifted > 0.01
+    pressed, lifted = pressed_and_lifted(shot, groom, equilibrium(shot, groom, obstacles=[over()]))
+    assert pressed > 0.8 and lifted < shot.strands.radius
+
+
 @pytest.mark.parametrize(
     ("points", "body", "contact"),
     [

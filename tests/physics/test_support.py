@@ -69,6 +69,30 @@ def test_a_lock_that_lies_on_another_is_borne_by_it():
     assert stays(shot, groom, together) < 0.2 * shot.strands.radius
 
 
+def test_a_tip_bears_nothing():
+    """What lies on it would slide off."""
+    below, above = crossed()
+    borne, ends_there = (
+        np.abs(bearing(*scene(below, upper, more=SOFT), [])).max()
+        for upper in (above, above * [1, 1, 0] + np.linspace(-0.06, 0, 30)[:, None] * [0, 0, 1])
+    )
+    assert ends_there == 0 < borne
+
+
+RIDGE = 0.02 * np.array([[0, 0, -1], [0, 0, 1], [1, -1, -1], [1, -1, 1], [-1, -1, -1], [-1, -1, 1.0]])
+
+
+@pytest.mark.parametrize("aside", [0.1, 0.3])
+def test_an_edge_pushes_a_lock_away_from_where_it_is_nearest(aside):
+    """A straight lock that lies across a ridge, which is between two of its vertices: straight up, as in motion."""
+    lock = np.c_[np.linspace(-0.02, 0.04, 31) - 2e-3 * aside, np.full(31, 0.9 * REACH), np.zeros(31)]
+    mesh = Mesh("/ridge", RIDGE, np.array([[0, 1, 2], [1, 3, 2], [0, 4, 1], [1, 4, 5]], np.int32))
+    obstacle = Obstacle(mesh, Clip(np.array([1.0]), RIDGE[None], 24.0))
+    obstacle.settings = obstacle.settings.model_copy(update={"friction": 0.0})
+    borne = bearing(*scene(lock, more=SOFT), [obstacle]).sum(axis=0)
+    assert borne[1] > 0 and np.abs(borne[0]) < 1e-3 * borne[1]
+
+
 def on_slope(friction):
     """A strand that comes down to a slope of 4° and lies on it across, and the slope."""
     t = np.linspace(0, 1, 60)

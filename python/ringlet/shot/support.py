@@ -10,20 +10,19 @@ lock near its root with many times its weight, as on a lever.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
 
-from ringlet import _core
 from ringlet.curves import Curves
 from ringlet.shot.collider import LOCKS, Obstacle, ShotContact, with_pairs
 from ringlet.shot.joints import corners, edges, twists
 from ringlet.shot.nails import fixed
 from ringlet.shot.pushing import least_pushing
-from ringlet.shot.scene import Scene, friction_of
+from ringlet.shot.scene import Body, Scene, friction_of
 from ringlet.shot.shot import Shot
 from ringlet.shot.start import INSTANT, depths
 from ringlet.shot.strands import Solver, Strands
@@ -64,9 +63,7 @@ def support(shot: Shot, locks: Curves, strands: Strands, loads: Array, obstacles
     forces, contact = np.zeros_like(loads), shot.touching
     ways = [_nails(shot.held, locks, np.asarray(strands.held))]
     if contact is not None:
-        friction = HOLDS * _friction(contact, obstacles)
-        ways += _bodies(contact, friction[0, 1:], np.asarray(locks.points, np.float64), strands, obstacles)
-        ways.append(_neighbours(contact, friction[0, 0], locks, strands))
+        ways.append(_touching(contact, HOLDS * _friction(contact, obstacles), locks, strands, obstacles))
     all_ways = _joined(ways)
     if all_ways.free.size:
         found = _least(all_ways, shot.held, locks, strands, loads)
@@ -109,42 +106,49 @@ def _friction(contact: ShotContact, obstacles: Sequence[Obstacle]) -> Array:
     return with_pairs(friction_of(contact, [], [one.body(0.0) for one in obstacles]), told, names)
 
 
-def _bodies(
-    contact: ShotContact, friction: Array, points: Array, strands: Strands, obstacles: Sequence[Obstacle]
-) -> Iterator[Ways]:
-    """Bodies push away from them what is as near as they touch it; not what begins inside."""
-    free = ~np.asarray(strands.held)
-    for obstacle, rough in zip(obstacles, friction, strict=True):
-        surface, triangles = np.asarray(obstacle.mesh.points, np.float64), obstacle.mesh.triangles
-        reach = contact.radius + obstacle.settings.thickness
-        low, high = surface.min(axis=0) - reach, surface.max(axis=0) + reach
-        near = np.flatnonzero(free & ((points > low) & (points < high)).all(axis=1))
-        triangle, barycentric, distance = _core.bind_roots(surface, triangles, points[near])
-        touching = (distance < reach) & (distance > 0.0)
-        touching[touching] = depths(points[near[touching]], triangles, surface) == 0.0
-        foot = np.einsum("ki,kij->kj", barycentric[touching], surface[triangles[triangle[touching]]])
-        away = points[near[touching]] - foot
-        yield _pushing(away, rough, near[touching][:, None], np.ones((len(away), 1)))
+def _touching(
+    contact: ShotContact, friction: Array, locks: Curves, strands: Strands, obstacles: Sequence[Obstacle]
+) -> Ways:
+    """Locks that are as near to a body or to one another as they touch are pushed away from it, as the scene has it.
 
-
-def _neighbours(contact: ShotContact, friction: float, locks: Curves, strands: Strands) -> Ways:
-    """Locks that are as near to one another as they touch push each other away, each two where they are nearest."""
-    scene = Scene(strands, [], contact.model_copy(update={"parting_speed": 1.0}))  # or they would not push yet
-    before = strands.positions.copy()
-    scene.step(before, INSTANT, solver=Solver(newton=1))
+    Two locks where they are nearest, a lock and a body where they are nearest to each vertex. Not what begins inside a
+    body, and not at a lock's tip, off which another would slide.
+    """
+    surfaces = [np.asarray(one.mesh.points, np.float64) for one in obstacles]
+    bodies = [
+        Body(surface, one.mesh.triangles, one.settings.thickness, one.settings.friction)
+        for one, surface in zip(obstacles, surfaces, strict=True)
+    ]
+    # Without a speed at which to part they would not push yet.
+    scene = Scene(strands, bodies, contact.model_copy(update={"parting_speed": 1.0}))
+    before, count = scene.positions.copy(), len(locks.points)
+    scene.step(before[:count], INSTANT, solver=Solver(newton=1))
     vertices, values = scene.contacts
-    strands.place(before)
-    pairs = np.sort(np.searchsorted(locks.offsets, vertices[:, [0, 3]], side="right") - 1, axis=1)
-    of_two = np.flatnonzero(pairs[:, 0] != pairs[:, 1])
-    apart = np.linalg.norm(np.einsum("kv,kvi->ki", values[of_two, :4], before[vertices[of_two]]), axis=1)
-    by_distance = of_two[np.argsort(apart, kind="stable")]
-    _, first = np.unique(pairs[by_distance], axis=0, return_index=True)
+    strands.place(before[:count])
+
+    weights, of_lock = values[:, :4], vertices < count
+    body = np.searchsorted(np.cumsum([count, *map(len, surfaces)]), vertices.max(axis=1), side="right")  # 0: of locks
+    main = np.take_along_axis(vertices, np.where(of_lock, np.abs(weights), -1.0).argmax(axis=1)[:, None], axis=1)[:, 0]
+    lock = np.sort(np.searchsorted(locks.offsets, vertices[:, [0, 3]], side="right") - 1, axis=1)
+    places = np.where(body[:, None] == 0, lock, np.c_[main, count + body])
+    at_tip = (np.isin(vertices, locks.offsets[1:] - 1) & (np.abs(weights) > 0.5)).any(axis=1)
+    counts = np.where(body == 0, (lock[:, 0] != lock[:, 1]) & ~at_tip, ~np.asarray(strands.held)[main])
+    for k, surface in enumerate(surfaces):
+        on_it = np.flatnonzero((body == k + 1) & counts)
+        counts[on_it] = depths(before[main[on_it]], obstacles[k].mesh.triangles, surface) == 0.0
+    chosen = np.flatnonzero(counts)
+    apart = np.linalg.norm(np.einsum("kv,kvi->ki", weights[chosen], before[vertices[chosen]]), axis=1)
+    by_distance = chosen[np.argsort(apart, kind="stable")]
+    _, first = np.unique(places[by_distance], axis=0, return_index=True)
     nearest = by_distance[first]
-    return _pushing(values[nearest, 4:7], friction, vertices[nearest].astype(np.int64), values[nearest, :4])
+    acting = np.where(of_lock[nearest], vertices[nearest], main[nearest, None]).astype(np.int64)
+    return _pushing(
+        values[nearest, 4:7], friction[0, body[nearest]], acting, np.where(of_lock[nearest], weights[nearest], 0.0)
+    )
 
 
-def _pushing(away: Array, friction: float, vertex: Indices, weight: Array) -> Ways:
-    """Pushes along ``away``, shape (k, 3), on vertices with weights, shapes (k, m), and holds by friction across.
+def _pushing(away: Array, friction: Array, vertex: Indices, weight: Array) -> Ways:
+    """Pushes along ``away``, shape (k, 3), on vertices with weights, shapes (k, m), and holds across by friction, (k,).
 
     A cone of friction has four edges here; a force within is a sum of pushes along them.
     """
@@ -152,7 +156,7 @@ def _pushing(away: Array, friction: float, vertex: Indices, weight: Array) -> Wa
     across = np.cross(normal, np.eye(3)[np.abs(normal).argmin(axis=1)])
     across /= np.linalg.norm(across, axis=1, keepdims=True)
     sides = np.stack([across, -across, np.cross(normal, across), -np.cross(normal, across)], axis=1)
-    way = normal[:, None] + friction * sides if friction > 0.0 else normal[:, None]
+    way = normal[:, None] + friction[:, None, None] * sides
     each, parts = way.shape[0] * way.shape[1], vertex.shape[1]
     force = np.einsum("kwi,kv->kwvi", way, weight).reshape(-1, 3)
     of = np.repeat(np.arange(each), parts)
