@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from pxr import Gf, Sdf, Usd, UsdGeom, Vt
 from ringlet.shot import Obstacle, parse_shot, simulate
+from ringlet.shot.cache import Touches
 from small_example import FRAMES, RADIUS, write_example
 from test_cli import refused, run
 from test_shot_cloth import LONG, garment, simulated
@@ -198,6 +199,18 @@ def test_what_touches_is_written_as_points_that_keep_the_rules_of_usd(touched):
     assert (touches.gap > 0).all() and (touches.gap < 1.001).all() and (touches.force >= 0).all()
     head = np.linalg.norm(touches.places - [0, 0, 0], axis=1)
     assert (head < 0.2).all()  # metres, on and around the ball of 9 cm
+
+
+def test_a_force_that_is_far_stronger_leaves_the_colours_of_the_others(touched):
+    cache = ringlet.read_cache(touched)
+    force = np.full(200, 1e-3, np.float32)
+    force[:100], force[0] = 1e-4, 1e3
+    touches = Touches(np.zeros((200, 3), np.float32), force, np.ones(200, np.float32))
+    cache.touches = [touches for _ in cache.frames]
+    ringlet.write_touches(cache, touched.with_name("cache.usdc"), touched.with_name("strong.usdc"))
+    _, colors = io.read_touches(touched.with_name("strong.usdc"))
+    assert np.allclose(colors[0], colors[-1])  # both red, though one is a million times the other
+    assert colors[-1, 1] < 0.1 and colors[1, 1] > 0.5  # a decade below them: yellow
 
 
 def test_colours_tell_forces_apart():

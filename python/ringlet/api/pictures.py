@@ -18,6 +18,9 @@ if TYPE_CHECKING:
     from ringlet.shot.loft import Loft
 
 
+LOCK_WIDTH = 4e-4  # of locks among their contacts: as thin hairs they would be lost [m]
+
+
 def write_still(
     stage: Path | str,
     path: Path | str,
@@ -69,7 +72,8 @@ def write_touches_picture(
 ) -> None:
     """Draws what ``write_touches`` wrote, with the locks and the bodies around it, as coloured beads.
 
-    show:  ``force``: where how hard, from blue to red over three decades; ``gap``: red where hardly anything is left;
+    show:  ``force``: where how hard, from blue to red over three decades, up to the strongest in a hundred;
+           ``gap``: red where hardly anything is left;
            ``start``: all places that were in the way when the shot began, red where worst
     frame: the first by default
     """
@@ -82,7 +86,7 @@ def write_touches_picture(
     with io.open_cache(stage) as cache:
         at = cache.frames[0] if frame is None else frame
         posed_locks, start = cache.points(at), cache.start
-    places, part = touches.places, 0.006  # of the picture's size
+    places, part = touches.places, 0.009  # of the picture's size
     if show == "gap":
         colors = io.heat(1.0 - np.clip(touches.gap, 0.0, 1.0))
     elif show == "start":
@@ -94,13 +98,13 @@ def write_touches_picture(
         posed.append(picture.beads(places, colors, part * float(np.ptp(posed_locks, axis=0).max())))
     picture.still(
         posed,
-        Curves(posed_locks, locks.offsets, locks.ids),
+        Curves(posed_locks, locks.offsets, locks.ids, point={"width": np.full(len(posed_locks), LOCK_WIDTH)}),
         Path(path),
         width=width,
         height=height,
         samples=samples,
         view=view,
-        color="gray",
+        color="black",
         seconds=seconds,
         progress=progress,
     )

@@ -1,6 +1,7 @@
 """What touches in a simulation, as points over its cache: the contacts of every frame, and how it started.
 
-/groom/touches   Points, coloured by their force: blue, a thousandth of the greatest; red, the greatest of all frames
+/groom/touches   Points, coloured by their force: from blue to red, a thousand times as much, which no more than one
+                 contact in a hundred exceeds in any frame
 /groom/start     Points where locks began inside something, through it or too near, coloured by their depth
 """
 
@@ -25,6 +26,7 @@ from ringlet.stage import StageSpace
 TOUCHES, START = f"{GROOM}/touches", f"{GROOM}/start"
 SIZE = 1e-3  # diameter of a point [m]
 DECADES = 3.0  # of forces that colours tell apart
+STRONG = 0.99  # of the contacts of a frame are weaker than what is red: else the few strongest leave all others blue
 RAMP = np.array([[0.05, 0.15, 0.9], [0.1, 0.8, 0.5], [1.0, 0.85, 0.1], [0.9, 0.05, 0.02]])  # from weak to strong
 
 
@@ -34,19 +36,19 @@ def heat(strength: NDArray[np.floating]) -> NDArray[np.float32]:
     return np.stack([np.interp(strength, at, channel) for channel in RAMP.T], axis=-1).astype(np.float32)
 
 
-def strengths(force: NDArray[np.floating], greatest: float) -> NDArray[np.float64]:
-    """Forces on a logarithmic scale from 0 to 1."""
-    part = np.maximum(np.asarray(force, np.float64), 0.0) / max(greatest, 1e-300)
+def strengths(force: NDArray[np.floating], strong: float) -> NDArray[np.float64]:
+    """Forces on a logarithmic scale from 0 to 1, which is for a strong one and all above."""
+    part = np.maximum(np.asarray(force, np.float64), 0.0) / max(strong, 1e-300)
     return np.clip(1.0 + np.log10(np.maximum(part, 1e-30)) / DECADES, 0.0, 1.0)
 
 
 def write_touches(cache: Cache | Told, cache_path: Path | str, path: Path | str, space: StageSpace) -> None:
     """Writes what touches as a layer over the cache."""
-    greatest = max((float(t.force.max(initial=0.0)) for t in cache.touches), default=0.0)
+    strong = max((float(np.quantile(t.force, STRONG)) for t in cache.touches if len(t.force)), default=0.0)
     with TouchesWriter(path, cache_path, space) as writer:
         writer.mark(*start_marks(cache.start))
         for frame, touches in zip(cache.frames, cache.touches, strict=True):
-            writer.add(frame, touches, heat(strengths(touches.force, greatest)))
+            writer.add(frame, touches, heat(strengths(touches.force, strong)))
 
 
 class TouchesWriter(StreamWriter):
