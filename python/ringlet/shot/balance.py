@@ -31,5 +31,5 @@ def balance(
     shape and the stiffness; what happens between held vertices is not asked for, and zero.
     """
     twisting = np.zeros(len(points)) if twisting is None else twisting
-    vectors = (np.ascontiguousarray(of, np.float64) for of in (points, directors, loads))
-    return Joints(*_core.balance(curves.offsets, held, *vectors, twisting))
+    points, directors, loads = (np.ascontiguousarray(of, np.float64) for of in (points, directors, loads))
+    return Joints(*_core.balance(curves.offsets, held, points, directors, loads, twisting))
