@@ -186,7 +186,7 @@ def table(name: str, style: Style, seconds: float, picture: Path | None) -> None
         off = np.linalg.norm(ends[mode] - groomed, axis=1)
         if mode != "lofted":
             swings[mode] = style.bounce(shot, rest, ends[mode])
-        if rest is not None:
+        if rest is not None and lying.any():
             risen[f"{mode}, weightless"] = style.weightless(mode, rest)
             remembered = 1e3 * np.linalg.norm(rest.points - groomed, axis=1)[lying].mean()
             print(
@@ -206,7 +206,8 @@ def table(name: str, style: Style, seconds: float, picture: Path | None) -> None
         print(f"{name}, {told}: what lay on the head is {rise:.3g} mm away", flush=True)
     if picture is not None:
         draw(name, style.groom, {"groomed": groomed, **ends}, picture)
-        draw(f"{name} weightless", style.groom, {"groomed": groomed, **risen}, picture)
+        if risen:
+            draw(f"{name} weightless", style.groom, {"groomed": groomed, **risen}, picture)
 
 
 def draw(name: str, groom: Groom, shapes: dict[str, Array], folder: Path) -> None:
