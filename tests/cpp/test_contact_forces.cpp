@@ -61,7 +61,7 @@ struct Crowd {
 
     FilterReport filter(bool still, std::vector<Vec3> &filtered) const {
         NearPairs near(mesh);
-        if (still) near.note(start, 0.005);
+        if (still) near.note(start, start, 0.005, 0.0);
         filtered = end;
         const FilterScene scene{
             mesh, View<double>(mass), View<int>(offsets), [](int, const Vec3 &point) { return point; }, View<int>(), still};

@@ -89,9 +89,15 @@ template <class A, class B> double nearest_gap(const Scene &scene, const A &a, c
     return nearest - contact_distance(scene.mesh, a, b);
 }
 
+PathBoxes ways(const CollisionMesh &mesh, const std::vector<Vec3> &start, const std::vector<Vec3> &end, double margin) {
+    PathBoxes boxes(mesh);
+    boxes.fit(start, end, {start[0], end[0]}, margin);
+    return boxes;
+}
+
 Candidates found(const Scene &scene, double margin) {
     Candidates candidates;
-    BroadPhase(scene.mesh).find(scene.start, scene.end, margin, candidates);
+    BroadPhase(scene.mesh).find(ways(scene.mesh, scene.start, scene.end, margin), candidates);
     return candidates;
 }
 
@@ -158,11 +164,11 @@ BOOST_AUTO_TEST_CASE(neighbours_along_a_strand_that_rests_are_no_pairs) {
     mesh.anchor.assign(50, -1);
     Candidates candidates;
     BroadPhase broad(mesh);
-    broad.find(mesh.rest, mesh.rest, 0.0, candidates);
+    broad.find(ways(mesh, mesh.rest, mesh.rest, 0.0), candidates);
     BOOST_TEST(candidates.edge_edge.empty());
     std::vector<Vec3> shorter = mesh.rest;
     for (Vec3 &x : shorter) x *= 0.5;
-    broad.find(shorter, shorter, 0.0, candidates); // drawn together, they do push
+    broad.find(ways(mesh, shorter, shorter, 0.0), candidates); // drawn together, they do push
     BOOST_TEST(!candidates.edge_edge.empty());
 }
 
@@ -174,8 +180,8 @@ BOOST_AUTO_TEST_CASE(pairs_do_not_depend_on_threads_nor_on_what_was_asked_before
     omp_set_num_threads(4);
     Candidates four;
     BroadPhase broad(scene.mesh);
-    broad.find(other.start, other.end, 0.02, four); // the same mesh elsewhere
-    broad.find(scene.start, scene.end, 0.01, four);
+    broad.find(ways(scene.mesh, other.start, other.end, 0.02), four); // the same mesh elsewhere
+    broad.find(ways(scene.mesh, scene.start, scene.end, 0.01), four);
     omp_set_num_threads(threads);
     BOOST_TEST(same(one, four));
 }
@@ -184,10 +190,10 @@ BOOST_AUTO_TEST_CASE(a_tree_that_no_longer_fits_is_built_again) {
     Scene scene(3, 0.1);
     BroadPhase broad(scene.mesh);
     Candidates candidates;
-    for (int k = 0; k < 3; ++k) broad.find(scene.start, scene.end, 0.001 * k, candidates); // a wider margin is no reason
+    for (int k = 0; k < 3; ++k) broad.find(ways(scene.mesh, scene.start, scene.end, 0.001 * k), candidates); // a wider margin is no reason
     BOOST_TEST(broad.built() == 1);
     std::shuffle(scene.start.begin(), scene.start.end(), scene.random);
-    broad.find(scene.start, scene.start, 0.01, candidates);
+    broad.find(ways(scene.mesh, scene.start, scene.start, 0.01), candidates);
     BOOST_TEST(broad.built() == 2);
     scene.end = scene.start;
     BOOST_TEST(same(candidates, found(scene, 0.01)));
@@ -210,7 +216,7 @@ BOOST_AUTO_TEST_CASE(what_is_known_of_pairs_changes_nothing_that_is_found) {
     std::vector<Vec3> middle = scene.end;
     for (size_t v = 0; v < middle.size(); ++v) middle[v] = 0.5 * (scene.start[v] + scene.end[v]);
     NearPairs knowing(mesh), unknowing(mesh);
-    knowing.note(scene.start, 0.01);
+    knowing.note(scene.start, scene.start, 0.01, 0.0);
 
     using Pairs = std::set<std::array<int, 3>>;
     const auto coming_near = [&](const NearPairs &near, const std::vector<Vec3> &start, const std::vector<Vec3> &end) {
@@ -233,16 +239,22 @@ BOOST_AUTO_TEST_CASE(what_is_known_of_pairs_changes_nothing_that_is_found) {
         return pairs;
     };
     for (NearPairs *near : {&knowing, &unknowing}) near->set_out(scene.start, scene.end);
-    BOOST_TEST(knowing.may_meet().size() < unknowing.may_meet().size());
+    BOOST_TEST(knowing.may_meet().size() < size_t(knowing.count()));
     BOOST_TEST(coming_near(knowing, scene.start, scene.end).size() > 10);
     BOOST_TEST((coming_near(knowing, scene.start, scene.end) == coming_near(unknowing, scene.start, scene.end)));
+    NearPairs going_along(mesh); // pairs noted along the way: only what goes far is quick
+    going_along.note(scene.start, scene.end, 0.001, 0.02);
+    going_along.set_out(scene.start, scene.end);
+    BOOST_TEST((coming_near(going_along, scene.start, scene.end) == coming_near(unknowing, scene.start, scene.end)));
     const std::vector<unsigned char> changed(scene.start.size(), 1);
-    for (NearPairs *near : {&knowing, &unknowing}) near->set_out_anew(scene.start, middle, changed);
+    for (NearPairs *near : {&knowing, &unknowing, &going_along}) near->set_out_anew(scene.start, middle, changed);
     BOOST_TEST((coming_near(knowing, scene.start, middle) == coming_near(unknowing, scene.start, middle)));
-    for (NearPairs *near : {&knowing, &unknowing}) near->arrive(scene.start, middle);
+    BOOST_TEST((coming_near(going_along, scene.start, middle) == coming_near(unknowing, scene.start, middle)));
+    for (NearPairs *near : {&knowing, &unknowing, &going_along}) near->arrive(scene.start, middle);
     BOOST_TEST(touching(knowing, middle).size() > 10);
     BOOST_TEST((touching(knowing, middle) == touching(unknowing, middle)));
-    for (NearPairs *near : {&knowing, &unknowing}) {
+    BOOST_TEST((touching(going_along, middle) == touching(unknowing, middle)));
+    for (NearPairs *near : {&knowing, &unknowing, &going_along}) {
         near->set_out(middle, scene.start);
         near->arrive(middle, scene.start);
     }
@@ -252,7 +264,7 @@ BOOST_AUTO_TEST_CASE(what_is_known_of_pairs_changes_nothing_that_is_found) {
 BOOST_AUTO_TEST_CASE(nothing_meets_nothing) {
     CollisionMesh mesh;
     Candidates candidates;
-    BroadPhase(mesh).find({}, {}, 1.0, candidates);
+    BroadPhase(mesh).find(PathBoxes(mesh), candidates);
     BOOST_TEST((candidates.edge_edge.empty() && candidates.point_triangle.empty()));
 }
 

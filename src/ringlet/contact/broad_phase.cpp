@@ -55,74 +55,49 @@ BroadPhase::BroadPhase(const CollisionMesh &mesh) : mesh_(mesh) {
     for (int v : mesh.points) points_.push_back({v});
 }
 
-void BroadPhase::find(View<Vec3> start, View<Vec3> end, double margin, Candidates &candidates, View<unsigned char> changed) {
+void BroadPhase::find(const PathBoxes &ways, Candidates &candidates, View<unsigned char> changed) {
     // Pairs of two that do not count are left out: of those whose motions are given, or that have not changed.
     const View<unsigned char> counts = changed.empty() ? View<unsigned char>(mesh_.moves) : changed;
-    // In the frame of the first vertex: where the scene is and how fast it flies as a whole costs no precision.
-    if (!start.empty()) place(start, end, start[0], end[0]);
-    const auto fit = [&](MovingTree &tree, const auto &primitives) {
-        tree.fit(int(primitives.size()),
-                 [&](int i) { return box(starts_, ends_, primitives[i], margin, any_of(counts, primitives[i])); });
+    const auto fit = [&](MovingTree &tree, const auto &primitives, const auto &box_of) {
+        tree.fit(int(primitives.size()), [&](int i) {
+            MovingBox box = box_of(primitives[i], i);
+            box.count(any_of(counts, primitives[i]));
+            return box;
+        });
     };
-    fit(edge_tree_, mesh_.edges);
-    fit(point_tree_, points_);
-    fit(triangle_tree_, mesh_.triangles);
+    fit(edge_tree_, mesh_.edges, [&](const auto &, int i) { return ways.of_edge(i); });
+    fit(point_tree_, points_, [&](const auto &point, int) { return ways.of_vertex(point[0]); });
+    fit(triangle_tree_, mesh_.triangles, [&](const auto &, int i) { return ways.of_triangle(i); });
     search_all(candidates);
-    origin_ = start.empty() ? Vec3(Vec3::Zero()) : start[0];
-    home_ = starts_;
-    margin_ = margin;
     for (MovingTree *tree : {&edge_tree_, &point_tree_, &triangle_tree_}) tree->discount();
-    away_.assign(start.size(), !changed.empty());
+    away_.assign(mesh_.moves.size(), !changed.empty());
 }
 
-void BroadPhase::find_quick(View<Vec3> start, View<Vec3> end, View<unsigned char> quick, View<unsigned char> changed,
-                            Candidates &candidates) {
-    place(start, end, origin_, origin_);
+void BroadPhase::find_quick(const PathBoxes &ways, const PathBoxes &homes, View<unsigned char> quick,
+                            View<unsigned char> changed, Candidates &candidates) {
     stale_ = away_;
-    for (size_t v = 0; v < start.size(); ++v) {
+    for (size_t v = 0; v < quick.size(); ++v) {
         away_[v] = quick[v] || changed[v];
         stale_[v] |= away_[v];
     }
-    const auto refit = [&](MovingTree &tree, const auto &primitives) {
+    const auto refit = [&](MovingTree &tree, const auto &primitives, const auto &box_of) {
         if (primitives.empty()) return;
         tree.refit(
             [&](int i) {
-                const auto &primitive = primitives[i];
-                const bool counts = any_of(changed, primitive);
-                return any_of(quick, primitive) ? box(starts_, ends_, primitive, 0.0, counts)
-                                                : box(home_, home_, primitive, margin_, counts);
+                MovingBox box = box_of(any_of(quick, primitives[i]) ? ways : homes, primitives[i], i);
+                box.count(any_of(changed, primitives[i]));
+                return box;
             },
             [&](int i) { return any_of(stale_, primitives[i]); });
     };
-    refit(edge_tree_, mesh_.edges);
-    refit(point_tree_, points_);
-    refit(triangle_tree_, mesh_.triangles);
+    refit(edge_tree_, mesh_.edges, [](const PathBoxes &boxes, const auto &, int i) { return boxes.of_edge(i); });
+    refit(point_tree_, points_, [](const PathBoxes &boxes, const auto &point, int) { return boxes.of_vertex(point[0]); });
+    refit(triangle_tree_, mesh_.triangles, [](const PathBoxes &boxes, const auto &, int i) { return boxes.of_triangle(i); });
     search_all(candidates);
     const auto neither = [&](const auto &a, const auto &b) { return !any_of(quick, a) && !any_of(quick, b); };
     std::erase_if(candidates.edge_edge, [&](const Pair &pair) { return neither(mesh_.edges[pair[0]], mesh_.edges[pair[1]]); });
     std::erase_if(candidates.point_triangle,
                   [&](const Pair &pair) { return neither(std::array{pair[0]}, mesh_.triangles[pair[1]]); });
-}
-
-void BroadPhase::place(View<Vec3> start, View<Vec3> end, const Vec3 &origin, const Vec3 &end_origin) {
-    const int count = int(start.size());
-    starts_.resize(count);
-    ends_.resize(count);
-#pragma omp parallel for schedule(static)
-    for (int v = 0; v < count; ++v) {
-        starts_[v] << (start[v] - origin).cast<float>().array(), 0.0f;
-        ends_[v] << (end[v] - end_origin).cast<float>().array(), 0.0f;
-    }
-}
-
-template <class Primitive>
-MovingBox BroadPhase::box(const Places &starts, const Places &ends, const Primitive &primitive, double margin,
-                          bool counts) const {
-    const auto at = [&](int v) -> MovingBox { return {starts[v], starts[v], ends[v], ends[v]}; };
-    MovingBox box = at(primitive[0]);
-    for (size_t k = 1; k < primitive.size(); ++k) box.include(at(primitive[k]));
-    box.widen(float(mean_radius(mesh_, primitive) + 0.5 * margin), counts);
-    return box;
 }
 
 void BroadPhase::search_all(Candidates &candidates) {

@@ -3,6 +3,7 @@
 
 #include "ringlet/contact/collision_mesh.h"
 #include "ringlet/contact/moving_tree.h"
+#include "ringlet/contact/path_boxes.h"
 
 #include <vector>
 
@@ -18,15 +19,14 @@ class BroadPhase {
 public:
     explicit BroadPhase(const CollisionMesh &mesh);
 
-    // All pairs that may come within their contact distance plus `margin` [m] on the straight paths from `start` to `end`:
-    // positions [m] of all vertices. Left out are pairs that share a vertex, pairs whose motions are both given, and what is
-    // carried against what carries it. The same for any number of threads, and whatever was asked before.
+    // All pairs that may touch on their ways. Left out are pairs that share a vertex, pairs whose motions are both given, and
+    // what is carried against what carries it. The same for any number of threads, and whatever was asked before.
     // `changed`, if given, leaves only pairs with a vertex for which it is not 0.
-    void find(View<Vec3> start, View<Vec3> end, double margin, Candidates &candidates, View<unsigned char> changed = {});
+    void find(const PathBoxes &ways, Candidates &candidates, View<unsigned char> changed = {});
 
-    // The same, after find(x, x, margin, …), for pairs with a vertex that is `quick` and one that has `changed`. All others
-    // stay within half the margin of x. Takes less time the fewer these are.
-    void find_quick(View<Vec3> start, View<Vec3> end, View<unsigned char> quick, View<unsigned char> changed,
+    // What find() finds, after a find() of `homes`, for pairs with a vertex that is `quick` and one that has `changed`. All
+    // others stay at home. Takes less time the fewer these are. Both are told from one place.
+    void find_quick(const PathBoxes &ways, const PathBoxes &homes, View<unsigned char> quick, View<unsigned char> changed,
                     Candidates &candidates);
 
     int built() const { return edge_tree_.built(); } // how often the tree of edges was built, for studies
@@ -34,11 +34,6 @@ public:
 private:
     using Pairs = std::vector<std::array<int, 2>>;
 
-    using Places = std::vector<Eigen::Array4f>;
-
-    void place(View<Vec3> start, View<Vec3> end, const Vec3 &origin, const Vec3 &end_origin);
-    template <class Primitive>
-    MovingBox box(const Places &starts, const Places &ends, const Primitive &primitive, double margin, bool counts) const;
     void search_all(Candidates &candidates);
     template <class A, class B> void search(const MovingTree &tree_a, const A &all_a, const MovingTree &tree_b, const B &all_b);
     void gather(size_t firsts, Pairs &sorted);
@@ -46,13 +41,8 @@ private:
     const CollisionMesh &mesh_;
     std::vector<std::array<int, 1>> points_;
     MovingTree edge_tree_, triangle_tree_, point_tree_;
-    Places starts_, ends_;     // of the vertices, relative to where the first is
     std::vector<Pairs> found_; // by each task
 
-    // Of the last find():
-    Vec3 origin_ = Vec3::Zero();
-    Places home_;
-    double margin_ = 0.0;
     std::vector<unsigned char> away_, stale_; // vertices: boxed apart from find(), or changed; that are to be boxed anew
 };
 

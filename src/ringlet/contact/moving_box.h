@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <limits>
 
 namespace ringlet {
@@ -29,18 +30,38 @@ struct MovingBox {
         end_high = end_high.max(other.end_high);
     }
 
-    // By `reach`, and by what may be lost in computing with it in single precision.
-    void widen(float reach, bool counts) {
-        constexpr float rounding = 0x1p-21f;
-        const Eigen::Array4f largest = low.abs().max(high.abs()).max(end_low.abs()).max(end_high.abs());
-        const Eigen::Array4f by = reach + rounding * largest;
+    void widen(float by) {
         low -= by;
         high += by;
         end_low -= by;
         end_high += by;
-        low[3] = counts ? -2.0f : does_not_count;
     }
+
+    void count(bool counts) { low[3] = counts ? -2.0f : does_not_count; }
 };
+
+// Four rows become columns.
+inline void transpose(const Eigen::Array4f (&rows)[4], float (&columns)[4][4]) {
+    using Four = float __attribute__((vector_size(16)));
+    Four r[4];
+    for (int i = 0; i < 4; ++i) std::memcpy(&r[i], rows[i].data(), sizeof(Four));
+    const Four a = __builtin_shufflevector(r[0], r[1], 0, 4, 1, 5), b = __builtin_shufflevector(r[2], r[3], 0, 4, 1, 5);
+    const Four c = __builtin_shufflevector(r[0], r[1], 2, 6, 3, 7), d = __builtin_shufflevector(r[2], r[3], 2, 6, 3, 7);
+    const Four out[4] = {__builtin_shufflevector(a, b, 0, 1, 4, 5), __builtin_shufflevector(a, b, 2, 3, 6, 7),
+                         __builtin_shufflevector(c, d, 0, 1, 4, 5), __builtin_shufflevector(c, d, 2, 3, 6, 7)};
+    std::memcpy(columns, out, sizeof(out));
+}
+
+inline void set_boxes(BoxQuad &quad, const MovingBox (&boxes)[4]) {
+    float columns[4][4];
+    const auto set = [&](Eigen::Array4f MovingBox::*corner, float (&rows)[3][4]) {
+        transpose({boxes[0].*corner, boxes[1].*corner, boxes[2].*corner, boxes[3].*corner}, columns);
+        std::memcpy(rows, columns, sizeof(rows));
+    };
+    set(&MovingBox::high, quad.high), set(&MovingBox::end_low, quad.end_low), set(&MovingBox::end_high, quad.end_high);
+    set(&MovingBox::low, quad.low);
+    std::memcpy(quad.who_counts, columns[3], sizeof(columns[3]));
+}
 
 inline void set_box(BoxQuad &quad, int k, const MovingBox &box) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -58,6 +79,32 @@ inline MovingBox box_of(const BoxQuad &quad, int k) {
     };
     return {corner(quad.low, quad.who_counts[k]), corner(quad.high, 0.0f), corner(quad.end_low, 0.0f),
             corner(quad.end_high, 0.0f)};
+}
+
+// Around the four.
+inline MovingBox box_of(const BoxQuad &quad) {
+    using Row = Eigen::Map<const Eigen::Array4f>;
+    const auto least = [](const float (&rows)[3][4], float last) -> Eigen::Array4f {
+        return {Row(rows[0]).minCoeff(), Row(rows[1]).minCoeff(), Row(rows[2]).minCoeff(), last};
+    };
+    const auto most = [](const float (&rows)[3][4]) -> Eigen::Array4f {
+        return {Row(rows[0]).maxCoeff(), Row(rows[1]).maxCoeff(), Row(rows[2]).maxCoeff(), 0.0f};
+    };
+    return {least(quad.low, Row(quad.who_counts).minCoeff()), most(quad.high), least(quad.end_low, 0.0f), most(quad.end_high)};
+}
+
+// Whether two boxes may overlap at one time: on no axis are they apart at the start and, on the same side, at the end.
+inline bool may_meet(const MovingBox &a, const MovingBox &b) {
+    const Eigen::Array4f above = (b.low - a.high).min(b.end_low - a.end_high);
+    const Eigen::Array4f below = (a.low - b.high).min(a.end_low - b.end_high);
+    return above.max(below).head<3>().maxCoeff() <= 0.0f;
+}
+
+// Whether two boxes may overlap if each is anywhere on its way.
+inline bool ways_overlap(const MovingBox &a, const MovingBox &b) {
+    const Eigen::Array4f above = b.low.min(b.end_low) - a.high.max(a.end_high);
+    const Eigen::Array4f below = a.low.min(a.end_low) - b.high.max(b.end_high);
+    return above.max(below).head<3>().maxCoeff() <= 0.0f;
 }
 
 // Whether two boxes overlap on all three axes at one and the same time, after they have been drawn in by `less` in all.

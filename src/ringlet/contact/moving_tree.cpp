@@ -44,11 +44,7 @@ void MovingTree::refit_inner() {
         first = (first - 1) / 4;
         count /= 4;
 #pragma omp parallel for schedule(static) if (count > small)
-        for (int node = first; node < first + count; ++node) {
-            MovingBox all = box_of(nodes_[node], 0);
-            for (int k = 1; k < 4; ++k) all.include(box_of(nodes_[node], k));
-            put(node, all);
-        }
+        for (int node = first; node < first + count; ++node) put(node, box_of(nodes_[node]));
     }
 }
 

@@ -92,14 +92,14 @@ template <class Box, class Changed> void MovingTree::refit(const Box &box, const
 #pragma omp parallel for schedule(static) reduction(|| : any) if (count_ > small)
     for (int leaf = first_leaf_; leaf < first_leaf_ + leaves(); ++leaf) {
         bool here = false;
-        for (int k = 0; k < size(leaf); ++k)
-            if (changed(primitive(4 * leaf + k))) {
-                set_box(nodes_[leaf], k, box(primitive(4 * leaf + k)));
-                here = true;
-            }
+        for (int k = 0; k < size(leaf); ++k) here = here || changed(primitive(4 * leaf + k));
         if (!here) continue;
-        MovingBox all = MovingBox::nothing();
-        for (int k = 0; k < size(leaf); ++k) all.include(box_of(nodes_[leaf], k));
+        MovingBox boxes[4], all = MovingBox::nothing();
+        for (int k = 0; k < 4; ++k) {
+            boxes[k] = k < size(leaf) ? box(primitive(4 * leaf + k)) : MovingBox::nothing();
+            all.include(boxes[k]);
+        }
+        set_boxes(nodes_[leaf], boxes);
         put(leaf, all);
         any = true;
     }

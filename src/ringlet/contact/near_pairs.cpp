@@ -10,6 +10,19 @@ namespace {
 
 template <class Pair> bool before(const Pair &a, const Pair &b) { return a.of_edges != b.of_edges ? a.of_edges : a.of < b.of; }
 
+template <size_t N, size_t M>
+bool boxes_are_near(View<Vec3> x, const std::array<int, N> &a, const std::array<int, M> &b, double distance) {
+    const auto corner = [&](const auto &primitive, const auto &further) {
+        Vec3 corner = x[primitive[0]];
+        for (size_t k = 1; k < primitive.size(); ++k) corner = further(corner, x[primitive[k]]);
+        return corner;
+    };
+    const auto lower = [](const Vec3 &p, const Vec3 &q) -> Vec3 { return p.cwiseMin(q); };
+    const auto upper = [](const Vec3 &p, const Vec3 &q) -> Vec3 { return p.cwiseMax(q); };
+    const Vec3 above = corner(b, lower) - corner(a, upper), below = corner(a, lower) - corner(b, upper);
+    return !(above.cwiseMax(below).maxCoeff() > distance);
+}
+
 // Puts `more` among `pairs`, both in order.
 template <class Pair> void merge(std::vector<Pair> &pairs, const std::vector<Pair> &more) {
     const size_t size = pairs.size();
@@ -19,15 +32,8 @@ template <class Pair> void merge(std::vector<Pair> &pairs, const std::vector<Pai
 
 } // namespace
 
-bool many_are_away(View<Vec3> from, View<Vec3> now, double budget) {
-    constexpr size_t few = 16; // one in
-    size_t away = 0;
-    for (size_t v = 0; v < from.size(); ++v) away += (now[v] - from[v]).squaredNorm() > budget * budget;
-    return few * away > from.size();
-}
-
 NearPairs::NearPairs(const CollisionMesh &mesh)
-    : mesh_(mesh), broad_phase_(mesh), vertices_(mesh.moves.size()), edges_(mesh.edges.size()),
+    : mesh_(mesh), broad_phase_(mesh), ways_of_(mesh), homes_(mesh), vertices_(mesh.moves.size()), edges_(mesh.edges.size()),
       triangles_(mesh.triangles.size()), quick_(mesh.moves.size()) {}
 
 bool NearPairs::any_of(const NearPair &pair, View<unsigned char> vertices) const {
@@ -49,33 +55,59 @@ std::vector<NearPair> NearPairs::pairs_of(const Candidates &found) const {
     return pairs;
 }
 
-std::vector<NearPair> NearPairs::look_for_quick(View<Vec3> start, View<Vec3> end, View<unsigned char> changed) {
+std::vector<NearPair> NearPairs::look_for_quick(View<unsigned char> changed) {
     Candidates found;
-    if (noted_at_.empty())
-        broad_phase_.find(start, end, 0.0, found, changed);
+    if (low_.empty())
+        broad_phase_.find(ways_of_, found, changed);
     else
-        broad_phase_.find_quick(start, end, quick_, changed, found);
+        broad_phase_.find_quick(ways_of_, homes_, quick_, changed, found);
     return pairs_of(found);
 }
 
-void NearPairs::note(View<Vec3> positions, double budget) {
-    budget_ = budget;
-    noted_at_.assign(positions.begin(), positions.end());
-    passing_.clear();
-    for (auto *ways : {&vertices_, &edges_, &triangles_}) std::fill(ways->begin(), ways->end(), Way{});
-    Candidates candidates;
-    broad_phase_.find(positions, positions, 2.0 * budget, candidates);
-    const std::vector<NearPair> found = pairs_of(candidates);
-    known_ = collect<NearPair>(int(found.size()), [&](int k, std::vector<NearPair> &known) {
-        NearPair pair = found[k];
-        pair.apart = with_vertices(
-            mesh_, pair, [&](const auto &a, const auto &b) { return std::sqrt(closest_points(positions, a, b).distance2); });
-        if (pair.apart < pair.distance + 2.0 * budget) known.push_back(pair);
-    });
+void NearPairs::forget() {
+    known_.clear();
+    low_.clear(), high_.clear();
+    may_touch_.clear();
 }
 
-bool NearPairs::are_away(View<Vec3> positions) const {
-    return noted_at_.empty() || many_are_away(noted_at_, positions, budget_);
+void NearPairs::note(View<Vec3> start, View<Vec3> end, double margin, double far) {
+    constexpr size_t few = 16; // one in
+    const bool anew = low_.empty();
+    low_.resize(start.size()), high_.resize(start.size());
+    std::vector<unsigned char> stray(start.size(), 1);
+    size_t strays = 0;
+    for (size_t v = 0; v < start.size(); ++v) {
+        const bool goes_far = (end[v] - start[v]).squaredNorm() > far * far;
+        const Vec3 &to = goes_far ? start[v] : end[v];
+        stray[v] = anew || leaves(v, start[v]) || leaves(v, to);
+        strays += stray[v];
+        if (!stray[v]) continue;
+        low_[v] = start[v].cwiseMin(to).array() - margin;
+        high_[v] = start[v].cwiseMax(to).array() + margin;
+    }
+    if (strays == 0) return;
+    passing_.clear();
+    for (auto *ways : {&vertices_, &edges_, &triangles_}) std::fill(ways->begin(), ways->end(), Way{});
+    Candidates found;
+    if (anew || few * strays > start.size()) {
+        homes_.fit_within(low_, high_);
+        broad_phase_.find(homes_, found);
+        known_ = pairs_of(found);
+    } else {
+        homes_.fit_within_anew(low_, high_, stray);
+        broad_phase_.find_quick(homes_, homes_, stray, stray, found);
+        std::erase_if(known_, [&](const NearPair &pair) { return any_of(pair, stray); });
+        merge(known_, pairs_of(found));
+    }
+    may_touch_.clear();
+    for (NearPair &pair : known_) may_touch_.push_back(&pair);
+}
+
+void NearPairs::fit_ways(View<Vec3> start, View<Vec3> end) {
+    if (!low_.empty())
+        ways_of_.fit(start, end, homes_.origin());
+    else if (!start.empty())
+        ways_of_.fit(start, end, {start[0], end[0]});
 }
 
 void NearPairs::measure_ways(View<Vec3> start, View<Vec3> end) {
@@ -97,32 +129,38 @@ void NearPairs::measure_ways(View<Vec3> start, View<Vec3> end) {
 
 void NearPairs::set_out(View<Vec3> start, View<Vec3> end) {
     bool any_quick = false;
-    const bool nothing_known = noted_at_.empty();
+    const bool nothing_known = low_.empty();
 #pragma omp parallel for schedule(static) reduction(|| : any_quick)
     for (int v = 0; v < int(start.size()); ++v) {
-        const auto is_far = [&](const Vec3 &x) { return !((x - noted_at_[v]).squaredNorm() <= budget_ * budget_); };
-        quick_[v] = nothing_known ? mesh_.moves[v] : is_far(start[v]) || is_far(end[v]);
+        quick_[v] = nothing_known ? mesh_.moves[v] : leaves(v, start[v]) || leaves(v, end[v]);
         any_quick = any_quick || quick_[v];
     }
     any_quick_ = any_quick;
     measure_ways(start, end);
-    passing_ = any_quick_ ? look_for_quick(start, end, quick_) : std::vector<NearPair>();
-    may_meet_ = collect<NearPair *>(int(known_.size()), [&](int k, std::vector<NearPair *> &may_meet) {
+    fit_ways(start, end);
+    passing_ = any_quick_ ? look_for_quick(quick_) : std::vector<NearPair>();
+    may_touch_ = collect<NearPair *>(int(known_.size()), [&](int k, std::vector<NearPair *> &may_touch) {
         NearPair &pair = known_[k];
-        if (pair.apart - way(pair) < 0.5 * pair.distance && !quick(pair)) may_meet.push_back(&pair);
+        if (!quick(pair) && ways_of_.with_boxes(pair, ways_overlap)) may_touch.push_back(&pair);
+    });
+    may_meet_ = collect<NearPair *>(int(may_touch_.size()), [&](int k, std::vector<NearPair *> &may_meet) {
+        NearPair &pair = *may_touch_[k];
+        if (pair.apart - way(pair) < 0.5 * pair.distance && ways_of_.with_boxes(pair, ringlet::may_meet)) may_meet.push_back(&pair);
     });
     for (NearPair &pair : passing_) may_meet_.push_back(&pair);
 }
 
 void NearPairs::set_out_anew(View<Vec3> start, View<Vec3> end, View<unsigned char> changed) {
     measure_ways(start, end);
+    ways_of_.fit_anew(start, end, changed);
     if (any_quick_) {
         std::erase_if(passing_, [&](const NearPair &pair) { return any_of(pair, changed); });
-        merge(passing_, look_for_quick(start, end, changed));
+        merge(passing_, look_for_quick(changed));
     }
-    may_meet_ = collect<NearPair *>(int(known_.size()), [&](int k, std::vector<NearPair *> &may_meet) {
-        NearPair &pair = known_[k];
-        if (pair.apart - way(pair) < 0.5 * pair.distance && !quick(pair) && any_of(pair, changed)) may_meet.push_back(&pair);
+    may_meet_ = collect<NearPair *>(int(may_touch_.size()), [&](int k, std::vector<NearPair *> &may_meet) {
+        NearPair &pair = *may_touch_[k];
+        if (pair.apart - way(pair) < 0.5 * pair.distance && any_of(pair, changed) && ways_of_.with_boxes(pair, ringlet::may_meet))
+            may_meet.push_back(&pair);
     });
     for (NearPair &pair : passing_)
         if (any_of(pair, changed)) may_meet_.push_back(&pair);
@@ -133,6 +171,7 @@ void NearPairs::arrive(View<Vec3> start, View<Vec3> end) {
 #pragma omp parallel for schedule(static)
         for (int k = 0; k < int(pairs->size()); ++k) {
             NearPair &pair = (*pairs)[k];
+            if (pair.apart <= 0.0) continue;
             pair.apart -=
                 with_vertices(mesh_, pair, [&](const auto &a, const auto &b) { return most_nearer(a, b, start, end); });
         }
@@ -140,38 +179,39 @@ void NearPairs::arrive(View<Vec3> start, View<Vec3> end) {
         for (Way &way : *ways) way.length = 0.0;
 }
 
-// Pairs that may be changed are noted to be as far apart as they are found to be.
-template <class Pairs, class Counts>
-std::vector<Touch> NearPairs::touching(Pairs &known, Pairs &passing, const NearPairs &near, View<Vec3> at,
-                                       const Counts &counts) {
-    const auto among = [&](Pairs &pairs, bool are_known) {
-        return collect<Touch>(int(pairs.size()), [&](int k, std::vector<Touch> &touching) {
-            auto &pair = pairs[k];
-            if (!(pair.apart - near.way(pair) < pair.distance) || (are_known && near.quick(pair)) || !counts(pair)) return;
-            const ClosestPoints nearest =
-                with_vertices(near.mesh_, pair, [&](const auto &a, const auto &b) { return closest_points(at, a, b); });
+template <class Counts, class Measured>
+std::vector<Touch> NearPairs::touching(View<Vec3> at, const Counts &counts, const Measured &measured) const {
+    const auto look_at = [&](const NearPair &pair, std::vector<Touch> &touching) {
+        if (!(pair.apart - way(pair) < pair.distance) || !counts(pair)) return;
+        with_vertices(mesh_, pair, [&](const auto &a, const auto &b) {
+            if (!boxes_are_near(at, a, b, pair.distance)) return;
+            const ClosestPoints nearest = closest_points(at, a, b);
             const double apart = std::sqrt(nearest.distance2);
-            if constexpr (!std::is_const_v<Pairs>) pair.apart = apart;
+            measured(pair, apart);
             if (apart < pair.distance) touching.push_back({pair.of, pair.of_edges, pair.distance, nearest});
         });
     };
-    std::vector<Touch> all = among(known, true);
-    merge(all, among(passing, false));
+    std::vector<Touch> all = collect<Touch>(int(may_touch_.size()), [&](int k, auto &found) { look_at(*may_touch_[k], found); });
+    merge(all, collect<Touch>(int(passing_.size()), [&](int k, auto &found) { look_at(passing_[k], found); }));
     return all;
 }
 
 std::vector<Touch> NearPairs::touching(View<Vec3> positions) {
-    return touching(known_, passing_, *this, positions, [](const NearPair &) { return true; });
+    return touching(
+        positions, [](const NearPair &) { return true; }, [](const NearPair &pair, double apart) { const_cast<NearPair &>(pair).apart = apart; });
 }
 
 std::vector<Touch> NearPairs::would_touch(View<Vec3> on_the_way, View<unsigned char> objects) const {
-    return touching(known_, passing_, *this, on_the_way, [&](const NearPair &pair) {
-        const auto counts = [&](int v) {
-            const auto object = size_t(mesh_.object[v]);
-            return object < objects.size() && objects[object] != 0;
-        };
-        return with_vertices(mesh_, pair, [&](const auto &a, const auto &b) { return counts(a[0]) || counts(b[0]); });
-    });
+    const auto counts = [&](int v) {
+        const auto object = size_t(mesh_.object[v]);
+        return object < objects.size() && objects[object] != 0;
+    };
+    return touching(
+        on_the_way,
+        [&](const NearPair &pair) {
+            return with_vertices(mesh_, pair, [&](const auto &a, const auto &b) { return counts(a[0]) || counts(b[0]); });
+        },
+        [](const NearPair &, double) {});
 }
 
 } // namespace ringlet

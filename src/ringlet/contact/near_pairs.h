@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ringlet/contact/broad_phase.h"
+#include "ringlet/contact/path_boxes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,22 +25,20 @@ struct Touch {
     ClosestPoints nearest;
 };
 
-// Whether more than a few vertices are further than a budget [m] from where they were.
-bool many_are_away(View<Vec3> from, View<Vec3> now, double budget);
-
 // A pair that is known is apart by what was measured last, less what its two have moved since, on each move by themselves or,
-// once they have arrived, relative to one another: while that is enough, nothing has to be computed. Pairs are noted so far
-// apart that every vertex may move by `budget`. Vertices that have moved further are quick: their pairs are looked for anew in
-// every move. All this says only what need not be looked at; what is found does not depend on it.
+// once they have arrived, relative to one another: while that is enough, nothing has to be computed. Pairs are noted for
+// vertices that keep to their corridors. Vertices that do not are quick: their pairs are looked for anew in every move. All this
+// says only what need not be looked at; what is found does not depend on it.
 //
 // Borrows the mesh, which must outlive it.
 class NearPairs {
 public:
     explicit NearPairs(const CollisionMesh &mesh);
 
-    void forget() { known_.clear(), noted_at_.clear(); } // everything is quick
-    void note(View<Vec3> positions, double budget);      // [m]
-    bool are_away(View<Vec3> positions) const; // many from where pairs were noted, or none were: worth noting them anew
+    void forget(); // everything is quick
+    // Everything is to go from `start` to `end`: vertices that would leave their corridors get new ones, boxes around their
+    // ways, or around the start alone of what goes further than `far` [m], wider by `margin` [m] on each side.
+    void note(View<Vec3> start, View<Vec3> end, double margin, double far);
 
     // Everything sets out straight from `start`, where it is, to `end`; or, while it has not arrived, to another end, which
     // differs where vertices have `changed` and is no further away.
@@ -54,6 +53,7 @@ public:
     // Somewhere on the last move, of the objects that count: the first of all.
     std::vector<Touch> would_touch(View<Vec3> on_the_way, View<unsigned char> objects) const;
 
+    int quick_count() const { return int(std::count(quick_.begin(), quick_.end(), 1)); }
     int count() const { return int(known_.size() + passing_.size()); }
 
 private:
@@ -62,9 +62,12 @@ private:
         bool quick = false;
     };
 
-    template <class Pairs, class Counts>
-    static std::vector<Touch> touching(Pairs &known, Pairs &passing, const NearPairs &near, View<Vec3> at,
-                                       const Counts &counts);
+    template <class Counts, class Measured>
+    std::vector<Touch> touching(View<Vec3> at, const Counts &counts, const Measured &measured) const;
+    bool leaves(int v, const Vec3 &to) const {
+        return !((to.array() >= low_[v].array()).all() && (to.array() <= high_[v].array()).all());
+    }
+    void fit_ways(View<Vec3> start, View<Vec3> end);
     void measure_ways(View<Vec3> start, View<Vec3> end);
     double way(const NearPair &pair) const { return first(pair).length + second(pair).length; }
     bool quick(const NearPair &pair) const { return first(pair).quick || second(pair).quick; }
@@ -72,17 +75,18 @@ private:
     const Way &second(const NearPair &pair) const { return (pair.of_edges ? edges_ : triangles_)[pair.of[1]]; }
     bool any_of(const NearPair &pair, View<unsigned char> vertices) const;
     std::vector<NearPair> pairs_of(const Candidates &found) const;
-    std::vector<NearPair> look_for_quick(View<Vec3> start, View<Vec3> end, View<unsigned char> changed);
+    std::vector<NearPair> look_for_quick(View<unsigned char> changed);
 
     const CollisionMesh &mesh_;
     BroadPhase broad_phase_;
-    double budget_ = 0.0;
-    std::vector<Vec3> noted_at_;    // empty: nothing is known
+    PathBoxes ways_of_, homes_; // boxes of this move; of the corridors
+    std::vector<Vec3> low_, high_;  // of the corridors; empty: nothing is known
     std::vector<NearPair> known_;   // in order
     std::vector<NearPair> passing_; // in order: of what is quick, those that may touch in this move
     std::vector<Way> vertices_, edges_, triangles_;
     std::vector<unsigned char> quick_; // vertices
     bool any_quick_ = false;
+    std::vector<NearPair *> may_touch_; // of the known, those whose ways come so near
     std::vector<NearPair *> may_meet_;
 };
 

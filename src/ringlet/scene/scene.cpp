@@ -143,6 +143,8 @@ SceneCarriers Scene::Parts::carriers(std::vector<int> &of_cloths, double dt) con
 // the way that is.
 double Scene::Parts::filter(View<Vec3> now, std::vector<Vec3> &to, const MoveKind &kind, SceneReport &report) {
     const Stopwatch watch(report.time_filter);
+    constexpr double far = 0.1; // [m]: a corridor as long as that holds too many
+    if (kind.still) near.note(now, to, 0.5 * settings.strand_radius, far);
     const SceneCarry with = carry();
     const FilterScene scene{vertices.mesh,
                             vertices.mass,
@@ -210,10 +212,6 @@ int Scene::Parts::newton(const SceneStep &scene_step, const StrandStep &step, st
     int iteration = 0;
     for (bool arrived = false; !arrived; ++iteration) {
         if (iteration >= step.newton && (iteration >= step.newton + most_more || !progress.narrow(system, now))) break;
-        if (near.are_away(now)) {
-            const Stopwatch watch(report.time_filter);
-            near.note(now, settings.strand_radius);
-        }
         {
             const Stopwatch watch(report.time_pairs);
             system.touch(near.touching(now), now);
@@ -323,17 +321,11 @@ double Scene::Parts::advance(const SceneInput &input, const SceneStep &scene_ste
     };
     keep_held();
     const std::vector<Vec3> guess = to;
-    const auto note_pairs = [&] {
-        const Stopwatch watch(report.time_filter);
-        near.note(now, settings.strand_radius);
-    };
-    if (!many_are_away(now, guess, settings.strand_radius)) note_pairs(); // else they are noted where it leads
     filter(now, to, {true, false}, report);
     SceneProgress progress(system);
     progress.moved(now, guess, to);
     progress.judge(step.tolerance);
     arrive(now, to);
-    if (near.are_away(now)) note_pairs();
     system.scatter(now, x);
     const int iteration = newton(scene_step, step, now, progress, report);
     system.touch(near.touching(now), now);
@@ -376,7 +368,7 @@ SceneReport Scene::Parts::step(const SceneInput &input, const SceneStep &scene_s
         std::copy(system.cloths[c].state().positions.begin(), system.cloths[c].state().positions.end(),
                   vertices.positions.begin() + vertices.cloths[c]);
     if (!begun) {
-        near.note(vertices.positions, 0.0);
+        near.note(vertices.positions, vertices.positions, 0.0, 0.0);
         system.contacts.begin(near.touching(vertices.positions));
         begun = true;
     }

@@ -1,0 +1,89 @@
+#include "ringlet/contact/path_boxes.h"
+
+namespace ringlet {
+namespace {
+
+template <class Primitives> std::vector<float> radii(const CollisionMesh &mesh, const Primitives &primitives) {
+    std::vector<float> all;
+    for (const auto &primitive : primitives) all.push_back(float(mean_radius(mesh, primitive)));
+    return all;
+}
+
+template <size_t N> bool any_of(View<unsigned char> vertices, const std::array<int, N> &primitive) {
+    return std::any_of(primitive.begin(), primitive.end(), [&](int v) { return vertices[v] != 0; });
+}
+
+} // namespace
+
+PathBoxes::PathBoxes(const CollisionMesh &mesh)
+    : mesh_(mesh), edge_radii_(radii(mesh, mesh.edges)), vertex_radii_(mesh.radius.begin(), mesh.radius.end()),
+      triangle_radii_(radii(mesh, mesh.triangles)), starts_(mesh.moves.size()), ends_(mesh.moves.size()),
+      edges_(mesh.edges.size()), vertices_(mesh.moves.size()), triangles_(mesh.triangles.size()) {}
+
+void PathBoxes::place(View<Vec3> points, const Vec3 &origin, std::vector<Eigen::Array4f> &places) const {
+#pragma omp parallel for schedule(static)
+    for (int v = 0; v < int(points.size()); ++v) {
+        const Vec3 from = points[v] - origin;
+        places[v] = Eigen::Array4f(float(from[0]), float(from[1]), float(from[2]), 0.0f);
+    }
+}
+
+void PathBoxes::widen_by(double margin) {
+    constexpr float rounding = 0x1p-20f;
+    Eigen::Array4f largest = Eigen::Array4f::Zero();
+    for (size_t v = 0; v < starts_.size(); ++v) largest = largest.max(starts_[v].abs()).max(ends_[v].abs());
+    wider_ = float(margin) + rounding * largest.maxCoeff();
+}
+
+// box(v): of a vertex, not widened yet.
+template <class Box, class Counts> void PathBoxes::fit(const Box &box, const Counts &counts) {
+    const auto around = [&](const auto &primitive, float radius) {
+        MovingBox all = box(primitive[0]);
+        for (size_t k = 1; k < primitive.size(); ++k) all.include(box(primitive[k]));
+        all.widen(radius + wider_);
+        return all;
+    };
+    const auto fit = [&](const auto &primitives, const std::vector<float> &radii, std::vector<MovingBox> &boxes) {
+#pragma omp parallel for schedule(static)
+        for (int i = 0; i < int(primitives.size()); ++i)
+            if (counts(primitives[i])) boxes[i] = around(primitives[i], radii[i]);
+    };
+    fit(mesh_.edges, edge_radii_, edges_);
+    if (triangles_.empty()) return;
+    fit(mesh_.triangles, triangle_radii_, triangles_);
+#pragma omp parallel for schedule(static)
+    for (int v = 0; v < int(vertices_.size()); ++v)
+        if (counts(std::array{v})) vertices_[v] = around(std::array{v}, vertex_radii_[v]);
+}
+
+void PathBoxes::fit(View<Vec3> start, View<Vec3> end, const Origin &origin, double margin) {
+    origin_ = origin;
+    place(start, origin.start, starts_), place(end, origin.end, ends_);
+    widen_by(0.5 * margin);
+    fit([&](int v) -> MovingBox { return {starts_[v], starts_[v], ends_[v], ends_[v]}; }, [](const auto &) { return true; });
+}
+
+void PathBoxes::fit_anew(View<Vec3> start, View<Vec3> end, View<unsigned char> changed) {
+    place(start, origin_.start, starts_), place(end, origin_.end, ends_);
+    fit([&](int v) -> MovingBox { return {starts_[v], starts_[v], ends_[v], ends_[v]}; },
+        [&](const auto &primitive) { return any_of(changed, primitive); });
+}
+
+void PathBoxes::fit_within(View<Vec3> low, View<Vec3> high) {
+    const Vec3 first = low.empty() ? Vec3(Vec3::Zero()) : low[0];
+    origin_ = {first, first};
+    place(low, first, starts_), place(high, first, ends_);
+    widen_by(0.0);
+    fit([&](int v) -> MovingBox { return {starts_[v], ends_[v], starts_[v], ends_[v]}; }, [](const auto &) { return true; });
+}
+
+void PathBoxes::fit_within_anew(View<Vec3> low, View<Vec3> high, View<unsigned char> changed) {
+    const float before = wider_;
+    place(low, origin_.start, starts_), place(high, origin_.start, ends_);
+    widen_by(0.0);
+    wider_ = std::max(wider_, before);
+    fit([&](int v) -> MovingBox { return {starts_[v], ends_[v], starts_[v], ends_[v]}; },
+        [&](const auto &primitive) { return any_of(changed, primitive); });
+}
+
+} // namespace ringlet
