@@ -190,7 +190,8 @@ BOOST_AUTO_TEST_CASE(a_tree_that_no_longer_fits_is_built_again) {
     Scene scene(3, 0.1);
     BroadPhase broad(scene.mesh);
     Candidates candidates;
-    for (int k = 0; k < 3; ++k) broad.find(ways(scene.mesh, scene.start, scene.end, 0.001 * k), candidates); // a wider margin is no reason
+    for (int k = 0; k < 3; ++k)
+        broad.find(ways(scene.mesh, scene.start, scene.end, 0.001 * k), candidates); // a wider margin is no reason
     BOOST_TEST(broad.built() == 1);
     std::shuffle(scene.start.begin(), scene.start.end(), scene.random);
     broad.find(ways(scene.mesh, scene.start, scene.start, 0.01), candidates);

@@ -11,17 +11,17 @@ using Pair = std::array<int, 2>; // two primitives
 
 constexpr size_t tasks = 256; // at least, where there are as many: the same for any number of threads
 
-Descent descent(const MovingTree &a, const MovingTree &b) {
+Descent descent(const MovingTree &a, const MovingTree &b, bool still) {
     Descent descent;
-    descent.a = a.boxes(), descent.b = b.boxes(), descent.one_tree = &a == &b;
+    descent.a = a.boxes(), descent.b = b.boxes(), descent.one_tree = &a == &b, descent.still = still;
     descent.left = descent.found = 0;
     return descent;
 }
 
 // The pairs of nodes to descend from, one for each task.
-std::vector<BoxPair> split(const MovingTree &a, const MovingTree &b) {
+std::vector<BoxPair> split(const MovingTree &a, const MovingTree &b, bool still) {
     std::vector<BoxPair> pairs = {{{0, 0}}};
-    Descent below = descent(a, b);
+    Descent below = descent(a, b, still);
     for (bool split = true; split && pairs.size() < tasks;) {
         split = false;
         std::vector<BoxPair> finer;
@@ -68,7 +68,7 @@ void BroadPhase::find(const PathBoxes &ways, Candidates &candidates, View<unsign
     fit(edge_tree_, mesh_.edges, [&](const auto &, int i) { return ways.of_edge(i); });
     fit(point_tree_, points_, [&](const auto &point, int) { return ways.of_vertex(point[0]); });
     fit(triangle_tree_, mesh_.triangles, [&](const auto &, int i) { return ways.of_triangle(i); });
-    search_all(candidates);
+    search_all(ways.still(), candidates);
     for (MovingTree *tree : {&edge_tree_, &point_tree_, &triangle_tree_}) tree->discount();
     away_.assign(mesh_.moves.size(), !changed.empty());
 }
@@ -93,29 +93,29 @@ void BroadPhase::find_quick(const PathBoxes &ways, const PathBoxes &homes, View<
     refit(edge_tree_, mesh_.edges, [](const PathBoxes &boxes, const auto &, int i) { return boxes.of_edge(i); });
     refit(point_tree_, points_, [](const PathBoxes &boxes, const auto &point, int) { return boxes.of_vertex(point[0]); });
     refit(triangle_tree_, mesh_.triangles, [](const PathBoxes &boxes, const auto &, int i) { return boxes.of_triangle(i); });
-    search_all(candidates);
+    search_all(ways.still(), candidates);
     const auto neither = [&](const auto &a, const auto &b) { return !any_of(quick, a) && !any_of(quick, b); };
     std::erase_if(candidates.edge_edge, [&](const Pair &pair) { return neither(mesh_.edges[pair[0]], mesh_.edges[pair[1]]); });
     std::erase_if(candidates.point_triangle,
                   [&](const Pair &pair) { return neither(std::array{pair[0]}, mesh_.triangles[pair[1]]); });
 }
 
-void BroadPhase::search_all(Candidates &candidates) {
-    search(edge_tree_, mesh_.edges, edge_tree_, mesh_.edges);
+void BroadPhase::search_all(bool still, Candidates &candidates) {
+    search(edge_tree_, mesh_.edges, edge_tree_, mesh_.edges, still);
     gather(mesh_.edges.size(), candidates.edge_edge);
     candidates.point_triangle.clear();
     if (points_.empty() || mesh_.triangles.empty()) return;
-    search(point_tree_, points_, triangle_tree_, mesh_.triangles);
+    search(point_tree_, points_, triangle_tree_, mesh_.triangles, still);
     for (Pairs &found : found_)
         for (auto &pair : found) pair[0] = mesh_.points[pair[0]];
     gather(mesh_.moves.size(), candidates.point_triangle);
 }
 
 template <class A, class B>
-void BroadPhase::search(const MovingTree &tree_a, const A &all_a, const MovingTree &tree_b, const B &all_b) {
+void BroadPhase::search(const MovingTree &tree_a, const A &all_a, const MovingTree &tree_b, const B &all_b, bool still) {
     for (Pairs &found : found_) found.clear();
     if (tree_a.empty()) return;
-    const std::vector<BoxPair> starts = split(tree_a, tree_b);
+    const std::vector<BoxPair> starts = split(tree_a, tree_b, still);
     if (found_.size() < starts.size()) found_.resize(starts.size());
     const auto take = [&](const BoxPair &slots, Pairs &found) {
         const auto [i, j] = slots.of;
@@ -131,7 +131,7 @@ void BroadPhase::search(const MovingTree &tree_a, const A &all_a, const MovingTr
     };
 #pragma omp parallel
     {
-        Descent here = descent(tree_a, tree_b);
+        Descent here = descent(tree_a, tree_b, still);
 #pragma omp for schedule(dynamic, 1)
         for (size_t task = 0; task < starts.size(); ++task) {
             here.nodes[0] = starts[task];

@@ -49,8 +49,11 @@ std::vector<NearPair> NearPairs::pairs_of(const Candidates &found) const {
     std::vector<NearPair> pairs(all);
 #pragma omp parallel for schedule(static)
     for (int k = 0; k < all; ++k) {
-        NearPair &pair = pairs[k] = {k < edges ? found.edge_edge[k] : found.point_triangle[k - edges], k < edges, 0.0, 0.0};
-        pair.distance = with_vertices(mesh_, pair, [&](const auto &a, const auto &b) { return contact_distance(mesh_, a, b); });
+        NearPair &pair = pairs[k] = {k < edges ? found.edge_edge[k] : found.point_triangle[k - edges], k < edges, 0.0, 0.0, {}};
+        with_vertices(mesh_, pair, [&](const auto &a, const auto &b) {
+            pair.distance = contact_distance(mesh_, a, b);
+            pair.objects = {mesh_.object[a[0]], mesh_.object[b[0]]};
+        });
     }
     return pairs;
 }
@@ -145,7 +148,8 @@ void NearPairs::set_out(View<Vec3> start, View<Vec3> end) {
     });
     may_meet_ = collect<NearPair *>(int(may_touch_.size()), [&](int k, std::vector<NearPair *> &may_meet) {
         NearPair &pair = *may_touch_[k];
-        if (pair.apart - way(pair) < 0.5 * pair.distance && ways_of_.with_boxes(pair, ringlet::may_meet)) may_meet.push_back(&pair);
+        if (pair.apart - way(pair) < 0.5 * pair.distance && ways_of_.with_boxes(pair, ringlet::may_meet))
+            may_meet.push_back(&pair);
     });
     for (NearPair &pair : passing_) may_meet_.push_back(&pair);
 }
@@ -159,7 +163,8 @@ void NearPairs::set_out_anew(View<Vec3> start, View<Vec3> end, View<unsigned cha
     }
     may_meet_ = collect<NearPair *>(int(may_touch_.size()), [&](int k, std::vector<NearPair *> &may_meet) {
         NearPair &pair = *may_touch_[k];
-        if (pair.apart - way(pair) < 0.5 * pair.distance && any_of(pair, changed) && ways_of_.with_boxes(pair, ringlet::may_meet))
+        if (pair.apart - way(pair) < 0.5 * pair.distance && any_of(pair, changed) &&
+            ways_of_.with_boxes(pair, ringlet::may_meet))
             may_meet.push_back(&pair);
     });
     for (NearPair &pair : passing_)
@@ -191,26 +196,22 @@ std::vector<Touch> NearPairs::touching(View<Vec3> at, const Counts &counts, cons
             if (apart < pair.distance) touching.push_back({pair.of, pair.of_edges, pair.distance, nearest});
         });
     };
-    std::vector<Touch> all = collect<Touch>(int(may_touch_.size()), [&](int k, auto &found) { look_at(*may_touch_[k], found); });
+    std::vector<Touch> all =
+        collect<Touch>(int(may_touch_.size()), [&](int k, auto &found) { look_at(*may_touch_[k], found); });
     merge(all, collect<Touch>(int(passing_.size()), [&](int k, auto &found) { look_at(passing_[k], found); }));
     return all;
 }
 
 std::vector<Touch> NearPairs::touching(View<Vec3> positions) {
     return touching(
-        positions, [](const NearPair &) { return true; }, [](const NearPair &pair, double apart) { const_cast<NearPair &>(pair).apart = apart; });
+        positions, [](const NearPair &) { return true; },
+        [](const NearPair &pair, double apart) { const_cast<NearPair &>(pair).apart = apart; });
 }
 
 std::vector<Touch> NearPairs::would_touch(View<Vec3> on_the_way, View<unsigned char> objects) const {
-    const auto counts = [&](int v) {
-        const auto object = size_t(mesh_.object[v]);
-        return object < objects.size() && objects[object] != 0;
-    };
+    const auto counts = [&](int object) { return size_t(object) < objects.size() && objects[object] != 0; };
     return touching(
-        on_the_way,
-        [&](const NearPair &pair) {
-            return with_vertices(mesh_, pair, [&](const auto &a, const auto &b) { return counts(a[0]) || counts(b[0]); });
-        },
+        on_the_way, [&](const NearPair &pair) { return counts(pair.objects[0]) || counts(pair.objects[1]); },
         [](const NearPair &, double) {});
 }
 

@@ -15,6 +15,7 @@ struct NearPair {
     bool of_edges;
     double distance; // r: they touch below it [m]
     double apart;    // no less is between them where things were when they last arrived [m]
+    std::array<int, 2> objects;
 };
 
 // Two that touch.
@@ -27,8 +28,8 @@ struct Touch {
 
 // A pair that is known is apart by what was measured last, less what its two have moved since, on each move by themselves or,
 // once they have arrived, relative to one another: while that is enough, nothing has to be computed. Pairs are noted for
-// vertices that keep to their corridors. Vertices that do not are quick: their pairs are looked for anew in every move. All this
-// says only what need not be looked at; what is found does not depend on it.
+// vertices that keep to their corridors. Vertices that do not are quick: their pairs are looked for anew in every move. All
+// this says only what need not be looked at; what is found does not depend on it.
 //
 // Borrows the mesh, which must outlive it.
 class NearPairs {
@@ -79,7 +80,7 @@ private:
 
     const CollisionMesh &mesh_;
     BroadPhase broad_phase_;
-    PathBoxes ways_of_, homes_; // boxes of this move; of the corridors
+    PathBoxes ways_of_, homes_;     // boxes of this move; of the corridors
     std::vector<Vec3> low_, high_;  // of the corridors; empty: nothing is known
     std::vector<NearPair> known_;   // in order
     std::vector<NearPair> passing_; // in order: of what is quick, those that may touch in this move

@@ -78,6 +78,20 @@ unsigned may_meet(const BoxQuad &a, const BoxQuad &b) {
     return which;
 }
 
+// The same where boxes stay.
+unsigned overlap(const BoxQuad &a, const BoxQuad &b) {
+    unsigned which = 0;
+    for (int part = 0; part < parts; ++part) {
+        Floats apart = of_first(a.who_counts, part) + of_second(b.who_counts); // above 0: never
+        for (int axis = 0; axis < 3; ++axis) {
+            apart = greater(apart, of_second(b.low[axis]) - of_first(a.high[axis], part));
+            apart = greater(apart, of_first(a.low[axis], part) - of_second(b.high[axis]));
+        }
+        which |= lanes(apart <= 0.0f) << part * width;
+    }
+    return which;
+}
+
 // Which overlap on all three axes at one and the same time.
 unsigned meet_at_one_time(const BoxQuad &a, const BoxQuad &b) {
     const Floats none = {}, one = none + 1.0f, never = none + 2.0f, rounding = none + 1e-6f;
@@ -104,13 +118,13 @@ void descend(Descent &d, int most_visits) {
         const int i = node.of[0], j = node.of[1];
         const BoxQuad &a = d.a.nodes[i], &b = d.b.nodes[j];
         const bool itself = d.one_tree && i == j, leaf_a = i >= d.a.first_leaf, leaf_b = j >= d.b.first_leaf;
-        unsigned which = may_meet(a, b);
+        unsigned which = d.still ? overlap(a, b) : may_meet(a, b);
         if (itself) {
             which &= each_once;
             for (int k = 0; !leaf_a && k < (i == 0 ? d.a.children_of_root : 4); ++k) leave(4 * i + 1 + k, 4 * i + 1 + k);
         }
         if (leaf_a && leaf_b) {
-            if (which != 0) which &= meet_at_one_time(a, b);
+            if (which != 0 && !d.still) which &= meet_at_one_time(a, b);
             for (; which != 0; which &= which - 1) {
                 const int lane = __builtin_ctz(which);
                 d.boxes[d.found++] = {{4 * i + lane / 4, 4 * j + lane % 4}};

@@ -30,6 +30,7 @@ struct Descent {
 
     BoxTree a, b;
     bool one_tree; // a and b are one: each pair is found once
+    bool still;    // nothing moves: boxes are the same at the end
     int left, found;
     BoxPair nodes[room], boxes[room];
 };

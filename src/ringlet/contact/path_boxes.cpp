@@ -58,6 +58,7 @@ template <class Box, class Counts> void PathBoxes::fit(const Box &box, const Cou
 
 void PathBoxes::fit(View<Vec3> start, View<Vec3> end, const Origin &origin, double margin) {
     origin_ = origin;
+    still_ = false;
     place(start, origin.start, starts_), place(end, origin.end, ends_);
     widen_by(0.5 * margin);
     fit([&](int v) -> MovingBox { return {starts_[v], starts_[v], ends_[v], ends_[v]}; }, [](const auto &) { return true; });
@@ -72,6 +73,7 @@ void PathBoxes::fit_anew(View<Vec3> start, View<Vec3> end, View<unsigned char> c
 void PathBoxes::fit_within(View<Vec3> low, View<Vec3> high) {
     const Vec3 first = low.empty() ? Vec3(Vec3::Zero()) : low[0];
     origin_ = {first, first};
+    still_ = true;
     place(low, first, starts_), place(high, first, ends_);
     widen_by(0.0);
     fit([&](int v) -> MovingBox { return {starts_[v], ends_[v], starts_[v], ends_[v]}; }, [](const auto &) { return true; });

@@ -27,13 +27,15 @@ public:
     void fit_within_anew(View<Vec3> low, View<Vec3> high, View<unsigned char> changed);
 
     const Origin &origin() const { return origin_; }
+    bool still() const { return still_; } // boxes are the same at the end
     const MovingBox &of_edge(int i) const { return edges_[i]; }
     const MovingBox &of_vertex(int v) const { return vertices_[v]; }
     const MovingBox &of_triangle(int i) const { return triangles_[i]; }
 
     // Calls work with the boxes of the two of a pair.
     template <class Pair, class Work> auto with_boxes(const Pair &pair, const Work &work) const {
-        return pair.of_edges ? work(edges_[pair.of[0]], edges_[pair.of[1]]) : work(vertices_[pair.of[0]], triangles_[pair.of[1]]);
+        return pair.of_edges ? work(edges_[pair.of[0]], edges_[pair.of[1]])
+                             : work(vertices_[pair.of[0]], triangles_[pair.of[1]]);
     }
 
 private:
@@ -46,6 +48,7 @@ private:
     Origin origin_;
     std::vector<Eigen::Array4f> starts_, ends_;
     float wider_ = 0.0f; // [m]
+    bool still_ = false;
     std::vector<MovingBox> edges_, vertices_, triangles_;
 };
 
