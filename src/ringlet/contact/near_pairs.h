@@ -54,7 +54,6 @@ public:
     // Somewhere on the last move, of the objects that count: the first of all.
     std::vector<Touch> would_touch(View<Vec3> on_the_way, View<unsigned char> objects) const;
 
-    int quick_count() const { return int(std::count(quick_.begin(), quick_.end(), 1)); }
     int count() const { return int(known_.size() + passing_.size()); }
 
 private:

@@ -4,8 +4,8 @@ namespace ringlet {
 namespace {
 
 template <class Primitives> std::vector<float> radii(const CollisionMesh &mesh, const Primitives &primitives) {
-    std::vector<float> all;
-    for (const auto &primitive : primitives) all.push_back(float(mean_radius(mesh, primitive)));
+    std::vector<float> all(primitives.size());
+    for (size_t i = 0; i < all.size(); ++i) all[i] = float(mean_radius(mesh, primitives[i]));
     return all;
 }
 
