@@ -97,7 +97,9 @@ SceneSolver::Result SceneSolver::conjugate_gradient(SceneSystem &system, double 
         busy_units.assign(system.unit_count(), 0);
         for (int p = 0; p < parts; ++p) {
             busy[p] = rho[cluster[p]] > enough[cluster[p]];
-            if (busy[p]) any = busy_units[system.unit_of(p)] = 1;
+            if (!busy[p]) continue;
+            any = true;
+            busy_units[system.unit_of(p)] = 1;
         }
         const double left = std::accumulate(rho.begin(), rho.end(), 0.0);
         if (!any || left <= tolerance * tolerance * all || result.iterations == most) break;
