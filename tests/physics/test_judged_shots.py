@@ -1,7 +1,11 @@
 """Nothing passes through anything in shots of the example, says ipctk; `judged_shots.py` plays all of them."""
 
+import itertools
+
+import numpy as np
 import pytest
 from judged_shots import SHOTS, judged, start
+from ringlet.shot.worn import carried
 
 
 @pytest.mark.parametrize("shot", SHOTS)
@@ -20,3 +24,16 @@ def test_what_begins_in_the_shirt_comes_out_and_passes_through_nothing_else():
     frames = list(judged(motion, 3))
     assert 0 < frames[-1].statistics["contact"]["excused"] < sum(found["vertices"] for found in motion.start["inside"])
     assert all(frame.crossings == 0 and frame.statistics["nan"] == 0 for frame in frames)
+
+
+def test_cloth_that_is_put_into_hair_passes_through_nothing_and_goes_on_moving():
+    """A ribbon pushes locks aside, though the head rests; then it never goes along as if it were rigid for long."""
+    motion = start("ribbon", locks=200)
+    (ribbon,), moved = motion.worn, []
+    before = ribbon.cloth.positions.copy()
+    for frame in judged(motion, 20):
+        assert frame.crossings == 0
+        after = ribbon.cloth.positions.copy()
+        moved.append(np.abs(after - carried(before, before, after)).max())
+        before = after
+    assert all(max(pair) > 1e-6 for pair in itertools.pairwise(moved))

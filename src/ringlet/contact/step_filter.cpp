@@ -17,9 +17,12 @@ FilterReport filter_step(const FilterScene &scene, NearPairs &near, View<Vec3> s
     std::vector<unsigned char> in_the_way(vertices, 0);
     std::optional<HoldBack> held;
     std::optional<Zones> zones;
+    std::vector<int> rigid(scene.rigid.begin(), scene.rigid.end()); // still: what is pushed out of a way no longer is
+    FilterScene now = scene;
+    now.rigid = rigid;
     near.set_out(start, end);
     for (;; ++report.rounds) {
-        const std::vector<Met> met = find_met(scene, near, start, end);
+        const std::vector<Met> met = find_met(now, near, start, end);
         if (report.rounds == 0) {
             report.candidates = near.count();
             report.violations = int(met.size());
@@ -40,8 +43,11 @@ FilterReport filter_step(const FilterScene &scene, NearPairs &near, View<Vec3> s
             near.set_out_anew(start, end, held->changed());
         } else {
             if (!zones) zones.emplace(scene);
+            const std::vector<Vec3> before = end;
             zones->join(met);
             zones->move_as_one(start, met, report.rounds < to_touch, end);
+            for (size_t v = 0; v < rigid.size(); ++v)
+                if (end[v] != before[v]) rigid[v] = -1;
             near.set_out(start, end);
         }
     }

@@ -230,10 +230,14 @@ int Scene::Parts::newton(const SceneStep &scene_step, const StrandStep &step, st
         }
         const bool small = std::all_of(reach.begin(), reach.end(), [&](double far) { return far <= step.tolerance; });
         // A cloth that is held back here and there is strained there, so that its energy rises for once: for it and what
-        // touches it the search comes before the filter, and knows of the contacts alone.
+        // touches it the search comes before the filter, and knows of the contacts alone. All of a cluster is searched then:
+        // were the rest of it to go all of its way meanwhile, no step of the cloth would lead down, and it would stand still.
         const std::vector<unsigned char> &by_planes = system.by_planes();
+        const std::vector<int> &cluster = system.clusters();
+        std::vector<unsigned char> with_cloth(by_planes.size(), 0); // by cluster
+        for (size_t p = 0; p < by_planes.size(); ++p) with_cloth[cluster[p]] |= by_planes[p];
         std::vector<unsigned char> before(by_planes.size(), 1), after(by_planes.size(), 1); // that are not searched
-        for (size_t p = 0; p < by_planes.size() && !small; ++p) before[p] = !by_planes[p], after[p] = by_planes[p];
+        for (size_t p = 0; p < by_planes.size() && !small; ++p) before[p] = !with_cloth[cluster[p]], after[p] = by_planes[p];
         if (!system.cloths.empty()) {
             const Stopwatch watch(report.time_search);
             AlignedVector found(system.size());
