@@ -11,6 +11,7 @@ from ringlet import api
 from ringlet.run import Run
 from ringlet.share import share
 
+FIRST_FRAME = 1  # of the clip; before it the ribbon is put into the hair
 STILL_FRAME = 22  # in the middle of the quick turn
 STILL_SECONDS = 110.0  # a slow machine gets a noisier picture, not a longer wait
 MOVING = 1 / 6  # share of the hairs that move in hair.usdc, which keeps it small; the still has all of them
@@ -27,17 +28,17 @@ def run_demo(folder: Path | str, *, progress: api.Progress | None = None) -> Run
     still_file, sheet_file = folder / "still.png", folder / "sheet.png"
     with Run("demo", folder) as run:
         with run.stage("groom", groom_file, "groom guides over the head"):
-            groom = api.build_groom(example / "curls.recipe.toml", progress=_overall("groom", progress))
+            groom = api.build_groom(example / "ribbon.recipe.toml", progress=_overall("groom", progress))
             api.write_groom(groom, groom_file)
             run.count(guides=len(groom.guides), locks=len(groom.locks))
-        with run.stage("simulate", cache_file, "the guides in motion"), _aside(folder) as kept:
-            shot, part = api.read_shot(example / "nod.shot.toml"), _overall("simulate", progress)
+        with run.stage("simulate", cache_file, "the guides and a ribbon in motion"), _aside(folder) as kept:
+            shot, part = api.read_shot(example / "ribbon.shot.toml"), _overall("simulate", progress)
             told = api.write_simulation(shot, groom, groom_file, cache_file, checkpoints=kept, progress=part)
             run.count(frames=len(told.frames))
             run.simulated(told)
         with run.stage("hairs", hair_file, f"hairs in motion, {MOVING:.0%} of all"):
-            part = _overall("hairs", progress)
-            api.write_hairs(groom_file, hair_file, cache=cache_file, fraction=MOVING, progress=part)
+            part, clip = _overall("hairs", progress), (FIRST_FRAME, shot.frames[1])
+            api.write_hairs(groom_file, hair_file, cache=cache_file, frames=clip, fraction=MOVING, progress=part)
         with (
             run.stage("still", still_file, f"frame {STILL_FRAME} with all hairs, path-traced"),
             _aside(folder) as aside,
@@ -52,7 +53,9 @@ def run_demo(folder: Path | str, *, progress: api.Progress | None = None) -> Run
                 progress=_overall("still", progress),
             )
             run.count(hairs=counts["hairs"], points=counts["points"])
-            run.pictured(still_file, f"Frame {STILL_FRAME}: the head in the middle of a quick turn.")
+            run.pictured(
+                still_file, f"Frame {STILL_FRAME}: the head in the middle of a quick turn, a ribbon in the hair."
+            )
         with run.stage("sheet", sheet_file, "the clip at a glance"):
             api.write_sheet(
                 hair_file, sheet_file, title="A nod, a quick turn and a hop", progress=_overall("sheet", progress)
