@@ -3,6 +3,7 @@
 
 #include "ringlet/geometry/distance.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
@@ -21,6 +22,11 @@ struct CollisionMesh {
     std::vector<int> object;          // the strand, cloth or body it belongs to
     std::vector<int> anchor; // the object that carries it, which it may touch: the body that a strand is rooted in; −1: none
     std::vector<Vec3> rest;  // position at rest [m]
+
+    // Of the vertices of strands, which are the first: at which distances [m] the edge from it to the next touches the edges
+    // from the second next on. Known before they are asked for, which is in every search.
+    static constexpr int asked_often = 8;
+    std::vector<std::array<double, asked_often>> along_strand;
 };
 
 // The radius of a primitive is the mean over its vertices.
@@ -56,12 +62,27 @@ template <size_t N> double extent(const CollisionMesh &mesh, const std::array<in
 // nine tenths of what is between them at rest, so that neighbours along a strand never push each other apart.
 template <size_t N, size_t M>
 double contact_distance(const CollisionMesh &mesh, const std::array<int, N> &a, const std::array<int, M> &b) {
+    if constexpr (N == 2 && M == 2) {
+        const size_t first = std::min(a[0], b[0]), further = std::abs(a[0] - b[0]) - 2;
+        if (first < mesh.along_strand.size() && further < mesh.asked_often && mesh.object[a[0]] == mesh.object[b[0]])
+            return mesh.along_strand[first][further];
+    }
     const double radii = mean_radius(mesh, a) + mean_radius(mesh, b);
     if (mesh.object[a[0]] != mesh.object[b[0]]) return radii;
     // Most pairs of one object are so far apart at rest that it need not be known how far.
     const double apart = (mesh.rest[a[0]] - mesh.rest[b[0]]).norm() - extent(mesh, a) - extent(mesh, b);
     if (0.9 * apart >= radii) return radii;
     return std::min(radii, 0.9 * std::sqrt(closest_points(mesh.rest, a, b).distance2));
+}
+
+// Of strands that begin at `offsets` among the vertices.
+inline void know_along_strands(CollisionMesh &mesh, View<int> offsets) {
+    std::vector<std::array<double, CollisionMesh::asked_often>> known(offsets.back());
+    for (size_t s = 0; s + 1 < offsets.size(); ++s)
+        for (int v = offsets[s]; v + 3 < offsets[s + 1]; ++v)
+            for (int w = v + 2; w + 1 < offsets[s + 1] && w < v + 2 + CollisionMesh::asked_often; ++w)
+                known[v][w - v - 2] = contact_distance(mesh, std::array{v, v + 1}, std::array{w, w + 1});
+    mesh.along_strand = std::move(known);
 }
 
 // Whether one of the two holds a vertex that the other's object carries.
