@@ -17,7 +17,7 @@ constexpr double hardly = 0.2; // of its way
 HoldBack::HoldBack(const FilterScene &scene, const NearPairs &near, View<Vec3> start, std::vector<Vec3> &end)
     : scene_(scene), start_(start), end_(end), strands_(int(scene.offsets.size()) - 1), of_strands_(strands_),
       go_(strands_, 1.0), changed_(start.size(), 0) {
-    for (const NearPair *pair : near.may_meet()) {
+    for (const NearPair *pair : near.may_touch()) {
         if (!pair->of_edges) continue;
         const auto &a = scene.mesh.edges[pair->of[0]], &b = scene.mesh.edges[pair->of[1]];
         const int s = strand_of(a[0], a[1]), t = strand_of(b[0], b[1]);

@@ -171,6 +171,12 @@ void NearPairs::set_out_anew(View<Vec3> start, View<Vec3> end, View<unsigned cha
         if (any_of(pair, changed)) may_meet_.push_back(&pair);
 }
 
+std::vector<const NearPair *> NearPairs::may_touch() const {
+    std::vector<const NearPair *> all(may_touch_.begin(), may_touch_.end());
+    for (const NearPair &pair : passing_) all.push_back(&pair);
+    return all;
+}
+
 void NearPairs::arrive(View<Vec3> start, View<Vec3> end) {
     for (auto *pairs : {&known_, &passing_})
 #pragma omp parallel for schedule(static)

@@ -48,6 +48,8 @@ public:
     // The pairs that may come nearer than half their distance on the way; of those that set out anew, only what has changed.
     // Whoever measures one may note how far it is apart at the start.
     const std::vector<NearPair *> &may_meet() const { return may_meet_; }
+    // Those that may touch if each goes as far as it likes.
+    std::vector<const NearPair *> may_touch() const;
     void arrive(View<Vec3> start, View<Vec3> end); // all of it, or any part of its last way
 
     std::vector<Touch> touching(View<Vec3> positions); // where everything is now, in order
