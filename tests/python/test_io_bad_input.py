@@ -45,7 +45,7 @@ def names_in(folder) -> list[str]:
         ("text.usda", b"hello", "cannot be read as USD"),
         ("syntax.usda", b'#usda 1.0\n\ndef Xform "a" {', "syntax error in line 3"),
         ("latin.usda", b'#usda 1.0\n\ndef Xform "\xe9" {}', "cannot be read as USD"),
-        ("empty.usdc", b"", "cannot be read as USD"),
+        ("empty.usdc", b"", "is empty"),
         ("cut.usdc", "cut", "cannot be read as USD"),
         ("photo.usd", b"\x89PNG\r\n\x1a\n" + bytes(100), "cannot be read as USD"),
         ("notes.txt", b"hello", "cannot be read as USD"),
