@@ -17,7 +17,7 @@ STILL_SECONDS = 110.0  # a slow machine gets a noisier picture, not a longer wai
 MOVING = 1 / 6  # share of the hairs that move in hair.usdc, which keeps it small; the still has all of them
 
 # How much of the whole each stage takes, as measured; only the overall bar depends on it.
-SHARES = {"groom": 1, "simulate": 45, "hairs": 4, "still": 65, "sheet": 25}
+SHARES = {"groom": 1, "simulate": 23, "hairs": 1, "still": 48, "sheet": 27}
 
 
 def run_demo(folder: Path | str, *, progress: api.Progress | None = None) -> Run:
