@@ -39,10 +39,6 @@ std::vector<BoxPair> split(const MovingTree &a, const MovingTree &b, bool still)
     return pairs;
 }
 
-template <size_t N> bool any_of(View<unsigned char> vertices, const std::array<int, N> &primitive) {
-    return std::any_of(primitive.begin(), primitive.end(), [&](int v) { return vertices[v] != 0; });
-}
-
 // By how much the contact distance of two primitives is less than their radii together.
 template <size_t N, size_t M> float less(const CollisionMesh &mesh, const std::array<int, N> &a, const std::array<int, M> &b) {
     if (mesh.object[a[0]] != mesh.object[b[0]]) return 0.0f;

@@ -43,6 +43,11 @@ template <size_t N, size_t M> bool share_vertex(const std::array<int, N> &a, con
     return false;
 }
 
+// Whether a vertex of a primitive is among those that are marked.
+template <size_t N> bool any_of(View<unsigned char> vertices, const std::array<int, N> &primitive) {
+    return std::any_of(primitive.begin(), primitive.end(), [&](int v) { return vertices[v] != 0; });
+}
+
 inline ClosestPoints closest_points(View<Vec3> x, const std::array<int, 2> &a, const std::array<int, 2> &b) {
     return closest_edge_edge(x[a[0]], x[a[1]], x[b[0]], x[b[1]]);
 }

@@ -49,7 +49,7 @@ private:
     View<Vec3> start_;
     std::vector<Vec3> &end_;
     int strands_, round_ = 0;
-    std::vector<NearPair> pairs_;              // of two strands, that may meet
+    std::vector<NearPair> pairs_;              // of two strands, whose ways come near
     std::vector<std::vector<int>> of_strands_; // their numbers
     std::vector<double> go_;                   // per strand: how much of its way is left to it
     std::vector<unsigned char> changed_;

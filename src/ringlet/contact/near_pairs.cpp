@@ -37,10 +37,9 @@ NearPairs::NearPairs(const CollisionMesh &mesh)
       triangles_(mesh.triangles.size()), quick_(mesh.moves.size()) {}
 
 bool NearPairs::any_of(const NearPair &pair, View<unsigned char> vertices) const {
-    const auto any = [&](const auto &primitive) {
-        return std::any_of(primitive.begin(), primitive.end(), [&](int v) { return vertices[v] != 0; });
-    };
-    return with_vertices(mesh_, pair, [&](const auto &a, const auto &b) { return any(a) || any(b); });
+    return with_vertices(mesh_, pair, [&](const auto &a, const auto &b) {
+        return ringlet::any_of(vertices, a) || ringlet::any_of(vertices, b);
+    });
 }
 
 // With the distances at which they touch.
@@ -97,7 +96,7 @@ void NearPairs::note(View<Vec3> start, View<Vec3> end, double margin, double far
         broad_phase_.find(homes_, found);
         known_ = pairs_of(found);
     } else {
-        homes_.fit_within_anew(low_, high_, stray);
+        homes_.fit_anew(low_, high_, stray);
         broad_phase_.find_quick(homes_, homes_, stray, stray, found);
         std::erase_if(known_, [&](const NearPair &pair) { return any_of(pair, stray); });
         merge(known_, pairs_of(found));
@@ -210,8 +209,7 @@ std::vector<Touch> NearPairs::touching(View<Vec3> at, const Counts &counts, cons
 
 std::vector<Touch> NearPairs::touching(View<Vec3> positions) {
     return touching(
-        positions, [](const NearPair &) { return true; },
-        [](const NearPair &pair, double apart) { const_cast<NearPair &>(pair).apart = apart; });
+        positions, [](const NearPair &) { return true; }, [](const NearPair &pair, double apart) { pair.apart = apart; });
 }
 
 std::vector<Touch> NearPairs::would_touch(View<Vec3> on_the_way, View<unsigned char> objects) const {

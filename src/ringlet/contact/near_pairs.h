@@ -13,8 +13,8 @@ namespace ringlet {
 struct NearPair {
     std::array<int, 2> of; // two edges, the lower first; or a vertex and a triangle
     bool of_edges;
-    double distance; // r: they touch below it [m]
-    double apart;    // no less is between them where things were when they last arrived [m]
+    double distance;      // r: they touch below it [m]
+    mutable double apart; // noted by whoever measures it: no less is between them where things were when they last arrived [m]
     std::array<int, 2> objects;
 };
 

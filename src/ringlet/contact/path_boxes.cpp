@@ -9,10 +9,6 @@ template <class Primitives> std::vector<float> radii(const CollisionMesh &mesh, 
     return all;
 }
 
-template <size_t N> bool any_of(View<unsigned char> vertices, const std::array<int, N> &primitive) {
-    return std::any_of(primitive.begin(), primitive.end(), [&](int v) { return vertices[v] != 0; });
-}
-
 } // namespace
 
 PathBoxes::PathBoxes(const CollisionMesh &mesh)
@@ -20,7 +16,7 @@ PathBoxes::PathBoxes(const CollisionMesh &mesh)
       triangle_radii_(radii(mesh, mesh.triangles)), starts_(mesh.moves.size()), ends_(mesh.moves.size()),
       edges_(mesh.edges.size()), vertices_(mesh.moves.size()), triangles_(mesh.triangles.size()) {}
 
-void PathBoxes::place(View<Vec3> points, const Vec3 &origin, std::vector<Eigen::Array4f> &places) const {
+void PathBoxes::place(View<Vec3> points, const Vec3 &origin, std::vector<Eigen::Array4f> &places) {
 #pragma omp parallel for schedule(static)
     for (int v = 0; v < int(points.size()); ++v) {
         const Vec3 from = points[v] - origin;
@@ -28,15 +24,14 @@ void PathBoxes::place(View<Vec3> points, const Vec3 &origin, std::vector<Eigen::
     }
 }
 
-void PathBoxes::widen_by(double margin) {
-    constexpr float rounding = 0x1p-20f;
+float PathBoxes::rounding() const {
+    constexpr float of_the_largest = 0x1p-20f;
     Eigen::Array4f largest = Eigen::Array4f::Zero();
     for (size_t v = 0; v < starts_.size(); ++v) largest = largest.max(starts_[v].abs()).max(ends_[v].abs());
-    wider_ = float(margin) + rounding * largest.maxCoeff();
+    return of_the_largest * largest.maxCoeff();
 }
 
-// box(v): of a vertex, not widened yet.
-template <class Box, class Counts> void PathBoxes::fit(const Box &box, const Counts &counts) {
+template <class Counts> void PathBoxes::fit(const Counts &counts) {
     const auto around = [&](const auto &primitive, float radius) {
         MovingBox all = box(primitive[0]);
         for (size_t k = 1; k < primitive.size(); ++k) all.include(box(primitive[k]));
@@ -60,14 +55,8 @@ void PathBoxes::fit(View<Vec3> start, View<Vec3> end, const Origin &origin, doub
     origin_ = origin;
     still_ = false;
     place(start, origin.start, starts_), place(end, origin.end, ends_);
-    widen_by(0.5 * margin);
-    fit([&](int v) -> MovingBox { return {starts_[v], starts_[v], ends_[v], ends_[v]}; }, [](const auto &) { return true; });
-}
-
-void PathBoxes::fit_anew(View<Vec3> start, View<Vec3> end, View<unsigned char> changed) {
-    place(start, origin_.start, starts_), place(end, origin_.end, ends_);
-    fit([&](int v) -> MovingBox { return {starts_[v], starts_[v], ends_[v], ends_[v]}; },
-        [&](const auto &primitive) { return any_of(changed, primitive); });
+    wider_ = float(0.5 * margin) + rounding();
+    fit([](const auto &) { return true; });
 }
 
 void PathBoxes::fit_within(View<Vec3> low, View<Vec3> high) {
@@ -75,17 +64,14 @@ void PathBoxes::fit_within(View<Vec3> low, View<Vec3> high) {
     origin_ = {first, first};
     still_ = true;
     place(low, first, starts_), place(high, first, ends_);
-    widen_by(0.0);
-    fit([&](int v) -> MovingBox { return {starts_[v], ends_[v], starts_[v], ends_[v]}; }, [](const auto &) { return true; });
+    wider_ = rounding();
+    fit([](const auto &) { return true; });
 }
 
-void PathBoxes::fit_within_anew(View<Vec3> low, View<Vec3> high, View<unsigned char> changed) {
-    const float before = wider_;
-    place(low, origin_.start, starts_), place(high, origin_.start, ends_);
-    widen_by(0.0);
-    wider_ = std::max(wider_, before);
-    fit([&](int v) -> MovingBox { return {starts_[v], ends_[v], starts_[v], ends_[v]}; },
-        [&](const auto &primitive) { return any_of(changed, primitive); });
+void PathBoxes::fit_anew(View<Vec3> start_or_low, View<Vec3> end_or_high, View<unsigned char> changed) {
+    place(start_or_low, origin_.start, starts_), place(end_or_high, origin_.end, ends_);
+    wider_ = std::max(wider_, rounding());
+    fit([&](const auto &primitive) { return any_of(changed, primitive); });
 }
 
 } // namespace ringlet

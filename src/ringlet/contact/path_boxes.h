@@ -21,10 +21,10 @@ public:
 
     // Everything goes straight from `start` to `end`: positions [m] of all vertices. Boxes are wider by `margin` [m].
     void fit(View<Vec3> start, View<Vec3> end, const Origin &origin, double margin = 0.0);
-    void fit_anew(View<Vec3> start, View<Vec3> end, View<unsigned char> changed); // of vertices that have, no further away
     // Vertices may be anywhere in boxes, from `low` to `high` [m].
     void fit_within(View<Vec3> low, View<Vec3> high);
-    void fit_within_anew(View<Vec3> low, View<Vec3> high, View<unsigned char> changed);
+    // Either of them again, of vertices that have changed.
+    void fit_anew(View<Vec3> start_or_low, View<Vec3> end_or_high, View<unsigned char> changed);
 
     const Origin &origin() const { return origin_; }
     bool still() const { return still_; } // boxes are the same at the end
@@ -39,15 +39,19 @@ public:
     }
 
 private:
-    template <class Box, class Counts> void fit(const Box &box, const Counts &counts);
-    void place(View<Vec3> points, const Vec3 &origin, std::vector<Eigen::Array4f> &places) const;
-    void widen_by(double margin); // and by rounding
+    template <class Counts> void fit(const Counts &counts);
+    MovingBox box(int vertex) const { // not widened yet
+        const Eigen::Array4f &a = starts_[vertex], &b = ends_[vertex];
+        return still_ ? MovingBox{a, b, a, b} : MovingBox{a, a, b, b};
+    }
+    static void place(View<Vec3> points, const Vec3 &origin, std::vector<Eigen::Array4f> &places);
+    float rounding() const; // [m]
 
     const CollisionMesh &mesh_;
     std::vector<float> edge_radii_, vertex_radii_, triangle_radii_;
     Origin origin_;
-    std::vector<Eigen::Array4f> starts_, ends_;
-    float wider_ = 0.0f; // [m]
+    std::vector<Eigen::Array4f> starts_, ends_; // of the ways, or the corners of what vertices stay in
+    float wider_ = 0.0f;                        // [m]
     bool still_ = false;
     std::vector<MovingBox> edges_, vertices_, triangles_;
 };
