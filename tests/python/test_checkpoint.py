@@ -134,17 +134,47 @@ def test_what_another_run_left_is_not_gone_on_with(folder, monkeypatch):
 
 
 def test_a_run_whose_files_another_run_is_at_is_refused_and_the_other_goes_on(folder):
-    expected, part = whole(folder), folder / "cache.usdc.part"
+    expected, part, groom = whole(folder), folder / "cache.usdc.part", folder / "cache.groom.usdc"
     with started(folder) as other:
         while not (part / "step.000000").exists():
             assert other.poll() is None
             time.sleep(0.01)
         other.send_signal(signal.SIGSTOP)
+        written = groom.stat()
         refused = [sim(folder, *more) for more in ([], ["--resume"])]
+        untouched = groom.stat()
         other.send_signal(signal.SIGCONT)
         assert other.wait(120) == 0
     assert all(one.exit_code == 2 and "is of a run that goes on" in one.stderr for one in refused)
+    assert (untouched.st_ino, untouched.st_mtime_ns) == (written.st_ino, written.st_mtime_ns)
     assert (read_cache(folder / "cache.usdc").points == expected).all()
+
+
+def test_a_run_whose_groom_is_refused_leaves_no_folder_and_one_that_was_left_stays(folder, monkeypatch):
+    part, recipe = folder / "cache.usdc.part", folder / "small.recipe.toml"
+    right = recipe.read_text()
+    for left in (False, True):
+        if left:
+            recipe.write_text(right)
+            broken_off(folder, monkeypatch, 25)
+        recipe.write_text(right.replace("count = 8", "count = -8"))
+        assert sim(folder).exit_code == 2
+        assert part.exists() == left
+    recipe.write_text(right)
+    assert len([*part.glob("step.*")]) == 25
+    assert sim(folder, "--resume").exit_code == 0 and not part.exists()
+
+
+def test_a_program_that_holds_a_folder_keeps_it_after_a_simulation_in_it(folder):
+    part = folder / "cache.usdc.part"
+    with ringlet.hold_checkpoints(part):
+        ringlet.simulate(folder / "small.shot.toml", checkpoints=part)
+        with started(folder) as other:
+            assert other.wait(120) == 2
+        with pytest.raises(ringlet.UserError, match="is of a run that goes on"), ringlet.hold_checkpoints(part):
+            pass
+    with started(folder) as other:
+        assert other.wait(120) == 0
 
 
 def test_without_anything_to_go_on_with_it_begins_anew(folder):

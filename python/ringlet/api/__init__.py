@@ -39,6 +39,7 @@ from ringlet.api.progress import (
     Progress,
 )
 from ringlet.api.shots import (
+    hold_checkpoints,
     loft,
     made_from,
     open_cache,
@@ -62,6 +63,7 @@ __all__ = [
     "check_groom",
     "edit_lock",
     "groom_inputs",
+    "hold_checkpoints",
     "list_edits",
     "load_groom",
     "loft",

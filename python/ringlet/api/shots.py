@@ -117,6 +117,23 @@ def write_simulation(
     return told
 
 
+def hold_checkpoints(folder: Path | str) -> AbstractContextManager[None]:
+    """Keeps other programs out of a folder of checkpoints while the block runs, also before there are any.
+
+    For who writes other files that go with a run, such as its groom, before ``write_simulation``. A folder in which
+    nothing was kept is gone after the block. Raises UserError where another run is at it.
+
+    Example::
+
+        with ringlet.hold_checkpoints("cache.usdc.part"):
+            ringlet.write_groom(groom, "groom.usdc")
+            ringlet.write_simulation(shot, groom, "groom.usdc", "cache.usdc", checkpoints="cache.usdc.part")
+    """
+    from ringlet import shot as shots
+
+    return shots.holding(Path(folder))
+
+
 def made_from(shot: Shot, groom: Groom, *, frames: tuple[int, int] | None = None) -> str:
     """A digest of all that the frames of a simulation depend on: two runs with the same give the same bits."""
     from ringlet import shot as shots

@@ -62,11 +62,11 @@ def sim(
             raise ringlet.UserError(f"{shot}: nothing touches, --contacts has nothing to write; add [contact]")
         source = groom or settings.groom
         layer = source if source.suffix != ".toml" else output.with_name(f"{output.stem}.groom.usdc")
-        with run.stage("groom", None if layer == source else layer):
-            locks = ringlet.load_groom(source, variant=variant, progress=progress)
-            if layer != source:
-                ringlet.write_groom(locks, layer)
-        with _kept(output) as folder:
+        with _kept(output) as folder:  # from here on everything beside the cache is this run's
+            with run.stage("groom", None if layer == source else layer):
+                locks = ringlet.load_groom(source, variant=variant, progress=progress)
+                if layer != source:
+                    ringlet.write_groom(locks, layer)
             with run.stage("simulate", output):
                 told = ringlet.write_simulation(
                     settings,
@@ -97,10 +97,13 @@ def sim(
 def _kept(output: Path) -> Iterator[Path]:
     """The folder that keeps what is done, until all is; says so where a run is broken off."""
     folder = output.with_name(f"{output.name}.part")
-    try:
-        yield folder
-    except BaseException:
-        if any(folder.glob("memory.*")):
-            print(f"{folder} keeps what is done: the same command with --resume goes on from there", file=sys.stderr)
-        raise
-    shutil.rmtree(folder, ignore_errors=True)
+    with ringlet.hold_checkpoints(folder):
+        try:
+            yield folder
+        except BaseException:
+            if any(folder.glob("memory.*")):
+                print(
+                    f"{folder} keeps what is done: the same command with --resume goes on from there", file=sys.stderr
+                )
+            raise
+        shutil.rmtree(folder, ignore_errors=True)

@@ -2,7 +2,7 @@
 
 Every frame is kept as soon as it is there, and every few frames all that the next one depends on. A file is written
 aside and renamed, and begins with a digest of the rest: half a file is never read, and one that was damaged is noticed.
-A folder is of one program at a time.
+A folder is of one program at a time; who writes files beside it that go with the run holds it before the first.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ import hashlib
 import io
 import json
 from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -28,6 +29,8 @@ HELD = "held"  # the file that a program holds while it runs
 KEPT = 2  # memories: where the last is damaged, the one before is used
 
 Arrays = Mapping[str, NDArray[Any]]
+
+_held_here: dict[Path, BinaryIO] = {}  # by folder, what ``holding`` holds in this program
 
 
 class DamagedError(ValueError):
@@ -79,17 +82,7 @@ class Checkpoints:
 
     def _hold(self) -> None:
         """Keeps other programs out of the folder as long as this one runs."""
-        try:
-            self.folder.mkdir(parents=True, exist_ok=True)
-            self._held = (self.folder / HELD).open("ab")
-        except OSError as error:
-            raise UserError(f"{self.folder}: cannot be written ({error.strerror}); choose another place") from error
-        try:
-            fcntl.lockf(self._held, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except (BlockingIOError, PermissionError):
-            raise UserError(f"{self.folder}: is of a run that goes on; let it end, or choose another place") from None
-        except OSError:  # the disk knows no locks
-            return
+        self._held = _held_here.get(self.folder.resolve()) or _held(self.folder)
 
     def keep(self, step: int, arrays: Arrays, statistics: dict[str, Any]) -> None:
         """Keeps what a step gave."""
@@ -116,6 +109,45 @@ class Checkpoints:
         except (DamagedError, OSError):
             return False
         return True
+
+
+@contextmanager
+def holding(folder: Path) -> Iterator[None]:
+    """Keeps other programs out of a folder of checkpoints while the block runs; see ``ringlet.hold_checkpoints``."""
+    at = folder.resolve()
+    if at in _held_here:
+        raise _goes_on(folder)
+    # To close a file gives up the locks of its whole program, so checkpoints in this folder use this one.
+    _held_here[at] = _held(folder)
+    try:
+        yield
+    finally:
+        if [path.name for path in at.glob("*")] == [HELD]:
+            (at / HELD).unlink()
+        _held_here.pop(at).close()
+        with suppress(OSError):  # what has been kept stays
+            at.rmdir()
+
+
+def _held(folder: Path) -> BinaryIO:
+    """The file that holds a folder for as long as it is open."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        file = (folder / HELD).open("ab")
+    except OSError as error:
+        raise UserError(f"{folder}: cannot be written ({error.strerror}); choose another place") from error
+    try:
+        fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except (BlockingIOError, PermissionError):
+        file.close()
+        raise _goes_on(folder) from None
+    except OSError:  # the disk knows no locks
+        pass
+    return file
+
+
+def _goes_on(folder: Path) -> UserError:
+    return UserError(f"{folder}: is of a run that goes on; let it end, or choose another place")
 
 
 def digest(*parts: Any) -> str:
