@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import shlex
 import sys
-import tempfile
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -13,7 +12,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
-from ringlet.errors import UserError
+from ringlet.files import check_place
 
 if TYPE_CHECKING:
     from ringlet.shot.cache import Cache, Told
@@ -129,16 +128,3 @@ class Run:
             ),
             folder,
         )
-
-
-def check_place(path: Path | str) -> None:
-    """Refuses a file that could not be written, and leaves nothing behind."""
-    path = Path(path)
-    try:
-        if path.is_dir():
-            raise UserError(f"{path}: is a folder; give a file name")
-        there = next(folder for folder in path.absolute().parents if folder.exists())
-        with tempfile.TemporaryFile(dir=there):
-            pass
-    except OSError as error:
-        raise UserError(f"{path}: cannot be written ({error.strerror or error}); choose another place") from error

@@ -8,15 +8,18 @@ import os
 import re
 import shutil
 import signal
+import socket
 import subprocess
 import sys
 import threading
 import time
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
 import pytest
 from distributed import LocalCluster
+from ringlet.farm.cluster import _client
 from ringlet.farm.grid import choose, folder_name, make_tasks
 from ringlet.farm.openjd import template
 from ringlet.farm.page import distances, read_results
@@ -100,6 +103,28 @@ def test_what_cannot_be_is_refused_before_anything_runs(shot, tmp_path, monkeypa
     before = sorted(tmp_path.iterdir())
     refused(run("wedge", shot, *options, "-o", tmp_path / "out"), *words)
     assert sorted(tmp_path.iterdir()) == before
+
+
+@pytest.mark.parametrize("here", [[], ["--here"]])
+def test_a_folder_that_cannot_be_written_to_is_refused_before_workers_start(shot, tmp_path, monkeypatch, here):
+    for work in ("run_on_workers", "run_task"):
+        monkeypatch.setattr(sys.modules["ringlet.farm.wedge"], work, lambda *_, **__: pytest.fail("work was begun"))
+    (tmp_path / "file").write_text("precious")
+    before = sorted(tmp_path.iterdir())
+    options = ["--set", "strands.bend=1", *here, "-o", tmp_path / "file/out"]
+    refused(run("wedge", shot, *options), str(tmp_path / "file/out"), "cannot be written", "choose another place")
+    assert sorted(tmp_path.iterdir()) == before and (tmp_path / "file").read_text() == "precious"
+
+
+def test_workers_here_want_no_certain_port_and_are_not_seen_from_elsewhere(recwarn):
+    with socket.socket() as taken:
+        with suppress(OSError):  # it may be taken already
+            taken.bind(("127.0.0.1", 8787))
+            taken.listen()
+        with _client(None, 1, 0) as client:
+            page = client.cluster.scheduler.http_server
+            assert page.address == "127.0.0.1" and page.port != 8787
+    assert not [warning for warning in recwarn if "8787" in str(warning.message)]
 
 
 def test_without_dask_it_says_so(shot, tmp_path, monkeypatch):
@@ -186,7 +211,9 @@ def test_a_worker_that_dies_costs_only_the_time_of_its_task(shot, tmp_path):
 
 
 def test_a_scheduler_that_is_there_already_is_used_and_left_running(shot, tmp_path):
-    with LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address="", silence_logs=logging.ERROR) as cluster:
+    with LocalCluster(
+        n_workers=1, threads_per_worker=1, dashboard_address="127.0.0.1:0", silence_logs=logging.ERROR
+    ) as cluster:
         address = cluster.scheduler_address
         for value in (1, 2):
             told = run(

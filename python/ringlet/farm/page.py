@@ -14,6 +14,7 @@ from ringlet.farm.task import RESULT, Result, read_result
 from ringlet.files import replacing
 from ringlet.report import Picture, Table, document, figure, line_chart, table
 
+PAGE = "wedge.html"
 MOST_LINES = 6  # that a chart tells apart
 MOST_COLUMNS = 6
 
@@ -28,7 +29,7 @@ def write_page(folder: Path, title: str) -> dict[Path, Result]:
     """Writes ``wedge.html`` and ``wedge.json`` from all that is in a folder; returns it."""
     results = read_results(folder)
     away = distances(results)
-    with replacing(folder / "wedge.html") as aside:
+    with replacing(folder / PAGE) as aside:
         aside.write_text(page(results, away, title), encoding="utf-8")
     told = [{"folder": at.name, **vars(result), "away": away.get(at)} for at, result in results.items()]
     with replacing(folder / "wedge.json") as aside:

@@ -13,8 +13,9 @@ from ringlet.errors import UserError
 from ringlet.farm.cluster import run_on_workers
 from ringlet.farm.grid import Choice, Task, choose, make_tasks
 from ringlet.farm.openjd import write_template
-from ringlet.farm.page import read_results, write_page
+from ringlet.farm.page import PAGE, read_results, write_page
 from ringlet.farm.task import Result, Wanted, run_task
+from ringlet.files import check_place
 
 
 def wedge(
@@ -47,6 +48,7 @@ def wedge(
     """
     folder = Path(folder).absolute()
     tasks = make_tasks(Path(shot).absolute(), _choices(settings), folder)
+    check_place(folder / PAGE)
     wanted = Wanted(frames, frame, picture, threads)
     if here:
         results = [run_task(task, wanted, _frames_of(task, progress)) for task in tasks]
