@@ -22,6 +22,7 @@ exclude_patterns = ["_build", "_generated"]
 autodoc_typehints = "signature"
 autodoc_member_order = "bysource"
 autodoc_class_signature = "separated"  # the fields are told in the text
+html_static_path = ["_static"]
 html_theme = "alabaster"
 html_title = f"Ringlet {release}"
 html_theme_options = {
