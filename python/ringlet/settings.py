@@ -15,6 +15,7 @@ from ringlet.errors import UserError
 
 FORMAT = 1  # of recipes, shots and files of edits
 MOST_TEXT = 256e6  # bytes of such a file
+TELLING = {"recipe": {"scalp", "extends"}, "shot": {"groom"}}  # what each kind of file has, and the other has not
 
 Location = tuple[int | str, ...]  # where in a model pydantic found a mistake
 
@@ -80,6 +81,9 @@ def parse_toml(text: str, where: str, kind: str) -> dict[str, Any]:
         raise UserError(f"{where}: is not a Ringlet {kind}; its first line must be 'ringlet = 1'")
     if isinstance(version := data["ringlet"], int) and version > FORMAT:
         raise UserError(f"{where}: ringlet is {version}; this Ringlet reads {kind} files up to {FORMAT}: update it")
+    for other, telling in TELLING.items():
+        if kind in TELLING and other != kind and telling & data.keys() and not TELLING[kind] & data.keys():
+            raise UserError(f"{where}: is a {other}; give a {kind} file")
     return data
 
 

@@ -353,13 +353,31 @@ def test_bad_drawn_guides_are_refused(copy, curves, words):
     assert sorted(copy.iterdir()) == before
 
 
-@pytest.mark.parametrize("place", ["file/groom.usdc", "folder", "groom.txt", "/dev/null/groom.usdc"])
-def test_a_place_that_cannot_be_written_is_refused(copy, place):
+@pytest.mark.parametrize(
+    "command", ["groom small.recipe.toml -o", "sim small.shot.toml -o", "sim small.shot.toml --contacts"]
+)
+@pytest.mark.parametrize("place", ["file/groom.usdc", "folder.usdc", "groom.txt", "/dev/null/groom.usdc"])
+def test_a_place_that_cannot_be_written_is_refused_at_once(copy, monkeypatch, command, place):
     (copy / "file").touch()
-    (copy / "folder").mkdir()
+    (copy / "folder.usdc").mkdir()
     before = sorted(copy.iterdir())
-    refused(run("groom", copy / "small.recipe.toml", "-o", copy / place))
+    monkeypatch.chdir(copy)
+    result = run(*command.split(), place)
+    refused(result)
+    assert "1/1" not in result.stderr  # no stage has run
     assert sorted(copy.iterdir()) == before
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["groom", "small.shot.toml"], ["small.shot.toml: is a shot; give a recipe file"]),
+        (["sim", "small.recipe.toml"], ["small.recipe.toml: is a recipe; give a shot file"]),
+    ],
+)
+def test_a_recipe_and_a_shot_are_not_mistaken_for_one_another(copy, monkeypatch, arguments, words):
+    monkeypatch.chdir(copy)
+    refused(run(*arguments, "-o", "out.usdc"), *words)
 
 
 @pytest.mark.parametrize(

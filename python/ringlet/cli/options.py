@@ -9,6 +9,7 @@ from typing import Annotated, Any
 import typer
 
 import ringlet
+from ringlet.files import check_place
 
 
 def _use_threads(count: int | None) -> int | None:
@@ -40,12 +41,15 @@ Fraction = Annotated[
 
 
 def ending_in(*suffixes: str) -> Callable[[Path | None], Path | None]:
-    """Refuses a file to be written whose name ends otherwise, before the work for it is done."""
+    """Refuses a file that cannot be written, or whose name ends otherwise, before the work for it is done."""
 
     def checked(path: Path | None) -> Path | None:
-        if path is not None and path.suffix not in suffixes:
+        if path is None:
+            return None
+        if path.suffix not in suffixes:
             allowed = f"{', '.join(suffixes[:-1])} or {suffixes[-1]}"
             raise ringlet.UserError(f"{path}: ends in '{path.suffix}'; must end in {allowed}")
+        check_place(path)
         return path
 
     return checked
