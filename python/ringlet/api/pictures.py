@@ -167,8 +167,10 @@ def _posed(stage: Path, frame: float | None) -> tuple[list[Any], Any]:
     """Bodies and hairs of a stage at a frame, as the pictures take them."""
     from ringlet import io, picture
 
-    if frame is None and len(frames := io.read_hair_frames(stage)):
-        frame = float(frames[0])
+    if len(frames := io.read_hair_frames(stage)):
+        frame = float(frames[0]) if frame is None else frame
+        if not frames[0] <= frame <= frames[-1]:
+            raise UserError(f"{stage}: has no hairs at frame {frame:g}; it holds {frames[0]:g} to {frames[-1]:g}")
     bodies, hairs, _ = io.read_stage(stage, frame)
     if hairs is None:
         raise UserError(f"{stage}: has no hairs; make them with: ringlet hair {stage} -o hair.usdc")
