@@ -50,6 +50,13 @@ def test_a_lofted_shot_begins_nearer_to_its_groom(folder):
     assert lofted.mean() < 0.2 * stay(folder).mean()
 
 
+@pytest.mark.parametrize(("mode", "used"), [("none", False), ("lofted", True)])
+def test_a_shot_that_would_not_use_its_shape_is_told(folder, mode, used):
+    change(folder, "mode = 'lofted'", f"mode = '{mode}'")
+    result = run("loft", folder / "small.shot.toml")
+    assert result.exit_code == 0 and ("does not use this shape" in result.stdout) is not used
+
+
 def test_the_report_tells_what_is_lost_and_shows_it(folder):
     result = run("loft", folder / "small.shot.toml", "-o", folder / "a.usdc", "--json", "--report", folder / "out")
     told = json.loads(result.stdout)

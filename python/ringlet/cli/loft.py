@@ -80,6 +80,8 @@ def loft(
             run.warn(f"{fell} of {len(made.off)} locks do not hang as groomed: probably too soft to stand.")
         if moving:
             run.warn(f"{moving} of {len(made.off)} locks were not quite still when they were measured.")
+        if settings.rest.mode == "none":
+            run.warn(f'{shot.name} does not use this shape: for that it needs [rest] with mode = "lofted".')
         if shown:
             picture = report / "loft.png"
             with run.stage("picture", picture, "the groom, and how it hangs"):
