@@ -76,6 +76,15 @@ def test_operators_are_changed_by_name_and_taken_away_with_false(folder):
     assert read_recipe(variant(folder, 'extends = "base.toml"\nshape = []\n')).shape == []
 
 
+def test_values_are_taken_away_with_false(folder):
+    base = read_recipe(folder / "base.toml")
+    assert base.scalp.region is not None and base.curl.preset is not None
+    text = 'extends = "base.toml"\n[scalp]\nregion = false\n[curl]\npreset = false\ncurls = 5\n'
+    down = read_recipe(variant(folder, text))
+    assert (down.scalp.region, down.curl.preset) == (None, None)
+    assert down.curl.width.value == base.curl.width.value and down.scalp.mesh == base.scalp.mesh
+
+
 def test_a_variant_of_a_variant_in_another_folder_finds_the_files_of_the_base(folder):
     variant(folder, 'extends = "base.toml"\n[guides]\nlength = 9\n', "long.toml")
     path = variant(folder, 'extends = "../long.toml"\n[curl]\nwidth = 2\n', "variants/wide.toml")

@@ -77,7 +77,7 @@ def _extended(data: dict[str, Any], path: Path, below: tuple[Path, ...]) -> dict
 
 
 def _merged(base: dict[str, Any], changes: dict[str, Any], where: str, place: str) -> dict[str, Any]:
-    """A table with changes: tables are merged, ``false`` takes one away, everything else is replaced."""
+    """A table with changes: tables are merged, ``false`` takes away what was said, everything else is replaced."""
     result = dict(base)
     for key, value in changes.items():
         old = base.get(key)
@@ -86,7 +86,7 @@ def _merged(base: dict[str, Any], changes: dict[str, Any], where: str, place: st
             result[key] = _merged_shape(old if isinstance(old, list) else [], value, where)
         elif name in EDITS and isinstance(value, list) and isinstance(old, list):
             result[key] = old + value
-        elif value is False and isinstance(old, dict):
+        elif value is False and key in base and not isinstance(old, bool):
             del result[key]
         elif isinstance(value, dict) and isinstance(old, dict) and not ("file" in value) > ("file" in old):
             result[key] = _merged(old, value, where, name)

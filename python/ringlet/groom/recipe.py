@@ -41,8 +41,8 @@ class Recipe(Section):
     unit: Literal["m", "cm", "mm", "in"] = Field(default="cm", description="unit of lengths that are plain numbers")
     extends: str | None = Field(
         default=None,
-        description="another recipe, of which this one changes a few values: tables are merged, `false` takes one "
-        "away, `[shape.NAME]` changes an operator",
+        description="another recipe, of which this one changes a few values: tables are merged, `false` takes "
+        "away a table or a value, `[shape.NAME]` changes an operator",
     )
     edits: str | None = Field(
         default=None,
