@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import threading
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
-from pages import page, serving
+from pages import page, read, serving
 from pxr import Usd
 from ringlet.errors import UserError
 from ringlet.viewer.reel import Run
 
+import ringlet
 from ringlet import io
+from ringlet.groom import Groom
 
 
 def test_hairs_come_in_an_order_of_which_the_beginning_is_spread_over_the_locks(folder: Path):
@@ -40,8 +44,6 @@ def test_a_shot_runs_and_its_frames_come(folder: Path):
 
 
 def test_a_groom_and_its_cache_are_shown_as_they_are(folder: Path):
-    import ringlet
-
     groom = ringlet.build_groom(folder / "small.recipe.toml")
     ringlet.write_groom(groom, folder / "groom.usda")
     ringlet.write_cache(
@@ -78,6 +80,99 @@ def test_of_a_cache_no_frame_is_read_but_those_that_are_looked_at(folder: Path, 
         assert one.hear("frame")["layer"] == "against" and read == [17, 250, 99]
 
 
+@pytest.mark.parametrize("suffix", ["usda", "usdc"])
+def test_a_cache_that_is_replaced_while_it_plays_is_seen_as_it_is_then(folder: Path, suffix: str):
+    groom, cache = small_groom(folder), folder / f"cache.{suffix}"
+    write_marked_cache(groom, cache, 1, frames=30)
+    with serving(folder, cache.name) as client, page(client) as one:
+        assert mark_of(one.watch(7)[0], groom) == 1
+        first = one.been_told("timeline")
+        write_marked_cache(groom, cache, 2, frames=20)
+        one.say(kind="watch", shot=[8, 9, 25])
+        there = one.hear("timeline")
+        assert there["key"] != first["key"] and there["frames"].tolist() == list(range(1, 21)) and there["last"] == 20
+        assert [mark_of(frame, groom) for frame in one.watch(8, 9)] == [2, 2]
+
+
+def test_no_frame_is_half_of_one_file_and_half_of_the_next(folder: Path):
+    """A cache is replaced again and again while a page plays it, and opens it anew."""
+    groom, cache = small_groom(folder), folder / "cache.usdc"
+    write_marked_cache(groom, cache, 1, frames=20)
+    done = threading.Event()
+
+    def write() -> None:
+        mark = 1
+        while not done.wait(0.01):
+            mark += 1
+            write_marked_cache(groom, cache, mark, frames=20)
+
+    with serving(folder, "small.shot.toml") as client, page(client) as one:
+        one.been_told("numbers", draft=False)
+        one.say(kind="against", name=cache.name)
+        one.hear("timeline", against=cache.name)
+        writer = threading.Thread(target=write)
+        writer.start()
+        try:
+            marks = []
+            one.say(kind="watch", against=list(range(1, 21)))
+            while len(marks) < 200:
+                message = read(one.socket.receive_bytes())
+                assert message["kind"] != "trouble", message
+                if message["kind"] == "frame":
+                    marks.append(mark_of(message, groom))
+                    if len(marks) % 50 == 0:
+                        one.say(kind="against", name=cache.name)
+                if message["kind"] == "timeline" or message.get("frame") == 20:
+                    one.say(kind="watch", against=list(range(1, 21)))
+        finally:
+            done.set()
+            writer.join()
+        assert len(set(marks)) > 3 and marks == sorted(marks)
+
+
+def test_a_cache_of_another_groom_in_the_place_of_one_that_plays_is_told(folder: Path):
+    groom, cache = small_groom(folder), folder / "cache.usdc"
+    write_marked_cache(groom, cache, 1, frames=5)
+    with serving(folder, cache.name) as client, page(client) as one:
+        one.watch(1)
+        recipe = folder / "small.recipe.toml"
+        recipe.write_text(recipe.read_text().replace("points = 40", "points = 30"))
+        write_marked_cache(small_groom(folder, "other.usda"), cache, 2, 5, under="other.usda")
+        one.say(kind="watch", shot=[2])
+        assert "is of another groom" in one.hear("trouble")["message"]
+        assert not len(one.hear("timeline")["frames"])
+
+
+def test_a_cache_that_is_gone_goes_on_playing(folder: Path):
+    groom, cache = small_groom(folder), folder / "cache.usdc"
+    write_marked_cache(groom, cache, 1, frames=5)
+    with serving(folder, cache.name) as client, page(client) as one:
+        one.watch(1)
+        cache.unlink()
+        assert mark_of(one.watch(4)[0], groom) == 1
+
+
+def small_groom(folder: Path, name: str = "groom.usda") -> Groom:
+    groom = ringlet.build_groom(folder / "small.recipe.toml")
+    ringlet.write_groom(groom, folder / name)
+    return groom
+
+
+def write_marked_cache(groom: Groom, path: Path, mark: int, frames: int, under: str = "groom.usda") -> None:
+    """A cache whose frames say by their places and by their statistics which it is: see ``mark_of``."""
+    numbers = np.arange(1.0, frames + 1)
+    points = np.broadcast_to(groom.locks.points + (0, 10.0 * mark, 0), (frames, *groom.locks.points.shape))
+    statistics = [{"wall_ms": float(mark)}] * frames
+    ringlet.write_cache(ringlet.Cache(numbers, points.astype(np.float32), statistics), path.with_name(under), path)
+
+
+def mark_of(frame: dict[str, Any], groom: Groom) -> int:
+    """Which cache a frame is of, by its places; its statistics must say the same."""
+    mark = round((frame["points"].reshape(-1, 3) - groom.locks.points)[:, 1].mean() / 10.0)
+    assert frame["statistics"]["wall_ms"] == mark
+    return mark
+
+
 def test_a_frame_that_cannot_be_read_is_told_and_the_others_are_seen(folder: Path):
     write_long_cache(folder, 3)
     stage = Usd.Stage.Open(str(folder / "cache.usda"))
@@ -92,8 +187,6 @@ def test_a_frame_that_cannot_be_read_is_told_and_the_others_are_seen(folder: Pat
 
 def write_long_cache(folder: Path, frames: int) -> None:
     """A cache in which all rise by 1 cm a frame."""
-    import ringlet
-
     groom = ringlet.build_groom(folder / "small.recipe.toml")
     ringlet.write_groom(groom, folder / "groom.usda")
     numbers = np.arange(1.0, frames + 1)

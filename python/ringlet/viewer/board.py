@@ -15,7 +15,7 @@ class Mailbox:
 
     def __init__(self) -> None:
         self._waiting: dict[str, bytes] = {}
-        self._wanted: dict[str, Callable[[], bytes]] = {}
+        self._wanted: dict[str, Callable[[], bytes | None]] = {}
         self._some = asyncio.Event()
 
     def put(self, subject: str, message: bytes) -> None:
@@ -24,8 +24,11 @@ class Mailbox:
         self._waiting[subject] = message
         self._some.set()
 
-    def want(self, wanted: dict[str, Callable[[], bytes]]) -> None:
-        """Sends messages that are made by what is given, in place of those that were wanted before."""
+    def want(self, wanted: dict[str, Callable[[], bytes | None]]) -> None:
+        """Sends messages that are made by what is given, in place of those that were wanted before.
+
+        Nothing is sent where there is nothing to say any more.
+        """
         self._wanted = wanted
         self._some.set()
 
@@ -36,12 +39,16 @@ class Mailbox:
 
     async def next(self) -> bytes:
         """The next message to send."""
-        while not self._waiting and not self._wanted:
-            self._some.clear()
-            await self._some.wait()
-        if self._waiting:
-            return self._waiting.pop(next(iter(self._waiting)))
-        return await asyncio.to_thread(self._wanted.pop(next(iter(self._wanted))))
+        while True:
+            if self._waiting:
+                return self._waiting.pop(next(iter(self._waiting)))
+            if self._wanted:
+                message = await asyncio.to_thread(self._wanted.pop(next(iter(self._wanted))))
+                if message is not None:
+                    return message
+            else:
+                self._some.clear()
+                await self._some.wait()
 
 
 class Board:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable
 from contextlib import ExitStack
 from functools import partial
@@ -17,14 +18,16 @@ from ringlet.viewer import protocol
 from ringlet.viewer.board import Board
 from ringlet.viewer.files import Files
 from ringlet.viewer.looks import Look
-from ringlet.viewer.reel import Read, Reel, Run
-from ringlet.viewer.scene import open_frames
+from ringlet.viewer.reel import Read, Reel, ReplacedError, Run, Watched
+from ringlet.viewer.scene import ReadFrame, open_frames
 from ringlet.viewer.showing import Showing
 from ringlet.viewer.simulation import Simulation, Stage
 from ringlet.viewer.wire import pack, trouble
 
 # Makes the message of a frame of its number, where its points are [m], and its statistics.
 PackFrame = Callable[[float, np.ndarray, dict[str, Any]], bytes]
+
+TRIES = 20  # to open a file that is replaced again and again
 
 
 class Playing:
@@ -39,9 +42,12 @@ class Playing:
         failed: Callable[[str], None],
     ) -> None:
         self._files, self._board, self._showing = files, board, showing
+        self._call, self._failed = call, failed
         self._run, self._shown, self._beside = Run(), Opened(), Opened()
         self._stage: Stage | None = None
         self._against = ""
+        self._replaced = 0
+        self._span: tuple[float, float] | None = None
         self._simulation = Simulation(
             self._run,
             lambda: call(self.tell),
@@ -54,17 +60,43 @@ class Playing:
         self._shown.close()
         self._beside.close()
 
-    def wanted(self, message: protocol.Watch) -> dict[str, Callable[[], bytes]]:
+    def wanted(self, message: protocol.Watch) -> dict[str, Callable[[], bytes | None]]:
         """What makes the messages of the frames that a page wants and that are there, by their subjects."""
-        wanted: dict[str, Callable[[], bytes]] = {}
+        wanted: dict[str, Callable[[], bytes | None]] = {}
         for layer, reel, frames in (
             ("shot", self._shot, message.shot),
             ("against", self._beside.reel, message.against),
         ):
             if reel is not None:
                 there = set(reel.frames.tolist())
-                wanted |= {f"{layer}/{frame:g}": partial(told, reel, frame) for frame in frames if frame in there}
+                wanted |= {
+                    f"{layer}/{frame:g}": partial(self._frame, reel, frame) for frame in frames if frame in there
+                }
         return wanted
+
+    def _frame(self, reel: Reel, frame: float) -> bytes | None:
+        """The message of a frame, or what is wrong with it; nothing of a file that has been replaced."""
+        try:
+            return reel.message(frame)
+        except ReplacedError:
+            self._call(self._open_again, reel)
+            return None
+        except UserError as error:
+            return trouble(str(error))
+
+    def _open_again(self, reel: Reel) -> None:
+        """Frames of a file that has been replaced are void: those that it has now are told of, unless they were."""
+        for opened in (self._shown, self._beside):
+            if opened.reel is not reel:
+                continue
+            self._replaced += 1
+            try:
+                opened.again()
+            except UserError as error:
+                self._failed(str(error))
+                if opened is self._beside:
+                    self.lay_against("")
+            self.tell()
 
     @property
     def _shot(self) -> Reel | None:
@@ -124,10 +156,12 @@ class Playing:
         if self._files.mode == "shot":
             shot = self._files.shot
             first, last, preroll = float(shot.frames[0]), float(shot.frames[1]), shot.preroll
-        elif self._shown.reel is not None:
-            first, last, preroll = float(self._shown.reel.frames[0]), float(self._shown.reel.frames[-1]), 0
         else:
-            return
+            if self._shown.reel is not None:
+                self._span = float(self._shown.reel.frames[0]), float(self._shown.reel.frames[-1])
+            if self._span is None:  # it does not move
+                return
+            (first, last), preroll = self._span, 0
         simulation, runs = self._simulation, self._files.mode == "shot"
         timeline = protocol.Timeline.model_validate(
             {
@@ -137,7 +171,7 @@ class Playing:
                 "state": simulation.state if runs else "none",
                 "rolled": simulation.rolled,
                 "preroll": preroll,
-                "key": simulation.key,
+                "key": simulation.key + self._replaced,
                 "against": self._against,
             }
         )
@@ -150,24 +184,40 @@ class Opened:
 
     def __init__(self) -> None:
         self._files = ExitStack()
+        self._one = threading.Lock()
+        self._what: tuple[Path, Look, PackFrame] | None = None
         self.reel: Reel | None = None
 
     def open(self, file: Path, look: Look, pack: PackFrame) -> None:
         """Opens a file with the frames of a look, in place of the one before."""
         self.close()
-        frames, read = self._files.enter_context(open_frames(file, look))
+        self._what = file, look, pack
+        with self._one:
+            watched, frames, read = self._whole(file, look)
         if len(frames):
-            self.reel = Read(frames, read, pack)
+            self.reel = Read(watched, frames, read, pack, self._one)
+
+    def again(self) -> None:
+        """Opens what is there now in the place of what was opened."""
+        if self._what is not None:
+            self.open(*self._what)
+
+    def _whole(self, file: Path, look: Look) -> tuple[Watched, np.ndarray, ReadFrame]:
+        """Opens a file, and not a part of it before and a part after it was replaced."""
+        for _ in range(TRIES):
+            watched = Watched(file)
+            try:
+                frames, read = self._files.enter_context(open_frames(file, look))
+            except UserError:
+                if watched.same():
+                    raise
+                continue
+            if watched.same():
+                return watched, frames, read
+            self._files.close()
+        raise UserError(f"{file.name}: is replaced again and again; open it when it is done")
 
     def close(self) -> None:
         """Closes the file."""
         self.reel = None
         self._files.close()
-
-
-def told(reel: Reel, frame: float) -> bytes:
-    """The message of a frame, or what is wrong with it."""
-    try:
-        return reel.message(frame)
-    except UserError as error:
-        return trouble(str(error))

@@ -7,6 +7,7 @@ import os
 import tempfile
 import threading
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
@@ -28,28 +29,67 @@ class Reel(Protocol):
         ...
 
 
+class ReplacedError(UserError):
+    """The file that frames were read from is another one now."""
+
+
+class Watched:
+    """A file that may be replaced while it is read.
+
+    What USD holds of a file is held together by all who have it open: who opens the new one changes what others read,
+    in the midst of it. So one reads at a time, and what was read counts only if the file is still the same.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self._known = self._now()
+
+    def same(self) -> bool:
+        """Whether it is the file that it was. One that is gone can be read on, since it is held open."""
+        return self._now() in (self._known, None)
+
+    def _now(self) -> tuple[int, int, int] | None:
+        try:
+            found = self.path.stat()
+        except OSError:
+            return None
+        return found.st_ino, found.st_size, found.st_mtime_ns
+
+
 class Read:
     """Frames that a file holds. One is read at a time, whoever asks.
 
+    file: where they are
     read: gives where a frame's points are [m], and its statistics
     pack: makes the message of a frame of them
+    one:  held while the file is read, and by who opens another in its place
     """
 
     def __init__(
         self,
+        file: Watched,
         frames: NDArray[np.float64],
         read: Callable[[float], tuple[NDArray, dict[str, Any]]],
         pack: Callable[[float, NDArray, dict[str, Any]], bytes],
+        one: threading.Lock,
     ) -> None:
         self.frames = frames
-        self._read, self._pack = read, pack
-        self._one = threading.Lock()
+        self._file, self._read, self._pack, self._one = file, read, pack, one
 
     def message(self, frame: float) -> bytes:
-        """Reads a frame."""
+        """Reads a frame. Raises ReplacedError where the file is another one by now."""
         with self._one:
-            points, statistics = self._read(frame)
+            try:
+                points, statistics = self._read(frame)
+            except UserError:
+                self._check()  # of half of the one and half of the other nothing can be said
+                raise
+            self._check()
         return self._pack(frame, points, statistics)
+
+    def _check(self) -> None:
+        if not self._file.same():
+            raise ReplacedError(f"{self._file.path.name}: was replaced; its frames are void")
 
 
 class Run:

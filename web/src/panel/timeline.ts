@@ -138,7 +138,7 @@ export class TimelineBar {
     if (!timeline) return;
     if (timeline.key !== this.key) {
       this.key = timeline.key;
-      this.drop("shot");
+      for (const layer of LAYERS) this.drop(layer);
     }
     if (timeline.against !== this.beside) {
       this.beside = timeline.against;
