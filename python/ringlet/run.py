@@ -124,7 +124,7 @@ class Run:
                 pictures=[report.Picture(path=str(path), caption=caption) for path, caption in self.pictures.items()],
                 tables=[report.Table(title=title, columns=columns, rows=rows) for title, columns, rows in self.tables],
                 warnings=self.warnings,
-                limits=[CARRIED if self.cache and self.cache.start else FREE],
+                limits=[CARRIED if self.cache.start else FREE] if self.cache else [],
             ),
             folder,
         )

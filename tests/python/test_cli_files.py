@@ -197,6 +197,13 @@ def test_a_report_is_written_where_it_is_asked_for(example, tmp_path):
     assert len(report["statistics"]) == FRAMES
     assert [stage["name"] for stage in report["stages"]] == ["groom", "simulate"]
     assert "<html" in (tmp_path / "report/report.html").read_text()
+    assert report["limits"] == [ringlet.run.FREE]
+
+
+def test_a_report_without_a_simulation_says_nothing_of_contact(example, tmp_path):
+    result = run("groom", example / "small.recipe.toml", "-o", tmp_path / "groom.usdc", "--report", tmp_path / "report")
+    assert result.exit_code == 0, result.output
+    assert json.loads((tmp_path / "report/report.json").read_text())["limits"] == []
 
 
 @pytest.mark.parametrize(("unit", "up"), [(1.0, "Y"), (0.01, "Z"), (0.0254, "Y")])

@@ -81,7 +81,7 @@ def _header(report: RunReport) -> str:
             part
             for part in (
                 machine.system,
-                f"{machine.threads} threads" if machine.threads else "",
+                f"{machine.threads} thread{'s' * (machine.threads > 1)}" if machine.threads else "",
                 machine.simd or "",
                 f"Python {machine.python}",
             )
