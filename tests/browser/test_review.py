@@ -225,13 +225,19 @@ def test_of_a_long_cache_the_page_keeps_the_frames_about_the_one_that_is_seen(op
     assert not review.wrong
 
 
+SIXTY_FRAMES = """() => new Promise(done => {
+    let left = 60;
+    const next = () => left-- ? requestAnimationFrame(next) : done();
+    next();
+})"""
+
+
 def test_an_idle_page_draws_nothing(opened: Any):
     review: Review = opened()
     review.settled()
-    review.until("ringlet.model.measured")
-    review.page.wait_for_timeout(800)
+    review.until("ringlet.model.measured && ringlet.viewer.idle")
     before = review.get("ringlet.viewer.pictures")
-    review.page.wait_for_timeout(1500)
+    review.page.evaluate(SIXTY_FRAMES)
     assert review.get("ringlet.viewer.pictures") == before
 
 

@@ -175,6 +175,11 @@ export class Viewer {
     return this.drawn;
   }
 
+  /** Whether no picture is to come until something changes. */
+  get idle(): boolean {
+    return !this.wanted && !this.resting && !this.turntable;
+  }
+
   private draw(): void {
     this.wanted = false;
     const now = performance.now();
@@ -191,7 +196,10 @@ export class Viewer {
       if (took > SLOW) this.detail = Math.max(0.06, this.detail * 0.75);
       else if (took < 0.4 * SLOW) this.detail = Math.min(1, this.detail * 1.15);
       clearTimeout(this.resting);
-      this.resting = window.setTimeout(() => this.invalidate(), REST_AFTER + 20);
+      this.resting = window.setTimeout(() => {
+        this.resting = 0;
+        this.invalidate();
+      }, REST_AFTER + 20);
     }
     this.drawn++;
     this.onDraw({ drawMs: took, shown: Math.round(this.hair.a.count * (moving ? this.detail : 1)) });
