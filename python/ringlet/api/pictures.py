@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ringlet.shot.loft import Loft
 
 
-LOCK_WIDTH = 4e-4  # of locks among their contacts: as thin hairs they would be lost [m]
+LOCK_WIDTH = 8e-4  # of locks among their contacts: thinner ones are lost before skin in a quick picture [m]
 
 
 def write_still(
