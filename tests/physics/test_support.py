@@ -8,9 +8,11 @@ from ringlet.groom.groom import Groom
 from ringlet.mesh import Clip, Mesh
 from ringlet.shot import Obstacle, equilibrium, keep, made_from, refresh
 from ringlet.shot.equilibrium import bearing
+from ringlet.shot.joints import edges
 from ringlet.shot.pushing import least_pushing
 from ringlet.shot.scene import Scene
 from ringlet.shot.simulate import make_strands
+from ringlet.shot.support import ARM, _Give
 from scipy.optimize import nnls
 from scipy.sparse import block_diag
 from test_lofted_strands import GRAVITY, sag, scene
@@ -35,6 +37,35 @@ def test_forces_that_only_push_are_those_of_least_squares(seed):
     both[:4] -= both[8:]
     assert found == pytest.approx(np.concatenate([*first, both[:8]]), abs=1e-9)
     assert (last == 0).any() and (found == 0).any()
+
+
+def test_the_energy_of_two_forces_together_is_summed_over_the_joints_that_both_strain():
+    """Against the strains themselves, joint by joint: bend and twist by the moment there, stretch by the force."""
+    random = np.random.default_rng(5)
+    shot, groom = scene(*crossed(), more=SOFT)
+    locks, strands = groom.locks, make_strands(shot, groom)
+    rows, tangents = slice(30, 60), edges(locks, locks.points)[1][30:]
+    points, vertex, force, couple = (
+        locks.points[rows],
+        random.integers(3, 30, 8),
+        random.normal(size=(8, 3)),
+        random.normal(size=8),
+    )
+    soft = [np.divide(1, of[rows], where=of[rows] > 0, out=np.zeros(30)) for of in strands.stiffness]
+    first = [shot.held - 1, shot.held - 1, shot.held - 2]
+    stretch, bend, twist = (np.where(np.arange(30) >= k, of, 0) for k, of in zip(first, soft, strict=True))
+
+    def strains(k):
+        moment = np.cross(points[vertex[k]] - points, force[k]) + ARM * couple[k] * tangents[vertex[k]]
+        about, along = (moment * tangents).sum(1)[:, None], (force[k] * tangents).sum(1)[:, None]
+        parts = bend[:, None], moment - about * tangents, twist[:, None], about, stretch[:, None], along
+        there = np.concatenate([soft**0.5 * of for soft, of in zip(parts[::2], parts[1::2], strict=True)], axis=1)
+        return (there * (np.arange(30) < vertex[k])[:, None]).ravel()
+
+    each = np.stack([strains(k) for k in range(8)])
+    give = _Give(shot.held, locks, strands)
+    found = give.under_two(rows, vertex, give.pull(30 + vertex, force, couple))
+    assert found == pytest.approx(each @ each.T, rel=1e-9, abs=1e-9 * np.abs(found).max())
 
 
 def crossed():

@@ -78,8 +78,8 @@ def equilibrium(
     locks.check("loft: locks")
     _check(shot, locks)
     borne = bearing(shot, groom, obstacles) if borne is None else borne
-    held_up = borne + _drawn(shot, groom)
-    frames, most = make_strands(shot, groom).directors, shot.rest.stiffen
+    strands, most = make_strands(shot, groom), shot.rest.stiffen
+    held_up, frames = borne + _drawn(shot, groom, strands), strands.directors
     going, soft, factor = np.ones(len(locks), bool), np.zeros(len(locks), bool), np.ones(len(locks))
     made = _nothing_tried(groom, borne)
 
@@ -156,13 +156,13 @@ def _check(shot: Shot, locks: Curves) -> None:
 def bearing(shot: Shot, groom: Groom, obstacles: Sequence[Obstacle]) -> Array:
     """What bears the locks of a groom where they were groomed: bodies, nails and one another [N], shape (n, 3)."""
     strands = make_strands(shot, groom)
-    return support(shot, groom.locks, strands, loads(shot, strands) + _drawn(shot, groom), obstacles)
+    return support(shot, groom.locks, strands, loads(shot, strands) + _drawn(shot, groom, strands), obstacles)
 
 
-def _drawn(shot: Shot, groom: Groom) -> Array:
+def _drawn(shot: Shot, groom: Groom, strands: Strands) -> Array:
     """What soft nails bear of the weight [N], shape (n, 3)."""
     part = softly(groom.locks, 1.0 / (groom.space.fps * shot.solver.substeps))
-    return -np.outer(part * make_strands(shot, groom).masses, shot.forces.gravity)
+    return -np.outer(part * strands.masses, shot.forces.gravity)
 
 
 def loads(shot: Shot, strands: Strands) -> Array:
@@ -217,7 +217,8 @@ def _balanced(shot: Shot, groom: Groom, frames: Array, borne: Array, stiffened: 
     Stiffness and mass depend a little on the rest shape, so it takes some rounds.
     """
     locks, groomed = groom.locks, np.asarray(groom.locks.points, np.float64)
-    shaped, strain = measure(locks, groomed, frames), measure(locks, groomed, frames)
+    shaped = measure(locks, groomed, frames)
+    strain = shaped.take(np.ones(len(groomed), bool))
     rest, going, good = groomed.copy(), np.ones(len(locks), bool), np.zeros(len(locks), bool)
     for done in range(shot.rest.iterations):
         rows = np.repeat(going, locks.counts)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array, diags_array
 from scipy.sparse.csgraph import connected_components
-from scipy.sparse.linalg import spsolve
+from scipy.sparse.linalg import splu
 
 Array = NDArray[np.float64]
 
@@ -36,7 +36,7 @@ def least_pushing(matrix: csr_array, slope: Array, free: NDArray[np.bool_]) -> A
         x[:] = 0.0
         inside = np.flatnonzero(acts)
         if inside.size:
-            x[inside] = np.asarray(spsolve(a[inside][:, inside].tocsc(), -b[inside]))
+            x[inside] = _solved(a[inside][:, inside], -b[inside])
         wrong = ~free & np.where(acts, x < -enough, a @ x + b < -enough)
         if not wrong.any():
             break
@@ -48,6 +48,12 @@ def least_pushing(matrix: csr_array, slope: Array, free: NDArray[np.bool_]) -> A
         last[part[wrong]] = np.flatnonzero(wrong)  # of each part, the last is kept
         acts ^= wrong & ((patience >= 0)[part] | (np.arange(len(b)) == last[part]))
     return scale * np.where(free, x, np.maximum(x, 0.0))
+
+
+def _solved(matrix: csr_array, right: Array) -> Array:
+    """The solution of A x = b; where A is symmetric and positive definite, rows need not be exchanged."""
+    factor = splu(matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    return factor.solve(right)
 
 
 def _most(values: Array, part: NDArray[np.int32], parts: int) -> Array:

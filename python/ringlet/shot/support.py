@@ -40,7 +40,7 @@ ARM = 0.01  # a nail's couple of 1 is one newton on this arm [m]
 class Ways:
     """Ways in which locks may be borne, each by a force that is to be found, of 1 N where it is 1.
 
-    of:     which force, shape (k,): each is told by one row or more
+    of:     which force, shape (k,): each is told by one row or more, one after the other
     vertex: on what it acts, shape (k,)
     force:  how, shape (k, 3)
     couple: about the edge that begins there, times ARM, shape (k,)
@@ -170,22 +170,24 @@ def _least(ways: Ways, held: int, locks: Curves, strands: Strands, loads: Array)
     Minimises Σ strain² stiffness + SHY · E · Σ (f / weight)², where E is the first sum of a lock under its loads alone.
     """
     give, count = _Give(held, locks, strands), len(ways.free)
-    by_loads = give.by_loads(loads)
+    everywhere = np.arange(len(loads))
+    by_loads, by_ways = give.pull(everywhere, loads), give.pull(ways.vertex, ways.force, ways.couple)
+    weight = np.maximum(np.add.reduceat(np.linalg.norm(loads, axis=1), locks.offsets[:-1]), 1e-300)
     shy = np.where(ways.free, FIRM, SHY)
     row, column, entries, slope = [], [], [], np.zeros(count)
     lock = np.searchsorted(locks.offsets, ways.vertex, side="right") - 1
     order = np.argsort(lock, kind="stable")
     for chosen in np.split(order, np.flatnonzero(np.diff(lock[order])) + 1):
-        rows = slice(*locks.offsets[lock[chosen[0]] :][:2])
-        alone, weight = by_loads[rows].ravel(), np.linalg.norm(loads[rows], axis=1).sum()
-        force, place = np.unique(ways.of[chosen], return_inverse=True)
-        by_each = np.zeros((len(force), len(alone)))
-        strains = give.by_force(rows, ways.vertex[chosen], ways.force[chosen], ways.couple[chosen])
-        np.add.at(by_each, place, strains)
-        square = by_each @ by_each.T + np.diag(shy[force] * (alone @ alone / max(weight, 1e-300) ** 2))
-        slope[force] += by_each @ alone
-        row.append(np.repeat(force, len(force)))
-        column.append(np.tile(force, len(force)))
+        which, of = lock[chosen[0]], ways.of[chosen]
+        rows, begin = slice(*locks.offsets[which:][:2]), np.flatnonzero(np.append(True, of[1:] != of[:-1]))
+        vertex, pulls, force = ways.vertex[chosen] - rows.start, by_ways[chosen], of[begin]
+        alone, strained = give.under_loads(rows, by_loads[rows])
+        square = give.under_two(rows, vertex, pulls)
+        square = np.add.reduceat(np.add.reduceat(square, begin, axis=0), begin, axis=1)
+        square.flat[:: len(force) + 1] += shy[force] * (alone / weight[which] ** 2)
+        slope[force] += np.add.reduceat((strained[vertex] * pulls).sum(axis=1), begin)
+        column.append(np.broadcast_to(force, square.shape).ravel())
+        row.append(force.repeat(len(force)))
         entries.append(square.ravel())
     matrix = coo_array((np.concatenate(entries), (np.concatenate(row), np.concatenate(column))), (count, count))
     return least_pushing(matrix.tocsr(), slope, ways.free)
@@ -194,16 +196,20 @@ def _least(ways: Ways, held: int, locks: Curves, strands: Strands, loads: Array)
 class _Give:
     """How locks give way to forces at their vertices, as beams that are clamped at their roots.
 
-    Strains are times √stiffness: three of bend, one of twist and one of stretch at each vertex.
+    A pull is a force with its moment about the lock's root, (moment, force). All joints before the vertex at which it
+    acts are strained by it: the energy that two pulls a and b have there together, strain · strain · stiffness, is
+    a · C b with a matrix C of each joint. So that of a lock under two of them is a · (Σ C) b, over the joints before
+    the nearer of both.
     """
 
     def __init__(self, held: int, locks: Curves, strands: Strands) -> None:
-        self._locks, self._points = locks, np.asarray(locks.points, np.float64)
-        self._tangents = edges(locks, self._points)[1]
-        number = np.arange(len(self._points)) - np.repeat(locks.offsets[:-1], locks.counts)
-        everywhere = np.arange(len(self._points))
-        self._stretch, self._bend, self._twist = (
-            np.where(np.isin(everywhere, of) & (number >= first) & (of_all > 0.0) & ~never, of_all, np.inf) ** -0.5
+        points = np.asarray(locks.points, np.float64)
+        number = np.arange(len(points)) - np.repeat(locks.offsets[:-1], locks.counts)
+        everywhere = np.arange(len(points))
+        self._tangents = edges(locks, points)[1]
+        self._arms = points - np.repeat(points[locks.offsets[:-1]], locks.counts, axis=0)
+        stretch, bend, twist = (
+            np.where(np.isin(everywhere, of) & (number >= first) & (of_all > 0.0) & ~never, of_all, np.inf) ** -1.0
             for of, first, of_all, never in zip(
                 (everywhere, corners(locks), twists(locks)),
                 (held - 1, held - 1, held - 2),
@@ -212,27 +218,43 @@ class _Give:
                 strict=True,
             )
         )
+        self._joints = _softness(self._arms, self._tangents, stretch, bend, twist)
 
-    def by_loads(self, loads: Array) -> Array:
-        """Strains under loads at all vertices [N], shape (n, 5)."""
-        force, moment = self._beyond(loads), self._beyond(np.cross(self._points, loads))
-        return self._strains(slice(None), moment - np.cross(self._points, force), force)
+    def pull(self, vertex: Indices, force: Array, couple: Array | None = None) -> Array:
+        """Forces [N] on vertices, with couples about the edges that begin there, as pulls, shape (k, 6)."""
+        moment = np.cross(self._arms[vertex], force)
+        if couple is not None:
+            moment += (ARM * couple)[:, None] * self._tangents[vertex]
+        return np.concatenate([moment, force], axis=1)
 
-    def by_force(self, rows: slice, vertex: Indices, force: Array, couple: Array) -> Array:
-        """Strains of a lock under each of some forces and couples, shape (k, 5 rows)."""
-        beyond = (np.arange(rows.start, rows.stop) < vertex[:, None])[:, :, None]
-        turning = np.cross(self._points[vertex], force) + (ARM * couple)[:, None] * self._tangents[vertex]
-        moment = turning[:, None] - np.cross(self._points[None, rows], force[:, None])
-        strains = self._strains(rows, np.where(beyond, moment, 0.0), np.where(beyond, force[:, None], 0.0))
-        return strains.reshape(len(vertex), -1)
+    def under_loads(self, rows: slice, pulls: Array) -> tuple[float, Array]:
+        """The energy of a lock under all of these pulls, shape (m, 6), at its vertices.
 
-    def _beyond(self, values: Array) -> Array:
-        """Of each vertex, the sum of the values of those of its lock that come after it."""
-        sums = np.cumsum(values, axis=0)
-        return np.repeat(sums[self._locks.offsets[1:] - 1], self._locks.counts, axis=0) - sums
+        Also what a pull at each vertex has together with them is to be multiplied with, shape (m, 6).
+        """
+        beyond = np.cumsum(pulls[::-1], axis=0)[::-1] - pulls
+        strained = np.einsum("nij,nj->ni", self._joints[rows], beyond)
+        return float((beyond * strained).sum()), np.cumsum(strained, axis=0) - strained
 
-    def _strains(self, rows: slice, moment: Array, force: Array) -> Array:
-        tangent = self._tangents[rows]
-        about, along = (np.einsum("...i,...i->...", of, tangent)[..., None] for of in (moment, force))
-        bend, twist, stretch = (of[rows, None] for of in (self._bend, self._twist, self._stretch))
-        return np.concatenate([bend * (moment - about * tangent), twist * about, stretch * along], axis=-1)
+    def under_two(self, rows: slice, vertex: Indices, pulls: Array) -> Array:
+        """The energy of a lock under every two of some pulls at vertices, counted from its root, shape (k, k)."""
+        joints = self._joints[rows]
+        before = np.cumsum(joints, axis=0) - joints
+        by_each = np.einsum("kij,kj->ki", before[vertex], pulls) @ pulls.T
+        return np.where(vertex[:, None] <= vertex, by_each, by_each.T)
+
+
+def _softness(arms: Array, tangents: Array, stretch: Array, bend: Array, twist: Array) -> Array:
+    """The matrices C of ``_Give``, of joints at ``arms`` from their roots, shape (n, 6, 6); of 1 / stiffness, (n,).
+
+    A pull (m, f) has the moment M = m - arm × f at a joint. With A = bend (1 - t tᵀ) + twist t tᵀ its energy there is
+    M · A M + stretch (t · f)².
+    """
+    along = tangents[:, :, None] * tangents[:, None]
+    of_moment = bend[:, None, None] * (np.eye(3) - along) + twist[:, None, None] * along
+    moment = np.zeros((len(arms), 3, 6))
+    moment[:, :, :3] = np.eye(3)
+    moment[:, :, 3:] = np.cross(np.eye(3), arms[:, None]).transpose(0, 2, 1)
+    joints = moment.transpose(0, 2, 1) @ of_moment @ moment
+    joints[:, 3:, 3:] += stretch[:, None, None] * along
+    return joints
