@@ -1,12 +1,14 @@
 """What rest shapes keep of hairstyles in contact: none, lofted and equilibrium beside one another.
 
 .venv/bin/python tests/physics/rest_shapes.py [STYLE …] [--locks 100] [--pictures FOLDER] [--head FILE --region NAME]
+.venv/bin/python tests/physics/rest_shapes.py [STYLE …] --locks 30 --springs 0.1 0.5 0.72
 
 Every style grows on a head that stands still while the drift is measured: in equilibrium for 10 s, otherwise for 3 s,
 when it hangs. Then the head drops by 5 cm in a tenth of a second and the tips go on: for each lock its main frequency
 and how far it goes, beside those of the plain shape that hangs as it sags, and of the plain shape without weight, which
 looks like the groom. Last, nothing weighs any more for half a second: what lay on the head and was bent too far against
-gravity rises. Not a test: a style takes a minute and more.
+gravity rises. With ``--springs`` only the drop is looked at, in equilibrium with each of these ``rest.spring``.
+Not a test: a style takes a minute and more.
 """
 
 from __future__ import annotations
@@ -94,7 +96,7 @@ preroll = 0
 bend_scale = 6
 damping = 0.004
 [rest]
-mode = "{mode}"
+mode = {mode}
 [forces]
 gravity = [0, {gravity}, 0]
 [contact]
@@ -110,8 +112,9 @@ class Style:
 
     groom: Groom
 
-    def shot(self, mode: str, gravity: float = -9.81) -> Shot:
-        return parse_shot(SHOT.format(mode=mode, gravity=gravity))
+    def shot(self, mode: str, gravity: float = -9.81, spring: float | None = None) -> Shot:
+        more = "" if spring is None else f"\nspring = {spring}"
+        return parse_shot(SHOT.format(mode=f'"{mode}"{more}', gravity=gravity))
 
     def head(self, heights: Array, fps: float) -> Obstacle:
         """The head as it moves up and down: how much higher it is frame by frame [m]."""
@@ -210,6 +213,25 @@ def table(name: str, style: Style, seconds: float, picture: Path | None) -> None
             draw(f"{name} weightless", style.groom, {"groomed": groomed, **risen}, picture)
 
 
+def springs(name: str, style: Style, values: list[float], seconds: float) -> None:
+    """Prints how the tips swing in equilibrium, beside the plain shape without weight, for each value of `spring`.
+
+    The frequency of the slowest tenth of the locks, of the median and of the fastest tenth; the median of how far they
+    go; how many times stiffer locks become on average.
+    """
+    groomed, cells = np.asarray(style.groom.locks.points, np.float64), []
+    plainly, so_far = style.bounce(style.shot("none", 0.0), None, groomed)
+    for spring in values:
+        shot = style.shot("equilibrium", spring=spring)
+        made = preload(shot, style.groom, obstacles=[style.head(np.zeros(1), FPS)])
+        rest = keep(made, shot)
+        *_, begin = style.still(shot, rest, seconds)
+        often, far = style.bounce(shot, rest, begin.copy())
+        often = ", ".join(f"{ratio:.2f}" for ratio in np.percentile(often / plainly, [10, 50, 90]))
+        cells.append(f"{often}; {np.median(far / so_far):.2f}; {made.stiffened.mean():.3g}")
+    print(f"| {name} |", *(f"{cell} |" for cell in cells), flush=True)
+
+
 def draw(name: str, groom: Groom, shapes: dict[str, Array], folder: Path) -> None:
     """The groom and what becomes of it, on one page."""
     from ringlet import picture
@@ -229,7 +251,16 @@ if __name__ == "__main__":
     reader.add_argument("--pictures", type=Path)
     reader.add_argument("--head", type=Path, default=HEAD)
     reader.add_argument("--region", default="scalp")
+    reader.add_argument("--springs", type=float, nargs="+", metavar="SPRING")
     asked = reader.parse_args()
-    print("| style | rest | away, mean [mm] | 99 % [µm] | most [µm] | rest from groom, mean [mm] | CPU [s] | stiffer |")
+    if asked.springs:
+        print("| style |", *(f"spring = {spring} |" for spring in asked.springs))
+    else:
+        columns = "away, mean [mm] | 99 % [µm] | most [µm] | rest from groom, mean [mm] | CPU [s] | stiffer"
+        print(f"| style | rest | {columns} |")
     for name in asked.styles or STYLES:
-        table(name, grown(name, asked.locks, asked.head, asked.region), asked.seconds, asked.pictures)
+        style = grown(name, asked.locks, asked.head, asked.region)
+        if asked.springs:
+            springs(name, style, asked.springs, asked.seconds)
+        else:
+            table(name, style, asked.seconds, asked.pictures)
