@@ -40,6 +40,7 @@ from ringlet.curves import Curves
 from ringlet.demo import run_demo
 from ringlet.doctor import Finding, diagnose
 from ringlet.errors import UserError
+from ringlet.files import check_place
 from ringlet.mesh import Clip, Mesh
 from ringlet.run import Run
 from ringlet.stage import StageSpace
@@ -85,6 +86,7 @@ __all__ = [
     "build_groom",
     "build_hairs",
     "check_groom",
+    "check_place",
     "compare_wedge",
     "diagnose",
     "edit_lock",

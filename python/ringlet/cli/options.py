@@ -9,7 +9,6 @@ from typing import Annotated, Any
 import typer
 
 import ringlet
-from ringlet.files import check_place
 
 
 def _use_threads(count: int | None) -> int | None:
@@ -49,7 +48,7 @@ def ending_in(*suffixes: str) -> Callable[[Path | None], Path | None]:
         if path.suffix not in suffixes:
             allowed = f"{', '.join(suffixes[:-1])} or {suffixes[-1]}"
             raise ringlet.UserError(f"{path}: ends in '{path.suffix}'; must end in {allowed}")
-        check_place(path)
+        ringlet.check_place(path)
         return path
 
     return checked
