@@ -251,6 +251,17 @@ def test_a_cache_of_another_groom_is_refused(folder):
         read_cache(folder / "out/cache.usdc")
 
 
+def test_a_cache_that_is_held_open_and_lies_over_another_groom_now_is_read_as_it_is(folder):
+    groom, held = read_groom(folder / "out/groom.usdc"), []
+    for name in "abcdefgh":  # in which order layers are read anew is chance
+        path, under = folder / f"out/{name}.usdc", folder / f"out/{name}.groom.usdc"
+        shutil.copy(folder / "out/cache.usdc", path)
+        held.append(Sdf.Layer.FindOrOpen(str(path)))
+        write_groom(groom, under)
+        write_cache(Cache(np.array([5.0]), groom.locks.points[None]), under, path, groom.space)
+        assert read_cache(path).frames.tolist() == [5.0]
+
+
 def test_a_groom_whose_head_has_changed_is_refused(tmp_path):
     head = write_head(tmp_path / "head.usda")
     write_groom(make_groom(head), tmp_path / "groom.usda")

@@ -56,10 +56,21 @@ def reading(path: Path | str) -> Iterator[Source]:
         raise UserError(f"{path}: is empty; write it again or choose another")
     with reading_more(path):
         stage = Usd.Stage.Open(str(path))
-        for layer in stage.GetUsedLayers():
-            if not layer.anonymous and Path(layer.realPath).exists():
-                layer.Reload()  # what something else holds open may be older than the file
+        _reload(stage)
         yield Source(path, stage, _space(stage, path))
+
+
+def _reload(stage: Usd.Stage) -> None:
+    """Reads its layers anew: what something else holds open may be older than the file.
+
+    A layer that is read anew may name others than before, and those that it names no more are gone: they are asked for
+    after each.
+    """
+    seen = set[str]()
+    while fresh := [layer for layer in stage.GetUsedLayers() if layer.identifier not in seen]:
+        seen.add(fresh[0].identifier)
+        if not fresh[0].anonymous and Path(fresh[0].realPath).exists():
+            fresh[0].Reload()
 
 
 @contextmanager
