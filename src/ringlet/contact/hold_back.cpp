@@ -36,6 +36,9 @@ int HoldBack::strand_of(int v, int w) const {
 void HoldBack::round(const std::vector<Met> &met) {
     for (const int v : touched_) changed_[v] = 0;
     touched_.clear();
+    for (const Met &pair : met) // is asked again: one of the two may be held back elsewhere, and not stop as a whole for it
+        for (const int v : pair.vertices)
+            if (scene_.mesh.moves[v]) change(v);
     stop(met, hold_near(met));
     ++round_;
 }
