@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -35,9 +35,15 @@ def replacing(path: Path | str) -> Iterator[Path]:
             aside.unlink()
 
 
-def check_place(path: Path | str) -> None:
-    """Refuses a file that could not be written, and leaves nothing behind."""
+def check_place(path: Path | str, taken: Mapping[str, Path | None] | None = None) -> None:
+    """Refuses a file that could not be written, and leaves nothing behind.
+
+    taken: other files of the same run by what they are; where it is one of these it is refused, too
+    """
     path = Path(path)
+    for what, other in (taken or {}).items():
+        if other is not None and same_place(path, other):
+            raise UserError(f"{path}: is the {what} of the same run; choose another name")
     try:
         if path.is_dir():
             raise UserError(f"{path}: is a folder; give a file name")
@@ -46,6 +52,12 @@ def check_place(path: Path | str) -> None:
             pass
     except OSError as error:
         raise UserError(f"{path}: cannot be written ({error.strerror or error}); choose another place") from error
+
+
+def same_place(path: Path | str, other: Path | str) -> bool:
+    """Whether what is written to one path takes the place of the other; a link is replaced, and not followed."""
+    one, two = (Path(p).absolute() for p in (path, other))
+    return one.name == two.name and one.parent.resolve() == two.parent.resolve()
 
 
 def within(path: Path, folder: Path, what: str) -> Path:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 import subprocess
 import sys
 import tracemalloc
@@ -373,6 +374,45 @@ def test_a_place_that_cannot_be_written_is_refused_at_once(copy, monkeypatch, co
     refused(result)
     assert "1/1" not in result.stderr  # no stage has run
     assert sorted(copy.iterdir()) == before
+
+
+@pytest.mark.parametrize(
+    ("command", "what"),
+    [
+        ("groom small.recipe.toml -o head.usda", "scalp.file"),
+        ("groom small.recipe.toml -o ../{here}/head.usda", "scalp.file"),
+        ("sim small.shot.toml -o head.usda", "scalp.file"),
+        ("sim small.shot.toml -o chair.usda", "collider[1].file"),
+        ("sim small.shot.toml --groom groom.usdc -o groom.usdc", "groom"),
+        ("sim small.shot.toml --groom groom.usdc -o head.usda", "head"),
+        ("sim small.shot.toml -o cache.usdc --contacts cache.usdc", "cache"),
+        ("sim small.shot.toml -o cache.usdc --contacts ./link/cache.usdc", "cache"),
+        ("sim small.shot.toml -o cache.usdc --contacts cache.groom.usdc", "groom under the cache"),
+        ("sim small.shot.toml --groom groom.usdc --contacts groom.usdc", "groom"),
+        ("sim small.shot.toml --groom groom.usdc --contacts head.usda", "head"),
+        ("sim small.shot.toml --contacts head.usda", "scalp.file"),
+    ],
+)
+def test_nothing_is_written_over_what_the_same_run_reads_or_writes(copy, monkeypatch, command, what):
+    made(copy)
+    shot = copy / "small.shot.toml"
+    shot.write_text(shot.read_text() + '[contact]\n[[collider]]\n[[collider]]\nfile = "chair.usda"\n')
+    (copy / "chair.usda").write_bytes((copy / "head.usda").read_bytes())
+    (copy / "link").symlink_to(copy)
+    before = {path: path.read_bytes() for path in copy.iterdir() if path.is_file()}
+    monkeypatch.chdir(copy)
+    result = run(*command.format(here=copy.name).split())
+    refused(result, f": is the {what} of the same run; choose another name")
+    assert "1/1" not in result.stderr and "sim:" not in result.stderr
+    assert {path: path.read_bytes() for path in copy.iterdir() if path.is_file()} == before
+
+
+@pytest.mark.parametrize("name", ["cache.usdc", "groom.usdc", "head.usda"])
+def test_hairs_are_not_written_over_what_they_lie_over(example, tmp_path, monkeypatch, name):
+    shutil.copytree(example, tmp_path, dirs_exist_ok=True)
+    monkeypatch.chdir(tmp_path)
+    refused(run("hair", "groom.usdc", "--cache", "cache.usdc", "-o", name), f"{name}: is the file that it would refer")
+    assert (tmp_path / name).read_bytes() == (example / name).read_bytes()
 
 
 @pytest.mark.parametrize(

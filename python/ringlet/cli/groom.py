@@ -37,6 +37,8 @@ def groom(
     Example: ringlet groom curls.recipe.toml -o groom.usdc
     """
     with ringlet.Run("groom", report) as run, shown_progress() as progress:
+        for path in (recipe, *(variant or ())):
+            ringlet.check_place(output, ringlet.read_recipe(path).named_files())
         with run.stage("groom", output):
             groom = ringlet.build_groom(recipe, progress=progress)
             variants = {

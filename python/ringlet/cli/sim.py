@@ -62,9 +62,12 @@ def sim(
             raise ringlet.UserError(f"{shot}: nothing touches, --contacts has nothing to write; add [contact]")
         source = groom or settings.groom
         layer = source if source.suffix != ".toml" else output.with_name(f"{output.stem}.groom.usdc")
+        _check_places(settings.named_files() | {"groom": source}, layer, output, contacts)
         with _kept(output) as folder:  # from here on everything beside the cache is this run's
             with run.stage("groom", None if layer == source else layer):
                 locks = ringlet.load_groom(source, variant=variant, progress=progress)
+                for path in filter(None, (output, contacts)):
+                    ringlet.check_place(path, {"head": locks.scalp_file})
                 if layer != source:
                     ringlet.write_groom(locks, layer)
             with run.stage("simulate", output):
@@ -91,6 +94,20 @@ def sim(
         print(sentence)
     start = {name: found for name, found in told.start.items() if name != "marks"}  # these are for pictures
     wrote(output, run.counts, as_json, slowest=run.slowest, **({"start": start} if start else {}))
+
+
+def _check_places(read: dict[str, Path], layer: Path, output: Path, contacts: Path | None) -> None:
+    """Refuses files to be written that are one another, or what the run reads, before its first stage.
+
+    read:  what the shot names, by its setting; "groom" is the one that is simulated
+    layer: the groom under the cache, which is written where that is a recipe
+    """
+    if read["groom"].suffix == ".toml":
+        read = ringlet.read_recipe(read["groom"]).named_files() | read
+        ringlet.check_place(layer, read)
+    ringlet.check_place(output, read | {"groom under the cache": layer})
+    if contacts is not None:
+        ringlet.check_place(contacts, read | {"groom under the cache": layer, "cache": output})
 
 
 @contextmanager

@@ -104,6 +104,13 @@ class Recipe(Section):
         """Pictures of maps by their name."""
         return {name: file for name, text in self.maps.items() if (file := self._beside(text)) is not None}
 
+    def named_files(self) -> dict[str, Path]:
+        """The files that it names, by their setting."""
+        files = {"scalp.file": self.scalp_file, "guides.file": self.guides_file, "edits": self.edits_file}
+        files |= {f"maps.{name}": file for name, file in self.map_files().items()}
+        files |= {f"curves.{name}": file for name, file in self.helper_files().items()}
+        return {what: file for what, file in files.items() if file is not None}
+
     def _beside(self, name: str | None) -> Path | None:
         return (self._path.parent if self._path else Path()) / name if name else None
 

@@ -100,6 +100,13 @@ class Shot(Section):
             f"{self._path.name.removesuffix('.toml').removesuffix('.shot')}.rest.usdc"
         )
 
+    def named_files(self) -> dict[str, Path]:
+        """The files that it names, by their setting."""
+        files = {"groom": self.groom, "rest.file": self.rest.file}
+        files |= {f"collider[{k}].file": one.file for k, one in enumerate(self.collider)}
+        files |= {f"cloth[{k}].file": one.file for k, one in enumerate(self.cloth)}
+        return {what: file for what, file in files.items() if file is not None}
+
     @property
     def path(self) -> Path | None:
         """The file it was read from."""

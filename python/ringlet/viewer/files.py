@@ -14,7 +14,6 @@ from ringlet.settings import parse_toml, read_toml
 from ringlet.shot import Shot, parse_shot
 from ringlet.viewer import protocol
 from ringlet.viewer.document import Document, History, put
-from ringlet.viewer.looks import named_files
 from ringlet.viewer.project import Project
 from ringlet.viewer.protocol import Place
 from ringlet.viewer.variant import variant
@@ -55,7 +54,7 @@ class Files:
         """The recipe of a text, which may name files of the project only; ``edits`` stands for its file of edits."""
         self._confine(parse_toml(text, path.name, "recipe"), path)
         recipe = parse_recipe(text, path, edits or None)
-        for what, file in named_files(recipe).items():
+        for what, file in recipe.named_files().items():
             self.project.inside(file, f"{path.name}: {what}")
         return recipe
 
@@ -71,12 +70,8 @@ class Files:
     def parse_shot(self, text: str) -> Shot:
         """The shot of a text, which may name files of the project only."""
         shot = parse_shot(text, self.file)
-        named = {"groom": shot.groom, "rest.file": shot.rest.file}
-        named |= {f"collider[{k}].file": one.file for k, one in enumerate(shot.collider)}
-        named |= {f"cloth[{k}].file": one.file for k, one in enumerate(shot.cloth)}
-        for what, file in named.items():
-            if file is not None:
-                self.project.inside(file, f"{self.file.name}: {what}")
+        for what, file in shot.named_files().items():
+            self.project.inside(file, f"{self.file.name}: {what}")
         return shot
 
     def document(self, file: str) -> Document:

@@ -120,7 +120,7 @@ class Groomer:
 
     def _read(self, recipe: Recipe) -> dict[str, Any]:
         """What the recipe's files hold, read again only when one of them has changed."""
-        files = named_files(recipe)
+        files = recipe.named_files()
         for what, file in files.items():
             self._project.inside(file, f"{recipe.path.name if recipe.path else 'recipe'}: {what}")
         told = [(what, str(file), _stamp(file)) for what, file in sorted(files.items()) if what != "edits"]
@@ -144,14 +144,6 @@ def effective(recipe: Recipe, muted: frozenset[str]) -> Recipe:
     if "clean" in muted:
         changed["clean"] = Unclean.model_construct(margin=-1.0)
     return recipe.model_copy(update=changed)
-
-
-def named_files(recipe: Recipe) -> dict[str, Path]:
-    """The files that a recipe names, by their setting."""
-    files = {"scalp.file": recipe.scalp_file, "guides.file": recipe.guides_file, "edits": recipe.edits_file}
-    files |= {f"maps.{name}": file for name, file in recipe.map_files().items()}
-    files |= {f"curves.{name}": file for name, file in recipe.helper_files().items()}
-    return {what: file for what, file in files.items() if file is not None}
 
 
 def hairs_message(side: str, hairs: Hairs, scalp: Mesh) -> bytes:

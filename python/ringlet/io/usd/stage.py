@@ -20,7 +20,7 @@ from typing import Any
 from pxr import Sdf, Tf, Usd, UsdGeom, UsdUtils
 
 from ringlet.errors import UserError
-from ringlet.files import replacing
+from ringlet.files import replacing, same_place
 from ringlet.stage import StageSpace
 
 NOT_TEXT = "it holds text that is not UTF-8"
@@ -138,7 +138,7 @@ def relative(target: Path | str, file: Path | str) -> str:
 
 def refuse_itself(path: Path | str, target: Path | str, what: str) -> None:
     """Refuses to write a file over the one it refers to."""
-    if Path(path).absolute() == Path(target).absolute():
+    if same_place(path, target):
         raise UserError(f"{path}: is the {what} that it would refer to; choose another name")
 
 

@@ -11,7 +11,7 @@ from pxr import Sdf, Usd, UsdGeom
 
 from ringlet.io.usd.curves import set_points
 from ringlet.io.usd.groom import choose_variant, groom_prim
-from ringlet.io.usd.stage import check_target, new_stage, reading, writing
+from ringlet.io.usd.stage import check_target, new_stage, reading, refuse_itself, writing
 from ringlet.stage import StageSpace
 
 FLUSH = 64e6  # bytes of points held in memory before they go to the file
@@ -32,6 +32,8 @@ class StreamWriter:
             groom_prim(source)
             if source.space != self.space:
                 raise ValueError(f"{self.under}: has {source.space}; must be {self.space}")
+            for layer in source.stage.GetUsedLayers():  # the groom under a cache, the head, cloths
+                refuse_itself(self.path, layer.realPath, "file")
         with ExitStack() as opened:
             self._stage = new_stage(opened.enter_context(writing(self.path)), self.space, over=self.under)
             if self.variant is not None:
