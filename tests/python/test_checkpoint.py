@@ -165,6 +165,15 @@ def test_a_run_whose_groom_is_refused_leaves_no_folder_and_one_that_was_left_sta
     assert sim(folder, "--resume").exit_code == 0 and not part.exists()
 
 
+def test_what_a_run_begins_anew_without_resume_is_told(folder, monkeypatch):
+    for after, more, told in [(5, (), ""), (25, (), ""), (15, (), "keeps 20 frames"), (15, ("--resume",), "")]:
+        result = broken_off(folder, monkeypatch, after, *more)
+        begin = result.stderr.partition("groom:")[0]  # before the first stage
+        assert told in begin and ("--resume goes on from there; without it" in begin) == bool(told)
+    assert "keeps 10 frames" in sim(folder).stderr and not (folder / "cache.usdc.part").exists()
+    assert "thrown away" not in sim(folder).stderr
+
+
 def test_a_program_that_holds_a_folder_keeps_it_after_a_simulation_in_it(folder):
     part = folder / "cache.usdc.part"
     with ringlet.hold_checkpoints(part):

@@ -117,11 +117,12 @@ def write_simulation(
     return told
 
 
-def hold_checkpoints(folder: Path | str) -> AbstractContextManager[None]:
+def hold_checkpoints(folder: Path | str) -> AbstractContextManager[int]:
     """Keeps other programs out of a folder of checkpoints while the block runs, also before there are any.
 
     For who writes other files that go with a run, such as its groom, before ``write_simulation``. A folder in which
-    nothing was kept is gone after the block. Raises UserError where another run is at it.
+    nothing was kept is gone after the block. Gives the number of steps (frames, and those of the preroll) that a run
+    which was broken off left to ``resume`` after, 0 for none. Raises UserError where another run is at it.
 
     Example::
 

@@ -63,7 +63,7 @@ def sim(
         source = groom or settings.groom
         layer = source if source.suffix != ".toml" else output.with_name(f"{output.stem}.groom.usdc")
         _check_places(settings.named_files() | {"groom": source}, layer, output, contacts)
-        with _kept(output) as folder:  # from here on everything beside the cache is this run's
+        with _kept(output, resume) as folder:  # from here on everything beside the cache is this run's
             with run.stage("groom", None if layer == source else layer):
                 locks = ringlet.load_groom(source, variant=variant, progress=progress)
                 for path in filter(None, (output, contacts)):
@@ -111,10 +111,16 @@ def _check_places(read: dict[str, Path], layer: Path, output: Path, contacts: Pa
 
 
 @contextmanager
-def _kept(output: Path) -> Iterator[Path]:
-    """The folder that keeps what is done, until all is; says so where a run is broken off."""
+def _kept(output: Path, resume: bool) -> Iterator[Path]:
+    """The folder that keeps what is done, until all is; says so where a run is broken off, or was and is forgotten."""
     folder = output.with_name(f"{output.name}.part")
-    with ringlet.hold_checkpoints(folder):
+    with ringlet.hold_checkpoints(folder) as left:
+        if left and not resume:
+            print(
+                f"{folder} keeps {left} frames, preroll included, of a run that was broken off, and --resume goes on "
+                "from there; without it they are thrown away, and all begins anew",
+                file=sys.stderr,
+            )
         try:
             yield folder
         except BaseException:

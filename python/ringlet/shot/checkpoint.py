@@ -112,7 +112,7 @@ class Checkpoints:
 
 
 @contextmanager
-def holding(folder: Path) -> Iterator[None]:
+def holding(folder: Path) -> Iterator[int]:
     """Keeps other programs out of a folder of checkpoints while the block runs; see ``ringlet.hold_checkpoints``."""
     at = folder.resolve()
     if at in _held_here:
@@ -120,7 +120,7 @@ def holding(folder: Path) -> Iterator[None]:
     # To close a file gives up the locks of its whole program, so checkpoints in this folder use this one.
     _held_here[at] = _held(folder)
     try:
-        yield
+        yield max((int(path.suffix[1:]) for path in at.glob("memory.*")), default=0)
     finally:
         if [path.name for path in at.glob("*")] == [HELD]:
             (at / HELD).unlink()
