@@ -178,6 +178,21 @@ def test_places_are_compared_with_those_of_the_first(tmp_path):
     assert distances(read_results(tmp_path)) == {tmp_path / "0": 0.0, tmp_path / "1": pytest.approx(3.0)}
 
 
+@pytest.mark.parametrize("here", [True, False])
+def test_a_task_that_another_run_is_at_is_refused_and_its_folder_stays_as_it_is(shot, tmp_path, here):
+    own = tmp_path / "out/strands.bend_scale=1"
+    own.mkdir(parents=True)
+    with ringlet.hold_checkpoints(own / "cache.usdc.part"):
+        command = [Path(sys.executable).with_name("ringlet"), "wedge", shot, "-o", tmp_path / "out", "--no-picture"]
+        for values, done in (("1", []), ("1,2", ["done"])):
+            options = ["--set", f"strands.bend={values}", *(["--here"] if here else ["--workers", "1"])]
+            other = subprocess.run([*command, *options], capture_output=True, text=True)
+            assert other.returncode == 1 and "is of a run that goes on" in " ".join(other.stdout.split())
+            assert [path.name for path in own.rglob("*")] == ["cache.usdc.part", "held"]
+            assert [result.state for result in read_results(tmp_path / "out").values()] == done
+    assert run("wedge", shot, "--set", "strands.bend=1,2", "--here", "-o", tmp_path / "out").exit_code == 0
+
+
 def kill_worker(part: Path, log: Path, killed: list[int]) -> None:
     """Kills the process that runs a task as soon as it has remembered a few frames."""
     end = time.monotonic() + 120

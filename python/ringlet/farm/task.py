@@ -17,6 +17,7 @@ import socket
 import time
 import traceback
 from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
@@ -32,7 +33,8 @@ from ringlet.groom.groom import Groom
 from ringlet.shot import Shot
 
 FORMAT = 1
-RESULT = "result.json"
+RESULT, CACHE = "result.json", "cache.usdc"
+PART = f"{CACHE}.part"
 HAIRS = 6000  # of a picture
 SERIES = ("wall_ms", "max_stretch")  # of all frames that are kept for the comparison
 
@@ -82,10 +84,21 @@ def run_task(task: Task, wanted: Wanted, tell: Tell | None = None) -> Result:
     """Does a task, as far as it is not done yet. ``tell`` is called with the frames that are done and their number.
 
     What a user can cause makes a result that says so; anything else is raised, so that the task can be tried again.
+    A task that another run is at is refused, and its folder left as it is.
     """
     if wanted.threads:
         api.use_threads(wanted.threads)
     task.folder.mkdir(parents=True, exist_ok=True)
+    with ExitStack() as held:
+        try:
+            held.enter_context(api.hold_checkpoints(task.folder / PART))
+        except UserError as error:
+            return Result(task.settings, "refused", str(error), order=task.order)
+        return _run(task, wanted, tell)
+
+
+def _run(task: Task, wanted: Wanted, tell: Tell | None) -> Result:
+    """``run_task`` in a folder that no other program is at."""
     log = Log(task.folder / "log.txt")
     log(f"begins: {task.name}")
     begin = time.perf_counter()
@@ -130,7 +143,7 @@ def read_result(folder: Path) -> Result | None:
 
 
 def _done(task: Task, wanted: Wanted, log: Log, tell: Tell) -> Result:
-    shot_file, cache, part = (task.folder / name for name in ("shot.toml", "cache.usdc", "cache.usdc.part"))
+    shot_file, cache, part = (task.folder / name for name in ("shot.toml", CACHE, PART))
     with replacing(shot_file) as aside:
         aside.write_text(task.shot, encoding="utf-8")
     shot = api.read_shot(shot_file)

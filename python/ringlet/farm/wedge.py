@@ -60,7 +60,8 @@ def wedge(
         results = run_on_workers(
             tasks, wanted, scheduler=scheduler, workers=workers, retries=retries, told=progress or _say_nothing
         )
-    write_page(folder, f"Wedge of {Path(shot).name}")
+    if read_results(folder):  # there are none where another run is at all of them
+        write_page(folder, f"Wedge of {Path(shot).name}")
     return [_told(task.folder, result) for task, result in zip(tasks, results, strict=True)]
 
 
