@@ -184,6 +184,18 @@ def test_a_shot_of_a_recipe_leaves_its_groom_beside_the_cache(example, tmp_path)
     )
 
 
+def test_caches_whose_names_differ_in_the_suffix_alone_have_a_groom_each(copy):
+    shot, recipe = copy / "small.shot.toml", copy / "small.recipe.toml"
+    for suffix, points in (("usda", 40), ("usdc", 36), ("usd", 32)):
+        edit(recipe, "points = 40", f"points = {points}")
+        assert run("sim", shot, "-o", copy / f"cache.{suffix}", "--frames", "1:2").exit_code == 0
+        edit(recipe, f"points = {points}", "points = 40")
+    for suffix, points in (("usda", 40), ("usdc", 36), ("usd", 32)):
+        made = ["hair", copy / f"cache.groom.{suffix}", "--cache", copy / f"cache.{suffix}", "-o", copy / "h.usdc"]
+        assert run(*made).exit_code == 0
+        assert ringlet.read_cache(copy / f"cache.{suffix}").points.shape == (2, 8 * points, 3)
+
+
 def test_without_json_a_person_reads_one_line(example, tmp_path):
     result = run("groom", example / "small.recipe.toml", "-o", tmp_path / "groom.usdc")
     assert len(result.stdout.splitlines()) == 1

@@ -51,8 +51,8 @@ def sim(
     """Simulates the groom of a SHOT while the scalp moves.
 
     The cache is a layer over the groom. Where the shot names a recipe, the groom is made first and written beside
-    the cache. What is done is kept in CACHE.part while it runs; after a run that was killed, or met a full disk,
-    --resume goes on from there.
+    the cache: cache.groom.usdc under cache.usdc. What is done is kept in CACHE.part while it runs; after a run that
+    was killed, or met a full disk, --resume goes on from there.
 
     Examples: ringlet sim nod.shot.toml -o cache.usdc --frames 1:24 · ringlet sim nod.shot.toml --groom groom.usdc
     """
@@ -61,7 +61,7 @@ def sim(
         if contacts is not None and not settings.touching:
             raise ringlet.UserError(f"{shot}: nothing touches, --contacts has nothing to write; add [contact]")
         source = groom or settings.groom
-        layer = source if source.suffix != ".toml" else output.with_name(f"{output.stem}.groom.usdc")
+        layer = source if source.suffix != ".toml" else output.with_suffix(f".groom{output.suffix}")
         _check_places(settings.named_files() | {"groom": source}, layer, output, contacts)
         with _kept(output, resume) as folder:  # from here on everything beside the cache is this run's
             with run.stage("groom", None if layer == source else layer):
