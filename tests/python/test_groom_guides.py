@@ -233,6 +233,35 @@ def test_an_obj_scalp_is_taken_in_the_unit_that_the_recipe_says(tmp_path):
     np.testing.assert_allclose(again.locks.points, made.locks.points, atol=1e-6)
 
 
+def test_on_an_obj_without_groups_hair_grows_where_a_picture_is_white(tmp_path):
+    mesh = ball()
+    low, size = mesh.points.min(axis=0), np.ptp(mesh.points, axis=0)
+    points = "".join(f"v {x} {y} {z}\n" for x, y, z in 100 * mesh.points)
+    texture = "".join(f"vt {u} {v}\n" for u, v, _ in (mesh.points - low) / size)  # from the front
+    faces = "".join(f"f {a}/{a} {b}/{b} {c}/{c}\n" for a, b, c in mesh.triangles + 1)
+    (tmp_path / "head.obj").write_text(points + texture + faces)
+    white = np.zeros((100, 100), np.uint8)
+    white[:25] = 255  # the uppermost quarter
+    Image.fromarray(white).save(tmp_path / "hair.png")
+    recipe = tmp_path / "a.toml"
+    recipe.write_text(
+        "ringlet = 1\n[scalp]\nfile = 'head.obj'\nunit = 'cm'\n[maps]\nhair = 'hair.png'\n"
+        "[guides]\ncount = 20\ndensity = 'hair'\n[locks]\ncount = 60\ndensity = 'hair'\n"
+    )
+    made = ringlet.build_groom(recipe)
+    assert len(made.guides) == 20 and len(made.locks) == 60
+    heights = np.concatenate([made.guides.roots, made.locks.roots])[:, 1]
+    edge = low[1] + 0.75 * size[1]
+    assert heights.min() > edge - 0.01 * size[1] and heights.min() < edge + 0.1 * size[1]
+    recipe.write_text(recipe.read_text().replace("unit = 'cm'", "unit = 'cm'\nregion = 'scalp'"))
+    with pytest.raises(UserError, match=r"head.obj has no region 'scalp'.*leave it out, and paint guides.density"):
+        ringlet.build_groom(recipe)
+    recipe.write_text(recipe.read_text().replace("region = 'scalp'", ""))
+    (tmp_path / "head.obj").write_text(points + "".join(f"f {a} {b} {c}\n" for a, b, c in mesh.triangles + 1))
+    with pytest.raises(UserError, match=r"guides.density is 'hair', .* head.obj has no texture coordinates"):
+        ringlet.build_groom(recipe)
+
+
 def test_painted_directions_of_a_usd_mesh_turn_with_it(tmp_path):
     from pxr import Usd
 

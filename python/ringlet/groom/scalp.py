@@ -31,7 +31,8 @@ class Scalp:
         try:
             self.region = np.ascontiguousarray(np.sort(mesh.region(region)), np.int32)
         except KeyError as error:
-            raise UserError(f"scalp.region: {error.args[0]}") from None
+            remedy = "" if mesh.regions else "; leave it out, and paint guides.density and locks.density"
+            raise UserError(f"scalp.region: {error.args[0]}{remedy}") from None
         self.where = f"{mesh.name} region '{region}'" if region else mesh.name
         _check_region(self)
 
