@@ -9,6 +9,9 @@ from typing import Any
 import numpy as np
 from pages import Page, page, read, serving
 
+import ringlet
+from ringlet import io
+
 
 def test_an_edit_changes_the_groom_and_the_document_and_saving_writes_it(folder: Path):
     with serving(folder) as client, page(client) as one:
@@ -72,6 +75,36 @@ def test_why_there_is_no_groom_is_told_to_every_page_until_there_is_one(folder: 
                 pass
         with page(client, "one") as one:
             assert one.hear("numbers")["locks"] == 8  # and no trouble before it
+
+
+def test_of_the_files_in_usd_a_page_is_offered_caches_to_compare_with(folder: Path, tmp_path, monkeypatch):
+    def offered() -> list[str]:
+        with page(client) as one:
+            return [name for name in one.hear("welcome")["files"] if ".usd" in name]
+
+    groom, other = folder / "groom.usdc", tmp_path / "elsewhere"
+    other.mkdir()
+    ringlet.write_groom(ringlet.build_groom(folder / "small.recipe.toml"), groom)
+    cache = ringlet.simulate(folder / "small.shot.toml")
+    for path in (folder / "cache.usdc", folder / "text.usda", other / "cache.usdc"):
+        ringlet.write_cache(cache, groom, path)
+    ringlet.write_hairs(groom, folder / "hair.usdc")
+    (folder / "damaged.usdc").write_bytes((folder / "cache.usdc").read_bytes()[:300])
+    (folder / "odd.usda").write_text("#usda 1.0\n(\n    customLayerData = {\n        int ringlet = 3\n    }\n)\n")
+    (folder / "empty.usd").touch()
+    (folder / "link.usdc").symlink_to(other / "cache.usdc")
+    looked: list[str] = []
+    is_cache = io.is_cache
+    monkeypatch.setattr(io, "is_cache", lambda path: looked.append(path.name) or is_cache(path))
+    with serving(folder) as client:
+        assert offered() == ["cache.usdc", "text.usda"] and "cache.usdc" in looked
+        looked.clear()
+        (folder / "new.usdc").write_bytes((folder / "cache.usdc").read_bytes())
+        (folder / "cache.usdc").write_bytes(groom.read_bytes())
+        assert offered() == ["new.usdc", "text.usda"] and sorted(looked) == ["cache.usdc", "new.usdc"]
+        monkeypatch.setattr("ringlet.viewer.caches.PATIENCE", 0.0)
+        (folder / "late.usdc").write_bytes(groom.read_bytes())
+        assert offered() == ["late.usdc", "new.usdc", "text.usda"]  # no page waits for it
 
 
 def test_a_page_that_comes_back_is_told_how_much_of_what_it_said_was_heard(folder: Path):

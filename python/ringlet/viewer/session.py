@@ -19,6 +19,7 @@ from ringlet.groom import Recipe
 from ringlet.picture import HAIR_COLORS
 from ringlet.viewer import overlays, protocol
 from ringlet.viewer.board import Board, Mailbox
+from ringlet.viewer.caches import Caches
 from ringlet.viewer.files import Files, operator_names
 from ringlet.viewer.hands import Hand
 from ringlet.viewer.looks import Groomer, Look
@@ -64,7 +65,7 @@ class Session:
         self._heard = Counter[str]()
         self._loop: asyncio.AbstractEventLoop | None = None
         self._groomer, self._beside = Groomer(project), Groomer(project)
-        self._showing = Showing(self.board)
+        self._showing, self._caches = Showing(self.board), Caches(project)
         self._playing = Playing(self.files, self.board, self._showing, self._call, self.trouble)
         self._hand, self._sculptor = Hand(self.files), Sculptor(self.files)
         if "recipe" not in self.files.documents:  # what cannot be read is told before there is a server
@@ -122,7 +123,7 @@ class Session:
                         name: (color.eumelanin, color.pheomelanin, color.roughness)
                         for name, color in HAIR_COLORS.items()
                     },
-                    "files": self.project.files("*.recipe.toml", "*.usdc", "*.usda", "*.usd"),
+                    "files": [*self.project.files("*.recipe.toml"), *self._caches.names()],
                 }
             )
         )

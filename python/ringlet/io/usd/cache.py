@@ -109,6 +109,17 @@ class CacheFile:
         return [read_cloth(self._source, cloth, self.frames.tolist()) for cloth in self._cloths]
 
 
+def is_cache(path: Path | str) -> bool:
+    """Whether a file is a layer that moves locks, by what it says of itself: its points are not read."""
+    try:
+        with reading_more(path):
+            layer = Sdf.Layer.OpenAsAnonymous(str(path), True)  # only its metadata
+            told = layer.customLayerData.get("ringlet") if layer else None
+            return isinstance(told, dict) and "statistics" in told
+    except UserError:
+        return False
+
+
 def cache_groom_path(path: Path | str) -> Path:
     """The groom file that a cache lies over."""
     with reading(path) as source:
