@@ -14,7 +14,7 @@ from ringlet.picture import HAIR_COLORS, VIEWS, PosedBody, sheet, still
 from ringlet.picture.bodies import material
 from ringlet.picture.camera import frame
 from ringlet.picture.denoise import denoise
-from ringlet.picture.render import build_scene, hair_share, mitsuba, trace, without_specks
+from ringlet.picture.render import build_scene, hair_share, mitsuba, trace, without_noise, without_specks
 from ringlet.picture.strands import fibres, load_fibres, spline_controls
 from ringlet.picture.tone import develop
 from scipy.interpolate import BSpline
@@ -188,10 +188,21 @@ def test_noise_goes_and_edges_stay() -> None:
     clean = np.full((60, 60, 4), 0.2)
     clean[:, 30:] = 0.8
     noise = np.random.default_rng(4).normal(0.0, 0.05, clean.shape)
-    calm = denoise(clean + noise, np.full(clean.shape, 0.05**2))
+    other = np.random.default_rng(5).normal(0.0, 0.05, clean.shape)
+    calm = denoise(clean + noise, clean + other, np.full(clean.shape, 0.05**2))
     assert np.abs(calm - clean).mean() < 0.3 * np.abs(noise).mean()
     assert (calm[:, 30] - calm[:, 29]).min() > 0.5
-    assert np.allclose(denoise(clean, np.zeros(clean.shape)), clean, atol=1e-3)
+    assert np.allclose(denoise(clean, clean, np.zeros(clean.shape)), clean, atol=1e-3)
+
+
+@pytest.mark.parametrize("passes", [3, 4, 5, 10])
+def test_less_is_left_of_noise_that_is_not_judged_by_itself(passes: int) -> None:
+    light = np.random.default_rng(passes).uniform(0.0, 1.0, (passes, 80, 80, 1)).repeat(4, axis=3)
+    mean, variance = light.mean(axis=0), light.var(axis=0, ddof=1)
+    sums, squares = ([values[k::2].sum(axis=0) for k in (0, 1)] for values in (light, light**2))
+    calm = without_noise(np.ones(mean.shape), sums, squares, passes)
+    assert calm.std() < 0.8 * denoise(mean, mean, variance / passes).std()
+    assert calm.mean() == pytest.approx(mean.mean(), rel=5e-3)
 
 
 def test_hair_is_told_from_skin() -> None:

@@ -151,17 +151,17 @@ def trace(
     per_pass = min(max(samples // FEWEST_PASSES, 1), MOST_PER_PASS)
     passes = -(-samples // per_pass)
     began = time.monotonic()
-    total: Any = 0.0
+    sums: list[Any] = [0.0, 0.0]  # of passes 0, 2, 4 … and of 1, 3, 5 …
+    squares: list[Any] = [0.0, 0.0]
     brightest: Any = 0.0
-    squares: Any = 0.0
     done = 0
     if progress:
         progress("picture", 0, passes)
     while done < passes:
         image = np.nan_to_num(np.array(mi.render(scene, spp=per_pass, seed=done), np.float64))
-        total += image
+        sums[done % 2] += image
         brightest = np.maximum(brightest, image)
-        squares += image**2
+        squares[done % 2] += image**2
         done += 1
         if progress:
             progress("picture", done, passes)
@@ -170,12 +170,34 @@ def trace(
             break
     if progress and done < passes:
         progress("picture", passes, passes)
+    total = sums[0] + sums[1]
     if done < 3:
         return (total / done).astype(np.float32)
     light = without_specks(total, brightest, (total - brightest) / (done - 1)) / done
-    smooth = denoise(light, np.maximum(squares / done - (total / done) ** 2, 0.0) / (done - 1))
+    left = np.divide(done * light, total, out=np.ones_like(total), where=total > 0.0)
+    smooth = without_noise(left, sums, squares, done)
     kept: NDArray = GRAIN * hair_share(scene) * (light - smooth)
     return np.asarray(smooth + kept, np.float32)
+
+
+def without_noise(
+    left: NDArray[np.float64], sums: Sequence[NDArray], squares: Sequence[NDArray], passes: int
+) -> NDArray[np.float64]:
+    """The mean of all passes without much of its noise; each half of the passes is cleaned as the other one looks.
+
+    left:    what is left of the light without specks, as a factor
+    sums:    of passes 0, 2, 4 … and of 1, 3, 5 …; ``squares``: those of their squares; at least three passes
+
+    All of shape (height, width, 4).
+    """
+    counts = (passes + 1) // 2, passes // 2
+    means = [total / count for total, count in zip(sums, counts, strict=True)]
+    noise = [  # the variance of a pass; one alone says nothing of it
+        np.maximum(squares[k] / counts[k] - means[k] ** 2, 0.0) * counts[k] / (counts[k] - 1)
+        for k in (0, 1 if counts[1] > 1 else 0)
+    ]
+    calm = [denoise(left * means[k], means[1 - k], noise[1 - k] / counts[1 - k]) for k in (0, 1)]
+    return (counts[0] * calm[0] + counts[1] * calm[1]) / passes
 
 
 def hair_share(scene: Any) -> NDArray[np.float32]:
