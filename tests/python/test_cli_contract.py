@@ -45,6 +45,7 @@ class Answer:
         (["mixed", "--strands", "3", "--side", "6", "--steps", "3"], {"strands": 3, "side": 6}),
         (["direct", "--strands", "4", "--vertices", "12", "--method", "builtin"], {"strands": 4, "method": "builtin"}),
         (["growth", "--least", "2", "--most", "4", "--steps", "4"], {"least": 2, "most": 4}),
+        (["iterations", "--frames", "1", "--converged", "2", "--contacts", "off"], {"frames": 1, "contacts": "off"}),
         (["memory", "--strands", "20"], {"strands": 20}),
         (["strands", "--strands", "4", "--steps", "3"], {"strands": 4, "steps": 3}),
         (["head", "--locks", "30", "--points", "30", "--frames", "2", "--preroll", "0"], {"locks": 30, "points": 30}),

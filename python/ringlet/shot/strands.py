@@ -76,7 +76,8 @@ class Solver(Section):
         default=5,
         ge=1,
         le=MOST_ITERATIONS,
-        description="Newton iterations per step; 1 is stable, 5 is the quality for film",
+        description="Newton iterations per step; 1 is stable, but with few hair comes late: "
+        "5 for a look, 20 for the last run",
     )
     until_converged: bool = Field(
         default=False,

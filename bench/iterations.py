@@ -1,0 +1,78 @@
+"""How far a motion is from the converged one, by the Newton iterations of a step: curls on the moving head."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ringlet import Clock, UserError, build_groom, read_shot, simulate
+
+EXAMPLE = Path(__file__).parents[1] / "examples" / "child"
+ITERATIONS = (5, 10, 20, 60)
+
+SHOT = """
+ringlet = 1
+groom = "{groom}"
+frames = [1, {frames}]
+preroll = 6
+[strands]
+damping = 0.004
+bend_scale = 6
+[solver]
+newton = {newton}
+substeps = {substeps}
+[contact]
+on = {contact}
+radius = 4e-4
+friction = 0.3
+"""
+
+
+def run(frames: int = 12, converged: int = 200, contacts: str = "on", substeps: int = 1) -> dict[str, Any]:
+    """Simulates the shot of the tutorial with few and with many iterations.
+
+    frames:    of the clip, which begins with a nod
+    converged: iterations of the motion that the others are compared with; strands that touch nothing need no more
+    contacts:  ``on`` or ``off``
+    substeps:  steps of a frame, of all of them
+    """
+    if contacts not in ("on", "off"):
+        raise UserError(f"bench iterations: contacts is '{contacts}'; must be on or off")
+    clock = Clock()
+    groom = build_groom(EXAMPLE / "light.recipe.toml")
+    tips = groom.locks.offsets[1:] - 1
+
+    def moved(newton: int) -> tuple[NDArray[np.floating], dict[str, float]]:
+        settings = {"newton": newton, "substeps": substeps, "contact": str(contacts == "on").lower()}
+        with tempfile.TemporaryDirectory() as folder:
+            shot = Path(folder) / "iterations.shot.toml"
+            recipe = (EXAMPLE / "light.recipe.toml").as_posix()
+            shot.write_text(SHOT.format(groom=recipe, frames=frames, **settings))
+            with clock(f"newton {newton}"):
+                cache = simulate(read_shot(shot), groom)
+        spent = float(np.mean([frame["newton"] for frame in cache.statistics]))
+        return cache.points.astype(np.float64), {"iterations": spent}
+
+    right, told = moved(converged)
+    off = {f"newton {converged}": told}
+    for newton in ITERATIONS:
+        points, told = moved(newton)
+        away = 1e3 * np.linalg.norm(points - right, axis=2)
+        together = 1e3 * np.linalg.norm((points - right)[:, tips].mean(axis=1), axis=1)
+        off[f"newton {newton}"] = told | {
+            "mean_mm": float(away.mean()),
+            "percentile_95_mm": float(np.percentile(away, 95)),
+            "most_mm": float(away.max()),
+            "tips_together_mm": float(together.max()),  # what does not cancel out: the whole of the hair comes late
+        }
+    return clock.result(
+        "iterations",
+        {"frames": frames, "converged": converged, "contacts": contacts, "substeps": substeps},
+        per=f"newton {ITERATIONS[0]}",
+        warm_up=0,
+        off=off,
+    )
