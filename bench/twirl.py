@@ -17,12 +17,19 @@ RADIUS = 0.1525  # of the sphere [m]
 DISTANCE = math.sqrt(2) * 1e-3  # at which contact begins [m]
 
 
-def run(strands: int = 256, contacts: Literal["on", "off"] = "off", newton: int = 3, steps: int = 90) -> dict[str, Any]:
+def run(
+    strands: int = 256,
+    contacts: Literal["on", "off"] = "off",
+    friction: float = 0.3,
+    newton: int = 3,
+    steps: int = 90,
+) -> dict[str, Any]:
     """Twirls ``strands`` wisps of 101 vertices, 5 a turn, at 30 steps per second.
 
     40 frames of rest, then 50 about each of ±z, ±y, ±x.
 
     contacts: ``off``: wisps pass through one another and through the sphere; ``on``: they touch both
+    friction: of what touches; the published scene has none
     newton:   iterations of every step
     steps:    how many of the scene's 340 frames are run
     """
@@ -33,7 +40,8 @@ def run(strands: int = 256, contacts: Literal["on", "off"] = "off", newton: int 
     moving = Strands(curves, Material(damping=0.0, drag=0.0), HELD)
     solver = Solver(newton=newton, tolerance=1e-12)  # never reached: all iterations are spent
     ball, triangles = sphere()
-    scene = Scene(moving, [Body(ball, triangles, DISTANCE / 2)], Contact(radius=DISTANCE / 2), np.zeros(strands, int))
+    contact = Contact(radius=DISTANCE / 2, friction=friction)
+    scene = Scene(moving, [Body(ball, triangles, DISTANCE / 2, friction)], contact, np.zeros(strands, int))
     clock = Clock()
     reports, touched = [], []
     turned = np.eye(3)
@@ -43,14 +51,14 @@ def run(strands: int = 256, contacts: Literal["on", "off"] = "off", newton: int 
         targets, ends = (np.einsum("ij,kj->ik", points, turned) for points in (curves.points, ball))
         with clock("step"):
             if contacts == "on":
-                contact, report = scene.step(targets, 1 / FPS, bodies=[ends], gravity=GRAVITY, solver=solver)
-                touched.append(contact)
+                touch, report = scene.step(targets, 1 / FPS, bodies=[ends], gravity=GRAVITY, solver=solver)
+                touched.append(touch)
             else:
                 report = moving.step(targets, 1 / FPS, gravity=GRAVITY, solver=solver)
             reports.append(report)
     return clock.result(
         "twirl",
-        {"strands": strands, "contacts": contacts, "newton": newton, "steps": steps},
+        {"strands": strands, "contacts": contacts, "friction": friction, "newton": newton, "steps": steps},
         per="step",
         warm_up=2,
         strands=strands,

@@ -20,6 +20,8 @@ struct FilterScene {
         rigid; // per vertex: vertices of one number ≥ 0 are moved by one and the same affine map, so that none of them meet
     bool still = false; // nothing kinematic moves: staying is safe
     bool whole = false; // strands then only go a part of their way as a whole, and none is held back near a pair alone
+    // Per vertex, what goes less far than on the move that was filtered last, of which this is the rest; empty: all is new.
+    View<unsigned char> shortened = {};
     // Where each cloth begins among the vertices, and the end; object numbers of cloths follow those of strands.
     View<int> cloths = {};
     const Neighbours *neighbours = nullptr; // of the vertices of cloths

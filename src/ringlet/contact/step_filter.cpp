@@ -20,7 +20,10 @@ FilterReport filter_step(const FilterScene &scene, NearPairs &near, View<Vec3> s
     std::vector<int> rigid(scene.rigid.begin(), scene.rigid.end()); // still: what is pushed out of a way no longer is
     FilterScene now = scene;
     now.rigid = rigid;
-    near.set_out(start, end);
+    if (scene.shortened.empty())
+        near.set_out(start, end);
+    else
+        near.set_out_anew(start, end, scene.shortened);
     for (;; ++report.rounds) {
         const std::vector<Met> met = find_met(now, near, start, end);
         if (report.rounds == 0) {

@@ -26,8 +26,9 @@ private:
 };
 
 struct MoveKind {
-    bool still; // what is kinematic stays
-    bool whole; // strands only go a part of their way as a whole
+    bool still;                         // what is kinematic stays
+    bool whole;                         // strands only go a part of their way as a whole
+    View<unsigned char> shortened = {}; // per vertex, what goes less far than on the last move; empty: all is new
 };
 
 } // namespace
@@ -144,7 +145,7 @@ SceneCarriers Scene::Parts::carriers(std::vector<int> &of_cloths, double dt) con
 double Scene::Parts::filter(View<Vec3> now, std::vector<Vec3> &to, const MoveKind &kind, SceneReport &report) {
     const Stopwatch watch(report.time_filter);
     constexpr double far = 0.1; // [m]: a corridor as long as that holds too many
-    if (kind.still) near.note(now, to, 0.5 * settings.strand_radius, far);
+    if (kind.still && kind.shortened.empty()) near.note(now, to, 0.5 * settings.strand_radius, far);
     const SceneCarry with = carry();
     const FilterScene scene{vertices.mesh,
                             vertices.mass,
@@ -153,6 +154,7 @@ double Scene::Parts::filter(View<Vec3> now, std::vector<Vec3> &to, const MoveKin
                             kind.still ? View<int>() : View<int>(rigid),
                             kind.still,
                             kind.whole,
+                            kind.shortened,
                             View<int>(vertices.cloths),
                             &neighbours};
     const bool as_one = !kind.still && !rigid.empty() && rigid[0] >= 0 &&
@@ -209,6 +211,7 @@ int Scene::Parts::newton(const SceneStep &scene_step, const StrandStep &step, st
     constexpr double farther = 4.0; // than the search went last is not tried, but where a way is short
     std::vector<double> gone(vertices.parts(), 1.0), tried(vertices.parts(), 1.0);
     reach.assign(vertices.parts(), 0.0);
+    std::vector<double> ahead; // what contacts push with at the end of a direction [N]
     int iteration = 0;
     for (bool arrived = false; !arrived; ++iteration) {
         if (iteration >= step.newton && (iteration >= step.newton + most_more || !progress.narrow(system, now))) break;
@@ -226,7 +229,7 @@ int Scene::Parts::newton(const SceneStep &scene_step, const StrandStep &step, st
             report.linear_iterations += solved.iterations;
             report.linear_residual = solved.residual;
             measure(system, direction, reach);
-            system.expect(direction);
+            ahead = system.pushes_ahead(direction);
         }
         const bool small = std::all_of(reach.begin(), reach.end(), [&](double far) { return far <= step.tolerance; });
         // A cloth that is held back here and there is strained there, so that its energy rises for once: for it and what
@@ -270,13 +273,15 @@ int Scene::Parts::newton(const SceneStep &scene_step, const StrandStep &step, st
         }
         if (!found.moved) break;
         progress.cut(found.step);
+        system.expect(ahead, progress.gone());
         for (size_t p = 0; p < tried.size(); ++p)
             if (system.is_active(int(p))) gone[p] = tried[p] * found.step[p];
         progress.judge(step.tolerance);
         if (found.cuts > 0) { // not all go equally far then
-            to = now;
-            system.gather(x, to);
-            filter(now, to, {true, true}, report);
+            std::vector<unsigned char> shortened(vertices.count(), 0);
+            for (int v = 0; v < vertices.moving_vertices(); ++v)
+                if (found.step[vertices.part_of(v)] < 1.0) shortened[v] = 1, to[v] = system.position(x, v);
+            filter(now, to, {true, true, shortened}, report);
         }
         arrive(now, to);
         system.scatter(now, x);

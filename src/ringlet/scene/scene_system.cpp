@@ -169,15 +169,27 @@ void SceneSystem::share_contacts(const NearPairs *near, const std::vector<unsign
             rubbed_[c] = friction_energy(all[c], separation(all[c], places_));
 }
 
-void SceneSystem::expect(const AlignedVector &direction) {
+std::vector<double> SceneSystem::pushes_ahead(const AlignedVector &direction) const {
     const std::vector<Contact> &all = contacts.contacts();
-    for (int k = 0; k < int(all.size()); ++k) {
+    std::vector<double> ahead(all.size());
+    for (size_t k = 0; k < all.size(); ++k) {
         const Contact &c = all[k];
         Vec3 change = Vec3::Zero();
         for (int i = 0; i < 4; ++i)
             if (vertices.mesh.moves[c.vertex[i]] && c.weight[i] != 0.0)
                 change += c.weight[i] * position(direction, c.vertex[i]);
-        contacts.expect(k, std::max(0.0, c.force - c.normal.dot(values_[k].hessian * change)));
+        ahead[k] = std::max(0.0, c.force - c.normal.dot(values_[k].hessian * change));
+    }
+    return ahead;
+}
+
+void SceneSystem::expect(const std::vector<double> &ahead, const std::vector<double> &gone) {
+    constexpr double nearly_all = 0.9;
+    const auto went = [&](int part) { return part < 0 || gone[part] > nearly_all; };
+    for (int k = 0; k < int(ahead.size()); ++k) {
+        const Contact &c = contacts.contacts()[k];
+        const bool there = went(vertices.part_of(c.vertex[0])) && went(vertices.part_of(c.vertex[3]));
+        contacts.expect(k, there ? ahead[k] : std::min(ahead[k], std::max(c.grip, c.force)));
     }
 }
 

@@ -95,8 +95,12 @@ public:
     double gradient(size_t i, int unit) const;       // its entry i of the whole vector, which is the unit's; 0 of padding
     void negative_gradient(int unit, AlignedVector &into) const;
 
-    // Expects the contacts to bear what they push with where the direction ends, by their matrix: there, all forces balance.
-    void expect(const AlignedVector &direction);
+    // What each contact pushes with where the direction ends, by its matrix [N]: there, all forces balance.
+    std::vector<double> pushes_ahead(const AlignedVector &direction) const;
+    // Expects the contacts to bear that, where both sides went nearly all of the direction (`gone`: what part of it, per part).
+    // Beyond what stopped them it says nothing, and friction that was raised by it would stop them the more: there they are
+    // expected to bear no more than they push with, or than they were to bear before.
+    void expect(const std::vector<double> &ahead, const std::vector<double> &gone);
 
     void factor(int unit);                               // of P, exactly or nearly
     void precondition(int unit, AlignedVector &b) const; // by it, in place
