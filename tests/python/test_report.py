@@ -122,6 +122,14 @@ def test_the_worst_frame_is_the_one_that_broke_before_the_one_that_stretched() -
     assert (explain_worst(statistics) or "").startswith("Frame 6 ")
 
 
+def test_the_worst_frame_is_not_told_by_what_all_frames_have() -> None:
+    statistics = frames()
+    for frame in statistics:
+        frame["unconverged"] = 1  # where locks touch
+    assert (explain_worst(statistics) or "").startswith("Frame 4 ")  # the most stretch
+    assert (explain_worst(statistics[:1]) or "").startswith("Frame 1 ")
+
+
 def test_the_verdict_names_what_went_wrong_and_when_all_is_well_says_so() -> None:
     assert any("Every strand was solved" in sentence for sentence in verdict(frames()))
     statistics = frames()

@@ -38,12 +38,18 @@ def frame_number(statistics: Statistics, index: int) -> str:
 
 
 def worst_frame(statistics: Statistics) -> int | None:
-    """The frame to look at first: one with broken numbers, else unsolved strands, else the most stretch."""
+    """The frame to look at first: one with broken numbers, else unsolved strands, else the most stretch.
+
+    What is the same in all frames, as where contact never converges, tells none of them from the others.
+    """
+    first = None
     for key in ("nan", "unconverged", "max_stretch", "newton_max", "newton"):
         values = series(statistics, key)
         if values and (highest := max(v for v in values if math.isfinite(v))) > 0:
-            return values.index(highest)
-    return None
+            if len(set(values)) > 1:
+                return values.index(highest)
+            first = 0
+    return first
 
 
 def verdict(statistics: Statistics) -> list[str]:
