@@ -14,7 +14,8 @@ from ringlet.picture import HAIR_COLORS, VIEWS, PosedBody, sheet, still
 from ringlet.picture.bodies import material
 from ringlet.picture.camera import frame
 from ringlet.picture.denoise import denoise
-from ringlet.picture.render import build_scene, hair_share, mitsuba, trace, without_noise, without_specks
+from ringlet.picture.passes import Passes
+from ringlet.picture.render import build_scene, hair_share, mitsuba, trace
 from ringlet.picture.strands import fibres, load_fibres, spline_controls
 from ringlet.picture.tone import develop
 from scipy.interpolate import BSpline
@@ -174,14 +175,34 @@ def test_a_still_tells_how_far_it_is_and_keeps_to_its_time(tmp_path: Path) -> No
     assert len(told) == 3  # the beginning, one pass, and the word that it is over
 
 
+def seen(passes: np.ndarray) -> Passes:
+    """Passes of one picture, shape (count, height, width, 4)."""
+    added = Passes()
+    for image in passes:
+        added.add(image)
+    return added
+
+
 def test_a_speck_is_spread_over_its_neighbourhood_and_no_light_is_lost() -> None:
     passes = np.full((5, 40, 40, 4), 0.5)
     passes[2, 20, 20, :3] += 5.0  # one pass met a light by chance
-    total, brightest = passes.sum(axis=0), passes.max(axis=0)
-    calm = without_specks(total, brightest, (total - brightest) / 4)
+    total = passes.sum(axis=0)
+    even, odd = seen(passes).without_specks()
+    calm = even + odd
     assert calm[20, 20, 0] < 0.6 * total[20, 20, 0]
     assert calm[:, :, :3].sum() == pytest.approx(total[:, :, :3].sum(), rel=1e-3)
     assert np.array_equal(calm[:, :, 3], total[:, :, 3])
+    assert even[20, 20, 0] / odd[20, 20, 0] < 2.0  # three passes to two: the speck is taken from those that have it
+
+
+@pytest.mark.parametrize("where", [0, 1, 2])
+def test_a_speck_leaves_no_dot_on_skin_that_is_noisy(where: int) -> None:
+    passes = np.random.default_rng(where).uniform(0.4, 0.6, (3, 40, 40, 4))
+    passes[where, 20, 20, :3] += 5.0
+    all_of_it = seen(passes)
+    calm = all_of_it.without_noise(all_of_it.without_specks())
+    around = calm[14:27, 14:27, :3]
+    assert np.abs(calm[20, 20, :3] - around.mean()).max() < 0.1
 
 
 def test_noise_goes_and_edges_stay() -> None:
@@ -199,8 +220,8 @@ def test_noise_goes_and_edges_stay() -> None:
 def test_less_is_left_of_noise_that_is_not_judged_by_itself(passes: int) -> None:
     light = np.random.default_rng(passes).uniform(0.0, 1.0, (passes, 80, 80, 1)).repeat(4, axis=3)
     mean, variance = light.mean(axis=0), light.var(axis=0, ddof=1)
-    sums, squares = ([values[k::2].sum(axis=0) for k in (0, 1)] for values in (light, light**2))
-    calm = without_noise(np.ones(mean.shape), sums, squares, passes)
+    all_of_it = seen(light)
+    calm = all_of_it.without_noise([light[::2].sum(axis=0), light[1::2].sum(axis=0)])
     assert calm.std() < 0.8 * denoise(mean, mean, variance / passes).std()
     assert calm.mean() == pytest.approx(mean.mean(), rel=5e-3)
 

@@ -15,7 +15,7 @@ from ringlet.curves import Curves
 from ringlet.errors import UserError
 from ringlet.picture.bodies import COLORS, PosedBody, material
 from ringlet.picture.camera import Camera
-from ringlet.picture.denoise import denoise
+from ringlet.picture.passes import Passes
 from ringlet.picture.strands import fibres, load_fibres
 from ringlet.picture.studio import backdrop, lights
 
@@ -151,18 +151,12 @@ def trace(
     per_pass = min(max(samples // FEWEST_PASSES, 1), MOST_PER_PASS)
     passes = -(-samples // per_pass)
     began = time.monotonic()
-    sums: list[Any] = [0.0, 0.0]  # of passes 0, 2, 4 … and of 1, 3, 5 …
-    squares: list[Any] = [0.0, 0.0]
-    brightest: Any = 0.0
-    done = 0
+    seen, done = Passes(), 0
     if progress:
         progress("picture", 0, passes)
     while done < passes:
-        image = np.nan_to_num(np.array(mi.render(scene, spp=per_pass, seed=done), np.float64))
-        sums[done % 2] += image
-        brightest = np.maximum(brightest, image)
-        squares[done % 2] += image**2
-        done += 1
+        seen.add(np.nan_to_num(np.array(mi.render(scene, spp=per_pass, seed=done), np.float64)))
+        done = seen.count
         if progress:
             progress("picture", done, passes)
         elapsed = time.monotonic() - began
@@ -170,34 +164,12 @@ def trace(
             break
     if progress and done < passes:
         progress("picture", passes, passes)
-    total = sums[0] + sums[1]
     if done < 3:
-        return (total / done).astype(np.float32)
-    light = without_specks(total, brightest, (total - brightest) / (done - 1)) / done
-    left = np.divide(done * light, total, out=np.ones_like(total), where=total > 0.0)
-    smooth = without_noise(left, sums, squares, done)
+        return seen.mean().astype(np.float32)
+    halves = seen.without_specks()
+    light, smooth = (halves[0] + halves[1]) / done, seen.without_noise(halves)
     kept: NDArray = GRAIN * hair_share(scene) * (light - smooth)
     return np.asarray(smooth + kept, np.float32)
-
-
-def without_noise(
-    left: NDArray[np.float64], sums: Sequence[NDArray], squares: Sequence[NDArray], passes: int
-) -> NDArray[np.float64]:
-    """The mean of all passes without much of its noise; each half of the passes is cleaned as the other one looks.
-
-    left:    what is left of the light without specks, as a factor
-    sums:    of passes 0, 2, 4 … and of 1, 3, 5 …; ``squares``: those of their squares; at least three passes
-
-    All of shape (height, width, 4).
-    """
-    counts = (passes + 1) // 2, passes // 2
-    means = [total / count for total, count in zip(sums, counts, strict=True)]
-    noise = [  # the variance of a pass; one alone says nothing of it
-        np.maximum(squares[k] / counts[k] - means[k] ** 2, 0.0) * counts[k] / (counts[k] - 1)
-        for k in (0, 1 if counts[1] > 1 else 0)
-    ]
-    calm = [denoise(left * means[k], means[1 - k], noise[1 - k] / counts[1 - k]) for k in (0, 1)]
-    return (counts[0] * calm[0] + counts[1] * calm[1]) / passes
 
 
 def hair_share(scene: Any) -> NDArray[np.float32]:
@@ -209,23 +181,6 @@ def hair_share(scene: Any) -> NDArray[np.float32]:
     seen = mi.render(scene, integrator=mi.load_dict({"type": "aov", "aovs": "seen:shape_index"}), spp=1)
     is_hair = np.abs(np.array(seen)[:, :, 0] - (names.index(HAIRS) + 1)) < 0.5  # 0 is where nothing is seen
     return np.asarray(gaussian_filter(is_hair.astype(np.float32), 1.2), np.float32)[:, :, None]
-
-
-def without_specks(
-    total: NDArray[np.float64], brightest: NDArray[np.float64], others: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Spreads specks over their neighbourhood.
-
-    A speck is a pixel with one pass much brighter than the mean of the others: a rare path met a light through many
-    hairs. It is taken down to what the others say, and the light that is lost so goes to the pixels around it, so that
-    hair, which is lit by many such paths, stays as bright as it is.
-
-    All of shape (height, width, 4): the sum of the passes, the brightest of them, and the mean of those without it.
-    """
-    steady = total + np.minimum(brightest, 1.5 * others + 0.05) - brightest
-    steady[:, :, 3] = total[:, :, 3]
-    before, after = (gaussian_filter(light, (2.5, 2.5, 0.0)) for light in (total, steady))
-    return steady * np.clip(before / np.maximum(after, 1e-9), 1.0, 2.0)
 
 
 def over_backdrop(image: NDArray[np.float32]) -> NDArray[np.floating]:
