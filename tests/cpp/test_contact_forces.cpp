@@ -1,11 +1,13 @@
 // What contacts do: forces from energies, and moves that pass through nothing.
 #include "ringlet/contact/contact.h"
+#include "ringlet/contact/contact_set.h"
 #include "ringlet/contact/meeting.h"
 #include "ringlet/contact/step_filter.h"
 
 #include <boost/test/unit_test.hpp>
 
 #include <Eigen/Eigenvalues>
+#include <limits>
 #include <random>
 
 using namespace ringlet;
@@ -178,6 +180,29 @@ BOOST_AUTO_TEST_CASE(friction_never_exceeds_its_cone) {
         const Vec3 tangential = gradient - contact.normal.dot(gradient) * contact.normal;
         BOOST_TEST(tangential.norm() <=
                    contact.friction * contact.force + 1e-14 * gradient.norm()); // what rounding leaves of the push
+    }
+}
+
+// Where the held ends of two edges touch, nothing that moves is nearest; as the others turn, it is, by a little.
+BOOST_AUTO_TEST_CASE(edges_that_touch_at_held_ends_are_no_stiffer_than_their_other_ends) {
+    constexpr double held = std::numeric_limits<double>::infinity();
+    CollisionMesh mesh;
+    mesh.edges = {{0, 1}, {2, 3}};
+    mesh.strand_edges = 2;
+    mesh.radius.assign(4, 1e-3);
+    mesh.moves = {0, 1, 0, 1};
+    mesh.object = {0, 0, 1, 1};
+    mesh.anchor.assign(4, -1);
+    const ContactMaterial material{{held, 2.0, held, 3.0}, {0, 0, 0, 0}, {0.3}, 1, 1e-5};
+    for (const double turned : {0.0, 1e-6, 1e-3}) {
+        const std::vector<Vec3> now = {{0, 0, 0}, {0.01, 0, 0}, {turned, -turned, 1e-3}, {turned, 0.01, 1e-3}};
+        mesh.rest = now;
+        NearPairs near(mesh);
+        near.note(now, now, 1e-3, 0.1);
+        ContactSet contacts;
+        contacts.find(mesh, material, near.touching(now), now, now);
+        BOOST_REQUIRE(contacts.contacts().size() == 1u);
+        BOOST_TEST(contacts.contacts()[0].stiffness == 2.0, boost::test_tools::tolerance(1e-12));
     }
 }
 

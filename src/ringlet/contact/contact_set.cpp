@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace ringlet {
 namespace {
@@ -45,6 +46,21 @@ std::vector<Place> places(const CollisionMesh &mesh, const Touch &touch, View<Ve
     }
     std::sort(all.begin(), all.end(), [](const Place &p, const Place &q) { return p.which < q.which; });
     return all;
+}
+
+// Of its softer side. What is held, beside what moves, is as soft as that: where one end of an edge is held, and touches, the
+// other is not to be pushed without bound.
+double stiffness(const Contact &contact, const ContactMaterial &material) {
+    const auto of_side = [&](int begin, int end) {
+        double softest = std::numeric_limits<double>::infinity(), softness = 0.0;
+        for (int i = begin; i < end; ++i) softest = std::min(softest, material.stiffness[contact.vertex[i]]);
+        for (int i = begin; i < end; ++i) {
+            const double own = material.stiffness[contact.vertex[i]];
+            softness += std::abs(contact.weight[i]) / (std::isfinite(own) ? own : softest);
+        }
+        return 1.0 / softness;
+    };
+    return std::min(of_side(0, contact.first), of_side(contact.first, 4));
 }
 
 // Work for those of `now` whose pairs `before` has, both in order.
@@ -122,10 +138,7 @@ std::vector<Contact> ContactSet::of_touching(const CollisionMesh &mesh, const Co
                     std::min(std::clamp(0.25 * apart, contact.barrier_end, touch.distance / 64), distance / 64);
             contact.normal = separation(contact, now) / apart;
             contact.start = separation(contact, start);
-            double softness[2] = {0.0, 0.0};
-            for (int i = 0; i < 4; ++i)
-                softness[i >= contact.first] += std::abs(contact.weight[i]) / material.stiffness[contact.vertex[i]];
-            contact.stiffness = place.share / std::max({softness[0], softness[1], 1e-12});
+            contact.stiffness = place.share * stiffness(contact, material);
             contact.friction =
                 material
                     .friction[material.material[contact.vertex[0]] * material.materials + material.material[contact.vertex[3]]];
