@@ -206,6 +206,7 @@ class Scene:
                 *solver.for_core(),
                 getattr(_core.System, solver.system),
                 system_tolerance,
+                solver.extra,
             )
         except _core.CoupledError as error:
             raise UserError(

@@ -79,6 +79,13 @@ class Solver(Section):
         description="Newton iterations per step; 1 is stable, but with few hair comes late: "
         "5 for a look, 20 for the last run",
     )
+    extra: int = Field(
+        default=60,
+        ge=0,
+        le=MOST_ITERATIONS,
+        description="iterations more, at most, for locks that contact held back and that are stretched by more than 3 %: "
+        "fewer bound what a step costs, and leave them stretched",
+    )
     until_converged: bool = Field(
         default=False,
         description=f"go on until every lock has converged, at most {MOST_ITERATIONS} iterations, whatever newton is",

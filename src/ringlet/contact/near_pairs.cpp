@@ -23,6 +23,24 @@ bool boxes_are_near(View<Vec3> x, const std::array<int, N> &a, const std::array<
     return !(above.cwiseMax(below).maxCoeff() > distance);
 }
 
+bool counts(const NearPair &pair, View<unsigned char> objects) {
+    const auto counts = [&](int object) { return size_t(object) < objects.size() && objects[object] != 0; };
+    return counts(pair.objects[0]) || counts(pair.objects[1]);
+}
+
+// Tells `measured` how far the two are apart, where that had to be measured [m].
+template <class Measured>
+void add_if_touching(const CollisionMesh &mesh, const NearPair &pair, View<Vec3> at, const Measured &measured,
+                     std::vector<Touch> &found) {
+    with_vertices(mesh, pair, [&](const auto &a, const auto &b) {
+        if (!boxes_are_near(at, a, b, pair.distance)) return;
+        const ClosestPoints nearest = closest_points(at, a, b);
+        const double apart = std::sqrt(nearest.distance2);
+        measured(apart);
+        if (apart < pair.distance) found.push_back({pair.of, pair.of_edges, pair.distance, nearest});
+    });
+}
+
 // Puts `more` among `pairs`, both in order.
 template <class Pair> void merge(std::vector<Pair> &pairs, const std::vector<Pair> &more) {
     const size_t size = pairs.size();
@@ -143,7 +161,7 @@ void NearPairs::set_out(View<Vec3> start, View<Vec3> end) {
     passing_ = any_quick_ ? look_for_quick(quick_) : std::vector<NearPair>();
     may_touch_ = collect<NearPair *>(int(known_.size()), [&](int k, std::vector<NearPair *> &may_touch) {
         NearPair &pair = known_[k];
-        if (!quick(pair) && ways_of_.with_boxes(pair, ways_overlap)) may_touch.push_back(&pair);
+        if (!quick(pair) && reach(pair) && ways_of_.with_boxes(pair, ways_overlap)) may_touch.push_back(&pair);
     });
     may_meet_ = collect<NearPair *>(int(may_touch_.size()), [&](int k, std::vector<NearPair *> &may_meet) {
         NearPair &pair = *may_touch_[k];
@@ -181,7 +199,7 @@ void NearPairs::arrive(View<Vec3> start, View<Vec3> end) {
 #pragma omp parallel for schedule(static)
         for (int k = 0; k < int(pairs->size()); ++k) {
             NearPair &pair = (*pairs)[k];
-            if (pair.apart <= 0.0) continue;
+            if (pair.apart <= 0.0 || way(pair) == 0.0) continue;
             pair.apart -=
                 with_vertices(mesh_, pair, [&](const auto &a, const auto &b) { return most_nearer(a, b, start, end); });
         }
@@ -189,17 +207,22 @@ void NearPairs::arrive(View<Vec3> start, View<Vec3> end) {
         for (Way &way : *ways) way.length = 0.0;
 }
 
-template <class Counts, class Measured>
-std::vector<Touch> NearPairs::touching(View<Vec3> at, const Counts &counts, const Measured &measured) const {
-    const auto look_at = [&](const NearPair &pair, std::vector<Touch> &touching) {
-        if (!(pair.apart - way(pair) < pair.distance) || !counts(pair)) return;
-        with_vertices(mesh_, pair, [&](const auto &a, const auto &b) {
-            if (!boxes_are_near(at, a, b, pair.distance)) return;
-            const ClosestPoints nearest = closest_points(at, a, b);
-            const double apart = std::sqrt(nearest.distance2);
-            measured(pair, apart);
-            if (apart < pair.distance) touching.push_back({pair.of, pair.of_edges, pair.distance, nearest});
-        });
+PairsInReach NearPairs::in_reach(View<unsigned char> objects) const {
+    const auto look_at = [&](const NearPair &pair, PairsInReach &found) {
+        if (reach(pair) && counts(pair, objects)) found.push_back(&pair);
+    };
+    PairsInReach all =
+        collect<const NearPair *>(int(may_touch_.size()), [&](int k, PairsInReach &found) { look_at(*may_touch_[k], found); });
+    const size_t known = all.size();
+    for (const NearPair &pair : passing_) look_at(pair, all);
+    std::inplace_merge(all.begin(), all.begin() + known, all.end(),
+                       [](const NearPair *a, const NearPair *b) { return before(*a, *b); });
+    return all;
+}
+
+std::vector<Touch> NearPairs::touching(View<Vec3> positions) {
+    const auto look_at = [&](const NearPair &pair, std::vector<Touch> &found) {
+        if (reach(pair)) add_if_touching(mesh_, pair, positions, [&](double apart) { pair.apart = apart; }, found);
     };
     std::vector<Touch> all =
         collect<Touch>(int(may_touch_.size()), [&](int k, auto &found) { look_at(*may_touch_[k], found); });
@@ -207,16 +230,11 @@ std::vector<Touch> NearPairs::touching(View<Vec3> at, const Counts &counts, cons
     return all;
 }
 
-std::vector<Touch> NearPairs::touching(View<Vec3> positions) {
-    return touching(
-        positions, [](const NearPair &) { return true; }, [](const NearPair &pair, double apart) { pair.apart = apart; });
-}
-
-std::vector<Touch> NearPairs::would_touch(View<Vec3> on_the_way, View<unsigned char> objects) const {
-    const auto counts = [&](int object) { return size_t(object) < objects.size() && objects[object] != 0; };
-    return touching(
-        on_the_way, [&](const NearPair &pair) { return counts(pair.objects[0]) || counts(pair.objects[1]); },
-        [](const NearPair &, double) {});
+std::vector<Touch> touching(const CollisionMesh &mesh, const PairsInReach &pairs, View<Vec3> positions,
+                            View<unsigned char> objects) {
+    return collect<Touch>(int(pairs.size()), [&](int k, std::vector<Touch> &found) {
+        if (counts(*pairs[k], objects)) add_if_touching(mesh, *pairs[k], positions, [](double) {}, found);
+    });
 }
 
 } // namespace ringlet

@@ -26,6 +26,8 @@ struct Touch {
     ClosestPoints nearest;
 };
 
+using PairsInReach = std::vector<const NearPair *>;
+
 // A pair that is known is apart by what was measured last, less what its two have moved since, on each move by themselves or,
 // once they have arrived, relative to one another: while that is enough, nothing has to be computed. Pairs are noted for
 // vertices that keep to their corridors. Vertices that do not are quick: their pairs are looked for anew in every move. All
@@ -53,8 +55,8 @@ public:
     void arrive(View<Vec3> start, View<Vec3> end); // all of it, or any part of its last way
 
     std::vector<Touch> touching(View<Vec3> positions); // where everything is now, in order
-    // Somewhere on the last move, of the objects that count: the first of all.
-    std::vector<Touch> would_touch(View<Vec3> on_the_way, View<unsigned char> objects) const;
+    // In order, of pairs with one of the objects that count, those that may touch somewhere on the last move.
+    PairsInReach in_reach(View<unsigned char> objects) const;
 
     int count() const { return int(known_.size() + passing_.size()); }
 
@@ -64,13 +66,12 @@ private:
         bool quick = false;
     };
 
-    template <class Counts, class Measured>
-    std::vector<Touch> touching(View<Vec3> at, const Counts &counts, const Measured &measured) const;
     bool leaves(int v, const Vec3 &to) const {
         return !((to.array() >= low_[v].array()).all() && (to.array() <= high_[v].array()).all());
     }
     void fit_ways(View<Vec3> start, View<Vec3> end);
     void measure_ways(View<Vec3> start, View<Vec3> end);
+    bool reach(const NearPair &pair) const { return pair.apart - way(pair) < pair.distance; }
     double way(const NearPair &pair) const { return first(pair).length + second(pair).length; }
     bool quick(const NearPair &pair) const { return first(pair).quick || second(pair).quick; }
     const Way &first(const NearPair &pair) const { return (pair.of_edges ? edges_ : vertices_)[pair.of[0]]; }
@@ -91,6 +92,10 @@ private:
     std::vector<NearPair *> may_touch_; // of the known, those whose ways come so near
     std::vector<NearPair *> may_meet_;
 };
+
+// Those that touch there, in order, of pairs with one of the objects that count.
+std::vector<Touch> touching(const CollisionMesh &mesh, const PairsInReach &pairs, View<Vec3> positions,
+                            View<unsigned char> objects);
 
 // By how much two primitives that move straight can at most come nearer: what they move by together does not count [m].
 template <size_t N, size_t M>

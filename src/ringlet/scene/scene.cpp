@@ -207,14 +207,12 @@ void Scene::Parts::take(View<Vec3> now, View<Vec3> wanted, View<Vec3> to) {
 // Newton's method from x, which is `now`; says how many iterations it took.
 int Scene::Parts::newton(const SceneStep &scene_step, const StrandStep &step, std::vector<Vec3> &now, SceneProgress &progress,
                          SceneReport &report) {
-    constexpr int most_more = 60;   // for strands that were held back
     constexpr double farther = 4.0; // than the search went last is not tried, but where a way is short
     std::vector<double> gone(vertices.parts(), 1.0), tried(vertices.parts(), 1.0);
     reach.assign(vertices.parts(), 0.0);
-    std::vector<double> ahead; // what contacts push with at the end of a direction [N]
     int iteration = 0;
     for (bool arrived = false; !arrived; ++iteration) {
-        if (iteration >= step.newton && (iteration >= step.newton + most_more || !progress.narrow(system, now))) break;
+        if (iteration >= step.newton && (iteration >= step.newton + scene_step.extra || !progress.narrow(system, now))) break;
         {
             const Stopwatch watch(report.time_pairs);
             system.touch(near.touching(now), now);
@@ -229,7 +227,7 @@ int Scene::Parts::newton(const SceneStep &scene_step, const StrandStep &step, st
             report.linear_iterations += solved.iterations;
             report.linear_residual = solved.residual;
             measure(system, direction, reach);
-            ahead = system.pushes_ahead(direction);
+            system.expect(direction);
         }
         const bool small = std::all_of(reach.begin(), reach.end(), [&](double far) { return far <= step.tolerance; });
         // A cloth that is held back here and there is strained there, so that its energy rises for once: for it and what
@@ -248,7 +246,8 @@ int Scene::Parts::newton(const SceneStep &scene_step, const StrandStep &step, st
             if (!search(system, nullptr, direction, before, found).moved) break;
             for (size_t i = 0; i < system.size(); ++i) direction[i] = found[i] - x[i];
             std::vector<double> unused;
-            system.energies(x, &near, std::vector<unsigned char>(vertices.parts(), 1), unused);
+            const PairsInReach in_reach = near.in_reach(system.active_parts());
+            system.energies(x, &in_reach, std::vector<unsigned char>(vertices.parts(), 1), unused);
         } else {
             tried = worth_going(system, x, direction);
             for (size_t p = 0; p < tried.size() && iteration < step.newton; ++p)
@@ -273,7 +272,6 @@ int Scene::Parts::newton(const SceneStep &scene_step, const StrandStep &step, st
         }
         if (!found.moved) break;
         progress.cut(found.step);
-        system.expect(ahead, progress.gone());
         for (size_t p = 0; p < tried.size(); ++p)
             if (system.is_active(int(p))) gone[p] = tried[p] * found.step[p];
         progress.judge(step.tolerance);

@@ -17,8 +17,7 @@ public:
     void cut(const std::vector<double> &step); // by the search: how much of its move each part went
     void judge(double tolerance);              // after each iteration; or after a guess
 
-    const std::vector<double> &gone() const { return left_; } // per part, what part of the last move it went
-    bool all_went() const;                                    // they all went all of their way
+    bool all_went() const; // in the last move all parts went all of their way
 
     // Those that were held back and are stretched by more than a few per cent; with what touches them they alone are active
     // from now on. False: there are none.

@@ -115,7 +115,13 @@ void SceneSystem::evaluate(int unit, const AlignedVector &x) {
     from_lanes(unit, energies, own_energies_);
 }
 
-void SceneSystem::energies(const AlignedVector &x, const NearPairs *near, const std::vector<unsigned char> &changed,
+std::vector<unsigned char> SceneSystem::active_parts() const {
+    std::vector<unsigned char> active(vertices.parts());
+    for (int p = 0; p < vertices.parts(); ++p) active[p] = is_active(p);
+    return active;
+}
+
+void SceneSystem::energies(const AlignedVector &x, const PairsInReach *pairs, const std::vector<unsigned char> &changed,
                            std::vector<double> &of) {
     std::vector<unsigned char> asked(unit_count(), 0);
     for (int p = 0; p < vertices.parts(); ++p)
@@ -126,7 +132,7 @@ void SceneSystem::energies(const AlignedVector &x, const NearPairs *near, const 
 #pragma omp parallel for schedule(static)
     for (int v = 0; v < vertices.moving_vertices(); ++v)
         if (changed[vertices.part_of(v)]) places_[v] = position(x, v);
-    share_contacts(near, changed);
+    share_contacts(pairs, changed);
     of = own_energies_;
     for (const Lift &lift : lifts) {
         const double below = lift.below(places_[lift.vertex]);
@@ -143,12 +149,12 @@ void SceneSystem::energies(const AlignedVector &x, const NearPairs *near, const 
 }
 
 // Energies of contacts, anew where one of the two parts has changed.
-void SceneSystem::share_contacts(const NearPairs *near, const std::vector<unsigned char> &changed) {
+void SceneSystem::share_contacts(const PairsInReach *pairs, const std::vector<unsigned char> &changed) {
     const std::vector<Contact> &all = contacts.contacts();
     if (contacts_found_) rubbed_.assign(all.size(), 0.0);
-    const bool of_all = contacts_found_ || asked_planes_ != (near == nullptr);
+    const bool of_all = contacts_found_ || asked_planes_ != (pairs == nullptr);
     contacts_found_ = false;
-    asked_planes_ = near == nullptr;
+    asked_planes_ = pairs == nullptr;
     std::vector<unsigned char> anew(vertices.parts());
     for (int p = 0; p < vertices.parts(); ++p) anew[p] = is_active(p) && (of_all || changed[p]);
     const auto is_anew = [&](int a, int b) { return (a >= 0 && anew[a]) || (b >= 0 && anew[b]); };
@@ -157,10 +163,9 @@ void SceneSystem::share_contacts(const NearPairs *near, const std::vector<unsign
         const int a = vertices.part_of(c.vertex[0]), b = vertices.part_of(c.vertex[3]);
         if (is_anew(a, b)) pushed_.push_back({a, b, push_energy(c, separation(c, places_))});
     };
-    if (near != nullptr) {
-        const std::vector<Touch> touching = near->would_touch(places_, anew);
-        for (const Contact &c : contacts.pushing(vertices.mesh, vertices.material, touching, vertices.positions, places_))
-            push(c);
+    if (pairs != nullptr) {
+        const std::vector<Touch> there = touching(vertices.mesh, *pairs, places_, anew);
+        for (const Contact &c : contacts.pushing(vertices.mesh, vertices.material, there, vertices.positions, places_)) push(c);
     } else {
         for (const Contact &c : all) push(c);
     }
@@ -169,27 +174,15 @@ void SceneSystem::share_contacts(const NearPairs *near, const std::vector<unsign
             rubbed_[c] = friction_energy(all[c], separation(all[c], places_));
 }
 
-std::vector<double> SceneSystem::pushes_ahead(const AlignedVector &direction) const {
+void SceneSystem::expect(const AlignedVector &direction) {
     const std::vector<Contact> &all = contacts.contacts();
-    std::vector<double> ahead(all.size());
-    for (size_t k = 0; k < all.size(); ++k) {
+    for (int k = 0; k < int(all.size()); ++k) {
         const Contact &c = all[k];
         Vec3 change = Vec3::Zero();
         for (int i = 0; i < 4; ++i)
             if (vertices.mesh.moves[c.vertex[i]] && c.weight[i] != 0.0)
                 change += c.weight[i] * position(direction, c.vertex[i]);
-        ahead[k] = std::max(0.0, c.force - c.normal.dot(values_[k].hessian * change));
-    }
-    return ahead;
-}
-
-void SceneSystem::expect(const std::vector<double> &ahead, const std::vector<double> &gone) {
-    constexpr double nearly_all = 0.9;
-    const auto went = [&](int part) { return part < 0 || gone[part] > nearly_all; };
-    for (int k = 0; k < int(ahead.size()); ++k) {
-        const Contact &c = contacts.contacts()[k];
-        const bool there = went(vertices.part_of(c.vertex[0])) && went(vertices.part_of(c.vertex[3]));
-        contacts.expect(k, there ? ahead[k] : std::min(ahead[k], std::max(c.grip, c.force)));
+        contacts.expect(k, std::max(0.0, c.force - c.normal.dot(values_[k].hessian * change)));
     }
 }
 

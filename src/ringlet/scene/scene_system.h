@@ -29,6 +29,7 @@ public:
 
     std::vector<unsigned char> active; // per unit; the others stay where they are, and are not asked
     bool is_active(int part) const { return active[unit_of(part)]; }
+    std::vector<unsigned char> active_parts() const;
 
     // Units are what is computed at once, each with its range of the unknowns: groups of strands, then cloths.
     int group_count() const { return strands.group_count(); }
@@ -85,9 +86,10 @@ public:
     const std::vector<unsigned char> &by_planes() const { return by_planes_; }
 
     // Energies [J] of the parts at x, somewhere on the last move: each with its share of what pushes there, be it a contact yet
-    // or not (without `near`: of what its contacts push, by their planes), and of the contacts' friction. Only parts that have
-    // `changed` since this was last asked, or since they were assembled, are asked again, and contacts only of these.
-    void energies(const AlignedVector &x, const NearPairs *near, const std::vector<unsigned char> &changed,
+    // or not (without `pairs`, all that may touch there: of what its contacts push, by their planes), and of the contacts'
+    // friction. Only parts that have `changed` since this was last asked, or since they were assembled, are asked again, and
+    // contacts only of these.
+    void energies(const AlignedVector &x, const PairsInReach *pairs, const std::vector<unsigned char> &changed,
                   std::vector<double> &of_parts);
 
     void linearise(const AlignedVector &x);          // the contacts, before units are assembled
@@ -95,12 +97,8 @@ public:
     double gradient(size_t i, int unit) const;       // its entry i of the whole vector, which is the unit's; 0 of padding
     void negative_gradient(int unit, AlignedVector &into) const;
 
-    // What each contact pushes with where the direction ends, by its matrix [N]: there, all forces balance.
-    std::vector<double> pushes_ahead(const AlignedVector &direction) const;
-    // Expects the contacts to bear that, where both sides went nearly all of the direction (`gone`: what part of it, per part).
-    // Beyond what stopped them it says nothing, and friction that was raised by it would stop them the more: there they are
-    // expected to bear no more than they push with, or than they were to bear before.
-    void expect(const std::vector<double> &ahead, const std::vector<double> &gone);
+    // Expects the contacts to bear what they push with where the direction ends, by their matrix: there, all forces balance.
+    void expect(const AlignedVector &direction);
 
     void factor(int unit);                               // of P, exactly or nearly
     void precondition(int unit, AlignedVector &b) const; // by it, in place
@@ -122,7 +120,7 @@ private:
         return {touched_.data() + touched_begin_[unit], touched_.data() + touched_begin_[unit + 1]};
     }
     void find_planes(const std::vector<Touch> &touching);
-    void share_contacts(const NearPairs *near, const std::vector<unsigned char> &changed);
+    void share_contacts(const PairsInReach *pairs, const std::vector<unsigned char> &changed);
     void evaluate(int unit, const AlignedVector &x);
     void add_to_strand(int vertex);
     void add_lift(const Lift &lift, const AlignedVector &x);
