@@ -83,7 +83,7 @@ class Solver(Section):
         default=60,
         ge=0,
         le=MOST_ITERATIONS,
-        description="iterations more, at most, for locks that were held back and are stretched by over 3 %; fewer bound "
+        description="iterations more, at most, for locks held back and stretched by over 3 %; fewer bound "
         "what a step costs, and leave them stretched",
     )
     until_converged: bool = Field(
