@@ -4,6 +4,7 @@
 #include "ringlet/contact/collision_mesh.h"
 #include "ringlet/contact/moving_tree.h"
 #include "ringlet/contact/path_boxes.h"
+#include "ringlet/contact/vertex_lists.h"
 
 #include <vector>
 
@@ -41,10 +42,11 @@ private:
 
     const CollisionMesh &mesh_;
     std::vector<std::array<int, 1>> points_;
+    VertexLists edges_of_, points_of_, triangles_of_; // each vertex
     MovingTree edge_tree_, triangle_tree_, point_tree_;
     std::vector<Pairs> found_; // by each task
 
-    std::vector<unsigned char> away_, stale_; // vertices: boxed apart from find(), or changed; that are to be boxed anew
+    std::vector<unsigned char> away_; // vertices: boxed apart from find(), or changed
 };
 
 } // namespace ringlet

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "ringlet/contact/collision_mesh.h"
-#include "ringlet/contact/neighbours.h"
+#include "ringlet/contact/vertex_lists.h"
 
 #include <functional>
 
@@ -24,7 +24,7 @@ struct FilterScene {
     View<unsigned char> shortened = {};
     // Where each cloth begins among the vertices, and the end; object numbers of cloths follow those of strands.
     View<int> cloths = {};
-    const Neighbours *neighbours = nullptr; // of the vertices of cloths
+    const VertexLists *neighbours = nullptr; // of the vertices of cloths
 };
 
 } // namespace ringlet

@@ -9,7 +9,7 @@ void MovingTree::arrange(std::vector<Centre> &centres) {
     depth_ = 0;
     while (count_ > int64_t(4) << depth_) ++depth_;
     for (int depth = 0; depth < depth_; ++depth) {
-#pragma omp parallel for schedule(dynamic, 1) if (count_ > small)
+#pragma omp parallel for schedule(dynamic, 1) if (size_t(count_) > small)
         for (int share = 0; share < 1 << depth; ++share) {
             const auto first = centres.begin() + begin(share, depth), last = centres.begin() + begin(share + 1, depth);
             Eigen::Array3f low = Eigen::Array3f::Constant(std::numeric_limits<float>::infinity()), high = -low;
@@ -31,20 +31,27 @@ void MovingTree::arrange(std::vector<Centre> &centres) {
     BoxQuad empty;
     for (int k = 0; k < 4; ++k) set_box(empty, k, MovingBox::nothing());
     nodes_.assign(size_t(first_leaf_) + leaves(), empty);
+    listed_.assign(nodes_.size(), 0);
+    leaf_of_.resize(count_);
     primitives_.assign(size_t(4) * leaves(), -1);
     for (int leaf = 0; leaf < leaves(); ++leaf)
-        for (int place = begin(leaf, depth_); place < begin(leaf + 1, depth_); ++place)
+        for (int place = begin(leaf, depth_); place < begin(leaf + 1, depth_); ++place) {
             primitives_[4 * leaf + place - begin(leaf, depth_)] = centres[place].primitive;
+            leaf_of_[centres[place].primitive] = first_leaf_ + leaf;
+        }
 }
 
-// From below, level by level.
-void MovingTree::refit_inner() {
-    int first = first_leaf_, count = leaves();
-    while (first > 1) {
-        first = (first - 1) / 4;
-        count /= 4;
-#pragma omp parallel for schedule(static) if (count > small)
-        for (int node = first; node < first + count; ++node) put(node, box_of(nodes_[node]));
+// All above nodes of one level, that are listed; in the end none is.
+void MovingTree::refit_above(std::vector<int> &nodes) {
+    std::vector<int> parents;
+    for (; !nodes.empty(); std::swap(nodes, parents)) {
+        parents.clear();
+        for (const int node : nodes) {
+            listed_[node] = 0;
+            const int parent = (node - 1) / 4;
+            if (node > 0 && !listed_[parent]) listed_[parent] = 1, parents.push_back(parent);
+        }
+        for (const int node : parents) put(node, box_of(nodes_[node]));
     }
 }
 

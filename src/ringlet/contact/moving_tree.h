@@ -16,8 +16,8 @@ public:
     // Takes box(i) for each of `count` primitives i.
     template <class Box> void fit(int count, const Box &box);
 
-    // Takes box(i) anew only of primitives where changed(i).
-    template <class Box, class Changed> void refit(const Box &box, const Changed &changed);
+    // Takes box(i) anew of some primitives, and of those that share their leaves.
+    template <class Box> void refit(View<int> primitives, const Box &box);
 
     // Until it is taken anew no primitive counts.
     void discount() {
@@ -42,11 +42,13 @@ private:
         float at[3];
         int primitive;
     };
-    static constexpr int small = 1 << 10; // less work than that is not shared among threads
+    static constexpr size_t small = 1 << 10; // less work than that is not shared among threads
 
     template <class Box> void build(const Box &box);
     void arrange(std::vector<Centre> &centres);
-    void refit_inner();
+    template <class Box> void refit_leaf(int leaf, const Box &box);
+    template <class Box> void refit_all(const Box &box);
+    void refit_above(std::vector<int> &nodes);
     double looseness() const;
     int begin(int64_t share, int depth) const { return static_cast<int>(share * count_ >> depth); }
     int leaves() const { return 1 << depth_; }
@@ -54,7 +56,9 @@ private:
         if (node > 0) set_box(nodes_[(node - 1) / 4], (node - 1) % 4, all);
     }
 
-    std::vector<int> primitives_; // four to a leaf, the last of which may be missing
+    std::vector<int> primitives_;       // four to a leaf, the last of which may be missing
+    std::vector<int> leaf_of_;          // each primitive
+    std::vector<unsigned char> listed_; // per node, while some are refitted
     std::vector<BoxQuad> nodes_;
     int count_ = 0, depth_ = 0, first_leaf_ = 0, built_ = 0;
     double built_looseness_ = 0.0;
@@ -65,12 +69,11 @@ template <class Box> void MovingTree::fit(int count, const Box &box) {
     const bool fresh = count != count_;
     count_ = count;
     if (count == 0) return;
-    const auto all = [](int) { return true; };
     if (fresh) build(box);
-    refit(box, all);
+    refit_all(box);
     if (!fresh && looseness() > worn_out * built_looseness_) {
         build(box);
-        refit(box, all);
+        refit_all(box);
         built_looseness_ = looseness();
     } else if (fresh)
         built_looseness_ = looseness();
@@ -87,23 +90,35 @@ template <class Box> void MovingTree::build(const Box &box) {
     ++built_;
 }
 
-template <class Box, class Changed> void MovingTree::refit(const Box &box, const Changed &changed) {
-    bool any = false;
-#pragma omp parallel for schedule(static) reduction(|| : any) if (count_ > small)
-    for (int leaf = first_leaf_; leaf < first_leaf_ + leaves(); ++leaf) {
-        bool here = false;
-        for (int k = 0; k < size(leaf); ++k) here = here || changed(primitive(4 * leaf + k));
-        if (!here) continue;
-        MovingBox boxes[4], all = MovingBox::nothing();
-        for (int k = 0; k < 4; ++k) {
-            boxes[k] = k < size(leaf) ? box(primitive(4 * leaf + k)) : MovingBox::nothing();
-            all.include(boxes[k]);
-        }
-        set_boxes(nodes_[leaf], boxes);
-        put(leaf, all);
-        any = true;
+template <class Box> void MovingTree::refit_leaf(int leaf, const Box &box) {
+    MovingBox boxes[4], all = MovingBox::nothing();
+    for (int k = 0; k < 4; ++k) {
+        boxes[k] = k < size(leaf) ? box(primitive(4 * leaf + k)) : MovingBox::nothing();
+        all.include(boxes[k]);
     }
-    if (any) refit_inner();
+    set_boxes(nodes_[leaf], boxes);
+    put(leaf, all);
+}
+
+template <class Box> void MovingTree::refit_all(const Box &box) {
+    int first = first_leaf_, count = leaves();
+#pragma omp parallel for schedule(static) if (size_t(count_) > small)
+    for (int leaf = first; leaf < first + count; ++leaf) refit_leaf(leaf, box);
+    while (first > 1) { // level by level
+        first = (first - 1) / 4;
+        count /= 4;
+#pragma omp parallel for schedule(static) if (size_t(count) > small)
+        for (int node = first; node < first + count; ++node) put(node, box_of(nodes_[node]));
+    }
+}
+
+template <class Box> void MovingTree::refit(View<int> primitives, const Box &box) {
+    std::vector<int> leaves;
+    for (const int i : primitives)
+        if (!listed_[leaf_of_[i]]) listed_[leaf_of_[i]] = 1, leaves.push_back(leaf_of_[i]);
+#pragma omp parallel for schedule(static) if (leaves.size() > small)
+    for (size_t k = 0; k < leaves.size(); ++k) refit_leaf(leaves[k], box);
+    refit_above(leaves);
 }
 
 } // namespace ringlet

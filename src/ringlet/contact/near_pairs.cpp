@@ -91,7 +91,6 @@ void NearPairs::forget() {
 }
 
 void NearPairs::note(View<Vec3> start, View<Vec3> end, double margin, double far) {
-    constexpr size_t few = 16; // one in
     const bool anew = low_.empty();
     low_.resize(start.size()), high_.resize(start.size());
     std::vector<unsigned char> stray(start.size(), 1);
@@ -109,7 +108,7 @@ void NearPairs::note(View<Vec3> start, View<Vec3> end, double margin, double far
     passing_.clear();
     for (auto *ways : {&vertices_, &edges_, &triangles_}) std::fill(ways->begin(), ways->end(), Way{});
     Candidates found;
-    if (anew || few * strays > start.size()) {
+    if (anew || strays == start.size()) {
         homes_.fit_within(low_, high_);
         broad_phase_.find(homes_, found);
         known_ = pairs_of(found);

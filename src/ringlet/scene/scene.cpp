@@ -44,7 +44,7 @@ struct Scene::Parts {
     SceneSystem system;
     SceneSolver solver;
     NearPairs near;
-    Neighbours neighbours; // of the vertices of cloths
+    VertexLists neighbours; // of the vertices of cloths
 
     std::vector<Embedded::Body> embedded_bodies; // per body
     Embedded embedded;
@@ -85,7 +85,7 @@ Scene::Parts::Parts(const StrandModel &model_, StrandState &state_, const std::v
                     const std::vector<BodyModel> &bodies, const std::vector<int> &rooted_in, const SceneContact &contact)
     : model(model_), state(state_), settings(contact), root_body(rooted_in),
       vertices(number_vertices(model_, state_, cloths, bodies, rooted_in, contact)), system(model_, cloths, vertices),
-      near(vertices.mesh), neighbours(vertices.mesh, vertices.cloths.front(), vertices.cloths.back()),
+      near(vertices.mesh), neighbours(ringlet::neighbours(vertices.mesh, vertices.cloths.front(), vertices.cloths.back())),
       given(vertices.positions) {
     for (const SceneCloth &cloth : cloths) pinned_to.push_back(cloth.pinned_to);
     touched.assign(cloths.size(), -1);
