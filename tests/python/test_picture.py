@@ -175,6 +175,26 @@ def test_a_still_tells_how_far_it_is_and_keeps_to_its_time(tmp_path: Path) -> No
     assert len(told) == 3  # the beginning, one pass, and the word that it is over
 
 
+@pytest.mark.parametrize("samples", [4, 40])
+def test_a_still_that_time_may_cut_short_is_traced_in_smaller_passes(tmp_path: Path, samples: int) -> None:
+    """Noise is known from three passes on: they take no longer than two would without a limit, save of few samples."""
+    passes = {}
+    for seconds in (None, 1e9):
+        told: list[int] = []
+        still(
+            [],
+            tuft(4),
+            tmp_path / "a.png",
+            width=16,
+            height=16,
+            samples=samples,
+            seconds=seconds,
+            progress=lambda _, done, total, told=told: told.append(done),
+        )
+        passes[seconds] = told[-1]
+    assert passes[1e9] >= (4 if samples == 4 else 1.5 * passes[None])
+
+
 def seen(passes: np.ndarray) -> Passes:
     """Passes of one picture, shape (count, height, width, 4)."""
     added = Passes()

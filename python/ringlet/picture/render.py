@@ -49,8 +49,8 @@ HAIRS = "hairs"
 THINNEST = 0.3
 
 # Samples per pixel of one pass: enough for them to be spread evenly over a pixel and over the lights, few enough for
-# some passes to compare.
-MOST_PER_PASS, FEWEST_PASSES = 8, 4
+# some passes to compare. What the time may cut short has smaller ones, since noise is known from three passes on.
+MOST_PER_PASS, MOST_AGAINST_TIME, FEWEST_PASSES = 8, 4, 4
 
 # How much of its noise hair keeps: single hairs are as small as noise, and would go with it.
 GRAIN = 0.68
@@ -148,7 +148,8 @@ def trace(
     progress: called with "picture", the passes done and to do
     """
     mi = mitsuba()
-    per_pass = min(max(samples // FEWEST_PASSES, 1), MOST_PER_PASS)
+    most = MOST_PER_PASS if seconds is None else MOST_AGAINST_TIME
+    per_pass = min(max(samples // FEWEST_PASSES, 1), most)
     passes = -(-samples // per_pass)
     began = time.monotonic()
     seen, done = Passes(), 0
