@@ -139,6 +139,19 @@ def test_a_still_is_neither_black_nor_burnt_and_the_hair_darkens_the_wall(tmp_pa
     assert np.abs(image - pixels(empty)).max() > 40
 
 
+def test_what_is_behind_a_veil_is_seen_through_it(tmp_path: Path) -> None:
+    near, far = ball(at=(0.0, 0.0, 0.12)), ball(0.8, at=(0.0, -0.01, 0.0))
+    for body, color in ((near, (0.8, 0.02, 0.02)), (far, (0.02, 0.02, 0.8))):
+        body.mesh = Mesh(body.mesh.name, body.mesh.points, body.mesh.triangles, color=color)
+    blue = {}
+    for opacity in (1.0, 0.3):
+        near.opacity = opacity
+        path = still([near, far], tuft(2), tmp_path / "veil.png", width=48, height=48, samples=32, view="front")
+        middle = pixels(path)[40:, 20:28].mean(axis=(0, 1))  # where one is before the other
+        blue[opacity] = middle[2] / middle[0]
+    assert blue[0.3] > 2 * blue[1.0]
+
+
 def test_blond_hair_is_brighter_than_black(tmp_path: Path) -> None:
     hairs = tuft(60)
     camera = frame([hairs.points], view="front")

@@ -241,6 +241,15 @@ def test_a_picture_shows_what_touches_and_where_the_start_was_worst(touched, tmp
     refused(run("picture", touched, "--contacts", "gap", "--frame", 40, "-o", tmp_path / "a.png"), "frame 40", "1 to 4")
 
 
+def test_a_picture_of_what_touches_sees_through_cloth_and_nothing_else(touched, tmp_path, monkeypatch):
+    drawn = []
+    monkeypatch.setattr(ringlet.picture, "still", lambda bodies, *rest, **options: drawn.extend(bodies))
+    ringlet.write_touches_picture(touched, tmp_path / "a.png", frame=4)
+    seen_through = {body.mesh.name.split()[-1] for body in drawn if body.opacity < 1}
+    assert seen_through == {"/groom/cloths/wear/scarf"}
+    assert len(drawn) > 2
+
+
 def test_a_stage_without_contacts_is_refused(example, tmp_path):
     assert sim(example).exit_code == 0
     refused(

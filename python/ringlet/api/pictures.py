@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 
 LOCK_WIDTH = 8e-4  # of locks among their contacts: thinner ones are lost before skin in a quick picture [m]
+VEIL = 0.3  # opacity of cloth in a picture of contacts: most of them are behind it
 
 
 def write_still(
@@ -70,7 +71,8 @@ def write_touches_picture(
     seconds: float | None = None,
     progress: Progress | None = None,
 ) -> None:
-    """Draws what ``write_touches`` wrote, with the locks and the bodies around it, as coloured beads.
+    """Draws what ``write_touches`` wrote, with the locks and the bodies around it, as coloured beads;
+    cloth is seen through, since most of what touches it is behind it.
 
     show:  ``force``: where how hard, from blue to red over three decades, up to the strongest in a hundred;
            ``gap``: red where hardly anything is left;
@@ -85,7 +87,7 @@ def write_touches_picture(
     locks = read_groom(stage).locks
     with io.open_cache(stage) as cache:
         at = cache.frames[0] if frame is None else frame
-        posed_locks, start = cache.points(at), cache.start
+        posed_locks, start, cloths = cache.points(at), cache.start, cache.cloth_prims
     places, part = touches.places, 0.009  # of the picture's size
     if show == "gap":
         colors = io.heat(1.0 - np.clip(touches.gap, 0.0, 1.0))
@@ -93,7 +95,8 @@ def write_touches_picture(
         places, depth = io.start_marks(start)
         colors = io.heat(depth)
     bodies, _, _ = io.read_stage(stage, float(at))
-    posed = [picture.PosedBody(body.mesh, body.clip.points[0]) for body in bodies]
+    veils = [VEIL if body.mesh.name.rsplit(" ", 1)[-1] in cloths else 1.0 for body in bodies]
+    posed = [picture.PosedBody(body.mesh, body.clip.points[0], veil) for body, veil in zip(bodies, veils, strict=True)]
     if len(places):
         posed.append(picture.beads(places, colors, part * float(np.ptp(posed_locks, axis=0).max())))
     picture.still(

@@ -17,12 +17,14 @@ from ringlet.mesh import Mesh
 class PosedBody:
     """A mesh at one frame.
 
-    mesh:   triangles, name and colour
-    points: positions at that frame [m], shape (n, 3)
+    mesh:    triangles, name and colour
+    points:  positions at that frame [m], shape (n, 3)
+    opacity: from 0 to 1; below 1, what is behind it is seen through it
     """
 
     mesh: Mesh
     points: NDArray[np.floating]
+    opacity: float = 1.0
 
     def __post_init__(self) -> None:
         if self.points.shape != self.mesh.points.shape:
@@ -51,7 +53,7 @@ def made_of(mesh: Mesh) -> str:
     return next((kind for kind, pattern in _MADE_OF if re.search(pattern, name)), "matte")
 
 
-def material(mesh: Mesh) -> dict[str, Any]:
+def material(mesh: Mesh, opacity: float = 1.0) -> dict[str, Any]:
     """The Mitsuba material of a mesh, coloured by its display colour and guessed from its name."""
     color: dict[str, Any] = {"type": "rgb", "value": [float(np.clip(c, 0.0, 1.0)) for c in mesh.color]}
     if mesh.colors is not None:
@@ -63,4 +65,5 @@ def material(mesh: Mesh) -> dict[str, Any]:
         "cloth": {"roughness": 0.9, "specular": 0.15, "sheen": 0.5, "sheen_tint": 0.5},
         "matte": {"roughness": 0.8, "specular": 0.2},
     }
-    return {"type": "twosided", "bsdf": {"type": "principled", "base_color": color, **look[made_of(mesh)]}}
+    made = {"type": "twosided", "bsdf": {"type": "principled", "base_color": color, **look[made_of(mesh)]}}
+    return made if opacity == 1.0 else {"type": "mask", "opacity": opacity, "bsdf": made}

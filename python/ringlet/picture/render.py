@@ -193,7 +193,7 @@ def over_backdrop(image: NDArray[np.float32]) -> NDArray[np.floating]:
 def _mesh(mi: Any, body: PosedBody, target: NDArray[np.float64], scale: float) -> Any:
     mesh = body.mesh
     properties = mi.Properties()
-    properties["bsdf"] = mi.load_dict(material(mesh))
+    properties["bsdf"] = mi.load_dict(material(mesh, body.opacity))
     shape = mi.Mesh(mesh.name, len(mesh.points), len(mesh.triangles), has_vertex_normals=True, props=properties)
     if mesh.colors is not None:
         shape.add_attribute(COLORS, 3, np.clip(mesh.colors, 0.0, 1.0).astype(np.float32).ravel())

@@ -104,6 +104,11 @@ class CacheFile:
             raise UserError(f"{self._source.path}: has no frame from {frames[0]:g} to {frames[1]:g}; it holds {held}")
         return chosen
 
+    @property
+    def cloth_prims(self) -> set[str]:
+        """The paths in the stage of the cloths that moved with the locks."""
+        return {cloth["at"] for cloth in self._cloths}
+
     def cloths(self) -> list[CachedCloth]:
         """The cloths that moved with the locks, at all frames."""
         return [read_cloth(self._source, cloth, self.frames.tolist()) for cloth in self._cloths]
