@@ -64,12 +64,14 @@ def equilibrium(
     *,
     obstacles: Sequence[Obstacle] = (),
     borne: Array | None = None,
+    frames: Array | None = None,
     progress: Progress | None = None,
 ) -> Loft:
     """Finds what the locks of ``groom`` must remember to be still as groomed, under the forces of ``shot``.
 
     obstacles: what locks may lie on, where the shot has contact, in the rest pose
     borne:     what ``bearing`` says of these locks, where they are some of a groom [N], shape (n, 3)
+    frames:    their directors where they were groomed, shape (n, 3), where they are known
 
     A lock that would fall is stiffened, up to ``rest.stiffen`` times; one that falls even so keeps its stiffness and
     its groomed shape, or what hangs ten times nearer to it.
@@ -77,9 +79,10 @@ def equilibrium(
     locks = groom.locks
     locks.check("loft: locks")
     _check(shot, locks)
-    borne = bearing(shot, groom, obstacles) if borne is None else borne
     strands, most = make_strands(shot, groom), shot.rest.stiffen
-    held_up, frames = borne + _drawn(shot, groom, strands), strands.directors
+    frames = strands.directors.copy() if frames is None else frames
+    borne = bearing(shot, groom, obstacles, strands) if borne is None else borne
+    held_up = borne + _drawn(shot, groom, strands)
     going, soft, factor = np.ones(len(locks), bool), np.zeros(len(locks), bool), np.ones(len(locks))
     made = _nothing_tried(groom, borne)
 
@@ -153,9 +156,12 @@ def _check(shot: Shot, locks: Curves) -> None:
         raise UserError(f"loft: held is {shot.held}, but a lock has {locks.counts.min()} points; hold fewer")
 
 
-def bearing(shot: Shot, groom: Groom, obstacles: Sequence[Obstacle]) -> Array:
-    """What bears the locks of a groom where they were groomed: bodies, nails and one another [N], shape (n, 3)."""
-    strands = make_strands(shot, groom)
+def bearing(shot: Shot, groom: Groom, obstacles: Sequence[Obstacle], strands: Strands | None = None) -> Array:
+    """What bears the locks of a groom where they were groomed: bodies, nails and one another [N], shape (n, 3).
+
+    strands: those locks, there, as ``support`` takes them; by default they are made
+    """
+    strands = make_strands(shot, groom) if strands is None else strands
     return support(shot, groom.locks, strands, loads(shot, strands) + _drawn(shot, groom, strands), obstacles)
 
 

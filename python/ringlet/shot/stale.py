@@ -62,11 +62,12 @@ def preload(
     *,
     obstacles: Sequence[Obstacle] = (),
     borne: NDArray[np.float64] | None = None,
+    frames: NDArray[np.float64] | None = None,
     progress: Progress | None = None,
 ) -> Loft:
     """The rest shape that a shot asks for; one that asks for none gets a loft. See ``equilibrium``."""
     if _mode(shot) == "equilibrium":
-        return equilibrium(shot, groom, obstacles=obstacles, borne=borne, progress=progress)
+        return equilibrium(shot, groom, obstacles=obstacles, borne=borne, frames=frames, progress=progress)
     return loft(shot, groom, progress=progress)
 
 
@@ -113,13 +114,17 @@ def refresh(
         return preload(shot, groom, obstacles=obstacles, borne=whole.borne if same else None, progress=progress)
     if not changed.any():
         return whole
-    borne = None
+    borne, known = None, {}
     if whole.borne is not None:
-        borne = bearing(shot, groom, obstacles)
-        changed |= _borne_otherwise(shot, groom, whole.borne, borne)
+        strands = make_strands(shot, groom)
+        frames = strands.directors.copy()
+        borne = bearing(shot, groom, obstacles, strands)
+        changed |= _borne_otherwise(loads(shot, strands), groom.locks, whole.borne, borne)
+        known = {"borne": borne, "frames": frames}
     rows = np.repeat(changed, groom.locks.counts)
     part = replace(groom, locks=groom.locks.take(changed))
-    part = preload(shot, part, obstacles=obstacles, borne=borne if borne is None else borne[rows], progress=progress)
+    of_part = {name: values[rows] for name, values in known.items()}
+    part = preload(shot, part, obstacles=obstacles, **of_part, progress=progress)
     whole.rest.points[rows], whole.lofted[rows] = part.rest.points, part.lofted
     whole.off[changed], whole.moving[changed] = part.off, part.moving
     if whole.stiffened is not None and part.stiffened is not None:
@@ -139,12 +144,11 @@ def _weight_and_rests(made: dict[str, Any]) -> dict[str, Any]:
 
 
 def _borne_otherwise(
-    shot: Shot, groom: Groom, before: NDArray[np.float64], now: NDArray[np.float64]
+    pulls: NDArray[np.float64], locks: Curves, before: NDArray[np.float64], now: NDArray[np.float64]
 ) -> NDArray[np.bool_]:
     """Which locks are borne otherwise than before, since those that they touch have changed, shape (count,)."""
-    pull = np.linalg.norm(loads(shot, make_strands(shot, groom)), axis=1)
-    weight = np.add.reduceat(pull, groom.locks.offsets[:-1])
-    return per_lock(groom.locks, np.linalg.norm(now - before, axis=1)) > BARELY * weight
+    weight = np.add.reduceat(np.linalg.norm(pulls, axis=1), locks.offsets[:-1])
+    return per_lock(locks, np.linalg.norm(now - before, axis=1)) > BARELY * weight
 
 
 def same_locks(kept: Curves, groom: Groom) -> bool:

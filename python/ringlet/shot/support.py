@@ -57,7 +57,7 @@ class Ways:
 def support(shot: Shot, locks: Curves, strands: Strands, loads: Array, obstacles: Sequence[Obstacle]) -> Array:
     """The forces [N] that bear locks where they were groomed, at their vertices, shape (n, 3).
 
-    strands: the locks, with their stiffness, where they were groomed
+    strands: the locks, with their stiffness, where they were groomed; what touches them may move them a little
     loads:   what pulls at them besides [N], shape (n, 3)
     """
     forces, contact = np.zeros_like(loads), shot.touching
@@ -124,7 +124,6 @@ def _touching(
     before, count = scene.positions.copy(), len(locks.points)
     scene.step(before[:count], INSTANT, solver=Solver(newton=1))
     vertices, values = scene.contacts
-    strands.place(before[:count])
 
     weights, of_lock = values[:, :4], vertices < count
     body = np.searchsorted(np.cumsum([count, *map(len, surfaces)]), vertices.max(axis=1), side="right")  # 0: of locks
