@@ -47,11 +47,12 @@ template <size_t N, size_t M> float less(const CollisionMesh &mesh, const std::a
 
 } // namespace
 
-BroadPhase::BroadPhase(const CollisionMesh &mesh)
-    : mesh_(mesh), edges_of_(primitives_of(mesh.moves.size(), mesh.edges)),
-      triangles_of_(primitives_of(mesh.moves.size(), mesh.triangles)) {
-    for (int v : mesh.points) points_.push_back({v});
-    points_of_ = primitives_of(mesh.moves.size(), points_);
+BroadPhase::BroadPhase(const CollisionMesh &mesh) : mesh_(mesh), incidence_(mesh) {
+    point_of_.assign(mesh.moves.size(), -1);
+    for (int v : mesh.points) {
+        point_of_[v] = int(points_.size());
+        points_.push_back({v});
+    }
 }
 
 void BroadPhase::find(const PathBoxes &ways, Candidates &candidates, View<unsigned char> changed) {
@@ -74,27 +75,27 @@ void BroadPhase::find(const PathBoxes &ways, Candidates &candidates, View<unsign
 
 void BroadPhase::find_quick(const PathBoxes &ways, const PathBoxes &homes, View<unsigned char> quick,
                             View<unsigned char> changed, Candidates &candidates) {
-    std::vector<int> stale; // vertices that are to be boxed anew
-    for (int v = 0; v < int(quick.size()); ++v) {
-        const bool was_away = away_[v] != 0;
+    stale_ = away_;
+    for (size_t v = 0; v < quick.size(); ++v) {
         away_[v] = quick[v] || changed[v];
-        if (was_away || away_[v]) stale.push_back(v);
+        stale_[v] |= away_[v];
     }
-    std::vector<int> of_stale;
-    const auto refit = [&](MovingTree &tree, const VertexLists &lists, const auto &primitives, const auto &box_of) {
+    const Affected stale(mesh_, incidence_, stale_);
+    const auto refit = [&](MovingTree &tree, const std::vector<int> &some, const auto &primitives, const auto &box_of) {
         if (primitives.empty()) return;
-        of_stale.clear();
-        for (const int v : stale) of_stale.insert(of_stale.end(), lists.of(v).begin(), lists.of(v).end());
-        tree.refit(of_stale, [&](int i) {
+        tree.refit(some, [&](int i) {
             MovingBox box = box_of(any_of(quick, primitives[i]) ? ways : homes, primitives[i], i);
             box.count(any_of(changed, primitives[i]));
             return box;
         });
     };
-    refit(edge_tree_, edges_of_, mesh_.edges, [](const PathBoxes &boxes, const auto &, int i) { return boxes.of_edge(i); });
-    refit(point_tree_, points_of_, points_,
+    refit(edge_tree_, stale.edges, mesh_.edges, [](const PathBoxes &boxes, const auto &, int i) { return boxes.of_edge(i); });
+    std::vector<int> points;
+    for (const int v : stale.vertices)
+        if (point_of_[v] >= 0) points.push_back(point_of_[v]);
+    refit(point_tree_, points, points_,
           [](const PathBoxes &boxes, const auto &point, int) { return boxes.of_vertex(point[0]); });
-    refit(triangle_tree_, triangles_of_, mesh_.triangles,
+    refit(triangle_tree_, stale.triangles, mesh_.triangles,
           [](const PathBoxes &boxes, const auto &, int i) { return boxes.of_triangle(i); });
     search_all(ways.still(), candidates);
     const auto neither = [&](const auto &a, const auto &b) { return !any_of(quick, a) && !any_of(quick, b); };

@@ -30,6 +30,7 @@ public:
     void find_quick(const PathBoxes &ways, const PathBoxes &homes, View<unsigned char> quick, View<unsigned char> changed,
                     Candidates &candidates);
 
+    const Incidence &incidence() const { return incidence_; }
     int built() const { return edge_tree_.built(); } // how often the tree of edges was built, for studies
 
 private:
@@ -42,11 +43,12 @@ private:
 
     const CollisionMesh &mesh_;
     std::vector<std::array<int, 1>> points_;
-    VertexLists edges_of_, points_of_, triangles_of_; // each vertex
+    std::vector<int> point_of_; // a vertex; −1: none
+    Incidence incidence_;
     MovingTree edge_tree_, triangle_tree_, point_tree_;
     std::vector<Pairs> found_; // by each task
 
-    std::vector<unsigned char> away_; // vertices: boxed apart from find(), or changed
+    std::vector<unsigned char> away_, stale_; // vertices: boxed apart from find(), or changed; that are to be boxed anew
 };
 
 } // namespace ringlet

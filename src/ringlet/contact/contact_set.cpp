@@ -48,23 +48,38 @@ std::vector<Place> places(const CollisionMesh &mesh, const Touch &touch, View<Ve
     return all;
 }
 
+// Which vertices a pair has, and with what weights they say where it touches.
+struct Sides {
+    std::array<int, 4> vertex;
+    std::array<double, 4> weight;
+    int first; // of these are the first's
+};
+
+Sides sides(const CollisionMesh &mesh, const Touch &touch, const ClosestPoints &nearest) {
+    Sides sides{{}, nearest.weights, touch.of_edges ? 2 : 1};
+    with_vertices(mesh, touch, [&](const auto &a, const auto &b) {
+        std::copy(b.begin(), b.end(), std::copy(a.begin(), a.end(), sides.vertex.begin()));
+    });
+    return sides;
+}
+
 // Of its softer side. What is held, beside what moves, is as soft as that: where one end of an edge is held, and touches, the
 // other is not to be pushed without bound.
-double stiffness(const Contact &contact, const ContactMaterial &material) {
+double stiffness(const Sides &sides, const ContactMaterial &material) {
     const auto of_side = [&](int begin, int end) {
         double softest = std::numeric_limits<double>::infinity(), softness = 0.0;
-        for (int i = begin; i < end; ++i) softest = std::min(softest, material.stiffness[contact.vertex[i]]);
+        for (int i = begin; i < end; ++i) softest = std::min(softest, material.stiffness[sides.vertex[i]]);
         for (int i = begin; i < end; ++i) {
-            const double own = material.stiffness[contact.vertex[i]];
-            softness += std::abs(contact.weight[i]) / (std::isfinite(own) ? own : softest);
+            const double own = material.stiffness[sides.vertex[i]];
+            softness += std::abs(sides.weight[i]) / (std::isfinite(own) ? own : softest);
         }
         return 1.0 / softness;
     };
-    return std::min(of_side(0, contact.first), of_side(contact.first, 4));
+    return std::min(of_side(0, sides.first), of_side(sides.first, 4));
 }
 
 // Work for those of `now` whose pairs `before` has, both in order.
-template <class Known, class Work>
+template <class Known, class Contact, class Work>
 void for_known(const std::vector<Known> &before, std::vector<Contact> &now, const Work &work) {
     auto known = before.begin();
     for (Contact &contact : now) {
@@ -115,47 +130,61 @@ void ContactSet::hold(View<Vec3> now) {
     }
 }
 
+// Calls work(where it pushes, at what distance, from which distance on [m], where its barrier ends [m]).
+template <class Work>
+void ContactSet::for_places(const CollisionMesh &mesh, const Touch &touch, View<Vec3> now, const Work &work) const {
+    const auto early = early_.find(name(touch));
+    const double distance = early == early_.end() ? touch.distance : std::min(touch.distance, early->second.push);
+    const bool by_planes = with_vertices(mesh, touch, [&](const auto &a, const auto &b) {
+        return goes_by_planes(mesh.object[a[0]]) || goes_by_planes(mesh.object[b[0]]);
+    });
+    for (const Place &place : places(mesh, touch, now)) {
+        const double apart = std::sqrt(place.nearest.distance2);
+        if (!(apart > 0.0 && apart < distance)) continue;
+        double barrier_end = distance / 2000;
+        if (by_planes) barrier_end = std::min(std::clamp(0.25 * apart, barrier_end, touch.distance / 64), distance / 64);
+        work(place, apart, distance, barrier_end);
+    }
+}
+
 std::vector<Contact> ContactSet::of_touching(const CollisionMesh &mesh, const ContactMaterial &material,
                                              const std::vector<Touch> &touching, View<Vec3> start, View<Vec3> now) const {
     std::vector<Contact> found = collect<Contact>(int(touching.size()), [&](int k, std::vector<Contact> &contacts) {
         const Touch &touch = touching[k];
-        const auto early = early_.find(name(touch));
-        const double distance = early == early_.end() ? touch.distance : std::min(touch.distance, early->second.push);
-        for (const Place &place : places(mesh, touch, now)) {
-            const double apart = std::sqrt(place.nearest.distance2);
-            if (!(apart > 0.0 && apart < distance)) continue;
+        for_places(mesh, touch, now, [&](const Place &place, double apart, double distance, double barrier_end) {
+            const Sides of = sides(mesh, touch, place.nearest);
             Contact contact{};
-            with_vertices(mesh, touch, [&](const auto &a, const auto &b) {
-                std::copy(a.begin(), a.end(), contact.vertex.begin());
-                std::copy(b.begin(), b.end(), contact.vertex.begin() + a.size());
-                contact.first = int(a.size());
-            });
-            contact.weight = place.nearest.weights;
+            contact.vertex = of.vertex, contact.weight = of.weight, contact.first = of.first;
             contact.distance = distance;
-            contact.barrier_end = distance / 2000;
-            if (goes_by_planes(mesh.object[contact.vertex[0]]) || goes_by_planes(mesh.object[contact.vertex[3]]))
-                contact.barrier_end =
-                    std::min(std::clamp(0.25 * apart, contact.barrier_end, touch.distance / 64), distance / 64);
+            contact.barrier_end = barrier_end;
             contact.normal = separation(contact, now) / apart;
             contact.start = separation(contact, start);
-            contact.stiffness = place.share * stiffness(contact, material);
+            contact.stiffness = place.share * stiffness(of, material);
             contact.friction =
-                material
-                    .friction[material.material[contact.vertex[0]] * material.materials + material.material[contact.vertex[3]]];
+                material.friction[material.material[of.vertex[0]] * material.materials + material.material[of.vertex[3]]];
             contact.give = material.give;
             contact.force = contact_force(contact, separation(contact, now));
             contact.pair = name(touch, place.which);
             contacts.push_back(contact);
-        }
+        });
     });
     for_known(held_, found, go_on);
     return found;
 }
 
-std::vector<Contact> ContactSet::pushing(const CollisionMesh &mesh, const ContactMaterial &material,
-                                         const std::vector<Touch> &touching, View<Vec3> start, View<Vec3> elsewhere) const {
-    std::vector<Contact> found = of_touching(mesh, material, touching, start, elsewhere);
-    for_known(contacts_, found, [](const Contact &contact, Contact &there) { there.stiffness = contact.stiffness; });
+std::vector<ContactSet::Push> ContactSet::pushing(const CollisionMesh &mesh, const ContactMaterial &material,
+                                                  const std::vector<Touch> &touching, View<Vec3> elsewhere) const {
+    std::vector<Push> found = collect<Push>(int(touching.size()), [&](int k, std::vector<Push> &pushes) {
+        const Touch &touch = touching[k];
+        for_places(mesh, touch, elsewhere, [&](const Place &place, double apart, double distance, double barrier_end) {
+            const Sides of = sides(mesh, touch, place.nearest);
+            pushes.push_back({name(touch, place.which),
+                              {mesh.object[of.vertex[0]], mesh.object[of.vertex[3]]},
+                              place.share * stiffness(of, material),
+                              contact_potential(apart, distance, barrier_end).value});
+        });
+    });
+    for_known(contacts_, found, [](const Contact &contact, Push &there) { there.stiffness = contact.stiffness; });
     return found;
 }
 

@@ -55,9 +55,16 @@ public:
     // are overstepped then: their barriers end early.
     void go_by_planes(View<unsigned char> objects) { by_planes_.assign(objects.begin(), objects.end()); }
 
-    // What pushes elsewhere: those that touch there. What is a contact is as stiff as here, so that energies can be compared.
-    std::vector<Contact> pushing(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<Touch> &touching,
-                                 View<Vec3> start, View<Vec3> elsewhere) const;
+    // What pushes elsewhere, of those that touch there. What is a contact is as stiff as here, so that energies can be
+    // compared.
+    struct Push {
+        uint64_t pair;
+        std::array<int, 2> objects;
+        double stiffness, potential;                            // [N/m], [m²]
+        double energy() const { return stiffness * potential; } // [J]
+    };
+    std::vector<Push> pushing(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<Touch> &touching,
+                              View<Vec3> elsewhere) const;
 
     // Goes over to the contacts of those that touch at the positions `now`; `start` says where the step began, for how they
     // were sheared since. Friction's normal force is what was expected of the pair before, nothing if it is new: what a contact
@@ -77,6 +84,8 @@ public:
     const std::vector<int> &vertices() const { return vertices_; } // those that move and have contacts
 
 private:
+    template <class Work>
+    void for_places(const CollisionMesh &mesh, const Touch &touch, View<Vec3> now, const Work &work) const;
     std::vector<Contact> of_touching(const CollisionMesh &mesh, const ContactMaterial &material,
                                      const std::vector<Touch> &touching, View<Vec3> start, View<Vec3> now) const;
     void index(const CollisionMesh &mesh);

@@ -23,14 +23,14 @@ bool boxes_are_near(View<Vec3> x, const std::array<int, N> &a, const std::array<
     return !(above.cwiseMax(below).maxCoeff() > distance);
 }
 
-bool counts(const NearPair &pair, View<unsigned char> objects) {
+template <class Pair> bool counts(const Pair &pair, View<unsigned char> objects) {
     const auto counts = [&](int object) { return size_t(object) < objects.size() && objects[object] != 0; };
     return counts(pair.objects[0]) || counts(pair.objects[1]);
 }
 
 // Tells `measured` how far the two are apart, where that had to be measured [m].
-template <class Measured>
-void add_if_touching(const CollisionMesh &mesh, const NearPair &pair, View<Vec3> at, const Measured &measured,
+template <class Pair, class Measured>
+void add_if_touching(const CollisionMesh &mesh, const Pair &pair, View<Vec3> at, const Measured &measured,
                      std::vector<Touch> &found) {
     with_vertices(mesh, pair, [&](const auto &a, const auto &b) {
         if (!boxes_are_near(at, a, b, pair.distance)) return;
@@ -113,7 +113,7 @@ void NearPairs::note(View<Vec3> start, View<Vec3> end, double margin, double far
         broad_phase_.find(homes_, found);
         known_ = pairs_of(found);
     } else {
-        homes_.fit_anew(low_, high_, stray);
+        homes_.fit_anew(low_, high_);
         broad_phase_.find_quick(homes_, homes_, stray, stray, found);
         std::erase_if(known_, [&](const NearPair &pair) { return any_of(pair, stray); });
         merge(known_, pairs_of(found));
@@ -172,7 +172,7 @@ void NearPairs::set_out(View<Vec3> start, View<Vec3> end) {
 
 void NearPairs::set_out_anew(View<Vec3> start, View<Vec3> end, View<unsigned char> changed) {
     measure_ways(start, end);
-    ways_of_.fit_anew(start, end, changed);
+    ways_of_.fit_anew(start, end);
     if (any_quick_) {
         std::erase_if(passing_, [&](const NearPair &pair) { return any_of(pair, changed); });
         merge(passing_, look_for_quick(changed));
@@ -208,14 +208,19 @@ void NearPairs::arrive(View<Vec3> start, View<Vec3> end) {
 
 PairsInReach NearPairs::in_reach(View<unsigned char> objects) const {
     const auto look_at = [&](const NearPair &pair, PairsInReach &found) {
-        if (reach(pair) && counts(pair, objects)) found.push_back(&pair);
+        if (reach(pair) && counts(pair, objects))
+            found.push_back({pair.of,
+                             pair.of_edges,
+                             pair.objects,
+                             pair.distance,
+                             pair.apart - pair.distance,
+                             {first(pair).length, second(pair).length}});
     };
     PairsInReach all =
-        collect<const NearPair *>(int(may_touch_.size()), [&](int k, PairsInReach &found) { look_at(*may_touch_[k], found); });
-    const size_t known = all.size();
-    for (const NearPair &pair : passing_) look_at(pair, all);
-    std::inplace_merge(all.begin(), all.begin() + known, all.end(),
-                       [](const NearPair *a, const NearPair *b) { return before(*a, *b); });
+        collect<PairInReach>(int(may_touch_.size()), [&](int k, PairsInReach &found) { look_at(*may_touch_[k], found); });
+    PairsInReach passing;
+    for (const NearPair &pair : passing_) look_at(pair, passing);
+    merge(all, passing);
     return all;
 }
 
@@ -230,9 +235,14 @@ std::vector<Touch> NearPairs::touching(View<Vec3> positions) {
 }
 
 std::vector<Touch> touching(const CollisionMesh &mesh, const PairsInReach &pairs, View<Vec3> positions,
-                            View<unsigned char> objects) {
+                            View<unsigned char> objects, View<double> gone) {
+    const auto way = [&](const PairInReach &pair, int k) {
+        return size_t(pair.objects[k]) < gone.size() ? gone[pair.objects[k]] * pair.ways[k] : 0.0;
+    };
     return collect<Touch>(int(pairs.size()), [&](int k, std::vector<Touch> &found) {
-        if (counts(*pairs[k], objects)) add_if_touching(mesh, *pairs[k], positions, [](double) {}, found);
+        const PairInReach &pair = pairs[k];
+        if (counts(pair, objects) && pair.between < way(pair, 0) + way(pair, 1))
+            add_if_touching(mesh, pair, positions, [](double) {}, found);
     });
 }
 

@@ -26,7 +26,17 @@ struct Touch {
     ClosestPoints nearest;
 };
 
-using PairsInReach = std::vector<const NearPair *>;
+// Two that may touch on a move.
+struct PairInReach {
+    std::array<int, 2> of;
+    bool of_edges;
+    std::array<int, 2> objects;
+    double distance;            // r [m]
+    double between;             // no less is between them at the start, less r [m]
+    std::array<double, 2> ways; // how far each goes at most [m]
+};
+
+using PairsInReach = std::vector<PairInReach>;
 
 // A pair that is known is apart by what was measured last, less what its two have moved since, on each move by themselves or,
 // once they have arrived, relative to one another: while that is enough, nothing has to be computed. Pairs are noted for
@@ -93,9 +103,10 @@ private:
     std::vector<NearPair *> may_meet_;
 };
 
-// Those that touch there, in order, of pairs with one of the objects that count.
+// Those that touch there, in order, of pairs with one of the objects that count, each of which has gone that part of its way;
+// objects beyond these neither count nor go.
 std::vector<Touch> touching(const CollisionMesh &mesh, const PairsInReach &pairs, View<Vec3> positions,
-                            View<unsigned char> objects);
+                            View<unsigned char> objects, View<double> gone);
 
 // By how much two primitives that move straight can at most come nearer: what they move by together does not count [m].
 template <size_t N, size_t M>

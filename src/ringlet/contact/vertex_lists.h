@@ -43,4 +43,36 @@ template <size_t N> VertexLists primitives_of(size_t vertices, const std::vector
             }};
 }
 
+// Which primitives of a mesh have a vertex.
+struct Incidence {
+    VertexLists edges, triangles;
+
+    explicit Incidence(const CollisionMesh &mesh)
+        : edges(primitives_of(mesh.moves.size(), mesh.edges)), triangles(primitives_of(mesh.moves.size(), mesh.triangles)) {}
+};
+
+// Some vertices, and the primitives that have any of them, each once.
+struct Affected {
+    std::vector<int> vertices, edges, triangles;
+
+    Affected() = default;
+
+    // By vertices that are marked.
+    Affected(const CollisionMesh &mesh, const Incidence &incidence, View<unsigned char> marked) {
+        const auto add = [&](int v, const VertexLists &lists, const auto &primitives, std::vector<int> &affected) {
+            for (const int i : lists.of(v)) {
+                const auto first =
+                    std::find_if(primitives[i].begin(), primitives[i].end(), [&](int w) { return marked[w] != 0; });
+                if (*first == v) affected.push_back(i);
+            }
+        };
+        for (int v = 0; v < int(marked.size()); ++v)
+            if (marked[v]) {
+                vertices.push_back(v);
+                add(v, incidence.edges, mesh.edges, edges);
+                add(v, incidence.triangles, mesh.triangles, triangles);
+            }
+    }
+};
+
 } // namespace ringlet

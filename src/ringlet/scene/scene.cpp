@@ -144,7 +144,7 @@ SceneCarriers Scene::Parts::carriers(std::vector<int> &of_cloths, double dt) con
 // the way that is.
 double Scene::Parts::filter(View<Vec3> now, std::vector<Vec3> &to, const MoveKind &kind, SceneReport &report) {
     const Stopwatch watch(report.time_filter);
-    constexpr double far = 0.1; // [m]: a corridor as long as that holds too many
+    constexpr double far = 0.3; // [m]: a corridor as long as that holds too many
     if (kind.still && kind.shortened.empty()) near.note(now, to, 0.5 * settings.strand_radius, far);
     const SceneCarry with = carry();
     const FilterScene scene{vertices.mesh,
@@ -247,7 +247,8 @@ int Scene::Parts::newton(const SceneStep &scene_step, const StrandStep &step, st
             for (size_t i = 0; i < system.size(); ++i) direction[i] = found[i] - x[i];
             std::vector<double> unused;
             const PairsInReach in_reach = near.in_reach(system.active_parts());
-            system.energies(x, &in_reach, std::vector<unsigned char>(vertices.parts(), 1), unused);
+            system.energies(x, &in_reach, std::vector<double>(vertices.parts(), 0.0),
+                            std::vector<unsigned char>(vertices.parts(), 1), unused);
         } else {
             tried = worth_going(system, x, direction);
             for (size_t p = 0; p < tried.size() && iteration < step.newton; ++p)

@@ -131,7 +131,8 @@ SceneSearch search(SceneSystem &system, const NearPairs *near, const AlignedVect
     const PairsInReach *pairs = near != nullptr ? &in_reach : nullptr;
     std::vector<double> now, before;
     std::vector<unsigned char> changed(parts, 0), rises(parts), any_rises(parts);
-    system.energies(x, pairs, changed, before); // parts were asked at x already
+    const std::vector<double> nowhere(parts, 0.0);
+    system.energies(x, pairs, nowhere, changed, before); // parts were asked at x already
     const std::vector<double> slope = slopes(system, direction);
     const std::vector<unsigned char> uphill = lead_uphill(system, slope, before, all_of_it);
     const auto allowed = [&](int part) { // of the energy, were it alone
@@ -146,7 +147,7 @@ SceneSearch search(SceneSystem &system, const NearPairs *near, const AlignedVect
     changed.assign(parts, 1);
     for (int cut = 0; cut <= most_cuts; ++cut) {
         move(system, x, step, direction, changed, trial);
-        system.energies(trial, pairs, changed, now);
+        system.energies(trial, pairs, step, changed, now);
         std::fill(excess.begin(), excess.end(), 0.0);
         std::fill(any_rises.begin(), any_rises.end(), 0);
         for (int p = 0; p < parts; ++p)
@@ -175,7 +176,7 @@ SceneSearch search(SceneSystem &system, const NearPairs *near, const AlignedVect
         }
     }
     changed.assign(parts, 1);
-    system.energies(x, pairs, changed, now);
+    system.energies(x, pairs, nowhere, changed, now);
     return result;
 }
 

@@ -106,10 +106,12 @@ void SceneSystem::from_lanes(int unit, const double *of_lanes, std::vector<doubl
     for (int lane = 0; lane < group.count; ++lane) of_parts[group.strands[lane]] = of_lanes[lane];
 }
 
-void SceneSystem::evaluate(int unit, const AlignedVector &x) {
+void SceneSystem::evaluate(int unit, const AlignedVector &x, bool to_assemble) {
     double energies[most_lanes] = {};
-    if (unit < group_count())
+    if (unit < group_count() && to_assemble)
         strands.evaluate(unit, x, energies);
+    else if (unit < group_count())
+        strands.energies(unit, x, energies);
     else
         energies[0] = cloths[unit - group_count()].energy(x.data() + unit_begin(unit));
     from_lanes(unit, energies, own_energies_);
@@ -121,18 +123,18 @@ std::vector<unsigned char> SceneSystem::active_parts() const {
     return active;
 }
 
-void SceneSystem::energies(const AlignedVector &x, const PairsInReach *pairs, const std::vector<unsigned char> &changed,
-                           std::vector<double> &of) {
+void SceneSystem::energies(const AlignedVector &x, const PairsInReach *pairs, const std::vector<double> &gone,
+                           const std::vector<unsigned char> &changed, std::vector<double> &of) {
     std::vector<unsigned char> asked(unit_count(), 0);
     for (int p = 0; p < vertices.parts(); ++p)
         if (changed[p]) asked[unit_of(p)] = 1;
     for_units([&](int u) {
-        if (asked[u]) evaluate(u, x);
+        if (asked[u]) evaluate(u, x, false);
     });
 #pragma omp parallel for schedule(static)
     for (int v = 0; v < vertices.moving_vertices(); ++v)
         if (changed[vertices.part_of(v)]) places_[v] = position(x, v);
-    share_contacts(pairs, changed);
+    share_contacts(pairs, gone, changed);
     of = own_energies_;
     for (const Lift &lift : lifts) {
         const double below = lift.below(places_[lift.vertex]);
@@ -149,7 +151,8 @@ void SceneSystem::energies(const AlignedVector &x, const PairsInReach *pairs, co
 }
 
 // Energies of contacts, anew where one of the two parts has changed.
-void SceneSystem::share_contacts(const PairsInReach *pairs, const std::vector<unsigned char> &changed) {
+void SceneSystem::share_contacts(const PairsInReach *pairs, const std::vector<double> &gone,
+                                 const std::vector<unsigned char> &changed) {
     const std::vector<Contact> &all = contacts.contacts();
     if (contacts_found_) rubbed_.assign(all.size(), 0.0);
     const bool of_all = contacts_found_ || asked_planes_ != (pairs == nullptr);
@@ -159,15 +162,16 @@ void SceneSystem::share_contacts(const PairsInReach *pairs, const std::vector<un
     for (int p = 0; p < vertices.parts(); ++p) anew[p] = is_active(p) && (of_all || changed[p]);
     const auto is_anew = [&](int a, int b) { return (a >= 0 && anew[a]) || (b >= 0 && anew[b]); };
     std::erase_if(pushed_, [&](const Shared &push) { return is_anew(push.a, push.b); });
-    const auto push = [&](const Contact &c) {
-        const int a = vertices.part_of(c.vertex[0]), b = vertices.part_of(c.vertex[3]);
-        if (is_anew(a, b)) pushed_.push_back({a, b, push_energy(c, separation(c, places_))});
-    };
     if (pairs != nullptr) {
-        const std::vector<Touch> there = touching(vertices.mesh, *pairs, places_, anew);
-        for (const Contact &c : contacts.pushing(vertices.mesh, vertices.material, there, vertices.positions, places_)) push(c);
+        const auto part = [&](int object) { return object < vertices.parts() ? object : -1; };
+        const std::vector<Touch> there = touching(vertices.mesh, *pairs, places_, anew, gone);
+        for (const ContactSet::Push &push : contacts.pushing(vertices.mesh, vertices.material, there, places_))
+            pushed_.push_back({part(push.objects[0]), part(push.objects[1]), push.energy()});
     } else {
-        for (const Contact &c : all) push(c);
+        for (const Contact &c : all) {
+            const int a = vertices.part_of(c.vertex[0]), b = vertices.part_of(c.vertex[3]);
+            if (is_anew(a, b)) pushed_.push_back({a, b, push_energy(c, separation(c, places_))});
+        }
     }
     for (size_t c = 0; c < all.size(); ++c)
         if (is_anew(vertices.part_of(all[c].vertex[0]), vertices.part_of(all[c].vertex[3])))
@@ -197,7 +201,7 @@ void SceneSystem::linearise(const AlignedVector &x) {
 }
 
 void SceneSystem::assemble(int unit, const AlignedVector &x) {
-    evaluate(unit, x);
+    evaluate(unit, x, true);
     if (unit < group_count())
         strands.assemble(unit, x);
     else

@@ -87,10 +87,10 @@ public:
 
     // Energies [J] of the parts at x, somewhere on the last move: each with its share of what pushes there, be it a contact yet
     // or not (without `pairs`, all that may touch there: of what its contacts push, by their planes), and of the contacts'
-    // friction. Only parts that have `changed` since this was last asked, or since they were assembled, are asked again, and
-    // contacts only of these.
-    void energies(const AlignedVector &x, const PairsInReach *pairs, const std::vector<unsigned char> &changed,
-                  std::vector<double> &of_parts);
+    // friction. `gone` says which part of its way each part is there. Only parts that have `changed` since this was last asked,
+    // or since they were assembled, are asked again, and contacts only of these.
+    void energies(const AlignedVector &x, const PairsInReach *pairs, const std::vector<double> &gone,
+                  const std::vector<unsigned char> &changed, std::vector<double> &of_parts);
 
     void linearise(const AlignedVector &x);          // the contacts, before units are assembled
     void assemble(int unit, const AlignedVector &x); // its own energy, the gradient and A
@@ -120,8 +120,8 @@ private:
         return {touched_.data() + touched_begin_[unit], touched_.data() + touched_begin_[unit + 1]};
     }
     void find_planes(const std::vector<Touch> &touching);
-    void share_contacts(const PairsInReach *pairs, const std::vector<unsigned char> &changed);
-    void evaluate(int unit, const AlignedVector &x);
+    void share_contacts(const PairsInReach *pairs, const std::vector<double> &gone, const std::vector<unsigned char> &changed);
+    void evaluate(int unit, const AlignedVector &x, bool to_assemble); // its own energies
     void add_to_strand(int vertex);
     void add_lift(const Lift &lift, const AlignedVector &x);
     void add_to_cloth(int vertex);
