@@ -55,6 +55,10 @@ void CoupledStrands::end(const AlignedVector &x, const StrandEffort &effort, std
     }
 }
 
+void CoupledStrands::energies(int group, const AlignedVector &x, double *of_lanes) const {
+    RINGLET_DISPATCH(strand_group_energies, memory_[group].get(), x.data() + begin_[group], of_lanes);
+}
+
 void CoupledStrands::evaluate(int group, const AlignedVector &x, double *energies) const {
     RINGLET_DISPATCH(evaluate_strand_group, memory_[group].get(), x.data() + begin_[group], energies);
 }

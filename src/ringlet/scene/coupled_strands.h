@@ -45,7 +45,8 @@ public:
 
     const StrandGroupSystem &system(int group) const { return systems_[group]; }
     StrandGroup strands_of(int group) const { return groups_[group]; }
-    void evaluate(int group, const AlignedVector &x, double *energies_of_lanes) const;
+    void energies(int group, const AlignedVector &x, double *of_lanes) const;
+    void evaluate(int group, const AlignedVector &x, double *energies_of_lanes) const; // before it is assembled there
     void assemble(int group, const AlignedVector &x) const;
     void factor(int group) const;
     void solve(int group, AlignedVector &b) const; // in place

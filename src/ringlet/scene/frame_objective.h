@@ -19,30 +19,12 @@ public:
     using typename Base::Matrix;
 
     T evaluate(const T *x) {
-        this->measure(x);
-        for (int i = 1; i + 1 < vertices_; ++i) {
-            StrandShape<T> &s = shapes_[i];
-            const Vec<T> director = transport(rows_[i].reference.normal, rows_[i].reference.tangent, s.tangent);
-            const SineCosine<T> turn = sine_cosine(x[4 * i + 3] / rows_[i].rest_length);
-            s.director = turn.cosine * director + turn.sine * cross(s.tangent, director);
-            const Vec<T> K = turning(s.corner, shapes_[i - 1].tangent, s.tangent);
-            s.across = dot(K, s.director) - rows_[i].rest_angle;
-            s.along = dot(K, cross(s.tangent, s.director));
-        }
-        T energy = this->inertia_and_stretch();
-        for (int i = 1; i + 1 < vertices_; ++i) {
-            const T across = shapes_[i].across - rows_[i].damped_bend.x, along = shapes_[i].along - rows_[i].damped_bend.y;
-            energy += 0.5 * rows_[i].bend * (across * across + along * along);
-        }
-        for (int i = 1; i + 2 < vertices_; ++i) {
-            StrandShape<T> &s = shapes_[i];
-            const StrandShape<T> &next = shapes_[i + 1];
-            s.strain = wrap(frame_twist(s.director, s.tangent, next.director, next.tangent) - rows_[i].rest_dihedral);
-            const T w = s.strain - rows_[i].damped_strain;
-            energy += 0.5 * rows_[i].twist * w * w;
-        }
-        return energy;
+        this->positions_ = x;
+        return energy_at<true>(x);
     }
+
+    // Only says how much it is: what was evaluated last stays.
+    T energy(const T *x) { return energy_at<false>(x); }
 
     void assemble(T *gradient, Matrix &hessian) const {
         this->assemble_inertia_and_stretch(gradient, hessian);
@@ -84,6 +66,45 @@ public:
     T clamped(int i) const { return this->clamped_stretch(i); } // bend and twist are sums of squares
 
 private:
+    // In one pass, which reads a row once and, unless shapes are kept, writes nothing.
+    template <bool keeps> T energy_at(const T *x) {
+        T energy{};
+        StrandShape<T> before, s; // of the edge before; of the edge that begins at i
+        for (int i = 0; i < vertices_; ++i, before = s) {
+            energy += this->inertia_of(x, i);
+            if (i + 1 == vertices_) break;
+            this->measure_edge(x, i, s);
+            energy += this->stretch_of(i, s);
+            if (i > 0) energy += bend_of(x, i, before, s);
+            if (i > 1) {
+                before.strain =
+                    wrap(frame_twist(before.director, before.tangent, s.director, s.tangent) - rows_[i - 1].rest_dihedral);
+                const T w = before.strain - rows_[i - 1].damped_strain;
+                energy += 0.5 * rows_[i - 1].twist * w * w;
+                if (keeps) shapes_[i - 1].strain = before.strain;
+            }
+            if (keeps) keep(s, shapes_[i]);
+        }
+        return energy;
+    }
+
+    T bend_of(const T *x, int i, const StrandShape<T> &before, StrandShape<T> &s) const {
+        s.corner = corner(before.tangent, s.tangent);
+        const Vec<T> director = transport(rows_[i].reference.normal, rows_[i].reference.tangent, s.tangent);
+        const SineCosine<T> turn = sine_cosine(x[4 * i + 3] / rows_[i].rest_length);
+        s.director = turn.cosine * director + turn.sine * cross(s.tangent, director);
+        const Vec<T> K = turning(s.corner, before.tangent, s.tangent);
+        s.across = dot(K, s.director) - rows_[i].rest_angle;
+        s.along = dot(K, cross(s.tangent, s.director));
+        const T across = s.across - rows_[i].damped_bend.x, along = s.along - rows_[i].damped_bend.y;
+        return 0.5 * rows_[i].bend * (across * across + along * along);
+    }
+
+    static void keep(const StrandShape<T> &s, StrandShape<T> &kept) { // what hinges have stays out of it
+        kept.tangent = s.tangent, kept.length = s.length, kept.corner = s.corner;
+        kept.director = s.director, kept.across = s.across, kept.along = s.along;
+    }
+
     Vec<T> spin_of(int i) const { return spin(rows_[i].reference.tangent, shapes_[i].tangent, shapes_[i].length); }
 
     void add_bend(int i, T *gradient, Matrix &hessian) const {

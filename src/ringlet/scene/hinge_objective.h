@@ -34,6 +34,8 @@ public:
         return energy;
     }
 
+    T energy(const T *x) { return evaluate(x); }
+
     void assemble(T *gradient, Matrix &hessian) const {
         this->assemble_inertia_and_stretch(gradient, hessian);
         for (int i = 1; i + 1 < vertices_; ++i) add_bend(i, gradient, hessian);

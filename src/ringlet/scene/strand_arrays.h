@@ -90,7 +90,8 @@ RINGLET_DECLARE(
     // A group's step in phases; `memory` holds the group from begin to end, and what begin is given must live as long.
     size_t strand_group_bytes(const StrandStep &step, int vertices);
     StrandGroupSystem begin_strand_group(const StrandArrays &arrays, const StrandStep &step, StrandGroup group, void *memory);
-    void evaluate_strand_group(void *memory, const double *x, double *energies); // one energy a lane
+    void strand_group_energies(void *memory, const double *x, double *energies); // one a lane
+    void evaluate_strand_group(void *memory, const double *x, double *energies); // likewise, before it is assembled there
     void assemble_strand_group(void *memory, const double *x);                    // gradient and matrix where that was last
     void factor_strand_group(void *memory);
     void solve_strand_group(void *memory, double *b); // in place

@@ -38,25 +38,32 @@ public:
 protected:
     void measure(const T *x) {
         positions_ = x;
-        for (int i = 0; i + 1 < vertices_; ++i) {
-            // An edge that has shrunk to a point is given some direction and a length that can be divided by.
-            const Vec<T> edge = position(x, i + 1) - position(x, i), some{constant<T>(1.0), T{}, T{}};
-            const T length = norm(edge), least = 1e-6 * rows_[i].rest_length;
-            const auto point = length < least;
-            shapes_[i].length = select(point, least, length);
-            shapes_[i].tangent = select<T>(point, some, (1.0 / shapes_[i].length) * edge);
-        }
+        for (int i = 0; i + 1 < vertices_; ++i) measure_edge(x, i, shapes_[i]);
         for (int i = 1; i + 1 < vertices_; ++i) shapes_[i].corner = corner(shapes_[i - 1].tangent, shapes_[i].tangent);
+    }
+
+    // An edge that has shrunk to a point is given some direction and a length that can be divided by.
+    void measure_edge(const T *x, int i, StrandShape<T> &shape) const {
+        const Vec<T> edge = position(x, i + 1) - position(x, i), some{constant<T>(1.0), T{}, T{}};
+        const T length = norm(edge), least = 1e-6 * rows_[i].rest_length;
+        const auto point = length < least;
+        shape.length = select(point, least, length);
+        shape.tangent = select<T>(point, some, (1.0 / shape.length) * edge);
+    }
+
+    T inertia_of(const T *x, int i) const {
+        const Vec<T> away = position(x, i) - rows_[i].inertial;
+        return 0.5 * rows_[i].free * rows_[i].inertia * dot(away, away);
+    }
+
+    T stretch_of(int i, const StrandShape<T> &shape) const {
+        return stretch_energy(shape.length, rows_[i].damped_length, rows_[i].stretch);
     }
 
     T inertia_and_stretch() const {
         T energy{};
-        for (int i = 0; i < vertices_; ++i) {
-            const Vec<T> away = position(positions_, i) - rows_[i].inertial;
-            energy += 0.5 * rows_[i].free * rows_[i].inertia * dot(away, away);
-        }
-        for (int i = 0; i + 1 < vertices_; ++i)
-            energy += stretch_energy(shapes_[i].length, rows_[i].damped_length, rows_[i].stretch);
+        for (int i = 0; i < vertices_; ++i) energy += inertia_of(positions_, i);
+        for (int i = 0; i + 1 < vertices_; ++i) energy += stretch_of(i, shapes_[i]);
         return energy;
     }
 

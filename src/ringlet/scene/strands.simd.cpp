@@ -60,6 +60,7 @@ Vec<Pack> unit(Vec<Pack> v) { return (1.0 / max(norm(v), constant<Pack>(1e-30)))
 struct OpenGroup {
     virtual ~OpenGroup() = default;
     virtual StrandGroupSystem begin() = 0;
+    virtual void energy(const Pack *x, double *energies) = 0;
     virtual void evaluate(const Pack *x, double *energies) = 0;
     virtual void assemble(const Pack *x) = 0;
     virtual void factor() = 0;
@@ -105,10 +106,8 @@ public:
                 Matrix::padding};
     }
 
-    void evaluate(const Pack *x, double *energies) override {
-        const Pack energy = objective_.evaluate(x);
-        for (int lane = 0; lane < lanes; ++lane) energies[lane] = lane < group_.count ? energy[lane] : 0.0;
-    }
+    void energy(const Pack *x, double *energies) override { put_lanes(objective_.energy(x), energies); }
+    void evaluate(const Pack *x, double *energies) override { put_lanes(objective_.evaluate(x), energies); }
 
     void assemble(const Pack *x) override {
         Matrix hessian = matrix();
@@ -156,6 +155,10 @@ public:
     }
 
 private:
+    void put_lanes(Pack energy, double *energies) const {
+        for (int lane = 0; lane < lanes; ++lane) energies[lane] = lane < group_.count ? energy[lane] : 0.0;
+    }
+
     Matrix matrix() { return {space_.newton.band, objective_.size()}; }
 
     void prepare() {
@@ -535,6 +538,9 @@ StrandGroupSystem begin_strand_group(const StrandArrays &arrays, const StrandSte
     });
 }
 
+void strand_group_energies(void *memory, const double *x, double *energies) {
+    open_group(memory).energy(reinterpret_cast<const Pack *>(x), energies);
+}
 void evaluate_strand_group(void *memory, const double *x, double *energies) {
     open_group(memory).evaluate(reinterpret_cast<const Pack *>(x), energies);
 }
