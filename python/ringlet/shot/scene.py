@@ -28,7 +28,13 @@ class Contact(Section):
         default=5e-4, gt=0, le=0.1, description="[m] half the distance at which two locks begin to push each other away"
     )
     friction: float = Field(default=0.3, ge=0, le=10, description="Coulomb's μ of lock on lock")
-    stiffness: float = Field(default=1.0, gt=0, le=1e6, description="scales how hard contacts push")
+    stiffness: float = Field(
+        default=1.0,
+        gt=0,
+        le=1e6,
+        description="scales how hard contacts push: 0.01 where locks lie in one another, which hardly move at 1; "
+        "1 where strands are pulled taut around something",
+    )
     creep_speed: float = Field(
         default=1e-3,
         gt=0,
@@ -179,7 +185,7 @@ class Scene:
         forces: NDArray[np.floating] | None = None,
         cloth_forces: Sequence[NDArray[np.floating]] | None = None,
         solver: Solver | None = None,
-        system_tolerance: float = 0.05,
+        system_tolerance: float = 0.1,
     ) -> tuple[dict[str, Any], dict[str, NDArray[np.float64]]]:
         """Advances by ``dt`` [s]; held vertices end where ``targets`` [m], shape (n, 3), has them.
 
