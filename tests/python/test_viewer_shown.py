@@ -233,6 +233,8 @@ def test_nails_and_what_is_in_the_head_are_measured_at_rest(folder: Path):
         one.say(kind="mute", stages=["clean"])
         one.hear("numbers", draft=False)
         inside = one.hear("measured")
+        if inside["inside"] == 0:  # of the recipe alone, before its cleaning was muted
+            inside = one.hear("measured")
         assert inside["inside"] > 0 and inside["depth"].max() > 0
 
 
