@@ -29,6 +29,8 @@ def run(
     recipe = read_recipe(EXAMPLE / "curls.recipe.toml")
     groom = build_groom(recipe.model_copy(update={"locks": recipe.locks.model_copy(update={"count": locks})}))
     shot = read_shot(EXAMPLE / "nod.shot.toml")
+    contact = shot.contact
+    assert contact is not None  # the example's has it
     off = {}
     for name in ("without", *str(stiffness).split(",")):
         changes = {"on": False} if name == "without" else {"stiffness": float(name)}
@@ -38,7 +40,7 @@ def run(
                     update={
                         "frames": (1, frames),
                         "solver": shot.solver.model_copy(update={"newton": newton}),
-                        "contact": shot.contact.model_copy(update=changes),
+                        "contact": contact.model_copy(update=changes),
                     }
                 ),
                 groom,
