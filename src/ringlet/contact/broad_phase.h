@@ -30,7 +30,6 @@ public:
     void find_quick(const PathBoxes &ways, const PathBoxes &homes, View<unsigned char> quick, View<unsigned char> changed,
                     Candidates &candidates);
 
-    const Incidence &incidence() const { return incidence_; }
     int built() const { return edge_tree_.built(); } // how often the tree of edges was built, for studies
 
 private:

@@ -79,13 +79,13 @@ double stiffness(const Sides &sides, const ContactMaterial &material) {
 }
 
 // Work for those of `now` whose pairs `before` has, both in order.
-template <class Known, class Contact, class Work>
-void for_known(const std::vector<Known> &before, std::vector<Contact> &now, const Work &work) {
+template <class Known, class Found, class Work>
+void for_known(const std::vector<Known> &before, std::vector<Found> &now, const Work &work) {
     auto known = before.begin();
-    for (Contact &contact : now) {
-        while (known != before.end() && known->pair < contact.pair) ++known;
+    for (Found &found : now) {
+        while (known != before.end() && known->pair < found.pair) ++known;
         if (known == before.end()) return;
-        if (known->pair == contact.pair) work(*known, contact);
+        if (known->pair == found.pair) work(*known, found);
     }
 }
 

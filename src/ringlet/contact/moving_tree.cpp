@@ -9,7 +9,7 @@ void MovingTree::arrange(std::vector<Centre> &centres) {
     depth_ = 0;
     while (count_ > int64_t(4) << depth_) ++depth_;
     for (int depth = 0; depth < depth_; ++depth) {
-#pragma omp parallel for schedule(dynamic, 1) if (size_t(count_) > small)
+#pragma omp parallel for schedule(dynamic, 1) if (count_ > small)
         for (int share = 0; share < 1 << depth; ++share) {
             const auto first = centres.begin() + begin(share, depth), last = centres.begin() + begin(share + 1, depth);
             Eigen::Array3f low = Eigen::Array3f::Constant(std::numeric_limits<float>::infinity()), high = -low;

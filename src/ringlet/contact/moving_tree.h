@@ -42,7 +42,7 @@ private:
         float at[3];
         int primitive;
     };
-    static constexpr size_t small = 1 << 10; // less work than that is not shared among threads
+    static constexpr int small = 1 << 10; // less work than that is not shared among threads
 
     template <class Box> void build(const Box &box);
     void arrange(std::vector<Centre> &centres);
@@ -102,12 +102,12 @@ template <class Box> void MovingTree::refit_leaf(int leaf, const Box &box) {
 
 template <class Box> void MovingTree::refit_all(const Box &box) {
     int first = first_leaf_, count = leaves();
-#pragma omp parallel for schedule(static) if (size_t(count_) > small)
+#pragma omp parallel for schedule(static) if (count_ > small)
     for (int leaf = first; leaf < first + count; ++leaf) refit_leaf(leaf, box);
     while (first > 1) { // level by level
         first = (first - 1) / 4;
         count /= 4;
-#pragma omp parallel for schedule(static) if (size_t(count) > small)
+#pragma omp parallel for schedule(static) if (count > small)
         for (int node = first; node < first + count; ++node) put(node, box_of(nodes_[node]));
     }
 }
@@ -116,7 +116,7 @@ template <class Box> void MovingTree::refit(View<int> primitives, const Box &box
     std::vector<int> leaves;
     for (const int i : primitives)
         if (!listed_[leaf_of_[i]]) listed_[leaf_of_[i]] = 1, leaves.push_back(leaf_of_[i]);
-#pragma omp parallel for schedule(static) if (leaves.size() > small)
+#pragma omp parallel for schedule(static) if (int(leaves.size()) > small)
     for (size_t k = 0; k < leaves.size(); ++k) refit_leaf(leaves[k], box);
     refit_above(leaves);
 }

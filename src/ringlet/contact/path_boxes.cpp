@@ -23,9 +23,9 @@ void PathBoxes::place(View<Vec3> points, const Vec3 &origin, std::vector<Eigen::
     }
 }
 
-void PathBoxes::place(View<Vec3> starts, View<Vec3> ends) {
+void PathBoxes::fit_anew(View<Vec3> start_or_low, View<Vec3> end_or_high) {
     constexpr float lost = 0x1p-20f; // of the largest coordinate, in single precision
-    place(starts, origin_.start, starts_), place(ends, origin_.end, ends_);
+    place(start_or_low, origin_.start, starts_), place(end_or_high, origin_.end, ends_);
     Eigen::Array4f largest = Eigen::Array4f::Zero();
     for (size_t v = 0; v < starts_.size(); ++v) largest = largest.max(starts_[v].abs()).max(ends_[v].abs());
     wider_ = std::max(wider_, lost * largest.maxCoeff());
@@ -35,7 +35,7 @@ void PathBoxes::fit(View<Vec3> start, View<Vec3> end, const Origin &origin, doub
     origin_ = origin;
     still_ = false;
     wider_ = 0.0f;
-    place(start, end);
+    fit_anew(start, end);
     wider_ += float(0.5 * margin);
 }
 
@@ -44,9 +44,7 @@ void PathBoxes::fit_within(View<Vec3> low, View<Vec3> high) {
     origin_ = {first, first};
     still_ = true;
     wider_ = 0.0f;
-    place(low, high);
+    fit_anew(low, high);
 }
-
-void PathBoxes::fit_anew(View<Vec3> start_or_low, View<Vec3> end_or_high) { place(start_or_low, end_or_high); }
 
 } // namespace ringlet

@@ -50,7 +50,6 @@ private:
         return still_ ? MovingBox{a, b, a, b} : MovingBox{a, a, b, b};
     }
     static void place(View<Vec3> points, const Vec3 &origin, std::vector<Eigen::Array4f> &places);
-    void place(View<Vec3> starts, View<Vec3> ends);
 
     const CollisionMesh &mesh_;
     std::vector<float> edge_radii_, triangle_radii_;

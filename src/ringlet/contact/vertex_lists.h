@@ -10,8 +10,6 @@ namespace ringlet {
 
 class VertexLists {
 public:
-    VertexLists() = default;
-
     // for_pairs(work) calls work(vertex, item) for all there are, each time in the same order.
     template <class ForPairs> VertexLists(size_t vertices, const ForPairs &for_pairs) : starts_(vertices + 1, 0) {
         for_pairs([&](int v, int) { ++starts_[v + 1]; });
@@ -54,8 +52,6 @@ struct Incidence {
 // Some vertices, and the primitives that have any of them, each once.
 struct Affected {
     std::vector<int> vertices, edges, triangles;
-
-    Affected() = default;
 
     // By vertices that are marked.
     Affected(const CollisionMesh &mesh, const Incidence &incidence, View<unsigned char> marked) {

@@ -18,7 +18,9 @@ public:
     using typename Base::Matrix;
 
     T evaluate(const T *x) {
-        this->measure(x);
+        this->positions_ = x;
+        for (int i = 0; i + 1 < vertices_; ++i) this->measure_edge(x, i, shapes_[i]);
+        for (int i = 1; i + 1 < vertices_; ++i) shapes_[i].corner = corner(shapes_[i - 1].tangent, shapes_[i].tangent);
         for (int i = 1; i + 2 < vertices_; ++i)
             shapes_[i].phi = dihedral(shapes_[i].corner, shapes_[i + 1].corner, shapes_[i + 1].tangent);
         if constexpr (history)
@@ -26,7 +28,9 @@ public:
         else
             continue_least_energy(vertices_, rows_, shapes_);
 
-        T energy = this->inertia_and_stretch();
+        T energy{};
+        for (int i = 0; i < vertices_; ++i) energy += this->inertia_of(x, i);
+        for (int i = 0; i + 1 < vertices_; ++i) energy += this->stretch_of(i, shapes_[i]);
         for (int i = 1; i + 1 < vertices_; ++i)
             energy += bend_energy(shapes_[i].corner.angle, shapes_[i].sigma, rows_[i].damped_angle, rows_[i].bend);
         for (int i = 1; i + 2 < vertices_; ++i)

@@ -36,12 +36,6 @@ public:
     static Vec<T> position(const T *x, int i) { return {x[freedoms * i], x[freedoms * i + 1], x[freedoms * i + 2]}; }
 
 protected:
-    void measure(const T *x) {
-        positions_ = x;
-        for (int i = 0; i + 1 < vertices_; ++i) measure_edge(x, i, shapes_[i]);
-        for (int i = 1; i + 1 < vertices_; ++i) shapes_[i].corner = corner(shapes_[i - 1].tangent, shapes_[i].tangent);
-    }
-
     // An edge that has shrunk to a point is given some direction and a length that can be divided by.
     void measure_edge(const T *x, int i, StrandShape<T> &shape) const {
         const Vec<T> edge = position(x, i + 1) - position(x, i), some{constant<T>(1.0), T{}, T{}};
@@ -58,13 +52,6 @@ protected:
 
     T stretch_of(int i, const StrandShape<T> &shape) const {
         return stretch_energy(shape.length, rows_[i].damped_length, rows_[i].stretch);
-    }
-
-    T inertia_and_stretch() const {
-        T energy{};
-        for (int i = 0; i < vertices_; ++i) energy += inertia_of(positions_, i);
-        for (int i = 0; i + 1 < vertices_; ++i) energy += stretch_of(i, shapes_[i]);
-        return energy;
     }
 
     void assemble_inertia_and_stretch(T *gradient, Matrix &hessian) const {
