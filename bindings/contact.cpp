@@ -56,6 +56,7 @@ nb::dict memory_of(const SceneMemory &memory) {
     arrays["early_pairs"] = to_numpy<uint64_t>(std::move(pairs), {early});
     arrays["expected_pairs"] = to_numpy<uint64_t>(std::move(bearing), {expected});
     arrays["expected_forces"] = to_numpy<double>(std::move(forces), {expected});
+    arrays["borne"] = to_numpy<double>(std::vector<double>(memory.borne), {memory.borne.size()});
     arrays["early_distances"] = to_numpy<double>(std::move(distances), {early, 2});
     arrays["held_pairs"] = to_numpy<uint64_t>(std::move(held_pairs), {memory.held.size()});
     arrays["held_values"] = to_numpy<double>(std::move(held_values), {memory.held.size(), values_of_hold});
@@ -69,6 +70,7 @@ SceneMemory memory_from(const nb::dict &arrays) {
     const auto pairs = nb::cast<Array1<uint64_t>>(arrays["early_pairs"]);
     const auto bearing = nb::cast<Array1<uint64_t>>(arrays["expected_pairs"]);
     const auto forces = nb::cast<Array1<double>>(arrays["expected_forces"]);
+    const View<double> borne = view(nb::cast<Array1<double>>(arrays["borne"]));
     const auto distances = nb::cast<Rows>(arrays["early_distances"]);
     const auto held_pairs = nb::cast<Array1<uint64_t>>(arrays["held_pairs"]);
     const auto held = nb::cast<Rows>(arrays["held_values"]);
@@ -84,6 +86,7 @@ SceneMemory memory_from(const nb::dict &arrays) {
     memory.begun = begun[0] != 0;
     memory.bodies = copied<Vec3, double>(nb::cast<Array3<double>>(arrays["bodies"]));
     for (size_t k = 0; k < bearing.shape(0); ++k) memory.expected.push_back({bearing.data()[k], forces.data()[k]});
+    memory.borne.assign(borne.begin(), borne.end());
     for (size_t k = 0; k < pairs.shape(0); ++k)
         memory.early[pairs.data()[k]] = {distances.data()[2 * k], distances.data()[2 * k + 1]};
     for (size_t k = 0; k < held.shape(0); ++k) {

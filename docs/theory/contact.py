@@ -3,40 +3,30 @@
 from __future__ import annotations
 
 import numpy as np
-from ringlet.curves import Curves
-from ringlet.shot import Body, Contact, Material, Scene, Strands
 from ringlet.validate import friction as coulomb
+from ringlet.validate import push
 
 from theory.answer import Answer, Panel
-
-DISTANCE, STEP = 1e-3, 1 / 240  # [m] at which contact begins, [s]
 
 
 def barrier() -> Answer:
     """A strand that lies on the ground and is pressed down ever harder."""
-    x = 5e-3 * np.arange(12)
-    points = np.c_[x, np.full_like(x, 0.9 * DISTANCE), 0 * x]
-    soft = np.where(x < 7e-3, 1e-14, 1.0)  # its root is held, but by an edge so soft that the rest of it is free
-    ground = Body(np.array([[-2.0, 0, 4], [-2, 0, -4], [8, 0, 0]]), np.array([[0, 1, 2]]), DISTANCE / 2, 0.0)
-    presses, gaps = np.geomspace(0.05, 10.0, 9), []
-    for press in presses:
-        strands = Strands(Curves.from_list([points]), Material(drag=0.0), 1, {"stretch": soft, "bend": soft})
-        scene = Scene(strands, [ground], Contact(radius=DISTANCE / 2))
-        middle, length = 6, 5e-3
-        stretch, bend, _ = strands.stiffness
-        k = strands.masses[middle] / STEP**2 + bend[middle] / length**2 + 0.1 * stretch[middle]
-        gravity = press * k * DISTANCE / strands.masses[middle]
-        for _ in range(100):
-            scene.step(points, STEP, gravity=(0.0, -gravity, 0.0), solver=coulomb.SOLVER)
-            strands.velocities[:] = 0.0
-        gaps.append(strands.positions[middle, 1] / DISTANCE)
-    between = np.geomspace(presses[-1], presses[0], 100)
-    exact = np.where(between < 0.5, 1 - between, 0.25 / between)
+    presses = np.array(push.PRESSES)
+    gaps = [push.pressed(press)[0] for press in push.PRESSES]
+    between = np.geomspace(presses[-1], presses[0], 300)
     return Answer(
-        [Panel("force / k r", "gap / r", {"by formula": (between, exact)}, {"by formula": (presses, gaps)}, log=True)],
         [
-            (f"gap / r under {press:.3g} k r", 1 - press if press < 0.5 else 0.25 / press, gap)
-            for press, gap in zip(presses, gaps, strict=True)
+            Panel(
+                "force / k r",
+                "gap / r",
+                {"by formula": (between, push.gap_under(between))},
+                {"by formula": (presses, gaps)},
+                log=True,
+            )
+        ],
+        [
+            (f"gap / r under {press:g} k r", exact, gap)
+            for press, exact, gap in zip(push.PRESSES, push.gap_under(presses).tolist(), gaps, strict=True)
         ],
     )
 

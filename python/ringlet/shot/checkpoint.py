@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from ringlet.errors import UserError
 from ringlet.files import replacing
 
-VERSION = b"ringlet checkpoint 1\n"
+VERSION = b"ringlet checkpoint 2\n"
 EVERY = 10  # frames from one memory to the next
 HELD = "held"  # the file that a program holds while it runs
 KEPT = 2  # memories: where the last is damaged, the one before is used

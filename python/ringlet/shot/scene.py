@@ -32,8 +32,7 @@ class Contact(Section):
         default=1.0,
         gt=0,
         le=1e6,
-        description="scales how hard contacts push: 0.01 where locks lie in one another, which hardly move at 1; "
-        "1 where strands are pulled taut around something",
+        description="scales how hard contacts push, which is as hard as what they have to bear asks for",
     )
     creep_speed: float = Field(
         default=1e-3,

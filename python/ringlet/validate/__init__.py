@@ -12,6 +12,7 @@ from ringlet.validate import (
     love,
     out_of_plane,
     plucked_coil,
+    push,
     tip_load,
     vibration,
 )
@@ -29,6 +30,7 @@ _MODULES = (
     out_of_plane,
     loose_waves,
     friction,
+    push,
 )
 CASES: dict[str, Case] = {module.CASE.name: module.CASE for module in _MODULES}
 

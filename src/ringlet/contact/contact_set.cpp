@@ -141,7 +141,7 @@ void ContactSet::for_places(const CollisionMesh &mesh, const Touch &touch, View<
     for (const Place &place : places(mesh, touch, now)) {
         const double apart = std::sqrt(place.nearest.distance2);
         if (!(apart > 0.0 && apart < distance)) continue;
-        double barrier_end = distance / 2000;
+        double barrier_end = distance / 100;
         if (by_planes) barrier_end = std::min(std::clamp(0.25 * apart, barrier_end, touch.distance / 64), distance / 64);
         work(place, apart, distance, barrier_end);
     }

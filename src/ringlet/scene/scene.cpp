@@ -1,6 +1,7 @@
 #include "ringlet/scene/scene.h"
 
 #include "ringlet/contact/step_filter.h"
+#include "ringlet/scene/contact_stiffness.h"
 #include "ringlet/scene/embedded.h"
 #include "ringlet/scene/scene_carry.h"
 #include "ringlet/scene/scene_progress.h"
@@ -43,6 +44,7 @@ struct Scene::Parts {
     SceneVertices vertices;
     SceneSystem system;
     SceneSolver solver;
+    ContactStiffness stiffness;
     NearPairs near;
     VertexLists neighbours; // of the vertices of cloths
 
@@ -69,7 +71,7 @@ struct Scene::Parts {
                    std::vector<StrandReport> &of_strands, std::vector<ClothReport> &of_cloths);
 
     void check(const SceneInput &input) const;
-    void set_stiffness(double dt);
+    void set_stiffness() { vertices.material.stiffness = stiffness.needed(vertices, 2.0 * settings.strand_radius); }
     void note_touched();
     SceneCarriers carriers(std::vector<int> &of_cloths, double dt) const;
     double filter(View<Vec3> now, std::vector<Vec3> &to, const MoveKind &kind, SceneReport &report);
@@ -85,29 +87,13 @@ Scene::Parts::Parts(const StrandModel &model_, StrandState &state_, const std::v
                     const std::vector<BodyModel> &bodies, const std::vector<int> &rooted_in, const SceneContact &contact)
     : model(model_), state(state_), settings(contact), root_body(rooted_in),
       vertices(number_vertices(model_, state_, cloths, bodies, rooted_in, contact)), system(model_, cloths, vertices),
-      near(vertices.mesh), neighbours(ringlet::neighbours(vertices.mesh, vertices.cloths.front(), vertices.cloths.back())),
+      stiffness(vertices.count()), near(vertices.mesh),
+      neighbours(ringlet::neighbours(vertices.mesh, vertices.cloths.front(), vertices.cloths.back())),
       given(vertices.positions) {
     for (const SceneCloth &cloth : cloths) pinned_to.push_back(cloth.pinned_to);
     touched.assign(cloths.size(), -1);
     for (int b = 0; b < int(bodies.size()); ++b)
         embedded_bodies.push_back({vertices.bodies[b], int(bodies[b].rest.size()), vertices.parts() + b, bodies[b].triangles});
-}
-
-void Scene::Parts::set_stiffness(double dt) {
-    ContactMaterial &material = vertices.material;
-    material.stiffness.assign(vertices.count(), std::numeric_limits<double>::infinity());
-    material.give = settings.creep_speed * dt;
-    for (int v = 0; v < vertices.strand_vertices(); ++v) {
-        if (model.held[v]) continue;
-        const double length = std::max(model.rest_length[v], model.rest_length[v - 1]);
-        const double bend = std::max(model.bend_stiffness[v], model.bend_stiffness[v - 1]) / (length * length);
-        material.stiffness[v] = settings.stiffness * (model.mass[v] / (dt * dt) + bend + 0.1 * model.stretch_stiffness[v - 1]);
-    }
-    for (int v = vertices.strand_vertices(); v < vertices.moving_vertices(); ++v) {
-        const int cloth = vertices.part_of(v) - vertices.strands;
-        if (vertices.mesh.moves[v])
-            material.stiffness[v] = settings.stiffness * system.cloths[cloth].stiffness(v - vertices.cloths[cloth], dt);
-    }
 }
 
 // Which body each cloth has most contacts with.
@@ -228,6 +214,8 @@ int Scene::Parts::newton(const SceneStep &scene_step, const StrandStep &step, st
             report.linear_residual = solved.residual;
             measure(system, direction, reach);
             system.expect(direction);
+            stiffness.bear(system.contacts);
+            set_stiffness();
         }
         const bool small = std::all_of(reach.begin(), reach.end(), [&](double far) { return far <= step.tolerance; });
         // A cloth that is held back here and there is strained there, so that its energy rises for once: for it and what
@@ -291,7 +279,9 @@ int Scene::Parts::newton(const SceneStep &scene_step, const StrandStep &step, st
 // One step as far as it goes; says what part of it that was.
 double Scene::Parts::advance(const SceneInput &input, const SceneStep &scene_step, StrandStep &step, SceneReport &report,
                              std::vector<StrandReport> &of_strands, std::vector<ClothReport> &of_cloths) {
-    set_stiffness(step.dt);
+    stiffness.begin(system, settings.stiffness, step.dt);
+    set_stiffness();
+    vertices.material.give = settings.creep_speed * step.dt;
     given = vertices.positions;
     for (int v = 0; v < vertices.strand_vertices(); ++v)
         if (model.held[v]) given[v] = input.strand_targets[v];
@@ -317,8 +307,7 @@ double Scene::Parts::advance(const SceneInput &input, const SceneStep &scene_ste
         step.dt *= fraction;
     }
     constexpr double speed = 0.02; // [m/s] of what began inside a body, out of it
-    system.lifts =
-        embedded.push_out(vertices.mesh, now, View<int>(model.offsets), vertices.material.stiffness, speed * step.dt);
+    system.lifts = embedded.push_out(vertices.mesh, now, View<int>(model.offsets), stiffness.hardest(), speed * step.dt);
     // Then to where Newton's method begins.
     begin_cloths(input, step, now);
     to = now;
@@ -425,6 +414,7 @@ SceneMemory Scene::memory() const {
             {all.begin() + bodies, all.end()},
             parts_->system.contacts.early(),
             parts_->system.contacts.expected(),
+            parts_->stiffness.borne(),
             parts_->system.contacts.held(),
             parts_->embedded.heights(),
             parts_->touched};
@@ -433,12 +423,13 @@ SceneMemory Scene::memory() const {
 void Scene::recall(const SceneMemory &memory) {
     Parts &parts = *parts_;
     if (memory.bodies.size() != size_t(parts.vertices.count() - parts.vertices.moving_vertices()) ||
-        memory.touched.size() != parts.touched.size())
+        memory.touched.size() != parts.touched.size() || memory.borne.size() != size_t(parts.vertices.count()))
         throw std::invalid_argument("scene: what is to be recalled is of another scene");
     parts.begun = memory.begun;
     std::copy(memory.bodies.begin(), memory.bodies.end(), parts.vertices.positions.begin() + parts.vertices.moving_vertices());
     parts.system.contacts.recall(memory.early);
     parts.system.contacts.recall(memory.expected);
+    parts.stiffness.recall(memory.borne);
     parts.system.contacts.recall(memory.held);
     parts.embedded.recall(memory.embedded, parts.vertices.mesh);
     parts.touched = memory.touched;

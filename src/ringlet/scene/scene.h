@@ -42,6 +42,7 @@ struct SceneMemory {
     std::vector<Vec3> bodies;                     // where their vertices are [m]
     ContactSet::Early early;                      // pairs that began too near
     std::vector<ContactSet::Expected> expected;   // what pairs are to bear
+    std::vector<double> borne;                    // what vertices had to bear lately [N]
     std::vector<Hold> held;                       // pairs that touch
     std::vector<std::pair<int, double>> embedded; // vertices that are still inside a body, and how high they are to be [m]
     std::vector<int> touched;                     // per cloth: the body that it had most contacts with; −1: none

@@ -123,7 +123,7 @@ SceneSearch search(SceneSystem &system, const NearPairs *near, const AlignedVect
                    const std::vector<unsigned char> &all_of_it, AlignedVector &x) {
     constexpr double least_decrease = 1e-4;
     constexpr int halvings = 4, most_shorter = 8; // then it goes a quarter as far, and after these it stays
-    constexpr int most_cuts = 20;
+    constexpr int most_apart = 12;                // then all of its cluster stays
     const int parts = system.vertices.parts();
     SceneSearch result{false, 0, std::vector<double>(parts, 1.0)};
     std::vector<double> &step = result.step;
@@ -145,7 +145,7 @@ SceneSearch search(SceneSystem &system, const NearPairs *near, const AlignedVect
     AlignedVector trial(system.size());
     std::copy_n(x.data(), x.size(), trial.data()); // what is not active too
     changed.assign(parts, 1);
-    for (int cut = 0; cut <= most_cuts; ++cut) {
+    for (int cut = 0;; ++cut) {
         move(system, x, step, direction, changed, trial);
         system.energies(trial, pairs, step, changed, now);
         std::fill(excess.begin(), excess.end(), 0.0);
@@ -159,7 +159,7 @@ SceneSearch search(SceneSystem &system, const NearPairs *near, const AlignedVect
         }
         mark_touched(system, rises);
         for (int p = 0; p < parts; ++p)
-            if (!any_rises[cluster[p]] && !(excess[cluster[p]] <= 0.0)) rises[p] = 1;
+            if ((!any_rises[cluster[p]] || cut >= most_apart) && !(excess[cluster[p]] <= 0.0)) rises[p] = 1;
 
         std::fill(changed.begin(), changed.end(), 0);
         bool any = false;
@@ -171,13 +171,10 @@ SceneSearch search(SceneSystem &system, const NearPairs *near, const AlignedVect
             }
         if (!any) {
             std::swap(x, trial);
-            result.moved = true;
+            for (int p = 0; p < parts; ++p) result.moved |= system.is_active(p) && step[p] > 0.0;
             return result;
         }
     }
-    changed.assign(parts, 1);
-    system.energies(x, pairs, nowhere, changed, now);
-    return result;
 }
 
 } // namespace ringlet

@@ -17,7 +17,7 @@ void shorten(const SceneSystem &system, const std::vector<double> &parts, Aligne
 std::vector<double> worth_going(const SceneSystem &system, const AlignedVector &x, const AlignedVector &direction);
 
 struct SceneSearch {
-    bool moved = false;       // false: no way was found on which the energy falls
+    bool moved = false;       // false: no part found a way on which the energy falls
     int cuts = 0;             // times that a part went less far
     std::vector<double> step; // per part: how much of its direction it went
 };

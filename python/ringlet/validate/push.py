@@ -1,0 +1,63 @@
+"""How contacts push: the gap at which a strand that lies on the ground bears what presses it down.
+
+A contact that is active below r and k hard pushes at a gap g with k (r − g) down to r/2 and with k r²/4g from there.
+A vertex is as hard as it has to be, a hundredth or a tenth of ``k`` or all of it: the least that bears the press within
+r. What it bore it forgets by half in a quarter of a second, so that it becomes soft again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ringlet.curves import Curves
+from ringlet.shot.scene import Body, Contact, Scene
+from ringlet.shot.strands import Material, Solver, Strands
+from ringlet.validate.case import Case, Row
+
+DISTANCE, STEP = 1e-3, 1 / 240  # r [m] where contact begins, [s]
+PRESSES = (0.002, 0.004, 0.02, 0.05, 0.2, 0.5, 1.0, 3.0, 10.0)  # k r
+LEVELS = (0.01, 0.1, 1.0)  # of k
+
+
+def pressed(*presses: float, steps: int = 100) -> list[float]:
+    """The gap by r after so many steps under each press in turn [k r]; the strand rests before every step."""
+    x = 5e-3 * np.arange(24)
+    points = np.c_[x, np.full_like(x, 0.99 * DISTANCE), 0 * x]
+    soft = np.where(x < 7e-3, 1e-14, 1.0)  # it is held by edges so soft that the rest of it is free
+    strands = Strands(Curves.from_list([points]), Material(drag=0.0), 2, {"stretch": soft, "bend": soft})
+    ground = Body(np.array([[-2.0, 0, 4], [-2, 0, -4], [8, 0, 0]]), np.array([[0, 1, 2]]), DISTANCE / 2, 0.0)
+    scene = Scene(strands, [ground], Contact(radius=DISTANCE / 2))
+    middle, length = 13, 5e-3
+    stretch, bend, _ = strands.stiffness
+    k = strands.masses[middle] / STEP**2 + bend[middle] / length**2 + 0.1 * stretch[middle]
+    gaps = []
+    for press in presses:
+        gravity = press * k * DISTANCE / strands.masses[middle]
+        for _ in range(steps):
+            scene.step(points, STEP, gravity=(0.0, -gravity, 0.0), solver=Solver(tolerance=1e-12))
+            strands.velocities[:] = 0.0
+        gaps.append(float(strands.positions[middle, 1] / DISTANCE))
+    return gaps
+
+
+def gap_under(press: NDArray[np.floating], levels: tuple[float, ...] = LEVELS) -> NDArray[np.floating]:
+    """The gap by r that bears a press [k r], shape (n,), with the least of the levels that does, or the last."""
+    press = np.asarray(press, float)
+    by_level = press / np.select([press <= level for level in levels], levels, levels[-1])
+    return np.where(by_level < 0.5, 1 - by_level, 0.25 / by_level)
+
+
+def run() -> Iterator[Row]:
+    for press, gap in zip(PRESSES, gap_under(np.array(PRESSES)), strict=True):
+        yield Row(f"gap / r under {press:g} k r", float(gap), pressed(press)[0], 1e-3)
+    first, after = 0.5, 0.002
+    gaps = pressed(first, after, steps=5), pressed(first, after, steps=600)
+    hard = float(gap_under(np.array([after]), LEVELS[-1:])[0])
+    yield Row(f"{after:g} k r, 0.02 s after {first:g} k r", hard, gaps[0][1], 1e-3)
+    yield Row(f"{after:g} k r, 2.5 s after {first:g} k r", float(gap_under(np.array([after]))[0]), gaps[1][1], 1e-3)
+
+
+CASE = Case("push", "A contact is as hard as what it has to bear asks for, and bears it where its formula says", run)
