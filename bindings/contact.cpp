@@ -98,6 +98,20 @@ SceneMemory memory_from(const nb::dict &arrays) {
     return memory;
 }
 
+// Vertices (k, 4), and weights, normal, distance and force (k, 9).
+nb::tuple arrays_of(const std::vector<Contact> &contacts) {
+    std::vector<int> vertices;
+    std::vector<double> values;
+    for (const Contact &c : contacts) {
+        vertices.insert(vertices.end(), c.vertex.begin(), c.vertex.end());
+        values.insert(values.end(), c.weight.begin(), c.weight.end());
+        values.insert(values.end(), c.normal.data(), c.normal.data() + 3);
+        values.insert(values.end(), {c.distance, c.force});
+    }
+    const size_t count = contacts.size();
+    return nb::make_tuple(to_numpy<int>(std::move(vertices), {count, 4}), to_numpy<double>(std::move(values), {count, 9}));
+}
+
 } // namespace
 
 void bind_contact(nb::module_ &module) {
@@ -212,22 +226,19 @@ void bind_contact(nb::module_ &module) {
             nb::rv_policy::automatic,
             "Positions [m] of all vertices at the start and after each move of the last step, shape (k, n, 3).")
         .def_prop_ro(
-            "contacts",
-            [](const Scene &self) {
-                std::vector<int> vertices;
-                std::vector<double> values; // weights, normal, distance, force
-                for (const Contact &c : self.contacts()) {
-                    vertices.insert(vertices.end(), c.vertex.begin(), c.vertex.end());
-                    values.insert(values.end(), c.weight.begin(), c.weight.end());
-                    values.insert(values.end(), c.normal.data(), c.normal.data() + 3);
-                    values.insert(values.end(), {c.distance, c.force});
+            "contacts", [](const Scene &self) { return arrays_of(self.contacts()); }, nb::rv_policy::automatic,
+            "Of the last step's end: vertices (k, 4), and weights, normal, distance and force (k, 9).")
+        .def(
+            "touching",
+            [](Scene &self) {
+                std::vector<Contact> found;
+                {
+                    nb::gil_scoped_release release;
+                    found = self.touching();
                 }
-                const size_t count = self.contacts().size();
-                return nb::make_tuple(to_numpy<int>(std::move(vertices), {count, 4}),
-                                      to_numpy<double>(std::move(values), {count, 9}));
+                return arrays_of(found);
             },
-            nb::rv_policy::automatic,
-            "Of the last step's end: vertices (k, 4), and weights, normal, distance and force (k, 9).");
+            "The same of where everything is now, without a step; forces are of no meaning.");
 
     module.attr("SCENE_REPORT") =
         nb::make_tuple("newton", "cuts", "residual", "unconverged", "linear_iterations", "linear_residual", "candidates",

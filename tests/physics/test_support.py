@@ -10,8 +10,9 @@ from ringlet.shot import Obstacle, equilibrium, keep, made_from, refresh
 from ringlet.shot.equilibrium import bearing
 from ringlet.shot.joints import edges
 from ringlet.shot.pushing import least_pushing
-from ringlet.shot.scene import Scene
+from ringlet.shot.scene import Body, Scene
 from ringlet.shot.simulate import make_strands
+from ringlet.shot.strands import Solver
 from ringlet.shot.support import ARM, _Give
 from scipy.optimize import nnls
 from scipy.sparse import block_diag
@@ -74,6 +75,49 @@ def crossed():
     below = [0, 0, 0] + t * [0.04, 0, 0]
     above = [0.02, 0.95 * REACH, -0.03] + t * [0, 0, 0.06]
     return below, above
+
+
+def fallen(steps, ask=lambda touching: None):
+    """Two beams that fall onto one another and onto a floor, of which something is asked before each step."""
+    below, above = crossed()
+    shot, groom = scene(below, above + [0, 0.2 * REACH, 0], more=SOFT)
+    at, size = np.array([0, -1.8 * REACH, 0]), 0.2
+    floor = np.array([[-size, 0, -size], [size, 0, -size], [0, 0, size]]) + at
+    strands = make_strands(shot, groom)
+    touching = Scene(strands, [Body(floor, np.array([[0, 2, 1]], np.int32))], shot.touching)
+    for _ in range(steps):
+        ask(touching)
+        touching.step(groom.locks.points, 1 / 48, gravity=GRAVITY)
+    return touching
+
+
+def test_what_touches_is_what_a_step_that_ended_there_has_reported():
+    """Locks and a body, none of which touched to begin with."""
+    touching = fallen(8)
+    vertices, values = touching.contacts
+    found, where = touching.touching()
+    assert (vertices == found).all() and (values[:, :8] == where).all()
+    of_locks = (vertices < len(touching.strands.positions)).all(axis=1)
+    assert of_locks.any() and not of_locks.all()
+
+
+def test_what_begins_too_near_touches_as_a_step_has_it_that_hardly_moves():
+    shot, groom = scene(*crossed(), more=SOFT)
+    away = 1e-9  # [m] by which a step parts them
+    touching = Scene(make_strands(shot, groom), contact=shot.touching.model_copy(update={"parting_speed": away / 1e-6}))
+    found, where = touching.touching()
+    touching.step(groom.locks.points, 1e-6, solver=Solver(newton=1))
+    vertices, values = touching.contacts
+    assert len(found) > 0 and (vertices == found).all()
+    assert where[:, :7] == pytest.approx(values[:, :7], abs=1e3 * away)
+    assert where[:, 7] == pytest.approx(REACH)
+
+
+def test_no_step_depends_on_whether_what_touches_was_asked_for():
+    plain, asked = fallen(8), fallen(8, ask=Scene.touching)
+    assert (plain.positions == asked.positions).all()
+    for name, values in plain.memory.items():
+        assert np.array_equal(values, asked.memory[name])
 
 
 def stays(shot, groom, made, bodies=(), steps=48):

@@ -158,6 +158,14 @@ class Scene:
         """The last step's contacts: their vertices (k, 4); weights, normal, distance [m] and force [N], (k, 9)."""
         return self._core.contacts
 
+    def touching(self) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
+        """What touches where everything is now, without a step: vertices (k, 4); weights, normal, distance [m], (k, 8).
+
+        Of all pairs that are nearer than their distance, however they began. No step depends on it.
+        """
+        vertices, values = self._core.touching()
+        return vertices, values[:, :8]
+
     @property
     def touches(self) -> Touches:
         """Where the last step's contacts are, how near, and how hard they push."""

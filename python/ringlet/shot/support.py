@@ -24,8 +24,8 @@ from ringlet.shot.nails import fixed
 from ringlet.shot.pushing import least_pushing
 from ringlet.shot.scene import Body, Scene, friction_of
 from ringlet.shot.shot import Shot
-from ringlet.shot.start import INSTANT, depths
-from ringlet.shot.strands import Solver, Strands
+from ringlet.shot.start import depths
+from ringlet.shot.strands import Strands
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -57,7 +57,7 @@ class Ways:
 def support(shot: Shot, locks: Curves, strands: Strands, loads: Array, obstacles: Sequence[Obstacle]) -> Array:
     """The forces [N] that bear locks where they were groomed, at their vertices, shape (n, 3).
 
-    strands: the locks, with their stiffness, where they were groomed; what touches them may move them a little
+    strands: the locks, with their stiffness, where they were groomed
     loads:   what pulls at them besides [N], shape (n, 3)
     """
     forces, contact = np.zeros_like(loads), shot.touching
@@ -119,11 +119,9 @@ def _touching(
         Body(surface, one.mesh.triangles, one.settings.thickness, one.settings.friction)
         for one, surface in zip(obstacles, surfaces, strict=True)
     ]
-    # Without a speed at which to part they would not push yet.
-    scene = Scene(strands, bodies, contact.model_copy(update={"parting_speed": 1.0}))
-    before, count = scene.positions.copy(), len(locks.points)
-    scene.step(before[:count], INSTANT, solver=Solver(newton=1))
-    vertices, values = scene.contacts
+    scene = Scene(strands, bodies, contact)
+    vertices, values = scene.touching()
+    at, count = scene.positions, len(locks.points)
 
     weights, of_lock = values[:, :4], vertices < count
     body = np.searchsorted(np.cumsum([count, *map(len, surfaces)]), vertices.max(axis=1), side="right")  # 0: of locks
@@ -134,9 +132,9 @@ def _touching(
     counts = np.where(body == 0, (lock[:, 0] != lock[:, 1]) & ~at_tip, ~np.asarray(strands.held)[main])
     for k, surface in enumerate(surfaces):
         on_it = np.flatnonzero((body == k + 1) & counts)
-        counts[on_it] = depths(before[main[on_it]], obstacles[k].mesh.triangles, surface) == 0.0
+        counts[on_it] = depths(at[main[on_it]], obstacles[k].mesh.triangles, surface) == 0.0
     chosen = np.flatnonzero(counts)
-    apart = np.linalg.norm(np.einsum("kv,kvi->ki", weights[chosen], before[vertices[chosen]]), axis=1)
+    apart = np.linalg.norm(np.einsum("kv,kvi->ki", weights[chosen], at[vertices[chosen]]), axis=1)
     by_distance = chosen[np.argsort(apart, kind="stable")]
     _, first = np.unique(places[by_distance], axis=0, return_index=True)
     nearest = by_distance[first]

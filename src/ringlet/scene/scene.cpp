@@ -71,6 +71,8 @@ struct Scene::Parts {
                    std::vector<StrandReport> &of_strands, std::vector<ClothReport> &of_cloths);
 
     void check(const SceneInput &input) const;
+    void find_placed();
+    std::vector<Contact> touching();
     void set_stiffness() { vertices.material.stiffness = stiffness.needed(vertices, 2.0 * settings.strand_radius); }
     void note_touched();
     SceneCarriers carriers(std::vector<int> &of_cloths, double dt) const;
@@ -353,17 +355,33 @@ void Scene::Parts::check(const SceneInput &input) const {
         throw std::invalid_argument("scene: targets do not fit the bodies");
 }
 
+// Strands and cloths may have been placed since the last step.
+void Scene::Parts::find_placed() {
+    std::copy(state.positions.begin(), state.positions.end(), vertices.positions.begin());
+    for (int c = 0; c < int(system.cloths.size()); ++c)
+        std::copy(system.cloths[c].state().positions.begin(), system.cloths[c].state().positions.end(),
+                  vertices.positions.begin() + vertices.cloths[c]);
+}
+
+std::vector<Contact> Scene::Parts::touching() {
+    find_placed();
+    near.forget();
+    near.note(vertices.positions, vertices.positions, 0.0, 0.0);
+    ContactMaterial material = vertices.material;
+    material.stiffness.assign(vertices.count(), 1.0);
+    ContactSet contacts; // which knows of nothing that was before
+    contacts.find(vertices.mesh, material, near.touching(vertices.positions), vertices.positions, vertices.positions);
+    near.forget();
+    return contacts.contacts();
+}
+
 SceneReport Scene::Parts::step(const SceneInput &input, const SceneStep &scene_step, std::vector<StrandReport> &of_strands,
                                std::vector<ClothReport> &of_cloths) {
     check(input);
     of_strands.assign(model.strand_count(), StrandReport{});
     of_cloths.assign(system.cloths.size(), ClothReport{});
     SceneReport report;
-    // They may have been placed since.
-    std::copy(state.positions.begin(), state.positions.end(), vertices.positions.begin());
-    for (int c = 0; c < int(system.cloths.size()); ++c)
-        std::copy(system.cloths[c].state().positions.begin(), system.cloths[c].state().positions.end(),
-                  vertices.positions.begin() + vertices.cloths[c]);
+    find_placed();
     if (!begun) {
         near.note(vertices.positions, vertices.positions, 0.0, 0.0);
         system.contacts.begin(near.touching(vertices.positions));
@@ -397,6 +415,8 @@ SceneReport Scene::step(const SceneInput &input, const SceneStep &step, std::vec
                         std::vector<ClothReport> &of_cloths) {
     return parts_->step(input, step, of_strands, of_cloths);
 }
+
+std::vector<Contact> Scene::touching() { return parts_->touching(); }
 
 void Scene::excuse(int vertex, int body) {
     if (vertex < 0 || vertex >= parts_->vertices.strand_vertices())

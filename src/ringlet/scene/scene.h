@@ -60,6 +60,10 @@ public:
     SceneReport step(const SceneInput &input, const SceneStep &step, std::vector<StrandReport> &of_strands,
                      std::vector<ClothReport> &of_cloths);
 
+    // What touches where everything is now, without a step: of all pairs that are nearer than their distance, however they
+    // began. How hard they push is known in a step alone; no step depends on this.
+    std::vector<Contact> touching();
+
     // A vertex of a strand that begins inside a body, or too near to it, may be there until it has come out: it is pushed out
     // gently, and guarded like any other from then on.
     void excuse(int vertex, int body);
