@@ -73,7 +73,7 @@ struct Scene::Parts {
     void check(const SceneInput &input) const;
     void find_placed();
     std::vector<Contact> touching();
-    void set_stiffness() { vertices.material.stiffness = stiffness.needed(vertices, 2.0 * settings.strand_radius); }
+    void set_stiffness();
     void note_touched();
     SceneCarriers carriers(std::vector<int> &of_cloths, double dt) const;
     double filter(View<Vec3> now, std::vector<Vec3> &to, const MoveKind &kind, SceneReport &report);
@@ -96,6 +96,12 @@ Scene::Parts::Parts(const StrandModel &model_, StrandState &state_, const std::v
     touched.assign(cloths.size(), -1);
     for (int b = 0; b < int(bodies.size()); ++b)
         embedded_bodies.push_back({vertices.bodies[b], int(bodies[b].rest.size()), vertices.parts() + b, bodies[b].triangles});
+}
+
+// What stays where it began is as hard as it may have to be from the start: it is not to sink in.
+void Scene::Parts::set_stiffness() {
+    const bool stays = settings.parting_speed == 0.0;
+    vertices.material.stiffness = stays ? stiffness.hardest() : stiffness.needed(vertices, 2.0 * settings.strand_radius);
 }
 
 // Which body each cloth has most contacts with.
