@@ -24,10 +24,15 @@ void ContactStiffness::begin(const SceneSystem &system, double scale, double dt)
     }
 }
 
-void ContactStiffness::bear(const ContactSet &contacts) {
+bool ContactStiffness::bear(const ContactSet &contacts) {
     const std::vector<Contact> &all = contacts.contacts();
+    bool more = false;
     for (size_t k = 0; k < all.size(); ++k)
-        for (const int v : all[k].vertex) borne_[v] = std::max(borne_[v], contacts.expected()[k].force);
+        for (const int v : all[k].vertex) {
+            const double force = contacts.expected()[k].force;
+            if (force > borne_[v]) borne_[v] = force, more = true;
+        }
+    return more;
 }
 
 std::vector<double> ContactStiffness::needed(const SceneVertices &vertices, double distance) const {
@@ -37,7 +42,8 @@ std::vector<double> ContactStiffness::needed(const SceneVertices &vertices, doub
         if (!vertices.mesh.moves[v]) continue;
         double borne = borne_[v]; // what slides along goes on from one to the next
         for (const int other : {v - 1, v + 1})
-            if (vertices.mesh.object[other] == vertices.mesh.object[v]) borne = std::max(borne, borne_[other]);
+            if (other < vertices.strand_vertices() && vertices.mesh.object[other] == vertices.mesh.object[v])
+                borne = std::max(borne, borne_[other]);
         double enough = softest * hardest_[v];
         while (enough < borne / distance && enough < hardest_[v]) enough *= level;
         stiffness[v] = std::min(enough, hardest_[v]);

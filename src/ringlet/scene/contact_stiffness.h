@@ -19,8 +19,8 @@ public:
     // and become hard again. `scale` is that of all that is hard.
     void begin(const SceneSystem &system, double scale, double dt);
 
-    // Contacts turn out to bear more than before. Nothing becomes softer within a step.
-    void bear(const ContactSet &contacts);
+    // Contacts may turn out to bear more than before; whether one does. Nothing becomes softer within a step.
+    bool bear(const ContactSet &contacts);
 
     // Per vertex, where it has to be [N/m]; what is kinematic: infinity.
     const std::vector<double> &hardest() const { return hardest_; }

@@ -222,8 +222,7 @@ int Scene::Parts::newton(const SceneStep &scene_step, const StrandStep &step, st
             report.linear_residual = solved.residual;
             measure(system, direction, reach);
             system.expect(direction);
-            stiffness.bear(system.contacts);
-            set_stiffness();
+            if (stiffness.bear(system.contacts)) set_stiffness();
         }
         const bool small = std::all_of(reach.begin(), reach.end(), [&](double far) { return far <= step.tolerance; });
         // A cloth that is held back here and there is strained there, so that its energy rises for once: for it and what
