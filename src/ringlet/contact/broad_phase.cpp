@@ -69,7 +69,6 @@ void BroadPhase::find(const PathBoxes &ways, Candidates &candidates, View<unsign
     fit(point_tree_, points_, [&](const auto &point, int) { return ways.of_vertex(point[0]); });
     fit(triangle_tree_, mesh_.triangles, [&](const auto &, int i) { return ways.of_triangle(i); });
     search_all(ways.still(), candidates);
-    for (MovingTree *tree : {&edge_tree_, &point_tree_, &triangle_tree_}) tree->discount();
     away_.assign(mesh_.moves.size(), !changed.empty());
 }
 
@@ -77,9 +76,10 @@ void BroadPhase::find_quick(const PathBoxes &ways, const PathBoxes &homes, View<
                             View<unsigned char> changed, Candidates &candidates) {
     stale_ = away_;
     for (size_t v = 0; v < quick.size(); ++v) {
-        away_[v] = quick[v] || changed[v];
-        stale_[v] |= away_[v];
+        stale_[v] |= quick[v] || changed[v];
+        away_[v] = quick[v] && &ways != &homes;
     }
+    for (MovingTree *tree : {&edge_tree_, &point_tree_, &triangle_tree_}) tree->discount();
     const Affected stale(mesh_, incidence_, stale_);
     const auto refit = [&](MovingTree &tree, const std::vector<int> &some, const auto &primitives, const auto &box_of) {
         if (primitives.empty()) return;

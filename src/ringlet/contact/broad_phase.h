@@ -47,7 +47,7 @@ private:
     MovingTree edge_tree_, triangle_tree_, point_tree_;
     std::vector<Pairs> found_; // by each task
 
-    std::vector<unsigned char> away_, stale_; // vertices: boxed apart from find(), or changed; that are to be boxed anew
+    std::vector<unsigned char> away_, stale_; // vertices: not boxed at home; that are to be boxed anew
 };
 
 } // namespace ringlet

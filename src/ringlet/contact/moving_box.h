@@ -52,7 +52,7 @@ inline void transpose(const Eigen::Array4f (&rows)[4], float (&columns)[4][4]) {
     std::memcpy(columns, out, sizeof(out));
 }
 
-inline void set_boxes(BoxQuad &quad, const MovingBox (&boxes)[4]) {
+inline void set_boxes(BoxQuad &quad, WhoCounts &who_counts, const MovingBox (&boxes)[4]) {
     float columns[4][4];
     const auto set = [&](Eigen::Array4f MovingBox::*corner, float (&rows)[3][4]) {
         transpose({boxes[0].*corner, boxes[1].*corner, boxes[2].*corner, boxes[3].*corner}, columns);
@@ -60,29 +60,29 @@ inline void set_boxes(BoxQuad &quad, const MovingBox (&boxes)[4]) {
     };
     set(&MovingBox::high, quad.high), set(&MovingBox::end_low, quad.end_low), set(&MovingBox::end_high, quad.end_high);
     set(&MovingBox::low, quad.low);
-    std::memcpy(quad.who_counts, columns[3], sizeof(columns[3]));
+    std::memcpy(who_counts.of, columns[3], sizeof(columns[3]));
 }
 
-inline void set_box(BoxQuad &quad, int k, const MovingBox &box) {
+inline void set_box(BoxQuad &quad, WhoCounts &who_counts, int k, const MovingBox &box) {
     for (int axis = 0; axis < 3; ++axis) {
         quad.low[axis][k] = box.low[axis];
         quad.high[axis][k] = box.high[axis];
         quad.end_low[axis][k] = box.end_low[axis];
         quad.end_high[axis][k] = box.end_high[axis];
     }
-    quad.who_counts[k] = box.low[3];
+    who_counts.of[k] = box.low[3];
 }
 
-inline MovingBox box_of(const BoxQuad &quad, int k) {
+inline MovingBox box_of(const BoxQuad &quad, const WhoCounts &who_counts, int k) {
     const auto corner = [&](const float (&rows)[3][4], float last) -> Eigen::Array4f {
         return {rows[0][k], rows[1][k], rows[2][k], last};
     };
-    return {corner(quad.low, quad.who_counts[k]), corner(quad.high, 0.0f), corner(quad.end_low, 0.0f),
+    return {corner(quad.low, who_counts.of[k]), corner(quad.high, 0.0f), corner(quad.end_low, 0.0f),
             corner(quad.end_high, 0.0f)};
 }
 
 // Around the four.
-inline MovingBox box_of(const BoxQuad &quad) {
+inline MovingBox box_of(const BoxQuad &quad, const WhoCounts &who_counts) {
     using Row = Eigen::Map<const Eigen::Array4f>;
     const auto least = [](const float (&rows)[3][4], float last) -> Eigen::Array4f {
         return {Row(rows[0]).minCoeff(), Row(rows[1]).minCoeff(), Row(rows[2]).minCoeff(), last};
@@ -90,7 +90,7 @@ inline MovingBox box_of(const BoxQuad &quad) {
     const auto most = [](const float (&rows)[3][4]) -> Eigen::Array4f {
         return {Row(rows[0]).maxCoeff(), Row(rows[1]).maxCoeff(), Row(rows[2]).maxCoeff(), 0.0f};
     };
-    return {least(quad.low, Row(quad.who_counts).minCoeff()), most(quad.high), least(quad.end_low, 0.0f), most(quad.end_high)};
+    return {least(quad.low, Row(who_counts.of).minCoeff()), most(quad.high), least(quad.end_low, 0.0f), most(quad.end_high)};
 }
 
 // Whether two boxes may overlap at one time: on no axis are they apart at the start and, on the same side, at the end.

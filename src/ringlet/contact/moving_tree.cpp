@@ -28,10 +28,13 @@ void MovingTree::arrange(std::vector<Centre> &centres) {
 
     first_leaf_ = 0;
     for (int level = 0; level < (depth_ + 1) / 2; ++level) first_leaf_ = child(first_leaf_, 0);
+    const size_t nodes = size_t(first_leaf_) + leaves();
     BoxQuad empty;
-    for (int k = 0; k < 4; ++k) set_box(empty, k, MovingBox::nothing());
-    nodes_.assign(size_t(first_leaf_) + leaves(), empty);
-    listed_.assign(nodes_.size(), 0);
+    WhoCounts none;
+    for (int k = 0; k < 4; ++k) set_box(empty, none, k, MovingBox::nothing());
+    nodes_.assign(nodes + 1, empty);
+    who_counts_.assign(nodes + 4, none);
+    listed_.assign(nodes, 0);
     leaf_of_.resize(count_);
     primitives_.assign(size_t(4) * leaves(), -1);
     for (int leaf = 0; leaf < leaves(); ++leaf)
@@ -51,7 +54,7 @@ void MovingTree::refit_above(std::vector<int> &nodes) {
             const int parent = (node - 1) / 4;
             if (node > 0 && !listed_[parent]) listed_[parent] = 1, parents.push_back(parent);
         }
-        for (const int node : parents) put(node, box_of(nodes_[node]));
+        for (const int node : parents) put(node, around(node));
     }
 }
 

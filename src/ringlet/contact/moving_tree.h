@@ -21,21 +21,17 @@ public:
 
     // Until it is taken anew no primitive counts.
     void discount() {
-        for (BoxQuad &boxes : nodes_) std::fill_n(boxes.who_counts, 4, MovingBox::does_not_count);
+        for (WhoCounts &boxes : who_counts_) std::fill_n(boxes.of, 4, MovingBox::does_not_count);
     }
 
     bool empty() const { return count_ == 0; }
     bool is_leaf(int node) const { return node >= first_leaf_; }
     static int child(int node, int k) { return 4 * node + 1 + k; }
-    BoxTree boxes() const { return {nodes_.data(), first_leaf_, size(0)}; } // of each node's children or, in a leaf, primitives
-    MovingBox box(int slot) const { return box_of(nodes_[slot / 4], slot % 4); }  // by lane and four times the leaf
-    int primitive(int slot) const { return primitives_[slot - 4 * first_leaf_]; } // likewise
-    int size(int node) const {                                                    // how many boxes it has
-        return is_leaf(node)             ? begin(node - first_leaf_ + 1, depth_) - begin(node - first_leaf_, depth_)
-               : node == 0 && depth_ % 2 ? 2
-                                         : 4;
-    }
-    int built() const { return built_; } // how often
+    // Of each node's children or, in a leaf, primitives.
+    BoxTree boxes() const { return {nodes_.data(), who_counts_.data(), first_leaf_, depth_ % 2 ? 2 : 4}; }
+    MovingBox box(int slot) const { return box_of(nodes_[slot / 4], who_counts_[slot / 4], slot % 4); } // lane + 4 · leaf
+    int primitive(int slot) const { return primitives_[slot - 4 * first_leaf_]; }                       // likewise; −1: none
+    int built() const { return built_; }                                                                // how often
 
 private:
     struct Centre {
@@ -53,13 +49,15 @@ private:
     int begin(int64_t share, int depth) const { return static_cast<int>(share * count_ >> depth); }
     int leaves() const { return 1 << depth_; }
     void put(int node, const MovingBox &all) { // into its parent
-        if (node > 0) set_box(nodes_[(node - 1) / 4], (node - 1) % 4, all);
+        if (node > 0) set_box(nodes_[(node - 1) / 4], who_counts_[(node - 1) / 4], (node - 1) % 4, all);
     }
+    MovingBox around(int node) const { return box_of(nodes_[node], who_counts_[node]); }
 
     std::vector<int> primitives_;       // four to a leaf, the last of which may be missing
     std::vector<int> leaf_of_;          // each primitive
     std::vector<unsigned char> listed_; // per node, while some are refitted
-    std::vector<BoxQuad> nodes_;
+    std::vector<BoxQuad> nodes_;        // one more than there are, and four more of who counts: what is read behind the last
+    std::vector<WhoCounts> who_counts_;
     int count_ = 0, depth_ = 0, first_leaf_ = 0, built_ = 0;
     double built_looseness_ = 0.0;
 };
@@ -93,10 +91,11 @@ template <class Box> void MovingTree::build(const Box &box) {
 template <class Box> void MovingTree::refit_leaf(int leaf, const Box &box) {
     MovingBox boxes[4], all = MovingBox::nothing();
     for (int k = 0; k < 4; ++k) {
-        boxes[k] = k < size(leaf) ? box(primitive(4 * leaf + k)) : MovingBox::nothing();
+        const int i = primitive(4 * leaf + k);
+        boxes[k] = i >= 0 ? box(i) : MovingBox::nothing();
         all.include(boxes[k]);
     }
-    set_boxes(nodes_[leaf], boxes);
+    set_boxes(nodes_[leaf], who_counts_[leaf], boxes);
     put(leaf, all);
 }
 
@@ -108,7 +107,7 @@ template <class Box> void MovingTree::refit_all(const Box &box) {
         first = (first - 1) / 4;
         count /= 4;
 #pragma omp parallel for schedule(static) if (count > small)
-        for (int node = first; node < first + count; ++node) put(node, box_of(nodes_[node]));
+        for (int node = first; node < first + count; ++node) put(node, around(node));
     }
 }
 

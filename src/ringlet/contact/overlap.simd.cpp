@@ -67,11 +67,14 @@ template <class Gaps> void for_gaps(const BoxQuad &a, const BoxQuad &b, int part
     }
 }
 
+// Above 0 where neither of a pair counts: then they are never looked at.
+Floats neither_counts(const WhoCounts &a, const WhoCounts &b, int part) { return of_first(a.of, part) + of_second(b.of); }
+
 // Which boxes overlap on each axis at some time. What is in the rest never comes together.
-unsigned may_meet(const BoxQuad &a, const BoxQuad &b) {
+unsigned may_meet(const BoxQuad &a, const BoxQuad &b, const WhoCounts &of_a, const WhoCounts &of_b) {
     unsigned which = 0;
     for (int part = 0; part < parts; ++part) {
-        Floats apart = of_first(a.who_counts, part) + of_second(b.who_counts); // above 0: never
+        Floats apart = neither_counts(of_a, of_b, part);
         for_gaps(a, b, part, [&](Floats gap, Floats end_gap) { apart = greater(apart, lesser(gap, end_gap)); });
         which |= lanes(apart <= 0.0f) << part * width;
     }
@@ -79,10 +82,10 @@ unsigned may_meet(const BoxQuad &a, const BoxQuad &b) {
 }
 
 // The same where boxes stay.
-unsigned overlap(const BoxQuad &a, const BoxQuad &b) {
+unsigned overlap(const BoxQuad &a, const BoxQuad &b, const WhoCounts &of_a, const WhoCounts &of_b) {
     unsigned which = 0;
     for (int part = 0; part < parts; ++part) {
-        Floats apart = of_first(a.who_counts, part) + of_second(b.who_counts); // above 0: never
+        Floats apart = neither_counts(of_a, of_b, part);
         for (int axis = 0; axis < 3; ++axis) {
             apart = greater(apart, of_second(b.low[axis]) - of_first(a.high[axis], part));
             apart = greater(apart, of_first(a.low[axis], part) - of_second(b.high[axis]));
@@ -118,7 +121,8 @@ void descend(Descent &d, int most_visits) {
         const int i = node.of[0], j = node.of[1];
         const BoxQuad &a = d.a.nodes[i], &b = d.b.nodes[j];
         const bool itself = d.one_tree && i == j, leaf_a = i >= d.a.first_leaf, leaf_b = j >= d.b.first_leaf;
-        unsigned which = d.still ? overlap(a, b) : may_meet(a, b);
+        const WhoCounts &of_a = d.a.who_counts[i], &of_b = d.b.who_counts[j];
+        unsigned which = d.still ? overlap(a, b, of_a, of_b) : may_meet(a, b, of_a, of_b);
         if (itself) {
             which &= each_once;
             for (int k = 0; !leaf_a && k < (i == 0 ? d.a.children_of_root : 4); ++k) leave(4 * i + 1 + k, 4 * i + 1 + k);

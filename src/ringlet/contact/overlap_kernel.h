@@ -5,17 +5,21 @@
 
 namespace ringlet {
 
-// Four boxes at the start of a motion and at its end, side by side: by axis, and lane k of each row is of box k. The sum of two
-// who_counts is positive where neither counts.
+// Four boxes at the start of a motion and at its end, side by side: by axis, and lane k of each row is of box k. Sixteen
+// numbers are read from where each row begins, so that something has to stand behind the last.
 struct alignas(64) BoxQuad {
     float low[3][4], high[3][4], end_low[3][4], end_high[3][4];
-    float who_counts[4];
-    float rest[3][4]; // so that sixteen numbers can be read from where each row begins
+};
+
+// Which of four boxes count: the sum of two is positive where neither does. Read as boxes are.
+struct alignas(16) WhoCounts {
+    float of[4];
 };
 
 // A tree of moving_tree.h.
 struct BoxTree {
     const BoxQuad *nodes;
+    const WhoCounts *who_counts;
     int first_leaf, children_of_root;
 };
 

@@ -69,9 +69,7 @@ void CoupledStrands::assemble(int group, const AlignedVector &x) const {
 
 void CoupledStrands::factor(int group) const { RINGLET_DISPATCH(factor_strand_group, memory_[group].get()); }
 
-void CoupledStrands::solve(int group, AlignedVector &b) const {
-    RINGLET_DISPATCH(solve_strand_group, memory_[group].get(), b.data() + begin_[group]);
-}
+void CoupledStrands::solve(int group, double *b) const { RINGLET_DISPATCH(solve_strand_group, memory_[group].get(), b); }
 
 void CoupledStrands::add_block(int strand, int a, int b, const Mat3 &block) const {
     if (a < b) return;

@@ -49,7 +49,7 @@ public:
     void evaluate(int group, const AlignedVector &x, double *energies_of_lanes) const; // before it is assembled there
     void assemble(int group, const AlignedVector &x) const;
     void factor(int group) const;
-    void solve(int group, AlignedVector &b) const; // in place
+    void solve(int group, double *b) const; // in place; b is all that the group has of a vector
 
     // Adds a 3 × 3 block to the matrix: rows of vertex a, columns of vertex b, both of one strand, b = a or a + 1 or the other
     // way round (of a block and its transpose only the lower one is stored).

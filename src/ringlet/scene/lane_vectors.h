@@ -10,9 +10,6 @@ namespace ringlet {
 RINGLET_DECLARE(
     void lane_products(const double *a, const double *b, int rows, double *products);                     // Σ a b
     void lane_move(const double *x, const double *step, const double *direction, int rows, double *to);   // to = x + step · direction
-    // Of conjugate gradients, with r what is left, P z = r, p where to search: p = z + β p and, with it, P p; says p · P p.
-    void lane_search(const double *z, const double *r, const double *beta, int rows, double *p, double *Pp, double *curvatures);
-    void lane_advance(const double *alpha, const double *p, const double *Pp, int rows, double *d, double *r); // d += α p, r −= α P p
 )
 // clang-format on
 

@@ -31,23 +31,4 @@ void lane_move(const double *x, const double *step, const double *direction, int
     for (int i = 0; i < rows; ++i) packs(to)[i] = packs(x)[i] + part * packs(direction)[i];
 }
 
-void lane_search(const double *z, const double *r, const double *beta, int rows, double *p, double *Pp, double *curvatures) {
-    const Pack before = of_lanes(beta);
-    Pack sum{};
-    for (int i = 0; i < rows; ++i) {
-        packs(p)[i] = packs(z)[i] + before * packs(p)[i];
-        packs(Pp)[i] = packs(r)[i] + before * packs(Pp)[i];
-        sum += packs(p)[i] * packs(Pp)[i];
-    }
-    to_lanes(sum, curvatures);
-}
-
-void lane_advance(const double *alpha, const double *p, const double *Pp, int rows, double *d, double *r) {
-    const Pack step = of_lanes(alpha);
-    for (int i = 0; i < rows; ++i) {
-        packs(d)[i] += step * packs(p)[i];
-        packs(r)[i] -= step * packs(Pp)[i];
-    }
-}
-
 } // namespace ringlet::RINGLET_SIMD

@@ -192,8 +192,9 @@ void Scene::Parts::begin_cloths(const SceneInput &input, const StrandStep &step,
 // What a filter left of a move is taken of the direction that led there, of all that it says of a vertex.
 void Scene::Parts::take(View<Vec3> now, View<Vec3> wanted, View<Vec3> to) {
     for (int v = 0; v < vertices.moving_vertices(); ++v) {
+        if (to[v] == wanted[v]) continue;
         const Vec3 way = wanted[v] - now[v];
-        const double part = to[v] == wanted[v] ? 1.0 : way.dot(to[v] - now[v]) / way.squaredNorm();
+        const double part = way.dot(to[v] - now[v]) / way.squaredNorm();
         for (int k = 0; k < system.freedoms(v); ++k) direction[system.slot(v) + k * system.stride(v)] *= part;
     }
 }

@@ -11,7 +11,7 @@ SceneMatrix::SceneMatrix(const SceneSystem &system) : system_(system), block_(fr
     for (int s = 0; s < system.vertices.strands; ++s) add_strand(s);
     for (int c = 0; c < int(system.cloths.size()); ++c) add_cloth(c);
     const std::vector<Contact> &contacts = system.contacts.contacts();
-    for (int c = 0; c < int(contacts.size()); ++c) add_contact(contacts[c], system.value(c).hessian);
+    for (int c = 0; c < int(contacts.size()); ++c) add_contact(contacts[c], system.values()[c].hessian);
 }
 
 double *SceneMatrix::add_block(int row, int column) {

@@ -37,9 +37,15 @@ void mark_touched(const SceneSystem &system, std::vector<unsigned char> &marked)
 std::vector<double> slopes(const SceneSystem &system, const AlignedVector &direction) {
     std::vector<double> slope(system.vertices.parts(), 0.0);
     system.for_units([&](int u) {
-        for_parts(system, u, [&](int part, size_t first, size_t stride, size_t count) {
-            for (size_t i = first; i < first + count * stride; i += stride) slope[part] += system.gradient(i, u) * direction[i];
-        });
+        double slopes[most_lanes] = {};
+        const size_t first = system.unit_begin(u);
+        if (u < system.group_count()) {
+            const StrandGroupSystem &group = system.strands.system(u);
+            RINGLET_DISPATCH(lane_products, group.gradient, direction.data() + first, group.freedoms * group.vertices, slopes);
+        } else {
+            for (size_t i = first; i < system.unit_end(u); ++i) slopes[0] += system.gradient(i, u) * direction[i];
+        }
+        system.from_lanes(u, slopes, slope);
     });
     return slope;
 }

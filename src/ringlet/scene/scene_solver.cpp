@@ -16,22 +16,17 @@ System choose(const SceneSystem &system, System how) {
     return how == System::direct && all ? how : System::conjugate_gradient;
 }
 
-double dot(const double *a, const double *b, size_t count) {
-    double value = 0.0;
-    for (size_t i = 0; i < count; ++i) value += a[i] * b[i];
-    return value;
+double dot(const std::vector<double> &a, const std::vector<double> &b) {
+    return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
 }
 
 } // namespace
 
 void SceneSolver::prepare(SceneSystem &system, const AlignedVector &x, System how) {
-    all_ = how == System::conjugate_gradient || how == System::direct;
     how = choose(system, how);
-    if (residual_.size() != system.size())
-        for (AlignedVector *vector : {&residual_, &solved_, &searched_, &image_}) *vector = AlignedVector(system.size());
-    for (AlignedVector *vector : {&searched_, &image_}) vector->fill(0.0); // of what is not active too
-    for (std::vector<double> *of_parts : {&products_, &curvatures_, &alpha_, &beta_})
-        of_parts->assign(system.vertices.parts(), 0.0);
+    if (alone_.size() != system.strands.size()) alone_ = AlignedVector(system.strands.size());
+    cloths_.resize(system.cloths.size());
+    products_.assign(system.vertices.parts(), 0.0);
     system.linearise(x);
     whole_.reset();
     if (how == System::direct) {
@@ -48,8 +43,24 @@ void SceneSolver::prepare(SceneSystem &system, const AlignedVector &x, System ho
 
 void SceneSolver::begin(SceneSystem &system, int unit) {
     system.factor(unit);
-    system.negative_gradient(unit, residual_);
-    precondition(system, unit);
+    const size_t first = system.unit_begin(unit), count = system.unit_end(unit) - first;
+    double products[most_lanes] = {};
+    if (unit < system.group_count()) {
+        double *z = alone_.data() + first;
+        system.negative_gradient(unit, z);
+        system.precondition(unit, z);
+        const StrandGroupSystem &group = system.strands.system(unit);
+        RINGLET_DISPATCH(lane_products, group.gradient, z, group.freedoms * group.vertices, products);
+        for (double &product : products) product = -product;
+    } else {
+        OfCloth &cloth = cloths_[unit - system.group_count()];
+        for (std::vector<double> *vector : {&cloth.r, &cloth.p, &cloth.Ap}) vector->assign(count, 0.0);
+        system.negative_gradient(unit, cloth.r.data());
+        cloth.z = cloth.r;
+        system.precondition(unit, cloth.z.data());
+        products[0] = dot(cloth.r, cloth.z);
+    }
+    system.from_lanes(unit, products, products_);
 }
 
 SceneSolver::Result SceneSolver::solve(SceneSystem &system, double tolerance, AlignedVector &direction) {
@@ -69,28 +80,27 @@ bool SceneSolver::solve_whole(const SceneMatrix &whole, AlignedVector &direction
     return true;
 }
 
-// Preconditioned by P. Strands' P is factored: P p follows from P z = r by the same recursion as p from z, so that no product
-// with it is ever formed. (The factor is rounded; the P that it is the exact factor of is then also that of A.) Of a cloth P
-// has only an incomplete factor: there the product is. Clusters are systems of their own, and each goes its own number of
-// steps; a strand that is alone is solved by P.
+// Preconditioned by P, from where strands would go by P alone: for them nothing is left then but C d, at the points that are
+// coupled, and so it stays. P p follows from P z = r by the same recursion as p from z, and how far strands go from there from
+// what they have borne at these points. Of a cloth P has only an incomplete factor: there vectors are whole, and A p is
+// formed. Clusters are systems of their own, and each goes its own number of steps.
 SceneSolver::Result SceneSolver::conjugate_gradient(SceneSystem &system, double tolerance, AlignedVector &direction) {
     constexpr int most = 2000;
     const int parts = system.vertices.parts();
     const std::vector<int> &cluster = system.clusters();
     const auto sum = [&](const std::vector<double> &of_parts, std::vector<double> &of_clusters) {
         of_clusters.assign(parts, 0.0);
-        for (int p = 0; p < parts; ++p) of_clusters[cluster[p]] += of_parts[p];
+        for (int p = 0; p < parts; ++p)
+            if (!system.is_alone(p)) of_clusters[cluster[p]] += of_parts[p];
     };
     std::vector<double> rho, next, curvature, alpha(parts), beta(parts);
-    std::vector<unsigned char> busy(parts), busy_units;
+    std::vector<unsigned char> busy(parts), busy_units, went(system.unit_count(), 0);
     sum(products_, rho);
-    for (int p = 0; p < parts; ++p)
-        if (is_alone(system, p)) rho[p] = 0.0;
     const double all = std::accumulate(rho.begin(), rho.end(), 0.0);
     std::vector<double> enough = rho;
     for (double &of_cluster : enough) of_cluster *= tolerance * tolerance;
-    for (int p = 0; p < parts; ++p) alpha_[p] = is_alone(system, p);
-    system.for_units([&](int u) { take_solved(system, u, direction); });
+    set_out(system, direction);
+    sum(products_, rho);
     Result result;
     for (;; ++result.iterations) {
         bool any = false;
@@ -110,12 +120,15 @@ SceneSolver::Result SceneSolver::conjugate_gradient(SceneSystem &system, double 
         };
         for_busy([&](int u) { search(system, u); });
         sum(curvatures_, curvature);
-        system.couple(searched_, busy, curvature);
+        system.couplings.push(p_, system.values(), busy, curvature);
         for (int p = 0; p < parts; ++p) { // of clusters, then of their parts
             if (busy[p] && cluster[p] == p) alpha[p] = curvature[p] > 0.0 ? rho[p] / curvature[p] : 0.0;
             alpha_[p] = busy[p] ? alpha[cluster[p]] : 0.0;
         }
-        for_busy([&](int u) { advance(system, u, direction); });
+        for_busy([&](int u) {
+            advance(system, u, direction);
+            went[u] = 1;
+        });
         sum(products_, next);
         for (int p = 0; p < parts; ++p) {
             if (cluster[p] == p && busy[p]) {
@@ -125,68 +138,104 @@ SceneSolver::Result SceneSolver::conjugate_gradient(SceneSystem &system, double 
             beta_[p] = busy[p] ? beta[cluster[p]] : 0.0;
         }
     }
+    system.for_units([&](int u) {
+        if (went[u]) arrive(system, u, direction);
+    });
     const double left = std::accumulate(rho.begin(), rho.end(), 0.0);
     result.residual = all > 0.0 ? std::sqrt(std::max(left, 0.0) / all) : 0.0;
     return result;
 }
 
-// P z = r, and r · z.
-void SceneSolver::precondition(const SceneSystem &system, int unit) {
-    const size_t first = system.unit_begin(unit), count = system.unit_end(unit) - first;
-    std::copy_n(residual_.data() + first, count, solved_.data() + first);
-    system.precondition(unit, solved_);
-    const double *r = residual_.data() + first, *z = solved_.data() + first;
-    double of_lanes[most_lanes] = {};
-    if (unit < system.group_count())
-        RINGLET_DISPATCH(lane_products, r, z, int(count / system.strands.stride()), of_lanes);
-    else
-        of_lanes[0] = dot(r, z, count);
-    system.from_lanes(unit, of_lanes, products_);
-}
-
-// Of a strand that is alone, its direction.
-void SceneSolver::take_solved(const SceneSystem &system, int unit, AlignedVector &direction) const {
-    if (unit >= system.group_count()) return;
-    const size_t first = system.unit_begin(unit), count = system.unit_end(unit) - first;
-    double alone[most_lanes] = {};
-    system.to_lanes(unit, alpha_, alone);
-    double *d = direction.data() + first;
-    RINGLET_DISPATCH(lane_move, d, alone, solved_.data() + first, int(count / system.strands.stride()), d);
+// d = P⁻¹ b of strands, 0 of cloths, and what is left then.
+void SceneSolver::set_out(SceneSystem &system, AlignedVector &direction) {
+    const int points = system.couplings.count(), parts = system.vertices.parts();
+    for (std::vector<Vec3> *vector : {&r_, &z_, &p_, &Pp_, &borne_}) vector->assign(points, Vec3::Zero());
+    for (std::vector<double> *of_parts : {&products_, &curvatures_, &beta_}) of_parts->assign(parts, 0.0);
+    system.for_units([&](int u) {
+        if (u >= system.group_count()) return;
+        std::copy(alone_.data() + system.unit_begin(u), alone_.data() + system.unit_end(u),
+                  direction.data() + system.unit_begin(u));
+        for (int k = system.couplings.begin(u); k < system.couplings.end(u); ++k)
+            p_[k] = system.position(direction, system.couplings.vertex(k));
+    });
+    std::vector<double> unused(parts, 0.0);
+    system.couplings.push(p_, system.values(), std::vector<unsigned char>(parts, 1), unused);
+    alpha_.assign(parts, 1.0);
+    system.for_units([&](int u) { advance(system, u, direction); });
 }
 
 // p = z + β p, P p, and p · P p.
 void SceneSolver::search(const SceneSystem &system, int unit) {
-    const size_t first = system.unit_begin(unit), count = system.unit_end(unit) - first;
-    double *p = searched_.data() + first, *Pp = image_.data() + first;
-    const double *z = solved_.data() + first, *r = residual_.data() + first;
-    double beta[most_lanes] = {}, of_lanes[most_lanes] = {};
-    system.to_lanes(unit, beta_, beta);
-    if (unit < system.group_count()) {
-        RINGLET_DISPATCH(lane_search, z, r, beta, int(count / system.strands.stride()), p, Pp, of_lanes);
-    } else {
-        for (size_t i = 0; i < count; ++i) p[i] = z[i] + beta[0] * p[i];
-        std::fill_n(Pp, count, 0.0);
-        system.cloths[unit - system.group_count()].multiply_add(p, Pp);
-        of_lanes[0] = dot(p, Pp, count);
+    const Couplings &couplings = system.couplings;
+    if (unit >= system.group_count()) {
+        const int number = unit - system.group_count(), part = system.vertices.strands + number;
+        OfCloth &cloth = cloths_[number];
+        for (size_t i = 0; i < cloth.p.size(); ++i) cloth.p[i] = cloth.z[i] + beta_[part] * cloth.p[i];
+        std::fill(cloth.Ap.begin(), cloth.Ap.end(), 0.0);
+        system.cloths[number].multiply_add(cloth.p.data(), cloth.Ap.data());
+        curvatures_[part] = dot(cloth.p, cloth.Ap);
+        for (int k = couplings.begin(unit); k < couplings.end(unit); ++k)
+            p_[k] = Eigen::Map<const Vec3>(&cloth.p[3 * (couplings.vertex(k) - system.vertices.cloths[number])]);
+        return;
     }
-    system.from_lanes(unit, of_lanes, curvatures_);
+    for (int k = couplings.begin(unit); k < couplings.end(unit); ++k) curvatures_[couplings.part(k)] = 0.0;
+    for (int k = couplings.begin(unit); k < couplings.end(unit); ++k) {
+        const int part = couplings.part(k);
+        p_[k] = z_[k] + beta_[part] * p_[k];
+        Pp_[k] = r_[k] + beta_[part] * Pp_[k];
+        curvatures_[part] += p_[k].dot(Pp_[k]);
+    }
 }
 
-// d += α p, r −= α A p, and what follows from r.
-void SceneSolver::advance(SceneSystem &system, int unit, AlignedVector &direction) {
-    const size_t first = system.unit_begin(unit), count = system.unit_end(unit) - first;
-    double *d = direction.data() + first, *r = residual_.data() + first;
-    const double *p = searched_.data() + first, *Pp = image_.data() + first;
-    double alpha[most_lanes] = {};
-    system.to_lanes(unit, alpha_, alpha);
-    if (unit < system.group_count()) {
-        RINGLET_DISPATCH(lane_advance, alpha, p, Pp, int(count / system.strands.stride()), d, r);
-    } else {
-        for (size_t i = 0; i < count; ++i) d[i] += alpha[0] * p[i];
-        for (size_t i = 0; i < count; ++i) r[i] -= alpha[0] * Pp[i];
+// d += α p, r −= α A p, and what follows from r. What strands have borne stands for d.
+void SceneSolver::advance(const SceneSystem &system, int unit, AlignedVector &direction) {
+    const Couplings &couplings = system.couplings;
+    if (unit >= system.group_count()) {
+        const int number = unit - system.group_count(), part = system.vertices.strands + number;
+        OfCloth &cloth = cloths_[number];
+        double *d = direction.data() + system.unit_begin(unit);
+        for (size_t i = 0; i < cloth.p.size(); ++i) d[i] += alpha_[part] * cloth.p[i];
+        for (size_t i = 0; i < cloth.p.size(); ++i) cloth.r[i] -= alpha_[part] * cloth.Ap[i];
+        for (int k = couplings.begin(unit); k < couplings.end(unit); ++k)
+            Eigen::Map<Vec3>(&cloth.r[3 * (couplings.vertex(k) - system.vertices.cloths[number])]) -=
+                alpha_[part] * couplings.pushed(k);
+        cloth.z = cloth.r;
+        system.precondition(unit, cloth.z.data());
+        products_[part] = dot(cloth.r, cloth.z);
+        return;
     }
-    system.subtract_pushes(unit, alpha_, residual_);
-    precondition(system, unit);
+    if (couplings.begin(unit) == couplings.end(unit)) return;
+    for (int k = couplings.begin(unit); k < couplings.end(unit); ++k) {
+        const double alpha = alpha_[couplings.part(k)];
+        borne_[k] += alpha * Pp_[k];
+        r_[k] -= alpha * (Pp_[k] + couplings.pushed(k));
+    }
+    const AlignedVector z = response(system, unit, r_);
+    for (int k = couplings.begin(unit); k < couplings.end(unit); ++k) products_[couplings.part(k)] = 0.0;
+    for (int k = couplings.begin(unit); k < couplings.end(unit); ++k) {
+        const double *at = z.data() + (system.slot(couplings.vertex(k)) - system.unit_begin(unit));
+        for (int i = 0; i < 3; ++i) z_[k][i] = at[i * system.strands.stride()];
+        products_[couplings.part(k)] += r_[k].dot(z_[k]);
+    }
+}
+
+// What a group of strands has borne at its points moves all of it.
+void SceneSolver::arrive(const SceneSystem &system, int unit, AlignedVector &direction) const {
+    if (unit >= system.group_count()) return;
+    const AlignedVector more = response(system, unit, borne_);
+    double *d = direction.data() + system.unit_begin(unit);
+    for (size_t i = 0; i < more.size(); ++i) d[i] += more[i];
+}
+
+// P⁻¹ of what is at the points of a group of strands.
+AlignedVector SceneSolver::response(const SceneSystem &system, int group, const std::vector<Vec3> &at_points) {
+    AlignedVector b(system.unit_end(group) - system.unit_begin(group));
+    for (int k = system.couplings.begin(group); k < system.couplings.end(group); ++k) {
+        double *at = b.data() + (system.slot(system.couplings.vertex(k)) - system.unit_begin(group));
+        for (int i = 0; i < 3; ++i) at[i * system.strands.stride()] = at_points[k][i];
+    }
+    system.precondition(group, b.data());
+    return b;
 }
 
 } // namespace ringlet

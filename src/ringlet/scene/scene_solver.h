@@ -31,18 +31,23 @@ public:
     Result solve(SceneSystem &system, double tolerance, AlignedVector &direction);
 
 private:
-    bool is_alone(const SceneSystem &system, int part) const { return !all_ && system.is_alone(part); } // P solves it
+    struct OfCloth { // of its unknowns
+        std::vector<double> r, z, p, Ap;
+    };
+
     void begin(SceneSystem &system, int unit);
     static bool solve_whole(const SceneMatrix &whole, AlignedVector &direction, Result &result);
     Result conjugate_gradient(SceneSystem &system, double tolerance, AlignedVector &direction);
-    void take_solved(const SceneSystem &system, int unit, AlignedVector &direction) const;
+    void set_out(SceneSystem &system, AlignedVector &direction);
     void search(const SceneSystem &system, int unit);
-    void advance(SceneSystem &system, int unit, AlignedVector &direction);
-    void precondition(const SceneSystem &system, int unit);
+    void advance(const SceneSystem &system, int unit, AlignedVector &direction);
+    void arrive(const SceneSystem &system, int unit, AlignedVector &direction) const;
+    static AlignedVector response(const SceneSystem &system, int group, const std::vector<Vec3> &at_points);
 
-    bool all_ = false;                 // what is alone takes part as well, since the way to solve was asked for
-    std::optional<SceneMatrix> whole_; // where it is factored: before its parts are in place
-    AlignedVector residual_, solved_, searched_, image_;       // r, z, p, P p
+    std::optional<SceneMatrix> whole_;         // where it is factored: before its parts are in place
+    AlignedVector alone_;                      // of strands: P⁻¹ b
+    std::vector<Vec3> r_, z_, p_, Pp_, borne_; // at the points that are coupled; of cloths, p alone
+    std::vector<OfCloth> cloths_;
     std::vector<double> products_, curvatures_, alpha_, beta_; // per part: r · z, p · P p
 };
 

@@ -9,6 +9,7 @@ namespace ringlet {
 SceneSystem::SceneSystem(const StrandModel &model_, const std::vector<SceneCloth> &cloths_, const SceneVertices &vertices_)
     : strands(model_, vertices_.positions), vertices(vertices_), model(model_) {
     for (const SceneCloth &cloth : cloths_) cloths.emplace_back(*cloth.model, *cloth.state);
+    for (int p = 0; p < vertices.parts(); ++p) unit_of_.push_back(unit_of(p));
 }
 
 void SceneSystem::begin(const StrandArrays &arrays, const StrandStep &step, View<Vec3> given) {
@@ -33,7 +34,9 @@ void SceneSystem::touch(const std::vector<Touch> &touching, View<Vec3> now) {
     find_planes(touching);
     contacts.find(vertices.mesh, vertices.material, touching, vertices.positions, now);
     contacts_found_ = true;
-    couple_parts();
+    values_.resize(contacts.contacts().size());
+    couplings.find(contacts, vertices, unit_of_, unit_count());
+    list_touched();
 }
 
 void SceneSystem::find_planes(const std::vector<Touch> &touching) {
@@ -49,31 +52,6 @@ void SceneSystem::find_planes(const std::vector<Touch> &touching) {
     contacts.go_by_planes(by_planes_);
 }
 
-// Nothing but the incomplete factor is known of a cloth: it counts as coupled whatever touches it.
-void SceneSystem::couple_parts() {
-    const std::vector<Contact> &all = contacts.contacts();
-    values_.resize(all.size());
-    pushes_.assign(all.size(), {Vec3::Zero(), Vec3::Zero()});
-    together_.assign(vertices.parts(), 0);
-    clusters_.resize(vertices.parts());
-    std::iota(clusters_.begin(), clusters_.end(), 0);
-    const auto find = [&](int part) {
-        while (clusters_[part] != part) part = clusters_[part] = clusters_[clusters_[part]];
-        return part;
-    };
-    couplings_.clear();
-    for (int k = 0; k < int(all.size()); ++k) {
-        if (!couples(all[k])) continue;
-        couplings_.push_back(k);
-        const int a = vertices.part_of(all[k].vertex[0]), b = vertices.part_of(all[k].vertex[3]);
-        together_[a] = together_[b] = 1;
-        const int first = find(a), other = find(b);
-        clusters_[std::max(first, other)] = std::min(first, other);
-    }
-    for (int part = 0; part < vertices.parts(); ++part) clusters_[part] = find(part);
-    list_touched();
-}
-
 void SceneSystem::list_touched() {
     touched_begin_.assign(unit_count() + 1, 0);
     for (const int v : contacts.vertices()) ++touched_begin_[unit_of(vertices.part_of(v)) + 1];
@@ -81,11 +59,6 @@ void SceneSystem::list_touched() {
     touched_.resize(contacts.vertices().size());
     std::vector<int> next(touched_begin_.begin(), touched_begin_.end() - 1);
     for (const int v : contacts.vertices()) touched_[next[unit_of(vertices.part_of(v))]++] = v;
-}
-
-bool SceneSystem::any_coupled() const {
-    return !cloths.empty() ||
-           std::any_of(together_.begin(), together_.end(), [](unsigned char coupled) { return coupled != 0; });
 }
 
 void SceneSystem::to_lanes(int unit, const std::vector<double> &of_parts, double *of_lanes) const {
@@ -271,15 +244,15 @@ double SceneSystem::gradient(size_t i, int unit) const {
     return in_unit < size_t(system.freedoms) * system.vertices * system.lanes ? system.gradient[in_unit] : 0.0;
 }
 
-void SceneSystem::negative_gradient(int unit, AlignedVector &into) const {
-    double *to = into.data() + unit_begin(unit), *const end = into.data() + unit_end(unit);
+void SceneSystem::negative_gradient(int unit, double *into) const {
+    double *const end = into + (unit_end(unit) - unit_begin(unit));
     const auto negate = [&](const double *from, size_t count) {
-        for (const double *const last = from + count; from < last; ++from) *to++ = -*from;
+        for (const double *const last = from + count; from < last; ++from) *into++ = -*from;
     };
     if (unit < group_count()) {
         const StrandGroupSystem &system = strands.system(unit);
         negate(system.gradient, size_t(system.freedoms) * system.vertices * system.lanes);
-        std::fill(to, end, 0.0);
+        std::fill(into, end, 0.0);
     } else {
         const CoupledCloth &cloth = cloths[unit - group_count()];
         negate(cloth.gradient.data()->data(), cloth.size());
@@ -293,42 +266,11 @@ void SceneSystem::factor(int unit) {
         cloths[unit - group_count()].factor();
 }
 
-void SceneSystem::precondition(int unit, AlignedVector &b) const {
+void SceneSystem::precondition(int unit, double *b) const {
     if (unit < group_count())
         strands.solve(unit, b);
     else
-        cloths[unit - group_count()].precondition(b.data() + unit_begin(unit));
-}
-
-void SceneSystem::couple(const AlignedVector &p, const std::vector<unsigned char> &busy, std::vector<double> &of_clusters) {
-    const std::vector<Contact> &all = contacts.contacts();
-    const CollisionMesh &mesh = vertices.mesh;
-    std::vector<double> curvatures(couplings_.size());
-#pragma omp parallel for schedule(static)
-    for (int k = 0; k < int(couplings_.size()); ++k) {
-        const Contact &c = all[couplings_[k]];
-        if (!busy[vertices.part_of(c.vertex[0])] && !busy[vertices.part_of(c.vertex[3])]) continue;
-        Vec3 side[2] = {Vec3::Zero(), Vec3::Zero()};
-        for (int i = 0; i < 4; ++i)
-            if (mesh.moves[c.vertex[i]]) side[i >= c.first] += c.weight[i] * position(p, c.vertex[i]);
-        const Mat3 &hessian = values_[couplings_[k]].hessian;
-        pushes_[couplings_[k]] = {hessian * side[1], hessian * side[0]};
-        curvatures[k] = 2.0 * side[0].dot(hessian * side[1]);
-    }
-    for (size_t k = 0; k < couplings_.size(); ++k)
-        of_clusters[clusters_[vertices.part_of(all[couplings_[k]].vertex[0])]] += curvatures[k];
-}
-
-void SceneSystem::subtract_pushes(int unit, const std::vector<double> &alpha, AlignedVector &r) const {
-    for (const int v : touched(unit)) {
-        const double part = alpha[vertices.part_of(v)];
-        if (part == 0.0) continue;
-        Vec3 push = Vec3::Zero();
-        for (const ContactSet::Role &role : contacts.of(v))
-            push += contacts.contacts()[role.contact].weight[role.as] *
-                    pushes_[role.contact][role.as >= contacts.contacts()[role.contact].first];
-        for (int i = 0; i < 3; ++i) r[slot(v) + i * stride(v)] -= part * push[i];
-    }
+        cloths[unit - group_count()].precondition(b);
 }
 
 } // namespace ringlet

@@ -5,6 +5,7 @@
 
 #include "ringlet/scene/coupled_cloth.h"
 #include "ringlet/scene/coupled_strands.h"
+#include "ringlet/scene/couplings.h"
 #include "ringlet/scene/lift.h"
 #include "ringlet/scene/scene_vertices.h"
 
@@ -20,6 +21,7 @@ public:
     CoupledStrands strands;
     std::vector<CoupledCloth> cloths;
     ContactSet contacts;
+    Couplings couplings;     // C
     std::vector<Lift> lifts; // of vertices of strands
     const SceneVertices &vertices;
     const StrandModel &model;
@@ -78,10 +80,10 @@ public:
 
     // Goes over to the contacts of what touches where everything is now.
     void touch(const std::vector<Touch> &touching, View<Vec3> now);
-    bool any_coupled() const; // their own factors do not solve all
-    bool is_alone(int part) const { return part < vertices.strands && !together_[part]; }
-    // Parts that touch one another, directly or by others: of each part the first of those that it is so joined with.
-    const std::vector<int> &clusters() const { return clusters_; }
+    // Of a cloth P has no more than an incomplete factor: it counts as coupled whatever touches it.
+    bool is_alone(int part) const { return part < vertices.strands && !couplings.couples(part); }
+    bool any_coupled() const { return !cloths.empty() || couplings.count() > 0; } // their own factors do not solve all
+    const std::vector<int> &clusters() const { return couplings.clusters(); }
     // Per part, whether it is a cloth or touches one, so that a search goes by planes: see scene_search.h.
     const std::vector<unsigned char> &by_planes() const { return by_planes_; }
 
@@ -92,29 +94,24 @@ public:
     void energies(const AlignedVector &x, const PairsInReach *pairs, const std::vector<double> &gone,
                   const std::vector<unsigned char> &changed, std::vector<double> &of_parts);
 
-    void linearise(const AlignedVector &x);          // the contacts, before units are assembled
-    void assemble(int unit, const AlignedVector &x); // its own energy, the gradient and A
-    double gradient(size_t i, int unit) const;       // its entry i of the whole vector, which is the unit's; 0 of padding
-    void negative_gradient(int unit, AlignedVector &into) const;
+    void linearise(const AlignedVector &x);               // the contacts, before units are assembled
+    void assemble(int unit, const AlignedVector &x);      // its own energy, the gradient and A
+    double gradient(size_t i, int unit) const;            // its entry i of the whole vector, which is the unit's; 0 of padding
+    void negative_gradient(int unit, double *into) const; // all that the unit has of a vector, as below
 
     // Expects the contacts to bear what they push with where the direction ends, by their matrix: there, all forces balance.
     void expect(const AlignedVector &direction);
 
-    void factor(int unit);                               // of P, exactly or nearly
-    void precondition(int unit, AlignedVector &b) const; // by it, in place
-    // The pushes C p, and p · C p, which is added to that of each cluster; of those that are busy (per part).
-    void couple(const AlignedVector &p, const std::vector<unsigned char> &busy, std::vector<double> &of_clusters);
-    void subtract_pushes(int unit, const std::vector<double> &alpha, AlignedVector &r) const; // r −= α C p, α per part
+    void factor(int unit);                        // of P, exactly or nearly
+    void precondition(int unit, double *b) const; // by it, in place
 
     // Numbers of a unit's parts, a lane each (lane_vectors.h).
     void to_lanes(int unit, const std::vector<double> &of_parts, double *of_lanes) const;
     void from_lanes(int unit, const double *of_lanes, std::vector<double> &of_parts) const;
 
-    const ContactValue &value(int contact) const { return values_[contact]; }
+    const std::vector<ContactValue> &values() const { return values_; } // of the contacts
 
 private:
-    bool couples(const Contact &c) const { return vertices.part_of(c.vertex[0]) >= 0 && vertices.part_of(c.vertex[3]) >= 0; }
-    void couple_parts();
     void list_touched();
     View<int> touched(int unit) const {
         return {touched_.data() + touched_begin_[unit], touched_.data() + touched_begin_[unit + 1]};
@@ -127,15 +124,13 @@ private:
     void add_to_cloth(int vertex);
 
     View<Vec3> given_;
-    std::vector<ContactValue> values_;                // of the contacts
-    std::vector<std::array<Vec3, 2>> pushes_;         // on the two sides of each
-    std::vector<int> couplings_;                      // contacts between two parts
-    std::vector<int> touched_, touched_begin_;        // vertices that contacts act on, unit by unit
-    std::vector<unsigned char> together_, by_planes_; // per part
-    std::vector<int> clusters_;
-    std::vector<double> own_energies_; // per part, without contacts
-    std::vector<Vec3> places_;         // of all vertices, where energies were asked last
-    struct Shared {                    // by two parts; −1: by one and what is kinematic
+    std::vector<int> unit_of_; // per part
+    std::vector<ContactValue> values_;
+    std::vector<int> touched_, touched_begin_; // vertices that contacts act on, unit by unit
+    std::vector<unsigned char> by_planes_;     // per part
+    std::vector<double> own_energies_;         // per part, without contacts
+    std::vector<Vec3> places_;                 // of all vertices, where energies were asked last
+    struct Shared {                            // by two parts; −1: by one and what is kinematic
         int a, b;
         double energy; // [J]
     };
