@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <functional>
 #include <map>
+#include <numeric>
 
 namespace ringlet {
 namespace {
@@ -15,17 +16,21 @@ constexpr double hardly = 0.2; // of its way
 } // namespace
 
 HoldBack::HoldBack(const FilterScene &scene, const NearPairs &near, View<Vec3> start, std::vector<Vec3> &end)
-    : scene_(scene), start_(start), end_(end), strands_(int(scene.offsets.size()) - 1), of_strands_(strands_),
-      go_(strands_, 1.0), changed_(start.size(), 0) {
-    for (const NearPair *pair : near.may_touch()) {
-        if (!pair->of_edges) continue;
-        const auto &a = scene.mesh.edges[pair->of[0]], &b = scene.mesh.edges[pair->of[1]];
-        const int s = strand_of(a[0], a[1]), t = strand_of(b[0], b[1]);
-        if (s < 0 || t < 0 || s == t) continue;
-        of_strands_[s].push_back(int(pairs_.size()));
-        of_strands_[t].push_back(int(pairs_.size()));
-        pairs_.push_back(*pair);
-    }
+    : scene_(scene), start_(start), end_(end), strands_(int(scene.offsets.size()) - 1), passing_(near.passing()),
+      begin_(strands_ + 1, 0), go_(strands_, 1.0), changed_(start.size(), 0) {
+    const auto for_pairs = [&](const auto &work) {
+        const auto look_at = [&](const NearPair &pair) {
+            const auto [a, b] = pair.objects;
+            if (pair.of_edges && a < strands_ && b < strands_ && a != b) work(pair, a), work(pair, b);
+        };
+        for (const NearPair *pair : near.may_touch()) look_at(*pair);
+        for (const NearPair &pair : passing_) look_at(pair);
+    };
+    for_pairs([&](const NearPair &, int strand) { ++begin_[strand + 1]; });
+    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+    of_strands_.resize(begin_.back());
+    std::vector<int> next(begin_.begin(), begin_.end() - 1);
+    for_pairs([&](const NearPair &pair, int strand) { of_strands_[next[strand]++] = &pair; });
 }
 
 int HoldBack::strand_of(int v, int w) const {
@@ -98,10 +103,12 @@ void HoldBack::stop(int strand, double go, std::vector<Event> &events) {
     if (go >= go_[strand]) return;
     scale(strand, go / go_[strand]);
     go_[strand] = go;
-    for (const int k : of_strands_[strand]) {
-        const auto &a = scene_.mesh.edges[pairs_[k].of[0]], &b = scene_.mesh.edges[pairs_[k].of[1]];
-        if (go_[scene_.mesh.object[a[0]]] == go_[scene_.mesh.object[b[0]]]) continue; // it was asked when they would meet
-        const double time = meeting_time(scene_.mesh, pairs_[k], start_, end_);
+    for (int k = begin_[strand]; k < begin_[strand + 1]; ++k) {
+        const NearPair &pair = *of_strands_[k];
+        if (go_[pair.objects[0]] == go_[pair.objects[1]]) continue; // it was asked when they would meet
+        const auto &a = scene_.mesh.edges[pair.of[0]], &b = scene_.mesh.edges[pair.of[1]];
+        if (strand_of(a[0], a[1]) < 0 || strand_of(b[0], b[1]) < 0) continue;
+        const double time = meeting_time(scene_.mesh, pair, start_, end_);
         if (time <= 1.0) note({{a[0], a[1], b[0], b[1]}, time}, events);
     }
 }

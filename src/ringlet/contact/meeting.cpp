@@ -17,7 +17,8 @@ template <size_t N, size_t M> bool move_as_one(View<int> rigid, const std::array
 }
 
 template <size_t N, size_t M>
-double impact_time(NearPair &pair, const std::array<int, N> &a, const std::array<int, M> &b, View<Vec3> start, View<Vec3> end) {
+double impact_time(const NearPair &pair, const std::array<int, N> &a, const std::array<int, M> &b, View<Vec3> start,
+                   View<Vec3> end) {
     const double nearer = most_nearer(a, b, start, end);
     if (pair.apart - 0.5 * pair.distance > nearer) return no_impact;
     pair.apart = std::sqrt(closest_points(start, a, b).distance2);
@@ -37,7 +38,7 @@ double impact_time(NearPair &pair, const std::array<int, N> &a, const std::array
 
 } // namespace
 
-double meeting_time(const CollisionMesh &mesh, NearPair &pair, View<Vec3> start, View<Vec3> end) {
+double meeting_time(const CollisionMesh &mesh, const NearPair &pair, View<Vec3> start, View<Vec3> end) {
     return with_vertices(mesh, pair, [&](const auto &a, const auto &b) { return impact_time(pair, a, b, start, end); });
 }
 

@@ -16,7 +16,7 @@ struct Met { // a pair that would meet
 
 // Until when a pair keeps its distance; above 1: to the end. What is known of how far it is apart may say so; else
 // this is noted anew, as at the start.
-double meeting_time(const CollisionMesh &mesh, NearPair &pair, View<Vec3> start, View<Vec3> end);
+double meeting_time(const CollisionMesh &mesh, const NearPair &pair, View<Vec3> start, View<Vec3> end);
 
 // Of those that may meet, in order.
 std::vector<Met> find_met(const FilterScene &scene, const NearPairs &near, View<Vec3> start, View<Vec3> end);

@@ -3,6 +3,7 @@
 #include "ringlet/contact/collect.h"
 
 #include <cmath>
+#include <limits>
 #include <type_traits>
 
 namespace ringlet {
@@ -129,12 +130,21 @@ void NearPairs::fit_ways(View<Vec3> start, View<Vec3> end) {
         ways_of_.fit(start, end, {start[0], end[0]});
 }
 
-void NearPairs::measure_ways(View<Vec3> start, View<Vec3> end) {
+// Of what has changed.
+void NearPairs::measure_ways(View<Vec3> start, View<Vec3> end, View<unsigned char> changed) {
+    changed_.assign(changed.begin(), changed.end());
 #pragma omp parallel for schedule(static)
-    for (int v = 0; v < int(start.size()); ++v) vertices_[v] = {(end[v] - start[v]).norm(), quick_[v] != 0};
-    const auto of_primitives = [&](const auto &primitives, std::vector<Way> &ways) {
+    for (int v = 0; v < int(start.size()); ++v) {
+        if (!changed[v]) continue;
+        const float way = float((end[v] - start[v]).norm());
+        vertices_[v] = {way + way * std::numeric_limits<float>::epsilon(), quick_[v] != 0};
+    }
+    const auto of_primitives = [&](const auto &primitives, std::vector<Way> &ways, std::vector<unsigned char> &some) {
+        some.resize(primitives.size());
 #pragma omp parallel for schedule(static)
         for (int i = 0; i < int(primitives.size()); ++i) {
+            some[i] = ringlet::any_of(changed, primitives[i]);
+            if (!some[i]) continue;
             ways[i] = {};
             for (const int v : primitives[i]) {
                 ways[i].length = std::max(ways[i].length, vertices_[v].length);
@@ -142,8 +152,8 @@ void NearPairs::measure_ways(View<Vec3> start, View<Vec3> end) {
             }
         }
     };
-    of_primitives(mesh_.edges, edges_);
-    of_primitives(mesh_.triangles, triangles_);
+    of_primitives(mesh_.edges, edges_, changed_edges_);
+    of_primitives(mesh_.triangles, triangles_, changed_triangles_);
 }
 
 void NearPairs::set_out(View<Vec3> start, View<Vec3> end) {
@@ -155,7 +165,7 @@ void NearPairs::set_out(View<Vec3> start, View<Vec3> end) {
         any_quick = any_quick || quick_[v];
     }
     any_quick_ = any_quick;
-    measure_ways(start, end);
+    measure_ways(start, end, std::vector<unsigned char>(start.size(), 1));
     fit_ways(start, end);
     passing_ = any_quick_ ? look_for_quick(quick_) : std::vector<NearPair>();
     may_touch_ = collect<NearPair *>(int(known_.size()), [&](int k, std::vector<NearPair *> &may_touch) {
@@ -171,7 +181,7 @@ void NearPairs::set_out(View<Vec3> start, View<Vec3> end) {
 }
 
 void NearPairs::set_out_anew(View<Vec3> start, View<Vec3> end, View<unsigned char> changed) {
-    measure_ways(start, end);
+    measure_ways(start, end, changed);
     ways_of_.fit_anew(start, end);
     if (any_quick_) {
         std::erase_if(passing_, [&](const NearPair &pair) { return any_of(pair, changed); });
@@ -179,18 +189,11 @@ void NearPairs::set_out_anew(View<Vec3> start, View<Vec3> end, View<unsigned cha
     }
     may_meet_ = collect<NearPair *>(int(may_touch_.size()), [&](int k, std::vector<NearPair *> &may_meet) {
         NearPair &pair = *may_touch_[k];
-        if (pair.apart - way(pair) < 0.5 * pair.distance && any_of(pair, changed) &&
-            ways_of_.with_boxes(pair, ringlet::may_meet))
+        if (has_changed(pair) && pair.apart - way(pair) < 0.5 * pair.distance && ways_of_.with_boxes(pair, ringlet::may_meet))
             may_meet.push_back(&pair);
     });
     for (NearPair &pair : passing_)
-        if (any_of(pair, changed)) may_meet_.push_back(&pair);
-}
-
-std::vector<const NearPair *> NearPairs::may_touch() const {
-    std::vector<const NearPair *> all(may_touch_.begin(), may_touch_.end());
-    for (const NearPair &pair : passing_) all.push_back(&pair);
-    return all;
+        if (has_changed(pair)) may_meet_.push_back(&pair);
 }
 
 void NearPairs::arrive(View<Vec3> start, View<Vec3> end) {
@@ -203,7 +206,7 @@ void NearPairs::arrive(View<Vec3> start, View<Vec3> end) {
                 with_vertices(mesh_, pair, [&](const auto &a, const auto &b) { return most_nearer(a, b, start, end); });
         }
     for (auto *ways : {&vertices_, &edges_, &triangles_})
-        for (Way &way : *ways) way.length = 0.0;
+        for (Way &way : *ways) way.length = 0.0f;
 }
 
 PairsInReach NearPairs::in_reach(View<unsigned char> objects) const {

@@ -60,8 +60,10 @@ public:
     // The pairs that may come nearer than half their distance on the way; of those that set out anew, only what has changed.
     // Whoever measures one may note how far it is apart at the start.
     const std::vector<NearPair *> &may_meet() const { return may_meet_; }
-    // Those that may touch if each goes as far as it likes.
-    std::vector<const NearPair *> may_touch() const;
+    // Those that may touch if each goes as far as it likes: of those that are known, and of what is quick, which change with
+    // set_out_anew().
+    const std::vector<NearPair *> &may_touch() const { return may_touch_; }
+    const std::vector<NearPair> &passing() const { return passing_; }
     void arrive(View<Vec3> start, View<Vec3> end); // all of it, or any part of its last way
 
     std::vector<Touch> touching(View<Vec3> positions); // where everything is now, in order
@@ -71,8 +73,8 @@ public:
     int count() const { return int(known_.size() + passing_.size()); }
 
 private:
-    struct Way { // of a primitive in this move
-        double length = 0.0;
+    struct Way {             // of a primitive in this move; small, since pairs ask for it in no order
+        float length = 0.0f; // [m], rounded up
         bool quick = false;
     };
 
@@ -80,13 +82,17 @@ private:
         return !((to.array() >= low_[v].array()).all() && (to.array() <= high_[v].array()).all());
     }
     void fit_ways(View<Vec3> start, View<Vec3> end);
-    void measure_ways(View<Vec3> start, View<Vec3> end);
+    void measure_ways(View<Vec3> start, View<Vec3> end, View<unsigned char> changed);
     bool reach(const NearPair &pair) const { return pair.apart - way(pair) < pair.distance; }
-    double way(const NearPair &pair) const { return first(pair).length + second(pair).length; }
-    bool quick(const NearPair &pair) const { return first(pair).quick || second(pair).quick; }
+    double way(const NearPair &pair) const { return double(first(pair).length) + second(pair).length; }
+    bool quick(const NearPair &pair) const { return any_quick_ && (first(pair).quick || second(pair).quick); }
     const Way &first(const NearPair &pair) const { return (pair.of_edges ? edges_ : vertices_)[pair.of[0]]; }
     const Way &second(const NearPair &pair) const { return (pair.of_edges ? edges_ : triangles_)[pair.of[1]]; }
     bool any_of(const NearPair &pair, View<unsigned char> vertices) const;
+    bool has_changed(const NearPair &pair) const {
+        return pair.of_edges ? changed_edges_[pair.of[0]] || changed_edges_[pair.of[1]]
+                             : changed_[pair.of[0]] || changed_triangles_[pair.of[1]];
+    }
     std::vector<NearPair> pairs_of(const Candidates &found) const;
     std::vector<NearPair> look_for_quick(View<unsigned char> changed);
 
@@ -97,7 +103,8 @@ private:
     std::vector<NearPair> known_;   // in order
     std::vector<NearPair> passing_; // in order: of what is quick, those that may touch in this move
     std::vector<Way> vertices_, edges_, triangles_;
-    std::vector<unsigned char> quick_; // vertices
+    std::vector<unsigned char> quick_;                                       // vertices
+    std::vector<unsigned char> changed_, changed_edges_, changed_triangles_; // since everything set out
     bool any_quick_ = false;
     std::vector<NearPair *> may_touch_; // of the known, those whose ways come so near
     std::vector<NearPair *> may_meet_;
