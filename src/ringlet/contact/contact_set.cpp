@@ -200,21 +200,16 @@ void ContactSet::find(const CollisionMesh &mesh, const ContactMaterial &material
 
 void ContactSet::index(const CollisionMesh &mesh) {
     const int vertices = int(mesh.moves.size());
-    role_begin_.assign(vertices + 1, 0);
-    for (const Contact &c : contacts_)
-        for (int i = 0; i < 4; ++i)
-            if (mesh.moves[c.vertex[i]] && c.weight[i] != 0.0) ++role_begin_[c.vertex[i] + 1];
+    roles_ = {size_t(vertices), [&](const auto &work) {
+                  for (int k = 0; k < int(contacts_.size()); ++k)
+                      for (int i = 0; i < 4; ++i) {
+                          const int v = contacts_[k].vertex[i];
+                          if (mesh.moves[v] && contacts_[k].weight[i] != 0.0) work(v, Role{k, i});
+                      }
+              }};
     vertices_.clear();
-    for (int v = 0; v < vertices; ++v) {
-        if (role_begin_[v + 1] > 0) vertices_.push_back(v);
-        role_begin_[v + 1] += role_begin_[v];
-    }
-    roles_.resize(role_begin_.back());
-    std::vector<int> next(role_begin_.begin(), role_begin_.end() - 1);
-    for (int k = 0; k < int(contacts_.size()); ++k)
-        for (int i = 0; i < 4; ++i)
-            if (mesh.moves[contacts_[k].vertex[i]] && contacts_[k].weight[i] != 0.0)
-                roles_[next[contacts_[k].vertex[i]]++] = {k, i};
+    for (int v = 0; v < vertices; ++v)
+        if (!of(v).empty()) vertices_.push_back(v);
 }
 
 } // namespace ringlet

@@ -3,6 +3,7 @@
 
 #include "ringlet/contact/contact.h"
 #include "ringlet/contact/near_pairs.h"
+#include "ringlet/math/lists.h"
 
 #include <unordered_map>
 #include <vector>
@@ -80,7 +81,7 @@ public:
     struct Role {
         int contact, as;
     };
-    View<Role> of(int vertex) const { return {roles_.data() + role_begin_[vertex], roles_.data() + role_begin_[vertex + 1]}; }
+    View<Role> of(int vertex) const { return roles_.of(vertex); }
     const std::vector<int> &vertices() const { return vertices_; } // those that move and have contacts
 
 private:
@@ -96,8 +97,8 @@ private:
     std::vector<unsigned char> by_planes_;
     std::vector<Contact> contacts_;
     std::vector<Expected> expected_; // of each of them
-    std::vector<Role> roles_;
-    std::vector<int> role_begin_, vertices_;
+    Lists<Role> roles_;              // of vertices
+    std::vector<int> vertices_;
 };
 
 } // namespace ringlet

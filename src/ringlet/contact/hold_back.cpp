@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <functional>
 #include <map>
-#include <numeric>
 
 namespace ringlet {
 namespace {
@@ -17,20 +16,15 @@ constexpr double hardly = 0.2; // of its way
 
 HoldBack::HoldBack(const FilterScene &scene, const NearPairs &near, View<Vec3> start, std::vector<Vec3> &end)
     : scene_(scene), start_(start), end_(end), strands_(int(scene.offsets.size()) - 1), passing_(near.passing()),
-      begin_(strands_ + 1, 0), go_(strands_, 1.0), changed_(start.size(), 0) {
-    const auto for_pairs = [&](const auto &work) {
-        const auto look_at = [&](const NearPair &pair) {
-            const auto [a, b] = pair.objects;
-            if (pair.of_edges && a < strands_ && b < strands_ && a != b) work(pair, a), work(pair, b);
-        };
-        for (const NearPair *pair : near.may_touch()) look_at(*pair);
-        for (const NearPair &pair : passing_) look_at(pair);
-    };
-    for_pairs([&](const NearPair &, int strand) { ++begin_[strand + 1]; });
-    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
-    of_strands_.resize(begin_.back());
-    std::vector<int> next(begin_.begin(), begin_.end() - 1);
-    for_pairs([&](const NearPair &pair, int strand) { of_strands_[next[strand]++] = &pair; });
+      go_(strands_, 1.0), changed_(start.size(), 0) {
+    of_strands_ = {size_t(strands_), [&](const auto &work) {
+                       const auto look_at = [&](const NearPair &pair) {
+                           const auto [a, b] = pair.objects;
+                           if (pair.of_edges && a < strands_ && b < strands_ && a != b) work(a, &pair), work(b, &pair);
+                       };
+                       for (const NearPair *pair : near.may_touch()) look_at(*pair);
+                       for (const NearPair &pair : passing_) look_at(pair);
+                   }};
 }
 
 int HoldBack::strand_of(int v, int w) const {
@@ -103,12 +97,11 @@ void HoldBack::stop(int strand, double go, std::vector<Event> &events) {
     if (go >= go_[strand]) return;
     scale(strand, go / go_[strand]);
     go_[strand] = go;
-    for (int k = begin_[strand]; k < begin_[strand + 1]; ++k) {
-        const NearPair &pair = *of_strands_[k];
-        if (go_[pair.objects[0]] == go_[pair.objects[1]]) continue; // it was asked when they would meet
-        const auto &a = scene_.mesh.edges[pair.of[0]], &b = scene_.mesh.edges[pair.of[1]];
+    for (const NearPair *pair : of_strands_.of(strand)) {
+        if (go_[pair->objects[0]] == go_[pair->objects[1]]) continue; // it was asked when they would meet
+        const auto &a = scene_.mesh.edges[pair->of[0]], &b = scene_.mesh.edges[pair->of[1]];
         if (strand_of(a[0], a[1]) < 0 || strand_of(b[0], b[1]) < 0) continue;
-        const double time = meeting_time(scene_.mesh, pair, start_, end_);
+        const double time = meeting_time(scene_.mesh, *pair, start_, end_);
         if (time <= 1.0) note({{a[0], a[1], b[0], b[1]}, time}, events);
     }
 }

@@ -49,10 +49,9 @@ private:
     View<Vec3> start_;
     std::vector<Vec3> &end_;
     int strands_, round_ = 0;
-    std::vector<NearPair> passing_;
-    std::vector<const NearPair *> of_strands_; // pairs of two whose ways come near, of each in turn
-    std::vector<int> begin_;                   // of each strand's
-    std::vector<double> go_;                   // per strand: how much of its way is left to it
+    std::vector<NearPair> passing_;      // as they were at first: rounds change what `near` has of them
+    Lists<const NearPair *> of_strands_; // pairs with another whose way comes near
+    std::vector<double> go_;             // per strand: how much of its way is left to it
     std::vector<unsigned char> changed_;
     std::vector<int> touched_; // the vertices that have changed
 };

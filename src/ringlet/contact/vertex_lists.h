@@ -2,28 +2,13 @@
 #pragma once
 
 #include "ringlet/contact/collision_mesh.h"
+#include "ringlet/math/lists.h"
 
-#include <numeric>
 #include <vector>
 
 namespace ringlet {
 
-class VertexLists {
-public:
-    // for_pairs(work) calls work(vertex, item) for all there are, each time in the same order.
-    template <class ForPairs> VertexLists(size_t vertices, const ForPairs &for_pairs) : starts_(vertices + 1, 0) {
-        for_pairs([&](int v, int) { ++starts_[v + 1]; });
-        std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
-        list_.resize(starts_.back());
-        std::vector<int> next(starts_.begin(), starts_.end() - 1);
-        for_pairs([&](int v, int item) { list_[next[v]++] = item; });
-    }
-
-    View<int> of(int vertex) const { return {list_.data() + starts_[vertex], list_.data() + starts_[vertex + 1]}; }
-
-private:
-    std::vector<int> starts_, list_;
-};
+using VertexLists = Lists<int>;
 
 // The vertices that share an edge with one, from `first` on, up to `end`; others have none.
 inline VertexLists neighbours(const CollisionMesh &mesh, int first, int end) {

@@ -41,28 +41,20 @@ void Couplings::number_points(const SceneVertices &vertices, const ContactSet &c
                 if (vertices.mesh.moves[v] && couplings_[k].weight[i] != 0.0) work(k, i, v);
             }
     };
-    std::vector<int> number(vertices.moving_vertices(), -1);
+    constexpr int none = -1;
+    std::vector<int> number(vertices.moving_vertices(), none);
     for_coupled([&](int, int, int v) { number[v] = 0; });
-    begin_.assign(units + 1, 0);
-    const auto unit = [&](int v) { return unit_of[vertices.part_of(v)]; };
-    for (const int v : contacts.vertices())
-        if (number[v] == 0) ++begin_[unit(v) + 1];
-    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
-    points_.resize(begin_.back());
-    std::vector<int> next(begin_.begin(), begin_.end() - 1);
-    for (const int v : contacts.vertices())
-        if (number[v] == 0) points_[number[v] = next[unit(v)]++] = {v, vertices.part_of(v)};
-
-    role_begin_.assign(points_.size() + 1, 0);
-    for (Coupling &coupling : couplings_) coupling.point.fill(-1);
-    for_coupled([&](int k, int i, int v) {
-        couplings_[k].point[i] = number[v];
-        ++role_begin_[number[v] + 1];
-    });
-    std::partial_sum(role_begin_.begin(), role_begin_.end(), role_begin_.begin());
-    roles_.resize(role_begin_.back());
-    next.assign(role_begin_.begin(), role_begin_.end() - 1);
-    for_coupled([&](int k, int i, int v) { roles_[next[number[v]]++] = {k, i}; });
+    points_ = {size_t(units), [&](const auto &work) {
+                   for (const int v : contacts.vertices()) {
+                       const int part = vertices.part_of(v);
+                       if (number[v] != none) work(unit_of[part], Point{v, part});
+                   }
+               }};
+    for (int k = 0; k < count(); ++k) number[vertex(k)] = k;
+    for (Coupling &coupling : couplings_) coupling.point.fill(none);
+    for_coupled([&](int k, int i, int v) { couplings_[k].point[i] = number[v]; });
+    roles_ = {size_t(count()),
+              [&](const auto &work) { for_coupled([&](int k, int i, int v) { work(number[v], Role{k, i}); }); }};
 }
 
 void Couplings::push(View<Vec3> p, View<ContactValue> values, View<unsigned char> busy, std::vector<double> &of_clusters) {
@@ -83,9 +75,9 @@ void Couplings::push(View<Vec3> p, View<ContactValue> values, View<unsigned char
 
 Vec3 Couplings::pushed(int point) const {
     Vec3 push = Vec3::Zero();
-    for (int r = role_begin_[point]; r < role_begin_[point + 1]; ++r) {
-        const Coupling &c = couplings_[roles_[r].coupling];
-        push += c.weight[roles_[r].as] * c.pushes[roles_[r].as >= c.first];
+    for (const auto &[coupling, as] : roles_.of(point)) {
+        const Coupling &c = couplings_[coupling];
+        push += c.weight[as] * c.pushes[as >= c.first];
     }
     return push;
 }

@@ -10,8 +10,7 @@ namespace ringlet {
 
 class Couplings {
 public:
-    // Goes over to those of these contacts that are between two parts. Units (unit_of: of each part) compute their parts at
-    // once.
+    // Goes over to those of these contacts that are between two parts. `unit_of` says of each part which of the units it is in.
     void find(const ContactSet &contacts, const SceneVertices &vertices, View<int> unit_of, int units);
 
     bool couples(int part) const { return together_[part]; }
@@ -19,11 +18,11 @@ public:
     const std::vector<int> &clusters() const { return clusters_; }
 
     // Points are vertices that are coupled, numbered unit by unit.
-    int count() const { return int(points_.size()); }
-    int begin(int unit) const { return begin_[unit]; }
-    int end(int unit) const { return begin_[unit + 1]; }
-    int vertex(int point) const { return points_[point].vertex; }
-    int part(int point) const { return points_[point].part; }
+    int count() const { return int(points_.items().size()); }
+    int begin(int unit) const { return points_.begin(unit); }
+    int end(int unit) const { return points_.end(unit); }
+    int vertex(int point) const { return points_.items()[point].vertex; }
+    int part(int point) const { return points_.items()[point].part; }
 
     // C p, and p · C p, which is added to that of each cluster; of parts that are busy. p says where each point goes.
     void push(View<Vec3> p, View<ContactValue> values, View<unsigned char> busy, std::vector<double> &of_clusters);
@@ -46,13 +45,11 @@ private:
     struct Point {
         int vertex, part;
     };
-    std::vector<Point> points_;
-    std::vector<int> begin_; // per unit
+    Lists<Point> points_; // of units
     struct Role {
         int coupling, as;
     };
-    std::vector<Role> roles_; // of points
-    std::vector<int> role_begin_;
+    Lists<Role> roles_; // of points
 };
 
 } // namespace ringlet

@@ -9,7 +9,8 @@ namespace ringlet {
 SceneSystem::SceneSystem(const StrandModel &model_, const std::vector<SceneCloth> &cloths_, const SceneVertices &vertices_)
     : strands(model_, vertices_.positions), vertices(vertices_), model(model_) {
     for (const SceneCloth &cloth : cloths_) cloths.emplace_back(*cloth.model, *cloth.state);
-    for (int p = 0; p < vertices.parts(); ++p) unit_of_.push_back(unit_of(p));
+    for (int s = 0; s < vertices.strands; ++s) unit_of_.push_back(strands.group_of(s));
+    for (int c = 0; c < int(cloths.size()); ++c) unit_of_.push_back(group_count() + c);
 }
 
 void SceneSystem::begin(const StrandArrays &arrays, const StrandStep &step, View<Vec3> given) {
@@ -36,7 +37,9 @@ void SceneSystem::touch(const std::vector<Touch> &touching, View<Vec3> now) {
     contacts_found_ = true;
     values_.resize(contacts.contacts().size());
     couplings.find(contacts, vertices, unit_of_, unit_count());
-    list_touched();
+    touched_ = {size_t(unit_count()), [&](const auto &work) {
+                    for (const int v : contacts.vertices()) work(unit_of(vertices.part_of(v)), v);
+                }};
 }
 
 void SceneSystem::find_planes(const std::vector<Touch> &touching) {
@@ -50,15 +53,6 @@ void SceneSystem::find_planes(const std::vector<Touch> &touching) {
             if (other >= vertices.strands && one >= 0) by_planes_[one] = 1;
         });
     contacts.go_by_planes(by_planes_);
-}
-
-void SceneSystem::list_touched() {
-    touched_begin_.assign(unit_count() + 1, 0);
-    for (const int v : contacts.vertices()) ++touched_begin_[unit_of(vertices.part_of(v)) + 1];
-    std::partial_sum(touched_begin_.begin(), touched_begin_.end(), touched_begin_.begin());
-    touched_.resize(contacts.vertices().size());
-    std::vector<int> next(touched_begin_.begin(), touched_begin_.end() - 1);
-    for (const int v : contacts.vertices()) touched_[next[unit_of(vertices.part_of(v))]++] = v;
 }
 
 void SceneSystem::to_lanes(int unit, const std::vector<double> &of_parts, double *of_lanes) const {
@@ -179,7 +173,7 @@ void SceneSystem::assemble(int unit, const AlignedVector &x) {
         strands.assemble(unit, x);
     else
         cloths[unit - group_count()].assemble(x.data() + unit_begin(unit));
-    for (const int v : touched(unit)) {
+    for (const int v : touched_.of(unit)) {
         if (unit < group_count())
             add_to_strand(v);
         else

@@ -36,9 +36,7 @@ public:
     // Units are what is computed at once, each with its range of the unknowns: groups of strands, then cloths.
     int group_count() const { return strands.group_count(); }
     int unit_count() const { return group_count() + int(cloths.size()); }
-    int unit_of(int part) const {
-        return part < vertices.strands ? strands.group_of(part) : group_count() + part - vertices.strands;
-    }
+    int unit_of(int part) const { return unit_of_[part]; }
     size_t unit_begin(int unit) const {
         return unit < group_count() ? strands.group_begin(unit)
                                     : strands.size() + 3 * size_t(vertices.cloths[unit - group_count()] - vertices.cloths[0]);
@@ -112,10 +110,6 @@ public:
     const std::vector<ContactValue> &values() const { return values_; } // of the contacts
 
 private:
-    void list_touched();
-    View<int> touched(int unit) const {
-        return {touched_.data() + touched_begin_[unit], touched_.data() + touched_begin_[unit + 1]};
-    }
     void find_planes(const std::vector<Touch> &touching);
     void share_contacts(const PairsInReach *pairs, const std::vector<double> &gone, const std::vector<unsigned char> &changed);
     void evaluate(int unit, const AlignedVector &x, bool to_assemble); // its own energies
@@ -126,11 +120,11 @@ private:
     View<Vec3> given_;
     std::vector<int> unit_of_; // per part
     std::vector<ContactValue> values_;
-    std::vector<int> touched_, touched_begin_; // vertices that contacts act on, unit by unit
-    std::vector<unsigned char> by_planes_;     // per part
-    std::vector<double> own_energies_;         // per part, without contacts
-    std::vector<Vec3> places_;                 // of all vertices, where energies were asked last
-    struct Shared {                            // by two parts; −1: by one and what is kinematic
+    Lists<int> touched_;                   // vertices that contacts act on, of units
+    std::vector<unsigned char> by_planes_; // per part
+    std::vector<double> own_energies_;     // per part, without contacts
+    std::vector<Vec3> places_;             // of all vertices, where energies were asked last
+    struct Shared {                        // by two parts; −1: by one and what is kinematic
         int a, b;
         double energy; // [J]
     };
