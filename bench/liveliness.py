@@ -4,24 +4,28 @@ from __future__ import annotations
 
 import itertools
 import statistics
+import tempfile
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ringlet import Clock, build_groom, read_recipe, read_shot, simulate
+from ringlet import Clock, build_groom, loft, read_recipe, read_shot, simulate, write_loft
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "child"
 
 
-def run(locks: int = 1050, frames: int = 14, newton: int = 3, stiffness: str = "1,0.1") -> dict[str, Any]:
+def run(
+    locks: int = 1050, frames: int = 14, newton: int = 3, stiffness: str = "1,0.1", rest: str = "none"
+) -> dict[str, Any]:
     """Plays the beginning of the example's nod without contact, and with contacts of each stiffness.
 
     locks:     groom guides of 96 points
     frames:    of the clip, after 12 for the hair to hang
     newton:    iterations of every step
     stiffness: ``contact.stiffness``, several by commas
+    rest:      ``rest.mode``
     """
     clock = Clock()
     recipe = read_recipe(EXAMPLE / "curls.recipe.toml")
@@ -30,27 +34,31 @@ def run(locks: int = 1050, frames: int = 14, newton: int = 3, stiffness: str = "
     contact = shot.contact
     assert contact is not None  # the example's has it
     off = {}
-    for name in ("without", *str(stiffness).split(",")):
-        changes = {"on": False} if name == "without" else {"stiffness": float(name)}
-        with clock(f"stiffness {name}"):
-            cache = simulate(
-                shot.model_copy(
-                    update={
-                        "frames": (1, frames),
-                        "solver": shot.solver.model_copy(update={"newton": newton}),
-                        "contact": contact.model_copy(update=changes),
-                    }
-                ),
-                groom,
-            )
-        off[name] = {
-            "moves_mm": moves(cache.points.astype(np.float64), groom.locks.offsets),
-            "cpu_ms": statistics.median(frame["cpu_ms"] for frame in cache.statistics),
-            "max_stretch": max(frame["max_stretch"] for frame in cache.statistics),
-        }
+    with tempfile.TemporaryDirectory() as folder:
+        remembered = Path(folder) / "nod.rest.usdc"
+        shot = shot.model_copy(
+            update={
+                "frames": (1, frames),
+                "solver": shot.solver.model_copy(update={"newton": newton}),
+                "rest": shot.rest.model_copy(update={"mode": rest, "file": remembered}),
+            }
+        )
+        if rest != "none":
+            with clock("rest shapes"):
+                write_loft(loft(shot, groom), shot, remembered)
+        for name in ("without", *str(stiffness).split(",")):
+            changes = {"on": False} if name == "without" else {"stiffness": float(name)}
+            touching = contact.model_copy(update=changes)
+            with clock(f"stiffness {name}"):
+                cache = simulate(shot.model_copy(update={"contact": touching}), groom, allow_stale=True)
+            off[name] = {
+                "moves_mm": moves(cache.points.astype(np.float64), groom.locks.offsets),
+                "cpu_ms": statistics.median(frame["cpu_ms"] for frame in cache.statistics),
+                "max_stretch": max(frame["max_stretch"] for frame in cache.statistics),
+            }
     return clock.result(
         "liveliness",
-        {"locks": locks, "frames": frames, "newton": newton, "stiffness": stiffness},
+        {"locks": locks, "frames": frames, "newton": newton, "stiffness": stiffness, "rest": rest},
         per="stiffness without",
         warm_up=0,
         off=off,

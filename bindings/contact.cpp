@@ -21,17 +21,18 @@ template <class Element, class Scalar, class Array> std::vector<Element> copied(
     return {rows.begin(), rows.end()};
 }
 
-constexpr size_t values_of_hold = 6; // shear, normal
+constexpr size_t values_of_hold = 6;      // shear, normal
+constexpr size_t values_of_beginning = 3; // how near, what it bears, from where on it pushes
 
 using Rows = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 
 nb::dict memory_of(const SceneMemory &memory) {
     std::vector<uint64_t> pairs, bearing;
-    std::vector<double> distances, heights, forces;
+    std::vector<double> beginnings, heights, forces;
     std::vector<int> embedded;
-    for (const auto &[pair, of] : std::map<uint64_t, ContactSet::Distances>(memory.early.begin(), memory.early.end())) {
+    for (const auto &[pair, of] : std::map<uint64_t, ContactSet::Beginning>(memory.early.begin(), memory.early.end())) {
         pairs.push_back(pair);
-        distances.insert(distances.end(), {of.began, of.push});
+        beginnings.insert(beginnings.end(), {of.apart, of.bears, of.push});
     }
     std::vector<uint64_t> held_pairs;
     std::vector<double> held_values;
@@ -57,7 +58,7 @@ nb::dict memory_of(const SceneMemory &memory) {
     arrays["expected_pairs"] = to_numpy<uint64_t>(std::move(bearing), {expected});
     arrays["expected_forces"] = to_numpy<double>(std::move(forces), {expected});
     arrays["borne"] = to_numpy<double>(std::vector<double>(memory.borne), {memory.borne.size()});
-    arrays["early_distances"] = to_numpy<double>(std::move(distances), {early, 2});
+    arrays["early_values"] = to_numpy<double>(std::move(beginnings), {early, values_of_beginning});
     arrays["held_pairs"] = to_numpy<uint64_t>(std::move(held_pairs), {memory.held.size()});
     arrays["held_values"] = to_numpy<double>(std::move(held_values), {memory.held.size(), values_of_hold});
     arrays["embedded_vertices"] = to_numpy<int>(std::move(embedded), {inside});
@@ -71,24 +72,26 @@ SceneMemory memory_from(const nb::dict &arrays) {
     const auto bearing = nb::cast<Array1<uint64_t>>(arrays["expected_pairs"]);
     const auto forces = nb::cast<Array1<double>>(arrays["expected_forces"]);
     const View<double> borne = view(nb::cast<Array1<double>>(arrays["borne"]));
-    const auto distances = nb::cast<Rows>(arrays["early_distances"]);
+    const auto beginnings = nb::cast<Rows>(arrays["early_values"]);
     const auto held_pairs = nb::cast<Array1<uint64_t>>(arrays["held_pairs"]);
     const auto held = nb::cast<Rows>(arrays["held_values"]);
     const auto vertices = nb::cast<Array1<int>>(arrays["embedded_vertices"]);
     const auto heights = nb::cast<Array1<double>>(arrays["embedded_heights"]);
     const View<int> begun = view(nb::cast<Array1<int>>(arrays["begun"])),
                     touched = view(nb::cast<Array1<int>>(arrays["touched"]));
-    if (pairs.shape(0) != distances.shape(0) || distances.shape(1) != 2 || vertices.shape(0) != heights.shape(0) ||
-        bearing.shape(0) != forces.shape(0) || begun.size() != 1 || held.shape(0) != held_pairs.shape(0) ||
-        held.shape(1) != values_of_hold)
+    if (pairs.shape(0) != beginnings.shape(0) || beginnings.shape(1) != values_of_beginning ||
+        vertices.shape(0) != heights.shape(0) || bearing.shape(0) != forces.shape(0) || begun.size() != 1 ||
+        held.shape(0) != held_pairs.shape(0) || held.shape(1) != values_of_hold)
         throw std::invalid_argument("scene: what is to be recalled does not fit together");
     SceneMemory memory;
     memory.begun = begun[0] != 0;
     memory.bodies = copied<Vec3, double>(nb::cast<Array3<double>>(arrays["bodies"]));
     for (size_t k = 0; k < bearing.shape(0); ++k) memory.expected.push_back({bearing.data()[k], forces.data()[k]});
     memory.borne.assign(borne.begin(), borne.end());
-    for (size_t k = 0; k < pairs.shape(0); ++k)
-        memory.early[pairs.data()[k]] = {distances.data()[2 * k], distances.data()[2 * k + 1]};
+    for (size_t k = 0; k < pairs.shape(0); ++k) {
+        const double *values = beginnings.data() + values_of_beginning * k;
+        memory.early[pairs.data()[k]] = {values[0], values[1], values[2]};
+    }
     for (size_t k = 0; k < held.shape(0); ++k) {
         const double *values = held.data() + values_of_hold * k;
         memory.held.push_back({held_pairs.data()[k], Vec3(values), Vec3(values + 3)});
@@ -228,6 +231,21 @@ void bind_contact(nb::module_ &module) {
         .def_prop_ro(
             "contacts", [](const Scene &self) { return arrays_of(self.contacts()); }, nb::rv_policy::automatic,
             "Of the last step's end: vertices (k, 4), and weights, normal, distance and force (k, 9).")
+        .def(
+            "bear",
+            [](Scene &self, nb::ndarray<const int, nb::shape<-1, 4>, nb::c_contig, nb::device::cpu> vertices,
+               Array3<double> forces) {
+                if (vertices.shape(0) != forces.shape(0)) throw std::invalid_argument("scene: as many forces as pairs");
+                std::vector<ContactSet::Bearing> bearing;
+                for (size_t k = 0; k < vertices.shape(0); ++k) {
+                    const int *of = vertices.data() + 4 * k;
+                    bearing.push_back({{of[0], of[1], of[2], of[3]}, vectors<Vec3>(forces)[k]});
+                }
+                self.bear(std::move(bearing));
+            },
+            "vertices"_a, "forces"_a,
+            "Before the first step: what pairs of four vertices, as they touch, push the first of the two with [N], shape (k, "
+            "3): away from the second; towards the last vertex from the one before, as far as that is across; across both.")
         .def(
             "touching",
             [](Scene &self) {

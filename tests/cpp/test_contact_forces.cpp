@@ -153,6 +153,16 @@ BOOST_AUTO_TEST_CASE(potentials_are_the_integrals_of_their_forces) {
     }
 }
 
+BOOST_AUTO_TEST_CASE(a_contact_bears_what_it_is_to_bear_where_it_began) {
+    Random random;
+    for (int i = 0; i < 1000; ++i) {
+        const double gap = random(1e-3, 1.0), force = random(1e-3, 3.0), r = distance_to_bear(force, gap);
+        BOOST_TEST(std::abs(contact_potential(gap, r, 0.0).first + force) < 1e-12);
+        const double part = random(0.0, 1.0);
+        BOOST_TEST(std::abs(friction_potential(sheared_to_hold(part), 1.0).first - part) < 1e-12);
+    }
+}
+
 BOOST_AUTO_TEST_CASE(the_gradient_is_that_of_the_energy_and_the_hessian_semi_definite) {
     Random random;
     const double h = 1e-9;

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from coils import helix, rotation
+from rest_shapes import FPS, HEAD, grown
 from ringlet.curves import Curves
 from ringlet.groom.groom import Groom
 from ringlet.mesh import Clip, Mesh
@@ -10,6 +11,7 @@ from ringlet.shot import Obstacle, equilibrium, keep, made_from, refresh
 from ringlet.shot.equilibrium import bearing
 from ringlet.shot.joints import edges
 from ringlet.shot.pushing import least_pushing
+from ringlet.shot.resting import shared
 from ringlet.shot.scene import Body, Scene
 from ringlet.shot.simulate import make_strands
 from ringlet.shot.strands import Solver
@@ -120,11 +122,13 @@ def test_no_step_depends_on_whether_what_touches_was_asked_for():
         assert np.array_equal(values, asked.memory[name])
 
 
-def stays(shot, groom, made, bodies=(), steps=48):
-    """How far locks go from where they were groomed in 2 s [m]."""
+def stays(shot, groom, made, obstacles=(), steps=48, known=True):
+    """How far locks go from where they were groomed in 2 s [m]; ``known``: it is known what bears them."""
     strands = make_strands(shot, groom, made.rest, made.stiffened)
     strands.place(groom.locks.points)
-    touching = Scene(strands, bodies, shot.touching)
+    touching = Scene(strands, [one.body(1.0) for one in obstacles], shot.touching)
+    if known:
+        touching.bear(*shared(shot.touching, groom.locks, make_strands(shot, groom), obstacles, made.borne))
     for _ in range(steps):
         touching.step(groom.locks.points, 1 / 24, gravity=GRAVITY)
     return sag(strands.positions, groom.locks.points)
@@ -142,6 +146,37 @@ def test_a_lock_that_lies_on_another_is_borne_by_it():
     assert sag(together.rest.points[upper], crossed()[1]) < 0.5 * sag(alone.rest.points[upper], crossed()[1])
     assert (together.stiffened == 1).all()
     assert stays(shot, groom, together) < 0.2 * shot.strands.radius
+
+
+@pytest.mark.parametrize("friction", [0.0, 1.0])
+def test_what_touches_shares_what_bears_locks_and_does_so_from_the_first_step(friction):
+    """The shares act on the locks as what bears them does; nothing has to sink in, or to slide, before it bears."""
+    lying, slope = on_slope(friction)
+    shot, groom = scene(lying, lying + [0, 0, 0.2], more=SOFT)
+    made, groomed = equilibrium(shot, groom, obstacles=[slope]), make_strands(shot, groom)
+    _, forces = shared(shot.touching, groom.locks, groomed, [slope], made.borne)
+    assert len(forces) > 0 and (forces[:, 0] > 0).all()
+    total = np.linalg.norm(forces, axis=1).sum()
+    assert total == pytest.approx(np.linalg.norm(made.borne[~groomed.held], axis=1).sum(), rel=1e-9)
+    at_once, later = (stays(shot, groom, made, [slope], 1, known) for known in (True, False))
+    assert at_once < 1e-9 and at_once < 1e-3 * later
+
+
+def test_two_locks_bear_one_another_from_the_first_step():
+    shot, groom = scene(*crossed(), more=SOFT)
+    made = equilibrium(shot, groom)
+    at_once, later = (stays(shot, groom, made, steps=1, known=known) for known in (True, False))
+    assert at_once < 1e-9 and at_once < 1e-3 * later
+
+
+def test_locks_that_lie_in_one_another_stay():
+    """Sixty of hair that is down, for two seconds: none leaves its place by the radius of a hair."""
+    style = grown("down", 60, HEAD, "scalp")
+    shot, head = style.shot("equilibrium"), style.head(np.zeros(1), FPS)
+    made = equilibrium(shot, style.groom, obstacles=[head])
+    assert np.linalg.norm(made.borne, axis=1).max() > 1e-6  # or they would only hang
+    *_, last = style.still(shot, keep(made, shot), 2.0)
+    assert sag(last, style.groom.locks.points) < shot.strands.radius
 
 
 def test_a_tip_bears_nothing():
@@ -189,7 +224,7 @@ def test_friction_holds_what_lies_on_a_slope():
     shot, groom = scene(lying, more=SOFT)
     smooth, held = (equilibrium(shot, groom, obstacles=[on_slope(mu)[1]]) for mu in (0.0, 1.0))
     assert sag(held.rest.points, lying) < 0.1 * sag(smooth.rest.points, lying)
-    soon, late = (stays(shot, groom, held, [rough.body(1.0)], steps) for steps in (48, 240))
+    soon, late = (stays(shot, groom, held, [rough], steps) for steps in (48, 240))
     assert late < shot.strands.radius
     assert late - soon < 0.05 * shot.strands.radius
 

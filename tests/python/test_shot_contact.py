@@ -124,8 +124,10 @@ def test_what_starts_inside_is_told_and_comes_out():
     assert not depths(cache.points[-1], sphere.triangles, sphere.points).any()
 
 
-def test_locks_that_start_too_near_each_other_are_told():
-    cache = simulated(SHOT + "[forces]\ngravity = [0, 0, 0]\n" + CONTACT, made=groom(apart=5e-4))
+@pytest.mark.parametrize("parting_speed", [2e-3, 0.0])
+def test_locks_that_start_too_near_each_other_are_told(parting_speed):
+    touching = CONTACT + f"parting_speed = {parting_speed}\n"
+    cache = simulated(SHOT + "[forces]\ngravity = [0, 0, 0]\n" + touching, made=groom(apart=5e-4))
     told = cache.start["overlapping"]
     assert told["locks"] == 3 and told["places"] >= 2 * (POINTS - 4)
     assert np.isclose(told["depth"], 1.5e-3, atol=1e-5)

@@ -38,7 +38,8 @@ class Contact(Section):
         default=1e-3,
         gt=0,
         le=1,
-        description="[m/s] times a step: what is sheared less than that sticks",
+        description="[m/s] times a step: what is sheared less than that sticks. By default 1e-5 where rest.mode is "
+        "'equilibrium'",
     )
     parting_speed: float = Field(
         default=2e-3,
@@ -165,6 +166,15 @@ class Scene:
         """
         vertices, values = self._core.touching()
         return vertices, values[:, :8]
+
+    def bear(self, vertices: NDArray[np.integer], forces: NDArray[np.floating]) -> None:
+        """Says what pairs that touch as everything begins bear there, before the first step: they do so at once.
+
+        vertices: of pairs, as ``touching`` has them, shape (k, 4)
+        forces:   on the first of the two [N], shape (k, 3): away from the second; across, towards the last vertex from
+                  the one before, as far as that goes; across both
+        """
+        self._core.bear(np.ascontiguousarray(vertices, np.int32), np.ascontiguousarray(forces, np.float64))
 
     @property
     def touches(self) -> Touches:

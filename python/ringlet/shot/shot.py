@@ -16,6 +16,7 @@ from ringlet.shot.variation import Variation
 
 MOST_FRAMES = 100_000  # of a shot
 FARTHEST_FRAME = 10_000_000  # from zero, either way
+STAYS = {"parting_speed": 0.0, "creep_speed": 1e-5}  # of contact that is to stay as it was groomed [m/s]
 
 
 class Forces(Section):
@@ -85,11 +86,12 @@ class Shot(Section):
 
     @property
     def touching(self) -> ShotContact | None:
-        """How locks touch, if they do. What is to stay as it was groomed does not part unless it is told to."""
+        """How locks touch, if they do. What is to stay as groomed does not part or creep unless it is told to."""
         if not (self.contact and self.contact.on):
             return None
-        stays = self.rest.mode == "equilibrium" and "parting_speed" not in self.contact.model_fields_set
-        return self.contact.model_copy(update={"parting_speed": 0.0}) if stays else self.contact
+        stays = STAYS if self.rest.mode == "equilibrium" else {}
+        told = self.contact.model_fields_set
+        return self.contact.model_copy(update={name: value for name, value in stays.items() if name not in told})
 
     @property
     def rest_file(self) -> Path | None:

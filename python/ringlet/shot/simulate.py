@@ -21,6 +21,7 @@ from ringlet.shot.checkpoint import Checkpoints, digest
 from ringlet.shot.collider import LOCKS, Obstacle, with_pairs
 from ringlet.shot.garment import Garment
 from ringlet.shot.nails import held_vertices, pull
+from ringlet.shot.resting import shared
 from ringlet.shot.roots import Roots
 from ringlet.shot.scene import Scene, friction_of
 from ringlet.shot.shot import Shot, wrong_frames
@@ -240,6 +241,16 @@ class Motion:
         self.worn = [Worn(garment, self.obstacles, first) for garment in garments]
         if shot.touching:
             self._touch(groom, first)
+            if rest is not None and "borne" in rest.point:
+                self._bear(groom, np.asarray(rest.point["borne"], np.float64))
+
+    def _bear(self, groom: Groom, borne: NDArray[np.float64]) -> None:
+        """What bears the locks where they were groomed does so from the start."""
+        assert self.scene is not None and self.shot.touching is not None
+        groomed, of_locks = make_strands(self.shot, groom), len(groom.locks.points)
+        vertices, forces = shared(self.shot.touching, groom.locks, groomed, self.obstacles, borne)
+        of_cloths = sum(len(worn.cloth.positions) for worn in self.worn)  # between those of locks and of bodies
+        self.scene.bear(np.where(vertices < of_locks, vertices, vertices + of_cloths), forces)
 
     def _touch(self, groom: Groom, first: float) -> None:
         """Puts locks and cloths into a scene with the obstacles; what starts inside one is excused until it is out."""
@@ -266,7 +277,7 @@ class Motion:
         self.start = start.told(
             inside,
             start.tell_piercing(locks, self.worn),
-            start.tell_overlapping(locks, self.scene, self.shot.solver),
+            start.tell_overlapping(locks, self.scene),
         )
 
     def cloths(self, frames: int) -> list[CachedCloth]:

@@ -14,13 +14,11 @@ from ringlet.errors import UserError
 from ringlet.mesh import Mesh
 from ringlet.shot.piercing import edges_of, piercings
 from ringlet.shot.scene import Body, Scene
-from ringlet.shot.strands import Solver
 from ringlet.shot.worn import Worn
 
 Array = NDArray[np.float64]
 
 WORST = 5  # places that are told
-INSTANT = 1e-6  # a step so short that nothing moves [s]
 
 
 def depths(points: NDArray[np.floating], triangles: NDArray[np.int32], corners: NDArray[np.floating]) -> Array:
@@ -65,15 +63,10 @@ def tell_inside(locks: Curves, mesh: Mesh, depth: Array) -> dict[str, Any]:
     }
 
 
-def tell_overlapping(locks: Curves, scene: Scene, solver: Solver) -> dict[str, Any]:
-    """Which locks are nearer to one another than they may be, as numbers. The strands are at rest, and stay so."""
-    strands = scene.strands
-    before, of_cloths = strands.positions.copy(), [cloth.positions.copy() for cloth in scene.cloths]
-    scene.step(before, INSTANT, solver=solver.model_copy(update={"newton": 1}))
-    strands.place(before)
-    for cloth, positions in zip(scene.cloths, of_cloths, strict=True):
-        cloth.positions[:], cloth.velocities[:] = positions, 0.0
-    vertices, values = scene.contacts
+def tell_overlapping(locks: Curves, scene: Scene) -> dict[str, Any]:
+    """Which locks are nearer to one another than they may be, as numbers."""
+    before = scene.strands.positions
+    vertices, values = scene.touching()
     pairs = _lock_of(locks, vertices[:, [0, 3]])
     of_two = (vertices < len(before)).all(axis=1) & (pairs[:, 0] != pairs[:, 1])
     vertices, weights, pairs = vertices[of_two], values[of_two, :4], pairs[of_two]

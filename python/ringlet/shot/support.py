@@ -22,9 +22,9 @@ from ringlet.shot.collider import LOCKS, Obstacle, ShotContact, with_pairs
 from ringlet.shot.joints import corners, edges, twists
 from ringlet.shot.nails import fixed
 from ringlet.shot.pushing import least_pushing
-from ringlet.shot.scene import Body, Scene, friction_of
+from ringlet.shot.resting import Resting, resting
+from ringlet.shot.scene import friction_of
 from ringlet.shot.shot import Shot
-from ringlet.shot.start import depths
 from ringlet.shot.strands import Strands
 
 Array = NDArray[np.float64]
@@ -63,7 +63,8 @@ def support(shot: Shot, locks: Curves, strands: Strands, loads: Array, obstacles
     forces, contact = np.zeros_like(loads), shot.touching
     ways = [_nails(shot.held, locks, np.asarray(strands.held))]
     if contact is not None:
-        ways.append(_touching(contact, HOLDS * _friction(contact, obstacles), locks, strands, obstacles))
+        rests = resting(contact, locks, strands, obstacles)
+        ways.append(_pushing(rests, HOLDS * _friction(contact, obstacles)[0, rests.body]))
     all_ways = _joined(ways)
     if all_ways.free.size:
         found = _least(all_ways, shot.held, locks, strands, loads)
@@ -106,50 +107,12 @@ def _friction(contact: ShotContact, obstacles: Sequence[Obstacle]) -> Array:
     return with_pairs(friction_of(contact, [], [one.body(0.0) for one in obstacles]), told, names)
 
 
-def _touching(
-    contact: ShotContact, friction: Array, locks: Curves, strands: Strands, obstacles: Sequence[Obstacle]
-) -> Ways:
-    """Locks that are as near to a body or to one another as they touch are pushed away from it, as the scene has it.
-
-    Two locks where they are nearest, a lock and a body where they are nearest to each vertex. Not what begins inside a
-    body, and not at a lock's tip, off which another would slide.
-    """
-    surfaces = [np.asarray(one.mesh.points, np.float64) for one in obstacles]
-    bodies = [
-        Body(surface, one.mesh.triangles, one.settings.thickness, one.settings.friction)
-        for one, surface in zip(obstacles, surfaces, strict=True)
-    ]
-    scene = Scene(strands, bodies, contact)
-    vertices, values = scene.touching()
-    at, count = scene.positions, len(locks.points)
-
-    weights, of_lock = values[:, :4], vertices < count
-    body = np.searchsorted(np.cumsum([count, *map(len, surfaces)]), vertices.max(axis=1), side="right")  # 0: of locks
-    main = np.take_along_axis(vertices, np.where(of_lock, np.abs(weights), -1.0).argmax(axis=1)[:, None], axis=1)[:, 0]
-    lock = np.sort(np.searchsorted(locks.offsets, vertices[:, [0, 3]], side="right") - 1, axis=1)
-    places = np.where(body[:, None] == 0, lock, np.c_[main, count + body])
-    at_tip = (np.isin(vertices, locks.offsets[1:] - 1) & (np.abs(weights) > 0.5)).any(axis=1)
-    counts = np.where(body == 0, (lock[:, 0] != lock[:, 1]) & ~at_tip, ~np.asarray(strands.held)[main])
-    for k, surface in enumerate(surfaces):
-        on_it = np.flatnonzero((body == k + 1) & counts)
-        counts[on_it] = depths(at[main[on_it]], obstacles[k].mesh.triangles, surface) == 0.0
-    chosen = np.flatnonzero(counts)
-    apart = np.linalg.norm(np.einsum("kv,kvi->ki", weights[chosen], at[vertices[chosen]]), axis=1)
-    by_distance = chosen[np.argsort(apart, kind="stable")]
-    _, first = np.unique(places[by_distance], axis=0, return_index=True)
-    nearest = by_distance[first]
-    acting = np.where(of_lock[nearest], vertices[nearest], main[nearest, None]).astype(np.int64)
-    return _pushing(
-        values[nearest, 4:7], friction[0, body[nearest]], acting, np.where(of_lock[nearest], weights[nearest], 0.0)
-    )
-
-
-def _pushing(away: Array, friction: Array, vertex: Indices, weight: Array) -> Ways:
-    """Pushes along ``away``, shape (k, 3), on vertices with weights, shapes (k, m), and holds across by friction, (k,).
+def _pushing(rests: Resting, friction: Array) -> Ways:
+    """What touches pushes, and holds across by friction, shape (k,).
 
     A cone of friction has four edges here; a force within is a sum of pushes along them.
     """
-    normal = away / np.linalg.norm(away, axis=1, keepdims=True)
+    normal, vertex, weight = rests.away, rests.acting, rests.weights
     across = np.cross(normal, np.eye(3)[np.abs(normal).argmin(axis=1)])
     across /= np.linalg.norm(across, axis=1, keepdims=True)
     sides = np.stack([across, -across, np.cross(normal, across), -np.cross(normal, across)], axis=1)

@@ -19,6 +19,7 @@ struct Contact {
     Vec3 normal;                  // n, from the second to the first
     double distance;              // r: the contact is active below this gap [m]
     double barrier_end;           // below this gap the barrier ends in a parabola [m]
+    double room;                  // the part of its distance in which it comes to bear: 1, less where the pair began nearer
     double stiffness;             // k [N/m]
     double friction;              // μ
     double give;                  // a contact that is sheared less than this sticks [m]

@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 namespace ringlet {
 namespace {
 
 // Ascending as pairs are, and as the contacts of one pair are.
-constexpr int places_of_pair = 7; // at most
+constexpr int places_of_pair = 7;   // at most
+constexpr double least_room = 0.01; // of its distance, in which a pair that began near comes to bear
 uint64_t name(const Touch &touch, int which = 0) {
     return uint64_t(!touch.of_edges) << 63 | uint64_t(touch.of[0]) << 33 | uint64_t(touch.of[1]) << 3 | uint64_t(which);
 }
@@ -89,6 +91,31 @@ void for_known(const std::vector<Known> &before, std::vector<Found> &now, const 
     }
 }
 
+// Without what depends on from where on it pushes.
+Contact contact(const CollisionMesh &mesh, const ContactMaterial &material, const Touch &touch, const Place &place,
+                View<Vec3> now) {
+    const Sides of = sides(mesh, touch, place.nearest);
+    Contact contact{};
+    contact.vertex = of.vertex, contact.weight = of.weight, contact.first = of.first;
+    contact.normal = separation(contact, now) / std::sqrt(place.nearest.distance2);
+    contact.stiffness = place.share * stiffness(of, material);
+    contact.friction =
+        material.friction[material.material[of.vertex[0]] * material.materials + material.material[of.vertex[3]]];
+    contact.give = material.give;
+    contact.pair = name(touch, place.which);
+    return contact;
+}
+
+// How far a contact is sheared that bears and holds with such a force, which is told as Bearing tells it.
+Vec3 shear_to_hold(const Contact &contact, View<Vec3> now, const Vec3 &force) {
+    const Vec3 way = now[contact.vertex[3]] - now[contact.vertex[2]];
+    const Vec3 aside = (way - contact.normal.dot(way) * contact.normal).normalized();
+    const Vec3 holds = force[1] * aside + force[2] * contact.normal.cross(aside);
+    const double most = contact.friction * force[0], length = holds.norm();
+    if (!(most > 0.0 && length > 0.0)) return Vec3::Zero();
+    return -sheared_to_hold(std::min(length / most, 1.0)) * contact.give / length * holds;
+}
+
 // A pair goes on from what it held as the step began, which turns with it.
 void go_on(const Hold &held, Contact &contact) {
     const Mat3 turn = Eigen::Quaterniond::FromTwoVectors(held.normal, contact.normal).toRotationMatrix();
@@ -97,27 +124,42 @@ void go_on(const Hold &held, Contact &contact) {
 
 } // namespace
 
-void ContactSet::begin(const std::vector<Touch> &touching) {
-    early_.clear();
+void ContactSet::begin(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<Touch> &touching,
+                       View<Bearing> bearing, View<Vec3> now) {
+    std::map<std::array<int, 4>, Vec3> forces;
+    for (const Bearing &bears : bearing) forces[bears.vertex] = bears.force;
+    early_.clear(), expected_.clear(), held_.clear();
     for (const Touch &touch : touching) {
+        const Sides of = sides(mesh, touch, touch.nearest);
         const double apart = std::sqrt(touch.nearest.distance2);
-        early_[name(touch)] = {apart, apart};
+        Beginning &early = early_[name(touch)] = {apart, 0.0, apart};
+        const auto force = forces.find(of.vertex);
+        if (force == forces.end() || !(apart > 0.0 && force->second[0] > 0.0)) continue;
+        early.bears = force->second[0];
+        for (const Place &place : places(mesh, touch, now)) {
+            const Contact bears = contact(mesh, material, touch, place, now);
+            expected_.push_back({bears.pair, place.share * early.bears});
+            held_.push_back({bears.pair, shear_to_hold(bears, now, force->second), bears.normal});
+        }
     }
 }
 
 void ContactSet::part_early(double way) {
-    for (auto &[pair, distances] : early_) distances.push += way;
+    for (auto &[pair, early] : early_) early.push = early.apart += way;
 }
 
-void ContactSet::stay_early(View<Vec3> now) {
-    for (auto &[pair, distances] : early_) distances.push = distances.began;
+void ContactSet::stay_early(const std::vector<Touch> &touching, View<Vec3> now) {
+    for (auto &[pair, early] : early_) early.bears = 0.0;
     for (const Contact &contact : contacts_) {
         const auto early = early_.find(contact.pair & ~uint64_t(places_of_pair));
-        if (early == early_.end()) continue;
-        Distances &distances = early->second;
-        const double nearer = contact.distance - contact.normal.dot(separation(contact, now));
-        distances.push = std::max(distances.push, distances.began + nearer);
+        if (early != early_.end()) early->second.bears += contact_force(contact, separation(contact, now));
     }
+    Early stay;
+    for (const Touch &touch : touching) {
+        const auto early = early_.find(name(touch));
+        if (early != early_.end()) stay.insert(*early);
+    }
+    early_ = std::move(stay);
 }
 
 void ContactSet::hold(View<Vec3> now) {
@@ -130,11 +172,16 @@ void ContactSet::hold(View<Vec3> now) {
     }
 }
 
-// Calls work(where it pushes, at what distance, from which distance on [m], where its barrier ends [m]).
+// Calls work(where it pushes, at what distance, from which distance on [m], where its barrier ends [m], what part of its
+// distance it has to come to bear).
 template <class Work>
 void ContactSet::for_places(const CollisionMesh &mesh, const Touch &touch, View<Vec3> now, const Work &work) const {
     const auto early = early_.find(name(touch));
-    const double distance = early == early_.end() ? touch.distance : std::min(touch.distance, early->second.push);
+    double distance = touch.distance, room = 1.0;
+    if (early != early_.end() && early->second.apart < touch.distance) {
+        distance = std::min(distance, early->second.push);
+        if (early->second.bears > 0.0) room = std::max(1.0 - early->second.apart / touch.distance, least_room);
+    }
     const bool by_planes = with_vertices(mesh, touch, [&](const auto &a, const auto &b) {
         return goes_by_planes(mesh.object[a[0]]) || goes_by_planes(mesh.object[b[0]]);
     });
@@ -143,7 +190,7 @@ void ContactSet::for_places(const CollisionMesh &mesh, const Touch &touch, View<
         if (!(apart > 0.0 && apart < distance)) continue;
         double barrier_end = distance / 100;
         if (by_planes) barrier_end = std::min(std::clamp(0.25 * apart, barrier_end, touch.distance / 64), distance / 64);
-        work(place, apart, distance, barrier_end);
+        work(place, apart, distance, barrier_end, room);
     }
 }
 
@@ -151,20 +198,13 @@ std::vector<Contact> ContactSet::of_touching(const CollisionMesh &mesh, const Co
                                              const std::vector<Touch> &touching, View<Vec3> start, View<Vec3> now) const {
     std::vector<Contact> found = collect<Contact>(int(touching.size()), [&](int k, std::vector<Contact> &contacts) {
         const Touch &touch = touching[k];
-        for_places(mesh, touch, now, [&](const Place &place, double apart, double distance, double barrier_end) {
-            const Sides of = sides(mesh, touch, place.nearest);
-            Contact contact{};
-            contact.vertex = of.vertex, contact.weight = of.weight, contact.first = of.first;
+        for_places(mesh, touch, now, [&](const Place &place, double, double distance, double barrier_end, double room) {
+            Contact contact = ringlet::contact(mesh, material, touch, place, now);
             contact.distance = distance;
             contact.barrier_end = barrier_end;
-            contact.normal = separation(contact, now) / apart;
+            contact.room = room;
             contact.start = separation(contact, start);
-            contact.stiffness = place.share * stiffness(of, material);
-            contact.friction =
-                material.friction[material.material[of.vertex[0]] * material.materials + material.material[of.vertex[3]]];
-            contact.give = material.give;
             contact.force = contact_force(contact, separation(contact, now));
-            contact.pair = name(touch, place.which);
             contacts.push_back(contact);
         });
     });
@@ -176,7 +216,7 @@ std::vector<ContactSet::Push> ContactSet::pushing(const CollisionMesh &mesh, con
                                                   const std::vector<Touch> &touching, View<Vec3> elsewhere) const {
     std::vector<Push> found = collect<Push>(int(touching.size()), [&](int k, std::vector<Push> &pushes) {
         const Touch &touch = touching[k];
-        for_places(mesh, touch, elsewhere, [&](const Place &place, double apart, double distance, double barrier_end) {
+        for_places(mesh, touch, elsewhere, [&](const Place &place, double apart, double distance, double barrier_end, double) {
             const Sides of = sides(mesh, touch, place.nearest);
             pushes.push_back({name(touch, place.which),
                               {mesh.object[of.vertex[0]], mesh.object[of.vertex[3]]},
@@ -190,6 +230,12 @@ std::vector<ContactSet::Push> ContactSet::pushing(const CollisionMesh &mesh, con
 
 void ContactSet::find(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<Touch> &touching,
                       View<Vec3> start, View<Vec3> now) {
+    for (const Touch &touch : touching) {
+        const auto found = early_.find(name(touch));
+        if (found == early_.end()) continue;
+        Beginning &early = found->second; // stays the same until contacts are found again, whatever stiffness is then
+        early.push = distance_to_bear(early.bears / stiffness(sides(mesh, touch, touch.nearest), material), early.apart);
+    }
     std::vector<Contact> found = of_touching(mesh, material, touching, start, now);
     for_known(expected_, found, [](const Expected &before, Contact &now) { now.grip = before.force; });
     contacts_ = std::move(found);

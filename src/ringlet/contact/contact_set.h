@@ -28,15 +28,23 @@ struct Hold {
 class ContactSet {
 public:
     // Pairs that begin nearer than their contact distance push only from there on, which then grows by `way` a step: nothing
-    // pops. Or they stay: what comes nearer than it began pushes from so much further on, until it bears what it has to where
-    // it began.
-    void begin(const std::vector<Touch> &touching);
-    void part_early(double way);
-    void stay_early(View<Vec3> now);
-    struct Distances {
-        double began, push; // how near they began, and from where on they push [m]
+    // pops. Or they stay, with what they bear there: they push from so much further on, whatever their stiffness. Those of
+    // which it is known how they bear what they touch do so from the start.
+    struct Bearing {
+        std::array<int, 4> vertex; // as contacts have them
+        Vec3 force;                // on the first of the two: away from the second, towards the last vertex from the one
+                                   // before as far as that is across, and across both [N]
     };
-    using Early = std::unordered_map<uint64_t, Distances>; // by pair
+    void begin(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<Touch> &touching,
+               View<Bearing> bearing, View<Vec3> now);
+    void part_early(double way);
+    void stay_early(const std::vector<Touch> &touching, View<Vec3> now);
+    struct Beginning {
+        double apart; // how near they began [m]
+        double bears; // what they push with as near as that [N]
+        double push;  // from where on they push, then [m]
+    };
+    using Early = std::unordered_map<uint64_t, Beginning>; // by pair
     const Early &early() const { return early_; }
     void recall(Early early) { early_ = std::move(early); }
 

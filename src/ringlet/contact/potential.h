@@ -25,6 +25,9 @@ inline Potential contact_potential(double g, double r, double end) {
     return {value + first * below + 0.5 * second * below * below, first + second * below, second};
 }
 
+// The r from which on it pushes with that force per stiffness f at gap g: −φ' = f [m].
+inline double distance_to_bear(double f, double g) { return f <= g ? g + f : 2.0 * std::sqrt(f * g); }
+
 // Friction per force μN of a contact that is sheared by a distance y ≥ 0: |force| rises smoothly to 1 at y = give and stays
 // there (after Li et al. 2020, steeper at the start: what holds gives way by less than half of its part of the most, times
 // `give`, up to 0.9 of it). `first` is that force, `second` its slope.
@@ -33,5 +36,8 @@ inline Potential friction_potential(double y, double give) {
     const double q = y / give, left = 1.0 - q, left3 = left * left * left;
     return {give * (q + left3 * left * left / 5.0), 1.0 - left3 * left, 4.0 * left3 / give};
 }
+
+// How far a contact is sheared that holds with that part of its most force, in parts of `give`.
+inline double sheared_to_hold(double part) { return 1.0 - std::pow(std::max(1.0 - part, 0.0), 0.25); }
 
 } // namespace ringlet

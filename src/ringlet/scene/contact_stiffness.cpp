@@ -29,7 +29,7 @@ bool ContactStiffness::bear(const ContactSet &contacts) {
     bool more = false;
     for (size_t k = 0; k < all.size(); ++k)
         for (const int v : all[k].vertex) {
-            const double force = contacts.expected()[k].force;
+            const double force = contacts.expected()[k].force / all[k].room;
             if (force > borne_[v]) borne_[v] = force, more = true;
         }
     return more;

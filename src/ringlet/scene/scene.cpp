@@ -51,6 +51,7 @@ struct Scene::Parts {
     std::vector<Embedded::Body> embedded_bodies; // per body
     Embedded embedded;
     bool recording = false, begun = false;
+    std::vector<ContactSet::Bearing> bearing; // as everything begins
     std::vector<std::vector<Vec3>> path;
 
     // Within a step
@@ -72,6 +73,7 @@ struct Scene::Parts {
 
     void check(const SceneInput &input) const;
     void find_placed();
+    void begin(double dt);
     std::vector<Contact> touching();
     void set_stiffness();
     void note_touched();
@@ -98,11 +100,7 @@ Scene::Parts::Parts(const StrandModel &model_, StrandState &state_, const std::v
         embedded_bodies.push_back({vertices.bodies[b], int(bodies[b].rest.size()), vertices.parts() + b, bodies[b].triangles});
 }
 
-// What stays where it began is as hard as it may have to be from the start: it is not to sink in.
-void Scene::Parts::set_stiffness() {
-    const bool stays = settings.parting_speed == 0.0;
-    vertices.material.stiffness = stays ? stiffness.hardest() : stiffness.needed(vertices, 2.0 * settings.strand_radius);
-}
+void Scene::Parts::set_stiffness() { vertices.material.stiffness = stiffness.needed(vertices, 2.0 * settings.strand_radius); }
 
 // Which body each cloth has most contacts with.
 void Scene::Parts::note_touched() {
@@ -333,9 +331,10 @@ double Scene::Parts::advance(const SceneInput &input, const SceneStep &scene_ste
     arrive(now, to);
     system.scatter(now, x);
     const int iteration = newton(scene_step, step, now, progress, report);
-    system.touch(near.touching(now), now);
+    const std::vector<Touch> touching = near.touching(now);
+    system.touch(touching, now);
     system.contacts.hold(now);
-    if (settings.parting_speed == 0.0) system.contacts.stay_early(now);
+    if (settings.parting_speed == 0.0) system.contacts.stay_early(touching, now);
     report.newton += iteration;
     report.residual = reach.empty() ? 0.0 : *std::max_element(reach.begin(), reach.end());
     report.unconverged = report.residual > step.tolerance;
@@ -381,6 +380,20 @@ std::vector<Contact> Scene::Parts::touching() {
     return contacts.contacts();
 }
 
+void Scene::Parts::begin(double dt) {
+    near.note(vertices.positions, vertices.positions, 0.0, 0.0);
+    vertices.material.give = settings.creep_speed * dt;
+    stiffness.begin(system, settings.stiffness, dt);
+    set_stiffness();
+    const std::vector<Vec3> &now = vertices.positions;
+    const std::vector<Touch> touching = near.touching(now);
+    system.contacts.begin(vertices.mesh, vertices.material, touching, bearing, now);
+    system.contacts.find(vertices.mesh, vertices.material, touching, now, now);
+    stiffness.bear(system.contacts);
+    bearing.clear();
+    begun = true;
+}
+
 SceneReport Scene::Parts::step(const SceneInput &input, const SceneStep &scene_step, std::vector<StrandReport> &of_strands,
                                std::vector<ClothReport> &of_cloths) {
     check(input);
@@ -388,11 +401,7 @@ SceneReport Scene::Parts::step(const SceneInput &input, const SceneStep &scene_s
     of_cloths.assign(system.cloths.size(), ClothReport{});
     SceneReport report;
     find_placed();
-    if (!begun) {
-        near.note(vertices.positions, vertices.positions, 0.0, 0.0);
-        system.contacts.begin(near.touching(vertices.positions));
-        begun = true;
-    }
+    if (!begun) begin(scene_step.strands.dt);
     if (settings.parting_speed > 0.0) system.contacts.part_early(settings.parting_speed * scene_step.strands.dt);
     path.clear();
     if (recording) path.push_back(vertices.positions);
@@ -423,6 +432,8 @@ SceneReport Scene::step(const SceneInput &input, const SceneStep &step, std::vec
 }
 
 std::vector<Contact> Scene::touching() { return parts_->touching(); }
+
+void Scene::bear(std::vector<ContactSet::Bearing> bearing) { parts_->bearing = std::move(bearing); }
 
 void Scene::excuse(int vertex, int body) {
     if (vertex < 0 || vertex >= parts_->vertices.strand_vertices())

@@ -64,6 +64,9 @@ public:
     // began. How hard they push is known in a step alone; no step depends on this.
     std::vector<Contact> touching();
 
+    // Before the first step: how what touches bears what lies on it, where it is known.
+    void bear(std::vector<ContactSet::Bearing> bearing);
+
     // A vertex of a strand that begins inside a body, or too near to it, may be there until it has come out: it is pushed out
     // gently, and guarded like any other from then on.
     void excuse(int vertex, int body);
