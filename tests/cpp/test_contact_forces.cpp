@@ -163,6 +163,21 @@ BOOST_AUTO_TEST_CASE(a_contact_bears_what_it_is_to_bear_where_it_began) {
     }
 }
 
+BOOST_AUTO_TEST_CASE(what_is_expanded_is_right_to_second_order) {
+    Random random;
+    for (int i = 0; i < 1000; ++i) {
+        Contact contact = some_contact(random);
+        const double r = contact.distance;
+        contact.gap = random(0.05, 0.45) * r; // within the barrier
+        const auto off = [&](double nearer) {
+            const Vec3 apart = (contact.gap - nearer * contact.gap) * contact.normal;
+            return std::abs(expanded_push_energy(contact, apart) - push_energy(contact, apart)) / (contact.stiffness * r * r);
+        };
+        BOOST_TEST(off(0.0) < 1e-15);
+        BOOST_TEST(std::abs(off(2e-2) / off(1e-2) - 8.0) < 0.2);
+    }
+}
+
 BOOST_AUTO_TEST_CASE(the_gradient_is_that_of_the_energy_and_the_hessian_semi_definite) {
     Random random;
     const double h = 1e-9;

@@ -8,8 +8,21 @@ EXAMPLE = Path(__file__).parents[2] / "examples/child"
 
 
 def test_locks_of_the_example_move_a_third_of_what_they_do_without_contact_at_least():
-    contact = ringlet.read_shot(EXAMPLE / "nod.shot.toml").contact
+    moves = beside("nod", 6)
+    assert moves["with"]["moves_mm"] > moves["without"]["moves_mm"] / 3
+
+
+def test_locks_of_which_a_few_touch_a_cloth_move_too():
+    """All of them touch one another, and a few of them the ribbon."""
+    moves = beside("ribbon", 9)
+    assert moves["with"]["moves_mm"] > moves["without"]["moves_mm"] / 6
+    assert moves["with"]["still"] == 0
+
+
+def beside(name, frames):
+    """How far locks of a shot of the example move, with contact and without."""
+    contact = ringlet.read_shot(EXAMPLE / f"{name}.shot.toml").contact
     assert contact is not None
-    stiffness = contact.stiffness
-    moves = ringlet.run_bench("liveliness", frames=6, stiffness=stiffness)["off"]
-    assert moves[str(stiffness)]["moves_mm"] > moves["without"]["moves_mm"] / 3
+    told = str(contact.stiffness)
+    off = ringlet.run_bench("liveliness", shot=name, frames=frames, stiffness=told)["off"]
+    return {"with": off[told], "without": off["without"]}

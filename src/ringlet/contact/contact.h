@@ -24,7 +24,8 @@ struct Contact {
     double friction;              // μ
     double give;                  // a contact that is sheared less than this sticks [m]
     Vec3 start;                   // c_a − c_b as the step began, less the shear that was there [m]
-    double force = 0.0;           // with which it pushes where it was linearised [N]
+    double gap = 0.0;             // where it was linearised [m]
+    double force = 0.0;           // with which it pushes there [N]
     double grip = 0.0;            // N [N]
     uint64_t pair = 0;            // which two touch
 
@@ -50,6 +51,13 @@ inline double contact_force(const Contact &c, const Vec3 &separation) {
 
 inline double push_energy(const Contact &c, const Vec3 &separation) {
     return c.stiffness * contact_potential(c.normal.dot(separation), c.distance, c.barrier_end).value;
+}
+
+// The same as a Newton step has it: expanded to second order where it was linearised.
+inline double expanded_push_energy(const Contact &c, const Vec3 &separation) {
+    const Potential push = contact_potential(c.gap, c.distance, c.barrier_end);
+    const double nearer = c.normal.dot(separation) - c.gap;
+    return c.stiffness * (push.value + nearer * (push.first + 0.5 * nearer * push.second));
 }
 
 // u, how far the two are sheared at a separation c_a − c_b [m].

@@ -198,12 +198,13 @@ std::vector<Contact> ContactSet::of_touching(const CollisionMesh &mesh, const Co
                                              const std::vector<Touch> &touching, View<Vec3> start, View<Vec3> now) const {
     std::vector<Contact> found = collect<Contact>(int(touching.size()), [&](int k, std::vector<Contact> &contacts) {
         const Touch &touch = touching[k];
-        for_places(mesh, touch, now, [&](const Place &place, double, double distance, double barrier_end, double room) {
+        for_places(mesh, touch, now, [&](const Place &place, double apart, double distance, double barrier_end, double room) {
             Contact contact = ringlet::contact(mesh, material, touch, place, now);
             contact.distance = distance;
             contact.barrier_end = barrier_end;
             contact.room = room;
             contact.start = separation(contact, start);
+            contact.gap = apart;
             contact.force = contact_force(contact, separation(contact, now));
             contacts.push_back(contact);
         });

@@ -227,6 +227,8 @@ int Scene::Parts::newton(const SceneStep &scene_step, const StrandStep &step, st
         // A cloth that is held back here and there is strained there, so that its energy rises for once: for it and what
         // touches it the search comes before the filter, and knows of the contacts alone. All of a cluster is searched then:
         // were the rest of it to go all of its way meanwhile, no step of the cloth would lead down, and it would stand still.
+        // What of the rest only touches strands does so as the direction has it: how near they may come is for the filter, and
+        // by planes, which they overstep, nearly all hair that touches hair and, somewhere, a cloth would stay.
         const std::vector<unsigned char> &by_planes = system.by_planes();
         const std::vector<int> &cluster = system.clusters();
         std::vector<unsigned char> with_cloth(by_planes.size(), 0); // by cluster

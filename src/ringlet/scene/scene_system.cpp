@@ -137,7 +137,10 @@ void SceneSystem::share_contacts(const PairsInReach *pairs, const std::vector<do
     } else {
         for (const Contact &c : all) {
             const int a = vertices.part_of(c.vertex[0]), b = vertices.part_of(c.vertex[3]);
-            if (is_anew(a, b)) pushed_.push_back({a, b, push_energy(c, separation(c, places_))});
+            if (!is_anew(a, b)) continue;
+            const bool by_planes = (a >= 0 && by_planes_[a]) || (b >= 0 && by_planes_[b]);
+            const Vec3 apart = separation(c, places_);
+            pushed_.push_back({a, b, by_planes ? push_energy(c, apart) : expanded_push_energy(c, apart)});
         }
     }
     for (size_t c = 0; c < all.size(); ++c)

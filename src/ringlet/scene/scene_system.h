@@ -86,9 +86,10 @@ public:
     const std::vector<unsigned char> &by_planes() const { return by_planes_; }
 
     // Energies [J] of the parts at x, somewhere on the last move: each with its share of what pushes there, be it a contact yet
-    // or not (without `pairs`, all that may touch there: of what its contacts push, by their planes), and of the contacts'
-    // friction. `gone` says which part of its way each part is there. Only parts that have `changed` since this was last asked,
-    // or since they were assembled, are asked again, and contacts only of these.
+    // or not (without `pairs`, all that may touch there: of what its contacts push, by their planes if it goes by these and
+    // otherwise expanded where they were found), and of the contacts' friction. `gone` says which part of its way each part is
+    // there. Only parts that have `changed` since this was last asked, or since they were assembled, are asked again, and
+    // contacts only of these.
     void energies(const AlignedVector &x, const PairsInReach *pairs, const std::vector<double> &gone,
                   const std::vector<unsigned char> &changed, std::vector<double> &of_parts);
 
