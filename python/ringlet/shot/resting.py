@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array, diags_array, eye_array
+from scipy.sparse import coo_array, csc_array, diags_array, eye_array
 from scipy.sparse.linalg import splu
 
 from ringlet.curves import Curves
@@ -99,12 +99,10 @@ def shared(
     rows, columns = rests.acting.ravel(), np.repeat(np.arange(len(rests.body)), 4)
     acts = coo_array((rests.weights.ravel(), (rows, columns)), (len(borne), len(rests.body))).tocsr()
     acts = diags_array((~np.asarray(strands.held)).astype(float)) @ acts  # what is held bears all that it has to
-    square = (acts.T @ acts).tocsc()
-    some = square.diagonal() > 0.0
-    force = np.zeros((len(rests.body), 3))
-    if some.any():
-        square = square[some][:, some] + VAGUE * eye_array(some.sum(), format="csc")
-        force[some] = splu(square.tocsc()).solve((acts.T @ borne)[some])
+    count = len(rests.body)
+    force = np.zeros((count, 3))
+    if count > 0:
+        force = splu(csc_array(acts.T @ acts + VAGUE * eye_array(count))).solve(acts.T @ borne)
     frame = np.stack([rests.away, rests.aside, np.cross(rests.away, rests.aside)], axis=1)
     force = np.einsum("kai,ki->ka", frame, force)
     bears = force[:, 0] > 0.0
