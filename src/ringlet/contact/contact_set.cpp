@@ -148,7 +148,8 @@ void ContactSet::part_early(double way) {
     for (auto &[pair, early] : early_) early.push = early.apart += way;
 }
 
-void ContactSet::stay_early(const std::vector<Touch> &touching, View<Vec3> now) {
+void ContactSet::stay_early(const std::vector<Touch> &touching, View<Vec3> now, double way) {
+    constexpr double nearest = 0.01;
     for (auto &[pair, early] : early_) early.bears = 0.0;
     for (const Contact &contact : contacts_) {
         const auto early = early_.find(contact.pair & ~uint64_t(places_of_pair));
@@ -156,8 +157,11 @@ void ContactSet::stay_early(const std::vector<Touch> &touching, View<Vec3> now) 
     }
     Early stay;
     for (const Touch &touch : touching) {
-        const auto early = early_.find(name(touch));
-        if (early != early_.end()) stay.insert(*early);
+        const auto found = early_.find(name(touch));
+        if (found == early_.end()) continue;
+        Beginning &early = stay[found->first] = found->second;
+        const double least = nearest * touch.distance;
+        if (early.apart < least) early.apart = std::min(early.apart + way, least);
     }
     early_ = std::move(stay);
 }

@@ -29,7 +29,8 @@ class ContactSet {
 public:
     // Pairs that begin nearer than their contact distance push only from there on, which then grows by `way` a step: nothing
     // pops. Or they stay, with what they bear there: they push from so much further on, whatever their stiffness. Those of
-    // which it is known how they bear what they touch do so from the start.
+    // which it is known how they bear what they touch do so from the start. What is nearer than a hundredth of its distance
+    // can hardly move, and parts by `way` a step until it is no longer.
     struct Bearing {
         std::array<int, 4> vertex; // as contacts have them
         Vec3 force;                // on the first of the two: away from the second, towards the last vertex from the one
@@ -38,7 +39,7 @@ public:
     void begin(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<Touch> &touching,
                View<Bearing> bearing, View<Vec3> now);
     void part_early(double way);
-    void stay_early(const std::vector<Touch> &touching, View<Vec3> now);
+    void stay_early(const std::vector<Touch> &touching, View<Vec3> now, double way);
     struct Beginning {
         double apart; // how near they began [m]
         double bears; // what they push with as near as that [N]

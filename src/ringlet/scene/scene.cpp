@@ -336,7 +336,8 @@ double Scene::Parts::advance(const SceneInput &input, const SceneStep &scene_ste
     const std::vector<Touch> touching = near.touching(now);
     system.touch(touching, now);
     system.contacts.hold(now);
-    if (settings.parting_speed == 0.0) system.contacts.stay_early(touching, now);
+    constexpr double slowly = 1e-4; // [m/s]
+    if (settings.parting_speed == 0.0) system.contacts.stay_early(touching, now, slowly * step.dt);
     report.newton += iteration;
     report.residual = reach.empty() ? 0.0 : *std::max_element(reach.begin(), reach.end());
     report.unconverged = report.residual > step.tolerance;
