@@ -169,6 +169,11 @@ def test_two_locks_bear_one_another_from_the_first_step():
     assert at_once < 1e-9 and at_once < 1e-3 * later
 
 
+def test_what_bears_cannot_be_told_once_there_was_a_step():
+    with pytest.raises(ValueError, match="before the first step"):
+        fallen(1).bear(np.zeros((0, 4)), np.zeros((0, 3)))
+
+
 def test_locks_that_lie_in_one_another_stay():
     """Sixty of hair that is down, for two seconds: none leaves its place by the radius of a hair."""
     style = grown("down", 60, HEAD, "scalp")

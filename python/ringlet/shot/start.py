@@ -65,12 +65,12 @@ def tell_inside(locks: Curves, mesh: Mesh, depth: Array) -> dict[str, Any]:
 
 def tell_overlapping(locks: Curves, scene: Scene) -> dict[str, Any]:
     """Which locks are nearer to one another than they may be, as numbers."""
-    before = scene.strands.positions
+    at = scene.strands.positions
     vertices, values = scene.touching()
     pairs = _lock_of(locks, vertices[:, [0, 3]])
-    of_two = (vertices < len(before)).all(axis=1) & (pairs[:, 0] != pairs[:, 1])
+    of_two = (vertices < len(at)).all(axis=1) & (pairs[:, 0] != pairs[:, 1])
     vertices, weights, pairs = vertices[of_two], values[of_two, :4], pairs[of_two]
-    distance = np.linalg.norm(np.einsum("kv,kvi->ki", weights, before[vertices]), axis=1)
+    distance = np.linalg.norm(np.einsum("kv,kvi->ki", weights, at[vertices]), axis=1)
     nearest = np.argsort(distance, kind="stable")[:WORST]
     return {
         "places": len(pairs),

@@ -11,9 +11,10 @@
 namespace ringlet {
 namespace {
 
-// Ascending as pairs are, and as the contacts of one pair are.
-constexpr int places_of_pair = 7;   // at most
 constexpr double least_room = 0.01; // of its distance, in which a pair that began near comes to bear
+
+// Ascending as pairs are, and as the contacts of one pair are.
+constexpr int places_of_pair = 7; // at most
 uint64_t name(const Touch &touch, int which = 0) {
     return uint64_t(!touch.of_edges) << 63 | uint64_t(touch.of[0]) << 33 | uint64_t(touch.of[1]) << 3 | uint64_t(which);
 }

@@ -436,7 +436,10 @@ SceneReport Scene::step(const SceneInput &input, const SceneStep &step, std::vec
 
 std::vector<Contact> Scene::touching() { return parts_->touching(); }
 
-void Scene::bear(std::vector<ContactSet::Bearing> bearing) { parts_->bearing = std::move(bearing); }
+void Scene::bear(std::vector<ContactSet::Bearing> bearing) {
+    if (parts_->begun) throw std::invalid_argument("scene: what bears is told before the first step");
+    parts_->bearing = std::move(bearing);
+}
 
 void Scene::excuse(int vertex, int body) {
     if (vertex < 0 || vertex >= parts_->vertices.strand_vertices())
