@@ -15,7 +15,7 @@ def test_locks_of_the_example_move_a_third_of_what_they_do_without_contact_at_le
 def test_locks_of_which_a_few_touch_a_cloth_move_too():
     """All of them touch one another, and a few of them the ribbon."""
     moves = beside("ribbon", 9)
-    assert moves["with"]["moves_mm"] > moves["without"]["moves_mm"] / 6
+    assert moves["with"]["moves_mm"] > moves["without"]["moves_mm"] / 4
     assert moves["with"]["still"] == 0
 
 

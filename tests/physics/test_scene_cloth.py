@@ -94,6 +94,20 @@ def test_a_strand_that_is_thrown_at_a_held_sheet_stays_on_its_side(newton):
     assert (strand.positions[inside, 1] > cloth.positions[nearest[inside], 1] - 0.02).all()
 
 
+def test_a_sheet_falls_beside_a_strand_that_has_more_to_do():
+    """What is left of the system is measured over all that hangs together; of the sheet nothing was solved then."""
+    strand = Strands(
+        Curves.from_list([line([-0.05, 0.0007, 0.013], [0.15, 0.0007, -0.011], 21)]), Material(radius=2e-4), 1
+    )
+    strand.positions[12:, 0] += 0.005  # one edge is 50 % longer than it wants to be
+    cloth = Cloth(level(0.1, 8, 0.0), ClothMaterial(thickness=1e-3, drag=0.0))
+    before = cloth.positions.copy()
+    scene = Scene(strand, cloths=[cloth], contact=Contact(radius=5e-4))
+    report, _ = scene.step(strand.positions, FRAME, gravity=DOWN, solver=Solver(newton=1, extra=0))
+    assert report["contacts"] > 0
+    assert (before - cloth.positions)[:, 1].mean() > 0.7 * 9.81 * FRAME**2
+
+
 def thrown_at_a_strand(friction):
     """A sheet flies into a strand. Of each step: the positions, impulses [N s] and the strand's share."""
     dt = 1 / 240

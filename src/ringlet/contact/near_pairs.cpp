@@ -109,7 +109,7 @@ void NearPairs::note(View<Vec3> start, View<Vec3> end, double margin, double far
     passing_.clear();
     for (auto *ways : {&vertices_, &edges_, &triangles_}) std::fill(ways->begin(), ways->end(), Way{});
     Candidates found;
-    if (anew || strays == start.size()) {
+    if (anew || 2 * strays > start.size()) { // for most of them it takes no longer to look for all
         homes_.fit_within(low_, high_);
         broad_phase_.find(homes_, found);
         known_ = pairs_of(found);

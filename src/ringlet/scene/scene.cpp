@@ -137,7 +137,11 @@ SceneCarriers Scene::Parts::carriers(std::vector<int> &of_cloths, double dt) con
 double Scene::Parts::filter(View<Vec3> now, std::vector<Vec3> &to, const MoveKind &kind, SceneReport &report) {
     const Stopwatch watch(report.time_filter);
     constexpr double far = 0.3; // [m]: a corridor as long as that holds too many
-    if (kind.still && kind.shortened.empty()) near.note(now, to, 0.5 * settings.strand_radius, far);
+    if (kind.still && kind.shortened.empty()) {
+        const bool stays = std::equal(to.begin(), to.end(), now.begin());
+        near.note(now, to, stays ? 0.0 : 0.5 * settings.strand_radius, far); // what stays hardly stays for long
+        if (stays) return 1.0;
+    }
     const SceneCarry with = carry();
     const FilterScene scene{vertices.mesh,
                             vertices.mass,
@@ -225,16 +229,14 @@ int Scene::Parts::newton(const SceneStep &scene_step, const StrandStep &step, st
         }
         const bool small = std::all_of(reach.begin(), reach.end(), [&](double far) { return far <= step.tolerance; });
         // A cloth that is held back here and there is strained there, so that its energy rises for once: for it and what
-        // touches it the search comes before the filter, and knows of the contacts alone. All of a cluster is searched then:
-        // were the rest of it to go all of its way meanwhile, no step of the cloth would lead down, and it would stand still.
-        // What of the rest only touches strands does so as the direction has it: how near they may come is for the filter, and
+        // touches it the search comes before the filter, and knows of the contacts alone. So it does for what touches that in
+        // turn: were it to go all of its way meanwhile, no step of the cloth would lead down, and it would stand still.
+        // What only touches strands does so as the direction has it: how near they may come is for the filter, and
         // by planes, which they overstep, nearly all hair that touches hair and, somewhere, a cloth would stay.
         const std::vector<unsigned char> &by_planes = system.by_planes();
-        const std::vector<int> &cluster = system.clusters();
-        std::vector<unsigned char> with_cloth(by_planes.size(), 0); // by cluster
-        for (size_t p = 0; p < by_planes.size(); ++p) with_cloth[cluster[p]] |= by_planes[p];
+        const std::vector<unsigned char> beside = with_touched(system, by_planes);
         std::vector<unsigned char> before(by_planes.size(), 1), after(by_planes.size(), 1); // that are not searched
-        for (size_t p = 0; p < by_planes.size() && !small; ++p) before[p] = !with_cloth[cluster[p]], after[p] = by_planes[p];
+        for (size_t p = 0; p < by_planes.size() && !small; ++p) before[p] = !beside[p], after[p] = by_planes[p];
         if (!system.cloths.empty()) {
             const Stopwatch watch(report.time_search);
             AlignedVector found(system.size());
@@ -243,7 +245,7 @@ int Scene::Parts::newton(const SceneStep &scene_step, const StrandStep &step, st
             for (size_t i = 0; i < system.size(); ++i) direction[i] = found[i] - x[i];
             std::vector<double> unused;
             const PairsInReach in_reach = near.in_reach(system.active_parts());
-            system.energies(x, &in_reach, std::vector<double>(vertices.parts(), 0.0),
+            system.energies(x, &in_reach, {}, std::vector<double>(vertices.parts(), 0.0),
                             std::vector<unsigned char>(vertices.parts(), 1), unused);
         } else {
             tried = worth_going(system, x, direction);
@@ -317,9 +319,12 @@ double Scene::Parts::advance(const SceneInput &input, const SceneStep &scene_ste
     constexpr double speed = 0.02; // [m/s] of what began inside a body, out of it
     system.lifts = embedded.push_out(vertices.mesh, now, View<int>(model.offsets), stiffness.hardest(), speed * step.dt);
     // Then to where Newton's method begins.
+    constexpr double hardly = 1e-12; // [m]
     begin_cloths(input, step, now);
     to = now;
     system.gather(x, to);
+    for (int v = 0; v < vertices.moving_vertices(); ++v) // staying may be told within rounding
+        if ((to[v] - now[v]).squaredNorm() < hardly * hardly) to[v] = now[v];
     const auto keep_held = [&] {
         for (int v = 0; v < vertices.moving_vertices(); ++v)
             if (!vertices.mesh.moves[v]) to[v] = now[v];

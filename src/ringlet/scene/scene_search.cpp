@@ -21,18 +21,6 @@ template <class Work> void for_parts(const SceneSystem &system, int unit, const 
         work(group.strands[lane], system.unit_begin(unit) + lane, size_t(of.lanes), size_t(of.freedoms) * of.vertices);
 }
 
-// Of those that touch one another, marks all that touch one that is marked.
-void mark_touched(const SceneSystem &system, std::vector<unsigned char> &marked) {
-    std::vector<unsigned char> touched = marked;
-    for (const Contact &c : system.contacts.contacts()) {
-        const int a = system.vertices.part_of(c.vertex[0]), b = system.vertices.part_of(c.vertex[3]);
-        if (a < 0 || b < 0) continue;
-        if (marked[a]) touched[b] = 1;
-        if (marked[b]) touched[a] = 1;
-    }
-    marked = std::move(touched);
-}
-
 // Of each part the slope of its energy along its direction [J].
 std::vector<double> slopes(const SceneSystem &system, const AlignedVector &direction) {
     std::vector<double> slope(system.vertices.parts(), 0.0);
@@ -125,6 +113,17 @@ std::vector<double> worth_going(const SceneSystem &system, const AlignedVector &
     return parts;
 }
 
+std::vector<unsigned char> with_touched(const SceneSystem &system, const std::vector<unsigned char> &parts) {
+    std::vector<unsigned char> all = parts;
+    for (const Contact &c : system.contacts.contacts()) {
+        const int a = system.vertices.part_of(c.vertex[0]), b = system.vertices.part_of(c.vertex[3]);
+        if (a < 0 || b < 0) continue;
+        if (parts[a]) all[b] = 1;
+        if (parts[b]) all[a] = 1;
+    }
+    return all;
+}
+
 SceneSearch search(SceneSystem &system, const NearPairs *near, const AlignedVector &direction,
                    const std::vector<unsigned char> &all_of_it, AlignedVector &x) {
     constexpr double least_decrease = 1e-4;
@@ -135,10 +134,11 @@ SceneSearch search(SceneSystem &system, const NearPairs *near, const AlignedVect
     std::vector<double> &step = result.step;
     const PairsInReach in_reach = near != nullptr ? near->in_reach(system.active_parts()) : PairsInReach();
     const PairsInReach *pairs = near != nullptr ? &in_reach : nullptr;
+    const View<unsigned char> undecided = near != nullptr ? View<unsigned char>() : View<unsigned char>(all_of_it);
     std::vector<double> now, before;
     std::vector<unsigned char> changed(parts, 0), rises(parts), any_rises(parts);
     const std::vector<double> nowhere(parts, 0.0);
-    system.energies(x, pairs, nowhere, changed, before); // parts were asked at x already
+    system.energies(x, pairs, undecided, nowhere, changed, before); // parts were asked at x already
     const std::vector<double> slope = slopes(system, direction);
     const std::vector<unsigned char> uphill = lead_uphill(system, slope, before, all_of_it);
     const auto allowed = [&](int part) { // of the energy, were it alone
@@ -153,7 +153,7 @@ SceneSearch search(SceneSystem &system, const NearPairs *near, const AlignedVect
     changed.assign(parts, 1);
     for (int cut = 0;; ++cut) {
         move(system, x, step, direction, changed, trial);
-        system.energies(trial, pairs, step, changed, now);
+        system.energies(trial, pairs, undecided, step, changed, now);
         std::fill(excess.begin(), excess.end(), 0.0);
         std::fill(any_rises.begin(), any_rises.end(), 0);
         for (int p = 0; p < parts; ++p)
@@ -163,7 +163,7 @@ SceneSearch search(SceneSystem &system, const NearPairs *near, const AlignedVect
             rises[p] = !may_rise && !(now[p] <= allowed(p));
             any_rises[cluster[p]] |= rises[p];
         }
-        mark_touched(system, rises);
+        rises = with_touched(system, rises);
         for (int p = 0; p < parts; ++p)
             if ((!any_rises[cluster[p]] || cut >= most_apart) && !(excess[cluster[p]] <= 0.0)) rises[p] = 1;
 

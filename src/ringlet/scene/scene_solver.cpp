@@ -83,7 +83,9 @@ bool SceneSolver::solve_whole(const SceneMatrix &whole, AlignedVector &direction
 // Preconditioned by P, from where strands would go by P alone: for them nothing is left then but C d, at the points that are
 // coupled, and so it stays. P p follows from P z = r by the same recursion as p from z, and how far strands go from there from
 // what they have borne at these points. Of a cloth P has only an incomplete factor: there vectors are whole, and A p is
-// formed. Clusters are systems of their own, and each goes its own number of steps.
+// formed. Clusters are systems of their own, and each goes its own number of steps, until little is left of it or of all; but
+// a cloth sets out from nowhere, and beside strands that have much to do little of it would count: it goes on until little is
+// left of what it began with itself.
 SceneSolver::Result SceneSolver::conjugate_gradient(SceneSystem &system, double tolerance, AlignedVector &direction) {
     constexpr int most = 2000;
     const int parts = system.vertices.parts();
@@ -99,20 +101,28 @@ SceneSolver::Result SceneSolver::conjugate_gradient(SceneSystem &system, double 
     const double all = std::accumulate(rho.begin(), rho.end(), 0.0);
     std::vector<double> enough = rho;
     for (double &of_cluster : enough) of_cluster *= tolerance * tolerance;
+    std::vector<double> enough_of_cloths;
+    for (int p = system.vertices.strands; p < parts; ++p) enough_of_cloths.push_back(tolerance * tolerance * products_[p]);
     set_out(system, direction);
     sum(products_, rho);
     Result result;
     for (;; ++result.iterations) {
+        const bool enough_of_all = std::accumulate(rho.begin(), rho.end(), 0.0) <= tolerance * tolerance * all;
+        std::vector<unsigned char> goes_on(parts, 0); // clusters
+        for (int p = 0; p < parts; ++p) goes_on[p] = !enough_of_all && rho[p] > enough[p];
+        for (size_t c = 0; c < enough_of_cloths.size(); ++c) {
+            const int part = system.vertices.strands + int(c);
+            goes_on[cluster[part]] |= rho[cluster[part]] > 0.0 && products_[part] > enough_of_cloths[c];
+        }
         bool any = false;
         busy_units.assign(system.unit_count(), 0);
         for (int p = 0; p < parts; ++p) {
-            busy[p] = rho[cluster[p]] > enough[cluster[p]];
+            busy[p] = goes_on[cluster[p]];
             if (!busy[p]) continue;
             any = true;
             busy_units[system.unit_of(p)] = 1;
         }
-        const double left = std::accumulate(rho.begin(), rho.end(), 0.0);
-        if (!any || left <= tolerance * tolerance * all || result.iterations == most) break;
+        if (!any || result.iterations == most) break;
         const auto for_busy = [&](const auto &work) {
             system.for_units([&](int u) {
                 if (busy_units[u]) work(u);

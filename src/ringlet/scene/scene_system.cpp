@@ -5,6 +5,14 @@
 #include <algorithm>
 
 namespace ringlet {
+namespace {
+
+// Whether one of two parts is marked; −1 is none, and where nothing is said none is.
+bool either(View<unsigned char> marked, int a, int b) {
+    return !marked.empty() && ((a >= 0 && marked[a] != 0) || (b >= 0 && marked[b] != 0));
+}
+
+} // namespace
 
 SceneSystem::SceneSystem(const StrandModel &model_, const std::vector<SceneCloth> &cloths_, const SceneVertices &vertices_)
     : strands(model_, vertices_.positions), vertices(vertices_), model(model_) {
@@ -90,8 +98,9 @@ std::vector<unsigned char> SceneSystem::active_parts() const {
     return active;
 }
 
-void SceneSystem::energies(const AlignedVector &x, const PairsInReach *pairs, const std::vector<double> &gone,
-                           const std::vector<unsigned char> &changed, std::vector<double> &of) {
+void SceneSystem::energies(const AlignedVector &x, const PairsInReach *pairs, View<unsigned char> undecided,
+                           const std::vector<double> &gone, const std::vector<unsigned char> &changed,
+                           std::vector<double> &of) {
     std::vector<unsigned char> asked(unit_count(), 0);
     for (int p = 0; p < vertices.parts(); ++p)
         if (changed[p]) asked[unit_of(p)] = 1;
@@ -101,7 +110,7 @@ void SceneSystem::energies(const AlignedVector &x, const PairsInReach *pairs, co
 #pragma omp parallel for schedule(static)
     for (int v = 0; v < vertices.moving_vertices(); ++v)
         if (changed[vertices.part_of(v)]) places_[v] = position(x, v);
-    share_contacts(pairs, gone, changed);
+    share_contacts(pairs, undecided, gone, changed);
     of = own_energies_;
     for (const Lift &lift : lifts) {
         const double below = lift.below(places_[lift.vertex]);
@@ -113,12 +122,14 @@ void SceneSystem::energies(const AlignedVector &x, const PairsInReach *pairs, co
     };
     for (const Shared &push : pushed_) share(push.a, push.b, push.energy);
     const std::vector<Contact> &all = contacts.contacts();
-    for (size_t c = 0; c < all.size(); ++c)
-        share(vertices.part_of(all[c].vertex[0]), vertices.part_of(all[c].vertex[3]), rubbed_[c]);
+    for (size_t c = 0; c < all.size(); ++c) {
+        const int a = vertices.part_of(all[c].vertex[0]), b = vertices.part_of(all[c].vertex[3]);
+        if (!either(undecided, a, b)) share(a, b, rubbed_[c]);
+    }
 }
 
 // Energies of contacts, anew where one of the two parts has changed.
-void SceneSystem::share_contacts(const PairsInReach *pairs, const std::vector<double> &gone,
+void SceneSystem::share_contacts(const PairsInReach *pairs, View<unsigned char> undecided, const std::vector<double> &gone,
                                  const std::vector<unsigned char> &changed) {
     const std::vector<Contact> &all = contacts.contacts();
     if (contacts_found_) rubbed_.assign(all.size(), 0.0);
@@ -127,7 +138,7 @@ void SceneSystem::share_contacts(const PairsInReach *pairs, const std::vector<do
     asked_planes_ = pairs == nullptr;
     std::vector<unsigned char> anew(vertices.parts());
     for (int p = 0; p < vertices.parts(); ++p) anew[p] = is_active(p) && (of_all || changed[p]);
-    const auto is_anew = [&](int a, int b) { return (a >= 0 && anew[a]) || (b >= 0 && anew[b]); };
+    const auto is_anew = [&](int a, int b) { return either(anew, a, b); };
     std::erase_if(pushed_, [&](const Shared &push) { return is_anew(push.a, push.b); });
     if (pairs != nullptr) {
         const auto part = [&](int object) { return object < vertices.parts() ? object : -1; };
@@ -137,10 +148,9 @@ void SceneSystem::share_contacts(const PairsInReach *pairs, const std::vector<do
     } else {
         for (const Contact &c : all) {
             const int a = vertices.part_of(c.vertex[0]), b = vertices.part_of(c.vertex[3]);
-            if (!is_anew(a, b)) continue;
-            const bool by_planes = (a >= 0 && by_planes_[a]) || (b >= 0 && by_planes_[b]);
+            if (!is_anew(a, b) || either(undecided, a, b)) continue;
             const Vec3 apart = separation(c, places_);
-            pushed_.push_back({a, b, by_planes ? push_energy(c, apart) : expanded_push_energy(c, apart)});
+            pushed_.push_back({a, b, either(by_planes_, a, b) ? push_energy(c, apart) : expanded_push_energy(c, apart)});
         }
     }
     for (size_t c = 0; c < all.size(); ++c)
@@ -149,6 +159,7 @@ void SceneSystem::share_contacts(const PairsInReach *pairs, const std::vector<do
 }
 
 void SceneSystem::expect(const AlignedVector &direction) {
+    constexpr double near = 0.05; // of its distance
     const std::vector<Contact> &all = contacts.contacts();
     for (int k = 0; k < int(all.size()); ++k) {
         const Contact &c = all[k];
@@ -156,7 +167,8 @@ void SceneSystem::expect(const AlignedVector &direction) {
         for (int i = 0; i < 4; ++i)
             if (vertices.mesh.moves[c.vertex[i]] && c.weight[i] != 0.0)
                 change += c.weight[i] * position(direction, c.vertex[i]);
-        contacts.expect(k, std::max(0.0, c.force - c.normal.dot(values_[k].hessian * change)));
+        const double most = std::max(c.force, -c.stiffness * contact_potential(near * c.distance, c.distance, 0.0).first);
+        contacts.expect(k, std::clamp(c.force - c.normal.dot(values_[k].hessian * change), 0.0, most));
     }
 }
 

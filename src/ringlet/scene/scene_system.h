@@ -87,18 +87,19 @@ public:
 
     // Energies [J] of the parts at x, somewhere on the last move: each with its share of what pushes there, be it a contact yet
     // or not (without `pairs`, all that may touch there: of what its contacts push, by their planes if it goes by these and
-    // otherwise expanded where they were found), and of the contacts' friction. `gone` says which part of its way each part is
-    // there. Only parts that have `changed` since this was last asked, or since they were assembled, are asked again, and
-    // contacts only of these.
-    void energies(const AlignedVector &x, const PairsInReach *pairs, const std::vector<double> &gone,
-                  const std::vector<unsigned char> &changed, std::vector<double> &of_parts);
+    // otherwise expanded where they were found), and of the contacts' friction. Contacts of parts that are `undecided` do not
+    // count; none are if it is empty. `gone` says which part of its way each part is there. Only parts that have `changed`
+    // since this was last asked, or since they were assembled, are asked again, and contacts only of these.
+    void energies(const AlignedVector &x, const PairsInReach *pairs, View<unsigned char> undecided,
+                  const std::vector<double> &gone, const std::vector<unsigned char> &changed, std::vector<double> &of_parts);
 
     void linearise(const AlignedVector &x);               // the contacts, before units are assembled
     void assemble(int unit, const AlignedVector &x);      // its own energy, the gradient and A
     double gradient(size_t i, int unit) const;            // its entry i of the whole vector, which is the unit's; 0 of padding
     void negative_gradient(int unit, double *into) const; // all that the unit has of a vector, as below
 
-    // Expects the contacts to bear what they push with where the direction ends, by their matrix: there, all forces balance.
+    // Expects the contacts to bear what they push with where the direction ends, by their matrix: there, all forces balance. No
+    // more than they could bear when near, though, of a direction of which little may be gone.
     void expect(const AlignedVector &direction);
 
     void factor(int unit);                        // of P, exactly or nearly
@@ -112,7 +113,8 @@ public:
 
 private:
     void find_planes(const std::vector<Touch> &touching);
-    void share_contacts(const PairsInReach *pairs, const std::vector<double> &gone, const std::vector<unsigned char> &changed);
+    void share_contacts(const PairsInReach *pairs, View<unsigned char> undecided, const std::vector<double> &gone,
+                        const std::vector<unsigned char> &changed);
     void evaluate(int unit, const AlignedVector &x, bool to_assemble); // its own energies
     void add_to_strand(int vertex);
     void add_lift(const Lift &lift, const AlignedVector &x);
