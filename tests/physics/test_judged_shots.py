@@ -26,6 +26,13 @@ def test_what_begins_in_the_shirt_comes_out_and_passes_through_nothing_else():
     assert all(frame.crossings == 0 and frame.statistics["nan"] == 0 for frame in frames)
 
 
+def test_long_hair_between_a_head_that_turns_and_a_shirt_does_not_stop_them():
+    """What hangs on the shirt cannot go along with the head; all bodies stopped for it, for seconds."""
+    frames = list(judged(start("nod", "down", locks=300), 26, every=5))
+    assert sum(frame.crossings or 0 for frame in frames) == 0
+    assert all(frame.statistics["contact"]["fraction"] == 1.0 for frame in frames)
+
+
 @pytest.mark.parametrize("locks", [150, 200])
 def test_cloth_that_is_put_into_hair_passes_through_nothing_and_goes_on_moving(locks):
     """A ribbon pushes locks aside, though the head rests; then it never goes along as if it were rigid for long."""

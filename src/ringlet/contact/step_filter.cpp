@@ -33,7 +33,8 @@ FilterReport filter_step(const FilterScene &scene, NearPairs &near, View<Vec3> s
         if (met.empty()) break;
         for (const Met &pair : met)
             for (const int v : pair.vertices) in_the_way[v] = scene.mesh.moves[v];
-        if (report.rounds >= most_rounds) { // no way out was found: everything stops before the first pair meets
+        const bool hopeless = !scene.still && report.rounds >= scene.hopeful && 10 * int(met.size()) > report.violations;
+        if (hopeless || report.rounds >= most_rounds) { // no way out was found: everything stops before the first pair meets
             report.fraction = 1.0;
             for (const Met &pair : met) report.fraction = std::min(report.fraction, 0.9 * pair.time);
             for (size_t v = 0; v < vertices; ++v) end[v] = start[v] + report.fraction * (end[v] - start[v]);

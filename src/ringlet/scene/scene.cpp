@@ -30,6 +30,13 @@ struct MoveKind {
     bool still;                         // what is kinematic stays
     bool whole;                         // strands only go a part of their way as a whole
     View<unsigned char> shortened = {}; // per vertex, what goes less far than on the last move; empty: all is new
+    int hopeful = 16;                   // FilterScene's
+};
+
+// How everything went along with what is kinematic.
+struct Carried {
+    double fraction; // of the way
+    bool rigidly;    // every strand with its root
 };
 
 } // namespace
@@ -80,6 +87,7 @@ struct Scene::Parts {
     SceneCarriers carriers(std::vector<int> &of_cloths, double dt) const;
     double filter(View<Vec3> now, std::vector<Vec3> &to, const MoveKind &kind, SceneReport &report);
     void arrive(std::vector<Vec3> &now, const std::vector<Vec3> &to);
+    Carried go_along(std::vector<Vec3> &now, double dt, SceneReport &report);
     int newton(const SceneStep &scene_step, const StrandStep &step, std::vector<Vec3> &now, SceneProgress &progress,
                SceneReport &report);
     void take(View<Vec3> now, View<Vec3> wanted, View<Vec3> to);
@@ -152,7 +160,8 @@ double Scene::Parts::filter(View<Vec3> now, std::vector<Vec3> &to, const MoveKin
                             kind.whole,
                             kind.shortened,
                             View<int>(vertices.cloths),
-                            &neighbours};
+                            &neighbours,
+                            kind.hopeful};
     const bool as_one = !kind.still && !rigid.empty() && rigid[0] >= 0 &&
                         std::all_of(rigid.begin(), rigid.end(), [&](int body) { return body == rigid[0]; });
     const FilterReport filtered = as_one ? FilterReport{} : filter_step(scene, near, now, to);
@@ -166,6 +175,40 @@ void Scene::Parts::arrive(std::vector<Vec3> &now, const std::vector<Vec3> &to) {
     near.arrive(now, to);
     now = to;
     if (recording) path.push_back(now);
+}
+
+// Everything goes along with what is kinematic, every strand rigidly with its root: of one rigid body and all that is rooted in
+// it, nothing meets. What is kinematic has arrived then, and staying is always safe. Where what would go along with one body is
+// between it and another, all goes along with the space between bodies, and no further than they can go at once.
+Carried Scene::Parts::go_along(std::vector<Vec3> &now, double dt, SceneReport &report) {
+    constexpr int hopeful = 6;     // rounds
+    constexpr double least = 0.05; // of the way
+    std::vector<Vec3> to = given;
+    std::vector<int> bodies_of_cloths;
+    rigid = carry_rigidly(carry(), View<int>(model.offsets), carriers(bodies_of_cloths, dt), to);
+    near.forget();
+    Carried carried{1.0, true};
+    if (vertices.bodies.front() == vertices.bodies.back()) {
+        carried.fraction = filter(now, to, {false, false}, report);
+    } else {
+        carried.fraction = filter(now, to, {false, false, {}, hopeful}, report);
+        const std::vector<Vec3> told = given;
+        for (double part = 1.0; carried.fraction < part && part > least; part *= 0.5) {
+            for (int v = 0; v < vertices.count(); ++v)
+                if (!vertices.mesh.moves[v]) given[v] = now[v] + part * (told[v] - now[v]);
+            to = given;
+            std::fill(rigid.begin(), rigid.end(), -1);
+            carry_with_space(carry(), to);
+            near.forget();
+            carried = {part * filter(now, to, {false, false, {}, hopeful}, report), false};
+        }
+    }
+    arrive(now, to);
+    if (carried.fraction < 1.0) {
+        for (int v = 0; v < vertices.count(); ++v)
+            if (!vertices.mesh.moves[v]) given[v] = now[v];
+    }
+    return carried;
 }
 
 void Scene::Parts::begin_strands(const StrandArrays &arrays, const StrandStep &step) {
@@ -303,26 +346,16 @@ double Scene::Parts::advance(const SceneInput &input, const SceneStep &scene_ste
         const Stopwatch watch(report.time_assemble);
         begin_strands(arrays, step);
     }
-    // First everything goes along with what is kinematic, every strand rigidly with its root: of one rigid body and all that is
-    // rooted in it, nothing meets. What is kinematic has arrived then, and staying is always safe.
-    std::vector<Vec3> now = vertices.positions, to = given;
-    std::vector<int> bodies_of_cloths;
-    rigid = carry_rigidly(carry(), View<int>(model.offsets), carriers(bodies_of_cloths, step.dt), to);
-    near.forget();
-    const double fraction = filter(now, to, {false, false}, report);
-    arrive(now, to);
-    if (fraction < 1.0) {
-        for (int v = 0; v < vertices.count(); ++v)
-            if (!vertices.mesh.moves[v]) given[v] = now[v];
-        step.dt *= fraction;
-    }
+    std::vector<Vec3> now = vertices.positions;
+    const Carried carried = go_along(now, step.dt, report);
+    step.dt *= carried.fraction;
     constexpr double speed = 0.02; // [m/s] of what began inside a body, out of it
     system.lifts = embedded.push_out(vertices.mesh, now, View<int>(model.offsets), stiffness.hardest(), speed * step.dt);
     // Then to where Newton's method begins.
     constexpr double hardly = 1e-12; // [m]
     begin_cloths(input, step, now);
-    to = now;
-    system.gather(x, to);
+    std::vector<Vec3> to = now;
+    if (carried.rigidly) system.gather(x, to);
     for (int v = 0; v < vertices.moving_vertices(); ++v) // staying may be told within rounding
         if ((to[v] - now[v]).squaredNorm() < hardly * hardly) to[v] = now[v];
     const auto keep_held = [&] {
@@ -355,7 +388,7 @@ double Scene::Parts::advance(const SceneInput &input, const SceneStep &scene_ste
     }
     note_touched();
     vertices.positions = std::move(now);
-    return fraction;
+    return carried.fraction;
 }
 
 void Scene::Parts::check(const SceneInput &input) const {

@@ -5,6 +5,7 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace ringlet {
 namespace {
@@ -31,15 +32,11 @@ struct RigidMotion {
     Vec3 operator()(const Vec3 &point) const { return to + turn * (point - from); }
 };
 
-// The motion of what is kinematic among some vertices as one, by least squares (Kabsch 1976); false where nothing is. Where
-// that leaves a rotation open, as about a line, it turns as little as may be.
-bool mean_motion(const SceneCarry &carry, int begin, int end, RigidMotion &motion) {
+// The motion of some kinematic vertices as one, by least squares (Kabsch 1976). Where that leaves a rotation open, as about a
+// line, it turns as little as may be.
+RigidMotion mean_motion(const SceneCarry &carry, const std::vector<int> &told) {
     constexpr double hardly = 1e-9;
-    std::vector<int> told;
-    for (int v = begin; v < end; ++v)
-        if (!carry.all.mesh.moves[v]) told.push_back(v);
-    if (told.empty()) return false;
-    motion = {};
+    RigidMotion motion;
     for (const int v : told)
         motion.from += carry.start[v] / double(told.size()), motion.to += carry.given[v] / double(told.size());
     Mat3 spread = Mat3::Zero();
@@ -49,11 +46,52 @@ bool mean_motion(const SceneCarry &carry, int begin, int end, RigidMotion &motio
         spread += after * before.transpose();
         size += before.squaredNorm();
     }
-    if (size == 0.0) return true;
+    if (size == 0.0) return motion;
     const Eigen::JacobiSVD<Mat3> svd(spread + hardly * size * Mat3::Identity(), Eigen::ComputeFullU | Eigen::ComputeFullV);
     const double mirror = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
     motion.turn = svd.matrixU() * Vec3(1.0, 1.0, mirror).asDiagonal() * svd.matrixV().transpose();
-    return true;
+    return motion;
+}
+
+std::vector<int> kinematic(const SceneCarry &carry, int begin, int end) {
+    std::vector<int> told;
+    for (int v = begin; v < end; ++v)
+        if (!carry.all.mesh.moves[v]) told.push_back(v);
+    return told;
+}
+
+struct Patch {
+    std::vector<int> vertices;
+    Vec3 middle;
+    RigidMotion motion;
+};
+
+// Of all bodies, first one each: further ones begin where it is farthest to the next of the same body.
+std::vector<Patch> patches(const SceneCarry &carry) {
+    constexpr size_t most = 96;
+    const int first = carry.all.bodies.front(), count = carry.all.count() - first;
+    std::vector<double> far2(count, std::numeric_limits<double>::infinity());
+    std::vector<int> nearest(count, -1);
+    std::vector<Patch> all;
+    while (count > 0 && all.size() < most) {
+        const int seed = int(std::max_element(far2.begin(), far2.end()) - far2.begin()),
+                  body = carry.all.mesh.object[first + seed];
+        if (far2[seed] == 0.0) break;
+        for (int v = 0; v < count; ++v) {
+            if (carry.all.mesh.object[first + v] != body) continue;
+            const double away2 = (carry.start[first + v] - carry.start[first + seed]).squaredNorm();
+            if (away2 < far2[v]) far2[v] = away2, nearest[v] = int(all.size());
+        }
+        all.emplace_back();
+    }
+    for (int v = 0; v < count; ++v)
+        if (nearest[v] >= 0) all[nearest[v]].vertices.push_back(first + v);
+    std::erase_if(all, [](const Patch &patch) { return patch.vertices.empty(); });
+    for (Patch &patch : all) {
+        patch.motion = mean_motion(carry, patch.vertices);
+        patch.middle = patch.motion.from;
+    }
+    return all;
 }
 
 // Whether all held vertices of a range go along with a vertex of a rigid body.
@@ -110,15 +148,34 @@ std::vector<int> carry_rigidly(const SceneCarry &carry, View<int> offsets, const
             go(begin, end, body, [&](const Vec3 &point) { return carry.carried(leaders[body], point); });
             continue;
         }
+        if (const std::vector<int> held = kinematic(carry, begin, end); !held.empty()) {
+            go(begin, end, -1, mean_motion(carry, held));
+            continue;
+        }
         RigidMotion motion;
         motion.to = carriers.drift;
-        if (!mean_motion(carry, begin, end, motion)) {
-            mean_motion(carry, 0, all.count(), motion);
-            motion.turn = Mat3::Identity(); // that of others would carry it off
-        }
+        if (const std::vector<int> told = kinematic(carry, 0, all.count()); !told.empty()) motion = mean_motion(carry, told);
+        motion.turn = Mat3::Identity(); // that of others would carry it off
         go(begin, end, -1, motion);
     }
     return rigid;
+}
+
+void carry_with_space(const SceneCarry &carry, std::vector<Vec3> &to) {
+    const std::vector<Patch> all = patches(carry);
+    if (all.empty()) return;
+#pragma omp parallel for schedule(static)
+    for (int v = 0; v < carry.all.moving_vertices(); ++v) {
+        if (!carry.all.mesh.moves[v]) continue;
+        Vec3 sum = Vec3::Zero();
+        double weights = 0.0;
+        for (const Patch &patch : all) {
+            const double away2 = (carry.start[v] - patch.middle).squaredNorm() + 1e-12, weight = 1.0 / (away2 * away2 * away2);
+            sum += weight * (patch.motion(carry.start[v]) - carry.start[v]);
+            weights += weight;
+        }
+        to[v] = carry.start[v] + sum / weights;
+    }
 }
 
 } // namespace ringlet

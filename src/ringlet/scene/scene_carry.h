@@ -30,4 +30,9 @@ struct SceneCarriers {
 std::vector<int> carry_rigidly(const SceneCarry &carry, View<int> offsets, const SceneCarriers &carriers,
                                std::vector<Vec3> &to);
 
+// The same where bodies part or close in, so that what goes along rigidly with one is in the way of another: space goes along
+// with all that is kinematic, patches of bodies as rigidly as they can and what is between them as the nearest do (Shepard
+// 1968), and parts with it. That is continuous: as long as bodies do not come much nearer to one another, nothing meets.
+void carry_with_space(const SceneCarry &carry, std::vector<Vec3> &to);
+
 } // namespace ringlet
