@@ -181,8 +181,8 @@ void Scene::Parts::arrive(std::vector<Vec3> &now, const std::vector<Vec3> &to) {
 // it, nothing meets. What is kinematic has arrived then, and staying is always safe. Where what would go along with one body is
 // between it and another, all goes along with the space between bodies, and no further than they can go at once.
 Carried Scene::Parts::go_along(std::vector<Vec3> &now, double dt, SceneReport &report) {
-    constexpr int hopeful = 6;     // rounds
-    constexpr double least = 0.05; // of the way
+    constexpr int hopeful = 6;  // rounds
+    constexpr int attempts = 5; // each half as far as the one before
     std::vector<Vec3> to = given;
     std::vector<int> bodies_of_cloths;
     rigid = carry_rigidly(carry(), View<int>(model.offsets), carriers(bodies_of_cloths, dt), to);
@@ -193,7 +193,8 @@ Carried Scene::Parts::go_along(std::vector<Vec3> &now, double dt, SceneReport &r
     } else {
         carried.fraction = filter(now, to, {false, false, {}, hopeful}, report);
         const std::vector<Vec3> told = given;
-        for (double part = 1.0; carried.fraction < part && part > least; part *= 0.5) {
+        for (int attempt = 0; attempt < attempts && carried.fraction < std::ldexp(1.0, -attempt); ++attempt) {
+            const double part = std::ldexp(1.0, -attempt);
             for (int v = 0; v < vertices.count(); ++v)
                 if (!vertices.mesh.moves[v]) given[v] = now[v] + part * (told[v] - now[v]);
             to = given;

@@ -66,22 +66,27 @@ struct Patch {
     RigidMotion motion;
 };
 
-// Of all bodies, first one each: further ones begin where it is farthest to the next of the same body.
+// Of all bodies, first one each: further ones begin where it is farthest to the next of the same body, of vertices enough to
+// tell how they turn.
 std::vector<Patch> patches(const SceneCarry &carry) {
-    constexpr size_t most = 96;
+    constexpr size_t most = 96, vertices_of_each = 16;
     const int first = carry.all.bodies.front(), count = carry.all.count() - first;
     std::vector<double> far2(count, std::numeric_limits<double>::infinity());
     std::vector<int> nearest(count, -1);
+    std::vector<size_t> begun(carry.all.bodies.size() - 1, 0);
     std::vector<Patch> all;
     while (count > 0 && all.size() < most) {
-        const int seed = int(std::max_element(far2.begin(), far2.end()) - far2.begin()),
-                  body = carry.all.mesh.object[first + seed];
-        if (far2[seed] == 0.0) break;
-        for (int v = 0; v < count; ++v) {
-            if (carry.all.mesh.object[first + v] != body) continue;
-            const double away2 = (carry.start[first + v] - carry.start[first + seed]).squaredNorm();
-            if (away2 < far2[v]) far2[v] = away2, nearest[v] = int(all.size());
+        const int seed = first + int(std::max_element(far2.begin(), far2.end()) - far2.begin());
+        if (far2[seed - first] == 0.0) break;
+        const int body =
+            int(std::upper_bound(carry.all.bodies.begin(), carry.all.bodies.end(), seed) - carry.all.bodies.begin()) - 1;
+        const int begin = carry.all.bodies[body], end = carry.all.bodies[body + 1];
+        for (int v = begin; v < end; ++v) {
+            const double away2 = (carry.start[v] - carry.start[seed]).squaredNorm();
+            if (away2 < far2[v - first]) far2[v - first] = away2, nearest[v - first] = int(all.size());
         }
+        if (++begun[body] * vertices_of_each >= size_t(end - begin)) // it has enough
+            std::fill(far2.begin() + (begin - first), far2.begin() + (end - first), 0.0);
         all.emplace_back();
     }
     for (int v = 0; v < count; ++v)
