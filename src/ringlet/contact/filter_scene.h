@@ -25,7 +25,9 @@ struct FilterScene {
     // Where each cloth begins among the vertices, and the end; object numbers of cloths follow those of strands.
     View<int> cloths = {};
     const VertexLists *neighbours = nullptr; // of the vertices of cloths
-    int hopeful = 16; // rounds, at most, while kinematic things move; then it goes on only where little is left in the way
+    // While kinematic things move: rounds at most, and those after which it goes on only where little is left in the way.
+    static constexpr int most_rounds = 16;
+    int hopeful = most_rounds;
 };
 
 } // namespace ringlet

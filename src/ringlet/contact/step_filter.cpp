@@ -11,7 +11,7 @@ namespace ringlet {
 
 FilterReport filter_step(const FilterScene &scene, NearPairs &near, View<Vec3> start, std::vector<Vec3> &end) {
     constexpr int to_touch = 3; // rounds in which zones keep some of their own motion
-    const int most_rounds = scene.still ? int(scene.offsets.size() + scene.cloths.size()) + 16 : 16;
+    const int most_rounds = scene.still ? int(scene.offsets.size() + scene.cloths.size()) + 16 : scene.most_rounds;
     FilterReport report;
     const size_t vertices = start.size();
     std::vector<unsigned char> in_the_way(vertices, 0);

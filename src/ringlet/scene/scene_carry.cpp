@@ -62,8 +62,7 @@ std::vector<int> kinematic(const SceneCarry &carry, int begin, int end) {
 
 struct Patch {
     std::vector<int> vertices;
-    Vec3 middle;
-    RigidMotion motion;
+    RigidMotion motion; // from their middle
 };
 
 // Of all bodies, first one each: further ones begin where it is farthest to the next of the same body, of vertices enough to
@@ -92,10 +91,7 @@ std::vector<Patch> patches(const SceneCarry &carry) {
     for (int v = 0; v < count; ++v)
         if (nearest[v] >= 0) all[nearest[v]].vertices.push_back(first + v);
     std::erase_if(all, [](const Patch &patch) { return patch.vertices.empty(); });
-    for (Patch &patch : all) {
-        patch.motion = mean_motion(carry, patch.vertices);
-        patch.middle = patch.motion.from;
-    }
+    for (Patch &patch : all) patch.motion = mean_motion(carry, patch.vertices);
     return all;
 }
 
@@ -175,7 +171,8 @@ void carry_with_space(const SceneCarry &carry, std::vector<Vec3> &to) {
         Vec3 sum = Vec3::Zero();
         double weights = 0.0;
         for (const Patch &patch : all) {
-            const double away2 = (carry.start[v] - patch.middle).squaredNorm() + 1e-12, weight = 1.0 / (away2 * away2 * away2);
+            const double away2 = (carry.start[v] - patch.motion.from).squaredNorm() + 1e-12,
+                         weight = 1.0 / (away2 * away2 * away2);
             sum += weight * (patch.motion(carry.start[v]) - carry.start[v]);
             weights += weight;
         }

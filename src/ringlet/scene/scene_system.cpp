@@ -168,7 +168,7 @@ void SceneSystem::expect(const AlignedVector &direction) {
             if (vertices.mesh.moves[c.vertex[i]] && c.weight[i] != 0.0)
                 change += c.weight[i] * position(direction, c.vertex[i]);
         const double most = std::max(c.force, -c.stiffness * contact_potential(near * c.distance, c.distance, 0.0).first);
-        contacts.expect(k, std::clamp(c.force - c.normal.dot(values_[k].hessian * change), 0.0, most));
+        contacts.expect(k, std::min(std::max(0.0, c.force - c.normal.dot(values_[k].hessian * change)), most));
     }
 }
 

@@ -1,0 +1,94 @@
+// What a scene is made of, and how a step goes: scene.cpp has the step, scene_moves.cpp its moves, scene_newton.cpp Newton's
+// method.
+#pragma once
+
+#include "ringlet/contact/filter_scene.h"
+#include "ringlet/scene/contact_stiffness.h"
+#include "ringlet/scene/embedded.h"
+#include "ringlet/scene/scene.h"
+#include "ringlet/scene/scene_carry.h"
+#include "ringlet/scene/scene_progress.h"
+#include "ringlet/scene/scene_search.h"
+
+#include <chrono>
+
+namespace ringlet {
+
+class Stopwatch {
+public:
+    explicit Stopwatch(double &sum) : sum_(sum), start_(std::chrono::steady_clock::now()) {}
+    ~Stopwatch() { sum_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+
+private:
+    double &sum_;
+    std::chrono::steady_clock::time_point start_;
+};
+
+struct MoveKind {
+    bool still;                             // what is kinematic stays
+    bool whole;                             // strands only go a part of their way as a whole
+    View<unsigned char> shortened = {};     // per vertex, what goes less far than on the last move; empty: all is new
+    int hopeful = FilterScene::most_rounds; // as FilterScene has it
+};
+
+// How everything went along with what is kinematic.
+struct Carried {
+    double fraction; // of the way
+    bool rigidly;    // every strand with its root
+};
+
+struct Scene::Parts {
+    const StrandModel &model;
+    StrandState &state;
+    SceneContact settings;
+    std::vector<int> root_body; // per strand; −1: none
+    std::vector<int> pinned_to; // per cloth; −1: none
+    std::vector<int> touched;   // per cloth: the body that it had most contacts with; −1: none
+    SceneVertices vertices;
+    SceneSystem system;
+    SceneSolver solver;
+    ContactStiffness stiffness;
+    NearPairs near;
+    VertexLists neighbours; // of the vertices of cloths
+
+    std::vector<Embedded::Body> embedded_bodies; // per body
+    Embedded embedded;
+    bool recording = false, begun = false;
+    std::vector<ContactSet::Bearing> bearing; // as everything begins
+    std::vector<std::vector<Vec3>> path;
+
+    // Within a step
+    std::vector<Vec3> given; // where what is kinematic ends; where the rest began
+    std::vector<int> rigid;  // per vertex: the body that it goes along with as one in this step; −1: none
+    AlignedVector x, direction;
+    std::vector<double> reach; // per part: how far Newton's method would last have gone [m]
+
+    Parts(const StrandModel &model_, StrandState &state_, const std::vector<SceneCloth> &cloths,
+          const std::vector<BodyModel> &bodies, const std::vector<int> &rooted_in, const SceneContact &contact);
+
+    View<Vec3> positions() const { return vertices.positions; }
+    SceneCarry carry() const { return {vertices, vertices.positions, given}; }
+
+    SceneReport step(const SceneInput &input, const SceneStep &step, std::vector<StrandReport> &of_strands,
+                     std::vector<ClothReport> &of_cloths);
+    double advance(const SceneInput &input, const SceneStep &scene_step, StrandStep &step, SceneReport &report,
+                   std::vector<StrandReport> &of_strands, std::vector<ClothReport> &of_cloths);
+
+    void check(const SceneInput &input) const;
+    void find_placed();
+    void begin(double dt);
+    std::vector<Contact> touching();
+    void set_stiffness();
+    void note_touched();
+    SceneCarriers carriers(std::vector<int> &of_cloths, double dt) const;
+    double filter(View<Vec3> now, std::vector<Vec3> &to, const MoveKind &kind, SceneReport &report);
+    void arrive(std::vector<Vec3> &now, const std::vector<Vec3> &to);
+    Carried go_along(std::vector<Vec3> &now, double dt, SceneReport &report);
+    int newton(const SceneStep &scene_step, const StrandStep &step, std::vector<Vec3> &now, SceneProgress &progress,
+               SceneReport &report);
+    void take(View<Vec3> now, View<Vec3> wanted, View<Vec3> to);
+    void begin_strands(const StrandArrays &arrays, const StrandStep &step);
+    void begin_cloths(const SceneInput &input, const StrandStep &step, View<Vec3> now);
+};
+
+} // namespace ringlet
