@@ -63,7 +63,8 @@ struct Crowd {
     }
 
     FilterScene scene(bool still) const {
-        return {mesh, View<double>(mass), View<int>(offsets), [](int, const Vec3 &point) { return point; }, View<int>(), still};
+        return {mesh, View<double>(mass), View<int>(offsets), [](int, const Vec3 &point) { return point; }, View<int>(), {},
+                still};
     }
 
     FilterReport filter(bool still, std::vector<Vec3> &filtered) const {

@@ -109,6 +109,31 @@ template <class Pairs> bool ascending(const Pairs &pairs) {
     return std::adjacent_find(pairs.begin(), pairs.end(), std::greater_equal()) == pairs.end();
 }
 
+using Pairs = std::set<std::array<int, 3>>;
+
+// Of those that may meet, the pairs that do, going straight.
+Pairs coming_near(const CollisionMesh &mesh, const NearPairs &near, const std::vector<Vec3> &start,
+                  const std::vector<Vec3> &end) {
+    Pairs pairs;
+    for (const NearPair *pair : near.may_meet())
+        with_vertices(mesh, *pair, [&](const auto &a, const auto &b) {
+            Vec3 x[4], p[4];
+            int i = 0;
+            for (const int v : a) x[i] = start[v], p[i++] = end[v] - start[v];
+            for (const int v : b) x[i] = start[v], p[i++] = end[v] - start[v];
+            const double kept = 0.5 * pair->distance;
+            const double time = pair->of_edges ? edge_edge_impact(x, p, kept) : point_triangle_impact(x, p, kept);
+            if (time <= 1.0) pairs.insert({pair->of_edges, pair->of[0], pair->of[1]});
+        });
+    return pairs;
+}
+
+Pairs touching(NearPairs &near, const std::vector<Vec3> &positions) {
+    Pairs pairs;
+    for (const Touch &touch : near.touching(positions)) pairs.insert({touch.of_edges, touch.of[0], touch.of[1]});
+    return pairs;
+}
+
 } // namespace
 
 BOOST_AUTO_TEST_SUITE(contact_pairs)
@@ -172,6 +197,19 @@ BOOST_AUTO_TEST_CASE(neighbours_along_a_strand_that_rests_are_no_pairs) {
     BOOST_TEST(!candidates.edge_edge.empty());
 }
 
+BOOST_AUTO_TEST_CASE(a_strand_that_is_groomed_through_itself_touches_at_a_hundredth_of_its_thickness) {
+    CollisionMesh mesh; // a loop that ends on itself
+    mesh.rest = {{0.0, 0.0, 0.0}, {0.02, 0.0, 0.0}, {0.02, 0.02, 0.0}, {0.01, 0.02, 0.0}, {0.01, -0.01, 0.0}};
+    mesh.radius.assign(5, 0.001);
+    mesh.object.assign(5, 0);
+    const std::array<int, 2> first{0, 1}, last{3, 4}, third{2, 3};
+    BOOST_TEST(contact_distance(mesh, first, last) == 0.00002, boost::test_tools::tolerance(1e-12));
+    BOOST_TEST(contact_distance(mesh, first, third) == 0.002); // all of it
+    mesh.rest[4].z() = 0.002;
+    const double apart = std::sqrt(closest_points(mesh.rest, first, last).distance2);
+    BOOST_TEST(contact_distance(mesh, first, last) == std::min(0.002, 0.9 * apart), boost::test_tools::tolerance(1e-12));
+}
+
 BOOST_AUTO_TEST_CASE(pairs_do_not_depend_on_threads_nor_on_what_was_asked_before) {
     const Scene scene(3, 0.1), other(4, 0.5);
     const int threads = omp_get_max_threads();
@@ -218,39 +256,19 @@ BOOST_AUTO_TEST_CASE(what_is_known_of_pairs_changes_nothing_that_is_found) {
     for (size_t v = 0; v < middle.size(); ++v) middle[v] = 0.5 * (scene.start[v] + scene.end[v]);
     NearPairs knowing(mesh), unknowing(mesh);
     knowing.note(scene.start, scene.start, 0.01, 0.0);
-
-    using Pairs = std::set<std::array<int, 3>>;
-    const auto coming_near = [&](const NearPairs &near, const std::vector<Vec3> &start, const std::vector<Vec3> &end) {
-        Pairs pairs;
-        for (const NearPair *pair : near.may_meet())
-            with_vertices(mesh, *pair, [&](const auto &a, const auto &b) {
-                Vec3 x[4], p[4];
-                int i = 0;
-                for (const int v : a) x[i] = start[v], p[i++] = end[v] - start[v];
-                for (const int v : b) x[i] = start[v], p[i++] = end[v] - start[v];
-                const double kept = 0.5 * pair->distance;
-                const double time = pair->of_edges ? edge_edge_impact(x, p, kept) : point_triangle_impact(x, p, kept);
-                if (time <= 1.0) pairs.insert({pair->of_edges, pair->of[0], pair->of[1]});
-            });
-        return pairs;
-    };
-    const auto touching = [&](NearPairs &near, const std::vector<Vec3> &positions) {
-        Pairs pairs;
-        for (const Touch &touch : near.touching(positions)) pairs.insert({touch.of_edges, touch.of[0], touch.of[1]});
-        return pairs;
-    };
     for (NearPairs *near : {&knowing, &unknowing}) near->set_out(scene.start, scene.end);
     BOOST_TEST(knowing.may_meet().size() < size_t(knowing.count()));
-    BOOST_TEST(coming_near(knowing, scene.start, scene.end).size() > 10);
-    BOOST_TEST((coming_near(knowing, scene.start, scene.end) == coming_near(unknowing, scene.start, scene.end)));
+    BOOST_TEST(coming_near(mesh, knowing, scene.start, scene.end).size() > 10);
+    BOOST_TEST((coming_near(mesh, knowing, scene.start, scene.end) == coming_near(mesh, unknowing, scene.start, scene.end)));
     NearPairs going_along(mesh); // pairs noted along the way: only what goes far is quick
     going_along.note(scene.start, scene.end, 0.001, 0.02);
     going_along.set_out(scene.start, scene.end);
-    BOOST_TEST((coming_near(going_along, scene.start, scene.end) == coming_near(unknowing, scene.start, scene.end)));
+    BOOST_TEST(
+        (coming_near(mesh, going_along, scene.start, scene.end) == coming_near(mesh, unknowing, scene.start, scene.end)));
     const std::vector<unsigned char> changed(scene.start.size(), 1);
     for (NearPairs *near : {&knowing, &unknowing, &going_along}) near->set_out_anew(scene.start, middle, changed);
-    BOOST_TEST((coming_near(knowing, scene.start, middle) == coming_near(unknowing, scene.start, middle)));
-    BOOST_TEST((coming_near(going_along, scene.start, middle) == coming_near(unknowing, scene.start, middle)));
+    BOOST_TEST((coming_near(mesh, knowing, scene.start, middle) == coming_near(mesh, unknowing, scene.start, middle)));
+    BOOST_TEST((coming_near(mesh, going_along, scene.start, middle) == coming_near(mesh, unknowing, scene.start, middle)));
     for (NearPairs *near : {&knowing, &unknowing, &going_along}) near->arrive(scene.start, middle);
     BOOST_TEST(touching(knowing, middle).size() > 10);
     BOOST_TEST((touching(knowing, middle) == touching(unknowing, middle)));
@@ -260,6 +278,81 @@ BOOST_AUTO_TEST_CASE(what_is_known_of_pairs_changes_nothing_that_is_found) {
         near->arrive(middle, scene.start);
     }
     BOOST_TEST((touching(knowing, scene.start) == touching(unknowing, scene.start)));
+}
+
+// Objects turn together, from step to step, most vertices of each nearly exactly so, some not at all; in between each of them
+// goes a little where it likes.
+BOOST_AUTO_TEST_CASE(what_is_known_of_pairs_goes_along_with_what_moves_nearly_as_one) {
+    Scene scene(7, 0.0);
+    const CollisionMesh &mesh = scene.mesh;
+    const double radius = *std::min_element(mesh.radius.begin(), mesh.radius.end());
+    const auto of_two_objects = [&](Pairs pairs) {
+        std::erase_if(pairs, [&](const auto &pair) {
+            const int second = pair[0] ? mesh.edges[pair[2]][0] : mesh.triangles[pair[2]][0];
+            return mesh.object[pair[0] ? mesh.edges[pair[1]][0] : pair[1]] == mesh.object[second];
+        });
+        return pairs;
+    };
+    NearPairs near(mesh);
+    near.note(scene.start, scene.start, 0.01, 0.0);
+    std::vector<Vec3> now = scene.start, to(now.size());
+    for (int step = 0; step < 8; ++step) {
+        const RigidMotion motion{Eigen::AngleAxisd(0.5, Vec3(1.0, 2.0, 2.0) / 3.0).toRotationMatrix(), now[0], now[1]};
+        for (size_t v = 0; v < now.size(); ++v)
+            to[v] = v % 10 == 0 ? now[v] + scene.anywhere(0.05) : motion(now[v]) + scene.anywhere(0.05 * radius);
+        NearPairs unknowing(mesh);
+        unknowing.set_out(now, to);
+        near.set_out_as_one(now, to, motion, mesh.object);
+        BOOST_TEST((of_two_objects(coming_near(mesh, near, now, to)) == of_two_objects(coming_near(mesh, unknowing, now, to))));
+        BOOST_TEST(of_two_objects(coming_near(mesh, near, now, to)).size() > 10);
+        BOOST_TEST(near.passing().size() < unknowing.passing().size());
+        unknowing.arrive(now, to);
+        near.arrive_as_one(now, to);
+        BOOST_TEST(near.knows_all_here());
+        BOOST_TEST(touching(near, to).size() > 10);
+        BOOST_TEST((touching(near, to) == touching(unknowing, to)));
+        now = to;
+        for (size_t v = 0; v < now.size(); ++v)
+            if (mesh.moves[v]) to[v] += scene.anywhere(v % 2 == 0 ? 0.002 : 0.01);
+        near.note(now, to, 0.004, 0.1);
+        near.set_out(now, to);
+        unknowing.set_out(now, to);
+        BOOST_TEST((coming_near(mesh, near, now, to) == coming_near(mesh, unknowing, now, to)));
+        near.arrive(now, to);
+        now = to;
+    }
+}
+
+// What was measured of it no longer holds then.
+BOOST_AUTO_TEST_CASE(a_pair_that_comes_a_little_nearer_as_one_is_measured_again) {
+    CollisionMesh mesh; // two edges, a twentieth further apart than they touch
+    mesh.rest = {{0.0, 0.0, 0.0}, {0.01, 0.0, 0.0}, {0.0, 0.0015, 0.0015}, {0.01, 0.0015, 0.0015}};
+    mesh.edges = {{0, 1}, {2, 3}};
+    mesh.radius.assign(4, 0.001);
+    mesh.moves.assign(4, 1);
+    mesh.object = {0, 0, 1, 1};
+    mesh.anchor.assign(4, -1);
+    NearPairs near(mesh);
+    near.note(mesh.rest, mesh.rest, 0.001, 0.0);
+    BOOST_TEST(touching(near, mesh.rest).empty());
+    std::vector<Vec3> to = mesh.rest;
+    for (int v = 0; v < 4; ++v) to[v] += (v < 2 ? 1.0 : -1.0) * Vec3(0.0, 0.00006, 0.00006);
+    near.set_out_as_one(mesh.rest, to, RigidMotion(), mesh.object);
+    near.arrive_as_one(mesh.rest, to);
+    BOOST_TEST(near.passing().empty());
+    BOOST_TEST(touching(near, to).size() == 1u);
+}
+
+BOOST_AUTO_TEST_CASE(a_rotation_by_half_a_turn_is_looked_at_as_a_whole) {
+    Scene scene(8, 0.0);
+    const CollisionMesh &mesh = scene.mesh;
+    const RigidMotion motion{Eigen::AngleAxisd(3.0, Vec3::UnitX()).toRotationMatrix(), scene.start[0], scene.start[0]};
+    for (size_t v = 0; v < scene.end.size(); ++v) scene.end[v] = motion(scene.start[v]);
+    NearPairs near(mesh), unknowing(mesh);
+    near.note(scene.start, scene.start, 0.01, 0.0);
+    near.set_out_as_one(scene.start, scene.end, motion, mesh.object);
+    unknowing.set_out(scene.start, scene.end);
+    BOOST_TEST((coming_near(mesh, near, scene.start, scene.end) == coming_near(mesh, unknowing, scene.start, scene.end)));
 }
 
 BOOST_AUTO_TEST_CASE(nothing_meets_nothing) {

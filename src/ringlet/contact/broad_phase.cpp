@@ -61,7 +61,7 @@ void BroadPhase::find(const PathBoxes &ways, Candidates &candidates, View<unsign
     const auto fit = [&](MovingTree &tree, const auto &primitives, const auto &box_of) {
         tree.fit(int(primitives.size()), [&](int i) {
             MovingBox box = box_of(primitives[i], i);
-            box.count(any_of(counts, primitives[i]));
+            box.count(any_of(counts, primitives[i]), any_of(mesh_.moves, primitives[i]));
             return box;
         });
     };
@@ -69,7 +69,8 @@ void BroadPhase::find(const PathBoxes &ways, Candidates &candidates, View<unsign
     fit(point_tree_, points_, [&](const auto &point, int) { return ways.of_vertex(point[0]); });
     fit(triangle_tree_, mesh_.triangles, [&](const auto &, int i) { return ways.of_triangle(i); });
     search_all(ways.still(), candidates);
-    away_.assign(mesh_.moves.size(), !changed.empty());
+    away_.assign(mesh_.moves.size(), 0);
+    left_homes_ = !changed.empty();
 }
 
 void BroadPhase::find_quick(const PathBoxes &ways, const PathBoxes &homes, View<unsigned char> quick,
@@ -79,15 +80,21 @@ void BroadPhase::find_quick(const PathBoxes &ways, const PathBoxes &homes, View<
         stale_[v] |= quick[v] || changed[v];
         away_[v] = quick[v] && &ways != &homes;
     }
+    const bool all = left_homes_; // or some
+    left_homes_ = false;
     for (MovingTree *tree : {&edge_tree_, &point_tree_, &triangle_tree_}) tree->discount();
-    const Affected stale(mesh_, incidence_, stale_);
+    const Affected stale(mesh_, incidence_, all ? View<unsigned char>() : View<unsigned char>(stale_));
     const auto refit = [&](MovingTree &tree, const std::vector<int> &some, const auto &primitives, const auto &box_of) {
         if (primitives.empty()) return;
-        tree.refit(some, [&](int i) {
+        const auto box = [&](int i) {
             MovingBox box = box_of(any_of(quick, primitives[i]) ? ways : homes, primitives[i], i);
-            box.count(any_of(changed, primitives[i]));
+            box.count(any_of(changed, primitives[i]), any_of(mesh_.moves, primitives[i]));
             return box;
-        });
+        };
+        if (all)
+            tree.fit(int(primitives.size()), box);
+        else
+            tree.refit(some, box);
     };
     refit(edge_tree_, stale.edges, mesh_.edges, [](const PathBoxes &boxes, const auto &, int i) { return boxes.of_edge(i); });
     std::vector<int> points;

@@ -64,7 +64,8 @@ template <size_t N> double extent(const CollisionMesh &mesh, const std::array<in
 }
 
 // The distance [m] below which two edges, or a point and a triangle, touch: the sum of their radii; within one object at most
-// nine tenths of what is between them at rest, so that neighbours along a strand never push each other apart.
+// nine tenths of what is between them at rest, so that neighbours along a strand never push each other apart. What is groomed
+// through itself touches at a hundredth of their radii: at nothing, rounding would decide on which side it is.
 template <size_t N, size_t M>
 double contact_distance(const CollisionMesh &mesh, const std::array<int, N> &a, const std::array<int, M> &b) {
     if constexpr (N == 2 && M == 2) {
@@ -74,10 +75,11 @@ double contact_distance(const CollisionMesh &mesh, const std::array<int, N> &a, 
     }
     const double radii = mean_radius(mesh, a) + mean_radius(mesh, b);
     if (mesh.object[a[0]] != mesh.object[b[0]]) return radii;
+    constexpr double least = 0.01; // of their radii
     // Most pairs of one object are so far apart at rest that it need not be known how far.
     const double apart = (mesh.rest[a[0]] - mesh.rest[b[0]]).norm() - extent(mesh, a) - extent(mesh, b);
     if (0.9 * apart >= radii) return radii;
-    return std::min(radii, 0.9 * std::sqrt(closest_points(mesh.rest, a, b).distance2));
+    return std::clamp(0.9 * std::sqrt(closest_points(mesh.rest, a, b).distance2), least * radii, radii);
 }
 
 // Of strands that begin at `offsets` among the vertices.

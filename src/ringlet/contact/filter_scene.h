@@ -3,6 +3,7 @@
 
 #include "ringlet/contact/collision_mesh.h"
 #include "ringlet/contact/vertex_lists.h"
+#include "ringlet/geometry/rigid_motion.h"
 
 #include <functional>
 
@@ -18,6 +19,7 @@ struct FilterScene {
     CarriedBy carried_by;
     View<int>
         rigid; // per vertex: vertices of one number ≥ 0 are moved by one and the same affine map, so that none of them meet
+    RigidMotion as_one; // nearly all moves so, where it is not still
     bool still = false; // nothing kinematic moves: staying is safe
     bool whole = false; // strands then only go a part of their way as a whole, and none is held back near a pair alone
     // Per vertex, what goes less far than on the move that was filtered last, of which this is the rest; empty: all is new.

@@ -12,10 +12,10 @@
 namespace ringlet {
 
 // Boxes are compared by what is between them at the start and at the end, so that a motion which they share changes nothing: on
-// each axis the distance of two points that move straight is never less than the lesser of the two. The fourth lane tells who
-// counts: who moves, say.
+// each axis the distance of two points that move straight is never less than the lesser of the two. The fourth lanes tell who
+// counts, and who moves: the lesser is what holds of two together.
 struct MovingBox {
-    static constexpr float does_not_count = 1.0f; // the sum of two is positive where neither counts
+    static constexpr float does = -2.0f, does_not = 1.0f; // the sum of two is positive where neither does
     Eigen::Array4f low, high, end_low, end_high;
 
     static MovingBox nothing() { // apart from everything
@@ -37,7 +37,10 @@ struct MovingBox {
         end_high += by;
     }
 
-    void count(bool counts) { low[3] = counts ? -2.0f : does_not_count; }
+    void count(bool counts, bool moves) {
+        low[3] = counts ? does : does_not;
+        end_low[3] = moves ? does : does_not;
+    }
 };
 
 // Four rows become columns.
@@ -58,9 +61,11 @@ inline void set_boxes(BoxQuad &quad, WhoCounts &who_counts, const MovingBox (&bo
         transpose({boxes[0].*corner, boxes[1].*corner, boxes[2].*corner, boxes[3].*corner}, columns);
         std::memcpy(rows, columns, sizeof(rows));
     };
-    set(&MovingBox::high, quad.high), set(&MovingBox::end_low, quad.end_low), set(&MovingBox::end_high, quad.end_high);
+    set(&MovingBox::high, quad.high), set(&MovingBox::end_high, quad.end_high);
     set(&MovingBox::low, quad.low);
-    std::memcpy(who_counts.of, columns[3], sizeof(columns[3]));
+    std::memcpy(who_counts.counts, columns[3], sizeof(columns[3]));
+    set(&MovingBox::end_low, quad.end_low);
+    std::memcpy(who_counts.moves, columns[3], sizeof(columns[3]));
 }
 
 inline void set_box(BoxQuad &quad, WhoCounts &who_counts, int k, const MovingBox &box) {
@@ -70,14 +75,15 @@ inline void set_box(BoxQuad &quad, WhoCounts &who_counts, int k, const MovingBox
         quad.end_low[axis][k] = box.end_low[axis];
         quad.end_high[axis][k] = box.end_high[axis];
     }
-    who_counts.of[k] = box.low[3];
+    who_counts.counts[k] = box.low[3];
+    who_counts.moves[k] = box.end_low[3];
 }
 
 inline MovingBox box_of(const BoxQuad &quad, const WhoCounts &who_counts, int k) {
     const auto corner = [&](const float (&rows)[3][4], float last) -> Eigen::Array4f {
         return {rows[0][k], rows[1][k], rows[2][k], last};
     };
-    return {corner(quad.low, who_counts.of[k]), corner(quad.high, 0.0f), corner(quad.end_low, 0.0f),
+    return {corner(quad.low, who_counts.counts[k]), corner(quad.high, 0.0f), corner(quad.end_low, who_counts.moves[k]),
             corner(quad.end_high, 0.0f)};
 }
 
@@ -90,7 +96,8 @@ inline MovingBox box_of(const BoxQuad &quad, const WhoCounts &who_counts) {
     const auto most = [](const float (&rows)[3][4]) -> Eigen::Array4f {
         return {Row(rows[0]).maxCoeff(), Row(rows[1]).maxCoeff(), Row(rows[2]).maxCoeff(), 0.0f};
     };
-    return {least(quad.low, Row(who_counts.of).minCoeff()), most(quad.high), least(quad.end_low, 0.0f), most(quad.end_high)};
+    return {least(quad.low, Row(who_counts.counts).minCoeff()), most(quad.high),
+            least(quad.end_low, Row(who_counts.moves).minCoeff()), most(quad.end_high)};
 }
 
 // Whether two boxes may overlap at one time: on no axis are they apart at the start and, on the same side, at the end.

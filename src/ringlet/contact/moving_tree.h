@@ -21,7 +21,7 @@ public:
 
     // Until it is taken anew no primitive counts.
     void discount() {
-        for (WhoCounts &boxes : who_counts_) std::fill_n(boxes.of, 4, MovingBox::does_not_count);
+        for (WhoCounts &boxes : who_counts_) std::fill_n(boxes.counts, 4, MovingBox::does_not);
     }
 
     bool empty() const { return count_ == 0; }

@@ -53,7 +53,10 @@ template <class Pair> void merge(std::vector<Pair> &pairs, const std::vector<Pai
 
 NearPairs::NearPairs(const CollisionMesh &mesh)
     : mesh_(mesh), broad_phase_(mesh), ways_of_(mesh), homes_(mesh), vertices_(mesh.moves.size()), edges_(mesh.edges.size()),
-      triangles_(mesh.triangles.size()), quick_(mesh.moves.size()) {}
+      triangles_(mesh.triangles.size()), quick_(mesh.moves.size()), least_radius_(std::numeric_limits<double>::infinity()) {
+    for (size_t v = 0; v < mesh.moves.size(); ++v)
+        if (mesh.moves[v]) least_radius_ = std::min(least_radius_, mesh.radius[v]);
+}
 
 bool NearPairs::any_of(const NearPair &pair, View<unsigned char> vertices) const {
     return with_vertices(mesh_, pair, [&](const auto &a, const auto &b) {
@@ -86,12 +89,14 @@ std::vector<NearPair> NearPairs::look_for_quick(View<unsigned char> changed) {
 }
 
 void NearPairs::forget() {
+    knows_all_here_ = false;
     known_.clear();
     low_.clear(), high_.clear();
     may_touch_.clear();
 }
 
 void NearPairs::note(View<Vec3> start, View<Vec3> end, double margin, double far) {
+    knows_all_here_ = false;
     const bool anew = low_.empty();
     low_.resize(start.size()), high_.resize(start.size());
     std::vector<unsigned char> stray(start.size(), 1);
@@ -157,6 +162,7 @@ void NearPairs::measure_ways(View<Vec3> start, View<Vec3> end, View<unsigned cha
 }
 
 void NearPairs::set_out(View<Vec3> start, View<Vec3> end) {
+    knows_all_here_ = false;
     bool any_quick = false;
     const bool nothing_known = low_.empty();
 #pragma omp parallel for schedule(static) reduction(|| : any_quick)
@@ -177,7 +183,7 @@ void NearPairs::set_out(View<Vec3> start, View<Vec3> end) {
         if (pair.apart - way(pair) < 0.5 * pair.distance && ways_of_.with_boxes(pair, ringlet::may_meet))
             may_meet.push_back(&pair);
     });
-    for (NearPair &pair : passing_) may_meet_.push_back(&pair);
+    meet_passing();
 }
 
 void NearPairs::set_out_anew(View<Vec3> start, View<Vec3> end, View<unsigned char> changed) {
@@ -192,8 +198,16 @@ void NearPairs::set_out_anew(View<Vec3> start, View<Vec3> end, View<unsigned cha
         if (has_changed(pair) && pair.apart - way(pair) < 0.5 * pair.distance && ways_of_.with_boxes(pair, ringlet::may_meet))
             may_meet.push_back(&pair);
     });
+    meet_passing();
+}
+
+// All of them that have changed, among those that may meet, in order.
+void NearPairs::meet_passing() {
+    const size_t known = may_meet_.size();
     for (NearPair &pair : passing_)
         if (has_changed(pair)) may_meet_.push_back(&pair);
+    std::inplace_merge(may_meet_.begin(), may_meet_.begin() + known, may_meet_.end(),
+                       [](const NearPair *a, const NearPair *b) { return before(*a, *b); });
 }
 
 void NearPairs::arrive(View<Vec3> start, View<Vec3> end) {

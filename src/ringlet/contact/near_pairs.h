@@ -3,6 +3,7 @@
 
 #include "ringlet/contact/broad_phase.h"
 #include "ringlet/contact/path_boxes.h"
+#include "ringlet/geometry/rigid_motion.h"
 
 #include <algorithm>
 #include <cmath>
@@ -57,14 +58,19 @@ public:
     // differs where vertices have `changed` and is no further away.
     void set_out(View<Vec3> start, View<Vec3> end);
     void set_out_anew(View<Vec3> start, View<Vec3> end, View<unsigned char> changed);
-    // The pairs that may come nearer than half their distance on the way; of those that set out anew, only what has changed.
-    // Whoever measures one may note how far it is apart at the start.
+    // The same nearly as one body, by that motion: no more is looked for than what strays from it may meet. Vertices of one
+    // number ≥ 0 in `rigid` move by one affine map, others by themselves.
+    void set_out_as_one(View<Vec3> start, View<Vec3> end, const RigidMotion &motion, View<int> rigid);
+    // In order, the pairs that may come nearer than half their distance on the way; of those that set out anew, only what has
+    // changed. Whoever measures one may note how far it is apart at the start.
     const std::vector<NearPair *> &may_meet() const { return may_meet_; }
     // Those that may touch if each goes as far as it likes: of those that are known, and of what is quick, which change with
     // set_out_anew().
     const std::vector<NearPair *> &may_touch() const { return may_touch_; }
     const std::vector<NearPair> &passing() const { return passing_; }
-    void arrive(View<Vec3> start, View<Vec3> end); // all of it, or any part of its last way
+    void arrive(View<Vec3> start, View<Vec3> end);          // all of it, or any part of its last way
+    void arrive_as_one(View<Vec3> start, View<Vec3> end);   // all of it as it last set out as one
+    bool knows_all_here() const { return knows_all_here_; } // that may touch, and nothing need be noted, until they set out
 
     std::vector<Touch> touching(View<Vec3> positions); // where everything is now, in order
     // In order, of pairs with one of the objects that count, those that may touch somewhere on the last move.
@@ -95,6 +101,11 @@ private:
     }
     std::vector<NearPair> pairs_of(const Candidates &found) const;
     std::vector<NearPair> look_for_quick(View<unsigned char> changed);
+    double room(int v, const Vec3 &at) const { // in its corridor, to every side; below 0 outside [m]
+        return std::min((at - low_[v]).minCoeff(), (high_[v] - at).minCoeff());
+    }
+    void meet_passing();
+    double strays(const NearPair &pair) const; // both together, at most [m]
 
     const CollisionMesh &mesh_;
     BroadPhase broad_phase_;
@@ -105,7 +116,9 @@ private:
     std::vector<Way> vertices_, edges_, triangles_;
     std::vector<unsigned char> quick_;                                       // vertices
     std::vector<unsigned char> changed_, changed_edges_, changed_triangles_; // since everything set out
-    bool any_quick_ = false;
+    bool any_quick_ = false, knows_all_here_ = false;
+    double least_radius_ = 0.0;         // of what moves [m]
+    std::vector<double> strays_;        // how far each vertex ends from where a motion as one would lead it [m]
     std::vector<NearPair *> may_touch_; // of the known, those whose ways come so near
     std::vector<NearPair *> may_meet_;
 };

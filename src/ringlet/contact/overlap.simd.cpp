@@ -67,8 +67,10 @@ template <class Gaps> void for_gaps(const BoxQuad &a, const BoxQuad &b, int part
     }
 }
 
-// Above 0 where neither of a pair counts: then they are never looked at.
-Floats neither_counts(const WhoCounts &a, const WhoCounts &b, int part) { return of_first(a.of, part) + of_second(b.of); }
+// Above 0 where neither of a pair counts, or neither moves: then they are never looked at.
+Floats neither_counts(const WhoCounts &a, const WhoCounts &b, int part) {
+    return greater(of_first(a.counts, part) + of_second(b.counts), of_first(a.moves, part) + of_second(b.moves));
+}
 
 // Which boxes overlap on each axis at some time. What is in the rest never comes together.
 unsigned may_meet(const BoxQuad &a, const BoxQuad &b, const WhoCounts &of_a, const WhoCounts &of_b) {

@@ -11,9 +11,9 @@ struct alignas(64) BoxQuad {
     float low[3][4], high[3][4], end_low[3][4], end_high[3][4];
 };
 
-// Which of four boxes count: the sum of two is positive where neither does. Read as boxes are.
-struct alignas(16) WhoCounts {
-    float of[4];
+// Which of four boxes count, and which move: a sum of two is positive where neither does. Read as boxes are.
+struct alignas(32) WhoCounts {
+    float counts[4], moves[4];
 };
 
 // A tree of moving_tree.h.

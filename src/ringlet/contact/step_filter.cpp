@@ -20,8 +20,14 @@ FilterReport filter_step(const FilterScene &scene, NearPairs &near, View<Vec3> s
     std::vector<int> rigid(scene.rigid.begin(), scene.rigid.end()); // still: what is pushed out of a way no longer is
     FilterScene now = scene;
     now.rigid = rigid;
+    const auto set_out = [&] {
+        if (scene.still)
+            near.set_out(start, end);
+        else
+            near.set_out_as_one(start, end, scene.as_one, rigid);
+    };
     if (scene.shortened.empty())
-        near.set_out(start, end);
+        set_out();
     else
         near.set_out_anew(start, end, scene.shortened);
     for (;; ++report.rounds) {
@@ -38,7 +44,7 @@ FilterReport filter_step(const FilterScene &scene, NearPairs &near, View<Vec3> s
             report.fraction = 1.0;
             for (const Met &pair : met) report.fraction = std::min(report.fraction, 0.9 * pair.time);
             for (size_t v = 0; v < vertices; ++v) end[v] = start[v] + report.fraction * (end[v] - start[v]);
-            near.set_out(start, end);
+            set_out();
             break;
         }
         if (scene.still) { // what has not changed since the last round has not met
@@ -52,7 +58,7 @@ FilterReport filter_step(const FilterScene &scene, NearPairs &near, View<Vec3> s
             zones->move_as_one(start, met, report.rounds < to_touch, end);
             for (size_t v = 0; v < rigid.size(); ++v)
                 if (end[v] != before[v]) rigid[v] = -1;
-            near.set_out(start, end);
+            set_out();
         }
     }
     report.zone_vertices = int(std::count(in_the_way.begin(), in_the_way.end(), 1));

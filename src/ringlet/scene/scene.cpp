@@ -96,7 +96,9 @@ double Scene::Parts::advance(const SceneInput &input, const SceneStep &scene_ste
     const Carried carried = go_along(now, step.dt, report);
     step.dt *= carried.fraction;
     constexpr double speed = 0.02; // [m/s] of what began inside a body, out of it
+    const int excused = embedded.count();
     system.lifts = embedded.push_out(vertices.mesh, now, View<int>(model.offsets), stiffness.hardest(), speed * step.dt);
+    if (embedded.count() < excused) near.forget(); // pairs that were none
     // Then to where Newton's method begins.
     constexpr double hardly = 1e-12; // [m]
     begin_cloths(input, step, now);
@@ -149,10 +151,14 @@ void Scene::Parts::check(const SceneInput &input) const {
 
 // Strands and cloths may have been placed since the last step.
 void Scene::Parts::find_placed() {
-    std::copy(state.positions.begin(), state.positions.end(), vertices.positions.begin());
-    for (int c = 0; c < int(system.cloths.size()); ++c)
-        std::copy(system.cloths[c].state().positions.begin(), system.cloths[c].state().positions.end(),
-                  vertices.positions.begin() + vertices.cloths[c]);
+    const auto place = [&](View<Vec3> positions, int first) {
+        const auto known = vertices.positions.begin() + first;
+        if (std::equal(positions.begin(), positions.end(), known)) return;
+        near.forget();
+        std::copy(positions.begin(), positions.end(), known);
+    };
+    place(state.positions, 0);
+    for (int c = 0; c < int(system.cloths.size()); ++c) place(system.cloths[c].state().positions, vertices.cloths[c]);
 }
 
 std::vector<Contact> Scene::Parts::touching() {
@@ -229,12 +235,14 @@ void Scene::excuse(int vertex, int body) {
     if (vertex < 0 || vertex >= parts_->vertices.strand_vertices())
         throw std::invalid_argument("scene: only vertices of strands are excused");
     if (body < 0 || body >= int(parts_->embedded_bodies.size())) throw std::invalid_argument("scene: there is no such body");
+    parts_->near.forget();
     parts_->embedded.add(vertex, parts_->embedded_bodies[body], parts_->vertices.mesh);
 }
 
 int Scene::excused() const { return parts_->embedded.count(); }
 
 SceneMemory Scene::memory() const {
+    parts_->near.forget(); // as whoever recalls it: then even what is counted is the same
     const View<Vec3> all = parts_->positions();
     const int bodies = parts_->vertices.moving_vertices();
     return {parts_->begun,
@@ -252,6 +260,7 @@ void Scene::recall(const SceneMemory &memory) {
     if (memory.bodies.size() != size_t(parts.vertices.count() - parts.vertices.moving_vertices()) ||
         memory.touched.size() != parts.touched.size() || memory.borne.size() != size_t(parts.vertices.count()))
         throw std::invalid_argument("scene: what is to be recalled is of another scene");
+    parts.near.forget();
     parts.begun = memory.begun;
     std::copy(memory.bodies.begin(), memory.bodies.end(), parts.vertices.positions.begin() + parts.vertices.moving_vertices());
     parts.system.contacts.recall(memory.early);

@@ -1,8 +1,9 @@
 #include "ringlet/scene/scene_carry.h"
 
+#include "ringlet/geometry/rigid_motion.h"
+
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -22,35 +23,6 @@ Vec3 carried_by_triangle(const Vec3 from[3], const Vec3 to[3], const Vec3 &point
     if (std::abs(before.determinant()) < 1e-30) return translated;
     const Vec3 carried = to[0] + frame(to) * before.inverse() * (point - from[0]);
     return carried.allFinite() ? carried : translated;
-}
-
-// A rotation about a place that goes somewhere else.
-struct RigidMotion {
-    Mat3 turn = Mat3::Identity();
-    Vec3 from = Vec3::Zero(), to = Vec3::Zero();
-
-    Vec3 operator()(const Vec3 &point) const { return to + turn * (point - from); }
-};
-
-// The motion of some kinematic vertices as one, by least squares (Kabsch 1976). Where that leaves a rotation open, as about a
-// line, it turns as little as may be.
-RigidMotion mean_motion(const SceneCarry &carry, const std::vector<int> &told) {
-    constexpr double hardly = 1e-9;
-    RigidMotion motion;
-    for (const int v : told)
-        motion.from += carry.start[v] / double(told.size()), motion.to += carry.given[v] / double(told.size());
-    Mat3 spread = Mat3::Zero();
-    double size = 0.0;
-    for (const int v : told) {
-        const Vec3 before = carry.start[v] - motion.from, after = carry.given[v] - motion.to;
-        spread += after * before.transpose();
-        size += before.squaredNorm();
-    }
-    if (size == 0.0) return motion;
-    const Eigen::JacobiSVD<Mat3> svd(spread + hardly * size * Mat3::Identity(), Eigen::ComputeFullU | Eigen::ComputeFullV);
-    const double mirror = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
-    motion.turn = svd.matrixU() * Vec3(1.0, 1.0, mirror).asDiagonal() * svd.matrixV().transpose();
-    return motion;
 }
 
 std::vector<int> kinematic(const SceneCarry &carry, int begin, int end) {
@@ -91,7 +63,7 @@ std::vector<Patch> patches(const SceneCarry &carry) {
     for (int v = 0; v < count; ++v)
         if (nearest[v] >= 0) all[nearest[v]].vertices.push_back(first + v);
     std::erase_if(all, [](const Patch &patch) { return patch.vertices.empty(); });
-    for (Patch &patch : all) patch.motion = mean_motion(carry, patch.vertices);
+    for (Patch &patch : all) patch.motion = mean_motion(patch.vertices, carry.start, carry.given);
     return all;
 }
 
@@ -141,7 +113,8 @@ std::vector<int> carry_rigidly(const SceneCarry &carry, View<int> offsets, const
         const int begin = offsets[s], end = offsets[s + 1];
         const int wanted = s < int(carriers.of_strands.size()) ? carriers.of_strands[s] : -1;
         const int body = with_body(wanted, begin, end) ? wanted : -1, leader = body >= 0 ? leaders[body] : begin;
-        go(begin, end, body, [&](const Vec3 &point) { return carry.carried(leader, point); });
+        const int alone = held_follow(carry, begin, end, begin) ? int(leaders.size()) + s : -1;
+        go(begin, end, body >= 0 ? body : alone, [&](const Vec3 &point) { return carry.carried(leader, point); });
     }
     for (int c = 0; c + 1 < int(all.cloths.size()); ++c) {
         const int begin = all.cloths[c], end = all.cloths[c + 1], body = carriers.of_cloths[c];
@@ -150,12 +123,13 @@ std::vector<int> carry_rigidly(const SceneCarry &carry, View<int> offsets, const
             continue;
         }
         if (const std::vector<int> held = kinematic(carry, begin, end); !held.empty()) {
-            go(begin, end, -1, mean_motion(carry, held));
+            go(begin, end, -1, mean_motion(held, carry.start, carry.given));
             continue;
         }
         RigidMotion motion;
         motion.to = carriers.drift;
-        if (const std::vector<int> told = kinematic(carry, 0, all.count()); !told.empty()) motion = mean_motion(carry, told);
+        if (const std::vector<int> told = kinematic(carry, 0, all.count()); !told.empty())
+            motion = mean_motion(told, carry.start, carry.given);
         motion.turn = Mat3::Identity(); // that of others would carry it off
         go(begin, end, -1, motion);
     }

@@ -26,7 +26,8 @@ struct SceneCarriers {
 
 // Says in `to` where the vertices of parts are once they have gone along: a strand with its root, or the body that it is rooted
 // in, a cloth with the body that it is pinned to or lies on, else with its held vertices as one, else with the mean of all that
-// is kinematic. Returns for each vertex the body that it goes along with as one; −1: none.
+// is kinematic. Returns for each vertex the body that it goes along with as one, or beyond these a number of its strand's own
+// where that does; −1: none.
 std::vector<int> carry_rigidly(const SceneCarry &carry, View<int> offsets, const SceneCarriers &carriers,
                                std::vector<Vec3> &to);
 

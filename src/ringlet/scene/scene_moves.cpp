@@ -14,6 +14,7 @@ double Scene::Parts::filter(View<Vec3> now, std::vector<Vec3> &to, const MoveKin
     constexpr double far = 0.3; // [m]: a corridor as long as that holds too many
     if (kind.still && kind.shortened.empty()) {
         const bool stays = std::equal(to.begin(), to.end(), now.begin());
+        if (stays && near.knows_all_here()) return 1.0;
         near.note(now, to, stays ? 0.0 : 0.5 * settings.strand_radius, far); // what stays hardly stays for long
         if (stays) return 1.0;
     }
@@ -23,15 +24,14 @@ double Scene::Parts::filter(View<Vec3> now, std::vector<Vec3> &to, const MoveKin
                             View<int>(model.offsets),
                             [&](int vertex, const Vec3 &point) { return with.carried(vertex, point); },
                             kind.still ? View<int>() : View<int>(rigid),
+                            as_one,
                             kind.still,
                             kind.whole,
                             kind.shortened,
                             View<int>(vertices.cloths),
                             &neighbours,
                             kind.hopeful};
-    const bool as_one = !kind.still && !rigid.empty() && rigid[0] >= 0 &&
-                        std::all_of(rigid.begin(), rigid.end(), [&](int body) { return body == rigid[0]; });
-    const FilterReport filtered = as_one ? FilterReport{} : filter_step(scene, near, now, to);
+    const FilterReport filtered = filter_step(scene, near, now, to);
     report.candidates = filtered.candidates;
     report.violations += filtered.violations;
     report.zone_vertices += filtered.zone_vertices;
@@ -40,8 +40,21 @@ double Scene::Parts::filter(View<Vec3> now, std::vector<Vec3> &to, const MoveKin
 
 void Scene::Parts::arrive(std::vector<Vec3> &now, const std::vector<Vec3> &to) {
     near.arrive(now, to);
+    come(now, to);
+}
+
+void Scene::Parts::come(std::vector<Vec3> &now, const std::vector<Vec3> &to) {
     now = to;
     if (recording) path.push_back(now);
+}
+
+// How most of what hair and cloth there is goes from `now` to `to`.
+RigidMotion Scene::Parts::most_go(View<Vec3> now, View<Vec3> to) const {
+    constexpr int asked = 1000; // vertices
+    const int end = model.offsets.back() > 0 ? model.offsets.back() : vertices.moving_vertices();
+    std::vector<int> told;
+    for (int v = 0; v < end; v += 1 + end / asked) told.push_back(v);
+    return common_motion(told, now, to);
 }
 
 // Everything goes along with what is kinematic, every strand rigidly with its root: of one rigid body and all that is rooted in
@@ -54,7 +67,7 @@ Carried Scene::Parts::go_along(std::vector<Vec3> &now, double dt, SceneReport &r
     std::vector<Vec3> to = given;
     std::vector<int> bodies_of_cloths;
     rigid = carry_rigidly(carry(), View<int>(model.offsets), carriers(bodies_of_cloths, dt), to);
-    near.forget();
+    as_one = most_go(now, to);
     Carried carried{filter(now, to, {false, false, {}, hopeful}, report), true};
     const std::vector<Vec3> told = given;
     for (int attempt = 0; attempt < attempts && carried.fraction < std::ldexp(1.0, -attempt); ++attempt) {
@@ -64,10 +77,11 @@ Carried Scene::Parts::go_along(std::vector<Vec3> &now, double dt, SceneReport &r
         to = given;
         std::fill(rigid.begin(), rigid.end(), -1);
         carry_with_space(carry(), to);
-        near.forget();
+        as_one = most_go(now, to);
         carried = {part * filter(now, to, {false, false, {}, hopeful}, report), false};
     }
-    arrive(now, to);
+    near.arrive_as_one(now, to);
+    come(now, to);
     if (carried.fraction < 1.0) {
         for (int v = 0; v < vertices.count(); ++v)
             if (!vertices.mesh.moves[v]) given[v] = now[v];

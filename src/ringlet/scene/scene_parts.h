@@ -59,7 +59,8 @@ struct Scene::Parts {
 
     // Within a step
     std::vector<Vec3> given; // where what is kinematic ends; where the rest began
-    std::vector<int> rigid;  // per vertex: the body that it goes along with as one in this step; −1: none
+    std::vector<int> rigid;  // per vertex: what it goes along with as one in this step, as carry_rigidly() has it
+    RigidMotion as_one;      // how most of it goes along
     AlignedVector x, direction;
     std::vector<double> reach; // per part: how far Newton's method would last have gone [m]
 
@@ -83,6 +84,8 @@ struct Scene::Parts {
     SceneCarriers carriers(std::vector<int> &of_cloths, double dt) const;
     double filter(View<Vec3> now, std::vector<Vec3> &to, const MoveKind &kind, SceneReport &report);
     void arrive(std::vector<Vec3> &now, const std::vector<Vec3> &to);
+    void come(std::vector<Vec3> &now, const std::vector<Vec3> &to);
+    RigidMotion most_go(View<Vec3> now, View<Vec3> to) const;
     Carried go_along(std::vector<Vec3> &now, double dt, SceneReport &report);
     int newton(const SceneStep &scene_step, const StrandStep &step, std::vector<Vec3> &now, SceneProgress &progress,
                SceneReport &report);

@@ -1,0 +1,76 @@
+// Pairs while nearly everything moves as one body, as hair does on a head: what is known of them stays known.
+#include "ringlet/contact/near_pairs.h"
+
+#include "ringlet/contact/collect.h"
+
+namespace ringlet {
+
+double NearPairs::strays(const NearPair &pair) const {
+    const auto most = [&](const auto &primitive) {
+        double most = 0.0;
+        for (const int v : primitive) most = std::max(most, strays_[v]);
+        return most;
+    };
+    return with_vertices(mesh_, pair, [&](const auto &a, const auto &b) { return most(a) + most(b); });
+}
+
+// Two that go straight to where a rotation by θ leads them are never nearer than cos ½θ of what they were, less what they
+// stray. So pairs that are not known, which are as far apart as they touch or farther, keep more than half of that.
+void NearPairs::set_out_as_one(View<Vec3> start, View<Vec3> end, const RigidMotion &motion, View<int> rigid) {
+    constexpr double least_part = 0.75, hardly = 0.1; // of a distance; of the least radius
+    const double part = 0.5 * std::sqrt(std::max(0.0, 1.0 + motion.turn.trace()));
+    const bool known = !low_.empty() && part >= least_part;
+    bool any_quick = false, all_rigid = !rigid.empty();
+    strays_.resize(start.size());
+#pragma omp parallel for schedule(static) reduction(|| : any_quick) reduction(&& : all_rigid)
+    for (int v = 0; v < int(start.size()); ++v) {
+        const int as = rigid.empty() ? -1 : rigid[v];
+        strays_[v] = (end[v] - motion(start[v])).norm();
+        const bool alone = mesh_.moves[v] && as < 0;
+        quick_[v] = known ? alone || strays_[v] > std::min(hardly * least_radius_, room(v, start[v])) : mesh_.moves[v];
+        any_quick = any_quick || quick_[v];
+        all_rigid = all_rigid && as >= 0 && as == rigid[0];
+    }
+    any_quick_ = any_quick;
+    measure_ways(start, end, std::vector<unsigned char>(start.size(), 1));
+    fit_ways(start, end);
+    Candidates found;
+    if (any_quick_) broad_phase_.find(ways_of_, found, quick_);
+    passing_ = pairs_of(found);
+    may_touch_.clear();
+    may_meet_.clear();
+    if (all_rigid) return;
+    may_meet_ = collect<NearPair *>(int(known_.size()), [&](int k, std::vector<NearPair *> &may_meet) {
+        NearPair &pair = known_[k];
+        if (!quick(pair) && part * pair.apart - strays(pair) < 0.5 * pair.distance &&
+            ways_of_.with_boxes(pair, ringlet::may_meet))
+            may_meet.push_back(&pair);
+    });
+    meet_passing();
+}
+
+void NearPairs::arrive_as_one(View<Vec3> start, View<Vec3> end) {
+    if (any_quick_) std::erase_if(known_, [&](const NearPair &pair) { return quick(pair); });
+    for (NearPair &pair : passing_) pair.apart = 0.0;
+    for (auto *ways : {&vertices_, &edges_, &triangles_}) std::fill(ways->begin(), ways->end(), Way{});
+    may_touch_.clear();
+    knows_all_here_ = true;
+    if (low_.empty()) return;
+    // Of a corridor is left what holds however it turned: the cube within the ball around where the vertex was in it. What is
+    // quick has none.
+    const double half_side = 1.0 / std::sqrt(3.0);
+#pragma omp parallel for schedule(static)
+    for (int v = 0; v < int(start.size()); ++v) {
+        const double left = quick_[v] ? -1.0 : half_side * (room(v, start[v]) - strays_[v]);
+        low_[v] = end[v].array() - left;
+        high_[v] = end[v].array() + left;
+    }
+    homes_.fit_within(low_, high_);
+    broad_phase_.leave_homes();
+    for (NearPair &pair : known_) {
+        pair.apart -= strays(pair);
+        if (pair.apart < pair.distance) may_touch_.push_back(&pair);
+    }
+}
+
+} // namespace ringlet
