@@ -33,12 +33,19 @@ class Judged:
     statistics: dict
 
 
-def start(shot: str, recipe: str | None = None, locks: int | None = None):
-    """A shot of the example in motion, by its name, with another recipe or as many locks, evenly over the head."""
+def start(shot: str, recipe: str | None = None, locks: int | None = None, balanced: Path | None = None):
+    """A shot of the example in motion, by its name, with another recipe or as many locks, evenly over the head.
+
+    balanced: where to keep rest shapes in equilibrium, if it is to have them
+    """
     settings = api.read_shot(EXAMPLE / f"{shot}.shot.toml")
     made = api.read_recipe(EXAMPLE / f"{recipe}.recipe.toml" if recipe else settings.groom)
     count = made.locks.count if locks is None else locks
     groom = api.build_groom(made.model_copy(update={"locks": made.locks.model_copy(update={"count": count})}))
+    if balanced is not None:
+        rest = settings.rest.model_copy(update={"mode": "equilibrium", "file": balanced})
+        settings = settings.model_copy(update={"rest": rest})
+        api.write_loft(api.loft(settings, groom), settings, balanced)
     return api.start_motion(settings, groom)
 
 

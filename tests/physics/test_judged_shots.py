@@ -45,3 +45,15 @@ def test_cloth_that_is_put_into_hair_passes_through_nothing_and_goes_on_moving(l
         moved.append(np.abs(after - carried(before, before, after)).max())
         before = after
     assert all(max(pair) > 1e-6 for pair in itertools.pairwise(moved))
+
+
+def test_hair_in_equilibrium_stays_where_no_cloth_comes(tmp_path):
+    """A ribbon is put into locks while the head rests: some are pushed aside, those that it does not touch stay."""
+    motion = start("ribbon", locks=150, balanced=tmp_path / "ribbon.rest.usdc")
+    curves = motion.scene.strands.curves
+    begin = motion.scene.positions[: len(curves.points)].copy()
+    assert all(frame.crossings == 0 for frame in judged(motion, 12))
+    away = np.linalg.norm(motion.scene.positions[: len(begin)] - begin, axis=1)
+    moved = np.maximum.reduceat(away, curves.offsets[:-1])
+    assert moved.max() > 0.01
+    assert np.quantile(moved, 0.8) < 35e-6  # a hair's radius [m]
