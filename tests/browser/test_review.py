@@ -394,7 +394,6 @@ def test_a_shot_beside_another_cache_with_overlays(opened: Any, folder: Path):
     groom = ringlet.build_groom(folder / "small.recipe.toml")
     ringlet.write_groom(groom, folder / "groom.usda")
     cache = ringlet.simulate(folder / "small.shot.toml", groom)
-    ringlet.write_cache(cache, folder / "groom.usda", folder / "cache.usda")
     review: Review = opened("small.shot.toml")
     field = "strands.bend_scale"
     review.choose("shot:strands")
@@ -410,6 +409,7 @@ def test_a_shot_beside_another_cache_with_overlays(opened: Any, folder: Path):
         review.page.get_by_label("Overlay").select_option(overlay)
         assert different(review.picture(), plain) > 0.002  # few hairs cover little of the picture
     assert review.page.locator('[data-number="inside"]').is_visible()
+    ringlet.write_cache(cache, folder / "groom.usda", folder / "cache.usda")  # the page is open, and is told
     review.page.get_by_label("Compare with a cache").select_option("cache.usda")
     review.until("ringlet.viewer.compared && ringlet.model.timeline.against == 'cache.usda'")
     review.until("ringlet.viewer.hair.b.table")

@@ -78,9 +78,8 @@ def test_why_there_is_no_groom_is_told_to_every_page_until_there_is_one(folder: 
 
 
 def test_of_the_files_in_usd_a_page_is_offered_caches_to_compare_with(folder: Path, tmp_path, monkeypatch):
-    def offered() -> list[str]:
-        with page(client) as one:
-            return [name for name in one.hear("welcome")["files"] if ".usd" in name]
+    def offered(one) -> list[str]:
+        return [name for name in one.hear("files")["names"] if ".usd" in name]
 
     groom, other = folder / "groom.usdc", tmp_path / "elsewhere"
     other.mkdir()
@@ -96,15 +95,20 @@ def test_of_the_files_in_usd_a_page_is_offered_caches_to_compare_with(folder: Pa
     looked: list[str] = []
     is_cache = io.is_cache
     monkeypatch.setattr(io, "is_cache", lambda path: looked.append(path.name) or is_cache(path))
+    monkeypatch.setattr("ringlet.viewer.session.LOOK_EVERY", 0.1)
     with serving(folder) as client:
-        assert offered() == ["cache.usdc", "text.usda"] and "cache.usdc" in looked
-        looked.clear()
-        (folder / "new.usdc").write_bytes((folder / "cache.usdc").read_bytes())
-        (folder / "cache.usdc").write_bytes(groom.read_bytes())
-        assert offered() == ["new.usdc", "text.usda"] and sorted(looked) == ["cache.usdc", "new.usdc"]
-        monkeypatch.setattr("ringlet.viewer.caches.PATIENCE", 0.0)
-        (folder / "late.usdc").write_bytes(groom.read_bytes())
-        assert offered() == ["late.usdc", "new.usdc", "text.usda"]  # no page waits for it
+        with page(client) as one:
+            assert offered(one) == ["cache.usdc", "text.usda"] and "cache.usdc" in looked
+            looked.clear()
+            (folder / "new.usdc").write_bytes((folder / "cache.usdc").read_bytes())  # while the page is open
+            while (names := offered(one)) != ["cache.usdc", "new.usdc", "text.usda"]:
+                assert set(names) < {"cache.usdc", "new.usdc", "text.usda"}
+            assert set(looked) == {"new.usdc"}  # the others have not changed
+            (folder / "cache.usdc").write_bytes(groom.read_bytes())
+            while offered(one) != ["new.usdc", "text.usda"]:
+                pass
+        with page(client, "later") as two:
+            assert offered(two) == ["new.usdc", "text.usda"]
 
 
 def test_a_page_that_comes_back_is_told_how_much_of_what_it_said_was_heard(folder: Path):

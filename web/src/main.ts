@@ -106,6 +106,10 @@ class App {
         model.role = message;
         model.tell("role");
         break;
+      case "files":
+        model.files = message.names;
+        model.tell("files");
+        break;
       case "numbers":
         model.numbers = message;
         model.tell("numbers");

@@ -10,6 +10,7 @@ type Topic =
   | "welcome"
   | "document"
   | "role"
+  | "files"
   | "names"
   | "guides"
   | "numbers"
@@ -30,6 +31,8 @@ export class Model {
   overlay: OverlayName | "" = "";
   timeline: Timeline | null = null;
   compared = "";
+  /** What there is in the project to compare with. */
+  files: string[] = [];
   /** The stage whose settings are shown, and the file that it belongs to. */
   chosen: { file: File; place: Place } = { file: "recipe", place: ["curl"] };
   /** The lock whose own values are edited, in place of those of all locks. */

@@ -1,6 +1,6 @@
 // Made by tools/make_protocol.py from python/ringlet/viewer/protocol.py; change it there.
 
-export const VERSION = 4;
+export const VERSION = 5;
 export type Json = string | number | boolean | null | Json[] | { [key: string]: Json };
 
 /** A stage of the groom. place: where its settings are in the recipe. */
@@ -147,7 +147,6 @@ export interface Welcome {
   schemas: Record<string, Json>;
   operators: string[];
   pigments: Record<string, [number, number, number]>;
-  files: string[];
 }
 
 /** Who edits. ``others`` is the number of other pages that look at the session. */
@@ -155,6 +154,12 @@ export interface Role {
   kind: "role";
   leads: boolean;
   others: number;
+}
+
+/** What there is in the project to compare with, by name: recipes and caches. Told again when others are there. */
+export interface Files {
+  kind: "files";
+  names: string[];
 }
 
 /** A file as it stands. */
@@ -333,6 +338,7 @@ export type FromPage =
 export type FromServer =
   | Welcome
   | Role
+  | Files
   | Document
   | Body
   | Locks

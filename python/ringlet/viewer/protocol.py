@@ -10,7 +10,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
-VERSION = 4
+VERSION = 5
 Place = list[str | int]  # where a setting is in its file: ["shape", 0, "amount"]
 File = Literal["recipe", "shot"]
 Point = tuple[float, float, float]
@@ -213,7 +213,6 @@ class Welcome(Message):
     schemas: dict[str, Any]
     operators: list[str]
     pigments: dict[str, Point]
-    files: list[str]
 
 
 class Role(Message):
@@ -222,6 +221,13 @@ class Role(Message):
     kind: Literal["role"] = "role"
     leads: bool
     others: int
+
+
+class Files(Message):
+    """What there is in the project to compare with, by name: recipes and caches. Told again when others are there."""
+
+    kind: Literal["files"] = "files"
+    names: list[str]
 
 
 class Stage(Message):
@@ -435,6 +441,7 @@ class Trouble(Message):
 FROM_SERVER: tuple[type[Message], ...] = (
     Welcome,
     Role,
+    Files,
     Document,
     Body,
     Locks,

@@ -31,6 +31,7 @@ from ringlet.viewer.showing import Showing, measured
 from ringlet.viewer.wire import pack, trouble
 from ringlet.viewer.worker import Latest, Stale
 
+LOOK_EVERY = 2.0  # whether other files are there [s]
 NO_GROOM = "groom/trouble"  # the subject of why no groom is made
 
 log = logging.getLogger("ringlet.viewer")
@@ -64,6 +65,7 @@ class Session:
         self.leader = ""
         self._heard = Counter[str]()
         self._loop: asyncio.AbstractEventLoop | None = None
+        self._looking: asyncio.Task[None] | None = None
         self._groomer, self._beside = Groomer(project), Groomer(project)
         self._showing, self._caches = Showing(self.board), Caches(project)
         self._playing = Playing(self.files, self.board, self._showing, self._call, self.trouble)
@@ -84,10 +86,23 @@ class Session:
             self.board.post(f"document/{file}", self.files.told(file))
         if "recipe" in self.files.documents:
             self.regroom()
+        self._looking = loop.create_task(self._look_for_files())
+
+    async def _look_for_files(self) -> None:
+        """Tells what there is to compare with, and again when that changes: caches are written by others, meanwhile."""
+        told = None
+        while True:
+            names = await asyncio.to_thread(lambda: [*self.project.files("*.recipe.toml"), *self._caches.names()])
+            if names != told:
+                self.board.post("files", pack(protocol.Files(names=names)))
+            told = names
+            await asyncio.sleep(LOOK_EVERY)
 
     def stop(self) -> None:
         """Ends what works in the background."""
         self._loop = None
+        if self._looking is not None:
+            self._looking.cancel()
         self._playing.stop()
         self._worker.stop()
         self._measurer.stop()
@@ -123,7 +138,6 @@ class Session:
                         name: (color.eumelanin, color.pheomelanin, color.roughness)
                         for name, color in HAIR_COLORS.items()
                     },
-                    "files": [*self.project.files("*.recipe.toml"), *self._caches.names()],
                 }
             )
         )

@@ -39,7 +39,7 @@ export class Bar {
       this.lead,
       iconButton("sun", "Dark or light", setTheme),
     );
-    for (const topic of ["document", "role", "welcome", "compared"] as const) model.on(topic, () => this.update());
+    for (const topic of ["document", "role", "welcome", "files", "compared"] as const) model.on(topic, () => this.update());
     addEventListener("keydown", (event) => this.key(event));
   }
 
@@ -76,7 +76,7 @@ export class Bar {
         ? `${role.others} ${role.others > 1 ? "others look" : "other looks"} on`
         : ""
       : "you are looking on";
-    const files = (welcome?.files ?? []).filter((name) => name.endsWith(".toml") && name !== documents.recipe?.name);
+    const files = this.model.files.filter((name) => name.endsWith(".toml") && name !== documents.recipe?.name);
     const choices: [string, string][] = [
       ["", "Compare with …"],
       ["now", "this moment"],

@@ -45,8 +45,7 @@ export class TimelineBar {
     });
     this.run.addEventListener("click", () => this.press());
     this.element.append(this.run, this.again, this.watch, this.slider, this.told, this.against);
-    model.on("timeline", () => this.update());
-    model.on("role", () => this.update());
+    for (const topic of ["timeline", "role", "files"] as const) model.on(topic, () => this.update());
     addEventListener("keydown", (event) => {
       if (event.key !== " " || (event.target as HTMLElement).closest("button, input, select, textarea, dialog")) return;
       if (!model.timeline) return;
@@ -132,7 +131,7 @@ export class TimelineBar {
   }
 
   private update(): void {
-    const { timeline, role, welcome } = this.model;
+    const { timeline, role } = this.model;
     this.element.toggleAttribute("hidden", !timeline);
     document.documentElement.classList.toggle("with-timeline", timeline !== null);
     if (!timeline) return;
@@ -158,7 +157,7 @@ export class TimelineBar {
     this.run.toggleAttribute("disabled", !role.leads);
     this.again.toggleAttribute("hidden", timeline.state === "none");
     this.again.toggleAttribute("disabled", !role.leads || ready === undefined || timeline.state === "rolling");
-    const caches = (welcome?.files ?? []).filter((name) => /\.usd[ac]?$/.test(name));
+    const caches = this.model.files.filter((name) => /\.usd[ac]?$/.test(name));
     const value = timeline.against;
     this.against.replaceChildren(
       h("option", { value: "" }, value ? "end the comparison" : "compare with a cache …"),
