@@ -18,7 +18,7 @@ from websockets.asyncio.client import ClientConnection, connect
 
 import ringlet
 
-PROTOCOL = 4  # that of python/ringlet/viewer/protocol.py
+PROTOCOL = 5  # that of python/ringlet/viewer/protocol.py
 EXAMPLE = Path(__file__).parents[1] / "examples/child"
 
 
