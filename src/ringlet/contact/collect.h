@@ -14,7 +14,10 @@ template <class T, class Of> std::vector<T> collect(int count, const Of &of) {
 #pragma omp parallel for schedule(dynamic)
     for (int c = 0; c < chunks; ++c)
         for (int i = c * chunk; i < std::min(count, (c + 1) * chunk); ++i) of(i, found[c]);
+    size_t size = 0;
+    for (const auto &part : found) size += part.size();
     std::vector<T> all;
+    all.reserve(size);
     for (const auto &part : found) all.insert(all.end(), part.begin(), part.end());
     return all;
 }

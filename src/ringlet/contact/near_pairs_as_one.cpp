@@ -32,13 +32,13 @@ void NearPairs::set_out_as_one(View<Vec3> start, View<Vec3> end, const RigidMoti
         all_rigid = all_rigid && as >= 0 && as == rigid[0];
     }
     any_quick_ = any_quick;
+    passing_.clear(), may_touch_.clear(), may_meet_.clear();
+    if (all_rigid && !any_quick) return;
     measure_ways(start, end, std::vector<unsigned char>(start.size(), 1));
     fit_ways(start, end);
     Candidates found;
     if (any_quick_) broad_phase_.find(ways_of_, found, quick_);
     passing_ = pairs_of(found);
-    may_touch_.clear();
-    may_meet_.clear();
     if (all_rigid) return;
     may_meet_ = collect<NearPair *>(int(known_.size()), [&](int k, std::vector<NearPair *> &may_meet) {
         NearPair &pair = known_[k];
@@ -67,10 +67,15 @@ void NearPairs::arrive_as_one(View<Vec3> start, View<Vec3> end) {
     }
     homes_.fit_within(low_, high_);
     broad_phase_.leave_homes();
-    for (NearPair &pair : known_) {
-        pair.apart -= strays(pair);
-        if (pair.apart < pair.distance) may_touch_.push_back(&pair);
-    }
+    double most = 0.0; // any known vertex strays
+    for (size_t v = 0; v < strays_.size(); ++v)
+        if (!quick_[v]) most = std::max(most, strays_[v]);
+    const bool all_alike = most < 0.001 * least_radius_;
+    may_touch_ = collect<NearPair *>(int(known_.size()), [&](int k, std::vector<NearPair *> &may_touch) {
+        NearPair &pair = known_[k];
+        pair.apart -= all_alike ? 2.0 * most : strays(pair);
+        if (pair.apart < pair.distance) may_touch.push_back(&pair);
+    });
 }
 
 } // namespace ringlet
