@@ -56,12 +56,10 @@ BroadPhase::BroadPhase(const CollisionMesh &mesh) : mesh_(mesh), incidence_(mesh
 }
 
 void BroadPhase::find(const PathBoxes &ways, Candidates &candidates, View<unsigned char> changed) {
-    // Pairs of two that do not count are left out: of those whose motions are given, or that have not changed.
-    const View<unsigned char> counts = changed.empty() ? View<unsigned char>(mesh_.moves) : changed;
     const auto fit = [&](MovingTree &tree, const auto &primitives, const auto &box_of) {
         tree.fit(int(primitives.size()), [&](int i) {
             MovingBox box = box_of(primitives[i], i);
-            box.count(any_of(counts, primitives[i]), any_of(mesh_.moves, primitives[i]));
+            box.count(changed.empty() || any_of(changed, primitives[i]), any_of(mesh_.moves, primitives[i]));
             return box;
         });
     };
@@ -69,8 +67,7 @@ void BroadPhase::find(const PathBoxes &ways, Candidates &candidates, View<unsign
     fit(point_tree_, points_, [&](const auto &point, int) { return ways.of_vertex(point[0]); });
     fit(triangle_tree_, mesh_.triangles, [&](const auto &, int i) { return ways.of_triangle(i); });
     search_all(ways.still(), candidates);
-    away_.assign(mesh_.moves.size(), 0);
-    left_homes_ = !changed.empty();
+    away_.assign(mesh_.moves.size(), !changed.empty());
 }
 
 void BroadPhase::find_quick(const PathBoxes &ways, const PathBoxes &homes, View<unsigned char> quick,
@@ -80,21 +77,15 @@ void BroadPhase::find_quick(const PathBoxes &ways, const PathBoxes &homes, View<
         stale_[v] |= quick[v] || changed[v];
         away_[v] = quick[v] && &ways != &homes;
     }
-    const bool all = left_homes_; // or some
-    left_homes_ = false;
     for (MovingTree *tree : {&edge_tree_, &point_tree_, &triangle_tree_}) tree->discount();
-    const Affected stale(mesh_, incidence_, all ? View<unsigned char>() : View<unsigned char>(stale_));
+    const Affected stale(mesh_, incidence_, stale_);
     const auto refit = [&](MovingTree &tree, const std::vector<int> &some, const auto &primitives, const auto &box_of) {
         if (primitives.empty()) return;
-        const auto box = [&](int i) {
+        tree.refit(some, [&](int i) {
             MovingBox box = box_of(any_of(quick, primitives[i]) ? ways : homes, primitives[i], i);
             box.count(any_of(changed, primitives[i]), any_of(mesh_.moves, primitives[i]));
             return box;
-        };
-        if (all)
-            tree.fit(int(primitives.size()), box);
-        else
-            tree.refit(some, box);
+        });
     };
     refit(edge_tree_, stale.edges, mesh_.edges, [](const PathBoxes &boxes, const auto &, int i) { return boxes.of_edge(i); });
     std::vector<int> points;
@@ -134,7 +125,6 @@ void BroadPhase::search(const MovingTree &tree_a, const A &all_a, const MovingTr
         const auto &a = all_a[p];
         const auto &b = all_b[q];
         if (share_vertex(a, b) || carries(mesh_, a, b)) return;
-        if (!any_of(mesh_.moves, a) && !any_of(mesh_.moves, b)) return;
         const float by = less(mesh_, a, b);
         if (by > 0.0f && !meet_at_one_time(tree_a.box(i), tree_b.box(j), by)) return;
         if (&tree_a == &tree_b && p > q) std::swap(p, q);

@@ -30,7 +30,7 @@ public:
     void find_quick(const PathBoxes &ways, const PathBoxes &homes, View<unsigned char> quick, View<unsigned char> changed,
                     Candidates &candidates);
 
-    void leave_homes() { left_homes_ = true; } // all have changed since find()
+    void leave_homes() { away_.assign(mesh_.moves.size(), 1); } // all have changed since find()
 
     int built() const { return edge_tree_.built(); } // how often the tree of edges was built, for studies
 
@@ -50,7 +50,6 @@ private:
     std::vector<Pairs> found_; // by each task
 
     std::vector<unsigned char> away_, stale_; // vertices: not boxed at home; that are to be boxed anew
-    bool left_homes_ = false;                 // no vertex is boxed at home
 };
 
 } // namespace ringlet

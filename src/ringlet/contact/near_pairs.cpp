@@ -96,8 +96,8 @@ void NearPairs::forget() {
 }
 
 void NearPairs::note(View<Vec3> start, View<Vec3> end, double margin, double far) {
+    const bool anew = low_.empty(), have_left = knows_all_here_; // as one: all boxes are still where they were
     knows_all_here_ = false;
-    const bool anew = low_.empty();
     low_.resize(start.size()), high_.resize(start.size());
     std::vector<unsigned char> stray(start.size(), 1);
     size_t strays = 0;
@@ -114,7 +114,7 @@ void NearPairs::note(View<Vec3> start, View<Vec3> end, double margin, double far
     passing_.clear();
     for (auto *ways : {&vertices_, &edges_, &triangles_}) std::fill(ways->begin(), ways->end(), Way{});
     Candidates found;
-    if (anew || 2 * strays > start.size()) { // for most of them it takes no longer to look for all
+    if (anew || have_left || 2 * strays > start.size()) { // for most of them it takes no longer to look for all
         homes_.fit_within(low_, high_);
         broad_phase_.find(homes_, found);
         known_ = pairs_of(found);

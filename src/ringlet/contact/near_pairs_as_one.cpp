@@ -26,8 +26,9 @@ void NearPairs::set_out_as_one(View<Vec3> start, View<Vec3> end, const RigidMoti
     for (int v = 0; v < int(start.size()); ++v) {
         const int as = rigid.empty() ? -1 : rigid[v];
         strays_[v] = (end[v] - motion(start[v])).norm();
-        const bool alone = mesh_.moves[v] && as < 0;
-        quick_[v] = known ? alone || strays_[v] > std::min(hardly * least_radius_, room(v, start[v])) : mesh_.moves[v];
+        const bool follows =
+            known && (!mesh_.moves[v] || as >= 0) && strays_[v] <= std::min(hardly * least_radius_, room(v, start[v]));
+        quick_[v] = !follows && (known || mesh_.moves[v]);
         any_quick = any_quick || quick_[v];
         all_rigid = all_rigid && as >= 0 && as == rigid[0];
     }

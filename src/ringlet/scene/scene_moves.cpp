@@ -40,16 +40,16 @@ double Scene::Parts::filter(View<Vec3> now, std::vector<Vec3> &to, const MoveKin
 
 void Scene::Parts::arrive(std::vector<Vec3> &now, const std::vector<Vec3> &to) {
     near.arrive(now, to);
-    come(now, to);
+    make_move(now, to);
 }
 
-void Scene::Parts::come(std::vector<Vec3> &now, const std::vector<Vec3> &to) {
+void Scene::Parts::make_move(std::vector<Vec3> &now, const std::vector<Vec3> &to) {
     now = to;
     if (recording) path.push_back(now);
 }
 
 // How most of what hair and cloth there is goes from `now` to `to`.
-RigidMotion Scene::Parts::most_go(View<Vec3> now, View<Vec3> to) const {
+RigidMotion Scene::Parts::motion_of_most(View<Vec3> now, View<Vec3> to) const {
     constexpr int asked = 1000; // vertices
     const int end = model.offsets.back() > 0 ? model.offsets.back() : vertices.moving_vertices();
     std::vector<int> told;
@@ -67,7 +67,7 @@ Carried Scene::Parts::go_along(std::vector<Vec3> &now, double dt, SceneReport &r
     std::vector<Vec3> to = given;
     std::vector<int> bodies_of_cloths;
     rigid = carry_rigidly(carry(), View<int>(model.offsets), carriers(bodies_of_cloths, dt), to);
-    as_one = most_go(now, to);
+    as_one = motion_of_most(now, to);
     Carried carried{filter(now, to, {false, false, {}, hopeful}, report), true};
     const std::vector<Vec3> told = given;
     for (int attempt = 0; attempt < attempts && carried.fraction < std::ldexp(1.0, -attempt); ++attempt) {
@@ -77,11 +77,11 @@ Carried Scene::Parts::go_along(std::vector<Vec3> &now, double dt, SceneReport &r
         to = given;
         std::fill(rigid.begin(), rigid.end(), -1);
         carry_with_space(carry(), to);
-        as_one = most_go(now, to);
+        as_one = motion_of_most(now, to);
         carried = {part * filter(now, to, {false, false, {}, hopeful}, report), false};
     }
     near.arrive_as_one(now, to);
-    come(now, to);
+    make_move(now, to);
     if (carried.fraction < 1.0) {
         for (int v = 0; v < vertices.count(); ++v)
             if (!vertices.mesh.moves[v]) given[v] = now[v];

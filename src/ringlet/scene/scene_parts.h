@@ -84,8 +84,8 @@ struct Scene::Parts {
     SceneCarriers carriers(std::vector<int> &of_cloths, double dt) const;
     double filter(View<Vec3> now, std::vector<Vec3> &to, const MoveKind &kind, SceneReport &report);
     void arrive(std::vector<Vec3> &now, const std::vector<Vec3> &to);
-    void come(std::vector<Vec3> &now, const std::vector<Vec3> &to);
-    RigidMotion most_go(View<Vec3> now, View<Vec3> to) const;
+    void make_move(std::vector<Vec3> &now, const std::vector<Vec3> &to);
+    RigidMotion motion_of_most(View<Vec3> now, View<Vec3> to) const;
     Carried go_along(std::vector<Vec3> &now, double dt, SceneReport &report);
     int newton(const SceneStep &scene_step, const StrandStep &step, std::vector<Vec3> &now, SceneProgress &progress,
                SceneReport &report);
