@@ -4,6 +4,7 @@
 
 #include <boost/test/unit_test.hpp>
 #include <cmath>
+#include <limits>
 #include <omp.h>
 #include <random>
 #include <set>
@@ -323,6 +324,51 @@ BOOST_AUTO_TEST_CASE(what_is_known_of_pairs_goes_along_with_what_moves_nearly_as
     }
 }
 
+// Some of what set out as one goes elsewhere then, twice, by itself.
+BOOST_AUTO_TEST_CASE(what_sets_out_as_one_anew_meets_what_has_changed) {
+    for (const bool knows : {true, false}) {
+        Scene scene(9, 0.0);
+        const CollisionMesh &mesh = scene.mesh;
+        const std::vector<Vec3> &now = scene.start;
+        const RigidMotion motion{Eigen::AngleAxisd(0.5, Vec3(1.0, 2.0, 2.0) / 3.0).toRotationMatrix(), now[0], now[1]};
+        std::vector<int> rigid(now.size(), 0);
+        std::vector<Vec3> to(now.size());
+        for (size_t v = 0; v < now.size(); ++v) {
+            if (v % 10 == 0) rigid[v] = -1;
+            to[v] = motion(now[v]) + scene.anywhere(v % 10 == 0 ? 0.05 : 0.0);
+        }
+        NearPairs near(mesh);
+        if (knows) near.note(now, now, 0.01, 0.0);
+        near.set_out_as_one(now, to, motion, rigid);
+        for (int round = 0; round < 2; ++round) {
+            std::vector<unsigned char> changed(now.size(), 0);
+            for (size_t v = round; v < now.size(); v += 7) {
+                changed[v] = 1;
+                if (!mesh.moves[v]) continue;
+                rigid[v] = -1;
+                to[v] += scene.anywhere(v % 2 == 0 ? 0.0001 : 0.1);
+            }
+            near.set_out_as_one_anew(now, to, motion, rigid, changed);
+            NearPairs unknowing(mesh);
+            unknowing.set_out(now, to);
+            Pairs all = coming_near(mesh, unknowing, now, to);
+            std::erase_if(all, [&](const auto &pair) {
+                const auto any = [&](const auto &primitive) { return any_of(View<unsigned char>(changed), primitive); };
+                return !(pair[0] ? any(mesh.edges[pair[1]]) || any(mesh.edges[pair[2]])
+                                 : any(std::array{pair[1]}) || any(mesh.triangles[pair[2]]));
+            });
+            BOOST_TEST(all.size() > 10);
+            BOOST_TEST((coming_near(mesh, near, now, to) == all));
+        }
+        near.arrive_as_one(now, to);
+        NearPairs unknowing(mesh);
+        unknowing.set_out(now, to);
+        unknowing.arrive(now, to);
+        BOOST_TEST(touching(near, to).size() > 10);
+        BOOST_TEST((touching(near, to) == touching(unknowing, to)));
+    }
+}
+
 // What was measured of it no longer holds then.
 BOOST_AUTO_TEST_CASE(a_pair_that_comes_a_little_nearer_as_one_is_measured_again) {
     CollisionMesh mesh; // two edges, a twentieth further apart than they touch
@@ -353,6 +399,59 @@ BOOST_AUTO_TEST_CASE(a_rotation_by_half_a_turn_is_looked_at_as_a_whole) {
     near.set_out_as_one(scene.start, scene.end, motion, mesh.object);
     unknowing.set_out(scene.start, scene.end);
     BOOST_TEST((coming_near(mesh, near, scene.start, scene.end) == coming_near(mesh, unknowing, scene.start, scene.end)));
+}
+
+// Edges whose ends stay in boxes, long ones above all: none is left out that touches when its ends are at corners or anywhere,
+// and most of those that never do.
+BOOST_AUTO_TEST_CASE(edges_that_are_apart_wherever_they_are_in_their_corridors_are_left_out) {
+    std::mt19937 random(10);
+    std::uniform_real_distribution<double> in(-1.0, 1.0), part(0.0, 1.0);
+    const auto anywhere = [&] { return Vec3(in(random), in(random), in(random)); };
+    int wrong = 0, left_out = 0, never_touch = 0;
+    for (int round = 0; round < 500; ++round) {
+        const double size = round % 3 == 0 ? 0.0 : 0.1, reach = round % 4 == 0 ? 0.0 : 0.2, far = round % 5 == 0 ? 1000.0 : 0.0;
+        EdgePairs pairs;
+        std::array<std::array<Eigen::AlignedBox3d, 4>, EdgePairs::room> corridors;
+        for (int k = 0; k < EdgePairs::room; ++k) {
+            for (int end = 0; end < 4; ++end) {
+                const Vec3 middle = anywhere() + Vec3::Constant(far), half = size * anywhere().cwiseAbs();
+                Eigen::AlignedBox3d &box = corridors[k][end] = {middle - half, middle + half};
+                if (round % 7 == 0 && end % 2 == 1) box = corridors[k][end - 1]; // no length
+                for (int axis = 0; axis < 3; ++axis) {
+                    pairs.low[end][axis][k] = float(box.min()[axis]);
+                    pairs.high[end][axis][k] = float(box.max()[axis]);
+                    box.min()[axis] = pairs.low[end][axis][k], box.max()[axis] = pairs.high[end][axis][k];
+                }
+            }
+            pairs.reach[k] = float(reach + 0x1p-19 * (1.0 + far));
+        }
+        const unsigned apart = RINGLET_DISPATCH(apart, pairs);
+        for (int k = 0; k < EdgePairs::room; ++k) {
+            double nearest = 1e9;
+            for (int sample = 0; sample < 300; ++sample) {
+                Vec3 x[4];
+                for (int end = 0; end < 4; ++end) {
+                    const Vec3 at = sample < 256 ? Vec3(sample >> (end / 2 * 4 + end % 2) & 1, sample >> (end + 1) & 1,
+                                                        sample >> (end + 4) & 1)
+                                                 : Vec3(part(random), part(random), part(random));
+                    x[end] = corridors[k][end].min() + at.cwiseProduct(corridors[k][end].sizes());
+                }
+                nearest = std::min(nearest, std::sqrt(closest_edge_edge(x[0], x[1], x[2], x[3]).distance2));
+            }
+            wrong += (apart >> k & 1u) && nearest < reach;
+            left_out += apart >> k & 1u;
+            never_touch += nearest > reach + 0.02;
+        }
+    }
+    BOOST_TEST(wrong == 0);
+    BOOST_TEST(left_out > 0.8 * never_touch, left_out << " of " << never_touch);
+    EdgePairs odd = {}; // nothing is certain of what is at one place, has no end or is no number
+    for (int end = 0; end < 4; ++end)
+        for (int k = 0; k < EdgePairs::room; ++k) {
+            const float x = k % 2 == 0 ? 0.0f : k % 4 == 1 ? std::numeric_limits<float>::infinity() : std::nanf("");
+            odd.low[end][0][k] = -x, odd.high[end][0][k] = x;
+        }
+    BOOST_TEST(RINGLET_DISPATCH(apart, odd) == 0u);
 }
 
 BOOST_AUTO_TEST_CASE(nothing_meets_nothing) {

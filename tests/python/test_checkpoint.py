@@ -82,6 +82,17 @@ def test_a_killed_run_goes_on_to_the_same_bits(folder):
     assert not part.exists()
 
 
+def test_frames_that_take_long_are_remembered_more_often(folder, monkeypatch):
+    groom = ringlet.build_groom(ringlet.read_recipe(folder / "small.recipe.toml"))
+    vertices = len(groom.locks.points)
+    assert checkpoint.frames_between(0) == checkpoint.frames_between(vertices) == checkpoint.EVERY
+    assert checkpoint.frames_between(10_000 * 100) == checkpoint.frames_between(10**8) == 1
+    monkeypatch.setattr(checkpoint, "VERTICES", 3 * vertices)
+    broken_off(folder, monkeypatch, 8)
+    memories = (folder / "cache.usdc.part").glob("memory.*")
+    assert sorted(path.name for path in memories) == ["memory.000003", "memory.000006"]
+
+
 def broken_off(folder, monkeypatch, after, *more):
     """Runs the shot until the disk is full."""
     keep = checkpoint.Checkpoints.keep

@@ -176,7 +176,8 @@ def _checkpoints(
     """The folder that keeps what a run has done."""
     from ringlet import shot as shots
 
-    return shots.Checkpoints(Path(folder), shots.made_of(shot, groom, frames=frames, **inputs))
+    made_from = shots.made_of(shot, groom, frames=frames, **inputs)
+    return shots.Checkpoints(Path(folder), made_from, every=shots.frames_between(len(groom.locks.points)))
 
 
 def loft(

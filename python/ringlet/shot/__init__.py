@@ -1,7 +1,7 @@
 """Shots: strands that move with an animated scalp."""
 
 from ringlet.shot.cache import Cache, CachedCloth, Told, Touches
-from ringlet.shot.checkpoint import Checkpoints, holding
+from ringlet.shot.checkpoint import Checkpoints, frames_between, holding
 from ringlet.shot.cloth import Cloth, ClothMaterial, ClothSolver
 from ringlet.shot.collider import Collider, Obstacle, ShotContact
 from ringlet.shot.equilibrium import equilibrium
@@ -41,6 +41,7 @@ __all__ = [
     "Touches",
     "check",
     "equilibrium",
+    "frames_between",
     "holding",
     "keep",
     "loft",

@@ -24,7 +24,8 @@ from ringlet.errors import UserError
 from ringlet.files import replacing
 
 VERSION = b"ringlet checkpoint 2\n"
-EVERY = 10  # frames from one memory to the next
+EVERY = 10  # frames from one memory to the next, at most
+VERTICES = 1_000_000  # between memories: a frame of that many may take minutes
 HELD = "held"  # the file that a program holds while it runs
 KEPT = 2  # memories: where the last is damaged, the one before is used
 
@@ -148,6 +149,11 @@ def _held(folder: Path) -> BinaryIO:
 
 def _goes_on(folder: Path) -> UserError:
     return UserError(f"{folder}: is of a run that goes on; let it end, or choose another place")
+
+
+def frames_between(vertices: int) -> int:
+    """How many frames go by from one memory to the next where strands have so many vertices: more take longer."""
+    return max(1, min(EVERY, VERTICES // max(vertices, 1)))
 
 
 def digest(*parts: Any) -> str:

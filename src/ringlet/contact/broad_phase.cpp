@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <type_traits>
 
 namespace ringlet {
 namespace {
@@ -45,6 +46,21 @@ template <size_t N, size_t M> float less(const CollisionMesh &mesh, const std::a
     return static_cast<float>(mean_radius(mesh, a) + mean_radius(mesh, b) - contact_distance(mesh, a, b));
 }
 
+// Of edges that stay in their corridors, those that are long and askew: of them boxes tell little.
+void leave_out_apart(const MovingTree &edges, const PathBoxes &homes, Descent &found) {
+    EdgePairs some = {};
+    int kept = 0;
+    for (int first = 0; first < found.found; first += EdgePairs::room) {
+        const int count = std::min(found.found - first, EdgePairs::room);
+        const BoxPair *pairs = found.boxes + first;
+        for (int k = 0; k < count; ++k) homes.put(some, k, {edges.primitive(pairs[k].of[0]), edges.primitive(pairs[k].of[1])});
+        const unsigned apart = RINGLET_DISPATCH(apart, some);
+        for (int k = 0; k < count; ++k)
+            if (!(apart >> k & 1u)) found.boxes[kept++] = pairs[k];
+    }
+    found.found = kept;
+}
+
 } // namespace
 
 BroadPhase::BroadPhase(const CollisionMesh &mesh) : mesh_(mesh), incidence_(mesh) {
@@ -66,16 +82,17 @@ void BroadPhase::find(const PathBoxes &ways, Candidates &candidates, View<unsign
     fit(edge_tree_, mesh_.edges, [&](const auto &, int i) { return ways.of_edge(i); });
     fit(point_tree_, points_, [&](const auto &point, int) { return ways.of_vertex(point[0]); });
     fit(triangle_tree_, mesh_.triangles, [&](const auto &, int i) { return ways.of_triangle(i); });
-    search_all(ways.still(), candidates);
-    away_.assign(mesh_.moves.size(), !changed.empty());
+    search_all(ways, candidates);
+    away_.assign(mesh_.moves.size(), 0);
 }
 
 void BroadPhase::find_quick(const PathBoxes &ways, const PathBoxes &homes, View<unsigned char> quick,
                             View<unsigned char> changed, Candidates &candidates) {
     stale_ = away_;
     for (size_t v = 0; v < quick.size(); ++v) {
-        stale_[v] |= quick[v] || changed[v];
-        away_[v] = quick[v] && &ways != &homes;
+        const bool leaves = quick[v] && &ways != &homes;
+        stale_[v] |= leaves || changed[v];
+        away_[v] = leaves;
     }
     for (MovingTree *tree : {&edge_tree_, &point_tree_, &triangle_tree_}) tree->discount();
     const Affected stale(mesh_, incidence_, stale_);
@@ -95,29 +112,30 @@ void BroadPhase::find_quick(const PathBoxes &ways, const PathBoxes &homes, View<
           [](const PathBoxes &boxes, const auto &point, int) { return boxes.of_vertex(point[0]); });
     refit(triangle_tree_, stale.triangles, mesh_.triangles,
           [](const PathBoxes &boxes, const auto &, int i) { return boxes.of_triangle(i); });
-    search_all(ways.still(), candidates);
+    search_all(ways, candidates);
     const auto neither = [&](const auto &a, const auto &b) { return !any_of(quick, a) && !any_of(quick, b); };
     std::erase_if(candidates.edge_edge, [&](const Pair &pair) { return neither(mesh_.edges[pair[0]], mesh_.edges[pair[1]]); });
     std::erase_if(candidates.point_triangle,
                   [&](const Pair &pair) { return neither(std::array{pair[0]}, mesh_.triangles[pair[1]]); });
 }
 
-void BroadPhase::search_all(bool still, Candidates &candidates) {
-    search(edge_tree_, mesh_.edges, edge_tree_, mesh_.edges, still);
+void BroadPhase::search_all(const PathBoxes &ways, Candidates &candidates) {
+    search(edge_tree_, mesh_.edges, edge_tree_, mesh_.edges, ways);
     gather(mesh_.edges.size(), candidates.edge_edge);
     candidates.point_triangle.clear();
     if (points_.empty() || mesh_.triangles.empty()) return;
-    search(point_tree_, points_, triangle_tree_, mesh_.triangles, still);
+    search(point_tree_, points_, triangle_tree_, mesh_.triangles, ways);
     for (Pairs &found : found_)
         for (auto &pair : found) pair[0] = mesh_.points[pair[0]];
     gather(mesh_.moves.size(), candidates.point_triangle);
 }
 
 template <class A, class B>
-void BroadPhase::search(const MovingTree &tree_a, const A &all_a, const MovingTree &tree_b, const B &all_b, bool still) {
+void BroadPhase::search(const MovingTree &tree_a, const A &all_a, const MovingTree &tree_b, const B &all_b,
+                        const PathBoxes &ways) {
     for (Pairs &found : found_) found.clear();
     if (tree_a.empty()) return;
-    const std::vector<BoxPair> starts = split(tree_a, tree_b, still);
+    const std::vector<BoxPair> starts = split(tree_a, tree_b, ways.still());
     if (found_.size() < starts.size()) found_.resize(starts.size());
     const auto take = [&](const BoxPair &slots, Pairs &found) {
         const auto [i, j] = slots.of;
@@ -132,12 +150,13 @@ void BroadPhase::search(const MovingTree &tree_a, const A &all_a, const MovingTr
     };
 #pragma omp parallel
     {
-        Descent here = descent(tree_a, tree_b, still);
+        Descent here = descent(tree_a, tree_b, ways.still());
 #pragma omp for schedule(dynamic, 1)
         for (size_t task = 0; task < starts.size(); ++task) {
             here.nodes[0] = starts[task];
             for (here.left = 1; here.left > 0; here.found = 0) {
                 RINGLET_DISPATCH(descend, here, std::numeric_limits<int>::max());
+                if (std::is_same_v<A, B> && ways.still()) leave_out_apart(tree_a, ways, here); // edges
                 for (int k = 0; k < here.found; ++k) take(here.boxes[k], found_[task]);
             }
         }

@@ -37,9 +37,9 @@ public:
 private:
     using Pairs = std::vector<std::array<int, 2>>;
 
-    void search_all(bool still, Candidates &candidates);
+    void search_all(const PathBoxes &ways, Candidates &candidates);
     template <class A, class B>
-    void search(const MovingTree &tree_a, const A &all_a, const MovingTree &tree_b, const B &all_b, bool still);
+    void search(const MovingTree &tree_a, const A &all_a, const MovingTree &tree_b, const B &all_b, const PathBoxes &ways);
     void gather(size_t firsts, Pairs &sorted);
 
     const CollisionMesh &mesh_;

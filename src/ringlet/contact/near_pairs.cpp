@@ -9,8 +9,6 @@
 namespace ringlet {
 namespace {
 
-template <class Pair> bool before(const Pair &a, const Pair &b) { return a.of_edges != b.of_edges ? a.of_edges : a.of < b.of; }
-
 template <size_t N, size_t M>
 bool boxes_are_near(View<Vec3> x, const std::array<int, N> &a, const std::array<int, M> &b, double distance) {
     const auto corner = [&](const auto &primitive, const auto &further) {
@@ -40,13 +38,6 @@ void add_if_touching(const CollisionMesh &mesh, const Pair &pair, View<Vec3> at,
         measured(apart);
         if (apart < pair.distance) found.push_back({pair.of, pair.of_edges, pair.distance, nearest});
     });
-}
-
-// Puts `more` among `pairs`, both in order.
-template <class Pair> void merge(std::vector<Pair> &pairs, const std::vector<Pair> &more) {
-    const size_t size = pairs.size();
-    pairs.insert(pairs.end(), more.begin(), more.end());
-    std::inplace_merge(pairs.begin(), pairs.begin() + size, pairs.end(), before<Pair>);
 }
 
 } // namespace
@@ -119,7 +110,7 @@ void NearPairs::note(View<Vec3> start, View<Vec3> end, double margin, double far
         broad_phase_.find(homes_, found);
         known_ = pairs_of(found);
     } else {
-        homes_.fit_anew(low_, high_);
+        homes_.fit_anew(low_, high_, stray);
         broad_phase_.find_quick(homes_, homes_, stray, stray, found);
         std::erase_if(known_, [&](const NearPair &pair) { return any_of(pair, stray); });
         merge(known_, pairs_of(found));
@@ -188,9 +179,9 @@ void NearPairs::set_out(View<Vec3> start, View<Vec3> end) {
 
 void NearPairs::set_out_anew(View<Vec3> start, View<Vec3> end, View<unsigned char> changed) {
     measure_ways(start, end, changed);
-    ways_of_.fit_anew(start, end);
+    ways_of_.fit_anew(start, end, changed);
     if (any_quick_) {
-        std::erase_if(passing_, [&](const NearPair &pair) { return any_of(pair, changed); });
+        std::erase_if(passing_, [&](const NearPair &pair) { return has_changed(pair); });
         merge(passing_, look_for_quick(changed));
     }
     may_meet_ = collect<NearPair *>(int(may_touch_.size()), [&](int k, std::vector<NearPair *> &may_meet) {

@@ -59,8 +59,10 @@ public:
     void set_out(View<Vec3> start, View<Vec3> end);
     void set_out_anew(View<Vec3> start, View<Vec3> end, View<unsigned char> changed);
     // The same nearly as one body, by that motion: no more is looked for than what strays from it may meet. Vertices of one
-    // number ≥ 0 in `rigid` move by one affine map, others by themselves.
+    // number ≥ 0 in `rigid` move by one affine map, others by themselves. Set out anew they may go further away.
     void set_out_as_one(View<Vec3> start, View<Vec3> end, const RigidMotion &motion, View<int> rigid);
+    void set_out_as_one_anew(View<Vec3> start, View<Vec3> end, const RigidMotion &motion, View<int> rigid,
+                             View<unsigned char> changed);
     // In order, the pairs that may come nearer than half their distance on the way; of those that set out anew, only what has
     // changed. Whoever measures one may note how far it is apart at the start.
     const std::vector<NearPair *> &may_meet() const { return may_meet_; }
@@ -104,6 +106,7 @@ private:
     double room(int v, const Vec3 &at) const { // in its corridor, to every side; below 0 outside [m]
         return std::min((at - low_[v]).minCoeff(), (high_[v] - at).minCoeff());
     }
+    void go_as_one(View<Vec3> start, View<Vec3> end, const RigidMotion &motion, View<int> rigid, View<unsigned char> changed);
     void meet_passing();
     double strays(const NearPair &pair) const; // both together, at most [m]
 
@@ -117,6 +120,7 @@ private:
     std::vector<unsigned char> quick_;                                       // vertices
     std::vector<unsigned char> changed_, changed_edges_, changed_triangles_; // since everything set out
     bool any_quick_ = false, knows_all_here_ = false;
+    bool boxes_ways_ = false;           // as one: the broad phase does
     double least_radius_ = 0.0;         // of what moves [m]
     std::vector<double> strays_;        // how far each vertex ends from where a motion as one would lead it [m]
     std::vector<NearPair *> may_touch_; // of the known, those whose ways come so near
@@ -135,6 +139,16 @@ double most_nearer(const std::array<int, N> &a, const std::array<int, M> &b, Vie
     for (const int v : a)
         for (const int w : b) most = std::max(most, ((end[v] - start[v]) - (end[w] - start[w])).squaredNorm());
     return std::sqrt(most);
+}
+
+// The order of pairs: those of edges come first.
+template <class Pair> bool before(const Pair &a, const Pair &b) { return a.of_edges != b.of_edges ? a.of_edges : a.of < b.of; }
+
+// Puts `more` among `pairs`, both in order.
+template <class Pair> void merge(std::vector<Pair> &pairs, const std::vector<Pair> &more) {
+    const size_t size = pairs.size();
+    pairs.insert(pairs.end(), more.begin(), more.end());
+    std::inplace_merge(pairs.begin(), pairs.begin() + size, pairs.end(), before<Pair>);
 }
 
 // Calls work with the vertices of the two of a pair.

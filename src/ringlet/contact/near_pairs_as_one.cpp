@@ -17,33 +17,54 @@ double NearPairs::strays(const NearPair &pair) const {
 // Two that go straight to where a rotation by θ leads them are never nearer than cos ½θ of what they were, less what they
 // stray. So pairs that are not known, which are as far apart as they touch or farther, keep more than half of that.
 void NearPairs::set_out_as_one(View<Vec3> start, View<Vec3> end, const RigidMotion &motion, View<int> rigid) {
+    quick_.assign(start.size(), 0);
+    passing_.clear(), may_touch_.clear(), may_meet_.clear();
+    any_quick_ = boxes_ways_ = false;
+    fit_ways(start, end);
+    go_as_one(start, end, motion, rigid, std::vector<unsigned char>(start.size(), 1));
+}
+
+void NearPairs::set_out_as_one_anew(View<Vec3> start, View<Vec3> end, const RigidMotion &motion, View<int> rigid,
+                                    View<unsigned char> changed) {
+    ways_of_.fit_anew(start, end, changed);
+    go_as_one(start, end, motion, rigid, changed);
+}
+
+void NearPairs::go_as_one(View<Vec3> start, View<Vec3> end, const RigidMotion &motion, View<int> rigid,
+                          View<unsigned char> changed) {
     constexpr double least_part = 0.75, hardly = 0.1; // of a distance; of the least radius
     const double part = 0.5 * std::sqrt(std::max(0.0, 1.0 + motion.turn.trace()));
     const bool known = !low_.empty() && part >= least_part;
-    bool any_quick = false, all_rigid = !rigid.empty();
+    bool any_quick = any_quick_, all_rigid = !rigid.empty();
     strays_.resize(start.size());
 #pragma omp parallel for schedule(static) reduction(|| : any_quick) reduction(&& : all_rigid)
     for (int v = 0; v < int(start.size()); ++v) {
         const int as = rigid.empty() ? -1 : rigid[v];
+        all_rigid = all_rigid && as >= 0 && as == rigid[0];
+        if (!changed[v]) continue;
         strays_[v] = (end[v] - motion(start[v])).norm();
         const bool follows =
             known && (!mesh_.moves[v] || as >= 0) && strays_[v] <= std::min(hardly * least_radius_, room(v, start[v]));
-        quick_[v] = !follows && (known || mesh_.moves[v]);
+        quick_[v] |= !follows && (known || mesh_.moves[v]);
         any_quick = any_quick || quick_[v];
-        all_rigid = all_rigid && as >= 0 && as == rigid[0];
     }
     any_quick_ = any_quick;
-    passing_.clear(), may_touch_.clear(), may_meet_.clear();
     if (all_rigid && !any_quick) return;
-    measure_ways(start, end, std::vector<unsigned char>(start.size(), 1));
-    fit_ways(start, end);
-    Candidates found;
-    if (any_quick_) broad_phase_.find(ways_of_, found, quick_);
-    passing_ = pairs_of(found);
+    measure_ways(start, end, changed);
+    std::erase_if(passing_, [&](const NearPair &pair) { return has_changed(pair); });
+    if (any_quick_) {
+        Candidates found;
+        if (boxes_ways_)
+            broad_phase_.find_quick(ways_of_, ways_of_, quick_, changed, found);
+        else
+            broad_phase_.find(ways_of_, found, quick_);
+        boxes_ways_ = true;
+        merge(passing_, pairs_of(found));
+    }
     if (all_rigid) return;
     may_meet_ = collect<NearPair *>(int(known_.size()), [&](int k, std::vector<NearPair *> &may_meet) {
         NearPair &pair = known_[k];
-        if (!quick(pair) && part * pair.apart - strays(pair) < 0.5 * pair.distance &&
+        if (!quick(pair) && has_changed(pair) && part * pair.apart - strays(pair) < 0.5 * pair.distance &&
             ways_of_.with_boxes(pair, ringlet::may_meet))
             may_meet.push_back(&pair);
     });

@@ -114,7 +114,59 @@ unsigned meet_at_one_time(const BoxQuad &a, const BoxQuad &b) {
     return which;
 }
 
+struct Vector {
+    Floats of[3];
+
+    Floats &operator[](int axis) { return of[axis]; }
+    const Floats &operator[](int axis) const { return of[axis]; }
+};
+
+Floats dot(const Vector &a, const Vector &b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+// 0 where it is not a number.
+Floats fraction(Floats a, Floats b) {
+    const Floats none = {};
+    return lesser(greater(a / b, none), none + 1.0f);
+}
+
+// Seen along the line between the closest points of the edges between the middles of their boxes.
+template <class Read> Bits apart_along_shortest(const EdgePairs &pairs, const Read &read) {
+    const Floats none = {};
+    Vector middle[4], width[4]; // both doubled, and middles told from the first
+    for (int end = 0; end < 4; ++end)
+        for (int axis = 0; axis < 3; ++axis) {
+            const Floats low = read(pairs.low[end][axis]), high = read(pairs.high[end][axis]);
+            middle[end][axis] = low + high;
+            width[end][axis] = high - low;
+        }
+    for (int axis = 0; axis < 3; ++axis) {
+        for (int end = 1; end < 4; ++end) middle[end][axis] -= middle[0][axis];
+        middle[0][axis] = none;
+    }
+    const Vector &u = middle[1], &w = middle[2];
+    Vector v, n, sizes;
+    for (int axis = 0; axis < 3; ++axis) v[axis] = middle[3][axis] - w[axis];
+    const Floats uu = dot(u, u), vv = dot(v, v), uv = dot(u, v), uw = dot(u, w), vw = dot(v, w);
+    const Floats t = fraction(fraction(uw * vv - uv * vw, uu * vv - uv * uv) * uv - vw, vv), s = fraction(uw + t * uv, uu);
+    for (int axis = 0; axis < 3; ++axis) {
+        n[axis] = w[axis] + t * v[axis] - s * u[axis];
+        sizes[axis] = n[axis] < none ? -n[axis] : n[axis];
+    }
+    const auto least = [&](int end) { return dot(n, middle[end]) - dot(sizes, width[end]); };
+    const auto most = [&](int end) { return dot(n, middle[end]) + dot(sizes, width[end]); };
+    const Floats gap = lesser(least(2), least(3)) - greater(most(0), most(1)), reach = 2.0f * read(pairs.reach);
+    return (gap > none) & (gap * gap > reach * reach * dot(n, n));
+}
+
 } // namespace
+
+unsigned apart(const EdgePairs &pairs) {
+    unsigned which = 0;
+    for (int part = 0; part < parts; ++part)
+        which |= lanes(apart_along_shortest(pairs, [&](const float (&row)[16]) { return read(row + part * width); }))
+                 << part * width;
+    return which;
+}
 
 void descend(Descent &d, int most_visits) {
     const auto leave = [&](int i, int j) { d.nodes[d.left++] = {{i, j}}; };

@@ -23,8 +23,8 @@ public:
     void fit(View<Vec3> start, View<Vec3> end, const Origin &origin, double margin = 0.0);
     // Vertices may be anywhere in boxes, from `low` to `high` [m].
     void fit_within(View<Vec3> low, View<Vec3> high);
-    // Either of them again, where some vertices have changed: boxes of others stay as they are, or grow.
-    void fit_anew(View<Vec3> start_or_low, View<Vec3> end_or_high);
+    // Either of them again, where some vertices have `changed`: boxes of others stay as they are, or grow.
+    void fit_anew(View<Vec3> start_or_low, View<Vec3> end_or_high, View<unsigned char> changed);
 
     const Origin &origin() const { return origin_; }
     bool still() const { return still_; } // boxes are the same at the end
@@ -38,6 +38,19 @@ public:
                              : work(of_vertex(pair.of[0]), of_triangle(pair.of[1]));
     }
 
+    // Puts a pair of edges of what stays in boxes as number `k` among others.
+    void put(EdgePairs &pairs, int k, const std::array<int, 2> &edges) const {
+        const auto &[a, b] = mesh_.edges[edges[0]];
+        const auto &[c, d] = mesh_.edges[edges[1]];
+        const int ends[4] = {a, b, c, d};
+        for (int end = 0; end < 4; ++end)
+            for (int axis = 0; axis < 3; ++axis) {
+                pairs.low[end][axis][k] = starts_[ends[end]][axis];
+                pairs.high[end][axis][k] = ends_[ends[end]][axis];
+            }
+        pairs.reach[k] = edge_radii_[edges[0]] + edge_radii_[edges[1]] + 2.0f * wider_;
+    }
+
 private:
     template <size_t N> MovingBox around(const std::array<int, N> &primitive, float radius) const {
         MovingBox all = box(primitive[0]);
@@ -49,7 +62,6 @@ private:
         const Eigen::Array4f &a = starts_[vertex], &b = ends_[vertex];
         return still_ ? MovingBox{a, b, a, b} : MovingBox{a, a, b, b};
     }
-    static void place(View<Vec3> points, const Vec3 &origin, std::vector<Eigen::Array4f> &places);
 
     const CollisionMesh &mesh_;
     std::vector<float> edge_radii_, triangle_radii_;

@@ -56,9 +56,14 @@ FilterReport filter_step(const FilterScene &scene, NearPairs &near, View<Vec3> s
             const std::vector<Vec3> before = end;
             zones->join(met);
             zones->move_as_one(start, met, report.rounds < to_touch, end);
+            std::vector<unsigned char> changed(vertices, 0);
+            for (const Met &pair : met)
+                for (const int v : pair.vertices) changed[v] = 1;
+            for (size_t v = 0; v < vertices; ++v)
+                if (end[v] != before[v]) changed[v] = 1;
             for (size_t v = 0; v < rigid.size(); ++v)
                 if (end[v] != before[v]) rigid[v] = -1;
-            set_out();
+            near.set_out_as_one_anew(start, end, scene.as_one, rigid, changed);
         }
     }
     report.zone_vertices = int(std::count(in_the_way.begin(), in_the_way.end(), 1));
