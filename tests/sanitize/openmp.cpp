@@ -22,7 +22,8 @@ int max_threads = [] {
     return count > 0 ? count : 4;
 }();
 
-std::mutex critical; // sections without a name share one
+std::mutex critical;   // sections without a name share one
+std::mutex reductions; // of more than one variable
 
 // A loop of which threads take chunks until there are none.
 struct Loop {
@@ -189,6 +190,8 @@ bool GOMP_loop_ull_nonmonotonic_dynamic_next(Count *begin, Count *end) {
 
 void GOMP_critical_start() { critical.lock(); }
 void GOMP_critical_end() { critical.unlock(); }
+void GOMP_atomic_start() { reductions.lock(); }
+void GOMP_atomic_end() { reductions.unlock(); }
 
 void GOMP_loop_end() { team->wait_for_all(); }
 void GOMP_loop_end_nowait() {}
