@@ -120,7 +120,7 @@ private:
     std::vector<unsigned char> quick_;                                       // vertices
     std::vector<unsigned char> changed_, changed_edges_, changed_triangles_; // since everything set out
     bool any_quick_ = false, knows_all_here_ = false;
-    bool boxes_ways_ = false;           // as one: the broad phase does
+    bool boxes_ways_ = false;           // as one: the broad phase has boxed this move's ways
     double least_radius_ = 0.0;         // of what moves [m]
     std::vector<double> strays_;        // how far each vertex ends from where a motion as one would lead it [m]
     std::vector<NearPair *> may_touch_; // of the known, those whose ways come so near

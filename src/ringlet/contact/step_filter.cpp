@@ -59,10 +59,11 @@ FilterReport filter_step(const FilterScene &scene, NearPairs &near, View<Vec3> s
             std::vector<unsigned char> changed(vertices, 0);
             for (const Met &pair : met)
                 for (const int v : pair.vertices) changed[v] = 1;
-            for (size_t v = 0; v < vertices; ++v)
-                if (end[v] != before[v]) changed[v] = 1;
-            for (size_t v = 0; v < rigid.size(); ++v)
-                if (end[v] != before[v]) rigid[v] = -1;
+            for (size_t v = 0; v < vertices; ++v) {
+                if (end[v] == before[v]) continue;
+                changed[v] = 1;
+                if (!rigid.empty()) rigid[v] = -1;
+            }
             near.set_out_as_one_anew(start, end, scene.as_one, rigid, changed);
         }
     }
