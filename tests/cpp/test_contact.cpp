@@ -1,6 +1,7 @@
 // Distances, impacts, and which pairs can meet.
 #include "ringlet/contact/impact.h"
 #include "ringlet/geometry/distance.h"
+#include "ringlet/geometry/edge_batch.h"
 
 #include <boost/test/unit_test.hpp>
 #include <functional>
@@ -78,8 +79,8 @@ double distance(bool edges, const Four &x) {
     return std::sqrt((edges ? closest_edge_edge : closest_point_triangle)(x[0], x[1], x[2], x[3]).distance2);
 }
 
-double impact_time(bool edges, const Four &x, const Four &p, double min_distance, double fraction = 0.0) {
-    return (edges ? edge_edge_impact : point_triangle_impact)(x.data(), p.data(), min_distance, fraction);
+double impact_time(bool edges, const Four &x, const Four &p, double min_distance) {
+    return (edges ? edge_edge_impact : point_triangle_impact)(x.data(), p.data(), min_distance);
 }
 
 Four at(const Four &x, const Four &p, double t) { return {x[0] + t * p[0], x[1] + t * p[1], x[2] + t * p[2], x[3] + t * p[3]}; }
@@ -98,6 +99,36 @@ BOOST_AUTO_TEST_CASE(no_point_of_two_segments_is_nearer_than_their_closest_point
         BOOST_TEST(nearest.weights[0] + nearest.weights[1] == 1.0);
         BOOST_TEST(nearest.weights[2] + nearest.weights[3] == -1.0);
     }
+}
+
+BOOST_AUTO_TEST_CASE(many_edges_at_once_are_as_close_as_one_by_one) {
+    std::mt19937 random(7);
+    std::array<int, kinds> of_kind{}, exact_of_kind{};
+    for (int i = 0; i < 40; ++i) {
+        EdgeBatch batch = {};
+        std::array<Four, EdgeBatch::room> all;
+        std::array<int, EdgeBatch::room> kind;
+        for (int k = 0; k < EdgeBatch::room; ++k) {
+            kind[k] = (EdgeBatch::room * i + k) % kinds;
+            all[k] = hard(random, kind[k]);
+            for (int end = 0; end < 4; ++end)
+                for (int axis = 0; axis < 3; ++axis) batch.ends[end][axis][k] = all[k][end][axis];
+        }
+        batch.ends[i % 4][i % 3][i % EdgeBatch::room] = std::nan("");
+        const unsigned exact = RINGLET_DISPATCH(find_closest, batch);
+        BOOST_TEST(!(exact >> i % EdgeBatch::room & 1u));
+        for (int k = 0; k < EdgeBatch::room; ++k) {
+            if (k == i % EdgeBatch::room) continue;
+            ++of_kind[kind[k]];
+            if (!(exact >> k & 1u)) continue;
+            ++exact_of_kind[kind[k]];
+            const ClosestPoints nearest = at_edges(batch.s[k], batch.t[k], batch.distance2[k]);
+            check_distance(nearest, distance(true, all[k]), all[k], kind[k]);
+            for (const double along : {batch.s[k], batch.t[k]}) BOOST_TEST((along >= 0.0 && along <= 1.0));
+        }
+    }
+    for (const int without_length : {0, 1, 8, 9}) BOOST_TEST(exact_of_kind[without_length] == 0);
+    for (const int askew : {7, 10, 11}) BOOST_TEST(exact_of_kind[askew] == of_kind[askew]);
 }
 
 BOOST_AUTO_TEST_CASE(no_point_of_a_triangle_is_nearer_than_the_closest) {
@@ -119,8 +150,8 @@ BOOST_AUTO_TEST_CASE(until_the_impact_the_distance_is_kept) {
     for (int i = 0; i < 200 * kinds; ++i)
         for (bool edges : {true, false}) {
             const Four x = hard(random, i % kinds), p = hard(random, (i / kinds) % kinds);
-            const double first = distance(edges, x), fraction = 0.5 * in(random), kept = fraction * first;
-            const double t = impact_time(edges, x, p, 0.0, fraction);
+            const double first = distance(edges, x), kept = 0.5 * in(random) * first;
+            const double t = impact_time(edges, x, p, kept);
             BOOST_TEST((t == no_impact || (t >= 0.0 && t <= 1.0)));
             impacts += t <= 1.0;
             double nearest = first;
@@ -179,8 +210,9 @@ BOOST_AUTO_TEST_CASE(a_motion_shared_by_all_changes_no_impact) {
                 p[k] *= 1e-3;
                 flying[k] = p[k] + flight;
             }
-            if (distance(edges, x) < 1e-7) continue; // touching: rounding decides
-            const double t = impact_time(edges, x, p, 0.0, 0.1), moving = impact_time(edges, x, flying, 0.0, 0.1);
+            const double kept = 0.1 * distance(edges, x);
+            if (kept < 1e-8) continue; // touching: rounding decides
+            const double t = impact_time(edges, x, p, kept), moving = impact_time(edges, x, flying, kept);
             BOOST_TEST((t == moving || std::abs(t - moving) < 1e-6));
         }
 }

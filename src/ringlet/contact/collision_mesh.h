@@ -102,4 +102,10 @@ bool carries(const CollisionMesh &mesh, const std::array<int, N> &a, const std::
     return false;
 }
 
+// Calls work with the vertices of the two of a pair.
+template <class Pair, class Work> auto with_vertices(const CollisionMesh &mesh, const Pair &pair, const Work &work) {
+    if (pair.of_edges) return work(mesh.edges[pair.of[0]], mesh.edges[pair.of[1]]);
+    return work(std::array{pair.of[0]}, mesh.triangles[pair.of[1]]);
+}
+
 } // namespace ringlet

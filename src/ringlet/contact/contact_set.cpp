@@ -27,28 +27,24 @@ struct Place {
 };
 
 // The nearest points of two edges that are almost parallel jump from end to end as they turn. What pushes there is shared out
-// among the ends of both, each with what is nearest on the other edge, and nothing jumps. On a surface, points do this.
-std::vector<Place> places(const CollisionMesh &mesh, const Touch &touch, View<Vec3> now) {
+// among the ends of both, each with what is nearest on the other edge, and nothing jumps. On a surface, points do this. Calls
+// work with each place, in order.
+template <class Work> void for_places(const CollisionMesh &mesh, const Touch &touch, View<Vec3> now, const Work &work) {
     constexpr double almost = 0.01; // sin² of the angle
-    if (!touch.of_edges || std::max(touch.of[0], touch.of[1]) >= mesh.strand_edges) return {{touch.nearest, 1.0, 0}};
+    if (!touch.of_edges || std::max(touch.of[0], touch.of[1]) >= mesh.strand_edges) return work(Place{touch.nearest, 1.0, 0});
     const auto [a0, a1] = mesh.edges[touch.of[0]];
     const auto [b0, b1] = mesh.edges[touch.of[1]];
     const Vec3 a = now[a1] - now[a0], b = now[b1] - now[b0];
     const double aa = a.squaredNorm(), bb = b.squaredNorm(), sine2 = a.cross(b).squaredNorm();
     const double s = std::min(sine2 / (almost * aa * bb + 1e-300), 1.0), crossing = s * s * (3.0 - 2.0 * s);
-    std::vector<Place> all;
-    if (crossing > 0.0) all.push_back({touch.nearest, crossing, 0});
-    if (crossing == 1.0) return all;
+    if (crossing > 0.0) work(Place{touch.nearest, crossing, 0});
+    if (crossing == 1.0) return;
     const double share = 0.5 * (1.0 - crossing); // two of the four ends are beside the other edge, as a rule
-    const auto add = [&](double u, double v, int which) {
-        all.push_back({{{1.0 - u, u, v - 1.0, -v}, (now[a0] + u * a - now[b0] - v * b).squaredNorm()}, share, which});
+    const auto at = [&](double u, double v, int which) {
+        work(Place{{{1.0 - u, u, v - 1.0, -v}, (now[a0] + u * a - now[b0] - v * b).squaredNorm()}, share, which});
     };
-    for (const double end : {0.0, 1.0}) {
-        add(end, closest::fraction((now[a0] + end * a - now[b0]).dot(b), bb), 1 + int(end));
-        add(closest::fraction((now[b0] + end * b - now[a0]).dot(a), aa), end, 3 + int(end));
-    }
-    std::sort(all.begin(), all.end(), [](const Place &p, const Place &q) { return p.which < q.which; });
-    return all;
+    for (const double end : {0.0, 1.0}) at(end, closest::fraction((now[a0] + end * a - now[b0]).dot(b), bb), 1 + int(end));
+    for (const double end : {0.0, 1.0}) at(closest::fraction((now[b0] + end * b - now[a0]).dot(a), aa), end, 3 + int(end));
 }
 
 // Which vertices a pair has, and with what weights they say where it touches.
@@ -137,11 +133,11 @@ void ContactSet::begin(const CollisionMesh &mesh, const ContactMaterial &materia
         const auto force = forces.find(of.vertex);
         if (force == forces.end() || !(apart > 0.0 && force->second[0] > 0.0)) continue;
         early.bears = force->second[0];
-        for (const Place &place : places(mesh, touch, now)) {
+        for_places(mesh, touch, now, [&](const Place &place) {
             const Contact bears = contact(mesh, material, touch, place, now);
             expected_.push_back({bears.pair, place.share * early.bears});
             held_.push_back({bears.pair, shear_to_hold(bears, now, force->second), bears.normal});
-        }
+        });
     }
 }
 
@@ -180,7 +176,7 @@ void ContactSet::hold(View<Vec3> now) {
 // Calls work(where it pushes, at what distance, from which distance on [m], where its barrier ends [m], what part of its
 // distance it has to come to bear).
 template <class Work>
-void ContactSet::for_places(const CollisionMesh &mesh, const Touch &touch, View<Vec3> now, const Work &work) const {
+void ContactSet::for_pushing(const CollisionMesh &mesh, const Touch &touch, View<Vec3> now, const Work &work) const {
     const auto early = early_.find(name(touch));
     double distance = touch.distance, room = 1.0;
     if (early != early_.end() && early->second.apart < touch.distance) {
@@ -190,20 +186,20 @@ void ContactSet::for_places(const CollisionMesh &mesh, const Touch &touch, View<
     const bool by_planes = with_vertices(mesh, touch, [&](const auto &a, const auto &b) {
         return goes_by_planes(mesh.object[a[0]]) || goes_by_planes(mesh.object[b[0]]);
     });
-    for (const Place &place : places(mesh, touch, now)) {
+    for_places(mesh, touch, now, [&](const Place &place) {
         const double apart = std::sqrt(place.nearest.distance2);
-        if (!(apart > 0.0 && apart < distance)) continue;
+        if (!(apart > 0.0 && apart < distance)) return;
         double barrier_end = distance / 100;
         if (by_planes) barrier_end = std::min(std::clamp(0.25 * apart, barrier_end, touch.distance / 64), distance / 64);
         work(place, apart, distance, barrier_end, room);
-    }
+    });
 }
 
 std::vector<Contact> ContactSet::of_touching(const CollisionMesh &mesh, const ContactMaterial &material,
                                              const std::vector<Touch> &touching, View<Vec3> start, View<Vec3> now) const {
     std::vector<Contact> found = collect<Contact>(int(touching.size()), [&](int k, std::vector<Contact> &contacts) {
         const Touch &touch = touching[k];
-        for_places(mesh, touch, now, [&](const Place &place, double apart, double distance, double barrier_end, double room) {
+        for_pushing(mesh, touch, now, [&](const Place &place, double apart, double distance, double barrier_end, double room) {
             Contact contact = ringlet::contact(mesh, material, touch, place, now);
             contact.distance = distance;
             contact.barrier_end = barrier_end;
@@ -222,7 +218,7 @@ std::vector<ContactSet::Push> ContactSet::pushing(const CollisionMesh &mesh, con
                                                   const std::vector<Touch> &touching, View<Vec3> elsewhere) const {
     std::vector<Push> found = collect<Push>(int(touching.size()), [&](int k, std::vector<Push> &pushes) {
         const Touch &touch = touching[k];
-        for_places(mesh, touch, elsewhere, [&](const Place &place, double apart, double distance, double barrier_end, double) {
+        for_pushing(mesh, touch, elsewhere, [&](const Place &place, double apart, double distance, double barrier_end, double) {
             const Sides of = sides(mesh, touch, place.nearest);
             pushes.push_back({name(touch, place.which),
                               {mesh.object[of.vertex[0]], mesh.object[of.vertex[3]]},

@@ -95,7 +95,7 @@ public:
 
 private:
     template <class Work>
-    void for_places(const CollisionMesh &mesh, const Touch &touch, View<Vec3> now, const Work &work) const;
+    void for_pushing(const CollisionMesh &mesh, const Touch &touch, View<Vec3> now, const Work &work) const;
     std::vector<Contact> of_touching(const CollisionMesh &mesh, const ContactMaterial &material,
                                      const std::vector<Touch> &touching, View<Vec3> start, View<Vec3> now) const;
     void index(const CollisionMesh &mesh);

@@ -22,7 +22,7 @@ HoldBack::HoldBack(const FilterScene &scene, const NearPairs &near, View<Vec3> s
                            const auto [a, b] = pair.objects;
                            if (pair.of_edges && a < strands_ && b < strands_ && a != b) work(a, &pair), work(b, &pair);
                        };
-                       for (const NearPair *pair : near.may_touch()) look_at(*pair);
+                       for (const NearPair *pair : near.may_come_near()) look_at(*pair);
                        for (const NearPair &pair : passing_) look_at(pair);
                    }};
 }

@@ -21,8 +21,12 @@ inline constexpr double no_impact = std::numeric_limits<double>::infinity();
 namespace impact {
 
 // The first `First` of four vertices are one primitive, the others are the other.
-template <int First, class Closest>
-double time(const Vec3 x[4], const Vec3 p[4], double min_distance, double fraction, const Closest &closest_points) {
+template <int First> ClosestPoints closest(const Vec3 x[4]) {
+    return (First == 2 ? closest_edge_edge : closest_point_triangle)(x[0], x[1], x[2], x[3]);
+}
+
+// `nearest` says where they are closest at the start.
+template <int First> double time(const Vec3 x[4], const Vec3 p[4], double min_distance, ClosestPoints nearest) {
     constexpr double left = 0.1, done = 0.01; // of what may be given away: what a step leaves, and when to stop
     constexpr double touching = 1e-100;       // [m]: no direction leads from one to the other
     constexpr int most_steps = 200;
@@ -36,15 +40,11 @@ double time(const Vec3 x[4], const Vec3 p[4], double min_distance, double fracti
     if (motion2 == 0.0) return no_impact;
     if (!std::isfinite(motion2)) return 0.0;
 
-    double t = 0.0, kept = 0.0, enough = 0.0;
+    const double kept = std::max(min_distance, touching), enough = done * (std::sqrt(nearest.distance2) - kept);
+    double t = 0.0;
     std::array<Vec3, 4> now = start;
     for (int step = 0; step < most_steps; ++step) {
-        const ClosestPoints nearest = closest_points(now[0], now[1], now[2], now[3]);
         const double distance = std::sqrt(nearest.distance2);
-        if (step == 0) {
-            kept = std::max({min_distance, fraction * distance, touching});
-            enough = done * (distance - kept);
-        }
         if (!(distance - kept > enough)) return t;
         Vec3 n = Vec3::Zero();
         for (int i = 0; i < 4; ++i) n += (nearest.weights[i] / distance) * now[i];
@@ -70,6 +70,7 @@ double time(const Vec3 x[4], const Vec3 p[4], double min_distance, double fracti
         if (safe) return no_impact;
         t = std::min(t + advance, 1.0);
         for (int i = 0; i < 4; ++i) now[i] = start[i] + t * motion[i];
+        nearest = closest<First>(now.data());
     }
     return t;
 }
@@ -77,14 +78,14 @@ double time(const Vec3 x[4], const Vec3 p[4], double min_distance, double fracti
 } // namespace impact
 
 // x: the four vertices [m]; p: their displacements [m] while time goes from 0 to 1 along straight lines. Returns a time in [0,
-// 1] until which the distance stays above `min_distance` and above `fraction` of what it is at the start, or `no_impact` if it
-// always does. A pair that moves but has no more than `min_distance` at the start may not move at all: 0.
-inline double edge_edge_impact(const Vec3 x[4], const Vec3 p[4], double min_distance, double fraction = 0.0) {
-    return impact::time<2>(x, p, min_distance, fraction, closest_edge_edge); // vertices: a0 a1, b0 b1
+// 1] until which the distance stays above `min_distance`, or `no_impact` if it always does. A pair that moves but has no more
+// than `min_distance` at the start may not move at all: 0.
+inline double edge_edge_impact(const Vec3 x[4], const Vec3 p[4], double min_distance) {
+    return impact::time<2>(x, p, min_distance, impact::closest<2>(x)); // vertices: a0 a1, b0 b1
 }
 
-inline double point_triangle_impact(const Vec3 x[4], const Vec3 p[4], double min_distance, double fraction = 0.0) {
-    return impact::time<1>(x, p, min_distance, fraction, closest_point_triangle); // vertices: the point, then the triangle's
+inline double point_triangle_impact(const Vec3 x[4], const Vec3 p[4], double min_distance) {
+    return impact::time<1>(x, p, min_distance, impact::closest<1>(x)); // vertices: the point, then the triangle's
 }
 
 } // namespace ringlet

@@ -21,7 +21,8 @@ double impact_time(const NearPair &pair, const std::array<int, N> &a, const std:
                    View<Vec3> end) {
     const double nearer = most_nearer(a, b, start, end);
     if (pair.apart - 0.5 * pair.distance > nearer) return no_impact;
-    pair.apart = std::sqrt(closest_points(start, a, b).distance2);
+    const ClosestPoints nearest = closest_points(start, a, b);
+    pair.apart = std::sqrt(nearest.distance2);
     const double kept = std::min({0.5 * pair.distance, std::max(0.2 * pair.apart, pair.distance / 250), 0.9 * pair.apart});
     if (pair.apart - kept > nearer) return no_impact;
     Vec3 x[4], p[4];
@@ -30,10 +31,7 @@ double impact_time(const NearPair &pair, const std::array<int, N> &a, const std:
         x[i] = start[v];
         p[i] = end[v] - start[v];
     }
-    if constexpr (N == 2)
-        return edge_edge_impact(x, p, kept);
-    else
-        return point_triangle_impact(x, p, kept);
+    return impact::time<N>(x, p, kept, nearest);
 }
 
 } // namespace

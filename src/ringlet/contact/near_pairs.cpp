@@ -2,45 +2,9 @@
 
 #include "ringlet/contact/collect.h"
 
-#include <cmath>
 #include <limits>
-#include <type_traits>
 
 namespace ringlet {
-namespace {
-
-template <size_t N, size_t M>
-bool boxes_are_near(View<Vec3> x, const std::array<int, N> &a, const std::array<int, M> &b, double distance) {
-    const auto corner = [&](const auto &primitive, const auto &further) {
-        Vec3 corner = x[primitive[0]];
-        for (size_t k = 1; k < primitive.size(); ++k) corner = further(corner, x[primitive[k]]);
-        return corner;
-    };
-    const auto lower = [](const Vec3 &p, const Vec3 &q) -> Vec3 { return p.cwiseMin(q); };
-    const auto upper = [](const Vec3 &p, const Vec3 &q) -> Vec3 { return p.cwiseMax(q); };
-    const Vec3 above = corner(b, lower) - corner(a, upper), below = corner(a, lower) - corner(b, upper);
-    return !(above.cwiseMax(below).maxCoeff() > distance);
-}
-
-template <class Pair> bool counts(const Pair &pair, View<unsigned char> objects) {
-    const auto counts = [&](int object) { return size_t(object) < objects.size() && objects[object] != 0; };
-    return counts(pair.objects[0]) || counts(pair.objects[1]);
-}
-
-// Tells `measured` how far the two are apart, where that had to be measured [m].
-template <class Pair, class Measured>
-void add_if_touching(const CollisionMesh &mesh, const Pair &pair, View<Vec3> at, const Measured &measured,
-                     std::vector<Touch> &found) {
-    with_vertices(mesh, pair, [&](const auto &a, const auto &b) {
-        if (!boxes_are_near(at, a, b, pair.distance)) return;
-        const ClosestPoints nearest = closest_points(at, a, b);
-        const double apart = std::sqrt(nearest.distance2);
-        measured(apart);
-        if (apart < pair.distance) found.push_back({pair.of, pair.of_edges, pair.distance, nearest});
-    });
-}
-
-} // namespace
 
 NearPairs::NearPairs(const CollisionMesh &mesh)
     : mesh_(mesh), broad_phase_(mesh), ways_of_(mesh), homes_(mesh), vertices_(mesh.moves.size()), edges_(mesh.edges.size()),
@@ -83,7 +47,7 @@ void NearPairs::forget() {
     knows_all_here_ = false;
     known_.clear();
     low_.clear(), high_.clear();
-    may_touch_.clear();
+    may_touch_.clear(), may_come_near_.clear();
 }
 
 void NearPairs::note(View<Vec3> start, View<Vec3> end, double margin, double far) {
@@ -169,10 +133,12 @@ void NearPairs::set_out(View<Vec3> start, View<Vec3> end) {
         NearPair &pair = known_[k];
         if (!quick(pair) && reach(pair) && ways_of_.with_boxes(pair, ways_overlap)) may_touch.push_back(&pair);
     });
-    may_meet_ = collect<NearPair *>(int(may_touch_.size()), [&](int k, std::vector<NearPair *> &may_meet) {
-        NearPair &pair = *may_touch_[k];
-        if (pair.apart - way(pair) < 0.5 * pair.distance && ways_of_.with_boxes(pair, ringlet::may_meet))
-            may_meet.push_back(&pair);
+    may_come_near_ = collect<NearPair *>(int(may_touch_.size()), [&](int k, std::vector<NearPair *> &may_come_near) {
+        if (comes_near(*may_touch_[k])) may_come_near.push_back(may_touch_[k]);
+    });
+    may_meet_ = collect<NearPair *>(int(may_come_near_.size()), [&](int k, std::vector<NearPair *> &may_meet) {
+        NearPair &pair = *may_come_near_[k];
+        if (ways_of_.with_boxes(pair, ringlet::may_meet)) may_meet.push_back(&pair);
     });
     meet_passing();
 }
@@ -184,10 +150,9 @@ void NearPairs::set_out_anew(View<Vec3> start, View<Vec3> end, View<unsigned cha
         std::erase_if(passing_, [&](const NearPair &pair) { return has_changed(pair); });
         merge(passing_, look_for_quick(changed));
     }
-    may_meet_ = collect<NearPair *>(int(may_touch_.size()), [&](int k, std::vector<NearPair *> &may_meet) {
-        NearPair &pair = *may_touch_[k];
-        if (has_changed(pair) && pair.apart - way(pair) < 0.5 * pair.distance && ways_of_.with_boxes(pair, ringlet::may_meet))
-            may_meet.push_back(&pair);
+    may_meet_ = collect<NearPair *>(int(may_come_near_.size()), [&](int k, std::vector<NearPair *> &may_meet) {
+        NearPair &pair = *may_come_near_[k];
+        if (has_changed(pair) && comes_near(pair) && ways_of_.with_boxes(pair, ringlet::may_meet)) may_meet.push_back(&pair);
     });
     meet_passing();
 }
@@ -216,7 +181,7 @@ void NearPairs::arrive(View<Vec3> start, View<Vec3> end) {
 
 PairsInReach NearPairs::in_reach(View<unsigned char> objects) const {
     const auto look_at = [&](const NearPair &pair, PairsInReach &found) {
-        if (reach(pair) && counts(pair, objects))
+        if (reach(pair) && either_counts(pair, objects))
             found.push_back({pair.of,
                              pair.of_edges,
                              pair.objects,
@@ -233,25 +198,17 @@ PairsInReach NearPairs::in_reach(View<unsigned char> objects) const {
 }
 
 std::vector<Touch> NearPairs::touching(View<Vec3> positions) {
-    const auto look_at = [&](const NearPair &pair, std::vector<Touch> &found) {
-        if (reach(pair)) add_if_touching(mesh_, pair, positions, [&](double apart) { pair.apart = apart; }, found);
+    const auto note = [](const NearPair &pair, double apart) { pair.apart = apart; };
+    const auto touching = [&](size_t count, const auto &pair_of) {
+        return collect_parts<Touch>(int(count), [&](int begin, int end, std::vector<Touch> &found) {
+            Touching<NearPair, decltype(note)> some(mesh_, positions, note, found);
+            for (int k = begin; k < end; ++k)
+                if (const NearPair &pair = pair_of(k); reach(pair)) some.look_at(pair);
+        });
     };
-    std::vector<Touch> all =
-        collect<Touch>(int(may_touch_.size()), [&](int k, auto &found) { look_at(*may_touch_[k], found); });
-    merge(all, collect<Touch>(int(passing_.size()), [&](int k, auto &found) { look_at(passing_[k], found); }));
+    std::vector<Touch> all = touching(may_touch_.size(), [&](int k) -> const NearPair & { return *may_touch_[k]; });
+    merge(all, touching(passing_.size(), [&](int k) -> const NearPair & { return passing_[k]; }));
     return all;
-}
-
-std::vector<Touch> touching(const CollisionMesh &mesh, const PairsInReach &pairs, View<Vec3> positions,
-                            View<unsigned char> objects, View<double> gone) {
-    const auto way = [&](const PairInReach &pair, int k) {
-        return size_t(pair.objects[k]) < gone.size() ? gone[pair.objects[k]] * pair.ways[k] : 0.0;
-    };
-    return collect<Touch>(int(pairs.size()), [&](int k, std::vector<Touch> &found) {
-        const PairInReach &pair = pairs[k];
-        if (counts(pair, objects) && pair.between < way(pair, 0) + way(pair, 1))
-            add_if_touching(mesh, pair, positions, [](double) {}, found);
-    });
 }
 
 } // namespace ringlet

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ringlet/contact/broad_phase.h"
+#include "ringlet/contact/pairs_in_reach.h"
 #include "ringlet/contact/path_boxes.h"
 #include "ringlet/geometry/rigid_motion.h"
 
@@ -18,26 +19,6 @@ struct NearPair {
     mutable double apart; // noted by whoever measures it: no less is between them where things were when they last arrived [m]
     std::array<int, 2> objects;
 };
-
-// Two that touch.
-struct Touch {
-    std::array<int, 2> of;
-    bool of_edges;
-    double distance; // r [m]
-    ClosestPoints nearest;
-};
-
-// Two that may touch on a move.
-struct PairInReach {
-    std::array<int, 2> of;
-    bool of_edges;
-    std::array<int, 2> objects;
-    double distance;            // r [m]
-    double between;             // no less is between them at the start, less r [m]
-    std::array<double, 2> ways; // how far each goes at most [m]
-};
-
-using PairsInReach = std::vector<PairInReach>;
 
 // A pair that is known is apart by what was measured last, less what its two have moved since, on each move by themselves or,
 // once they have arrived, relative to one another: while that is enough, nothing has to be computed. Pairs are noted for
@@ -66,9 +47,9 @@ public:
     // In order, the pairs that may come nearer than half their distance on the way; of those that set out anew, only what has
     // changed. Whoever measures one may note how far it is apart at the start.
     const std::vector<NearPair *> &may_meet() const { return may_meet_; }
-    // Those that may touch if each goes as far as it likes: of those that are known, and of what is quick, which change with
-    // set_out_anew().
-    const std::vector<NearPair *> &may_touch() const { return may_touch_; }
+    // Those that may come so near if each goes as far as it likes, wherever that leads: of those that are known, and of what is
+    // quick, which change with set_out_anew().
+    const std::vector<NearPair *> &may_come_near() const { return may_come_near_; }
     const std::vector<NearPair> &passing() const { return passing_; }
     void arrive(View<Vec3> start, View<Vec3> end);          // all of it, or any part of its last way
     void arrive_as_one(View<Vec3> start, View<Vec3> end);   // all of it as it last set out as one
@@ -92,6 +73,7 @@ private:
     void fit_ways(View<Vec3> start, View<Vec3> end);
     void measure_ways(View<Vec3> start, View<Vec3> end, View<unsigned char> changed);
     bool reach(const NearPair &pair) const { return pair.apart - way(pair) < pair.distance; }
+    bool comes_near(const NearPair &pair) const { return pair.apart - way(pair) < 0.5 * pair.distance; }
     double way(const NearPair &pair) const { return double(first(pair).length) + second(pair).length; }
     bool quick(const NearPair &pair) const { return any_quick_ && (first(pair).quick || second(pair).quick); }
     const Way &first(const NearPair &pair) const { return (pair.of_edges ? edges_ : vertices_)[pair.of[0]]; }
@@ -124,13 +106,8 @@ private:
     double least_radius_ = 0.0;         // of what moves [m]
     std::vector<double> strays_;        // how far each vertex ends from where a motion as one would lead it [m]
     std::vector<NearPair *> may_touch_; // of the known, those whose ways come so near
-    std::vector<NearPair *> may_meet_;
+    std::vector<NearPair *> may_come_near_, may_meet_;
 };
-
-// Those that touch there, in order, of pairs with one of the objects that count, each of which has gone that part of its way;
-// objects beyond these neither count nor go.
-std::vector<Touch> touching(const CollisionMesh &mesh, const PairsInReach &pairs, View<Vec3> positions,
-                            View<unsigned char> objects, View<double> gone);
 
 // By how much two primitives that move straight can at most come nearer: what they move by together does not count [m].
 template <size_t N, size_t M>
@@ -149,12 +126,6 @@ template <class Pair> void merge(std::vector<Pair> &pairs, const std::vector<Pai
     const size_t size = pairs.size();
     pairs.insert(pairs.end(), more.begin(), more.end());
     std::inplace_merge(pairs.begin(), pairs.begin() + size, pairs.end(), before<Pair>);
-}
-
-// Calls work with the vertices of the two of a pair.
-template <class Pair, class Work> auto with_vertices(const CollisionMesh &mesh, const Pair &pair, const Work &work) {
-    if (pair.of_edges) return work(mesh.edges[pair.of[0]], mesh.edges[pair.of[1]]);
-    return work(std::array{pair.of[0]}, mesh.triangles[pair.of[1]]);
 }
 
 } // namespace ringlet

@@ -18,7 +18,7 @@ double NearPairs::strays(const NearPair &pair) const {
 // stray. So pairs that are not known, which are as far apart as they touch or farther, keep more than half of that.
 void NearPairs::set_out_as_one(View<Vec3> start, View<Vec3> end, const RigidMotion &motion, View<int> rigid) {
     quick_.assign(start.size(), 0);
-    passing_.clear(), may_touch_.clear(), may_meet_.clear();
+    passing_.clear(), may_touch_.clear(), may_come_near_.clear(), may_meet_.clear();
     any_quick_ = boxes_ways_ = false;
     fit_ways(start, end);
     go_as_one(start, end, motion, rigid, std::vector<unsigned char>(start.size(), 1));

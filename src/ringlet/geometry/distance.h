@@ -1,6 +1,7 @@
 // The closest points of two segments, and of a point and a triangle.
 #pragma once
 
+#include "ringlet/geometry/closest_of_edges.h"
 #include "ringlet/math/types.h"
 
 #include <Eigen/Geometry>
@@ -28,24 +29,20 @@ inline void take_nearer(ClosestPoints &nearest, const ClosestPoints &other) {
 
 } // namespace closest
 
-// Segments a and b. The nearest point of the two lines, s clamped, then t, then s again, is the nearest point of the segments
-// (Ericson 2005, 5.1.9). Where they are parallel to rounding the lines have none, and one of the four ends is as near as
-// anything.
+// Segments a and b, s along the one and t along the other.
+inline ClosestPoints at_edges(double s, double t, double distance2) { return {{1.0 - s, s, t - 1.0, -t}, distance2}; }
+
+// Where they are parallel to rounding, one of the four ends is as near as anything.
 inline ClosestPoints closest_edge_edge(const Vec3 &a0, const Vec3 &a1, const Vec3 &b0, const Vec3 &b1) {
-    const Vec3 a = a1 - a0, b = b1 - b0, between = a0 - b0, normal = a.cross(b);
-    const double aa = a.squaredNorm(), bb = b.squaredNorm(), ab = a.dot(b), sine2 = normal.squaredNorm();
+    const auto read = [](const Vec3 &x) { return RINGLET_SIMD::Vec<double>{x[0], x[1], x[2]}; };
+    const auto closest = RINGLET_SIMD::closest_of_edges(read(a0), read(a1), read(b0), read(b1));
+    ClosestPoints nearest = at_edges(closest.s, closest.t, closest.distance2);
+    if (closest.askew) return nearest;
+    const Vec3 a = a1 - a0, b = b1 - b0, between = a0 - b0;
+    const double aa = a.squaredNorm(), bb = b.squaredNorm(), ab = a.dot(b);
     const double a_between = a.dot(between), b_between = b.dot(between);
-    const auto at = [&](double s, double t) -> ClosestPoints {
-        return {{1.0 - s, s, t - 1.0, -t}, (between + s * a - t * b).squaredNorm()};
-    };
-    ClosestPoints nearest;
-    if (sine2 > 0.0) { // by cross products: from dot products it would be lost in rounding at angles of 1e-8
-        const double s = std::clamp(normal.dot(b.cross(between)) / sine2, 0.0, 1.0);
-        const double t = closest::fraction(b_between + s * ab, bb);
-        nearest = at(closest::fraction(t * ab - a_between, aa), t);
-    }
-    constexpr double parallel = 1e-12; // sin² of the angle
-    if (sine2 > parallel * aa * bb) return nearest;
+    const auto at = [&](double s, double t) { return at_edges(s, t, (between + s * a - t * b).squaredNorm()); };
+    if (!(nearest.distance2 >= 0.0)) nearest = {}; // not a number
     closest::take_nearer(nearest, at(0.0, closest::fraction(b_between, bb)));
     closest::take_nearer(nearest, at(1.0, closest::fraction(b_between + ab, bb)));
     closest::take_nearer(nearest, at(closest::fraction(-a_between, aa), 0.0));

@@ -64,7 +64,7 @@ public:
         for (int c = columns_ - 1; c >= 0; --c) {
             const T *column = entries_ + c * band;
             T value = b[c];
-            for (int k = 1; k < band; ++k) value -= column[k] * near[k - 1];
+            for (int k = band - 1; k > 0; --k) value -= column[k] * near[k - 1]; // what was solved last, last
             for (int k = band - 1; k > 0; --k) near[k] = near[k - 1];
             near[0] = b[c] = value;
         }
