@@ -32,6 +32,7 @@ public:
 
     void leave_homes() { away_.assign(mesh_.moves.size(), 1); } // all have changed since find()
 
+    const Incidence &incidence() const { return incidence_; }
     int built() const { return edge_tree_.built(); } // how often the tree of edges was built, for studies
 
 private:

@@ -7,8 +7,10 @@
 namespace ringlet {
 
 NearPairs::NearPairs(const CollisionMesh &mesh)
-    : mesh_(mesh), broad_phase_(mesh), ways_of_(mesh), homes_(mesh), vertices_(mesh.moves.size()), edges_(mesh.edges.size()),
-      triangles_(mesh.triangles.size()), quick_(mesh.moves.size()), least_radius_(std::numeric_limits<double>::infinity()) {
+    : mesh_(mesh), all_(mesh), broad_phase_(mesh), ways_of_(mesh), homes_(mesh), vertices_(mesh.moves.size()),
+      edges_(mesh.edges.size()), triangles_(mesh.triangles.size()), quick_(mesh.moves.size()), changed_(mesh.moves.size()),
+      changed_edges_(mesh.edges.size()), changed_triangles_(mesh.triangles.size()),
+      least_radius_(std::numeric_limits<double>::infinity()) {
     for (size_t v = 0; v < mesh.moves.size(); ++v)
         if (mesh.moves[v]) least_radius_ = std::min(least_radius_, mesh.radius[v]);
 }
@@ -54,27 +56,27 @@ void NearPairs::note(View<Vec3> start, View<Vec3> end, double margin, double far
     const bool anew = low_.empty(), have_left = knows_all_here_; // as one: all boxes are still where they were
     knows_all_here_ = false;
     low_.resize(start.size()), high_.resize(start.size());
-    std::vector<unsigned char> stray(start.size(), 1);
-    size_t strays = 0;
+    std::vector<unsigned char> stray(start.size(), 0);
+    std::vector<int> strays;
     for (size_t v = 0; v < start.size(); ++v) {
         const bool goes_far = (end[v] - start[v]).squaredNorm() > far * far;
         const Vec3 &to = goes_far ? start[v] : end[v];
         stray[v] = anew || leaves(v, start[v]) || leaves(v, to);
-        strays += stray[v];
         if (!stray[v]) continue;
+        strays.push_back(int(v));
         low_[v] = start[v].cwiseMin(to).array() - margin;
         high_[v] = start[v].cwiseMax(to).array() + margin;
     }
-    if (strays == 0) return;
+    if (strays.empty()) return;
     passing_.clear();
     for (auto *ways : {&vertices_, &edges_, &triangles_}) std::fill(ways->begin(), ways->end(), Way{});
     Candidates found;
-    if (anew || have_left || 2 * strays > start.size()) { // for most of them it takes no longer to look for all
+    if (anew || have_left || 2 * strays.size() > start.size()) { // for most of them it takes no longer to look for all
         homes_.fit_within(low_, high_);
         broad_phase_.find(homes_, found);
         known_ = pairs_of(found);
     } else {
-        homes_.fit_anew(low_, high_, stray);
+        homes_.fit_anew(low_, high_, strays);
         broad_phase_.find_quick(homes_, homes_, stray, stray, found);
         std::erase_if(known_, [&](const NearPair &pair) { return any_of(pair, stray); });
         merge(known_, pairs_of(found));
@@ -91,29 +93,34 @@ void NearPairs::fit_ways(View<Vec3> start, View<Vec3> end) {
 }
 
 // Of what has changed.
-void NearPairs::measure_ways(View<Vec3> start, View<Vec3> end, View<unsigned char> changed) {
-    changed_.assign(changed.begin(), changed.end());
+void NearPairs::measure_ways(View<Vec3> start, View<Vec3> end, const Affected &changed) {
 #pragma omp parallel for schedule(static)
-    for (int v = 0; v < int(start.size()); ++v) {
-        if (!changed[v]) continue;
+    for (int k = 0; k < int(changed.vertices.size()); ++k) {
+        const int v = changed.vertices[k];
         const float way = float((end[v] - start[v]).norm());
         vertices_[v] = {way + way * std::numeric_limits<float>::epsilon(), quick_[v] != 0};
     }
-    const auto of_primitives = [&](const auto &primitives, std::vector<Way> &ways, std::vector<unsigned char> &some) {
-        some.resize(primitives.size());
+    const auto of_primitives = [&](const std::vector<int> &numbers, const auto &primitives, std::vector<Way> &ways) {
 #pragma omp parallel for schedule(static)
-        for (int i = 0; i < int(primitives.size()); ++i) {
-            some[i] = ringlet::any_of(changed, primitives[i]);
-            if (!some[i]) continue;
-            ways[i] = {};
-            for (const int v : primitives[i]) {
-                ways[i].length = std::max(ways[i].length, vertices_[v].length);
-                ways[i].quick |= vertices_[v].quick;
+        for (int k = 0; k < int(numbers.size()); ++k) {
+            Way way;
+            for (const int v : primitives[numbers[k]]) {
+                way.length = std::max(way.length, vertices_[v].length);
+                way.quick |= vertices_[v].quick;
             }
+            ways[numbers[k]] = way;
         }
     };
-    of_primitives(mesh_.edges, edges_, changed_edges_);
-    of_primitives(mesh_.triangles, triangles_, changed_triangles_);
+    of_primitives(changed.edges, mesh_.edges, edges_);
+    of_primitives(changed.triangles, mesh_.triangles, triangles_);
+}
+
+void NearPairs::mark_changed(const Affected &changed) {
+    const auto mark = [](const std::vector<int> &numbers, std::vector<unsigned char> &all) {
+        std::fill(all.begin(), all.end(), 0);
+        for (const int i : numbers) all[i] = 1;
+    };
+    mark(changed.vertices, changed_), mark(changed.edges, changed_edges_), mark(changed.triangles, changed_triangles_);
 }
 
 void NearPairs::set_out(View<Vec3> start, View<Vec3> end) {
@@ -126,7 +133,8 @@ void NearPairs::set_out(View<Vec3> start, View<Vec3> end) {
         any_quick = any_quick || quick_[v];
     }
     any_quick_ = any_quick;
-    measure_ways(start, end, std::vector<unsigned char>(start.size(), 1));
+    mark_changed(all_);
+    measure_ways(start, end, all_);
     fit_ways(start, end);
     passing_ = any_quick_ ? look_for_quick(quick_) : std::vector<NearPair>();
     may_touch_ = collect<NearPair *>(int(known_.size()), [&](int k, std::vector<NearPair *> &may_touch) {
@@ -144,8 +152,10 @@ void NearPairs::set_out(View<Vec3> start, View<Vec3> end) {
 }
 
 void NearPairs::set_out_anew(View<Vec3> start, View<Vec3> end, View<unsigned char> changed) {
-    measure_ways(start, end, changed);
-    ways_of_.fit_anew(start, end, changed);
+    const Affected some(mesh_, broad_phase_.incidence(), changed);
+    mark_changed(some);
+    measure_ways(start, end, some);
+    ways_of_.fit_anew(start, end, some.vertices);
     if (any_quick_) {
         std::erase_if(passing_, [&](const NearPair &pair) { return has_changed(pair); });
         merge(passing_, look_for_quick(changed));

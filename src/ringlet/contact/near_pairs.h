@@ -71,7 +71,8 @@ private:
         return !((to.array() >= low_[v].array()).all() && (to.array() <= high_[v].array()).all());
     }
     void fit_ways(View<Vec3> start, View<Vec3> end);
-    void measure_ways(View<Vec3> start, View<Vec3> end, View<unsigned char> changed);
+    void measure_ways(View<Vec3> start, View<Vec3> end, const Affected &changed);
+    void mark_changed(const Affected &changed);
     bool reach(const NearPair &pair) const { return pair.apart - way(pair) < pair.distance; }
     bool comes_near(const NearPair &pair) const { return pair.apart - way(pair) < 0.5 * pair.distance; }
     double way(const NearPair &pair) const { return double(first(pair).length) + second(pair).length; }
@@ -88,11 +89,12 @@ private:
     double room(int v, const Vec3 &at) const { // in its corridor, to every side; below 0 outside [m]
         return std::min((at - low_[v]).minCoeff(), (high_[v] - at).minCoeff());
     }
-    void go_as_one(View<Vec3> start, View<Vec3> end, const RigidMotion &motion, View<int> rigid, View<unsigned char> changed);
+    void go_as_one(View<Vec3> start, View<Vec3> end, const RigidMotion &motion, View<int> rigid, const Affected &changed);
     void meet_passing();
     double strays(const NearPair &pair) const; // both together, at most [m]
 
     const CollisionMesh &mesh_;
+    const Affected all_;
     BroadPhase broad_phase_;
     PathBoxes ways_of_, homes_;     // boxes of this move; of the corridors
     std::vector<Vec3> low_, high_;  // of the corridors; empty: nothing is known

@@ -21,27 +21,29 @@ void NearPairs::set_out_as_one(View<Vec3> start, View<Vec3> end, const RigidMoti
     passing_.clear(), may_touch_.clear(), may_come_near_.clear(), may_meet_.clear();
     any_quick_ = boxes_ways_ = false;
     fit_ways(start, end);
-    go_as_one(start, end, motion, rigid, std::vector<unsigned char>(start.size(), 1));
+    go_as_one(start, end, motion, rigid, all_);
 }
 
 void NearPairs::set_out_as_one_anew(View<Vec3> start, View<Vec3> end, const RigidMotion &motion, View<int> rigid,
                                     View<unsigned char> changed) {
-    ways_of_.fit_anew(start, end, changed);
-    go_as_one(start, end, motion, rigid, changed);
+    const Affected some(mesh_, broad_phase_.incidence(), changed);
+    ways_of_.fit_anew(start, end, some.vertices);
+    go_as_one(start, end, motion, rigid, some);
 }
 
 void NearPairs::go_as_one(View<Vec3> start, View<Vec3> end, const RigidMotion &motion, View<int> rigid,
-                          View<unsigned char> changed) {
+                          const Affected &changed) {
     constexpr double least_part = 0.75, hardly = 0.1; // of a distance; of the least radius
     const double part = 0.5 * std::sqrt(std::max(0.0, 1.0 + motion.turn.trace()));
     const bool known = !low_.empty() && part >= least_part;
     bool any_quick = any_quick_, all_rigid = !rigid.empty();
     strays_.resize(start.size());
+    mark_changed(changed);
 #pragma omp parallel for schedule(static) reduction(|| : any_quick) reduction(&& : all_rigid)
     for (int v = 0; v < int(start.size()); ++v) {
         const int as = rigid.empty() ? -1 : rigid[v];
         all_rigid = all_rigid && as >= 0 && as == rigid[0];
-        if (!changed[v]) continue;
+        if (!changed_[v]) continue;
         strays_[v] = (end[v] - motion(start[v])).norm();
         const bool follows =
             known && (!mesh_.moves[v] || as >= 0) && strays_[v] <= std::min(hardly * least_radius_, room(v, start[v]));
@@ -55,7 +57,7 @@ void NearPairs::go_as_one(View<Vec3> start, View<Vec3> end, const RigidMotion &m
     if (any_quick_) {
         Candidates found;
         if (boxes_ways_)
-            broad_phase_.find_quick(ways_of_, ways_of_, quick_, changed, found);
+            broad_phase_.find_quick(ways_of_, ways_of_, quick_, changed_, found);
         else
             broad_phase_.find(ways_of_, found, quick_);
         boxes_ways_ = true;

@@ -1,5 +1,7 @@
 #include "ringlet/contact/path_boxes.h"
 
+#include <numeric>
+
 namespace ringlet {
 namespace {
 
@@ -12,10 +14,12 @@ template <class Primitives> std::vector<float> radii(const CollisionMesh &mesh, 
 } // namespace
 
 PathBoxes::PathBoxes(const CollisionMesh &mesh)
-    : mesh_(mesh), edge_radii_(radii(mesh, mesh.edges)), triangle_radii_(radii(mesh, mesh.triangles)),
-      starts_(mesh.moves.size()), ends_(mesh.moves.size()) {}
+    : mesh_(mesh), edge_radii_(radii(mesh, mesh.edges)), triangle_radii_(radii(mesh, mesh.triangles)), all_(mesh.moves.size()),
+      starts_(mesh.moves.size()), ends_(mesh.moves.size()) {
+    std::iota(all_.begin(), all_.end(), 0);
+}
 
-void PathBoxes::fit_anew(View<Vec3> start_or_low, View<Vec3> end_or_high, View<unsigned char> changed) {
+void PathBoxes::fit_anew(View<Vec3> start_or_low, View<Vec3> end_or_high, View<int> vertices) {
     constexpr float lost = 0x1p-20f; // of the largest coordinate, in single precision
     const auto place = [](const Vec3 &point, const Vec3 &origin) {
         const Vec3 from = point - origin;
@@ -26,8 +30,8 @@ void PathBoxes::fit_anew(View<Vec3> start_or_low, View<Vec3> end_or_high, View<u
     {
         Eigen::Array4f here = Eigen::Array4f::Zero();
 #pragma omp for schedule(static) nowait
-        for (int v = 0; v < int(changed.size()); ++v) {
-            if (!changed[v]) continue;
+        for (int k = 0; k < int(vertices.size()); ++k) {
+            const int v = vertices[k];
             starts_[v] = place(start_or_low[v], origin_.start);
             ends_[v] = place(end_or_high[v], origin_.end);
             here = here.max(starts_[v].abs()).max(ends_[v].abs());
@@ -42,7 +46,7 @@ void PathBoxes::fit(View<Vec3> start, View<Vec3> end, const Origin &origin, doub
     origin_ = origin;
     still_ = false;
     wider_ = 0.0f;
-    fit_anew(start, end, std::vector<unsigned char>(start.size(), 1));
+    fit_anew(start, end, all_);
     wider_ += float(0.5 * margin);
 }
 
@@ -51,7 +55,7 @@ void PathBoxes::fit_within(View<Vec3> low, View<Vec3> high) {
     origin_ = {first, first};
     still_ = true;
     wider_ = 0.0f;
-    fit_anew(low, high, std::vector<unsigned char>(low.size(), 1));
+    fit_anew(low, high, all_);
 }
 
 } // namespace ringlet

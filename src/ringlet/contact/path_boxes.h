@@ -23,8 +23,8 @@ public:
     void fit(View<Vec3> start, View<Vec3> end, const Origin &origin, double margin = 0.0);
     // Vertices may be anywhere in boxes, from `low` to `high` [m].
     void fit_within(View<Vec3> low, View<Vec3> high);
-    // Either of them again, where some vertices have `changed`: boxes of others stay as they are, or grow.
-    void fit_anew(View<Vec3> start_or_low, View<Vec3> end_or_high, View<unsigned char> changed);
+    // Either of them again, where some `vertices` have changed: boxes of others stay as they are, or grow.
+    void fit_anew(View<Vec3> start_or_low, View<Vec3> end_or_high, View<int> vertices);
 
     const Origin &origin() const { return origin_; }
     bool still() const { return still_; } // boxes are the same at the end
@@ -65,6 +65,7 @@ private:
 
     const CollisionMesh &mesh_;
     std::vector<float> edge_radii_, triangle_radii_;
+    std::vector<int> all_; // vertices
     Origin origin_;
     std::vector<Eigen::Array4f> starts_, ends_; // of the ways, or the corners of what vertices stay in
     float wider_ = 0.0f;                        // [m]

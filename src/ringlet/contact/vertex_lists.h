@@ -4,6 +4,7 @@
 #include "ringlet/contact/collision_mesh.h"
 #include "ringlet/math/lists.h"
 
+#include <numeric>
 #include <vector>
 
 namespace ringlet {
@@ -37,6 +38,11 @@ struct Incidence {
 // Some vertices, and the primitives that have any of them, each once.
 struct Affected {
     std::vector<int> vertices, edges, triangles;
+
+    explicit Affected(const CollisionMesh &mesh) // all of them
+        : vertices(mesh.moves.size()), edges(mesh.edges.size()), triangles(mesh.triangles.size()) {
+        for (auto *all : {&vertices, &edges, &triangles}) std::iota(all->begin(), all->end(), 0);
+    }
 
     // By vertices that are marked.
     Affected(const CollisionMesh &mesh, const Incidence &incidence, View<unsigned char> marked) {
