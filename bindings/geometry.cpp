@@ -78,6 +78,7 @@ nb::tuple above_solid(const Solid &solid, const Array3<double> &places) {
 }
 
 using RowMajor3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+using Matrices3 = nb::ndarray<const double, nb::shape<-1, 3, 3>, nb::c_contig, nb::device::cpu>;
 
 // (positions (k, 3), frames (k, 3, 3)) of roots on the mesh as it stands.
 nb::tuple root_frames(const Array3<double> &points, const Array3<int> &triangles, const Array1<int> &root_triangle,
@@ -103,6 +104,18 @@ nb::tuple root_frames(const Array3<double> &points, const Array3<int> &triangles
                           to_numpy<double>(std::move(frames), {count, 3, 3}));
 }
 
+// (m,): whether a triangle is flat.
+nb::ndarray<nb::numpy, bool> flat_triangles(const Array3<double> &points, const Array3<int> &triangles) {
+    const TriangleMesh mesh = mesh_of(points, triangles);
+    std::vector<unsigned char> flat(mesh.triangles.size());
+    {
+        nb::gil_scoped_release release;
+#pragma omp parallel for schedule(static)
+        for (size_t i = 0; i < flat.size(); ++i) flat[i] = is_flat(mesh, int(i));
+    }
+    return to_numpy<bool>(std::move(flat), {mesh.triangles.size()});
+}
+
 CurveView curves_of(const Array3<double> &points, const Array1<int> &offsets) {
     const CurveView curves{vectors<Vec3>(points), view(offsets)};
     if (curves.offsets.empty() || curves.offsets.front() != 0 ||
@@ -111,6 +124,26 @@ CurveView curves_of(const Array3<double> &points, const Array1<int> &offsets) {
     for (int i = 0; i < curves.count(); ++i)
         if (curves.offsets[i + 1] - curves.offsets[i] < 2) throw std::invalid_argument("a curve has fewer than 2 points");
     return curves;
+}
+
+nb::ndarray<nb::numpy, double> carry_curves(const Array3<double> &points, const Array1<int> &offsets, const Matrices3 &turns,
+                                            const Array3<double> &from_places, const Array3<double> &to_places) {
+    const CurveView curves = curves_of(points, offsets);
+    const View<Vec3> from = vectors<Vec3>(from_places), to = vectors<Vec3>(to_places);
+    const size_t count = curves.count();
+    if (turns.shape(0) != count || from.size() != count || to.size() != count)
+        throw std::invalid_argument("turns and places need one row a curve");
+    std::vector<Vec3> carried(curves.points.size());
+    {
+        nb::gil_scoped_release release;
+#pragma omp parallel for schedule(static)
+        for (size_t i = 0; i < count; ++i) {
+            const Mat3 turn = Eigen::Map<const RowMajor3>(turns.data() + 9 * i);
+            for (int k = curves.offsets[i]; k < curves.offsets[i + 1]; ++k)
+                carried[k] = to[i] + turn * (curves.points[k] - from[i]);
+        }
+    }
+    return to_numpy<double>(std::move(carried), {carried.size(), 3});
 }
 
 // Frames (n, 3, 3) along curves; columns: axis, tangent × axis, tangent.
@@ -171,6 +204,10 @@ void bind_geometry(nb::module_ &module) {
         "root_frames", &root_frames, "points"_a, "triangles"_a, "root_triangle"_a, "root_barycentric"_a,
         "Roots on a mesh as it stands: positions (k, 3) [m] and frames (k, 3, 3), whose columns are tangent, bitangent and\n"
         "normal. The frame is tied to the material: now @ rest.T carries what grows there.");
+    module.def("flat_triangles", &flat_triangles, "points"_a, "triangles"_a,
+               "Which triangles (m,) are thinner than a billionth of their length, or not finite.");
+    module.def("carry_curves", &carry_curves, "points"_a, "offsets"_a, "turns"_a, "from_places"_a, "to_places"_a,
+               "Curves (n, 3) [m], each turned (curves, 3, 3) about one place (curves, 3) and put where another is.");
     module.def(
         "curve_frames", &curve_frames, "points"_a, "offsets"_a, "axis"_a,
         "Rotation-minimising frames (n, 3, 3) along curves (Wang et al. 2008), whose columns are the carried axis, tangent\n"

@@ -99,6 +99,26 @@ def test_a_root_is_carried_rigidly_by_a_mesh_that_moves_rigidly():
     assert np.allclose(now_frames @ rest_frames.transpose(0, 2, 1), turn)
 
 
+def test_each_curve_is_carried_by_its_own_rotation():
+    first, second = helix(points=40), helix(radius=0.02, points=25) + 0.1
+    turns = np.stack([rotation((0.2, 1.0, -0.4), 130.0), rotation((1.0, 0.0, 0.3), -20.0)])
+    from_places, to_places = np.array([[0.1, 0, 0], [0, 0.2, 0]], float), np.array([[1, 2, 3], [-1, 0, 5]], float)
+    offsets = np.array([0, 40, 65], np.int32)
+    carried = _core.carry_curves(np.concatenate([first, second]), offsets, turns, from_places, to_places)
+    assert np.allclose(carried[:40], (first - from_places[0]) @ turns[0].T + to_places[0])
+    assert np.allclose(carried[40:], (second - from_places[1]) @ turns[1].T + to_places[1])
+    with pytest.raises(ValueError, match="one row a curve"):
+        _core.carry_curves(first, offsets[:2], turns, from_places, to_places)
+
+
+def test_flat_triangles_are_those_without_area_or_not_finite():
+    points = np.array(
+        [[0, 0, 0], [1, 0, 0], [0, 1, 0], [2, 0, 0], [1, 3e-9, 0], [1, 5e-10, 0], [np.nan, 0, 0], [np.inf, 1, 0]]
+    )
+    triangles = np.array([[0, 1, 2], [0, 1, 3], [0, 3, 4], [0, 3, 5], [0, 1, 6], [0, 1, 7], [1, 1, 2]], np.int32)
+    assert _core.flat_triangles(points, triangles).tolist() == [False, True, False, True, True, True, True]
+
+
 def test_the_normal_of_roots_is_smooth_across_edges():
     mesh = ball(rings=12)
     angle = np.linspace(0.2, 1.2, 400)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
+from ringlet import _core
 from ringlet.errors import UserError
 from ringlet.mesh import Clip, Mesh
 from ringlet.settings import Section, did_you_mean
@@ -108,10 +109,7 @@ class Obstacle:
                 f"{self.mesh.name}: has {len(points)} points at frame {frame:g}, "
                 f"{len(self.mesh.points)} in its rest pose; must not change"
             )
-        corners = points[self.mesh.triangles]
-        e1, e2 = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-        longest = np.maximum((e1 * e1).sum(axis=1), (e2 * e2).sum(axis=1))
-        flat = ~(np.linalg.norm(np.cross(e1, e2), axis=1) > 1e-9 * longest)
+        flat = _core.flat_triangles(np.ascontiguousarray(points, np.float64), self.mesh.triangles)
         if flat.any():
             raise UserError(
                 f"{self.mesh.name}: at frame {frame:g} triangle {flat.argmax()} has no area or is not finite "

@@ -2,9 +2,16 @@
 
 #include "ringlet/geometry/frames.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace ringlet {
+
+bool is_flat(const TriangleMesh &mesh, int triangle) {
+    constexpr double least = 1e-9; // of its length
+    const Vec3 a = mesh.corner(triangle, 1) - mesh.corner(triangle, 0), b = mesh.corner(triangle, 2) - mesh.corner(triangle, 0);
+    return !(a.cross(b).norm() > least * std::max(a.squaredNorm(), b.squaredNorm()));
+}
 
 std::vector<Vec3> vertex_normals(const TriangleMesh &mesh) {
     std::vector<Vec3> normals(mesh.points.size(), Vec3::Zero());

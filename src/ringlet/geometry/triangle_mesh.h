@@ -20,6 +20,9 @@ struct TriangleMesh {
     }
 };
 
+// Whether a triangle is thinner than a billionth of its length, or not finite.
+bool is_flat(const TriangleMesh &mesh, int triangle);
+
 // Unit vertex normals weighted by angle (Thürmer and Wüthrich 1998): they do not depend on how a face is cut into triangles.
 std::vector<Vec3> vertex_normals(const TriangleMesh &mesh);
 
