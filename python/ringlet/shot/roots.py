@@ -29,7 +29,8 @@ class Roots:
         rest_place, rest_axes = self._rest
         place, axes = self._frames(scalp_points, f"frame {frame:g}")
         locks, turns = self.groom.locks, axes @ rest_axes.transpose(0, 2, 1)
-        return _core.carry_curves(locks.points, locks.offsets, turns, rest_place, place)
+        points = np.asarray(locks.points, np.float64)
+        return _core.carry_curves(points, locks.offsets, turns, rest_place, place)
 
     def _frames(self, scalp_points: NDArray[np.float64], when: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         scalp, locks = self.groom.scalp, self.groom.locks
