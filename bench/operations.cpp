@@ -85,6 +85,6 @@ int main() {
     hessian.solve(direction.data());
     tell("solve");
     const size_t bytes = sizeof(StrandRow<double>) + sizeof(StrandShape<double>) + 3 * sizeof(Vec<double>) +
-                         (4 * 4 + 4 * Matrix::band) * sizeof(double);
+                         (4 * 4 + Matrix::layout.begin(4)) * sizeof(double);
     std::printf("bytes worked in %zu\n", bytes);
 }

@@ -10,7 +10,7 @@ using namespace ringlet::baseline;
 
 namespace {
 
-using Matrix = Banded<double, 12>;
+using Matrix = Banded<double, 3, 12>;
 
 // Random squares over four consecutive vertices plus a diagonal: positive definite and as dense as the band allows.
 struct RandomSystem {

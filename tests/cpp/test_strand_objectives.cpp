@@ -85,7 +85,7 @@ template <class Objective> void gradient_agrees_with_differences() {
 
         Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(size, size);
         for (int c = 0; c < size; ++c)
-            for (int r = c; r < std::min(size, c + Objective::Matrix::band); ++r)
+            for (int r = c; r < std::min(size, c + Objective::Matrix::rows(c)); ++r)
                 dense(r, c) = dense(c, r) = hessian.entry(c)[r - c];
         BOOST_TEST(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(dense).eigenvalues()[0] > 0);
     }

@@ -2,48 +2,78 @@
 // is factored at once.
 #pragma once
 
+#include "ringlet/linear/band_layout.h"
 #include "ringlet/math/pack.h"
+
+#include <utility>
 
 namespace ringlet::RINGLET_SIMD {
 
-// The lower band, column by column: entry(c)[k] is the element in row c + k of column c, k = 0 … band − 1.
-template <class T, int band_> class Banded {
+// entry(c)[k] is the element in row c + k of column c, k = 0 … rows(c) − 1 (band_layout.h).
+template <class T, int block, int band> class Banded {
 public:
-    static constexpr int band = band_;
-    static constexpr int padding = band_; // columns behind the last, so that no loop needs an end test
-    static constexpr int entries(int columns) { return (columns + padding) * band; }
+    static constexpr BandLayout layout{block, band};
+    static constexpr int padding = (band + block - 1) / block * block; // columns behind the last: no loop needs an end test
+    static constexpr int entries(int columns) { return int(layout.begin(columns + padding)); }
+    static constexpr int rows(int column) { return layout.rows(column); }
 
+    // `columns`: whole blocks.
     Banded(T *memory, int columns) : entries_(memory), columns_(columns) {}
 
-    void set_zero() {
-        for (int i = 0; i < entries(columns_); ++i) entries_[i] = T{};
+    void set_zero() { set_zero(0, columns_ + padding); }
+    void set_zero(int from, int to) { // columns of whole blocks
+        for (T *i = entry(from); i < entry(to); ++i) *i = T{};
     }
 
-    T *entry(int column) { return entries_ + column * band; }
+    T *entry(int column) { return entries_ + layout.begin(column); }
 
-    // Adds coefficient · u uᵀ, where u stands in the rows first, first + 1 …
+    // Adds coefficient · u uᵀ, where u stands in the rows first, first + 1 … and `first` is that of a block.
     template <int count> void add_square(int first, T coefficient, const T (&u)[count]) {
+        add_squares(first, coefficient, reinterpret_cast<const T(&)[1][count]>(u));
+    }
+    // Of some u one after another.
+    template <int terms, int count> void add_squares(int first, T coefficient, const T (&u)[terms][count]) {
         static_assert(count <= band);
+        T *from = entry(first);
         for (int c = 0; c < count; ++c) {
-            T *column = entry(first + c);
-            const T weight = coefficient * u[c];
-            for (int r = c; r < count; ++r) column[r - c] += weight * u[r];
+            T *column = from + layout.begin(c);
+            T weight[terms];
+            for (int k = 0; k < terms; ++k) weight[k] = coefficient * u[k][c];
+            for (int r = c; r < count; ++r) {
+                T sum = column[r - c];
+                for (int k = 0; k < terms; ++k) sum += weight[k] * u[k][r];
+                column[r - c] = sum;
+            }
         }
     }
 
-    // Factors in place: A = L D Lᵀ; entry(c)[0] becomes 1/D, the rest L.
+    // Factors in place: A = L D Lᵀ; entry(c)[0] becomes 1/D, the rest L. What is below a block is reached once for all of its
+    // columns.
     void factor() {
-        for (int c = 0; c < columns_; ++c) {
-            T *pivot = entry(c);
-            const T inverse = 1.0 / pivot[0];
-            T scaled[band];
-            for (int k = 1; k < band; ++k) scaled[k] = inverse * pivot[k];
-            for (int k = 1; k < band; ++k) {
-                T *column = entry(c + k);
-                for (int r = k; r < band; ++r) column[r - k] -= scaled[k] * pivot[r];
+        for (int first = 0; first < columns_; first += block) {
+            T *from = entry(first);
+            T scaled[block][band];
+            each([&](auto c) {
+                T *pivot = from + layout.begin(c);
+                const T inverse = 1.0 / pivot[0];
+                scaled[c][0] = inverse;
+                for (int k = 1; k < rows(c); ++k) scaled[c][k] = inverse * pivot[k];
+                for (int k = 1; k < block - c; ++k) {
+                    T *column = from + layout.begin(c + k);
+                    for (int r = k; r < rows(c); ++r) column[r - k] -= scaled[c][k] * pivot[r];
+                }
+            });
+            for (int k = block; k < band; ++k) {
+                T *column = from + layout.begin(k);
+                for (int r = k; r < band; ++r) {
+                    T sum = column[r - k];
+                    each([&](auto c) { sum -= scaled[c][k - c] * from[layout.begin(c) + r - c]; });
+                    column[r - k] = sum;
+                }
             }
-            pivot[0] = inverse;
-            for (int k = 1; k < band; ++k) pivot[k] = scaled[k];
+            each([&](auto c) {
+                for (int k = 0; k < rows(c); ++k) from[layout.begin(c) + k] = scaled[c][k];
+            });
         }
     }
 
@@ -53,24 +83,38 @@ public:
         for (int k = 0; k < padding; ++k) b[columns_ + k] = T{};
         T near[band];
         for (int k = 0; k < band; ++k) near[k] = b[k];
-        for (int c = 0; c < columns_; ++c) {
-            const T *column = entries_ + c * band;
-            const T value = near[0];
-            for (int k = 1; k < band; ++k) near[k - 1] = near[k] - column[k] * value;
-            near[band - 1] = b[c + band];
-            b[c] = value * column[0];
+        for (int first = 0; first < columns_; first += block) {
+            const T *from = entries_ + layout.begin(first);
+            each([&](auto c) {
+                const T *column = from + layout.begin(c);
+                const T value = near[0];
+                for (int k = 1; k < band; ++k) near[k - 1] = k < rows(c) ? near[k] - column[k] * value : near[k];
+                near[band - 1] = b[first + c + band];
+                b[first + c] = value * column[0];
+            });
         }
         for (int k = 0; k < band; ++k) near[k] = T{};
-        for (int c = columns_ - 1; c >= 0; --c) {
-            const T *column = entries_ + c * band;
-            T value = b[c];
-            for (int k = band - 1; k > 0; --k) value -= column[k] * near[k - 1]; // what was solved last, last
-            for (int k = band - 1; k > 0; --k) near[k] = near[k - 1];
-            near[0] = b[c] = value;
+        for (int first = columns_ - block; first >= 0; first -= block) {
+            const T *from = entries_ + layout.begin(first);
+            each([&](auto before) {
+                constexpr int c = block - 1 - before;
+                const T *column = from + layout.begin(c);
+                T value = b[first + c];
+                for (int k = rows(c) - 1; k > 0; --k) value -= column[k] * near[k - 1]; // what was solved last, last
+                for (int k = band - 1; k > 0; --k) near[k] = near[k - 1];
+                near[0] = b[first + c] = value;
+            });
         }
     }
 
 private:
+    // Calls work(0), work(1) … for the columns of a block, as constants.
+    template <class Work> static void each(const Work &work) {
+        [&]<int... c>(std::integer_sequence<int, c...>) {
+            (work(std::integral_constant<int, c>{}), ...);
+        }(std::make_integer_sequence<int, block>{});
+    }
+
     T *entries_;
     int columns_;
 };

@@ -41,6 +41,9 @@ inline Pack select(Mask mask, Pack a, Pack b) { return mask ? a : b; }
 
 inline bool any(bool mask) { return mask; }
 inline bool any(Mask mask) {
+#if defined(__AVX512F__)
+    return _mm512_test_epi64_mask((__m512i)mask, (__m512i)mask) != 0;
+#endif
     auto some = mask[0];
     for (int lane = 1; lane < lanes; ++lane) some |= mask[lane];
     return some != 0;
@@ -79,7 +82,7 @@ template <class T> inline T round(T x) {
 }
 
 // An angle to (−π, π].
-template <class T> inline T wrap(T angle) { return angle - 2.0 * pi * round(angle / (2.0 * pi)); }
+template <class T> inline T wrap(T angle) { return angle - 2.0 * pi * round(angle * (0.5 / pi)); }
 
 // atan2 with y ≥ 0 or y < 0, good to two units in the last place; atan2(0, 0) = 0.
 // |q| ≤ tan(π/8) by atan(r) = π/4 + atan((r − 1)/(r + 1)); there a polynomial in q², interpolated at Chebyshev nodes (error
@@ -138,7 +141,7 @@ template <class T> inline SineCosine<T> sine_cosine_quarter(T x) {
 
 // Of any angle: half turns are taken away, each of which changes both signs.
 template <class T> inline SineCosine<T> sine_cosine(T x) {
-    const T half_turns = round(x / pi);
+    const T half_turns = round(x * (1.0 / pi));
     const SineCosine<T> rest = sine_cosine_quarter(x - pi * half_turns);
     const auto odd = abs(half_turns - 2.0 * round(0.5 * half_turns)) > 0.5;
     return {select(odd, -rest.sine, rest.sine), select(odd, -rest.cosine, rest.cosine)};

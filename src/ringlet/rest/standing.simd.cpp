@@ -11,7 +11,7 @@ namespace {
 constexpr int freedoms = 4;   // of a vertex: its position, and the turn of the director of the edge that begins there [rad]
 constexpr int reach = 11;     // unknowns of two edges that follow one another: three vertices and two directors
 constexpr double near = 0.01; // how near to the least stiffness is found, of it
-using Matrix = Banded<double, reach>;
+using Matrix = Banded<double, freedoms, reach>;
 
 Vec<double> row(const double *values, int i) { return {values[3 * i], values[3 * i + 1], values[3 * i + 2]}; }
 Vec<Dual> known_row(Vec<double> v) { return {known(v.x), known(v.y), known(v.z)}; }
@@ -171,7 +171,7 @@ private:
     void hold() {
         for (int c = 0; c < size(); ++c) {
             const bool free = is_free(c);
-            for (int k = 0; k < reach; ++k)
+            for (int k = 0; k < Matrix::rows(c); ++k)
                 if (!free || !(c + k < size() && is_free(c + k))) growing_.entry(c)[k] = fixed_.entry(c)[k] = 0.0;
             if (!free) fixed_.entry(c)[0] = 1.0;
         }

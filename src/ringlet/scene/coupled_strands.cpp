@@ -31,8 +31,8 @@ void CoupledStrands::begin(const StrandArrays &arrays, const StrandStep &step) {
     for (int g = 0; g < group_count(); ++g)
         systems_[g] = RINGLET_DISPATCH(begin_strand_group, arrays, step, groups_[g], memory_[g].get());
 
-    if (systems_.empty() || systems_[0].freedoms == freedoms_) return;
-    freedoms_ = systems_[0].freedoms;
+    if (systems_.empty() || systems_[0].freedoms() == freedoms_) return;
+    freedoms_ = systems_[0].freedoms();
     begin_.assign(1, 0);
     slot_.assign(model_.vertex_count(), 0);
     for (int g = 0; g < group_count(); ++g) {
@@ -74,11 +74,11 @@ void CoupledStrands::solve(int group, double *b) const { RINGLET_DISPATCH(solve_
 void CoupledStrands::add_block(int strand, int a, int b, const Mat3 &block) const {
     if (a < b) return;
     const StrandGroupSystem &system = systems_[group_of(strand)];
-    const int first = model_.offsets[strand], row = system.freedoms * (a - first), column = system.freedoms * (b - first);
+    const int first = model_.offsets[strand], row = system.freedoms() * (a - first), column = system.freedoms() * (b - first);
     for (int c = 0; c < 3; ++c)
         for (int r = 0; r < 3; ++r) {
             const int below = row + r - column - c;
-            if (below >= 0) system.matrix[(size_t(column + c) * system.band + below) * lanes_ + lane_of(strand)] += block(r, c);
+            if (below >= 0) system.matrix[(system.layout.begin(column + c) + below) * lanes_ + lane_of(strand)] += block(r, c);
         }
 }
 

@@ -27,14 +27,13 @@ public:
     T energy(const T *x) { return energy_at<false>(x); }
 
     void assemble(T *gradient, Matrix &hessian) const {
-        this->assemble_inertia_and_stretch(gradient, hessian);
+        this->assemble_along(
+            gradient, hessian, [&](int i) { add_bend(i, gradient, hessian); }, [&](int i) { add_twist(i, gradient, hessian); });
         for (int i = 0; i < vertices_; ++i) { // a little stiffness where nothing holds the frame
             const T free = rows_[i].frame_free;
             hessian.entry(4 * i + 3)[0] +=
                 free * (1e-9 * rows_[i].bend / (rows_[i].rest_length * rows_[i].rest_length) + 1e-15) + (1.0 - free);
         }
-        for (int i = 1; i + 1 < vertices_; ++i) add_bend(i, gradient, hessian);
-        for (int i = 1; i + 2 < vertices_; ++i) add_twist(i, gradient, hessian);
         this->hold(gradient);
         for (int i = 0; i < vertices_; ++i) gradient[4 * i + 3] *= rows_[i].frame_free;
     }
@@ -113,6 +112,7 @@ private:
         const Vec<T> K = turning(s.corner, before.tangent, s.tangent), spinning = spin_of(i);
         const T residual[2] = {s.across - rows_[i].damped_bend.x, s.along - rows_[i].damped_bend.y};
         const T by_frame[2] = {dot(K, other), -dot(K, s.director)};
+        T u[2][11] = {};
         for (int k = 0; k < 2; ++k) {
             const EdgeGradient<T> g =
                 turning_gradient(s.corner, before.tangent, s.tangent, before.length, s.length, k == 0 ? s.director : other);
@@ -122,13 +122,12 @@ private:
             this->add(gradient, i, force * (g.first - second));
             this->add(gradient, i + 1, force * second);
             gradient[4 * i + 3] += force * frame;
-            T u[11] = {};
-            put(u, -(rows_[i - 1].free * g.first));
-            put(u + 4, rows_[i].free * (g.first - second));
-            u[7] = rows_[i].frame_free * frame;
-            put(u + 8, rows_[i + 1].free * second);
-            hessian.add_square(4 * (i - 1), rows_[i].bend, u);
+            put(u[k], -(rows_[i - 1].free * g.first));
+            put(u[k] + 4, rows_[i].free * (g.first - second));
+            u[k][7] = rows_[i].frame_free * frame;
+            put(u[k] + 8, rows_[i + 1].free * second);
         }
+        hessian.add_squares(4 * (i - 1), rows_[i].bend, u);
     }
 
     void add_twist(int i, T *gradient, Matrix &hessian) const {

@@ -41,9 +41,8 @@ public:
     T energy(const T *x) { return evaluate(x); }
 
     void assemble(T *gradient, Matrix &hessian) const {
-        this->assemble_inertia_and_stretch(gradient, hessian);
-        for (int i = 1; i + 1 < vertices_; ++i) add_bend(i, gradient, hessian);
-        for (int i = 1; i + 2 < vertices_; ++i) add_twist(i, gradient, hessian);
+        this->assemble_along(
+            gradient, hessian, [&](int i) { add_bend(i, gradient, hessian); }, [&](int i) { add_twist(i, gradient, hessian); });
         this->hold(gradient);
     }
 

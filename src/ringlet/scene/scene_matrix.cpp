@@ -3,7 +3,7 @@
 namespace ringlet {
 namespace {
 
-int freedoms(const SceneSystem &system) { return system.group_count() > 0 ? system.strands.system(0).freedoms : 3; }
+int freedoms(const SceneSystem &system) { return system.group_count() > 0 ? system.strands.system(0).freedoms() : 3; }
 
 } // namespace
 
@@ -24,7 +24,7 @@ double *SceneMatrix::add_block(int row, int column) {
 void SceneMatrix::add_strand(int strand) {
     const int first = system_.model.offsets[strand], count = system_.model.offsets[strand + 1] - first;
     const StrandGroupSystem &system = system_.strands.system(system_.strands.group_of(strand));
-    const int lane = system_.strands.lane_of(strand), reach = (system.band - 1) / block_;
+    const int lane = system_.strands.lane_of(strand), reach = (system.layout.band - 1) / block_;
     for (int b = 0; b < count; ++b)
         for (int a = b; a < std::min(count, b + reach + 1); ++a) {
             double *block = add_block(first + a, first + b);
@@ -32,8 +32,8 @@ void SceneMatrix::add_strand(int strand) {
                 for (int c = 0; c < block_; ++c) { // of the diagonal block only one half is stored
                     const int column = b * block_ + (a == b ? std::min(r, c) : c);
                     const int below = a * block_ + (a == b ? std::max(r, c) : r) - column;
-                    if (below < system.band)
-                        block[r * block_ + c] = system.matrix[(size_t(column) * system.band + below) * system.lanes + lane];
+                    if (below < system.layout.rows(column))
+                        block[r * block_ + c] = system.matrix[(system.layout.begin(column) + below) * system.lanes + lane];
                 }
         }
 }

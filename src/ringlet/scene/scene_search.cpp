@@ -18,7 +18,7 @@ template <class Work> void for_parts(const SceneSystem &system, int unit, const 
     const StrandGroup group = system.strands.strands_of(unit);
     const StrandGroupSystem &of = system.strands.system(unit);
     for (int lane = 0; lane < group.count; ++lane)
-        work(group.strands[lane], system.unit_begin(unit) + lane, size_t(of.lanes), size_t(of.freedoms) * of.vertices);
+        work(group.strands[lane], system.unit_begin(unit) + lane, size_t(of.lanes), size_t(of.freedoms()) * of.vertices);
 }
 
 // Of each part the slope of its energy along its direction [J].
@@ -29,7 +29,8 @@ std::vector<double> slopes(const SceneSystem &system, const AlignedVector &direc
         const size_t first = system.unit_begin(u);
         if (u < system.group_count()) {
             const StrandGroupSystem &group = system.strands.system(u);
-            RINGLET_DISPATCH(lane_products, group.gradient, direction.data() + first, group.freedoms * group.vertices, slopes);
+            RINGLET_DISPATCH(lane_products, group.gradient, direction.data() + first, group.freedoms() * group.vertices,
+                             slopes);
         } else {
             for (size_t i = first; i < system.unit_end(u); ++i) slopes[0] += system.gradient(i, u) * direction[i];
         }

@@ -1,6 +1,7 @@
 // The border between the portable core and the kernels of each instruction set: plain pointers and numbers.
 #pragma once
 
+#include "ringlet/linear/band_layout.h"
 #include "ringlet/math/simd.h"
 
 #include <cstddef>
@@ -77,8 +78,11 @@ struct StrandGroupSystem {
     double *x;        // unknowns: the guess to begin with
     double *gradient; // of the energy, at the x evaluated last
     double *matrix;   // lower band of the Hessian; its factor later
-    int freedoms, band, lanes, vertices;
+    BandLayout layout;
+    int lanes, vertices;
     int padding; // unknowns behind the last that solving writes to
+
+    int freedoms() const { return layout.block; } // of a vertex
 };
 
 // clang-format off

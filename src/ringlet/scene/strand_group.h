@@ -75,7 +75,7 @@ public:
     Group(const StrandArrays &arrays, const StrandStep &step, StrandGroup group, int vertices, void *memory)
         : arrays_(arrays), step_(step), group_(group), vertices_(vertices), space_(memory, vertices),
           objective_(vertices, space_.rows, space_.shapes, step.safeguards) {
-        for (int lane = 0; lane < lanes; ++lane) load(lane);
+        load();
         for (int i = 0; i < vertices_; ++i) place(space_.x, i, space_.start[i]);
         start_energy_ = objective_.evaluate(space_.x);
         objective_.remember_start();
@@ -95,13 +95,7 @@ public:
     StrandGroupSystem begin() override {
         prepare();
         const auto plain = [](Pack *values) { return reinterpret_cast<double *>(values); };
-        return {plain(space_.x),
-                plain(space_.newton.gradient),
-                plain(space_.newton.band),
-                Objective::freedoms,
-                Matrix::band,
-                lanes,
-                vertices_,
+        return {plain(space_.x), plain(space_.newton.gradient), plain(space_.newton.band), Matrix::layout, lanes, vertices_,
                 Matrix::padding};
     }
 
@@ -148,7 +142,7 @@ public:
         for (int i = 0; i < 3 * vertices_; ++i)
             gradient[i] = lane(space_.newton.gradient[Objective::freedoms * (i / 3) + i % 3], 0);
         for (int c = 0; hessian && c < size; ++c)
-            for (int r = c; r < size && r < c + Objective::Matrix::band; ++r)
+            for (int r = c; r < size && r < c + Matrix::rows(c); ++r)
                 hessian[r * size + c] = hessian[c * size + r] = lane(band.entry(c)[r - c], 0);
         return value;
     }
@@ -182,38 +176,13 @@ private:
     }
 
     // Lanes hold strands of different lengths: behind a strand's tip follow vertices that nothing acts on, on a straight line.
-    void load(int lane) {
-        const int begin = first(lane), n = count(lane);
-        const bool carries = step_.integrator == Integrator::bdf2 && arrays_.last_dt[strand(lane)] == step_.dt;
-        set_lane(part_, lane, carries ? 1.0 / 3 : 0.0);
-        for (int i = 0; i < vertices_; ++i) {
-            StrandRow<Pack> &row = space_.rows[i];
-            const bool real = i < n;
-            const int at = begin + (real ? i : n - 1);
-            const auto value = [&](Pack &into, const double *from, double otherwise) {
-                set_lane(into, lane, real ? from[at] : otherwise);
-            };
-            const bool held = !real || arrays_.held[at], next_held = i + 1 >= n || arrays_.held[at + 1];
-            set_lane(row.free, lane, held ? 0.0 : 1.0);
-            set_lane(row.frame_free, lane, i > 0 && i + 1 < n && !(held && next_held) ? 1.0 : 0.0);
-            value(row.stretch, arrays_.stretch_stiffness, 0.0);
-            value(row.rest_length, arrays_.rest_length, 1.0);
-            if (i + 1 >= n) set_lane(row.rest_length, lane, 1.0); // no edge begins at the tip
-            value(row.bend, arrays_.bend_stiffness, 0.0);
-            value(row.rest_angle, arrays_.rest_angle, 0.0);
-            value(row.twist, arrays_.twist_stiffness, 0.0);
-            value(row.rest_dihedral, arrays_.rest_dihedral, 0.0);
-            value(row.damping, arrays_.damping, 0.0);
-            value(row.reference.delta, arrays_.twist, 0.0);
-            load_vector(frames ? arrays_.directors : arrays_.normals, at, lane, row.reference.normal);
-            load_vector(arrays_.positions, at, lane, space_.start[i]);
-            load_vector(arrays_.velocities, at, lane, space_.velocity[i]);
-            load_vector(arrays_.targets, at, lane, space_.target[i]);
-            const double beyond = real ? 0.0 : i - n + 1;
-            set_lane(space_.start[i].x, lane, space_.start[i].x[lane] + beyond);
-            set_lane(space_.target[i].x, lane, space_.target[i].x[lane] + beyond);
+    void load() {
+        for (int lane = 0; lane < lanes; ++lane) {
+            const bool carries = step_.integrator == Integrator::bdf2 && arrays_.last_dt[strand(lane)] == step_.dt;
+            set_lane(part_, lane, carries ? 1.0 / 3 : 0.0);
         }
         for (int i = 0; i < vertices_; ++i) {
+            for (int lane = 0; lane < lanes; ++lane) load(i, lane);
             StrandRow<Pack> &row = space_.rows[i];
             row.damped_length = row.rest_length;
             row.damped_angle = row.rest_angle;
@@ -225,6 +194,35 @@ private:
         }
         for (int i = 0; i + 1 < vertices_; ++i) // the references are of this very state: nothing to carry yet
             space_.rows[i].reference.tangent = unit(space_.start[i + 1] - space_.start[i]);
+    }
+
+    void load(int i, int lane) {
+        StrandRow<Pack> &row = space_.rows[i];
+        const int n = count(lane);
+        const bool real = i < n;
+        const int at = first(lane) + (real ? i : n - 1);
+        const auto value = [&](Pack &into, const double *from, double otherwise) {
+            set_lane(into, lane, real ? from[at] : otherwise);
+        };
+        const bool held = !real || arrays_.held[at], next_held = i + 1 >= n || arrays_.held[at + 1];
+        set_lane(row.free, lane, held ? 0.0 : 1.0);
+        set_lane(row.frame_free, lane, i > 0 && i + 1 < n && !(held && next_held) ? 1.0 : 0.0);
+        value(row.stretch, arrays_.stretch_stiffness, 0.0);
+        value(row.rest_length, arrays_.rest_length, 1.0);
+        if (i + 1 >= n) set_lane(row.rest_length, lane, 1.0); // no edge begins at the tip
+        value(row.bend, arrays_.bend_stiffness, 0.0);
+        value(row.rest_angle, arrays_.rest_angle, 0.0);
+        value(row.twist, arrays_.twist_stiffness, 0.0);
+        value(row.rest_dihedral, arrays_.rest_dihedral, 0.0);
+        value(row.damping, arrays_.damping, 0.0);
+        value(row.reference.delta, arrays_.twist, 0.0);
+        load_vector(frames ? arrays_.directors : arrays_.normals, at, lane, row.reference.normal);
+        load_vector(arrays_.positions, at, lane, space_.start[i]);
+        load_vector(arrays_.velocities, at, lane, space_.velocity[i]);
+        load_vector(arrays_.targets, at, lane, space_.target[i]);
+        const double beyond = real ? 0.0 : i - n + 1;
+        set_lane(space_.start[i].x, lane, space_.start[i].x[lane] + beyond);
+        set_lane(space_.target[i].x, lane, space_.target[i].x[lane] + beyond);
     }
 
     // Newton on the frames alone: all vertices are held (which were free is kept in `start`, which is not needed any more).
@@ -353,7 +351,7 @@ private:
                                                     : start + constant<Pack>(step_.dt) * space_.velocity[i];
                 place(x, i, select<Pack>(space_.rows[i].free > 0.0, to, space_.target[i]));
             }
-            const Pack energy = objective_.evaluate(x);
+            const Pack energy = objective_.energy(x);
             if (attempt == 0) {
                 least = energy;
                 continue;

@@ -23,7 +23,7 @@ template <class T> inline void put(T *u, Vec<T> v) {
 template <class T, int freedoms_, int band> class StrandObjective {
 public:
     static constexpr int freedoms = freedoms_;
-    using Matrix = Banded<T, band>;
+    using Matrix = Banded<T, freedoms, band>;
 
     StrandObjective(int vertices, StrandRow<T> *rows, StrandShape<T> *shapes, Safeguards safeguards = {})
         : vertices_(vertices), rows_(rows), shapes_(shapes), safeguards_(safeguards) {}
@@ -54,28 +54,40 @@ protected:
         return stretch_energy(shape.length, rows_[i].damped_length, rows_[i].stretch);
     }
 
-    void assemble_inertia_and_stretch(T *gradient, Matrix &hessian) const {
-        hessian.set_zero();
-        for (int i = 0; i < size(); ++i) gradient[i] = T{};
-        for (int i = 0; i < vertices_; ++i) {
-            const StrandRow<T> &r = rows_[i];
-            add(gradient, i, r.inertia * (position(positions_, i) - r.inertial));
-            add_diagonal(hessian, i, r.free * r.inertia + (1.0 - r.free));
+    // Inertia and stretch, and calls add_bend(i) and add_twist(i) of corners and hinges: each term as soon as the last of its
+    // vertices is there, while what it adds to is near.
+    template <class AddBend, class AddTwist>
+    void assemble_along(T *gradient, Matrix &hessian, const AddBend &add_bend, const AddTwist &add_twist) const {
+        for (int last = 0; last < vertices_; ++last) {
+            begin_vertex(last, gradient, hessian);
+            if (last > 0) add_stretch(last - 1, gradient, hessian);
+            if (last > 1) add_bend(last - 1);
+            if (last > 2) add_twist(last - 2);
         }
-        for (int i = 0; i + 1 < vertices_; ++i) {
-            const StrandShape<T> &s = shapes_[i];
-            const Stretch<T> e = stretch(s.tangent, s.length, rows_[i].damped_length, rows_[i].stretch);
-            add(gradient, i, -e.gradient);
-            add(gradient, i + 1, e.gradient);
-            const T free0 = rows_[i].free, free1 = rows_[i + 1].free;
-            T along[freedoms + 3] = {};
-            put(along, -(free0 * s.tangent));
-            put(along + freedoms, free1 * s.tangent);
-            hessian.add_square(freedoms * i, e.along - e.across, along);
-            add_diagonal(hessian, i, e.across * free0);
-            add_diagonal(hessian, i + 1, e.across * free1);
-            for (int k = 0; k < 3; ++k) hessian.entry(freedoms * i + k)[freedoms] -= e.across * free0 * free1;
-        }
+        hessian.set_zero(size(), size() + Matrix::padding);
+    }
+
+    void begin_vertex(int i, T *gradient, Matrix &hessian) const {
+        hessian.set_zero(freedoms * i, freedoms * (i + 1));
+        for (int k = 0; k < freedoms; ++k) gradient[freedoms * i + k] = T{};
+        const StrandRow<T> &r = rows_[i];
+        add(gradient, i, r.inertia * (position(positions_, i) - r.inertial));
+        add_diagonal(hessian, i, r.free * r.inertia + (1.0 - r.free));
+    }
+
+    void add_stretch(int i, T *gradient, Matrix &hessian) const {
+        const StrandShape<T> &s = shapes_[i];
+        const Stretch<T> e = stretch(s.tangent, s.length, rows_[i].damped_length, rows_[i].stretch);
+        add(gradient, i, -e.gradient);
+        add(gradient, i + 1, e.gradient);
+        const T free0 = rows_[i].free, free1 = rows_[i + 1].free;
+        T along[freedoms + 3] = {};
+        put(along, -(free0 * s.tangent));
+        put(along + freedoms, free1 * s.tangent);
+        hessian.add_square(freedoms * i, e.along - e.across, along);
+        add_diagonal(hessian, i, e.across * free0);
+        add_diagonal(hessian, i + 1, e.across * free1);
+        for (int k = 0; k < 3; ++k) hessian.entry(freedoms * i + k)[freedoms] -= e.across * free0 * free1;
     }
 
     // Eigenvalues of the edge's Hessian that are left out: the two across an edge that is compressed.

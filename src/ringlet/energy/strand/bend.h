@@ -18,8 +18,9 @@ template <class T> inline Corner<T> corner(Vec<T> t0, Vec<T> t1) {
     const Vec<T> product = cross(t0, t1);
     const T sine = norm(product), cosine = dot(t0, t1);
     const auto parallel = sine < 1e-12;
-    const Vec<T> unit = (1.0 / select(parallel, constant<T>(1.0), sine)) * product;
-    return {sine, cosine, atan2(sine, cosine), select<T>(parallel, perpendicular(t0), unit)};
+    Vec<T> normal = (1.0 / select(parallel, constant<T>(1.0), sine)) * product;
+    if (any(parallel)) normal = select<T>(parallel, perpendicular(t0), normal);
+    return {sine, cosine, atan2(sine, cosine), normal};
 }
 
 template <class T> inline T bend_energy(T angle, T sigma, T rest_angle, T stiffness) {
