@@ -33,7 +33,7 @@ def test_long_hair_between_a_head_that_turns_and_a_shirt_does_not_stop_them():
     assert all(frame.statistics["contact"]["fraction"] == 1.0 for frame in frames)
 
 
-@pytest.mark.parametrize("locks", [150, 200])
+@pytest.mark.parametrize("locks", [100, 150, 200])
 def test_cloth_that_is_put_into_hair_passes_through_nothing_and_goes_on_moving(locks):
     """A ribbon pushes locks aside, though the head rests; then it never goes along as if it were rigid for long."""
     motion = start("ribbon", locks=locks)

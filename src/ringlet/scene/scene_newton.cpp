@@ -39,8 +39,11 @@ int Scene::Parts::newton(const SceneStep &scene_step, const StrandStep &step, st
         // turn: were it to go all of its way meanwhile, no step of the cloth would lead down, and it would stand still.
         // What only touches strands does so as the direction has it: how near they may come is for the filter, and
         // by planes, which they overstep, nearly all hair that touches hair and, somewhere, a cloth would stay.
+        // A strand may be asked to go metres against friction, which is as strong to the other side after a hair's breadth: of
+        // such a way no part that a search tries would lead down.
         if (!system.cloths.empty()) {
             const Stopwatch watch(report.time_search);
+            shorten(system, worth_going(system, x, direction), direction);
             std::vector<unsigned char> before = all_parts; // are not searched now
             if (!small) {
                 const std::vector<unsigned char> beside = with_touched(system, system.by_planes());
