@@ -85,7 +85,7 @@ bool SceneSolver::solve_whole(const SceneMatrix &whole, AlignedVector &direction
 // what they have borne at these points. Of a cloth P has only an incomplete factor: there vectors are whole, and A p is
 // formed. Clusters are systems of their own, and each goes its own number of steps, until little is left of it or of all; but
 // a cloth sets out from nowhere, and beside strands that have much to do little of it would count: it goes on until little is
-// left of what it began with itself.
+// left of what it began with itself, an iteration at least: what began as hair that pushed it hair may have taken away.
 SceneSolver::Result SceneSolver::conjugate_gradient(SceneSystem &system, double tolerance, AlignedVector &direction) {
     constexpr int most = 2000;
     const int parts = system.vertices.parts();
@@ -112,7 +112,8 @@ SceneSolver::Result SceneSolver::conjugate_gradient(SceneSystem &system, double 
         for (int p = 0; p < parts; ++p) goes_on[p] = !enough_of_all && rho[p] > enough[p];
         for (size_t c = 0; c < enough_of_cloths.size(); ++c) {
             const int part = system.vertices.strands + int(c);
-            goes_on[cluster[part]] |= rho[cluster[part]] > 0.0 && products_[part] > enough_of_cloths[c];
+            const bool has_enough = result.iterations > 0 && products_[part] <= enough_of_cloths[c];
+            goes_on[cluster[part]] |= rho[cluster[part]] > 0.0 && !has_enough;
         }
         bool any = false;
         busy_units.assign(system.unit_count(), 0);
