@@ -4,53 +4,70 @@
 #include <Eigen/Dense>
 #include <boost/test/unit_test.hpp>
 #include <random>
+#include <tuple>
 #include <vector>
 
 using namespace ringlet::baseline;
 
 namespace {
 
-using Matrix = Banded<double, 3, 12>;
+// Random squares over as many unknowns as a vertex's first one reaches, two at a time, plus a diagonal: positive definite and
+// as dense as the band allows.
+template <int block, int band> struct RandomSystem {
+    using Matrix = Banded<double, block, band>;
 
-// Random squares over four consecutive vertices plus a diagonal: positive definite and as dense as the band allows.
-struct RandomSystem {
-    explicit RandomSystem(int vertices) : memory(Matrix::entries(3 * vertices)), band(memory.data(), 3 * vertices) {
+    explicit RandomSystem(int vertices) : memory(Matrix::entries(block * vertices)), matrix(memory.data(), block * vertices) {
+        const int size = block * vertices;
         std::mt19937 random(7);
         std::normal_distribution<double> normal;
-        band.set_zero();
-        dense = Eigen::MatrixXd::Zero(3 * vertices, 3 * vertices);
-        for (int i = 0; i < 3 * vertices; ++i) {
-            band.entry(i)[0] += 0.1;
+        matrix.set_zero();
+        dense = Eigen::MatrixXd::Zero(size, size);
+        for (int i = 0; i < size; ++i) {
+            matrix.entry(i)[0] += 0.1;
             dense(i, i) += 0.1;
         }
-        for (int i = 0; i + 3 < vertices; ++i) {
-            double u[12];
-            Eigen::VectorXd v = Eigen::VectorXd::Zero(3 * vertices);
-            for (int k = 0; k < 12; ++k) v[3 * i + k] = u[k] = normal(random);
-            band.add_square(3 * i, 2.5, u);
-            dense += 2.5 * v * v.transpose();
+        for (int first = 0; first + band <= size; first += block) {
+            double u[2][band];
+            for (auto &one : u) {
+                Eigen::VectorXd v = Eigen::VectorXd::Zero(size);
+                for (int k = 0; k < band; ++k) v[first + k] = one[k] = normal(random);
+                dense += 2.5 * v * v.transpose();
+            }
+            matrix.add_squares(first, 2.5, u);
         }
     }
     std::vector<double> memory;
-    Matrix band;
+    Matrix matrix;
     Eigen::MatrixXd dense;
 };
+
+using Systems = std::tuple<RandomSystem<3, 12>, RandomSystem<4, 11>>; // hinges; material frames
 
 } // namespace
 
 BOOST_AUTO_TEST_SUITE(banded)
 
-BOOST_AUTO_TEST_CASE(solution_agrees_with_a_dense_solver) {
-    const int vertices = 17;
-    RandomSystem system(vertices);
-    const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(3 * vertices, -1, 2);
-    std::vector<double> x(b.data(), b.data() + b.size());
-    x.resize(b.size() + Matrix::padding);
-    system.band.factor();
-    system.band.solve(x.data());
+BOOST_AUTO_TEST_CASE_TEMPLATE(solution_agrees_with_a_dense_solver, System, Systems) {
+    System system(17);
+    const int size = int(system.dense.rows());
+    const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(size, -1, 2);
+    std::vector<double> x(b.data(), b.data() + size);
+    x.resize(size + System::Matrix::padding);
+    system.matrix.factor();
+    system.matrix.solve(x.data());
     const Eigen::VectorXd expected = system.dense.ldlt().solve(b);
-    const Eigen::Map<Eigen::VectorXd> got(x.data(), b.size());
+    const Eigen::Map<Eigen::VectorXd> got(x.data(), size);
     BOOST_TEST((got - expected).norm() < 1e-11 * expected.norm());
+}
+
+BOOST_AUTO_TEST_CASE_TEMPLATE(entries_are_those_of_the_dense_matrix, System, Systems) {
+    System system(9);
+    const int size = int(system.dense.rows());
+    Eigen::MatrixXd lower = Eigen::MatrixXd::Zero(size, size);
+    for (int c = 0; c < size; ++c)
+        for (int k = 0; k < System::Matrix::rows(c) && c + k < size; ++k) lower(c + k, c) = system.matrix.entry(c)[k];
+    const Eigen::MatrixXd expected = system.dense.template triangularView<Eigen::Lower>();
+    BOOST_TEST((lower - expected).norm() < 1e-14 * expected.norm());
 }
 
 BOOST_AUTO_TEST_SUITE_END()
