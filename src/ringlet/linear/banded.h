@@ -54,13 +54,14 @@ public:
             T *from = entry(first);
             T scaled[block][band];
             each([&](auto c) {
+                constexpr int count = rows(c);
                 T *pivot = from + layout.begin(c);
                 const T inverse = 1.0 / pivot[0];
                 scaled[c][0] = inverse;
-                for (int k = 1; k < rows(c); ++k) scaled[c][k] = inverse * pivot[k];
+                for (int k = 1; k < count; ++k) scaled[c][k] = inverse * pivot[k];
                 for (int k = 1; k < block - c; ++k) {
                     T *column = from + layout.begin(c + k);
-                    for (int r = k; r < rows(c); ++r) column[r - k] -= scaled[c][k] * pivot[r];
+                    for (int r = k; r < count; ++r) column[r - k] -= scaled[c][k] * pivot[r];
                 }
             });
             for (int k = block; k < band; ++k) {
