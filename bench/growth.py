@@ -3,24 +3,35 @@
 from __future__ import annotations
 
 from itertools import takewhile
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
+from twirl import RADIUS
 
 from ringlet import UserError, run_bench
 
+CROWD = 256  # wisps on it, whose density is kept
 COUNTS = ("contacts", "candidates", "linear_iterations")
 
 
 def run(
-    least: int = 64, most: int = 512, friction: float = 0.3, newton: int = 3, extra: int = 60, steps: int = 90
+    least: int = 64,
+    most: int = 512,
+    kept: Literal["sphere", "density"] = "sphere",
+    friction: float = 0.3,
+    newton: int = 3,
+    extra: int = 60,
+    steps: int = 90,
 ) -> dict[str, Any]:
     """Runs ``ringlet bench twirl --contacts on`` with ``least`` strands, twice as many, and so on up to ``most``.
 
-    ``exponent`` is the slope of the line that fits the logarithms: CPU time of a step grows as strands to that power.
+    ``exponent`` is the slope of the line that fits the logarithms: CPU time of a step grows as strands to that power,
+    and ``contacts_exponent`` says the same of contacts. On one sphere more strands stand denser, and each touches more;
+    on spheres that grow with them each has the neighbours that it has among 256 on the published one.
 
     least:    strands of the smallest scene
     most:     strands of the largest scene, at most
+    kept:     what is the same for all sizes: ``sphere``, or ``density``, the strands on its area
     friction: of what touches; the published scene has none
     newton:   iterations of every step
     extra:    iterations more for what was held back and is stretched; the published code has none
@@ -28,11 +39,14 @@ def run(
     """
     if not 0 < least <= most / 2:
         raise UserError(f"bench growth: least is {least} and most {most}; most must be at least twice least")
+    if kept not in ("sphere", "density"):
+        raise UserError(f"bench growth: kept is {kept}; must be sphere or density")
     sizes = list(takewhile(lambda size: size <= most, (least << doubled for doubled in range(32))))
-    runs = [
-        run_bench("twirl", strands=size, contacts="on", friction=friction, newton=newton, extra=extra, steps=steps)
-        for size in sizes
-    ]
+    common = {"contacts": "on", "friction": friction, "newton": newton, "extra": extra, "steps": steps}
+    runs = []
+    for size in sizes:
+        radius = RADIUS * (size / CROWD) ** 0.5 if kept == "density" else RADIUS
+        runs.append(run_bench("twirl", strands=size, radius=radius, **common))
     times = [run["cpu_ms"]["median"] for run in runs]
     return {
         **runs[-1],
@@ -40,14 +54,23 @@ def run(
         "params": {
             "least": least,
             "most": most,
+            "kept": kept,
             "friction": friction,
             "newton": newton,
             "extra": extra,
             "steps": steps,
         },
-        "exponent": float(np.polyfit(np.log(sizes), np.log(times), 1)[0]),
+        "exponent": power(sizes, times),
+        "contacts_exponent": power(sizes, [run["contacts"] for run in runs]),
         "sizes": [
             {"strands": size, "cpu_ms": time, **{name: run[name] for name in COUNTS}}
             for size, time, run in zip(sizes, times, runs, strict=True)
         ],
     }
+
+
+def power(sizes: list[int], values: list[float]) -> float | None:
+    """The power of the sizes that values grow as, by least squares of the logarithms; None where one is zero."""
+    if min(values) <= 0:
+        return None
+    return float(np.polyfit(np.log(sizes), np.log(values), 1)[0])

@@ -13,7 +13,7 @@ from ringlet import Body, Clock, Contact, Curves, Material, Scene, Solver, Stran
 FPS = 30.0
 GRAVITY = (0.0, -9.81, 0.0)
 HELD = 4  # the vertices of a wisp inside the sphere's surface
-RADIUS = 0.1525  # of the sphere [m]
+RADIUS = 0.1525  # of the published sphere [m]
 DISTANCE = math.sqrt(2) * 1e-3  # at which contact begins [m]
 
 
@@ -24,6 +24,7 @@ def run(
     newton: int = 3,
     extra: int = 60,
     steps: int = 90,
+    radius: float = RADIUS,
 ) -> dict[str, Any]:
     """Twirls ``strands`` wisps of 101 vertices, 5 a turn, at 30 steps per second.
 
@@ -34,21 +35,25 @@ def run(
     newton:   iterations of every step
     extra:    iterations more for what was held back and is stretched; the published code has none
     steps:    how many of the scene's 340 frames are run
+    radius:   of the sphere [m]; one that is larger turns slower, so that roots move as fast
     """
     if contacts not in ("on", "off"):
         raise UserError(f"bench twirl: contacts is {contacts}; must be on or off")
-    wisps = groom(strands)
+    if not radius > 0:
+        raise UserError(f"bench twirl: radius is {radius}; must be positive")
+    scale = radius / RADIUS
+    wisps = groom(strands, scale)
     curves = Curves.from_list(wisps)
     moving = Strands(curves, Material(damping=0.0, drag=0.0), HELD)
     solver = Solver(newton=newton, extra=extra, tolerance=1e-12)  # never reached: all iterations are spent
-    ball, triangles = sphere()
+    ball, triangles = sphere(radius, max(round(32 * scale), 4))
     contact = Contact(radius=DISTANCE / 2, friction=friction)
     scene = Scene(moving, [Body(ball, triangles, DISTANCE / 2, friction)], contact, np.zeros(strands, int))
     clock = Clock()
     reports, touched = [], []
     turned = np.eye(3)
     for step in range(steps):
-        turned = turn(step) @ turned
+        turned = turn(step, scale) @ turned
         # Not with @: the threads of the matrix library would wait actively, on the processors that are timed.
         targets, ends = (np.einsum("ij,kj->ik", points, turned) for points in (curves.points, ball))
         with clock("step"):
@@ -67,6 +72,7 @@ def run(
             "newton": newton,
             "extra": extra,
             "steps": steps,
+            "radius": radius,
         },
         per="step",
         warm_up=2,
@@ -76,13 +82,13 @@ def run(
     )
 
 
-def sphere(rings: int = 32) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+def sphere(radius: float = RADIUS, rings: int = 32) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
     """The sphere, cut along latitudes and longitudes: points [m], triangles that are counter-clockwise from outside."""
     sides = 2 * rings
     polar = np.linspace(0, np.pi, rings + 1)[1:-1, None]
     around = np.linspace(0, 2 * np.pi, sides, endpoint=False)
     ring = np.stack([np.sin(polar) * np.sin(around), np.cos(polar) + 0 * around, np.sin(polar) * np.cos(around)], -1)
-    points = RADIUS * np.concatenate([[[0, 1, 0]], ring.reshape(-1, 3), [[0, -1, 0]]])
+    points = radius * np.concatenate([[[0, 1, 0]], ring.reshape(-1, 3), [[0, -1, 0]]])
     last, k = len(points) - 1, np.arange(sides)
     after = (k + 1) % sides
     triangles = [np.c_[0 * k, 1 + k, 1 + after], np.c_[0 * k + last, last - sides + after, last - sides + k]]
@@ -100,10 +106,14 @@ def wisp() -> NDArray[np.float64]:
     return 0.01 * np.concatenate([[(-1, 14, 0), (0, 14, 0), (0, 15, 0)], coil])
 
 
-def groom(count: int, seed: int = 1) -> list[NDArray[np.float64]]:
-    """``count`` wisps on the upper half of the sphere, their roots kept apart, each spun about its own axis."""
+def groom(count: int, scale: float = 1, seed: int = 1) -> list[NDArray[np.float64]]:
+    """``count`` wisps on the upper half of a sphere ``scale`` times as large as the published one.
+
+    Their roots are kept apart, and each is spun about its own axis.
+    """
     random = np.random.default_rng(seed)
-    apart = 0.05 if count <= 1000 else 0.04
+    apart = (0.05 if count <= 1000 * scale**2 else 0.04) / scale
+    upright = wisp() + [0, (scale - 1) * RADIUS, 0]
     roots: list[NDArray[np.float64]] = []
     while len(roots) < count:
         azimuth, height = random.uniform(0, 2 * np.pi), random.uniform(0, 1)
@@ -111,7 +121,7 @@ def groom(count: int, seed: int = 1) -> list[NDArray[np.float64]]:
         root = np.array([level * np.cos(azimuth), height, level * np.sin(azimuth)])
         if not roots or np.linalg.norm(np.array(roots) - root, axis=1).min() > apart:
             roots.append(root)
-    return [wisp() @ (to_direction(root) @ about((0, 1, 0), random.uniform(0, 2 * np.pi))).T for root in roots]
+    return [upright @ (to_direction(root) @ about((0, 1, 0), random.uniform(0, 2 * np.pi))).T for root in roots]
 
 
 def to_direction(direction: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -122,13 +132,13 @@ def to_direction(direction: NDArray[np.float64]) -> NDArray[np.float64]:
     return about(axis / sine, np.arctan2(sine, y)) if sine > 1e-12 else np.eye(3)
 
 
-def turn(step: int) -> NDArray[np.float64]:
-    """How the sphere turns in one frame: 0.15 cos(0.6 π t) rad about the axis of that part of the scene."""
+def turn(step: int, scale: float = 1) -> NDArray[np.float64]:
+    """How a sphere ``scale`` times as large turns in one frame: 0.15 / scale cos(0.6 π t) rad about the part's axis."""
     if step < 40:
         return np.eye(3)
     part, frame = divmod(step - 40, 50)
     axis = ((0, 0, 1), (0, 0, -1), (0, 1, 0), (0, -1, 0), (1, 0, 0), (-1, 0, 0))[part % 6]
-    return about(axis, 0.15 * np.cos(0.6 * np.pi * frame / FPS))
+    return about(axis, 0.15 / scale * np.cos(0.6 * np.pi * frame / FPS))
 
 
 def about(axis: Any, angle: float) -> NDArray[np.float64]:

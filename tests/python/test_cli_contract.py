@@ -74,6 +74,21 @@ def test_bench_view_ends_its_server_and_says_nothing_besides():
     assert done.stderr == "" and json.loads(done.stdout)["hairs"] == 36
 
 
+def test_bench_growth_that_keeps_the_density_has_spheres_as_large_as_it_has_wisps(monkeypatch):
+    asked = []
+
+    def run_bench(name, **params):
+        asked.append((params["strands"], params["radius"]))
+        counts = {"contacts": 2.0 * params["strands"], "candidates": 0, "linear_iterations": 0}
+        return {"cpu_ms": {"median": 3.0 * params["strands"] ** 1.5}, **counts}
+
+    run_growth = ringlet.run_bench
+    monkeypatch.setattr(ringlet, "run_bench", run_bench)
+    told = run_growth("growth", least=64, most=256, kept="density")
+    assert [(n, n / radius**2) for n, radius in asked] == [(n, pytest.approx(256 / 0.1525**2)) for n in (64, 128, 256)]
+    assert told["exponent"] == pytest.approx(1.5) and told["contacts_exponent"] == pytest.approx(1.0)
+
+
 def test_bench_growth_fits_a_power_to_the_times_of_all_sizes():
     result = run("bench", "growth", "--least", "2", "--most", "9", "--steps", "4", "--json", "--threads", "1")
     told = json.loads(result.stdout)
