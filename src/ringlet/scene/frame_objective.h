@@ -68,7 +68,7 @@ private:
     // In one pass, which reads a row once and, unless shapes are kept, writes nothing.
     template <bool keeps> T energy_at(const T *x) {
         T energy{};
-        StrandShape<T> before, s; // of the edge before; of the edge that begins at i
+        StrandShape<T> before{}, s{}; // of the edge before; of the edge that begins at i
         for (int i = 0; i < vertices_; ++i, before = s) {
             energy += this->inertia_of(x, i);
             if (i + 1 == vertices_) break;
