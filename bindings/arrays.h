@@ -1,10 +1,11 @@
 // How arrays cross the border: inputs are borrowed views, outputs hand their memory to numpy; nothing is copied.
 #pragma once
 
-#include "ringlet/math/types.h"
+#include "ringlet/geometry/triangle_mesh.h"
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -21,6 +22,14 @@ template <class Scalar> View<Scalar> view(const Array1<Scalar> &array) { return 
 template <class Vector, class Scalar> View<Vector> vectors(const Array3<Scalar> &array) {
     static_assert(sizeof(Vector) == 3 * sizeof(Scalar));
     return {reinterpret_cast<const Vector *>(array.data()), array.shape(0)};
+}
+
+inline TriangleMesh mesh_of(const Array3<double> &points, const Array3<int> &triangles) {
+    const TriangleMesh mesh{vectors<Vec3>(points), vectors<Triangle>(triangles)};
+    for (const Triangle &t : mesh.triangles)
+        if (t.minCoeff() < 0 || t.maxCoeff() >= static_cast<int>(mesh.points.size()))
+            throw std::out_of_range("a triangle names a point that the mesh does not have");
+    return mesh;
 }
 
 // Gives a vector's memory to numpy, with the given shape.

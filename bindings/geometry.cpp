@@ -15,14 +15,6 @@ using namespace ringlet::bindings;
 
 namespace {
 
-TriangleMesh mesh_of(const Array3<double> &points, const Array3<int> &triangles) {
-    const TriangleMesh mesh{vectors<Vec3>(points), vectors<Triangle>(triangles)};
-    for (const Triangle &t : mesh.triangles)
-        if (t.minCoeff() < 0 || t.maxCoeff() >= static_cast<int>(mesh.points.size()))
-            throw std::out_of_range("a triangle names a point that the mesh does not have");
-    return mesh;
-}
-
 void check_triangles(View<int> triangles, const TriangleMesh &mesh) {
     for (const int t : triangles)
         if (t < 0 || t >= static_cast<int>(mesh.triangles.size())) throw std::out_of_range("there is no such triangle");

@@ -2,6 +2,7 @@
 
 #include "ringlet/groom/curl.h"
 #include "ringlet/groom/hairs.h"
+#include "ringlet/groom/keep_beside.h"
 #include "ringlet/groom/push_out.h"
 #include "ringlet/groom/repair.h"
 #include "ringlet/groom/sample.h"
@@ -203,6 +204,21 @@ void warp(const Array3<float> &lock_points, const Array1<int> &lock_offsets,
                {result.data(), 3 * hairs * points});
 }
 
+int keep_hairs(const Array3<float> &lock_points, const Array1<int> &lock_offsets,
+               nb::ndarray<float, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu> hairs, const Array3<double> &points,
+               const Array3<int> &triangles, double margin, const Array1<int> &first, const Array1<float> &tip,
+               const Array1<float> &hold) {
+    const size_t locks = lock_offsets.size() - 1, count = first.data()[locks];
+    require(first.size() == locks + 1 && tip.size() == count, "first needs one row a lock, tip a value a hair");
+    require(hold.size() >= 2 && hairs.shape(0) == count * hold.size(), "the hairs need one row a point");
+    HairLayout layout;
+    layout.first = view(first), layout.tip = view(tip), layout.hold = view(hold);
+    const TriangleMesh surface = mesh_of(points, triangles);
+    nb::gil_scoped_release release;
+    return keep_beside(vectors<Vec3f>(lock_points), view(lock_offsets), layout, surface, margin,
+                       {hairs.data(), 3 * count * hold.size()});
+}
+
 } // namespace
 
 void bind_groom(nb::module_ &module) {
@@ -243,4 +259,8 @@ void bind_groom(nb::module_ &module) {
     module.def("warp_hairs", &warp, "lock_points"_a, "lock_offsets"_a, "result"_a, nb::kw_only(), "axis"_a, "root"_a, "first"_a,
                "offset"_a, "tip"_a, "taper"_a, "frizz"_a, "profile"_a, "hold"_a, "other"_a, "share"_a, "blend"_a,
                "Writes the points of all hairs (hairs * points, 3) around locks where they are now; see groom/hairs.h.");
+    module.def(
+        "keep_beside", &keep_hairs, "lock_points"_a, "lock_offsets"_a, "hairs"_a, "points"_a, "triangles"_a, "margin"_a,
+        nb::kw_only(), "first"_a, "tip"_a, "hold"_a,
+        "Keeps hairs on the side of triangles where their lock is, in place; see groom/keep_beside.h. How many it moved.");
 }

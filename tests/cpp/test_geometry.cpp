@@ -34,6 +34,26 @@ BOOST_AUTO_TEST_CASE(a_search_within_a_distance_finds_nothing_beyond_it) {
     BOOST_TEST(tree.closest({2.0, 0.0, 0.0}, 1.1).distance == 1.0);
 }
 
+BOOST_AUTO_TEST_CASE(triangles_whose_boxes_meet_a_box_are_found_once_and_no_others) {
+    const OwnedMesh soup = triangle_soup(300);
+    const TriangleTree tree(soup.view());
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> in(-0.2, 1.2);
+    for (int run = 0; run < 100; ++run) {
+        const Vec3 a(in(random), in(random), in(random)), b(in(random), in(random), in(random));
+        const Eigen::AlignedBox3d asked(a.cwiseMin(b), a.cwiseMax(b));
+        std::vector<int> expected, found;
+        for (int t = 0; t < 300; ++t) {
+            Eigen::AlignedBox3d box;
+            for (int k = 0; k < 3; ++k) box.extend(soup.view().corner(t, k));
+            if (box.intersects(asked)) expected.push_back(t);
+        }
+        tree.overlapping(asked.min(), asked.max(), found);
+        std::ranges::sort(found);
+        BOOST_TEST(found == expected, boost::test_tools::per_element());
+    }
+}
+
 BOOST_AUTO_TEST_CASE(the_nearest_point_of_a_triangle_is_nearer_than_any_other) {
     const OwnedMesh soup = triangle_soup(20);
     std::mt19937 random(6);

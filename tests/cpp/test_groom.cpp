@@ -1,6 +1,7 @@
 // Sampling, curling, pushing out, and hairs.
 #include "ringlet/groom/curl.h"
 #include "ringlet/groom/hairs.h"
+#include "ringlet/groom/keep_beside.h"
 #include "ringlet/groom/push_out.h"
 #include "ringlet/groom/repair.h"
 #include "ringlet/groom/sample.h"
@@ -8,6 +9,8 @@
 
 #include <algorithm>
 #include <boost/test/unit_test.hpp>
+#include <numbers>
+#include <random>
 
 using namespace ringlet;
 
@@ -223,6 +226,102 @@ BOOST_AUTO_TEST_CASE(a_hair_off_the_middle_runs_beside_a_straight_lock) {
         const Vec3f beside = lock[k] + Vec3f(0.002F, 0.0F, -0.001F);
         BOOST_TEST((Eigen::Map<Vec3f>(&result[3 * (8 + k)]) - beside).norm() < 1e-8F);
     }
+}
+
+BOOST_AUTO_TEST_CASE(hairs_stop_short_of_a_wall_beside_their_lock_and_come_back_to_their_places) {
+    constexpr int n = 41; // 2 mm apart
+    constexpr float beyond = 2e-3F;
+    std::vector<Vec3f> lock;
+    for (const Vec3 &p : straight(n, 0.08)) lock.push_back(p.cast<float>());
+    const std::vector<int> offsets{0, n}, first{0, 3};
+    std::vector<float> tip{1, 1, 1}, hold(n, 0.0F), hairs;
+    hold[0] = 1.0F;
+    for (const float x : {0.0F, beyond, -beyond})
+        for (const Vec3f &p : lock) hairs.insert(hairs.end(), {p[0] + x, p[1], p[2]});
+    const std::vector<float> before = hairs;
+    const double y = 0.04,
+                 at = 1e-3; // the wall's lower rim, and where it is; it is a little askew, so that no point is on an edge
+    const std::vector<Vec3> wall{{at, y, -0.031}, {at, y, 0.03}, {at, 0.2, 0.03}, {at, 0.2, -0.03}};
+    const std::vector<Triangle> triangles{{0, 1, 2}, {0, 2, 3}};
+    HairLayout layout;
+    layout.first = first, layout.tip = tip, layout.hold = hold;
+
+    BOOST_TEST(keep_beside(lock, offsets, layout, {wall, triangles}, 1e-4, hairs) == 1);
+    const auto x = [&](int hair, int k) { return hairs[3 * (hair * n + k)]; };
+    for (int k = 0; k < n; ++k) {
+        for (const int hair : {0, 2})
+            for (int c = 0; c < 3; ++c) BOOST_TEST(hairs[3 * (hair * n + k) + c] == before[3 * (hair * n + k) + c]);
+        if (lock[k][1] > y) BOOST_TEST(x(1, k) < 0.9001e-3F);        // short by the margin
+        if (lock[k][1] > y + 5e-3) BOOST_TEST(x(1, k) > 0.8999e-3F); // nearer only where its edge would go through at the rim
+        if (lock[k][1] < y - 6e-3) BOOST_TEST(x(1, k) == beyond);
+        if (k > 0) BOOST_TEST(std::abs(x(1, k) - x(1, k - 1)) < 0.7e-3F); // a third of its way in 2 mm
+    }
+}
+
+BOOST_AUTO_TEST_CASE(no_edge_of_a_hair_goes_through_what_its_lock_does_not) {
+    constexpr int n = 60, count = 30;
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> in(-1.0, 1.0);
+    const auto anywhere = [&] { return Vec3(in(random), in(random), in(random)); };
+    const auto goes_through = [](const Vec3 &a, const Vec3 &b, const std::vector<Vec3> &corners) {
+        const auto volume = [](const Vec3 &p, const Vec3 &q, const Vec3 &r, const Vec3 &s) {
+            return (q - p).cross(r - p).dot(s - p) > 0.0;
+        };
+        const Vec3 &c0 = corners[0], &c1 = corners[1], &c2 = corners[2];
+        const bool side = volume(a, b, c0, c1);
+        return volume(a, c0, c1, c2) != volume(b, c0, c1, c2) && side == volume(a, b, c1, c2) && side == volume(a, b, c2, c0);
+    };
+    int through_before = 0, through_after = 0;
+    for (int run = 0; run < 40; ++run) {
+        std::vector<Vec3f> lock; // a coil of 12 points a turn, 6 mm wide
+        for (int k = 0; k < n; ++k) {
+            const double angle = 2.0 * std::numbers::pi * k / 12.0;
+            lock.emplace_back(Vec3(6e-3 * std::cos(angle), 1e-3 * k, 6e-3 * std::sin(angle)).cast<float>());
+        }
+        const std::vector<int> offsets{0, n}, first{0, count};
+        std::vector<float> tip, hairs, hold(n, 0.0F);
+        for (int i = 0; i < count; ++i) { // shorter than the lock by up to a tenth, beside it by up to 3 mm
+            tip.push_back(1.0F - 0.1F * static_cast<float>(i) / count);
+            const Vec3f beside = (1.7e-3 * anywhere()).cast<float>();
+            for (int k = 0; k < n; ++k) {
+                const float at = static_cast<float>(k) * tip.back();
+                const int segment = std::min(static_cast<int>(at), n - 2);
+                const Vec3f p =
+                    lock[segment] + (at - static_cast<float>(segment)) * (lock[segment + 1] - lock[segment]) + beside;
+                hairs.insert(hairs.end(), {p[0], p[1], p[2]});
+            }
+        }
+        OwnedMesh shards; // 2 mm wide, through which the lock does not go
+        while (shards.triangles.size() < 40) {
+            const Vec3 centre = lock[static_cast<size_t>(random() % n)].cast<double>() + 1.5e-3 * anywhere();
+            const std::vector<Vec3> corners{centre + 2e-3 * anywhere(), centre + 2e-3 * anywhere(), centre + 2e-3 * anywhere()};
+            bool clear = true;
+            for (int k = 0; k + 1 < n; ++k)
+                clear = clear && !goes_through(lock[k].cast<double>(), lock[k + 1].cast<double>(), corners);
+            if (!clear) continue;
+            const int next = static_cast<int>(shards.points.size());
+            shards.points.insert(shards.points.end(), corners.begin(), corners.end());
+            shards.triangles.emplace_back(next, next + 1, next + 2);
+        }
+        const auto through = [&] {
+            int found = 0;
+            for (int e = 0; e < count * n; ++e) {
+                if (e % n == n - 1) continue;
+                const Vec3 a = Eigen::Map<Vec3f>(&hairs[3 * e]).cast<double>(),
+                           b = Eigen::Map<Vec3f>(&hairs[3 * e + 3]).cast<double>();
+                for (size_t t = 0; t < shards.triangles.size(); ++t)
+                    found += goes_through(a, b, {shards.points[3 * t], shards.points[3 * t + 1], shards.points[3 * t + 2]});
+            }
+            return found;
+        };
+        HairLayout layout;
+        layout.first = first, layout.tip = tip, layout.hold = hold;
+        through_before += through();
+        keep_beside(lock, offsets, layout, shards.view(), 1e-4, hairs);
+        through_after += through();
+    }
+    BOOST_TEST(through_before > 2'000);
+    BOOST_TEST(through_after == 0);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

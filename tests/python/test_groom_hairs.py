@@ -246,3 +246,24 @@ def test_pictures_that_hairs_ask_for_go_with_the_groom_file(tmp_path):
     back = ringlet.build_hairs(ringlet.read_groom(tmp_path / "groom.usdc")).curves
     np.testing.assert_allclose(back.point["width"], ringlet.build_hairs(made).curves.point["width"], rtol=1e-5)
     assert np.ptp(back.point["width"]) > 3e-5
+
+
+def test_hairs_stay_on_their_locks_side_of_surfaces():
+    made = groom("radius = 0.004\n")
+    hairs = make_hairs(made)
+    # The locks lie side by side, half a millimetre below a roof.
+    x, z = np.meshgrid(np.linspace(0.0, 0.1, 60), np.linspace(-0.1, 0.1, 40))
+    locks = np.stack([x, 0 * x + 0.2, z], axis=-1)
+    roof = sheet(20, 0.5)
+    roof.points[:, 1] = 0.2005
+    free = hairs.at(locks.reshape(-1, 3), made.scalp.points).reshape(40, 12, 60, 3)
+    beside = [(made.scalp.points, made.scalp.triangles), (roof.points, roof.triangles)]
+    kept = hairs.at(locks.reshape(-1, 3), made.scalp.points, beside=beside).reshape(40, 12, 60, 3)
+    after_roots = np.s_[:, :, 10:]
+    assert free[after_roots][..., 1].max() > 0.2015
+    assert kept[after_roots][..., 1].max() < 0.2005 - 0.9e-4
+    assert np.array_equal(kept[:, 0], free[:, 0])  # locks themselves stay what they are
+    assert np.array_equal(kept[:, :, 0], free[:, :, 0])  # and so do roots
+    assert 0.2 < (kept == free).all(axis=(2, 3)).mean() < 0.8
+    far = (roof.points + [0.0, 0.1, 0.0], roof.triangles)
+    assert np.array_equal(hairs.at(locks.reshape(-1, 3), made.scalp.points, beside=[far]).reshape(free.shape), free)

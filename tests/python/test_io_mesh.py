@@ -65,6 +65,16 @@ def test_a_still_mesh_gives_one_sample(tmp_path):
     np.testing.assert_allclose(clip.at(17), read_mesh(path).points)
 
 
+def test_one_sample_holds_at_all_times_and_the_rest_pose_is_still_the_default(tmp_path):
+    stage = new_stage(tmp_path / "head.usda")
+    mesh = add_cube(stage)
+    mesh.GetPointsAttr().Set(Vt.Vec3fArray.FromNumpy((CUBE + 2.0).astype(np.float32)), 7.0)
+    stage.Save()
+    (body,) = read_bodies(tmp_path / "head.usda")
+    np.testing.assert_allclose(body.mesh.points, 0.01 * CUBE, atol=1e-7)
+    np.testing.assert_allclose(body.clip.at(1.0), 0.01 * (CUBE + 2.0), atol=1e-7)
+
+
 def test_the_rest_pose_is_the_default_value_where_there_is_one(tmp_path):
     stage = new_stage(tmp_path / "a.usda", unit=1.0)
     mesh = add_cube(stage)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from pxr import Gf, Sdf, Usd, UsdGeom, Vt
 from ringlet.shot import Obstacle, parse_shot, simulate
-from ringlet.shot.cache import Touches
+from ringlet.shot.cache import Cache, CachedCloth, Touches
 from small_example import FRAMES, RADIUS, write_example
 from test_cli import refused, run
 from test_shot_cloth import LONG, garment, simulated
@@ -107,6 +107,25 @@ def test_cloth_is_in_the_hairs_and_in_pictures(example):
     kept = ringlet.read_cache(example / "cache.usdc").cloths[0]
     assert np.abs(scarf.clip.at(4) - kept.points[-1]).max() < 1e-6
     assert io.problems(hair) == []
+
+
+def test_hairs_stay_below_a_cloth_that_their_locks_are_below(tmp_path):
+    folder = write_example(tmp_path)
+    write_wear(folder)
+    recipe = folder / "small.recipe.toml"
+    recipe.write_text(recipe.read_text() + 'radius = "6 mm"\n')
+    assert run("groom", recipe, "-o", folder / "groom.usdc").exit_code == 0
+    locks = ringlet.read_groom(folder / "groom.usdc").locks.points
+    at = np.linspace(-0.2, 0.2, 9)
+    x, z = np.meshgrid(at, at)
+    roof = np.stack([x, 0 * x + locks[:, 1].max() + 1e-3, z], axis=-1).reshape(1, -1, 3).astype(np.float32)
+    cloth = CachedCloth("scarf", folder / "wear.usda", "/wear/scarf", roof)
+    cache = Cache(np.array([1.0]), locks[None].astype(np.float32), cloths=[cloth])
+    ringlet.write_cache(cache, folder / "groom.usdc", folder / "cache.usdc")
+    ringlet.write_hairs(folder / "groom.usdc", folder / "rest.usdc")
+    ringlet.write_hairs(folder / "groom.usdc", folder / "hair.usdc", cache=folder / "cache.usdc")
+    assert io.read_hairs(folder / "rest.usdc").points[:, 1].max() > roof[0, 0, 1] + 1e-3
+    assert io.read_hairs(folder / "hair.usdc").points[:, 1].max() < roof[0, 0, 1] - 0.9e-4
 
 
 def test_cloth_of_the_heads_own_file_is_no_collider_and_moves_there(example, tmp_path):

@@ -39,6 +39,8 @@ def write_hairs(
 ) -> dict[str, int]:
     """Writes the hairs of the USD file ``groom``, at rest, or carried by the guides of ``cache`` through ``frames``.
 
+    They stay on that side of the scalp, and of what else the cache shows, where their lock is.
+
     variant: of the groom, in place of the one that is selected in it, or that the cache was made of
 
     Returns how many ``locks``, ``hairs``, ``points`` and ``frames`` there are.
@@ -51,14 +53,18 @@ def write_hairs(
     hairs = build_hairs(locks, fraction=fraction, wider=wider)
     written = 0
     if cache is None:
+        scalp = locks.scalp
+        points = hairs.at(locks.locks.points, scalp.points, beside=[(scalp.points, scalp.triangles)])
         with io.HairWriter(Path(path), locks, hairs.curves, Path(groom)) as writer:
-            writer.add(None, hairs.curves.points)
+            writer.add(None, points)
     else:
         clip = scalp_clip(locks)
         with io.open_cache(cache) as moved, io.HairWriter(Path(path), locks, hairs.curves, Path(cache)) as writer:
             chosen = moved.within(frames)
             for frame in chosen:
-                writer.add(frame, hairs.at(moved.points(frame), clip.at(frame)))
+                scalp = clip.at(frame)
+                beside = moved.surfaces(frame) or [(scalp, locks.scalp.triangles)]  # a head of an OBJ is in no stage
+                writer.add(frame, hairs.at(moved.points(frame), scalp, beside=beside))
                 written += 1
                 if progress:
                     progress("hairs", written, len(chosen))

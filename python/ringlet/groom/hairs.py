@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from hashlib import blake2b
 from typing import Annotated, Any
@@ -23,6 +24,7 @@ from ringlet.mesh import Mesh
 
 IDS_PER_LOCK = 10_000  # the id of a hair: id of its lock · 10 000 + number in it
 FRIZZ_KNOTS = 8
+MARGIN = 1e-4  # [m] by which hairs stay off surfaces; their own radius is half of that
 
 
 class HairSettings(Section):
@@ -94,18 +96,27 @@ class Hairs:
     _root: NDArray[np.float32] | None = None  # from the roots of locks to those of hairs while the scalp is at rest
 
     def at(
-        self, lock_points: NDArray, scalp_points: NDArray, *, out: NDArray[np.float32] | None = None
+        self,
+        lock_points: NDArray,
+        scalp_points: NDArray,
+        *,
+        beside: Sequence[tuple[NDArray, NDArray]] = (),
+        out: NDArray[np.float32] | None = None,
     ) -> NDArray[np.float32]:
         """Where the hairs are when locks and scalp have moved; shape (n, 3) [m], float32.
 
         lock_points:  positions of ``groom.locks`` now [m], shape (locks' points, 3)
         scalp_points: positions of ``groom.scalp`` now [m], shape (scalp points, 3)
+        beside:       surfaces that hairs stay on their lock's side of: points [m], shape (k, 3), and triangles (m, 3)
         out:          written to and returned, if given: fresh memory costs more than what is computed
         """
         if out is None:
             out = np.empty((int(self.curves.offsets[-1]), 3), np.float32)
         points = np.ascontiguousarray(lock_points, np.float32)
         _core.warp_hairs(points, self._groom.locks.offsets, out, **self.carriage(scalp_points))
+        if beside:
+            parts = {name: self._layout[name] for name in ("first", "tip", "hold")}
+            _core.keep_beside(points, self._groom.locks.offsets, out, *_as_one(beside), MARGIN, **parts)
         return out
 
     def carriage(self, scalp_points: NDArray) -> dict[str, NDArray]:
@@ -137,6 +148,15 @@ class Hairs:
         root = np.einsum("hc,hcx->hx", bound["root_barycentric"], corners) - lock_roots[bound["lock"]]
         root[self._layout["first"][:-1]] = 0.0  # the first hair of a lock is the lock
         return root.astype(np.float32)
+
+
+def _as_one(surfaces: Sequence[tuple[NDArray, NDArray]]) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+    """Points and triangles of several meshes as those of one."""
+    before = np.cumsum([0] + [len(points) for points, _ in surfaces])
+    return (
+        np.concatenate([points for points, _ in surfaces], dtype=np.float64),
+        np.concatenate([triangles + n for (_, triangles), n in zip(surfaces, before, strict=False)], dtype=np.int32),
+    )
 
 
 @dataclass

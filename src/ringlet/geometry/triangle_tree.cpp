@@ -121,4 +121,28 @@ SurfacePoint TriangleTree::closest(const Vec3 &p, double within) const {
     return nearest;
 }
 
+void TriangleTree::overlapping(const Vec3 &low, const Vec3 &high, std::vector<int> &found) const {
+    const auto meets = [&](const Vec3 &from, const Vec3 &to) {
+        return (from.array() <= high.array()).all() && (to.array() >= low.array()).all();
+    };
+    if (nodes_.empty()) return;
+    std::array<int, 64> stack;
+    int top = 0;
+    stack[top++] = 0;
+    while (top > 0) {
+        const int self = stack[--top];
+        const Node &node = nodes_[self];
+        if (!meets(node.low, node.high)) continue;
+        if (node.count == 0) {
+            stack[top++] = node.begin;
+            stack[top++] = self + 1;
+            continue;
+        }
+        for (int i = node.begin; i < node.begin + node.count; ++i) {
+            const Vec3 &a = mesh_.corner(order_[i], 0), &b = mesh_.corner(order_[i], 1), &c = mesh_.corner(order_[i], 2);
+            if (meets(a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c))) found.push_back(order_[i]);
+        }
+    }
+}
+
 } // namespace ringlet

@@ -26,6 +26,8 @@ public:
 
     // The nearest point within `within` of p; the first triangle in the tree's order wins a tie.
     SurfacePoint closest(const Vec3 &p, double within = std::numeric_limits<double>::infinity()) const;
+    // Adds to `found` the triangles of which the boxes meet this one.
+    void overlapping(const Vec3 &low, const Vec3 &high, std::vector<int> &found) const;
     const TriangleMesh &mesh() const { return mesh_; }
 
 private:

@@ -16,6 +16,7 @@ from ringlet.errors import UserError
 from ringlet.io.space import to_metres
 from ringlet.io.usd.cloths import ClothPrims, read_cloth, set_cloth, told_of
 from ringlet.io.usd.groom import LOCKS, VERSION, check_version, groom_prim
+from ringlet.io.usd.mesh import clip_at, mesh_at, visible_meshes
 from ringlet.io.usd.stage import Source, parse_json, reading, reading_more
 from ringlet.io.usd.stream import StreamWriter
 from ringlet.shot.cache import Cache, CachedCloth
@@ -82,6 +83,7 @@ class CacheFile:
         self.statistics: list[dict[str, Any]] = told("statistics", "[]")
         self.start: dict[str, Any] = told("start", "{}")
         self._cloths: list[dict[str, Any]] = told("cloths", "[]")
+        self._meshes: list[tuple[Usd.Prim, NDArray[np.int32]]] | None = None
 
     def points(self, frame: float) -> NDArray[np.float32]:
         """Where the locks are at a frame [m], shape (n, 3), in the order of the groom's locks."""
@@ -93,6 +95,16 @@ class CacheFile:
                 "simulate again"
             )
         return to_metres(moved, self._source.space)
+
+    def surfaces(self, frame: float) -> list[tuple[NDArray[np.float64], NDArray[np.int32]]]:
+        """What a render shows beside hair at a frame, the head as well as cloths: points [m], shape (n, 3), and triangles."""
+        with reading_more(self._source.path):
+            if self._meshes is None:
+                prims = visible_meshes(self._source)
+                self._meshes = [(prim, mesh_at(self._source, prim).triangles) for prim in prims]
+            return [
+                (clip_at(self._source, prim, (frame, frame)).points[0], triangles) for prim, triangles in self._meshes
+            ]
 
     def within(self, frames: tuple[int, int] | None) -> NDArray[np.float64]:
         """Its frames from the first to the last of ``frames``, all for None."""

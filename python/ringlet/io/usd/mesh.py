@@ -141,11 +141,10 @@ def mesh_at(source: Source, prim: Usd.Prim) -> Mesh:
 
 def clip_at(source: Source, prim: Usd.Prim, frames: tuple[float, float] | None = None) -> Clip:
     """Positions of a mesh prim at all whole frames of the stage, or from the first to the last of ``frames``."""
-    where, rest = source.where(prim), rest_time(prim)
-    times = _frames(source, prim, frames)
+    where, times = source.where(prim), _frames(source, prim, frames)
     if len(times) == 0:
-        start = source.stage.GetStartTimeCode()
-        still = to_metres(transformed(read_points(prim, rest, where), prim, rest), source.space)
+        start, always = source.stage.GetStartTimeCode(), Usd.TimeCode.EarliestTime()  # one sample holds at all times
+        still = to_metres(transformed(read_points(prim, always, where), prim, always), source.space)
         return Clip(np.array([start]), still[None], source.space.fps)
     samples = []
     for frame in times:
