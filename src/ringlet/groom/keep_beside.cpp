@@ -12,7 +12,8 @@ namespace {
 constexpr double easing = 6e-3; // [m] length along the lock over which a hair comes from its lock to its place
 constexpr double slant = 2.0;   // a way to a hair that climbs less than half its length may end nearer than the margin
 constexpr int rounds = 16;      // of drawing edges nearer
-constexpr int halvings = 3;     // first by half, then all the way
+constexpr int gentle = 8;       // of these go only as far as they must
+constexpr int halvings = 6;     // to find how far that is
 
 struct Facet {
     Vec3 corner, a, b, normal; // a corner, the edges from it, and their product, not of length 1
@@ -132,25 +133,46 @@ private:
             moves = moves || share_[k] < 1.0;
         }
         if (moves) draw(points);
-        for (int round = 0; round < rounds && draw_edges(lock, points, round < halvings ? 0.5 : 0.0); ++round) moves = true;
+        for (int round = 0; round < rounds && draw_edges(lock, points, round < gentle); ++round) moves = true;
         return moves;
     }
 
-    // Draws the ends of edges that go through to a part of their shares, and those that lie on the lock already and cut one of
-    // its corners into that corner; returns whether there were any.
-    bool draw_edges(View<Vec3f> lock, Eigen::Map<Eigen::Matrix3Xf> &points, double part) {
+    // Draws the ends of edges that go through towards the lock, as far as they must or all the way, and those that lie on the
+    // lock already and cut one of its corners into that corner; returns whether there were any.
+    bool draw_edges(View<Vec3f> lock, Eigen::Map<Eigen::Matrix3Xf> &points, bool gently) {
         bool any = false;
         for (size_t k = 0; k + 1 < n_; ++k) {
-            const std::vector<Facet> &facets = facets_[segment_[k]];
-            if (facets.empty() || layout_.hold[k] > 0.0f) continue;
-            const Vec3 from = points.col(k).cast<double>(), way = points.col(k + 1).cast<double>() - from;
-            if (std::ranges::none_of(facets, [&](const Facet &facet) { return meets(facet, from, way, 1.0) <= 1.0; })) continue;
+            if (facets_[segment_[k]].empty() || layout_.hold[k] > 0.0f || !goes_through(k, 1.0)) continue;
             if (share_[k] + share_[k + 1] == 0.0) places_[k + 1] = lock[segment_[k + 1]].cast<double>();
+            const double part = gently ? part_beside(k) : 0.0;
             share_[k] *= part, share_[k + 1] *= part;
             any = true;
         }
         if (any) draw(points);
         return any;
+    }
+
+    // Whether the edge after the k-th point goes through a triangle where its ends have such a part of their shares.
+    bool goes_through(size_t k, double part) const {
+        const Vec3 from = place(k, part), way = place(k + 1, part) - from;
+        return std::ranges::any_of(facets_[segment_[k]],
+                                   [&](const Facet &facet) { return meets(facet, from, way, 1.0) <= 1.0; });
+    }
+
+    // The part of their shares at which the edge after the k-th point does not go through: what moves little changes it little.
+    double part_beside(size_t k) const {
+        double beside = 0.0, through = 1.0;
+        for (int i = 0; i < halvings; ++i) {
+            const double middle = 0.5 * (beside + through);
+            (goes_through(k, middle) ? through : beside) = middle;
+        }
+        return beside;
+    }
+
+    // Where the k-th point is, as it is written, with such a part of its share.
+    Vec3 place(size_t k, double part) const {
+        const double share = std::max(part * share_[k], static_cast<double>(layout_.hold[k]));
+        return (places_[k] + share * (hair_[k] - places_[k])).cast<float>().cast<double>();
     }
 
     // Lets shares change slowly along the hair and puts it there.
@@ -159,7 +181,7 @@ private:
         for (size_t k = n_ - 1; k-- > 0;) share_[k] = std::min(share_[k], share_[k + 1] + rise(k + 1));
         for (size_t k = 0; k < n_; ++k) {
             share_[k] = std::max(share_[k], static_cast<double>(layout_.hold[k]));
-            if (share_[k] < 1.0) points.col(k) = (places_[k] + share_[k] * (hair_[k] - places_[k])).cast<float>();
+            if (share_[k] < 1.0) points.col(k) = place(k, 1.0).cast<float>();
         }
     }
     double rise(size_t k) const { return (places_[k] - places_[k - 1]).norm() / easing; }

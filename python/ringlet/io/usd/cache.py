@@ -97,7 +97,7 @@ class CacheFile:
         return to_metres(moved, self._source.space)
 
     def surfaces(self, frame: float) -> list[tuple[NDArray[np.float64], NDArray[np.int32]]]:
-        """What a render shows beside hair at a frame, the head as well as cloths: points [m], shape (n, 3), and triangles."""
+        """All that is visible beside hair at a frame, the head and cloths: points [m], shape (n, 3), and triangles."""
         with reading_more(self._source.path):
             if self._meshes is None:
                 prims = visible_meshes(self._source)
