@@ -12,6 +12,8 @@ from pages import page, read, serving
 from pxr import Usd
 from ringlet.errors import UserError
 from ringlet.viewer.reel import Run
+from small_example import write_head
+from test_shot_cloth_files import SCARF, write_wear
 
 import ringlet
 from ringlet import io
@@ -59,6 +61,34 @@ def test_a_groom_and_its_cache_are_shown_as_they_are(folder: Path):
         last, second = one.watch(4, 2)
         assert (last["frame"], second["frame"]) == (4, 2) and last["points"].shape == (8 * 40 * 3,)
         assert np.abs(last["points"] - second["points"]).max() > 1e-3
+
+
+def test_cloth_and_colliders_of_a_shot_are_seen_where_they_are(folder: Path):
+    write_wear(folder)
+    write_head(folder / "hand.usda")
+    shot = folder / "small.shot.toml"
+    shot.write_text(shot.read_text() + SCARF + '[[collider]]\n[[collider]]\nfile = "hand.usda"\nanimated = false\n')
+    groom = ringlet.build_groom(folder / "small.recipe.toml")
+    cache = ringlet.simulate(shot, groom)
+    assert np.abs(cache.cloths[0].points[3] - cache.cloths[0].points[0]).max() > 1e-3
+    with serving(folder, shot.name) as client, page(client) as one:
+        one.been_told("timeline", state="still")
+        one.say(kind="play", action="start")
+        first, last = one.watch(1, 4)
+        bodies = {body["index"]: body for body in one.heard if body["kind"] == "body"}
+        assert [bodies[k]["name"] for k in range(3)] == ["skin", "scarf", "skin"] and bodies[1]["made_of"] == "cloth"
+        head = len(bodies[0]["points"])
+        for frame, number in ((first, 0), (last, 3)):
+            assert np.abs(frame["bodies"][head : head + 3 * 81] - cache.cloths[0].points[number].ravel()).max() < 1e-6
+        assert np.abs(last["bodies"][:head] - first["bodies"][:head]).max() > 0.01
+        assert np.array_equal(last["bodies"][head + 3 * 81 :], first["bodies"][:head])
+    ringlet.write_groom(groom, folder / "groom.usda")
+    ringlet.write_cache(cache, folder / "groom.usda", folder / "cache.usda")
+    with serving(folder, "cache.usda") as client, page(client) as one:
+        assert {one.hear("body")["made_of"] for _ in range(2)} == {"cloth", "skin"}
+        (last,) = one.watch(4)
+        scarf = cache.cloths[0].points[3].ravel()
+        assert np.abs(last["bodies"][-len(scarf) :] - scarf).max() < 1e-6
 
 
 def test_of_a_cache_no_frame_is_read_but_those_that_are_looked_at(folder: Path, monkeypatch: pytest.MonkeyPatch):

@@ -39,6 +39,7 @@ from ringlet.api.progress import (
     Progress,
 )
 from ringlet.api.shots import (
+    brought_along,
     hold_checkpoints,
     loft,
     made_from,
@@ -58,6 +59,7 @@ from ringlet.api.shots import (
 __all__ = [
     "OnFrame",
     "Progress",
+    "brought_along",
     "build_groom",
     "build_hairs",
     "check_groom",

@@ -287,6 +287,14 @@ def _obstacles(shot: Shot, groom: Groom, garments: Sequence[Garment]) -> list[Ob
     return list(found.values())
 
 
+def brought_along(shot: Shot, groom: Groom) -> tuple[list[Garment], list[Obstacle]]:
+    """What is seen of a shot besides what is visible with the head: its cloths, and colliders of other files."""
+    garments = _garments(shot, groom)
+    apart = tuple(collider for collider in shot.collider if collider.file not in (None, groom.scalp_file))
+    obstacles = _obstacles(shot.model_copy(update={"collider": apart}), groom, garments) if apart else []
+    return garments, [obstacle.starting_at(shot.frames[0]) for obstacle in obstacles]
+
+
 def _garments(shot: Shot, groom: Groom) -> list[Garment]:
     """The meshes that become cloth in a shot."""
     from ringlet import io

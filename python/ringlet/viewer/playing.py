@@ -7,7 +7,6 @@ from collections.abc import Callable
 from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -24,8 +23,7 @@ from ringlet.viewer.showing import Showing
 from ringlet.viewer.simulation import Simulation, Stage
 from ringlet.viewer.wire import pack, trouble
 
-# Makes the message of a frame of its number, where its points are [m], and its statistics.
-PackFrame = Callable[[float, np.ndarray, dict[str, Any]], bytes]
+PackFrame = Callable[..., bytes]  # makes the message of a frame of its number and what it holds
 
 TRIES = 20  # to open a file that is replaced again and again
 
@@ -113,6 +111,8 @@ class Playing:
             if self._stage is None:
                 raise UserError("shot: its groom is not made yet; wait until it is seen")
             again = message.frame if message.action == "again_from" else None
+            self._showing.dress(shot, self._stage.groom)
+            self._stage.bodies = self._showing.bodies
             self._simulation.start(shot, self._stage, again)
 
     def set_groom(self, look: Look) -> None:
@@ -122,6 +122,10 @@ class Playing:
             self._simulation.reset()
             self._beside.close()
             self._against = ""
+            try:
+                self._showing.dress(self._files.shot, look.groom)
+            except UserError as error:  # it is told again when the shot is to run
+                self._failed(str(error))
             self._stage = Stage(look.groom, look.hairs, api.scalp_clip(look.groom), self._showing.bodies)
         self.tell()
 

@@ -60,8 +60,8 @@ class Read:
     """Frames that a file holds. One is read at a time, whoever asks.
 
     file: where they are
-    read: gives where a frame's points are [m], and its statistics
-    pack: makes the message of a frame of them
+    read: gives what a frame holds
+    pack: makes the message of a frame of that
     one:  held while the file is read, and by who opens another in its place
     """
 
@@ -69,8 +69,8 @@ class Read:
         self,
         file: Watched,
         frames: NDArray[np.float64],
-        read: Callable[[float], tuple[NDArray, dict[str, Any]]],
-        pack: Callable[[float, NDArray, dict[str, Any]], bytes],
+        read: Callable[[float], tuple[Any, ...]],
+        pack: Callable[..., bytes],
         one: threading.Lock,
     ) -> None:
         self.frames = frames
@@ -80,12 +80,12 @@ class Read:
         """Reads a frame. Raises ReplacedError where the file is another one by now."""
         with self._one:
             try:
-                points, statistics = self._read(frame)
+                held = self._read(frame)
             except UserError:
                 self._check()  # of half of the one and half of the other nothing can be said
                 raise
             self._check()
-        return self._pack(frame, points, statistics)
+        return self._pack(frame, *held)
 
     def _check(self) -> None:
         if not self._file.same():

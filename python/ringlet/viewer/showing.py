@@ -8,11 +8,12 @@ import numpy as np
 
 from ringlet.curves import Curves
 from ringlet.groom import Groom
-from ringlet.mesh import Clip, Mesh
+from ringlet.mesh import Mesh
+from ringlet.shot import Shot
 from ringlet.viewer import overlays, protocol
 from ringlet.viewer.board import Board
 from ringlet.viewer.looks import Look
-from ringlet.viewer.scene import body_message, read_bodies
+from ringlet.viewer.scene import Seen, dressed, read_bodies
 from ringlet.viewer.wire import pack
 
 
@@ -26,8 +27,10 @@ class Showing:
     def __init__(self, board: Board) -> None:
         self._board = board
         self.look: Look | None = None
-        self.bodies: list[tuple[Mesh, Clip | None]] = []
+        self.bodies: list[Seen] = []
         self._scalp: Mesh | None = None
+        self._head: list[Seen] = []
+        self._dressed: object = None
         self._layouts: dict[str, Curves] = {}
         self._names: protocol.Names | None = None
 
@@ -45,11 +48,18 @@ class Showing:
         if side == "a":
             self._tell_numbers(look, revision)
 
-    def stage(self, look: Look, bodies: list[tuple[Mesh, Clip | None]]) -> None:
+    def stage(self, look: Look, bodies: list[Seen]) -> None:
         """Shows what a USD file holds."""
         self._scalp = look.groom.scalp
         self._post_bodies(bodies)
         self.show(look, "a")
+
+    def dress(self, shot: Shot, groom: Groom) -> None:
+        """Shows what a shot brings along besides the head. Raises UserError where one of its files cannot be read."""
+        brings = shot.cloth, shot.collider, shot.touching is None
+        if brings != self._dressed:
+            self._post_bodies(dressed(self._head, shot, groom))
+            self._dressed = brings
 
     def clear_beside(self) -> None:
         """Takes the look on side b away."""
@@ -59,13 +69,15 @@ class Showing:
     def _show_scalp(self, look: Look) -> None:
         if self._scalp is not look.groom.scalp:
             self._scalp = look.groom.scalp
-            self._post_bodies(read_bodies(look.groom.scalp, look.groom.scalp_file))
+            self._head = read_bodies(look.groom.scalp, look.groom.scalp_file)
+            self._dressed = None
+            self._post_bodies(self._head)
 
-    def _post_bodies(self, bodies: list[tuple[Mesh, Clip | None]]) -> None:
+    def _post_bodies(self, bodies: list[Seen]) -> None:
         self._board.wipe("body/")
         self.bodies = bodies
-        for index, (mesh, clip) in enumerate(bodies):
-            self._board.post(f"body/{index}", body_message(index, mesh, clip.points[0] if clip else mesh.points))
+        for index, seen in enumerate(bodies):
+            self._board.post(f"body/{index}", seen.message(index))
 
     def _tell_names(self, groom: Groom, curves: Collection[str]) -> None:
         scalp = groom.scalp

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -15,11 +15,12 @@ from numpy.typing import NDArray
 from ringlet import api
 from ringlet.errors import UserError
 from ringlet.groom import Groom, Hairs
-from ringlet.mesh import Clip, Mesh
+from ringlet.mesh import Clip
 from ringlet.shot import Shot
 from ringlet.shot.simulate import Motion
 from ringlet.viewer import overlays, protocol
 from ringlet.viewer.reel import Run
+from ringlet.viewer.scene import Seen
 from ringlet.viewer.wire import pack
 
 MOST_KEPT = 1_500_000_000  # bytes of what frames can be gone on from
@@ -34,7 +35,7 @@ class Stage:
     groom: Groom
     hairs: Hairs | None
     clip: Clip
-    bodies: list[tuple[Mesh, Clip | None]]
+    bodies: list[Seen]
 
     @cached_property
     def turning(self) -> NDArray[np.float64]:
@@ -42,16 +43,25 @@ class Stage:
         return overlays.turning(self.groom.locks, self.groom.locks.points)
 
     def frame(
-        self, layer: str, frame: float, points: NDArray, statistics: dict[str, Any], motion: Motion | None = None
+        self,
+        layer: str,
+        frame: float,
+        points: NDArray,
+        statistics: dict[str, Any],
+        cloths: Mapping[str, NDArray],
+        motion: Motion | None = None,
     ) -> bytes:
-        """The message of a frame whose locks are at points [m]; what touches is known while ``motion`` is there."""
+        """The message of a frame whose locks are at points [m]; what touches is known while ``motion`` is there.
+
+        cloths: where the vertices of cloths are [m], by what the cloths are called
+        """
         axis, root = np.empty(0), np.empty(0)
         corners, locks = self.clip.at(frame), self.groom.locks
         if self.hairs is not None:
             carriage = self.hairs.carriage(corners)
             order = np.argsort(_number(carriage["first"]), kind="stable")
             axis, root = carriage["axis"], carriage["root"][order]
-        bodies = [clip.at(frame) if clip else mesh.points for mesh, clip in self.bodies]
+        bodies = [seen.at(frame, cloths) for seen in self.bodies]
         kept, contact, depth = told(statistics), np.empty(0), np.empty(0)
         if motion is not None:
             contact = overlays.contact(motion)
@@ -187,7 +197,8 @@ class Simulation:
                 if self.state == "rolling":
                     self.state = "running"
                 points = np.asarray(motion.strands.positions, np.float32)
-                self._kept.add(first + k, stage.frame("shot", first + k, points, statistics, motion))
+                cloths = {worn.name: worn.cloth.positions for worn in motion.worn}
+                self._kept.add(first + k, stage.frame("shot", first + k, points, statistics, cloths, motion))
             self._changed()
         self.state = "done"
 

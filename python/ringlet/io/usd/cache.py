@@ -117,9 +117,14 @@ class CacheFile:
         return chosen
 
     @property
-    def cloth_prims(self) -> set[str]:
-        """The paths in the stage of the cloths that moved with the locks."""
-        return {cloth["at"] for cloth in self._cloths}
+    def cloth_prims(self) -> dict[str, str]:
+        """What the cloths that moved with the locks are called, by their paths in the stage."""
+        return {cloth["at"]: cloth["name"] for cloth in self._cloths}
+
+    def cloths_at(self, frame: float) -> dict[str, NDArray[np.float32]]:
+        """Where the vertices of cloths are at a frame [m], shape (n, 3), by what the cloths are called."""
+        with reading_more(self._source.path):
+            return {told["name"]: read_cloth(self._source, told, [frame]).points[0] for told in self._cloths}
 
     def cloths(self) -> list[CachedCloth]:
         """The cloths that moved with the locks, at all frames."""
