@@ -18,7 +18,7 @@ from websockets.asyncio.client import ClientConnection, connect
 
 import ringlet
 
-PROTOCOL = 5  # that of python/ringlet/viewer/protocol.py
+PROTOCOL = 6  # that of python/ringlet/viewer/protocol.py
 EXAMPLE = Path(__file__).parents[1] / "examples/child"
 
 

@@ -7,6 +7,8 @@
 #include "ringlet/groom/repair.h"
 #include "ringlet/groom/sample.h"
 
+#include <cstdint>
+#include <nanobind/stl/optional.h>
 #include <stdexcept>
 #include <string>
 
@@ -207,16 +209,19 @@ void warp(const Array3<float> &lock_points, const Array1<int> &lock_offsets,
 int keep_hairs(const Array3<float> &lock_points, const Array1<int> &lock_offsets,
                nb::ndarray<float, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu> hairs, const Array3<double> &points,
                const Array3<int> &triangles, double margin, const Array1<int> &first, const Array1<float> &tip,
-               const Array1<float> &hold) {
+               const Array1<float> &hold,
+               std::optional<nb::ndarray<std::uint8_t, nb::shape<-1, -1>, nb::c_contig, nb::device::cpu>> shares) {
     const size_t locks = lock_offsets.size() - 1, count = first.data()[locks];
     require(first.size() == locks + 1 && tip.size() == count, "first needs one row a lock, tip a value a hair");
     require(hold.size() >= 2 && hairs.shape(0) == count * hold.size(), "the hairs need one row a point");
+    require(!shares || shares->size() == hairs.shape(0), "shares need one row a hair");
     HairLayout layout;
     layout.first = view(first), layout.tip = view(tip), layout.hold = view(hold);
+    const std::span<std::uint8_t> left = shares ? std::span{shares->data(), shares->size()} : std::span<std::uint8_t>{};
     const TriangleMesh surface = mesh_of(points, triangles);
     nb::gil_scoped_release release;
     return keep_beside(vectors<Vec3f>(lock_points), view(lock_offsets), layout, surface, margin,
-                       {hairs.data(), 3 * count * hold.size()});
+                       {hairs.data(), 3 * count * hold.size()}, left);
 }
 
 } // namespace
@@ -261,6 +266,6 @@ void bind_groom(nb::module_ &module) {
                "Writes the points of all hairs (hairs * points, 3) around locks where they are now; see groom/hairs.h.");
     module.def(
         "keep_beside", &keep_hairs, "lock_points"_a, "lock_offsets"_a, "hairs"_a, "points"_a, "triangles"_a, "margin"_a,
-        nb::kw_only(), "first"_a, "tip"_a, "hold"_a,
+        nb::kw_only(), "first"_a, "tip"_a, "hold"_a, "shares"_a = nb::none(),
         "Keeps hairs on the side of triangles where their lock is, in place; see groom/keep_beside.h. How many it moved.");
 }

@@ -10,7 +10,10 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import Review, different
+from ringlet.shot.cache import CachedCloth
+from test_shot_cloth_files import write_wear
 
+import ringlet
 from ringlet import build_groom, build_hairs
 
 
@@ -32,6 +35,37 @@ def test_hairs_on_the_graphics_card_are_those_of_the_core(opened: Any, folder: P
     assert np.abs(drawn[:, :, :3] - expected).max() < 2e-6
     widths = hairs.curves.point["width"].reshape(count, points)[order]
     assert np.allclose(drawn[:, :, 3], widths, rtol=1e-4)
+    assert not review.wrong
+
+
+def test_hairs_on_the_graphics_card_stay_below_a_cloth_as_those_of_the_core_do(opened: Any, folder: Path):
+    write_wear(folder)
+    recipe = folder / "small.recipe.toml"
+    recipe.write_text(recipe.read_text() + 'radius = "6 mm"\n')
+    groom = ringlet.build_groom(recipe)
+    ringlet.write_groom(groom, folder / "groom.usda")
+    points = groom.locks.points.astype(np.float32)[None]
+    at = np.linspace(-0.2, 0.2, 9)
+    x, z = np.meshgrid(at, at)
+    top = float(points[..., 1].max()) + 1e-3
+    roof = np.stack([x, 0 * x + top, z], axis=-1).reshape(1, -1, 3).astype(np.float32)
+    cloth = CachedCloth("scarf", folder / "wear.usda", "/wear/scarf", roof)
+    cache = ringlet.Cache(np.array([1.0]), points, cloths=[cloth])
+    ringlet.write_cache(cache, folder / "groom.usda", folder / "cache.usda")
+    ringlet.write_hairs(folder / "groom.usda", folder / "hair.usda", cache=folder / "cache.usda")
+
+    review: Review = opened("cache.usda")
+    review.until("ringlet.timeline.count == 1 && ringlet.timeline.settled")
+    review.picture()
+    hairs = build_hairs(ringlet.read_groom(folder / "groom.usda"))
+    count, number = len(hairs.curves), int(hairs.curves.counts[0])
+    read = review.get("Array.from(ringlet.viewer.hair.a.read(ringlet.viewer.renderer, 1e6))")
+    drawn = np.array(read).reshape(count, number, 4)[:, :, :3]
+    order = np.argsort(hairs.curves.ids % 10_000, kind="stable")
+    kept = ringlet.io.read_hairs(folder / "hair.usda", 1.0).points.reshape(count, number, 3)[order]
+    assert hairs.curves.points[:, 1].max() > top + 1e-3
+    assert drawn[..., 1].max() < top
+    assert np.abs(drawn - kept).max() < 1e-4  # a share has 255 steps
     assert not review.wrong
 
 
@@ -207,8 +241,6 @@ def test_what_a_killed_server_had_not_answered_is_said_again(opened: Any, serve:
 
 
 def test_of_a_long_cache_the_page_keeps_the_frames_about_the_one_that_is_seen(opened: Any, folder: Path):
-    import ringlet
-
     groom = ringlet.build_groom(folder / "small.recipe.toml")
     ringlet.write_groom(groom, folder / "groom.usda")
     numbers = np.arange(1.0, 301.0)
@@ -389,8 +421,6 @@ def test_on_a_tablet_every_control_can_be_reached(opened: Any, width: int, heigh
 
 
 def test_a_shot_beside_another_cache_with_overlays(opened: Any, folder: Path):
-    import ringlet
-
     groom = ringlet.build_groom(folder / "small.recipe.toml")
     ringlet.write_groom(groom, folder / "groom.usda")
     cache = ringlet.simulate(folder / "small.shot.toml", groom)

@@ -1,6 +1,6 @@
 // Made by tools/make_protocol.py from python/ringlet/viewer/protocol.py; change it there.
 
-export const VERSION = 5;
+export const VERSION = 6;
 export type Json = string | number | boolean | null | Json[] | { [key: string]: Json };
 
 /** A stage of the groom. place: where its settings are in the recipe. */
@@ -271,6 +271,8 @@ export interface Frame {
   points: Float32Array;
   axis: Float32Array;
   root: Float32Array;
+  drawn: Uint32Array;
+  left: Uint8Array;
   bodies: Float32Array;
   stretch: Uint8Array;
   contact: Uint8Array;

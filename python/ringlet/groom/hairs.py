@@ -115,9 +115,31 @@ class Hairs:
         points = np.ascontiguousarray(lock_points, np.float32)
         _core.warp_hairs(points, self._groom.locks.offsets, out, **self.carriage(scalp_points))
         if beside:
-            parts = {name: self._layout[name] for name in ("first", "tip", "hold")}
-            _core.keep_beside(points, self._groom.locks.offsets, out, *_as_one(beside), MARGIN, **parts)
+            self._keep_beside(points, out, beside)
         return out
+
+    def left_beside(
+        self, lock_points: NDArray, scalp_points: NDArray, beside: Sequence[tuple[NDArray, NDArray]]
+    ) -> NDArray[np.uint8]:
+        """What part of their way from their lock ``at`` leaves to hairs that stay beside surfaces.
+
+        255 is all of it; shape (hairs, points of a hair).
+        """
+        points = np.ascontiguousarray(lock_points, np.float32)
+        shares = np.full((len(self.curves), len(self._layout["hold"])), 255, np.uint8)
+        if beside:
+            self._keep_beside(points, self.at(points, scalp_points), beside, shares=shares)
+        return shares
+
+    def _keep_beside(
+        self,
+        points: NDArray[np.float32],
+        hairs: NDArray[np.float32],
+        beside: Sequence[tuple[NDArray, NDArray]],
+        **more: Any,
+    ) -> None:
+        parts = {name: self._layout[name] for name in ("first", "tip", "hold")}
+        _core.keep_beside(points, self._groom.locks.offsets, hairs, *_as_one(beside), MARGIN, **parts, **more)
 
     def carriage(self, scalp_points: NDArray) -> dict[str, NDArray]:
         """How the hairs sit in their locks when the scalp has moved: what src/ringlet/groom/hairs.h takes besides the

@@ -10,7 +10,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
-VERSION = 5
+VERSION = 6
 Place = list[str | int]  # where a setting is in its file: ["shape", 0, "amount"]
 File = Literal["recipe", "shot"]
 Point = tuple[float, float, float]
@@ -373,6 +373,8 @@ class Measured(Message):
 class Frame(Message):
     """A frame of the shot or of a cache. layer: ``shot``, or ``against`` for the cache that it is compared with.
 
+    ``drawn`` are hairs, in the order of ``Hairs``, that are drawn towards their lock, so as not to go through what it
+    lies on, and ``left`` tells how much of their way from it is left at each of their points, 255 for all.
     ``stretch``, ``contact``, ``depth`` and ``curl`` are overlays (see ``Measured``); what is not known is empty.
     """
 
@@ -384,6 +386,8 @@ class Frame(Message):
         "points": "f4",
         "axis": "f4",
         "root": "f4",
+        "drawn": "u4",
+        "left": "u1",
         "bodies": "f4",
         "stretch": "u1",
         "contact": "u1",

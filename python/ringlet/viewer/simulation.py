@@ -19,6 +19,7 @@ from ringlet.mesh import Clip
 from ringlet.shot import Shot
 from ringlet.shot.simulate import Motion
 from ringlet.viewer import overlays, protocol
+from ringlet.viewer.looks import spread_order
 from ringlet.viewer.reel import Run
 from ringlet.viewer.scene import Seen
 from ringlet.viewer.wire import pack
@@ -55,13 +56,16 @@ class Stage:
 
         cloths: where the vertices of cloths are [m], by what the cloths are called
         """
-        axis, root = np.empty(0), np.empty(0)
+        axis, root, left = np.empty(0), np.empty(0), np.empty((0, 0), np.uint8)
         corners, locks = self.clip.at(frame), self.groom.locks
+        bodies = [seen.at(frame, cloths) for seen in self.bodies]
         if self.hairs is not None:
             carriage = self.hairs.carriage(corners)
-            order = np.argsort(_number(carriage["first"]), kind="stable")
+            order = spread_order(carriage["first"])
             axis, root = carriage["axis"], carriage["root"][order]
-        bodies = [seen.at(frame, cloths) for seen in self.bodies]
+            beside = [(at, seen.mesh.triangles) for at, seen in zip(bodies, self.bodies, strict=True)]
+            left = self.hairs.left_beside(points, corners, beside)[order]
+        drawn = np.flatnonzero((left < 255).any(axis=1))
         kept, contact, depth = told(statistics), np.empty(0), np.empty(0)
         if motion is not None:
             contact = overlays.contact(motion)
@@ -72,6 +76,8 @@ class Stage:
             points=points,
             axis=axis,
             root=root,
+            drawn=drawn,
+            left=left[drawn],
             bodies=np.concatenate([np.empty((0, 3)), *bodies]),
             stretch=overlays.stretch(locks, points),
             contact=contact,
@@ -91,10 +97,6 @@ def told(statistics: dict[str, Any]) -> dict[str, Any]:
         "contacts": contact.get("contacts"),
         "inside": None,
     }
-
-
-def _number(first: NDArray[np.integer]) -> NDArray[np.int64]:
-    return np.arange(first[-1]) - np.repeat(first[:-1], np.diff(first))
 
 
 class Simulation:

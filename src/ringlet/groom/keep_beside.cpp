@@ -11,6 +11,7 @@ namespace {
 
 constexpr double easing = 6e-3; // [m] length along the lock over which a hair comes from its lock to its place
 constexpr double slant = 2.0;   // a way to a hair that climbs less than half its length may end nearer than the margin
+constexpr size_t together = 8;  // points that are asked about at once, whether anything is near them
 constexpr int rounds = 16;      // of drawing edges nearer
 constexpr int gentle = 8;       // of these go only as far as they must
 constexpr int halvings = 6;     // to find how far that is
@@ -56,93 +57,143 @@ struct Box {
     }
 };
 
-// The hairs of one lock, whose points are told by the segment of the lock that they belong to.
+// The hairs of one lock. What is known "at" a point holds for the edge after it as well.
 class LockHairs {
 public:
     LockHairs(const HairLayout &layout, const TriangleTree &tree, double margin)
-        : layout_(layout), tree_(tree), margin_(margin), n_(layout.hold.size()), places_(n_), hair_(n_), segment_(n_),
-          share_(n_) {}
+        : layout_(layout), tree_(tree), margin_(margin), n_(layout.hold.size()), boxes_(n_), facets_(n_), places_(n_),
+          hair_(n_), segment_(n_), share_(n_) {}
 
-    int keep(View<Vec3f> lock, int first, int count, float *hairs) {
-        if (lock.size() < 2 || !come_near(lock, first, count, hairs)) return 0;
+    // Returns how many hairs it moved, and writes their points' shares (of 255) where there is room for these.
+    int keep(View<Vec3f> lock, int first, int count, float *hairs, std::uint8_t *shares) {
+        if (lock.size() < 2 || count == 0) return 0;
+        enclose(hairs, count);
+        come_near(lock, layout_.tip.subspan(first, count));
+        if (near_.empty()) return 0;
         int moved = 0;
-        for (int i = 0; i < count; ++i) moved += keep_one(lock, layout_.tip[first + i], hairs + 3 * n_ * i);
+        for (int i = 0; i < count; ++i) {
+            if (!keep_one(lock, layout_.tip[first + i], hairs + 3 * n_ * i)) continue;
+            ++moved;
+            if (shares)
+                std::ranges::transform(share_, shares + n_ * i,
+                                       [](double share) { return static_cast<std::uint8_t>(255.0 * share); });
+        }
         return moved;
     }
 
 private:
+    // Where along the lock the k-th point of a hair belongs, counted in its segments.
+    float place_along(View<Vec3f> lock, float tip, size_t k) const {
+        return static_cast<float>(k) * (tip * static_cast<float>(lock.size() - 1) / static_cast<float>(n_ - 1));
+    }
+
     Vec3f place_on(View<Vec3f> lock, float tip, size_t k, int &segment) const {
-        const int last = static_cast<int>(lock.size()) - 1;
-        const float at = static_cast<float>(k) * (tip * static_cast<float>(last) / static_cast<float>(n_ - 1));
-        segment = std::min(static_cast<int>(at), last - 1);
+        const float at = place_along(lock, tip, k);
+        segment = std::min(static_cast<int>(at), static_cast<int>(lock.size()) - 2);
         return lock[segment] + (at - static_cast<float>(segment)) * (lock[segment + 1] - lock[segment]);
     }
 
-    // How far a smooth curve through the points goes out between them near the k-th [m]: a parabola, by an eighth of the second
-    // difference.
+    // How far a smooth curve through three points of a hair goes out between them [m]: a parabola, by an eighth of the
+    // second difference.
     template <class Points> double bow(const Points &points, size_t k) const {
         if (n_ < 3) return 0.0;
         const auto at = static_cast<Eigen::Index>(std::clamp<size_t>(k, 1, n_ - 2));
         return 0.125 * static_cast<double>((points.col(at - 1) - 2.0f * points.col(at) + points.col(at + 1)).norm());
     }
 
-    // Finds the triangles near what is between the hairs and each segment of their lock; returns whether there are any.
-    bool come_near(View<Vec3f> lock, int first, int count, const float *hairs) {
-        boxes_.assign(lock.size() - 1, {});
-        facets_.resize(std::max(facets_.size(), boxes_.size()));
-        double most = 0.0;
+    // Finds the least and greatest coordinates of the k-th points of all hairs, and of their second differences.
+    void enclose(const float *hairs, int count) {
+        const size_t size = 3 * n_;
+        low_.assign(hairs, hairs + size), high_ = low_;
+        bend_.assign(size, 0.0f);
         for (int i = 0; i < count; ++i) {
-            const Eigen::Map<const Eigen::Matrix3Xf> points(hairs + 3 * n_ * i, 3, static_cast<Eigen::Index>(n_));
-            int before = 0;
-            for (size_t k = 0; k < n_; ++k) {
-                most = std::max(most, bow(points, k));
-                int segment;
-                const Vec3f place = place_on(lock, layout_.tip[first + i], k, segment), point = points.col(k);
-                for (const int of : {before, segment}) { // an edge is asked about where it begins
-                    boxes_[of].add(place);
-                    boxes_[of].add(point);
-                    if (before == segment) break;
-                }
-                before = segment;
+            const float *x = hairs + size * i;
+            for (size_t j = 0; j < size; ++j) {
+                low_[j] = std::min(low_[j], x[j]);
+                high_[j] = std::max(high_[j], x[j]);
+            }
+            for (size_t j = 3; j + 3 < size; ++j) bend_[j] = std::max(bend_[j], std::abs(x[j - 3] - 2.0f * x[j] + x[j + 3]));
+        }
+    }
+
+    // Finds the triangles near what is between the hairs and their lock at each point.
+    void come_near(View<Vec3f> lock, View<float> tips) {
+        const auto [least, greatest] = std::ranges::minmax(tips);
+        const auto bend = [&](size_t k) { return Eigen::Map<const Vec3f>(&bend_[3 * k]).norm(); };
+        const size_t last = lock.size() - 1;
+        for (size_t k = 0; k < n_; ++k) {
+            const size_t after = std::min(k + 1, n_ - 1);
+            const auto begin = static_cast<size_t>(place_along(lock, least, k));
+            const auto end = std::min(static_cast<size_t>(place_along(lock, greatest, after)) + 1, last);
+            Box box;
+            for (size_t j = std::min(begin, last - 1); j <= end; ++j) box.add(lock[j]);
+            for (const size_t j : {k, after}) {
+                box.add(Eigen::Map<const Vec3f>(&low_[3 * j]));
+                box.add(Eigen::Map<const Vec3f>(&high_[3 * j]));
+            }
+            float most = 0.0f;
+            for (size_t j = std::max<size_t>(k, 1) - 1; j <= std::min(k + 2, n_ - 1); ++j) most = std::max(most, bend(j));
+            const float wider = static_cast<float>(slant) * (static_cast<float>(margin_) + 0.125f * most);
+            boxes_[k] = {box.low.array() - wider, box.high.array() + wider};
+        }
+        near_.clear();
+        for (size_t begin = 0; begin < n_; begin += together) {
+            const size_t end = std::min(begin + together, n_);
+            Box all;
+            for (size_t k = begin; k < end; ++k) all.add(boxes_[k].low), all.add(boxes_[k].high);
+            if (find(all); found_.empty()) continue;
+            for (size_t k = begin; k < end; ++k) {
+                if (layout_.hold[k] == 1.0f) continue;
+                if (find(boxes_[k]); found_.empty()) continue;
+                near_.push_back(k);
+                facets_[k].clear();
+                for (const int triangle : found_) facets_[k].push_back(facet(tree_.mesh(), triangle));
             }
         }
-        bool any = false;
-        for (size_t i = 0; i < boxes_.size(); ++i) {
-            facets_[i].clear();
-            if (boxes_[i].low[0] > boxes_[i].high[0]) continue; // no hair has a point there
-            found_.clear();
-            const double wider = slant * (margin_ + most);
-            tree_.overlapping(boxes_[i].low.cast<double>().array() - wider, boxes_[i].high.cast<double>().array() + wider,
-                              found_);
-            for (const int triangle : found_) facets_[i].push_back(facet(tree_.mesh(), triangle));
-            any = any || !found_.empty();
-        }
-        return any;
+    }
+    void find(const Box &box) {
+        found_.clear();
+        tree_.overlapping(box.low.cast<double>(), box.high.cast<double>(), found_);
     }
 
     bool keep_one(View<Vec3f> lock, float tip, float *hair) {
         Eigen::Map<Eigen::Matrix3Xf> points(hair, 3, static_cast<Eigen::Index>(n_));
-        bool moves = false;
+        std::ranges::fill(share_, 1.0);
+        bool parted = false, cut_through = false;
+        for (const size_t k : near_) {
+            int segment;
+            const Vec3 place = place_on(lock, tip, k, segment).cast<double>(), way = points.col(k).cast<double>() - place;
+            if (way.isZero(0.0)) continue;
+            share_[k] = free_part(facets_[k], place, way, margin_ + bow(points, k));
+            parted = parted || share_[k] < 1.0;
+        }
+        for (const size_t k : near_)
+            cut_through = cut_through || (is_free(k) && cut(k, points.col(k).cast<double>(), points.col(k + 1).cast<double>()));
+        if (!parted && !cut_through) return false;
         for (size_t k = 0; k < n_; ++k) {
             places_[k] = place_on(lock, tip, k, segment_[k]).cast<double>();
             hair_[k] = points.col(k).cast<double>();
-            const Vec3 way = hair_[k] - places_[k];
-            share_[k] = 1.0;
-            if (way.isZero(0.0) || layout_.hold[k] == 1.0f) continue;
-            share_[k] = free_part(facets_[segment_[k]], places_[k], way, margin_ + bow(points, k));
-            moves = moves || share_[k] < 1.0;
         }
-        if (moves) draw(points);
-        for (int round = 0; round < rounds && draw_edges(lock, points, round < gentle); ++round) moves = true;
-        return moves;
+        draw(points);
+        for (int round = 0; round < rounds && draw_edges(lock, points, round < gentle); ++round) {
+        }
+        return true;
+    }
+
+    // Whether the edge after the k-th point has ends that may be drawn.
+    bool is_free(size_t k) const { return k + 1 < n_ && layout_.hold[k] == 0.0f; }
+
+    // Whether the edge after the k-th point goes through a triangle where its ends are there.
+    bool cut(size_t k, const Vec3 &from, const Vec3 &to) const {
+        return std::ranges::any_of(facets_[k], [&](const Facet &facet) { return meets(facet, from, to - from, 1.0) <= 1.0; });
     }
 
     // Draws the ends of edges that go through towards the lock, as far as they must or all the way, and those that lie on the
     // lock already and cut one of its corners into that corner; returns whether there were any.
     bool draw_edges(View<Vec3f> lock, Eigen::Map<Eigen::Matrix3Xf> &points, bool gently) {
         bool any = false;
-        for (size_t k = 0; k + 1 < n_; ++k) {
-            if (facets_[segment_[k]].empty() || layout_.hold[k] > 0.0f || !goes_through(k, 1.0)) continue;
+        for (const size_t k : near_) {
+            if (!is_free(k) || !cut(k, place(k, 1.0), place(k + 1, 1.0))) continue;
             if (share_[k] + share_[k + 1] == 0.0) places_[k + 1] = lock[segment_[k + 1]].cast<double>();
             const double part = gently ? part_beside(k) : 0.0;
             share_[k] *= part, share_[k + 1] *= part;
@@ -152,19 +203,12 @@ private:
         return any;
     }
 
-    // Whether the edge after the k-th point goes through a triangle where its ends have such a part of their shares.
-    bool goes_through(size_t k, double part) const {
-        const Vec3 from = place(k, part), way = place(k + 1, part) - from;
-        return std::ranges::any_of(facets_[segment_[k]],
-                                   [&](const Facet &facet) { return meets(facet, from, way, 1.0) <= 1.0; });
-    }
-
     // The part of their shares at which the edge after the k-th point does not go through: what moves little changes it little.
     double part_beside(size_t k) const {
         double beside = 0.0, through = 1.0;
         for (int i = 0; i < halvings; ++i) {
             const double middle = 0.5 * (beside + through);
-            (goes_through(k, middle) ? through : beside) = middle;
+            (cut(k, place(k, middle), place(k + 1, middle)) ? through : beside) = middle;
         }
         return beside;
     }
@@ -190,17 +234,19 @@ private:
     const TriangleTree &tree_;
     double margin_;
     size_t n_;                               // points of a hair
-    std::vector<Vec3> places_, hair_;        // on the lock, and where the hair would be [m]
+    std::vector<float> low_, high_, bend_;   // least and greatest coordinates of all hairs' points, and second differences
+    std::vector<Box> boxes_;                 // around what is between hairs and lock, at each point
+    std::vector<std::vector<Facet>> facets_; // of triangles near it, where there are any:
+    std::vector<size_t> near_;               // at these points
+    std::vector<Vec3> places_, hair_;        // of one hair: on the lock, and where it would be [m]
     std::vector<int> segment_, found_;       // of the lock, for each point
     std::vector<double> share_;              // of the way from the lock to there
-    std::vector<Box> boxes_;                 // around what is between hairs and lock, per segment of the lock
-    std::vector<std::vector<Facet>> facets_; // near it
 };
 
 } // namespace
 
 int keep_beside(View<Vec3f> lock_points, View<int> lock_offsets, const HairLayout &layout, const TriangleMesh &surface,
-                double margin, std::span<float> hairs) {
+                double margin, std::span<float> hairs, std::span<std::uint8_t> shares) {
     const int locks = static_cast<int>(lock_offsets.size()) - 1;
     const TriangleTree tree(surface);
     int moved = 0;
@@ -210,8 +256,9 @@ int keep_beside(View<Vec3f> lock_points, View<int> lock_offsets, const HairLayou
 #pragma omp for schedule(dynamic, 8)
         for (int lock = 0; lock < locks; ++lock) {
             const int first = layout.first[lock], begin = lock_offsets[lock];
+            const size_t point = layout.hold.size() * first;
             moved += of.keep(lock_points.subspan(begin, lock_offsets[lock + 1] - begin), first, layout.first[lock + 1] - first,
-                             hairs.data() + 3 * layout.hold.size() * first);
+                             hairs.data() + 3 * point, shares.empty() ? nullptr : shares.data() + point);
         }
     }
     return moved;

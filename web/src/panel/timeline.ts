@@ -221,7 +221,7 @@ export class TimelineBar {
       if (!known || known === this.drawn[layer]) continue;
       this.drawn[layer] = known;
       this.tint(layer);
-      hair.place(known.points, known.axis, known.root);
+      hair.placeIn(known);
       if (layer === "shot") this.viewer.placeBodies(known.bodies);
       this.viewer.move();
     }

@@ -16,7 +16,7 @@ import {
 import type { Hairs } from "../protocol";
 import { LOOKUP } from "./shaders";
 import type { LockTable } from "./table";
-import { Numbers, WIDTH } from "./textures";
+import { Numbers, Shares, WIDTH } from "./textures";
 
 const VERTEX = /* glsl */ `
 in vec3 position;
@@ -33,6 +33,7 @@ uniform highp sampler2D hairRoot;   // root, width
 uniform highp sampler2D hairFrizz;  // two knots a texel
 uniform highp sampler2D hairMix;    // taper, another lock, the share that it has
 uniform highp sampler2D ramps;      // profile, hold, thinning, blend
+uniform highp sampler2D left;       // the part of its way from the lock that each point keeps, as many texels as the result
 uniform int hairs, points, knots;
 out vec4 result;
 
@@ -51,6 +52,12 @@ vec3 onLock(vec4 lock, float at, vec2 across) {
   vec3 a = mix(lookup(lockA, row).xyz, lookup(lockA, row + 1).xyz, t);
   vec3 b = mix(lookup(lockB, row).xyz, lookup(lockB, row + 1).xyz, t);
   return on + across.x * a + across.y * b;
+}
+
+// The same on the polyline of the lock, which touches nothing.
+vec3 onPolyline(vec4 lock, float at) {
+  int j = min(int(at), int(lock.y) - 1), row = int(lock.x) + j;
+  return mix(lookup(lockPoint, row).xyz, lookup(lockPoint, row + 1).xyz, at - float(j));
 }
 
 void main() {
@@ -77,6 +84,8 @@ void main() {
     vec3 theirs = onLock(other, at * other.y / lock.y, across) + ramp.y * there;
     place += mixed.z * ramp.w * (theirs - place);
   }
+  float part = texelFetch(left, ivec2(gl_FragCoord.xy), 0).r;
+  if (part < 1.0) place = mix(onPolyline(lock, at), place, part);
   result = vec4(place, root.w * ramp.z);
 }
 `;
@@ -88,8 +97,10 @@ export class Carry {
   private readonly camera = new OrthographicCamera();
   private readonly material: RawShaderMaterial;
   private readonly numbers: Record<string, Numbers> = {};
+  private readonly left: Shares;
 
   constructor(readonly hairs: Hairs) {
+    this.left = new Shares(hairs.count * hairs.points);
     this.target = target(hairs.count * hairs.points);
     this.material = new RawShaderMaterial({
       glslVersion: GLSL3,
@@ -100,6 +111,7 @@ export class Carry {
         hairs: { value: hairs.count },
         points: { value: hairs.points },
         knots: { value: hairs.knots },
+        left: { value: this.left.texture },
       },
     });
     this.scene.add(new Mesh(new PlaneGeometry(2, 2), this.material));
@@ -136,6 +148,11 @@ export class Carry {
     this.put("hairRoot", rows);
   }
 
+  /** Which hairs are drawn towards their lock, and the part of their way from it that is left, point by point. */
+  setDrawn(drawn: Uint32Array, left: Uint8Array): void {
+    this.left.update(drawn, left, this.hairs.points);
+  }
+
   setLocks(table: LockTable): void {
     this.put("lockPoint", table.point);
     this.put("lockA", table.a);
@@ -167,6 +184,7 @@ export class Carry {
   dispose(): void {
     this.target.dispose();
     this.material.dispose();
+    this.left.dispose();
     for (const numbers of Object.values(this.numbers)) numbers.dispose();
   }
 

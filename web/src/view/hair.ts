@@ -13,7 +13,7 @@ import {
   Vector3,
   type WebGLRenderer,
 } from "three";
-import type { Hairs, Locks } from "../protocol";
+import type { Frame, Hairs, Locks } from "../protocol";
 import { Carry } from "./carry";
 import { DEPTH_FRAGMENT, DEPTH_VERTEX, HAIR_FRAGMENT, HAIR_VERTEX, LAYERS_FRAGMENT } from "./hair_shader";
 import type { Lights } from "./lights";
@@ -117,13 +117,19 @@ export class Hair {
     this.place(locks.points, locks.axis);
   }
 
-  /** Puts the locks where they are in a frame; `root` where the hairs' roots are from those of their locks. */
-  place(points: Float32Array, axis: Float32Array, root?: Float32Array): void {
+  /** Puts the locks where they are in a frame. */
+  placeIn(frame: Frame): void {
+    this.place(frame.points, frame.axis, frame);
+  }
+
+  /** `frame`: where the hairs' roots are from those of their locks, and which hairs are drawn towards theirs. */
+  private place(points: Float32Array, axis: Float32Array, frame?: Frame): void {
     if (!this.locks || points.length !== this.locks.points.length) return;
     this.table = lockTable(points, this.locks.offsets, axis);
     this.setMarks(this.locks.marked);
     this.spread();
-    if (root?.length) this.carry?.setRoots(root);
+    if (frame?.root.length) this.carry?.setRoots(frame.root);
+    this.carry?.setDrawn(frame?.drawn ?? new Uint32Array(), frame?.left ?? new Uint8Array());
     measure(this.box, points);
     (this.material.uniforms["middle"].value as Vector3).copy(this.box.getCenter(new Vector3()));
     this.carry?.setLocks(this.table);

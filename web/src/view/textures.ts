@@ -1,6 +1,6 @@
 // Numbers in textures, for the graphics card to look up.
 
-import { DataTexture, FloatType, NearestFilter, RGBAFormat } from "three";
+import { DataTexture, FloatType, NearestFilter, RedFormat, RGBAFormat } from "three";
 
 export const WIDTH = 2048;
 
@@ -24,6 +24,36 @@ export class Numbers {
       image.height = height;
     }
     image.data.set(values);
+    this.texture.needsUpdate = true;
+  }
+
+  dispose(): void {
+    this.texture.dispose();
+  }
+}
+
+/** A share from 0 to 1 for each of so many texels, `WIDTH` a row: all of it but in few rows of the same length. */
+export class Shares {
+  readonly texture: DataTexture;
+  private readonly data: Uint8Array;
+  private given: Uint32Array = new Uint32Array();
+
+  constructor(texels: number) {
+    const height = Math.max(1, Math.ceil(texels / WIDTH));
+    this.data = new Uint8Array(WIDTH * height).fill(255);
+    this.texture = new DataTexture(this.data, WIDTH, height, RedFormat);
+    this.texture.magFilter = this.texture.minFilter = NearestFilter;
+    this.texture.needsUpdate = true;
+  }
+
+  /** Gives some rows shares of 255, one after the other, and all others the whole. */
+  update(rows: Uint32Array, shares: Uint8Array, length: number): void {
+    if (!rows.length && !this.given.length) return;
+    for (const row of this.given) this.data.fill(255, row * length, (row + 1) * length);
+    rows.forEach((row, i) => {
+      this.data.set(shares.subarray(i * length, (i + 1) * length), row * length);
+    });
+    this.given = rows;
     this.texture.needsUpdate = true;
   }
 
