@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import signal
 import tomllib
 from pathlib import Path
@@ -11,7 +12,7 @@ import numpy as np
 import pytest
 from conftest import Review, different
 from ringlet.shot.cache import CachedCloth
-from test_shot_cloth_files import write_wear
+from test_shot_cloth_files import SCARF, write_wear
 
 import ringlet
 from ringlet import build_groom, build_hairs
@@ -182,6 +183,31 @@ def test_ten_frames_are_simulated_and_scrubbed(opened: Any, folder: Path):
     review.page.get_by_label("Run again from this frame", exact=False).click()
     review.until("ringlet.model.timeline.key == 3 || ringlet.model.timeline.state == 'done'")
     review.until("ringlet.timeline.count == 10 && ringlet.model.timeline.state == 'done'")
+    assert not review.wrong
+
+
+def test_the_material_of_a_cloth_is_changed_and_the_shot_is_run_with_it(opened: Any, folder: Path):
+    write_wear(folder)
+    shot = folder / "small.shot.toml"
+    shot.write_text(shot.read_text() + SCARF + "[[collider]]\n")
+    review: Review = opened(shot.name)
+    assert review.page.locator('[data-stage="shot:collider/0"]').inner_text() == "collider"
+    review.choose("shot:cloth/0")
+    review.page.locator('[data-setting="cloth.0.material"] summary').first.click()
+    moved = []
+    for density in (0.15, 1.5):
+        field = review.page.locator('[data-setting="cloth.0.material.density"] > .field-head input.number')
+        field.fill(str(density))
+        field.press("Enter")
+        review.until(f"ringlet.model.documents.shot.values.cloth[0].material.density == {density}")
+        before = review.get("ringlet.model.timeline.key")
+        review.page.get_by_role("button", name=re.compile("^Run( again)?$")).click()
+        review.until(f"ringlet.model.timeline.key != {before} && ringlet.model.timeline.state == 'done'")
+        review.get("ringlet.timeline.show(4)")
+        review.until("ringlet.timeline.settled")
+        moved.append(np.array(review.get("Array.from(ringlet.timeline.known('shot').bodies)")))
+    assert np.abs(moved[1] - moved[0]).max() > 1e-5
+    assert tomllib.loads(review.text("shot"))["cloth"][0]["material"]["density"] == 1.5
     assert not review.wrong
 
 

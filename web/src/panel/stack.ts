@@ -2,7 +2,10 @@
 
 import { h, ICONS, icon, iconButton } from "../dom";
 import type { Model, Place } from "../model";
-import type { Stage } from "../protocol";
+import type { Json, Stage } from "../protocol";
+
+/** A cloth or a collider of a shot. */
+type Entry = Record<"name" | "mesh" | "file", string | null>;
 
 const KEPT = ["guides", "locks", "hairs"]; // without these there is nothing to see
 
@@ -29,6 +32,9 @@ export class Stack {
       parts.push(h("h2", {}, "shot"), this.shotRow("shot", []));
       for (const name of ["strands", "variation", "solver", "forces", "contact"])
         if (shot.values[name]) parts.push(this.shotRow(name, [name]));
+      for (const kind of ["cloth", "collider"])
+        for (const [k, entry] of ((shot.values[kind] ?? []) as Json[] as Entry[]).entries())
+          parts.push(this.shotRow(entryName(entry) || kind, [kind, k]));
     }
     this.element.replaceChildren(...parts);
     if (focused) this.element.querySelector<HTMLElement>(`[data-stage="${focused}"]`)?.focus();
@@ -94,7 +100,7 @@ export class Stack {
         {
           type: "button",
           class: "stage-name",
-          "data-stage": `shot:${name}`,
+          "data-stage": `shot:${place.join("/") || name}`,
           "aria-current": current ? "true" : undefined,
           onclick: () => this.model.choose("shot", place),
         },
@@ -148,4 +154,10 @@ export class Stack {
     this.model.say({ kind: "arrange", action: "remove", at: index });
     this.model.choose("recipe", ["curl"]);
   }
+}
+
+/** What an entry is called: by its name, or else by its prim, or its file. */
+function entryName({ name, mesh, file }: Entry): string {
+  const last = (mesh ?? file ?? "").split(/[\\/]/).pop() ?? "";
+  return name || last.split(".")[0];
 }
