@@ -208,6 +208,30 @@ def test_the_material_of_a_cloth_is_changed_and_the_shot_is_run_with_it(opened: 
         moved.append(np.array(review.get("Array.from(ringlet.timeline.known('shot').bodies)")))
     assert np.abs(moved[1] - moved[0]).max() > 1e-5
     assert tomllib.loads(review.text("shot"))["cloth"][0]["material"]["density"] == 1.5
+
+    groom = ringlet.build_groom(folder / "small.recipe.toml")
+    ringlet.write_groom(groom, folder / "groom.usda")
+    cache = ringlet.simulate(shot, groom)
+    ringlet.write_cache(cache, folder / "groom.usda", folder / "cache.usda")
+    review.page.get_by_label("Compare with a cache").select_option("cache.usda")
+    review.until("ringlet.viewer.compared && ringlet.model.timeline.against == 'cache.usda'")
+    review.get("ringlet.timeline.show(4)")
+    review.until("ringlet.timeline.settled && ringlet.timeline.drawn.against")
+
+    def scarf(side: str) -> np.ndarray:
+        at = f"ringlet.viewer.bodies.get(1).geometry.{side}.getAttribute('position').array"
+        return np.array(review.get(f"Array.from({at})")).reshape(-1, 3)
+
+    assert np.abs(scarf("b") - cache.cloths[0].points[3]).max() < 1e-6  # each side has its own
+    assert np.array_equal(scarf("a").ravel(), moved[1][-scarf("a").size :])
+    review.choose("curl")
+    field = review.page.locator('[data-setting="curl.width"] > .field-head input.number')
+    field.fill("1.2")
+    field.press("Enter")
+    review.until("ringlet.model.settled && !ringlet.timeline.drawn.shot")
+    rest = review.get("Array.from(ringlet.viewer.bodies.get(1).rest)")
+    review.until("!ringlet.timeline.count")
+    assert np.array_equal(scarf("a").ravel(), rest)  # as the hair
     assert not review.wrong
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -37,13 +37,13 @@ class Seen:
     cloth: str = ""
 
     def message(self, index: int) -> bytes:
-        """The message that shows it where it begins."""
+        """The message that shows it where it rests, as a groom does."""
         mesh = self.mesh
         colors = mesh.colors if mesh.colors is not None else np.empty((0, 3))
         material = "cloth" if self.cloth else made_of(mesh)
         return pack(
             protocol.Body(index=index, name=mesh.name.split("/")[-1], made_of=material, color=mesh.color),
-            points=self.clip.points[0] if self.clip else mesh.points,
+            points=mesh.points,
             triangles=mesh.triangles,
             colors=np.clip(colors, 0.0, 1.0),
         )
@@ -101,7 +101,7 @@ def read_scene(file: Path) -> tuple[list[Seen], Look]:
         bodies, curves, _ = io.read_stage(file)
         if curves is None:
             raise UserError(f"{file.name}: has no hair; give a recipe, a shot or a USD file with curves") from None
-        seen = [Seen(body.mesh, body.clip) for body in bodies]
+        seen = [Seen(replace(body.mesh, points=body.clip.points[0]), body.clip) for body in bodies]
         mesh = bodies[0].mesh if bodies else Mesh("none", np.zeros((0, 3)), np.zeros((0, 3), np.int32))
         return seen, Look(Groom(curves, curves, mesh), None, False)
     cloths: dict[str, str] = {}

@@ -213,16 +213,16 @@ export class TimelineBar {
   }
 
   private draw(): void {
-    for (const [layer, hair] of [
-      ["shot", this.viewer.hair.a],
-      ["against", this.viewer.hair.b],
+    for (const [layer, side] of [
+      ["shot", "a"],
+      ["against", "b"],
     ] as const) {
       const known = this.known(layer);
       if (!known || known === this.drawn[layer]) continue;
       this.drawn[layer] = known;
       this.tint(layer);
-      hair.placeIn(known);
-      if (layer === "shot") this.viewer.placeBodies(known.bodies);
+      this.viewer.hair[side].placeIn(known);
+      this.viewer.placeBodies(side, known.bodies);
       this.viewer.move();
     }
     this.tell();

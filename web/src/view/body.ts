@@ -10,7 +10,7 @@ import {
   type Scene,
   Vector3,
 } from "three";
-import type { Body as BodyMessage } from "../protocol";
+import type { Body as BodyMessage, Hairs } from "../protocol";
 import type { Lights } from "./lights";
 import { DEVELOP, LIGHTS, SHADOW } from "./shaders";
 import type { Shadow } from "./shadow";
@@ -66,11 +66,14 @@ const LOOKS: Record<string, { roughness: number; specular: number; wrap: number;
   matte: { roughness: 0.8, specular: 0.2, wrap: 0.05, sheen: 0 },
 };
 
+/** Two looks are compared: bodies may be elsewhere on each side. */
+export type Side = Hairs["side"];
+
 export class Body {
   readonly mesh: Mesh;
   readonly caster: Mesh;
   private readonly material: RawShaderMaterial;
-  private readonly geometry = new BufferGeometry();
+  private readonly geometry: Record<Side, BufferGeometry> = { a: new BufferGeometry(), b: new BufferGeometry() };
   private readonly rest: Float32Array;
 
   constructor(
@@ -80,13 +83,15 @@ export class Body {
     private readonly scenes: [Scene, Scene],
   ) {
     this.rest = message.points;
-    this.geometry.setIndex(new BufferAttribute(message.triangles, 1));
+    const index = new BufferAttribute(message.triangles, 1);
     const count = message.points.length / 3;
     const tint = new Float32Array(3 * count);
     for (let i = 0; i < count; i++)
       tint.set(message.colors.length ? message.colors.subarray(3 * i, 3 * i + 3) : message.color, 3 * i);
-    this.geometry.setAttribute("tint", new BufferAttribute(tint, 3));
-    this.place(message.points);
+    const tints = new BufferAttribute(tint, 3);
+    for (const geometry of Object.values(this.geometry)) geometry.setIndex(index).setAttribute("tint", tints);
+    this.place("a");
+    this.place("b");
     const look = LOOKS[message.made_of] ?? LOOKS["matte"];
     this.material = new RawShaderMaterial({
       glslVersion: GLSL3,
@@ -100,8 +105,8 @@ export class Body {
         ...Object.fromEntries(Object.entries(look).map(([name, value]) => [name, { value }])),
       },
     });
-    this.mesh = new Mesh(this.geometry, this.material);
-    this.caster = new Mesh(this.geometry, new MeshBasicMaterial({ side: 2, colorWrite: false }));
+    this.mesh = new Mesh(this.geometry.a, this.material);
+    this.caster = new Mesh(this.geometry.a, new MeshBasicMaterial({ side: 2, colorWrite: false }));
     this.mesh.frustumCulled = this.caster.frustumCulled = false;
     scenes[0].add(this.mesh);
     scenes[1].add(this.caster);
@@ -111,10 +116,17 @@ export class Body {
     return this.rest.length / 3;
   }
 
-  /** Moves it; nothing: back to where it came from. */
-  place(points: Float32Array = this.rest): void {
-    this.geometry.setAttribute("position", new BufferAttribute(points, 3));
-    this.geometry.computeVertexNormals();
+  /** Moves it on one side; nothing: to where it rests. */
+  place(side: Side, points: Float32Array = this.rest): void {
+    const geometry = this.geometry[side];
+    if (geometry.getAttribute("position")?.array === points) return;
+    geometry.setAttribute("position", new BufferAttribute(points, 3));
+    geometry.computeVertexNormals();
+  }
+
+  /** Lets it be seen as it is on one side. */
+  turnTo(side: Side): void {
+    this.mesh.geometry = this.caster.geometry = this.geometry[side];
   }
 
   seenFrom(eye: Vector3): void {
@@ -124,7 +136,7 @@ export class Body {
   dispose(): void {
     this.scenes[0].remove(this.mesh);
     this.scenes[1].remove(this.caster);
-    this.geometry.dispose();
+    for (const geometry of Object.values(this.geometry)) geometry.dispose();
     this.material.dispose();
   }
 }

@@ -4,13 +4,11 @@ import { type Box3, PerspectiveCamera, Scene, Vector2, Vector3, WebGLRenderer } 
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import type { Body as BodyMessage, Hairs, Locks } from "../protocol";
 import { Backdrop } from "./backdrop";
-import { Body } from "./body";
+import { Body, type Side } from "./body";
 import { GuideLines } from "./guides";
 import { Hair } from "./hair";
 import { Lights, PRESETS } from "./lights";
 import { Shadow } from "./shadow";
-
-export type Side = "a" | "b";
 
 const FOV = 24;
 const SLOW = 45; // a picture that takes longer is drawn with less detail while something moves [ms]
@@ -78,11 +76,11 @@ export class Viewer {
     this.invalidate();
   }
 
-  /** Moves all bodies, whose points follow one another; nothing: to where they rest. */
-  placeBodies(points?: Float32Array): void {
+  /** Moves all bodies on one side, whose points follow one another; nothing: to where they rest. */
+  placeBodies(side: Side, points?: Float32Array): void {
     let at = 0;
     for (const [, body] of [...this.bodies].sort(([i], [j]) => i - j)) {
-      body.place(points?.length ? points.slice(3 * at, 3 * (at + body.points)) : undefined);
+      body.place(side, points?.length ? points.slice(3 * at, 3 * (at + body.points)) : undefined);
       at += body.points;
     }
     this.invalidate();
@@ -95,6 +93,7 @@ export class Viewer {
 
   setLocks(message: Locks): void {
     this.hair[message.side].setLocks(message);
+    this.placeBodies(message.side);
     if (message.draft) this.move();
     if (!this.framed && message.side === "a") this.frame();
     this.invalidate();
@@ -221,6 +220,7 @@ export class Viewer {
     renderer.setScissorTest(sides.length > 1);
     sides.forEach((side, k) => {
       const hair = this.hair[side];
+      for (const body of this.bodies.values()) body.turnTo(side);
       hair.setDetail(detail, detail < 0.5 ? 2 : 1);
       hair.update(renderer);
       hair.seenFrom(camera.position, pixel);
