@@ -128,6 +128,27 @@ def test_hairs_stay_below_a_cloth_that_their_locks_are_below(tmp_path):
     assert io.read_hairs(folder / "hair.usdc").points[:, 1].max() < roof[0, 0, 1] - 0.9e-4
 
 
+def test_hairs_at_rest_stay_below_what_is_visible_with_the_head(tmp_path):
+    folder = write_example(tmp_path)
+    recipe = folder / "small.recipe.toml"
+    recipe.write_text(recipe.read_text() + 'radius = "6 mm"\n')
+    top = 100 * ringlet.build_groom(recipe).locks.points[:, 1].max()  # the head's file is in centimetres
+    at = np.linspace(-20, 20, 9)
+    x, z = np.meshgrid(at, at)
+    stage = Usd.Stage.Open(str(folder / "head.usda"))
+    for name in ("hood", "unseen"):
+        roof = np.stack([x, 0 * x + top + 0.1, z], axis=-1).reshape(-1, 3)
+        mesh = define(stage, f"/ball/{name}", roof, quads(9, 9))
+        if name == "unseen":
+            mesh.MakeInvisible()
+        stage.Save()
+        ringlet.write_groom(ringlet.build_groom(recipe), folder / "groom.usda")
+        ringlet.write_hairs(folder / "groom.usda", folder / "hair.usda")
+        reached = 100 * io.read_hairs(folder / "hair.usda").points[:, 1].max()
+        assert reached < top + 0.091 if name == "hood" else reached > top + 0.2
+        stage.RemovePrim(mesh.GetPath())
+
+
 def test_cloth_of_the_heads_own_file_is_no_collider_and_moves_there(example, tmp_path):
     folder = write_example(tmp_path)
     stage = Usd.Stage.Open(str(folder / "head.usda"))

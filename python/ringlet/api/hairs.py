@@ -39,7 +39,7 @@ def write_hairs(
 ) -> dict[str, int]:
     """Writes the hairs of the USD file ``groom``, at rest, or carried by the guides of ``cache`` through ``frames``.
 
-    They stay on that side of the scalp, and of what else the cache shows, where their lock is.
+    They stay on that side of the scalp, and of what else the file shows, where their lock is.
 
     variant: of the groom, in place of the one that is selected in it, or that the cache was made of
 
@@ -54,7 +54,8 @@ def write_hairs(
     written = 0
     if cache is None:
         scalp = locks.scalp
-        points = hairs.at(locks.locks.points, scalp.points, beside=[(scalp.points, scalp.triangles)])
+        beside = io.read_surfaces(groom) or [(scalp.points, scalp.triangles)]  # a head of an OBJ is in no stage
+        points = hairs.at(locks.locks.points, scalp.points, beside=beside)
         with io.HairWriter(Path(path), locks, hairs.curves, Path(groom)) as writer:
             writer.add(None, points)
     else:
@@ -63,7 +64,7 @@ def write_hairs(
             chosen = moved.within(frames)
             for frame in chosen:
                 scalp = clip.at(frame)
-                beside = moved.surfaces(frame) or [(scalp, locks.scalp.triangles)]  # a head of an OBJ is in no stage
+                beside = moved.surfaces(frame) or [(scalp, locks.scalp.triangles)]
                 writer.add(frame, hairs.at(moved.points(frame), scalp, beside=beside))
                 written += 1
                 if progress:

@@ -66,6 +66,13 @@ def read_bodies(path: Path | str, prim: str | None = None) -> list[Body]:
         return [_body_at(source, mesh) for mesh in meshes]
 
 
+def read_surfaces(path: Path | str) -> list[tuple[NDArray[np.float64], NDArray[np.int32]]]:
+    """Reads all visible meshes in their rest pose: points [m], shape (n, 3), and triangles, shape (m, 3)."""
+    with reading(path) as source:
+        meshes = [mesh_at(source, prim) for prim in visible_meshes(source)]
+        return [(mesh.points, mesh.triangles) for mesh in meshes]
+
+
 def read_body(path: Path | str, prim: str | None = None) -> Body:
     """Reads a mesh with its clip: that at ``prim``, or the only one there is at or below it."""
     with reading(path) as source:
