@@ -1,4 +1,4 @@
-"""How long an edit on the review page takes until its locks are with the page: a slider is dragged and let go."""
+"""How long the review takes until a page has what it shows: a slider is dragged and let go, and a cache is played."""
 
 from __future__ import annotations
 
@@ -11,9 +11,12 @@ import struct
 import tempfile
 import threading
 import time
+from collections.abc import AsyncIterator, Iterator
+from contextlib import asynccontextmanager, contextmanager
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from websockets.asyncio.client import ClientConnection, connect
 
 import ringlet
@@ -23,32 +26,43 @@ EXAMPLE = Path(__file__).parents[1] / "examples/child"
 
 
 def run(locks: int = 1389, per_lock: int = 36, points: int = 60, steps: int = 12, warm_up: int = 2) -> dict[str, Any]:
-    """Drags the width of the curls of the example in ``steps`` steps, and lets go after each.
+    """Drags the width of the curls of the example in ``steps`` steps, letting go after each; plays ``steps`` frames.
 
     The stage ``drag`` is from saying a value to having heard the draft's locks, ``rest`` from letting go to having
-    heard the whole. What the browser then does with them, it does on the graphics card: it is not measured here.
+    heard the whole, ``frame`` from asking for a frame of a cache to having heard it. What the browser then does with
+    them, it does on the graphics card: it is not measured here.
     """
     clock = ringlet.Clock()
     with tempfile.TemporaryDirectory() as folder:
         recipe = _recipe(Path(folder), locks, per_lock, points)
-        with socket.socket() as free:
-            free.bind(("127.0.0.1", 0))
-            port = free.getsockname()[1]
-        ended = threading.Event()
-        server = threading.Thread(
-            target=ringlet.view,
-            args=(recipe,),
-            kwargs={"port": port, "browser": False, "told": lambda _: None, "until": ended},
-            daemon=True,
-        )
-        server.start()
-        try:
+        with _serving(recipe) as port:
             heard = asyncio.run(_drag(port, clock, steps))
-        finally:
-            ended.set()
-            server.join()
+        with _serving(_cache(recipe, steps)) as port:
+            heard |= asyncio.run(_play(port, clock, steps))
     asked = {"locks": locks, "per_lock": per_lock, "points": points, "steps": steps}
-    return clock.result("view", asked, per="drag", warm_up=warm_up, **heard)
+    middle = {f"{stage}_wall_ms": sorted(clock.wall[stage])[steps // 2] for stage in ("rest", "frame")}
+    return clock.result("view", asked, per="drag", warm_up=warm_up, **heard, **middle)
+
+
+@contextmanager
+def _serving(file: Path) -> Iterator[int]:
+    """The review of a file, and its port."""
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    ended = threading.Event()
+    server = threading.Thread(
+        target=ringlet.view,
+        args=(file,),
+        kwargs={"port": port, "browser": False, "told": lambda _: None, "until": ended},
+        daemon=True,
+    )
+    server.start()
+    try:
+        yield port
+    finally:
+        ended.set()
+        server.join()
 
 
 def _recipe(folder: Path, locks: int, per_lock: int, points: int) -> Path:
@@ -62,7 +76,20 @@ def _recipe(folder: Path, locks: int, per_lock: int, points: int) -> Path:
     return path
 
 
-async def _drag(port: int, clock: ringlet.Clock, steps: int) -> dict[str, Any]:
+def _cache(recipe: Path, steps: int) -> Path:
+    """A cache of as many frames, in which the locks sway by centimetres, of the groom of a recipe."""
+    groom, folder = ringlet.load_groom(recipe), recipe.parent
+    ringlet.write_groom(groom, folder / "groom.usdc")
+    points = groom.locks.points
+    away = points - np.repeat(points[groom.locks.offsets[:-1]], groom.locks.counts, axis=0)
+    frames = np.arange(1.0, steps + 1)
+    swayed = points + 0.2 * np.sin(frames)[:, None, None] * away[:, [1, 2, 0]]
+    ringlet.write_cache(ringlet.Cache(frames, swayed.astype(np.float32)), folder / "groom.usdc", folder / "cache.usdc")
+    return folder / "cache.usdc"
+
+
+@asynccontextmanager
+async def _page(port: int) -> AsyncIterator[ClientConnection]:
     address = f"ws://127.0.0.1:{port}/session"
     deadline = time.monotonic() + 30.0
     while True:
@@ -75,6 +102,11 @@ async def _drag(port: int, clock: ringlet.Clock, steps: int) -> dict[str, Any]:
             await asyncio.sleep(0.1)
     async with page:
         await _say(page, kind="hello", version=PROTOCOL, client="bench")
+        yield page
+
+
+async def _drag(port: int, clock: ringlet.Clock, steps: int) -> dict[str, Any]:
+    async with _page(port) as page:
         hairs, _ = await _hear(page, "hairs")
         _, size = await _hear(page, "locks")
         await _hear(page, "numbers")
@@ -90,7 +122,18 @@ async def _drag(port: int, clock: ringlet.Clock, steps: int) -> dict[str, Any]:
                 while (await _hear(page, "locks"))[0]["draft"]:
                     pass
             await _hear(page, "measured")  # what waits for a hand that rests
-    return {"hairs": hairs["count"], "locks_bytes": size, "rest_wall_ms": sorted(clock.wall["rest"])[steps // 2]}
+    return {"hairs": hairs["count"], "locks_bytes": size}
+
+
+async def _play(port: int, clock: ringlet.Clock, steps: int) -> dict[str, Any]:
+    async with _page(port) as page:
+        await _hear(page, "timeline")
+        size = 0
+        for frame in range(1, steps + 1):
+            with clock("frame"):
+                await _say(page, kind="watch", shot=[frame])
+                _, size = await _hear(page, "frame")
+    return {"frame_bytes": size}
 
 
 async def _say(page: ClientConnection, **message: Any) -> None:

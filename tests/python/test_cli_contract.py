@@ -71,7 +71,8 @@ def test_bench_view_ends_its_server_and_says_nothing_besides():
     program = "import sys; from ringlet.cli import main; sys.argv[0] = 'ringlet'; main()"
     arguments = ["bench", "view", "--locks", "12", "--per_lock", "3", "--steps", "3", "--json"]
     done = subprocess.run([sys.executable, "-c", program, *arguments], capture_output=True, text=True, timeout=120)
-    assert done.stderr == "" and json.loads(done.stdout)["hairs"] == 36
+    told = json.loads(done.stdout)
+    assert done.stderr == "" and told["hairs"] == 36 and told["frame_bytes"] > 12 * 12 * 96
 
 
 def test_bench_growth_that_keeps_the_density_has_spheres_as_large_as_it_has_wisps(monkeypatch):

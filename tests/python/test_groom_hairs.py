@@ -265,7 +265,7 @@ def test_hairs_stay_on_their_locks_side_of_surfaces():
     assert np.array_equal(kept[:, 0], free[:, 0])  # locks themselves stay what they are
     assert np.array_equal(kept[:, :, 0], free[:, :, 0])  # and so do roots
     assert 0.2 < (kept == free).all(axis=(2, 3)).mean() < 0.8
-    left = hairs.left_beside(locks.reshape(-1, 3), made.scalp.points, beside).reshape(40, 12, 60)
+    left = hairs.left_beside(locks.reshape(-1, 3), hairs.carriage(made.scalp.points), beside).reshape(40, 12, 60)
     assert np.array_equal((left < 255).any(axis=2), (kept != free).any(axis=(2, 3)))
     above, was = kept[..., 1] - 0.2, free[..., 1] - 0.2
     assert np.abs(above - left / 255.0 * was)[left < 255].max() < 0.004 * np.abs(was).max()

@@ -111,7 +111,7 @@ class Hairs:
         out:          written to and returned, if given: fresh memory costs more than what is computed
         """
         if out is None:
-            out = np.empty((int(self.curves.offsets[-1]), 3), np.float32)
+            out = self.room()
         points = np.ascontiguousarray(lock_points, np.float32)
         _core.warp_hairs(points, self._groom.locks.offsets, out, **self.carriage(scalp_points))
         if beside:
@@ -119,17 +119,31 @@ class Hairs:
         return out
 
     def left_beside(
-        self, lock_points: NDArray, scalp_points: NDArray, beside: Sequence[tuple[NDArray, NDArray]]
+        self,
+        lock_points: NDArray,
+        carriage: dict[str, NDArray],
+        beside: Sequence[tuple[NDArray, NDArray]],
+        *,
+        room: NDArray[np.float32] | None = None,
     ) -> NDArray[np.uint8]:
         """What part of their way from their lock ``at`` leaves to hairs that stay beside surfaces.
 
         255 is all of it; shape (hairs, points of a hair).
+
+        carriage: that of the scalp as it is now
+        room:     memory for the points of all hairs, shape (n, 3); to take fresh one every time is slower
         """
-        points = np.ascontiguousarray(lock_points, np.float32)
         shares = np.full((len(self.curves), len(self._layout["hold"])), 255, np.uint8)
         if beside:
-            self._keep_beside(points, self.at(points, scalp_points), beside, shares=shares)
+            points = np.ascontiguousarray(lock_points, np.float32)
+            hairs = self.room() if room is None else room
+            _core.warp_hairs(points, self._groom.locks.offsets, hairs, **carriage)
+            self._keep_beside(points, hairs, beside, shares=shares)
         return shares
+
+    def room(self) -> NDArray[np.float32]:
+        """Memory for the points of all hairs, shape (n, 3)."""
+        return np.empty((int(self.curves.offsets[-1]), 3), np.float32)
 
     def _keep_beside(
         self,

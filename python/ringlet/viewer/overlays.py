@@ -30,7 +30,7 @@ def as_bytes(values: NDArray) -> Bytes:
 
 def stretch(locks: Curves, points: NDArray) -> Bytes:
     """How far each point's edge is stretched against the groom: shorter below the middle, longer above it."""
-    now, rest = (np.linalg.norm(np.diff(np.asarray(p, np.float64), axis=0), axis=1) for p in (points, locks.points))
+    now, rest = (_lengths(np.diff(np.asarray(p, np.float64), axis=0)) for p in (points, locks.points))
     change = np.zeros(len(locks.points))
     change[:-1] = now / np.maximum(rest, 1e-12) - 1.0
     tips = locks.offsets[1:] - 1
@@ -38,10 +38,14 @@ def stretch(locks: Curves, points: NDArray) -> Bytes:
     return as_bytes(0.5 + 0.5 * change / STRETCH_SHOWN)
 
 
+def _lengths(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.sqrt(np.einsum("nx,nx->n", vectors, vectors))  # a third of the time of np.linalg.norm
+
+
 def turning(locks: Curves, points: NDArray) -> NDArray[np.float64]:
     """The angle by which locks turn within a window around each point [rad], shape (n,)."""
     edges = np.diff(np.asarray(points, np.float64), axis=0)
-    edges /= np.maximum(np.linalg.norm(edges, axis=1, keepdims=True), 1e-12)
+    edges /= np.maximum(_lengths(edges), 1e-12)[:, None]
     angle = np.zeros(len(points))
     angle[1:-1] = np.arccos(np.clip(np.einsum("nx,nx->n", edges[:-1], edges[1:]), -1.0, 1.0))
     first = np.repeat(locks.offsets[:-1], locks.counts)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import threading
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -37,6 +37,11 @@ class Stage:
     hairs: Hairs | None
     clip: Clip
     bodies: list[Seen]
+    _one: threading.Lock = field(default_factory=threading.Lock, init=False)  # who works in the room for all hairs
+
+    @cached_property
+    def _room(self) -> NDArray[np.float32] | None:
+        return self.hairs.room() if self.hairs is not None else None
 
     @cached_property
     def turning(self) -> NDArray[np.float64]:
@@ -64,7 +69,8 @@ class Stage:
             order = spread_order(carriage["first"])
             axis, root = carriage["axis"], carriage["root"][order]
             beside = [(at, seen.mesh.triangles) for at, seen in zip(bodies, self.bodies, strict=True)]
-            left = self.hairs.left_beside(points, corners, beside)[order]
+            with self._one:
+                left = self.hairs.left_beside(points, carriage, beside, room=self._room)[order]
         drawn = np.flatnonzero((left < 255).any(axis=1))
         kept, contact, depth = told(statistics), np.empty(0), np.empty(0)
         if motion is not None:
