@@ -91,6 +91,20 @@ def test_cloth_and_colliders_of_a_shot_are_seen_where_they_are(folder: Path):
         assert np.abs(last["bodies"][-len(scarf) :] - scarf).max() < 1e-6
 
 
+def test_a_cloth_that_cannot_be_read_is_told_and_the_groom_is_seen(folder: Path):
+    shot = folder / "small.shot.toml"
+    shot.write_text(shot.read_text() + SCARF)
+    with serving(folder, shot.name) as client, page(client) as one:
+        kinds: set[str] = set()
+        while "timeline" not in kinds:
+            kinds.add(read(one.socket.receive_bytes())["kind"])
+        assert {"body", "locks"} <= kinds
+        one.say(kind="play", action="start")
+        while (message := read(one.socket.receive_bytes()))["kind"] != "trouble":
+            pass
+        assert "wear.usda: there is no such file" in message["message"]
+
+
 def test_of_a_cache_no_frame_is_read_but_those_that_are_looked_at(folder: Path, monkeypatch: pytest.MonkeyPatch):
     read: list[float] = []
     points = io.CacheFile.points
