@@ -425,6 +425,13 @@ def test_two_looks_side_by_side(opened: Any):
     beside = review.page.get_by_label("Show another look beside this one")
     beside.select_option("now")
     review.until("ringlet.viewer.compared && ringlet.viewer.hair.b.table")
+    left, right = np.split(review.picture(), 2, axis=1)
+    begin, end = (int(pixels) for pixels in review.get("ringlet.viewer.covered()"))  # by panels
+    half = left.shape[1]
+    assert begin > 200 and end > 200 and half - max(begin, end) > 140
+    heads = [np.flatnonzero((side.max(axis=2) > 100).any(axis=0)) for side in (left, right)]
+    assert begin < heads[0].min() and heads[1].max() < half - end
+    assert abs(heads[0].mean() - (begin + half) / 2) < 10 and abs(heads[1].mean() - (half - end) / 2) < 10
     review.drag(review.slider("curl.width"), 0.35, 0.95)
     review.until("ringlet.model.documents.recipe.dirty")
     review.settled()

@@ -42,10 +42,16 @@ class App {
       this.lock.place();
     };
     const name = () => (this.model.welcome?.name ?? "ringlet").split(".")[0];
+    const left = h("div", { class: "left" }, new Stack(this.model).element, this.lock.element, this.brush.element);
+    const settings = new Settings(this.model).element;
+    this.viewer.covered = () => [
+      left.getBoundingClientRect().right,
+      settings.hidden ? 0 : innerWidth - settings.getBoundingClientRect().left,
+    ];
     root.append(
       new Bar(this.model, () => this.setTheme()).element,
-      h("div", { class: "left" }, new Stack(this.model).element, this.lock.element, this.brush.element),
-      new Settings(this.model).element,
+      left,
+      settings,
       new Viewbar(this.model, this.viewer, this.brush, name).element,
       this.timeline.element,
       this.status.element,

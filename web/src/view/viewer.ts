@@ -11,6 +11,7 @@ import { Lights, PRESETS } from "./lights";
 import { Shadow } from "./shadow";
 
 const FOV = 24;
+const SUBJECT = 0.8; // width of what is framed, as a part of the picture's height
 const SLOW = 45; // a picture that takes longer is drawn with less detail while something moves [ms]
 const REST_AFTER = 180; // time without a movement after which all detail is drawn [ms]
 
@@ -29,6 +30,9 @@ export class Viewer {
   compared = false;
   turntable = false;
   onDraw: (told: Told) => void = () => {};
+
+  /** How much of the picture panels cover on the left and on the right [pixels]. */
+  covered: () => [number, number] = () => [0, 0];
 
   /** Whether there is no graphics card: then pictures are plainer, so that they come at all. */
   readonly software: boolean;
@@ -140,7 +144,8 @@ export class Viewer {
     const target = box.getCenter(new Vector3());
     target.y -= 0.06 * size.y;
     const radius = 0.5 * Math.max(size.x, size.z, 1.12 * size.y);
-    const narrow = Math.min(1, this.camera.aspect * (this.compared ? 0.5 : 1));
+    const { clientWidth, clientHeight } = this.element;
+    const narrow = Math.min(1, clientWidth / Math.max(clientHeight, 1));
     const distance = (1.32 * radius) / Math.tan((0.5 * FOV * Math.PI) / 180) / narrow;
     const [a, e] = [(azimuth * Math.PI) / 180, (elevation * Math.PI) / 180];
     this.controls.target.copy(target);
@@ -214,12 +219,14 @@ export class Viewer {
     const sides: Side[] = this.compared ? ["a", "b"] : ["a"];
     const width = size.x / sides.length;
     camera.aspect = width / Math.max(size.y, 1);
-    camera.updateProjectionMatrix();
-    const pixel = (2 * Math.tan((0.5 * FOV * Math.PI) / 180)) / (size.y * renderer.getPixelRatio());
+    const aside = this.compared ? this.makeRoom(width, size.y) : [0];
+    if (!this.compared) camera.zoom = 1;
+    const pixel = (2 * Math.tan((0.5 * FOV * Math.PI) / 180)) / (size.y * camera.zoom * renderer.getPixelRatio());
     for (const body of this.bodies.values()) body.seenFrom(camera.position);
     renderer.setScissorTest(sides.length > 1);
     sides.forEach((side, k) => {
       const hair = this.hair[side];
+      camera.setViewOffset(width, size.y, -aside[k], 0, width, size.y);
       for (const body of this.bodies.values()) body.turnTo(side);
       hair.setDetail(detail, detail < 0.5 ? 2 : 1);
       hair.update(renderer);
@@ -249,6 +256,13 @@ export class Viewer {
     });
     renderer.setScissorTest(false);
     renderer.setViewport(0, 0, size.x, size.y);
+  }
+
+  /** Both looks as large as fits between the panels; returns by how much each is moved to the middle there [pixels]. */
+  private makeRoom(width: number, height: number): [number, number] {
+    const [left, right] = this.covered().map((pixels) => Math.min(pixels, 0.8 * width));
+    this.camera.zoom = Math.min(1, (width - Math.max(left, right)) / (SUBJECT * height));
+    return [0.5 * left, -0.5 * right];
   }
 
   /** What the key light must cover: the hair, and what it throws shadows on. */
