@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import signal
 import tomllib
 from pathlib import Path
@@ -11,10 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import Review, different
-from ringlet.shot.cache import CachedCloth
-from test_shot_cloth_files import SCARF, write_wear
 
-import ringlet
 from ringlet import build_groom, build_hairs
 
 
@@ -36,37 +32,6 @@ def test_hairs_on_the_graphics_card_are_those_of_the_core(opened: Any, folder: P
     assert np.abs(drawn[:, :, :3] - expected).max() < 2e-6
     widths = hairs.curves.point["width"].reshape(count, points)[order]
     assert np.allclose(drawn[:, :, 3], widths, rtol=1e-4)
-    assert not review.wrong
-
-
-def test_hairs_on_the_graphics_card_stay_below_a_cloth_as_those_of_the_core_do(opened: Any, folder: Path):
-    write_wear(folder)
-    recipe = folder / "small.recipe.toml"
-    recipe.write_text(recipe.read_text() + 'radius = "6 mm"\n')
-    groom = ringlet.build_groom(recipe)
-    ringlet.write_groom(groom, folder / "groom.usda")
-    points = groom.locks.points.astype(np.float32)[None]
-    at = np.linspace(-0.2, 0.2, 9)
-    x, z = np.meshgrid(at, at)
-    top = float(points[..., 1].max()) + 1e-3
-    roof = np.stack([x, 0 * x + top, z], axis=-1).reshape(1, -1, 3).astype(np.float32)
-    cloth = CachedCloth("scarf", folder / "wear.usda", "/wear/scarf", roof)
-    cache = ringlet.Cache(np.array([1.0]), points, cloths=[cloth])
-    ringlet.write_cache(cache, folder / "groom.usda", folder / "cache.usda")
-    ringlet.write_hairs(folder / "groom.usda", folder / "hair.usda", cache=folder / "cache.usda")
-
-    review: Review = opened("cache.usda")
-    review.until("ringlet.timeline.count == 1 && ringlet.timeline.settled")
-    review.picture()
-    hairs = build_hairs(ringlet.read_groom(folder / "groom.usda"))
-    count, number = len(hairs.curves), int(hairs.curves.counts[0])
-    read = review.get("Array.from(ringlet.viewer.hair.a.read(ringlet.viewer.renderer, 1e6))")
-    drawn = np.array(read).reshape(count, number, 4)[:, :, :3]
-    order = np.argsort(hairs.curves.ids % 10_000, kind="stable")
-    kept = ringlet.io.read_hairs(folder / "hair.usda", 1.0).points.reshape(count, number, 3)[order]
-    assert hairs.curves.points[:, 1].max() > top + 1e-3
-    assert drawn[..., 1].max() < top
-    assert np.abs(drawn - kept).max() < 1e-4  # a share has 255 steps
     assert not review.wrong
 
 
@@ -162,79 +127,6 @@ def test_saving_writes_the_file_and_a_new_page_sees_what_was_saved(opened: Any, 
     review.until("window.ringlet?.model.documents.recipe?.said.curl.pitch == 2.25")
 
 
-def test_ten_frames_are_simulated_and_scrubbed(opened: Any, folder: Path):
-    shot = folder / "small.shot.toml"
-    shot.write_text(shot.read_text().replace("frames = [1, 4]", "frames = [1, 10]"))
-    review: Review = opened("small.shot.toml")
-    review.page.get_by_role("button", name="Run", exact=True).click()
-    review.until("ringlet.timeline.count == 10 && ringlet.model.timeline.state == 'done'")
-    review.get("ringlet.timeline.show(1)")
-    review.until("ringlet.timeline.settled")
-    first = review.picture()
-    review.drag(review.page.get_by_label("Frame", exact=True), 0.02, 0.98)
-    review.until("ringlet.timeline.frame == 10 && ringlet.timeline.settled")
-    assert different(review.picture(), first) > 0.002
-    review.choose("shot:strands")
-    field = review.page.locator('[data-setting="strands.bend_scale"] > .field-head input.number')
-    field.fill("20")
-    field.press("Enter")
-    review.until("ringlet.model.documents.shot.dirty")
-    review.get("ringlet.timeline.show(5)")
-    review.page.get_by_label("Run again from this frame", exact=False).click()
-    review.until("ringlet.model.timeline.key == 3 || ringlet.model.timeline.state == 'done'")
-    review.until("ringlet.timeline.count == 10 && ringlet.model.timeline.state == 'done'")
-    assert not review.wrong
-
-
-def test_the_material_of_a_cloth_is_changed_and_the_shot_is_run_with_it(opened: Any, folder: Path):
-    write_wear(folder)
-    shot = folder / "small.shot.toml"
-    shot.write_text(shot.read_text() + SCARF + "[[collider]]\n")
-    review: Review = opened(shot.name)
-    assert review.page.locator('[data-stage="shot:collider/0"]').inner_text() == "collider"
-    review.choose("shot:cloth/0")
-    review.page.locator('[data-setting="cloth.0.material"] summary').first.click()
-    moved = []
-    for density in (0.15, 1.5):
-        field = review.page.locator('[data-setting="cloth.0.material.density"] > .field-head input.number')
-        field.fill(str(density))
-        field.press("Enter")
-        review.until(f"ringlet.model.documents.shot.values.cloth[0].material.density == {density}")
-        before = review.get("ringlet.model.timeline.key")
-        review.page.get_by_role("button", name=re.compile("^Run( again)?$")).click()
-        review.until(f"ringlet.model.timeline.key != {before} && ringlet.model.timeline.state == 'done'")
-        review.get("ringlet.timeline.show(4)")
-        review.until("ringlet.timeline.settled")
-        moved.append(np.array(review.get("Array.from(ringlet.timeline.known('shot').bodies)")))
-    assert np.abs(moved[1] - moved[0]).max() > 1e-5
-    assert tomllib.loads(review.text("shot"))["cloth"][0]["material"]["density"] == 1.5
-
-    groom = ringlet.build_groom(folder / "small.recipe.toml")
-    ringlet.write_groom(groom, folder / "groom.usda")
-    cache = ringlet.simulate(shot, groom)
-    ringlet.write_cache(cache, folder / "groom.usda", folder / "cache.usda")
-    review.page.get_by_label("Compare with a cache").select_option("cache.usda")
-    review.until("ringlet.viewer.compared && ringlet.model.timeline.against == 'cache.usda'")
-    review.get("ringlet.timeline.show(4)")
-    review.until("ringlet.timeline.settled && ringlet.timeline.drawn.against")
-
-    def scarf(side: str) -> np.ndarray:
-        at = f"ringlet.viewer.bodies.get(1).geometry.{side}.getAttribute('position').array"
-        return np.array(review.get(f"Array.from({at})")).reshape(-1, 3)
-
-    assert np.abs(scarf("b") - cache.cloths[0].points[3]).max() < 1e-6  # each side has its own
-    assert np.array_equal(scarf("a").ravel(), moved[1][-scarf("a").size :])
-    review.choose("curl")
-    field = review.page.locator('[data-setting="curl.width"] > .field-head input.number')
-    field.fill("1.2")
-    field.press("Enter")
-    review.until("ringlet.model.settled && !ringlet.timeline.drawn.shot")
-    rest = review.get("Array.from(ringlet.viewer.bodies.get(1).rest)")
-    review.until("!ringlet.timeline.count")
-    assert np.array_equal(scarf("a").ravel(), rest)  # as the hair
-    assert not review.wrong
-
-
 def test_one_edits_and_the_other_follows(opened: Any, serve: Any):
     server = serve("small.recipe.toml")
     one: Review = opened(server)
@@ -288,23 +180,6 @@ def test_what_a_killed_server_had_not_answered_is_said_again(opened: Any, serve:
     review.until("ringlet.model.documents.recipe.said.curl.pitch == 2.25")
     assert review.get("ringlet.model.documents.recipe.said.curl.width") == 1.75
     review.until("ringlet.model.settled")
-
-
-def test_of_a_long_cache_the_page_keeps_the_frames_about_the_one_that_is_seen(opened: Any, folder: Path):
-    groom = ringlet.build_groom(folder / "small.recipe.toml")
-    ringlet.write_groom(groom, folder / "groom.usda")
-    numbers = np.arange(1.0, 301.0)
-    points = (groom.locks.points + 1e-4 * numbers[:, None, None] * (0, 1, 0)).astype(np.float32)
-    ringlet.write_cache(ringlet.Cache(numbers, points), folder / "groom.usda", folder / "cache.usda")
-    review: Review = opened("cache.usda")
-    review.until("ringlet.timeline.count == 300 && ringlet.timeline.settled")
-    review.get("ringlet.timeline.show(100)")
-    review.until("ringlet.timeline.settled && ringlet.timeline.frames.shot.has(115)")
-    kept = review.get("[...ringlet.timeline.frames.shot.keys()].filter((frame) => frame > 20 && frame < 299)")
-    assert sorted(kept) == list(range(100, 116))
-    review.page.get_by_label("Play what is there").click()
-    review.until("ringlet.timeline.frame > 130 && ringlet.timeline.frame < 300")
-    assert not review.wrong
 
 
 SIXTY_FRAMES = """() => new Promise(done => {
@@ -475,34 +350,3 @@ def test_on_a_tablet_every_control_can_be_reached(opened: Any, width: int, heigh
         ".map(e => e.ariaLabel || e.textContent)"
     )
     assert hidden == []
-
-
-def test_a_shot_beside_another_cache_with_overlays(opened: Any, folder: Path):
-    groom = ringlet.build_groom(folder / "small.recipe.toml")
-    ringlet.write_groom(groom, folder / "groom.usda")
-    cache = ringlet.simulate(folder / "small.shot.toml", groom)
-    review: Review = opened("small.shot.toml")
-    field = "strands.bend_scale"
-    review.choose("shot:strands")
-    review.page.locator(f'[data-setting="{field}"] > .field-head input.number').fill("0.02")
-    review.page.locator(f'[data-setting="{field}"] > .field-head input.number').press("Enter")
-    review.until("ringlet.model.documents.shot.dirty")
-    review.page.get_by_role("button", name="Run", exact=True).click()
-    review.until("ringlet.timeline.count == 4 && ringlet.model.timeline.state == 'done'")
-    review.get("ringlet.timeline.show(4)")
-    review.until("ringlet.timeline.settled")
-    plain = review.picture()
-    for overlay in ("stretch", "curl"):
-        review.page.get_by_label("Overlay").select_option(overlay)
-        assert different(review.picture(), plain) > 0.002  # few hairs cover little of the picture
-    assert review.page.locator('[data-number="inside"]').is_visible()
-    ringlet.write_cache(cache, folder / "groom.usda", folder / "cache.usda")  # the page is open, and is told
-    review.page.get_by_label("Compare with a cache").select_option("cache.usda")
-    review.until("ringlet.viewer.compared && ringlet.model.timeline.against == 'cache.usda'")
-    review.until("ringlet.viewer.hair.b.table")
-    review.page.get_by_label("Overlay").select_option("")
-    review.get("ringlet.timeline.show(4)")
-    review.until("ringlet.timeline.settled")
-    left, right = np.split(review.picture(), 2, axis=1)
-    assert different(left, right) > 0.002
-    assert not review.wrong

@@ -112,10 +112,7 @@ class Hairs:
         """
         if out is None:
             out = self.room()
-        points = np.ascontiguousarray(lock_points, np.float32)
-        _core.warp_hairs(points, self._groom.locks.offsets, out, **self.carriage(scalp_points))
-        if beside:
-            self._keep_beside(points, out, beside)
+        self._carry(lock_points, self.carriage(scalp_points), beside, out)
         return out
 
     def left_beside(
@@ -135,25 +132,26 @@ class Hairs:
         """
         shares = np.full((len(self.curves), len(self._layout["hold"])), 255, np.uint8)
         if beside:
-            points = np.ascontiguousarray(lock_points, np.float32)
-            hairs = self.room() if room is None else room
-            _core.warp_hairs(points, self._groom.locks.offsets, hairs, **carriage)
-            self._keep_beside(points, hairs, beside, shares=shares)
+            self._carry(lock_points, carriage, beside, self.room() if room is None else room, shares)
         return shares
 
     def room(self) -> NDArray[np.float32]:
         """Memory for the points of all hairs, shape (n, 3)."""
         return np.empty((int(self.curves.offsets[-1]), 3), np.float32)
 
-    def _keep_beside(
+    def _carry(
         self,
-        points: NDArray[np.float32],
-        hairs: NDArray[np.float32],
+        lock_points: NDArray,
+        carriage: dict[str, NDArray],
         beside: Sequence[tuple[NDArray, NDArray]],
-        **more: Any,
+        out: NDArray[np.float32],
+        shares: NDArray[np.uint8] | None = None,
     ) -> None:
-        parts = {name: self._layout[name] for name in ("first", "tip", "hold")}
-        _core.keep_beside(points, self._groom.locks.offsets, hairs, *_as_one(beside), MARGIN, **parts, **more)
+        points, offsets = np.ascontiguousarray(lock_points, np.float32), self._groom.locks.offsets
+        _core.warp_hairs(points, offsets, out, **carriage)
+        if beside:
+            parts = {name: self._layout[name] for name in ("first", "tip", "hold")}
+            _core.keep_beside(points, offsets, out, *_as_one(beside), MARGIN, **parts, shares=shares)
 
     def carriage(self, scalp_points: NDArray) -> dict[str, NDArray]:
         """How the hairs sit in their locks when the scalp has moved: what src/ringlet/groom/hairs.h takes besides the

@@ -18,12 +18,12 @@ from ringlet.viewer.board import Board
 from ringlet.viewer.files import Files
 from ringlet.viewer.looks import Look
 from ringlet.viewer.reel import Read, Reel, ReplacedError, Run, Watched
-from ringlet.viewer.scene import ReadFrame, open_frames
+from ringlet.viewer.scene import Moved, ReadFrame, open_frames
 from ringlet.viewer.showing import Showing
 from ringlet.viewer.simulation import Simulation, Stage
 from ringlet.viewer.wire import pack, trouble
 
-PackFrame = Callable[..., bytes]  # makes the message of a frame of its number and what it holds
+PackFrame = Callable[[float, Moved], bytes]  # makes the message of a frame of its number and what it holds
 
 TRIES = 20  # to open a file that is replaced again and again
 

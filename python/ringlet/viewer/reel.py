@@ -8,12 +8,13 @@ import tempfile
 import threading
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ringlet.errors import UserError
+from ringlet.viewer.scene import Moved
 
 
 class Reel(Protocol):
@@ -69,8 +70,8 @@ class Read:
         self,
         file: Watched,
         frames: NDArray[np.float64],
-        read: Callable[[float], tuple[Any, ...]],
-        pack: Callable[..., bytes],
+        read: Callable[[float], Moved],
+        pack: Callable[[float, Moved], bytes],
         one: threading.Lock,
     ) -> None:
         self.frames = frames
@@ -80,12 +81,12 @@ class Read:
         """Reads a frame. Raises ReplacedError where the file is another one by now."""
         with self._one:
             try:
-                held = self._read(frame)
+                moved = self._read(frame)
             except UserError:
                 self._check()  # of half of the one and half of the other nothing can be said
                 raise
             self._check()
-        return self._pack(frame, *held)
+        return self._pack(frame, moved)
 
     def _check(self) -> None:
         if not self._file.same():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -21,7 +21,7 @@ from ringlet.shot.simulate import Motion
 from ringlet.viewer import overlays, protocol
 from ringlet.viewer.looks import spread_order
 from ringlet.viewer.reel import Run
-from ringlet.viewer.scene import Seen
+from ringlet.viewer.scene import Moved, Seen
 from ringlet.viewer.wire import pack
 
 MOST_KEPT = 1_500_000_000  # bytes of what frames can be gone on from
@@ -52,15 +52,11 @@ class Stage:
         self,
         layer: str,
         frame: float,
-        points: NDArray,
-        statistics: dict[str, Any],
-        cloths: Mapping[str, NDArray],
+        moved: Moved,
         motion: Motion | None = None,
     ) -> bytes:
-        """The message of a frame whose locks are at points [m]; what touches is known while ``motion`` is there.
-
-        cloths: where the vertices of cloths are [m], by what the cloths are called
-        """
+        """The message of a frame; what touches is known while ``motion`` is there."""
+        points, statistics, cloths = moved
         axis, root, left = np.empty(0), np.empty(0), np.empty((0, 0), np.uint8)
         corners, locks = self.clip.at(frame), self.groom.locks
         bodies = [seen.at(frame, cloths) for seen in self.bodies]
@@ -204,9 +200,9 @@ class Simulation:
                 self._keep(first + k, motion)
                 if self.state == "rolling":
                     self.state = "running"
-                points = np.asarray(motion.strands.positions, np.float32)
                 cloths = {worn.name: worn.cloth.positions for worn in motion.worn}
-                self._kept.add(first + k, stage.frame("shot", first + k, points, statistics, cloths, motion))
+                moved = Moved(np.asarray(motion.strands.positions, np.float32), statistics, cloths)
+                self._kept.add(first + k, stage.frame("shot", first + k, moved, motion))
             self._changed()
         self.state = "done"
 

@@ -221,7 +221,7 @@ export class TimelineBar {
       if (!known || known === this.drawn[layer]) continue;
       this.drawn[layer] = known;
       this.tint(layer);
-      this.viewer.hair[side].placeIn(known);
+      this.viewer.hair[side].place(known);
       this.viewer.placeBodies(side, known.bodies);
       this.viewer.move();
     }

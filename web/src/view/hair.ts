@@ -27,6 +27,9 @@ const PHEOMELANIN = [0.187, 0.4, 1.05];
 /** The least width at which a hair is drawn [pixels]. */
 const THINNEST = 0.9;
 
+/** Where locks are; in a frame also where roots are from those of their locks, and which hairs are drawn to theirs. */
+type Placed = Pick<Locks, "points" | "axis"> & Partial<Pick<Frame, "root" | "drawn" | "left">>;
+
 type Uniforms = Record<string, { value: unknown }>;
 
 export class Hair {
@@ -114,22 +117,17 @@ export class Hair {
 
   setLocks(locks: Locks): void {
     this.locks = locks;
-    this.place(locks.points, locks.axis);
+    this.place(locks);
   }
 
-  /** Puts the locks where they are in a frame. */
-  placeIn(frame: Frame): void {
-    this.place(frame.points, frame.axis, frame);
-  }
-
-  /** `frame`: where the hairs' roots are from those of their locks, and which hairs are drawn towards theirs. */
-  private place(points: Float32Array, axis: Float32Array, frame?: Frame): void {
+  /** Puts the hair where it is, at rest or in a frame. */
+  place({ points, axis, root, drawn, left }: Placed): void {
     if (!this.locks || points.length !== this.locks.points.length) return;
     this.table = lockTable(points, this.locks.offsets, axis);
     this.setMarks(this.locks.marked);
     this.spread();
-    if (frame?.root.length) this.carry?.setRoots(frame.root);
-    this.carry?.setDrawn(frame?.drawn ?? new Uint32Array(), frame?.left ?? new Uint8Array());
+    if (root?.length) this.carry?.setRoots(root);
+    this.carry?.setDrawn(drawn ?? new Uint32Array(), left ?? new Uint8Array());
     measure(this.box, points);
     (this.material.uniforms["middle"].value as Vector3).copy(this.box.getCenter(new Vector3()));
     this.carry?.setLocks(this.table);

@@ -219,8 +219,7 @@ export class Viewer {
     const sides: Side[] = this.compared ? ["a", "b"] : ["a"];
     const width = size.x / sides.length;
     camera.aspect = width / Math.max(size.y, 1);
-    const aside = this.compared ? this.makeRoom(width, size.y) : [0];
-    if (!this.compared) camera.zoom = 1;
+    const aside = this.makeRoom(width, size.y);
     const pixel = (2 * Math.tan((0.5 * FOV * Math.PI) / 180)) / (size.y * camera.zoom * renderer.getPixelRatio());
     for (const body of this.bodies.values()) body.seenFrom(camera.position);
     renderer.setScissorTest(sides.length > 1);
@@ -258,8 +257,10 @@ export class Viewer {
     renderer.setViewport(0, 0, size.x, size.y);
   }
 
-  /** Both looks as large as fits between the panels; returns by how much each is moved to the middle there [pixels]. */
+  /** Two looks are as large as fits between the panels; returns by how much each is moved to the middle there [pixels]. */
   private makeRoom(width: number, height: number): [number, number] {
+    this.camera.zoom = 1;
+    if (!this.compared) return [0, 0];
     const [left, right] = this.covered().map((pixels) => Math.min(pixels, 0.8 * width));
     this.camera.zoom = Math.min(1, (width - Math.max(left, right)) / (SUBJECT * height));
     return [0.5 * left, -0.5 * right];
