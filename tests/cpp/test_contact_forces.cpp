@@ -80,15 +80,15 @@ struct Crowd {
         near.note(start, end, 0.0005, 0.1);
         filtered = end;
         filter_step(scene(true), near, start, filtered);
-        std::vector<unsigned char> shortened(start.size(), 0);
+        std::vector<unsigned char> changed(start.size(), 0);
         for (size_t v = 0; v < start.size(); ++v)
             if (mesh.object[v] % 3 == 0) {
-                shortened[v] = 1;
+                changed[v] = 1;
                 filtered[v] = start[v] + 0.3 * (filtered[v] - start[v]);
             }
         FilterScene rest = scene(true);
         rest.whole = true;
-        rest.shortened = shortened;
+        rest.changed = changed;
         return filter_step(rest, near, start, filtered);
     }
 

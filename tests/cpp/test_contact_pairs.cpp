@@ -281,6 +281,31 @@ BOOST_AUTO_TEST_CASE(what_is_known_of_pairs_changes_nothing_that_is_found) {
     BOOST_TEST((touching(knowing, scene.start) == touching(unknowing, scene.start)));
 }
 
+// Somewhere in the triangle of where they are, where they set out to, and a third place.
+BOOST_AUTO_TEST_CASE(what_may_bend_knows_the_pairs_of_all_of_its_triangle) {
+    Scene scene(10, 0.0);
+    const CollisionMesh &mesh = scene.mesh;
+    std::vector<Vec3> via = scene.start, elsewhere = scene.start;
+    for (size_t v = 0; v < via.size(); ++v) {
+        if (!mesh.moves[v]) continue;
+        scene.end[v] = scene.start[v] + scene.anywhere(v % 50 == 0 ? 0.1 : 0.005);
+        via[v] = scene.start[v] + scene.anywhere(v % 40 == 0 ? 0.1 : 0.01);
+        const double one = double(v % 7) / 6.0;
+        elsewhere[v] = scene.start[v] + 0.9 * (one * (scene.end[v] - scene.start[v]) + (1.0 - one) * (via[v] - scene.start[v]));
+    }
+    NearPairs near(mesh), unknowing(mesh);
+    near.note(scene.start, scene.end, 0.0001, 0.05, via);
+    near.set_out(scene.start, scene.end, via);
+    const std::vector<unsigned char> changed(scene.start.size(), 1);
+    near.set_out_anew(scene.start, elsewhere, changed, via);
+    unknowing.set_out(scene.start, elsewhere);
+    BOOST_TEST(coming_near(mesh, unknowing, scene.start, elsewhere).size() > 10);
+    BOOST_TEST((coming_near(mesh, near, scene.start, elsewhere) == coming_near(mesh, unknowing, scene.start, elsewhere)));
+    for (NearPairs *pairs : {&near, &unknowing}) pairs->arrive(scene.start, elsewhere);
+    BOOST_TEST(touching(near, elsewhere).size() > 10);
+    BOOST_TEST((touching(near, elsewhere) == touching(unknowing, elsewhere)));
+}
+
 // Objects turn together, from step to step, most vertices of each nearly exactly so, some not at all; in between each of them
 // goes a little where it likes.
 BOOST_AUTO_TEST_CASE(what_is_known_of_pairs_goes_along_with_what_moves_nearly_as_one) {

@@ -56,6 +56,8 @@ template <class Objective> struct RandomStrand {
     std::vector<double> x;
 };
 
+Vec<double> position_of(const std::vector<double> &x, int i) { return FrameObjective<double>::position(x.data(), i); }
+
 template <class Objective> void gradient_agrees_with_differences() {
     for (int seed = 0; seed < 20; ++seed) {
         RandomStrand<Objective> strand(seed);
@@ -120,6 +122,52 @@ BOOST_AUTO_TEST_CASE(hinge_with_history) { gradient_agrees_with_differences<Hing
 BOOST_AUTO_TEST_CASE(hinge_with_least_energy) { gradient_agrees_with_differences<HingeObjective<double, false>>(); }
 
 BOOST_AUTO_TEST_CASE(material_frame) { gradient_agrees_with_differences<FrameObjective<double>>(); }
+
+// Each free edge is to turn about an axis of its own, by about half a radian.
+BOOST_AUTO_TEST_CASE(edges_that_turn_keep_their_lengths) {
+    RandomStrand<FrameObjective<double>> strand(1);
+    FrameObjective<double> objective(vertices, strand.rows.data(), strand.shapes.data());
+    const auto place = position_of;
+    std::vector<double> direction(objective.size(), 0.0), to(objective.size());
+    for (int i = 3; i < vertices; ++i) {
+        const Vec<double> edge = place(strand.x, i) - place(strand.x, i - 1);
+        const Vec<double> d = place(direction, i - 1) + cross(0.5 * random_unit(strand.random), edge);
+        for (int k = 0; k < 3; ++k) direction[4 * i + k] = d[k];
+    }
+    objective.move(strand.x.data(), 1.0, direction.data(), to.data());
+    double straight = 0.0;
+    for (int i = 1; i < vertices; ++i) {
+        const Vec<double> edge = place(strand.x, i) - place(strand.x, i - 1), turned = place(to, i) - place(to, i - 1);
+        BOOST_TEST(std::abs(norm(turned) - norm(edge)) < 1e-12);
+        straight = std::max(straight, norm(edge + place(direction, i) - place(direction, i - 1)) - norm(edge));
+        if (i < 3) BOOST_TEST(norm(place(to, i) - place(strand.x, i)) == 0.0);
+    }
+    BOOST_TEST(straight > 0.05);
+}
+
+// And, where the tip is held too, leave it there.
+BOOST_AUTO_TEST_CASE(a_move_is_what_the_direction_says_to_first_order) {
+    for (const bool tip_held : {false, true}) {
+        RandomStrand<FrameObjective<double>> strand(2);
+        if (tip_held) strand.rows[vertices - 1].free = 0.0;
+        FrameObjective<double> objective(vertices, strand.rows.data(), strand.shapes.data());
+        std::vector<double> direction(objective.size(), 0.0), to(objective.size());
+        for (int i = 0; i < vertices; ++i)
+            for (int k = 0; k < 4; ++k) direction[4 * i + k] = strand.rows[i].free * random_unit(strand.random)[k % 3];
+        const auto off = [&](double step) {
+            objective.move(strand.x.data(), step, direction.data(), to.data());
+            double most = 0.0;
+            for (int i = 0; i < objective.size(); ++i)
+                most = std::max(most, std::abs(to[i] - strand.x[i] - step * direction[i]));
+            return most;
+        };
+        BOOST_TEST(off(1e-3) > 1e-8); // of second order
+        BOOST_TEST(off(1e-3) / off(5e-4) > 3.8);
+        BOOST_TEST(off(1e-3) / off(5e-4) < 4.2);
+        off(1.0);
+        if (tip_held) BOOST_TEST(norm(position_of(to, vertices - 1) - position_of(strand.x, vertices - 1)) == 0.0);
+    }
+}
 
 BOOST_AUTO_TEST_CASE(a_frame_does_not_feel_a_turn_of_the_whole_strand_about_its_own_axis) {
     // On a straight strand of straight rest shape all frames may turn together at no cost.

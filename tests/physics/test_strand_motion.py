@@ -197,6 +197,26 @@ def test_until_converged_goes_on_where_five_iterations_are_not_enough():
         assert (report["residual"][0] > solver.tolerance) == unsolved
 
 
+def test_five_iterations_follow_a_head_that_turns_nearly_as_converged_ones_do():
+    """Edges turn by more than ten degrees in a step: were they to get longer by it, the search would keep little of any direction."""
+    rest = helix(60)
+
+    def tip_of(solver):
+        strand, tips = one(rest), []
+        for k in range(1, 25):
+            turned = rest @ rotation([0, 0, 1], 0.8 * np.sin(2 * np.pi * k / 24)).T
+            strand.step(turned, FRAME, solver=solver)
+            tips.append(strand.positions[-1].copy())
+        return np.array(tips)
+
+    right = tip_of(Solver(newton=300))
+    off = {n: np.linalg.norm(tip_of(Solver(newton=n)) - right, axis=1).max() for n in (1, 5)}
+    moved = np.linalg.norm(right - rest[-1], axis=1).max()
+    assert moved > 0.01
+    assert off[5] < 0.01 * moved
+    assert off[1] < 0.3 * moved
+
+
 def test_a_material_frame_leaves_no_eigenvalue_out_but_of_compressed_edges():
     rest = helix(40)
     for continuation in ("material_frame", "least_energy"):

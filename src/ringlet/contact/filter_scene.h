@@ -22,8 +22,11 @@ struct FilterScene {
     RigidMotion as_one; // nearly all moves so, where it is not still
     bool still = false; // nothing kinematic moves: staying is safe
     bool whole = false; // strands then only go a part of their way as a whole, and none is held back near a pair alone
-    // Per vertex, what goes less far than on the move that was filtered last, of which this is the rest; empty: all is new.
-    View<unsigned char> shortened = {};
+    // Per vertex, what ends elsewhere than on the move that was filtered last, of which this is the rest; empty: all is new.
+    View<unsigned char> changed = {};
+    // Per vertex, where it may be told to go instead before it has arrived, or anywhere in the triangle of its start, this and
+    // its end; what is held back has as much less of it. None: it goes no other way.
+    std::vector<Vec3> *via = nullptr;
     // Where each cloth begins among the vertices, and the end; object numbers of cloths follow those of strands.
     View<int> cloths = {};
     const VertexLists *neighbours = nullptr; // of the vertices of cloths

@@ -71,10 +71,7 @@ std::vector<int> HoldBack::hold_near(const std::vector<Met> &met) {
             std::fill(pulls.begin() + scene_.offsets[strand], pulls.begin() + scene_.offsets[strand + 1], Pull{});
     fade(scene_, start_, end_, {most_strain, round_ < local_rounds_of_cloth ? most_strain : 0.0}, held, pulls);
     for (int v = 0; v < int(pulls.size()); ++v)
-        if (pulls[v].part > 0.0) {
-            end_[v] += pulls[v].part * (start_[v] - end_[v]);
-            change(v);
-        }
+        if (pulls[v].part > 0.0) draw_back(v, 1.0 - pulls[v].part);
     return held;
 }
 
@@ -119,10 +116,13 @@ void HoldBack::note(const Met &pair, std::vector<Event> &events) const {
 
 void HoldBack::scale(int strand, double part) {
     for (int v = scene_.offsets[strand]; v < scene_.offsets[strand + 1]; ++v)
-        if (scene_.mesh.moves[v]) {
-            end_[v] = start_[v] + part * (end_[v] - start_[v]);
-            change(v);
-        }
+        if (scene_.mesh.moves[v]) draw_back(v, part);
+}
+
+void HoldBack::draw_back(int v, double part) {
+    end_[v] = start_[v] + part * (end_[v] - start_[v]);
+    if (scene_.via != nullptr) (*scene_.via)[v] = start_[v] + part * ((*scene_.via)[v] - start_[v]);
+    change(v);
 }
 
 } // namespace ringlet

@@ -40,6 +40,7 @@ private:
     void note(const Met &pair, std::vector<Event> &events) const;
     int strand_of(int v, int w) const; // an edge's; −1: it is none, or is held
     void scale(int strand, double part);
+    void draw_back(int v, double part); // leaves it that part of its way
     void change(int v) {
         if (!changed_[v]) touched_.push_back(v);
         changed_[v] = 1;

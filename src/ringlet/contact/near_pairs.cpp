@@ -52,20 +52,21 @@ void NearPairs::forget() {
     may_touch_.clear(), may_come_near_.clear();
 }
 
-void NearPairs::note(View<Vec3> start, View<Vec3> end, double margin, double far) {
+void NearPairs::note(View<Vec3> start, View<Vec3> end, double margin, double far, View<Vec3> via) {
     const bool anew = low_.empty(), have_left = knows_all_here_; // as one: all boxes are still where they were
     knows_all_here_ = false;
     low_.resize(start.size()), high_.resize(start.size());
     std::vector<unsigned char> stray(start.size(), 0);
     std::vector<int> strays;
     for (size_t v = 0; v < start.size(); ++v) {
-        const bool goes_far = (end[v] - start[v]).squaredNorm() > far * far;
-        const Vec3 &to = goes_far ? start[v] : end[v];
-        stray[v] = anew || leaves(v, start[v]) || leaves(v, to);
+        const Vec3 &other = via.empty() ? end[v] : via[v];
+        const bool goes_far = std::max((end[v] - start[v]).squaredNorm(), (other - start[v]).squaredNorm()) > far * far;
+        const Vec3 &to = goes_far ? start[v] : end[v], &or_to = goes_far ? start[v] : other;
+        stray[v] = anew || leaves(v, start[v]) || leaves(v, to) || leaves(v, or_to);
         if (!stray[v]) continue;
         strays.push_back(int(v));
-        low_[v] = start[v].cwiseMin(to).array() - margin;
-        high_[v] = start[v].cwiseMax(to).array() + margin;
+        low_[v] = start[v].cwiseMin(to).cwiseMin(or_to).array() - margin;
+        high_[v] = start[v].cwiseMax(to).cwiseMax(or_to).array() + margin;
     }
     if (strays.empty()) return;
     passing_.clear();
@@ -85,19 +86,21 @@ void NearPairs::note(View<Vec3> start, View<Vec3> end, double margin, double far
     for (NearPair &pair : known_) may_touch_.push_back(&pair);
 }
 
-void NearPairs::fit_ways(View<Vec3> start, View<Vec3> end) {
+void NearPairs::fit_ways(View<Vec3> start, View<Vec3> end, View<Vec3> via) {
     if (!low_.empty())
-        ways_of_.fit(start, end, homes_.origin());
+        ways_of_.fit(start, end, homes_.origin(), 0.0, via);
     else if (!start.empty())
-        ways_of_.fit(start, end, {start[0], end[0]});
+        ways_of_.fit(start, end, {start[0], end[0]}, 0.0, via);
 }
 
 // Of what has changed.
-void NearPairs::measure_ways(View<Vec3> start, View<Vec3> end, const Affected &changed) {
+void NearPairs::measure_ways(View<Vec3> start, View<Vec3> end, const Affected &changed, View<Vec3> via) {
 #pragma omp parallel for schedule(static)
     for (int k = 0; k < int(changed.vertices.size()); ++k) {
         const int v = changed.vertices[k];
-        const float way = float((end[v] - start[v]).norm());
+        double far = (end[v] - start[v]).squaredNorm();
+        if (!via.empty()) far = std::max(far, (via[v] - start[v]).squaredNorm());
+        const float way = float(std::sqrt(far));
         vertices_[v] = {way + way * std::numeric_limits<float>::epsilon(), quick_[v] != 0};
     }
     const auto of_primitives = [&](const std::vector<int> &numbers, const auto &primitives, std::vector<Way> &ways) {
@@ -123,19 +126,20 @@ void NearPairs::mark_changed(const Affected &changed) {
     mark(changed.vertices, changed_), mark(changed.edges, changed_edges_), mark(changed.triangles, changed_triangles_);
 }
 
-void NearPairs::set_out(View<Vec3> start, View<Vec3> end) {
+void NearPairs::set_out(View<Vec3> start, View<Vec3> end, View<Vec3> via) {
     knows_all_here_ = false;
     bool any_quick = false;
     const bool nothing_known = low_.empty();
 #pragma omp parallel for schedule(static) reduction(|| : any_quick)
     for (int v = 0; v < int(start.size()); ++v) {
-        quick_[v] = nothing_known ? mesh_.moves[v] : leaves(v, start[v]) || leaves(v, end[v]);
+        quick_[v] =
+            nothing_known ? mesh_.moves[v] : leaves(v, start[v]) || leaves(v, end[v]) || (!via.empty() && leaves(v, via[v]));
         any_quick = any_quick || quick_[v];
     }
     any_quick_ = any_quick;
     mark_changed(all_);
-    measure_ways(start, end, all_);
-    fit_ways(start, end);
+    measure_ways(start, end, all_, via);
+    fit_ways(start, end, via);
     passing_ = any_quick_ ? look_for_quick(quick_) : std::vector<NearPair>();
     may_touch_ = collect<NearPair *>(int(known_.size()), [&](int k, std::vector<NearPair *> &may_touch) {
         NearPair &pair = known_[k];
@@ -151,11 +155,11 @@ void NearPairs::set_out(View<Vec3> start, View<Vec3> end) {
     meet_passing();
 }
 
-void NearPairs::set_out_anew(View<Vec3> start, View<Vec3> end, View<unsigned char> changed) {
+void NearPairs::set_out_anew(View<Vec3> start, View<Vec3> end, View<unsigned char> changed, View<Vec3> via) {
     const Affected some(mesh_, broad_phase_.incidence(), changed);
     mark_changed(some);
-    measure_ways(start, end, some);
-    ways_of_.fit_anew(start, end, some.vertices);
+    measure_ways(start, end, some, via);
+    ways_of_.fit_anew(start, end, some.vertices, via);
     if (any_quick_) {
         std::erase_if(passing_, [&](const NearPair &pair) { return has_changed(pair); });
         merge(passing_, look_for_quick(changed));

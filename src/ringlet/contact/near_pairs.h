@@ -32,13 +32,14 @@ public:
 
     void forget(); // everything is quick
     // Everything is to go from `start` to `end`: vertices that would leave their corridors get new ones, boxes around their
-    // ways, or around the start alone of what goes further than `far` [m], wider by `margin` [m] on each side.
-    void note(View<Vec3> start, View<Vec3> end, double margin, double far);
+    // ways, or around the start alone of what goes further than `far` [m], wider by `margin` [m] on each side. `via` as below.
+    void note(View<Vec3> start, View<Vec3> end, double margin, double far, View<Vec3> via = {});
 
     // Everything sets out straight from `start`, where it is, to `end`; or, while it has not arrived, to another end, which
-    // differs where vertices have `changed` and is no further away.
-    void set_out(View<Vec3> start, View<Vec3> end);
-    void set_out_anew(View<Vec3> start, View<Vec3> end, View<unsigned char> changed);
+    // differs where vertices have `changed`: one in the triangle of the start and the first end and `via`, or of the start and
+    // the first end alone where no via is given.
+    void set_out(View<Vec3> start, View<Vec3> end, View<Vec3> via = {});
+    void set_out_anew(View<Vec3> start, View<Vec3> end, View<unsigned char> changed, View<Vec3> via = {});
     // The same nearly as one body, by that motion: no more is looked for than what strays from it may meet. Vertices of one
     // number ≥ 0 in `rigid` move by one affine map, others by themselves. Set out anew they may go further away.
     void set_out_as_one(View<Vec3> start, View<Vec3> end, const RigidMotion &motion, View<int> rigid);
@@ -70,8 +71,8 @@ private:
     bool leaves(int v, const Vec3 &to) const {
         return !((to.array() >= low_[v].array()).all() && (to.array() <= high_[v].array()).all());
     }
-    void fit_ways(View<Vec3> start, View<Vec3> end);
-    void measure_ways(View<Vec3> start, View<Vec3> end, const Affected &changed);
+    void fit_ways(View<Vec3> start, View<Vec3> end, View<Vec3> via = {});
+    void measure_ways(View<Vec3> start, View<Vec3> end, const Affected &changed, View<Vec3> via = {});
     void mark_changed(const Affected &changed);
     bool reach(const NearPair &pair) const { return pair.apart - way(pair) < pair.distance; }
     bool comes_near(const NearPair &pair) const { return pair.apart - way(pair) < 0.5 * pair.distance; }

@@ -19,7 +19,7 @@ PathBoxes::PathBoxes(const CollisionMesh &mesh)
     std::iota(all_.begin(), all_.end(), 0);
 }
 
-void PathBoxes::fit_anew(View<Vec3> start_or_low, View<Vec3> end_or_high, View<int> vertices) {
+void PathBoxes::fit_anew(View<Vec3> start_or_low, View<Vec3> end_or_high, View<int> vertices, View<Vec3> via) {
     constexpr float lost = 0x1p-20f; // of the largest coordinate, in single precision
     const auto place = [](const Vec3 &point, const Vec3 &origin) {
         const Vec3 from = point - origin;
@@ -35,6 +35,9 @@ void PathBoxes::fit_anew(View<Vec3> start_or_low, View<Vec3> end_or_high, View<i
             starts_[v] = place(start_or_low[v], origin_.start);
             ends_[v] = place(end_or_high[v], origin_.end);
             here = here.max(starts_[v].abs()).max(ends_[v].abs());
+            if (!bends_) continue;
+            vias_[v] = via.empty() ? ends_[v] : place(via[v], origin_.end);
+            here = here.max(vias_[v].abs());
         }
 #pragma omp critical
         largest = largest.max(here);
@@ -42,11 +45,13 @@ void PathBoxes::fit_anew(View<Vec3> start_or_low, View<Vec3> end_or_high, View<i
     wider_ = std::max(wider_, lost * largest.maxCoeff());
 }
 
-void PathBoxes::fit(View<Vec3> start, View<Vec3> end, const Origin &origin, double margin) {
+void PathBoxes::fit(View<Vec3> start, View<Vec3> end, const Origin &origin, double margin, View<Vec3> via) {
     origin_ = origin;
     still_ = false;
+    bends_ = !via.empty();
+    if (bends_) vias_.resize(via.size());
     wider_ = 0.0f;
-    fit_anew(start, end, all_);
+    fit_anew(start, end, all_, via);
     wider_ += float(0.5 * margin);
 }
 
@@ -54,6 +59,7 @@ void PathBoxes::fit_within(View<Vec3> low, View<Vec3> high) {
     const Vec3 first = low.empty() ? Vec3(Vec3::Zero()) : low[0];
     origin_ = {first, first};
     still_ = true;
+    bends_ = false;
     wider_ = 0.0f;
     fit_anew(low, high, all_);
 }

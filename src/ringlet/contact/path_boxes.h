@@ -19,12 +19,13 @@ public:
         Vec3 start, end;
     };
 
-    // Everything goes straight from `start` to `end`: positions [m] of all vertices. Boxes are wider by `margin` [m].
-    void fit(View<Vec3> start, View<Vec3> end, const Origin &origin, double margin = 0.0);
+    // Everything goes straight from `start` to `end`: positions [m] of all vertices. Boxes are wider by `margin` [m], and hold
+    // what goes to `via` as well, if that is given.
+    void fit(View<Vec3> start, View<Vec3> end, const Origin &origin, double margin = 0.0, View<Vec3> via = {});
     // Vertices may be anywhere in boxes, from `low` to `high` [m].
     void fit_within(View<Vec3> low, View<Vec3> high);
     // Either of them again, where some `vertices` have changed: boxes of others stay as they are, or grow.
-    void fit_anew(View<Vec3> start_or_low, View<Vec3> end_or_high, View<int> vertices);
+    void fit_anew(View<Vec3> start_or_low, View<Vec3> end_or_high, View<int> vertices, View<Vec3> via = {});
 
     const Origin &origin() const { return origin_; }
     bool still() const { return still_; } // boxes are the same at the end
@@ -60,7 +61,9 @@ private:
     }
     MovingBox box(int vertex) const { // not widened yet
         const Eigen::Array4f &a = starts_[vertex], &b = ends_[vertex];
-        return still_ ? MovingBox{a, b, a, b} : MovingBox{a, a, b, b};
+        if (still_) return {a, b, a, b};
+        if (!bends_) return {a, a, b, b};
+        return {a, a, b.min(vias_[vertex]), b.max(vias_[vertex])};
     }
 
     const CollisionMesh &mesh_;
@@ -68,8 +71,9 @@ private:
     std::vector<int> all_; // vertices
     Origin origin_;
     std::vector<Eigen::Array4f> starts_, ends_; // of the ways, or the corners of what vertices stay in
-    float wider_ = 0.0f;                        // [m]
-    bool still_ = false;
+    std::vector<Eigen::Array4f> vias_;
+    float wider_ = 0.0f; // [m]
+    bool still_ = false, bends_ = false;
 };
 
 } // namespace ringlet

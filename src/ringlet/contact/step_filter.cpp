@@ -20,16 +20,17 @@ FilterReport filter_step(const FilterScene &scene, NearPairs &near, View<Vec3> s
     std::vector<int> rigid(scene.rigid.begin(), scene.rigid.end()); // still: what is pushed out of a way no longer is
     FilterScene now = scene;
     now.rigid = rigid;
+    const auto via = [&] { return scene.via != nullptr ? View<Vec3>(*scene.via) : View<Vec3>(); };
     const auto set_out = [&] {
         if (scene.still)
-            near.set_out(start, end);
+            near.set_out(start, end, via());
         else
             near.set_out_as_one(start, end, scene.as_one, rigid);
     };
-    if (scene.shortened.empty())
+    if (scene.changed.empty())
         set_out();
     else
-        near.set_out_anew(start, end, scene.shortened);
+        near.set_out_anew(start, end, scene.changed, via());
     for (;; ++report.rounds) {
         const std::vector<Met> met = find_met(now, near, start, end);
         if (report.rounds == 0) {
@@ -50,7 +51,7 @@ FilterReport filter_step(const FilterScene &scene, NearPairs &near, View<Vec3> s
         if (scene.still) { // what has not changed since the last round has not met
             if (!held) held.emplace(scene, near, start, end);
             held->round(met);
-            near.set_out_anew(start, end, held->changed());
+            near.set_out_anew(start, end, held->changed(), via());
         } else {
             if (!zones) zones.emplace(scene);
             const std::vector<Vec3> before = end;

@@ -3,6 +3,9 @@
 //   int size()                                        unknowns
 //   T evaluate(const T *x)                            energy of every lane at x; remembers what assembling needs
 //   void assemble(T *gradient, Objective::Matrix &)   at the x evaluated last; the Hessian positive definite
+//   T worth_going(const T *x, const T *direction)     how much of a direction is worth a try
+//   void move(const T *x, T step, const T *direction, T *to)
+//                                                     where a part `step` of it leads, x + step · direction to first order
 //   Objective::Matrix                                 a Banded matrix
 #pragma once
 
@@ -56,9 +59,9 @@ NewtonResult<T> newton(Objective &objective, T *x, const NewtonSettings &setting
 
         // A lane that has arrived takes its last step only if that is no step up; it is not worth a search.
         const auto arrived = largest <= settings.tolerance;
-        T step = active;
+        T step = active * objective.worth_going(x, space.direction);
         for (int cut = 0;; ++cut) {
-            for (int i = 0; i < size; ++i) space.trial[i] = x[i] + step * space.direction[i];
+            objective.move(x, step, space.direction, space.trial);
             const T energy = objective.evaluate(space.trial);
             const T bound = result.energy + least_decrease * step * slope + rounding * abs(result.energy);
             const T refused = select(energy <= bound, T{}, one) * select(step > 0.0, one, T{}); // also where energy is NaN

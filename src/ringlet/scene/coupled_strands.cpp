@@ -71,6 +71,16 @@ void CoupledStrands::factor(int group) const { RINGLET_DISPATCH(factor_strand_gr
 
 void CoupledStrands::solve(int group, double *b) const { RINGLET_DISPATCH(solve_strand_group, memory_[group].get(), b); }
 
+void CoupledStrands::worth_going(int group, const AlignedVector &x, const AlignedVector &direction, double *of_lanes) const {
+    RINGLET_DISPATCH(strand_group_worth_going, memory_[group].get(), x.data() + begin_[group], direction.data() + begin_[group],
+                     of_lanes);
+}
+
+void CoupledStrands::turn(int group, const AlignedVector &x, const AlignedVector &direction, AlignedVector &to) const {
+    RINGLET_DISPATCH(turn_strand_group, memory_[group].get(), x.data() + begin_[group], direction.data() + begin_[group],
+                     to.data() + begin_[group]);
+}
+
 void CoupledStrands::add_block(int strand, int a, int b, const Mat3 &block) const {
     if (a < b) return;
     const StrandGroupSystem &system = systems_[group_of(strand)];

@@ -50,6 +50,8 @@ public:
     void assemble(int group, const AlignedVector &x) const;
     void factor(int group) const;
     void solve(int group, double *b) const; // in place; b is all that the group has of a vector
+    void worth_going(int group, const AlignedVector &x, const AlignedVector &direction, double *of_lanes) const;
+    void turn(int group, const AlignedVector &x, const AlignedVector &direction, AlignedVector &to) const;
 
     // Adds a 3 × 3 block to the matrix: rows of vertex a, columns of vertex b, both of one strand, b = a or a + 1 or the other
     // way round (of a block and its transpose only the lower one is stored).

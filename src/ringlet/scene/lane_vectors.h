@@ -9,7 +9,7 @@ namespace ringlet {
 // clang-format off
 RINGLET_DECLARE(
     void lane_products(const double *a, const double *b, int rows, double *products);                     // Σ a b
-    void lane_move(const double *x, const double *step, const double *direction, int rows, double *to);   // to = x + step · direction
+    void lane_move(const double *x, const double *step, const double *straight, const double *bend, int rows, double *to); // to = x + step · (straight + step · bend)
 )
 // clang-format on
 

@@ -26,9 +26,9 @@ void lane_products(const double *a, const double *b, int rows, double *products)
     to_lanes(sum, products);
 }
 
-void lane_move(const double *x, const double *step, const double *direction, int rows, double *to) {
+void lane_move(const double *x, const double *step, const double *straight, const double *bend, int rows, double *to) {
     const Pack part = of_lanes(step);
-    for (int i = 0; i < rows; ++i) packs(to)[i] = packs(x)[i] + part * packs(direction)[i];
+    for (int i = 0; i < rows; ++i) packs(to)[i] = packs(x)[i] + part * (packs(straight)[i] + part * packs(bend)[i]);
 }
 
 } // namespace ringlet::RINGLET_SIMD

@@ -54,7 +54,8 @@ SceneCarriers Scene::Parts::carriers(std::vector<int> &of_cloths, double dt) con
 
 void Scene::Parts::begin_strands(const StrandArrays &arrays, const StrandStep &step) {
     system.begin(arrays, step, given);
-    if (x.size() != system.size()) x = AlignedVector(system.size()), direction = AlignedVector(system.size());
+    if (x.size() != system.size())
+        for (AlignedVector *vector : {&x, &way.straight, &way.bend}) *vector = AlignedVector(system.size());
     system.for_units([&](int u) {
         if (u >= system.group_count()) return;
         const StrandGroupSystem &group = system.strands.system(u);

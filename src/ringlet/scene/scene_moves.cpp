@@ -6,16 +6,25 @@
 #include <cmath>
 
 namespace ringlet {
+namespace {
+
+double part_of_way(const Vec3 &now, const Vec3 &wanted, const Vec3 &to) {
+    const Vec3 way = wanted - now;
+    return way.dot(to - now) / way.squaredNorm();
+}
+
+} // namespace
 
 // Everything is to go from `now` to `to`: this becomes a place as near as nothing passes through anything. Returns what part of
 // the way that is.
 double Scene::Parts::filter(View<Vec3> now, std::vector<Vec3> &to, const MoveKind &kind, SceneReport &report) {
     const Stopwatch watch(report.time_filter);
     constexpr double far = 0.3; // [m]: a corridor as long as that holds too many
-    if (kind.still && kind.shortened.empty()) {
-        const bool stays = std::equal(to.begin(), to.end(), now.begin());
+    const View<Vec3> via = kind.via != nullptr ? View<Vec3>(*kind.via) : View<Vec3>();
+    if (kind.still && kind.changed.empty()) {
+        const bool stays = std::equal(to.begin(), to.end(), now.begin()) && std::equal(via.begin(), via.end(), now.begin());
         if (stays && near.knows_all_here()) return 1.0;
-        near.note(now, to, stays ? 0.0 : 0.2 * settings.strand_radius, far); // what stays hardly stays for long
+        near.note(now, to, stays ? 0.0 : 0.2 * settings.strand_radius, far, via); // what stays hardly stays for long
         if (stays) return 1.0;
     }
     const SceneCarry with = carry();
@@ -27,7 +36,8 @@ double Scene::Parts::filter(View<Vec3> now, std::vector<Vec3> &to, const MoveKin
                             as_one,
                             kind.still,
                             kind.whole,
-                            kind.shortened,
+                            kind.changed,
+                            kind.via,
                             View<int>(vertices.cloths),
                             &neighbours,
                             kind.hopeful};
@@ -89,14 +99,73 @@ Carried Scene::Parts::go_along(std::vector<Vec3> &now, double dt, SceneReport &r
     return carried;
 }
 
-// What a filter left of a move is taken of the direction that led there, of all that it says of a vertex.
-void Scene::Parts::take(View<Vec3> now, View<Vec3> wanted, View<Vec3> to) {
+// The way is held back where something is met on it, and then leads from `now` to `to`. First strands go where their edges
+// turn. What would meet something early there goes straight, and half as far: with what it touches, the linear system knows
+// how far that lets it go, while what edges turn by is told from the root, wherever that leads. What would meet something later
+// goes so much of its way. Of both it is asked once more what they meet.
+void Scene::Parts::hold_back(View<Vec3> now, bool whole, std::vector<Vec3> &to, SceneProgress &progress, SceneReport &report) {
+    constexpr double early = 0.05, half = 0.5;
+    const std::vector<unsigned char> all_parts(vertices.parts(), 1);
+    std::vector<Vec3> wanted(now.begin(), now.end()), via = wanted;
+    AlignedVector end(system.size());
+    const auto set_out = [&] {
+        std::copy_n(x.data(), x.size(), end.data());
+        move(system, x, std::vector<double>(vertices.parts(), 1.0), way, all_parts, end);
+        for (int v = 0; v < vertices.moving_vertices(); ++v) {
+            if (!vertices.mesh.moves[v]) continue;
+            wanted[v] = system.position(end, v);
+            via[v] = now[v] + half * system.position(way.straight, v); // with it, a triangle holds all that is bent
+        }
+    };
+    set_out();
+    to = wanted;
+    filter(now, to, {.still = true, .whole = true, .via = &via}, report);
+    std::vector<double> left = parts_left(now, wanted, to);
+    std::vector<unsigned char> goes_straight(vertices.parts(), 0), asked(vertices.parts(), 0), changed(vertices.count(), 0);
+    for (int p = 0; p < vertices.parts(); ++p) {
+        asked[p] = left[p] < 1.0;
+        goes_straight[p] = left[p] < early;
+        if (p >= vertices.strands) // a cloth is held back near what it meets, not as a whole
+            left[p] = 1.0;
+        else if (goes_straight[p])
+            left[p] = half;
+    }
+    straighten(system, goes_straight, way);
+    shorten(system, left, way);
+    set_out();
+    for (int v = 0; v < vertices.moving_vertices(); ++v)
+        if (vertices.mesh.moves[v] && asked[vertices.part_of(v)]) changed[v] = 1, to[v] = wanted[v];
+    filter(now, to, {.still = true, .whole = whole, .changed = changed, .via = &via}, report);
+    progress.moved(now, wanted, to);
+    progress.cut(left);
+    take(now, wanted, to);
+}
+
+// Per part, how much is left to it of its way, where that is least.
+std::vector<double> Scene::Parts::parts_left(View<Vec3> now, View<Vec3> wanted, View<Vec3> to) const {
+    std::vector<double> left(vertices.parts(), 1.0);
     for (int v = 0; v < vertices.moving_vertices(); ++v) {
         if (to[v] == wanted[v]) continue;
-        const Vec3 way = wanted[v] - now[v];
-        const double part = way.dot(to[v] - now[v]) / way.squaredNorm();
-        for (int k = 0; k < system.freedoms(v); ++k) direction[system.slot(v) + k * system.stride(v)] *= part;
+        double &of = left[vertices.part_of(v)];
+        of = std::min(of, part_of_way(now[v], wanted[v], to[v]));
     }
+    return left;
+}
+
+// What a filter left of a move is taken of the way that led there, of all that it says of a vertex.
+void Scene::Parts::take(View<Vec3> now, View<Vec3> wanted, View<Vec3> to) {
+    std::vector<unsigned char> goes_straight(vertices.parts(), 0);
+    for (int v = 0; v < vertices.moving_vertices(); ++v)
+        if (to[v] != wanted[v]) goes_straight[vertices.part_of(v)] = 1;
+    for (int v = 0; v < vertices.moving_vertices(); ++v) {
+        if (!goes_straight[vertices.part_of(v)] || !vertices.mesh.moves[v]) continue;
+        const double part = to[v] == wanted[v] ? 1.0 : part_of_way(now[v], wanted[v], to[v]);
+        for (int k = 0; k < system.freedoms(v); ++k) {
+            const size_t i = system.slot(v) + k * system.stride(v);
+            way.straight[i] = part * (way.straight[i] + way.bend[i]);
+        }
+    }
+    straighten(system, goes_straight, way);
 }
 
 } // namespace ringlet

@@ -24,13 +24,14 @@ int Scene::Parts::newton(const SceneStep &scene_step, const StrandStep &step, st
         }
         {
             const Stopwatch watch(report.time_solve);
-            const SceneSolver::Result solved = solver.solve(system, scene_step.system_tolerance, direction);
+            const SceneSolver::Result solved = solver.solve(system, scene_step.system_tolerance, way.straight);
             report.linear_iterations += solved.iterations;
             report.linear_residual = solved.residual;
-            measure(system, direction, reach);
-            system.expect(direction);
+            measure(system, way.straight, reach);
+            system.expect(way.straight);
             if (stiffness.bear(system.contacts)) set_stiffness();
         }
+        way.bend.fill(0.0);
         const bool small = std::all_of(reach.begin(), reach.end(), [&](double far) { return far <= step.tolerance; });
         const std::vector<unsigned char> all_parts(vertices.parts(), 1);
         const std::vector<unsigned char> &after = small ? all_parts : system.by_planes(); // are not searched then
@@ -40,10 +41,11 @@ int Scene::Parts::newton(const SceneStep &scene_step, const StrandStep &step, st
         // What only touches strands does so as the direction has it: how near they may come is for the filter, and
         // by planes, which they overstep, nearly all hair that touches hair and, somewhere, a cloth would stay.
         // A strand may be asked to go metres against friction, which is as strong to the other side after a hair's breadth: of
-        // such a way no part that a search tries would lead down.
+        // such a way no part that a search tries would lead down. And with cloth strands go straight: of how their edges turn,
+        // contacts know nothing as the direction has them, and would stop nearly all hair that hangs together with it.
         if (!system.cloths.empty()) {
             const Stopwatch watch(report.time_search);
-            shorten(system, worth_going(system, x, direction), direction);
+            shorten(system, worth_going(system, x, way.straight), way);
             std::vector<unsigned char> before = all_parts; // are not searched now
             if (!small) {
                 const std::vector<unsigned char> beside = with_touched(system, system.by_planes());
@@ -51,31 +53,29 @@ int Scene::Parts::newton(const SceneStep &scene_step, const StrandStep &step, st
             }
             AlignedVector found(system.size());
             std::copy_n(x.data(), x.size(), found.data());
-            if (!search(system, nullptr, direction, before, found).moved) break;
-            for (size_t i = 0; i < system.size(); ++i) direction[i] = found[i] - x[i];
+            const SceneSearch went = search(system, nullptr, way, before, found);
+            if (!went.moved) break;
+            shorten(system, went.step, way);
             std::vector<double> unused;
             const PairsInReach in_reach = near.in_reach(system.active_parts());
             system.energies(x, &in_reach, {}, std::vector<double>(vertices.parts(), 0.0), all_parts, unused);
         } else {
-            tried = worth_going(system, x, direction);
+            tried = worth_going(system, x, way.straight);
             for (size_t p = 0; p < tried.size() && iteration < step.newton; ++p)
                 tried[p] = std::min(tried[p], std::max(farther * gone[p], settings.strand_radius / reach[p]));
-            shorten(system, tried, direction);
+            shorten(system, tried, way);
+            bend(system, x, way);
         }
-        std::vector<Vec3> wanted = now;
-        for (int v = 0; v < vertices.moving_vertices(); ++v) wanted[v] += system.position(direction, v);
-        std::vector<Vec3> to = wanted;
+        std::vector<Vec3> to;
         // The first time what can hardly move is held back where it meets something, so that the rest of it comes along; then
         // shape counts.
-        filter(now, to, {true, iteration > 0}, report);
-        progress.moved(now, wanted, to);
+        hold_back(now, iteration > 0, to, progress, report);
         progress.cut(tried);
-        take(now, wanted, to);
         arrived = small && progress.all_went();
         SceneSearch found;
         {
             const Stopwatch watch(report.time_search);
-            found = search(system, &near, direction, after, x);
+            found = search(system, &near, way, after, x);
             report.cuts += found.cuts;
         }
         if (!found.moved) break;
@@ -84,10 +84,10 @@ int Scene::Parts::newton(const SceneStep &scene_step, const StrandStep &step, st
             if (system.is_active(int(p))) gone[p] = tried[p] * found.step[p];
         progress.judge(step.tolerance);
         if (found.cuts > 0) { // not all go equally far then
-            std::vector<unsigned char> shortened(vertices.count(), 0);
+            std::vector<unsigned char> changed(vertices.count(), 0);
             for (int v = 0; v < vertices.moving_vertices(); ++v)
-                if (found.step[vertices.part_of(v)] < 1.0) shortened[v] = 1, to[v] = system.position(x, v);
-            filter(now, to, {true, true, shortened}, report);
+                if (found.step[vertices.part_of(v)] < 1.0) changed[v] = 1, to[v] = system.position(x, v);
+            filter(now, to, {true, true, changed}, report);
         }
         arrive(now, to);
         system.scatter(now, x);

@@ -27,8 +27,9 @@ private:
 struct MoveKind {
     bool still;                             // what is kinematic stays
     bool whole;                             // strands only go a part of their way as a whole
-    View<unsigned char> shortened = {};     // per vertex, what goes less far than on the last move; empty: all is new
-    int hopeful = FilterScene::most_rounds; // as FilterScene has it
+    View<unsigned char> changed = {};       // per vertex, what ends elsewhere than on the last move; empty: all is new
+    int hopeful = FilterScene::most_rounds; // this and the next as FilterScene has them
+    std::vector<Vec3> *via = nullptr;
 };
 
 // How everything went along with what is kinematic.
@@ -61,7 +62,8 @@ struct Scene::Parts {
     std::vector<Vec3> given; // where what is kinematic ends; where the rest began
     std::vector<int> rigid;  // per vertex: what it goes along with as one in this step, as carry_rigidly() has it
     RigidMotion as_one;      // how most of it goes along
-    AlignedVector x, direction;
+    AlignedVector x;
+    SceneWay way;
     std::vector<double> reach; // per part: how far Newton's method would last have gone [m]
 
     Parts(const StrandModel &model_, StrandState &state_, const std::vector<SceneCloth> &cloths,
@@ -89,6 +91,8 @@ struct Scene::Parts {
     Carried go_along(std::vector<Vec3> &now, double dt, SceneReport &report);
     int newton(const SceneStep &scene_step, const StrandStep &step, std::vector<Vec3> &now, SceneProgress &progress,
                SceneReport &report);
+    void hold_back(View<Vec3> now, bool whole, std::vector<Vec3> &to, SceneProgress &progress, SceneReport &report);
+    std::vector<double> parts_left(View<Vec3> now, View<Vec3> wanted, View<Vec3> to) const;
     void take(View<Vec3> now, View<Vec3> wanted, View<Vec3> to);
     void begin_strands(const StrandArrays &arrays, const StrandStep &step);
     void begin_cloths(const SceneInput &input, const StrandStep &step, View<Vec3> now);

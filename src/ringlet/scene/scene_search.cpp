@@ -10,17 +10,6 @@ namespace {
 
 constexpr double rounding = 1e-13; // of an energy
 
-// work(part, the unit's unknowns that are its own: first, stride, count).
-template <class Work> void for_parts(const SceneSystem &system, int unit, const Work &work) {
-    if (unit >= system.group_count())
-        return work(unit - system.group_count() + system.vertices.strands, system.unit_begin(unit), size_t(1),
-                    system.unit_end(unit) - system.unit_begin(unit));
-    const StrandGroup group = system.strands.strands_of(unit);
-    const StrandGroupSystem &of = system.strands.system(unit);
-    for (int lane = 0; lane < group.count; ++lane)
-        work(group.strands[lane], system.unit_begin(unit) + lane, size_t(of.lanes), size_t(of.freedoms()) * of.vertices);
-}
-
 // Of each part the slope of its energy along its direction [J].
 std::vector<double> slopes(const SceneSystem &system, const AlignedVector &direction) {
     std::vector<double> slope(system.vertices.parts(), 0.0);
@@ -52,67 +41,7 @@ std::vector<unsigned char> lead_uphill(const SceneSystem &system, const std::vec
     return uphill;
 }
 
-// Of units with parts that have `changed`: to = x + step · direction.
-void move(const SceneSystem &system, const AlignedVector &x, const std::vector<double> &step, const AlignedVector &direction,
-          const std::vector<unsigned char> &changed, AlignedVector &to) {
-    std::vector<unsigned char> asked(system.unit_count(), 0);
-    for (size_t p = 0; p < changed.size(); ++p)
-        if (changed[p]) asked[system.unit_of(int(p))] = 1;
-    system.for_units([&](int u) {
-        if (!asked[u]) return;
-        const size_t first = system.unit_begin(u), count = system.unit_end(u) - first;
-        double steps[most_lanes] = {};
-        system.to_lanes(u, step, steps);
-        if (u < system.group_count())
-            RINGLET_DISPATCH(lane_move, x.data() + first, steps, direction.data() + first, int(count / system.strands.stride()),
-                             to.data() + first);
-        else
-            for (size_t i = first; i < first + count; ++i) to[i] = x[i] + steps[0] * direction[i];
-    });
-}
-
 } // namespace
-
-void measure(const SceneSystem &system, AlignedVector &direction, std::vector<double> &reach) {
-    reach.resize(system.vertices.parts(), 0.0);
-    system.for_units([&](int u) {
-        for_parts(system, u, [&](int part, size_t first, size_t stride, size_t count) {
-            reach[part] = 0.0;
-            double sum = 0.0;
-            for (size_t i = first; i < first + count * stride; i += stride) {
-                reach[part] = std::max(reach[part], std::abs(direction[i]));
-                sum += direction[i];
-            }
-            if (std::isfinite(sum)) return;
-            reach[part] = 0.0;
-            for (size_t i = first; i < first + count * stride; i += stride) direction[i] = 0.0;
-        });
-    });
-}
-
-void shorten(const SceneSystem &system, const std::vector<double> &parts, AlignedVector &direction) {
-    system.for_units([&](int u) {
-        for_parts(system, u, [&](int part, size_t first, size_t stride, size_t count) {
-            if (parts[part] < 1.0)
-                for (size_t i = first; i < first + count * stride; i += stride) direction[i] *= parts[part];
-        });
-    });
-}
-
-std::vector<double> worth_going(const SceneSystem &system, const AlignedVector &x, const AlignedVector &direction) {
-    const StrandModel &model = system.model;
-    std::vector<double> parts(system.vertices.parts(), 1.0);
-#pragma omp parallel for schedule(static)
-    for (int s = 0; s < system.vertices.strands; ++s)
-        for (int v = model.offsets[s]; v + 1 < model.offsets[s + 1]; ++v) {
-            const auto edge = [&](const AlignedVector &of) {
-                return (system.position(of, v + 1) - system.position(of, v)).norm();
-            };
-            const double most = 2.0 * std::max(model.rest_length[v], edge(x)), way = edge(direction);
-            if (parts[s] * way > most) parts[s] = most / way;
-        }
-    return parts;
-}
 
 std::vector<unsigned char> with_touched(const SceneSystem &system, const std::vector<unsigned char> &parts) {
     std::vector<unsigned char> all = parts;
@@ -125,8 +54,8 @@ std::vector<unsigned char> with_touched(const SceneSystem &system, const std::ve
     return all;
 }
 
-SceneSearch search(SceneSystem &system, const NearPairs *near, const AlignedVector &direction,
-                   const std::vector<unsigned char> &all_of_it, AlignedVector &x) {
+SceneSearch search(SceneSystem &system, const NearPairs *near, const SceneWay &way, const std::vector<unsigned char> &all_of_it,
+                   AlignedVector &x) {
     constexpr double least_decrease = 1e-4;
     constexpr int halvings = 4, most_shorter = 8; // then it goes a quarter as far, and after these it stays
     constexpr int most_apart = 12;                // then all of its cluster stays
@@ -140,7 +69,7 @@ SceneSearch search(SceneSystem &system, const NearPairs *near, const AlignedVect
     std::vector<unsigned char> changed(parts, 0), rises(parts), any_rises(parts);
     const std::vector<double> nowhere(parts, 0.0);
     system.energies(x, pairs, undecided, nowhere, changed, before); // parts were asked at x already
-    const std::vector<double> slope = slopes(system, direction);
+    const std::vector<double> slope = slopes(system, way.straight);
     const std::vector<unsigned char> uphill = lead_uphill(system, slope, before, all_of_it);
     const auto allowed = [&](int part) { // of the energy, were it alone
         return before[part] + least_decrease * step[part] * slope[part] + rounding * std::abs(before[part]);
@@ -148,13 +77,14 @@ SceneSearch search(SceneSystem &system, const NearPairs *near, const AlignedVect
     const std::vector<int> &cluster = system.clusters();
     for (int p = 0; p < parts; ++p)
         if (!all_of_it[p] && uphill[cluster[p]]) step[p] = 0.0, ++result.cuts;
-    std::vector<double> excess(parts); // of clusters
+    std::vector<double> excess(parts), gone(parts); // of clusters; the part of the longest way that parts may have gone
     AlignedVector trial(system.size());
     std::copy_n(x.data(), x.size(), trial.data()); // what is not active too
     changed.assign(parts, 1);
     for (int cut = 0;; ++cut) {
-        move(system, x, step, direction, changed, trial);
-        system.energies(trial, pairs, undecided, step, changed, now);
+        move(system, x, step, way, changed, trial);
+        std::transform(step.begin(), step.end(), gone.begin(), [](double s) { return s * (2.0 - s); }); // at most: ways bend
+        system.energies(trial, pairs, undecided, gone, changed, now);
         std::fill(excess.begin(), excess.end(), 0.0);
         std::fill(any_rises.begin(), any_rises.end(), 0);
         for (int p = 0; p < parts; ++p)

@@ -99,6 +99,8 @@ RINGLET_DECLARE(
     void assemble_strand_group(void *memory, const double *x);                    // gradient and matrix where that was last
     void factor_strand_group(void *memory);
     void solve_strand_group(void *memory, double *b); // in place
+    void strand_group_worth_going(void *memory, const double *x, const double *direction, double *parts); // one a lane
+    void turn_strand_group(void *memory, const double *x, const double *direction, double *to); // where all of it leads
     void end_strand_group(void *memory, const double *x, const StrandEffort &effort, StrandReport *reports);
     double strand_group_energy(const StrandArrays &arrays, const StrandStep &step, int strand, const double *positions, void *workspace, double *gradient, double *hessian);
 )

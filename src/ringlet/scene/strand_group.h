@@ -64,6 +64,8 @@ struct OpenGroup {
     virtual void assemble(const Pack *x) = 0;
     virtual void factor() = 0;
     virtual void solve(Pack *b) = 0;
+    virtual void worth_going(const Pack *x, const Pack *direction, double *parts) const = 0;
+    virtual void turn(const Pack *x, const Pack *direction, Pack *to) const = 0;
     virtual void end(const Pack *x, const StrandEffort &effort, StrandReport *reports) = 0;
 };
 
@@ -110,6 +112,13 @@ public:
 
     void factor() override { matrix().factor(); }
     void solve(Pack *b) override { matrix().solve(b); }
+
+    void worth_going(const Pack *x, const Pack *direction, double *parts) const override {
+        put_lanes(objective_.worth_going(x, direction), parts);
+    }
+    void turn(const Pack *x, const Pack *direction, Pack *to) const override {
+        objective_.move(x, constant<Pack>(1.0), direction, to);
+    }
 
     void end(const Pack *x, const StrandEffort &effort, StrandReport *reports) override {
         for (int i = 0; i < objective_.size(); ++i) space_.x[i] = x[i];

@@ -33,9 +33,66 @@ public:
     // What was evaluated last stands there now: the same numbers in other memory.
     void find_at(const T *x) { positions_ = x; }
 
+    // How much of a direction from x is worth going: of what changes an edge by more than twice its length, as it does when it
+    // turns round, what is linear says nothing.
+    T worth_going(const T *x, const T *direction) const {
+        constexpr double most_change = 2.0; // of its length
+        T part = constant<T>(1.0);
+        for (int i = 0; i + 1 < vertices_; ++i) {
+            const T way = norm(position(direction, i + 1) - position(direction, i));
+            const T most = most_change * max(rows_[i].rest_length, norm(position(x, i + 1) - position(x, i)));
+            const auto too_far = part * way > most;
+            part = select(too_far, most / select(too_far, way, constant<T>(1.0)), part);
+        }
+        return part;
+    }
+
+    // Where a part `step` of a direction leads from x. Were their ends to go straight, edges that turn by an angle φ would get
+    // longer by ½ φ², and stretch is stiff: next to nothing would be left of a direction on which strands turn. So an edge
+    // turns to where its ends lead it, but gets longer by what the direction says to first order alone, and what follows along
+    // the strand comes along. Where the strand is held again, what is missing there is shared out among the edges before.
+    void move(const T *x, T step, const T *direction, T *to) const {
+        constexpr double least = 0.1; // of its length is left to an edge
+        Vec<T> last{}, along{};       // where the vertex before would go straight; what has come along
+        T length{};                   // at rest, since the last held vertex
+        for (int i = 0; i < vertices_; ++i) {
+            const Vec<T> straight = position(x, i) + step * position(direction, i);
+            if (i > 0) {
+                const Vec<T> edge = position(x, i) - position(x, i - 1), turned = straight - last;
+                const T now = norm(edge), then = norm(turned);
+                const auto point = (now < 1e-300) | (then < 1e-300);
+                const T wanted = max(now + dot(edge, turned - edge) / select(point, constant<T>(1.0), now), least * now);
+                along =
+                    along + (select(point, constant<T>(1.0), wanted / select(point, constant<T>(1.0), then)) - 1.0) * turned;
+                length += rows_[i - 1].rest_length;
+            }
+            last = straight;
+            put(to + freedoms * i, straight + along);
+            for (int k = 3; k < freedoms; ++k) to[freedoms * i + k] = x[freedoms * i + k] + step * direction[freedoms * i + k];
+            const auto held = rows_[i].free == 0.0;
+            if (any(held)) {
+                close(i, held, length, along, to);
+                put(to + freedoms * i, select<T>(held, straight, straight + along));
+                along = select<T>(held, Vec<T>{}, along);
+                length = select(held, T{}, length);
+            }
+        }
+    }
+
     static Vec<T> position(const T *x, int i) { return {x[freedoms * i], x[freedoms * i + 1], x[freedoms * i + 2]}; }
 
 protected:
+    // At a vertex that is held and no tip the edges since the last one that was, `length` of them, have missed it by `by`.
+    void close(int held_at, const MaskOf<T> &held, T length, Vec<T> by, T *to) const {
+        if (held_at == 0) return;
+        T open = select(held & (rows_[held_at - 1].stretch > 0.0), length, T{}); // behind the tip there is nothing to miss
+        const Vec<T> missed = (1.0 / select(open > 0.0, open, constant<T>(1.0))) * by;
+        for (int i = held_at - 1; i >= 0 && any(open > 0.0); --i) {
+            open = select(rows_[i].free > 0.0, max(open - rows_[i].rest_length, T{}), T{});
+            put(to + freedoms * i, position(to, i) - open * missed);
+        }
+    }
+
     // An edge that has shrunk to a point is given some direction and a length that can be divided by.
     void measure_edge(const T *x, int i, StrandShape<T> &shape) const {
         const Vec<T> edge = position(x, i + 1) - position(x, i), some{constant<T>(1.0), T{}, T{}};

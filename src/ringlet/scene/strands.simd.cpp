@@ -84,6 +84,14 @@ void assemble_strand_group(void *memory, const double *x) { open_group(memory).a
 void factor_strand_group(void *memory) { open_group(memory).factor(); }
 void solve_strand_group(void *memory, double *b) { open_group(memory).solve(reinterpret_cast<Pack *>(b)); }
 
+void strand_group_worth_going(void *memory, const double *x, const double *direction, double *parts) {
+    open_group(memory).worth_going(reinterpret_cast<const Pack *>(x), reinterpret_cast<const Pack *>(direction), parts);
+}
+void turn_strand_group(void *memory, const double *x, const double *direction, double *to) {
+    open_group(memory).turn(reinterpret_cast<const Pack *>(x), reinterpret_cast<const Pack *>(direction),
+                            reinterpret_cast<Pack *>(to));
+}
+
 void end_strand_group(void *memory, const double *x, const StrandEffort &effort, StrandReport *reports) {
     open_group(memory).end(reinterpret_cast<const Pack *>(x), effort, reports);
     open_group(memory).~OpenGroup();

@@ -19,7 +19,7 @@ template <class T> inline T stretch_energy(T length, T rest_length, T stiffness)
 
 template <class T> inline Stretch<T> stretch(Vec<T> tangent, T length, T rest_length, T stiffness) {
     const T w = length - rest_length;
-    return {(stiffness * w) * tangent, stiffness, stiffness * abs(w / length)};
+    return {(stiffness * w) * tangent, stiffness, max(stiffness * (w / length), T{})};
 }
 
 } // namespace ringlet::RINGLET_SIMD
