@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ringlet import Clock, UserError, build_groom, read_shot, simulate
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "child"
-ITERATIONS = (5, 10, 20, 60)
+ITERATIONS = (1, 2, 3, 5, 10, 20, 60)
 
 SHOT = """
 ringlet = 1

@@ -198,7 +198,7 @@ def test_until_converged_goes_on_where_five_iterations_are_not_enough():
 
 
 def test_five_iterations_follow_a_head_that_turns_nearly_as_converged_ones_do():
-    """Edges turn by more than ten degrees in a step: were they to get longer by it, the search would keep little of any direction."""
+    """Were edges that turn to get longer, the search would keep little of any direction."""
     rest = helix(60)
 
     def tip_of(solver):
