@@ -5,6 +5,46 @@
 #include <limits>
 
 namespace ringlet {
+namespace {
+
+// Of some pairs, in order, those that may come nearer than a part of their distance: wherever in the triangles of their ways
+// they are, or while all go straight. Edges are looked at many at a time.
+class MayTouch {
+public:
+    MayTouch(const PathBoxes &ways, bool together, double part, std::vector<NearPair *> &found)
+        : ways_(ways), together_(together), part_(part), found_(found) {}
+    ~MayTouch() { look_at_edges(); }
+
+    void look_at(NearPair &pair) {
+        if (!pair.of_edges) {
+            look_at_edges();
+            if (ways_.with_boxes(pair, together_ ? may_meet : ways_overlap)) found_.push_back(&pair);
+            return;
+        }
+        ways_.put(edges_, count_, pair.of, part_ * pair.distance);
+        pairs_[count_++] = &pair;
+        if (count_ == EdgeWays::room) look_at_edges();
+    }
+
+private:
+    void look_at_edges() {
+        if (count_ == 0) return;
+        const unsigned apart = together_ ? RINGLET_DISPATCH(apart_together, edges_) : RINGLET_DISPATCH(apart_anywhere, edges_);
+        for (int k = 0; k < count_; ++k)
+            if (!(apart >> k & 1u)) found_.push_back(pairs_[k]);
+        count_ = 0;
+    }
+
+    const PathBoxes &ways_;
+    bool together_;
+    double part_;
+    std::vector<NearPair *> &found_;
+    EdgeWays edges_ = {};
+    std::array<NearPair *, EdgeWays::room> pairs_;
+    int count_ = 0; // of edges, not looked at yet
+};
+
+} // namespace
 
 NearPairs::NearPairs(const CollisionMesh &mesh)
     : mesh_(mesh), all_(mesh), broad_phase_(mesh), ways_of_(mesh), homes_(mesh), vertices_(mesh.moves.size()),
@@ -56,27 +96,36 @@ void NearPairs::note(View<Vec3> start, View<Vec3> end, double margin, double far
     const bool anew = low_.empty(), have_left = knows_all_here_; // as one: all boxes are still where they were
     knows_all_here_ = false;
     low_.resize(start.size()), high_.resize(start.size());
+    const auto places = [&](size_t v) -> std::array<Vec3, 3> {
+        const Vec3 &other = via.empty() ? end[v] : via[v];
+        const bool goes_far = std::max((end[v] - start[v]).squaredNorm(), (other - start[v]).squaredNorm()) > far * far;
+        if (goes_far) return {start[v], start[v], start[v]};
+        return {start[v], end[v], other};
+    };
+    const auto fit = [&](size_t v) {
+        const auto [at, to, or_to] = places(v);
+        low_[v] = at.cwiseMin(to).cwiseMin(or_to).array() - margin;
+        high_[v] = at.cwiseMax(to).cwiseMax(or_to).array() + margin;
+    };
     std::vector<unsigned char> stray(start.size(), 0);
     std::vector<int> strays;
     for (size_t v = 0; v < start.size(); ++v) {
-        const Vec3 &other = via.empty() ? end[v] : via[v];
-        const bool goes_far = std::max((end[v] - start[v]).squaredNorm(), (other - start[v]).squaredNorm()) > far * far;
-        const Vec3 &to = goes_far ? start[v] : end[v], &or_to = goes_far ? start[v] : other;
-        stray[v] = anew || leaves(v, start[v]) || leaves(v, to) || leaves(v, or_to);
-        if (!stray[v]) continue;
-        strays.push_back(int(v));
-        low_[v] = start[v].cwiseMin(to).cwiseMin(or_to).array() - margin;
-        high_[v] = start[v].cwiseMax(to).cwiseMax(or_to).array() + margin;
+        const std::array<Vec3, 3> places_of_v = places(v);
+        stray[v] =
+            anew || std::any_of(places_of_v.begin(), places_of_v.end(), [&](const Vec3 &to) { return leaves(int(v), to); });
+        if (stray[v]) strays.push_back(int(v));
     }
     if (strays.empty()) return;
     passing_.clear();
     for (auto *ways : {&vertices_, &edges_, &triangles_}) std::fill(ways->begin(), ways->end(), Way{});
     Candidates found;
     if (anew || have_left || 2 * strays.size() > start.size()) { // for most of them it takes no longer to look for all
+        for (size_t v = 0; v < start.size(); ++v) fit(v);
         homes_.fit_within(low_, high_);
         broad_phase_.find(homes_, found);
         known_ = pairs_of(found);
     } else {
+        for (const int v : strays) fit(v);
         homes_.fit_anew(low_, high_, strays);
         broad_phase_.find_quick(homes_, homes_, stray, stray, found);
         std::erase_if(known_, [&](const NearPair &pair) { return any_of(pair, stray); });
@@ -141,17 +190,15 @@ void NearPairs::set_out(View<Vec3> start, View<Vec3> end, View<Vec3> via) {
     measure_ways(start, end, all_, via);
     fit_ways(start, end, via);
     passing_ = any_quick_ ? look_for_quick(quick_) : std::vector<NearPair>();
-    may_touch_ = collect<NearPair *>(int(known_.size()), [&](int k, std::vector<NearPair *> &may_touch) {
-        NearPair &pair = known_[k];
-        if (!quick(pair) && reach(pair) && ways_of_.with_boxes(pair, ways_overlap)) may_touch.push_back(&pair);
+    may_touch_ = collect_parts<NearPair *>(int(known_.size()), [&](int begin, int end, std::vector<NearPair *> &found) {
+        MayTouch some(ways_of_, false, 1.0, found);
+        for (int k = begin; k < end; ++k)
+            if (NearPair &pair = known_[k]; !quick(pair) && reach(pair)) some.look_at(pair);
     });
     may_come_near_ = collect<NearPair *>(int(may_touch_.size()), [&](int k, std::vector<NearPair *> &may_come_near) {
         if (comes_near(*may_touch_[k])) may_come_near.push_back(may_touch_[k]);
     });
-    may_meet_ = collect<NearPair *>(int(may_come_near_.size()), [&](int k, std::vector<NearPair *> &may_meet) {
-        NearPair &pair = *may_come_near_[k];
-        if (ways_of_.with_boxes(pair, ringlet::may_meet)) may_meet.push_back(&pair);
-    });
+    may_meet_ = find_may_meet([](const NearPair &) { return true; });
     meet_passing();
 }
 
@@ -164,11 +211,17 @@ void NearPairs::set_out_anew(View<Vec3> start, View<Vec3> end, View<unsigned cha
         std::erase_if(passing_, [&](const NearPair &pair) { return has_changed(pair); });
         merge(passing_, look_for_quick(changed));
     }
-    may_meet_ = collect<NearPair *>(int(may_come_near_.size()), [&](int k, std::vector<NearPair *> &may_meet) {
-        NearPair &pair = *may_come_near_[k];
-        if (has_changed(pair) && comes_near(pair) && ways_of_.with_boxes(pair, ringlet::may_meet)) may_meet.push_back(&pair);
-    });
+    may_meet_ = find_may_meet([&](const NearPair &pair) { return has_changed(pair) && comes_near(pair); });
     meet_passing();
+}
+
+// Of what may come near.
+template <class Counts> std::vector<NearPair *> NearPairs::find_may_meet(const Counts &counts) const {
+    return collect_parts<NearPair *>(int(may_come_near_.size()), [&](int begin, int end, std::vector<NearPair *> &found) {
+        MayTouch some(ways_of_, true, 1.0, found);
+        for (int k = begin; k < end; ++k)
+            if (NearPair &pair = *may_come_near_[k]; counts(pair)) some.look_at(pair);
+    });
 }
 
 // All of them that have changed, among those that may meet, in order.

@@ -32,7 +32,8 @@ public:
 
     void forget(); // everything is quick
     // Everything is to go from `start` to `end`: vertices that would leave their corridors get new ones, boxes around their
-    // ways, or around the start alone of what goes further than `far` [m], wider by `margin` [m] on each side. `via` as below.
+    // ways, or around the start alone of what goes further than `far` [m], wider by `margin` [m] on each side. Where most
+    // would, all do. `via` as below.
     void note(View<Vec3> start, View<Vec3> end, double margin, double far, View<Vec3> via = {});
 
     // Everything sets out straight from `start`, where it is, to `end`; or, while it has not arrived, to another end, which
@@ -91,6 +92,7 @@ private:
         return std::min((at - low_[v]).minCoeff(), (high_[v] - at).minCoeff());
     }
     void go_as_one(View<Vec3> start, View<Vec3> end, const RigidMotion &motion, View<int> rigid, const Affected &changed);
+    template <class Counts> std::vector<NearPair *> find_may_meet(const Counts &counts) const;
     void meet_passing();
     double strays(const NearPair &pair) const; // both together, at most [m]
 

@@ -1,35 +1,24 @@
 #include "ringlet/contact/overlap_kernel.h"
 
-#include <cstring>
+#include "ringlet/math/floats.h"
 
 namespace ringlet::RINGLET_SIMD {
 namespace {
 
 // The sixteen pairs of two quads' boxes, 4k + l being box k of the one and l of the other, are looked at in parts of a width.
 #if defined(RINGLET_SIMD_avx512)
-constexpr int width = 16;
 #define RINGLET_FIRST 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3
 #define RINGLET_SECOND 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3
 #elif defined(RINGLET_SIMD_avx2)
-constexpr int width = 8;
 #define RINGLET_FIRST 0, 0, 0, 0, 1, 1, 1, 1
 #define RINGLET_SECOND 0, 1, 2, 3, 0, 1, 2, 3
 #else
-constexpr int width = 4;
 #define RINGLET_FIRST 0, 0, 0, 0
 #define RINGLET_SECOND 0, 1, 2, 3
 #endif
-using Floats = float __attribute__((vector_size(4 * width)));
-using Bits = int __attribute__((vector_size(4 * width)));
 
 constexpr int parts = 16 / width;
 constexpr unsigned each_once = 0x08ce; // l > k
-
-Floats read(const float *numbers) {
-    Floats result;
-    std::memcpy(&result, numbers, sizeof(result));
-    return result;
-}
 
 // Of a row of the first quad, or of the second, what belongs to the pairs of a part.
 Floats of_first(const float *row, int part) {
@@ -39,21 +28,6 @@ Floats of_first(const float *row, int part) {
 Floats of_second(const float *row) {
     const Floats x = read(row);
     return __builtin_shufflevector(x, x, RINGLET_SECOND);
-}
-
-Floats lesser(Floats a, Floats b) { return a < b ? a : b; }
-Floats greater(Floats a, Floats b) { return a > b ? a : b; }
-
-unsigned lanes(Bits where) {
-#if defined(RINGLET_SIMD_avx512)
-    return __builtin_ia32_cvtd2mask512(where);
-#elif defined(RINGLET_SIMD_avx2)
-    return unsigned(__builtin_ia32_movmskps256(reinterpret_cast<Floats>(where)));
-#else
-    unsigned all = 0;
-    for (int lane = 0; lane < width; ++lane) all |= unsigned(where[lane] & 1) << lane;
-    return all;
-#endif
 }
 
 // Calls gaps(gap, end_gap) for what is between the boxes of a part's pairs on each axis, from both sides, at the start and at
@@ -78,7 +52,7 @@ unsigned may_meet(const BoxQuad &a, const BoxQuad &b, const WhoCounts &of_a, con
     for (int part = 0; part < parts; ++part) {
         Floats apart = neither_counts(of_a, of_b, part);
         for_gaps(a, b, part, [&](Floats gap, Floats end_gap) { apart = greater(apart, lesser(gap, end_gap)); });
-        which |= lanes(apart <= 0.0f) << part * width;
+        which |= lanes_of(apart <= 0.0f) << part * width;
     }
     return which;
 }
@@ -92,7 +66,7 @@ unsigned overlap(const BoxQuad &a, const BoxQuad &b, const WhoCounts &of_a, cons
             apart = greater(apart, of_second(b.low[axis]) - of_first(a.high[axis], part));
             apart = greater(apart, of_first(a.low[axis], part) - of_second(b.high[axis]));
         }
-        which |= lanes(apart <= 0.0f) << part * width;
+        which |= lanes_of(apart <= 0.0f) << part * width;
     }
     return which;
 }
@@ -109,64 +83,12 @@ unsigned meet_at_one_time(const BoxQuad &a, const BoxQuad &b) {
             from = gap > none ? greater(from, opens) : from;
             to = gap > none ? to : lesser(to, closes);
         });
-        which |= lanes(from <= to + rounding) << part * width;
+        which |= lanes_of(from <= to + rounding) << part * width;
     }
     return which;
-}
-
-struct Vector {
-    Floats of[3];
-
-    Floats &operator[](int axis) { return of[axis]; }
-    const Floats &operator[](int axis) const { return of[axis]; }
-};
-
-Floats dot(const Vector &a, const Vector &b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-// 0 where it is not a number.
-Floats fraction(Floats a, Floats b) {
-    const Floats none = {};
-    return lesser(greater(a / b, none), none + 1.0f);
-}
-
-// Seen along the line between the closest points of the edges between the middles of their boxes.
-template <class Read> Bits apart_along_shortest(const EdgePairs &pairs, const Read &read) {
-    const Floats none = {};
-    Vector middle[4], width[4]; // both doubled, and middles told from the first
-    for (int end = 0; end < 4; ++end)
-        for (int axis = 0; axis < 3; ++axis) {
-            const Floats low = read(pairs.low[end][axis]), high = read(pairs.high[end][axis]);
-            middle[end][axis] = low + high;
-            width[end][axis] = high - low;
-        }
-    for (int axis = 0; axis < 3; ++axis) {
-        for (int end = 1; end < 4; ++end) middle[end][axis] -= middle[0][axis];
-        middle[0][axis] = none;
-    }
-    const Vector &u = middle[1], &w = middle[2];
-    Vector v, n, sizes;
-    for (int axis = 0; axis < 3; ++axis) v[axis] = middle[3][axis] - w[axis];
-    const Floats uu = dot(u, u), vv = dot(v, v), uv = dot(u, v), uw = dot(u, w), vw = dot(v, w);
-    const Floats t = fraction(fraction(uw * vv - uv * vw, uu * vv - uv * uv) * uv - vw, vv), s = fraction(uw + t * uv, uu);
-    for (int axis = 0; axis < 3; ++axis) {
-        n[axis] = w[axis] + t * v[axis] - s * u[axis];
-        sizes[axis] = n[axis] < none ? -n[axis] : n[axis];
-    }
-    const auto least = [&](int end) { return dot(n, middle[end]) - dot(sizes, width[end]); };
-    const auto most = [&](int end) { return dot(n, middle[end]) + dot(sizes, width[end]); };
-    const Floats gap = lesser(least(2), least(3)) - greater(most(0), most(1)), reach = 2.0f * read(pairs.reach);
-    return (gap > none) & (gap * gap > reach * reach * dot(n, n));
 }
 
 } // namespace
-
-unsigned apart(const EdgePairs &pairs) {
-    unsigned which = 0;
-    for (int part = 0; part < parts; ++part)
-        which |= lanes(apart_along_shortest(pairs, [&](const float (&row)[16]) { return read(row + part * width); }))
-                 << part * width;
-    return which;
-}
 
 void descend(Descent &d, int most_visits) {
     const auto leave = [&](int i, int j) { d.nodes[d.left++] = {{i, j}}; };

@@ -39,17 +39,7 @@ struct Descent {
     BoxPair nodes[room], boxes[room];
 };
 
-// Pairs of edges whose ends may be anywhere in boxes: by end, the first two being those of the first edge, axis and pair.
-struct alignas(64) EdgePairs {
-    static constexpr int room = 16;
-    float low[4][3][room], high[4][3][room];
-    float reach[room]; // at which a pair touches
-};
-
 // Descends until nothing is left or there might be no room for more, but visits no more pairs of nodes than that.
 RINGLET_DECLARE(void descend(Descent &descent, int most_visits);)
-
-// Of which pairs, one to a bit, it is certain that they do not touch; of others nothing is said.
-RINGLET_DECLARE(unsigned apart(const EdgePairs &pairs);)
 
 } // namespace ringlet

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ringlet/contact/collision_mesh.h"
+#include "ringlet/contact/edges_apart.h"
 #include "ringlet/contact/moving_box.h"
 
 #include <vector>
@@ -50,6 +51,18 @@ public:
                 pairs.high[end][axis][k] = ends_[ends[end]][axis];
             }
         pairs.reach[k] = edge_radii_[edges[0]] + edge_radii_[edges[1]] + 2.0f * wider_;
+    }
+
+    // Puts a pair of edges on their ways as number `k` among others, that touch at `distance` [m].
+    void put(EdgeWays &pairs, int k, const std::array<int, 2> &edges, double distance) const {
+        const auto &[a, b] = mesh_.edges[edges[0]];
+        const auto &[c, d] = mesh_.edges[edges[1]];
+        const int ends[4] = {a, b, c, d};
+        const std::vector<Eigen::Array4f> *places[3] = {&starts_, &ends_, bends_ ? &vias_ : &ends_};
+        for (int place = 0; place < 3; ++place)
+            for (int end = 0; end < 4; ++end)
+                for (int axis = 0; axis < 3; ++axis) pairs.at[place][end][axis][k] = (*places[place])[ends[end]][axis];
+        pairs.reach[k] = float(distance) + 2.0f * wider_;
     }
 
 private:

@@ -1,0 +1,40 @@
+// Floats side by side, as many as the instruction set of a kernel takes at once. For *.simd.cpp alone.
+#pragma once
+
+#include <cstring>
+
+namespace ringlet::RINGLET_SIMD {
+
+#if defined(RINGLET_SIMD_avx512)
+constexpr int width = 16;
+#elif defined(RINGLET_SIMD_avx2)
+constexpr int width = 8;
+#else
+constexpr int width = 4;
+#endif
+using Floats = float __attribute__((vector_size(4 * width)));
+using Bits = int __attribute__((vector_size(4 * width))); // all set where true
+
+inline Floats read(const float *numbers) {
+    Floats result;
+    std::memcpy(&result, numbers, sizeof(result));
+    return result;
+}
+
+inline Floats lesser(Floats a, Floats b) { return a < b ? a : b; }
+inline Floats greater(Floats a, Floats b) { return a > b ? a : b; }
+
+// One bit for each: where it is true.
+inline unsigned lanes_of(Bits where) {
+#if defined(RINGLET_SIMD_avx512)
+    return __builtin_ia32_cvtd2mask512(where);
+#elif defined(RINGLET_SIMD_avx2)
+    return unsigned(__builtin_ia32_movmskps256(reinterpret_cast<Floats>(where)));
+#else
+    unsigned all = 0;
+    for (int lane = 0; lane < width; ++lane) all |= unsigned(where[lane] & 1) << lane;
+    return all;
+#endif
+}
+
+} // namespace ringlet::RINGLET_SIMD
