@@ -24,7 +24,7 @@ double Scene::Parts::filter(View<Vec3> now, std::vector<Vec3> &to, const MoveKin
     if (kind.still && kind.changed.empty()) {
         const bool stays = std::equal(to.begin(), to.end(), now.begin()) && std::equal(via.begin(), via.end(), now.begin());
         if (stays && near.knows_all_here()) return 1.0;
-        near.note(now, to, stays ? 0.0 : 0.2 * settings.strand_radius, far, via); // what stays hardly stays for long
+        if (!kind.few || !near.knows_all_here()) near.note(now, to, stays ? 0.0 : 0.2 * settings.strand_radius, far, via); // what stays hardly stays for long
         if (stays) return 1.0;
     }
     const SceneCarry with = carry();
