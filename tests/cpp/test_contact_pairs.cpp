@@ -281,6 +281,22 @@ BOOST_AUTO_TEST_CASE(what_is_known_of_pairs_changes_nothing_that_is_found) {
     BOOST_TEST((touching(knowing, scene.start) == touching(unknowing, scene.start)));
 }
 
+// Far beside what is between them: most of what lies on the way is not met.
+BOOST_AUTO_TEST_CASE(what_goes_far_together_comes_near_little_of_what_lies_on_its_way) {
+    Scene scene(12, 0.0);
+    const CollisionMesh &mesh = scene.mesh;
+    for (size_t v = 0; v < scene.end.size(); ++v)
+        if (mesh.moves[v]) scene.end[v] = scene.start[v] + Vec3(0.05, 0.06, 0.04) + scene.anywhere(0.005);
+    NearPairs near(mesh), unknowing(mesh);
+    near.note(scene.start, scene.end, 0.0001, 1.0);
+    for (NearPairs *pairs : {&near, &unknowing}) pairs->set_out(scene.start, scene.end);
+    BOOST_TEST(near.passing().empty());
+    BOOST_TEST(2 * near.may_come_near().size() < size_t(near.count()));
+    BOOST_TEST(2 * near.may_meet().size() < near.may_come_near().size());
+    BOOST_TEST(coming_near(mesh, near, scene.start, scene.end).size() > 10);
+    BOOST_TEST((coming_near(mesh, near, scene.start, scene.end) == coming_near(mesh, unknowing, scene.start, scene.end)));
+}
+
 // Somewhere in the triangle of where they are, where they set out to, and a third place.
 BOOST_AUTO_TEST_CASE(what_may_bend_knows_the_pairs_of_all_of_its_triangle) {
     Scene scene(10, 0.0);

@@ -53,7 +53,8 @@ void leave_out_apart(const MovingTree &edges, const PathBoxes &homes, Descent &f
     for (int first = 0; first < found.found; first += EdgePairs::room) {
         const int count = std::min(found.found - first, EdgePairs::room);
         const BoxPair *pairs = found.boxes + first;
-        for (int k = 0; k < count; ++k) homes.put(some, k, {edges.primitive(pairs[k].of[0]), edges.primitive(pairs[k].of[1])});
+        homes.put(some, count,
+                  [&](int k) { return std::array{edges.primitive(pairs[k].of[0]), edges.primitive(pairs[k].of[1])}; });
         const unsigned apart = RINGLET_DISPATCH(apart, some);
         for (int k = 0; k < count; ++k)
             if (!(apart >> k & 1u)) found.boxes[kept++] = pairs[k];

@@ -7,12 +7,12 @@
 namespace ringlet {
 namespace {
 
-// Of some pairs, in order, those that may come nearer than a part of their distance: wherever in the triangles of their ways
-// they are, or while all go straight. Edges are looked at many at a time.
+// Of some pairs, in order, those that may touch: wherever in the triangles of their ways they are, or while all go straight
+// together. Edges are looked at many at a time.
 class MayTouch {
 public:
-    MayTouch(const PathBoxes &ways, bool together, double part, std::vector<NearPair *> &found)
-        : ways_(ways), together_(together), part_(part), found_(found) {}
+    MayTouch(const PathBoxes &ways, bool together, std::vector<NearPair *> &found)
+        : ways_(ways), together_(together), found_(found) {}
     ~MayTouch() { look_at_edges(); }
 
     void look_at(NearPair &pair) {
@@ -21,7 +21,7 @@ public:
             if (ways_.with_boxes(pair, together_ ? may_meet : ways_overlap)) found_.push_back(&pair);
             return;
         }
-        ways_.put(edges_, count_, pair.of, part_ * pair.distance);
+        edges_.reach[count_] = float(pair.distance) + ways_.lost();
         pairs_[count_++] = &pair;
         if (count_ == EdgeWays::room) look_at_edges();
     }
@@ -29,6 +29,7 @@ public:
 private:
     void look_at_edges() {
         if (count_ == 0) return;
+        ways_.put(edges_, count_, [&](int k) { return pairs_[k]->of; });
         const unsigned apart = together_ ? RINGLET_DISPATCH(apart_together, edges_) : RINGLET_DISPATCH(apart_anywhere, edges_);
         for (int k = 0; k < count_; ++k)
             if (!(apart >> k & 1u)) found_.push_back(pairs_[k]);
@@ -37,7 +38,6 @@ private:
 
     const PathBoxes &ways_;
     bool together_;
-    double part_;
     std::vector<NearPair *> &found_;
     EdgeWays edges_ = {};
     std::array<NearPair *, EdgeWays::room> pairs_;
@@ -191,7 +191,7 @@ void NearPairs::set_out(View<Vec3> start, View<Vec3> end, View<Vec3> via) {
     fit_ways(start, end, via);
     passing_ = any_quick_ ? look_for_quick(quick_) : std::vector<NearPair>();
     may_touch_ = collect_parts<NearPair *>(int(known_.size()), [&](int begin, int end, std::vector<NearPair *> &found) {
-        MayTouch some(ways_of_, false, 1.0, found);
+        MayTouch some(ways_of_, false, found);
         for (int k = begin; k < end; ++k)
             if (NearPair &pair = known_[k]; !quick(pair) && reach(pair)) some.look_at(pair);
     });
@@ -218,7 +218,7 @@ void NearPairs::set_out_anew(View<Vec3> start, View<Vec3> end, View<unsigned cha
 // Of what may come near.
 template <class Counts> std::vector<NearPair *> NearPairs::find_may_meet(const Counts &counts) const {
     return collect_parts<NearPair *>(int(may_come_near_.size()), [&](int begin, int end, std::vector<NearPair *> &found) {
-        MayTouch some(ways_of_, true, 1.0, found);
+        MayTouch some(ways_of_, true, found);
         for (int k = begin; k < end; ++k)
             if (NearPair &pair = *may_come_near_[k]; counts(pair)) some.look_at(pair);
     });

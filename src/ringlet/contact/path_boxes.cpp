@@ -15,7 +15,7 @@ template <class Primitives> std::vector<float> radii(const CollisionMesh &mesh, 
 
 PathBoxes::PathBoxes(const CollisionMesh &mesh)
     : mesh_(mesh), edge_radii_(radii(mesh, mesh.edges)), triangle_radii_(radii(mesh, mesh.triangles)), all_(mesh.moves.size()),
-      starts_(mesh.moves.size()), ends_(mesh.moves.size()) {
+      ways_(mesh.moves.size()) {
     std::iota(all_.begin(), all_.end(), 0);
 }
 
@@ -32,12 +32,11 @@ void PathBoxes::fit_anew(View<Vec3> start_or_low, View<Vec3> end_or_high, View<i
 #pragma omp for schedule(static) nowait
         for (int k = 0; k < int(vertices.size()); ++k) {
             const int v = vertices[k];
-            starts_[v] = place(start_or_low[v], origin_.start);
-            ends_[v] = place(end_or_high[v], origin_.end);
-            here = here.max(starts_[v].abs()).max(ends_[v].abs());
-            if (!bends_) continue;
-            vias_[v] = via.empty() ? ends_[v] : place(via[v], origin_.end);
-            here = here.max(vias_[v].abs());
+            Way &way = ways_[v];
+            way.start = place(start_or_low[v], origin_.start);
+            way.end = place(end_or_high[v], origin_.end);
+            way.via = via.empty() ? way.end : place(via[v], origin_.end);
+            here = here.max(way.start.abs()).max(way.end.abs()).max(way.via.abs());
         }
 #pragma omp critical
         largest = largest.max(here);
@@ -48,8 +47,6 @@ void PathBoxes::fit_anew(View<Vec3> start_or_low, View<Vec3> end_or_high, View<i
 void PathBoxes::fit(View<Vec3> start, View<Vec3> end, const Origin &origin, double margin, View<Vec3> via) {
     origin_ = origin;
     still_ = false;
-    bends_ = !via.empty();
-    if (bends_) vias_.resize(via.size());
     wider_ = 0.0f;
     fit_anew(start, end, all_, via);
     wider_ += float(0.5 * margin);
@@ -59,7 +56,6 @@ void PathBoxes::fit_within(View<Vec3> low, View<Vec3> high) {
     const Vec3 first = low.empty() ? Vec3(Vec3::Zero()) : low[0];
     origin_ = {first, first};
     still_ = true;
-    bends_ = false;
     wider_ = 0.0f;
     fit_anew(low, high, all_);
 }

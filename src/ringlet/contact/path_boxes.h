@@ -40,32 +40,55 @@ public:
                              : work(of_vertex(pair.of[0]), of_triangle(pair.of[1]));
     }
 
-    // Puts a pair of edges of what stays in boxes as number `k` among others.
-    void put(EdgePairs &pairs, int k, const std::array<int, 2> &edges) const {
-        const auto &[a, b] = mesh_.edges[edges[0]];
-        const auto &[c, d] = mesh_.edges[edges[1]];
-        const int ends[4] = {a, b, c, d};
-        for (int end = 0; end < 4; ++end)
-            for (int axis = 0; axis < 3; ++axis) {
-                pairs.low[end][axis][k] = starts_[ends[end]][axis];
-                pairs.high[end][axis][k] = ends_[ends[end]][axis];
-            }
-        pairs.reach[k] = edge_radii_[edges[0]] + edge_radii_[edges[1]] + 2.0f * wider_;
+    // Puts pairs of edges of what stays in boxes side by side: edges_of(k) are those of number k.
+    template <class EdgesOf> void put(EdgePairs &pairs, int count, const EdgesOf &edges_of) const {
+        for_fours(count, edges_of, [&](const Four &four, int k) {
+            put_side_by_side(four, &Way::start, pairs.low, k);
+            put_side_by_side(four, &Way::end, pairs.high, k);
+        });
+        for (int k = 0; k < count; ++k) pairs.reach[k] = edge_radii_[edges_of(k)[0]] + edge_radii_[edges_of(k)[1]] + lost();
     }
 
-    // Puts a pair of edges on their ways as number `k` among others, that touch at `distance` [m].
-    void put(EdgeWays &pairs, int k, const std::array<int, 2> &edges, double distance) const {
-        const auto &[a, b] = mesh_.edges[edges[0]];
-        const auto &[c, d] = mesh_.edges[edges[1]];
-        const int ends[4] = {a, b, c, d};
-        const std::vector<Eigen::Array4f> *places[3] = {&starts_, &ends_, bends_ ? &vias_ : &ends_};
-        for (int place = 0; place < 3; ++place)
-            for (int end = 0; end < 4; ++end)
-                for (int axis = 0; axis < 3; ++axis) pairs.at[place][end][axis][k] = (*places[place])[ends[end]][axis];
-        pairs.reach[k] = float(distance) + 2.0f * wider_;
+    // The same of pairs on their ways. At which distances they touch [m] is put by whoever knows it, wider by lost().
+    template <class EdgesOf> void put(EdgeWays &pairs, int count, const EdgesOf &edges_of) const {
+        for_fours(count, edges_of, [&](const Four &four, int k) {
+            put_side_by_side(four, &Way::start, pairs.at[0], k);
+            put_side_by_side(four, &Way::end, pairs.at[1], k);
+            put_side_by_side(four, &Way::via, pairs.at[2], k);
+        });
     }
+    float lost() const { return 2.0f * wider_; } // at most, of what is between two [m]
 
 private:
+    struct Way { // of a vertex, or the corners of what it stays in; side by side, since pairs ask for them in no order
+        Eigen::Array4f start, end, via;
+    };
+
+    using Four = std::array<std::array<const Way *, 4>, 4>; // ends of four pairs of edges
+
+    // Calls work with four pairs after four, and the number of the first; the last is there more than once if need be.
+    template <class EdgesOf, class Work> void for_fours(int count, const EdgesOf &edges_of, const Work &work) const {
+        for (int k = 0; k < count; k += 4) {
+            Four four;
+            for (int i = 0; i < 4; ++i) {
+                const std::array<int, 2> edges = edges_of(std::min(k + i, count - 1));
+                for (int end = 0; end < 4; ++end) four[end][i] = &ways_[mesh_.edges[edges[end / 2]][end % 2]];
+            }
+            work(four, k);
+        }
+    }
+
+    // Of four pairs where each end is, from column k on.
+    template <int room>
+    static void put_side_by_side(const Four &four, Eigen::Array4f Way::*place, float (&at)[4][3][room], int k) {
+        float columns[4][4];
+        for (int end = 0; end < 4; ++end) {
+            const auto &[a, b, c, d] = four[end];
+            transpose({a->*place, b->*place, c->*place, d->*place}, columns);
+            for (int axis = 0; axis < 3; ++axis) std::memcpy(at[end][axis] + k, columns[axis], sizeof(columns[axis]));
+        }
+    }
+
     template <size_t N> MovingBox around(const std::array<int, N> &primitive, float radius) const {
         MovingBox all = box(primitive[0]);
         for (size_t k = 1; k < N; ++k) all.include(box(primitive[k]));
@@ -73,20 +96,18 @@ private:
         return all;
     }
     MovingBox box(int vertex) const { // not widened yet
-        const Eigen::Array4f &a = starts_[vertex], &b = ends_[vertex];
+        const auto &[a, b, via] = ways_[vertex];
         if (still_) return {a, b, a, b};
-        if (!bends_) return {a, a, b, b};
-        return {a, a, b.min(vias_[vertex]), b.max(vias_[vertex])};
+        return {a, a, b.min(via), b.max(via)};
     }
 
     const CollisionMesh &mesh_;
     std::vector<float> edge_radii_, triangle_radii_;
     std::vector<int> all_; // vertices
     Origin origin_;
-    std::vector<Eigen::Array4f> starts_, ends_; // of the ways, or the corners of what vertices stay in
-    std::vector<Eigen::Array4f> vias_;
+    std::vector<Way> ways_;
     float wider_ = 0.0f; // [m]
-    bool still_ = false, bends_ = false;
+    bool still_ = false;
 };
 
 } // namespace ringlet
