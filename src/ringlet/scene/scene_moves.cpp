@@ -23,8 +23,9 @@ double Scene::Parts::filter(View<Vec3> now, std::vector<Vec3> &to, const MoveKin
     const View<Vec3> via = kind.via != nullptr ? View<Vec3>(*kind.via) : View<Vec3>();
     if (kind.still && kind.changed.empty()) {
         const bool stays = std::equal(to.begin(), to.end(), now.begin()) && std::equal(via.begin(), via.end(), now.begin());
-        if (stays && near.knows_all_here()) return 1.0;
-        if (!kind.few || !near.knows_all_here()) near.note(now, to, stays ? 0.0 : 0.2 * settings.strand_radius, far, via); // what stays hardly stays for long
+        const bool known = near.knows_all_here() && (stays || kind.few);
+        if (!known)
+            near.note(now, to, stays ? 0.0 : 0.2 * settings.strand_radius, far, via); // what stays hardly stays for long
         if (stays) return 1.0;
     }
     const SceneCarry with = carry();
