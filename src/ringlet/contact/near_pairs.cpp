@@ -110,9 +110,8 @@ void NearPairs::note(View<Vec3> start, View<Vec3> end, double margin, double far
     std::vector<unsigned char> stray(start.size(), 0);
     std::vector<int> strays;
     for (size_t v = 0; v < start.size(); ++v) {
-        const std::array<Vec3, 3> places_of_v = places(v);
-        stray[v] =
-            anew || std::any_of(places_of_v.begin(), places_of_v.end(), [&](const Vec3 &to) { return leaves(int(v), to); });
+        const std::array<Vec3, 3> way = places(v);
+        stray[v] = anew || std::any_of(way.begin(), way.end(), [&](const Vec3 &to) { return leaves(int(v), to); });
         if (stray[v]) strays.push_back(int(v));
     }
     if (strays.empty()) return;

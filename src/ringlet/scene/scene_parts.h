@@ -30,7 +30,7 @@ struct MoveKind {
     View<unsigned char> changed = {};       // per vertex, what ends elsewhere than on the last move; empty: all is new
     int hopeful = FilterScene::most_rounds; // this and the next as FilterScene has them
     std::vector<Vec3> *via = nullptr;
-    bool few = false; // move: nothing need be noted for moves to come
+    bool few = false; // vertices move: pairs need not be noted for moves to come
 };
 
 // How everything went along with what is kinematic.
