@@ -25,6 +25,7 @@ bend_scale = 6
 [solver]
 newton = {newton}
 substeps = {substeps}
+linear_tolerance = {linear_tolerance}
 [contact]
 on = {contact}
 radius = 4e-4
@@ -32,13 +33,16 @@ friction = 0.3
 """
 
 
-def run(frames: int = 12, converged: int = 200, contacts: str = "on", substeps: int = 1) -> dict[str, Any]:
+def run(
+    frames: int = 12, converged: int = 200, contacts: str = "on", substeps: int = 1, linear_tolerance: float = 0.1
+) -> dict[str, Any]:
     """Simulates the shot of the tutorial with few and with many iterations.
 
     frames:    of the clip, which begins with a nod
     converged: iterations of the motion that the others are compared with; strands that touch nothing need no more
     contacts:  ``on`` or ``off``
     substeps:  steps of a frame, of all of them
+    linear_tolerance: ``solver.linear_tolerance`` of all but the converged motion
     """
     if contacts not in ("on", "off"):
         raise UserError(f"bench iterations: contacts is '{contacts}'; must be on or off")
@@ -46,8 +50,8 @@ def run(frames: int = 12, converged: int = 200, contacts: str = "on", substeps: 
     groom = build_groom(EXAMPLE / "light.recipe.toml")
     tips = groom.locks.offsets[1:] - 1
 
-    def moved(newton: int) -> tuple[NDArray[np.floating], dict[str, float]]:
-        settings = {"newton": newton, "substeps": substeps, "contact": str(contacts == "on").lower()}
+    def moved(newton: int, **solver: float) -> tuple[NDArray[np.floating], dict[str, float]]:
+        settings = {"newton": newton, "substeps": substeps, "contact": str(contacts == "on").lower(), **solver}
         with tempfile.TemporaryDirectory() as folder:
             shot = Path(folder) / "iterations.shot.toml"
             recipe = (EXAMPLE / "light.recipe.toml").as_posix()
@@ -57,10 +61,10 @@ def run(frames: int = 12, converged: int = 200, contacts: str = "on", substeps: 
         spent = float(np.mean([frame["newton"] for frame in cache.statistics]))
         return cache.points.astype(np.float64), {"iterations": spent}
 
-    right, told = moved(converged)
+    right, told = moved(converged, linear_tolerance=0.1)
     off = {f"newton {converged}": told}
     for newton in ITERATIONS:
-        points, told = moved(newton)
+        points, told = moved(newton, linear_tolerance=linear_tolerance)
         away = 1e3 * np.linalg.norm(points - right, axis=2)
         together = 1e3 * np.linalg.norm((points - right)[:, tips].mean(axis=1), axis=1)
         off[f"newton {newton}"] = told | {
@@ -71,7 +75,13 @@ def run(frames: int = 12, converged: int = 200, contacts: str = "on", substeps: 
         }
     return clock.result(
         "iterations",
-        {"frames": frames, "converged": converged, "contacts": contacts, "substeps": substeps},
+        {
+            "frames": frames,
+            "converged": converged,
+            "contacts": contacts,
+            "substeps": substeps,
+            "linear_tolerance": linear_tolerance,
+        },
         per=f"newton {ITERATIONS[0]}",
         warm_up=0,
         off=off,

@@ -24,6 +24,7 @@ def run(
     newton: int = 3,
     stiffness: str = "1,0.1",
     rest: str = "none",
+    linear_tolerance: float = 0.1,
 ) -> dict[str, Any]:
     """Plays the beginning of a shot of the example without contact, and with contacts of each stiffness.
 
@@ -33,6 +34,7 @@ def run(
     newton:    iterations of every step
     stiffness: ``contact.stiffness``, several by commas
     rest:      ``rest.mode``
+    linear_tolerance: ``solver.linear_tolerance``
     """
     clock = Clock()
     played = read_shot(EXAMPLE / f"{shot}.shot.toml")
@@ -46,7 +48,7 @@ def run(
         played = played.model_copy(
             update={
                 "frames": (first, frames),
-                "solver": played.solver.model_copy(update={"newton": newton}),
+                "solver": played.solver.model_copy(update={"newton": newton, "linear_tolerance": linear_tolerance}),
                 "rest": played.rest.model_copy(update={"mode": rest, "file": remembered}),
             }
         )
@@ -67,7 +69,15 @@ def run(
             }
     return clock.result(
         "liveliness",
-        {"shot": shot, "locks": locks, "frames": frames, "newton": newton, "stiffness": stiffness, "rest": rest},
+        {
+            "shot": shot,
+            "locks": locks,
+            "frames": frames,
+            "newton": newton,
+            "stiffness": stiffness,
+            "rest": rest,
+            "linear_tolerance": linear_tolerance,
+        },
         per="stiffness without",
         warm_up=0,
         off=off,

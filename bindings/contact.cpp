@@ -164,7 +164,7 @@ void bind_contact(nb::module_ &module) {
             [](Scene &self, Array3<double> targets, Array3<double> forces, Array3<double> cloth_targets,
                Array3<double> cloth_forces, Array3<double> body_targets, double dt, std::array<double, 3> gravity,
                std::array<double, 3> wind, int newton, double tolerance, Continuation continuation, Integrator integrator,
-               const Safeguards &safeguards, System system, double system_tolerance, int extra) {
+               const Safeguards &safeguards, System system, double linear_tolerance, int extra) {
                 SceneStep step;
                 step.strands.dt = dt;
                 std::copy(gravity.begin(), gravity.end(), step.strands.gravity);
@@ -175,7 +175,7 @@ void bind_contact(nb::module_ &module) {
                 step.strands.integrator = integrator;
                 step.strands.safeguards = safeguards;
                 step.system = system;
-                step.system_tolerance = system_tolerance;
+                step.linear_tolerance = linear_tolerance;
                 step.extra = extra;
                 const SceneInput input{vectors<Vec3>(targets), vectors<Vec3>(forces), vectors<Vec3>(cloth_targets),
                                        vectors<Vec3>(cloth_forces), vectors<Vec3>(body_targets)};
@@ -192,7 +192,7 @@ void bind_contact(nb::module_ &module) {
                                       to_numpy<double>(std::move(of_cloths), {cloths, size_t(cloth_report_columns)}));
             },
             "targets"_a, "forces"_a, "cloth_targets"_a, "cloth_forces"_a, "body_targets"_a, "dt"_a, "gravity"_a, "wind"_a,
-            "newton"_a, "tolerance"_a, "continuation"_a, "integrator"_a, "safeguards"_a, "system"_a, "system_tolerance"_a,
+            "newton"_a, "tolerance"_a, "continuation"_a, "integrator"_a, "safeguards"_a, "system"_a, "linear_tolerance"_a,
             "extra"_a,
             "One time step. Returns the scene's report (SCENE_REPORT), one report row per strand (REPORT) and one per cloth "
             "(CLOTH_REPORT).")

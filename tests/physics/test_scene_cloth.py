@@ -117,10 +117,10 @@ def thrown_at_a_strand(friction):
     scene = Scene(strand, cloths=[cloth], contact=Contact(radius=1e-3, friction=friction))
     masses = np.concatenate([mass, cloth.masses])[:, None]
     # The material frame converges too slowly for a sum to be seen to vanish.
-    solver = Solver(newton=150, tolerance=1e-12, continuation="history")
+    solver = Solver(newton=150, tolerance=1e-12, linear_tolerance=1e-8, continuation="history")
     for _ in range(4):
         before = np.concatenate([strand.velocities, cloth.velocities])
-        report, _ = scene.step(None, dt, solver=solver, system_tolerance=1e-8)
+        report, _ = scene.step(None, dt, solver=solver)
         impulse = masses * (np.concatenate([strand.velocities, cloth.velocities]) - before)
         given = np.linalg.norm(impulse[: len(mass)], axis=1).sum()
         assert given > 0.01 * mass.sum()  # m/s: they do meet
@@ -154,11 +154,9 @@ def coupled():
 
 def ends_of(make, system, tolerance):
     """Where three steps end that are solved in this way."""
-    scene = make()
+    scene, solver = make(), Solver(newton=1, system=system, linear_tolerance=tolerance)
     for _ in range(3):
-        report, _ = scene.step(
-            None, FRAME / 4, gravity=DOWN, solver=Solver(newton=1, system=system), system_tolerance=tolerance
-        )
+        report, _ = scene.step(None, FRAME / 4, gravity=DOWN, solver=solver)
         assert report["linear_residual"] <= tolerance
         assert (report["linear_iterations"] > 0) == (system == "conjugate_gradient" and make is coupled)
     return scene

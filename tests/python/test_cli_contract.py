@@ -47,6 +47,7 @@ class Answer:
         (["growth", "--least", "2", "--most", "4", "--steps", "4"], {"least": 2, "most": 4}),
         (["iterations", "--frames", "1", "--converged", "2", "--contacts", "off"], {"frames": 1, "contacts": "off"}),
         (["liveliness", "--locks", "30", "--frames", "2", "--stiffness", "0.1"], {"locks": 30, "stiffness": 0.1}),
+        (["liveliness", "--locks", "9", "--frames", "2", "--linear-tolerance", "0.02"], {"linear_tolerance": 0.02}),
         (["memory", "--strands", "20"], {"strands": 20}),
         (["strands", "--strands", "4", "--steps", "3"], {"strands": 4, "steps": 3}),
         (["head", "--locks", "30", "--points", "30", "--frames", "2", "--preroll", "0"], {"locks": 30, "points": 30}),

@@ -103,6 +103,7 @@ def test_statistics_tell_what_the_solver_did():
         (("preroll = 0", "preroll = -1"), ["preroll", "-1", "at least 0"]),
         (("preroll = 0", "[strands]\ntwist_ratio = 1.4"), ["strands.twist_ratio", "1.4", "at most 1"]),
         (("preroll = 0", "[solver]\nnewton = 0"), ["solver.newton", "0", "at least 1"]),
+        (("preroll = 0", "[solver]\nlinear_tolerance = 0"), ["solver.linear_tolerance", "0", "more than 0"]),
         (("preroll = 0", "[solver]\ncontinuation = 'memory'"), ["solver.continuation", "memory", "material_frame"]),
         (
             ("preroll = 0", "[solver]\nsafeguards = []"),

@@ -271,3 +271,12 @@ def test_a_collider_that_cannot_be_used_is_refused_in_one_line(example, tmp_path
     shot.write_text(shot.read_text() + more)
     refused(run("sim", shot, "--groom", example / "groom.usdc", "-o", tmp_path / "cache.usdc"), *words)
     assert not (tmp_path / "cache.usdc").exists()
+
+
+def test_a_system_that_is_solved_further_takes_more_iterations_of_conjugate_gradients():
+    iterations = []
+    for tolerance in (0.5, 1e-3):
+        shot = parse_shot(SHOT + f"[solver]\nlinear_tolerance = {tolerance}\n" + CONTACT)
+        statistics = simulate(shot, groom(apart=1e-3), still(floor())).statistics
+        iterations.append(sum(frame["contact"]["linear_iterations"] for frame in statistics))
+    assert iterations[1] > 2 * iterations[0]

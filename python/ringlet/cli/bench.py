@@ -39,13 +39,14 @@ def bench(
 
 
 def parameters(words: list[str]) -> Iterator[tuple[str, Any]]:
-    """``--strands 500`` as a name and a value; what is no JSON is text."""
+    """``--strands 500`` as a name and a value; what is no JSON is text. Words of a name may be joined by ``-``."""
     for option, value in zip_longest(words[::2], words[1::2]):
         if not option.startswith("--") or value is None:
             raise ringlet.UserError(
                 f"bench: {option}: parameters are given as --PARAMETER VALUE, such as --strands 500"
             )
+        parameter = option[2:].replace("-", "_")
         try:
-            yield option[2:], json.loads(value)
+            yield parameter, json.loads(value)
         except ValueError:
-            yield option[2:], value
+            yield parameter, value

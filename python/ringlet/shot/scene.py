@@ -202,7 +202,6 @@ class Scene:
         forces: NDArray[np.floating] | None = None,
         cloth_forces: Sequence[NDArray[np.floating]] | None = None,
         solver: Solver | None = None,
-        system_tolerance: float = 0.1,
     ) -> tuple[dict[str, Any], dict[str, NDArray[np.float64]]]:
         """Advances by ``dt`` [s]; held vertices end where ``targets`` [m], shape (n, 3), has them.
 
@@ -228,7 +227,7 @@ class Scene:
                 wind,
                 *solver.for_core(),
                 getattr(_core.System, solver.system),
-                system_tolerance,
+                solver.linear_tolerance,
                 solver.extra,
             )
         except _core.CoupledError as error:

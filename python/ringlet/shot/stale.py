@@ -33,7 +33,7 @@ _FREE = {
     **dict.fromkeys(
         ("ringlet", "name", "groom", "frames", "preroll", "variation", "contact", "collider", "cloth"), True
     ),
-    "solver": {"newton", "substeps", "tolerance"},
+    "solver": {"newton", "substeps", "tolerance", "linear_tolerance"},
     "rest": {"mode", "file", "gain"},
 }
 

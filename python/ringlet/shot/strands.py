@@ -99,6 +99,13 @@ class Solver(Section):
         description="how the linear system of locks that touch is solved: each alone (an error where something couples "
         "them), together by conjugate gradients, or by factoring the whole; automatic: alone or together, as needed",
     )
+    linear_tolerance: float = Field(
+        default=0.1,
+        gt=0,
+        le=0.5,
+        description="what conjugate gradients leave of the linear system, as a part of what there was; the less, the "
+        "more hair moves that lies in hair: 0.02 for the last run",
+    )
     integrator: Literal["backward_euler", "bdf2"] = Field(
         default="backward_euler",
         description="first order and calm, or second order (BDF-2), which keeps a swing going for longer",

@@ -12,7 +12,7 @@ namespace ringlet {
 struct SceneStep {
     StrandStep strands; // time, forces, Newton; cloths take theirs from it
     System system = System::automatic;
-    double system_tolerance = 0.1; // of the linear solution, relative
+    double linear_tolerance = 0.1; // of the linear solution, relative
     int extra = 60;                // iterations more, at most, for strands that were held back and are stretched
     int most_substeps = 8;         // where bodies leave no way out a step is taken in parts
 };

@@ -24,7 +24,7 @@ int Scene::Parts::newton(const SceneStep &scene_step, const StrandStep &step, st
         }
         {
             const Stopwatch watch(report.time_solve);
-            const SceneSolver::Result solved = solver.solve(system, scene_step.system_tolerance, way.straight);
+            const SceneSolver::Result solved = solver.solve(system, scene_step.linear_tolerance, way.straight);
             report.linear_iterations += solved.iterations;
             report.linear_residual = solved.residual;
             measure(system, way.straight, reach);
