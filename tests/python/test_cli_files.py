@@ -119,6 +119,30 @@ def test_hairs_of_a_long_cache_are_made_with_a_few_frames_in_memory(example, tmp
         assert back.points(frames).shape == points.shape
 
 
+def hairs_at(file, frame):
+    """Where the hairs of a file are at a frame [m], shape (n, 3)."""
+    stage = Usd.Stage.Open(str(file))
+    return np.array(UsdGeom.BasisCurves(stage.GetPrimAtPath("/groom/hairs")).GetPointsAttr().Get(frame))
+
+
+def test_hairs_of_a_cache_by_itself_are_those_of_its_groom_and_it(example, tmp_path):
+    groom, cache = example / "groom.usdc", tmp_path / "cache.usdc"
+    points = ringlet.read_groom(groom).locks.points.astype(np.float32)
+    ringlet.write_cache(ringlet.Cache(np.arange(1.0, 4), np.stack([points, points + 1e-3, points])), groom, cache)
+    by_itself, by_both = tmp_path / "itself.usdc", tmp_path / "both.usdc"
+    assert run("hair", str(cache), "-o", str(by_itself), "--frames", "2:3").exit_code == 0
+    assert run("hair", str(groom), "--cache", str(cache), "-o", str(by_both), "--frames", "2:3").exit_code == 0
+    second, third = ([hairs_at(file, frame) for file in (by_itself, by_both)] for frame in (2, 3))
+    assert np.array_equal(*second) and np.array_equal(*third)
+    assert not np.array_equal(second[0], third[0])
+
+
+def test_frames_of_hairs_that_do_not_move_are_refused(example, tmp_path):
+    result = run("hair", str(example / "groom.usdc"), "-o", str(tmp_path / "hair.usdc"), "--frames", "2:3")
+    refused(result, "groom.usdc", "2:3", "cache")
+    assert not (tmp_path / "hair.usdc").exists()
+
+
 def test_groom_tells_what_it_made(example):
     groom = ringlet.read_groom(example / "groom.usdc")
     assert told(example, "groom") == {

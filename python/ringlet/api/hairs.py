@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from ringlet.api.grooms import read_groom
 from ringlet.api.progress import Progress
 from ringlet.api.shots import scalp_clip
+from ringlet.errors import UserError
 
 if TYPE_CHECKING:
     from ringlet.groom import Hairs, Memory
@@ -41,12 +42,19 @@ def write_hairs(
 
     They stay on that side of the scalp, and of what else the file shows, where their lock is.
 
+    groom:   a groom, or a cache by itself, which lies over its groom
+    frames:  the first and the last of the cache; all by default
     variant: of the groom, in place of the one that is selected in it, or that the cache was made of
 
     Returns how many ``locks``, ``hairs``, ``points`` and ``frames`` there are.
     """
     from ringlet import io
 
+    if cache is None and io.is_cache(groom):
+        cache = groom
+    if cache is None and frames is not None:
+        asked = f"{frames[0]}:{frames[1]}"
+        raise UserError(f"{groom}: frames {asked} are asked of a groom that does not move; name its cache as well")
     if variant is None and cache is not None:
         variant = read_groom(cache).variant
     locks = read_groom(groom, variant=variant)

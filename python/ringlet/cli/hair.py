@@ -14,14 +14,19 @@ from ringlet.cli.progress import shown_progress
 
 
 def hair(
-    groom: Annotated[Path, typer.Argument(metavar="GROOM", help="The groom, a USD file.")],
+    groom: Annotated[
+        Path, typer.Argument(metavar="GROOM", help="The groom, a USD file; or a cache, which lies over its groom.")
+    ],
     output: Annotated[
         Path, typer.Option("--output", "-o", callback=usd_file, metavar="HAIR", help="The USD file to write.")
     ] = Path("hair.usdc"),
     cache: Annotated[
         Path | None,
         typer.Option(
-            "--cache", metavar="CACHE", help="Simulated guides; without them the hairs are at rest.", show_default=False
+            "--cache",
+            metavar="CACHE",
+            help="Simulated guides, of another file; without any the hairs are at rest.",
+            show_default=False,
         ),
     ] = None,
     variant: Variant = None,
