@@ -53,6 +53,11 @@ inline double push_energy(const Contact &c, const Vec3 &separation) {
     return c.stiffness * contact_potential(c.normal.dot(separation), c.distance, c.barrier_end).value;
 }
 
+// The same where it was linearised.
+inline double push_energy_where_found(const Contact &c) {
+    return c.stiffness * contact_potential(c.gap, c.distance, c.barrier_end).value;
+}
+
 // The same as a Newton step has it: expanded to second order where it was linearised.
 inline double expanded_push_energy(const Contact &c, const Vec3 &separation) {
     const Potential push = contact_potential(c.gap, c.distance, c.barrier_end);

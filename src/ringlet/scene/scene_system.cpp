@@ -134,13 +134,19 @@ void SceneSystem::share_contacts(const PairsInReach *pairs, View<unsigned char> 
     const std::vector<Contact> &all = contacts.contacts();
     if (contacts_found_) rubbed_.assign(all.size(), 0.0);
     const bool of_all = contacts_found_ || asked_planes_ != (pairs == nullptr);
+    const bool where_found = contacts_found_ && pairs != nullptr; // what is asked first is asked there
     contacts_found_ = false;
     asked_planes_ = pairs == nullptr;
     std::vector<unsigned char> anew(vertices.parts());
     for (int p = 0; p < vertices.parts(); ++p) anew[p] = is_active(p) && (of_all || changed[p]);
     const auto is_anew = [&](int a, int b) { return either(anew, a, b); };
     std::erase_if(pushed_, [&](const Shared &push) { return is_anew(push.a, push.b); });
-    if (pairs != nullptr) {
+    if (where_found) {
+        for (const Contact &c : all) {
+            const int a = vertices.part_of(c.vertex[0]), b = vertices.part_of(c.vertex[3]);
+            if (is_anew(a, b)) pushed_.push_back({a, b, push_energy_where_found(c)});
+        }
+    } else if (pairs != nullptr) {
         const auto part = [&](int object) { return object < vertices.parts() ? object : -1; };
         const std::vector<Touch> there = touching(vertices.mesh, *pairs, places_, anew, gone);
         for (const ContactSet::Push &push : contacts.pushing(vertices.mesh, vertices.material, there, places_))
