@@ -89,7 +89,8 @@ public:
     // or not (without `pairs`, all that may touch there: of what its contacts push, by their planes if it goes by these and
     // otherwise expanded where they were found), and of the contacts' friction. Contacts of parts that are `undecided` do not
     // count; none are if it is empty. `gone` says which part of its way each part is there. Only parts that have `changed`
-    // since this was last asked, or since they were assembled, are asked again, and contacts only of these.
+    // since this was last asked, or since they were assembled, are asked again, and contacts only of these. What is asked first
+    // after contacts were found has to be asked there.
     void energies(const AlignedVector &x, const PairsInReach *pairs, View<unsigned char> undecided,
                   const std::vector<double> &gone, const std::vector<unsigned char> &changed, std::vector<double> &of_parts);
 
