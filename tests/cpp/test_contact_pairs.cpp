@@ -321,6 +321,55 @@ BOOST_AUTO_TEST_CASE(what_may_bend_knows_the_pairs_of_all_of_its_triangle) {
     BOOST_TEST((touching(near, elsewhere) == touching(unknowing, elsewhere)));
 }
 
+// Move by move, most leave any corridor; of what does not last fewer pairs are noted. Then all stays where it is, and goes as
+// one.
+BOOST_AUTO_TEST_CASE(pairs_noted_for_one_move_are_all_of_that_move_and_serve_no_other) {
+    Scene scene(13, 0.0);
+    const CollisionMesh &mesh = scene.mesh;
+    NearPairs near(mesh), lasting(mesh);
+    std::vector<Vec3> now = scene.start;
+    const auto go = [&](double far, bool lasts) {
+        std::vector<Vec3> end = now, via = now, to = now;
+        for (size_t v = 0; v < now.size(); ++v) {
+            if (!mesh.moves[v]) continue;
+            end[v] += scene.anywhere(v % 50 == 0 ? 10.0 * far : far);
+            via[v] += scene.anywhere(far);
+            to[v] += 0.4 * (end[v] - now[v]) + 0.5 * (via[v] - now[v]);
+        }
+        near.note(now, end, 0.002, 0.05, via, lasts);
+        lasting.note(now, end, 0.002, 0.05, via);
+        NearPairs unknowing(mesh);
+        for (NearPairs *pairs : {&near, &lasting}) {
+            pairs->set_out(now, end, via);
+            pairs->set_out_anew(now, to, std::vector<unsigned char>(now.size(), 1), via);
+        }
+        unknowing.set_out(now, to);
+        BOOST_TEST(coming_near(mesh, unknowing, now, to).size() > 10);
+        BOOST_TEST((coming_near(mesh, near, now, to) == coming_near(mesh, unknowing, now, to)));
+        for (NearPairs *pairs : {&near, &lasting, &unknowing}) pairs->arrive(now, to);
+        now = to;
+        BOOST_TEST((touching(near, now) == touching(unknowing, now)));
+    };
+    go(0.01, true), go(0.01, true);
+    for (const double far : {0.01, 0.001, 0.0001, 0.01}) {
+        go(far, false);
+        BOOST_TEST(near.count() < lasting.count());
+    }
+    RigidMotion turn{Eigen::AngleAxisd(0.5, Vec3::UnitY()).toRotationMatrix(), now[0], now[1]};
+    std::vector<Vec3> to = now;
+    for (Vec3 &x : to) x = turn(x) + scene.anywhere(0.0001);
+    near.set_out_as_one(now, to, turn, mesh.object);
+    near.arrive_as_one(now, to);
+    NearPairs unknowing(mesh);
+    unknowing.set_out(now, to);
+    unknowing.arrive(now, to);
+    now = to;
+    BOOST_TEST(touching(near, now).size() > 10);
+    BOOST_TEST((touching(near, now) == touching(unknowing, now)));
+    go(0.01, true);
+    BOOST_TEST(near.count() == lasting.count());
+}
+
 // Objects turn together, from step to step, most vertices of each nearly exactly so, some not at all; in between each of them
 // goes a little where it likes.
 BOOST_AUTO_TEST_CASE(what_is_known_of_pairs_goes_along_with_what_moves_nearly_as_one) {

@@ -72,7 +72,7 @@ BroadPhase::BroadPhase(const CollisionMesh &mesh) : mesh_(mesh), incidence_(mesh
     }
 }
 
-void BroadPhase::find(const PathBoxes &ways, Candidates &candidates, View<unsigned char> changed) {
+void BroadPhase::find(const PathBoxes &ways, Candidates &candidates, View<unsigned char> changed, const PathBoxes *move) {
     const auto fit = [&](MovingTree &tree, const auto &primitives, const auto &box_of) {
         tree.fit(int(primitives.size()), [&](int i) {
             MovingBox box = box_of(primitives[i], i);
@@ -83,7 +83,7 @@ void BroadPhase::find(const PathBoxes &ways, Candidates &candidates, View<unsign
     fit(edge_tree_, mesh_.edges, [&](const auto &, int i) { return ways.of_edge(i); });
     fit(point_tree_, points_, [&](const auto &point, int) { return ways.of_vertex(point[0]); });
     fit(triangle_tree_, mesh_.triangles, [&](const auto &, int i) { return ways.of_triangle(i); });
-    search_all(ways, candidates);
+    search_all(ways, candidates, move);
     away_.assign(mesh_.moves.size(), 0);
 }
 
@@ -120,12 +120,12 @@ void BroadPhase::find_quick(const PathBoxes &ways, const PathBoxes &homes, View<
                   [&](const Pair &pair) { return neither(std::array{pair[0]}, mesh_.triangles[pair[1]]); });
 }
 
-void BroadPhase::search_all(const PathBoxes &ways, Candidates &candidates) {
-    search(edge_tree_, mesh_.edges, edge_tree_, mesh_.edges, ways);
+void BroadPhase::search_all(const PathBoxes &ways, Candidates &candidates, const PathBoxes *move) {
+    search(edge_tree_, mesh_.edges, edge_tree_, mesh_.edges, ways, move);
     gather(mesh_.edges.size(), candidates.edge_edge);
     candidates.point_triangle.clear();
     if (points_.empty() || mesh_.triangles.empty()) return;
-    search(point_tree_, points_, triangle_tree_, mesh_.triangles, ways);
+    search(point_tree_, points_, triangle_tree_, mesh_.triangles, ways, nullptr);
     for (Pairs &found : found_)
         for (auto &pair : found) pair[0] = mesh_.points[pair[0]];
     gather(mesh_.moves.size(), candidates.point_triangle);
@@ -133,7 +133,7 @@ void BroadPhase::search_all(const PathBoxes &ways, Candidates &candidates) {
 
 template <class A, class B>
 void BroadPhase::search(const MovingTree &tree_a, const A &all_a, const MovingTree &tree_b, const B &all_b,
-                        const PathBoxes &ways) {
+                        const PathBoxes &ways, const PathBoxes *move) {
     for (Pairs &found : found_) found.clear();
     if (tree_a.empty()) return;
     const std::vector<BoxPair> starts = split(tree_a, tree_b, ways.still());
@@ -158,10 +158,31 @@ void BroadPhase::search(const MovingTree &tree_a, const A &all_a, const MovingTr
             for (here.left = 1; here.left > 0; here.found = 0) {
                 RINGLET_DISPATCH(descend, here, std::numeric_limits<int>::max());
                 if (std::is_same_v<A, B> && ways.still()) leave_out_apart(tree_a, ways, here); // edges
+                const size_t before = found_[task].size();
                 for (int k = 0; k < here.found; ++k) take(here.boxes[k], found_[task]);
+                if (move != nullptr) leave_out_apart_on(*move, found_[task], before);
             }
         }
     }
+}
+
+// From there on, pairs of edges.
+void BroadPhase::leave_out_apart_on(const PathBoxes &move, Pairs &found, size_t from) const {
+    EdgeWays some = {};
+    size_t kept = from;
+    for (size_t first = from; first < found.size(); first += EdgeWays::room) {
+        const int count = int(std::min(found.size() - first, size_t(EdgeWays::room)));
+        const Pair *pairs = found.data() + first;
+        move.put(some, count, [&](int k) { return pairs[k]; });
+        for (int k = 0; k < count; ++k) {
+            const auto &a = mesh_.edges[pairs[k][0]], &b = mesh_.edges[pairs[k][1]];
+            some.reach[k] = float(contact_distance(mesh_, a, b)) + move.lost();
+        }
+        const unsigned apart = RINGLET_DISPATCH(apart_anywhere, some);
+        for (int k = 0; k < count; ++k)
+            if (!(apart >> k & 1u)) found[kept++] = pairs[k];
+    }
+    found.resize(kept);
 }
 
 // Sorts what the tasks have found: by the first of a pair, whose number is below `firsts`, into bins, and then each bin.

@@ -23,7 +23,8 @@ public:
     // All pairs that may touch on their ways. Left out are pairs that share a vertex, pairs whose motions are both given, and
     // what is carried against what carries it. The same for any number of threads, and whatever was asked before.
     // `changed`, if given, leaves only pairs with a vertex for which it is not 0.
-    void find(const PathBoxes &ways, Candidates &candidates, View<unsigned char> changed = {});
+    // `move`, if given, leaves out pairs of edges that are apart wherever in the triangles of their ways on it they are.
+    void find(const PathBoxes &ways, Candidates &candidates, View<unsigned char> changed = {}, const PathBoxes *move = nullptr);
 
     // What find() finds, after a find() of `homes`, for pairs with a vertex that is `quick` and one that has `changed`. All
     // others stay at home. Takes less time the fewer these are. Both are told from one place.
@@ -38,9 +39,11 @@ public:
 private:
     using Pairs = std::vector<std::array<int, 2>>;
 
-    void search_all(const PathBoxes &ways, Candidates &candidates);
+    void search_all(const PathBoxes &ways, Candidates &candidates, const PathBoxes *move = nullptr);
     template <class A, class B>
-    void search(const MovingTree &tree_a, const A &all_a, const MovingTree &tree_b, const B &all_b, const PathBoxes &ways);
+    void search(const MovingTree &tree_a, const A &all_a, const MovingTree &tree_b, const B &all_b, const PathBoxes &ways,
+                const PathBoxes *move);
+    void leave_out_apart_on(const PathBoxes &move, Pairs &found, size_t from) const;
     void gather(size_t firsts, Pairs &sorted);
 
     const CollisionMesh &mesh_;

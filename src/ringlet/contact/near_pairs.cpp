@@ -3,6 +3,7 @@
 #include "ringlet/contact/collect.h"
 
 #include <limits>
+#include <utility>
 
 namespace ringlet {
 namespace {
@@ -88,11 +89,12 @@ std::vector<NearPair> NearPairs::look_for_quick(View<unsigned char> changed) {
 void NearPairs::forget() {
     knows_all_here_ = false;
     known_.clear();
+    for_one_move_ = all_anew_ = false, most_keep_ = true;
     low_.clear(), high_.clear();
     may_touch_.clear(), may_come_near_.clear();
 }
 
-void NearPairs::note(View<Vec3> start, View<Vec3> end, double margin, double far, View<Vec3> via) {
+void NearPairs::note(View<Vec3> start, View<Vec3> end, double margin, double far, View<Vec3> via, bool lasts) {
     const bool anew = low_.empty(), have_left = knows_all_here_; // as one: all boxes are still where they were
     knows_all_here_ = false;
     low_.resize(start.size()), high_.resize(start.size());
@@ -102,29 +104,35 @@ void NearPairs::note(View<Vec3> start, View<Vec3> end, double margin, double far
         if (goes_far) return {start[v], start[v], start[v]};
         return {start[v], end[v], other};
     };
-    const auto fit = [&](size_t v) {
+    const auto fit = [&](size_t v, double margin) {
         const auto [at, to, or_to] = places(v);
         low_[v] = at.cwiseMin(to).cwiseMin(or_to).array() - margin;
         high_[v] = at.cwiseMax(to).cwiseMax(or_to).array() + margin;
     };
+    const double missing = for_one_move_ ? margin : 0.0; // of the corridors there are
     std::vector<unsigned char> stray(start.size(), 0);
     std::vector<int> strays;
     for (size_t v = 0; v < start.size(); ++v) {
         const std::array<Vec3, 3> way = places(v);
-        stray[v] = anew || std::any_of(way.begin(), way.end(), [&](const Vec3 &to) { return leaves(int(v), to); });
+        stray[v] = anew || std::any_of(way.begin(), way.end(), [&](const Vec3 &to) { return leaves(int(v), to, missing); });
         if (stray[v]) strays.push_back(int(v));
     }
-    if (strays.empty()) return;
+    if (strays.empty() && !for_one_move_) return;
     passing_.clear();
     for (auto *ways : {&vertices_, &edges_, &triangles_}) std::fill(ways->begin(), ways->end(), Way{});
     Candidates found;
-    if (anew || have_left || 2 * strays.size() > start.size()) { // for most of them it takes no longer to look for all
-        for (size_t v = 0; v < start.size(); ++v) fit(v);
+    const bool most = anew || 2 * strays.size() > start.size();
+    if (all_anew_) most_keep_ = !most;
+    all_anew_ = most || have_left || for_one_move_; // for most of them it takes no longer to look for all
+    for_one_move_ = all_anew_ && !lasts && !most_keep_;
+    if (all_anew_) {
+        for (size_t v = 0; v < start.size(); ++v) fit(v, for_one_move_ ? 0.0 : margin);
         homes_.fit_within(low_, high_);
-        broad_phase_.find(homes_, found);
+        if (for_one_move_) fit_ways(start, end, via), ways_are_fit_ = true;
+        broad_phase_.find(homes_, found, {}, for_one_move_ ? &ways_of_ : nullptr);
         known_ = pairs_of(found);
     } else {
-        for (const int v : strays) fit(v);
+        for (const int v : strays) fit(v, margin);
         homes_.fit_anew(low_, high_, strays);
         broad_phase_.find_quick(homes_, homes_, stray, stray, found);
         std::erase_if(known_, [&](const NearPair &pair) { return any_of(pair, stray); });
@@ -187,12 +195,17 @@ void NearPairs::set_out(View<Vec3> start, View<Vec3> end, View<Vec3> via) {
     any_quick_ = any_quick;
     mark_changed(all_);
     measure_ways(start, end, all_, via);
-    fit_ways(start, end, via);
+    if (!std::exchange(ways_are_fit_, false)) fit_ways(start, end, via);
     passing_ = any_quick_ ? look_for_quick(quick_) : std::vector<NearPair>();
     may_touch_ = collect_parts<NearPair *>(int(known_.size()), [&](int begin, int end, std::vector<NearPair *> &found) {
         MayTouch some(ways_of_, false, found);
         for (int k = begin; k < end; ++k)
-            if (NearPair &pair = known_[k]; !quick(pair) && reach(pair)) some.look_at(pair);
+            if (NearPair &pair = known_[k]; quick(pair) || !reach(pair))
+                continue;
+            else if (for_one_move_) // it was looked at as it was found
+                found.push_back(&pair);
+            else
+                some.look_at(pair);
     });
     may_come_near_ = collect<NearPair *>(int(may_touch_.size()), [&](int k, std::vector<NearPair *> &may_come_near) {
         if (comes_near(*may_touch_[k])) may_come_near.push_back(may_touch_[k]);

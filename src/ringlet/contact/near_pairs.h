@@ -33,8 +33,9 @@ public:
     void forget(); // everything is quick
     // Everything is to go from `start` to `end`: vertices that would leave their corridors get new ones, boxes around their
     // ways, or around the start alone of what goes further than `far` [m], wider by `margin` [m] on each side. Where most
-    // would, all do. `via` as below.
-    void note(View<Vec3> start, View<Vec3> end, double margin, double far, View<Vec3> via = {});
+    // would, all do; and where most did in the move after such a one as well, pairs are noted for this move alone, if it need
+    // not `last`. `via` as below.
+    void note(View<Vec3> start, View<Vec3> end, double margin, double far, View<Vec3> via = {}, bool lasts = true);
 
     // Everything sets out straight from `start`, where it is, to `end`; or, while it has not arrived, to another end, which
     // differs where vertices have `changed`: one in the triangle of the start and the first end and `via`, or of the start and
@@ -69,8 +70,8 @@ private:
         bool quick = false;
     };
 
-    bool leaves(int v, const Vec3 &to) const {
-        return !((to.array() >= low_[v].array()).all() && (to.array() <= high_[v].array()).all());
+    bool leaves(int v, const Vec3 &to, double by = 0.0) const { // by more than that [m]
+        return !((to.array() >= low_[v].array() - by).all() && (to.array() <= high_[v].array() + by).all());
     }
     void fit_ways(View<Vec3> start, View<Vec3> end, View<Vec3> via = {});
     void measure_ways(View<Vec3> start, View<Vec3> end, const Affected &changed, View<Vec3> via = {});
@@ -107,6 +108,10 @@ private:
     std::vector<unsigned char> quick_;                                       // vertices
     std::vector<unsigned char> changed_, changed_edges_, changed_triangles_; // since everything set out
     bool any_quick_ = false, knows_all_here_ = false;
+    bool for_one_move_ = false;         // only what may touch on the move that was noted is known, and corridors have no margin
+    bool ways_are_fit_ = false;         // to that move
+    bool all_anew_ = false;             // when pairs were noted last
+    bool most_keep_ = true;             // to their corridors, in the move after all got new ones
     bool boxes_ways_ = false;           // as one: the broad phase has boxed this move's ways
     double least_radius_ = 0.0;         // of what moves [m]
     std::vector<double> strays_;        // how far each vertex ends from where a motion as one would lead it [m]

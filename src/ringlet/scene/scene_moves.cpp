@@ -25,7 +25,8 @@ double Scene::Parts::filter(View<Vec3> now, std::vector<Vec3> &to, const MoveKin
         const bool stays = std::equal(to.begin(), to.end(), now.begin()) && std::equal(via.begin(), via.end(), now.begin());
         const bool known = near.knows_all_here() && (stays || kind.few);
         if (!known)
-            near.note(now, to, stays ? 0.0 : 0.2 * settings.strand_radius, far, via); // what stays hardly stays for long
+            near.note(now, to, stays ? 0.0 : 0.2 * settings.strand_radius, far, via,
+                      stays || kind.lasts); // what stays hardly stays for long
         if (stays) return 1.0;
     }
     const SceneCarry with = carry();
@@ -104,7 +105,8 @@ Carried Scene::Parts::go_along(std::vector<Vec3> &now, double dt, SceneReport &r
 // turn. What would meet something early there goes straight, and half as far: with what it touches, the linear system knows
 // how far that lets it go, while what edges turn by is told from the root, wherever that leads. What would meet something later
 // goes so much of its way. Of both it is asked once more what they meet.
-void Scene::Parts::hold_back(View<Vec3> now, bool whole, std::vector<Vec3> &to, SceneProgress &progress, SceneReport &report) {
+void Scene::Parts::hold_back(View<Vec3> now, bool whole, bool lasts, std::vector<Vec3> &to, SceneProgress &progress,
+                             SceneReport &report) {
     constexpr double early = 0.05, half = 0.5;
     const std::vector<unsigned char> all_parts(vertices.parts(), 1);
     std::vector<Vec3> wanted(now.begin(), now.end()), via = wanted;
@@ -120,7 +122,7 @@ void Scene::Parts::hold_back(View<Vec3> now, bool whole, std::vector<Vec3> &to, 
     };
     set_out();
     to = wanted;
-    filter(now, to, {.still = true, .whole = true, .via = &via}, report);
+    filter(now, to, {.still = true, .whole = true, .lasts = lasts, .via = &via}, report);
     std::vector<double> left = parts_left(now, wanted, to);
     std::vector<unsigned char> goes_straight(vertices.parts(), 0), asked(vertices.parts(), 0), changed(vertices.count(), 0);
     for (int p = 0; p < vertices.parts(); ++p) {

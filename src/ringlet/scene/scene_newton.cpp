@@ -69,7 +69,7 @@ int Scene::Parts::newton(const SceneStep &scene_step, const StrandStep &step, st
         std::vector<Vec3> to;
         // The first time what can hardly move is held back where it meets something, so that the rest of it comes along; then
         // shape counts.
-        hold_back(now, iteration > 0, to, progress, report);
+        hold_back(now, iteration > 0, iteration + 1 >= step.newton, to, progress, report);
         progress.cut(tried);
         arrived = small && progress.all_went();
         SceneSearch found;

@@ -29,6 +29,7 @@ struct MoveKind {
     bool whole;                             // strands only go a part of their way as a whole
     View<unsigned char> changed = {};       // per vertex, what ends elsewhere than on the last move; empty: all is new
     int hopeful = FilterScene::most_rounds; // this and the next as FilterScene has them
+    bool lasts = true;                      // what is noted of pairs is to serve moves to come
     std::vector<Vec3> *via = nullptr;
     bool few = false; // vertices move: pairs need not be noted for moves to come
 };
@@ -92,7 +93,7 @@ struct Scene::Parts {
     Carried go_along(std::vector<Vec3> &now, double dt, SceneReport &report);
     int newton(const SceneStep &scene_step, const StrandStep &step, std::vector<Vec3> &now, SceneProgress &progress,
                SceneReport &report);
-    void hold_back(View<Vec3> now, bool whole, std::vector<Vec3> &to, SceneProgress &progress, SceneReport &report);
+    void hold_back(View<Vec3> now, bool whole, bool lasts, std::vector<Vec3> &to, SceneProgress &progress, SceneReport &report);
     std::vector<double> parts_left(View<Vec3> now, View<Vec3> wanted, View<Vec3> to) const;
     void take(View<Vec3> now, View<Vec3> wanted, View<Vec3> to);
     void begin_strands(const StrandArrays &arrays, const StrandStep &step);
