@@ -46,20 +46,44 @@ template <size_t N, size_t M> float less(const CollisionMesh &mesh, const std::a
     return static_cast<float>(mean_radius(mesh, a) + mean_radius(mesh, b) - contact_distance(mesh, a, b));
 }
 
+// Leaves those pairs that are not apart, in order, and returns how many: puts so many of them side by side as there is room
+// for.
+template <class SideBySide, class EdgePair, class Put, class Apart>
+int leave_out(EdgePair *pairs, int count, const Put &put, const Apart &apart) {
+    SideBySide some = {};
+    int kept = 0;
+    for (int first = 0; first < count; first += SideBySide::room) {
+        const int here = std::min(count - first, SideBySide::room);
+        put(some, pairs + first, here);
+        const unsigned out = apart(some);
+        for (int k = 0; k < here; ++k)
+            if (!(out >> k & 1u)) pairs[kept++] = pairs[first + k];
+    }
+    return kept;
+}
+
 // Of edges that stay in their corridors, those that are long and askew: of them boxes tell little.
 void leave_out_apart(const MovingTree &edges, const PathBoxes &homes, Descent &found) {
-    EdgePairs some = {};
-    int kept = 0;
-    for (int first = 0; first < found.found; first += EdgePairs::room) {
-        const int count = std::min(found.found - first, EdgePairs::room);
-        const BoxPair *pairs = found.boxes + first;
-        homes.put(some, count,
-                  [&](int k) { return std::array{edges.primitive(pairs[k].of[0]), edges.primitive(pairs[k].of[1])}; });
-        const unsigned apart = RINGLET_DISPATCH(apart, some);
-        for (int k = 0; k < count; ++k)
-            if (!(apart >> k & 1u)) found.boxes[kept++] = pairs[k];
-    }
-    found.found = kept;
+    found.found = leave_out<EdgePairs>(
+        found.boxes, found.found,
+        [&](EdgePairs &some, const BoxPair *pairs, int count) {
+            homes.put(some, count,
+                      [&](int k) { return std::array{edges.primitive(pairs[k].of[0]), edges.primitive(pairs[k].of[1])}; });
+        },
+        [](const EdgePairs &some) { return RINGLET_DISPATCH(apart, some); });
+}
+
+// Of edges that go anywhere in the triangles of their ways: from there on.
+void leave_out_apart(const CollisionMesh &mesh, const PathBoxes &move, size_t from, std::vector<Pair> &found) {
+    const int kept = leave_out<EdgeWays>(
+        found.data() + from, int(found.size() - from),
+        [&](EdgeWays &some, const Pair *pairs, int count) {
+            move.put(some, count, [&](int k) { return pairs[k]; });
+            for (int k = 0; k < count; ++k)
+                some.reach[k] = float(contact_distance(mesh, mesh.edges[pairs[k][0]], mesh.edges[pairs[k][1]])) + move.lost();
+        },
+        [](const EdgeWays &some) { return RINGLET_DISPATCH(apart_anywhere, some); });
+    found.resize(from + kept);
 }
 
 } // namespace
@@ -158,31 +182,12 @@ void BroadPhase::search(const MovingTree &tree_a, const A &all_a, const MovingTr
             for (here.left = 1; here.left > 0; here.found = 0) {
                 RINGLET_DISPATCH(descend, here, std::numeric_limits<int>::max());
                 if (std::is_same_v<A, B> && ways.still()) leave_out_apart(tree_a, ways, here); // edges
-                const size_t before = found_[task].size();
+                const size_t from = found_[task].size();
                 for (int k = 0; k < here.found; ++k) take(here.boxes[k], found_[task]);
-                if (move != nullptr) leave_out_apart_on(*move, found_[task], before);
+                if (move != nullptr) leave_out_apart(mesh_, *move, from, found_[task]);
             }
         }
     }
-}
-
-// From there on, pairs of edges.
-void BroadPhase::leave_out_apart_on(const PathBoxes &move, Pairs &found, size_t from) const {
-    EdgeWays some = {};
-    size_t kept = from;
-    for (size_t first = from; first < found.size(); first += EdgeWays::room) {
-        const int count = int(std::min(found.size() - first, size_t(EdgeWays::room)));
-        const Pair *pairs = found.data() + first;
-        move.put(some, count, [&](int k) { return pairs[k]; });
-        for (int k = 0; k < count; ++k) {
-            const auto &a = mesh_.edges[pairs[k][0]], &b = mesh_.edges[pairs[k][1]];
-            some.reach[k] = float(contact_distance(mesh_, a, b)) + move.lost();
-        }
-        const unsigned apart = RINGLET_DISPATCH(apart_anywhere, some);
-        for (int k = 0; k < count; ++k)
-            if (!(apart >> k & 1u)) found[kept++] = pairs[k];
-    }
-    found.resize(kept);
 }
 
 // Sorts what the tasks have found: by the first of a pair, whose number is below `firsts`, into bins, and then each bin.

@@ -43,7 +43,6 @@ private:
     template <class A, class B>
     void search(const MovingTree &tree_a, const A &all_a, const MovingTree &tree_b, const B &all_b, const PathBoxes &ways,
                 const PathBoxes *move);
-    void leave_out_apart_on(const PathBoxes &move, Pairs &found, size_t from) const;
     void gather(size_t firsts, Pairs &sorted);
 
     const CollisionMesh &mesh_;

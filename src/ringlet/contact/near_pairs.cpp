@@ -3,7 +3,6 @@
 #include "ringlet/contact/collect.h"
 
 #include <limits>
-#include <utility>
 
 namespace ringlet {
 namespace {
@@ -89,7 +88,7 @@ std::vector<NearPair> NearPairs::look_for_quick(View<unsigned char> changed) {
 void NearPairs::forget() {
     knows_all_here_ = false;
     known_.clear();
-    for_one_move_ = all_anew_ = false, most_keep_ = true;
+    noted_ = Noted::some;
     low_.clear(), high_.clear();
     may_touch_.clear(), may_come_near_.clear();
 }
@@ -109,7 +108,7 @@ void NearPairs::note(View<Vec3> start, View<Vec3> end, double margin, double far
         low_[v] = at.cwiseMin(to).cwiseMin(or_to).array() - margin;
         high_[v] = at.cwiseMax(to).cwiseMax(or_to).array() + margin;
     };
-    const double missing = for_one_move_ ? margin : 0.0; // of the corridors there are
+    const double missing = noted_ == Noted::this_move ? margin : 0.0; // of the corridors there are
     std::vector<unsigned char> stray(start.size(), 0);
     std::vector<int> strays;
     for (size_t v = 0; v < start.size(); ++v) {
@@ -117,19 +116,24 @@ void NearPairs::note(View<Vec3> start, View<Vec3> end, double margin, double far
         stray[v] = anew || std::any_of(way.begin(), way.end(), [&](const Vec3 &to) { return leaves(int(v), to, missing); });
         if (stray[v]) strays.push_back(int(v));
     }
-    if (strays.empty() && !for_one_move_) return;
+    if (strays.empty() && noted_ != Noted::this_move) {
+        noted_ = Noted::some;
+        return;
+    }
     passing_.clear();
     for (auto *ways : {&vertices_, &edges_, &triangles_}) std::fill(ways->begin(), ways->end(), Way{});
     Candidates found;
-    const bool most = anew || 2 * strays.size() > start.size();
-    if (all_anew_) most_keep_ = !most;
-    all_anew_ = most || have_left || for_one_move_; // for most of them it takes no longer to look for all
-    for_one_move_ = all_anew_ && !lasts && !most_keep_;
-    if (all_anew_) {
-        for (size_t v = 0; v < start.size(); ++v) fit(v, for_one_move_ ? 0.0 : margin);
+    const bool most = anew || 2 * strays.size() > start.size(); // for them it takes no longer to look for all
+    if (most && noted_ != Noted::some && !lasts)
+        noted_ = Noted::this_move;
+    else
+        noted_ = most || have_left || noted_ == Noted::this_move ? Noted::all : Noted::some;
+    if (noted_ != Noted::some) {
+        const bool for_one_move = noted_ == Noted::this_move;
+        for (size_t v = 0; v < start.size(); ++v) fit(v, for_one_move ? 0.0 : margin);
         homes_.fit_within(low_, high_);
-        if (for_one_move_) fit_ways(start, end, via), ways_are_fit_ = true;
-        broad_phase_.find(homes_, found, {}, for_one_move_ ? &ways_of_ : nullptr);
+        if (for_one_move) fit_ways(start, end, via);
+        broad_phase_.find(homes_, found, {}, for_one_move ? &ways_of_ : nullptr);
         known_ = pairs_of(found);
     } else {
         for (const int v : strays) fit(v, margin);
@@ -195,17 +199,15 @@ void NearPairs::set_out(View<Vec3> start, View<Vec3> end, View<Vec3> via) {
     any_quick_ = any_quick;
     mark_changed(all_);
     measure_ways(start, end, all_, via);
-    if (!std::exchange(ways_are_fit_, false)) fit_ways(start, end, via);
+    fit_ways(start, end, via);
     passing_ = any_quick_ ? look_for_quick(quick_) : std::vector<NearPair>();
     may_touch_ = collect_parts<NearPair *>(int(known_.size()), [&](int begin, int end, std::vector<NearPair *> &found) {
         MayTouch some(ways_of_, false, found);
         for (int k = begin; k < end; ++k)
-            if (NearPair &pair = known_[k]; quick(pair) || !reach(pair))
-                continue;
-            else if (for_one_move_) // it was looked at as it was found
-                found.push_back(&pair);
-            else
-                some.look_at(pair);
+            if (NearPair &pair = known_[k]; !quick(pair) && reach(pair)) {
+                const bool looked_at = noted_ == Noted::this_move && pair.of_edges; // as it was found
+                looked_at ? found.push_back(&pair) : some.look_at(pair);
+            }
     });
     may_come_near_ = collect<NearPair *>(int(may_touch_.size()), [&](int k, std::vector<NearPair *> &may_come_near) {
         if (comes_near(*may_touch_[k])) may_come_near.push_back(may_touch_[k]);

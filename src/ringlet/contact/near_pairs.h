@@ -33,8 +33,8 @@ public:
     void forget(); // everything is quick
     // Everything is to go from `start` to `end`: vertices that would leave their corridors get new ones, boxes around their
     // ways, or around the start alone of what goes further than `far` [m], wider by `margin` [m] on each side. Where most
-    // would, all do; and where most did in the move after such a one as well, pairs are noted for this move alone, if it need
-    // not `last`. `via` as below.
+    // would, all do; and if most of them would right after all did, pairs are noted for this move alone, unless they are to
+    // serve others, too (`lasts`). `via` as below.
     void note(View<Vec3> start, View<Vec3> end, double margin, double far, View<Vec3> via = {}, bool lasts = true);
 
     // Everything sets out straight from `start`, where it is, to `end`; or, while it has not arrived, to another end, which
@@ -68,6 +68,12 @@ private:
     struct Way {             // of a primitive in this move; small, since pairs ask for it in no order
         float length = 0.0f; // [m], rounded up
         bool quick = false;
+    };
+
+    enum class Noted { // last, pairs of
+        some,
+        all,
+        this_move // that may touch on it; corridors have no margin
     };
 
     bool leaves(int v, const Vec3 &to, double by = 0.0) const { // by more than that [m]
@@ -108,10 +114,7 @@ private:
     std::vector<unsigned char> quick_;                                       // vertices
     std::vector<unsigned char> changed_, changed_edges_, changed_triangles_; // since everything set out
     bool any_quick_ = false, knows_all_here_ = false;
-    bool for_one_move_ = false;         // only what may touch on the move that was noted is known, and corridors have no margin
-    bool ways_are_fit_ = false;         // to that move
-    bool all_anew_ = false;             // when pairs were noted last
-    bool most_keep_ = true;             // to their corridors, in the move after all got new ones
+    Noted noted_ = Noted::some;
     bool boxes_ways_ = false;           // as one: the broad phase has boxed this move's ways
     double least_radius_ = 0.0;         // of what moves [m]
     std::vector<double> strays_;        // how far each vertex ends from where a motion as one would lead it [m]

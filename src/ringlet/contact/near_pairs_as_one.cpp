@@ -35,7 +35,7 @@ void NearPairs::go_as_one(View<Vec3> start, View<Vec3> end, const RigidMotion &m
                           const Affected &changed) {
     constexpr double least_part = 0.75, hardly = 0.1; // of a distance; of the least radius
     const double part = 0.5 * std::sqrt(std::max(0.0, 1.0 + motion.turn.trace()));
-    const bool known = !low_.empty() && !for_one_move_ && part >= least_part;
+    const bool known = !low_.empty() && noted_ != Noted::this_move && part >= least_part;
     bool any_quick = any_quick_, all_rigid = !rigid.empty();
     strays_.resize(start.size());
     mark_changed(changed);
@@ -78,8 +78,8 @@ void NearPairs::arrive_as_one(View<Vec3> start, View<Vec3> end) {
     for (NearPair &pair : passing_) pair.apart = 0.0;
     for (auto *ways : {&vertices_, &edges_, &triangles_}) std::fill(ways->begin(), ways->end(), Way{});
     may_touch_.clear();
+    if (noted_ == Noted::this_move) forget();
     knows_all_here_ = true;
-    if (for_one_move_) forget(), knows_all_here_ = true;
     if (low_.empty()) return;
     // Of a corridor is left what holds however it turned: the cube within the ball around where the vertex was in it. What is
     // quick has none.

@@ -24,9 +24,8 @@ double Scene::Parts::filter(View<Vec3> now, std::vector<Vec3> &to, const MoveKin
     if (kind.still && kind.changed.empty()) {
         const bool stays = std::equal(to.begin(), to.end(), now.begin()) && std::equal(via.begin(), via.end(), now.begin());
         const bool known = near.knows_all_here() && (stays || kind.few);
-        if (!known)
-            near.note(now, to, stays ? 0.0 : 0.2 * settings.strand_radius, far, via,
-                      stays || kind.lasts); // what stays hardly stays for long
+        const double margin = stays ? 0.0 : 0.2 * settings.strand_radius; // what stays hardly stays for long
+        if (!known) near.note(now, to, margin, far, via, kind.lasts);
         if (stays) return 1.0;
     }
     const SceneCarry with = carry();
