@@ -46,44 +46,30 @@ template <size_t N, size_t M> float less(const CollisionMesh &mesh, const std::a
     return static_cast<float>(mean_radius(mesh, a) + mean_radius(mesh, b) - contact_distance(mesh, a, b));
 }
 
-// Leaves those pairs that are not apart, in order, and returns how many: puts so many of them side by side as there is room
-// for.
-template <class SideBySide, class EdgePair, class Put, class Apart>
-int leave_out(EdgePair *pairs, int count, const Put &put, const Apart &apart) {
+// Leaves the pairs of edges of which `apart` says nothing, in order: it is asked of as many of them at a time as there is room
+// for side by side.
+template <class SideBySide, class Apart>
+void leave_out(const MovingTree &edges, const PathBoxes &boxes, const Apart &apart, Descent &found) {
     SideBySide some = {};
     int kept = 0;
-    for (int first = 0; first < count; first += SideBySide::room) {
-        const int here = std::min(count - first, SideBySide::room);
-        put(some, pairs + first, here);
+    for (int first = 0; first < found.found; first += SideBySide::room) {
+        const int count = std::min(found.found - first, SideBySide::room);
+        const BoxPair *pairs = found.boxes + first;
+        boxes.put(some, count,
+                  [&](int k) { return std::array{edges.primitive(pairs[k].of[0]), edges.primitive(pairs[k].of[1])}; });
         const unsigned out = apart(some);
-        for (int k = 0; k < here; ++k)
-            if (!(out >> k & 1u)) pairs[kept++] = pairs[first + k];
+        for (int k = 0; k < count; ++k)
+            if (!(out >> k & 1u)) found.boxes[kept++] = pairs[k];
     }
-    return kept;
+    found.found = kept;
 }
 
-// Of edges that stay in their corridors, those that are long and askew: of them boxes tell little.
-void leave_out_apart(const MovingTree &edges, const PathBoxes &homes, Descent &found) {
-    found.found = leave_out<EdgePairs>(
-        found.boxes, found.found,
-        [&](EdgePairs &some, const BoxPair *pairs, int count) {
-            homes.put(some, count,
-                      [&](int k) { return std::array{edges.primitive(pairs[k].of[0]), edges.primitive(pairs[k].of[1])}; });
-        },
-        [](const EdgePairs &some) { return RINGLET_DISPATCH(apart, some); });
-}
-
-// Of edges that go anywhere in the triangles of their ways: from there on.
-void leave_out_apart(const CollisionMesh &mesh, const PathBoxes &move, size_t from, std::vector<Pair> &found) {
-    const int kept = leave_out<EdgeWays>(
-        found.data() + from, int(found.size() - from),
-        [&](EdgeWays &some, const Pair *pairs, int count) {
-            move.put(some, count, [&](int k) { return pairs[k]; });
-            for (int k = 0; k < count; ++k)
-                some.reach[k] = float(contact_distance(mesh, mesh.edges[pairs[k][0]], mesh.edges[pairs[k][1]])) + move.lost();
-        },
-        [](const EdgeWays &some) { return RINGLET_DISPATCH(apart_anywhere, some); });
-    found.resize(from + kept);
+// Of pairs of edges that stay in their corridors, or on a move, those of which boxes tell little: that are long and askew.
+void leave_out_apart(const MovingTree &edges, const PathBoxes &corridors, const PathBoxes *move, Descent &found) {
+    if (move != nullptr)
+        leave_out<EdgeWays>(edges, *move, [](const EdgeWays &some) { return RINGLET_DISPATCH(apart_anywhere, some); }, found);
+    else
+        leave_out<EdgePairs>(edges, corridors, [](const EdgePairs &some) { return RINGLET_DISPATCH(apart, some); }, found);
 }
 
 } // namespace
@@ -181,10 +167,8 @@ void BroadPhase::search(const MovingTree &tree_a, const A &all_a, const MovingTr
             here.nodes[0] = starts[task];
             for (here.left = 1; here.left > 0; here.found = 0) {
                 RINGLET_DISPATCH(descend, here, std::numeric_limits<int>::max());
-                if (std::is_same_v<A, B> && ways.still()) leave_out_apart(tree_a, ways, here); // edges
-                const size_t from = found_[task].size();
+                if (std::is_same_v<A, B> && ways.still()) leave_out_apart(tree_a, ways, move, here); // edges
                 for (int k = 0; k < here.found; ++k) take(here.boxes[k], found_[task]);
-                if (move != nullptr) leave_out_apart(mesh_, *move, from, found_[task]);
             }
         }
     }

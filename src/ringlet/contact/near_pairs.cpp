@@ -21,7 +21,6 @@ public:
             if (ways_.with_boxes(pair, together_ ? may_meet : ways_overlap)) found_.push_back(&pair);
             return;
         }
-        edges_.reach[count_] = float(pair.distance) + ways_.lost();
         pairs_[count_++] = &pair;
         if (count_ == EdgeWays::room) look_at_edges();
     }
@@ -30,6 +29,7 @@ private:
     void look_at_edges() {
         if (count_ == 0) return;
         ways_.put(edges_, count_, [&](int k) { return pairs_[k]->of; });
+        for (int k = 0; k < count_; ++k) edges_.reach[k] = float(pairs_[k]->distance) + ways_.lost();
         const unsigned apart = together_ ? RINGLET_DISPATCH(apart_together, edges_) : RINGLET_DISPATCH(apart_anywhere, edges_);
         for (int k = 0; k < count_; ++k)
             if (!(apart >> k & 1u)) found_.push_back(pairs_[k]);

@@ -46,16 +46,17 @@ public:
             put_side_by_side(four, &Way::start, pairs.low, k);
             put_side_by_side(four, &Way::end, pairs.high, k);
         });
-        for (int k = 0; k < count; ++k) pairs.reach[k] = edge_radii_[edges_of(k)[0]] + edge_radii_[edges_of(k)[1]] + lost();
+        put_reach(pairs, count, edges_of);
     }
 
-    // The same of pairs on their ways. At which distances they touch [m] is put by whoever knows it, wider by lost().
+    // The same of pairs on their ways. Who knows that they touch at less than their radii together puts that, wider by lost().
     template <class EdgesOf> void put(EdgeWays &pairs, int count, const EdgesOf &edges_of) const {
         for_fours(count, edges_of, [&](const Four &four, int k) {
             put_side_by_side(four, &Way::start, pairs.at[0], k);
             put_side_by_side(four, &Way::end, pairs.at[1], k);
             put_side_by_side(four, &Way::via, pairs.at[2], k);
         });
+        put_reach(pairs, count, edges_of);
     }
     float lost() const { return 2.0f * wider_; } // at most, of what is between two [m]
 
@@ -76,6 +77,10 @@ private:
             }
             work(four, k);
         }
+    }
+
+    template <class SideBySide, class EdgesOf> void put_reach(SideBySide &pairs, int count, const EdgesOf &edges_of) const {
+        for (int k = 0; k < count; ++k) pairs.reach[k] = edge_radii_[edges_of(k)[0]] + edge_radii_[edges_of(k)[1]] + lost();
     }
 
     // Of four pairs where each end is, from column k on.
