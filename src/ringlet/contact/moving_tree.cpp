@@ -33,7 +33,7 @@ void MovingTree::arrange(std::vector<Centre> &centres) {
     WhoCounts none;
     for (int k = 0; k < 4; ++k) set_box(empty, none, k, MovingBox::nothing());
     nodes_.assign(nodes + 1, empty);
-    who_counts_.assign(nodes + 4, none);
+    who_counts_.assign(nodes + 1, none);
     listed_.assign(nodes, 0);
     leaf_of_.resize(count_);
     primitives_.assign(size_t(4) * leaves(), -1);

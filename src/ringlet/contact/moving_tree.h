@@ -56,7 +56,7 @@ private:
     std::vector<int> primitives_;       // four to a leaf, the last of which may be missing
     std::vector<int> leaf_of_;          // each primitive
     std::vector<unsigned char> listed_; // per node, while some are refitted
-    std::vector<BoxQuad> nodes_;        // one more than there are, and four more of who counts: what is read behind the last
+    std::vector<BoxQuad> nodes_;        // one more than there are, as of who counts: what is read behind the last
     std::vector<WhoCounts> who_counts_;
     int count_ = 0, depth_ = 0, first_leaf_ = 0, built_ = 0;
     double built_looseness_ = 0.0;

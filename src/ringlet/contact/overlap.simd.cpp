@@ -7,28 +7,21 @@ namespace {
 
 // The sixteen pairs of two quads' boxes, 4k + l being box k of the one and l of the other, are looked at in parts of a width.
 #if defined(RINGLET_SIMD_avx512)
-#define RINGLET_FIRST 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3
-#define RINGLET_SECOND 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3
+#define RINGLET_FIRST 0, 0, 0, 0, 5, 5, 5, 5, 10, 10, 10, 10, 15, 15, 15, 15
 #elif defined(RINGLET_SIMD_avx2)
-#define RINGLET_FIRST 0, 0, 0, 0, 1, 1, 1, 1
-#define RINGLET_SECOND 0, 1, 2, 3, 0, 1, 2, 3
+#define RINGLET_FIRST 0, 0, 0, 0, 5, 5, 5, 5
 #else
 #define RINGLET_FIRST 0, 0, 0, 0
-#define RINGLET_SECOND 0, 1, 2, 3
 #endif
 
 constexpr int parts = 16 / width;
 constexpr unsigned each_once = 0x08ce; // l > k
 
-// Of a row of the first quad, or of the second, what belongs to the pairs of a part.
 Floats of_first(const float *row, int part) {
-    const Floats x = read(row + part * width / 4);
+    const Floats x = repeat(row + part * width / 4);
     return __builtin_shufflevector(x, x, RINGLET_FIRST);
 }
-Floats of_second(const float *row) {
-    const Floats x = read(row);
-    return __builtin_shufflevector(x, x, RINGLET_SECOND);
-}
+Floats of_second(const float *row) { return repeat(row); }
 
 // Calls gaps(gap, end_gap) for what is between the boxes of a part's pairs on each axis, from both sides, at the start and at
 // the end.

@@ -5,8 +5,8 @@
 
 namespace ringlet {
 
-// Four boxes at the start of a motion and at its end, side by side: by axis, and lane k of each row is of box k. Sixteen
-// numbers are read from where each row begins, so that something has to stand behind the last.
+// Four boxes at the start of a motion and at its end, side by side: by axis, and lane k of each row is of box k. Up to
+// seven numbers are read from where each row begins, so that something has to stand behind the last.
 struct alignas(64) BoxQuad {
     float low[3][4], high[3][4], end_low[3][4], end_high[3][4];
 };

@@ -2,6 +2,9 @@
 #pragma once
 
 #include <cstring>
+#if defined(RINGLET_SIMD_avx512) || defined(RINGLET_SIMD_avx2)
+#include <immintrin.h>
+#endif
 
 namespace ringlet::RINGLET_SIMD {
 
@@ -19,6 +22,17 @@ inline Floats read(const float *numbers) {
     Floats result;
     std::memcpy(&result, numbers, sizeof(result));
     return result;
+}
+
+// Four numbers, again and again.
+inline Floats repeat(const float *four) {
+#if defined(RINGLET_SIMD_avx512)
+    return _mm512_maskz_broadcast_f32x4(0xffff, _mm_loadu_ps(four)); // without a mask GCC 12 warns
+#elif defined(RINGLET_SIMD_avx2)
+    return _mm256_broadcast_ps(reinterpret_cast<const __m128 *>(four));
+#else
+    return read(four);
+#endif
 }
 
 inline Floats lesser(Floats a, Floats b) { return a < b ? a : b; }
