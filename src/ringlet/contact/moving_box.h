@@ -55,40 +55,39 @@ inline void transpose(const Eigen::Array4f (&rows)[4], float (&columns)[4][4]) {
     std::memcpy(columns, out, sizeof(out));
 }
 
-inline void set_boxes(BoxQuad &quad, WhoCounts &who_counts, const MovingBox (&boxes)[4]) {
+inline void set_boxes(BoxQuad &quad, EndQuad &end, const MovingBox (&boxes)[4]) {
     float columns[4][4];
     const auto set = [&](Eigen::Array4f MovingBox::*corner, float (&rows)[3][4]) {
         transpose({boxes[0].*corner, boxes[1].*corner, boxes[2].*corner, boxes[3].*corner}, columns);
         std::memcpy(rows, columns, sizeof(rows));
     };
-    set(&MovingBox::high, quad.high), set(&MovingBox::end_high, quad.end_high);
+    set(&MovingBox::high, quad.high), set(&MovingBox::end_high, end.high);
     set(&MovingBox::low, quad.low);
-    std::memcpy(who_counts.counts, columns[3], sizeof(columns[3]));
-    set(&MovingBox::end_low, quad.end_low);
-    std::memcpy(who_counts.moves, columns[3], sizeof(columns[3]));
+    std::memcpy(quad.counts, columns[3], sizeof(columns[3]));
+    set(&MovingBox::end_low, end.low);
+    std::memcpy(quad.moves, columns[3], sizeof(columns[3]));
 }
 
-inline void set_box(BoxQuad &quad, WhoCounts &who_counts, int k, const MovingBox &box) {
+inline void set_box(BoxQuad &quad, EndQuad &end, int k, const MovingBox &box) {
     for (int axis = 0; axis < 3; ++axis) {
         quad.low[axis][k] = box.low[axis];
         quad.high[axis][k] = box.high[axis];
-        quad.end_low[axis][k] = box.end_low[axis];
-        quad.end_high[axis][k] = box.end_high[axis];
+        end.low[axis][k] = box.end_low[axis];
+        end.high[axis][k] = box.end_high[axis];
     }
-    who_counts.counts[k] = box.low[3];
-    who_counts.moves[k] = box.end_low[3];
+    quad.counts[k] = box.low[3];
+    quad.moves[k] = box.end_low[3];
 }
 
-inline MovingBox box_of(const BoxQuad &quad, const WhoCounts &who_counts, int k) {
+inline MovingBox box_of(const BoxQuad &quad, const EndQuad &end, int k) {
     const auto corner = [&](const float (&rows)[3][4], float last) -> Eigen::Array4f {
         return {rows[0][k], rows[1][k], rows[2][k], last};
     };
-    return {corner(quad.low, who_counts.counts[k]), corner(quad.high, 0.0f), corner(quad.end_low, who_counts.moves[k]),
-            corner(quad.end_high, 0.0f)};
+    return {corner(quad.low, quad.counts[k]), corner(quad.high, 0.0f), corner(end.low, quad.moves[k]), corner(end.high, 0.0f)};
 }
 
 // Around the four.
-inline MovingBox box_of(const BoxQuad &quad, const WhoCounts &who_counts) {
+inline MovingBox box_of(const BoxQuad &quad, const EndQuad &end) {
     using Row = Eigen::Map<const Eigen::Array4f>;
     const auto least = [](const float (&rows)[3][4], float last) -> Eigen::Array4f {
         return {Row(rows[0]).minCoeff(), Row(rows[1]).minCoeff(), Row(rows[2]).minCoeff(), last};
@@ -96,8 +95,8 @@ inline MovingBox box_of(const BoxQuad &quad, const WhoCounts &who_counts) {
     const auto most = [](const float (&rows)[3][4]) -> Eigen::Array4f {
         return {Row(rows[0]).maxCoeff(), Row(rows[1]).maxCoeff(), Row(rows[2]).maxCoeff(), 0.0f};
     };
-    return {least(quad.low, Row(who_counts.counts).minCoeff()), most(quad.high),
-            least(quad.end_low, Row(who_counts.moves).minCoeff()), most(quad.end_high)};
+    return {least(quad.low, Row(quad.counts).minCoeff()), most(quad.high), least(end.low, Row(quad.moves).minCoeff()),
+            most(end.high)};
 }
 
 // Whether two boxes may overlap at one time: on no axis are they apart at the start and, on the same side, at the end.

@@ -30,10 +30,10 @@ void MovingTree::arrange(std::vector<Centre> &centres) {
     for (int level = 0; level < (depth_ + 1) / 2; ++level) first_leaf_ = child(first_leaf_, 0);
     const size_t nodes = size_t(first_leaf_) + leaves();
     BoxQuad empty;
-    WhoCounts none;
-    for (int k = 0; k < 4; ++k) set_box(empty, none, k, MovingBox::nothing());
+    EndQuad empty_end;
+    for (int k = 0; k < 4; ++k) set_box(empty, empty_end, k, MovingBox::nothing());
     nodes_.assign(nodes + 1, empty);
-    who_counts_.assign(nodes + 1, none);
+    ends_.assign(nodes + 1, empty_end);
     listed_.assign(nodes, 0);
     leaf_of_.resize(count_);
     primitives_.assign(size_t(4) * leaves(), -1);

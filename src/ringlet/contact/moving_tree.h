@@ -21,17 +21,17 @@ public:
 
     // Until it is taken anew no primitive counts.
     void discount() {
-        for (WhoCounts &boxes : who_counts_) std::fill_n(boxes.counts, 4, MovingBox::does_not);
+        for (BoxQuad &boxes : nodes_) std::fill_n(boxes.counts, 4, MovingBox::does_not);
     }
 
     bool empty() const { return count_ == 0; }
     bool is_leaf(int node) const { return node >= first_leaf_; }
     static int child(int node, int k) { return 4 * node + 1 + k; }
     // Of each node's children or, in a leaf, primitives.
-    BoxTree boxes() const { return {nodes_.data(), who_counts_.data(), first_leaf_, depth_ % 2 ? 2 : 4}; }
-    MovingBox box(int slot) const { return box_of(nodes_[slot / 4], who_counts_[slot / 4], slot % 4); } // lane + 4 · leaf
-    int primitive(int slot) const { return primitives_[slot - 4 * first_leaf_]; }                       // likewise; −1: none
-    int built() const { return built_; }                                                                // how often
+    BoxTree boxes() const { return {nodes_.data(), ends_.data(), first_leaf_, depth_ % 2 ? 2 : 4}; }
+    MovingBox box(int slot) const { return box_of(nodes_[slot / 4], ends_[slot / 4], slot % 4); } // lane + 4 · leaf
+    int primitive(int slot) const { return primitives_[slot - 4 * first_leaf_]; }                 // likewise; −1: none
+    int built() const { return built_; }                                                          // how often
 
 private:
     struct Centre {
@@ -49,15 +49,15 @@ private:
     int begin(int64_t share, int depth) const { return static_cast<int>(share * count_ >> depth); }
     int leaves() const { return 1 << depth_; }
     void put(int node, const MovingBox &all) { // into its parent
-        if (node > 0) set_box(nodes_[(node - 1) / 4], who_counts_[(node - 1) / 4], (node - 1) % 4, all);
+        if (node > 0) set_box(nodes_[(node - 1) / 4], ends_[(node - 1) / 4], (node - 1) % 4, all);
     }
-    MovingBox around(int node) const { return box_of(nodes_[node], who_counts_[node]); }
+    MovingBox around(int node) const { return box_of(nodes_[node], ends_[node]); }
 
     std::vector<int> primitives_;       // four to a leaf, the last of which may be missing
     std::vector<int> leaf_of_;          // each primitive
     std::vector<unsigned char> listed_; // per node, while some are refitted
-    std::vector<BoxQuad> nodes_;        // one more than there are, as of who counts: what is read behind the last
-    std::vector<WhoCounts> who_counts_;
+    std::vector<BoxQuad> nodes_;        // one more than there are, as of ends: what is read behind the last
+    std::vector<EndQuad> ends_;
     int count_ = 0, depth_ = 0, first_leaf_ = 0, built_ = 0;
     double built_looseness_ = 0.0;
 };
@@ -95,7 +95,7 @@ template <class Box> void MovingTree::refit_leaf(int leaf, const Box &box) {
         boxes[k] = i >= 0 ? box(i) : MovingBox::nothing();
         all.include(boxes[k]);
     }
-    set_boxes(nodes_[leaf], who_counts_[leaf], boxes);
+    set_boxes(nodes_[leaf], ends_[leaf], boxes);
     put(leaf, all);
 }
 

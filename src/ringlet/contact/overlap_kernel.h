@@ -5,21 +5,23 @@
 
 namespace ringlet {
 
-// Four boxes at the start of a motion and at its end, side by side: by axis, and lane k of each row is of box k. Up to
+// Four boxes at the start of a motion, side by side: by axis, and lane k of each row is of box k. Which of them count, and
+// which move: a sum of two is positive where neither does. All that is read of boxes that stay, it fills two cache lines. Up to
 // seven numbers are read from where each row begins, so that something has to stand behind the last.
-struct alignas(64) BoxQuad {
-    float low[3][4], high[3][4], end_low[3][4], end_high[3][4];
+struct alignas(128) BoxQuad {
+    float low[3][4], high[3][4];
+    float counts[4], moves[4];
 };
 
-// Which of four boxes count, and which move: a sum of two is positive where neither does. Read as boxes are.
-struct alignas(32) WhoCounts {
-    float counts[4], moves[4];
+// The same boxes at its end.
+struct alignas(32) EndQuad {
+    float low[3][4], high[3][4];
 };
 
 // A tree of moving_tree.h.
 struct BoxTree {
     const BoxQuad *nodes;
-    const WhoCounts *who_counts;
+    const EndQuad *ends;
     int first_leaf, children_of_root;
 };
 
