@@ -124,10 +124,12 @@ SceneSolver::Result SceneSolver::conjugate_gradient(SceneSystem &system, double 
             busy_units[system.unit_of(p)] = 1;
         }
         if (!any || result.iterations == most) break;
-        const auto for_busy = [&](const auto &work) {
-            system.for_units([&](int u) {
-                if (busy_units[u]) work(u);
-            });
+        const auto for_busy = [&](const auto &work, bool backwards = false) {
+            system.for_units(
+                [&](int u) {
+                    if (busy_units[u]) work(u);
+                },
+                backwards);
         };
         for_busy([&](int u) { search(system, u); });
         sum(curvatures_, curvature);
@@ -136,10 +138,14 @@ SceneSolver::Result SceneSolver::conjugate_gradient(SceneSystem &system, double 
             if (busy[p] && cluster[p] == p) alpha[p] = curvature[p] > 0.0 ? rho[p] / curvature[p] : 0.0;
             alpha_[p] = busy[p] ? alpha[cluster[p]] : 0.0;
         }
-        for_busy([&](int u) {
-            advance(system, u, direction);
-            went[u] = 1;
-        });
+        // To and fro: where factors do not all fit into the cache, those of the last are still there.
+        const bool back = result.iterations % 2 != 0;
+        for_busy(
+            [&](int u) {
+                advance(system, u, direction);
+                went[u] = 1;
+            },
+            back);
         sum(products_, next);
         for (int p = 0; p < parts; ++p) {
             if (cluster[p] == p && busy[p]) {
@@ -172,7 +178,7 @@ void SceneSolver::set_out(SceneSystem &system, AlignedVector &direction) {
     std::vector<double> unused(parts, 0.0);
     system.couplings.push(p_, system.values(), std::vector<unsigned char>(parts, 1), unused);
     alpha_.assign(parts, 1.0);
-    system.for_units([&](int u) { advance(system, u, direction); });
+    system.for_units([&](int u) { advance(system, u, direction); }, true);
 }
 
 // p = z + β p, P p, and p · P p.

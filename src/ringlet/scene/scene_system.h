@@ -45,10 +45,11 @@ public:
         return unit < group_count() ? strands.group_end(unit) : unit_begin(unit) + cloths[unit - group_count()].size();
     }
     size_t size() const { return strands.size() + 3 * size_t(vertices.cloths.back() - vertices.cloths[0]); }
-    template <class Work> void for_units(const Work &work) const {
+    // Groups of strands forwards or backwards, then cloths.
+    template <class Work> void for_units(const Work &work, bool backwards = false) const {
 #pragma omp parallel for schedule(dynamic)
-        for (int u = 0; u < group_count(); ++u)
-            if (active[u]) work(u);
+        for (int k = 0; k < group_count(); ++k)
+            if (const int u = backwards ? group_count() - 1 - k : k; active[u]) work(u);
         for (int u = group_count(); u < unit_count(); ++u)
             if (active[u]) work(u); // parallel inside
     }
