@@ -7,8 +7,8 @@
 namespace ringlet {
 namespace {
 
-// Of some pairs, in order, those that may touch: wherever in the triangles of their ways they are, or while all go straight
-// together. Edges are looked at many at a time.
+// Of some pairs, in order, those that may touch wherever in the triangles of their ways they are, or may meet while all go
+// straight together. Edges are looked at many at a time.
 class MayTouch {
 public:
     MayTouch(const PathBoxes &ways, bool together, std::vector<NearPair *> &found)
@@ -29,7 +29,9 @@ private:
     void look_at_edges() {
         if (count_ == 0) return;
         ways_.put(edges_, count_, [&](int k) { return pairs_[k]->of; });
-        for (int k = 0; k < count_; ++k) edges_.reach[k] = float(pairs_[k]->distance) + ways_.lost();
+        // Two meet at half their distance, and who asks when they do takes care not to be late.
+        const double part = together_ ? 0.6 : 1.0;
+        for (int k = 0; k < count_; ++k) edges_.reach[k] = float(part * pairs_[k]->distance) + ways_.lost();
         const unsigned apart = together_ ? RINGLET_DISPATCH(apart_together, edges_) : RINGLET_DISPATCH(apart_anywhere, edges_);
         for (int k = 0; k < count_; ++k)
             if (!(apart >> k & 1u)) found_.push_back(pairs_[k]);
