@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from itertools import takewhile
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import numpy as np
 from twirl import RADIUS
 
 from ringlet import UserError, run_bench
 
+Kept = Literal["sphere", "density", "heads"]
 CROWD = 256  # wisps on it, whose density is kept
 COUNTS = ("contacts", "candidates", "linear_iterations")
 
@@ -17,7 +18,7 @@ COUNTS = ("contacts", "candidates", "linear_iterations")
 def run(
     least: int = 64,
     most: int = 512,
-    kept: Literal["sphere", "density"] = "sphere",
+    kept: Kept = "sphere",
     friction: float = 0.3,
     newton: int = 3,
     extra: int = 60,
@@ -27,11 +28,13 @@ def run(
 
     ``exponent`` is the slope of the line that fits the logarithms: CPU time of a step grows as strands to that power,
     and ``contacts_exponent`` says the same of contacts. On one sphere more strands stand denser, and each touches more;
-    on spheres that grow with them each has the neighbours that it has among 256 on the published one.
+    on spheres that grow with them roots stand as they do among 256 on the published one, but tips part less; on more
+    and more spheres each touches as much as before.
 
     least:    strands of the smallest scene
     most:     strands of the largest scene, at most
-    kept:     what is the same for all sizes: ``sphere``, or ``density``, the strands on its area
+    kept:     what is the same for all sizes: ``sphere``, ``density``, the strands on its area, or ``heads``, spheres of
+              ``least`` strands each, all in one scene
     friction: of what touches; the published scene has none
     newton:   iterations of every step
     extra:    iterations more for what was held back and is stretched; the published code has none
@@ -39,14 +42,15 @@ def run(
     """
     if not 0 < least <= most / 2:
         raise UserError(f"bench growth: least is {least} and most {most}; most must be at least twice least")
-    if kept not in ("sphere", "density"):
-        raise UserError(f"bench growth: kept is {kept}; must be sphere or density")
+    if kept not in get_args(Kept):
+        raise UserError(f"bench growth: kept is {kept}; must be {' or '.join(get_args(Kept))}")
     sizes = list(takewhile(lambda size: size <= most, (least << doubled for doubled in range(32))))
     common = {"contacts": "on", "friction": friction, "newton": newton, "extra": extra, "steps": steps}
     runs = []
     for size in sizes:
         radius = RADIUS * (size / CROWD) ** 0.5 if kept == "density" else RADIUS
-        runs.append(run_bench("twirl", strands=size, radius=radius, **common))
+        heads = size // least if kept == "heads" else 1
+        runs.append(run_bench("twirl", strands=size, radius=radius, heads=heads, **common))
     times = [run["cpu_ms"]["median"] for run in runs]
     return {
         **runs[-1],

@@ -15,6 +15,7 @@ GRAVITY = (0.0, -9.81, 0.0)
 HELD = 4  # the vertices of a wisp inside the sphere's surface
 RADIUS = 0.1525  # of the published sphere [m]
 DISTANCE = math.sqrt(2) * 1e-3  # at which contact begins [m]
+APART = 4  # radii from the centre of a head to the next one's
 
 
 def run(
@@ -25,6 +26,7 @@ def run(
     extra: int = 60,
     steps: int = 90,
     radius: float = RADIUS,
+    heads: int = 1,
 ) -> dict[str, Any]:
     """Twirls ``strands`` wisps of 101 vertices, 5 a turn, at 30 steps per second.
 
@@ -36,29 +38,38 @@ def run(
     extra:    iterations more for what was held back and is stretched; the published code has none
     steps:    how many of the scene's 340 frames are run
     radius:   of the sphere [m]; one that is larger turns slower, so that roots move as fast
+    heads:    spheres in a row, too far apart to touch; the wisps are dealt to them evenly
     """
     if contacts not in ("on", "off"):
         raise UserError(f"bench twirl: contacts is {contacts}; must be on or off")
     if not radius > 0:
         raise UserError(f"bench twirl: radius is {radius}; must be positive")
+    if not 1 <= heads <= strands:
+        raise UserError(f"bench twirl: heads is {heads}; must be from 1 to {strands}, the strands")
     scale = radius / RADIUS
-    wisps = groom(strands, scale)
-    curves = Curves.from_list(wisps)
+    crowds = [(strands + head) // heads for head in range(heads)]
+    wisps = [groom(crowd, scale, seed=1 + head) for head, crowd in enumerate(crowds)]
+    centres = APART * radius * np.arange(heads)[:, None] * (1, 0, 0)
+    curves = Curves.from_list(
+        [points + centre for grown, centre in zip(wisps, centres, strict=True) for points in grown]
+    )
     moving = Strands(curves, Material(damping=0.0, drag=0.0), HELD)
     solver = Solver(newton=newton, extra=extra, tolerance=1e-12)  # never reached: all iterations are spent
     ball, triangles = sphere(radius, max(round(32 * scale), 4))
+    bodies = [Body(ball + centre, triangles, DISTANCE / 2, friction) for centre in centres]
     contact = Contact(radius=DISTANCE / 2, friction=friction)
-    scene = Scene(moving, [Body(ball, triangles, DISTANCE / 2, friction)], contact, np.zeros(strands, int))
+    scene = Scene(moving, bodies, contact, np.repeat(np.arange(heads), crowds))
     clock = Clock()
     reports, touched = [], []
     turned = np.eye(3)
+    hair = [np.concatenate(grown) for grown in wisps]
     for step in range(steps):
         turned = turn(step, scale) @ turned
-        # Not with @: the threads of the matrix library would wait actively, on the processors that are timed.
-        targets, ends = (np.einsum("ij,kj->ik", points, turned) for points in (curves.points, ball))
+        targets = np.concatenate([rotate(points, turned) + c for points, c in zip(hair, centres, strict=True)])
+        ends = [rotate(ball, turned) + centre for centre in centres]
         with clock("step"):
             if contacts == "on":
-                touch, report = scene.step(targets, 1 / FPS, bodies=[ends], gravity=GRAVITY, solver=solver)
+                touch, report = scene.step(targets, 1 / FPS, bodies=ends, gravity=GRAVITY, solver=solver)
                 touched.append(touch)
             else:
                 report = moving.step(targets, 1 / FPS, gravity=GRAVITY, solver=solver)
@@ -73,6 +84,7 @@ def run(
             "extra": extra,
             "steps": steps,
             "radius": radius,
+            "heads": heads,
         },
         per="step",
         warm_up=2,
@@ -139,6 +151,14 @@ def turn(step: int, scale: float = 1) -> NDArray[np.float64]:
     part, frame = divmod(step - 40, 50)
     axis = ((0, 0, 1), (0, 0, -1), (0, 1, 0), (0, -1, 0), (1, 0, 0), (-1, 0, 0))[part % 6]
     return about(axis, 0.15 / scale * np.cos(0.6 * np.pi * frame / FPS))
+
+
+def rotate(points: NDArray[np.float64], rotation: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Points about the origin, shape (n, 3).
+
+    Not with @: the threads of the matrix library would wait actively, on the processors that are timed.
+    """
+    return np.einsum("ij,kj->ik", points, rotation)
 
 
 def about(axis: Any, angle: float) -> NDArray[np.float64]:

@@ -7,6 +7,7 @@ import math
 import subprocess
 import sys
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 
 import pytest
@@ -53,6 +54,7 @@ class Answer:
         (["head", "--locks", "30", "--points", "30", "--frames", "2", "--preroll", "0"], {"locks": 30, "points": 30}),
         (["twirl", "--strands", "3", "--contacts", "off", "--steps", "4"], {"strands": 3, "contacts": "off"}),
         (["twirl", "--strands", "3", "--contacts", "on", "--steps", "4"], {"strands": 3, "contacts": "on"}),
+        (["twirl", "--strands", "3", "--contacts", "on", "--steps", "4", "--heads", "2"], {"strands": 3, "heads": 2}),
     ],
 )
 def test_bench_prints_the_object_that_was_agreed(arguments, asked):
@@ -76,19 +78,33 @@ def test_bench_view_ends_its_server_and_says_nothing_besides():
     assert done.stderr == "" and told["hairs"] == 36 and told["frame_bytes"] > 12 * 12 * 96
 
 
-def test_bench_growth_that_keeps_the_density_has_spheres_as_large_as_it_has_wisps(monkeypatch):
+@pytest.fixture
+def twirls(monkeypatch):
+    """What ``ringlet bench growth`` asks of the twirl scene, which is not run."""
     asked = []
 
     def run_bench(name, **params):
-        asked.append((params["strands"], params["radius"]))
+        asked.append((params["strands"], params["radius"], params["heads"]))
         counts = {"contacts": 2.0 * params["strands"], "candidates": 0, "linear_iterations": 0}
         return {"cpu_ms": {"median": 3.0 * params["strands"] ** 1.5}, **counts}
 
-    run_growth = ringlet.run_bench
     monkeypatch.setattr(ringlet, "run_bench", run_bench)
-    told = run_growth("growth", least=64, most=256, kept="density")
-    assert [(n, n / radius**2) for n, radius in asked] == [(n, pytest.approx(256 / 0.1525**2)) for n in (64, 128, 256)]
+    return asked
+
+
+run_growth = partial(ringlet.run_bench, "growth", least=64, most=256)
+
+
+def test_bench_growth_that_keeps_the_density_has_spheres_as_large_as_it_has_wisps(twirls):
+    told = run_growth(kept="density")
+    density = pytest.approx(256 / 0.1525**2)
+    assert [(n, n / radius**2, heads) for n, radius, heads in twirls] == [(n, density, 1) for n in (64, 128, 256)]
     assert told["exponent"] == pytest.approx(1.5) and told["contacts_exponent"] == pytest.approx(1.0)
+
+
+def test_bench_growth_that_keeps_the_heads_has_more_of_the_published_ones(twirls):
+    run_growth(kept="heads")
+    assert twirls == [(64, 0.1525, 1), (128, 0.1525, 2), (256, 0.1525, 4)]
 
 
 def test_bench_growth_fits_a_power_to_the_times_of_all_sizes():
