@@ -23,6 +23,7 @@ def run(
     newton: int = 3,
     extra: int = 60,
     steps: int = 90,
+    turns: int = 1,
 ) -> dict[str, Any]:
     """Runs ``ringlet bench twirl --contacts on`` with ``least`` strands, twice as many, and so on up to ``most``.
 
@@ -39,19 +40,26 @@ def run(
     newton:   iterations of every step
     extra:    iterations more for what was held back and is stretched; the published code has none
     steps:    how many of the scene's 340 frames are run
+    turns:    how often each size is run, by turns with the others; the quickest of its runs counts, since a machine
+              that is shared is slow for minutes at a time
     """
     if not 0 < least <= most / 2:
         raise UserError(f"bench growth: least is {least} and most {most}; most must be at least twice least")
+    if turns < 1:
+        raise UserError(f"bench growth: turns is {turns}; must be at least 1")
     if kept not in get_args(Kept):
         raise UserError(f"bench growth: kept is {kept}; must be {' or '.join(get_args(Kept))}")
     sizes = list(takewhile(lambda size: size <= most, (least << doubled for doubled in range(32))))
     common = {"contacts": "on", "friction": friction, "newton": newton, "extra": extra, "steps": steps}
-    runs = []
-    for size in sizes:
+
+    def run_size(size: int) -> dict[str, Any]:
         radius = RADIUS * (size / CROWD) ** 0.5 if kept == "density" else RADIUS
         heads = size // least if kept == "heads" else 1
-        runs.append(run_bench("twirl", strands=size, radius=radius, heads=heads, **common))
-    times = [run["cpu_ms"]["median"] for run in runs]
+        return run_bench("twirl", strands=size, radius=radius, heads=heads, **common)
+
+    rounds = [[run_size(size) for size in sizes] for _ in range(turns)]
+    runs = [min(same, key=cpu_time) for same in zip(*rounds, strict=True)]
+    times = [cpu_time(run) for run in runs]
     return {
         **runs[-1],
         "name": "growth",
@@ -63,6 +71,7 @@ def run(
             "newton": newton,
             "extra": extra,
             "steps": steps,
+            "turns": turns,
         },
         "exponent": power(sizes, times),
         "contacts_exponent": power(sizes, [run["contacts"] for run in runs]),
@@ -71,6 +80,11 @@ def run(
             for size, time, run in zip(sizes, times, runs, strict=True)
         ],
     }
+
+
+def cpu_time(run: dict[str, Any]) -> float:
+    """The CPU time of a step in a run, in the median and milliseconds."""
+    return run["cpu_ms"]["median"]
 
 
 def power(sizes: list[int], values: list[float]) -> float | None:

@@ -107,6 +107,19 @@ def test_bench_growth_that_keeps_the_heads_has_more_of_the_published_ones(twirls
     assert twirls == [(64, 0.1525, 1), (128, 0.1525, 2), (256, 0.1525, 4)]
 
 
+def test_bench_growth_counts_the_quickest_of_the_turns_of_each_size(monkeypatch):
+    times = iter([10.0, 40.0, 160.0, 12.0, 20.0, 40.0])  # the sizes by turns: the second is slow at the first turn
+
+    def run_bench(name, **params):
+        return {"cpu_ms": {"median": next(times)}, "contacts": 1, "candidates": 0, "linear_iterations": 0}
+
+    monkeypatch.setattr(ringlet, "run_bench", run_bench)
+    told = run_growth(turns=2)
+    assert [size["cpu_ms"] for size in told["sizes"]] == [10, 20, 40] and told["exponent"] == pytest.approx(1.0)
+    with pytest.raises(ringlet.UserError, match="turns is 0; must be at least 1"):
+        run_growth(turns=0)
+
+
 def test_bench_growth_fits_a_power_to_the_times_of_all_sizes():
     result = run("bench", "growth", "--least", "2", "--most", "9", "--steps", "4", "--json", "--threads", "1")
     told = json.loads(result.stdout)
