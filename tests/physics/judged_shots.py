@@ -27,10 +27,11 @@ SHOTS = sorted(file.name.removesuffix(".shot.toml") for file in EXAMPLE.glob("*.
 
 @dataclass
 class Judged:
-    """A frame: how many crossings another library sees on its way, None: it was not asked; and its statistics."""
+    """A frame: how many crossings another library sees on its way, None: it was not asked; its statistics and edges."""
 
     crossings: int | None
     statistics: dict
+    edges: dict
 
 
 def start(shot: str, recipe: str | None = None, locks: int | None = None, balanced: Path | None = None):
@@ -65,7 +66,19 @@ def judged(motion, frames: int | None = None, every: int = 1) -> Iterator[Judged
         statistics = motion.advance(begin, begin + 1)
         assert np.isfinite(motion.scene.positions).all(), f"frame {k}: not a number"
         moves = itertools.pairwise(motion.scene.path) if asked else ()
-        yield Judged(sum(judge.crossings(*move) for move in moves) if asked else None, statistics)
+        crossings = sum(judge.crossings(*move) for move in moves) if asked else None
+        yield Judged(crossings, statistics, strained(motion))
+
+
+def strained(motion) -> dict:
+    """How far edges of locks are drawn out and pressed together at the end of a frame, and how many by over a tenth."""
+    within = np.setdiff1d(np.arange(len(motion.locks.points) - 1), motion.locks.offsets[1:-1] - 1)
+    before, now = (
+        np.linalg.norm(np.diff(points, axis=0)[within], axis=1)
+        for points in (motion.locks.points, motion.strands.positions)
+    )
+    strain = now / before - 1
+    return {"drawn_out": strain.max(), "pressed": -strain.min(), "drawn_out_by_a_tenth": int((strain > 0.1).sum())}
 
 
 def logged(frames: Iterator[Judged], path: Path | None) -> Iterator[Judged]:
@@ -73,7 +86,7 @@ def logged(frames: Iterator[Judged], path: Path | None) -> Iterator[Judged]:
     for frame in frames:
         if path is not None:
             with path.open("a") as file:
-                print(json.dumps({"crossings": frame.crossings, **frame.statistics}), file=file)
+                print(json.dumps({"crossings": frame.crossings, **frame.statistics, **frame.edges}), file=file)
         yield frame
 
 

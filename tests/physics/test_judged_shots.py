@@ -16,6 +16,9 @@ def test_nothing_passes_through_anything_in_a_shot_of_the_example(shot):
     assert len(frames) == 3
     assert all(frame.crossings == 0 and frame.statistics["nan"] == 0 for frame in frames)
     assert all(frame.statistics["contact"]["candidates"] > 0 for frame in frames)
+    for frame in frames:
+        strain = max(frame.edges["drawn_out"], frame.edges["pressed"])
+        assert strain == pytest.approx(frame.statistics["max_stretch"], rel=1e-9)
 
 
 def test_what_begins_in_the_shirt_comes_out_and_passes_through_nothing_else():
