@@ -38,7 +38,7 @@ template <> struct Traits<Counted> {
 
 } // namespace ringlet::baseline
 
-#include "ringlet/scene/frame_objective.h"
+#include "ringlet/strand/frame_objective.h"
 
 #include <cmath>
 #include <cstdio>

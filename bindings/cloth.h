@@ -1,7 +1,7 @@
 // What Python holds of a cloth.
 #pragma once
 
-#include "ringlet/scene/cloth_step.h"
+#include "ringlet/cloth/cloth_step.h"
 
 #include <memory>
 

@@ -17,11 +17,16 @@ CORE = {
     "geometry": {"math"},
     "groom": {"geometry", "math"},
     "energy": {"geometry", "math"},
-    "contact": {"geometry", "math"},
     "linear": {"math"},
     "dynamics": {"linear", "math"},
     "rest": {"energy", "dynamics", "linear", "geometry", "math"},
-    "scene": {"rest", "energy", "contact", "dynamics", "linear", "geometry", "math"},
+    "collision": {"geometry", "math"},
+    "ccd": {"collision", "geometry", "math"},
+    "contact": {"collision", "geometry", "math"},
+    "strand": {"rest", "energy", "dynamics", "linear", "geometry", "math"},
+    "cloth": {"energy", "linear", "geometry", "math"},
+    "solver": {"strand", "cloth", "contact", "ccd", "collision", "linear", "geometry", "math"},
+    "scene": {"solver", "strand", "cloth", "contact", "ccd", "collision", "linear", "geometry", "math"},
 }
 
 # Module of python/ringlet → modules that it may import. DATA is plain data and small helpers, which all may share.

@@ -1,5 +1,5 @@
 // Distances, impacts, and which pairs can meet.
-#include "ringlet/contact/impact.h"
+#include "ringlet/ccd/impact.h"
 #include "ringlet/geometry/distance.h"
 #include "ringlet/geometry/edge_batch.h"
 

@@ -1,8 +1,8 @@
 // What contacts do: forces from energies, and moves that pass through nothing.
+#include "ringlet/ccd/meeting.h"
+#include "ringlet/ccd/step_filter.h"
 #include "ringlet/contact/contact.h"
 #include "ringlet/contact/contact_set.h"
-#include "ringlet/contact/meeting.h"
-#include "ringlet/contact/step_filter.h"
 
 #include <boost/test/unit_test.hpp>
 

@@ -1,6 +1,6 @@
 // Which pairs may touch: against looking at all of them.
-#include "ringlet/contact/impact.h"
-#include "ringlet/contact/near_pairs.h"
+#include "ringlet/ccd/impact.h"
+#include "ringlet/collision/near_pairs.h"
 
 #include <boost/test/unit_test.hpp>
 #include <cmath>

@@ -1,5 +1,5 @@
 // Edges of which it is told many at a time that they never touch.
-#include "ringlet/contact/edges_apart.h"
+#include "ringlet/collision/edges_apart.h"
 
 #include "ringlet/geometry/distance.h"
 

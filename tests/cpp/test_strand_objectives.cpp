@@ -1,7 +1,7 @@
 // Whole strands, away from rest, with references of another shape, with damping and with held vertices: gradients against
 // differences in all unknowns, Hessians positive definite.
-#include "ringlet/scene/frame_objective.h"
-#include "ringlet/scene/hinge_objective.h"
+#include "ringlet/strand/frame_objective.h"
+#include "ringlet/strand/hinge_objective.h"
 
 #include <Eigen/Dense>
 #include <boost/test/unit_test.hpp>

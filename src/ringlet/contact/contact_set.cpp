@@ -1,6 +1,6 @@
 #include "ringlet/contact/contact_set.h"
 
-#include "ringlet/contact/collect.h"
+#include "ringlet/collision/collect.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

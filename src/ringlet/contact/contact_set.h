@@ -1,8 +1,8 @@
 // All contacts of a scene at the present positions, and how vertices find those that act on them.
 #pragma once
 
+#include "ringlet/collision/near_pairs.h"
 #include "ringlet/contact/contact.h"
-#include "ringlet/contact/near_pairs.h"
 #include "ringlet/math/lists.h"
 
 #include <unordered_map>

@@ -1,8 +1,8 @@
 // Vertices that begin inside a body: excused from contact with it, pushed out gently, guarded once they are out.
 #pragma once
 
-#include "ringlet/contact/collision_mesh.h"
-#include "ringlet/scene/lift.h"
+#include "ringlet/collision/collision_mesh.h"
+#include "ringlet/solver/lift.h"
 
 #include <utility>
 #include <vector>

@@ -1,7 +1,7 @@
 // Strands, cloths and kinematic bodies that touch: one implicit step for all of them.
 #pragma once
 
-#include "ringlet/scene/scene_solver.h"
+#include "ringlet/solver/scene_solver.h"
 
 #include <memory>
 #include <utility>

@@ -1,7 +1,7 @@
 // The first move of a step: what is kinematic goes where it is told, and everything along with it.
 #pragma once
 
-#include "ringlet/scene/scene_vertices.h"
+#include "ringlet/solver/scene_vertices.h"
 
 namespace ringlet {
 

@@ -1,6 +1,6 @@
 #include "ringlet/scene/scene_parts.h"
 
-#include "ringlet/contact/step_filter.h"
+#include "ringlet/ccd/step_filter.h"
 
 #include <algorithm>
 #include <cmath>

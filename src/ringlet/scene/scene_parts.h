@@ -2,13 +2,13 @@
 // method.
 #pragma once
 
-#include "ringlet/contact/filter_scene.h"
-#include "ringlet/scene/contact_stiffness.h"
+#include "ringlet/ccd/filter_scene.h"
 #include "ringlet/scene/embedded.h"
 #include "ringlet/scene/scene.h"
 #include "ringlet/scene/scene_carry.h"
-#include "ringlet/scene/scene_progress.h"
-#include "ringlet/scene/scene_search.h"
+#include "ringlet/solver/contact_stiffness.h"
+#include "ringlet/solver/scene_progress.h"
+#include "ringlet/solver/scene_search.h"
 
 #include <chrono>
 

@@ -1,0 +1,80 @@
+// `least_energy`: the signs that give the strand the least energy, as part of the energy itself. It is a continuous function of
+// the positions alone: nothing to initialise, to carry or to restart, and nothing that can add energy.
+//   E = min over σ of Σ ½ k_b (σθ − θ̄)² + Σ ½ k_t [s(θ_a) s(θ_b) f(Δ)]²,  Δ = wrap(φ − φ̄ + π [σ_a σ_b < 0])
+// The minimum is found exactly, corner by corner (dynamic programming over two states); the signs stay fixed while derivatives
+// are taken (envelope theorem).
+#pragma once
+
+#include "ringlet/energy/strand/bend.h"
+#include "ringlet/energy/strand/twist.h"
+#include "ringlet/strand/strand_shape.h"
+
+namespace ringlet::RINGLET_SIMD {
+
+template <class T> struct WithSlope {
+    T value, slope;
+};
+
+// f(Δ): Δ up to a quarter turn, then bending over to be level at ±π, so that the energy has no kink where Δ wraps.
+template <class T> inline WithSlope<T> rounded(T delta) {
+    const T beyond = abs(delta) - pi / 2;
+    const SineCosine<T> end = sine_cosine_quarter(min(max(beyond, T{}), constant<T>(pi / 2)));
+    const auto bent_over = beyond > 0.0;
+    return {select(bent_over, sign(delta) * (pi / 2 + end.sine), delta), select(bent_over, end.cosine, constant<T>(1.0))};
+}
+
+// s(θ): 0 below 0.15° from straight (or folded), 1 from half the rest angle up.
+template <class T> inline WithSlope<T> straightness(T angle, T rest_angle) {
+    const double low = 0.15 * pi / 180;
+    const T high = max(0.5 * min(rest_angle, pi - rest_angle), constant<T>(2 * low));
+    const T inverse = 1.0 / (high - low);
+    const T y = min(max((min(angle, pi - angle) - low) * inverse, T{}), constant<T>(1.0));
+    const T slope = select(y > 0.0, (1.5 - 1.5 * y * y) * inverse, T{});
+    return {y * (1.5 - 0.5 * y * y), select(angle > pi / 2, -slope, slope)};
+}
+
+template <class T> void continue_least_energy(int vertices, const StrandRow<T> *rows, StrandShape<T> *shapes) {
+    const double rest_straight = 0.3 * pi / 180; // such a corner has no sign of its own
+    const T one = constant<T>(1.0);
+    const int last = vertices - 2; // corners are 1 … last
+
+    const auto bend_of = [&](int i, double sigma) {
+        const T energy = bend_energy(shapes[i].corner.angle, constant<T>(sigma), rows[i].damped_angle, rows[i].bend);
+        return sigma > 0 ? energy : select(rows[i].rest_angle < rest_straight, constant<T>(1e30), energy);
+    };
+    T plus = bend_of(1, 1), minus = bend_of(1, -1);
+    for (int i = 1; i < last; ++i) {
+        StrandShape<T> &s = shapes[i], &next = shapes[i + 1];
+        const T fade = straightness(s.corner.angle, rows[i].rest_angle).value *
+                       straightness(next.corner.angle, rows[i + 1].rest_angle).value;
+        const T delta = wrap(s.phi - rows[i].rest_dihedral);
+        const T same = twist_energy(fade * rounded(delta).value - rows[i].damped_strain, rows[i].twist);
+        const T differ = twist_energy(fade * rounded(wrap(delta + pi)).value - rows[i].damped_strain, rows[i].twist);
+        const auto keep_plus = plus + same <= minus + differ;
+        const auto keep_minus = minus + same < plus + differ;
+        next.choice_plus = select(keep_plus, one, -one);
+        next.choice_minus = select(keep_minus, -one, one);
+        const T to_plus = min(plus + same, minus + differ), to_minus = min(minus + same, plus + differ);
+        plus = to_plus + bend_of(i + 1, 1);
+        minus = to_minus + bend_of(i + 1, -1);
+    }
+    shapes[last].sigma = select(plus <= minus, one, -one);
+    for (int i = last; i > 1; --i)
+        shapes[i - 1].sigma = select(shapes[i].sigma > 0.0, shapes[i].choice_plus, shapes[i].choice_minus);
+
+    for (int i = 1; i < last; ++i) {
+        StrandShape<T> &s = shapes[i];
+        const StrandShape<T> &next = shapes[i + 1];
+        const WithSlope<T> a = straightness(s.corner.angle, rows[i].rest_angle),
+                           b = straightness(next.corner.angle, rows[i + 1].rest_angle);
+        s.delta = wrap(s.phi - rows[i].rest_dihedral + select(s.sigma * next.sigma < 0.0, constant<T>(pi), T{}));
+        s.turns = T{};
+        const WithSlope<T> f = rounded(s.delta);
+        s.strain = a.value * b.value * f.value;
+        s.by_dihedral = a.value * b.value * f.slope;
+        s.by_angle = a.slope * b.value * f.value;
+        s.by_next = a.value * b.slope * f.value;
+    }
+}
+
+} // namespace ringlet::RINGLET_SIMD

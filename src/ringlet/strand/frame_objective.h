@@ -1,0 +1,154 @@
+// Bend and twist of a strand with a material frame (energy/strand/frame.h): every edge's director may turn about the edge, by
+// an angle γ without inertia, which takes what turn costs least. At rest a director is the corner's normal: locked to the
+// normals, this is the hinge model. Free, they make it Kirchhoff's rod, with no corner that is too straight, no signs and no
+// turns.
+#pragma once
+
+#include "ringlet/energy/strand/frame.h"
+#include "ringlet/strand/strand_objective.h"
+
+namespace ringlet::RINGLET_SIMD {
+
+// Unknowns of a vertex: its position and γ l̄ of the edge that begins there [m]. γ is 0 as a step begins.
+template <class T> class FrameObjective : public StrandObjective<T, 4, 11> {
+    using Base = StrandObjective<T, 4, 11>;
+    using Base::rows_, Base::shapes_, Base::vertices_;
+
+public:
+    using Base::Base;
+    using typename Base::Matrix;
+
+    T evaluate(const T *x) {
+        this->positions_ = x;
+        return energy_at<true>(x);
+    }
+
+    // Only says how much it is: what was evaluated last stays.
+    T energy(const T *x) { return energy_at<false>(x); }
+
+    void assemble(T *gradient, Matrix &hessian) const {
+        this->assemble_along(
+            gradient, hessian, [&](int i) { add_bend(i, gradient, hessian); }, [&](int i) { add_twist(i, gradient, hessian); });
+        for (int i = 0; i < vertices_; ++i) { // a little stiffness where nothing holds the frame
+            const T free = rows_[i].frame_free;
+            hessian.entry(4 * i + 3)[0] +=
+                free * (1e-9 * rows_[i].bend / (rows_[i].rest_length * rows_[i].rest_length) + 1e-15) + (1.0 - free);
+        }
+        this->hold(gradient);
+        for (int i = 0; i < vertices_; ++i) gradient[4 * i + 3] *= rows_[i].frame_free;
+    }
+
+    void remember_start() {}
+
+    Strains<T> strains(int i) const {
+        const StrandShape<T> &s = shapes_[i];
+        return {{s.length, s.across, s.along, s.strain}};
+    }
+
+    // Rest values between the groom's and the carried ones (strand_objective.h), b = β/h.
+    void damp(int i, T b, const Strains<T> &carried) {
+        const T part = b / (1.0 + b);
+        rows_[i].damped_bend = {part * carried[1], part * carried[2], T{}};
+        if (this->is_hinge(i)) rows_[i].damped_strain = part * carried.twist();
+    }
+
+    // Without damping, of the stiffnesses as they are in the rows.
+    T bend_energy_at(int i) const {
+        return 0.5 * rows_[i].bend * (shapes_[i].across * shapes_[i].across + shapes_[i].along * shapes_[i].along);
+    }
+    T twist_energy_at(int i) const { return 0.5 * rows_[i].twist * shapes_[i].strain * shapes_[i].strain; }
+
+    Vec<T> normal_to_keep(int i) const { return shapes_[i].director; }
+    T flipped(int) const { return T{}; }
+    T wound(int) const { return T{}; }
+    T too_straight(int) const { return T{}; }
+    T clamped(int i) const { return this->clamped_stretch(i); } // bend and twist are sums of squares
+
+private:
+    // In one pass, which reads a row once and, unless shapes are kept, writes nothing.
+    template <bool keeps> T energy_at(const T *x) {
+        T energy{};
+        StrandShape<T> before{}, s{}; // of the edge before; of the edge that begins at i
+        for (int i = 0; i < vertices_; ++i, before = s) {
+            energy += this->inertia_of(x, i);
+            if (i + 1 == vertices_) break;
+            this->measure_edge(x, i, s);
+            energy += this->stretch_of(i, s);
+            if (i > 0) energy += bend_of(x, i, before, s);
+            if (i > 1) {
+                before.strain =
+                    wrap(frame_twist(before.director, before.tangent, s.director, s.tangent) - rows_[i - 1].rest_dihedral);
+                const T w = before.strain - rows_[i - 1].damped_strain;
+                energy += 0.5 * rows_[i - 1].twist * w * w;
+                if (keeps) shapes_[i - 1].strain = before.strain;
+            }
+            if (keeps) keep(s, shapes_[i]);
+        }
+        return energy;
+    }
+
+    T bend_of(const T *x, int i, const StrandShape<T> &before, StrandShape<T> &s) const {
+        s.corner = corner(before.tangent, s.tangent);
+        const Vec<T> director = transport(rows_[i].reference.normal, rows_[i].reference.tangent, s.tangent);
+        const SineCosine<T> turn = sine_cosine(x[4 * i + 3] / rows_[i].rest_length);
+        s.director = turn.cosine * director + turn.sine * cross(s.tangent, director);
+        const Vec<T> K = turning(s.corner, before.tangent, s.tangent);
+        s.across = dot(K, s.director) - rows_[i].rest_angle;
+        s.along = dot(K, cross(s.tangent, s.director));
+        const T across = s.across - rows_[i].damped_bend.x, along = s.along - rows_[i].damped_bend.y;
+        return 0.5 * rows_[i].bend * (across * across + along * along);
+    }
+
+    static void keep(const StrandShape<T> &s, StrandShape<T> &kept) { // what hinges have stays out of it
+        kept.tangent = s.tangent, kept.length = s.length, kept.corner = s.corner;
+        kept.director = s.director, kept.across = s.across, kept.along = s.along;
+    }
+
+    Vec<T> spin_of(int i) const { return spin(rows_[i].reference.tangent, shapes_[i].tangent, shapes_[i].length); }
+
+    void add_bend(int i, T *gradient, Matrix &hessian) const {
+        const StrandShape<T> &before = shapes_[i - 1], &s = shapes_[i];
+        const Vec<T> other = cross(s.tangent, s.director);
+        const Vec<T> K = turning(s.corner, before.tangent, s.tangent), spinning = spin_of(i);
+        const T residual[2] = {s.across - rows_[i].damped_bend.x, s.along - rows_[i].damped_bend.y};
+        const T by_frame[2] = {dot(K, other), -dot(K, s.director)};
+        T u[2][11] = {};
+        for (int k = 0; k < 2; ++k) {
+            const EdgeGradient<T> g =
+                turning_gradient(s.corner, before.tangent, s.tangent, before.length, s.length, k == 0 ? s.director : other);
+            const Vec<T> second = g.second + by_frame[k] * spinning;
+            const T force = rows_[i].bend * residual[k], frame = by_frame[k] / rows_[i].rest_length;
+            this->add(gradient, i - 1, -(force * g.first));
+            this->add(gradient, i, force * (g.first - second));
+            this->add(gradient, i + 1, force * second);
+            gradient[4 * i + 3] += force * frame;
+            put(u[k], -(rows_[i - 1].free * g.first));
+            put(u[k] + 4, rows_[i].free * (g.first - second));
+            u[k][7] = rows_[i].frame_free * frame;
+            put(u[k] + 8, rows_[i + 1].free * second);
+        }
+        hessian.add_squares(4 * (i - 1), rows_[i].bend, u);
+    }
+
+    void add_twist(int i, T *gradient, Matrix &hessian) const {
+        const StrandShape<T> &s = shapes_[i], &after = shapes_[i + 1];
+        const EdgeGradient<T> g = frame_twist_gradient(after.corner, s.tangent, after.tangent, s.length, after.length);
+        const Vec<T> first = g.first - spin_of(i), second = g.second + spin_of(i + 1);
+        const T frame0 = -1.0 / rows_[i].rest_length, frame1 = 1.0 / rows_[i + 1].rest_length;
+        const T moment = rows_[i].twist * (s.strain - rows_[i].damped_strain);
+        this->add(gradient, i, -(moment * first));
+        this->add(gradient, i + 1, moment * (first - second));
+        this->add(gradient, i + 2, moment * second);
+        gradient[4 * i + 3] += moment * frame0;
+        gradient[4 * i + 7] += moment * frame1;
+        T u[11];
+        put(u, -(rows_[i].free * first));
+        u[3] = rows_[i].frame_free * frame0;
+        put(u + 4, rows_[i + 1].free * (first - second));
+        u[7] = rows_[i + 1].frame_free * frame1;
+        put(u + 8, rows_[i + 2].free * second);
+        hessian.add_square(4 * i, rows_[i].twist, u);
+    }
+};
+
+} // namespace ringlet::RINGLET_SIMD
