@@ -2,8 +2,6 @@
 #include "cloth.h"
 #include "arrays.h"
 
-#include <nanobind/stl/array.h>
-
 namespace nb = nanobind;
 using namespace nb::literals;
 using namespace ringlet;
@@ -14,8 +12,6 @@ namespace {
 nb::ndarray<nb::numpy, double> state_view(nb::handle self, std::vector<Vec3> &values) {
     return {values.data()->data(), {values.size(), 3}, self};
 }
-
-Vec3 vector(const std::array<double, 3> &v) { return {v[0], v[1], v[2]}; }
 
 // Elastic energy, gradient and dense Hessian at positions, whatever the cloth is doing.
 nb::tuple elastic(const Cloth &self, const Array3<double> &positions, bool hessian) {
@@ -54,13 +50,9 @@ void bind_cloth(nb::module_ &module) {
             "__init__",
             [](Cloth *self, Array3<int> triangles, Array3<double> rest, Array3<double> warp, Array1<unsigned char> held,
                Array1<double> attachment, const ClothMaterial &material) {
-                auto model =
-                    std::make_unique<ClothModel>(make_cloth_model(vectors<Triangle>(triangles), vectors<Vec3>(rest),
-                                                                  vectors<Vec3>(warp), view(held), view(attachment), material));
-                ClothObjective objective(*model);
-                const View<Vec3> at = vectors<Vec3>(rest);
-                ClothState state{{at.begin(), at.end()}, std::vector<Vec3>(at.size(), Vec3::Zero())};
-                new (self) Cloth{std::move(model), std::move(objective), std::move(state)};
+                new (self) Cloth(make_cloth_model(vectors<Triangle>(triangles), vectors<Vec3>(rest), vectors<Vec3>(warp),
+                                                  view(held), view(attachment), material),
+                                 vectors<Vec3>(rest));
             },
             "triangles"_a, "rest"_a, "warp"_a, "held"_a, "attachment"_a, "material"_a,
             "triangles: shape (m, 3) int32; rest: rest shape [m], shape (n, 3); warp: its direction per triangle, (m, 3); "
@@ -84,19 +76,15 @@ void bind_cloth(nb::module_ &module) {
             "From now on the rest shape is `scale` times what it was given as.")
         .def(
             "step",
-            [](Cloth &self, Array3<double> targets, Array3<double> forces, double dt, std::array<double, 3> gravity,
-               std::array<double, 3> wind, int newton, double tolerance, double linear_tolerance, int linear_iterations) {
-                const ClothForces acting{dt, vector(gravity), vector(wind), vectors<Vec3>(targets), vectors<Vec3>(forces)};
+            [](Cloth &self, Array3<double> targets, Array3<double> forces, const SceneStep &settings) {
                 std::vector<ClothReport> report(1);
                 {
                     nb::gil_scoped_release release;
-                    report[0] = step_cloth(self.objective, self.state, acting,
-                                           {newton, tolerance, linear_tolerance, linear_iterations});
+                    report[0] = self.alone().step({vectors<Vec3>(targets), vectors<Vec3>(forces)}, settings);
                 }
                 return to_numpy<double>(std::move(report), {size_t(cloth_report_columns)});
             },
-            "targets"_a, "forces"_a, "dt"_a, "gravity"_a, "wind"_a, "newton"_a, "tolerance"_a, "linear_tolerance"_a,
-            "linear_iterations"_a,
+            "targets"_a, "forces"_a, "settings"_a,
             "One time step; targets: where held and attached vertices are at its end [m], shape (n, 3); forces [N], shape (n, "
             "3). "
             "Returns a report row (CLOTH_REPORT).")

@@ -14,7 +14,7 @@ void bind_groom(nb::module_ &module);
 void bind_linear(nb::module_ &module);
 void bind_rest(nb::module_ &module);
 void bind_scene(nb::module_ &module);
-void bind_contact(nb::module_ &module);
+void bind_strand(nb::module_ &module);
 
 NB_MODULE(_core, module) {
     module.doc() = "Ringlet's core: arrays in, arrays out. SI units.";
@@ -23,11 +23,11 @@ NB_MODULE(_core, module) {
         "The instruction set in use: baseline, avx2 or avx512.");
     module.def("thread_count", [] { return omp_get_max_threads(); }, "Threads that the core uses.");
     module.def("set_thread_count", [](int count) { omp_set_num_threads(count); }, nb::arg("count"));
-    bind_cloth(module);
     bind_geometry(module);
     bind_groom(module);
     bind_linear(module);
     bind_rest(module);
+    bind_strand(module);
+    bind_cloth(module);
     bind_scene(module);
-    bind_contact(module);
 }

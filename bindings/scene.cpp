@@ -1,12 +1,13 @@
-// ringlet._core: strands and their steps.
+// ringlet._core: scenes of strands, cloths and bodies that touch.
 #include "arrays.h"
-#include "ringlet/rest/standing.h"
-#include "strands.h"
+#include "cloth.h"
+#include "strand.h"
 
-#include <cmath>
-#include <cstring>
+#include "ringlet/scene/scene.h"
+
+#include <map>
 #include <nanobind/stl/array.h>
-#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -15,198 +16,241 @@ using namespace ringlet::bindings;
 
 namespace {
 
-nb::ndarray<nb::numpy, double> state_view(nb::handle self, std::vector<Vec3> &values) {
-    return {values.data()->data(), {values.size(), 3}, self};
+template <class Element, class Scalar, class Array> std::vector<Element> copied(const Array &array) {
+    const View<Element> rows = vectors<Element>(array);
+    return {rows.begin(), rows.end()};
 }
 
-nb::ndarray<nb::numpy, const double> model_view(nb::handle self, const std::vector<double> &values) {
-    return {values.data(), {values.size()}, self};
+constexpr size_t values_of_friction = 6; // slip, normal
+constexpr size_t values_of_overlap = 3;  // gap, force, activation distance
+
+using Rows = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+
+nb::dict memory_of(const SceneMemory &memory) {
+    std::vector<uint64_t> overlapping, lagged, sticking;
+    std::vector<double> overlaps, forces, friction, heights;
+    std::vector<int> penetrating;
+    for (const auto &[pair, of] : std::map<uint64_t, InitialOverlap>(memory.overlaps.begin(), memory.overlaps.end())) {
+        overlapping.push_back(pair);
+        overlaps.insert(overlaps.end(), {of.gap, of.force, of.activation});
+    }
+    for (const FrictionState &of : memory.friction) {
+        sticking.push_back(of.pair);
+        friction.insert(friction.end(), of.slip.begin(), of.slip.end());
+        friction.insert(friction.end(), of.normal.begin(), of.normal.end());
+    }
+    for (const auto &[pair, force] : memory.lagged_forces) {
+        lagged.push_back(pair);
+        forces.push_back(force);
+    }
+    for (const auto &[vertex, height] : memory.penetrations) {
+        penetrating.push_back(vertex);
+        heights.push_back(height);
+    }
+    nb::dict arrays;
+    const auto add = [&]<class Scalar>(const char *name, std::vector<Scalar> values, size_t columns) {
+        const size_t rows = values.size() / columns;
+        arrays[name] = columns == 1 ? nb::cast(to_numpy<Scalar>(std::move(values), {rows}))
+                                    : nb::cast(to_numpy<Scalar>(std::move(values), {rows, columns}));
+    };
+    add("begun", std::vector<int>{memory.begun}, 1);
+    arrays["bodies"] = to_numpy<double>(std::vector<Vec3>(memory.bodies), {memory.bodies.size(), 3});
+    add("overlap_pairs", std::move(overlapping), 1);
+    add("overlap_values", std::move(overlaps), values_of_overlap);
+    add("lagged_pairs", std::move(lagged), 1);
+    add("lagged_forces", std::move(forces), 1);
+    add("loads", memory.loads, 1);
+    add("friction_pairs", std::move(sticking), 1);
+    add("friction_values", std::move(friction), values_of_friction);
+    add("penetrating_vertices", std::move(penetrating), 1);
+    add("penetrating_heights", std::move(heights), 1);
+    add("touched", memory.touched, 1);
+    return arrays;
 }
 
-// work(name, rows, columns) for everything that a state holds.
-template <class State, class Work> void for_memory(State &state, const Work &work) {
-    work("positions", state.positions, 3);
-    work("velocities", state.velocities, 3);
-    work("normals", state.normals, 3);
-    work("twist", state.twist, 1);
-    work("directors", state.directors, 3);
-    work("last_positions", state.last_positions, 3);
-    work("last_velocities", state.last_velocities, 3);
-    work("last_strains", state.last_strains, 4);
-    work("last_dt", state.last_dt, 1);
-}
-
-nb::dict memory_of(const StrandState &state) {
-    nb::dict memory;
-    for_memory(state, [&](const char *name, const auto &rows, size_t columns) {
-        memory[name] = to_numpy<double>(std::remove_cvref_t<decltype(rows)>(rows), {rows.size(), columns});
-    });
+SceneMemory memory_from(const nb::dict &arrays) {
+    const auto list = [&]<class Scalar>(const char *name, Scalar) {
+        const View<Scalar> values = view(nb::cast<Array1<Scalar>>(arrays[name]));
+        return std::vector<Scalar>(values.begin(), values.end());
+    };
+    const auto rows = [&](const char *name, size_t columns, size_t count) {
+        const auto values = nb::cast<Rows>(arrays[name]);
+        if (values.shape(0) != count || values.shape(1) != columns)
+            throw std::invalid_argument("scene: what is to be recalled does not fit together");
+        return values;
+    };
+    const std::vector<uint64_t> overlapping = list("overlap_pairs", uint64_t()), lagged = list("lagged_pairs", uint64_t()),
+                                sticking = list("friction_pairs", uint64_t());
+    const std::vector<double> forces = list("lagged_forces", 0.0), heights = list("penetrating_heights", 0.0);
+    const std::vector<int> penetrating = list("penetrating_vertices", 0), begun = list("begun", 0);
+    const Rows overlaps = rows("overlap_values", values_of_overlap, overlapping.size()),
+               friction = rows("friction_values", values_of_friction, sticking.size());
+    if (lagged.size() != forces.size() || penetrating.size() != heights.size() || begun.size() != 1)
+        throw std::invalid_argument("scene: what is to be recalled does not fit together");
+    SceneMemory memory;
+    memory.begun = begun[0] != 0;
+    memory.bodies = copied<Vec3, double>(nb::cast<Array3<double>>(arrays["bodies"]));
+    memory.loads = list("loads", 0.0);
+    memory.touched = list("touched", 0);
+    for (size_t k = 0; k < overlapping.size(); ++k) {
+        const double *values = overlaps.data() + values_of_overlap * k;
+        memory.overlaps[overlapping[k]] = {values[0], values[1], values[2]};
+    }
+    for (size_t k = 0; k < lagged.size(); ++k) memory.lagged_forces.push_back({lagged[k], forces[k]});
+    for (size_t k = 0; k < sticking.size(); ++k) {
+        const double *values = friction.data() + values_of_friction * k;
+        memory.friction.push_back({sticking[k], Vec3(values), Vec3(values + 3)});
+    }
+    for (size_t k = 0; k < penetrating.size(); ++k) memory.penetrations.emplace_back(penetrating[k], heights[k]);
     return memory;
 }
 
-// All or nothing.
-void recall(StrandState &state, const nb::dict &memory) {
-    StrandState found = state;
-    for_memory(found, [&](const char *name, auto &rows, size_t columns) {
-        const auto values = nb::cast<nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>>(memory[name]);
-        if (values.shape(0) != rows.size() || values.shape(1) != columns)
-            throw std::invalid_argument(std::string("strands: ") + name + " to be recalled is of other strands");
-        std::memcpy(static_cast<void *>(rows.data()), values.data(), values.size() * sizeof(double));
-    });
-    state = std::move(found);
+// All rows of several arrays.
+std::vector<Vec3> joined(std::initializer_list<View<Vec3>> arrays) {
+    std::vector<Vec3> all;
+    for (const View<Vec3> rows : arrays) all.insert(all.end(), rows.begin(), rows.end());
+    return all;
+}
+
+// Vertices (k, 4), and weights, normal, distance and force (k, 9).
+nb::tuple arrays_of(const std::vector<Contact> &contacts) {
+    std::vector<int> vertices;
+    std::vector<double> values;
+    for (const Contact &c : contacts) {
+        vertices.insert(vertices.end(), c.vertex.begin(), c.vertex.end());
+        values.insert(values.end(), c.weight.begin(), c.weight.end());
+        values.insert(values.end(), c.normal.data(), c.normal.data() + 3);
+        values.insert(values.end(), {c.d_hat, c.force});
+    }
+    const size_t count = contacts.size();
+    return nb::make_tuple(to_numpy<int>(std::move(vertices), {count, 4}), to_numpy<double>(std::move(values), {count, 9}));
 }
 
 } // namespace
 
 void bind_scene(nb::module_ &module) {
-    nb::enum_<Continuation>(module, "Continuation", "How signs and turns of a curl are carried from step to step.")
-        .value("history", Continuation::history)
-        .value("least_energy", Continuation::least_energy)
-        .value("material_frame", Continuation::material_frame);
-
-    nb::enum_<Integrator>(module, "Integrator", "How velocities and rates follow from positions.")
-        .value("backward_euler", Integrator::backward_euler)
-        .value("bdf2", Integrator::bdf2);
-
-    nb::class_<Safeguards>(module, "Safeguards", "Which safeguards of `history` are on; all to begin with.")
+    nb::exception<CoupledError>(module, "CoupledError", PyExc_ValueError);
+    nb::class_<SceneContact>(module, "SceneContact", "Contact in a scene (SI units).")
         .def(nb::init<>())
-        .def_rw("flip_history", &Safeguards::flip_history)
-        .def_rw("winding_number", &Safeguards::winding_number)
-        .def_rw("straight_fade", &Safeguards::straight_fade);
+        .def_rw("strand_radius", &SceneContact::strand_radius)
+        .def_rw("strand_material", &SceneContact::strand_material)
+        .def_rw("friction", &SceneContact::friction)
+        .def_rw("stiffness", &SceneContact::stiffness)
+        .def_rw("creep_speed", &SceneContact::creep_speed)
+        .def_rw("parting_speed", &SceneContact::parting_speed);
 
-    nb::class_<StrandMaterial>(module, "StrandMaterial", "What a lock is made of (SI units); a hair's values.")
-        .def(nb::init<>())
-        .def_rw("youngs_modulus", &StrandMaterial::youngs_modulus)
-        .def_rw("radius", &StrandMaterial::radius)
-        .def_rw("density", &StrandMaterial::density)
-        .def_rw("stretch_scale", &StrandMaterial::stretch_scale)
-        .def_rw("bend_scale", &StrandMaterial::bend_scale)
-        .def_rw("twist_ratio", &StrandMaterial::twist_ratio)
-        .def_rw("limit_twist", &StrandMaterial::limit_twist)
-        .def_rw("damping", &StrandMaterial::damping)
-        .def_rw("mass_damping", &StrandMaterial::mass_damping)
-        .def_rw("drag", &StrandMaterial::drag)
-        .def_rw("correct_resolution", &StrandMaterial::correct_resolution);
-
-    nb::class_<Strands>(module, "Strands", "Strands at rest in their rest shape, ready to be stepped.")
+    nb::class_<BodyModel>(module, "BodyModel", "A surface that moves as it is told.")
         .def(
             "__init__",
-            [](Strands *self, Array1<int> offsets, Array3<double> rest, Array1<unsigned char> held,
-               const StrandMaterial &material, Array1<double> radius, Array1<double> stretch, Array1<double> bend,
-               Array1<double> twist, Array1<double> damping) {
-                const StrandVariation variation{view(radius), view(stretch), view(bend), view(twist), view(damping)};
-                StrandModel model = make_strand_model(view(offsets), vectors<Vec3>(rest), view(held), material, variation);
-                new (self) Strands(std::move(model), vectors<Vec3>(rest));
+            [](BodyModel *self, Array3<double> rest, Array3<int> triangles, double thickness, int material) {
+                new (self) BodyModel{copied<Vec3, double>(rest), copied<Triangle, int>(triangles), thickness, material};
             },
-            "offsets"_a, "rest"_a, "held"_a, "material"_a, "radius"_a, "stretch"_a, "bend"_a, "twist"_a, "damping"_a,
-            "offsets: shape (count + 1,) int32; rest: rest shape [m], shape (n, 3); held: 1 where a vertex follows its target, "
-            "(n,) uint8; "
-            "then factors on the material, each of shape (n,) or empty.")
-        .def_prop_ro(
-            "positions", [](nb::object self) { return state_view(self, nb::cast<Strands &>(self).state().positions); },
-            "Positions [m], shape (n, 3): the solver's own memory, changed by step().")
-        .def_prop_ro(
-            "velocities", [](nb::object self) { return state_view(self, nb::cast<Strands &>(self).state().velocities); },
-            "Velocities [m/s], shape (n, 3): the solver's own memory.")
-        .def_prop_ro(
-            "directors", [](nb::object self) { return state_view(self, nb::cast<Strands &>(self).state().directors); },
-            "Directors of the material frame, one per edge from the second of each strand on, shape (n, 3): the solver's own "
-            "memory.")
-        .def_prop_ro(
-            "masses", [](nb::object self) { return model_view(self, nb::cast<Strands &>(self).model.mass); },
-            "Masses [kg], shape (n,).")
-        .def_prop_ro(
-            "drag", [](nb::object self) { return model_view(self, nb::cast<Strands &>(self).model.drag); },
-            "Air drag [kg/s], shape (n,).")
-        .def_prop_ro(
-            "stretch_stiffness",
-            [](nb::object self) { return model_view(self, nb::cast<Strands &>(self).model.stretch_stiffness); },
-            "EA / l̄ of the edge that begins at each vertex [N/m], shape (n,).")
-        .def_prop_ro(
-            "bend_stiffness", [](nb::object self) { return model_view(self, nb::cast<Strands &>(self).model.bend_stiffness); },
-            "EI / l̄ at each vertex [N m], shape (n,).")
-        .def_prop_ro(
-            "twist_stiffness",
-            [](nb::object self) { return model_view(self, nb::cast<Strands &>(self).model.twist_stiffness); },
-            "c EI / l̄ of the edge that begins at each vertex [N m], shape (n,).")
+            "rest"_a, "triangles"_a, "thickness"_a, "material"_a);
+
+    nb::class_<SceneCloth>(module, "SceneCloth",
+                           "A cloth in a scene, with its material there and the body that it is pinned to.")
         .def(
-            "place", [](Strands &self, Array3<double> positions) { self.place(vectors<Vec3>(positions)); }, "positions"_a,
-            "Puts the strands at rest at these positions [m], shape (n, 3), and forgets their history.")
+            "__init__",
+            [](SceneCloth *self, Cloth &cloth, int material, int pinned_to) {
+                new (self) SceneCloth{cloth.model.get(), &cloth.state, material, pinned_to};
+            },
+            "cloth"_a, "material"_a, "pinned_to"_a, nb::keep_alive<1, 2>());
+
+    nb::class_<Scene>(module, "Scene", "Strands, cloths and bodies that touch. Strands and cloths must outlive it.")
+        .def(
+            "__init__",
+            [](Scene *self, Strands &strands, const std::vector<SceneCloth> &cloths, const std::vector<BodyModel> &bodies,
+               const std::vector<int> &rooted_in, const SceneContact &contact) {
+                new (self) Scene(strands.model, strands.state(), cloths, bodies, rooted_in, contact);
+            },
+            "strands"_a, "cloths"_a, "bodies"_a, "rooted_in"_a, "contact"_a, nb::keep_alive<1, 2>())
         .def(
             "step",
-            [](Strands &self, Array3<double> targets, Array3<double> forces, double dt, std::array<double, 3> gravity,
-               std::array<double, 3> wind, int newton, double tolerance, Continuation continuation, Integrator integrator,
-               const Safeguards &safeguards) {
-                StrandStep step;
-                step.dt = dt;
-                std::copy(gravity.begin(), gravity.end(), step.gravity);
-                std::copy(wind.begin(), wind.end(), step.wind);
-                step.newton = newton;
-                step.tolerance = tolerance;
-                step.continuation = continuation;
-                step.integrator = integrator;
-                step.safeguards = safeguards;
+            [](Scene &self, Array3<double> targets, Array3<double> forces, Array3<double> cloth_targets,
+               Array3<double> cloth_forces, Array3<double> body_targets, const SceneStep &settings) {
+                const std::vector<Vec3> all_targets =
+                    joined({vectors<Vec3>(targets), vectors<Vec3>(cloth_targets), vectors<Vec3>(body_targets)});
+                const std::vector<Vec3> all_forces = joined({vectors<Vec3>(forces), vectors<Vec3>(cloth_forces)});
+                std::vector<StrandReport> of_strands;
+                std::vector<ClothReport> of_cloths;
+                SceneReport report;
                 {
                     nb::gil_scoped_release release;
-                    step_strands(self.model, self.state(), vectors<Vec3>(targets), vectors<Vec3>(forces), step, self.reports);
+                    report = self.step({all_targets, all_forces}, settings, of_strands, of_cloths);
                 }
-                const size_t rows = self.reports.size();
-                return to_numpy<double>(std::vector<StrandReport>(self.reports), {rows, size_t(strand_report_columns)});
+                const size_t strands = of_strands.size(), cloths = of_cloths.size();
+                return nb::make_tuple(to_numpy<double>(std::vector<SceneReport>{report}, {size_t(scene_report_columns)}),
+                                      to_numpy<double>(std::move(of_strands), {strands, size_t(strand_report_columns)}),
+                                      to_numpy<double>(std::move(of_cloths), {cloths, size_t(cloth_report_columns)}));
             },
-            "targets"_a, "forces"_a, "dt"_a, "gravity"_a, "wind"_a, "newton"_a, "tolerance"_a, "continuation"_a, "integrator"_a,
-            "safeguards"_a,
-            "One time step; targets: where held vertices are at its end [m], shape (n, 3). Returns one report row per strand "
-            "(REPORT).")
+            "targets"_a, "forces"_a, "cloth_targets"_a, "cloth_forces"_a, "body_targets"_a, "settings"_a,
+            "One time step. Returns the scene's report (SCENE_REPORT), one report row per strand (REPORT) and one per cloth "
+            "(CLOTH_REPORT).")
         .def_prop_ro(
-            "memory", [](Strands &self) { return memory_of(self.state()); },
-            "All that the next step depends on besides the model, as arrays by name.")
+            "positions",
+            [](const Scene &self) {
+                const View<Vec3> all = self.positions();
+                return to_numpy<double>(std::vector<Vec3>(all.begin(), all.end()), {all.size(), 3});
+            },
+            nb::rv_policy::automatic, "Positions [m] of all vertices, strands, cloths, bodies, shape (n, 3).")
         .def(
-            "recall", [](Strands &self, const nb::dict &memory) { recall(self.state(), memory); }, "memory"_a,
-            "Goes back to a memory of the same strands.")
+            "allow_penetration",
+            [](Scene &self, Array1<int> vertices, int body) {
+                for (const int vertex : view(vertices)) self.allow_penetration(vertex, body);
+            },
+            "vertices"_a, "body"_a,
+            "Exempts vertices of strands, shape (k,) int32, from contact with a body until they have come out of it.")
+        .def_prop_ro("penetrating", &Scene::penetrating, "Number of vertices that are still exempt.")
+        .def("place", &Scene::place, "Takes the positions of strands and cloths that were placed since the last step.")
+        .def_prop_ro(
+            "memory", [](const Scene &self) { return memory_of(self.memory()); },
+            "All that the next step depends on besides the memories of strands and cloths, as arrays by name.")
         .def(
-            "stiffness_to_stand",
-            [](Strands &self, Array1<double> left, double most) {
-                const StrandModel &m = self.model;
-                if (int(left.shape(0)) != m.strand_count()) throw std::invalid_argument("strands: left does not fit them");
-                const StrandState &state = self.state();
-                const StillStrands still{m.offsets.data(),
-                                         m.held.data(),
-                                         state.positions.data()->data(),
-                                         state.directors.data()->data(),
-                                         m.rest_length.data(),
-                                         m.rest_angle.data(),
-                                         m.rest_dihedral.data(),
-                                         m.stretch_stiffness.data(),
-                                         m.bend_stiffness.data(),
-                                         m.twist_stiffness.data()};
-                std::vector<double> factors(m.strand_count());
+            "recall", [](Scene &self, const nb::dict &memory) { self.recall(memory_from(memory)); }, "memory"_a,
+            "Goes back to a memory of a scene that was made in the same way.")
+        .def("record", &Scene::record, "on"_a, "Keeps the path of each step from now on.")
+        .def_prop_ro(
+            "path",
+            [](const Scene &self) {
+                std::vector<Vec3> all;
+                for (const std::vector<Vec3> &stop : self.path()) all.insert(all.end(), stop.begin(), stop.end());
+                const size_t stops = self.path().size(), vertices = self.positions().size();
+                return to_numpy<double>(std::move(all), {stops, vertices, 3});
+            },
+            nb::rv_policy::automatic,
+            "Positions [m] of all vertices at the start and after each move of the last step, shape (k, n, 3).")
+        .def_prop_ro(
+            "contacts", [](const Scene &self) { return arrays_of(self.contacts()); }, nb::rv_policy::automatic,
+            "Of the last step's end: vertices (k, 4), and weights, normal, distance and force (k, 9).")
+        .def(
+            "set_initial_forces",
+            [](Scene &self, nb::ndarray<const int, nb::shape<-1, 4>, nb::c_contig, nb::device::cpu> vertices,
+               Array3<double> forces) {
+                if (vertices.shape(0) != forces.shape(0)) throw std::invalid_argument("scene: as many forces as pairs");
+                std::vector<InitialForce> initial;
+                for (size_t k = 0; k < vertices.shape(0); ++k) {
+                    const int *of = vertices.data() + 4 * k;
+                    initial.push_back({{of[0], of[1], of[2], of[3]}, vectors<Vec3>(forces)[k]});
+                }
+                self.set_initial_forces(std::move(initial));
+            },
+            "vertices"_a, "forces"_a,
+            "Before the first step: the forces of pairs of four vertices on the first of the two [N], shape (k, 3): along the "
+            "normal; tangential, towards the last vertex from the one before; along the cross product of both.")
+        .def(
+            "touching",
+            [](Scene &self) {
+                std::vector<Contact> found;
                 {
                     nb::gil_scoped_release release;
-                    stiffness_to_stand(m.strand_count(), still, left.data(), most, factors.data());
+                    found = self.touching();
                 }
-                const size_t count = factors.size();
-                return to_numpy<double>(std::move(factors), {count});
+                return arrays_of(found);
             },
-            "left"_a, "most"_a,
-            "How many times stiffer against bend and twist each strand, still where it is now, must be to stand and to keep "
-            "its "
-            "part of `left`, shape (count,), of how it resists these without load; infinite where `most` times are not enough.")
-        .def(
-            "energy",
-            [](Strands &self, Array3<double> positions, Continuation continuation, bool hessian) {
-                std::vector<Vec3> gradient;
-                std::vector<double> dense;
-                const double energy = strand_energy(self.model, self.state(), continuation, vectors<Vec3>(positions), gradient,
-                                                    hessian ? &dense : nullptr);
-                const size_t n = positions.shape(0), size = hessian ? size_t(std::lround(std::sqrt(double(dense.size())))) : 0;
-                return nb::make_tuple(energy, to_numpy<double>(std::move(gradient), {n, 3}),
-                                      to_numpy<double>(std::move(dense), {size, size}));
-            },
-            "positions"_a, "continuation"_a, "hessian"_a = false,
-            "Elastic energy [J], its gradient [N] and the clamped Hessian of a single strand, with signs and turns carried "
-            "from the state.");
+            "Contacts at the present positions, without a step; their forces have no meaning.");
 
-    nb::tuple names = nb::make_tuple("newton", "cuts", "residual", "unconverged", "stretch", "bend", "twist", "gravity",
-                                     "kinetic", "max_stretch", "flips", "winding_changes", "too_straight", "clamped", "nan");
-    module.attr("REPORT") = names;
+    module.attr("SCENE_REPORT") =
+        nb::make_tuple("newton", "cuts", "residual", "unconverged", "linear_iterations", "linear_residual", "candidates",
+                       "contacts", "closest", "violations", "zone_vertices", "substeps", "fraction", "time_pairs",
+                       "time_assemble", "time_solve", "time_search", "time_filter");
 }

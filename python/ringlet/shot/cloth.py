@@ -61,6 +61,14 @@ class ClothSolver(Section):
     )
     linear_iterations: int = Field(default=2000, ge=1, le=100000, description="conjugate gradients per system, at most")
 
+    def for_core(self, dt: float, gravity: Vector, wind: Vector) -> _core.StepSettings:
+        """A step of ``dt`` [s] under gravity [m/s²] and wind [m/s], for the core."""
+        step = _core.StepSettings()
+        step.dt, step.gravity, step.wind = dt, gravity, wind
+        for name, value in self:
+            setattr(step, name, value)
+        return step
+
 
 class Cloth:
     """Cloth in motion, at rest in its rest shape to begin with.
@@ -143,13 +151,7 @@ class Cloth:
         row = self._core.step(
             np.ascontiguousarray(targets, np.float64),
             self._no_forces if forces is None else np.ascontiguousarray(forces, np.float64),
-            dt,
-            gravity,
-            wind,
-            solver.newton,
-            solver.tolerance,
-            solver.linear_tolerance,
-            solver.linear_iterations,
+            solver.for_core(dt, gravity, wind),
         )
         return dict(zip(_core.CLOTH_REPORT, row.tolist(), strict=True))
 

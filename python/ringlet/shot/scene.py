@@ -128,10 +128,14 @@ class Scene:
 
     def recall(self, memory: Mapping[str, NDArray[Any]]) -> None:
         """Goes back to a memory of a scene that was made in the same way."""
-        self._core.recall({name: values for name, values in memory.items() if not name.startswith("cloth_")})
         for k, cloth in enumerate(self.cloths):
             for name in _OF_CLOTH:
                 getattr(cloth, name)[:] = memory[f"cloth_{k}_{name}"]
+        self._core.recall({name: values for name, values in memory.items() if not name.startswith("cloth_")})
+
+    def place(self) -> None:
+        """Takes the positions of strands and cloths that were placed elsewhere since the last step."""
+        self._core.place()
 
     @property
     def path(self) -> NDArray[np.float64]:
@@ -147,12 +151,12 @@ class Scene:
 
     def excuse(self, vertices: NDArray[np.integer], body: int) -> None:
         """Lets vertices of strands be inside a body until they have been pushed out of it, gently."""
-        self._core.excuse(np.ascontiguousarray(vertices, np.int32), body)
+        self._core.allow_penetration(np.ascontiguousarray(vertices, np.int32), body)
 
     @property
     def excused(self) -> int:
         """How many vertices are still inside a body, excused."""
-        return self._core.excused
+        return self._core.penetrating
 
     @property
     def contacts(self) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
@@ -174,7 +178,7 @@ class Scene:
         forces:   on the first of the two [N], shape (k, 3): away from the second; across, towards the last vertex from
                   the one before, as far as that goes; across both
         """
-        self._core.bear(np.ascontiguousarray(vertices, np.int32), np.ascontiguousarray(forces, np.float64))
+        self._core.set_initial_forces(np.ascontiguousarray(vertices, np.int32), np.ascontiguousarray(forces, np.float64))
 
     @property
     def touches(self) -> Touches:
@@ -222,13 +226,7 @@ class Scene:
                 _rows([cloth.positions for cloth in self.cloths] if cloths is None else cloths, np.zeros((0, 3))),
                 _rows(cloth_forces, np.zeros((moving - strands, 3))),
                 _rows(bodies, now[moving:]),
-                dt,
-                gravity,
-                wind,
-                *solver.for_core(),
-                getattr(_core.System, solver.system),
-                solver.linear_tolerance,
-                solver.extra,
+                solver.for_core(dt, gravity, wind),
             )
         except _core.CoupledError as error:
             raise UserError(

@@ -131,13 +131,21 @@ class Solver(Section):
         """Newton iterations per step, at most."""
         return MOST_ITERATIONS if self.until_converged else self.newton
 
-    def for_core(self) -> tuple[int, float, _core.Continuation, _core.Integrator, _core.Safeguards]:
-        """Iterations, tolerance, model, integrator and safeguards, as a step of the core takes them."""
+    def for_core(self, dt: float, gravity: Vector, wind: Vector) -> _core.StepSettings:
+        """A step of ``dt`` [s] under gravity [m/s²] and wind [m/s], for the core."""
+        step = _core.StepSettings()
+        step.dt, step.gravity, step.wind = dt, gravity, wind
+        for name in ("tolerance", "linear_tolerance", "extra"):
+            setattr(step, name, getattr(self, name))
+        step.newton = self.iterations
+        step.continuation = getattr(_core.Continuation, self.continuation)
+        step.integrator = getattr(_core.Integrator, self.integrator)
+        step.system = getattr(_core.System, self.system)
         safeguards = _core.Safeguards()
         for name in SAFEGUARDS:
             setattr(safeguards, name, name in self.safeguards)
-        continuation = getattr(_core.Continuation, self.continuation)
-        return self.iterations, self.tolerance, continuation, getattr(_core.Integrator, self.integrator), safeguards
+        step.safeguards = safeguards
+        return step
 
 
 VARIATIONS = ("radius", "stretch", "bend", "twist", "damping")
@@ -237,10 +245,7 @@ class Strands:
         rows = self._core.step(
             np.ascontiguousarray(targets, np.float64),
             self._no_forces if forces is None else np.ascontiguousarray(forces, np.float64),
-            dt,
-            gravity,
-            wind,
-            *solver.for_core(),
+            solver.for_core(dt, gravity, wind),
         )
         return dict(zip(_core.REPORT, rows.T, strict=True))
 

@@ -5,244 +5,148 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 
 namespace ringlet {
 namespace {
 
-constexpr double least_room = 0.01; // of its distance, in which a pair that began near comes to bear
+constexpr double least_loaded_fraction = 0.01;
 
-// Ascending as pairs are, and as the contacts of one pair are.
-constexpr int places_of_pair = 7; // at most
-uint64_t name(const Touch &touch, int which = 0) {
-    return uint64_t(!touch.of_edges) << 63 | uint64_t(touch.of[0]) << 33 | uint64_t(touch.of[1]) << 3 | uint64_t(which);
-}
-
-// Where a pair pushes, and with what share of its stiffness.
-struct Place {
-    ClosestPoints nearest;
-    double share;
-    int which;
-};
-
-// The nearest points of two edges that are almost parallel jump from end to end as they turn. What pushes there is shared out
-// among the ends of both, each with what is nearest on the other edge, and nothing jumps. On a surface, points do this. Calls
-// work with each place, in order.
-template <class Work> void for_places(const CollisionMesh &mesh, const Touch &touch, View<Vec3> now, const Work &work) {
-    constexpr double almost = 0.01; // sin² of the angle
-    if (!touch.of_edges || std::max(touch.of[0], touch.of[1]) >= mesh.strand_edges) return work(Place{touch.nearest, 1.0, 0});
-    const auto [a0, a1] = mesh.edges[touch.of[0]];
-    const auto [b0, b1] = mesh.edges[touch.of[1]];
-    const Vec3 a = now[a1] - now[a0], b = now[b1] - now[b0];
-    const double aa = a.squaredNorm(), bb = b.squaredNorm(), sine2 = a.cross(b).squaredNorm();
-    const double s = std::min(sine2 / (almost * aa * bb + 1e-300), 1.0), crossing = s * s * (3.0 - 2.0 * s);
-    if (crossing > 0.0) work(Place{touch.nearest, crossing, 0});
-    if (crossing == 1.0) return;
-    const double share = 0.5 * (1.0 - crossing); // two of the four ends are beside the other edge, as a rule
-    const auto at = [&](double u, double v, int which) {
-        work(Place{{{1.0 - u, u, v - 1.0, -v}, (now[a0] + u * a - now[b0] - v * b).squaredNorm()}, share, which});
-    };
-    for (const double end : {0.0, 1.0}) at(end, closest::fraction((now[a0] + end * a - now[b0]).dot(b), bb), 1 + int(end));
-    for (const double end : {0.0, 1.0}) at(closest::fraction((now[b0] + end * b - now[a0]).dot(a), aa), end, 3 + int(end));
-}
-
-// Which vertices a pair has, and with what weights they say where it touches.
-struct Sides {
-    std::array<int, 4> vertex;
-    std::array<double, 4> weight;
-    int first; // of these are the first's
-};
-
-Sides sides(const CollisionMesh &mesh, const Touch &touch, const ClosestPoints &nearest) {
-    Sides sides{{}, nearest.weights, touch.of_edges ? 2 : 1};
-    with_vertices(mesh, touch, [&](const auto &a, const auto &b) {
-        std::copy(b.begin(), b.end(), std::copy(a.begin(), a.end(), sides.vertex.begin()));
-    });
-    return sides;
-}
-
-// Of its softer side. What is held, beside what moves, is as soft as that: where one end of an edge is held, and touches, the
-// other is not to be pushed without bound.
-double stiffness(const Sides &sides, const ContactMaterial &material) {
-    const auto of_side = [&](int begin, int end) {
-        double softest = std::numeric_limits<double>::infinity(), softness = 0.0;
-        for (int i = begin; i < end; ++i) softest = std::min(softest, material.stiffness[sides.vertex[i]]);
-        for (int i = begin; i < end; ++i) {
-            const double own = material.stiffness[sides.vertex[i]];
-            softness += std::abs(sides.weight[i]) / (std::isfinite(own) ? own : softest);
-        }
-        return 1.0 / softness;
-    };
-    return std::min(of_side(0, sides.first), of_side(sides.first, 4));
-}
-
-// Work for those of `now` whose pairs `before` has, both in order.
+// Calls work(known, found) for each of `found` whose name `before` has; both are sorted by name.
 template <class Known, class Found, class Work>
-void for_known(const std::vector<Known> &before, std::vector<Found> &now, const Work &work) {
+void for_known(const std::vector<Known> &before, std::vector<Found> &found, const Work &work) {
     auto known = before.begin();
-    for (Found &found : now) {
-        while (known != before.end() && known->pair < found.pair) ++known;
+    for (Found &now : found) {
+        while (known != before.end() && known->pair < now.pair) ++known;
         if (known == before.end()) return;
-        if (known->pair == found.pair) work(*known, found);
+        if (known->pair == now.pair) work(*known, now);
     }
 }
 
-// Without what depends on from where on it pushes.
-Contact contact(const CollisionMesh &mesh, const ContactMaterial &material, const Touch &touch, const Place &place,
-                View<Vec3> now) {
-    const Sides of = sides(mesh, touch, place.nearest);
+// The contact of a pair at one of its points, but for what depends on the activation distance.
+Contact contact_at(const CollisionMesh &mesh, const ContactMaterial &material, const Touch &pair, const ContactPoint &point,
+                   View<Vec3> positions) {
+    const Stencil at = stencil(mesh, pair, point.closest);
     Contact contact{};
-    contact.vertex = of.vertex, contact.weight = of.weight, contact.first = of.first;
-    contact.normal = separation(contact, now) / std::sqrt(place.nearest.distance2);
-    contact.stiffness = place.share * stiffness(of, material);
-    contact.friction =
-        material.friction[material.material[of.vertex[0]] * material.materials + material.material[of.vertex[3]]];
-    contact.give = material.give;
-    contact.pair = name(touch, place.which);
+    contact.vertex = at.vertex, contact.weight = at.weight, contact.first = at.first;
+    contact.normal = separation(contact, positions) / std::sqrt(point.closest.distance2);
+    contact.stiffness = point.share * pair_stiffness(at, material);
+    contact.friction = material.friction_of(at.vertex[0], at.vertex[3]);
+    contact.stick_length = material.stick_length;
+    contact.pair = contact_name(pair, point.number);
     return contact;
 }
 
-// How far a contact is sheared that bears and holds with such a force, which is told as Bearing tells it.
-Vec3 shear_to_hold(const Contact &contact, View<Vec3> now, const Vec3 &force) {
-    const Vec3 way = now[contact.vertex[3]] - now[contact.vertex[2]];
-    const Vec3 aside = (way - contact.normal.dot(way) * contact.normal).normalized();
-    const Vec3 holds = force[1] * aside + force[2] * contact.normal.cross(aside);
-    const double most = contact.friction * force[0], length = holds.norm();
-    if (!(most > 0.0 && length > 0.0)) return Vec3::Zero();
-    return -sheared_to_hold(std::min(length / most, 1.0)) * contact.give / length * holds;
+// The slip at which friction holds a force, given as InitialForce gives it.
+Vec3 slip_of_force(const Contact &contact, View<Vec3> positions, const Vec3 &force) {
+    const Vec3 edge = positions[contact.vertex[3]] - positions[contact.vertex[2]];
+    const Vec3 tangent = (edge - contact.normal.dot(edge) * contact.normal).normalized();
+    const Vec3 held = force[1] * tangent + force[2] * contact.normal.cross(tangent);
+    const double limit = contact.friction * force[0], length = held.norm();
+    if (!(limit > 0.0 && length > 0.0)) return Vec3::Zero();
+    return -slip_to_hold(std::min(length / limit, 1.0)) * contact.stick_length / length * held;
 }
 
-// A pair goes on from what it held as the step began, which turns with it.
-void go_on(const Hold &held, Contact &contact) {
-    const Mat3 turn = Eigen::Quaterniond::FromTwoVectors(held.normal, contact.normal).toRotationMatrix();
-    contact.start = turn * (contact.start - held.shear);
+// The slip that was held as the step began turns with the contact.
+void resume_slip(const FrictionState &before, Contact &contact) {
+    const Mat3 turn = Eigen::Quaterniond::FromTwoVectors(before.normal, contact.normal).toRotationMatrix();
+    contact.reference = turn * (contact.reference - before.slip);
 }
 
 } // namespace
 
 void ContactSet::begin(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<Touch> &touching,
-                       View<Bearing> bearing, View<Vec3> now) {
+                       View<InitialForce> initial, View<Vec3> positions) {
     std::map<std::array<int, 4>, Vec3> forces;
-    for (const Bearing &bears : bearing) forces[bears.vertex] = bears.force;
-    early_.clear(), expected_.clear(), held_.clear();
-    for (const Touch &touch : touching) {
-        const Sides of = sides(mesh, touch, touch.nearest);
-        const double apart = std::sqrt(touch.nearest.distance2);
-        Beginning &early = early_[name(touch)] = {apart, 0.0, apart};
-        const auto force = forces.find(of.vertex);
-        if (force == forces.end() || !(apart > 0.0 && force->second[0] > 0.0)) continue;
-        early.bears = force->second[0];
-        for_places(mesh, touch, now, [&](const Place &place) {
-            const Contact bears = contact(mesh, material, touch, place, now);
-            expected_.push_back({bears.pair, place.share * early.bears});
-            held_.push_back({bears.pair, shear_to_hold(bears, now, force->second), bears.normal});
+    for (const InitialForce &of : initial) forces[of.vertex] = of.force;
+    overlaps.clear(), lagged_.clear(), friction_.clear();
+    for (const Touch &pair : touching) {
+        const double gap = std::sqrt(pair.nearest.distance2);
+        const auto force = forces.find(stencil(mesh, pair, pair.nearest).vertex);
+        const bool bears = force != forces.end() && gap > 0.0 && force->second[0] > 0.0;
+        overlaps.add(contact_name(pair), gap, bears ? force->second[0] : 0.0);
+        if (!bears) continue;
+        for_contact_points(mesh, pair, positions, [&](const ContactPoint &point) {
+            const Contact contact = contact_at(mesh, material, pair, point, positions);
+            lagged_.push_back({contact.pair, point.share * force->second[0]});
+            friction_.push_back({contact.pair, slip_of_force(contact, positions, force->second), contact.normal});
         });
     }
 }
 
-void ContactSet::part_early(double way) {
-    for (auto &[pair, early] : early_) early.push = early.apart += way;
-}
-
-void ContactSet::stay_early(const std::vector<Touch> &touching, View<Vec3> now, double way) {
-    constexpr double nearest = 0.01;
-    for (auto &[pair, early] : early_) early.bears = 0.0;
+void ContactSet::commit_friction(View<Vec3> positions) {
+    friction_.clear();
     for (const Contact &contact : contacts_) {
-        const auto early = early_.find(contact.pair & ~uint64_t(places_of_pair));
-        if (early != early_.end()) early->second.bears += contact_force(contact, separation(contact, now));
-    }
-    Early stay;
-    for (const Touch &touch : touching) {
-        const auto found = early_.find(name(touch));
-        if (found == early_.end()) continue;
-        Beginning &early = stay[found->first] = found->second;
-        const double least = nearest * touch.distance;
-        if (early.apart < least) early.apart = std::min(early.apart + way, least);
-    }
-    early_ = std::move(stay);
-}
-
-void ContactSet::hold(View<Vec3> now) {
-    held_.clear();
-    for (const Contact &contact : contacts_) {
-        const Vec3 sheared = shear(contact, separation(contact, now));
-        const double length = sheared.norm();
-        held_.push_back(
-            {contact.pair, length > contact.give ? Vec3(contact.give / length * sheared) : sheared, contact.normal});
+        const Vec3 u = slip(contact, separation(contact, positions));
+        const double length = u.norm(), most = contact.stick_length;
+        friction_.push_back({contact.pair, length > most ? Vec3(most / length * u) : u, contact.normal});
     }
 }
 
-// Calls work(where it pushes, at what distance, from which distance on [m], where its barrier ends [m], what part of its
-// distance it has to come to bear).
+// Calls work(point, gap, activation distance, barrier end, loaded fraction) for the points of a pair that push.
 template <class Work>
-void ContactSet::for_pushing(const CollisionMesh &mesh, const Touch &touch, View<Vec3> now, const Work &work) const {
-    const auto early = early_.find(name(touch));
-    double distance = touch.distance, room = 1.0;
-    if (early != early_.end() && early->second.apart < touch.distance) {
-        distance = std::min(distance, early->second.push);
-        if (early->second.bears > 0.0) room = std::max(1.0 - early->second.apart / touch.distance, least_room);
+void ContactSet::for_active_points(const CollisionMesh &mesh, const Touch &pair, View<Vec3> positions, const Work &work) const {
+    double d_hat = pair.distance, loaded = 1.0;
+    if (const InitialOverlap *overlap = overlaps.find(pair)) {
+        d_hat = std::min(d_hat, overlap->activation);
+        if (overlap->force > 0.0) loaded = std::max(1.0 - overlap->gap / pair.distance, least_loaded_fraction);
     }
-    const bool by_planes = with_vertices(mesh, touch, [&](const auto &a, const auto &b) {
-        return goes_by_planes(mesh.object[a[0]]) || goes_by_planes(mesh.object[b[0]]);
+    const bool by_planes = with_vertices(mesh, pair, [&](const auto &a, const auto &b) {
+        return uses_planes(mesh.object[a[0]]) || uses_planes(mesh.object[b[0]]);
     });
-    for_places(mesh, touch, now, [&](const Place &place) {
-        const double apart = std::sqrt(place.nearest.distance2);
-        if (!(apart > 0.0 && apart < distance)) return;
-        double barrier_end = distance / 100;
-        if (by_planes) barrier_end = std::min(std::clamp(0.25 * apart, barrier_end, touch.distance / 64), distance / 64);
-        work(place, apart, distance, barrier_end, room);
+    for_contact_points(mesh, pair, positions, [&](const ContactPoint &point) {
+        const double gap = std::sqrt(point.closest.distance2);
+        if (!(gap > 0.0 && gap < d_hat)) return;
+        double barrier_end = d_hat / 100;
+        if (by_planes) barrier_end = std::min(std::clamp(0.25 * gap, barrier_end, pair.distance / 64), d_hat / 64);
+        work(point, gap, d_hat, barrier_end, loaded);
     });
 }
 
-std::vector<Contact> ContactSet::of_touching(const CollisionMesh &mesh, const ContactMaterial &material,
-                                             const std::vector<Touch> &touching, View<Vec3> start, View<Vec3> now) const {
+std::vector<Contact> ContactSet::linearise(const CollisionMesh &mesh, const ContactMaterial &material,
+                                           const std::vector<Touch> &touching, View<Vec3> start, View<Vec3> positions) const {
     std::vector<Contact> found = collect<Contact>(int(touching.size()), [&](int k, std::vector<Contact> &contacts) {
-        const Touch &touch = touching[k];
-        for_pushing(mesh, touch, now, [&](const Place &place, double apart, double distance, double barrier_end, double room) {
-            Contact contact = ringlet::contact(mesh, material, touch, place, now);
-            contact.distance = distance;
-            contact.barrier_end = barrier_end;
-            contact.room = room;
-            contact.start = separation(contact, start);
-            contact.gap = apart;
-            contact.force = contact_force(contact, separation(contact, now));
-            contacts.push_back(contact);
-        });
+        for_active_points(mesh, touching[k], positions,
+                          [&](const ContactPoint &point, double gap, double d_hat, double barrier_end, double loaded) {
+                              Contact contact = contact_at(mesh, material, touching[k], point, positions);
+                              contact.d_hat = d_hat;
+                              contact.barrier_end = barrier_end;
+                              contact.loaded_fraction = loaded;
+                              contact.reference = separation(contact, start);
+                              contact.gap = gap;
+                              contact.force = normal_force(contact, separation(contact, positions));
+                              contacts.push_back(contact);
+                          });
     });
-    for_known(held_, found, go_on);
+    for_known(friction_, found, resume_slip);
     return found;
 }
 
-std::vector<ContactSet::Push> ContactSet::pushing(const CollisionMesh &mesh, const ContactMaterial &material,
-                                                  const std::vector<Touch> &touching, View<Vec3> elsewhere) const {
-    std::vector<Push> found = collect<Push>(int(touching.size()), [&](int k, std::vector<Push> &pushes) {
-        const Touch &touch = touching[k];
-        for_pushing(mesh, touch, elsewhere, [&](const Place &place, double apart, double distance, double barrier_end, double) {
-            const Sides of = sides(mesh, touch, place.nearest);
-            pushes.push_back({name(touch, place.which),
-                              {mesh.object[of.vertex[0]], mesh.object[of.vertex[3]]},
-                              place.share * stiffness(of, material),
-                              contact_potential(apart, distance, barrier_end).value});
-        });
+std::vector<PairEnergy> ContactSet::energies(const CollisionMesh &mesh, const ContactMaterial &material,
+                                             const std::vector<Touch> &touching, View<Vec3> positions) const {
+    std::vector<PairEnergy> found = collect<PairEnergy>(int(touching.size()), [&](int k, std::vector<PairEnergy> &energies) {
+        const Touch &pair = touching[k];
+        for_active_points(mesh, pair, positions,
+                          [&](const ContactPoint &point, double gap, double d_hat, double barrier_end, double) {
+                              const Stencil at = stencil(mesh, pair, point.closest);
+                              energies.push_back({contact_name(pair, point.number),
+                                                  {mesh.object[at.vertex[0]], mesh.object[at.vertex[3]]},
+                                                  point.share * pair_stiffness(at, material),
+                                                  barrier(gap, d_hat, barrier_end).value});
+                          });
     });
-    for_known(contacts_, found, [](const Contact &contact, Push &there) { there.stiffness = contact.stiffness; });
+    for_known(contacts_, found, [](const Contact &contact, PairEnergy &there) { there.stiffness = contact.stiffness; });
     return found;
 }
 
 void ContactSet::find(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<Touch> &touching,
-                      View<Vec3> start, View<Vec3> now) {
-    for (const Touch &touch : touching) {
-        const auto found = early_.find(name(touch));
-        if (found == early_.end()) continue;
-        Beginning &early = found->second; // stays the same until contacts are found again, whatever stiffness is then
-        early.push = distance_to_bear(early.bears / stiffness(sides(mesh, touch, touch.nearest), material), early.apart);
-    }
-    std::vector<Contact> found = of_touching(mesh, material, touching, start, now);
-    for_known(expected_, found, [](const Expected &before, Contact &now) { now.grip = before.force; });
+                      View<Vec3> start, View<Vec3> positions) {
+    overlaps.activate(mesh, material, touching); // the same until contacts are found again, whatever the stiffness is then
+    std::vector<Contact> found = linearise(mesh, material, touching, start, positions);
+    for_known(lagged_, found, [](const LaggedForce &before, Contact &now) { now.lagged_force = before.force; });
     contacts_ = std::move(found);
-    expected_.clear();
-    for (const Contact &c : contacts_) expected_.push_back({c.pair, c.grip});
+    lagged_.clear();
+    for (const Contact &contact : contacts_) lagged_.push_back({contact.pair, contact.lagged_force});
     index(mesh);
 }
 

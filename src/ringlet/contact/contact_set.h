@@ -1,112 +1,95 @@
-// All contacts of a scene at the present positions, and how vertices find those that act on them.
+// The contacts of a scene at given positions, with what friction remembers of them from step to step.
 #pragma once
 
-#include "ringlet/collision/near_pairs.h"
-#include "ringlet/contact/contact.h"
+#include "ringlet/contact/initial_overlap.h"
 #include "ringlet/math/lists.h"
 
-#include <unordered_map>
 #include <vector>
 
 namespace ringlet {
 
-// What the pairs of a scene are made of, per vertex of the collision mesh.
-struct ContactMaterial {
-    std::vector<double> stiffness; // a pair takes the softer side's [N/m]; kinematic vertices: infinity
-    std::vector<int> material;     // which material a vertex is made of
-    std::vector<double> friction;  // μ of a pair of materials, row-major, materials × materials
-    int materials = 1;
-    double give = 0.0; // [m]
+// The slip that friction still holds as a step ends: the spring that the next step begins with.
+struct FrictionState {
+    uint64_t pair;     // name of the contact
+    Vec3 slip, normal; // [m], 1
 };
 
-// What a pair that touched as a step ended remembers of it.
-struct Hold {
+// The normal force that friction uses next: what the contact is expected to bear.
+struct LaggedForce {
     uint64_t pair;
-    Vec3 shear, normal; // [m], 1
+    double force; // [N]
+};
+
+// The force that a pair bears as a scene begins.
+struct InitialForce {
+    std::array<int, 4> vertex; // of the pair, as contacts have them
+    Vec3 force;                // on the first primitive [N]: along the normal; towards the last vertex from the one before, as
+                               // far as that is tangential; along the cross product of both
+};
+
+// The barrier energy of a contact at other positions than those it was found at.
+struct PairEnergy {
+    uint64_t pair;
+    std::array<int, 2> objects;
+    double stiffness, barrier; // [N/m], [m²]
+
+    double energy() const { return stiffness * barrier; } // [J]
 };
 
 class ContactSet {
 public:
-    // Pairs that begin nearer than their contact distance push only from there on, which then grows by `way` a step: nothing
-    // pops. Or they stay, with what they bear there: they push from so much further on, whatever their stiffness. Those of
-    // which it is known how they bear what they touch do so from the start. What is nearer than a hundredth of its distance
-    // can hardly move, and parts by `way` a step until it is no longer.
-    struct Bearing {
-        std::array<int, 4> vertex; // as contacts have them
-        Vec3 force;                // on the first of the two: away from the second, towards the last vertex from the one
-                                   // before as far as that is across, and across both [N]
-    };
+    InitialOverlaps overlaps;
+
+    // Pairs that touch before the first step are initial overlaps; some bear a force.
     void begin(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<Touch> &touching,
-               View<Bearing> bearing, View<Vec3> now);
-    void part_early(double way);
-    void stay_early(const std::vector<Touch> &touching, View<Vec3> now, double way);
-    struct Beginning {
-        double apart; // how near they began [m]
-        double bears; // what they push with as near as that [N]
-        double push;  // from where on they push, then [m]
-    };
-    using Early = std::unordered_map<uint64_t, Beginning>; // by pair
-    const Early &early() const { return early_; }
-    void recall(Early early) { early_ = std::move(early); }
+               View<InitialForce> forces, View<Vec3> positions);
 
-    // What pairs that were contacts last are expected to bear, in the order of their names: friction's next normal force.
-    struct Expected {
-        uint64_t pair;
-        double force; // [N]
-    };
-    const std::vector<Expected> &expected() const { return expected_; }
-    void recall(std::vector<Expected> expected) { expected_ = std::move(expected); }
-    // Keeps how far the contacts are sheared where a step ends. One that is sheared further than it gives has slid.
-    void hold(View<Vec3> now);
-    const std::vector<Hold> &held() const { return held_; } // in the order of pairs
-    void recall(std::vector<Hold> held) { held_ = std::move(held); }
-
-    // Of objects that go by planes (per object; beyond the end: none), a search knows the contacts by their planes alone, which
-    // are overstepped then: their barriers end early.
-    void go_by_planes(View<unsigned char> objects) { by_planes_.assign(objects.begin(), objects.end()); }
-
-    // What pushes elsewhere, of those that touch there. What is a contact is as stiff as here, so that energies can be
-    // compared.
-    struct Push {
-        uint64_t pair;
-        std::array<int, 2> objects;
-        double stiffness, potential;                            // [N/m], [m²]
-        double energy() const { return stiffness * potential; } // [J]
-    };
-    std::vector<Push> pushing(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<Touch> &touching,
-                              View<Vec3> elsewhere) const;
-
-    // Goes over to the contacts of those that touch at the positions `now`; `start` says where the step began, for how they
-    // were sheared since. Friction's normal force is what was expected of the pair before, nothing if it is new: what a contact
-    // pushes with on the way to balance says little of what it will bear.
+    // Replaces the contacts by those of the pairs that touch at `positions`; `start` says where the step began, for the slip.
+    // The normal force of friction is lagged; it is 0 for a new contact: the force at an iterate says little of the solution.
     void find(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<Touch> &touching, View<Vec3> start,
-              View<Vec3> now);
+              View<Vec3> positions);
 
-    void expect(int contact, double force) { expected_[contact].force = force; }
+    // Keeps the slip of the contacts as a step ends, up to the stick length: what has slipped farther has slid.
+    void commit_friction(View<Vec3> positions);
+
+    // Barrier energies at other positions, of the pairs that touch there. A pair that is a contact keeps its stiffness, so that
+    // energies can be compared.
+    std::vector<PairEnergy> energies(const CollisionMesh &mesh, const ContactMaterial &material,
+                                     const std::vector<Touch> &touching, View<Vec3> positions) const;
+
+    // Objects whose line search knows contacts by their planes (see solver/plane_search.h). Iterates cross these planes, so
+    // that the barriers end early.
+    void set_plane_objects(View<unsigned char> objects) { plane_objects_.assign(objects.begin(), objects.end()); }
 
     const std::vector<Contact> &contacts() const { return contacts_; }
+    void set_lagged_force(int contact, double force) { lagged_[contact].force = force; }
 
     // The contacts that act on a vertex, and as which of their four.
     struct Role {
         int contact, as;
     };
     View<Role> of(int vertex) const { return roles_.of(vertex); }
-    const std::vector<int> &vertices() const { return vertices_; } // those that move and have contacts
+    const std::vector<int> &vertices() const { return vertices_; } // dynamic ones with contacts
+
+    // What a step remembers, in the order of names.
+    const std::vector<FrictionState> &friction() const { return friction_; }
+    const std::vector<LaggedForce> &lagged_forces() const { return lagged_; }
+    void recall(std::vector<FrictionState> friction) { friction_ = std::move(friction); }
+    void recall(std::vector<LaggedForce> forces) { lagged_ = std::move(forces); }
 
 private:
     template <class Work>
-    void for_pushing(const CollisionMesh &mesh, const Touch &touch, View<Vec3> now, const Work &work) const;
-    std::vector<Contact> of_touching(const CollisionMesh &mesh, const ContactMaterial &material,
-                                     const std::vector<Touch> &touching, View<Vec3> start, View<Vec3> now) const;
+    void for_active_points(const CollisionMesh &mesh, const Touch &pair, View<Vec3> positions, const Work &work) const;
+    std::vector<Contact> linearise(const CollisionMesh &mesh, const ContactMaterial &material,
+                                   const std::vector<Touch> &touching, View<Vec3> start, View<Vec3> positions) const;
     void index(const CollisionMesh &mesh);
-    bool goes_by_planes(int object) const { return size_t(object) < by_planes_.size() && by_planes_[object]; }
+    bool uses_planes(int object) const { return size_t(object) < plane_objects_.size() && plane_objects_[object]; }
 
-    Early early_;
-    std::vector<Hold> held_;
-    std::vector<unsigned char> by_planes_;
+    std::vector<FrictionState> friction_;
+    std::vector<unsigned char> plane_objects_;
     std::vector<Contact> contacts_;
-    std::vector<Expected> expected_; // of each of them
-    Lists<Role> roles_;              // of vertices
+    std::vector<LaggedForce> lagged_; // of each contact
+    Lists<Role> roles_;               // of vertices
     std::vector<int> vertices_;
 };
 

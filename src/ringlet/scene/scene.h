@@ -1,7 +1,11 @@
-// Strands, cloths and kinematic bodies that touch: one implicit step for all of them.
+// A scene: strands, cloths and kinematic bodies in contact, one implicit step for all of them.
 #pragma once
 
-#include "ringlet/solver/scene_solver.h"
+#include "ringlet/cloth/block.h"
+#include "ringlet/contact/contact_set.h"
+#include "ringlet/scene/vertices.h"
+#include "ringlet/solver/linear_system.h"
+#include "ringlet/solver/report.h"
 
 #include <memory>
 #include <utility>
@@ -10,83 +14,73 @@
 namespace ringlet {
 
 struct SceneStep {
-    StrandStep strands; // time, forces, Newton; cloths take theirs from it
-    System system = System::automatic;
-    double linear_tolerance = 0.1; // of the linear solution, relative
-    int extra = 60;                // iterations more, at most, for strands that were held back and are stretched
-    int most_substeps = 8;         // where bodies leave no way out a step is taken in parts
+    StrandStep strands; // time, forces and Newton's method of all blocks; model and integrator of the strands
+    LinearSettings linear;
+    int extra = 60;       // Newton iterations more, at most, for strands that were limited and are stretched
+    int max_substeps = 8; // where bodies leave no way out a step is taken in parts
 };
 
-// Where a step ends for what is told where to be, and what pulls besides. Rows of the vertices of all strands, cloths, bodies.
 struct SceneInput {
-    View<Vec3> strand_targets, strand_forces; // [m], [N]
-    View<Vec3> cloth_targets, cloth_forces;   // of held and attached vertices
-    View<Vec3> body_targets;
+    View<Vec3> targets; // where prescribed and attached vertices end, of all vertices [m]
+    View<Vec3> forces;  // external, of dynamic vertices [N]
 };
 
-// What happened in one step.
-struct SceneReport {
-    double newton = 0, cuts = 0, residual = 0, unconverged = 0;
-    double linear_iterations = 0, linear_residual = 0;
-    double candidates = 0, contacts = 0;      // pairs looked at, and of them those that push
-    double closest = 0;                       // distance of two that touch, at the end [m]
-    double violations = 0, zone_vertices = 0; // pairs that would have met, vertices held back for them
-    double substeps = 0, fraction = 1;        // fraction < 1: bodies left no way out, the step ends early
-    double time_pairs = 0, time_assemble = 0, time_solve = 0, time_search = 0, time_filter = 0; // [s]
-};
-inline constexpr int scene_report_columns = sizeof(SceneReport) / sizeof(double);
-
-// What a scene remembers from step to step, besides the states of its strands and cloths.
+// What a scene remembers from step to step besides the states of its strands and cloths.
 struct SceneMemory {
     bool begun = false;
-    std::vector<Vec3> bodies;                     // where their vertices are [m]
-    ContactSet::Early early;                      // pairs that began too near
-    std::vector<ContactSet::Expected> expected;   // what pairs are to bear
-    std::vector<double> borne;                    // what vertices had to bear lately [N]
-    std::vector<Hold> held;                       // pairs that touch
-    std::vector<std::pair<int, double>> embedded; // vertices that are still inside a body, and how high they are to be [m]
-    std::vector<int> touched;                     // per cloth: the body that it had most contacts with; −1: none
+    std::vector<Vec3> bodies; // where their vertices are [m]
+    InitialOverlaps::Pairs overlaps;
+    std::vector<LaggedForce> lagged_forces;
+    std::vector<double> loads; // of vertices [N]
+    std::vector<FrictionState> friction;
+    std::vector<std::pair<int, double>> penetrations; // vertices inside a body, and the heights that they are to have [m]
+    std::vector<int> touched;                         // per cloth: the body that it had most contacts with; −1: none
 };
 
 class Scene {
 public:
-    // Borrows strands and cloths, which must outlive it. Bodies that `rooted_in` names (per strand, −1: none) carry the held
-    // vertices of strands: nothing is tested between the two.
+    // Borrows strands and cloths, which must outlive it. Bodies that `rooted_in` names (per strand, −1: none) carry the
+    // prescribed vertices of strands: the two are not tested against each other.
     Scene(const StrandModel &model, StrandState &state, const std::vector<SceneCloth> &cloths,
           const std::vector<BodyModel> &bodies, const std::vector<int> &rooted_in, const SceneContact &contact);
     ~Scene();
+    Scene(Scene &&) noexcept;
 
-    // One step, of which there is a report of every strand and every cloth.
+    // Takes one step, with a report of every strand and every cloth.
     SceneReport step(const SceneInput &input, const SceneStep &step, std::vector<StrandReport> &of_strands,
                      std::vector<ClothReport> &of_cloths);
 
-    // What touches where everything is now, without a step: of all pairs that are nearer than their distance, however they
-    // began. How hard they push is known in a step alone; no step depends on this.
+    // Takes the positions of strands and cloths that were placed elsewhere than the last step left them. A step throws
+    // std::invalid_argument where that was forgotten.
+    void place();
+
+    // The contacts of all pairs that are closer than their activation distance at the present positions, initial overlaps
+    // included. Their forces are known in a step alone; no step depends on this.
     std::vector<Contact> touching();
 
-    // Before the first step: how what touches bears what lies on it, where it is known.
-    void bear(std::vector<ContactSet::Bearing> bearing);
+    // Before the first step: the forces that touching pairs bear.
+    void set_initial_forces(std::vector<InitialForce> forces);
 
-    // A vertex of a strand that begins inside a body, or too near to it, may be there until it has come out: it is pushed out
-    // gently, and guarded like any other from then on.
-    void excuse(int vertex, int body);
-    int excused() const; // how many still are
+    // Exempts a strand's vertex that begins inside a body, or too close to it, until it has come out: see
+    // initial_penetration.h.
+    void allow_penetration(int vertex, int body);
+    int penetrating() const; // how many still are
 
-    // Keeps where everything was after each move of the last step, the first being where the step began: nothing meets while
-    // every vertex goes straight from one to the next.
+    // Keeps the positions after each move of the last step, the first being its start: no pair meets while every vertex goes
+    // straight from one to the next.
     void record(bool on);
     const std::vector<std::vector<Vec3>> &path() const;
 
-    // To go on elsewhere: a scene that was made in the same way, with its states and this memory, does the same, to the bit.
+    // A scene made in the same way, with its states and this memory, continues with the same bits.
     SceneMemory memory() const;
     void recall(const SceneMemory &memory);
 
     View<Vec3> positions() const;                 // of all vertices: strands, cloths, bodies
+    int dynamic_vertices() const;                 // those of strands and cloths
     const std::vector<Contact> &contacts() const; // of the last step
 
 private:
-    struct Parts;
-    std::unique_ptr<Parts> parts_;
+    std::unique_ptr<struct SceneParts> parts_;
 };
 
 } // namespace ringlet

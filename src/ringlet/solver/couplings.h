@@ -1,8 +1,9 @@
-// What contacts do from one part of a scene to another: C, which is nothing but at the few points that they couple.
+// Couplings between the objects of a scene: C, what contacts do from one of their sides to the other. It is zero but at the few
+// vertices that they couple.
 #pragma once
 
 #include "ringlet/contact/contact_set.h"
-#include "ringlet/solver/scene_vertices.h"
+#include "ringlet/solver/block_set.h"
 
 #include <vector>
 
@@ -10,42 +11,42 @@ namespace ringlet {
 
 class Couplings {
 public:
-    // Goes over to those of these contacts that are between two parts. `unit_of` says of each part which of the units it is in.
-    void find(const ContactSet &contacts, const SceneVertices &vertices, View<int> unit_of, int units);
+    // Takes those of the contacts that are between two objects.
+    void find(const ContactSet &contacts, const VertexTable &table, const BlockSet &blocks);
 
-    bool couples(int part) const { return together_[part]; }
-    // Parts that touch one another, directly or by others: of each part the first of those that it is so joined with.
+    bool couples(int object) const { return coupled_[object]; }
+    // Of each object the first of its cluster: those that contacts join, directly or by others.
     const std::vector<int> &clusters() const { return clusters_; }
 
-    // Points are vertices that are coupled, numbered unit by unit.
+    // Coupled vertices, called points, numbered block by block.
     int count() const { return int(points_.items().size()); }
-    int begin(int unit) const { return points_.begin(unit); }
-    int end(int unit) const { return points_.end(unit); }
+    int begin(int block) const { return points_.begin(block); }
+    int end(int block) const { return points_.end(block); }
     int vertex(int point) const { return points_.items()[point].vertex; }
-    int part(int point) const { return points_.items()[point].part; }
+    int object(int point) const { return points_.items()[point].object; }
 
-    // C p, and p · C p, which is added to that of each cluster; of parts that are busy. p says where each point goes.
-    void push(View<Vec3> p, View<ContactValue> values, View<unsigned char> busy, std::vector<double> &of_clusters);
-    Vec3 pushed(int point) const; // C p there
+    // Computes C p, p being given at the points, for busy objects; adds p · C p to the numbers of their clusters.
+    void multiply(View<Vec3> p, View<ContactValue> values, View<unsigned char> busy, std::vector<double> &of_clusters);
+    Vec3 product(int point) const; // C p there
 
 private:
     struct Coupling {
-        int contact, first;       // how many of the four are on its first side
-        std::array<int, 2> parts; // of the two sides
-        std::array<int, 4> point; // −1: held
+        int contact, first;         // vertices of the first side
+        std::array<int, 2> objects; // of the two sides
+        std::array<int, 4> point;   // −1: prescribed, or of no weight
         std::array<double, 4> weight;
-        std::array<Vec3, 2> pushes; // on the two sides
+        std::array<Vec3, 2> products; // on the two sides
     };
-    void join_parts(int parts);
-    void number_points(const SceneVertices &vertices, const ContactSet &contacts, View<int> unit_of, int units);
+    void join_clusters(int objects);
+    void number_points(const ContactSet &contacts, const VertexTable &table, const BlockSet &blocks);
 
     std::vector<Coupling> couplings_;
-    std::vector<unsigned char> together_; // per part
+    std::vector<unsigned char> coupled_; // per object
     std::vector<int> clusters_;
     struct Point {
-        int vertex, part;
+        int vertex, object;
     };
-    Lists<Point> points_; // of units
+    Lists<Point> points_; // of blocks
     struct Role {
         int coupling, as;
     };

@@ -3,30 +3,9 @@
 
 #include "ringlet/strand/strands.h"
 
-#include <new>
-#include <utility>
 #include <vector>
 
 namespace ringlet {
-
-inline constexpr int most_lanes = 8; // of any instruction set
-
-// Memory for the kernels, aligned for any instruction set.
-class Workspace {
-public:
-    explicit Workspace(size_t bytes) : memory_(::operator new(bytes, alignment)) {}
-    ~Workspace() { ::operator delete(memory_, alignment); }
-    Workspace(Workspace &&other) noexcept : memory_(std::exchange(other.memory_, nullptr)) {}
-    Workspace &operator=(Workspace &&other) noexcept {
-        std::swap(memory_, other.memory_);
-        return *this;
-    }
-    void *get() const { return memory_; }
-
-private:
-    static constexpr std::align_val_t alignment{64};
-    void *memory_;
-};
 
 StrandArrays arrays_of(const StrandModel &model, StrandState &state, View<Vec3> targets, View<Vec3> forces);
 

@@ -1,5 +1,7 @@
 #include "ringlet/strand/strands.h"
 
+#include "ringlet/linear/lane_vectors.h"
+#include "ringlet/math/aligned.h"
 #include "ringlet/rest/resolution.h"
 #include "ringlet/rest/rest_shape.h"
 #include "ringlet/strand/strand_groups.h"
@@ -94,7 +96,7 @@ template <class Work> void for_each_group(const StrandModel &model, const Work &
     const size_t bytes = RINGLET_DISPATCH(strand_workspace, longest_strand(model));
 #pragma omp parallel
     {
-        const Workspace workspace(bytes);
+        const AlignedMemory workspace(bytes);
 #pragma omp for schedule(dynamic)
         for (int g = 0; g < groups; ++g)
             work(StrandGroup{order.data() + g * lanes, std::min(lanes, strands - g * lanes)}, workspace.get());
@@ -220,7 +222,7 @@ StrandState make_strand_state(const StrandModel &model, View<Vec3> positions) {
         std::vector<double> energies(model.strand_count());
         const StrandArrays arrays = arrays_of(model, of, positions, positions);
         for_each_group(model, [&](StrandGroup group, void *workspace) {
-            double group_energies[most_lanes];
+            double group_energies[max_lanes];
             RINGLET_DISPATCH(relax_strand_frames, arrays, group, workspace, group_energies);
             for (int k = 0; k < group.count; ++k) energies[group.strands[k]] = group_energies[k];
         });
@@ -245,7 +247,7 @@ void step_strands(const StrandModel &model, StrandState &state, View<Vec3> targe
     reports.assign(model.strand_count(), StrandReport{});
     const StrandArrays arrays = arrays_of(model, state, targets, forces);
     for_each_group(model, [&](StrandGroup group, void *workspace) {
-        StrandReport group_reports[most_lanes];
+        StrandReport group_reports[max_lanes];
         RINGLET_DISPATCH(step_strand_group, arrays, step, group, workspace, group_reports);
         for (int k = 0; k < group.count; ++k) reports[group.strands[k]] = group_reports[k];
     });
@@ -256,7 +258,7 @@ double strand_energy(const StrandModel &model, const StrandState &state, Continu
     if (int(positions.size()) != model.vertex_count()) throw std::invalid_argument("strands: positions do not fit the model");
     StrandState copy = state;
     const StrandArrays arrays = arrays_of(model, copy, positions, positions); // no force is read
-    const Workspace workspace(RINGLET_DISPATCH(strand_workspace, longest_strand(model)));
+    const AlignedMemory workspace(RINGLET_DISPATCH(strand_workspace, longest_strand(model)));
     gradient.assign(positions.size(), Vec3::Zero());
     if (hessian) {
         if (model.strand_count() != 1) throw std::invalid_argument("strands: the Hessian is given for one strand at a time");

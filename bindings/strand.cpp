@@ -1,0 +1,243 @@
+// ringlet._core: strands and their steps.
+#include "strand.h"
+#include "arrays.h"
+#include "ringlet/rest/standing.h"
+#include "ringlet/scene/scene.h"
+
+#include <cmath>
+#include <cstring>
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/string.h>
+
+namespace nb = nanobind;
+using namespace nb::literals;
+using namespace ringlet;
+using namespace ringlet::bindings;
+
+namespace {
+
+nb::ndarray<nb::numpy, double> state_view(nb::handle self, std::vector<Vec3> &values) {
+    return {values.data()->data(), {values.size(), 3}, self};
+}
+
+nb::ndarray<nb::numpy, const double> model_view(nb::handle self, const std::vector<double> &values) {
+    return {values.data(), {values.size()}, self};
+}
+
+template <class> struct MemberOf;
+template <class Value, class Owner> struct MemberOf<Value Owner::*> {
+    using Type = Value;
+};
+
+// The settings of a step stand in structures of their own; Python sees them side by side.
+template <auto member> using Setting = typename MemberOf<decltype(member)>::Type;
+template <auto member> Setting<member> strand_setting(const SceneStep &self) { return self.strands.*member; }
+template <auto member> void set_strand_setting(SceneStep &self, Setting<member> value) { self.strands.*member = value; }
+template <auto member> Setting<member> linear_setting(const SceneStep &self) { return self.linear.*member; }
+template <auto member> void set_linear_setting(SceneStep &self, Setting<member> value) { self.linear.*member = value; }
+template <auto member> std::array<double, 3> vector_of(const SceneStep &self) { return std::to_array(self.strands.*member); }
+template <auto member> void set_vector(SceneStep &self, std::array<double, 3> value) {
+    std::copy(value.begin(), value.end(), self.strands.*member);
+}
+
+// work(name, rows, columns) for everything that a state holds.
+template <class State, class Work> void for_memory(State &state, const Work &work) {
+    work("positions", state.positions, 3);
+    work("velocities", state.velocities, 3);
+    work("normals", state.normals, 3);
+    work("twist", state.twist, 1);
+    work("directors", state.directors, 3);
+    work("last_positions", state.last_positions, 3);
+    work("last_velocities", state.last_velocities, 3);
+    work("last_strains", state.last_strains, 4);
+    work("last_dt", state.last_dt, 1);
+}
+
+nb::dict memory_of(const StrandState &state) {
+    nb::dict memory;
+    for_memory(state, [&](const char *name, const auto &rows, size_t columns) {
+        memory[name] = to_numpy<double>(std::remove_cvref_t<decltype(rows)>(rows), {rows.size(), columns});
+    });
+    return memory;
+}
+
+// All or nothing.
+void recall(StrandState &state, const nb::dict &memory) {
+    StrandState found = state;
+    for_memory(found, [&](const char *name, auto &rows, size_t columns) {
+        const auto values = nb::cast<nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>>(memory[name]);
+        if (values.shape(0) != rows.size() || values.shape(1) != columns)
+            throw std::invalid_argument(std::string("strands: ") + name + " to be recalled is of other strands");
+        std::memcpy(static_cast<void *>(rows.data()), values.data(), values.size() * sizeof(double));
+    });
+    state = std::move(found);
+}
+
+} // namespace
+
+void bind_strand(nb::module_ &module) {
+    nb::enum_<System>(module, "System", "How the linear system of a step is solved.")
+        .value("automatic", System::automatic)
+        .value("banded", System::banded)
+        .value("conjugate_gradient", System::conjugate_gradient)
+        .value("direct", System::direct);
+
+    nb::enum_<Continuation>(module, "Continuation", "How signs and turns of a curl are carried from step to step.")
+        .value("history", Continuation::history)
+        .value("least_energy", Continuation::least_energy)
+        .value("material_frame", Continuation::material_frame);
+
+    nb::enum_<Integrator>(module, "Integrator", "How velocities and rates follow from positions.")
+        .value("backward_euler", Integrator::backward_euler)
+        .value("bdf2", Integrator::bdf2);
+
+    nb::class_<Safeguards>(module, "Safeguards", "Which safeguards of `history` are on; all to begin with.")
+        .def(nb::init<>())
+        .def_rw("flip_history", &Safeguards::flip_history)
+        .def_rw("winding_number", &Safeguards::winding_number)
+        .def_rw("straight_fade", &Safeguards::straight_fade);
+
+    nb::class_<SceneStep>(module, "StepSettings", "Length, forces and solver of a time step (SI units).")
+        .def(nb::init<>())
+        .def_prop_rw(
+            "dt", [](const SceneStep &self) { return self.strands.dt; },
+            [](SceneStep &self, double dt) { self.strands.dt = dt; })
+        .def_prop_rw("gravity", vector_of<&StrandStep::gravity>, set_vector<&StrandStep::gravity>)
+        .def_prop_rw("wind", vector_of<&StrandStep::wind>, set_vector<&StrandStep::wind>)
+        .def_prop_rw("newton", strand_setting<&StrandStep::newton>, set_strand_setting<&StrandStep::newton>)
+        .def_prop_rw("tolerance", strand_setting<&StrandStep::tolerance>, set_strand_setting<&StrandStep::tolerance>)
+        .def_prop_rw("continuation", strand_setting<&StrandStep::continuation>, set_strand_setting<&StrandStep::continuation>)
+        .def_prop_rw("integrator", strand_setting<&StrandStep::integrator>, set_strand_setting<&StrandStep::integrator>)
+        .def_prop_rw("safeguards", strand_setting<&StrandStep::safeguards>, set_strand_setting<&StrandStep::safeguards>)
+        .def_prop_rw("system", linear_setting<&LinearSettings::system>, set_linear_setting<&LinearSettings::system>)
+        .def_prop_rw("linear_tolerance", linear_setting<&LinearSettings::tolerance>,
+                     set_linear_setting<&LinearSettings::tolerance>)
+        .def_prop_rw("linear_iterations", linear_setting<&LinearSettings::max_iterations>,
+                     set_linear_setting<&LinearSettings::max_iterations>)
+        .def_rw("extra", &SceneStep::extra);
+
+    nb::class_<StrandMaterial>(module, "StrandMaterial", "What a lock is made of (SI units); a hair's values.")
+        .def(nb::init<>())
+        .def_rw("youngs_modulus", &StrandMaterial::youngs_modulus)
+        .def_rw("radius", &StrandMaterial::radius)
+        .def_rw("density", &StrandMaterial::density)
+        .def_rw("stretch_scale", &StrandMaterial::stretch_scale)
+        .def_rw("bend_scale", &StrandMaterial::bend_scale)
+        .def_rw("twist_ratio", &StrandMaterial::twist_ratio)
+        .def_rw("limit_twist", &StrandMaterial::limit_twist)
+        .def_rw("damping", &StrandMaterial::damping)
+        .def_rw("mass_damping", &StrandMaterial::mass_damping)
+        .def_rw("drag", &StrandMaterial::drag)
+        .def_rw("correct_resolution", &StrandMaterial::correct_resolution);
+
+    nb::class_<Strands>(module, "Strands", "Strands at rest in their rest shape, ready to be stepped.")
+        .def(
+            "__init__",
+            [](Strands *self, Array1<int> offsets, Array3<double> rest, Array1<unsigned char> held,
+               const StrandMaterial &material, Array1<double> radius, Array1<double> stretch, Array1<double> bend,
+               Array1<double> twist, Array1<double> damping) {
+                const StrandVariation variation{view(radius), view(stretch), view(bend), view(twist), view(damping)};
+                StrandModel model = make_strand_model(view(offsets), vectors<Vec3>(rest), view(held), material, variation);
+                new (self) Strands(std::move(model), vectors<Vec3>(rest));
+            },
+            "offsets"_a, "rest"_a, "held"_a, "material"_a, "radius"_a, "stretch"_a, "bend"_a, "twist"_a, "damping"_a,
+            "offsets: shape (count + 1,) int32; rest: rest shape [m], shape (n, 3); held: 1 where a vertex follows its target, "
+            "(n,) uint8; "
+            "then factors on the material, each of shape (n,) or empty.")
+        .def_prop_ro(
+            "positions", [](nb::object self) { return state_view(self, nb::cast<Strands &>(self).state().positions); },
+            "Positions [m], shape (n, 3): the solver's own memory, changed by step().")
+        .def_prop_ro(
+            "velocities", [](nb::object self) { return state_view(self, nb::cast<Strands &>(self).state().velocities); },
+            "Velocities [m/s], shape (n, 3): the solver's own memory.")
+        .def_prop_ro(
+            "directors", [](nb::object self) { return state_view(self, nb::cast<Strands &>(self).state().directors); },
+            "Directors of the material frame, one per edge from the second of each strand on, shape (n, 3): the solver's own "
+            "memory.")
+        .def_prop_ro(
+            "masses", [](nb::object self) { return model_view(self, nb::cast<Strands &>(self).model.mass); },
+            "Masses [kg], shape (n,).")
+        .def_prop_ro(
+            "drag", [](nb::object self) { return model_view(self, nb::cast<Strands &>(self).model.drag); },
+            "Air drag [kg/s], shape (n,).")
+        .def_prop_ro(
+            "stretch_stiffness",
+            [](nb::object self) { return model_view(self, nb::cast<Strands &>(self).model.stretch_stiffness); },
+            "EA / l̄ of the edge that begins at each vertex [N/m], shape (n,).")
+        .def_prop_ro(
+            "bend_stiffness", [](nb::object self) { return model_view(self, nb::cast<Strands &>(self).model.bend_stiffness); },
+            "EI / l̄ at each vertex [N m], shape (n,).")
+        .def_prop_ro(
+            "twist_stiffness",
+            [](nb::object self) { return model_view(self, nb::cast<Strands &>(self).model.twist_stiffness); },
+            "c EI / l̄ of the edge that begins at each vertex [N m], shape (n,).")
+        .def(
+            "place", [](Strands &self, Array3<double> positions) { self.place(vectors<Vec3>(positions)); }, "positions"_a,
+            "Puts the strands at rest at these positions [m], shape (n, 3), and forgets their history.")
+        .def(
+            "step",
+            [](Strands &self, Array3<double> targets, Array3<double> forces, const SceneStep &settings) {
+                {
+                    nb::gil_scoped_release release;
+                    step_strands(self.model, self.state(), vectors<Vec3>(targets), vectors<Vec3>(forces), settings.strands,
+                                 self.reports);
+                }
+                const size_t rows = self.reports.size();
+                return to_numpy<double>(std::vector<StrandReport>(self.reports), {rows, size_t(strand_report_columns)});
+            },
+            "targets"_a, "forces"_a, "settings"_a,
+            "One time step; targets: where held vertices are at its end [m], shape (n, 3). Returns one report row per strand "
+            "(REPORT).")
+        .def_prop_ro(
+            "memory", [](Strands &self) { return memory_of(self.state()); },
+            "All that the next step depends on besides the model, as arrays by name.")
+        .def(
+            "recall", [](Strands &self, const nb::dict &memory) { recall(self.state(), memory); }, "memory"_a,
+            "Goes back to a memory of the same strands.")
+        .def(
+            "stiffness_to_stand",
+            [](Strands &self, Array1<double> left, double most) {
+                const StrandModel &m = self.model;
+                if (int(left.shape(0)) != m.strand_count()) throw std::invalid_argument("strands: left does not fit them");
+                const StrandState &state = self.state();
+                const StillStrands still{m.offsets.data(),
+                                         m.held.data(),
+                                         state.positions.data()->data(),
+                                         state.directors.data()->data(),
+                                         m.rest_length.data(),
+                                         m.rest_angle.data(),
+                                         m.rest_dihedral.data(),
+                                         m.stretch_stiffness.data(),
+                                         m.bend_stiffness.data(),
+                                         m.twist_stiffness.data()};
+                std::vector<double> factors(m.strand_count());
+                {
+                    nb::gil_scoped_release release;
+                    stiffness_to_stand(m.strand_count(), still, left.data(), most, factors.data());
+                }
+                const size_t count = factors.size();
+                return to_numpy<double>(std::move(factors), {count});
+            },
+            "left"_a, "most"_a,
+            "How many times stiffer against bend and twist each strand, still where it is now, must be to stand and to keep "
+            "its "
+            "part of `left`, shape (count,), of how it resists these without load; infinite where `most` times are not enough.")
+        .def(
+            "energy",
+            [](Strands &self, Array3<double> positions, Continuation continuation, bool hessian) {
+                std::vector<Vec3> gradient;
+                std::vector<double> dense;
+                const double energy = strand_energy(self.model, self.state(), continuation, vectors<Vec3>(positions), gradient,
+                                                    hessian ? &dense : nullptr);
+                const size_t n = positions.shape(0), size = hessian ? size_t(std::lround(std::sqrt(double(dense.size())))) : 0;
+                return nb::make_tuple(energy, to_numpy<double>(std::move(gradient), {n, 3}),
+                                      to_numpy<double>(std::move(dense), {size, size}));
+            },
+            "positions"_a, "continuation"_a, "hessian"_a = false,
+            "Elastic energy [J], its gradient [N] and the clamped Hessian of a single strand, with signs and turns carried "
+            "from the state.");
+
+    nb::tuple names = nb::make_tuple("newton", "cuts", "residual", "unconverged", "stretch", "bend", "twist", "gravity",
+                                     "kinetic", "max_stretch", "flips", "winding_changes", "too_straight", "clamped", "nan");
+    module.attr("REPORT") = names;
+}

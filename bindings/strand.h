@@ -1,0 +1,33 @@
+// Strands as Python holds them: a model with its state.
+#pragma once
+
+#include "ringlet/strand/strands.h"
+
+#include <optional>
+
+namespace ringlet::bindings {
+
+class Strands {
+public:
+    Strands(StrandModel model, View<Vec3> rest) : model(std::move(model)), rest_(rest.begin(), rest.end()) {}
+
+    StrandModel model;
+    std::vector<StrandReport> reports;
+
+    // At rest to begin with; finding that takes longer than all of the model, of which more is often not asked for.
+    StrandState &state() {
+        if (!state_) place(rest_);
+        return *state_;
+    }
+
+    void place(View<Vec3> positions) {
+        state_ = make_strand_state(model, positions);
+        rest_ = {};
+    }
+
+private:
+    std::optional<StrandState> state_;
+    std::vector<Vec3> rest_;
+};
+
+} // namespace ringlet::bindings

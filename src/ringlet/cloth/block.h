@@ -1,0 +1,66 @@
+// A cloth as a block of a scene's system.
+#pragma once
+
+#include "ringlet/cloth/cloth_objective.h"
+#include "ringlet/linear/incomplete_cholesky.h"
+#include "ringlet/solver/block.h"
+
+namespace ringlet {
+
+// What happened to a cloth in a step. All are doubles, so that a report is a row of an array.
+struct ClothReport {
+    double newton;                          // iterations used
+    double linear;                          // iterations of conjugate gradients, of all systems together
+    double cuts;                            // step lengths cut by the line search
+    double residual;                        // largest coordinate of the last search direction [m]
+    double linear_residual;                 // relative residual of the last linear system
+    double unconverged;                     // 1 where iterations ran out
+    double stretch, bend, gravity, kinetic; // energies at the end [J]
+    double max_stretch;                     // largest strain along warp or weft
+    double nan;                             // 1 where a position is not finite (the cloth then keeps its last state)
+};
+inline constexpr int cloth_report_columns = sizeof(ClothReport) / sizeof(double);
+
+class ClothBlock final : public Block {
+public:
+    // `object` is its number in the scene, and `first` its first vertex.
+    ClothBlock(const ClothModel &model, ClothState &state, int object, int first);
+
+    const ClothModel &model() const { return model_; }
+    ClothState &state() const { return state_; }
+    ClothReport report{}; // of the last step
+
+    void begin_step(const BlockStep &step) override;
+    void initial_guess(double *x) const override; // advected or flying on, whichever has less energy
+    void energies(const double *x, double *of_lanes) override;
+    void evaluate(const double *x, double *of_lanes) override { energies(x, of_lanes); }
+    void assemble(const double *x) override;
+    const double *gradient() const override { return gradient_.data()->data(); }
+    void add_contacts(int vertex, const ContactSet &contacts, View<ContactValue> values) override;
+    void add_spring(int vertex, const Vec3 &n, double force, double stiffness) override;
+    void add_to(MatrixAssembly &matrix) const override;
+    void factor() override { factor_.factor(matrix_); }
+    void solve(double *b) const override;
+    bool is_exact() const override { return false; }
+    void multiply_add(const double *p, double *q) const override;
+    double contact_stiffness(int vertex, double dt) const override;
+    bool is_parallel() const override { return true; }
+    bool is_searched_by_planes() const override { return true; }
+    void commit(const double *x, double dt, const SolverEffort &effort) override;
+
+private:
+    View<Vec3> vectors(const double *x) const { return {reinterpret_cast<const Vec3 *>(x), size_t(model_.vertex_count())}; }
+
+    const ClothModel &model_;
+    ClothState &state_;
+    int first_;
+    ClothObjective objective_;
+    double dt_ = 0.0;
+    Vec3 gravity_ = Vec3::Zero();
+    std::vector<double> elastic_; // stiffness of each vertex against contacts, besides inertia [N/m]
+    std::vector<Vec3> gradient_;
+    BlockMatrix matrix_;
+    IncompleteCholesky factor_;
+};
+
+} // namespace ringlet

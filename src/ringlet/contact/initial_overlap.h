@@ -1,0 +1,45 @@
+// Initial overlaps: pairs that begin closer than their activation distance, and from where on they push.
+#pragma once
+
+#include "ringlet/contact/contact.h"
+#include "ringlet/contact/stencil.h"
+
+#include <unordered_map>
+#include <vector>
+
+namespace ringlet {
+
+struct InitialOverlap {
+    double gap;        // how close the pair began [m]; grows as it parts
+    double force;      // that it bears there [N]
+    double activation; // distance at which it pushes from now on [m]
+};
+
+// An overlapping pair activates at its initial gap, so that nothing pops apart. Its activation distance then grows by a length
+// a step, or stays, with the force that the pair bears there whatever the stiffness is.
+class InitialOverlaps {
+public:
+    using Pairs = std::unordered_map<uint64_t, InitialOverlap>; // by the name of the pair
+
+    void clear() { pairs_.clear(); }
+    void add(uint64_t pair, double gap, double force) { pairs_[pair] = {gap, force, gap}; }
+
+    void grow(double length);
+
+    // Forgets the pairs that have parted, and notes the force of the others. What is closer than a hundredth of its activation
+    // distance can hardly move: it parts by a length a step until it is no longer.
+    void settle(const std::vector<Touch> &touching, const std::vector<Contact> &contacts, View<Vec3> positions, double length);
+
+    // Activates each pair where it bears its force at the present stiffness.
+    void activate(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<Touch> &touching);
+
+    const InitialOverlap *find(const Touch &pair) const; // null where it did not overlap, or has parted
+
+    const Pairs &pairs() const { return pairs_; }
+    void recall(Pairs pairs) { pairs_ = std::move(pairs); }
+
+private:
+    Pairs pairs_;
+};
+
+} // namespace ringlet

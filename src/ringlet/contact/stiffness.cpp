@@ -1,0 +1,41 @@
+#include "ringlet/contact/stiffness.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ringlet {
+
+void ContactStiffness::begin_step(std::vector<double> largest, double dt) {
+    constexpr double half_life = 0.25; // of loads [s]
+    for (double &load : load_) load *= std::exp2(-dt / half_life);
+    largest_ = std::move(largest);
+}
+
+bool ContactStiffness::raise_loads(const ContactSet &contacts) {
+    const std::vector<Contact> &all = contacts.contacts();
+    bool raised = false;
+    for (size_t k = 0; k < all.size(); ++k)
+        for (const int v : all[k].vertex) {
+            const double force = contacts.lagged_forces()[k].force / all[k].loaded_fraction;
+            if (force > load_[v]) load_[v] = force, raised = true;
+        }
+    return raised;
+}
+
+std::vector<double> ContactStiffness::levels(const CollisionMesh &mesh, double d_hat) const {
+    constexpr double softest = 0.01, level = 10.0;
+    std::vector<double> stiffness = largest_;
+    const int strand_vertices = int(mesh.along_strand.size());
+    for (int v = 0; v < strand_vertices; ++v) {
+        if (!mesh.moves[v]) continue;
+        double load = load_[v]; // a contact that slides passes on to the next vertex
+        for (const int next : {v - 1, v + 1})
+            if (next >= 0 && next < strand_vertices && mesh.object[next] == mesh.object[v]) load = std::max(load, load_[next]);
+        double enough = softest * largest_[v];
+        while (enough < load / d_hat && enough < largest_[v]) enough *= level;
+        stiffness[v] = std::min(enough, largest_[v]);
+    }
+    return stiffness;
+}
+
+} // namespace ringlet

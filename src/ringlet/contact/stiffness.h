@@ -1,0 +1,37 @@
+// Contact stiffness, in levels: each vertex is as stiff as the load that it has to bear asks for.
+#pragma once
+
+#include "ringlet/contact/contact_set.h"
+
+#include <vector>
+
+namespace ringlet {
+
+// Were contacts always as stiff as the largest load needs, dense hair would stand still: nearly every search direction leads
+// into a new contact whose energy is thousands of times that of the motion. A strand's vertex is a hundredth as stiff as it may
+// have to be, a tenth where it bears more than that can, and all of it where it must. With so few levels a step has one
+// solution, whatever iterates lead to it.
+class ContactStiffness {
+public:
+    explicit ContactStiffness(int vertices) : load_(vertices, 0.0) {}
+
+    // Opens a step of dt [s] with the largest stiffness of each vertex [N/m], infinite where it is prescribed. Loads decay
+    // slowly: hair that rests on hair must not become soft, sink in and become stiff again.
+    void begin_step(std::vector<double> largest, double dt);
+
+    // Raises loads to what the contacts are expected to bear; returns whether one has risen. None falls within a step.
+    bool raise_loads(const ContactSet &contacts);
+
+    const std::vector<double> &largest() const { return largest_; }
+
+    // Per vertex [N/m], for strands whose activation distance is d_hat [m].
+    std::vector<double> levels(const CollisionMesh &mesh, double d_hat) const;
+
+    const std::vector<double> &loads() const { return load_; } // per vertex, decayed: the largest force of a contact [N]
+    void recall(std::vector<double> loads) { load_ = std::move(loads); }
+
+private:
+    std::vector<double> largest_, load_;
+};
+
+} // namespace ringlet

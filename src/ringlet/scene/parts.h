@@ -1,0 +1,44 @@
+// What a scene is made of.
+#pragma once
+
+#include "ringlet/contact/stiffness.h"
+#include "ringlet/scene/initial_penetration.h"
+#include "ringlet/scene/scene.h"
+#include "ringlet/solver/newton.h"
+#include "ringlet/strand/block.h"
+
+namespace ringlet {
+
+struct SceneParts {
+    const StrandModel &model;
+    StrandState &state;
+    const SceneContact contact;
+    const std::vector<int> rooted_in; // per strand: the body that carries its root; −1: none
+    const std::vector<int> pinned_to; // per cloth; −1: none
+    std::vector<int> touched;         // per cloth: the body that it had most contacts with; −1: none
+
+    SceneVertices vertices;
+    Configuration configuration; // owns the positions
+    std::vector<std::unique_ptr<StrandBlock>> strands;
+    std::vector<std::unique_ptr<ClothBlock>> cloths;
+    BlockSet blocks;
+    Objective objective;
+    LinearSystem system;
+    ContactStiffness stiffness;
+    Newton newton;
+
+    std::vector<InitialPenetration::Body> bodies;
+    InitialPenetration penetration;
+    std::vector<InitialForce> initial_forces;
+    bool begun = false; // whether the initial overlaps are known
+
+    SceneParts(const StrandModel &model, StrandState &state, const std::vector<SceneCloth> &cloths,
+               const std::vector<BodyModel> &bodies, const std::vector<int> &rooted_in, const SceneContact &contact);
+
+    double activation_distance() const { return 2.0 * contact.strand_radius; } // of two strands [m]
+};
+
+// One step, in scene/step.cpp.
+SceneReport take_step(SceneParts &scene, const SceneInput &input, const SceneStep &settings);
+
+} // namespace ringlet

@@ -1,0 +1,175 @@
+// How a step of a scene goes: advect with bodies → limit → { contacts → assemble → solve → limit → line search → accept } →
+// commit. The braces are Newton's method, in solver/newton.cpp.
+#include "ringlet/scene/advection.h"
+#include "ringlet/scene/parts.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace ringlet {
+namespace {
+
+constexpr double recovery_speed = 0.02; // of vertices that began inside a body [m/s]
+constexpr double parting_speed = 1e-4;  // of initial overlaps that stay, out of a hundredth of their distance [m/s]
+
+void begin_contact(SceneParts &scene, double dt) {
+    scene.vertices.material.stick_length = scene.contact.creep_speed * dt;
+    scene.stiffness.begin_step(scene.objective.contact_stiffness(scene.contact.stiffness, dt), dt);
+    scene.vertices.material.stiffness = scene.stiffness.levels(scene.vertices.mesh, scene.activation_distance());
+}
+
+// Before the first step: what overlaps, and what it bears.
+void find_initial_contacts(SceneParts &scene, double dt) {
+    const std::vector<Vec3> &now = scene.configuration.positions;
+    ContactSet &contacts = scene.objective.contacts;
+    scene.configuration.pairs.note(now, now, 0.0, 0.0);
+    begin_contact(scene, dt);
+    const std::vector<Touch> touching = scene.configuration.pairs.touching(now);
+    contacts.begin(scene.vertices.mesh, scene.vertices.material, touching, scene.initial_forces, now);
+    contacts.find(scene.vertices.mesh, scene.vertices.material, touching, now, now);
+    scene.stiffness.raise_loads(contacts);
+    scene.initial_forces.clear();
+    scene.begun = true;
+}
+
+// A cloth that is not pinned moves along with the body that it had most contacts with.
+std::vector<int> bodies_of_cloths(const SceneParts &scene) {
+    std::vector<int> bodies = scene.pinned_to;
+    for (size_t c = 0; c < bodies.size(); ++c)
+        if (bodies[c] < 0) bodies[c] = scene.touched[c];
+    return bodies;
+}
+
+std::vector<int> most_touched_bodies(const SceneParts &scene) {
+    const SceneVertices &vertices = scene.vertices;
+    const int bodies = int(scene.bodies.size()), cloths = int(scene.cloths.size());
+    std::vector<int> contacts(size_t(bodies) * cloths, 0), touched(cloths, -1);
+    for (const Contact &c : scene.objective.contacts.contacts()) {
+        const auto [one, other] = std::minmax(vertices.mesh.object[c.vertex[0]], vertices.mesh.object[c.vertex[3]]);
+        if (one >= vertices.strands && one < vertices.objects && other >= vertices.objects)
+            ++contacts[size_t(one - vertices.strands) * bodies + other - vertices.objects];
+    }
+    for (int c = 0; c < cloths; ++c) {
+        const auto begin = contacts.begin() + size_t(c) * bodies, most = std::max_element(begin, begin + bodies);
+        if (most != begin + bodies && *most > 0) touched[c] = int(most - begin);
+    }
+    return touched;
+}
+
+Vec3 mean_velocity_of_cloths(const SceneParts &scene) {
+    double mass = 0.0;
+    Vec3 momentum = Vec3::Zero();
+    for (const auto &cloth : scene.cloths)
+        for (int v = 0; v < cloth->model().vertex_count(); ++v) {
+            mass += cloth->model().mass[v];
+            momentum += cloth->model().mass[v] * cloth->state().velocities[v];
+        }
+    return mass > 0.0 ? Vec3(momentum / mass) : Vec3(Vec3::Zero());
+}
+
+// Moves everything along with prescribed vertices; those of `targets` become where they have arrived.
+Advected advect_with_bodies(SceneParts &scene, double dt, std::vector<Vec3> &targets, SceneReport &report) {
+    const SceneVertices &vertices = scene.vertices;
+    std::vector<Vec3> end = scene.configuration.positions;
+    for (int v = 0; v < vertices.count(); ++v)
+        if (!vertices.mesh.moves[v]) end[v] = targets[v];
+    const std::vector<int> bodies = bodies_of_cloths(scene);
+    const Carriers carriers{scene.rooted_in, bodies, dt * mean_velocity_of_cloths(scene)};
+    const Advected advected = advect(vertices, end, View<int>(scene.model.offsets), carriers, scene.configuration, report);
+    if (advected.fraction < 1.0)
+        for (int v = 0; v < vertices.count(); ++v)
+            if (!vertices.mesh.moves[v]) targets[v] = scene.configuration.positions[v];
+    return advected;
+}
+
+// Moves to where Newton's method begins: the blocks' initial guess, limited.
+void move_to_initial_guess(SceneParts &scene, bool rigidly, double tolerance, AlignedVector &x, Refinement &refinement,
+                           SceneReport &report) {
+    constexpr double rounding = 1e-12; // [m]
+    const SceneVertices &vertices = scene.vertices;
+    const std::vector<Vec3> now = scene.configuration.positions;
+    scene.blocks.scatter(now, x);
+    scene.blocks.for_active([&](int b) { scene.blocks[b].initial_guess(scene.blocks.of(b, x)); });
+    Move move{now, {}};
+    if (rigidly) scene.blocks.gather(x, move.to);
+    for (int v = 0; v < vertices.dynamic_vertices; ++v)
+        if (!vertices.mesh.moves[v] || (move.to[v] - now[v]).squaredNorm() < rounding * rounding) move.to[v] = now[v];
+    const std::vector<Vec3> guess = move.to;
+    scene.configuration.limit(move, {.whole = false, .few = true}, report);
+    refinement.add_move(now, guess, move.to);
+    refinement.end_iteration(tolerance);
+    scene.configuration.commit(move.to);
+    scene.blocks.scatter(scene.configuration.positions, x);
+}
+
+// Keeps what the next step begins with.
+void commit(SceneParts &scene, View<Vec3> start, double dt, const SolverEffort &effort, const AlignedVector &x,
+            SceneReport &report) {
+    const std::vector<Vec3> &now = scene.configuration.positions;
+    const std::vector<Touch> touching = scene.configuration.pairs.touching(now);
+    ContactSet &contacts = scene.objective.contacts;
+    scene.objective.find_contacts(touching, start, now);
+    contacts.commit_friction(now);
+    if (scene.contact.parting_speed == 0.0) contacts.overlaps.settle(touching, contacts.contacts(), now, parting_speed * dt);
+    scene.blocks.active.assign(scene.blocks.count(), 1);
+    scene.blocks.for_active([&](int b) { scene.blocks[b].commit(scene.blocks.of(b, x), dt, effort); });
+    scene.touched = most_touched_bodies(scene);
+    report.newton += effort.iterations;
+    report.residual = effort.residual;
+    report.unconverged = !effort.converged;
+    report.contacts = double(contacts.contacts().size());
+}
+
+// Takes a step of at most dt; returns the fraction of it that bodies leave room for.
+double take_substep(SceneParts &scene, const SceneInput &input, const SceneStep &settings, double dt, SceneReport &report) {
+    const std::vector<Vec3> start = scene.configuration.positions;
+    std::vector<Vec3> targets(input.targets.begin(), input.targets.end());
+    begin_contact(scene, dt);
+
+    const Advected advected = advect_with_bodies(scene, dt, targets, report);
+    dt *= advected.fraction;
+    const int inside = scene.penetration.count();
+    scene.objective.springs =
+        scene.penetration.recover(scene.vertices.mesh, scene.configuration.positions, View<int>(scene.model.offsets),
+                                  scene.stiffness.largest(), recovery_speed * dt);
+    if (scene.penetration.count() < inside) scene.configuration.pairs.forget(); // of pairs that were exempt
+
+    const StrandStep &step = settings.strands;
+    for (const auto &block : scene.strands) block->configure(step);
+    {
+        const Stopwatch watch(report.time_assemble);
+        scene.objective.begin_step({dt, Vec3(step.gravity), Vec3(step.wind), targets, input.forces},
+                                   scene.configuration.positions);
+    }
+    AlignedVector x(scene.blocks.size());
+    Refinement refinement(scene.objective);
+    move_to_initial_guess(scene, advected.rigidly, step.tolerance, x, refinement, report);
+
+    const NewtonSettings newton{step.newton, settings.extra, step.tolerance, scene.contact.strand_radius, settings.linear};
+    const SolverEffort effort = scene.newton.minimise(start, newton, refinement, x, report);
+    commit(scene, start, dt, effort, x, report);
+    return advected.fraction;
+}
+
+} // namespace
+
+SceneReport take_step(SceneParts &scene, const SceneInput &input, const SceneStep &settings) {
+    SceneReport report;
+    const double dt = settings.strands.dt;
+    if (!scene.begun) find_initial_contacts(scene, dt);
+    if (scene.contact.parting_speed > 0.0) scene.objective.contacts.overlaps.grow(scene.contact.parting_speed * dt);
+    scene.configuration.begin_record();
+    double left = 1.0; // of the step
+    for (int part = 0; part < settings.max_substeps && left > 1e-9; ++part) {
+        const double fraction = take_substep(scene, input, settings, dt * left, report);
+        left = fraction < 1.0 ? left * (1.0 - fraction) : 0.0;
+        ++report.substeps;
+    }
+    report.fraction = 1.0 - left;
+    report.closest = std::numeric_limits<double>::infinity();
+    for (const Contact &c : scene.objective.contacts.contacts())
+        report.closest = std::min(report.closest, separation(c, scene.configuration.positions).norm());
+    return report;
+}
+
+} // namespace ringlet

@@ -1,0 +1,59 @@
+#include "ringlet/solver/assembled_matrix.h"
+
+#include <algorithm>
+
+namespace ringlet {
+
+AssembledMatrix::AssembledMatrix(const Objective &objective) : objective_(objective) {
+    const BlockSet &blocks = objective.blocks;
+    for (int b = 0; b < blocks.count(); ++b) block_ = std::max(block_, blocks[b].dofs());
+    for (int b = 0; b < blocks.count(); ++b) blocks[b].add_to(*this);
+    const std::vector<Contact> &contacts = objective.contacts.contacts();
+    for (size_t k = 0; k < contacts.size(); ++k) add_couplings(contacts[k], objective.contact_values()[k].hessian);
+}
+
+double *AssembledMatrix::add_block(int row, int column) {
+    i_.push_back(row);
+    j_.push_back(column);
+    values_.resize(values_.size() + size_t(block_) * block_, 0.0);
+    return values_.data() + values_.size() - size_t(block_) * block_;
+}
+
+// What a contact does from side to side; the rest is in the blocks.
+void AssembledMatrix::add_couplings(const Contact &c, const Mat3 &hessian) {
+    const auto &moves = objective_.table.mesh.moves;
+    for (int i = 0; i < c.first; ++i)
+        for (int j = c.first; j < 4; ++j) {
+            if (!moves[c.vertex[i]] || !moves[c.vertex[j]] || c.weight[i] * c.weight[j] == 0.0) continue;
+            double *block = add_block(c.vertex[i], c.vertex[j]);
+            for (int r = 0; r < 3; ++r)
+                for (int k = 0; k < 3; ++k) block[r * block_ + k] = c.weight[i] * c.weight[j] * hessian(r, k);
+        }
+}
+
+std::shared_ptr<const SparsePattern> AssembledMatrix::pattern() const {
+    return std::make_shared<const SparsePattern>(vertices(), block_, i_, j_);
+}
+
+// work(row of the matrix, entry of the blocks' vectors, block).
+template <class Work> void AssembledMatrix::for_unknowns(const Work &work) const {
+    const BlockSet &blocks = objective_.blocks;
+    for (int v = 0; v < vertices(); ++v) {
+        const auto [first, stride] = blocks.slot(v);
+        const int block = blocks.block_of(objective_.table.object_of(v));
+        for (int k = 0; k < blocks.dofs(v); ++k) work(v * block_ + k, size_t(first) + size_t(k) * stride, block);
+    }
+}
+
+std::vector<double> AssembledMatrix::right_hand_side() const {
+    const BlockSet &blocks = objective_.blocks;
+    std::vector<double> b(size(), 0.0);
+    for_unknowns([&](int row, size_t i, int block) { b[row] = -blocks[block].gradient()[i - blocks.begin(block)]; });
+    return b;
+}
+
+void AssembledMatrix::set(View<double> solution, AlignedVector &direction) const {
+    for_unknowns([&](int row, size_t i, int) { direction[i] = solution[row]; });
+}
+
+} // namespace ringlet

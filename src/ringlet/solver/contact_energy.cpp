@@ -1,0 +1,69 @@
+#include "ringlet/solver/contact_energy.h"
+
+#include <algorithm>
+
+namespace ringlet {
+namespace {
+
+// Whether one of two objects is marked; −1 is none, and an empty list marks none.
+bool either(View<unsigned char> marked, int a, int b) {
+    return !marked.empty() && ((a >= 0 && marked[a] != 0) || (b >= 0 && marked[b] != 0));
+}
+
+} // namespace
+
+void ContactEnergy::remove(View<unsigned char> changed) {
+    std::erase_if(barriers_, [&](const Shared &shared) { return either(changed, shared.a, shared.b); });
+}
+
+void ContactEnergy::measure_friction(View<Vec3> positions, View<unsigned char> changed) {
+    const std::vector<Contact> &all = contacts_.contacts();
+    for (size_t k = 0; k < all.size(); ++k)
+        if (const auto [a, b] = objects_of(all[k]); either(changed, a, b))
+            friction_[k] = friction_energy(all[k], separation(all[k], positions));
+}
+
+void ContactEnergy::at_linearisation(View<Vec3> positions, View<unsigned char> active) {
+    friction_.assign(contacts_.contacts().size(), 0.0);
+    remove(active);
+    for (const Contact &contact : contacts_.contacts())
+        if (const auto [a, b] = objects_of(contact); either(active, a, b))
+            barriers_.push_back({a, b, barrier_energy(contact, contact.gap)});
+    measure_friction(positions, active);
+}
+
+void ContactEnergy::exact(const PairsInReach &pairs, View<Vec3> positions, View<double> traveled, View<unsigned char> changed) {
+    remove(changed);
+    const auto dynamic = [&](int object) { return object < table_.objects ? object : -1; };
+    const std::vector<Touch> there = touching(table_.mesh, pairs, positions, changed, traveled);
+    for (const PairEnergy &pair : contacts_.energies(table_.mesh, table_.material, there, positions))
+        barriers_.push_back({dynamic(pair.objects[0]), dynamic(pair.objects[1]), pair.energy()});
+    measure_friction(positions, changed);
+}
+
+void ContactEnergy::linearised(View<Vec3> positions, View<unsigned char> by_planes, View<unsigned char> ignored,
+                               View<unsigned char> changed) {
+    remove(changed);
+    for (const Contact &contact : contacts_.contacts()) {
+        const auto [a, b] = objects_of(contact);
+        if (!either(changed, a, b) || either(ignored, a, b)) continue;
+        const Vec3 apart = separation(contact, positions);
+        barriers_.push_back({a, b,
+                             either(by_planes, a, b) ? barrier_energy(contact, contact.normal.dot(apart))
+                                                     : quadratic_barrier_energy(contact, apart)});
+    }
+    measure_friction(positions, changed);
+}
+
+void ContactEnergy::add_to(std::vector<double> &of_objects, View<unsigned char> ignored) const {
+    const auto share = [&](int a, int b, double energy) {
+        if (a >= 0) of_objects[a] += b >= 0 ? 0.5 * energy : energy;
+        if (b >= 0) of_objects[b] += a >= 0 ? 0.5 * energy : energy;
+    };
+    for (const Shared &barrier : barriers_) share(barrier.a, barrier.b, barrier.energy);
+    const std::vector<Contact> &all = contacts_.contacts();
+    for (size_t k = 0; k < all.size(); ++k)
+        if (const auto [a, b] = objects_of(all[k]); !either(ignored, a, b)) share(a, b, friction_[k]);
+}
+
+} // namespace ringlet

@@ -1,0 +1,51 @@
+// Contact energies shared out to the objects, cached between the trials of a line search.
+#pragma once
+
+#include "ringlet/collision/pairs_in_reach.h"
+#include "ringlet/contact/contact_set.h"
+#include "ringlet/solver/vertex_table.h"
+
+#include <vector>
+
+namespace ringlet {
+
+// Three models of the barrier energy:
+//   at_linearisation  of the contacts, where they were found: their gaps are known
+//   exact             of all pairs in reach, measured at the positions, be they contacts yet or not
+//   linearised        of the contacts alone: by their planes for objects that are searched by planes, else by the quadratic
+//                     model of the Newton step
+// Friction is that of the contacts in all of them. Each model keeps what no changed object has a part in.
+class ContactEnergy {
+public:
+    ContactEnergy(const VertexTable &table, const ContactSet &contacts) : table_(table), contacts_(contacts) {}
+
+    void at_linearisation(View<Vec3> positions, View<unsigned char> active);
+
+    // `traveled` says which part of its longest path each object has covered: a lower bound on gaps.
+    void exact(const PairsInReach &pairs, View<Vec3> positions, View<double> traveled, View<unsigned char> changed);
+
+    // Contacts of `ignored` objects do not count.
+    void linearised(View<Vec3> positions, View<unsigned char> by_planes, View<unsigned char> ignored,
+                    View<unsigned char> changed);
+
+    // Adds the energies to those of the objects, half to each of two [J].
+    void add_to(std::vector<double> &of_objects, View<unsigned char> ignored = {}) const;
+
+private:
+    struct Shared {
+        int a, b; // objects; −1: none, the side's motion is prescribed
+        double energy;
+    };
+    std::array<int, 2> objects_of(const Contact &contact) const {
+        return {table_.object_of(contact.vertex[0]), table_.object_of(contact.vertex[3])};
+    }
+    void remove(View<unsigned char> changed);
+    void measure_friction(View<Vec3> positions, View<unsigned char> changed);
+
+    const VertexTable &table_;
+    const ContactSet &contacts_;
+    std::vector<Shared> barriers_;
+    std::vector<double> friction_; // of each contact [J]
+};
+
+} // namespace ringlet

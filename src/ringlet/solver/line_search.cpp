@@ -1,0 +1,107 @@
+#include "ringlet/solver/line_search.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ringlet {
+namespace {
+
+constexpr double least_decrease = 1e-4; // Armijo's constant
+constexpr double rounding = 1e-13;      // of an energy: a smaller decrease cannot be seen
+
+std::vector<double> slopes(const BlockSet &blocks, const AlignedVector &direction) { // of the objects' energies [J]
+    std::vector<double> slope(blocks.objects(), 0.0);
+    blocks.for_active([&](int b) {
+        double of_lanes[max_lanes] = {};
+        lane_dots(blocks[b].gradient(), blocks.of(b, direction), blocks[b].rows(), blocks[b].lanes(), of_lanes);
+        blocks.from_lanes(b, of_lanes, slope);
+    });
+    return slope;
+}
+
+// Per cluster, whether the path leads uphill, as it may where the limiter has left unequal parts of a joint direction.
+std::vector<unsigned char> leads_uphill(const std::vector<int> &cluster, const std::vector<double> &slope,
+                                        const std::vector<double> &energy, const std::vector<unsigned char> &accepted) {
+    const size_t objects = cluster.size();
+    std::vector<double> slopes(objects, 0.0), sizes(objects, 0.0);
+    for (size_t o = 0; o < objects; ++o)
+        if (!accepted[o]) slopes[cluster[o]] += slope[o], sizes[cluster[o]] += std::abs(energy[o]);
+    std::vector<unsigned char> uphill(objects);
+    for (size_t c = 0; c < objects; ++c) uphill[c] = slopes[c] > rounding * sizes[c];
+    return uphill;
+}
+
+} // namespace
+
+std::vector<unsigned char> with_touched(const Objective &objective, const std::vector<unsigned char> &objects) {
+    std::vector<unsigned char> all = objects;
+    for (const Contact &c : objective.contacts.contacts()) {
+        const int a = objective.table.object_of(c.vertex[0]), b = objective.table.object_of(c.vertex[3]);
+        if (a < 0 || b < 0) continue;
+        if (objects[a]) all[b] = 1;
+        if (objects[b]) all[a] = 1;
+    }
+    return all;
+}
+
+void ExactModel::at(const AlignedVector &x, const std::vector<double> &step, const std::vector<unsigned char> &changed,
+                    std::vector<double> &of_objects) {
+    std::vector<double> traveled(step.size()); // at most, on a path that bends
+    std::transform(step.begin(), step.end(), traveled.begin(), [](double t) { return t * (2.0 - t); });
+    objective_.exact_energies(x, pairs_, traveled, changed, of_objects);
+}
+
+LineSearchResult line_search(Objective &objective, SearchModel &model, const SearchPath &path,
+                             const std::vector<unsigned char> &accepted, AlignedVector &x) {
+    constexpr int halvings = 4, max_shorter = 8; // then steps are quartered, and after these they are 0
+    constexpr int max_apart = 12;                // then all of a cluster is shortened
+    const BlockSet &blocks = objective.blocks;
+    const int objects = objective.table.objects;
+    const std::vector<int> &cluster = objective.couplings.clusters();
+    LineSearchResult result{false, 0, std::vector<double>(objects, 1.0)};
+    std::vector<double> &step = result.step;
+    std::vector<double> start, energy;
+    model.at_start(start);
+    const std::vector<double> slope = slopes(blocks, path.straight);
+    const std::vector<unsigned char> uphill = leads_uphill(cluster, slope, start, accepted);
+    for (int o = 0; o < objects; ++o)
+        if (!accepted[o] && uphill[cluster[o]]) step[o] = 0.0, ++result.cuts;
+    const auto bound = [&](int o) { // of the energy of an object, were it alone
+        return start[o] + least_decrease * step[o] * slope[o] + rounding * std::abs(start[o]);
+    };
+
+    std::vector<unsigned char> changed(objects, 1), rises(objects), any_rises(objects);
+    std::vector<double> excess(objects); // of clusters
+    AlignedVector trial = x.copy();
+    for (int cut = 0;; ++cut) {
+        move_along(blocks, x, step, path, changed, trial);
+        model.at(trial, step, changed, energy);
+        std::fill(excess.begin(), excess.end(), 0.0);
+        std::fill(any_rises.begin(), any_rises.end(), 0);
+        for (int o = 0; o < objects; ++o)
+            if (!accepted[o]) excess[cluster[o]] += energy[o] - bound(o);
+        for (int o = 0; o < objects; ++o) {
+            const bool may_rise = accepted[o] || step[o] == 0.0 || excess[cluster[o]] <= 0.0;
+            rises[o] = !may_rise && !(energy[o] <= bound(o));
+            any_rises[cluster[o]] |= rises[o];
+        }
+        rises = with_touched(objective, rises);
+        for (int o = 0; o < objects; ++o)
+            if ((!any_rises[cluster[o]] || cut >= max_apart) && !(excess[cluster[o]] <= 0.0)) rises[o] = 1;
+
+        std::fill(changed.begin(), changed.end(), 0);
+        bool any_changed = false;
+        for (int o = 0; o < objects; ++o)
+            if (rises[o] && !accepted[o] && step[o] > 0.0) {
+                step[o] *= cut < halvings ? 0.5 : cut < max_shorter ? 0.25 : 0.0;
+                changed[o] = any_changed = true;
+                ++result.cuts;
+            }
+        if (any_changed) continue;
+        std::swap(x, trial);
+        for (int o = 0; o < objects; ++o) result.moved |= blocks.is_active(o) && step[o] > 0.0;
+        return result;
+    }
+}
+
+} // namespace ringlet

@@ -1,0 +1,157 @@
+#include "ringlet/solver/linear_system.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace ringlet {
+namespace {
+
+double total(const std::vector<double> &values) { return std::accumulate(values.begin(), values.end(), 0.0); }
+
+} // namespace
+
+LinearSystem::LinearSystem(Objective &objective) : objective_(objective) {
+    for (int b = 0; b < objective.blocks.count(); ++b) {
+        iterations_.push_back(BlockIteration::make(objective, b, state_));
+        if (objective.blocks[b].is_exact()) continue;
+        for (const BlockObject &object : objective.blocks[b].objects()) inexact_.push_back(object.number);
+    }
+}
+
+System LinearSystem::method(System wanted) const {
+    if (wanted == System::banded && objective_.is_coupled())
+        throw CoupledError("scene: the system 'banded' solves strands alone, but something couples them");
+    // The matrix of blocks that are not active is not assembled.
+    const std::vector<unsigned char> &active = objective_.blocks.active;
+    const bool all = std::count(active.begin(), active.end(), 0) == 0;
+    return wanted == System::direct && all ? wanted : System::conjugate_gradient;
+}
+
+void LinearSystem::assemble(const AlignedVector &x, const LinearSettings &settings) {
+    const System how = method(settings.system);
+    state_.resize(objective_.table.objects, objective_.couplings.count());
+    objective_.linearise_contacts(x);
+    whole_.reset();
+    if (how == System::direct) { // before the blocks are factored in place
+        objective_.blocks.for_active([&](int b) { objective_.assemble(b, x); });
+        whole_.emplace(objective_);
+        objective_.blocks.for_active([&](int b) { iterations_[b]->start(); });
+    } else {
+        objective_.blocks.for_active([&](int b) { // all of a block while it is in the cache
+            objective_.assemble(b, x);
+            iterations_[b]->start();
+        });
+    }
+}
+
+LinearSystem::Result LinearSystem::solve(const LinearSettings &settings, AlignedVector &direction) {
+    Result result;
+    direction.fill(0.0); // of blocks that are not active
+    if (whole_ && whole_->size() > 0 && solve_whole(direction, result)) return result;
+    return conjugate_gradient(settings, direction);
+}
+
+bool LinearSystem::solve_whole(AlignedVector &direction, Result &result) const {
+    DirectSolver solver;
+    solver.analyse(whole_->pattern());
+    if (!solver.factor(whole_->triplets())) return false;
+    std::vector<double> solution(whole_->size());
+    result.residual = solver.solve(whole_->right_hand_side(), solution);
+    whole_->set(solution, direction);
+    return true;
+}
+
+// Sums of the objects that conjugate gradients have something to do for, at the first object of each cluster.
+std::vector<double> LinearSystem::of_clusters(const std::vector<double> &of_objects) const {
+    std::vector<double> sums(of_objects.size(), 0.0);
+    for (size_t object = 0; object < sums.size(); ++object)
+        if (!objective_.is_alone(int(object))) sums[objective_.couplings.clusters()[object]] += of_objects[object];
+    return sums;
+}
+
+// Clusters are independent systems, each with step lengths of its own. A cluster goes on until its residual, or that of all, is
+// small. An inexact block starts at 0, and beside stiff strands its residual hardly counts: it goes on until its own is small,
+// one iteration at least, since what pushed it may have been solved in the first iterate.
+LinearSystem::Result LinearSystem::conjugate_gradient(const LinearSettings &settings, AlignedVector &direction) {
+    const BlockSet &blocks = objective_.blocks;
+    const int objects = objective_.table.objects;
+    const double tolerance2 = settings.tolerance * settings.tolerance;
+    const std::vector<int> &cluster = objective_.couplings.clusters();
+    std::vector<double> rho = of_clusters(state_.rz), small = rho, small_of_inexact;
+    const double all = total(rho);
+    for (double &of_cluster : small) of_cluster *= tolerance2;
+    for (const int object : inexact_) small_of_inexact.push_back(tolerance2 * state_.rz[object]);
+
+    first_iterate(direction);
+    rho = of_clusters(state_.rz);
+    std::vector<unsigned char> busy(objects), busy_blocks, advanced(blocks.count(), 0);
+    Result result;
+    for (;; ++result.iterations) {
+        const bool all_small = total(rho) <= tolerance2 * all;
+        std::vector<unsigned char> goes_on(objects, 0); // clusters
+        for (int c = 0; c < objects; ++c) goes_on[c] = !all_small && rho[c] > small[c];
+        for (size_t k = 0; k < inexact_.size(); ++k) {
+            const int object = inexact_[k];
+            const bool is_small = result.iterations > 0 && state_.rz[object] <= small_of_inexact[k];
+            goes_on[cluster[object]] |= rho[cluster[object]] > 0.0 && !is_small;
+        }
+        busy_blocks.assign(blocks.count(), 0);
+        for (int object = 0; object < objects; ++object) {
+            busy[object] = goes_on[cluster[object]];
+            if (busy[object]) busy_blocks[blocks.block_of(object)] = 1;
+        }
+        if (std::count(busy.begin(), busy.end(), 1) == 0 || result.iterations == settings.max_iterations) break;
+        const auto for_busy = [&](const auto &work, bool backwards = false) {
+            blocks.for_active(
+                [&](int b) {
+                    if (busy_blocks[b]) work(b);
+                },
+                backwards);
+        };
+
+        for_busy([&](int b) { iterations_[b]->search(); });
+        std::vector<double> curvature = of_clusters(state_.pPp);
+        objective_.couplings.multiply(state_.p, objective_.contact_values(), busy, curvature);
+        std::vector<double> alpha(objects, 0.0), beta(objects, 0.0); // of clusters
+        for (int c = 0; c < objects; ++c)
+            if (busy[c] && cluster[c] == c) alpha[c] = curvature[c] > 0.0 ? rho[c] / curvature[c] : 0.0;
+        for (int object = 0; object < objects; ++object) state_.alpha[object] = busy[object] ? alpha[cluster[object]] : 0.0;
+
+        // Alternating directions reuse the factors that are still in the cache.
+        const bool backwards = result.iterations % 2 != 0;
+        for_busy(
+            [&](int b) {
+                iterations_[b]->advance(blocks.of(b, direction));
+                advanced[b] = 1;
+            },
+            backwards);
+        const std::vector<double> next = of_clusters(state_.rz);
+        for (int c = 0; c < objects; ++c)
+            if (busy[c] && cluster[c] == c) {
+                beta[c] = next[c] / rho[c];
+                rho[c] = alpha[c] > 0.0 ? next[c] : 0.0;
+            }
+        for (int object = 0; object < objects; ++object) state_.beta[object] = busy[object] ? beta[cluster[object]] : 0.0;
+    }
+    blocks.for_active([&](int b) {
+        if (advanced[b]) iterations_[b]->finish(blocks.of(b, direction));
+    });
+    result.residual = all > 0.0 ? std::sqrt(std::max(total(rho), 0.0) / all) : 0.0;
+    return result;
+}
+
+// d = P⁻¹ b of exact blocks and 0 of others, with the residual that C leaves.
+void LinearSystem::first_iterate(AlignedVector &direction) {
+    const BlockSet &blocks = objective_.blocks;
+    const int objects = objective_.table.objects;
+    state_.resize(objects, objective_.couplings.count());
+    blocks.for_active([&](int b) { iterations_[b]->first_iterate(blocks.of(b, direction)); });
+    std::vector<double> unused(objects, 0.0);
+    const std::vector<unsigned char> busy(objects, 1);
+    objective_.couplings.multiply(state_.p, objective_.contact_values(), busy, unused);
+    state_.alpha.assign(objects, 1.0);
+    blocks.for_active([&](int b) { iterations_[b]->advance(blocks.of(b, direction)); }, true);
+}
+
+} // namespace ringlet

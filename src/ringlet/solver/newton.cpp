@@ -1,0 +1,115 @@
+#include "ringlet/solver/newton.h"
+
+#include "ringlet/solver/path_limiter.h"
+#include "ringlet/solver/plane_search.h"
+
+#include <algorithm>
+
+namespace ringlet {
+
+Newton::Newton(VertexTable &table, Objective &objective, LinearSystem &system, Configuration &configuration,
+               ContactStiffness &stiffness)
+    : table_(table), objective_(objective), system_(system), configuration_(configuration), stiffness_(stiffness) {}
+
+SolverEffort Newton::minimise(View<Vec3> start, const NewtonSettings &settings, Refinement &refinement, AlignedVector &x,
+                              SceneReport &report) {
+    largest_.assign(table_.objects, 0.0);
+    taken_.assign(table_.objects, 1.0);
+    Iteration iteration{0, false, SearchPath(objective_.blocks.size()), {}, {}};
+    int &number = iteration.number;
+    for (bool converged = false; !converged; ++number) {
+        if (number >= settings.iterations + settings.extra) break;
+        if (number >= settings.iterations && !refinement.activate_stretched(objective_.blocks, configuration_.positions)) break;
+        find_contacts(start, report);
+        solve(settings, x, report, iteration);
+        if (!choose_path(settings, x, report, iteration)) break;
+        // In the first iteration a strand that could hardly move is limited near the pair alone, so that the rest of it
+        // follows; later its shape counts.
+        iteration.move = limit_path(objective_, configuration_, x, number > 0, number + 1 >= settings.iterations,
+                                    iteration.path, refinement, report);
+        refinement.add_steps(iteration.step);
+        converged = iteration.converged && refinement.all_moved_fully();
+        const LineSearchResult found = search(iteration, report, x);
+        if (!found.moved) break;
+        refinement.add_steps(found.step);
+        refinement.end_iteration(settings.tolerance);
+        accept(found, report, iteration, x);
+    }
+    const double residual = largest_.empty() ? 0.0 : *std::max_element(largest_.begin(), largest_.end());
+    return {double(number), report.cuts, residual, residual <= settings.tolerance};
+}
+
+void Newton::find_contacts(View<Vec3> start, SceneReport &report) {
+    const Stopwatch watch(report.time_pairs);
+    const std::vector<Vec3> &now = configuration_.positions;
+    objective_.find_contacts(configuration_.pairs.touching(now), start, now);
+}
+
+void Newton::solve(const NewtonSettings &settings, const AlignedVector &x, SceneReport &report, Iteration &iteration) {
+    {
+        const Stopwatch watch(report.time_assemble);
+        system_.assemble(x, settings.linear);
+    }
+    const Stopwatch watch(report.time_solve);
+    AlignedVector &direction = iteration.path.straight;
+    const LinearSystem::Result solved = system_.solve(settings.linear, direction);
+    report.linear_iterations += solved.iterations;
+    report.linear_residual = solved.residual;
+    measure_direction(objective_.blocks, direction, largest_);
+    iteration.converged =
+        std::all_of(largest_.begin(), largest_.end(), [&](double largest) { return largest <= settings.tolerance; });
+    objective_.lag_normal_forces(direction);
+    if (stiffness_.raise_loads(objective_.contacts))
+        table_.material.stiffness = stiffness_.levels(table_.mesh, 2.0 * settings.strand_radius);
+}
+
+// How far objects may go, and how their paths bend. Where something is searched by planes, all paths stay straight: contacts
+// know nothing of a bend, and would stop nearly all hair that hangs together with it.
+bool Newton::choose_path(const NewtonSettings &settings, const AlignedVector &x, SceneReport &report, Iteration &iteration) {
+    constexpr double growth = 4.0; // of the fraction that was taken last, but where a direction is short
+    const BlockSet &blocks = objective_.blocks;
+    SearchPath &path = iteration.path;
+    path.bend.fill(0.0);
+    std::vector<double> step = max_step(blocks, x, path.straight);
+    iteration.step.assign(table_.objects, 1.0);
+    const std::vector<unsigned char> &by_planes = objective_.by_planes();
+    if (std::count(by_planes.begin(), by_planes.end(), 1) > 0) {
+        const Stopwatch watch(report.time_search);
+        shorten(blocks, step, path);
+        return search_by_planes(objective_, x, iteration.converged, path);
+    }
+    for (size_t o = 0; o < step.size() && iteration.number < settings.iterations; ++o)
+        step[o] = std::min(step[o], std::max(growth * taken_[o], settings.strand_radius / largest_[o]));
+    shorten(blocks, step, path);
+    bend(blocks, x, path);
+    iteration.step = std::move(step);
+    return true;
+}
+
+LineSearchResult Newton::search(const Iteration &iteration, SceneReport &report, AlignedVector &x) {
+    const Stopwatch watch(report.time_search);
+    ExactModel model(objective_, configuration_.pairs.in_reach(objective_.blocks.active_objects()));
+    const std::vector<unsigned char> all(table_.objects, 1);
+    const LineSearchResult found =
+        line_search(objective_, model, iteration.path, iteration.converged ? all : objective_.by_planes(), x);
+    report.cuts += found.cuts;
+    return found;
+}
+
+void Newton::accept(const LineSearchResult &found, SceneReport &report, Iteration &iteration, AlignedVector &x) {
+    const BlockSet &blocks = objective_.blocks;
+    Move &move = iteration.move;
+    for (int o = 0; o < table_.objects; ++o)
+        if (blocks.is_active(o)) taken_[o] = iteration.step[o] * found.step[o];
+    if (found.cuts > 0) { // objects no longer move in the proportion that was limited
+        std::vector<unsigned char> changed(table_.count(), 0);
+        for (int v = 0; v < table_.dynamic_vertices; ++v)
+            if (found.step[table_.mesh.object[v]] < 1.0) changed[v] = 1, move.to[v] = blocks.position(x, v);
+        move.apex.clear();
+        configuration_.limit_again(move, true, changed, report);
+    }
+    configuration_.commit(move.to);
+    blocks.scatter(configuration_.positions, x);
+}
+
+} // namespace ringlet

@@ -1,0 +1,54 @@
+// Newton's method on the objective of a step, with contacts found anew at every iterate and moves that pass through nothing.
+#pragma once
+
+#include "ringlet/contact/stiffness.h"
+#include "ringlet/solver/configuration.h"
+#include "ringlet/solver/line_search.h"
+#include "ringlet/solver/linear_system.h"
+#include "ringlet/solver/refinement.h"
+
+namespace ringlet {
+
+struct NewtonSettings {
+    int iterations = 5;      // at most
+    int extra = 60;          // more, at most, for objects that were limited and are stretched
+    double tolerance = 1e-7; // [m]; converged when no coordinate of the search direction is larger
+    double strand_radius;    // [m]: half the activation distance of two strands
+    LinearSettings linear;
+};
+
+class Newton {
+public:
+    // Borrows all of them. The table's contact stiffness follows the loads.
+    Newton(VertexTable &table, Objective &objective, LinearSystem &system, Configuration &configuration,
+           ContactStiffness &stiffness);
+
+    // Iterates from x, which are the positions of the configuration, in a step that began at `start`. Returns the effort.
+    SolverEffort minimise(View<Vec3> start, const NewtonSettings &settings, Refinement &refinement, AlignedVector &x,
+                          SceneReport &report);
+
+private:
+    struct Iteration {
+        int number;
+        bool converged; // no coordinate of the direction is above the tolerance
+        SearchPath path;
+        std::vector<double> step; // per object: the fraction of the direction that is tried
+        Move move;
+    };
+
+    void find_contacts(View<Vec3> start, SceneReport &report);
+    void solve(const NewtonSettings &settings, const AlignedVector &x, SceneReport &report, Iteration &iteration);
+    bool choose_path(const NewtonSettings &settings, const AlignedVector &x, SceneReport &report, Iteration &iteration);
+    LineSearchResult search(const Iteration &iteration, SceneReport &report, AlignedVector &x);
+    void accept(const LineSearchResult &found, SceneReport &report, Iteration &iteration, AlignedVector &x);
+
+    VertexTable &table_;
+    Objective &objective_;
+    LinearSystem &system_;
+    Configuration &configuration_;
+    ContactStiffness &stiffness_;
+    std::vector<double> largest_; // per object: largest coordinate of its last search direction [m]
+    std::vector<double> taken_;   // per object: the fraction of the last direction that it took
+};
+
+} // namespace ringlet

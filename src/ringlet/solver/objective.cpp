@@ -1,0 +1,135 @@
+#include "ringlet/solver/objective.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace ringlet {
+
+Objective::Objective(BlockSet &blocks_, const VertexTable &table_)
+    : blocks(blocks_), table(table_), contact_energy_(table_, contacts) {}
+
+void Objective::begin_step(const BlockStep &step, View<Vec3> positions) {
+    blocks.begin_step(step);
+    own_energies_.assign(table.objects, 0.0);
+    positions_.assign(positions.begin(), positions.end());
+}
+
+std::vector<double> Objective::contact_stiffness(double scale, double dt) const {
+    std::vector<double> stiffness(table.count(), std::numeric_limits<double>::infinity());
+    for (int v = 0; v < table.dynamic_vertices; ++v)
+        if (table.mesh.moves[v]) stiffness[v] = scale * blocks.of_object(table.mesh.object[v]).contact_stiffness(v, dt);
+    return stiffness;
+}
+
+void Objective::find_contacts(const std::vector<Touch> &touching, View<Vec3> start, View<Vec3> positions) {
+    find_planes(touching);
+    contacts.find(table.mesh, table.material, touching, start, positions);
+    values_.resize(contacts.contacts().size());
+    couplings.find(contacts, table, blocks);
+    touched_ = {size_t(blocks.count()), [&](const auto &work) {
+                    for (const int v : contacts.vertices()) work(blocks.block_of(table.object_of(v)), v);
+                }};
+}
+
+void Objective::find_planes(const std::vector<Touch> &touching) {
+    by_planes_.assign(table.objects, 0);
+    for (int object = 0; object < table.objects; ++object)
+        by_planes_[object] = blocks.of_object(object).is_searched_by_planes();
+    const std::vector<unsigned char> itself = by_planes_;
+    if (std::count(itself.begin(), itself.end(), 1) == 0) return;
+    for (const Touch &touch : touching)
+        with_vertices(table.mesh, touch, [&](const auto &a, const auto &b) {
+            const int one = table.object_of(a[0]), other = table.object_of(b[0]);
+            if (one < 0 || other < 0) return;
+            if (itself[one]) by_planes_[other] = 1;
+            if (itself[other]) by_planes_[one] = 1;
+        });
+    contacts.set_plane_objects(by_planes_);
+}
+
+void Objective::evaluate(const AlignedVector &x, const std::vector<unsigned char> &changed) {
+    std::vector<unsigned char> asked(blocks.count(), 0);
+    for (int object = 0; object < table.objects; ++object)
+        if (changed[object]) asked[blocks.block_of(object)] = 1;
+    blocks.for_active([&](int b) {
+        if (!asked[b]) return;
+        double energies[max_lanes] = {};
+        blocks[b].energies(blocks.of(b, x), energies);
+        blocks.from_lanes(b, energies, own_energies_);
+    });
+#pragma omp parallel for schedule(static)
+    for (int v = 0; v < table.dynamic_vertices; ++v)
+        if (changed[table.mesh.object[v]]) positions_[v] = blocks.position(x, v);
+}
+
+void Objective::sum_energies(View<unsigned char> ignored, std::vector<double> &of_objects) const {
+    of_objects = own_energies_;
+    for (const RecoverySpring &spring : springs)
+        of_objects[table.object_of(spring.vertex)] += spring.energy(positions_[spring.vertex]);
+    contact_energy_.add_to(of_objects, ignored);
+}
+
+void Objective::energies_at_linearisation(std::vector<double> &of_objects) {
+    contact_energy_.at_linearisation(positions_, blocks.active_objects());
+    sum_energies({}, of_objects);
+}
+
+void Objective::exact_energies(const AlignedVector &x, const PairsInReach &pairs, View<double> traveled,
+                               const std::vector<unsigned char> &changed, std::vector<double> &of_objects) {
+    evaluate(x, changed);
+    std::vector<unsigned char> anew = blocks.active_objects();
+    for (size_t object = 0; object < anew.size(); ++object) anew[object] &= changed[object] != 0;
+    contact_energy_.exact(pairs, positions_, traveled, anew);
+    sum_energies({}, of_objects);
+}
+
+void Objective::linearised_energies_at_linearisation(View<unsigned char> ignored, std::vector<double> &of_objects) {
+    contact_energy_.at_linearisation(positions_, blocks.active_objects()); // sets the friction of all contacts
+    contact_energy_.linearised(positions_, by_planes_, ignored, blocks.active_objects());
+    sum_energies(ignored, of_objects);
+}
+
+void Objective::linearised_energies(const AlignedVector &x, View<unsigned char> ignored,
+                                    const std::vector<unsigned char> &changed, std::vector<double> &of_objects) {
+    evaluate(x, changed);
+    std::vector<unsigned char> anew = blocks.active_objects();
+    for (size_t object = 0; object < anew.size(); ++object) anew[object] &= changed[object] != 0;
+    contact_energy_.linearised(positions_, by_planes_, ignored, anew);
+    sum_energies(ignored, of_objects);
+}
+
+void Objective::linearise_contacts(const AlignedVector &x) {
+    blocks.gather(x, positions_);
+    const std::vector<Contact> &all = contacts.contacts();
+#pragma omp parallel for schedule(static)
+    for (int k = 0; k < int(all.size()); ++k) values_[k] = contact_value(all[k], separation(all[k], positions_));
+}
+
+void Objective::assemble(int block, const AlignedVector &x) {
+    Block &of = blocks[block];
+    double energies[max_lanes] = {};
+    of.evaluate(blocks.of(block, x), energies);
+    blocks.from_lanes(block, energies, own_energies_);
+    of.assemble(blocks.of(block, x));
+    for (const int v : touched_.of(block)) of.add_contacts(v, contacts, values_);
+    for (const RecoverySpring &spring : springs)
+        if (blocks.block_of(table.object_of(spring.vertex)) == block)
+            if (const double depth = spring.depth(blocks.position(x, spring.vertex)); depth > 0.0)
+                of.add_spring(spring.vertex, spring.normal, spring.stiffness * depth, spring.stiffness);
+}
+
+void Objective::lag_normal_forces(const AlignedVector &direction) {
+    constexpr double closest = 0.05; // of the activation distance
+    const std::vector<Contact> &all = contacts.contacts();
+    for (int k = 0; k < int(all.size()); ++k) {
+        const Contact &c = all[k];
+        Vec3 change = Vec3::Zero();
+        for (int i = 0; i < 4; ++i)
+            if (table.mesh.moves[c.vertex[i]] && c.weight[i] != 0.0)
+                change += c.weight[i] * blocks.position(direction, c.vertex[i]);
+        const double most = std::max(c.force, -c.stiffness * barrier(closest * c.d_hat, c.d_hat, 0.0).first);
+        contacts.set_lagged_force(k, std::min(std::max(0.0, c.force - c.normal.dot(values_[k].hessian * change)), most));
+    }
+}
+
+} // namespace ringlet

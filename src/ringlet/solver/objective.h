@@ -1,0 +1,75 @@
+// The objective of a step: the energy of all blocks and contacts, per object, with its gradient and its Hessian A = P + C.
+// P is block-diagonal: each block's own Hessian with what contacts do within each of their sides. C couples the sides.
+#pragma once
+
+#include "ringlet/solver/block_set.h"
+#include "ringlet/solver/contact_energy.h"
+#include "ringlet/solver/couplings.h"
+#include "ringlet/solver/recovery_spring.h"
+
+#include <vector>
+
+namespace ringlet {
+
+class Objective {
+public:
+    Objective(BlockSet &blocks, const VertexTable &table);
+
+    BlockSet &blocks;
+    const VertexTable &table;
+    ContactSet contacts;
+    Couplings couplings; // C
+    std::vector<RecoverySpring> springs;
+
+    // Opens a step; `positions` are those of all vertices, of which the prescribed ones have arrived.
+    void begin_step(const BlockStep &step, View<Vec3> positions);
+
+    // The largest stiffness of each vertex against contacts, `scale` times that of its block [N/m]; infinite where prescribed.
+    std::vector<double> contact_stiffness(double scale, double dt) const;
+
+    // Replaces the contacts by those of the pairs that touch at `positions`; the step began at `start`.
+    void find_contacts(const std::vector<Touch> &touching, View<Vec3> start, View<Vec3> positions);
+
+    // Objects that a factor of their own solves: exact blocks that nothing couples.
+    bool is_alone(int object) const { return blocks.of_object(object).is_exact() && !couplings.couples(object); }
+    bool is_coupled() const { return !blocks.all_exact() || couplings.count() > 0; }
+
+    // Objects whose line search knows contacts by their planes: see plane_search.h.
+    const std::vector<unsigned char> &by_planes() const { return by_planes_; }
+
+    // Energies [J] of the objects, in one of the models of contact_energy.h. Those at the linearisation come first after
+    // contacts were found and the system assembled; later only objects that have `changed` since are evaluated.
+    void energies_at_linearisation(std::vector<double> &of_objects);
+    void exact_energies(const AlignedVector &x, const PairsInReach &pairs, View<double> traveled,
+                        const std::vector<unsigned char> &changed, std::vector<double> &of_objects);
+    void linearised_energies_at_linearisation(View<unsigned char> ignored, std::vector<double> &of_objects);
+    void linearised_energies(const AlignedVector &x, View<unsigned char> ignored, const std::vector<unsigned char> &changed,
+                             std::vector<double> &of_objects);
+
+    // Evaluates x again, from trials elsewhere.
+    void return_to(const AlignedVector &x) { evaluate(x, std::vector<unsigned char>(table.objects, 1)); }
+
+    // Linearises the contacts at x, before blocks are assembled there.
+    void linearise_contacts(const AlignedVector &x);
+    // Gradient and P of a block at x.
+    void assemble(int block, const AlignedVector &x);
+    const std::vector<ContactValue> &contact_values() const { return values_; }
+
+    // Expects the contacts to bear what their matrix gives at the end of the search direction, where all forces balance; but no
+    // more than they could at a twentieth of their activation distance, since little of the direction may be taken.
+    void lag_normal_forces(const AlignedVector &direction);
+
+private:
+    void find_planes(const std::vector<Touch> &touching);
+    void evaluate(const AlignedVector &x, const std::vector<unsigned char> &changed);
+    void sum_energies(View<unsigned char> ignored, std::vector<double> &of_objects) const;
+
+    std::vector<ContactValue> values_;
+    ContactEnergy contact_energy_;
+    Lists<int> touched_;                   // vertices that contacts act on, of blocks
+    std::vector<unsigned char> by_planes_; // per object
+    std::vector<double> own_energies_;     // per object, without contacts
+    std::vector<Vec3> positions_;          // of all vertices, where energies were evaluated last
+};
+
+} // namespace ringlet

@@ -1,0 +1,92 @@
+#include "ringlet/solver/path_limiter.h"
+
+#include <algorithm>
+
+namespace ringlet {
+namespace {
+
+constexpr double early = 0.05, half = 0.5; // of the path
+
+double fraction_of(const Vec3 &now, const Vec3 &wanted, const Vec3 &to) {
+    const Vec3 move = wanted - now;
+    return move.dot(to - now) / move.squaredNorm();
+}
+
+// The least fraction of its move that is left to each object.
+std::vector<double> fractions_left(const VertexTable &table, View<Vec3> now, View<Vec3> wanted, View<Vec3> to) {
+    std::vector<double> left(table.objects, 1.0);
+    for (int v = 0; v < table.dynamic_vertices; ++v) {
+        if (to[v] == wanted[v]) continue;
+        double &of = left[table.mesh.object[v]];
+        of = std::min(of, fraction_of(now[v], wanted[v], to[v]));
+    }
+    return left;
+}
+
+// Where a path leads, with the apex of the triangles that hold it.
+Move end_of_path(const BlockSet &blocks, const VertexTable &table, View<Vec3> now, const AlignedVector &x,
+                 const SearchPath &path) {
+    Move move{{now.begin(), now.end()}, {now.begin(), now.end()}};
+    AlignedVector end = x.copy();
+    move_along(blocks, x, std::vector<double>(table.objects, 1.0), path, std::vector<unsigned char>(table.objects, 1), end);
+    for (int v = 0; v < table.dynamic_vertices; ++v) {
+        if (!table.mesh.moves[v]) continue;
+        move.to[v] = blocks.position(end, v);
+        move.apex[v] = now[v] + half * blocks.position(path.straight, v); // of a parabola, the tangents' intersection
+    }
+    return move;
+}
+
+// The path of an object that was limited at some vertices becomes straight, each vertex with the fraction that it has left.
+void take_limited(const BlockSet &blocks, const VertexTable &table, View<Vec3> now, View<Vec3> wanted, View<Vec3> to,
+                  SearchPath &path) {
+    std::vector<unsigned char> limited(table.objects, 0);
+    for (int v = 0; v < table.dynamic_vertices; ++v)
+        if (to[v] != wanted[v]) limited[table.mesh.object[v]] = 1;
+    for (int v = 0; v < table.dynamic_vertices; ++v) {
+        if (!limited[table.mesh.object[v]] || !table.mesh.moves[v]) continue;
+        const double left = to[v] == wanted[v] ? 1.0 : fraction_of(now[v], wanted[v], to[v]);
+        const auto [first, stride] = blocks.slot(v);
+        for (int k = 0; k < blocks.dofs(v); ++k) {
+            const size_t i = size_t(first) + size_t(k) * stride;
+            path.straight[i] = left * (path.straight[i] + path.bend[i]);
+        }
+    }
+    straighten(blocks, limited, path);
+}
+
+} // namespace
+
+Move limit_path(const Objective &objective, Configuration &configuration, const AlignedVector &x, bool whole, bool lasts,
+                SearchPath &path, Refinement &refinement, SceneReport &report) {
+    const VertexTable &table = objective.table;
+    const BlockSet &blocks = objective.blocks;
+    const std::vector<Vec3> &now = configuration.positions;
+    Move wanted = end_of_path(blocks, table, now, x, path), move = wanted;
+    configuration.limit(move, {.whole = true, .lasts = lasts}, report);
+
+    std::vector<double> left = fractions_left(table, now, wanted.to, move.to);
+    std::vector<unsigned char> straight(table.objects, 0), limited(table.objects, 0), changed(table.count(), 0);
+    for (int object = 0; object < table.objects; ++object) {
+        limited[object] = left[object] < 1.0;
+        straight[object] = left[object] < early;
+        if (blocks.of_object(object).is_searched_by_planes()) // limited near the pair, not as a whole
+            left[object] = 1.0;
+        else if (straight[object])
+            left[object] = half;
+    }
+    straighten(blocks, straight, path);
+    shorten(blocks, left, path);
+
+    wanted = end_of_path(blocks, table, now, x, path);
+    move.apex = wanted.apex;
+    for (int v = 0; v < table.dynamic_vertices; ++v)
+        if (table.mesh.moves[v] && limited[table.mesh.object[v]]) changed[v] = 1, move.to[v] = wanted.to[v];
+    configuration.limit_again(move, whole, changed, report);
+    refinement.add_move(now, wanted.to, move.to);
+    refinement.add_steps(left);
+    take_limited(blocks, table, now, wanted.to, move.to, path);
+    return move;
+}
+
+} // namespace ringlet

@@ -1,0 +1,17 @@
+// Limits a search path where it would lead through a contact.
+#pragma once
+
+#include "ringlet/solver/configuration.h"
+#include "ringlet/solver/refinement.h"
+#include "ringlet/solver/search_path.h"
+
+namespace ringlet {
+
+// Shortens the path from x, which are the positions, until no pair comes closer than it may; returns the move that it leads to.
+// Strands first take the bent path. What meets something early on it goes straight instead, and half as far: the linear system
+// knows the contacts in that direction, while the bend leads the rest of a strand anywhere. What meets something later goes
+// that fraction. Both are limited once more.
+Move limit_path(const Objective &objective, Configuration &configuration, const AlignedVector &x, bool whole, bool lasts,
+                SearchPath &path, Refinement &refinement, SceneReport &report);
+
+} // namespace ringlet

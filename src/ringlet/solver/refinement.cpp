@@ -1,0 +1,57 @@
+#include "ringlet/solver/refinement.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ringlet {
+
+Refinement::Refinement(const Objective &objective)
+    : objective_(objective), length_(objective.table.objects), fraction_(length_.size(), 1.0), limited_(length_.size(), 0) {}
+
+void Refinement::add_move(View<Vec3> now, View<Vec3> wanted, View<Vec3> to) {
+    std::fill(length_.begin(), length_.end(), 0.0);
+    std::fill(fraction_.begin(), fraction_.end(), 1.0);
+    for (int v = 0; v < objective_.table.dynamic_vertices; ++v) {
+        const int object = objective_.table.mesh.object[v];
+        const double length = (wanted[v] - now[v]).norm();
+        length_[object] = std::max(length_[object], length);
+        if (length > 0.0) fraction_[object] = std::min(fraction_[object], (to[v] - now[v]).norm() / length);
+    }
+}
+
+void Refinement::add_steps(const std::vector<double> &t) {
+    for (size_t object = 0; object < t.size(); ++object) fraction_[object] *= t[object];
+}
+
+void Refinement::end_iteration(double tolerance) {
+    constexpr double nearly_all = 0.9; // of a move: less was limited
+    const BlockSet &blocks = objective_.blocks;
+    for (int object = 0; object < objective_.table.objects; ++object) {
+        if (!blocks.is_active(object)) continue;
+        const double settled = blocks.of_object(object).settled_distance(blocks.lane_of(object));
+        limited_[object] =
+            length_[object] > tolerance && (fraction_[object] < nearly_all || (limited_[object] && length_[object] > settled));
+    }
+}
+
+bool Refinement::all_moved_fully() const {
+    constexpr double rounding = 1e-9;
+    return std::all_of(fraction_.begin(), fraction_.end(), [](double fraction) { return fraction > 1.0 - rounding; });
+}
+
+bool Refinement::activate_stretched(BlockSet &blocks, View<Vec3> now) {
+    std::fill(blocks.active.begin(), blocks.active.end(), 0);
+    bool any = false;
+    for (int object = 0; object < objective_.table.objects; ++object) {
+        limited_[object] = limited_[object] && blocks.of_object(object).is_stretched(blocks.lane_of(object), now);
+        if (limited_[object]) blocks.active[blocks.block_of(object)] = any = true;
+    }
+    for (const Contact &c : objective_.contacts.contacts()) {
+        const int a = objective_.table.object_of(c.vertex[0]), b = objective_.table.object_of(c.vertex[3]);
+        if (a >= 0 && b >= 0 && (limited_[a] || limited_[b]))
+            blocks.active[blocks.block_of(a)] = blocks.active[blocks.block_of(b)] = 1;
+    }
+    return any;
+}
+
+} // namespace ringlet

@@ -1,0 +1,29 @@
+// What happened in a step of a scene.
+#pragma once
+
+#include <chrono>
+
+namespace ringlet {
+
+struct SceneReport {
+    double newton = 0, cuts = 0, residual = 0, unconverged = 0;
+    double linear_iterations = 0, linear_residual = 0;
+    double candidates = 0, contacts = 0;      // candidate pairs, and contacts
+    double closest = 0;                       // smallest gap of a contact at the end [m]
+    double violations = 0, zone_vertices = 0; // pairs that would have met, vertices whose motion was limited for them
+    double substeps = 0, fraction = 1;        // fraction < 1: bodies left no way out, the step ends early
+    double time_pairs = 0, time_assemble = 0, time_solve = 0, time_search = 0, time_filter = 0; // [s]
+};
+inline constexpr int scene_report_columns = sizeof(SceneReport) / sizeof(double);
+
+class Stopwatch {
+public:
+    explicit Stopwatch(double &sum) : sum_(sum), start_(std::chrono::steady_clock::now()) {}
+    ~Stopwatch() { sum_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+
+private:
+    double &sum_;
+    std::chrono::steady_clock::time_point start_;
+};
+
+} // namespace ringlet

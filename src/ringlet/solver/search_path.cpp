@@ -1,0 +1,71 @@
+#include "ringlet/solver/search_path.h"
+
+#include <cmath>
+
+namespace ringlet {
+
+void measure_direction(const BlockSet &blocks, AlignedVector &direction, std::vector<double> &largest) {
+    blocks.for_active([&](int b) {
+        blocks.for_objects(b, [&](int object, size_t first, size_t stride, size_t count) {
+            largest[object] = 0.0;
+            double sum = 0.0;
+            for (size_t i = first; i < first + count * stride; i += stride) {
+                largest[object] = std::max(largest[object], std::abs(direction[i]));
+                sum += direction[i];
+            }
+            if (std::isfinite(sum)) return;
+            largest[object] = 0.0;
+            for (size_t i = first; i < first + count * stride; i += stride) direction[i] = 0.0;
+        });
+    });
+}
+
+std::vector<double> max_step(const BlockSet &blocks, const AlignedVector &x, const AlignedVector &direction) {
+    std::vector<double> steps(blocks.objects(), 1.0);
+    blocks.for_active([&](int b) {
+        double of_lanes[max_lanes] = {};
+        blocks[b].max_step(blocks.of(b, x), blocks.of(b, direction), of_lanes);
+        blocks.from_lanes(b, of_lanes, steps);
+    });
+    return steps;
+}
+
+void shorten(const BlockSet &blocks, const std::vector<double> &t, SearchPath &path) {
+    blocks.for_active([&](int b) {
+        blocks.for_objects(b, [&](int object, size_t first, size_t stride, size_t count) {
+            const double left = t[object];
+            if (left == 1.0) return;
+            for (size_t i = first; i < first + count * stride; i += stride)
+                path.straight[i] *= left, path.bend[i] *= left * left;
+        });
+    });
+}
+
+void bend(const BlockSet &blocks, const AlignedVector &x, SearchPath &path) {
+    blocks.for_active([&](int b) { blocks[b].bend(blocks.of(b, x), blocks.of(b, path.straight), blocks.of(b, path.bend)); });
+}
+
+void straighten(const BlockSet &blocks, const std::vector<unsigned char> &objects, SearchPath &path) {
+    blocks.for_active([&](int b) {
+        blocks.for_objects(b, [&](int object, size_t first, size_t stride, size_t count) {
+            if (objects[object])
+                for (size_t i = first; i < first + count * stride; i += stride) path.bend[i] = 0.0;
+        });
+    });
+}
+
+void move_along(const BlockSet &blocks, const AlignedVector &x, const std::vector<double> &t, const SearchPath &path,
+                const std::vector<unsigned char> &changed, AlignedVector &to) {
+    std::vector<unsigned char> moves(blocks.count(), 0);
+    for (int object = 0; object < blocks.objects(); ++object)
+        if (changed[object]) moves[blocks.block_of(object)] = 1;
+    blocks.for_active([&](int b) {
+        if (!moves[b]) return;
+        double of_lanes[max_lanes] = {};
+        blocks.to_lanes(b, t, of_lanes);
+        lane_points(blocks.of(b, x), of_lanes, blocks.of(b, path.straight), blocks.of(b, path.bend), blocks[b].rows(),
+                    blocks[b].lanes(), blocks.of(b, to));
+    });
+}
+
+} // namespace ringlet

@@ -1,0 +1,163 @@
+#include "ringlet/strand/block.h"
+
+#include "ringlet/linear/lane_vectors.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace ringlet {
+
+StrandBlock::StrandBlock(const StrandModel &model, StrandState &state, std::vector<int> strands)
+    : model_(model), state_(state), strands_(std::move(strands)), reports_(strands_.size()) {
+    lanes_ = RINGLET_DISPATCH(strand_lanes);
+    for (const int s : strands_) {
+        const int first = model.offsets[s], end = model.offsets[s + 1];
+        objects_.push_back({s, first, end});
+        const double *length = model.rest_length.data();
+        mean_edge_.push_back(std::accumulate(length + first, length + end - 1, 0.0) / (end - first - 1));
+    }
+}
+
+int StrandBlock::strand_of(int vertex) const { // by lane
+    for (size_t lane = 0; lane + 1 < objects_.size(); ++lane)
+        if (objects_[lane].first <= vertex && vertex < objects_[lane].end) return int(lane);
+    return int(objects_.size()) - 1;
+}
+
+size_t StrandBlock::slot(int vertex) const {
+    const int lane = strand_of(vertex);
+    return size_t(dofs_) * (vertex - objects_[lane].first) * lanes_ + lane;
+}
+
+void StrandBlock::begin_step(const BlockStep &step) {
+    step_.dt = step.dt;
+    std::copy(step.gravity.begin(), step.gravity.end(), step_.gravity);
+    std::copy(step.wind.begin(), step.wind.end(), step_.wind);
+    arrays_ = arrays_of(model_, state_, step.targets, step.forces);
+    const size_t bytes = RINGLET_DISPATCH(strand_group_bytes, step_, objects_[0].end - objects_[0].first);
+    if (bytes != memory_bytes_) memory_ = AlignedMemory(memory_bytes_ = bytes);
+    const StrandGroup group{strands_.data(), int(strands_.size())};
+    system_ = RINGLET_DISPATCH(begin_strand_group, arrays_, step_, group, memory_.get());
+    dofs_ = system_.freedoms();
+    rows_ = dofs_ * system_.vertices;
+    size_ = (size_t(rows_) + system_.padding) * lanes_;
+}
+
+void StrandBlock::initial_guess(double *x) const { std::copy_n(system_.x, unknowns(), x); }
+
+void StrandBlock::energies(const double *x, double *of_lanes) {
+    RINGLET_DISPATCH(strand_group_energies, memory_.get(), x, of_lanes);
+}
+
+void StrandBlock::evaluate(const double *x, double *of_lanes) {
+    RINGLET_DISPATCH(evaluate_strand_group, memory_.get(), x, of_lanes);
+}
+
+void StrandBlock::assemble(const double *x) { RINGLET_DISPATCH(assemble_strand_group, memory_.get(), x); }
+
+void StrandBlock::factor() { RINGLET_DISPATCH(factor_strand_group, memory_.get()); }
+
+void StrandBlock::solve(double *b) const { RINGLET_DISPATCH(solve_strand_group, memory_.get(), b); }
+
+void StrandBlock::max_step(const double *x, const double *direction, double *of_lanes) const {
+    RINGLET_DISPATCH(strand_group_worth_going, memory_.get(), x, direction, of_lanes);
+}
+
+void StrandBlock::bend(const double *x, const double *straight, double *bend) const {
+    RINGLET_DISPATCH(turn_strand_group, memory_.get(), x, straight, bend);
+    for (size_t i = 0; i < unknowns(); ++i) bend[i] -= x[i] + straight[i];
+}
+
+// Of an edge's contact, what it does to the vertex and, by the edge, to the next one.
+void StrandBlock::add_contacts(int v, const ContactSet &contacts, View<ContactValue> values) {
+    const int end = objects_[strand_of(v)].end;
+    const bool next_moves = v + 1 < end && !model_.held[v + 1];
+    Vec3 gradient = Vec3::Zero();
+    Mat3 diagonal = Mat3::Zero(), next = Mat3::Zero();
+    for (const ContactSet::Role &role : contacts.of(v)) {
+        const Contact &c = contacts.contacts()[role.contact];
+        const ContactValue &value = values[role.contact];
+        gradient += c.weight[role.as] * value.gradient;
+        diagonal += c.weight[role.as] * c.weight[role.as] * value.hessian;
+        const int other = role.as ^ 1; // of the same edge
+        if (c.of_edges() && c.vertex[other] == v + 1 && next_moves) next += c.weight[role.as] * c.weight[other] * value.hessian;
+    }
+    const size_t at = slot(v);
+    for (int i = 0; i < 3; ++i) system_.gradient[at + i * lanes_] += gradient[i];
+    add_block(v, v, diagonal);
+    if (next_moves) add_block(v + 1, v, next);
+}
+
+void StrandBlock::add_spring(int vertex, const Vec3 &n, double force, double stiffness) {
+    const size_t at = slot(vertex);
+    for (int i = 0; i < 3; ++i) system_.gradient[at + i * lanes_] -= force * n[i];
+    add_block(vertex, vertex, stiffness * n * n.transpose());
+}
+
+void StrandBlock::add_block(int a, int b, const Mat3 &block) {
+    const int lane = strand_of(a), first = objects_[lane].first;
+    const int row = dofs_ * (a - first), column = dofs_ * (b - first);
+    for (int c = 0; c < 3; ++c)
+        for (int r = 0; r < 3; ++r) {
+            const int below = row + r - column - c; // only the lower half is stored
+            if (below >= 0) system_.matrix[(system_.layout.begin(column + c) + below) * lanes_ + lane] += block(r, c);
+        }
+}
+
+void StrandBlock::add_to(MatrixAssembly &matrix) const {
+    const int reach = (system_.layout.band - 1) / dofs_, stride = matrix.block();
+    for (size_t lane = 0; lane < objects_.size(); ++lane) {
+        const int first = objects_[lane].first, count = objects_[lane].end - first;
+        for (int b = 0; b < count; ++b)
+            for (int a = b; a < std::min(count, b + reach + 1); ++a) {
+                double *block = matrix.add_block(first + a, first + b);
+                for (int r = 0; r < dofs_; ++r)
+                    for (int c = 0; c < dofs_; ++c) {
+                        const int column = b * dofs_ + (a == b ? std::min(r, c) : c);
+                        const int below = a * dofs_ + (a == b ? std::max(r, c) : r) - column;
+                        if (below < system_.layout.rows(column))
+                            block[r * stride + c] = system_.matrix[(system_.layout.begin(column) + below) * lanes_ + lane];
+                    }
+            }
+    }
+}
+
+// Inertia, bending about a neighbour, and a tenth of the stretch: what a vertex resists by before the rest of the strand does.
+double StrandBlock::contact_stiffness(int v, double dt) const {
+    constexpr double of_stretch = 0.1;
+    const double length = std::max(model_.rest_length[v], model_.rest_length[v - 1]);
+    const double bend = std::max(model_.bend_stiffness[v], model_.bend_stiffness[v - 1]) / (length * length);
+    return model_.mass[v] / (dt * dt) + bend + of_stretch * model_.stretch_stiffness[v - 1];
+}
+
+bool StrandBlock::is_stretched(int lane, View<Vec3> positions) const {
+    constexpr double tolerated = 0.03; // strain of an edge
+    for (int v = objects_[lane].first; v + 1 < objects_[lane].end; ++v)
+        if ((positions[v + 1] - positions[v]).norm() > (1.0 + tolerated) * model_.rest_length[v]) return true;
+    return false;
+}
+
+double StrandBlock::settled_distance(int lane) const {
+    constexpr double of_edge = 0.2;
+    return of_edge * mean_edge_[lane];
+}
+
+void StrandBlock::commit(const double *x, double, const SolverEffort &effort) {
+    const StrandEffort of_strands{effort.iterations, effort.cuts, effort.residual};
+    StrandReport reports[max_lanes];
+    RINGLET_DISPATCH(end_strand_group, memory_.get(), x, of_strands, reports);
+    std::copy_n(reports, reports_.size(), reports_.begin());
+}
+
+std::vector<std::unique_ptr<StrandBlock>> make_strand_blocks(const StrandModel &model, StrandState &state) {
+    const std::vector<int> order = by_length_and_place(model, state.positions);
+    const size_t lanes = RINGLET_DISPATCH(strand_lanes);
+    std::vector<std::unique_ptr<StrandBlock>> blocks;
+    for (size_t first = 0; first < order.size(); first += lanes) {
+        const auto begin = order.begin() + first, end = order.begin() + std::min(first + lanes, order.size());
+        blocks.push_back(std::make_unique<StrandBlock>(model, state, std::vector<int>(begin, end)));
+    }
+    return blocks;
+}
+
+} // namespace ringlet

@@ -1,0 +1,63 @@
+// A group of strands, one per SIMD lane, as a block of a scene's system.
+#pragma once
+
+#include "ringlet/math/aligned.h"
+#include "ringlet/solver/block.h"
+#include "ringlet/strand/strand_groups.h"
+
+#include <memory>
+#include <vector>
+
+namespace ringlet {
+
+class StrandBlock final : public Block {
+public:
+    // Of some strands of the model, the longest first. Their numbers and vertices are those of the scene.
+    StrandBlock(const StrandModel &model, StrandState &state, std::vector<int> strands);
+
+    // Continuation, integrator and safeguards of the steps to come; the rest of `step` is not read.
+    void configure(const StrandStep &step) { step_ = step; }
+
+    void begin_step(const BlockStep &step) override;
+    void initial_guess(double *x) const override;
+    void energies(const double *x, double *of_lanes) override;
+    void evaluate(const double *x, double *of_lanes) override;
+    void assemble(const double *x) override;
+    const double *gradient() const override { return system_.gradient; }
+    void add_contacts(int vertex, const ContactSet &contacts, View<ContactValue> values) override;
+    void add_spring(int vertex, const Vec3 &n, double force, double stiffness) override;
+    void add_to(MatrixAssembly &matrix) const override;
+    void factor() override;
+    void solve(double *b) const override;
+    void max_step(const double *x, const double *direction, double *of_lanes) const override;
+    void bend(const double *x, const double *straight, double *bend) const override;
+    double contact_stiffness(int vertex, double dt) const override;
+    bool is_stretched(int lane, View<Vec3> positions) const override;
+    double settled_distance(int lane) const override;
+    void commit(const double *x, double dt, const SolverEffort &effort) override;
+
+    const std::vector<StrandReport> &reports() const { return reports_; } // of the last step, by lane
+
+private:
+    int strand_of(int vertex) const;
+    size_t slot(int vertex) const;
+    // Adds a 3 × 3 block to rows of vertex a and columns of vertex b of a strand, b = a or a − 1.
+    void add_block(int a, int b, const Mat3 &block);
+
+    const StrandModel &model_;
+    StrandState &state_;
+    std::vector<int> strands_;
+    std::vector<double> mean_edge_; // per lane, at rest [m]
+    StrandStep step_;
+    StrandArrays arrays_;
+    AlignedMemory memory_{0};
+    size_t memory_bytes_ = 0;
+    StrandGroupSystem system_{};
+    std::vector<StrandReport> reports_;
+};
+
+// All strands of a model in blocks: of like length together, and among these what stands close together, so that what touches
+// shares blocks.
+std::vector<std::unique_ptr<StrandBlock>> make_strand_blocks(const StrandModel &model, StrandState &state);
+
+} // namespace ringlet
