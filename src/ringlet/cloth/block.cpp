@@ -103,14 +103,14 @@ double ClothBlock::contact_stiffness(int vertex, double dt) const {
     return model_.mass[vertex - first_] / (dt * dt) + elastic_[vertex - first_];
 }
 
-void ClothBlock::commit(const double *x, double dt, const SolverEffort &effort) {
+bool ClothBlock::commit(const double *x, double dt, const SolverEffort &effort) {
     const View<Vec3> end = vectors(x);
     report = {};
     report.newton = effort.iterations, report.residual = effort.residual, report.unconverged = !effort.converged;
-    if (!std::all_of(end.begin(), end.end(), [](const Vec3 &at) { return at.allFinite(); })) { // keep the last state, at rest
+    if (!std::all_of(end.begin(), end.end(), [](const Vec3 &at) { return at.allFinite(); })) {
         report.nan = 1;
         std::fill(state_.velocities.begin(), state_.velocities.end(), Vec3::Zero());
-        return;
+        return false;
     }
     for (int i = 0; i < model_.vertex_count(); ++i) {
         state_.velocities[i] = (end[i] - state_.positions[i]) / dt;
@@ -121,6 +121,7 @@ void ClothBlock::commit(const double *x, double dt, const SolverEffort &effort) 
     }
     const ClothEnergies elastic = objective_.energies(end);
     report.stretch = elastic.stretch, report.bend = elastic.bend, report.max_stretch = elastic.max_stretch;
+    return true;
 }
 
 } // namespace ringlet

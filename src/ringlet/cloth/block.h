@@ -46,7 +46,7 @@ public:
     double contact_stiffness(int vertex, double dt) const override;
     bool is_parallel() const override { return true; }
     bool is_searched_by_planes() const override { return true; }
-    void commit(const double *x, double dt, const SolverEffort &effort) override;
+    bool commit(const double *x, double dt, const SolverEffort &effort) override;
 
 private:
     View<Vec3> vectors(const double *x) const { return {reinterpret_cast<const Vec3 *>(x), size_t(model_.vertex_count())}; }

@@ -35,6 +35,9 @@ struct SceneParts {
     SceneParts(const StrandModel &model, StrandState &state, const std::vector<SceneCloth> &cloths,
                const std::vector<BodyModel> &bodies, const std::vector<int> &rooted_in, const SceneContact &contact);
 
+    bool is_placed() const; // strands and cloths are where the positions have them
+    void take_placed();     // positions become those of strands and cloths
+
     double activation_distance() const { return 2.0 * contact.strand_radius; } // of two strands [m]
 };
 

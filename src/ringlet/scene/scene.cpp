@@ -3,6 +3,7 @@
 #include "ringlet/scene/parts.h"
 
 #include <algorithm>
+#include <cstring>
 #include <stdexcept>
 
 namespace ringlet {
@@ -55,6 +56,24 @@ SceneParts::SceneParts(const StrandModel &model_, StrandState &state_, const std
         bodies.push_back({vertices.bodies[b], int(bodies_[b].rest.size()), vertices.objects + b, bodies_[b].triangles});
 }
 
+bool SceneParts::is_placed() const {
+    const auto same = [&](const std::vector<Vec3> &of, int first) {
+        return std::memcmp(of.data(), configuration.positions.data() + first, of.size() * sizeof(Vec3)) == 0;
+    };
+    bool placed = same(state.positions, 0);
+    for (size_t c = 0; c < cloths.size(); ++c) placed &= same(cloths[c]->state().positions, vertices.cloths[c]);
+    return placed;
+}
+
+void SceneParts::take_placed() {
+    const auto take = [&](const std::vector<Vec3> &of, int first) {
+        std::copy(of.begin(), of.end(), configuration.positions.begin() + first);
+    };
+    take(state.positions, 0);
+    for (size_t c = 0; c < cloths.size(); ++c) take(cloths[c]->state().positions, vertices.cloths[c]);
+    configuration.pairs.forget();
+}
+
 Scene::Scene(const StrandModel &model, StrandState &state, const std::vector<SceneCloth> &cloths,
              const std::vector<BodyModel> &bodies, const std::vector<int> &rooted_in, const SceneContact &contact)
     : parts_(std::make_unique<SceneParts>(model, state, cloths, bodies, rooted_in, contact)) {}
@@ -68,6 +87,8 @@ SceneReport Scene::step(const SceneInput &input, const SceneStep &step, std::vec
         throw std::invalid_argument("scene: targets do not fit the vertices");
     if (input.forces.size() != size_t(parts_->vertices.dynamic_vertices))
         throw std::invalid_argument("scene: forces do not fit the vertices of strands and cloths");
+    if (!parts_->is_placed())
+        throw std::invalid_argument("scene: strands or cloths were placed since the last step; call place() first");
     const SceneReport report = take_step(*parts_, input, step);
     of_strands.assign(parts_->model.strand_count(), StrandReport{});
     for (const auto &block : parts_->strands)
@@ -82,15 +103,7 @@ SceneReport Scene::step(const SceneInput &input, const SceneStep &step, std::vec
     return report;
 }
 
-void Scene::place() {
-    SceneParts &parts = *parts_;
-    const auto place = [&](View<Vec3> positions, int first) {
-        std::copy(positions.begin(), positions.end(), parts.configuration.positions.begin() + first);
-    };
-    place(parts.state.positions, 0);
-    for (size_t c = 0; c < parts.cloths.size(); ++c) place(parts.cloths[c]->state().positions, parts.vertices.cloths[c]);
-    parts.configuration.pairs.forget();
-}
+void Scene::place() { parts_->take_placed(); }
 
 std::vector<Contact> Scene::touching() {
     const SceneVertices &vertices = parts_->vertices;
@@ -152,7 +165,7 @@ void Scene::recall(const SceneMemory &memory) {
     contacts.recall(memory.friction);
     parts.penetration.recall(memory.penetrations, parts.vertices.mesh);
     parts.touched = memory.touched;
-    place();
+    parts.take_placed();
 }
 
 View<Vec3> Scene::positions() const { return parts_->configuration.positions; }

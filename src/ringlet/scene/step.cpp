@@ -112,7 +112,9 @@ void commit(SceneParts &scene, View<Vec3> start, double dt, const SolverEffort &
     contacts.commit_friction(now);
     if (scene.contact.parting_speed == 0.0) contacts.overlaps.settle(touching, contacts.contacts(), now, parting_speed * dt);
     scene.blocks.active.assign(scene.blocks.count(), 1);
-    scene.blocks.for_active([&](int b) { scene.blocks[b].commit(scene.blocks.of(b, x), dt, effort); });
+    std::vector<unsigned char> finite(scene.blocks.count());
+    scene.blocks.for_active([&](int b) { finite[b] = scene.blocks[b].commit(scene.blocks.of(b, x), dt, effort); });
+    if (std::count(finite.begin(), finite.end(), 0) > 0) scene.take_placed();
     scene.touched = most_touched_bodies(scene);
     report.newton += effort.iterations;
     report.residual = effort.residual;

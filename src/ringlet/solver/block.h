@@ -94,8 +94,9 @@ public:
     virtual bool is_parallel() const { return false; }           // in itself: large, one at a time
     virtual bool is_searched_by_planes() const { return false; } // see plane_search.h
 
-    // Accepts x as the end of a step of dt.
-    virtual void commit(const double *x, double dt, const SolverEffort &effort) = 0;
+    // Accepts x as the end of a step of dt. Where an object's x is not finite it keeps its last state, at rest; then returns
+    // false.
+    virtual bool commit(const double *x, double dt, const SolverEffort &effort) = 0;
 
 protected:
     std::vector<BlockObject> objects_;

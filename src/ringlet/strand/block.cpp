@@ -142,11 +142,12 @@ double StrandBlock::settled_distance(int lane) const {
     return of_edge * mean_edge_[lane];
 }
 
-void StrandBlock::commit(const double *x, double, const SolverEffort &effort) {
+bool StrandBlock::commit(const double *x, double, const SolverEffort &effort) {
     const StrandEffort of_strands{effort.iterations, effort.cuts, effort.residual};
     StrandReport reports[max_lanes];
     RINGLET_DISPATCH(end_strand_group, memory_.get(), x, of_strands, reports);
     std::copy_n(reports, reports_.size(), reports_.begin());
+    return std::none_of(reports_.begin(), reports_.end(), [](const StrandReport &report) { return report.nan > 0; });
 }
 
 std::vector<std::unique_ptr<StrandBlock>> make_strand_blocks(const StrandModel &model, StrandState &state) {

@@ -34,7 +34,7 @@ public:
     double contact_stiffness(int vertex, double dt) const override;
     bool is_stretched(int lane, View<Vec3> positions) const override;
     double settled_distance(int lane) const override;
-    void commit(const double *x, double dt, const SolverEffort &effort) override;
+    bool commit(const double *x, double dt, const SolverEffort &effort) override;
 
     const std::vector<StrandReport> &reports() const { return reports_; } // of the last step, by lane
 
