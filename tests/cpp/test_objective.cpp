@@ -1,0 +1,227 @@
+// The objective of a step: energies of contacts shared to objects, their derivatives, and the linear system.
+#include "spring_masses.h"
+
+#include <boost/test/unit_test.hpp>
+
+#include <Eigen/Eigenvalues>
+#include <random>
+
+using namespace ringlet;
+
+namespace {
+
+// Three bars of two masses each that cross closer than their activation distance: two contacts, one cluster. A fourth is alone.
+SpringScene crossing_bars(double friction = 0.3) {
+    SpringScene scene;
+    scene.add_masses({{-0.01, 0.0, 0.0}, {0.01, 0.0, 0.0}}, 2e-3, 1.0);
+    scene.add_masses({{0.001, -0.01, 1.5e-3}, {0.001, 0.01, 1.5e-3}}, 1e-3, 2.0);
+    scene.add_masses({{-0.01, 0.002, 2.8e-3}, {0.01, 0.002, 2.8e-3}}, 3e-3, 0.5);
+    scene.add_masses({{0.5, 0.0, 0.0}, {0.52, 0.0, 0.0}}, 1e-3, 1.0);
+    scene.finish(friction);
+    return scene;
+}
+
+void find_contacts(SpringScene &scene) {
+    const std::vector<Vec3> &now = scene.configuration->positions;
+    scene.objective->find_contacts(scene.touching(), now, now);
+}
+
+// The Hessian that the objective has assembled, as a dense matrix.
+Eigen::MatrixXd dense(const Objective &objective) {
+    const AssembledMatrix whole(objective);
+    SparseMatrix matrix(whole.pattern());
+    matrix.assemble(whole.triplets());
+    return matrix.dense();
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(objective)
+
+BOOST_AUTO_TEST_CASE(clusters_are_the_objects_that_contacts_join) {
+    SpringScene scene = crossing_bars();
+    scene.begin(0.01);
+    find_contacts(scene);
+    BOOST_TEST(scene.objective->contacts.contacts().size() == 2u);
+    BOOST_TEST((scene.objective->couplings.clusters() == std::vector<int>{0, 0, 0, 3}));
+    BOOST_TEST(!scene.objective->is_alone(1));
+    BOOST_TEST(scene.objective->is_alone(3));
+    BOOST_TEST(scene.objective->couplings.count() == 6);
+}
+
+BOOST_AUTO_TEST_CASE(the_gradient_is_the_derivative_of_the_energy) {
+    SpringScene scene = crossing_bars();
+    scene.begin(0.01, {0.3, -0.2, -9.81});
+    find_contacts(scene);
+    Objective &objective = *scene.objective;
+    for (int k = 0; k < 2; ++k) objective.contacts.set_lagged_force(k, 1e-2);
+    find_contacts(scene); // with friction
+    AlignedVector x = scene.unknowns();
+    scene.system->assemble(x, {});
+    const auto energy = [&](const AlignedVector &at) {
+        std::vector<double> of_objects;
+        const std::vector<unsigned char> all(4, 1);
+        objective.linearised_energies(at, {}, all, of_objects);
+        return of_objects[0] + of_objects[1] + of_objects[2] + of_objects[3];
+    };
+    std::vector<double> unused;
+    objective.linearised_energies_at_linearisation({}, unused);
+    const double h = 1e-8;
+    for (size_t i = 0; i < x.size(); ++i) {
+        AlignedVector more = x.copy(), less = x.copy();
+        more[i] += h, less[i] -= h;
+        const int block = int(i / 6);
+        const double slope = (energy(more) - energy(less)) / (2 * h), gradient = (*scene.blocks)[block].gradient()[i % 6];
+        BOOST_TEST(std::abs(slope - gradient) < 1e-5 * (1e-3 + std::abs(gradient)));
+    }
+}
+
+BOOST_AUTO_TEST_CASE(the_models_of_the_contact_energy_agree_where_contacts_were_linearised) {
+    SpringScene scene = crossing_bars();
+    scene.begin(0.01);
+    find_contacts(scene);
+    const AlignedVector x = scene.unknowns();
+    scene.system->assemble(x, {});
+    const std::vector<unsigned char> all(4, 1);
+    std::vector<double> known, exact, linearised;
+    scene.objective->energies_at_linearisation(known);
+    const PairsInReach pairs = scene.configuration->pairs.in_reach(scene.blocks->active_objects());
+    scene.objective->exact_energies(x, pairs, std::vector<double>(4, 0.0), all, exact);
+    scene.objective->linearised_energies_at_linearisation({}, linearised);
+    for (int object = 0; object < 4; ++object) {
+        BOOST_TEST(exact[object] == known[object], boost::test_tools::tolerance(1e-12));
+        BOOST_TEST(linearised[object] == known[object], boost::test_tools::tolerance(1e-12));
+    }
+    BOOST_TEST(known[0] > 0.0);
+}
+
+BOOST_AUTO_TEST_CASE(conjugate_gradients_and_the_direct_solver_find_the_newton_direction) {
+    SpringScene scene = crossing_bars();
+    scene.begin(0.01, {0.0, 0.0, -9.81});
+    find_contacts(scene);
+    const AlignedVector x = scene.unknowns();
+    AlignedVector direction(scene.blocks->size()), direct(scene.blocks->size());
+    scene.system->assemble(x, {.system = System::direct});
+    scene.system->solve({.system = System::direct}, direct);
+    scene.system->assemble(x, {.tolerance = 1e-12});
+    const LinearSystem::Result result = scene.system->solve({.tolerance = 1e-12}, direction);
+    BOOST_TEST(result.iterations > 0);
+    BOOST_TEST(result.residual < 1e-11);
+    for (size_t i = 0; i < x.size(); ++i) BOOST_TEST(std::abs(direction[i] - direct[i]) < 1e-12);
+
+    // Against the dense matrix, whose blocks have to be assembled anew: the factors stand in their place.
+    for (int b = 0; b < 4; ++b) scene.objective->assemble(b, x);
+    const Eigen::MatrixXd A = dense(*scene.objective);
+    BOOST_TEST((A - A.transpose()).norm() < 1e-12 * A.norm());
+    BOOST_TEST(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(A).eigenvalues()[0] > 0.0);
+    Eigen::VectorXd d(24), b(24);
+    for (int i = 0; i < 24; ++i) d[i] = direction[i], b[i] = -(*scene.blocks)[i / 6].gradient()[i % 6];
+    BOOST_TEST((A * d - b).norm() < 1e-9 * b.norm());
+}
+
+BOOST_AUTO_TEST_CASE(the_couplings_are_the_off_diagonal_part_of_the_hessian) {
+    SpringScene scene = crossing_bars();
+    scene.begin(0.01);
+    find_contacts(scene);
+    scene.objective->linearise_contacts(scene.unknowns());
+    for (int b = 0; b < 4; ++b) scene.objective->assemble(b, scene.unknowns());
+    Eigen::MatrixXd C = dense(*scene.objective);
+    for (int b = 0; b < 4; ++b) C.block<6, 6>(6 * b, 6 * b).setZero();
+    std::mt19937 engine(3);
+    std::uniform_real_distribution<> some(-1.0, 1.0);
+    Eigen::VectorXd p(24);
+    for (int i = 0; i < 24; ++i) p[i] = some(engine);
+    Couplings &couplings = scene.objective->couplings;
+    std::vector<Vec3> at_points;
+    for (int k = 0; k < couplings.count(); ++k) at_points.push_back(p.segment<3>(3 * couplings.vertex(k)));
+    std::vector<double> curvature(4, 0.0);
+    couplings.multiply(at_points, scene.objective->contact_values(), std::vector<unsigned char>(4, 1), curvature);
+    const Eigen::VectorXd expected = C * p;
+    for (int k = 0; k < couplings.count(); ++k)
+        BOOST_TEST((couplings.product(k) - expected.segment<3>(3 * couplings.vertex(k))).norm() < 1e-10 * expected.norm());
+    BOOST_TEST(curvature[0] == p.dot(expected), boost::test_tools::tolerance(1e-10));
+}
+
+BOOST_AUTO_TEST_CASE(banded_refuses_what_contacts_couple) {
+    SpringScene scene = crossing_bars();
+    scene.begin(0.01);
+    find_contacts(scene);
+    BOOST_CHECK_THROW(scene.system->assemble(scene.unknowns(), {.system = System::banded}), CoupledError);
+}
+
+BOOST_AUTO_TEST_CASE(the_line_search_shortens_a_cluster_and_leaves_the_others_alone) {
+    SpringScene scene = crossing_bars();
+    scene.begin(0.01);
+    find_contacts(scene);
+    const AlignedVector x = scene.unknowns();
+    scene.system->assemble(x, {});
+    SearchPath path(scene.blocks->size());
+    scene.system->solve({.tolerance = 1e-10}, path.straight);
+    for (size_t i = 0; i < 18; ++i) path.straight[i] *= 3.0; // the cluster overshoots: its energy would rise
+    AlignedVector to = x.copy();
+    ExactModel model(*scene.objective, scene.configuration->pairs.in_reach(scene.blocks->active_objects()));
+    const LineSearchResult found = line_search(*scene.objective, model, path, std::vector<unsigned char>(4, 0), to);
+    BOOST_TEST(found.moved);
+    BOOST_TEST(found.cuts > 0);
+    BOOST_TEST(found.step[0] < 1.0);
+    BOOST_TEST(found.step[3] == 1.0);
+    for (size_t i = 0; i < x.size(); ++i) BOOST_TEST(std::abs(to[i] - x[i] - found.step[i / 6] * path.straight[i]) < 1e-15);
+}
+
+BOOST_AUTO_TEST_CASE(a_shortened_path_is_the_beginning_of_the_path) {
+    SpringScene scene = crossing_bars();
+    scene.begin(0.01);
+    const AlignedVector x = scene.unknowns();
+    SearchPath path(scene.blocks->size());
+    std::mt19937 engine(5);
+    std::uniform_real_distribution<> some(-1.0, 1.0);
+    for (size_t i = 0; i < x.size(); ++i) path.straight[i] = some(engine), path.bend[i] = some(engine);
+    const std::vector<double> t = {0.3, 0.5, 1.0, 0.0}, whole(4, 1.0);
+    const std::vector<unsigned char> all(4, 1);
+    AlignedVector on_the_way(x.size()), at_the_end(x.size());
+    move_along(*scene.blocks, x, t, path, all, on_the_way);
+    shorten(*scene.blocks, t, path);
+    move_along(*scene.blocks, x, whole, path, all, at_the_end);
+    for (size_t i = 0; i < x.size(); ++i) BOOST_TEST(std::abs(on_the_way[i] - at_the_end[i]) < 1e-14);
+    straighten(*scene.blocks, {1, 0, 0, 0}, path);
+    for (size_t i = 0; i < x.size(); ++i) BOOST_TEST((path.bend[i] == 0.0) == (i < 6 || i >= 18));
+}
+
+BOOST_AUTO_TEST_CASE(a_direction_that_is_not_finite_is_not_taken) {
+    SpringScene scene = crossing_bars();
+    scene.begin(0.01);
+    AlignedVector direction(scene.blocks->size());
+    direction.fill(0.25);
+    direction[7] = std::numeric_limits<double>::quiet_NaN();
+    std::vector<double> largest(4, 0.0);
+    measure_direction(*scene.blocks, direction, largest);
+    BOOST_TEST((largest == std::vector<double>{0.25, 0.0, 0.25, 0.25}));
+    for (size_t i = 0; i < direction.size(); ++i) BOOST_TEST(direction[i] == (i / 6 == 1 ? 0.0 : 0.25));
+}
+
+BOOST_AUTO_TEST_CASE(gathered_positions_are_those_that_were_scattered) {
+    SpringScene scene = crossing_bars();
+    scene.begin(0.01);
+    std::vector<Vec3> positions(8);
+    scene.blocks->gather(scene.unknowns(), positions);
+    BOOST_TEST((positions == scene.configuration->positions));
+    BOOST_TEST(scene.blocks->size() == 24u);
+    BOOST_TEST(scene.blocks->dofs(5) == 3);
+}
+
+BOOST_AUTO_TEST_CASE(objects_that_were_limited_but_are_not_stretched_need_no_more_iterations) {
+    SpringScene scene = crossing_bars();
+    scene.begin(0.01);
+    find_contacts(scene);
+    Refinement refinement(*scene.objective);
+    std::vector<Vec3> now = scene.configuration->positions, wanted = now, to = now;
+    wanted[0].x() += 1.0, to[0].x() += 0.1;
+    refinement.add_move(now, wanted, to);
+    BOOST_TEST(!refinement.all_moved_fully());
+    refinement.end_iteration(1e-6);
+    BOOST_TEST(!refinement.activate_stretched(*scene.blocks, now));
+    refinement.add_move(now, wanted, wanted);
+    BOOST_TEST(refinement.all_moved_fully());
+}
+
+BOOST_AUTO_TEST_SUITE_END()
