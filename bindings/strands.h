@@ -1,7 +1,7 @@
 // What Python holds of strands: a model with the state that moves on it.
 #pragma once
 
-#include "ringlet/strand/strands.h"
+#include "ringlet/strand/step.h"
 
 #include <optional>
 

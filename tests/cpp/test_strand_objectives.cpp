@@ -1,6 +1,6 @@
 // Whole strands, away from rest, with references of another shape, with damping and with held vertices: gradients against
 // differences in all unknowns, Hessians positive definite.
-#include "ringlet/strand/frame_objective.h"
+#include "ringlet/strand/rod_objective.h"
 #include "ringlet/strand/hinge_objective.h"
 
 #include <Eigen/Dense>
@@ -22,7 +22,7 @@ Vec<double> random_unit(std::mt19937 &random) {
 
 // A random walk with random rest values and references; the first three vertices are held.
 template <class Objective> struct RandomStrand {
-    explicit RandomStrand(int seed) : random(seed), rows(vertices), shapes(vertices), x(Objective::freedoms * vertices) {
+    explicit RandomStrand(int seed) : random(seed), rows(vertices), shapes(vertices), x(Objective::dofs * vertices) {
         std::uniform_real_distribution<double> uniform(0.3, 1.2);
         Vec<double> p{};
         for (int i = 0; i < vertices; ++i) {
@@ -32,7 +32,7 @@ template <class Objective> struct RandomStrand {
             r.free = i > 2;
             r.frame_free = corner && i > 1;
             r.inertia = uniform(random);
-            r.inertial = random_unit(random);
+            r.inertia_target = random_unit(random);
             r.rest_length = uniform(random);
             r.damped_length = uniform(random);
             r.stretch = edge * uniform(random);
@@ -45,8 +45,8 @@ template <class Objective> struct RandomStrand {
             r.reference.tangent = random_unit(random);
             r.reference.normal = perpendicular(r.reference.tangent);
             r.reference.fade = 0.7;
-            for (int k = 0; k < 3; ++k) x[Objective::freedoms * i + k] = p[k];
-            if (Objective::freedoms == 4) x[4 * i + 3] = 0.3 * uniform(random);
+            for (int k = 0; k < 3; ++k) x[Objective::dofs * i + k] = p[k];
+            if (Objective::dofs == 4) x[4 * i + 3] = 0.3 * uniform(random);
             p = p + 0.8 * random_unit(random);
         }
     }
@@ -56,7 +56,7 @@ template <class Objective> struct RandomStrand {
     std::vector<double> x;
 };
 
-Vec<double> position_of(const std::vector<double> &x, int i) { return FrameObjective<double>::position(x.data(), i); }
+Vec<double> position_of(const std::vector<double> &x, int i) { return RodObjective<double>::position(x.data(), i); }
 
 template <class Objective> void gradient_agrees_with_differences() {
     for (int seed = 0; seed < 20; ++seed) {
@@ -71,7 +71,7 @@ template <class Objective> void gradient_agrees_with_differences() {
         double largest = 0;
         for (const double g : gradient) largest = std::max(largest, std::abs(g));
         for (int k = 0; k < size; ++k) {
-            const int vertex = k / Objective::freedoms, part = k % Objective::freedoms;
+            const int vertex = k / Objective::dofs, part = k % Objective::dofs;
             if (!(part < 3 ? strand.rows[vertex].free : strand.rows[vertex].frame_free)) {
                 BOOST_TEST(gradient[k] == 0);
                 continue;
@@ -103,7 +103,7 @@ template <class Objective> void gradient_is_the_same_where_the_unknowns_have_gon
     objective.assemble(before.data(), hessian);
     const std::vector<double> elsewhere = strand.x;
     std::fill(strand.x.begin(), strand.x.end(), 1e9);
-    objective.find_at(elsewhere.data());
+    objective.relocate(elsewhere.data());
     objective.assemble(after.data(), hessian);
     BOOST_TEST(before == after, boost::test_tools::per_element());
 }
@@ -113,7 +113,7 @@ template <class Objective> void gradient_is_the_same_where_the_unknowns_have_gon
 BOOST_AUTO_TEST_SUITE(strand_objectives)
 
 BOOST_AUTO_TEST_CASE(unknowns_may_move_in_memory) {
-    gradient_is_the_same_where_the_unknowns_have_gone<FrameObjective<double>>();
+    gradient_is_the_same_where_the_unknowns_have_gone<RodObjective<double>>();
     gradient_is_the_same_where_the_unknowns_have_gone<HingeObjective<double, true>>();
 }
 
@@ -121,12 +121,12 @@ BOOST_AUTO_TEST_CASE(hinge_with_history) { gradient_agrees_with_differences<Hing
 
 BOOST_AUTO_TEST_CASE(hinge_with_least_energy) { gradient_agrees_with_differences<HingeObjective<double, false>>(); }
 
-BOOST_AUTO_TEST_CASE(material_frame) { gradient_agrees_with_differences<FrameObjective<double>>(); }
+BOOST_AUTO_TEST_CASE(material_frame) { gradient_agrees_with_differences<RodObjective<double>>(); }
 
 // Each free edge is to turn about an axis of its own, by about half a radian.
 BOOST_AUTO_TEST_CASE(edges_that_turn_keep_their_lengths) {
-    RandomStrand<FrameObjective<double>> strand(1);
-    FrameObjective<double> objective(vertices, strand.rows.data(), strand.shapes.data());
+    RandomStrand<RodObjective<double>> strand(1);
+    RodObjective<double> objective(vertices, strand.rows.data(), strand.shapes.data());
     const auto place = position_of;
     std::vector<double> direction(objective.size(), 0.0), to(objective.size());
     for (int i = 3; i < vertices; ++i) {
@@ -134,7 +134,7 @@ BOOST_AUTO_TEST_CASE(edges_that_turn_keep_their_lengths) {
         const Vec<double> d = place(direction, i - 1) + cross(0.5 * random_unit(strand.random), edge);
         for (int k = 0; k < 3; ++k) direction[4 * i + k] = d[k];
     }
-    objective.move(strand.x.data(), 1.0, direction.data(), to.data());
+    objective.curved_path(strand.x.data(), 1.0, direction.data(), to.data());
     double straight = 0.0;
     for (int i = 1; i < vertices; ++i) {
         const Vec<double> edge = place(strand.x, i) - place(strand.x, i - 1), turned = place(to, i) - place(to, i - 1);
@@ -148,14 +148,14 @@ BOOST_AUTO_TEST_CASE(edges_that_turn_keep_their_lengths) {
 // And, where the tip is held too, leave it there.
 BOOST_AUTO_TEST_CASE(a_move_is_what_the_direction_says_to_first_order) {
     for (const bool tip_held : {false, true}) {
-        RandomStrand<FrameObjective<double>> strand(2);
+        RandomStrand<RodObjective<double>> strand(2);
         if (tip_held) strand.rows[vertices - 1].free = 0.0;
-        FrameObjective<double> objective(vertices, strand.rows.data(), strand.shapes.data());
+        RodObjective<double> objective(vertices, strand.rows.data(), strand.shapes.data());
         std::vector<double> direction(objective.size(), 0.0), to(objective.size());
         for (int i = 0; i < vertices; ++i)
             for (int k = 0; k < 4; ++k) direction[4 * i + k] = strand.rows[i].free * random_unit(strand.random)[k % 3];
         const auto off = [&](double step) {
-            objective.move(strand.x.data(), step, direction.data(), to.data());
+            objective.curved_path(strand.x.data(), step, direction.data(), to.data());
             double most = 0.0;
             for (int i = 0; i < objective.size(); ++i)
                 most = std::max(most, std::abs(to[i] - strand.x[i] - step * direction[i]));
@@ -171,7 +171,7 @@ BOOST_AUTO_TEST_CASE(a_move_is_what_the_direction_says_to_first_order) {
 
 BOOST_AUTO_TEST_CASE(a_frame_does_not_feel_a_turn_of_the_whole_strand_about_its_own_axis) {
     // On a straight strand of straight rest shape all frames may turn together at no cost.
-    RandomStrand<FrameObjective<double>> strand(3);
+    RandomStrand<RodObjective<double>> strand(3);
     for (int i = 0; i < vertices; ++i) {
         StrandRow<double> &r = strand.rows[i];
         r.free = r.inertia = r.rest_angle = r.rest_dihedral = r.damped_strain = 0;
@@ -182,7 +182,7 @@ BOOST_AUTO_TEST_CASE(a_frame_does_not_feel_a_turn_of_the_whole_strand_about_its_
         r.reference.normal = {0, 1, 0};
         for (int k = 0; k < 4; ++k) strand.x[4 * i + k] = k == 0 ? i : 0;
     }
-    FrameObjective<double> objective(vertices, strand.rows.data(), strand.shapes.data());
+    RodObjective<double> objective(vertices, strand.rows.data(), strand.shapes.data());
     const double before = objective.evaluate(strand.x.data());
     for (int i = 0; i < vertices; ++i) strand.x[4 * i + 3] = 2.5;
     BOOST_TEST(std::abs(objective.evaluate(strand.x.data()) - before) < 1e-14);

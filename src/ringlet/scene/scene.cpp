@@ -59,7 +59,7 @@ void Scene::Parts::begin_strands(const StrandArrays &arrays, const StrandStep &s
     system.for_units([&](int u) {
         if (u >= system.group_count()) return;
         const StrandGroupSystem &group = system.strands.system(u);
-        std::copy_n(group.x, size_t(group.freedoms()) * group.vertices * group.lanes, x.data() + system.unit_begin(u));
+        std::copy_n(group.x, size_t(group.dofs()) * group.vertices * group.lanes, x.data() + system.unit_begin(u));
     });
 }
 

@@ -3,7 +3,7 @@
 namespace ringlet {
 namespace {
 
-int freedoms(const SceneSystem &system) { return system.group_count() > 0 ? system.strands.system(0).freedoms() : 3; }
+int freedoms(const SceneSystem &system) { return system.group_count() > 0 ? system.strands.system(0).dofs() : 3; }
 
 } // namespace
 

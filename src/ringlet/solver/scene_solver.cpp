@@ -50,7 +50,7 @@ void SceneSolver::begin(SceneSystem &system, int unit) {
         system.negative_gradient(unit, z);
         system.precondition(unit, z);
         const StrandGroupSystem &group = system.strands.system(unit);
-        RINGLET_DISPATCH(lane_products, group.gradient, z, group.freedoms() * group.vertices, products);
+        RINGLET_DISPATCH(lane_products, group.gradient, z, group.dofs() * group.vertices, products);
         for (double &product : products) product = -product;
     } else {
         OfCloth &cloth = cloths_[unit - system.group_count()];

@@ -256,7 +256,7 @@ double SceneSystem::gradient(size_t i, int unit) const {
     const size_t in_unit = i - unit_begin(unit);
     if (unit >= group_count()) return cloths[unit - group_count()].gradient[in_unit / 3][in_unit % 3];
     const StrandGroupSystem &system = strands.system(unit);
-    return in_unit < size_t(system.freedoms()) * system.vertices * system.lanes ? system.gradient[in_unit] : 0.0;
+    return in_unit < size_t(system.dofs()) * system.vertices * system.lanes ? system.gradient[in_unit] : 0.0;
 }
 
 void SceneSystem::negative_gradient(int unit, double *into) const {
@@ -266,7 +266,7 @@ void SceneSystem::negative_gradient(int unit, double *into) const {
     };
     if (unit < group_count()) {
         const StrandGroupSystem &system = strands.system(unit);
-        negate(system.gradient, size_t(system.freedoms()) * system.vertices * system.lanes);
+        negate(system.gradient, size_t(system.dofs()) * system.vertices * system.lanes);
         std::fill(into, end, 0.0);
     } else {
         const CoupledCloth &cloth = cloths[unit - group_count()];

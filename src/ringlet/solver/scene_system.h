@@ -67,7 +67,7 @@ public:
     }
     size_t stride(int vertex) const { return vertex < vertices.strand_vertices() ? strands.stride() : 1; }
     int freedoms(int vertex) const {
-        return vertex < vertices.strand_vertices() ? strands.system(unit_of(vertices.part_of(vertex))).freedoms() : 3;
+        return vertex < vertices.strand_vertices() ? strands.system(unit_of(vertices.part_of(vertex))).dofs() : 3;
     }
     Vec3 position(const AlignedVector &at, int vertex) const {
         if (vertex >= vertices.moving_vertices()) return given_[vertex];

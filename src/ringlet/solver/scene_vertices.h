@@ -4,7 +4,7 @@
 
 #include "ringlet/cloth/cloth.h"
 #include "ringlet/contact/contact_set.h"
-#include "ringlet/strand/strands.h"
+#include "ringlet/strand/state.h"
 
 #include <vector>
 

@@ -15,7 +15,7 @@ template <class Work> void for_parts(const SceneSystem &system, int unit, const 
     const StrandGroup group = system.strands.strands_of(unit);
     const StrandGroupSystem &of = system.strands.system(unit);
     for (int lane = 0; lane < group.count; ++lane)
-        work(group.strands[lane], system.unit_begin(unit) + lane, size_t(of.lanes), size_t(of.freedoms()) * of.vertices);
+        work(group.strands[lane], system.unit_begin(unit) + lane, size_t(of.lanes), size_t(of.dofs()) * of.vertices);
 }
 
 } // namespace
@@ -63,7 +63,7 @@ void bend(const SceneSystem &system, const AlignedVector &x, SceneWay &way) {
         if (u >= system.group_count()) return;
         system.strands.turn(u, x, way.straight, way.bend);
         const StrandGroupSystem &of = system.strands.system(u);
-        const size_t first = system.unit_begin(u), count = size_t(of.freedoms()) * of.vertices * of.lanes;
+        const size_t first = system.unit_begin(u), count = size_t(of.dofs()) * of.vertices * of.lanes;
         for (size_t i = first; i < first + count; ++i) way.bend[i] -= x[i] + way.straight[i];
     });
 }

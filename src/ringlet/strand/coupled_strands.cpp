@@ -5,7 +5,7 @@
 namespace ringlet {
 
 CoupledStrands::CoupledStrands(const StrandModel &model, View<Vec3> positions)
-    : model_(model), lanes_(RINGLET_DISPATCH(strand_lanes)), order_(by_length_and_place(model, positions)),
+    : model_(model), lanes_(RINGLET_DISPATCH(strand_lanes)), order_(order_by_length_and_position(model, positions)),
       place_(model.strand_count()) {
     const int strands = model.strand_count();
     for (int i = 0; i < strands; ++i) place_[order_[i]] = i;
@@ -31,8 +31,8 @@ void CoupledStrands::begin(const StrandArrays &arrays, const StrandStep &step) {
     for (int g = 0; g < group_count(); ++g)
         systems_[g] = RINGLET_DISPATCH(begin_strand_group, arrays, step, groups_[g], memory_[g].get());
 
-    if (systems_.empty() || systems_[0].freedoms() == freedoms_) return;
-    freedoms_ = systems_[0].freedoms();
+    if (systems_.empty() || systems_[0].dofs() == freedoms_) return;
+    freedoms_ = systems_[0].dofs();
     begin_.assign(1, 0);
     slot_.assign(model_.vertex_count(), 0);
     for (int g = 0; g < group_count(); ++g) {
@@ -72,19 +72,19 @@ void CoupledStrands::factor(int group) const { RINGLET_DISPATCH(factor_strand_gr
 void CoupledStrands::solve(int group, double *b) const { RINGLET_DISPATCH(solve_strand_group, memory_[group].get(), b); }
 
 void CoupledStrands::worth_going(int group, const AlignedVector &x, const AlignedVector &direction, double *of_lanes) const {
-    RINGLET_DISPATCH(strand_group_worth_going, memory_[group].get(), x.data() + begin_[group], direction.data() + begin_[group],
+    RINGLET_DISPATCH(strand_group_max_step, memory_[group].get(), x.data() + begin_[group], direction.data() + begin_[group],
                      of_lanes);
 }
 
 void CoupledStrands::turn(int group, const AlignedVector &x, const AlignedVector &direction, AlignedVector &to) const {
-    RINGLET_DISPATCH(turn_strand_group, memory_[group].get(), x.data() + begin_[group], direction.data() + begin_[group],
+    RINGLET_DISPATCH(strand_group_curved_end, memory_[group].get(), x.data() + begin_[group], direction.data() + begin_[group],
                      to.data() + begin_[group]);
 }
 
 void CoupledStrands::add_block(int strand, int a, int b, const Mat3 &block) const {
     if (a < b) return;
     const StrandGroupSystem &system = systems_[group_of(strand)];
-    const int first = model_.offsets[strand], row = system.freedoms() * (a - first), column = system.freedoms() * (b - first);
+    const int first = model_.offsets[strand], row = system.dofs() * (a - first), column = system.dofs() * (b - first);
     for (int c = 0; c < 3; ++c)
         for (int r = 0; r < 3; ++r) {
             const int below = row + r - column - c;

@@ -1,7 +1,8 @@
 // All strands of a scene in the middle of a step, for a solver that couples them with what they touch.
 #pragma once
 
-#include "ringlet/strand/strand_groups.h"
+#include "ringlet/strand/lane_order.h"
+#include "ringlet/strand/state.h"
 
 #include <algorithm>
 #include <deque>

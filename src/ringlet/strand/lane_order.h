@@ -1,7 +1,7 @@
-// How strands are dealt to the lanes of the kernels.
+// Order in which strands fill the lanes of the kernels, and memory for them.
 #pragma once
 
-#include "ringlet/strand/strands.h"
+#include "ringlet/strand/model.h"
 
 #include <new>
 #include <utility>
@@ -28,14 +28,11 @@ private:
     void *memory_;
 };
 
-StrandArrays arrays_of(const StrandModel &model, StrandState &state, View<Vec3> targets, View<Vec3> forces);
+// Longest first, so that strands of a group have like lengths and few lanes go on behind a tip. The order is fixed: the result
+// of a strand depends neither on its group nor on the number of threads.
+std::vector<int> order_by_length(const StrandModel &model);
 
-// Strands of like length together, so that few lanes carry vertices that are not there. A fixed order: the result of a strand
-// does not depend on its group, and a group never on the threads.
-std::vector<int> by_length(const StrandModel &model);
-
-// The same, and of like length those together that stand near one another: what touches shares groups, so that fewer of these
-// have something to do where little is left to be done.
-std::vector<int> by_length_and_place(const StrandModel &model, View<Vec3> positions);
+// The same; of like length, near strands follow one another, so that strands in contact share groups.
+std::vector<int> order_by_length_and_position(const StrandModel &model, View<Vec3> positions);
 
 } // namespace ringlet
