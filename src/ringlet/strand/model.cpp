@@ -12,8 +12,33 @@
 namespace ringlet {
 namespace {
 
-// Per edge of a strand; the two end edges, which have one corner only, take those of their neighbours.
-std::vector<ResolutionFactors> resolution_of(const StrandModel &model, int first, int end) {
+// The material with its variation along a strand. Factors of an edge are the mean of those of its two vertices.
+struct VariedMaterial {
+    const StrandMaterial &material;
+    const StrandVariation &variation;
+
+    static double at(View<double> factor, int vertex) { return factor.empty() ? 1.0 : factor[vertex]; }
+    static double on_edge(View<double> factor, int edge) { return 0.5 * (at(factor, edge) + at(factor, edge + 1)); }
+
+    double area(double radius_factor) const { return std::numbers::pi * std::pow(radius_factor * material.radius, 2); } // [m²]
+    double bending(double radius_factor, double bend_factor) const { // EI [N m²]
+        return bend_factor * material.bend_scale * material.youngs_modulus * std::pow(area(radius_factor), 2) /
+               (4 * std::numbers::pi);
+    }
+    double area_of_edge(int i) const { return area(on_edge(variation.radius, i)); }
+    double stretching_of_edge(int i) const { // EA [N]
+        return material.stretch_scale * on_edge(variation.stretch, i) * material.youngs_modulus * area_of_edge(i);
+    }
+    double bending_of_vertex(int i) const { return bending(at(variation.radius, i), at(variation.bend, i)); }
+    double bending_of_edge(int i) const { return bending(on_edge(variation.radius, i), on_edge(variation.bend, i)); }
+    double twist_ratio_of_edge(int i) const {                   // c = GJ / EI
+        const double most = material.limit_twist ? 1.0 : 1e300; // safeguard: twist is never stiffer than bend
+        return std::clamp(material.twist_ratio * on_edge(variation.twist, i), 0.0, most);
+    }
+};
+
+// One per edge of the strand; the two end edges, which have one corner only, take those of their neighbours.
+std::vector<ResolutionFactors> corrections_of(const StrandModel &model, int first, int end) {
     std::vector<ResolutionFactors> factors(end - first - 1);
     for (int i = first + 1; i + 2 < end; ++i)
         factors[i - first] = resolution_factors(0.5 * (model.rest_angle[i] + model.rest_angle[i + 1]), model.rest_dihedral[i]);
@@ -24,17 +49,25 @@ std::vector<ResolutionFactors> resolution_of(const StrandModel &model, int first
     return factors;
 }
 
-} // namespace
-
-StrandModel make_strand_model(View<int> offsets, View<Vec3> rest, View<unsigned char> held, const StrandMaterial &material,
-                              const StrandVariation &variation) {
-    const int strands = int(offsets.size()) - 1;
-    const size_t n = rest.size();
-    if (strands < 0 || offsets.front() != 0 || offsets.back() != int(n) || held.size() != n)
+void check_sizes(View<int> offsets, size_t n, View<unsigned char> held, const StrandVariation &variation) {
+    if (offsets.empty() || offsets.front() != 0 || offsets.back() != int(n) || held.size() != n)
         throw std::invalid_argument("strands: offsets, points and held do not fit together");
     for (const View<double> &factor : {variation.radius, variation.stretch, variation.bend, variation.twist, variation.damping})
         if (!factor.empty() && factor.size() != n) throw std::invalid_argument("strands: a variation does not fit the points");
+}
 
+void check_strand(const StrandModel &model, int strand) {
+    const int first = model.offsets[strand], end = model.offsets[strand + 1];
+    const std::string name = "strands: strand " + std::to_string(strand);
+    if (end - first < 3) throw std::invalid_argument(name + " has fewer than 3 vertices");
+    if (!model.held[first]) throw std::invalid_argument(name + " does not hold its root");
+    for (int i = first; i + 1 < end; ++i)
+        if (!(model.rest_length[i] > 0)) throw std::invalid_argument(name + " has an edge without length");
+}
+
+// Rest shape and zero coefficients.
+StrandModel rest_model(View<int> offsets, View<Vec3> rest, View<unsigned char> held) {
+    const size_t n = rest.size();
     StrandModel model;
     model.offsets.assign(offsets.begin(), offsets.end());
     model.held.assign(held.begin(), held.end());
@@ -44,53 +77,55 @@ StrandModel make_strand_model(View<int> offsets, View<Vec3> rest, View<unsigned 
     model.rest_dihedral = std::move(shape.dihedral);
     model.rest_normal = std::move(shape.normal);
     model.rest_tangent.assign(n, Vec3::Zero());
-    model.mass_damping = material.mass_damping;
     model.stretch_stiffness.assign(n, 0.0);
     model.bend_stiffness.assign(n, 0.0);
     model.twist_stiffness.assign(n, 0.0);
     model.mass.assign(n, 0.0);
     model.drag.assign(n, 0.0);
-    model.damping.assign(n, material.damping);
+    model.damping.assign(n, 0.0);
+    return model;
+}
 
-    const auto at = [](View<double> factor, int i) { return factor.empty() ? 1.0 : factor[i]; };
-    const auto on_edge = [&at](View<double> factor, int i) { return 0.5 * (at(factor, i) + at(factor, i + 1)); };
-    const auto area = [&](double factor) { return std::numbers::pi * std::pow(factor * material.radius, 2); };
-    const auto bending = [&](double radius_factor, double bend_factor) { // EI [N m²]
-        return bend_factor * material.bend_scale * material.youngs_modulus * std::pow(area(radius_factor), 2) /
-               (4 * std::numbers::pi);
-    };
-    for (int s = 0; s < strands; ++s) {
-        const int first = offsets[s], end = offsets[s + 1];
-        const std::string name = "strands: strand " + std::to_string(s);
-        if (end - first < 3) throw std::invalid_argument(name + " has fewer than 3 vertices");
-        if (!held[first]) throw std::invalid_argument(name + " does not hold its root");
-        std::vector<ResolutionFactors> factors(end - first - 1);
-        if (material.correct_resolution) factors = resolution_of(model, first, end);
-        for (int i = first; i + 1 < end; ++i) {
-            const double length = model.rest_length[i];
-            const ResolutionFactors &factor = factors[i - first];
-            if (!(length > 0)) throw std::invalid_argument(name + " has an edge without length");
-            model.rest_tangent[i] = (rest[i + 1] - rest[i]) / length;
-            const double section = area(on_edge(variation.radius, i));
-            model.stretch_stiffness[i] =
-                material.stretch_scale * on_edge(variation.stretch, i) * material.youngs_modulus * section / length;
-            for (const int vertex : {i, i + 1}) {
-                model.mass[vertex] += 0.5 * material.density * section * length * factor.mass;
-                model.drag[vertex] += 0.5 * material.drag * length;
-            }
-            model.damping[i] *= at(variation.damping, i);
-            if (i == first) continue;
-            const double EI = bending(at(variation.radius, i), at(variation.bend, i));
-            model.bend_stiffness[i] =
-                EI * 0.5 * (factors[i - first - 1].bend + factor.bend) / (0.5 * (model.rest_length[i - 1] + length));
-            if (i + 2 == end) continue;
-            const double most = material.limit_twist ? 1.0 : 1e300; // safeguard: twist never above bend
-            const double ratio = std::clamp(material.twist_ratio * on_edge(variation.twist, i), 0.0, most);
-            // An edge that is held is held to its middle, as the bend behind it has it: only half of it can twist.
-            const double twisting_length = held[i] && held[i + 1] ? 0.5 * length : length;
-            model.twist_stiffness[i] =
-                ratio * factor.twist * bending(on_edge(variation.radius, i), on_edge(variation.bend, i)) / twisting_length;
+// Coefficients of one strand, with corrections of its resolution per edge.
+void set_coefficients(StrandModel &model, int strand, const VariedMaterial &varied,
+                      const std::vector<ResolutionFactors> &corrections) {
+    const StrandMaterial &material = varied.material;
+    const int first = model.offsets[strand], end = model.offsets[strand + 1];
+    for (int i = first; i + 1 < end; ++i) {
+        const double length = model.rest_length[i];
+        const ResolutionFactors &correction = corrections[i - first];
+        for (const int vertex : {i, i + 1}) {
+            model.mass[vertex] += 0.5 * material.density * varied.area_of_edge(i) * length * correction.mass;
+            model.drag[vertex] += 0.5 * material.drag * length;
         }
+        model.damping[i] = material.damping * varied.at(varied.variation.damping, i);
+        model.stretch_stiffness[i] = varied.stretching_of_edge(i) / length;
+        if (i == first) continue;
+        model.bend_stiffness[i] = varied.bending_of_vertex(i) * 0.5 * (corrections[i - first - 1].bend + correction.bend) /
+                                  (0.5 * (model.rest_length[i - 1] + length));
+        if (i + 2 == end) continue;
+        // A held edge is held up to its middle, where the bend behind it begins: only half of it twists.
+        const double twisting_length = model.held[i] && model.held[i + 1] ? 0.5 * length : length;
+        model.twist_stiffness[i] =
+            varied.twist_ratio_of_edge(i) * correction.twist * varied.bending_of_edge(i) / twisting_length;
+    }
+    model.damping[end - 1] = material.damping;
+}
+
+} // namespace
+
+StrandModel make_strand_model(View<int> offsets, View<Vec3> rest, View<unsigned char> held, const StrandMaterial &material,
+                              const StrandVariation &variation) {
+    check_sizes(offsets, rest.size(), held, variation);
+    StrandModel model = rest_model(offsets, rest, held);
+    model.mass_damping = material.mass_damping;
+    for (int s = 0; s < model.strand_count(); ++s) {
+        check_strand(model, s);
+        const int first = model.offsets[s], end = model.offsets[s + 1];
+        for (int i = first; i + 1 < end; ++i) model.rest_tangent[i] = (rest[i + 1] - rest[i]) / model.rest_length[i];
+        set_coefficients(model, s, {material, variation},
+                         material.correct_resolution ? corrections_of(model, first, end)
+                                                     : std::vector<ResolutionFactors>(end - first - 1));
     }
     return model;
 }

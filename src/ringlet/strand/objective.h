@@ -27,7 +27,7 @@ public:
     // The unknowns evaluated last are now at x: the same numbers in other memory.
     void relocate(const T *x) { positions_ = x; }
 
-    // Largest step along a direction, at most 1, that changes no edge length by more than a factor of two: beyond that, as
+    // Largest step along a direction, at most 1, that changes no edge vector by more than twice its length. Beyond that, as
     // where an edge reverses, the linear model does not hold.
     T max_step(const T *x, const T *direction) const {
         T step = constant<T>(1.0);
@@ -46,7 +46,7 @@ public:
     }
 
     static Vec<T> position(const T *x, int i) { return RINGLET_SIMD::position<dofs>(x, i); }
-    static void set_position(T *x, int i, Vec<T> to) { // with frames as the step begins
+    static void set_position(T *x, int i, Vec<T> to) { // with γ = 0
         put(x + dofs * i, to);
         for (int k = 3; k < dofs; ++k) x[dofs * i + k] = T{};
     }
