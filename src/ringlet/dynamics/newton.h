@@ -33,8 +33,10 @@ template <class T> struct NewtonMemory {
     T *trial, *gradient, *direction, *band;
 };
 
+// Never inlined: the compiler has a budget for a file, and the objective's terms need it more.
 template <class T, class Objective>
-NewtonResult<T> newton(Objective &objective, T *x, const NewtonSettings &settings, const NewtonMemory<T> &memory) {
+[[gnu::noinline]] NewtonResult<T> newton(Objective &objective, T *x, const NewtonSettings &settings,
+                                         const NewtonMemory<T> &memory) {
     const T one = constant<T>(1.0);
     const int size = objective.size();
 
