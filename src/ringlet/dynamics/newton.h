@@ -28,7 +28,7 @@ template <class T> struct NewtonResult {
     T residual;   // largest unknown of the last full step [m]
 };
 
-// Working memory: `direction` has Matrix::padding entries of room behind its last.
+// Working memory: `direction` has Matrix::padding more entries behind its last.
 template <class T> struct NewtonMemory {
     T *trial, *gradient, *direction, *band;
 };
@@ -58,7 +58,7 @@ template <class T, class Objective>
         result.residual = select(active > 0.0, largest, result.residual);
         result.iterations += active;
 
-        // A converged lane takes its last step only where the full step is accepted: no search is worth its cost.
+        // A converged lane takes its last step only where the full step is accepted; it does not search.
         const auto converged = largest <= settings.tolerance;
         T step = active * objective.max_step(x, memory.direction);
         for (int cut = 0;; ++cut) {

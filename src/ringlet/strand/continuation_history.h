@@ -15,7 +15,7 @@ template <class T> inline T transported_sign(const Reference<T> &reference, Vec<
     return sign(dot(normal, transport(reference.normal, reference.tangent, tangent)));
 }
 
-// Δφ with its turns: of all values whole turns apart, the one nearest to that of the last step. Twist so accumulates past ±π.
+// Δφ with its turns: of all values whole turns apart, the one nearest to that of the last step. Twist accumulates past ±π.
 // Where one of the two triangles is inverted (signs differ), the dihedral is half a turn off.
 template <class T> inline T unwrapped(T last, T delta, T sign_product) {
     const T with_sign = delta + select(sign_product < 0.0, constant<T>(pi), T{});

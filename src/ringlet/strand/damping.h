@@ -38,20 +38,13 @@ template <class Objective> void add_damping(GatheredGroup<Objective> &group, con
         row.elastic_share = 1.0 / (1.0 + b);
         row.damped_length = row.elastic_share * (row.rest_length + b * extrapolated.length());
         if (i > 0) group.objective.damp(i, b, extrapolated); // bend and twist
-        row.stretch *= 1.0 + b;
-        row.bend *= 1.0 + b;
-        row.twist *= 1.0 + b;
+        row.scale_stiffnesses(1.0 + b);
     }
 }
 
 // Stiffnesses without damping, for the report.
 template <class Objective> void remove_damping(GatheredGroup<Objective> &group) {
-    for (int i = 0; i + 1 < group.vertices; ++i) {
-        StrandRow<Pack> &row = group.memory.rows[i];
-        row.stretch *= row.elastic_share;
-        row.bend *= row.elastic_share;
-        row.twist *= row.elastic_share;
-    }
+    for (int i = 0; i + 1 < group.vertices; ++i) group.memory.rows[i].scale_stiffnesses(group.memory.rows[i].elastic_share);
 }
 
 } // namespace ringlet::RINGLET_SIMD

@@ -53,7 +53,7 @@ public:
         return result;
     }
 
-    // The same of positions, which go on behind the tip on a straight line, one metre apart: no edge there is degenerate.
+    // The same of positions. Behind the tip they lie on a straight line, one metre apart, so that no edge is degenerate.
     Vec<Pack> position(const double *values, int i) const {
         Vec<Pack> result = vector(values, i);
         for (const StrandLane &strand : lane_) {

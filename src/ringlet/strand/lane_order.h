@@ -28,11 +28,11 @@ private:
     void *memory_;
 };
 
-// Longest first, so that strands of a group have like lengths and few lanes go on behind a tip. The order is fixed: the result
+// Longest first, so that strands of a group have similar lengths and few rows lie behind a tip. The order is fixed: the result
 // of a strand depends neither on its group nor on the number of threads.
 std::vector<int> order_by_length(const StrandModel &model);
 
-// The same; of like length, near strands follow one another, so that strands in contact share groups.
+// The same; of equal length, near strands follow one another, so that strands in contact share groups.
 std::vector<int> order_by_length_and_position(const StrandModel &model, View<Vec3> positions);
 
 } // namespace ringlet

@@ -7,7 +7,7 @@ namespace ringlet::strand_settings {
 
 // Line search
 inline constexpr double max_edge_change = 2.0; // largest change of an edge vector in a Newton step, by its length
-inline constexpr double min_edge_ratio = 0.1;  // smallest length of an edge along a curved path, by its length at the start
+inline constexpr double min_edge_ratio = 0.1;  // smallest length of an edge along a curved path, by that at its start
 inline constexpr double zero_length = 1e-300;  // shorter vectors have no direction [m]
 inline constexpr double shortest_edge = 1e-6;  // shorter edges count as this long, by their rest length
 inline constexpr double rotation_sine = 1e-6;  // three held vertices define a rotation from this sine of their angle on

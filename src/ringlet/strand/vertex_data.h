@@ -38,6 +38,12 @@ template <class T> struct StrandRow {
     T frame_free;    // 1, or 0 where both ends of the edge are held and its frame with them
     Reference<T> reference;
     T start_sigma, start_turns; // at the start of the step, for the report
+
+    void scale_stiffnesses(T factor) {
+        stretch *= factor;
+        bend *= factor;
+        twist *= factor;
+    }
 };
 
 // Geometry at the positions evaluated last.
