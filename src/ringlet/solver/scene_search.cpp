@@ -18,8 +18,7 @@ std::vector<double> slopes(const SceneSystem &system, const AlignedVector &direc
         const size_t first = system.unit_begin(u);
         if (u < system.group_count()) {
             const StrandGroupSystem &group = system.strands.system(u);
-            RINGLET_DISPATCH(lane_products, group.gradient, direction.data() + first, group.dofs() * group.vertices,
-                             slopes);
+            RINGLET_DISPATCH(lane_products, group.gradient, direction.data() + first, group.dofs() * group.vertices, slopes);
         } else {
             for (size_t i = first; i < system.unit_end(u); ++i) slopes[0] += system.gradient(i, u) * direction[i];
         }
