@@ -38,7 +38,7 @@ template <> struct Traits<Counted> {
 
 } // namespace ringlet::baseline
 
-#include "ringlet/strand/frame_objective.h"
+#include "ringlet/strand/rod_objective.h"
 
 #include <cmath>
 #include <cstdio>
@@ -47,7 +47,7 @@ template <> struct Traits<Counted> {
 using namespace ringlet::baseline;
 
 int main() {
-    using Objective = FrameObjective<Counted>;
+    using Objective = RodObjective<Counted>;
     using Matrix = Objective::Matrix;
     const int vertices = 60, unknowns = 4 * vertices;
     std::vector<StrandRow<Counted>> rows(vertices);

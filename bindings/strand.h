@@ -1,7 +1,7 @@
 // Strands as Python holds them: a model with its state.
 #pragma once
 
-#include "ringlet/strand/strands.h"
+#include "ringlet/strand/step.h"
 
 #include <optional>
 

@@ -1,5 +1,5 @@
-// Stretch, bend and twist of a single stencil: gradients against differences, Hessians positive semi-definite and, where
-// nothing is clamped, exact.
+// Stretch, bend and twist of a single stencil. Gradients agree with finite differences; Hessians are positive semi-definite
+// and, where no eigenvalue is clamped, exact.
 #include "differences.h"
 #include "ringlet/energy/strand/bend.h"
 #include "ringlet/energy/strand/stretch.h"
@@ -19,7 +19,7 @@ using ringlet::random_vector;
 
 namespace {
 
-Vec<double> part(const VectorXd &x, int k) { return {x[3 * k], x[3 * k + 1], x[3 * k + 2]}; }
+Vec<double> vector_at(const VectorXd &x, int k) { return {x[3 * k], x[3 * k + 1], x[3 * k + 2]}; }
 
 struct Edges {
     Vec<double> t0, t1;
@@ -28,8 +28,8 @@ struct Edges {
 };
 
 Edges edges_of(const VectorXd &e) {
-    const double l0 = norm(part(e, 0)), l1 = norm(part(e, 1));
-    const Vec<double> t0 = (1 / l0) * part(e, 0), t1 = (1 / l1) * part(e, 1);
+    const double l0 = norm(vector_at(e, 0)), l1 = norm(vector_at(e, 1));
+    const Vec<double> t0 = (1 / l0) * vector_at(e, 0), t1 = (1 / l1) * vector_at(e, 1);
     return {t0, t1, l0, l1, corner(t0, t1)};
 }
 
@@ -73,11 +73,11 @@ BOOST_AUTO_TEST_CASE(stretch_gradient_agrees_with_differences) {
     std::mt19937 random(3);
     for (int trial = 0; trial < 50; ++trial) {
         const VectorXd e = random_vector(3, random);
-        const auto energy = [](const VectorXd &x) { return stretch_energy(norm(part(x, 0)), 1.3, 5.0); };
-        const double length = norm(part(e, 0));
-        const Stretch<double> s = stretch((1 / length) * part(e, 0), length, 1.3, 5.0);
+        const auto energy = [](const VectorXd &x) { return stretch_energy(norm(vector_at(x, 0)), 1.3, 5.0); };
+        const double length = norm(vector_at(e, 0));
+        const Stretch<double> s = stretch((1 / length) * vector_at(e, 0), length, 1.3, 5.0);
         const VectorXd g = differences(energy, e, 1e-6);
-        BOOST_TEST(norm(s.gradient - part(g, 0)) < 1e-8);
+        BOOST_TEST(norm(s.gradient - vector_at(g, 0)) < 1e-8);
         BOOST_TEST(s.along >= 0);
         BOOST_TEST(s.across >= 0);
     }
@@ -178,7 +178,7 @@ BOOST_AUTO_TEST_CASE(a_straight_rest_shape_resists_bending_in_every_plane) {
     VectorXd straight(6), sideways(6);
     straight << 1, 0, 0, 1, 0, 0;
     const MatrixXd H = hessian_of(bend_of(straight, 1, 0.0, 1.0));
-    for (const int axis : {1, 2}) { // the second edge turned about the first by a small angle
+    for (const int axis : {1, 2}) { // a small rotation of the second edge about an axis across
         sideways.setZero();
         sideways[3 + axis] = 1;
         BOOST_TEST(std::abs(sideways.dot(H * sideways) - 1) < 1e-9);
@@ -196,7 +196,7 @@ BOOST_AUTO_TEST_CASE(dihedral_gradient_agrees_with_differences) {
         const DihedralGradient<double> g = dihedral_gradient(first.c, second.c, first.l0, first.l1, second.l1);
         const double here = dihedral_of(x);
         const VectorXd expected = differences([&](const VectorXd &at) { return wrap(dihedral_of(at) - here); }, x, 1e-7);
-        for (int k = 0; k < 4; ++k) BOOST_TEST(norm(g.at[k] - part(expected, k)) < 1e-5 * (1 + expected.norm()));
+        for (int k = 0; k < 4; ++k) BOOST_TEST(norm(g.at[k] - vector_at(expected, k)) < 1e-5 * (1 + expected.norm()));
     }
 }
 
@@ -208,7 +208,7 @@ BOOST_AUTO_TEST_CASE(dihedral_of_a_helix_has_the_sign_of_its_hand) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(the_rounded_turn_is_smooth_and_level_at_half_a_turn) {
+BOOST_AUTO_TEST_CASE(rounded_twist_is_smooth_and_level_at_half_a_turn) {
     for (double delta = -3.1; delta < 3.1; delta += 0.01) {
         const double h = 1e-6, slope = (rounded(delta + h).value - rounded(delta - h).value) / (2 * h);
         BOOST_TEST(std::abs(rounded(delta).slope - slope) < 1e-8);
@@ -218,7 +218,7 @@ BOOST_AUTO_TEST_CASE(the_rounded_turn_is_smooth_and_level_at_half_a_turn) {
     BOOST_TEST(std::abs(rounded(pi).value - (pi / 2 + 1)) < 1e-15);
 }
 
-BOOST_AUTO_TEST_CASE(straightness_goes_smoothly_from_none_to_all) {
+BOOST_AUTO_TEST_CASE(straightness_rises_smoothly_from_zero_to_one) {
     BOOST_TEST(straightness(0.001, 0.5).value == 0);
     BOOST_TEST(straightness(0.25, 0.5).value == 1);
     for (double angle = 0.005; angle < pi - 0.005; angle += 0.007) {

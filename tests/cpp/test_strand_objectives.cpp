@@ -1,7 +1,7 @@
-// Whole strands, away from rest, with references of another shape, with damping and with held vertices: gradients against
-// differences in all unknowns, Hessians positive definite.
-#include "ringlet/strand/frame_objective.h"
+// Objectives of whole strands, away from rest, with references of another shape, damping and held vertices. Gradients agree
+// with finite differences in all unknowns, and Hessians are positive definite.
 #include "ringlet/strand/hinge_objective.h"
+#include "ringlet/strand/rod_objective.h"
 
 #include <Eigen/Dense>
 #include <boost/test/unit_test.hpp>
@@ -20,9 +20,9 @@ Vec<double> random_unit(std::mt19937 &random) {
     return (1 / norm(v)) * v;
 }
 
-// A random walk with random rest values and references; the first three vertices are held.
+// Random walk with random rest values and references; the first three vertices are held.
 template <class Objective> struct RandomStrand {
-    explicit RandomStrand(int seed) : random(seed), rows(vertices), shapes(vertices), x(Objective::freedoms * vertices) {
+    explicit RandomStrand(int seed) : random(seed), rows(vertices), shapes(vertices), x(Objective::dofs * vertices) {
         std::uniform_real_distribution<double> uniform(0.3, 1.2);
         Vec<double> p{};
         for (int i = 0; i < vertices; ++i) {
@@ -32,7 +32,7 @@ template <class Objective> struct RandomStrand {
             r.free = i > 2;
             r.frame_free = corner && i > 1;
             r.inertia = uniform(random);
-            r.inertial = random_unit(random);
+            r.inertia_target = random_unit(random);
             r.rest_length = uniform(random);
             r.damped_length = uniform(random);
             r.stretch = edge * uniform(random);
@@ -45,8 +45,8 @@ template <class Objective> struct RandomStrand {
             r.reference.tangent = random_unit(random);
             r.reference.normal = perpendicular(r.reference.tangent);
             r.reference.fade = 0.7;
-            for (int k = 0; k < 3; ++k) x[Objective::freedoms * i + k] = p[k];
-            if (Objective::freedoms == 4) x[4 * i + 3] = 0.3 * uniform(random);
+            for (int k = 0; k < 3; ++k) x[Objective::dofs * i + k] = p[k];
+            if (Objective::dofs == 4) x[4 * i + 3] = 0.3 * uniform(random);
             p = p + 0.8 * random_unit(random);
         }
     }
@@ -56,9 +56,9 @@ template <class Objective> struct RandomStrand {
     std::vector<double> x;
 };
 
-Vec<double> position_of(const std::vector<double> &x, int i) { return FrameObjective<double>::position(x.data(), i); }
+Vec<double> position_of(const std::vector<double> &x, int i) { return RodObjective<double>::position(x.data(), i); }
 
-template <class Objective> void gradient_agrees_with_differences() {
+template <class Objective> void derivatives_agree_with_differences() {
     for (int seed = 0; seed < 20; ++seed) {
         RandomStrand<Objective> strand(seed);
         Objective objective(vertices, strand.rows.data(), strand.shapes.data());
@@ -71,8 +71,8 @@ template <class Objective> void gradient_agrees_with_differences() {
         double largest = 0;
         for (const double g : gradient) largest = std::max(largest, std::abs(g));
         for (int k = 0; k < size; ++k) {
-            const int vertex = k / Objective::freedoms, part = k % Objective::freedoms;
-            if (!(part < 3 ? strand.rows[vertex].free : strand.rows[vertex].frame_free)) {
+            const int vertex = k / Objective::dofs, component = k % Objective::dofs;
+            if (!(component < 3 ? strand.rows[vertex].free : strand.rows[vertex].frame_free)) {
                 BOOST_TEST(gradient[k] == 0);
                 continue;
             }
@@ -93,8 +93,8 @@ template <class Objective> void gradient_agrees_with_differences() {
     }
 }
 
-// Unknowns are swapped with those of a trial while a strand that rests is not asked: what it was evaluated at stands elsewhere.
-template <class Objective> void gradient_is_the_same_where_the_unknowns_have_gone() {
+// A solver swaps unknowns with those of a trial without another evaluation of strands that stay.
+template <class Objective> void gradient_is_the_same_after_relocation() {
     RandomStrand<Objective> strand(1);
     Objective objective(vertices, strand.rows.data(), strand.shapes.data());
     std::vector<double> before(objective.size()), after(objective.size()), memory(Objective::Matrix::entries(objective.size()));
@@ -103,7 +103,7 @@ template <class Objective> void gradient_is_the_same_where_the_unknowns_have_gon
     objective.assemble(before.data(), hessian);
     const std::vector<double> elsewhere = strand.x;
     std::fill(strand.x.begin(), strand.x.end(), 1e9);
-    objective.find_at(elsewhere.data());
+    objective.relocate(elsewhere.data());
     objective.assemble(after.data(), hessian);
     BOOST_TEST(before == after, boost::test_tools::per_element());
 }
@@ -113,65 +113,83 @@ template <class Objective> void gradient_is_the_same_where_the_unknowns_have_gon
 BOOST_AUTO_TEST_SUITE(strand_objectives)
 
 BOOST_AUTO_TEST_CASE(unknowns_may_move_in_memory) {
-    gradient_is_the_same_where_the_unknowns_have_gone<FrameObjective<double>>();
-    gradient_is_the_same_where_the_unknowns_have_gone<HingeObjective<double, true>>();
+    gradient_is_the_same_after_relocation<RodObjective<double>>();
+    gradient_is_the_same_after_relocation<HingeObjective<double, true>>();
 }
 
-BOOST_AUTO_TEST_CASE(hinge_with_history) { gradient_agrees_with_differences<HingeObjective<double, true>>(); }
+BOOST_AUTO_TEST_CASE(hinge_with_history) { derivatives_agree_with_differences<HingeObjective<double, true>>(); }
 
-BOOST_AUTO_TEST_CASE(hinge_with_least_energy) { gradient_agrees_with_differences<HingeObjective<double, false>>(); }
+BOOST_AUTO_TEST_CASE(hinge_with_least_energy) { derivatives_agree_with_differences<HingeObjective<double, false>>(); }
 
-BOOST_AUTO_TEST_CASE(material_frame) { gradient_agrees_with_differences<FrameObjective<double>>(); }
+BOOST_AUTO_TEST_CASE(material_frame) { derivatives_agree_with_differences<RodObjective<double>>(); }
 
-// Each free edge is to turn about an axis of its own, by about half a radian.
-BOOST_AUTO_TEST_CASE(edges_that_turn_keep_their_lengths) {
-    RandomStrand<FrameObjective<double>> strand(1);
-    FrameObjective<double> objective(vertices, strand.rows.data(), strand.shapes.data());
-    const auto place = position_of;
+// Each free edge rotates about an axis of its own, by about half a radian.
+BOOST_AUTO_TEST_CASE(edges_that_rotate_keep_their_lengths) {
+    RandomStrand<RodObjective<double>> strand(1);
+    RodObjective<double> objective(vertices, strand.rows.data(), strand.shapes.data());
     std::vector<double> direction(objective.size(), 0.0), to(objective.size());
     for (int i = 3; i < vertices; ++i) {
-        const Vec<double> edge = place(strand.x, i) - place(strand.x, i - 1);
-        const Vec<double> d = place(direction, i - 1) + cross(0.5 * random_unit(strand.random), edge);
+        const Vec<double> edge = position_of(strand.x, i) - position_of(strand.x, i - 1);
+        const Vec<double> d = position_of(direction, i - 1) + cross(0.5 * random_unit(strand.random), edge);
         for (int k = 0; k < 3; ++k) direction[4 * i + k] = d[k];
     }
-    objective.move(strand.x.data(), 1.0, direction.data(), to.data());
+    objective.curved_path(strand.x.data(), 1.0, direction.data(), to.data());
     double straight = 0.0;
     for (int i = 1; i < vertices; ++i) {
-        const Vec<double> edge = place(strand.x, i) - place(strand.x, i - 1), turned = place(to, i) - place(to, i - 1);
-        BOOST_TEST(std::abs(norm(turned) - norm(edge)) < 1e-12);
-        straight = std::max(straight, norm(edge + place(direction, i) - place(direction, i - 1)) - norm(edge));
-        if (i < 3) BOOST_TEST(norm(place(to, i) - place(strand.x, i)) == 0.0);
+        const Vec<double> edge = position_of(strand.x, i) - position_of(strand.x, i - 1),
+                          rotated = position_of(to, i) - position_of(to, i - 1);
+        BOOST_TEST(std::abs(norm(rotated) - norm(edge)) < 1e-12);
+        straight = std::max(straight, norm(edge + position_of(direction, i) - position_of(direction, i - 1)) - norm(edge));
+        if (i < 3) BOOST_TEST(norm(position_of(to, i) - position_of(strand.x, i)) == 0.0);
     }
     BOOST_TEST(straight > 0.05);
 }
 
-// And, where the tip is held too, leave it there.
-BOOST_AUTO_TEST_CASE(a_move_is_what_the_direction_says_to_first_order) {
+// A held tip stays where it is.
+BOOST_AUTO_TEST_CASE(the_curved_path_is_the_direction_to_first_order) {
     for (const bool tip_held : {false, true}) {
-        RandomStrand<FrameObjective<double>> strand(2);
+        RandomStrand<RodObjective<double>> strand(2);
         if (tip_held) strand.rows[vertices - 1].free = 0.0;
-        FrameObjective<double> objective(vertices, strand.rows.data(), strand.shapes.data());
+        RodObjective<double> objective(vertices, strand.rows.data(), strand.shapes.data());
         std::vector<double> direction(objective.size(), 0.0), to(objective.size());
         for (int i = 0; i < vertices; ++i)
             for (int k = 0; k < 4; ++k) direction[4 * i + k] = strand.rows[i].free * random_unit(strand.random)[k % 3];
-        const auto off = [&](double step) {
-            objective.move(strand.x.data(), step, direction.data(), to.data());
+        const auto deviation = [&](double step) {
+            objective.curved_path(strand.x.data(), step, direction.data(), to.data());
             double most = 0.0;
             for (int i = 0; i < objective.size(); ++i)
                 most = std::max(most, std::abs(to[i] - strand.x[i] - step * direction[i]));
             return most;
         };
-        BOOST_TEST(off(1e-3) > 1e-8); // of second order
-        BOOST_TEST(off(1e-3) / off(5e-4) > 3.8);
-        BOOST_TEST(off(1e-3) / off(5e-4) < 4.2);
-        off(1.0);
+        BOOST_TEST(deviation(1e-3) > 1e-8); // of second order
+        BOOST_TEST(deviation(1e-3) / deviation(5e-4) > 3.8);
+        BOOST_TEST(deviation(1e-3) / deviation(5e-4) < 4.2);
+        deviation(1.0);
         if (tip_held) BOOST_TEST(norm(position_of(to, vertices - 1) - position_of(strand.x, vertices - 1)) == 0.0);
     }
 }
 
-BOOST_AUTO_TEST_CASE(a_frame_does_not_feel_a_turn_of_the_whole_strand_about_its_own_axis) {
-    // On a straight strand of straight rest shape all frames may turn together at no cost.
-    RandomStrand<FrameObjective<double>> strand(3);
+BOOST_AUTO_TEST_CASE(the_largest_step_changes_an_edge_by_twice_its_length) {
+    RandomStrand<RodObjective<double>> strand(4);
+    RodObjective<double> objective(vertices, strand.rows.data(), strand.shapes.data());
+    std::vector<double> direction(objective.size(), 0.0);
+    BOOST_TEST(objective.max_step(strand.x.data(), direction.data()) == 1.0);
+    const double length = std::max(0.8, strand.rows[vertices - 2].rest_length);
+    direction[4 * (vertices - 1)] = 10.0 * length;
+    BOOST_TEST(std::abs(objective.max_step(strand.x.data(), direction.data()) - 0.2) < 1e-12);
+}
+
+// The fades of the twist belong to the step: its initial energy is compared with the energies that follow.
+BOOST_AUTO_TEST_CASE(the_energy_at_the_start_is_that_of_the_step) {
+    RandomStrand<HingeObjective<double, true>> strand(5);
+    HingeObjective<double, true> objective(vertices, strand.rows.data(), strand.shapes.data());
+    const double start = objective.begin(strand.x.data());
+    BOOST_TEST(start == objective.evaluate(strand.x.data()));
+}
+
+BOOST_AUTO_TEST_CASE(a_rotation_of_a_straight_strand_about_its_own_axis_costs_no_energy) {
+    // With a straight rest shape, all frames may rotate together.
+    RandomStrand<RodObjective<double>> strand(3);
     for (int i = 0; i < vertices; ++i) {
         StrandRow<double> &r = strand.rows[i];
         r.free = r.inertia = r.rest_angle = r.rest_dihedral = r.damped_strain = 0;
@@ -182,7 +200,7 @@ BOOST_AUTO_TEST_CASE(a_frame_does_not_feel_a_turn_of_the_whole_strand_about_its_
         r.reference.normal = {0, 1, 0};
         for (int k = 0; k < 4; ++k) strand.x[4 * i + k] = k == 0 ? i : 0;
     }
-    FrameObjective<double> objective(vertices, strand.rows.data(), strand.shapes.data());
+    RodObjective<double> objective(vertices, strand.rows.data(), strand.shapes.data());
     const double before = objective.evaluate(strand.x.data());
     for (int i = 0; i < vertices; ++i) strand.x[4 * i + 3] = 2.5;
     BOOST_TEST(std::abs(objective.evaluate(strand.x.data()) - before) < 1e-14);

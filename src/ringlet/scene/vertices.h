@@ -3,7 +3,7 @@
 
 #include "ringlet/cloth/cloth.h"
 #include "ringlet/solver/vertex_table.h"
-#include "ringlet/strand/strands.h"
+#include "ringlet/strand/step.h"
 
 #include <vector>
 

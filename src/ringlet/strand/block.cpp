@@ -1,6 +1,7 @@
 #include "ringlet/strand/block.h"
 
 #include "ringlet/linear/lane_vectors.h"
+#include "ringlet/strand/lane_order.h"
 
 #include <algorithm>
 #include <numeric>
@@ -38,7 +39,7 @@ void StrandBlock::begin_step(const BlockStep &step) {
     if (bytes != memory_bytes_) memory_ = AlignedMemory(memory_bytes_ = bytes);
     const StrandGroup group{strands_.data(), int(strands_.size())};
     system_ = RINGLET_DISPATCH(begin_strand_group, arrays_, step_, group, memory_.get());
-    dofs_ = system_.freedoms();
+    dofs_ = system_.dofs();
     rows_ = dofs_ * system_.vertices;
     size_ = (size_t(rows_) + system_.padding) * lanes_;
 }
@@ -60,11 +61,11 @@ void StrandBlock::factor() { RINGLET_DISPATCH(factor_strand_group, memory_.get()
 void StrandBlock::solve(double *b) const { RINGLET_DISPATCH(solve_strand_group, memory_.get(), b); }
 
 void StrandBlock::max_step(const double *x, const double *direction, double *of_lanes) const {
-    RINGLET_DISPATCH(strand_group_worth_going, memory_.get(), x, direction, of_lanes);
+    RINGLET_DISPATCH(strand_group_max_step, memory_.get(), x, direction, of_lanes);
 }
 
 void StrandBlock::bend(const double *x, const double *straight, double *bend) const {
-    RINGLET_DISPATCH(turn_strand_group, memory_.get(), x, straight, bend);
+    RINGLET_DISPATCH(strand_group_curved_end, memory_.get(), x, straight, bend);
     for (size_t i = 0; i < unknowns(); ++i) bend[i] -= x[i] + straight[i];
 }
 
@@ -151,7 +152,7 @@ bool StrandBlock::commit(const double *x, double, const SolverEffort &effort) {
 }
 
 std::vector<std::unique_ptr<StrandBlock>> make_strand_blocks(const StrandModel &model, StrandState &state) {
-    const std::vector<int> order = by_length_and_place(model, state.positions);
+    const std::vector<int> order = order_by_length_and_position(model, state.positions);
     const size_t lanes = RINGLET_DISPATCH(strand_lanes);
     std::vector<std::unique_ptr<StrandBlock>> blocks;
     for (size_t first = 0; first < order.size(); first += lanes) {

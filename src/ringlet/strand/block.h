@@ -3,7 +3,7 @@
 
 #include "ringlet/math/aligned.h"
 #include "ringlet/solver/block.h"
-#include "ringlet/strand/strand_groups.h"
+#include "ringlet/strand/step.h"
 
 #include <memory>
 #include <vector>

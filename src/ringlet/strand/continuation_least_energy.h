@@ -1,13 +1,13 @@
-// `least_energy`: the signs that give the strand the least energy, as part of the energy itself. It is a continuous function of
-// the positions alone: nothing to initialise, to carry or to restart, and nothing that can add energy.
+// `least_energy`: the signs of the hinge model that give the strand the least energy, as part of the energy itself.
 //   E = min over σ of Σ ½ k_b (σθ − θ̄)² + Σ ½ k_t [s(θ_a) s(θ_b) f(Δ)]²,  Δ = wrap(φ − φ̄ + π [σ_a σ_b < 0])
-// The minimum is found exactly, corner by corner (dynamic programming over two states); the signs stay fixed while derivatives
-// are taken (envelope theorem).
+// It is a continuous function of the positions alone: it has no history, and no step can add energy.
+// Dynamic programming over two states per corner finds the exact minimum. Derivatives keep the signs (envelope theorem).
 #pragma once
 
 #include "ringlet/energy/strand/bend.h"
 #include "ringlet/energy/strand/twist.h"
-#include "ringlet/strand/strand_shape.h"
+#include "ringlet/strand/settings.h"
+#include "ringlet/strand/vertex_data.h"
 
 namespace ringlet::RINGLET_SIMD {
 
@@ -15,17 +15,17 @@ template <class T> struct WithSlope {
     T value, slope;
 };
 
-// f(Δ): Δ up to a quarter turn, then bending over to be level at ±π, so that the energy has no kink where Δ wraps.
+// f(Δ): Δ up to a quarter turn, then a sine that is level at ±π. The energy has no kink where Δ wraps.
 template <class T> inline WithSlope<T> rounded(T delta) {
     const T beyond = abs(delta) - pi / 2;
     const SineCosine<T> end = sine_cosine_quarter(min(max(beyond, T{}), constant<T>(pi / 2)));
-    const auto bent_over = beyond > 0.0;
-    return {select(bent_over, sign(delta) * (pi / 2 + end.sine), delta), select(bent_over, end.cosine, constant<T>(1.0))};
+    const auto past_quarter = beyond > 0.0;
+    return {select(past_quarter, sign(delta) * (pi / 2 + end.sine), delta), select(past_quarter, end.cosine, constant<T>(1.0))};
 }
 
-// s(θ): 0 below 0.15° from straight (or folded), 1 from half the rest angle up.
+// s(θ): 0 where a corner is within `straight_angle` of straight or folded, 1 from half the rest angle on.
 template <class T> inline WithSlope<T> straightness(T angle, T rest_angle) {
-    const double low = 0.15 * pi / 180;
+    const double low = strand_settings::straight_angle;
     const T high = max(0.5 * min(rest_angle, pi - rest_angle), constant<T>(2 * low));
     const T inverse = 1.0 / (high - low);
     const T y = min(max((min(angle, pi - angle) - low) * inverse, T{}), constant<T>(1.0));
@@ -34,13 +34,14 @@ template <class T> inline WithSlope<T> straightness(T angle, T rest_angle) {
 }
 
 template <class T> void continue_least_energy(int vertices, const StrandRow<T> *rows, StrandShape<T> *shapes) {
-    const double rest_straight = 0.3 * pi / 180; // such a corner has no sign of its own
     const T one = constant<T>(1.0);
     const int last = vertices - 2; // corners are 1 … last
 
     const auto bend_of = [&](int i, double sigma) {
         const T energy = bend_energy(shapes[i].corner.angle, constant<T>(sigma), rows[i].damped_angle, rows[i].bend);
-        return sigma > 0 ? energy : select(rows[i].rest_angle < rest_straight, constant<T>(1e30), energy);
+        return sigma > 0 ? energy
+                         : select(rows[i].rest_angle < strand_settings::straight_rest_angle,
+                                  constant<T>(strand_settings::excluded_energy), energy);
     };
     T plus = bend_of(1, 1), minus = bend_of(1, -1);
     for (int i = 1; i < last; ++i) {

@@ -1,11 +1,12 @@
-// Bend and twist of positions alone: turning angles at the vertices, and a cloth hinge over two virtual triangles at each edge
-// (Lifted Curls). Signs and turns are found by one of the continuations.
+// Hinge model of a strand: bend and twist of positions alone (Lifted Curls).
+// Bend is the turning angle at a vertex. Twist is a cloth hinge over the two virtual triangles at each edge. A continuation
+// determines signs and turns.
 #pragma once
 
 #include "ringlet/energy/strand/twist.h"
 #include "ringlet/strand/continuation_history.h"
 #include "ringlet/strand/continuation_least_energy.h"
-#include "ringlet/strand/strand_objective.h"
+#include "ringlet/strand/objective.h"
 
 namespace ringlet::RINGLET_SIMD {
 
@@ -16,6 +17,22 @@ template <class T, bool history> class HingeObjective : public StrandObjective<T
 public:
     using Base::Base;
     using typename Base::Matrix;
+
+    // Evaluates at the start of the step and keeps its signs, turns and fades.
+    T begin(const T *x) {
+        const T energy = evaluate(x);
+        for (int i = 1; i + 1 < vertices_; ++i) {
+            StrandRow<T> &row = rows_[i];
+            row.start_sigma = shapes_[i].sigma;
+            row.start_turns = shapes_[i].turns;
+            if (!this->is_hinge(i) || !history) continue;
+            row.reference.fade = constant<T>(1.0);
+            if (this->safeguards_.straight_fade)
+                row.reference.fade =
+                    straightness_fade(shapes_[i].corner.angle) * straightness_fade(shapes_[i + 1].corner.angle);
+        }
+        return history ? evaluate(x) : energy; // now with the fades
+    }
 
     T evaluate(const T *x) {
         this->positions_ = x;
@@ -29,8 +46,8 @@ public:
             continue_least_energy(vertices_, rows_, shapes_);
 
         T energy{};
-        for (int i = 0; i < vertices_; ++i) energy += this->inertia_of(x, i);
-        for (int i = 0; i + 1 < vertices_; ++i) energy += this->stretch_of(i, shapes_[i]);
+        for (int i = 0; i < vertices_; ++i) energy += this->inertia_energy(x, i);
+        for (int i = 0; i + 1 < vertices_; ++i) energy += this->edge_energy(i, shapes_[i]);
         for (int i = 1; i + 1 < vertices_; ++i)
             energy += bend_energy(shapes_[i].corner.angle, shapes_[i].sigma, rows_[i].damped_angle, rows_[i].bend);
         for (int i = 1; i + 2 < vertices_; ++i)
@@ -41,25 +58,9 @@ public:
     T energy(const T *x) { return evaluate(x); }
 
     void assemble(T *gradient, Matrix &hessian) const {
-        this->assemble_along(
+        this->assemble_terms(
             gradient, hessian, [&](int i) { add_bend(i, gradient, hessian); }, [&](int i) { add_twist(i, gradient, hessian); });
-        this->hold(gradient);
-    }
-
-    // Fades and signs as the step begins.
-    void remember_start() {
-        for (int i = 1; i + 1 < vertices_; ++i) {
-            StrandRow<T> &row = rows_[i];
-            StrandShape<T> &s = shapes_[i];
-            row.start_sigma = s.sigma;
-            row.start_turns = s.turns;
-            if (!this->is_hinge(i) || !history) continue;
-            row.reference.fade = constant<T>(1.0);
-            if (this->safeguards_.straight_fade)
-                row.reference.fade = straightness_fade(s.corner.angle) * straightness_fade(shapes_[i + 1].corner.angle);
-            s.strain = row.reference.fade * s.delta; // evaluated before the fade was known
-            s.by_dihedral = row.reference.fade;
-        }
+        this->clear_held(gradient);
     }
 
     Strains<T> strains(int i) const {
@@ -67,31 +68,30 @@ public:
         return {{s.length, s.sigma * s.corner.angle, T{}, s.strain}};
     }
 
-    // Rest values between the groom's and the carried ones (strand_objective.h), b = β/h.
-    void damp(int i, T b, const Strains<T> &carried) {
-        const T part = 1.0 / (1.0 + b);
-        rows_[i].damped_angle = part * (rows_[i].rest_angle + b * carried[1]);
-        if (this->is_hinge(i)) rows_[i].damped_strain = part * b * carried.twist();
+    // Rest values with damping (damping.h), b = β/h.
+    void damp(int i, T b, const Strains<T> &extrapolated) {
+        const T share = 1.0 / (1.0 + b);
+        rows_[i].damped_angle = share * (rows_[i].rest_angle + b * extrapolated[1]);
+        if (this->is_hinge(i)) rows_[i].damped_strain = share * b * extrapolated.twist();
     }
 
-    // Without damping, of the stiffnesses as they are in the rows.
+    // Without damping, with the stiffnesses in the rows.
     T bend_energy_at(int i) const {
         return bend_energy(shapes_[i].corner.angle, shapes_[i].sigma, rows_[i].rest_angle, rows_[i].bend);
     }
     T twist_energy_at(int i) const { return twist_energy(shapes_[i].strain, rows_[i].twist); }
 
-    // What the next step compares with. A nearly straight corner has no normal of its own: it keeps the one it had, carried
-    // along.
-    Vec<T> normal_to_keep(int i) const {
+    // Normal that the next step compares with. A nearly straight corner has none of its own and transports its last one.
+    Vec<T> reference_normal(int i) const {
         const StrandShape<T> &s = shapes_[i];
-        const Vec<T> carried = transport(rows_[i].reference.normal, rows_[i].reference.tangent, s.tangent);
-        return select<T>(s.corner.sine > 2.6e-3, s.sigma * s.corner.normal, carried);
+        const Vec<T> transported = transport(rows_[i].reference.normal, rows_[i].reference.tangent, s.tangent);
+        return select<T>(s.corner.sine > strand_settings::normal_sine, s.sigma * s.corner.normal, transported);
     }
 
-    T flipped(int i) const { return select(shapes_[i].sigma == rows_[i].start_sigma, T{}, constant<T>(1.0)); }
-    T wound(int i) const { return select(shapes_[i].turns == rows_[i].start_turns, T{}, constant<T>(1.0)); }
+    T sign_changes(int i) const { return select(shapes_[i].sigma == rows_[i].start_sigma, T{}, constant<T>(1.0)); }
+    T winding_changes(int i) const { return select(shapes_[i].turns == rows_[i].start_turns, T{}, constant<T>(1.0)); }
     T too_straight(int i) const { return select(shapes_[i].by_dihedral == 0.0, constant<T>(1.0), T{}); }
-    T clamped(int i) const {
+    T clamped_eigenvalues(int i) const {
         T count = this->clamped_stretch(i);
         if (this->is_corner(i))
             count += clamped_bend(shapes_[i].corner, shapes_[i].sigma, rows_[i].damped_angle, rows_[i].bend);

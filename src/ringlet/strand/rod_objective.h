@@ -1,16 +1,16 @@
-// Bend and twist of a strand with a material frame (energy/strand/frame.h): every edge's director may turn about the edge, by
-// an angle γ without inertia, which takes what turn costs least. At rest a director is the corner's normal: locked to the
-// normals, this is the hinge model. Free, they make it Kirchhoff's rod, with no corner that is too straight, no signs and no
-// turns.
+// Discrete elastic rod with material frames (Bergou et al. 2008, 2010): bend and twist of a strand.
+// The director of every edge may rotate about the edge by an angle γ without inertia. At rest a director is the corner's
+// normal; locked to the normals, this is the hinge model. Free, it is Kirchhoff's rod, without signs, turns or corners that are
+// too straight.
 #pragma once
 
 #include "ringlet/energy/strand/frame.h"
-#include "ringlet/strand/strand_objective.h"
+#include "ringlet/strand/objective.h"
 
 namespace ringlet::RINGLET_SIMD {
 
 // Unknowns of a vertex: its position and γ l̄ of the edge that begins there [m]. γ is 0 as a step begins.
-template <class T> class FrameObjective : public StrandObjective<T, 4, 11> {
+template <class T> class RodObjective : public StrandObjective<T, 4, 11> {
     using Base = StrandObjective<T, 4, 11>;
     using Base::rows_, Base::shapes_, Base::vertices_;
 
@@ -18,63 +18,67 @@ public:
     using Base::Base;
     using typename Base::Matrix;
 
+    // Evaluates at the start of the step.
+    T begin(const T *x) { return evaluate(x); }
+
     T evaluate(const T *x) {
         this->positions_ = x;
         return energy_at<true>(x);
     }
 
-    // Only says how much it is: what was evaluated last stays.
+    // Leaves the shapes evaluated last as they are.
     T energy(const T *x) { return energy_at<false>(x); }
 
     void assemble(T *gradient, Matrix &hessian) const {
-        this->assemble_along(
+        this->assemble_terms(
             gradient, hessian, [&](int i) { add_bend(i, gradient, hessian); }, [&](int i) { add_twist(i, gradient, hessian); });
-        for (int i = 0; i < vertices_; ++i) { // a little stiffness where nothing holds the frame
+        for (int i = 0; i < vertices_; ++i) { // regularises a frame without stiffness
             const T free = rows_[i].frame_free;
             hessian.entry(4 * i + 3)[0] +=
-                free * (1e-9 * rows_[i].bend / (rows_[i].rest_length * rows_[i].rest_length) + 1e-15) + (1.0 - free);
+                free * (strand_settings::frame_stiffness * rows_[i].bend / (rows_[i].rest_length * rows_[i].rest_length) +
+                        strand_settings::frame_stiffness_min) +
+                (1.0 - free);
         }
-        this->hold(gradient);
+        this->clear_held(gradient);
         for (int i = 0; i < vertices_; ++i) gradient[4 * i + 3] *= rows_[i].frame_free;
     }
 
-    void remember_start() {}
-
     Strains<T> strains(int i) const {
         const StrandShape<T> &s = shapes_[i];
-        return {{s.length, s.across, s.along, s.strain}};
+        return {{s.length, s.curvature1, s.curvature2, s.strain}};
     }
 
-    // Rest values between the groom's and the carried ones (strand_objective.h), b = β/h.
-    void damp(int i, T b, const Strains<T> &carried) {
-        const T part = b / (1.0 + b);
-        rows_[i].damped_bend = {part * carried[1], part * carried[2], T{}};
-        if (this->is_hinge(i)) rows_[i].damped_strain = part * carried.twist();
+    // Rest values with damping (damping.h), b = β/h.
+    void damp(int i, T b, const Strains<T> &extrapolated) {
+        const T share = b / (1.0 + b);
+        rows_[i].damped_bend = {share * extrapolated[1], share * extrapolated[2], T{}};
+        if (this->is_hinge(i)) rows_[i].damped_strain = share * extrapolated.twist();
     }
 
-    // Without damping, of the stiffnesses as they are in the rows.
+    // Without damping, with the stiffnesses in the rows.
     T bend_energy_at(int i) const {
-        return 0.5 * rows_[i].bend * (shapes_[i].across * shapes_[i].across + shapes_[i].along * shapes_[i].along);
+        return 0.5 * rows_[i].bend *
+               (shapes_[i].curvature1 * shapes_[i].curvature1 + shapes_[i].curvature2 * shapes_[i].curvature2);
     }
     T twist_energy_at(int i) const { return 0.5 * rows_[i].twist * shapes_[i].strain * shapes_[i].strain; }
 
-    Vec<T> normal_to_keep(int i) const { return shapes_[i].director; }
-    T flipped(int) const { return T{}; }
-    T wound(int) const { return T{}; }
+    Vec<T> reference_normal(int i) const { return shapes_[i].director; }
+    T sign_changes(int) const { return T{}; }
+    T winding_changes(int) const { return T{}; }
     T too_straight(int) const { return T{}; }
-    T clamped(int i) const { return this->clamped_stretch(i); } // bend and twist are sums of squares
+    T clamped_eigenvalues(int i) const { return this->clamped_stretch(i); } // bend and twist are sums of squares
 
 private:
-    // In one pass, which reads a row once and, unless shapes are kept, writes nothing.
+    // One pass, which reads each row once and writes shapes only where they are kept.
     template <bool keeps> T energy_at(const T *x) {
         T energy{};
         StrandShape<T> before{}, s{}; // of the edge before; of the edge that begins at i
         for (int i = 0; i < vertices_; ++i, before = s) {
-            energy += this->inertia_of(x, i);
+            energy += this->inertia_energy(x, i);
             if (i + 1 == vertices_) break;
             this->measure_edge(x, i, s);
-            energy += this->stretch_of(i, s);
-            if (i > 0) energy += bend_of(x, i, before, s);
+            energy += this->edge_energy(i, s);
+            if (i > 0) energy += corner_energy(x, i, before, s);
             if (i > 1) {
                 before.strain =
                     wrap(frame_twist(before.director, before.tangent, s.director, s.tangent) - rows_[i - 1].rest_dihedral);
@@ -87,30 +91,31 @@ private:
         return energy;
     }
 
-    T bend_of(const T *x, int i, const StrandShape<T> &before, StrandShape<T> &s) const {
+    // Always inlined, so that the same products are fused with sums (FMA) wherever it is called from.
+    [[gnu::always_inline]] T corner_energy(const T *x, int i, const StrandShape<T> &before, StrandShape<T> &s) const {
         s.corner = corner(before.tangent, s.tangent);
         const Vec<T> director = transport(rows_[i].reference.normal, rows_[i].reference.tangent, s.tangent);
         const SineCosine<T> turn = sine_cosine(x[4 * i + 3] / rows_[i].rest_length);
         s.director = turn.cosine * director + turn.sine * cross(s.tangent, director);
         const Vec<T> K = turning(s.corner, before.tangent, s.tangent);
-        s.across = dot(K, s.director) - rows_[i].rest_angle;
-        s.along = dot(K, cross(s.tangent, s.director));
-        const T across = s.across - rows_[i].damped_bend.x, along = s.along - rows_[i].damped_bend.y;
-        return 0.5 * rows_[i].bend * (across * across + along * along);
+        s.curvature1 = dot(K, s.director) - rows_[i].rest_angle;
+        s.curvature2 = dot(K, cross(s.tangent, s.director));
+        const T strain1 = s.curvature1 - rows_[i].damped_bend.x, strain2 = s.curvature2 - rows_[i].damped_bend.y;
+        return 0.5 * rows_[i].bend * (strain1 * strain1 + strain2 * strain2);
     }
 
-    static void keep(const StrandShape<T> &s, StrandShape<T> &kept) { // what hinges have stays out of it
+    static void keep(const StrandShape<T> &s, StrandShape<T> &kept) { // without the values of hinges
         kept.tangent = s.tangent, kept.length = s.length, kept.corner = s.corner;
-        kept.director = s.director, kept.across = s.across, kept.along = s.along;
+        kept.director = s.director, kept.curvature1 = s.curvature1, kept.curvature2 = s.curvature2;
     }
 
-    Vec<T> spin_of(int i) const { return spin(rows_[i].reference.tangent, shapes_[i].tangent, shapes_[i].length); }
+    Vec<T> director_spin(int i) const { return spin(rows_[i].reference.tangent, shapes_[i].tangent, shapes_[i].length); }
 
     void add_bend(int i, T *gradient, Matrix &hessian) const {
         const StrandShape<T> &before = shapes_[i - 1], &s = shapes_[i];
         const Vec<T> other = cross(s.tangent, s.director);
-        const Vec<T> K = turning(s.corner, before.tangent, s.tangent), spinning = spin_of(i);
-        const T residual[2] = {s.across - rows_[i].damped_bend.x, s.along - rows_[i].damped_bend.y};
+        const Vec<T> K = turning(s.corner, before.tangent, s.tangent), spinning = director_spin(i);
+        const T residual[2] = {s.curvature1 - rows_[i].damped_bend.x, s.curvature2 - rows_[i].damped_bend.y};
         const T by_frame[2] = {dot(K, other), -dot(K, s.director)};
         T u[2][11] = {};
         for (int k = 0; k < 2; ++k) {
@@ -133,7 +138,7 @@ private:
     void add_twist(int i, T *gradient, Matrix &hessian) const {
         const StrandShape<T> &s = shapes_[i], &after = shapes_[i + 1];
         const EdgeGradient<T> g = frame_twist_gradient(after.corner, s.tangent, after.tangent, s.length, after.length);
-        const Vec<T> first = g.first - spin_of(i), second = g.second + spin_of(i + 1);
+        const Vec<T> first = g.first - director_spin(i), second = g.second + director_spin(i + 1);
         const T frame0 = -1.0 / rows_[i].rest_length, frame1 = 1.0 / rows_[i + 1].rest_length;
         const T moment = rows_[i].twist * (s.strain - rows_[i].damped_strain);
         this->add(gradient, i, -(moment * first));

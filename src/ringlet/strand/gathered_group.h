@@ -1,0 +1,71 @@
+// A group of strands in SIMD lanes with the objective that is evaluated on them, at the start of a step.
+#pragma once
+
+#include "ringlet/strand/group_memory.h"
+#include "ringlet/strand/lane_gather.h"
+#include "ringlet/strand/root_motion.h"
+
+namespace ringlet::RINGLET_SIMD {
+
+// Row of vertex i without damping and inertia.
+inline StrandRow<Pack> gather_row(const LaneGather &gather, const StrandArrays &arrays, const double *normals, int i) {
+    StrandRow<Pack> row{};
+    for (int k = 0; k < lanes; ++k) {
+        const StrandLane &strand = gather.lane(k);
+        const auto is_held = [&](int v) { return !strand.has_vertex(v) || arrays.held[strand.row(v)]; };
+        set_lane(row.free, k, is_held(i) ? 0.0 : 1.0);
+        set_lane(row.frame_free, k, strand.has_corner(i) && !(is_held(i) && is_held(i + 1)) ? 1.0 : 0.0);
+    }
+    row.stretch = gather.scalar(arrays.stretch_stiffness, i, 0.0);
+    row.rest_length = gather.scalar(arrays.rest_length, i, 1.0);
+    for (int k = 0; k < lanes; ++k) // no edge begins at the tip
+        if (!gather.lane(k).has_edge(i)) set_lane(row.rest_length, k, 1.0);
+    row.bend = gather.scalar(arrays.bend_stiffness, i, 0.0);
+    row.rest_angle = gather.scalar(arrays.rest_angle, i, 0.0);
+    row.twist = gather.scalar(arrays.twist_stiffness, i, 0.0);
+    row.rest_dihedral = gather.scalar(arrays.rest_dihedral, i, 0.0);
+    row.damping = gather.scalar(arrays.damping, i, 0.0);
+    row.damped_length = row.rest_length;
+    row.damped_angle = row.rest_angle;
+    row.elastic_share = constant<Pack>(1.0);
+    row.reference.delta = gather.scalar(arrays.twist, i, 0.0);
+    row.reference.normal = gather.vector(normals, i);
+    return row;
+}
+
+template <class Objective> struct GatheredGroup {
+    using Matrix = typename Objective::Matrix;
+
+    GatheredGroup(const StrandArrays &all, const StrandStep &of_step, StrandGroup group, void *block)
+        : arrays(all), step(of_step), gather(all.offsets, group), vertices(gather.vertices()), memory(block, vertices),
+          objective(vertices, memory.rows, memory.shapes, step.safeguards) {
+        for (int i = 0; i < vertices; ++i) {
+            memory.shapes[i] = StrandShape<Pack>{};
+            memory.rows[i] = gather_row(gather, arrays, normals(), i);
+            memory.start[i] = gather.position(arrays.positions, i);
+            memory.velocity[i] = gather.vector(arrays.velocities, i);
+            memory.target[i] = gather.position(arrays.targets, i);
+            Objective::set_position(memory.x, i, memory.start[i]);
+        }
+        for (int i = 0; i + 1 < vertices; ++i) memory.rows[i].reference.tangent = unit(memory.start[i + 1] - memory.start[i]);
+        start_energy = objective.begin(memory.x);
+    }
+
+    // Directors of the material frames, or normals.
+    double *normals() const { return Objective::has_frames ? arrays.directors : arrays.normals; }
+    void scatter_normal(const StrandLane &strand, int i) const {
+        LaneGather::scatter(objective.reference_normal(i), strand, i, normals());
+    }
+
+    Matrix matrix() const { return {memory.newton.band, objective.size()}; }
+
+    const StrandArrays &arrays;
+    const StrandStep &step;
+    LaneGather gather;
+    int vertices; // of the longest strand
+    GroupMemory<Objective> memory;
+    Objective objective;
+    Pack start_energy{}; // elastic [J]
+};
+
+} // namespace ringlet::RINGLET_SIMD

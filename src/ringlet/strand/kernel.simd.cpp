@@ -1,0 +1,97 @@
+// Kernels of strand groups. Built once per instruction set: plain pointers only (see cmake/Simd.cmake).
+#include "ringlet/strand/kernel.h"
+
+#include "ringlet/strand/elastic_energy.h"
+#include "ringlet/strand/hinge_objective.h"
+#include "ringlet/strand/phased_group.h"
+#include "ringlet/strand/rod_objective.h"
+
+#include <new>
+
+namespace ringlet::RINGLET_SIMD {
+namespace {
+
+// Calls work.operator()<Objective>() with the model of bend and twist that the step names.
+template <class Work> auto with_objective(const StrandStep &step, const Work &work) {
+    switch (step.continuation) {
+    case Continuation::history: return work.template operator()<HingeObjective<Pack, true>>();
+    case Continuation::least_energy: return work.template operator()<HingeObjective<Pack, false>>();
+    default: return work.template operator()<RodObjective<Pack>>();
+    }
+}
+
+// Calls work(group) with the gathered group.
+template <class Work>
+void with_gathered(const StrandArrays &arrays, const StrandStep &step, StrandGroup group, void *workspace, const Work &work) {
+    with_objective(step, [&]<class Objective>() {
+        GatheredGroup<Objective> gathered(arrays, step, group, workspace);
+        work(gathered);
+    });
+}
+
+// The group of a phased step stands at the beginning of its memory, in as many bytes; its arrays follow, aligned.
+constexpr size_t group_bytes = 1024;
+
+PhasedStep &group_in(void *memory) { return *static_cast<PhasedStep *>(memory); }
+const Pack *packs(const double *values) { return reinterpret_cast<const Pack *>(values); }
+Pack *packs(double *values) { return reinterpret_cast<Pack *>(values); }
+
+} // namespace
+
+int strand_lanes() { return lanes; }
+
+size_t strand_workspace_bytes(int vertices) {
+    return max(GroupMemory<HingeObjective<Pack, true>>::bytes(vertices), GroupMemory<RodObjective<Pack>>::bytes(vertices));
+}
+
+void step_strand_group(const StrandArrays &arrays, const StrandStep &step, StrandGroup group, void *workspace,
+                       StrandReport *reports) {
+    with_objective(step, [&]<class Objective>() { Group<Objective>(arrays, step, group, workspace).step(reports); });
+}
+
+void relax_strand_frames(const StrandArrays &arrays, StrandGroup group, void *workspace, double *energies) {
+    StrandStep step;
+    step.continuation = Continuation::material_frame;
+    with_gathered(arrays, step, group, workspace, [&](auto &gathered) { keep_relaxed_frames(gathered, energies); });
+}
+
+double strand_elastic_energy(const StrandArrays &arrays, const StrandStep &step, int strand, const double *positions,
+                             void *workspace, double *gradient, double *hessian) {
+    double energy = 0;
+    with_gathered(arrays, step, {&strand, 1}, workspace,
+                  [&](auto &gathered) { energy = elastic_energy(gathered, positions, gradient, hessian); });
+    return energy;
+}
+
+size_t strand_group_bytes(const StrandStep &step, int vertices) {
+    return group_bytes +
+           with_objective(step, [&]<class Objective>() { return GroupMemory<Objective>::bytes(max(vertices, 3)); });
+}
+
+StrandGroupSystem begin_strand_group(const StrandArrays &arrays, const StrandStep &step, StrandGroup group, void *memory) {
+    return with_objective(step, [&]<class Objective>() {
+        static_assert(sizeof(PhasedGroup<Objective>) <= group_bytes);
+        char *workspace = static_cast<char *>(memory) + group_bytes;
+        return (new (memory) PhasedGroup<Objective>(arrays, step, group, workspace))->begin();
+    });
+}
+
+void strand_group_energies(void *memory, const double *x, double *energies) { group_in(memory).energy(packs(x), energies); }
+void evaluate_strand_group(void *memory, const double *x, double *energies) { group_in(memory).evaluate(packs(x), energies); }
+void assemble_strand_group(void *memory, const double *x) { group_in(memory).assemble(packs(x)); }
+void factor_strand_group(void *memory) { group_in(memory).factor(); }
+void solve_strand_group(void *memory, double *b) { group_in(memory).solve(packs(b)); }
+
+void strand_group_max_step(void *memory, const double *x, const double *direction, double *steps) {
+    group_in(memory).max_step(packs(x), packs(direction), steps);
+}
+void strand_group_curved_end(void *memory, const double *x, const double *direction, double *to) {
+    group_in(memory).curved_end(packs(x), packs(direction), packs(to));
+}
+
+void end_strand_group(void *memory, const double *x, const StrandEffort &effort, StrandReport *reports) {
+    group_in(memory).end(packs(x), effort, reports);
+    group_in(memory).~PhasedStep();
+}
+
+} // namespace ringlet::RINGLET_SIMD

@@ -1,0 +1,137 @@
+// Objective of a strand's time step: Σ ½ aᵢ ‖xᵢ − yᵢ‖² (inertia, gravity, mass damping, drag) + stretch + bend + twist.
+// Held vertices are left out. Damping is part of the elastic energies (damping.h), the time integrator of a and y
+// (dynamics/time_integrator.h). This base class has all but bend and twist; see rod_objective.h and hinge_objective.h.
+#pragma once
+
+#include "ringlet/energy/strand/bend.h"
+#include "ringlet/energy/strand/stretch.h"
+#include "ringlet/linear/banded.h"
+#include "ringlet/strand/curved_path.h"
+#include "ringlet/strand/kernel.h"
+#include "ringlet/strand/vertex_data.h"
+
+namespace ringlet::RINGLET_SIMD {
+
+// `dofs_` unknowns per vertex, the first three its position.
+template <class T, int dofs_, int band> class StrandObjective {
+public:
+    static constexpr int dofs = dofs_;
+    static constexpr bool has_frames = dofs == 4;
+    using Matrix = Banded<T, dofs, band>;
+
+    StrandObjective(int vertices, StrandRow<T> *rows, StrandShape<T> *shapes, Safeguards safeguards = {})
+        : vertices_(vertices), rows_(rows), shapes_(shapes), safeguards_(safeguards) {}
+
+    int size() const { return dofs * vertices_; }
+
+    // The unknowns evaluated last are now at x: the same numbers in other memory.
+    void relocate(const T *x) { positions_ = x; }
+
+    // Largest step along a direction, at most 1, that changes no edge vector by more than twice its length. Beyond that, as
+    // where an edge reverses, the linear model does not hold.
+    T max_step(const T *x, const T *direction) const {
+        T step = constant<T>(1.0);
+        for (int i = 0; i + 1 < vertices_; ++i) {
+            const T change = norm(position(direction, i + 1) - position(direction, i));
+            const T most =
+                strand_settings::max_edge_change * max(rows_[i].rest_length, norm(position(x, i + 1) - position(x, i)));
+            const auto too_far = step * change > most;
+            step = select(too_far, most / select(too_far, change, constant<T>(1.0)), step);
+        }
+        return step;
+    }
+
+    void curved_path(const T *x, T step, const T *direction, T *to) const {
+        RINGLET_SIMD::curved_path<dofs>(vertices_, rows_, x, step, direction, to);
+    }
+
+    static Vec<T> position(const T *x, int i) { return RINGLET_SIMD::position<dofs>(x, i); }
+    static void set_position(T *x, int i, Vec<T> to) { // with γ = 0
+        put(x + dofs * i, to);
+        for (int k = 3; k < dofs; ++k) x[dofs * i + k] = T{};
+    }
+
+protected:
+    // An edge that has shrunk to a point gets the direction of the x axis and a length to divide by.
+    void measure_edge(const T *x, int i, StrandShape<T> &shape) const {
+        const Vec<T> edge = position(x, i + 1) - position(x, i), x_axis{constant<T>(1.0), T{}, T{}};
+        const T length = norm(edge), least = strand_settings::shortest_edge * rows_[i].rest_length;
+        const auto point = length < least;
+        shape.length = select(point, least, length);
+        shape.tangent = select<T>(point, x_axis, (1.0 / shape.length) * edge);
+    }
+
+    T inertia_energy(const T *x, int i) const {
+        const Vec<T> offset = position(x, i) - rows_[i].inertia_target;
+        return 0.5 * rows_[i].free * rows_[i].inertia * dot(offset, offset);
+    }
+
+    T edge_energy(int i, const StrandShape<T> &shape) const {
+        return stretch_energy(shape.length, rows_[i].damped_length, rows_[i].stretch);
+    }
+
+    // Gradient and Hessian of inertia and stretch; calls add_bend(i) and add_twist(i) for corners and hinges. A term follows
+    // the last of its vertices, while its rows of the matrix are in cache.
+    template <class AddBend, class AddTwist>
+    void assemble_terms(T *gradient, Matrix &hessian, const AddBend &add_bend, const AddTwist &add_twist) const {
+        for (int last = 0; last < vertices_; ++last) {
+            begin_vertex(last, gradient, hessian);
+            if (last > 0) add_stretch(last - 1, gradient, hessian);
+            if (last > 1) add_bend(last - 1);
+            if (last > 2) add_twist(last - 2);
+        }
+        hessian.set_zero(size(), size() + Matrix::padding);
+    }
+
+    void begin_vertex(int i, T *gradient, Matrix &hessian) const {
+        hessian.set_zero(dofs * i, dofs * (i + 1));
+        for (int k = 0; k < dofs; ++k) gradient[dofs * i + k] = T{};
+        const StrandRow<T> &r = rows_[i];
+        add(gradient, i, r.inertia * (position(positions_, i) - r.inertia_target));
+        add_diagonal(hessian, i, r.free * r.inertia + (1.0 - r.free));
+    }
+
+    void add_stretch(int i, T *gradient, Matrix &hessian) const {
+        const StrandShape<T> &s = shapes_[i];
+        const Stretch<T> e = stretch(s.tangent, s.length, rows_[i].damped_length, rows_[i].stretch);
+        add(gradient, i, -e.gradient);
+        add(gradient, i + 1, e.gradient);
+        const T free0 = rows_[i].free, free1 = rows_[i + 1].free;
+        T along[dofs + 3] = {};
+        put(along, -(free0 * s.tangent));
+        put(along + dofs, free1 * s.tangent);
+        hessian.add_square(dofs * i, e.along - e.across, along);
+        add_diagonal(hessian, i, e.across * free0);
+        add_diagonal(hessian, i + 1, e.across * free1);
+        for (int k = 0; k < 3; ++k) hessian.entry(dofs * i + k)[dofs] -= e.across * free0 * free1;
+    }
+
+    // Number of the edge's negative eigenvalues, which its Hessian leaves out: two across a compressed edge.
+    T clamped_stretch(int i) const {
+        return select(shapes_[i].length < (1.0 - clamped_from) * rows_[i].damped_length, constant<T>(2.0), T{});
+    }
+
+    void clear_held(T *gradient) const {
+        for (int i = 0; i < vertices_; ++i)
+            for (int k = 0; k < 3; ++k) gradient[dofs * i + k] *= rows_[i].free;
+    }
+
+    static void add(T *gradient, int vertex, Vec<T> value) {
+        for (int k = 0; k < 3; ++k) gradient[dofs * vertex + k] += value[k];
+    }
+
+    static void add_diagonal(Matrix &hessian, int vertex, T value) {
+        for (int k = 0; k < 3; ++k) hessian.entry(dofs * vertex + k)[0] += value;
+    }
+
+    bool is_corner(int i) const { return i > 0 && i + 1 < vertices_; }
+    bool is_hinge(int i) const { return i > 0 && i + 2 < vertices_; }
+
+    int vertices_;
+    StrandRow<T> *rows_;
+    StrandShape<T> *shapes_;
+    Safeguards safeguards_;
+    const T *positions_ = nullptr;
+};
+
+} // namespace ringlet::RINGLET_SIMD

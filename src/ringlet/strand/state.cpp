@@ -1,0 +1,109 @@
+#include "ringlet/strand/state.h"
+
+#include "ringlet/rest/rest_shape.h"
+#include "ringlet/strand/for_each_group.h"
+#include "ringlet/strand/settings.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+namespace ringlet {
+namespace {
+
+// Directors whose twist is the groom's alone: the first is the root's normal, the others follow by parallel transport.
+void set_untwisted_directors(const StrandModel &model, View<Vec3> positions, const RestShape &now, StrandState &state) {
+    for (int s = 0; s < model.strand_count(); ++s) {
+        const int first = model.offsets[s], end = model.offsets[s + 1];
+        const auto tangent = [&](int i) -> Vec3 { return (positions[i + 1] - positions[i]).normalized(); };
+        const bool bent =
+            model.rest_angle[first + 1] > strand_settings::bent_angle && now.angle[first + 1] > strand_settings::bent_angle;
+        state.directors[first + 1] =
+            bent ? now.normal[first + 1]
+                 : Eigen::Quaterniond::FromTwoVectors(model.rest_tangent[first + 1], tangent(first + 1)) *
+                       model.rest_normal[first + 1];
+        for (int i = first + 1; i + 2 < end; ++i) {
+            const Vec3 twisted = Eigen::AngleAxisd(model.rest_dihedral[i], tangent(i)) * state.directors[i];
+            state.directors[i + 1] = Eigen::Quaterniond::FromTwoVectors(tangent(i), tangent(i + 1)) * twisted;
+        }
+    }
+}
+
+// Relaxes the material frames from their directors; returns the elastic energy of each strand [J].
+std::vector<double> relax_frames(const StrandModel &model, View<Vec3> positions, StrandState &state) {
+    std::vector<double> energies(model.strand_count());
+    const StrandArrays arrays = arrays_of(model, state, positions, positions);
+    for_each_group(model, [&](StrandGroup group, void *workspace) {
+        double group_energies[max_lanes];
+        RINGLET_DISPATCH(relax_strand_frames, arrays, group, workspace, group_energies);
+        for (int k = 0; k < group.count; ++k) energies[group.strands[k]] = group_energies[k];
+    });
+    return energies;
+}
+
+} // namespace
+
+StrandState make_strand_state(const StrandModel &model, View<Vec3> positions) {
+    if (int(positions.size()) != model.vertex_count()) throw std::invalid_argument("strands: positions do not fit the model");
+    StrandState state;
+    const size_t n = positions.size();
+    state.positions.assign(positions.begin(), positions.end());
+    state.velocities.assign(n, Vec3::Zero());
+    state.normals.assign(n, Vec3::Zero());
+    state.twist.assign(n, 0.0);
+    state.directors.assign(n, Vec3::Zero());
+    state.last_positions.assign(n, Vec3::Zero());
+    state.last_velocities.assign(n, Vec3::Zero());
+    state.last_strains.assign(n, {});
+    state.last_dt.assign(model.strand_count(), 0.0);
+    const RestShape now = measure_rest_shape(View<int>(model.offsets), positions);
+    state.normals = now.normal;
+    for (int s = 0; s < model.strand_count(); ++s)
+        for (int i = model.offsets[s] + 1; i + 2 < model.offsets[s + 1]; ++i)
+            state.twist[i] = std::remainder(now.dihedral[i] - model.rest_dihedral[i], 2 * std::numbers::pi);
+    set_untwisted_directors(model, positions, now, state);
+
+    // The relaxed frames depend on the initial ones: directors along the corners' normals are tried too, and each strand keeps
+    // those with less energy.
+    StrandState by_normals = state;
+    for (int s = 0; s < model.strand_count(); ++s)
+        for (int i = model.offsets[s] + 2; i + 1 < model.offsets[s + 1]; ++i)
+            if (!(model.held[i] && model.held[i + 1])) by_normals.directors[i] = now.normal[i];
+    const std::vector<double> untwisted = relax_frames(model, positions, state),
+                              normal = relax_frames(model, positions, by_normals);
+    for (int s = 0; s < model.strand_count(); ++s)
+        if (normal[s] < untwisted[s])
+            std::copy(by_normals.directors.begin() + model.offsets[s], by_normals.directors.begin() + model.offsets[s + 1],
+                      state.directors.begin() + model.offsets[s]);
+    return state;
+}
+
+StrandArrays arrays_of(const StrandModel &model, StrandState &state, View<Vec3> targets, View<Vec3> forces) {
+    return {.offsets = model.offsets.data(),
+            .held = model.held.data(),
+            .rest_length = model.rest_length.data(),
+            .rest_angle = model.rest_angle.data(),
+            .rest_dihedral = model.rest_dihedral.data(),
+            .stretch_stiffness = model.stretch_stiffness.data(),
+            .bend_stiffness = model.bend_stiffness.data(),
+            .twist_stiffness = model.twist_stiffness.data(),
+            .mass = model.mass.data(),
+            .drag = model.drag.data(),
+            .damping = model.damping.data(),
+            .mass_damping = model.mass_damping,
+            .targets = targets.data()->data(),
+            .forces = forces.data()->data(),
+            .positions = state.positions.data()->data(),
+            .velocities = state.velocities.data()->data(),
+            .normals = state.normals.data()->data(),
+            .twist = state.twist.data(),
+            .directors = state.directors.data()->data(),
+            .last_positions = state.last_positions.data()->data(),
+            .last_velocities = state.last_velocities.data()->data(),
+            .last_strains = state.last_strains.data()->data(),
+            .last_dt = state.last_dt.data()};
+}
+
+} // namespace ringlet

@@ -1,0 +1,31 @@
+// State of strands: all that moves.
+#pragma once
+
+#include "ringlet/strand/kernel.h"
+#include "ringlet/strand/model.h"
+
+#include <array>
+#include <vector>
+
+namespace ringlet {
+
+// Motion of strands with the references of the next step: normals and twist (`history`) or material frames. For BDF-2, also the
+// state at the start of the last step.
+struct StrandState {
+    std::vector<Vec3> positions;  // [m]
+    std::vector<Vec3> velocities; // [m/s]
+    std::vector<Vec3> normals;    // per vertex: σ n of the last accepted step
+    std::vector<double> twist;    // per edge: Δφ with its turns [rad]
+    std::vector<Vec3> directors;  // per edge from the second: D of its material frame
+    std::vector<Vec3> last_positions, last_velocities;
+    std::vector<std::array<double, 4>> last_strains; // per vertex: length [m], two of bend, twist [rad]
+    std::vector<double> last_dt;                     // per strand [s]; 0 where the last step is none of BDF-2
+};
+
+// At rest at the given positions, with their normals and twist and with relaxed material frames.
+StrandState make_strand_state(const StrandModel &model, View<Vec3> positions);
+
+// Model and state as pointers for the kernels. All arguments must live as long as the result.
+StrandArrays arrays_of(const StrandModel &model, StrandState &state, View<Vec3> targets, View<Vec3> forces);
+
+} // namespace ringlet
