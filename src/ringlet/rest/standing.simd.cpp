@@ -14,7 +14,7 @@ constexpr double near = 0.01; // how near to the least stiffness is found, of it
 using Matrix = Banded<double, freedoms, reach>;
 
 Vec<double> row(const double *values, int i) { return {values[3 * i], values[3 * i + 1], values[3 * i + 2]}; }
-Vec<Dual> known_row(Vec<double> v) { return {known(v.x), known(v.y), known(v.z)}; }
+Vec<Dual> known_row(Vec<double> v) { return {dual_constant(v.x), dual_constant(v.y), dual_constant(v.z)}; }
 
 // An edge with its director, by three unknowns of its vector and the turn of the director.
 struct Edge {
@@ -23,12 +23,12 @@ struct Edge {
     Vec<Dual> director, across; // across: tangent × director
 
     Edge(Vec<double> vector, Vec<double> at, int number, int turn) {
-        const Vec<Dual> e{unknown(vector.x, number), unknown(vector.y, number + 1), unknown(vector.z, number + 2)};
+        const Vec<Dual> e{dual_variable(vector.x, number), dual_variable(vector.y, number + 1), dual_variable(vector.z, number + 2)};
         length = norm(e);
         tangent = (1.0 / length) * e;
         before = known_row({tangent.x.value, tangent.y.value, tangent.z.value});
         const Vec<Dual> carried = transport(known_row(at), before, tangent);
-        director = carried + unknown(0.0, turn) * cross(tangent, carried); // to first order, as far as its use here goes
+        director = carried + dual_variable(0.0, turn) * cross(tangent, carried); // to first order, as far as its use here goes
         across = cross(tangent, director);
     }
     Vec<Dual> spin_of() const { return spin(before, tangent, length); }
@@ -55,8 +55,8 @@ public:
     Residual twist() const {
         const auto g = frame_twist_gradient(corner_, e0_.tangent, e1_.tangent, e0_.length, e1_.length);
         const Dual angle = frame_twist(e0_.director, e0_.tangent, e1_.director, e1_.tangent);
-        return {wrap(angle.value - strands_.rest_dihedral[i_]), g.first - e0_.spin_of(), g.second + e1_.spin_of(), known(-1.0),
-                known(1.0)};
+        return {wrap(angle.value - strands_.rest_dihedral[i_]), g.first - e0_.spin_of(), g.second + e1_.spin_of(), dual_constant(-1.0),
+                dual_constant(1.0)};
     }
 
 private:
@@ -64,7 +64,7 @@ private:
 
     Residual bend(Vec<Dual> axis, Dual by_turn, double rest) const {
         const auto g = turning_gradient(corner_, e0_.tangent, e1_.tangent, e0_.length, e1_.length, axis);
-        return {dot(turning_, axis).value - rest, g.first, g.second + by_turn * e1_.spin_of(), known(0.0), by_turn};
+        return {dot(turning_, axis).value - rest, g.first, g.second + by_turn * e1_.spin_of(), dual_constant(0.0), by_turn};
     }
 
     const StillStrands &strands_;
