@@ -1,4 +1,4 @@
-#include "ringlet/geometry/near_cells.h"
+#include "ringlet/geometry/proximity_grid.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 namespace ringlet {
 
-NearCells::NearCells(const TriangleMesh &mesh, double distance) : distance_(distance) {
+ProximityGrid::ProximityGrid(const TriangleMesh &mesh, double distance) : distance_(distance) {
     constexpr double most_cells = 128.0; // along the longest side
     const Vec3 infinite = Vec3::Constant(std::numeric_limits<double>::infinity());
     Vec3 low = infinite, high = -infinite;
