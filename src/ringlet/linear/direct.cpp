@@ -30,7 +30,7 @@ bool DirectSolver::factor(View<double> triplets) {
 double DirectSolver::solve(View<double> b, std::span<double> x) const {
     const size_t n = b.size();
     std::vector<double> residual(n), change(n);
-    const auto measure = [&] { // the residual of x and its norm
+    const auto measure = [&] { // computes the residual of x; returns its norm
         matrix_->multiply(x, residual);
         double square = 0;
         for (size_t i = 0; i < n; ++i) {
@@ -50,7 +50,7 @@ double DirectSolver::solve(View<double> b, std::span<double> x) const {
         factorisation_->solve(residual, change);
         for (size_t i = 0; i < n; ++i) x[i] += change[i];
         const double now = measure();
-        if (!(now < left)) { // rounding is all that is left
+        if (!(now < left)) { // the rest is rounding
             for (size_t i = 0; i < n; ++i) x[i] -= change[i];
             break;
         }
