@@ -7,7 +7,7 @@
 namespace ringlet {
 
 ProximityGrid::ProximityGrid(const TriangleMesh &mesh, double distance) : distance_(distance) {
-    constexpr double most_cells = 128.0; // along the longest side
+    constexpr double max_cells = 128.0; // along the longest side
     const Vec3 infinite = Vec3::Constant(std::numeric_limits<double>::infinity());
     Vec3 low = infinite, high = -infinite;
     for (const Vec3 &p : mesh.points) {
@@ -16,7 +16,7 @@ ProximityGrid::ProximityGrid(const TriangleMesh &mesh, double distance) : distan
     }
     low.array() -= distance;
     high.array() += distance;
-    const double cell = std::max(distance, (high - low).maxCoeff() / most_cells);
+    const double cell = std::max(distance, (high - low).maxCoeff() / max_cells);
     if (!(cell > 0.0) || !std::isfinite(cell)) return;
     low_ = low;
     per_length_ = 1.0 / cell;

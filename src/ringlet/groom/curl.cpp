@@ -57,8 +57,8 @@ public:
     double length() const { return length_; }
 
     // Point and two axes at a fraction (0…1) of the arc length. The search is linear, and fast for ascending fractions.
-    void at(double part, Vec3 &point, Vec3 &a, Vec3 &b) {
-        const double s = part * along_.back();
+    void at(double fraction, Vec3 &point, Vec3 &a, Vec3 &b) {
+        const double s = fraction * along_.back();
         if (s < along_[i_]) i_ = 0;
         while (i_ + 2 < along_.size() && along_[i_ + 1] < s) ++i_;
         const double edge = along_[i_ + 1] - along_[i_];
@@ -70,9 +70,9 @@ public:
 
 private:
     // The spline at a fraction of the step after a sample; each piece of the spline has four samples.
-    Vec3 on_piece(size_t point, double part) const {
+    Vec3 on_piece(size_t point, double fraction) const {
         const size_t piece = std::min(point / 4, pieces_.size() - 1);
-        return pieces_[piece](0.25 * (static_cast<double>(point - 4 * piece) + part));
+        return pieces_[piece](0.25 * (static_cast<double>(point - 4 * piece) + fraction));
     }
 
     std::vector<Cubic> pieces_;
@@ -133,12 +133,12 @@ private:
     double wind(double share, std::span<Vec3> result) {
         // A fixed number of turns may be too long for the length that is left: then they get narrower instead of denser.
         constexpr double least = 0.05;
-        const double part = std::max(share, least), narrower = std::min(1.0, share / least);
-        sample_path(lock_, spine_, part, path_);
+        const double fraction = std::max(share, least), narrower = std::min(1.0, share / least);
+        sample_path(lock_, spine_, fraction, path_);
         const int leader = settings_.leader[lock_];
         if (leader != lock_) {
-            sample_path(leader, leader_spine_, part, leader_path_);
-            join_leader(part);
+            sample_path(leader, leader_spine_, fraction, leader_path_);
+            join_leader(fraction);
         }
         const double flat = 1.0 - settings_.flatness[lock_], kink = settings_.kink[lock_];
         for (size_t k = 0; k < path_.size(); ++k) {
@@ -156,16 +156,16 @@ private:
     }
 
     // Samples centre line, frame, phase and radius of a lock on the first fraction of its shape.
-    void sample_path(int lock, Spine &spine, double part, std::span<Sample> path) const {
+    void sample_path(int lock, Spine &spine, double fraction, std::span<Sample> path) const {
         const size_t noises = settings_.noise_count, events = settings_.event_count;
         const View<double> width_noise = settings_.width_noise.subspan(lock * noises, noises);
         const View<double> rate_noise = settings_.rate_noise.subspan(lock * noises, noises);
         const View<double> sway = settings_.sway.subspan(lock * noises, noises);
         const View<double> switchbacks = settings_.switchbacks.subspan(lock * events, events);
         const View<double> skips = settings_.skips.subspan(lock * events, events);
-        const double turns = settings_.turns[lock] * (settings_.counted ? 1.0 : part);
-        const double length = part * spine.length(), step = 1.0 / static_cast<double>(path.size() - 1);
-        const double wave_turns = settings_.wave_turns[lock] * part, wave = settings_.wave[lock];
+        const double turns = settings_.turns[lock] * (settings_.counted ? 1.0 : fraction);
+        const double length = fraction * spine.length(), step = 1.0 / static_cast<double>(path.size() - 1);
+        const double wave_turns = settings_.wave_turns[lock] * fraction, wave = settings_.wave[lock];
         const double wave_x = std::cos(settings_.phase[lock]), wave_y = std::sin(settings_.phase[lock]);
 
         double turned = 0.0, rate_before = 0.0;
@@ -173,7 +173,7 @@ private:
             const auto &[v, width_ramp, rate_ramp, taper_ramp, wave_ramp, noise] = shared_[k];
             const double s = v * length;
             Sample &at = path[k];
-            spine.at(v * part, at.centre, at.a, at.b);
+            spine.at(v * fraction, at.centre, at.a, at.b);
             // A closing over less than 2 mm has less weight, so that the tip does not jump when `end` leaves 0.
             double open = lerp_table(settings_.opening, smoothstep_over(s, settings_.start[lock]));
             if (const double end = settings_.end[lock]; end > 0.0) {
@@ -223,8 +223,8 @@ private:
     }
 
     // Blends phase, radius and centre line into those of the leader.
-    void join_leader(double part) {
-        const double length = part * spine_.length(), cohesion = settings_.cohesion[lock_];
+    void join_leader(double fraction) {
+        const double length = fraction * spine_.length(), cohesion = settings_.cohesion[lock_];
         for (size_t k = 0; k < path_.size(); ++k) {
             const double s = length * static_cast<double>(k) / static_cast<double>(path_.size() - 1);
             const double weight = settings_.join[lock_] * smoothstep_over(s, settings_.join_over[lock_]);

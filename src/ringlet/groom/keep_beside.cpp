@@ -41,12 +41,13 @@ double hit_fraction(const Facet &facet, const Vec3 &place, const Vec3 &offset, d
 
 // Largest fraction of an offset from a place that stays on this side of the triangles, `margin` short of their planes.
 double free_fraction(const std::vector<Facet> &facets, const Vec3 &place, const Vec3 &offset, double margin) {
-    double part = 1.0;
+    double fraction = 1.0;
     for (const Facet &facet : facets) {
         const double t = hit_fraction(facet, place, offset, 1.0 + steepness * margin / offset.norm());
-        if (std::isfinite(t)) part = std::min(part, t - margin * facet.normal.norm() / std::abs(facet.normal.dot(offset)));
+        if (std::isfinite(t))
+            fraction = std::min(fraction, t - margin * facet.normal.norm() / std::abs(facet.normal.dot(offset)));
     }
-    return std::max(part, 0.0);
+    return std::max(fraction, 0.0);
 }
 
 struct Box {
@@ -195,16 +196,16 @@ private:
         for (const size_t k : near_) {
             if (!is_free(k) || !pierces(k, place(k, 1.0), place(k + 1, 1.0))) continue;
             if (share_[k] + share_[k + 1] == 0.0) places_[k + 1] = lock[segment_[k + 1]].cast<double>();
-            const double part = gently ? unpierced_fraction(k) : 0.0;
-            share_[k] *= part, share_[k + 1] *= part;
+            const double fraction = gently ? unpierced_fraction(k) : 0.0;
+            share_[k] *= fraction, share_[k + 1] *= fraction;
             any = true;
         }
         if (any) write(points);
         return any;
     }
 
-    // Largest fraction of their shares at which the edge after the k-th point does not pierce, by bisection. It is continuous
-    // in time, which retraction onto the lock is not.
+    // Largest fraction of their shares at which the edge after the k-th point does not pierce, by bisection. It depends
+    // continuously on the hair, which retraction onto the lock does not.
     double unpierced_fraction(size_t k) const {
         double beside = 0.0, through = 1.0;
         for (int i = 0; i < halvings; ++i) {
@@ -215,8 +216,8 @@ private:
     }
 
     // The k-th point with that fraction of its share, rounded to single precision as it is written.
-    Vec3 place(size_t k, double part) const {
-        const double share = std::max(part * share_[k], static_cast<double>(layout_.hold[k]));
+    Vec3 place(size_t k, double fraction) const {
+        const double share = std::max(fraction * share_[k], static_cast<double>(layout_.hold[k]));
         return (places_[k] + share * (hair_[k] - places_[k])).cast<float>().cast<double>();
     }
 

@@ -56,20 +56,20 @@ template <class Floor, class Found>
 void find_below(View<Vec3> points, const Solid &body, const ProximityGrid &grid, double most, const Floor &floor,
                 const Found &found) {
     constexpr double spacing = 5e-4; // [m]
-    constexpr double most_pieces = 100.0;
+    constexpr double max_pieces = 100.0;
     SurfaceProbe probe(body, grid);
-    double run = 0.0;
+    double length_before = 0.0;
     for (size_t k = 0; k + 1 < points.size(); ++k) {
         const Vec3 edge = points[k + 1] - points[k];
         const double length = edge.norm();
-        const int pieces = static_cast<int>(std::clamp(std::ceil(length / spacing), 1.0, most_pieces));
+        const int pieces = static_cast<int>(std::clamp(std::ceil(length / spacing), 1.0, max_pieces));
         for (int i = 1; i <= pieces; ++i) {
-            const double at = static_cast<double>(i) / pieces, along = run + at * length;
+            const double at = static_cast<double>(i) / pieces, along = length_before + at * length;
             const Vec3 place = points[k] + at * edge;
             SignedDistance above;
             if (probe.below(place, most, above) && above.distance < floor(along)) found(k, at, along, place, above);
         }
-        run += length;
+        length_before += length;
     }
 }
 

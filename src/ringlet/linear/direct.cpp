@@ -40,13 +40,13 @@ double DirectSolver::solve(View<double> b, std::span<double> x) const {
         return std::sqrt(square);
     };
 
-    const int most_improvements = 3;
+    const int max_refinements = 3;
     std::fill(x.begin(), x.end(), 0.0);
     const double size = measure();
     if (size == 0) return 0;
     factorisation_->solve(b, x);
     double left = measure();
-    for (int k = 0; k < most_improvements && left > 0; ++k) {
+    for (int k = 0; k < max_refinements && left > 0; ++k) {
         factorisation_->solve(residual, change);
         for (size_t i = 0; i < n; ++i) x[i] += change[i];
         const double now = measure();
