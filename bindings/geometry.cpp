@@ -20,7 +20,7 @@ void check_triangles(View<int> triangles, const TriangleMesh &mesh) {
         if (t < 0 || t >= static_cast<int>(mesh.triangles.size())) throw std::out_of_range("there is no such triangle");
 }
 
-// (triangle (k,), barycentric (k, 3), distance (k,)) of the point of the mesh nearest to each root.
+// (triangle (k,), barycentric (k, 3), distance (k,)) of the point of the mesh closest to each root.
 nb::tuple bind_roots(const Array3<double> &points, const Array3<int> &triangles, const Array3<double> &roots,
                      const std::optional<Array1<int>> &allowed) {
     const TriangleMesh mesh = mesh_of(points, triangles);
@@ -47,32 +47,32 @@ nb::tuple bind_roots(const Array3<double> &points, const Array3<int> &triangles,
                           to_numpy<double>(std::move(distance), {count}));
 }
 
-// (height (k,), foot (k, 3), normal (k, 3), triangle (k,)) of the place on the surface nearest to each place.
-nb::tuple above_solid(const Solid &solid, const Array3<double> &places) {
+// (distance (k,), closest point (k, 3), normal (k, 3), triangle (k,)) of the surface for each place.
+nb::tuple signed_distances(const Solid &solid, const Array3<double> &places) {
     const View<Vec3> at = vectors<Vec3>(places);
     const size_t count = at.size();
-    std::vector<double> height(count);
-    std::vector<Vec3> foot(count), normal(count);
+    std::vector<double> distance(count);
+    std::vector<Vec3> closest(count), normal(count);
     std::vector<int> triangle(count);
     {
         nb::gil_scoped_release release;
 #pragma omp parallel for schedule(dynamic, 64)
         for (size_t i = 0; i < count; ++i) {
-            const Above found = solid.above(at[i]);
-            height[i] = found.height;
-            foot[i] = found.foot;
+            const SignedDistance found = solid.signed_distance(at[i]);
+            distance[i] = found.distance;
+            closest[i] = found.closest;
             normal[i] = found.normal;
             triangle[i] = found.triangle;
         }
     }
-    return nb::make_tuple(to_numpy<double>(std::move(height), {count}), to_numpy<double>(std::move(foot), {count, 3}),
+    return nb::make_tuple(to_numpy<double>(std::move(distance), {count}), to_numpy<double>(std::move(closest), {count, 3}),
                           to_numpy<double>(std::move(normal), {count, 3}), to_numpy<int>(std::move(triangle), {count}));
 }
 
 using RowMajor3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 using Matrices3 = nb::ndarray<const double, nb::shape<-1, 3, 3>, nb::c_contig, nb::device::cpu>;
 
-// (positions (k, 3), frames (k, 3, 3)) of roots on the mesh as it stands.
+// (positions (k, 3), frames (k, 3, 3)) of roots on the current mesh.
 nb::tuple root_frames(const Array3<double> &points, const Array3<int> &triangles, const Array1<int> &root_triangle,
                       const Array3<double> &root_barycentric) {
     const TriangleMesh mesh = mesh_of(points, triangles);
@@ -96,7 +96,7 @@ nb::tuple root_frames(const Array3<double> &points, const Array3<int> &triangles
                           to_numpy<double>(std::move(frames), {count, 3, 3}));
 }
 
-// (m,): whether a triangle is flat.
+// Mask (m,) of degenerate triangles.
 nb::ndarray<nb::numpy, bool> flat_triangles(const Array3<double> &points, const Array3<int> &triangles) {
     const TriangleMesh mesh = mesh_of(points, triangles);
     std::vector<unsigned char> flat(mesh.triangles.size());
@@ -179,7 +179,7 @@ nb::ndarray<nb::numpy, double> resample_curves(const Array3<double> &points, con
 
 void bind_geometry(nb::module_ &module) {
     nb::class_<Solid>(module, "Solid",
-                      "A triangle mesh as a solid, with a tree to find the nearest place on it; keeps a copy of the mesh.")
+                      "Signed distance to a triangle mesh, with a BVH of its triangles; keeps a copy of the mesh.")
         .def(
             "__init__",
             [](Solid *solid, const Array3<double> &points, const Array3<int> &triangles) {
@@ -187,23 +187,22 @@ void bind_geometry(nb::module_ &module) {
                 new (solid) Solid(mesh_of(points, triangles));
             },
             "points"_a, "triangles"_a)
-        .def("above", &above_solid, "places"_a,
-             "Height above the surface (k,) [m], negative inside; nearest place (k, 3), outward normal there, and triangle.");
+        .def("above", &signed_distances, "places"_a,
+             "Signed distance (k,) [m], negative inside; closest point (k, 3), outward normal (k, 3) and triangle (k,) there.");
     module.def("bind_roots", &bind_roots, "points"_a, "triangles"_a, "roots"_a, "allowed_triangles"_a = nb::none(),
-               "The point of a triangle mesh nearest to each root: triangle (k,), barycentric (k, 3), distance (k,) [m].\n"
+               "Closest point of a triangle mesh to each root: triangle (k,), barycentric (k, 3), distance (k,) [m].\n"
                "points (n, 3) [m], triangles (m, 3), roots (k, 3) [m], allowed_triangles: indices to search, or None for all.");
     module.def(
         "root_frames", &root_frames, "points"_a, "triangles"_a, "root_triangle"_a, "root_barycentric"_a,
-        "Roots on a mesh as it stands: positions (k, 3) [m] and frames (k, 3, 3), whose columns are tangent, bitangent and\n"
-        "normal. The frame is tied to the material: now @ rest.T carries what grows there.");
+        "Roots on the current mesh: positions (k, 3) [m] and frames (k, 3, 3), whose columns are tangent, bitangent and\n"
+        "normal. The frame moves with the material: now @ rest.T rotates what grows there from rest to now.");
     module.def("flat_triangles", &flat_triangles, "points"_a, "triangles"_a,
-               "Which triangles (m,) are thinner than a billionth of their length, or not finite.");
+               "Mask (m,) of triangles that are thinner than a billionth of their length, or not finite.");
     module.def("carry_curves", &carry_curves, "points"_a, "offsets"_a, "turns"_a, "from_places"_a, "to_places"_a,
-               "Curves (n, 3) [m], each turned (curves, 3, 3) about one place (curves, 3) and put where another is.");
-    module.def(
-        "curve_frames", &curve_frames, "points"_a, "offsets"_a, "axis"_a,
-        "Rotation-minimising frames (n, 3, 3) along curves (Wang et al. 2008), whose columns are the carried axis, tangent\n"
-        "x axis, and tangent; axis (count, 3) is made orthogonal to the first tangent of each curve.");
+               "Curves (n, 3) [m] after a rigid motion of each: to + turn (x - from), with one turn and two places a curve.");
+    module.def("curve_frames", &curve_frames, "points"_a, "offsets"_a, "axis"_a,
+               "Rotation-minimising frames (n, 3, 3) along curves (Wang et al. 2008), with columns axis, tangent x axis and\n"
+               "tangent. The first axis of each curve is axis (count, 3) made orthogonal to its first tangent.");
     module.def("resample_curves", &resample_curves, "points"_a, "offsets"_a, "count"_a,
-               "count points evenly spaced along the Catmull-Rom spline through each curve: (curves * count, 3) [m].");
+               "Points evenly spaced along the Catmull-Rom spline through each curve, shape (curves * count, 3) [m].");
 }

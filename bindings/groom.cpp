@@ -38,7 +38,7 @@ nb::ndarray<nb::numpy, int> thin_out_samples(const Array3<double> &candidates, d
     return to_numpy<int>(std::move(kept), {size});
 }
 
-// An array among keyword arguments; lives as long as they do.
+// Array among the keyword arguments; valid as long as they are.
 template <class Scalar> View<Scalar> named(const nb::kwargs &arrays, const char *name) {
     if (!arrays.contains(name)) throw std::invalid_argument(std::string(name) + " is missing");
     const auto array = nb::cast<nb::ndarray<const Scalar, nb::c_contig, nb::device::cpu>>(arrays[name], false);
@@ -127,21 +127,21 @@ std::vector<const Solid *> solids(const nb::list &bodies) {
     return result;
 }
 
-// (body (k,), point (k,), triangle (k,), place (k, 3), depth (k,)) of what is in a body.
+// (body (k,), point (k,), triangle (k,), place (k, 3), depth (k,)) of places in a body.
 nb::tuple sunk_places(const Array3<double> &points, const Array1<int> &offsets, const nb::list &bodies, double root_depth,
                       double root_length) {
     const CurveView curves{vectors<Vec3>(points), view(offsets)};
     const std::vector<const Solid *> all = solids(bodies);
-    std::vector<Sunk> found;
+    std::vector<Penetration> found;
     {
         nb::gil_scoped_release release;
-        found = find_sunk(curves, all, {root_depth, root_length, 0.0});
+        found = find_penetrations(curves, all, {root_depth, root_length, 0.0});
     }
     const size_t count = found.size();
     std::vector<int> body, point, triangle;
     std::vector<Vec3> place;
     std::vector<double> depth;
-    for (const Sunk &one : found) {
+    for (const Penetration &one : found) {
         body.push_back(one.body);
         point.push_back(one.point);
         triangle.push_back(one.triangle);
@@ -153,21 +153,21 @@ nb::tuple sunk_places(const Array3<double> &points, const Array1<int> &offsets, 
                           to_numpy<double>(std::move(depth), {count}));
 }
 
-// (first points of the two segments (k, 2), the middle between them (k, 3), distance (k,)) of what is too near.
+// (first points of the two segments (k, 2), midpoint between them (k, 3), distance (k,)) of overlapping pairs.
 nb::tuple crossings(const Array3<double> &points, const Array1<int> &offsets, double thickness) {
     const CurveView curves{vectors<Vec3>(points), view(offsets)};
-    std::vector<Crossing> found;
+    std::vector<Overlap> found;
     {
         nb::gil_scoped_release release;
-        found = find_crossings(curves, thickness);
+        found = find_overlaps(curves, thickness);
     }
     const size_t count = found.size();
     std::vector<std::array<int, 2>> pair;
     std::vector<Vec3> place;
     std::vector<double> distance;
-    for (const Crossing &one : found) {
+    for (const Overlap &one : found) {
         pair.push_back({one.a, one.b});
-        place.push_back((1.0 - one.s) * curves.points[one.a] + one.s * curves.points[one.a + 1] + 0.5 * one.apart);
+        place.push_back((1.0 - one.s) * curves.points[one.a] + one.s * curves.points[one.a + 1] + 0.5 * one.separation);
         distance.push_back(one.distance);
     }
     return nb::make_tuple(to_numpy<int>(std::move(pair), {count, 2}), to_numpy<double>(std::move(place), {count, 3}),
@@ -227,20 +227,18 @@ int keep_hairs(const Array3<float> &lock_points, const Array1<int> &lock_offsets
 } // namespace
 
 void bind_groom(nb::module_ &module) {
-    module.def(
-        "thin_out", &thin_out_samples, "candidates"_a, "area"_a, "count"_a,
-        "Indices of count evenly spread samples out of a dense cloud of candidates (n, 3) on a surface of that area [m2].");
+    module.def("thin_out", &thin_out_samples, "candidates"_a, "area"_a, "count"_a,
+               "Indices of count blue-noise samples out of a dense cloud of candidates (n, 3) on a surface of that area [m2].");
     module.def("curl_curves", &curl_curves, "points"_a, "offsets"_a, nb::kw_only(), "axis"_a, "leader"_a, "counted"_a,
                "keep_length"_a, "count"_a, "arrays"_a,
                "Winds each shape curve into a curl of count evenly spaced points; the arrays are those of groom/curl.h.");
     module.def("push_out", &push_out_curves, "points"_a, "offsets"_a, "body"_a, "margin"_a,
-               "The points of curves led around a Solid, to a margin [m]; roots stay.");
-    module.def(
-        "sunk_places", &sunk_places, "points"_a, "offsets"_a, "bodies"_a, "root_depth"_a, "root_length"_a,
-        "Places on curves that are in Solids: body (k,), point before it (k,), triangle (k,), place (k, 3), depth (k,) [m].");
+               "Points of curves that are moved out of a Solid, to a distance of margin [m]; roots stay.");
+    module.def("sunk_places", &sunk_places, "points"_a, "offsets"_a, "bodies"_a, "root_depth"_a, "root_length"_a,
+               "Places of curves inside Solids: body (k,), point before it (k,), triangle (k,), place (k, 3), depth (k,) [m].");
     module.def("crossings", &crossings, "points"_a, "offsets"_a, "thickness"_a,
-               "Pairs of segments nearer than a thickness [m]: first points (k, 2), middles (k, 3), distances (k,) [m].");
-    nb::class_<Repair>(module, "Repair", "Moves curves out of Solids and apart, round by round; see groom/repair.h.")
+               "Pairs of segments nearer than a thickness [m]: first points (k, 2), midpoints (k, 3), distances (k,) [m].");
+    nb::class_<Repair>(module, "Repair", "Moves curves out of Solids and out of one another; see groom/repair.h.")
         .def(
             "__init__",
             [](Repair *repair, const Array3<double> &points, const Array1<int> &offsets, const nb::list &bodies,
@@ -252,7 +250,7 @@ void bind_groom(nb::module_ &module) {
             },
             "points"_a, "offsets"_a, "bodies"_a, "root_depth"_a, "root_length"_a, "thickness"_a, nb::keep_alive<1, 4>())
         .def("round", &Repair::round, nb::call_guard<nb::gil_scoped_release>(),
-             "How many places are wrong; if any are, moves what is.")
+             "Returns the number of violations, and moves the curves if there are any.")
         .def(
             "points",
             [](const Repair &repair) {
@@ -260,12 +258,12 @@ void bind_groom(nb::module_ &module) {
                 const size_t count = points.size();
                 return to_numpy<double>(std::move(points), {count, 3});
             },
-            "The points of the round that left the fewest (n, 3) [m].");
+            "Points (n, 3) [m] with the fewest violations so far.");
     module.def("warp_hairs", &warp, "lock_points"_a, "lock_offsets"_a, "result"_a, nb::kw_only(), "axis"_a, "root"_a, "first"_a,
                "offset"_a, "tip"_a, "taper"_a, "frizz"_a, "profile"_a, "hold"_a, "other"_a, "share"_a, "blend"_a,
-               "Writes the points of all hairs (hairs * points, 3) around locks where they are now; see groom/hairs.h.");
+               "Writes the points of all hairs (hairs * points, 3) around the current locks; see groom/hairs.h.");
     module.def(
         "keep_beside", &keep_hairs, "lock_points"_a, "lock_offsets"_a, "hairs"_a, "points"_a, "triangles"_a, "margin"_a,
         nb::kw_only(), "first"_a, "tip"_a, "hold"_a, "shares"_a = nb::none(),
-        "Keeps hairs on the side of triangles where their lock is, in place; see groom/keep_beside.h. How many it moved.");
+        "Keeps hairs, in place, on their lock's side of triangles; see groom/keep_beside.h. Returns how many hairs moved.");
 }

@@ -1,4 +1,4 @@
-// ringlet._core: sparse systems and their direct solution.
+// ringlet._core: direct solver for sparse systems.
 #include "arrays.h"
 
 #include "ringlet/linear/direct.h"
@@ -17,7 +17,7 @@ namespace {
 
 using Blocks = nb::ndarray<const double, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
 
-// A solver with the pattern that it was made for.
+// A solver and the pattern that it analysed.
 struct Direct {
     DirectSolver solver;
     std::shared_ptr<const SparsePattern> pattern;
@@ -26,16 +26,16 @@ struct Direct {
 } // namespace
 
 void bind_linear(nb::module_ &module) {
-    nb::enum_<DirectMethod>(module, "DirectMethod", "Which factorisation a direct solver uses.")
+    nb::enum_<DirectMethod>(module, "DirectMethod", "Factorisation of a direct solver.")
         .value("automatic", DirectMethod::automatic)
         .value("builtin", DirectMethod::builtin)
         .value("pardiso", DirectMethod::pardiso);
 
     module.def(
         "open_pardiso", [](const std::string &path) { return open_pardiso(path); }, "path"_a = "",
-        "Opens MKL's libmkl_rt at this path, or by its name; says whether PARDISO can be used.");
+        "Opens MKL's libmkl_rt at this path, or by its name; returns whether PARDISO can be used.");
 
-    nb::class_<Direct>(module, "DirectSolver", "Solves sparse symmetric positive definite systems of one pattern.")
+    nb::class_<Direct>(module, "DirectSolver", "Direct solver for sparse symmetric positive definite systems of one pattern.")
         .def(
             "__init__",
             [](Direct *self, Array1<int> i, Array1<int> j, int rows, int block, DirectMethod method) {
@@ -48,10 +48,10 @@ void bind_linear(nb::module_ &module) {
                 new (self) Direct{std::move(solver), std::move(pattern)};
             },
             "i"_a, "j"_a, "rows"_a, "block"_a, "method"_a = DirectMethod::automatic,
-            "i, j: block rows and columns of the triplets, (k,) int32; an off-diagonal one stands for its mirror image too.")
+            "i, j: block rows and columns of the triplets, (k,) int32; an off-diagonal one also stands for its transpose.")
         .def_prop_ro("method", [](const Direct &self) { return self.solver.method(); })
         .def_prop_ro(
-            "entries", [](const Direct &self) { return self.solver.entries(); }, "Numbers in the factor.")
+            "entries", [](const Direct &self) { return self.solver.entries(); }, "Nonzeros of the factor.")
         .def(
             "factor",
             [](Direct &self, Blocks triplets) {
@@ -71,5 +71,5 @@ void bind_linear(nb::module_ &module) {
                 const size_t size = x.size();
                 return nb::make_tuple(to_numpy<double>(std::move(x), {size}), residual);
             },
-            "b"_a, "After factor(): x, and the relative residual that was measured.");
+            "b"_a, "After factor(): x, and the relative residual of the solution.");
 }

@@ -1,5 +1,5 @@
 #!/bin/bash
-# Formatting, types, static analysis, and who may call whom. All of them run, and one that fails fails the whole.
+# Formatting, types, static analysis, who may call whom, and words. All of them run, and one that fails fails the whole.
 set -u
 cd "$(dirname "$0")/.."
 bin=.venv/bin
@@ -25,6 +25,7 @@ check "python" $bin/ruff check --quiet .
 check "python format" $bin/ruff format --quiet --check .
 check "python types" types
 check "arrows" $bin/python tools/check_architecture.py
+check "words" $bin/python tools/check_words.py
 check "page" tools/web.sh check
 check "protocol" $bin/python tools/make_protocol.py --check
 check "c++ format" $bin/clang-format --dry-run -Werror "${cpp[@]}"

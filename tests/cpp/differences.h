@@ -1,4 +1,4 @@
-// Derivatives by central differences, and random places to take them at.
+// Gradients by central differences, and random vectors to evaluate them at.
 #pragma once
 
 #include <Eigen/Core>

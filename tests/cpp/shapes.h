@@ -22,7 +22,7 @@ inline OwnedMesh octahedron() {
             {{2, 4, 0}, {2, 0, 5}, {2, 5, 1}, {2, 1, 4}, {3, 0, 4}, {3, 5, 0}, {3, 1, 5}, {3, 4, 1}}};
 }
 
-// Triangles anywhere in the unit cube, of all shapes.
+// Random triangles in the unit cube.
 inline OwnedMesh triangle_soup(int count) {
     std::mt19937 random(3);
     std::uniform_real_distribution<double> in(0.0, 1.0);

@@ -1,4 +1,4 @@
-// The banded factor, against a dense solver.
+// Banded factorisation, against a dense solver.
 #include "ringlet/linear/banded.h"
 
 #include <Eigen/Dense>
@@ -11,8 +11,7 @@ using namespace ringlet::baseline;
 
 namespace {
 
-// Random squares over as many unknowns as a vertex's first one reaches, two at a time, plus a diagonal: positive definite and
-// as dense as the band allows.
+// Random positive definite matrix that fills the band: a diagonal, and two random squares u uᵀ of `band` entries per block.
 template <int block, int band> struct RandomSystem {
     using Matrix = Banded<double, block, band>;
 

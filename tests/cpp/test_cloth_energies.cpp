@@ -1,5 +1,5 @@
-// Membrane and hinge of a single stencil: derivatives against differences, Hessians positive semi-definite, rigid motions free,
-// and the forces and energies of shapes that are easy to think about.
+// Membrane and hinge of a single stencil: derivatives against differences, positive semi-definite Hessians, invariance under
+// rigid motions, and the forces and energies of simple shapes.
 #include "differences.h"
 #include "ringlet/energy/cloth/hinge.h"
 #include "ringlet/energy/cloth/membrane.h"
@@ -59,9 +59,9 @@ BOOST_AUTO_TEST_CASE(membrane_gradient_agrees_with_differences) {
     }
 }
 
-// Stretch in each direction and shear are clamped apart, so the sum is exact where no part has a negative eigenvalue, and at
-// each part's own positive part otherwise.
-BOOST_AUTO_TEST_CASE(membrane_hessian_is_the_positive_part_of_each_exact_one) {
+// Stretch in each direction and shear are projected separately. The sum is exact if none of them has a negative eigenvalue, and
+// the sum of their projections otherwise.
+BOOST_AUTO_TEST_CASE(membrane_hessian_is_the_sum_of_the_psd_projections_of_its_terms) {
     std::mt19937 random(4);
     for (int trial = 0; trial < 200; ++trial) {
         const VectorXd F = random_vector(6, random);
@@ -153,7 +153,7 @@ BOOST_AUTO_TEST_CASE(hinge_gradient_agrees_with_differences) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(a_hinge_is_zero_where_flat_and_the_angle_it_was_folded_by) {
+BOOST_AUTO_TEST_CASE(the_hinge_angle_is_zero_for_a_flat_sheet_and_the_angle_of_a_fold) {
     for (const double fold : {0.0, 0.3, -0.3, 1.5, -3.0}) {
         const Vec3 x[4] = {{0.2, -1, 0}, {0, 0, 0}, {1, 0, 0}, {0.6, std::cos(fold), std::sin(fold)}};
         BOOST_TEST(std::abs(std::abs(hinge_angle(x)) - std::abs(fold)) < 1e-14);
@@ -162,7 +162,7 @@ BOOST_AUTO_TEST_CASE(a_hinge_is_zero_where_flat_and_the_angle_it_was_folded_by) 
     }
 }
 
-BOOST_AUTO_TEST_CASE(a_rigid_motion_neither_opens_nor_loads_a_hinge) {
+BOOST_AUTO_TEST_CASE(a_hinge_is_invariant_under_rigid_motions_without_net_force_or_torque) {
     std::mt19937 random(7);
     for (int trial = 0; trial < 50; ++trial) {
         const Points4 p = four(random_vector(12, random));
@@ -196,8 +196,8 @@ BOOST_AUTO_TEST_CASE(a_hinge_of_degenerate_triangles_is_finite) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(a_sheet_on_a_cylinder_holds_half_its_stiffness_times_curvature_squared) {
-    // One equilateral triangle's three hinges, with neighbours: an infinite sheet has three of these per two triangles.
+BOOST_AUTO_TEST_CASE(a_sheet_on_a_cylinder_has_the_energy_half_stiffness_times_curvature_squared) {
+    // Three hinges of one equilateral triangle with its neighbours; an infinite sheet has three hinges per two triangles.
     const double a = 0.01, curvature = 0.5, bend = 2e-5, height = a * std::sqrt(3.0) / 2;
     for (const double direction : {0.0, 0.3, 1.0}) {
         const auto rolled = [&](double x, double y) {

@@ -1,4 +1,4 @@
-// Sparse matrices and their direct solution, against dense ones.
+// Sparse matrices and direct solvers, against dense ones.
 #include "ringlet/linear/direct.h"
 #include "ringlet/linear/pardiso.h"
 
@@ -12,8 +12,8 @@ using namespace ringlet;
 
 namespace {
 
-// Two chains of block rows whose neighbours couple, and a few couplings between the chains, each given as often as it comes and
-// either way round: squares u uᵀ over two block rows, and a diagonal.
+// Two chains of block rows that couple neighbours, with a few couplings between the chains: squares u uᵀ over two block rows,
+// and a diagonal. Triplets repeat and are in both orders.
 struct Chains {
     Chains(int rows_, int block_, double diagonal) : rows(rows_), block(block_) {
         dense = Eigen::MatrixXd::Zero(rows * block, rows * block);
@@ -85,7 +85,7 @@ BOOST_DATA_TEST_CASE(matrix_is_the_sum_of_its_triplets, boost::unit_test::data::
         Eigen::VectorXd y(14 * block);
         matrix.multiply({x.data(), size_t(x.size())}, {y.data(), size_t(y.size())});
         BOOST_TEST((y - chains.dense * x).norm() < 1e-13 * y.norm());
-        for (int row = 0; row < 14; ++row) // sorted, within the triangle, the diagonal there
+        for (int row = 0; row < 14; ++row) // sorted, within the triangle, with the diagonal
             for (int at = matrix.pattern().starts()[row]; at < matrix.pattern().starts()[row + 1]; ++at) {
                 const int column = matrix.pattern().columns()[at];
                 BOOST_TEST((half == Half::upper ? column >= row : column <= row));
@@ -94,7 +94,7 @@ BOOST_DATA_TEST_CASE(matrix_is_the_sum_of_its_triplets, boost::unit_test::data::
     }
 }
 
-BOOST_AUTO_TEST_CASE(pattern_refuses_what_is_outside) {
+BOOST_AUTO_TEST_CASE(pattern_refuses_triplets_outside_the_matrix) {
     const std::vector<int> i{0, 3}, j{1, 0};
     BOOST_CHECK_THROW(SparsePattern(3, 3, View<int>(i), View<int>(j)), std::invalid_argument);
 }
@@ -112,7 +112,7 @@ BOOST_DATA_TEST_CASE(solution_agrees_with_a_dense_solver, boost::unit_test::data
     }
 }
 
-BOOST_AUTO_TEST_CASE(pattern_serves_other_values) {
+BOOST_AUTO_TEST_CASE(a_pattern_serves_several_factorisations) {
     Chains chains(30, 3, 0.1);
     const Eigen::VectorXd b = chains.random_vector(90), once = chains.dense.ldlt().solve(b);
     std::vector<double> doubled = chains.triplets;
@@ -126,7 +126,7 @@ BOOST_AUTO_TEST_CASE(pattern_serves_other_values) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(matrix_that_is_not_positive_definite_is_told) {
+BOOST_AUTO_TEST_CASE(factorisation_refuses_a_matrix_that_is_not_positive_definite) {
     Chains chains(20, 3, 0.1);
     std::vector<double> indefinite = chains.triplets, unknown = chains.triplets;
     indefinite[7 * 9 + 4] = -100; // the middle of the diagonal block of row 7
@@ -136,12 +136,12 @@ BOOST_AUTO_TEST_CASE(matrix_that_is_not_positive_definite_is_told) {
         solver.analyse(chains.pattern());
         BOOST_TEST(!solver.factor(indefinite));
         BOOST_TEST(!solver.factor(unknown));
-        BOOST_TEST(solver.factor(chains.triplets)); // and the solver goes on
+        BOOST_TEST(solver.factor(chains.triplets)); // the solver is still usable
     }
 }
 
-BOOST_AUTO_TEST_CASE(residual_told_is_that_of_the_solution_however_bad_the_condition) {
-    // Between the free chains and ones that are held hard, 1e12 apart.
+BOOST_AUTO_TEST_CASE(the_returned_residual_is_that_of_the_solution_also_if_ill_conditioned) {
+    // Stiffnesses that differ by a factor of 1e12.
     Chains chains(30, 3, 1e-9);
     for (int k = 0; k < 9; ++k) chains.triplets[k] *= 1e12;
     chains.dense.topLeftCorner(3, 3) += (1e12 - 1) * 1e-9 * Eigen::Matrix3d::Identity();

@@ -1,4 +1,4 @@
-// Dual numbers: the derivatives of a formula, against differences.
+// Dual numbers: derivatives of a formula against central differences.
 #include "differences.h"
 #include "ringlet/math/dual.h"
 
@@ -20,22 +20,22 @@ using namespace ringlet::baseline;
 
 BOOST_AUTO_TEST_SUITE(dual)
 
-BOOST_AUTO_TEST_CASE(derivatives_are_those_of_differences) {
+BOOST_AUTO_TEST_CASE(derivatives_agree_with_central_differences) {
     std::mt19937 random(5);
     for (int round = 0; round < 20; ++round) {
-        const VectorXd at = ringlet::random_vector(Dual::unknowns, random);
-        Dual x[Dual::unknowns];
-        for (int k = 0; k < Dual::unknowns; ++k) x[k] = unknown(at[k], k);
+        const VectorXd at = ringlet::random_vector(Dual::variables, random);
+        Dual x[Dual::variables];
+        for (int k = 0; k < Dual::variables; ++k) x[k] = dual_variable(at[k], k);
         const Dual found = formula(x);
         const VectorXd by = ringlet::differences([](const VectorXd &p) { return formula(p.data()); }, at, 1e-6);
         BOOST_TEST(found.value == formula(at.data()));
-        for (int k = 0; k < Dual::unknowns; ++k)
+        for (int k = 0; k < Dual::variables; ++k)
             BOOST_TEST(std::abs(found.by[k] - by[k]) < 1e-6 * (1 + by.cwiseAbs().maxCoeff()));
     }
 }
 
-BOOST_AUTO_TEST_CASE(where_there_is_no_derivative_it_is_zero) {
-    const Dual zero = unknown(0.0, 3);
+BOOST_AUTO_TEST_CASE(the_derivative_is_zero_where_it_does_not_exist) {
+    const Dual zero = dual_variable(0.0, 3);
     BOOST_TEST(ringlet::baseline::sqrt(zero).by[3] == 0.0);
     BOOST_TEST(ringlet::baseline::atan2(zero, zero).by[3] == 0.0);
 }

@@ -1,4 +1,4 @@
-// Frames, normals and nearest points.
+// Frames, normals, closest points and signed distances.
 #include "ringlet/geometry/distance.h"
 #include "ringlet/geometry/frames.h"
 #include "ringlet/geometry/near_segments.h"
@@ -14,7 +14,7 @@ using namespace ringlet;
 
 BOOST_AUTO_TEST_SUITE(geometry)
 
-BOOST_AUTO_TEST_CASE(the_tree_finds_what_looking_at_every_triangle_finds) {
+BOOST_AUTO_TEST_CASE(the_tree_finds_the_closest_point_of_all_triangles) {
     const OwnedMesh soup = triangle_soup(300);
     const TriangleTree tree(soup.view());
     std::mt19937 random(5);
@@ -34,7 +34,7 @@ BOOST_AUTO_TEST_CASE(a_search_within_a_distance_finds_nothing_beyond_it) {
     BOOST_TEST(tree.closest({2.0, 0.0, 0.0}, 1.1).distance == 1.0);
 }
 
-BOOST_AUTO_TEST_CASE(triangles_whose_boxes_meet_a_box_are_found_once_and_no_others) {
+BOOST_AUTO_TEST_CASE(a_box_query_finds_each_triangle_whose_box_overlaps_once_and_no_others) {
     const OwnedMesh soup = triangle_soup(300);
     const TriangleTree tree(soup.view());
     std::mt19937 random(11);
@@ -54,7 +54,7 @@ BOOST_AUTO_TEST_CASE(triangles_whose_boxes_meet_a_box_are_found_once_and_no_othe
     }
 }
 
-BOOST_AUTO_TEST_CASE(the_nearest_point_of_a_triangle_is_nearer_than_any_other) {
+BOOST_AUTO_TEST_CASE(the_closest_point_of_a_triangle_is_nearer_than_any_other) {
     const OwnedMesh soup = triangle_soup(20);
     std::mt19937 random(6);
     std::uniform_real_distribution<double> in(0.0, 1.0);
@@ -71,7 +71,7 @@ BOOST_AUTO_TEST_CASE(the_nearest_point_of_a_triangle_is_nearer_than_any_other) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(vertex_normals_point_outward_whatever_the_cut_into_triangles) {
+BOOST_AUTO_TEST_CASE(vertex_normals_point_outward_and_do_not_depend_on_the_triangulation) {
     const OwnedMesh mesh = octahedron();
     const std::vector<Vec3> normals = vertex_normals(mesh.view());
     for (size_t i = 0; i < mesh.points.size(); ++i) BOOST_TEST((normals[i] - mesh.points[i]).norm() < 1e-12);
@@ -88,7 +88,7 @@ BOOST_AUTO_TEST_CASE(surface_frames_are_rotations) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(a_closed_curve_turns_the_carried_axis_by_the_angle_that_its_tangents_enclose) {
+BOOST_AUTO_TEST_CASE(a_closed_curve_turns_the_transported_axis_by_the_solid_angle_of_its_tangents) {
     // Tangents that go once around a cone of half-angle b enclose the solid angle 2π (1 - cos b) on the sphere of directions.
     constexpr int count = 20000;
     const double slope = 0.7;
@@ -111,7 +111,7 @@ BOOST_AUTO_TEST_CASE(the_spline_passes_through_its_points_and_reproduces_a_parab
     for (double at = 0.0; at <= 5.0; at += 0.1) BOOST_TEST((spline(points, at) - Vec3(at, 0.5 * at * at, 2.0)).norm() < 1e-12);
 }
 
-BOOST_AUTO_TEST_CASE(near_segments_are_those_that_looking_at_every_pair_finds) {
+BOOST_AUTO_TEST_CASE(near_segments_agree_with_a_test_of_every_pair) {
     std::mt19937 random(11);
     std::uniform_real_distribution<double> in(0.0, 1.0), step(-0.1, 0.1);
     std::vector<Vec3> points;
@@ -140,19 +140,19 @@ BOOST_AUTO_TEST_CASE(near_segments_are_those_that_looking_at_every_pair_finds) {
     BOOST_TEST((near_segments({points, offsets}, within, along) == expected));
 }
 
-BOOST_AUTO_TEST_CASE(a_solid_is_what_is_behind_its_faces_edges_and_corners) {
+BOOST_AUTO_TEST_CASE(the_signed_distance_is_negative_behind_faces_edges_and_corners) {
     const OwnedMesh mesh = octahedron();
     const Solid solid(mesh.view());
     std::mt19937 random(6);
     std::uniform_real_distribution<double> in(-1.5, 1.5);
     for (int i = 0; i < 500; ++i) {
         const Vec3 p(in(random), in(random), in(random));
-        const Above above = solid.above(p);
-        BOOST_TEST((above.height < 0.0) == (p.lpNorm<1>() < 1.0));
-        BOOST_TEST(std::abs(above.height) == (p - above.foot).norm(), boost::test_tools::tolerance(1e-12));
-        BOOST_TEST(solid.above(p, std::numeric_limits<double>::infinity(), i % 8).height == above.height);
+        const SignedDistance found = solid.signed_distance(p);
+        BOOST_TEST((found.distance < 0.0) == (p.lpNorm<1>() < 1.0));
+        BOOST_TEST(std::abs(found.distance) == (p - found.closest).norm(), boost::test_tools::tolerance(1e-12));
+        BOOST_TEST(solid.signed_distance(p, std::numeric_limits<double>::infinity(), i % 8).distance == found.distance);
     }
-    BOOST_TEST(solid.above({3.0, 0.0, 0.0}, 1.0).triangle == -1);
+    BOOST_TEST(solid.signed_distance({3.0, 0.0, 0.0}, 1.0).triangle == -1);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -1,4 +1,4 @@
-// Sampling, curling, pushing out, and hairs.
+// Sampling, curls, repair and hairs.
 #include "ringlet/groom/curl.h"
 #include "ringlet/groom/hairs.h"
 #include "ringlet/groom/keep_beside.h"
@@ -31,7 +31,7 @@ double closest_pair(const std::vector<Vec3> &points, const std::vector<int> &cho
     return least;
 }
 
-// Settings of one lock that need an owner for their arrays.
+// Settings of one lock, with the arrays that they borrow.
 struct OneCurl {
     std::vector<Vec3> axis{Vec3::UnitX()};
     std::vector<double> radius{0.004}, turns{5.0}, start{0.0}, flatness{0.0}, kink{0.0}, flip{-1.0};
@@ -76,7 +76,7 @@ struct OneCurl {
 
 BOOST_AUTO_TEST_SUITE(groom)
 
-BOOST_AUTO_TEST_CASE(thinned_samples_keep_most_of_the_distance_that_a_perfect_packing_has) {
+BOOST_AUTO_TEST_CASE(eliminated_samples_keep_most_of_the_distance_of_a_perfect_packing) {
     const std::vector<Vec3> candidates = random_square(2000);
     const std::vector<int> kept = thin_out(candidates, 1.0, 250);
     BOOST_TEST(kept.size() == 250u);
@@ -84,7 +84,7 @@ BOOST_AUTO_TEST_CASE(thinned_samples_keep_most_of_the_distance_that_a_perfect_pa
     BOOST_TEST(closest_pair(candidates, kept) > 0.6 * packing);
 }
 
-BOOST_AUTO_TEST_CASE(asking_for_no_fewer_than_there_are_keeps_all) {
+BOOST_AUTO_TEST_CASE(elimination_to_as_many_as_there_are_keeps_all) {
     BOOST_TEST(thin_out(random_square(10), 1.0, 20).size() == 10u);
 }
 
@@ -94,7 +94,7 @@ BOOST_AUTO_TEST_CASE(a_curl_about_a_straight_line_is_a_helix) {
     const OneCurl one;
     for (const Vec3 &p : curl({shape, offsets}, one.settings(), 100)) {
         const double phase = 2.0 * std::numbers::pi * 5.0 * p.y() / 0.08;
-        // The helix turns from the axis x towards tangent × axis = -z.
+        // The helix rotates from the axis x towards tangent × axis = -z.
         BOOST_TEST((p - Vec3(0.004 * std::cos(phase), p.y(), -0.004 * std::sin(phase))).norm() < 2e-5);
     }
 }
@@ -108,7 +108,7 @@ BOOST_AUTO_TEST_CASE(a_curl_without_width_is_its_shape) {
     for (size_t i = 0; i < 10; ++i) BOOST_TEST((result[i] - shape[i]).norm() < 1e-12);
 }
 
-// The angles by which the curl's radius turns about a straight middle line from point to point [turns], in ascending order.
+// Rotation of the curl about a straight centre line from point to point [turns], in ascending order.
 std::vector<double> sorted_turns(const std::vector<Vec3> &points, const Vec3 &middle, const Vec3 &up) {
     std::vector<double> turns;
     for (size_t k = 1; k < points.size(); ++k) {
@@ -120,7 +120,7 @@ std::vector<double> sorted_turns(const std::vector<Vec3> &points, const Vec3 &mi
     return turns;
 }
 
-BOOST_AUTO_TEST_CASE(frames_do_not_spin_on_straight_shapes_that_are_straight_but_for_rounding) {
+BOOST_AUTO_TEST_CASE(frames_do_not_spin_on_shapes_that_are_straight_up_to_rounding) {
     std::mt19937 random(3);
     std::uniform_real_distribution<double> shaken(-1e-14, 1e-14);
     std::vector<Vec3> shape = straight(20, 0.08);
@@ -131,7 +131,7 @@ BOOST_AUTO_TEST_CASE(frames_do_not_spin_on_straight_shapes_that_are_straight_but
     BOOST_TEST(sorted_turns(result, Vec3::Zero(), Vec3::UnitY()).back() < 1.01 * 5.0 / 119);
 }
 
-BOOST_AUTO_TEST_CASE(frames_do_not_spin_where_a_shape_turns_straight_back) {
+BOOST_AUTO_TEST_CASE(frames_do_not_spin_where_a_shape_reverses) {
     std::vector<Vec3> shape = straight(10, 0.04);
     for (int i = 8; i >= 0; --i) shape.push_back(shape[i]);
     const std::vector<int> offsets{0, static_cast<int>(shape.size())};
@@ -139,7 +139,7 @@ BOOST_AUTO_TEST_CASE(frames_do_not_spin_where_a_shape_turns_straight_back) {
     one.turns = {6.0};
     const std::vector<Vec3> result = curl({shape, offsets}, one.settings(), 240);
     const std::vector<Vec3> up(result.begin(), result.begin() + 100), down(result.begin() + 140, result.end());
-    // The way round the hairpin takes points, so that there are more turns between the others than 6 / 239: but as many to all.
+    // The hairpin takes points, so there are more than 6 / 239 turns between the others, and equally many between all of them.
     for (const std::vector<Vec3> &side : {up, down}) {
         const std::vector<double> turns = sorted_turns(side, Vec3::Zero(), Vec3::UnitY());
         BOOST_TEST(turns.back() < 1.01 * turns[turns.size() / 2]);
@@ -150,14 +150,14 @@ BOOST_AUTO_TEST_CASE(frames_do_not_spin_where_a_shape_turns_straight_back) {
 BOOST_AUTO_TEST_CASE(a_curve_through_a_body_comes_out_and_keeps_its_root) {
     const OwnedMesh body = octahedron();
     std::vector<Vec3> curve;
-    for (int i = 0; i <= 40; ++i) curve.emplace_back(0.05 + 0.02 * i, 0.95 - 0.02 * i, 0.02); // goes down inside, near a face
+    for (int i = 0; i <= 40; ++i) curve.emplace_back(0.05 + 0.02 * i, 0.95 - 0.02 * i, 0.02); // descends inside, near a face
     const std::vector<int> offsets{0, static_cast<int>(curve.size())};
     const std::vector<Vec3> result = push_out({curve, offsets}, Solid(body.view()), 0.01);
     BOOST_TEST(result.front() == curve.front());
     for (size_t i = 1; i < result.size(); ++i) BOOST_TEST(result[i].lpNorm<1>() >= 1.0 - 1e-9); // outside of the octahedron
 }
 
-BOOST_AUTO_TEST_CASE(curves_that_keep_clear_are_left_alone) {
+BOOST_AUTO_TEST_CASE(curves_at_a_sufficient_distance_do_not_move) {
     const OwnedMesh body = octahedron();
     std::vector<Vec3> curve = straight(20, 1.0);
     for (Vec3 &p : curve) p.y() += 1.0;
@@ -166,10 +166,10 @@ BOOST_AUTO_TEST_CASE(curves_that_keep_clear_are_left_alone) {
     BOOST_TEST(std::equal(result.begin(), result.end(), curve.begin()));
 }
 
-BOOST_AUTO_TEST_CASE(a_curl_that_falls_into_a_body_goes_around_it_as_long_as_it_was) {
+BOOST_AUTO_TEST_CASE(a_curl_pushed_out_of_a_body_keeps_its_length) {
     OwnedMesh body = octahedron();
     for (Vec3 &p : body.points) p *= 0.1;
-    std::vector<Vec3> curve; // from a face down through the body, and out of it farther down
+    std::vector<Vec3> curve; // from a face down through the body, and out at a lower face
     for (int i = 0; i <= 300; ++i) {
         const double s = 0.12 * i / 300.0, phase = 2.0 * std::numbers::pi * s / 6.5e-3;
         curve.emplace_back(0.03 + 0.1 * s + 2.5e-3 * std::sin(phase), 0.05 - s, 0.02 + 2.5e-3 * (std::cos(phase) - 1.0));
@@ -186,12 +186,12 @@ BOOST_AUTO_TEST_CASE(a_curl_that_falls_into_a_body_goes_around_it_as_long_as_it_
     BOOST_TEST(after == before, boost::test_tools::tolerance(0.1));
 }
 
-BOOST_AUTO_TEST_CASE(curves_through_a_body_and_one_another_are_free_after_a_few_rounds) {
+BOOST_AUTO_TEST_CASE(repair_frees_curves_that_pass_through_a_body_and_one_another) {
     const OwnedMesh mesh = octahedron();
     const Solid body(mesh.view());
     std::vector<Vec3> points;
     std::vector<int> offsets{0};
-    for (int lock = 0; lock < 6; ++lock) { // from outside they meet just above a face, and go in
+    for (int lock = 0; lock < 6; ++lock) { // from outside they converge just above a face, and enter it
         for (int i = 0; i <= 60; ++i) {
             const double s = 0.01 * (i - 30), turn = 0.3 * lock;
             points.emplace_back(0.52 - s * std::cos(turn), 0.2 - s * std::sin(turn), 0.3 + 1e-4 * lock);
@@ -200,14 +200,14 @@ BOOST_AUTO_TEST_CASE(curves_through_a_body_and_one_another_are_free_after_a_few_
     }
     const CurveView curves{points, offsets};
     const Allowed allowed{.thickness = 1e-3};
-    BOOST_TEST(!find_sunk(curves, {&body}, allowed).empty());
-    BOOST_TEST(!find_crossings(curves, 1e-3).empty());
+    BOOST_TEST(!find_penetrations(curves, {&body}, allowed).empty());
+    BOOST_TEST(!find_overlaps(curves, 1e-3).empty());
     Repair repair(curves, {&body}, allowed);
     for (int round = 0; round < 100 && repair.round() > 0; ++round) {
     }
     const CurveView after{repair.points(), offsets};
-    BOOST_TEST(find_crossings(after, 1e-3).empty());
-    for (const Sunk &place : find_sunk(after, {&body}, allowed)) BOOST_TEST(place.point == -1);
+    BOOST_TEST(find_overlaps(after, 1e-3).empty());
+    for (const Penetration &place : find_penetrations(after, {&body}, allowed)) BOOST_TEST(place.point == -1);
     for (int i = 0; i < 6; ++i) BOOST_TEST(after[i][0] == curves[i][0]);
 }
 
@@ -228,7 +228,7 @@ BOOST_AUTO_TEST_CASE(a_hair_off_the_middle_runs_beside_a_straight_lock) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(hairs_stop_short_of_a_wall_beside_their_lock_and_come_back_to_their_places) {
+BOOST_AUTO_TEST_CASE(hairs_stop_short_of_a_wall_beside_their_lock_and_return_to_their_places_beyond) {
     constexpr int n = 41; // 2 mm apart
     constexpr float beyond = 2e-3F;
     std::vector<Vec3f> lock;
@@ -240,7 +240,7 @@ BOOST_AUTO_TEST_CASE(hairs_stop_short_of_a_wall_beside_their_lock_and_come_back_
         for (const Vec3f &p : lock) hairs.insert(hairs.end(), {p[0] + x, p[1], p[2]});
     const std::vector<float> before = hairs;
     const double y = 0.04,
-                 at = 1e-3; // the wall's lower rim, and where it is; it is a little askew, so that no point is on an edge
+                 at = 1e-3; // the wall's lower rim and its place; slightly askew, so that no point is on an edge
     const std::vector<Vec3> wall{{at, y, -0.031}, {at, y, 0.03}, {at, 0.2, 0.03}, {at, 0.2, -0.03}};
     const std::vector<Triangle> triangles{{0, 1, 2}, {0, 2, 3}};
     HairLayout layout;
@@ -252,13 +252,13 @@ BOOST_AUTO_TEST_CASE(hairs_stop_short_of_a_wall_beside_their_lock_and_come_back_
         for (const int hair : {0, 2})
             for (int c = 0; c < 3; ++c) BOOST_TEST(hairs[3 * (hair * n + k) + c] == before[3 * (hair * n + k) + c]);
         if (lock[k][1] > y) BOOST_TEST(x(1, k) < 0.9001e-3F);        // short by the margin
-        if (lock[k][1] > y + 5e-3) BOOST_TEST(x(1, k) > 0.8999e-3F); // nearer only where its edge would go through at the rim
+        if (lock[k][1] > y + 5e-3) BOOST_TEST(x(1, k) > 0.8999e-3F); // nearer only where its edge would pierce at the rim
         if (lock[k][1] < y - 6e-3) BOOST_TEST(x(1, k) == beyond);
-        if (k > 0) BOOST_TEST(std::abs(x(1, k) - x(1, k - 1)) < 0.7e-3F); // a third of its way in 2 mm
+        if (k > 0) BOOST_TEST(std::abs(x(1, k) - x(1, k - 1)) < 0.7e-3F); // a third of its offset in 2 mm
     }
 }
 
-BOOST_AUTO_TEST_CASE(no_edge_of_a_hair_goes_through_what_its_lock_does_not) {
+BOOST_AUTO_TEST_CASE(no_edge_of_a_hair_pierces_what_its_lock_does_not) {
     constexpr int n = 60, count = 30;
     std::mt19937 random(5);
     std::uniform_real_distribution<double> in(-1.0, 1.0);
@@ -291,7 +291,7 @@ BOOST_AUTO_TEST_CASE(no_edge_of_a_hair_goes_through_what_its_lock_does_not) {
                 hairs.insert(hairs.end(), {p[0], p[1], p[2]});
             }
         }
-        OwnedMesh shards; // 2 mm wide, through which the lock does not go
+        OwnedMesh shards; // 2 mm wide, none pierced by the lock
         while (shards.triangles.size() < 40) {
             const Vec3 centre = lock[static_cast<size_t>(random() % n)].cast<double>() + 1.5e-3 * anywhere();
             const std::vector<Vec3> corners{centre + 2e-3 * anywhere(), centre + 2e-3 * anywhere(), centre + 2e-3 * anywhere()};

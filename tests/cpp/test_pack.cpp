@@ -1,4 +1,4 @@
-// The arithmetic of the kernels, against the standard library and against geometry.
+// Arithmetic of the kernels, against the standard library and geometric identities.
 #include "ringlet/math/pack.h"
 
 #include <boost/test/unit_test.hpp>
@@ -31,7 +31,7 @@ BOOST_AUTO_TEST_CASE(a_lane_of_a_pack_computes_what_a_double_does) {
     for (int k = 0; k < lanes; ++k) BOOST_TEST(angle[k] == ringlet::baseline::atan2(lane(y, k), lane(x, k)));
 }
 
-BOOST_AUTO_TEST_CASE(wrap_takes_whole_turns_away) {
+BOOST_AUTO_TEST_CASE(wrap_removes_whole_turns) {
     for (const double turns : {-3.0, -1.0, 0.0, 1.0, 2.0})
         for (const double angle : {-3.1, -1.0, 0.0, 0.5, 3.1})
             BOOST_TEST(std::abs(wrap(angle + 2 * pi * turns) - angle) < 1e-14);

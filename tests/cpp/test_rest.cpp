@@ -42,7 +42,7 @@ BOOST_AUTO_TEST_CASE(a_helix_has_the_same_strains_everywhere) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(rows_without_meaning_are_zero) {
+BOOST_AUTO_TEST_CASE(unused_rows_are_zero) {
     const std::vector<Vec3> x = helix(10, 12, 5e-3, 4e-3);
     const std::vector<int> offsets{0, 5, 10};
     const RestShape rest = measure_rest_shape(offsets, x);

@@ -1,4 +1,4 @@
-// How many points move as one: against the motion that moved them.
+// Rigid motions fitted to points, against the motion that moved them.
 #include "ringlet/geometry/rigid_motion.h"
 
 #include <Eigen/Geometry>
@@ -26,7 +26,7 @@ struct Moved {
         std::iota(all.begin(), all.end(), 0);
     }
 
-    double strays(const RigidMotion &found) const {
+    double largest_error(const RigidMotion &found) const {
         double most = 0.0;
         for (const Vec3 &x : start) most = std::max(most, (found(x) - motion(x)).norm());
         return most;
@@ -37,18 +37,18 @@ struct Moved {
 
 BOOST_AUTO_TEST_SUITE(rigid_motion)
 
-BOOST_AUTO_TEST_CASE(points_that_move_as_one_tell_how) {
+BOOST_AUTO_TEST_CASE(the_fit_recovers_the_motion_of_points_that_move_rigidly) {
     const Moved moved(50);
-    BOOST_TEST(moved.strays(mean_motion(moved.all, moved.start, moved.end)) < 1e-8);
+    BOOST_TEST(moved.largest_error(mean_motion(moved.all, moved.start, moved.end)) < 1e-8);
     const RigidMotion none = mean_motion({}, moved.start, moved.end);
     BOOST_TEST((none(moved.start[0]) == moved.start[0]));
 }
 
-BOOST_AUTO_TEST_CASE(what_most_of_them_do_does_not_depend_on_the_others) {
+BOOST_AUTO_TEST_CASE(outliers_do_not_affect_the_robust_fit) {
     Moved moved(50);
-    for (int v = 0; v < 50; v += 3) moved.end[v] += Vec3(0.03, 0.0, 0.05); // a third of them goes elsewhere as well
-    BOOST_TEST(moved.strays(mean_motion(moved.all, moved.start, moved.end)) > 1e-3);
-    BOOST_TEST(moved.strays(common_motion(moved.all, moved.start, moved.end)) < 1e-8);
+    for (int v = 0; v < 50; v += 3) moved.end[v] += Vec3(0.03, 0.0, 0.05); // a third of the points are outliers
+    BOOST_TEST(moved.largest_error(mean_motion(moved.all, moved.start, moved.end)) > 1e-3);
+    BOOST_TEST(moved.largest_error(common_motion(moved.all, moved.start, moved.end)) < 1e-8);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

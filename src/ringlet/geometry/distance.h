@@ -1,4 +1,4 @@
-// The closest points of two segments, and of a point and a triangle.
+// Distances of two segments, and of a point and a triangle, with their closest points.
 #pragma once
 
 #include "ringlet/geometry/closest_of_edges.h"
@@ -11,11 +11,10 @@
 
 namespace ringlet {
 
-// Where two primitives of four vertices x_i are closest: their closest points are c_a and c_b, and c_a − c_b = Σ weights[i]
-// x_i.
+// Closest points c_a and c_b of two primitives with four vertices x_i in all: c_a − c_b = Σ weights[i] x_i.
 struct ClosestPoints {
-    std::array<double, 4> weights{};                            // those of the first primitive sum to 1, of the second to −1
-    double distance2 = std::numeric_limits<double>::infinity(); // [m²]
+    std::array<double, 4> weights{};                            // sum to 1 over the first primitive, to −1 over the second
+    double distance2 = std::numeric_limits<double>::infinity(); // squared distance [m²]
 };
 
 namespace closest {
@@ -29,10 +28,10 @@ inline void take_nearer(ClosestPoints &nearest, const ClosestPoints &other) {
 
 } // namespace closest
 
-// Segments a and b, s along the one and t along the other.
+// The points at the fraction s of segment a and t of segment b.
 inline ClosestPoints at_edges(double s, double t, double distance2) { return {{1.0 - s, s, t - 1.0, -t}, distance2}; }
 
-// Where they are parallel to rounding, one of the four ends is as near as anything.
+// Closest points of two segments. Where they are parallel to rounding, the nearest of the four ends is exact.
 inline ClosestPoints closest_edge_edge(const Vec3 &a0, const Vec3 &a1, const Vec3 &b0, const Vec3 &b1) {
     const auto read = [](const Vec3 &x) { return RINGLET_SIMD::Vec<double>{x[0], x[1], x[2]}; };
     const auto closest = RINGLET_SIMD::closest_of_edges(read(a0), read(a1), read(b0), read(b1));
@@ -50,7 +49,7 @@ inline ClosestPoints closest_edge_edge(const Vec3 &a0, const Vec3 &a1, const Vec
     return nearest;
 }
 
-// Point p and triangle t: the foot of the perpendicular where it falls inside, else the nearest of the three edges.
+// Closest points of p and the triangle t: the foot of the perpendicular where it falls inside, else a point of an edge.
 inline ClosestPoints closest_point_triangle(const Vec3 &p, const Vec3 &t0, const Vec3 &t1, const Vec3 &t2) {
     const Vec3 a = t1 - t0, b = t2 - t0, q = p - t0;
     const auto at = [&](double v, double w) -> ClosestPoints {

@@ -1,4 +1,4 @@
-// Pairs of edges side by side, for kernels that are built for each instruction set.
+// Batch of edge pairs in structure-of-arrays layout, for the distance kernel of each instruction set.
 #pragma once
 
 #include "ringlet/math/simd.h"
@@ -7,13 +7,13 @@ namespace ringlet {
 
 struct alignas(64) EdgeBatch {
     static constexpr int room = 8;
-    double ends[4][3][room]; // a0 a1, b0 b1; by axis; a pair to a column [m]
+    double ends[4][3][room]; // positions of a0, a1, b0, b1 by axis; one column per pair [m]
 
-    double s[room], t[room]; // where they are closest, as in ClosestOfEdges
-    double distance2[room];  // [m²]
+    double s[room], t[room]; // fractions of the closest points, as in ClosestOfEdges
+    double distance2[room];  // squared distance [m²]
 };
 
-// Says for which, one to a bit, it is exact.
+// Fills s, t and distance2. Returns a bit mask of the pairs for which they are exact.
 RINGLET_DECLARE(unsigned find_closest(EdgeBatch &pairs);)
 
 } // namespace ringlet

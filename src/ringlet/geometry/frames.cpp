@@ -5,16 +5,15 @@
 namespace ringlet {
 namespace {
 
-// Of length 1, or 0. Quick where the length is neither huge nor tiny.
+// The unit vector along v, or zero. The fast branch serves lengths that neither overflow nor underflow.
 Vec3 unit(const Vec3 &v) {
     const double length2 = v.squaredNorm();
     return length2 > 1e-200 && length2 < 1e200 ? Vec3(v / std::sqrt(length2)) : Vec3(v.stableNormalized());
 }
 
-// What to take of `across` for each part of a vector along it, to mirror that in the plane orthogonal to it; 0 where there is
-// none.
-double mirroring(const Vec3 &across) {
-    const double length2 = across.squaredNorm();
+// Factor 2 / ‖normal‖² of the reflection v − 2 (n·v / ‖n‖²) n; 0 for a normal without length.
+double reflection_factor(const Vec3 &normal) {
+    const double length2 = normal.squaredNorm();
     return length2 > 1e-30 ? 2.0 / length2 : 0.0;
 }
 
@@ -33,7 +32,7 @@ void tangents(View<Vec3> points, std::span<Vec3> result) {
         Vec3 after = Vec3::Zero();
         if (i + 1 < n) after = unit(points[i + 1] - points[i]);
         const Vec3 sum = before + after;
-        // Where the curve turns straight back, or two points coincide, the last good direction is as right as any.
+        // Where the curve reverses or two points coincide, the last valid tangent is kept.
         if (sum.squaredNorm() > 1e-20)
             result[i] = sum.normalized();
         else
@@ -47,11 +46,11 @@ void transport(View<Vec3> points, View<Vec3> tangents, const Vec3 &axis, std::sp
     result[0] = orthogonal(axis, tangents[0]);
     for (size_t i = 0; i + 1 < points.size(); ++i) {
         const Vec3 edge = points[i + 1] - points[i];
-        const double by = mirroring(edge);
+        const double by = reflection_factor(edge);
         const Vec3 tangent = tangents[i] - by * edge.dot(tangents[i]) * edge,
                    moved = result[i] - by * edge.dot(result[i]) * edge;
         const Vec3 turn = tangents[i + 1] - tangent;
-        result[i + 1] = orthogonal(moved - mirroring(turn) * turn.dot(moved) * turn, tangents[i + 1]);
+        result[i + 1] = orthogonal(moved - reflection_factor(turn) * turn.dot(moved) * turn, tangents[i + 1]);
     }
 }
 

@@ -1,4 +1,4 @@
-// Frames along curves that turn as little as possible.
+// Rotation-minimising frames along polylines.
 #pragma once
 
 #include "ringlet/math/types.h"
@@ -19,15 +19,15 @@ struct CurveView {
 // Unit tangents of one polyline: the bisector of the two edges inside, the edge at the ends.
 void tangents(View<Vec3> points, std::span<Vec3> result);
 
-// Carries `axis` along one polyline without turning it about the tangent: the double reflection of
-// Wang, Jüttler, Zheng and Liu, "Computation of rotation minimizing frames", ACM TOG 27(1), 2008.
-// The first axis is `axis` made orthogonal to the first tangent; all are unit vectors orthogonal to theirs.
+// Rotation-minimising axis along one polyline by double reflection (Wang, Jüttler, Zheng and Liu, "Computation of rotation
+// minimizing frames", ACM TOG 27(1), 2008). The first is `axis` made orthogonal to the first tangent. All are unit vectors
+// orthogonal to their tangents.
 void transport(View<Vec3> points, View<Vec3> tangents, const Vec3 &axis, std::span<Vec3> result);
 
 // Some unit vector orthogonal to a unit vector.
 Vec3 any_orthogonal(const Vec3 &tangent);
 
-// `axis` without its part along the unit vector `tangent`, of length 1; any orthogonal vector where nothing is left.
+// `axis` projected orthogonal to the unit vector `tangent` and normalised; any orthogonal vector if the projection is zero.
 inline Vec3 orthogonal(const Vec3 &axis, const Vec3 &tangent) {
     const Vec3 rest = axis - tangent.dot(axis) * tangent;
     const double length = rest.norm();

@@ -9,7 +9,7 @@
 namespace ringlet {
 namespace {
 
-// A part of a segment, no longer than the others, and the cell of a grid that its middle is in.
+// Piece of a segment, at most one median segment long, and the grid cell of its midpoint.
 struct Piece {
     std::array<int, 3> cell;
     int segment;
@@ -23,20 +23,22 @@ double median(std::vector<double> values) {
     return *middle;
 }
 
+// Hashed uniform grid over the pieces; pairs are searched in neighbouring cells.
 class Search {
 public:
     Search(const CurveView &curves, double within, double along)
-        : curves_(curves), within_(within), along_(along), run_(curves.points.size(), 0.0), curve_(curves.points.size()) {
+        : curves_(curves), within_(within), along_(along), arc_length_(curves.points.size(), 0.0),
+          curve_(curves.points.size()) {
         std::vector<double> lengths;
         for (int i = 0; i < curves.count(); ++i)
             for (int k = curves.offsets[i]; k < curves.offsets[i + 1]; ++k) {
                 curve_[k] = i;
                 if (k == curves.offsets[i]) continue;
                 lengths.push_back((curves.points[k] - curves.points[k - 1]).norm());
-                run_[k] = run_[k - 1] + lengths.back();
+                arc_length_[k] = arc_length_[k - 1] + lengths.back();
             }
         const double longest = std::max(median(std::move(lengths)), 1e-6);
-        cell_ = longest + within; // the middles of pieces that are near are no farther apart
+        cell_ = longest + within; // no pair of pieces within the distance has midpoints farther apart
         cut(longest);
     }
 
@@ -51,7 +53,7 @@ public:
             result.insert(result.end(), found.begin(), found.end());
         }
         std::sort(result.begin(), result.end());
-        result.erase(std::unique(result.begin(), result.end()), result.end()); // long ones meet in several cells
+        result.erase(std::unique(result.begin(), result.end()), result.end()); // long segments pair up in several cells
         return result;
     }
 
@@ -59,10 +61,10 @@ private:
     void cut(double longest) {
         for (int i = 0; i < curves_.count(); ++i)
             for (int k = curves_.offsets[i]; k + 1 < curves_.offsets[i + 1]; ++k) {
-                const Vec3 &from = curves_.points[k], way = curves_.points[k + 1] - from;
-                const int count = std::max(1, static_cast<int>(std::ceil(way.norm() / longest - 1e-9)));
+                const Vec3 &from = curves_.points[k], edge = curves_.points[k + 1] - from;
+                const int count = std::max(1, static_cast<int>(std::ceil(edge.norm() / longest - 1e-9)));
                 for (int piece = 0; piece < count; ++piece) {
-                    const Eigen::Array3d at = (from + ((piece + 0.5) / count) * way).array() / cell_;
+                    const Eigen::Array3d at = (from + ((piece + 0.5) / count) * edge).array() / cell_;
                     const Eigen::Array3i cell = at.floor().cast<int>();
                     pieces_.push_back({{cell[0], cell[1], cell[2]}, k});
                 }
@@ -73,28 +75,28 @@ private:
         cells_.push_back(pieces_.size());
     }
 
-    // What is near in one cell, and between it and those after it.
+    // Pairs within one cell, and between it and those of its neighbours that come after it in the order of cells.
     void search(size_t k, std::vector<std::array<int, 2>> &found) const {
         const std::span<const Piece> here = in(k);
         for (size_t i = 0; i < here.size(); ++i)
-            for (size_t j = i + 1; j < here.size(); ++j) offer(here[i].segment, here[j].segment, found);
+            for (size_t j = i + 1; j < here.size(); ++j) test_pair(here[i].segment, here[j].segment, found);
         const std::array<int, 3> &cell = here[0].cell;
         for (int x = 0; x <= 1; ++x)
             for (int y = x > 0 ? -1 : 0; y <= 1; ++y) {
-                // A row of three cells stands side by side in the order of cells.
+                // Three cells along the last axis are contiguous in the order of cells.
                 const int first = x > 0 || y > 0 ? -1 : 1;
                 const std::array<int, 3> begin = {cell[0] + x, cell[1] + y, cell[2] + first};
                 const std::array<int, 3> last = {cell[0] + x, cell[1] + y, cell[2] + 1};
                 for (size_t other = at_or_after(begin, k); other + 1 < cells_.size() && in(other)[0].cell <= last; ++other)
                     for (const Piece &a : here)
-                        for (const Piece &b : in(other)) offer(a.segment, b.segment, found);
+                        for (const Piece &b : in(other)) test_pair(a.segment, b.segment, found);
             }
     }
 
-    void offer(int a, int b, std::vector<std::array<int, 2>> &found) const {
+    void test_pair(int a, int b, std::vector<std::array<int, 2>> &found) const {
         if (a == b) return;
         if (a > b) std::swap(a, b);
-        if (curve_[a] == curve_[b] && (b - a < 2 || run_[b] - run_[a + 1] <= along_)) return;
+        if (curve_[a] == curve_[b] && (b - a < 2 || arc_length_[b] - arc_length_[a + 1] <= along_)) return;
         const View<Vec3> &p = curves_.points;
         if (closest_edge_edge(p[a], p[a + 1], p[b], p[b + 1]).distance2 < within_ * within_) found.push_back({a, b});
     }
@@ -109,10 +111,10 @@ private:
 
     const CurveView &curves_;
     double within_, along_, cell_ = 1.0;
-    std::vector<double> run_; // length from the root
+    std::vector<double> arc_length_; // from the root to each point [m]
     std::vector<int> curve_;
     std::vector<Piece> pieces_;
-    std::vector<size_t> cells_; // where each begins among the pieces
+    std::vector<size_t> cells_; // first piece of each cell
 };
 
 } // namespace

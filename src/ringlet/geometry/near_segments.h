@@ -1,4 +1,4 @@
-// Pairs of segments of polylines that are near one another.
+// Pairs of segments of polylines within a distance of one another.
 #pragma once
 
 #include "ringlet/geometry/frames.h"
@@ -8,8 +8,8 @@
 
 namespace ringlet {
 
-// All pairs of segments nearer than `within` [m], each once and in ascending order; a segment is named by its first point.
-// Two of the same curve count where more than `along` [m] of it is between them.
+// All pairs of segments nearer than `within` [m], each once and in ascending order. A segment is identified by its first
+// point. Two segments of one curve count if more than `along` [m] of the curve lies between them.
 std::vector<std::array<int, 2>> near_segments(const CurveView &curves, double within, double along);
 
 } // namespace ringlet

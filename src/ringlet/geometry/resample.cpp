@@ -8,7 +8,7 @@ namespace ringlet {
 Cubic spline_piece(View<Vec3> points, int i) {
     const int last = static_cast<int>(points.size()) - 1;
     const Vec3 &p1 = points[i], &p2 = points[i + 1];
-    // Beyond the ends the curve goes on as a parabola would; a straight continuation would flatten the first and last span.
+    // Parabolic extrapolation beyond the ends; a linear one would flatten the first and last span.
     const Vec3 p0 = i > 0 ? points[i - 1] : last > 1 ? Vec3(3.0 * p1 - 3.0 * p2 + points[2]) : Vec3(2.0 * p1 - p2);
     const Vec3 p3 = i + 2 <= last ? points[i + 2] : last > 1 ? Vec3(3.0 * p2 - 3.0 * p1 + points[i - 1]) : Vec3(2.0 * p2 - p1);
     return {p1, 0.5 * (p2 - p0), 0.5 * (2.0 * p0 - 5.0 * p1 + 4.0 * p2 - p3), 0.5 * (3.0 * (p1 - p2) + p3 - p0)};

@@ -1,4 +1,4 @@
-// How many points move as one rigid body.
+// Rigid motion that best fits the motion of a set of points.
 #pragma once
 
 #include "ringlet/math/types.h"
@@ -7,7 +7,7 @@
 
 namespace ringlet {
 
-// A rotation about a place that goes somewhere else.
+// x ↦ to + turn (x − from).
 struct RigidMotion {
     Mat3 turn = Mat3::Identity();
     Vec3 from = Vec3::Zero(), to = Vec3::Zero();
@@ -15,11 +15,11 @@ struct RigidMotion {
     Vec3 operator()(const Vec3 &point) const { return to + turn * (point - from); }
 };
 
-// That of the points `told`, by least squares (Kabsch 1976). Where they leave a rotation open, as about a line, it turns as
-// little as may be. Of none: no motion.
-RigidMotion mean_motion(const std::vector<int> &told, View<Vec3> start, View<Vec3> end);
+// Least-squares fit to `vertices` (Kabsch 1976). A rotation that they leave undetermined, as about a line, is as small as
+// possible. Without vertices the motion is the identity.
+RigidMotion mean_motion(const std::vector<int> &vertices, View<Vec3> start, View<Vec3> end);
 
-// That of most of them: of the half that it is true of, again and again (least trimmed squares, Rousseeuw 1984).
-RigidMotion common_motion(std::vector<int> told, View<Vec3> start, View<Vec3> end);
+// Robust fit by least trimmed squares (Rousseeuw 1984): each round fits the half with the smallest residuals again.
+RigidMotion common_motion(std::vector<int> vertices, View<Vec3> start, View<Vec3> end);
 
 } // namespace ringlet

@@ -45,16 +45,16 @@ void Solid::find_edges() {
     }
 }
 
-Above Solid::above(const Vec3 &place, double within, int near) const {
+SignedDistance Solid::signed_distance(const Vec3 &place, double within, int hint) const {
     constexpr double on_edge = 1e-7; // a barycentric coordinate below this is 0
-    if (near >= 0) within = std::min(within, 1.001 * closest_point(mesh_, near, place).distance);
+    if (hint >= 0) within = std::min(within, 1.001 * closest_point(mesh_, hint, place).distance);
     const SurfacePoint found = tree_.closest(place, within);
     if (found.triangle < 0) return {};
     const Normals &normals = normals_[found.triangle];
     const std::array<bool, 3> zero = {found.barycentric[0] < on_edge, found.barycentric[1] < on_edge,
                                       found.barycentric[2] < on_edge};
-    Above result{found.triangle, found.position, normals.face, {}, found.distance};
-    result.smooth = smooth_normal(mesh_, corners_, found.triangle, found.barycentric);
+    SignedDistance result{found.triangle, found.position, normals.face, {}, found.distance};
+    result.smooth_normal = smooth_normal(mesh_, corners_, found.triangle, found.barycentric);
     bool rim = false;
     if (const int zeros = zero[0] + zero[1] + zero[2]; zeros == 1) {
         const int k = zero[0] ? 0 : zero[1] ? 1 : 2;
@@ -65,7 +65,7 @@ Above Solid::above(const Vec3 &place, double within, int near) const {
         result.normal = corners_[corner];
         rim = open_[corner] != 0;
     }
-    if (!rim && (place - found.position).dot(result.normal) < 0.0) result.height = -found.distance;
+    if (!rim && (place - found.position).dot(result.normal) < 0.0) result.distance = -found.distance;
     return result;
 }
 

@@ -33,7 +33,7 @@ Vec3 smooth_normal(const TriangleMesh &mesh, View<Vec3> normals, int triangle, c
     const Vec3 normal = barycentric[0] * normals[t[0]] + barycentric[1] * normals[t[1]] + barycentric[2] * normals[t[2]];
     const Vec3 face =
         (mesh.corner(triangle, 1) - mesh.corner(triangle, 0)).cross(mesh.corner(triangle, 2) - mesh.corner(triangle, 0));
-    // On a fold sharper than a right angle the interpolated normal says nothing; the face still does.
+    // On a fold of half a turn the interpolated normal vanishes, and the face normal takes its place.
     return normal.squaredNorm() > 1e-6 ? normal.normalized() : face.stableNormalized();
 }
 

@@ -1,4 +1,4 @@
-// A borrowed triangle mesh: normals, and places on it that move with it.
+// Triangle mesh (borrowed arrays) with vertex normals and surface frames.
 #pragma once
 
 #include "ringlet/math/types.h"
@@ -23,14 +23,14 @@ struct TriangleMesh {
 // Whether a triangle is thinner than a billionth of its length, or not finite.
 bool is_flat(const TriangleMesh &mesh, int triangle);
 
-// Unit vertex normals weighted by angle (Thürmer and Wüthrich 1998): they do not depend on how a face is cut into triangles.
+// Angle-weighted unit vertex normals (Thürmer and Wüthrich 1998); they are independent of the triangulation of a face.
 std::vector<Vec3> vertex_normals(const TriangleMesh &mesh);
 
-// The unit normal interpolated from vertex normals, smooth from triangle to triangle.
+// Unit normal interpolated from vertex normals, continuous from triangle to triangle.
 Vec3 smooth_normal(const TriangleMesh &mesh, View<Vec3> normals, int triangle, const Vec3 &barycentric);
 
-// Columns: tangent, bitangent, normal. The normal is smooth; the tangent is the triangle's first edge, so that the frame is
-// tied to the material: R = now · restᵀ carries whatever grows there.
+// Surface frame with columns tangent, bitangent, normal. The normal is smooth; the tangent is the first edge of the triangle,
+// so that the frame moves with the material. R = now · restᵀ rotates what grows there from rest to now.
 Mat3 surface_frame(const TriangleMesh &mesh, View<Vec3> normals, int triangle, const Vec3 &barycentric);
 
 } // namespace ringlet

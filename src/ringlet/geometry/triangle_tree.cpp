@@ -11,7 +11,7 @@ double distance2(const Vec3 &p, const Vec3 &low, const Vec3 &high) {
     return (low - p).cwiseMax(p - high).cwiseMax(0.0).squaredNorm();
 }
 
-// Barycentrics of the point of segment (i, j) nearest to p.
+// Barycentric coordinates of the point of the edge (i, j) closest to p.
 Vec3 on_edge(const std::array<Vec3, 3> &corners, int i, int j, const Vec3 &p) {
     const Vec3 edge = corners[j] - corners[i];
     const double length2 = edge.squaredNorm();
@@ -27,23 +27,23 @@ Vec3 on_edge(const std::array<Vec3, 3> &corners, int i, int j, const Vec3 &p) {
 SurfacePoint closest_point(const TriangleMesh &mesh, int triangle, const Vec3 &p) {
     const std::array<Vec3, 3> corners = {mesh.corner(triangle, 0), mesh.corner(triangle, 1), mesh.corner(triangle, 2)};
     SurfacePoint nearest{triangle};
-    const auto offer = [&](const Vec3 &barycentric) {
+    const auto take_nearer = [&](const Vec3 &barycentric) {
         const Vec3 position = mesh.at(triangle, barycentric);
         const double distance = (p - position).norm();
         if (distance < nearest.distance) nearest = {triangle, barycentric, position, distance};
     };
     const Vec3 a = corners[1] - corners[0], b = corners[2] - corners[0], normal = a.cross(b), q = p - corners[0];
     const double area2 = normal.squaredNorm();
-    if (area2 > 0.0) { // the foot of the perpendicular, when it falls inside
+    if (area2 > 0.0) { // the foot of the perpendicular, if it falls inside
         const double v = q.cross(b).dot(normal) / area2, w = a.cross(q).dot(normal) / area2;
         if (v >= 0.0 && w >= 0.0 && v + w <= 1.0) {
-            offer({1.0 - v - w, v, w});
+            take_nearer({1.0 - v - w, v, w});
             return nearest;
         }
     }
-    offer(on_edge(corners, 0, 1, p));
-    offer(on_edge(corners, 1, 2, p));
-    offer(on_edge(corners, 2, 0, p));
+    take_nearer(on_edge(corners, 0, 1, p));
+    take_nearer(on_edge(corners, 1, 2, p));
+    take_nearer(on_edge(corners, 2, 0, p));
     return nearest;
 }
 
@@ -122,7 +122,7 @@ SurfacePoint TriangleTree::closest(const Vec3 &p, double within) const {
 }
 
 void TriangleTree::overlapping(const Vec3 &low, const Vec3 &high, std::vector<int> &found) const {
-    const auto meets = [&](const Vec3 &from, const Vec3 &to) {
+    const auto overlaps = [&](const Vec3 &from, const Vec3 &to) {
         return (from.array() <= high.array()).all() && (to.array() >= low.array()).all();
     };
     if (nodes_.empty()) return;
@@ -132,7 +132,7 @@ void TriangleTree::overlapping(const Vec3 &low, const Vec3 &high, std::vector<in
     while (top > 0) {
         const int self = stack[--top];
         const Node &node = nodes_[self];
-        if (!meets(node.low, node.high)) continue;
+        if (!overlaps(node.low, node.high)) continue;
         if (node.count == 0) {
             stack[top++] = node.begin;
             stack[top++] = self + 1;
@@ -140,7 +140,7 @@ void TriangleTree::overlapping(const Vec3 &low, const Vec3 &high, std::vector<in
         }
         for (int i = node.begin; i < node.begin + node.count; ++i) {
             const Vec3 &a = mesh_.corner(order_[i], 0), &b = mesh_.corner(order_[i], 1), &c = mesh_.corner(order_[i], 2);
-            if (meets(a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c))) found.push_back(order_[i]);
+            if (overlaps(a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c))) found.push_back(order_[i]);
         }
     }
 }

@@ -1,4 +1,4 @@
-// The closest point of a triangle mesh, by a hierarchy of boxes.
+// BVH of the triangles of a mesh, for closest-point and box queries.
 #pragma once
 
 #include "ringlet/geometry/triangle_mesh.h"
@@ -9,24 +9,24 @@
 namespace ringlet {
 
 struct SurfacePoint {
-    int triangle = -1; // -1: nothing within the distance asked for
+    int triangle = -1; // -1: no point within the distance searched
     Vec3 barycentric = Vec3::Zero();
     Vec3 position = Vec3::Zero();
     double distance = std::numeric_limits<double>::infinity();
 };
 
-// The point of one triangle nearest to p.
+// Closest point of one triangle to p.
 SurfacePoint closest_point(const TriangleMesh &mesh, int triangle, const Vec3 &p);
 
 // Borrows the mesh, which must outlive it.
 class TriangleTree {
 public:
-    TriangleTree(const TriangleMesh &mesh, View<int> triangles); // searches these triangles only
-    explicit TriangleTree(const TriangleMesh &mesh);             // searches all
+    TriangleTree(const TriangleMesh &mesh, View<int> triangles); // over these triangles
+    explicit TriangleTree(const TriangleMesh &mesh);             // over all triangles
 
-    // The nearest point within `within` of p; the first triangle in the tree's order wins a tie.
+    // Closest point within `within` [m] of p; the first triangle in the order of the tree wins a tie.
     SurfacePoint closest(const Vec3 &p, double within = std::numeric_limits<double>::infinity()) const;
-    // Adds to `found` the triangles of which the boxes meet this one.
+    // Appends to `found` the triangles whose AABBs overlap the box.
     void overlapping(const Vec3 &low, const Vec3 &high, std::vector<int> &found) const;
     const TriangleMesh &mesh() const { return mesh_; }
 

@@ -11,9 +11,9 @@ namespace {
 
 constexpr double whole_turn = 2.0 * std::numbers::pi;
 
-double eased(double t) { return t * t * (3.0 - 2.0 * t); }
+double smoothstep(double t) { return t * t * (3.0 - 2.0 * t); }
 
-double eased_part(double s, double whole) { return whole > 0.0 ? eased(std::clamp(s / whole, 0.0, 1.0)) : 1.0; }
+double smoothstep_over(double s, double whole) { return whole > 0.0 ? smoothstep(std::clamp(s / whole, 0.0, 1.0)) : 1.0; }
 
 double lerp_table(View<double> table, double u) {
     if (table.size() < 2) return table[0];
@@ -22,21 +22,20 @@ double lerp_table(View<double> table, double u) {
     return table[i] + (at - static_cast<double>(i)) * (table[i + 1] - table[i]);
 }
 
-// A place in a table of noise, which is the same in the tables of all locks. Between its values a noise eases in and out, so
-// that it has no corners.
-struct Between {
+// Sample in the noise tables of all locks, interpolated by a smoothstep, so that noise has no corners.
+struct NoiseSample {
     size_t i, next;
     double t;
-    Between(size_t size, double u) {
+    NoiseSample(size_t size, double u) {
         const double at = u * static_cast<double>(size - 1);
         i = std::min(static_cast<size_t>(at), size > 1 ? size - 2 : 0);
         next = std::min(i + 1, size - 1);
-        t = eased(at - static_cast<double>(i));
+        t = smoothstep(at - static_cast<double>(i));
     }
     double operator()(View<double> table) const { return table[i] + t * (table[next] - table[i]); }
 };
 
-// A shape by the length from its root: the spline through its points with a frame that turns as little as possible.
+// Shape curve by arc length: the spline through its points with a rotation-minimising frame.
 class Spine {
 public:
     void fit(View<Vec3> shape, const Vec3 &axis) {
@@ -57,9 +56,9 @@ public:
 
     double length() const { return length_; }
 
-    // The place a part (0…1) of the way along, and the two axes across it. Quick when asked from root to tip.
-    void at(double part, Vec3 &point, Vec3 &a, Vec3 &b) {
-        const double s = part * along_.back();
+    // Point and two axes at a fraction (0…1) of the arc length. The search is linear, and fast for ascending fractions.
+    void at(double fraction, Vec3 &point, Vec3 &a, Vec3 &b) {
+        const double s = fraction * along_.back();
         if (s < along_[i_]) i_ = 0;
         while (i_ + 2 < along_.size() && along_[i_ + 1] < s) ++i_;
         const double edge = along_[i_ + 1] - along_[i_];
@@ -70,10 +69,10 @@ public:
     }
 
 private:
-    // A part of the way on from one of the points, of which there are four to a piece of the spline.
-    Vec3 on_piece(size_t point, double part) const {
+    // The spline at a fraction of the step after a sample; each piece of the spline has four samples.
+    Vec3 on_piece(size_t point, double fraction) const {
         const size_t piece = std::min(point / 4, pieces_.size() - 1);
-        return pieces_[piece](0.25 * (static_cast<double>(point - 4 * piece) + part));
+        return pieces_[piece](0.25 * (static_cast<double>(point - 4 * piece) + fraction));
     }
 
     std::vector<Cubic> pieces_;
@@ -83,23 +82,23 @@ private:
     size_t i_ = 0;
 };
 
-// One place on the way of a lock, before it is wound.
-struct Place {
+// Sample of the curl's centre line with frame, phase and radius.
+struct Sample {
     Vec3 centre, a, b;
     double phase, radius;
 };
 
-// One lock being curled; the scratch is kept from lock to lock.
+// Curls one lock after the other, with the same scratch memory.
 class Curler {
 public:
-    // Two samples a point, and a spline between them: at 12 points a turn it misses the curl by 1e-4 of its radius.
+    // Two samples a point with a spline between them: at 12 points a turn the error is 1e-4 of the radius.
     Curler(const CurveView &shapes, const CurlSettings &settings, int count)
-        : shapes_(shapes), settings_(settings), way_(2 * count), leading_(2 * count), curled_(2 * count) {
-        for (size_t k = 0; k < way_.size(); ++k) {
-            const double v = static_cast<double>(k) / static_cast<double>(way_.size() - 1);
+        : shapes_(shapes), settings_(settings), path_(2 * count), leader_path_(2 * count), curled_(2 * count) {
+        for (size_t k = 0; k < path_.size(); ++k) {
+            const double v = static_cast<double>(k) / static_cast<double>(path_.size() - 1);
             shared_.push_back({v, lerp_table(settings.width_ramp, v), lerp_table(settings.rate_ramp, v),
                                lerp_table(settings.taper_ramp, v), lerp_table(settings.wave_ramp, v),
-                               Between(settings.noise_count, v)});
+                               NoiseSample(settings.noise_count, v)});
         }
     }
 
@@ -113,7 +112,7 @@ public:
     }
 
 private:
-    // Finds the part of the shape whose curl is as long as the shape was, by the secant method with a bracket (Illinois).
+    // Finds the fraction of the shape whose curl has the length of the shape, by regula falsi (Illinois method).
     void shorten(double over_high, std::span<Vec3> result) {
         double low = 0.0, high = 1.0, over_low = -spine_.length();
         for (int k = 0; k < 30; ++k) {
@@ -130,22 +129,22 @@ private:
         }
     }
 
-    // Curls the first part of the shape; returns the length of the result.
+    // Curls the first fraction of the shape; returns the length of the curl.
     double wind(double share, std::span<Vec3> result) {
-        // Counted turns may be too many for the length that is left: they get narrower rather than closer still.
+        // A fixed number of turns may be too long for the length that is left: then they get narrower instead of denser.
         constexpr double least = 0.05;
-        const double part = std::max(share, least), narrower = std::min(1.0, share / least);
-        follow(lock_, spine_, part, way_);
+        const double fraction = std::max(share, least), narrower = std::min(1.0, share / least);
+        sample_path(lock_, spine_, fraction, path_);
         const int leader = settings_.leader[lock_];
         if (leader != lock_) {
-            follow(leader, leader_spine_, part, leading_);
-            fall_in(part);
+            sample_path(leader, leader_spine_, fraction, leader_path_);
+            join_leader(fraction);
         }
         const double flat = 1.0 - settings_.flatness[lock_], kink = settings_.kink[lock_];
-        for (size_t k = 0; k < way_.size(); ++k) {
-            const Place &at = way_[k];
+        for (size_t k = 0; k < path_.size(); ++k) {
+            const Sample &at = path_[k];
             const double across = std::cos(at.phase), up = std::sin(at.phase);
-            // A zigzag with corners just round enough to be drawn: its slope turns over a tenth of a period.
+            // Zigzag with slightly rounded corners: its slope changes over a tenth of a period.
             const double zigzag = kink > 0.0 ? std::asin(0.985 * across) / std::asin(0.985) : 0.0;
             curled_[k] = at.centre + narrower * at.radius *
                                          (((1.0 - kink) * across + kink * zigzag) * at.a + (1.0 - kink) * flat * up * at.b);
@@ -156,35 +155,35 @@ private:
         return length;
     }
 
-    // Middle line, frame, phase and radius of a lock on the first part of its shape.
-    void follow(int lock, Spine &spine, double part, std::span<Place> way) const {
+    // Samples centre line, frame, phase and radius of a lock on the first fraction of its shape.
+    void sample_path(int lock, Spine &spine, double fraction, std::span<Sample> path) const {
         const size_t noises = settings_.noise_count, events = settings_.event_count;
         const View<double> width_noise = settings_.width_noise.subspan(lock * noises, noises);
         const View<double> rate_noise = settings_.rate_noise.subspan(lock * noises, noises);
         const View<double> sway = settings_.sway.subspan(lock * noises, noises);
         const View<double> switchbacks = settings_.switchbacks.subspan(lock * events, events);
         const View<double> skips = settings_.skips.subspan(lock * events, events);
-        const double turns = settings_.turns[lock] * (settings_.counted ? 1.0 : part);
-        const double length = part * spine.length(), step = 1.0 / static_cast<double>(way.size() - 1);
-        const double wave_turns = settings_.wave_turns[lock] * part, wave = settings_.wave[lock];
+        const double turns = settings_.turns[lock] * (settings_.counted ? 1.0 : fraction);
+        const double length = fraction * spine.length(), step = 1.0 / static_cast<double>(path.size() - 1);
+        const double wave_turns = settings_.wave_turns[lock] * fraction, wave = settings_.wave[lock];
         const double wave_x = std::cos(settings_.phase[lock]), wave_y = std::sin(settings_.phase[lock]);
 
         double turned = 0.0, rate_before = 0.0;
-        for (size_t k = 0; k < way.size(); ++k) {
+        for (size_t k = 0; k < path.size(); ++k) {
             const auto &[v, width_ramp, rate_ramp, taper_ramp, wave_ramp, noise] = shared_[k];
             const double s = v * length;
-            Place &at = way[k];
-            spine.at(v * part, at.centre, at.a, at.b);
-            // A closing over less than 2 mm fades in, lest the tip jump when the first of it is asked for.
-            double open = lerp_table(settings_.opening, eased_part(s, settings_.start[lock]));
+            Sample &at = path[k];
+            spine.at(v * fraction, at.centre, at.a, at.b);
+            // A closing over less than 2 mm has less weight, so that the tip does not jump when `end` leaves 0.
+            double open = lerp_table(settings_.opening, smoothstep_over(s, settings_.start[lock]));
             if (const double end = settings_.end[lock]; end > 0.0) {
-                const double closing = lerp_table(settings_.closing, 1.0 - eased_part(length - s, end));
+                const double closing = lerp_table(settings_.closing, 1.0 - smoothstep_over(length - s, end));
                 open *= 1.0 + std::min(1.0, end / 2e-3) * (closing - 1.0);
             }
             at.radius = settings_.radius[lock] * width_ramp * open * (1.0 - settings_.taper[lock] * taper_ramp) *
                         (1.0 + noise(width_noise));
             const double rate = turns * rate_ramp * (1.0 + noise(rate_noise)) *
-                                hand(settings_.flip[lock], switchbacks, turns, v) * pace(skips, turns, v);
+                                hand(settings_.flip[lock], switchbacks, turns, v) * skip_factor(skips, turns, v);
             if (k > 0) turned += 0.5 * step * (rate_before + rate);
             rate_before = rate;
             at.phase = settings_.phase[lock] + whole_turn * turned;
@@ -198,22 +197,22 @@ private:
         }
     }
 
-    // +1 before and -1 after a place where the curl changes its hand, which takes about a turn.
-    static double change(double place, double turns, double v) {
-        return 1.0 - 2.0 * eased(std::clamp(0.5 + (v - place) * std::max(turns, 1.0), 0.0, 1.0));
+    // +1 before and -1 after a place where the hand changes; the transition takes about a turn.
+    static double sign_after(double place, double turns, double v) {
+        return 1.0 - 2.0 * smoothstep(std::clamp(0.5 + (v - place) * std::max(turns, 1.0), 0.0, 1.0));
     }
 
     static double hand(double flip, View<double> switchbacks, double turns, double v) {
-        double result = -change(flip, turns, v);
+        double result = -sign_after(flip, turns, v);
         for (const double place : switchbacks) {
-            if (place > 2.0) break; // they ascend
-            result *= change(place, turns, v);
+            if (place > 2.0) break; // places ascend
+            result *= sign_after(place, turns, v);
         }
         return result;
     }
 
-    // 1, and less for two turns around a skip, so that one turn is left out.
-    static double pace(View<double> skips, double turns, double v) {
+    // Factor on the rate of turning: 1, and less over two turns around a skip, so that one turn is left out.
+    static double skip_factor(View<double> skips, double turns, double v) {
         double left_out = 0.0;
         for (const double at : skips) {
             if (at > 2.0) break;
@@ -223,14 +222,14 @@ private:
         return std::max(0.0, 1.0 - left_out);
     }
 
-    // Lets phase, radius and middle line go over into the leader's.
-    void fall_in(double part) {
-        const double length = part * spine_.length(), cohesion = settings_.cohesion[lock_];
-        for (size_t k = 0; k < way_.size(); ++k) {
-            const double s = length * static_cast<double>(k) / static_cast<double>(way_.size() - 1);
-            const double weight = settings_.join[lock_] * eased_part(s, settings_.join_over[lock_]);
-            Place &own = way_[k];
-            const Place &other = leading_[k];
+    // Blends phase, radius and centre line into those of the leader.
+    void join_leader(double fraction) {
+        const double length = fraction * spine_.length(), cohesion = settings_.cohesion[lock_];
+        for (size_t k = 0; k < path_.size(); ++k) {
+            const double s = length * static_cast<double>(k) / static_cast<double>(path_.size() - 1);
+            const double weight = settings_.join[lock_] * smoothstep_over(s, settings_.join_over[lock_]);
+            Sample &own = path_[k];
+            const Sample &other = leader_path_[k];
             own.phase += weight * (other.phase - own.phase);
             own.radius += weight * (other.radius - own.radius);
             own.centre += weight * cohesion * (other.centre - own.centre);
@@ -244,13 +243,13 @@ private:
     const CurlSettings &settings_;
     int lock_ = 0;
     Spine spine_, leader_spine_;
-    std::vector<Place> way_, leading_;
+    std::vector<Sample> path_, leader_path_;
     std::vector<Vec3> curled_;
     struct Shared {
         double v, width_ramp, rate_ramp, taper_ramp, wave_ramp;
-        Between noise;
+        NoiseSample noise;
     };
-    std::vector<Shared> shared_; // what all locks have in common, sample by sample
+    std::vector<Shared> shared_; // values that all locks share, per sample
 };
 
 } // namespace

@@ -1,4 +1,4 @@
-// Winds curves into curls.
+// Curls: helices wound about shape curves.
 #pragma once
 
 #include "ringlet/geometry/frames.h"
@@ -7,15 +7,16 @@
 
 namespace ringlet {
 
-// One value per lock in each array, and a row per lock in each table. Ramps are sampled evenly from root to tip.
+// Settings of all curls: arrays with one value per lock, tables with one row per lock. Ramps are sampled evenly from root to
+// tip.
 struct CurlSettings {
-    View<Vec3> axis;         // where the phase counts from: a direction that moves with the scalp
+    View<Vec3> axis;         // direction of phase 0; moves with the scalp
     View<double> radius;     // [m]
     View<double> turns;      // over the whole shape
     View<double> phase;      // [rad]
-    View<double> flip;       // where the lock, left-handed before, becomes right-handed: -1 from the root on … 2 nowhere
+    View<double> flip;       // place where the left-handed curl becomes right-handed: -1 before the root … 2 beyond the tip
     View<double> start, end; // length over which the curl opens at the root and closes at the tip [m]
-    View<double> taper;      // how much narrower the curl gets, as taper_ramp goes from 0 to 1
+    View<double> taper;      // relative loss of width where taper_ramp is 1
     View<double> flatness;   // 0 round … 1 flat
     View<double> kink;       // 0 a helix … 1 a zigzag
     View<double> wave;       // amplitude of the plane wave under the curl [m]
@@ -26,23 +27,23 @@ struct CurlSettings {
     View<double> taper_ramp, wave_ramp; // factors on taper and wave, shared by all locks
     View<double> width_noise;           // factor - 1 on the radius, `noise_count` values a lock
     View<double> rate_noise;            // factor - 1 on the turns per length, `noise_count` values a lock
-    View<double> sway;                  // angle by which the whole turns about the shape [rad], `noise_count` values a lock
-    View<double> switchbacks;           // where the curl changes its hand, 0…1 from root to tip, `event_count` a lock
-    View<double> skips;                 // where it leaves out a turn, 0…1 from root to tip, `event_count` a lock
+    View<double> sway;                  // rotation of the curl about its shape [rad], `noise_count` values a lock
+    View<double> switchbacks;           // places where the hand changes, 0…1 from root to tip, `event_count` a lock
+    View<double> skips;                 // places where a turn is left out, 0…1 from root to tip, `event_count` a lock
 
-    View<int> leader;       // the lock in whose phase this one falls; itself where in none
-    View<double> join;      // how far it does, 0…1
-    View<double> join_over; // length from the root over which it does [m]
-    View<double> cohesion;  // how far its middle line is drawn to the leader's, 0…1
+    View<int> leader;       // the lock whose phase this one joins; its own index: none
+    View<double> join;      // weight of the leader's phase, 0…1
+    View<double> join_over; // length from the root over which that weight rises [m]
+    View<double> cohesion;  // weight of the leader's centre line, 0…1
 
     int noise_count = 1, event_count = 0;
-    bool counted = false;     // turns are all there are, however short the curled shape is; else they are per length
-    bool keep_length = false; // the curled length is that of the shape, and the silhouette shortens; else the reverse
+    bool counted = false;     // whether `turns` is the total also where the shape is shortened; else turns are per length
+    bool keep_length = false; // whether the arc length of the curl is that of the shape; else the silhouette is kept
 };
 
-// The helix p(v) = c(v) + r(v) (a(v) cos φ(v) + b(v) sin φ(v)) about each shape curve c, where a and b are its
-// rotation-minimising frame and φ' the turns per length; `count` points per lock, evenly spaced along the curl.
-// With `kink` cos φ becomes a zigzag in the plane of a; with a leader, φ, r and c go over into the leader's.
+// Helix p(v) = c(v) + r(v) (a(v) cos φ(v) + b(v) sin φ(v)) about each shape curve c. The axes a and b are its
+// rotation-minimising frame, and φ' is the number of turns per length. Each lock gets `count` points, evenly spaced along the
+// curl. With `kink`, cos φ becomes a zigzag in the plane of a. With a leader, φ, r and c blend into those of the leader.
 std::vector<Vec3> curl(const CurveView &shapes, const CurlSettings &settings, int count);
 
 } // namespace ringlet

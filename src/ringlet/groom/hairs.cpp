@@ -12,7 +12,7 @@ void put(float (&row)[4], const Vec3f &v) {
     row[3] = 0.0f;
 }
 
-// Writes a lock's segments: Catmull–Rom for the points, straight for the frame.
+// Writes the segments of a lock: Catmull–Rom splines for points, linear interpolation for axes.
 class Segmenter {
 public:
     void operator()(View<Vec3f> points, const Vec3 &axis, std::span<LockSegment> segments) {
@@ -22,7 +22,7 @@ public:
         tangents(points_, tangents_);
         transport(points_, tangents_, axis, axes_);
 
-        // The curve goes on as a parabola beyond its ends (see resample.cpp).
+        // Parabolic extrapolation beyond the ends (see resample.cpp).
         const auto beyond = [&](size_t end, size_t next, size_t third) {
             return n > 2 ? Vec3f(3.0f * points[end] - 3.0f * points[next] + points[third])
                          : Vec3f(2.0f * points[end] - points[next]);
@@ -58,7 +58,7 @@ void warp_hairs(View<Vec3f> lock_points, View<int> lock_offsets, View<Vec3> axis
     const bool blended = !layout.other.empty();
     int longest = 0;
     for (int lock = 0; lock < locks; ++lock) longest = std::max(longest, lock_offsets[lock + 1] - lock_offsets[lock]);
-    // Hairs that are drawn to a neighbour need all locks at once; else each thread keeps the one it works on, in its cache.
+    // Blended hairs need the segments of all locks; otherwise each thread keeps those of one lock in its cache.
     std::vector<LockSegment> all(blended ? lock_points.size() : 0);
     std::vector<LockTable> tables(blended ? locks : 0);
 #pragma omp parallel

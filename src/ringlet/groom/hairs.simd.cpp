@@ -27,7 +27,7 @@ void fill_hairs(const LockTable &lock, const HairSpan &hairs) {
     const float *__restrict profile = hairs.profile, *__restrict hold = hairs.hold;
     const float per_point = 1.0f / static_cast<float>(n - 1);
 
-    // The wander of a hair eases from knot to knot; the knots are where they are in every hair.
+    // Frizz is interpolated by a smoothstep between knots, whose places all hairs share.
     for (int k = 0; k < n; ++k) {
         const float at = static_cast<float>(k) * (static_cast<float>(last_knot + 1) * per_point);
         const int i = static_cast<int>(at);
@@ -56,7 +56,7 @@ void fill_hairs(const LockTable &lock, const HairSpan &hairs) {
 
         const Float4 root{hairs.root[3 * hair], hairs.root[3 * hair + 1], hairs.root[3 * hair + 2], 0.0f};
         float *result = hairs.result + 3L * n * hair;
-        // A row of four is written over the first number of the next point, which comes after it.
+        // A row of four also writes the first number of the next point, which is written after it.
         const auto put = [&](int k, Float4 point) { std::memcpy(result + 3 * k, &point, k + 1 < n ? 16 : 12); };
         if (hairs.other == nullptr || hairs.share[hair] == 0.0f) {
             for (int k = 0; k + 1 < n; ++k) put(k, on_lock(lock.segments[segment[k]], along[k], x[k], y[k]) + hold[k] * root);

@@ -1,17 +1,17 @@
-// The inner loop of hairs.h on plain arrays, built for each instruction set.
+// Kernel of hairs.h on plain arrays, compiled for each instruction set.
 #pragma once
 
 #include "ringlet/math/simd.h"
 
 namespace ringlet {
 
-// A lock between two of its points, for t from 0 to 1: the point is c0 + t (c1 + t (c2 + t c3)) and its frame a + t da,
-// b + t db. Rows of four numbers, of which three are used, so that a row is one register.
+// Segment of a lock for t in 0…1: the point c0 + t (c1 + t (c2 + t c3)) and the axes a + t da, b + t db. Rows are padded to
+// four numbers, so that each is one register.
 struct alignas(64) LockSegment {
     float c0[4], c1[4], c2[4], c3[4], a[4], da[4], b[4], db[4];
 };
 
-// One lock: a segment for every point; the last one stands still at the tip.
+// Segments of one lock, one for every point; the last is constant at the tip.
 struct LockTable {
     const LockSegment *segments;
     int last; // index of the tip
@@ -21,9 +21,9 @@ struct HairSpan {
     int count, points, knots;
     const float *offset, *tip, *taper, *frizz, *root; // 2, 1, 1, 2 × knots and 3 numbers a hair
     const float *profile, *hold, *blend;              // one a point
-    const int *other;                                 // a neighbouring lock for each hair, or null
-    const float *share;                               // how much of it the hair takes
-    const LockTable *locks;                           // where those are
+    const int *other;                                 // neighbouring lock of each hair, or null
+    const float *share;                               // weight of that lock
+    const LockTable *locks;                           // all locks, for `other`
     float *scratch;                                   // 6 × points
     float *result;                                    // 3 × points a hair
 };

@@ -9,15 +9,15 @@
 namespace ringlet {
 namespace {
 
-constexpr double easing = 6e-3; // [m] length along the lock over which a hair comes from its lock to its place
-constexpr double slant = 2.0;   // a way to a hair that climbs less than half its length may end nearer than the margin
-constexpr size_t together = 8;  // points that are asked about at once, whether anything is near them
-constexpr int rounds = 16;      // of drawing edges nearer
-constexpr int gentle = 8;       // of these go only as far as they must
-constexpr int halvings = 6;     // to find how far that is
+constexpr double easing = 6e-3;   // [m] length along the lock over which the share of a hair rises from 0 to 1
+constexpr double steepness = 2.0; // the margin holds for offsets at least 30° steep; flatter ones may end nearer
+constexpr size_t together = 8;    // points per box query
+constexpr int rounds = 16;        // of retracting edges
+constexpr int gentle = 8;         // of these bisect for the least retraction; the others retract onto the lock
+constexpr int halvings = 6;       // steps of the bisection
 
 struct Facet {
-    Vec3 corner, a, b, normal; // a corner, the edges from it, and their product, not of length 1
+    Vec3 corner, a, b, normal; // a corner, the edges from it, and their cross product, not normalised
     double area2;
 };
 
@@ -27,26 +27,27 @@ Facet facet(const TriangleMesh &mesh, int triangle) {
     return {corner, a, b, normal, normal.squaredNorm()};
 }
 
-// Where a way from a place goes through a triangle, as a part of the way; infinity: nowhere up to `end`.
-double meets(const Facet &facet, const Vec3 &place, const Vec3 &way, double end) {
-    constexpr double never = std::numeric_limits<double>::infinity(), rim = -1e-9; // no gap between two triangles
+// Fraction of an offset from a place at which it pierces a triangle; infinity if it does not up to `end`.
+double hit_fraction(const Facet &facet, const Vec3 &place, const Vec3 &offset, double end) {
+    constexpr double never = std::numeric_limits<double>::infinity(), rim = -1e-9; // leaves no gap between two triangles
     const Vec3 from = place - facet.corner;
-    const double height = facet.normal.dot(from), climb = facet.normal.dot(way);
-    if (height * (height + end * climb) > 0.0 || climb == 0.0) return never; // on one side all the way
+    const double height = facet.normal.dot(from), climb = facet.normal.dot(offset);
+    if (height * (height + end * climb) > 0.0 || climb == 0.0) return never; // all of it on one side
     const double t = -height / climb;
-    const Vec3 at = from + t * way;
+    const Vec3 at = from + t * offset;
     const double u = at.cross(facet.b).dot(facet.normal), v = facet.a.cross(at).dot(facet.normal);
     return std::min({u, v, facet.area2 - u - v}) < rim * facet.area2 ? never : t;
 }
 
-// The part of a way from a place that stays on this side of triangles, and as far as `margin` from their planes.
-double free_part(const std::vector<Facet> &facets, const Vec3 &place, const Vec3 &way, double margin) {
-    double part = 1.0;
+// Largest fraction of an offset from a place that stays on this side of the triangles, `margin` short of their planes.
+double free_fraction(const std::vector<Facet> &facets, const Vec3 &place, const Vec3 &offset, double margin) {
+    double fraction = 1.0;
     for (const Facet &facet : facets) {
-        const double t = meets(facet, place, way, 1.0 + slant * margin / way.norm());
-        if (std::isfinite(t)) part = std::min(part, t - margin * facet.normal.norm() / std::abs(facet.normal.dot(way)));
+        const double t = hit_fraction(facet, place, offset, 1.0 + steepness * margin / offset.norm());
+        if (std::isfinite(t))
+            fraction = std::min(fraction, t - margin * facet.normal.norm() / std::abs(facet.normal.dot(offset)));
     }
-    return std::max(part, 0.0);
+    return std::max(fraction, 0.0);
 }
 
 struct Box {
@@ -57,22 +58,22 @@ struct Box {
     }
 };
 
-// The hairs of one lock. What is known "at" a point holds for the edge after it as well.
+// The hairs of one lock. Boxes and triangles of a point are those of the edge after it as well.
 class LockHairs {
 public:
     LockHairs(const HairLayout &layout, const TriangleTree &tree, double margin)
         : layout_(layout), tree_(tree), margin_(margin), n_(layout.hold.size()), boxes_(n_), facets_(n_), places_(n_),
           hair_(n_), segment_(n_), share_(n_) {}
 
-    // Returns how many hairs it moved, and writes their points' shares (of 255) where there is room for these.
-    int keep(View<Vec3f> lock, int first, int count, float *hairs, std::uint8_t *shares) {
+    // Returns the number of hairs that moved, and writes the shares of their points (of 255) unless `shares` is null.
+    int keep_hairs(View<Vec3f> lock, int first, int count, float *hairs, std::uint8_t *shares) {
         if (lock.size() < 2 || count == 0) return 0;
-        enclose(hairs, count);
-        come_near(lock, layout_.tip.subspan(first, count));
+        bound_hairs(hairs, count);
+        find_near_triangles(lock, layout_.tip.subspan(first, count));
         if (near_.empty()) return 0;
         int moved = 0;
         for (int i = 0; i < count; ++i) {
-            if (!keep_one(lock, layout_.tip[first + i], hairs + 3 * n_ * i)) continue;
+            if (!keep_hair(lock, layout_.tip[first + i], hairs + 3 * n_ * i)) continue;
             ++moved;
             if (shares)
                 std::ranges::transform(share_, shares + n_ * i,
@@ -82,7 +83,7 @@ public:
     }
 
 private:
-    // Where along the lock the k-th point of a hair belongs, counted in its segments.
+    // Place on the lock of the k-th point of a hair, in segments from the root.
     float place_along(View<Vec3f> lock, float tip, size_t k) const {
         return static_cast<float>(k) * (tip * static_cast<float>(lock.size() - 1) / static_cast<float>(n_ - 1));
     }
@@ -93,16 +94,15 @@ private:
         return lock[segment] + (at - static_cast<float>(segment)) * (lock[segment + 1] - lock[segment]);
     }
 
-    // How far a smooth curve through three points of a hair goes out between them [m]: a parabola, by an eighth of the
-    // second difference.
+    // Sagitta of the parabola through three points of a hair [m]: an eighth of their second difference.
     template <class Points> double bow(const Points &points, size_t k) const {
         if (n_ < 3) return 0.0;
         const auto at = static_cast<Eigen::Index>(std::clamp<size_t>(k, 1, n_ - 2));
         return 0.125 * static_cast<double>((points.col(at - 1) - 2.0f * points.col(at) + points.col(at + 1)).norm());
     }
 
-    // Finds the least and greatest coordinates of the k-th points of all hairs, and of their second differences.
-    void enclose(const float *hairs, int count) {
+    // Computes bounds on the k-th points of all hairs, and on their second differences.
+    void bound_hairs(const float *hairs, int count) {
         const size_t size = 3 * n_;
         low_.assign(hairs, hairs + size), high_ = low_;
         bend_.assign(size, 0.0f);
@@ -116,8 +116,8 @@ private:
         }
     }
 
-    // Finds the triangles near what is between the hairs and their lock at each point.
-    void come_near(View<Vec3f> lock, View<float> tips) {
+    // Finds the triangles near the space between the hairs and their lock at each point.
+    void find_near_triangles(View<Vec3f> lock, View<float> tips) {
         const auto [least, greatest] = std::ranges::minmax(tips);
         const auto bend = [&](size_t k) { return Eigen::Map<const Vec3f>(&bend_[3 * k]).norm(); };
         const size_t last = lock.size() - 1;
@@ -133,7 +133,7 @@ private:
             }
             float most = 0.0f;
             for (size_t j = std::max<size_t>(k, 1) - 1; j <= std::min(k + 2, n_ - 1); ++j) most = std::max(most, bend(j));
-            const float wider = static_cast<float>(slant) * (static_cast<float>(margin_) + 0.125f * most);
+            const float wider = static_cast<float>(steepness) * (static_cast<float>(margin_) + 0.125f * most);
             boxes_[k] = {box.low.array() - wider, box.high.array() + wider};
         }
         near_.clear();
@@ -156,71 +156,73 @@ private:
         tree_.overlapping(box.low.cast<double>(), box.high.cast<double>(), found_);
     }
 
-    bool keep_one(View<Vec3f> lock, float tip, float *hair) {
+    bool keep_hair(View<Vec3f> lock, float tip, float *hair) {
         Eigen::Map<Eigen::Matrix3Xf> points(hair, 3, static_cast<Eigen::Index>(n_));
         std::ranges::fill(share_, 1.0);
-        bool parted = false, cut_through = false;
+        bool separated = false, pierced = false;
         for (const size_t k : near_) {
             int segment;
-            const Vec3 place = place_on(lock, tip, k, segment).cast<double>(), way = points.col(k).cast<double>() - place;
-            if (way.isZero(0.0)) continue;
-            share_[k] = free_part(facets_[k], place, way, margin_ + bow(points, k));
-            parted = parted || share_[k] < 1.0;
+            const Vec3 place = place_on(lock, tip, k, segment).cast<double>(), offset = points.col(k).cast<double>() - place;
+            if (offset.isZero(0.0)) continue;
+            share_[k] = free_fraction(facets_[k], place, offset, margin_ + bow(points, k));
+            separated = separated || share_[k] < 1.0;
         }
         for (const size_t k : near_)
-            cut_through = cut_through || (is_free(k) && cut(k, points.col(k).cast<double>(), points.col(k + 1).cast<double>()));
-        if (!parted && !cut_through) return false;
+            pierced = pierced || (is_free(k) && pierces(k, points.col(k).cast<double>(), points.col(k + 1).cast<double>()));
+        if (!separated && !pierced) return false;
         for (size_t k = 0; k < n_; ++k) {
             places_[k] = place_on(lock, tip, k, segment_[k]).cast<double>();
             hair_[k] = points.col(k).cast<double>();
         }
-        draw(points);
-        for (int round = 0; round < rounds && draw_edges(lock, points, round < gentle); ++round) {
+        write(points);
+        for (int round = 0; round < rounds && retract_edges(lock, points, round < gentle); ++round) {
         }
         return true;
     }
 
-    // Whether the edge after the k-th point has ends that may be drawn.
+    // Whether the edge after the k-th point may be retracted.
     bool is_free(size_t k) const { return k + 1 < n_ && layout_.hold[k] == 0.0f; }
 
-    // Whether the edge after the k-th point goes through a triangle where its ends are there.
-    bool cut(size_t k, const Vec3 &from, const Vec3 &to) const {
-        return std::ranges::any_of(facets_[k], [&](const Facet &facet) { return meets(facet, from, to - from, 1.0) <= 1.0; });
+    // Whether the edge after the k-th point, with these ends, pierces a triangle.
+    bool pierces(size_t k, const Vec3 &from, const Vec3 &to) const {
+        return std::ranges::any_of(facets_[k],
+                                   [&](const Facet &facet) { return hit_fraction(facet, from, to - from, 1.0) <= 1.0; });
     }
 
-    // Draws the ends of edges that go through towards the lock, as far as they must or all the way, and those that lie on the
-    // lock already and cut one of its corners into that corner; returns whether there were any.
-    bool draw_edges(View<Vec3f> lock, Eigen::Map<Eigen::Matrix3Xf> &points, bool gently) {
+    // Retracts the ends of edges that pierce a triangle, as little as possible or onto the lock. An edge on the lock that cuts
+    // one of its corners gets an end in that corner. Returns whether any edge pierced.
+    bool retract_edges(View<Vec3f> lock, Eigen::Map<Eigen::Matrix3Xf> &points, bool gently) {
         bool any = false;
         for (const size_t k : near_) {
-            if (!is_free(k) || !cut(k, place(k, 1.0), place(k + 1, 1.0))) continue;
+            if (!is_free(k) || !pierces(k, place(k, 1.0), place(k + 1, 1.0))) continue;
             if (share_[k] + share_[k + 1] == 0.0) places_[k + 1] = lock[segment_[k + 1]].cast<double>();
-            const double part = gently ? part_beside(k) : 0.0;
-            share_[k] *= part, share_[k + 1] *= part;
+            const double fraction = gently ? unpierced_fraction(k) : 0.0;
+            share_[k] *= fraction, share_[k + 1] *= fraction;
             any = true;
         }
-        if (any) draw(points);
+        if (any) write(points);
         return any;
     }
 
-    // The part of their shares at which the edge after the k-th point does not go through: what moves little changes it little.
-    double part_beside(size_t k) const {
+    // Largest fraction of their shares at which the edge after the k-th point does not pierce, by bisection. It depends
+    // continuously on the hair, which retraction onto the lock does not.
+    double unpierced_fraction(size_t k) const {
         double beside = 0.0, through = 1.0;
         for (int i = 0; i < halvings; ++i) {
             const double middle = 0.5 * (beside + through);
-            (cut(k, place(k, middle), place(k + 1, middle)) ? through : beside) = middle;
+            (pierces(k, place(k, middle), place(k + 1, middle)) ? through : beside) = middle;
         }
         return beside;
     }
 
-    // Where the k-th point is, as it is written, with such a part of its share.
-    Vec3 place(size_t k, double part) const {
-        const double share = std::max(part * share_[k], static_cast<double>(layout_.hold[k]));
+    // The k-th point with that fraction of its share, rounded to single precision as it is written.
+    Vec3 place(size_t k, double fraction) const {
+        const double share = std::max(fraction * share_[k], static_cast<double>(layout_.hold[k]));
         return (places_[k] + share * (hair_[k] - places_[k])).cast<float>().cast<double>();
     }
 
-    // Lets shares change slowly along the hair and puts it there.
-    void draw(Eigen::Map<Eigen::Matrix3Xf> &points) {
+    // Limits the change of shares along the hair, and writes its points.
+    void write(Eigen::Map<Eigen::Matrix3Xf> &points) {
         for (size_t k = 1; k < n_; ++k) share_[k] = std::min(share_[k], share_[k - 1] + rise(k));
         for (size_t k = n_ - 1; k-- > 0;) share_[k] = std::min(share_[k], share_[k + 1] + rise(k + 1));
         for (size_t k = 0; k < n_; ++k) {
@@ -234,13 +236,13 @@ private:
     const TriangleTree &tree_;
     double margin_;
     size_t n_;                               // points of a hair
-    std::vector<float> low_, high_, bend_;   // least and greatest coordinates of all hairs' points, and second differences
-    std::vector<Box> boxes_;                 // around what is between hairs and lock, at each point
-    std::vector<std::vector<Facet>> facets_; // of triangles near it, where there are any:
-    std::vector<size_t> near_;               // at these points
-    std::vector<Vec3> places_, hair_;        // of one hair: on the lock, and where it would be [m]
-    std::vector<int> segment_, found_;       // of the lock, for each point
-    std::vector<double> share_;              // of the way from the lock to there
+    std::vector<float> low_, high_, bend_;   // bounds on the points of all hairs, and on their second differences
+    std::vector<Box> boxes_;                 // around the space between hairs and lock, at each point
+    std::vector<std::vector<Facet>> facets_; // triangles near that space, at the points of near_
+    std::vector<size_t> near_;               // points with triangles nearby
+    std::vector<Vec3> places_, hair_;        // of one hair: places on the lock, and points before retraction [m]
+    std::vector<int> segment_, found_;       // segment of the lock for each point; result of a box query
+    std::vector<double> share_;              // fraction of the offset from the lock that each point keeps
 };
 
 } // namespace
@@ -257,8 +259,9 @@ int keep_beside(View<Vec3f> lock_points, View<int> lock_offsets, const HairLayou
         for (int lock = 0; lock < locks; ++lock) {
             const int first = layout.first[lock], begin = lock_offsets[lock];
             const size_t point = layout.hold.size() * first;
-            moved += of.keep(lock_points.subspan(begin, lock_offsets[lock + 1] - begin), first, layout.first[lock + 1] - first,
-                             hairs.data() + 3 * point, shares.empty() ? nullptr : shares.data() + point);
+            moved +=
+                of.keep_hairs(lock_points.subspan(begin, lock_offsets[lock + 1] - begin), first, layout.first[lock + 1] - first,
+                              hairs.data() + 3 * point, shares.empty() ? nullptr : shares.data() + point);
         }
     }
     return moved;

@@ -1,4 +1,4 @@
-// Keeps hairs on the side of surfaces where their lock is.
+// Collision of hairs with surfaces at render time: each hair stays on its lock's side.
 #pragma once
 
 #include "ringlet/geometry/triangle_mesh.h"
@@ -8,12 +8,16 @@
 
 namespace ringlet {
 
-// Hairs are spread wider than what holds their lock off a surface. A point of a hair that the surface parts from its place on
-// the lock is drawn towards that place, until it is `margin` [m] short of the surface; the points beside it follow, less and
-// less over 6 mm. Where an edge of the hair still goes through, its ends are drawn nearer, down to the lock if need be. So no
-// edge goes through that the lock does not go through, but for those that stand on their root (`layout.hold`), which stay,
-// and for corners of the lock that hairs of fewer points cut. `hairs`: what warp_hairs wrote. Returns how many it moved.
-// `shares`: where there is room for it, gets what part of the way from the lock is left at each point of these, 255 for all.
+// Retracts hairs towards their lock where a surface separates the two. A hair is wider off its lock than the contact distance
+// of the lock, so it may pass through a surface that the lock does not.
+//
+// A point behind a surface moves towards its place on the lock until it is `margin` [m] in front of the surface. The points
+// beside it follow, by less and less over 6 mm. The ends of an edge that still pierces the surface move further, if need be
+// onto the lock. Then no edge pierces a surface that the lock does not pierce, with two exceptions: points that follow their
+// root (`layout.hold`) do not move, and hairs with fewer points cut corners of the lock.
+//
+// `hairs`: the output of warp_hairs, changed in place. `shares`: if not empty, receives for each point of the hairs that moved
+// the fraction of its offset from the lock that is left, 255 for all of it. Returns the number of hairs that moved.
 int keep_beside(View<Vec3f> lock_points, View<int> lock_offsets, const HairLayout &layout, const TriangleMesh &surface,
                 double margin, std::span<float> hairs, std::span<std::uint8_t> shares = {});
 

@@ -1,7 +1,7 @@
-// Places on curves that are lower over a body than they may be.
+// Search for places on curves whose signed distance to a body is too small.
 #pragma once
 
-#include "ringlet/geometry/near_cells.h"
+#include "ringlet/geometry/proximity_grid.h"
 #include "ringlet/geometry/solid.h"
 
 #include <algorithm>
@@ -10,62 +10,66 @@
 
 namespace ringlet {
 
-constexpr double stride = 3e-3; // [m] of places that are looked at along a curve: none gets deeper in unseen
-constexpr double band = 2e-3;   // [m] no less far from a surface it is looked up how far: more than half a stride
+constexpr double largest_spacing = 3e-3; // [m] largest spacing of samples along a curve
+constexpr double least_probe_distance =
+    2e-3; // [m] least distance of the proximity grid; above half the spacing, so that no sample is missed
 
-// What curves may do: how deep they may be in a body [m] up to that far from their root [m], and how near they may come to one
-// another and to themselves [m].
+// Tolerances of a groom [m].
 struct Allowed {
-    double root_depth = 0.0, root_length = 0.0, thickness = 0.0;
+    double root_depth = 0.0;  // depth in a body
+    double root_length = 0.0; // up to this arc length from the root
+    double thickness = 0.0;   // least distance of two curves, and of a curve from itself
 };
 
-// Follows a curve from place to place, no farther apart than twice the distance of the cells. What is outside and comes near no
-// surface stays outside, and places near to one whose height is known need not be looked up.
-class Sounding {
+// Signed distances at consecutive samples of a curve, whose spacing is at most twice the distance of the grid. A curve that is
+// outside stays outside until a sample is near the surface. A sample close to one of known distance needs no query.
+class SurfaceProbe {
 public:
-    Sounding(const Solid &body, const NearCells &cells) : body_(body), cells_(cells) {}
+    SurfaceProbe(const Solid &body, const ProximityGrid &grid) : body_(body), grid_(grid) {}
 
-    // Whether a place is lower than `most` [m], which is no more than the distance of the cells; then `above` tells.
-    bool below(const Vec3 &place, double most, Above &above) {
+    // Whether the signed distance of a place is below `most` [m], at most the distance of the grid; then `above` holds it.
+    bool below(const Vec3 &place, double most, SignedDistance &above) {
         constexpr double infinite = std::numeric_limits<double>::infinity();
-        const bool outside = height_ >= 0.0;
-        if (outside && !cells_.may_be_near(place)) return false;
-        if (height_ - (place - known_).norm() > most) return false;
-        const double reach = outside ? 2.0 * cells_.distance() : infinite;
-        above = body_.above(place, reach, outside ? near_ : -1);
+        const bool outside = distance_ >= 0.0;
+        if (outside && !grid_.may_be_near(place)) return false;
+        if (distance_ - (place - known_).norm() > most) return false;
+        const double reach = outside ? 2.0 * grid_.distance() : infinite;
+        above = body_.signed_distance(place, reach, outside ? near_ : -1);
         near_ = above.triangle;
         known_ = place;
-        height_ = near_ >= 0 ? above.height : outside ? reach : -infinite; // a place that is not finite is near nothing
-        return near_ >= 0 && height_ < most;
+        distance_ = near_ >= 0 ? above.distance : outside ? reach : -infinite; // a place that is not finite counts as outside
+        return near_ >= 0 && distance_ < most;
     }
 
 private:
     const Solid &body_;
-    const NearCells &cells_;
+    const ProximityGrid &grid_;
     Vec3 known_ = Vec3::Zero();
-    double height_ = -std::numeric_limits<double>::infinity();
+    double distance_ = -std::numeric_limits<double>::infinity();
     int near_ = -1;
 };
 
-// Calls found(k, at, along, place, above) for places on a curve, its points and more between them but for the root: a part `at`
-// of the way from point k to the next, `along` from the root [m], where the height is under floor(along) ≤ most [m].
+// Calls found(k, at, along, place, above) for each sample of a curve whose signed distance is below floor(along) ≤ most [m].
+// The sample lies at the fraction `at` between points k and k + 1, at the arc length `along` from the root [m]. All points but
+// the root are samples, with more between them.
 template <class Floor, class Found>
-void sound(View<Vec3> points, const Solid &body, const NearCells &cells, double most, const Floor &floor, const Found &found) {
+void find_below(View<Vec3> points, const Solid &body, const ProximityGrid &grid, double most, const Floor &floor,
+                const Found &found) {
     constexpr double spacing = 5e-4; // [m]
-    constexpr double most_pieces = 100.0;
-    Sounding sounding(body, cells);
-    double run = 0.0;
+    constexpr double max_pieces = 100.0;
+    SurfaceProbe probe(body, grid);
+    double length_before = 0.0;
     for (size_t k = 0; k + 1 < points.size(); ++k) {
         const Vec3 edge = points[k + 1] - points[k];
         const double length = edge.norm();
-        const int pieces = static_cast<int>(std::clamp(std::ceil(length / spacing), 1.0, most_pieces));
+        const int pieces = static_cast<int>(std::clamp(std::ceil(length / spacing), 1.0, max_pieces));
         for (int i = 1; i <= pieces; ++i) {
-            const double at = static_cast<double>(i) / pieces, along = run + at * length;
+            const double at = static_cast<double>(i) / pieces, along = length_before + at * length;
             const Vec3 place = points[k] + at * edge;
-            Above above;
-            if (sounding.below(place, most, above) && above.height < floor(along)) found(k, at, along, place, above);
+            SignedDistance above;
+            if (probe.below(place, most, above) && above.distance < floor(along)) found(k, at, along, place, above);
         }
-        run += length;
+        length_before += length;
     }
 }
 

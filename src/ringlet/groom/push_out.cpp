@@ -6,37 +6,39 @@
 namespace ringlet {
 namespace {
 
-constexpr double coming = 6e-3; // [m] length over which a move begins before it is needed
-constexpr double going = 0.1;   // [m] length over which it dies away after
+constexpr double decay_to_root = 6e-3; // [m] decay length of a move towards the root
+constexpr double decay_to_tip = 0.1;   // [m] decay length of a move towards the tip
 
-// Finds the moves of the points of one curve that keep it out; returns whether it came too near anywhere. Edges are drawn to
-// the lengths that are given, if they are: edge k ends in point k.
-bool follow(std::span<const Vec3> points, std::span<const double> lengths, const Solid &body, const NearCells &cells,
-            double margin, const Allowed &allowed, std::span<Vec3> moves) {
+// Computes the moves of the points of one curve. Returns whether any place is too near the body. `lengths`, if not empty, are
+// target lengths of edges; edge k ends in point k.
+bool find_moves(std::span<const Vec3> points, std::span<const double> lengths, const Solid &body, const ProximityGrid &grid,
+                double margin, const Allowed &allowed, std::span<Vec3> moves) {
     bool near = false;
-    Sounding sounding(body, cells);
+    SurfaceProbe probe(body, grid);
     Vec3 move = Vec3::Zero(), before = points[0];
     double along = 0.0;
     moves[0].setZero();
     for (size_t k = 1; k < points.size(); ++k) {
         const Vec3 edge = points[k] - points[k - 1];
         const double length = edge.norm();
-        const int steps = std::max(1, static_cast<int>(std::ceil(length / stride)));
+        const int steps = std::max(1, static_cast<int>(std::ceil(length / largest_spacing)));
         const double step = length / steps, wanted_step = lengths.empty() ? 0.0 : lengths[k] / steps;
         for (int i = 1; i <= steps; ++i) {
             along += step;
-            if (!move.isZero(0.0)) move *= std::exp(-step / going);
+            if (!move.isZero(0.0)) move *= std::exp(-step / decay_to_tip);
             const Vec3 unmoved = points[k - 1] + (static_cast<double>(i) / steps) * edge;
             Vec3 place = unmoved + move;
             const double wanted = along <= allowed.root_length ? -allowed.root_depth : std::min(margin, 0.5 * along);
-            Above above;
-            if (sounding.below(place, margin, above) && above.height < wanted) {
-                place += (wanted - above.height) * above.smooth; // only what is missing: it begins with nothing
+            SignedDistance above;
+            if (probe.below(place, margin, above) && above.distance < wanted) {
+                place +=
+                    (wanted - above.distance) * above.smooth_normal; // only the missing distance, so that the move starts at 0
                 near = true;
             }
-            if (!lengths.empty()) { // where the way goes straight in, little of it is left: it is not drawn out at once
-                const Vec3 way = place - before;
-                place = before + std::min(2.0, wanted_step / std::max(way.norm(), 1e-12)) * way;
+            // An edge that heads straight into the body has lost most of its length, and gets at most twice of what is left.
+            if (!lengths.empty()) {
+                const Vec3 piece = place - before;
+                place = before + std::min(2.0, wanted_step / std::max(piece.norm(), 1e-12)) * piece;
             }
             move = place - unmoved;
             before = place;
@@ -46,10 +48,10 @@ bool follow(std::span<const Vec3> points, std::span<const double> lengths, const
     return near;
 }
 
-// Lets moves begin before they are needed, and smooths where they end.
-void ease(std::span<const Vec3> points, std::span<Vec3> moves, std::vector<Vec3> &scratch) {
+// Extends moves towards the root, with decay, and smooths them.
+void smooth_moves(std::span<const Vec3> points, std::span<Vec3> moves, std::vector<Vec3> &scratch) {
     for (size_t k = points.size() - 1; k-- > 1;) {
-        const Vec3 before = std::exp(-(points[k + 1] - points[k]).norm() / coming) * moves[k + 1];
+        const Vec3 before = std::exp(-(points[k + 1] - points[k]).norm() / decay_to_root) * moves[k + 1];
         const double length = before.norm(), more = length - moves[k].norm();
         if (more > 0.0) moves[k] += more / length * before;
     }
@@ -63,7 +65,7 @@ void ease(std::span<const Vec3> points, std::span<Vec3> moves, std::vector<Vec3>
 
 std::vector<Vec3> push_out(const CurveView &curves, const Solid &body, double margin, const Allowed &allowed) {
     constexpr int rounds = 4;
-    const NearCells cells(body.mesh(), std::max(margin, band));
+    const ProximityGrid grid(body.mesh(), std::max(margin, least_probe_distance));
     std::vector<Vec3> result(curves.points.begin(), curves.points.end());
 #pragma omp parallel
     {
@@ -75,12 +77,12 @@ std::vector<Vec3> push_out(const CurveView &curves, const Solid &body, double ma
             moves.resize(points.size());
             lengths.assign(points.size(), 0.0);
             for (size_t k = 1; k < points.size(); ++k) lengths[k] = (points[k] - points[k - 1]).norm();
-            // All rounds or none: what changes by a little should not change how many there are.
-            if (!follow(points, {}, body, cells, margin, allowed, moves)) continue;
+            // Either no round or all of them, so that the result is continuous in the input.
+            if (!find_moves(points, {}, body, grid, margin, allowed, moves)) continue;
             for (int round = 1; round <= rounds; ++round) {
-                const bool last = round == rounds; // what is left by then is little; it is only cleared
-                follow(points, last ? std::span<double>() : lengths, body, cells, margin, allowed, moves);
-                if (!last) ease(points, moves, scratch);
+                const bool last = round == rounds; // the last round only clears what little is left
+                find_moves(points, last ? std::span<double>() : lengths, body, grid, margin, allowed, moves);
+                if (!last) smooth_moves(points, moves, scratch);
                 for (size_t k = 1; k < points.size(); ++k) points[k] += moves[k];
             }
         }

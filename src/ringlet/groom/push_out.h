@@ -1,4 +1,4 @@
-// Keeps curves out of a body.
+// Deformation of curves that takes them out of a body.
 #pragma once
 
 #include "ringlet/geometry/frames.h"
@@ -8,10 +8,10 @@
 
 namespace ringlet {
 
-// Leads curves around a body, at least `margin` [m] from it; near the root, which is on the surface, from half the length along
-// the curve on. Each curve is followed from its root, which stays: where it comes too near, all that follows moves out along
-// the surface's smooth normal, and returns over a length that is long beside a curl. So a curve goes around on the side where
-// it came in, and its curls keep their form. `allowed`: roots may be in the body as deep as that says.
+// Moves curves to a distance of at least `margin` [m] from a body. Near the root, which lies on the surface and does not move,
+// half the arc length is enough. Each curve is traversed from its root. Where it is too near, it moves along the smooth normal
+// of the surface, and so does the rest of it, by an amount that decays over a length much longer than a curl. So a curve passes
+// the body on the side where it enters, and curls keep their form. `allowed`: depth that roots may have in the body.
 std::vector<Vec3> push_out(const CurveView &curves, const Solid &body, double margin, const Allowed &allowed = {});
 
 } // namespace ringlet

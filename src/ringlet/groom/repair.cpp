@@ -12,50 +12,51 @@
 namespace ringlet {
 namespace {
 
-constexpr double rounding = 1e-9;    // [m] a depth below this is none
-constexpr double clear = 5e-5;       // [m] what is moved out of a body is moved so far beyond its surface
-constexpr double room = 1.15;        // curves are moved apart to that many thicknesses
-constexpr double of_one = 4.0;       // parts of one curve count when they are so many thicknesses apart along it
-constexpr double firm_body = 4.0;    // how much more it matters to be out of a body than apart from a curve
-constexpr double most_firm = 4.0;    // and how much at most, where many places want something
-constexpr double spread_over = 4e-3; // [m] length along a curve over which a move dies away
-constexpr double ease = 0.05;        // how much it matters that a curve keeps its form and place
-constexpr double skin = 2.5e-4;      // [m] points may move so far before pairs are looked for again
+constexpr double rounding = 1e-9;         // [m] depths below this count as 0
+constexpr double body_clearance = 5e-5;   // [m] target distance outside of a body
+constexpr double clearance = 1.15;        // target distance of two curves, in thicknesses
+constexpr double least_along = 4.0;       // least arc length between two segments of one curve that count, in thicknesses
+constexpr double body_weight = 4.0;       // weight of a target outside of a body, beside 1 for one away from a curve
+constexpr double largest_weight = 4.0;    // largest sum of weights at a point
+constexpr double smoothing_length = 4e-3; // [m] length along a curve over which a move decays
+constexpr double regularisation = 0.05;   // weight of keeping form and place
+constexpr double skin = 2.5e-4;           // [m] motion of points after which candidate pairs are searched again
 
-double may(const Allowed &allowed, double along) { return along <= allowed.root_length ? allowed.root_depth : 0.0; }
+double allowed_depth(const Allowed &allowed, double along) { return along <= allowed.root_length ? allowed.root_depth : 0.0; }
 
-Crossing crossing(View<Vec3> points, const std::array<int, 2> &pair) {
+Overlap overlap_of(View<Vec3> points, const std::array<int, 2> &pair) {
     const auto &[a, b] = pair;
     const ClosestPoints nearest = closest_edge_edge(points[a], points[a + 1], points[b], points[b + 1]);
     const double s = nearest.weights[1], t = -nearest.weights[3];
-    const Vec3 apart = points[b] + t * (points[b + 1] - points[b]) - points[a] - s * (points[a + 1] - points[a]);
-    return {a, b, s, t, apart, apart.norm()};
+    const Vec3 separation = points[b] + t * (points[b + 1] - points[b]) - points[a] - s * (points[a + 1] - points[a]);
+    return {a, b, s, t, separation, separation.norm()};
 }
 
-// Moves of the points after a root that stays: the least of Σ w |δ − wanted|² + ease (stiffness |Δ²δ|² + |δ|²), where what is
-// wanted matters enough to be got. A banded LDLᵀ with two bands beside the diagonal.
-class LeastChange {
+// Minimiser of Σ w |δ − target|² + λ (stiffness |Δ²δ|² + |δ|²) over the moves δ of a curve whose root is fixed, with λ the
+// regularisation. Weights w grow with the stiffness, so that targets are reached. The solver is a banded LDLᵀ with two bands
+// beside the diagonal.
+class SmoothestMoves {
 public:
-    void operator()(std::span<const Vec3> wanted, std::span<const double> weight, double stiffness, std::span<Vec3> points) {
+    void operator()(std::span<const Vec3> target, std::span<const double> weight, double stiffness, std::span<Vec3> points) {
         const size_t n = points.size();
-        const double bend = ease * stiffness;
-        diagonal_.assign(n, ease);
+        const double bend = regularisation * stiffness;
+        diagonal_.assign(n, regularisation);
         one_.assign(n, 0.0), two_.assign(n, 0.0), moves_.assign(n, Vec3::Zero());
         for (size_t k = 1; k + 1 < n; ++k) { // the second difference about point k
             diagonal_[k - 1] += bend, diagonal_[k] += 4.0 * bend, diagonal_[k + 1] += bend;
             one_[k] -= 2.0 * bend, one_[k + 1] -= 2.0 * bend;
             two_[k + 1] += bend;
         }
-        one_[1] = 0.0; // point 0 stays
+        one_[1] = 0.0; // point 0 is fixed
         if (n > 2) two_[2] = 0.0;
         for (size_t k = 1; k < n; ++k) {
             if (weight[k] <= 0.0) continue;
-            const double firm = std::min(weight[k], most_firm) * (1.0 + 50.0 * bend);
-            diagonal_[k] += firm;
-            moves_[k] = firm / weight[k] * wanted[k];
+            const double w = std::min(weight[k], largest_weight) * (1.0 + 50.0 * bend);
+            diagonal_[k] += w;
+            moves_[k] = w / weight[k] * target[k];
         }
         for (size_t k = 2; k < n; ++k) {
-            const double two = two_[k], one = one_[k] - two * one_[k - 1]; // D L, of which one_ and two_ keep L
+            const double two = two_[k], one = one_[k] - two * one_[k - 1]; // of D L; one_ and two_ store L
             two_[k] = two / diagonal_[k - 2], one_[k] = one / diagonal_[k - 1];
             diagonal_[k] -= one_[k] * one + two_[k] * two;
             moves_[k] -= one_[k] * moves_[k - 1] + two_[k] * moves_[k - 2];
@@ -69,124 +70,127 @@ public:
     }
 
 private:
-    std::vector<double> diagonal_, one_, two_; // the matrix, with what ties a point to those one and two before it
+    std::vector<double> diagonal_, one_, two_; // the matrix: its diagonal and the two bands below it
     std::vector<Vec3> moves_;
 };
 
 } // namespace
 
-std::vector<Sunk> find_sunk(const CurveView &curves, const std::vector<const Solid *> &bodies, const Allowed &allowed) {
-    std::vector<Sunk> result;
-    const auto floor = [&](double along) { return -may(allowed, along) - rounding; };
+std::vector<Penetration> find_penetrations(const CurveView &curves, const std::vector<const Solid *> &bodies,
+                                           const Allowed &allowed) {
+    std::vector<Penetration> result;
+    const auto floor = [&](double along) { return -allowed_depth(allowed, along) - rounding; };
     for (size_t body = 0; body < bodies.size(); ++body) {
-        const NearCells cells(bodies[body]->mesh(), band);
+        const ProximityGrid grid(bodies[body]->mesh(), least_probe_distance);
 #pragma omp parallel
         {
-            std::vector<Sunk> found;
+            std::vector<Penetration> found;
 #pragma omp for schedule(dynamic, 16) nowait
             for (int i = 0; i < curves.count(); ++i)
-                sound(curves[i], *bodies[body], cells, 0.0, floor,
-                      [&](size_t k, double, double along, const Vec3 &place, const Above &above) {
-                          const int point = curves.offsets[i] + static_cast<int>(k);
-                          const Sunk here{static_cast<int>(body), point, above.triangle, place,
-                                          -above.height - may(allowed, along)};
-                          if (found.empty() || found.back().point != point)
-                              found.push_back(here);
-                          else if (found.back().depth < here.depth) // of several on one segment the deepest
-                              found.back() = here;
-                      });
+                find_below(curves[i], *bodies[body], grid, 0.0, floor,
+                           [&](size_t k, double, double along, const Vec3 &place, const SignedDistance &above) {
+                               const int point = curves.offsets[i] + static_cast<int>(k);
+                               const Penetration here{static_cast<int>(body), point, above.triangle, place,
+                                                      -above.distance - allowed_depth(allowed, along)};
+                               if (found.empty() || found.back().point != point)
+                                   found.push_back(here);
+                               else if (found.back().depth < here.depth) // the deepest of one segment
+                                   found.back() = here;
+                           });
 #pragma omp critical
             result.insert(result.end(), found.begin(), found.end());
         }
     }
     std::sort(result.begin(), result.end(),
-              [](const Sunk &a, const Sunk &b) { return std::tie(a.body, a.point) < std::tie(b.body, b.point); });
+              [](const Penetration &a, const Penetration &b) { return std::tie(a.body, a.point) < std::tie(b.body, b.point); });
     return result;
 }
 
-std::vector<Crossing> find_crossings(const CurveView &curves, double thickness) {
-    std::vector<Crossing> result;
-    for (const auto &pair : near_segments(curves, thickness, of_one * thickness))
-        result.push_back(crossing(curves.points, pair));
+std::vector<Overlap> find_overlaps(const CurveView &curves, double thickness) {
+    std::vector<Overlap> result;
+    for (const auto &pair : near_segments(curves, thickness, least_along * thickness))
+        result.push_back(overlap_of(curves.points, pair));
     return result;
 }
 
 Repair::Repair(const CurveView &curves, std::vector<const Solid *> bodies, const Allowed &allowed)
     : offsets_(curves.offsets.begin(), curves.offsets.end()), bodies_(std::move(bodies)), allowed_(allowed),
-      points_(curves.points.begin(), curves.points.end()), best_(points_), least_(std::numeric_limits<size_t>::max()),
-      wanted_(points_.size()), weight_(points_.size()) {
+      points_(curves.points.begin(), curves.points.end()), best_(points_), fewest_(std::numeric_limits<size_t>::max()),
+      target_(points_.size()), weight_(points_.size()) {
     for (const Solid *body : bodies_) {
-        cells_.emplace_back(body->mesh(), band);
-        points_ = push_out(this->curves(), *body, clear, allowed_);
+        grids_.emplace_back(body->mesh(), least_probe_distance);
+        points_ = push_out(this->curves(), *body, body_clearance, allowed_);
     }
 }
 
 int Repair::round() {
-    std::fill(wanted_.begin(), wanted_.end(), Vec3::Zero());
+    std::fill(target_.begin(), target_.end(), Vec3::Zero());
     std::fill(weight_.begin(), weight_.end(), 0.0);
-    const int wrong = push_apart() + push_out_of_bodies();
-    if (static_cast<size_t>(wrong) < least_) {
-        least_ = wrong;
+    const int violations = push_apart() + push_out_of_bodies();
+    if (static_cast<size_t>(violations) < fewest_) {
+        fewest_ = violations;
         best_ = points_;
     }
-    if (wrong > 0) spread();
-    return wrong;
+    if (violations > 0) solve_moves();
+    return violations;
 }
 
-// Wants, of two segments that are too near, each its half of the way apart.
+// Adds targets for overlapping segments: each moves by half of the missing distance. Returns the number of violations.
 int Repair::push_apart() {
-    const double wide = room * allowed_.thickness;
-    double moved2 = seen_.empty() ? std::numeric_limits<double>::infinity() : 0.0;
-    for (size_t i = 0; i < seen_.size(); ++i) moved2 = std::max(moved2, (points_[i] - seen_[i]).squaredNorm());
+    const double wide = clearance * allowed_.thickness;
+    double moved2 = searched_.empty() ? std::numeric_limits<double>::infinity() : 0.0;
+    for (size_t i = 0; i < searched_.size(); ++i) moved2 = std::max(moved2, (points_[i] - searched_[i]).squaredNorm());
     if (moved2 > skin * skin) {
-        pairs_ = near_segments(curves(), wide + 2.0 * skin, of_one * wide);
-        seen_ = points_;
+        pairs_ = near_segments(curves(), wide + 2.0 * skin, least_along * wide);
+        searched_ = points_;
     }
-    int wrong = 0;
+    int violations = 0;
     for (const auto &pair : pairs_) {
-        const Crossing at = crossing(points_, pair);
+        const Overlap at = overlap_of(points_, pair);
         if (at.distance >= wide) continue;
-        wrong += at.distance < allowed_.thickness;
+        violations += at.distance < allowed_.thickness;
         const Vec3 across = (points_[at.a + 1] - points_[at.a]).cross(points_[at.b + 1] - points_[at.b]);
-        const Vec3 way = 0.5 * (wide - at.distance) * (at.distance > 1e-9 ? at.apart : across).stableNormalized();
-        want(at.a, at.s, -way, 1.0);
-        want(at.b, at.t, way, 1.0);
+        const Vec3 move = 0.5 * (wide - at.distance) * (at.distance > 1e-9 ? at.separation : across).stableNormalized();
+        add_target(at.a, at.s, -move, 1.0);
+        add_target(at.b, at.t, move, 1.0);
     }
-    return wrong;
+    return violations;
 }
 
-// Wants, of what is in a body, the nearest way out of it; near the root no farther than it may stay inside.
+// Adds targets for places in a body: out along the normal at the closest point. Near the root half of the depth allowed there
+// is the target. Returns the number of violations.
 int Repair::push_out_of_bodies() {
-    int wrong = 0;
+    int violations = 0;
     const auto goal = [&](double along) {
-        return may(allowed_, along) > 0.0 ? -0.5 * may(allowed_, along) : std::min(clear, 0.5 * along);
+        return allowed_depth(allowed_, along) > 0.0 ? -0.5 * allowed_depth(allowed_, along)
+                                                    : std::min(body_clearance, 0.5 * along);
     };
     const auto floor = [&](double along) { return (goal(along) < 0.0 ? 1.5 : 0.5) * goal(along); };
     for (size_t body = 0; body < bodies_.size(); ++body)
-#pragma omp parallel for schedule(dynamic, 16) reduction(+ : wrong)
+#pragma omp parallel for schedule(dynamic, 16) reduction(+ : violations)
         for (int i = 0; i < curves().count(); ++i)
-            sound(curves()[i], *bodies_[body], cells_[body], 0.5 * clear, floor,
-                  [&](size_t k, double at, double along, const Vec3 &place, const Above &above) {
-                      wrong += above.height < -may(allowed_, along) - rounding;
-                      const Vec3 way = above.foot + goal(along) * above.normal - place;
-                      want(offsets_[i] + static_cast<int>(k), at, way, firm_body);
-                  });
-    return wrong;
+            find_below(curves()[i], *bodies_[body], grids_[body], 0.5 * body_clearance, floor,
+                       [&](size_t k, double at, double along, const Vec3 &place, const SignedDistance &above) {
+                           violations += above.distance < -allowed_depth(allowed_, along) - rounding;
+                           const Vec3 move = above.closest + goal(along) * above.normal - place;
+                           add_target(offsets_[i] + static_cast<int>(k), at, move, body_weight);
+                       });
+    return violations;
 }
 
-// Adds to the ends of a segment what moves the place on it by a way.
-void Repair::want(int point, double at, const Vec3 &way, double firm) {
+// Distributes the target move of a place on a segment to the ends of the segment.
+void Repair::add_target(int point, double at, const Vec3 &move, double weight) {
     const double squares = at * at + (1.0 - at) * (1.0 - at);
     for (const auto &[end, share] : {std::pair(point, 1.0 - at), std::pair(point + 1, at)}) {
-        wanted_[end] += firm * share * share / squares * way;
-        weight_[end] += firm * share;
+        target_[end] += weight * share * share / squares * move;
+        weight_[end] += weight * share;
     }
 }
 
-void Repair::spread() {
+void Repair::solve_moves() {
 #pragma omp parallel
     {
-        LeastChange least_change;
+        SmoothestMoves smoothest_moves;
 #pragma omp for schedule(dynamic, 16)
         for (int i = 0; i < curves().count(); ++i) {
             const size_t first = offsets_[i], count = offsets_[i + 1] - first;
@@ -196,7 +200,7 @@ void Repair::spread() {
             double length = 0.0;
             for (size_t k = 1; k < count; ++k) length += (points[k] - points[k - 1]).norm();
             const double spacing = std::max(length / static_cast<double>(count - 1), 1e-9);
-            least_change(std::span(wanted_).subspan(first, count), weight, std::pow(spread_over / spacing, 4), points);
+            smoothest_moves(std::span(target_).subspan(first, count), weight, std::pow(smoothing_length / spacing, 4), points);
         }
     }
 }

@@ -1,4 +1,4 @@
-// Moves curves out of bodies and apart from one another, with the least change of their form.
+// Repair of a groom: moves curves out of bodies and out of one another with the least change of form.
 #pragma once
 
 #include "ringlet/geometry/frames.h"
@@ -9,53 +9,55 @@
 
 namespace ringlet {
 
-// A place on a curve that is in a body, and how deep beyond what is allowed [m].
-struct Sunk {
+// Place on a curve inside a body; its depth counts from the depth that is allowed [m].
+struct Penetration {
     int body, point, triangle;
     Vec3 place;
     double depth;
 };
 
-// Two segments, named by their first points, that are nearer than a thickness; where on them, 0…1, and from one to the other.
-struct Crossing {
-    int a, b;
-    double s, t;
-    Vec3 apart;
-    double distance;
+// Two segments nearer than a thickness.
+struct Overlap {
+    int a, b;        // their first points
+    double s, t;     // fractions of the closest points along them
+    Vec3 separation; // vector from the closest point on a to that on b [m]
+    double distance; // its length [m]
 };
 
-std::vector<Sunk> find_sunk(const CurveView &curves, const std::vector<const Solid *> &bodies, const Allowed &allowed);
-std::vector<Crossing> find_crossings(const CurveView &curves, double thickness);
+std::vector<Penetration> find_penetrations(const CurveView &curves, const std::vector<const Solid *> &bodies,
+                                           const Allowed &allowed);
+std::vector<Overlap> find_overlaps(const CurveView &curves, double thickness);
 
-// Goes round by round. First every curve is led around the bodies (push_out.h). Then, in each round, every place that is wrong
-// is told where to go, out of a body by the nearest way, or half of what is missing apart from another curve; between such
-// places the move δ of a curve, whose root stays, is the least of Σ w |δ − wanted|² + ease (spread⁴ |δ″|² + |δ|²).
+// Iterative repair. It begins with curves that are pushed out of the bodies (push_out.h). Each round finds all violations and
+// gives each a target move: to the closest point of the surface, or by half of the missing distance away from another curve.
+// The move δ of a curve minimises Σ w |δ − target|² + λ (s⁴ |δ″|² + |δ|²), with s the smoothing length and δ = 0 at the root.
 class Repair {
 public:
     Repair(const CurveView &curves, std::vector<const Solid *> bodies, const Allowed &allowed);
 
-    // How many places are wrong; if any are, moves what is.
+    // Returns the number of violations, and moves the curves if there are any.
     int round();
-    // The points of the round that left the fewest.
+
+    // The points with the fewest violations so far.
     View<Vec3> points() const { return best_; }
 
 private:
     CurveView curves() const { return {points_, offsets_}; }
     int push_apart();
     int push_out_of_bodies();
-    void want(int point, double at, const Vec3 &way, double firm);
-    void spread();
+    void add_target(int point, double at, const Vec3 &move, double weight);
+    void solve_moves();
 
     std::vector<int> offsets_;
     std::vector<const Solid *> bodies_;
-    std::vector<NearCells> cells_; // of each
+    std::vector<ProximityGrid> grids_; // of each body
     Allowed allowed_;
     std::vector<Vec3> points_, best_;
-    size_t least_;
-    std::vector<Vec3> wanted_;
+    size_t fewest_;
+    std::vector<Vec3> target_;
     std::vector<double> weight_;
-    std::vector<std::array<int, 2>> pairs_; // that may come near until a point has moved far from `seen_`
-    std::vector<Vec3> seen_;
+    std::vector<std::array<int, 2>> pairs_; // candidate pairs, valid until a point has moved by `skin` from `searched_`
+    std::vector<Vec3> searched_;
 };
 
 } // namespace ringlet

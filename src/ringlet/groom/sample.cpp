@@ -9,7 +9,7 @@
 namespace ringlet {
 namespace {
 
-// Points sorted into cubes, so that neighbours are found in the 27 cubes around.
+// Hash grid of points; the neighbours of a point are in the 27 cubes around it.
 class Grid {
 public:
     Grid(View<Vec3> points, double cell) : points_(points), cell_(cell) {
@@ -53,7 +53,7 @@ std::vector<int> thin_out(View<Vec3> candidates, double area, int count) {
 
     std::vector<double> weight(total, 0.0);
     for (int i = 0; i < total; ++i) grid.near(i, [&](int j) { weight[i] += crowding(i, j); });
-    // Weights only fall, so an entry that is out of date is put back with its present weight.
+    // Weights only decrease, so an outdated entry returns to the queue with its present weight.
     std::priority_queue<std::pair<double, int>> queue;
     for (int i = 0; i < total; ++i) queue.emplace(weight[i], i);
     std::vector<char> gone(total, 0);

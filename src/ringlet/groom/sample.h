@@ -1,4 +1,4 @@
-// Evenly spread samples without a pattern (blue noise).
+// Blue-noise samples by weighted sample elimination.
 #pragma once
 
 #include "ringlet/math/types.h"
@@ -7,9 +7,9 @@
 
 namespace ringlet {
 
-// Thins a dense cloud of `candidates` on a surface of `area` [m²] to `count` that keep their distance: takes away, one by one,
-// the candidate most crowded by the others (Yuksel, "Sample elimination for generating Poisson disk sample sets", CGF 34(2),
-// 2015). Asking for one sample fewer removes one and moves none. Returns indices, ascending.
+// Eliminates, one by one, the most crowded of a dense cloud of `candidates` on a surface of `area` [m²] until `count` are left
+// (Yuksel, "Sample elimination for generating Poisson disk sample sets", CGF 34(2), 2015). One sample fewer removes one and
+// moves none. Returns ascending indices.
 std::vector<int> thin_out(View<Vec3> candidates, double area, int count);
 
 } // namespace ringlet

@@ -1,5 +1,5 @@
-// A symmetric positive definite banded matrix of one strand, its exact factor and its solution. With T = Pack a strand per lane
-// is factored at once.
+// Symmetric positive definite banded matrix of one strand, with its LDLᵀ factorisation and solve. With T = Pack it holds and
+// factors one strand per lane.
 #pragma once
 
 #include "ringlet/linear/band_layout.h"
@@ -13,25 +13,25 @@ namespace ringlet::RINGLET_SIMD {
 template <class T, int block, int band> class Banded {
 public:
     static constexpr BandLayout layout{block, band};
-    static constexpr int padding = (band + block - 1) / block * block; // columns behind the last: no loop needs an end test
+    static constexpr int padding = (band + block - 1) / block * block; // extra columns, so that loops need no end test
     static constexpr int entries(int columns) { return int(layout.begin(columns + padding)); }
     static constexpr int rows(int column) { return layout.rows(column); }
 
-    // `columns`: whole blocks.
+    // `columns`: a multiple of `block`.
     Banded(T *memory, int columns) : entries_(memory), columns_(columns) {}
 
     void set_zero() { set_zero(0, columns_ + padding); }
-    void set_zero(int from, int to) { // columns of whole blocks
+    void set_zero(int from, int to) { // columns; multiples of `block`
         for (T *i = entry(from); i < entry(to); ++i) *i = T{};
     }
 
     T *entry(int column) { return entries_ + layout.begin(column); }
 
-    // Adds coefficient · u uᵀ, where u stands in the rows first, first + 1 … and `first` is that of a block.
+    // Adds coefficient · u uᵀ, with u in the rows from `first` on, the first row of a block.
     template <int count> void add_square(int first, T coefficient, const T (&u)[count]) {
         add_squares(first, coefficient, reinterpret_cast<const T(&)[1][count]>(u));
     }
-    // Of some u one after another.
+    // Adds coefficient · Σ u uᵀ over several u.
     template <int terms, int count> void add_squares(int first, T coefficient, const T (&u)[terms][count]) {
         static_assert(count <= band);
         T *from = entry(first);
@@ -47,8 +47,8 @@ public:
         }
     }
 
-    // Factors in place: A = L D Lᵀ; entry(c)[0] becomes 1/D, the rest L. What is below a block is reached once for all of its
-    // columns.
+    // Factors in place: A = L D Lᵀ; entry(c)[0] becomes 1/D, the rest L. The columns below a block are updated once for all
+    // columns of the block.
     void factor() {
         for (int first = 0; first < columns_; first += block) {
             T *from = entry(first);
@@ -78,8 +78,8 @@ public:
         }
     }
 
-    // Solves A x = b in place, after factor(); b has room for `padding` entries behind its last. What later rows wait for, and
-    // on the way back what was solved last, stays in registers.
+    // Solves A x = b in place, after factor(); b has `padding` extra entries behind its last. The `band` values in use stay in
+    // registers: right-hand sides in the forward substitution, solved values in the backward one.
     void solve(T *b) const {
         for (int k = 0; k < padding; ++k) b[columns_ + k] = T{};
         T near[band];
@@ -101,7 +101,7 @@ public:
                 constexpr int c = block - 1 - before;
                 const T *column = from + layout.begin(c);
                 T value = b[first + c];
-                for (int k = rows(c) - 1; k > 0; --k) value -= column[k] * near[k - 1]; // what was solved last, last
+                for (int k = rows(c) - 1; k > 0; --k) value -= column[k] * near[k - 1]; // the value solved last comes last
                 for (int k = band - 1; k > 0; --k) near[k] = near[k - 1];
                 near[0] = b[first + c] = value;
             });

@@ -32,8 +32,8 @@ void BlockMatrix::set_zero() { std::fill(blocks_.begin(), blocks_.end(), Mat3::Z
 
 void BlockMatrix::multiply(const Eigen::VectorXd &x, Eigen::VectorXd &y) const {
     y.resize(x.size());
-    const int worth_threads = 2000; // rows: below, waking them takes longer
-#pragma omp parallel for schedule(static) if (rows() > worth_threads)
+    const int least_parallel_rows = 2000; // below, starting threads takes longer than they save
+#pragma omp parallel for schedule(static) if (rows() > least_parallel_rows)
     for (int i = 0; i < rows(); ++i) {
         Vec3 sum = Vec3::Zero();
         for (int s = starts_[i]; s < starts_[i + 1]; ++s) sum.noalias() += blocks_[s] * x.segment<3>(3 * columns_[s]);

@@ -1,5 +1,5 @@
-// A symmetric sparse matrix of 3×3 blocks whose pattern is fixed: made once from the pairs of vertices that meet in an energy.
-// Blocks have slots that are looked up once, so that assembling is adding into an array.
+// Symmetric sparse matrix of 3×3 blocks with a fixed sparsity pattern: the pairs of vertices that share an energy term.
+// Assembly adds into slots, whose numbers are looked up once.
 #pragma once
 
 #include "ringlet/math/types.h"
@@ -9,7 +9,7 @@
 
 namespace ringlet {
 
-// Rows of scalars, columns ascending in each: for solvers that know no blocks.
+// Scalar CSR matrix with ascending columns, for solvers without blocks.
 struct ScalarRows {
     std::vector<int> starts, columns;
     std::vector<double> values;
@@ -19,7 +19,7 @@ class BlockMatrix {
 public:
     BlockMatrix() = default;
 
-    // Every row has its diagonal block; each pair gives a block and its mirror image. Pairs may repeat.
+    // The pattern has all diagonal blocks, and for each pair a block and its transpose. Pairs may repeat.
     BlockMatrix(int rows, View<std::array<int, 2>> pairs);
 
     int rows() const { return int(starts_.size()) - 1; }
@@ -29,14 +29,14 @@ public:
     int row_end(int row) const { return starts_[row + 1]; }
     int column(int slot) const { return columns_[slot]; }
     int diagonal(int row) const { return diagonals_[row]; }
-    int slot(int row, int column) const; // −1 where the pattern has none
+    int slot(int row, int column) const; // −1: not in the pattern
 
-    // A block and its mirror image are two slots: who fills the matrix fills both.
+    // A block and its transpose are two slots; assembly fills both.
     Mat3 &block(int slot) { return blocks_[slot]; }
     const Mat3 &block(int slot) const { return blocks_[slot]; }
     void set_zero();
 
-    // y = A x, a row at a time: the same bits for any number of threads.
+    // y = A x, row by row, so that the result is the same bits for any number of threads.
     void multiply(const Eigen::VectorXd &x, Eigen::VectorXd &y) const;
 
     ScalarRows scalar_rows() const;

@@ -15,12 +15,12 @@ struct ConjugateGradientSettings {
 
 struct ConjugateGradientResult {
     int iterations = 0;
-    double residual = 0; // ‖b − A x‖ / ‖b‖, computed anew at the end
+    double residual = 0; // ‖b − A x‖ / ‖b‖, recomputed at the end
     bool converged = true;
 };
 
-// Starts at x = 0. Stops early where A shows itself not positive definite; x is then the best that was found, and a direction
-// of descent for ½ xᵀAx − bᵀx all the same.
+// Starts at x = 0. Stops early at a direction of non-positive curvature; x is then the last iterate, which is still a descent
+// direction of ½ xᵀAx − bᵀx.
 template <class Apply, class Precondition>
 ConjugateGradientResult conjugate_gradient(const Apply &apply, const Precondition &precondition, const Eigen::VectorXd &b,
                                            Eigen::VectorXd &x, const ConjugateGradientSettings &settings = {}) {
@@ -48,7 +48,7 @@ ConjugateGradientResult conjugate_gradient(const Apply &apply, const Preconditio
     }
     apply(x, Ap);
     result.residual = (b - Ap).norm() / size;
-    result.converged = result.residual <= 2 * settings.tolerance; // rounding may part the two residuals a little
+    result.converged = result.residual <= 2 * settings.tolerance; // rounding separates the two residuals
     return result;
 }
 

@@ -30,7 +30,7 @@ bool DirectSolver::factor(View<double> triplets) {
 double DirectSolver::solve(View<double> b, std::span<double> x) const {
     const size_t n = b.size();
     std::vector<double> residual(n), change(n);
-    const auto measure = [&] { // the residual of x and its norm
+    const auto measure = [&] { // computes the residual of x; returns its norm
         matrix_->multiply(x, residual);
         double square = 0;
         for (size_t i = 0; i < n; ++i) {
@@ -40,17 +40,17 @@ double DirectSolver::solve(View<double> b, std::span<double> x) const {
         return std::sqrt(square);
     };
 
-    const int most_improvements = 3;
+    const int max_refinements = 3;
     std::fill(x.begin(), x.end(), 0.0);
     const double size = measure();
     if (size == 0) return 0;
     factorisation_->solve(b, x);
     double left = measure();
-    for (int k = 0; k < most_improvements && left > 0; ++k) {
+    for (int k = 0; k < max_refinements && left > 0; ++k) {
         factorisation_->solve(residual, change);
         for (size_t i = 0; i < n; ++i) x[i] += change[i];
         const double now = measure();
-        if (!(now < left)) { // rounding is all that is left
+        if (!(now < left)) { // the rest is rounding
             for (size_t i = 0; i < n; ++i) x[i] -= change[i];
             break;
         }

@@ -1,4 +1,4 @@
-// Solves A x = b by factoring the whole of a sparse symmetric positive definite A: exact and robust, for small or hard systems.
+// Direct solver for sparse symmetric positive definite systems A x = b: exact and robust, for small or ill-conditioned ones.
 #pragma once
 
 #include "ringlet/linear/factorisation.h"
@@ -7,26 +7,26 @@
 
 namespace ringlet {
 
-enum class DirectMethod { automatic, builtin, pardiso }; // automatic: PARDISO where its library is found
+enum class DirectMethod { automatic, builtin, pardiso }; // automatic: PARDISO if its library is found
 
 class DirectSolver {
 public:
-    // Throws std::runtime_error of one line where PARDISO is asked for by name and is not there.
+    // Throws std::runtime_error of one line if PARDISO is requested and not available.
     explicit DirectSolver(DirectMethod method = DirectMethod::automatic);
 
     DirectMethod method() const { return method_; } // in use, never automatic
 
-    // Orders the unknowns and finds where the factor fills in: once for all matrices of a pattern (of the upper triangle).
+    // Symbolic factorisation: fill-reducing order and fill-in, once for all matrices of a pattern (of the upper triangle).
     void analyse(std::shared_ptr<const SparsePattern> pattern);
 
-    // Takes the values of the matrix, in the pattern's order. False where it is not positive definite (or not finite).
+    // Numeric factorisation of the values, in the order of the pattern. False if not positive definite or not finite.
     bool factor(View<double> triplets);
 
-    // After a factor() that returned true. Returns the relative residual ‖b − A x‖ / ‖b‖, measured, after improving x by it as
-    // long as that helps: above rounding it says that A is too badly conditioned for x to be trusted to the last digits.
+    // Solves after a factor() that returned true, with iterative refinement while that helps. Returns the relative residual
+    // ‖b − A x‖ / ‖b‖. A residual above rounding means that A is too ill-conditioned for the last digits of x.
     double solve(View<double> b, std::span<double> x) const;
 
-    std::int64_t entries() const { return factorisation_->entries(); } // of the triangular factor
+    std::int64_t entries() const { return factorisation_->entries(); } // nonzeros of the triangular factor
 
 private:
     DirectMethod method_;

@@ -14,20 +14,20 @@ void IncompleteCholesky::factor(const BlockMatrix &matrix) {
     }
     lower_.resize(columns_.size());
     inverses_.resize(matrix.rows());
-    // A diagonal that is raised enough outweighs all the rest of its row: then no pivot fails.
+    // A large enough shift makes every row diagonally dominant, and then no pivot fails.
     for (shift_ = 0; !try_factor(matrix) && shift_ < 1e6; shift_ = std::max(1e-3, 2 * shift_)) {
     }
 }
 
 bool IncompleteCholesky::try_factor(const BlockMatrix &matrix) {
-    const double least = 1e-10; // of a diagonal entry: a pivot below this is rounding
+    const double least = 1e-10; // smallest pivot, as a fraction of the diagonal entry; below is rounding
     for (int i = 0; i < matrix.rows(); ++i) {
         const Mat3 &whole = matrix.block(matrix.diagonal(i));
         Mat3 pivot = (1 + shift_) * whole;
         for (int a = starts_[i]; a < starts_[i + 1]; ++a) {
             const int k = columns_[a];
             Mat3 rest = matrix.block(matrix.row_begin(i) + a - starts_[i]);
-            // The columns that rows i and k share, left of k.
+            // Columns before k that rows i and k have in common.
             for (int b = starts_[i], c = starts_[k]; b < a && c < starts_[k + 1];) {
                 if (columns_[b] == columns_[c])
                     rest.noalias() -= lower_[b++] * lower_[c++].transpose();

@@ -1,5 +1,5 @@
-// A preconditioner: A ≈ L Lᵀ in blocks, where L keeps the pattern of A's lower part (block IC(0)). Where a pivot fails, the
-// diagonal is raised by a part of itself and the factor begun again.
+// Incomplete Cholesky preconditioner A ≈ L Lᵀ in 3×3 blocks, where L has the pattern of the lower triangle of A (block IC(0):
+// Meijerink and van der Vorst 1977). If a pivot fails, the factorisation starts again with a larger shift of the diagonal.
 #pragma once
 
 #include "ringlet/linear/block_matrix.h"
@@ -14,13 +14,13 @@ public:
     // z = (L Lᵀ)⁻¹ r.
     void solve(const Eigen::VectorXd &r, Eigen::VectorXd &z) const;
 
-    double shift() const { return shift_; } // the part that was added to the diagonal, 0 at best
+    double shift() const { return shift_; } // relative shift of the diagonal; 0 if no pivot failed
 
 private:
     bool try_factor(const BlockMatrix &matrix);
 
     double shift_ = 0;
-    std::vector<int> starts_, columns_; // of the blocks left of the diagonal, row by row
+    std::vector<int> starts_, columns_; // CSR pattern of the strictly lower triangle
     std::vector<Mat3> lower_;           // Lᵢₖ
     std::vector<Mat3> inverses_;        // Lᵢᵢ⁻¹
 };

@@ -10,7 +10,7 @@ namespace {
 
 using Index = long long; // of pardiso_64, whatever the library's default is
 
-// The functions of the library that are used, as its manual declares them.
+// Functions of the library, as its manual declares them.
 struct Library {
     void (*pardiso)(void *handle, const Index *factors, const Index *number, const Index *type, const Index *phase,
                     const Index *rows, const void *values, const Index *starts, const Index *columns, Index *permutation,
@@ -19,9 +19,9 @@ struct Library {
     int (*set_threads)(int count);
 };
 
-constexpr int gnu_threads = 3; // the threads that the core uses too, so that two pools do not fight for the processors
+constexpr int gnu_threads = 3; // the OpenMP threads of the core, so that there is one thread pool
 
-Library library; // pardiso is null until it is open
+Library library; // pardiso is null until the library is open
 
 bool open(const char *name) {
     void *handle = dlopen(name, RTLD_NOW | RTLD_LOCAL);
@@ -65,7 +65,7 @@ public:
     }
 
     void solve(View<double> b, std::span<double> x) const override {
-        // It declares b writable, for a setting that is not used.
+        // The interface declares b writable, for a setting that is not used.
         if (const Index error = call(substitute, nullptr, const_cast<double *>(b.data()), x.data()); error != 0)
             throw std::runtime_error("pardiso: solution failed with error " + std::to_string(error));
     }
@@ -87,7 +87,7 @@ private:
     }
 
     std::vector<Index> starts_, columns_;
-    mutable void *handle_[64] = {}; // its own memory
+    mutable void *handle_[64] = {}; // internal memory of PARDISO
     mutable Index settings_[64] = {};
 };
 

@@ -1,5 +1,5 @@
-// The factorisation PARDISO of Intel's MKL: supernodal and parallel, many times faster than the built-in one as soon as strands
-// touch. Ringlet is neither built nor shipped with it: the library is opened when it is first asked for.
+// Factorisation by PARDISO of Intel's MKL: supernodal and parallel, many times faster than the built-in one for strands in
+// contact. Ringlet is neither built nor shipped with it; the library is opened at run time, when it is first requested.
 #pragma once
 
 #include "ringlet/linear/factorisation.h"
@@ -9,12 +9,12 @@
 
 namespace ringlet {
 
-// Opens libmkl_rt at this path, or by its name where the path is empty. Says whether PARDISO can be used now; once it can,
-// later calls change nothing.
+// Opens libmkl_rt at this path, or by its name if the path is empty. Returns whether PARDISO can be used; once it can, later
+// calls have no effect.
 bool open_pardiso(const std::string &path = {});
-bool pardiso_available(); // open_pardiso() of the name alone
+bool pardiso_available(); // open_pardiso() by name
 
-// Of a pattern that keeps its upper triangle, where pardiso_available().
+// For a pattern with the upper triangle; requires pardiso_available().
 std::unique_ptr<Factorisation> make_pardiso(const SparsePattern &pattern);
 
 } // namespace ringlet

@@ -11,13 +11,13 @@ using Index = std::int64_t; // a factor can have more entries than an int counts
 using Sparse = Eigen::SparseMatrix<double, Eigen::ColMajor, Index>;
 using Permutation = Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, Index>;
 
-// visit(row, column, number) for every block of the triangle that is kept.
+// Calls visit(row, column, number) for every stored block.
 template <class Visit> void for_each_block(const SparsePattern &pattern, const Visit &visit) {
     for (int row = 0; row < pattern.rows(); ++row)
         for (int at = pattern.starts()[row]; at < pattern.starts()[row + 1]; ++at) visit(row, pattern.columns()[at], at);
 }
 
-// Where each block row goes, so that little fills in.
+// Fill-reducing permutation of the block rows.
 Permutation order_blocks(const SparsePattern &pattern) {
     std::vector<Eigen::Triplet<double, Index>> graph;
     graph.reserve(pattern.columns().size());
@@ -37,7 +37,7 @@ public:
         const Permutation blocks_to = order_blocks(pattern);
         for (int i = 0; i < pattern.size(); ++i) to_.indices()[i] = blocks_to.indices()[i / block] * block + i % block;
 
-        // The reordered lower triangle, at first with the number of each value in its place.
+        // Reordered lower triangle, with the number of each value in place of the value.
         std::vector<Eigen::Triplet<double, Index>> numbers;
         numbers.reserve(pattern.values());
         for_each_block(pattern, [&](int row, int column, int at) {
@@ -66,9 +66,9 @@ public:
     std::int64_t entries() const override { return ldlt_.matrixL().nestedExpression().nonZeros() + lower_.rows(); }
 
 private:
-    Permutation to_; // of the unknowns
+    Permutation to_; // of the scalars
     Sparse lower_;
-    std::vector<Index> source_; // number of the value that each entry of lower_ takes
+    std::vector<Index> source_; // number of the value of each entry of lower_
     Eigen::SimplicialLDLT<Sparse, Eigen::Lower, Eigen::NaturalOrdering<Index>> ldlt_;
 };
 

@@ -1,5 +1,5 @@
-// The built-in factorisation, L D Lᵀ of Eigen. Its ordering, of minimum degree, is that of the graph of blocks: some nine or
-// sixteen times smaller than the graph of unknowns, and no worse.
+// Built-in factorisation, Eigen's simplicial L D Lᵀ. The minimum-degree ordering is that of the graph of blocks, which is nine
+// or sixteen times smaller than the graph of scalars and gives no more fill-in.
 #pragma once
 
 #include "ringlet/linear/factorisation.h"

@@ -10,7 +10,7 @@ SparsePattern::SparsePattern(int rows, int block, View<int> i, View<int> j, Half
     : block_(block), half_(half), starts_(size_t(rows) + 1, 0), slots_(i.size()) {
     if (rows < 1 || block < 1 || i.size() != j.size()) throw std::invalid_argument("sparse pattern: sizes do not fit");
 
-    // Blocks are sorted as one number each, after a diagonal block for every row.
+    // Blocks are sorted by row · rows + column. A diagonal block for every row comes first.
     std::vector<std::int64_t> places(rows + i.size());
     for (int row = 0; row < rows; ++row) places[row] = std::int64_t(row) * rows + row;
     for (size_t k = 0; k < i.size(); ++k) {

@@ -1,5 +1,5 @@
-// Dual numbers: a value with its derivatives by some unknowns, so that a formula that is written for any T gives its derivative
-// too. Forward mode; the derivatives stand side by side in one vector.
+// Dual number (forward-mode automatic differentiation): a value with its derivatives by up to eight variables.
+// A formula that is a template of its number type gives its derivatives when T is Dual.
 #pragma once
 
 #include "ringlet/math/pack.h"
@@ -7,11 +7,11 @@
 namespace ringlet::RINGLET_SIMD {
 
 struct Dual {
-    static constexpr int unknowns = 8;
-    typedef double Derivatives __attribute__((vector_size(unknowns * sizeof(double))));
+    static constexpr int variables = 8;
+    typedef double Derivatives __attribute__((vector_size(variables * sizeof(double))));
 
     double value;
-    Derivatives by;
+    Derivatives by; // derivative by each variable
 };
 
 template <> struct Traits<Dual> {
@@ -19,11 +19,13 @@ template <> struct Traits<Dual> {
     static constexpr int lanes = 1;
 };
 
-// A number that depends on nothing, and the unknown of some number.
-inline Dual known(double value) { return {value, Dual::Derivatives{}}; }
-inline Dual unknown(double value, int number) {
-    Dual x = known(value);
-    x.by[number] = 1.0;
+// A constant, whose derivatives are zero.
+inline Dual dual_constant(double value) { return {value, Dual::Derivatives{}}; }
+
+// The variable of this index, whose derivative by itself is 1.
+inline Dual dual_variable(double value, int index) {
+    Dual x = dual_constant(value);
+    x.by[index] = 1.0;
     return x;
 }
 
@@ -42,7 +44,7 @@ inline Dual operator-(Dual a, double b) { return {a.value - b, a.by}; }
 inline Dual operator+(double a, Dual b) { return b + a; }
 inline Dual operator-(double a, Dual b) { return {a - b.value, -b.by}; }
 inline Dual operator*(double a, Dual b) { return {a * b.value, a * b.by}; }
-inline Dual operator/(double a, Dual b) { return known(a) / b; }
+inline Dual operator/(double a, Dual b) { return dual_constant(a) / b; }
 
 inline bool operator<(Dual a, Dual b) { return a.value < b.value; }
 inline bool operator>(Dual a, Dual b) { return a.value > b.value; }

@@ -1,4 +1,4 @@
-// Floats side by side, as many as the instruction set of a kernel takes at once. For *.simd.cpp alone.
+// SIMD vector of floats, of the width of the instruction set that a kernel is compiled for. Included by *.simd.cpp alone.
 #pragma once
 
 #include <cstring>
@@ -24,7 +24,7 @@ inline Floats read(const float *numbers) {
     return result;
 }
 
-// Four numbers, again and again.
+// The four numbers, repeated over the whole vector.
 inline Floats repeat(const float *four) {
 #if defined(RINGLET_SIMD_avx512)
     return _mm512_maskz_broadcast_f32x4(0xffff, _mm_loadu_ps(four)); // without a mask GCC 12 warns
@@ -38,7 +38,7 @@ inline Floats repeat(const float *four) {
 inline Floats lesser(Floats a, Floats b) { return a < b ? a : b; }
 inline Floats greater(Floats a, Floats b) { return a > b ? a : b; }
 
-// One bit for each: where it is true.
+// Bit mask of the lanes that are true.
 inline unsigned lanes_of(Bits where) {
 #if defined(RINGLET_SIMD_avx512)
     return __builtin_ia32_cvtd2mask512(where);

@@ -1,4 +1,4 @@
-// Many lists in one array, one behind the other.
+// Lists of varying length in one array, with the offset of each (compressed rows).
 #pragma once
 
 #include "ringlet/math/types.h"
@@ -11,7 +11,7 @@ namespace ringlet {
 template <class Item> class Lists {
 public:
     Lists() : starts_(1, 0) {}
-    // for_items(work) calls work(which list, item) for all there are, each time in the same order, in which they are listed.
+    // for_items(work) calls work(list, item) for every item. It is called twice and must keep its order.
     template <class ForItems> Lists(size_t lists, const ForItems &for_items) : starts_(lists + 1, 0) {
         for_items([&](int list, const Item &) { ++starts_[list + 1]; });
         std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
@@ -22,7 +22,7 @@ public:
 
     View<Item> of(int list) const { return {items_.data() + starts_[list], items_.data() + starts_[list + 1]}; }
 
-    // Of all items, numbered through, those of a list.
+    // Range of a list in items().
     int begin(int list) const { return starts_[list]; }
     int end(int list) const { return starts_[list + 1]; }
     const std::vector<Item> &items() const { return items_; }

@@ -1,5 +1,5 @@
-// Packs: one double per lane, a strand per lane. Every formula of the kernels is written once, for T = Pack or T = double.
-// Compiled once per instruction set, each in its own namespace (see cmake/Simd.cmake).
+// Pack: a SIMD vector of doubles with one strand per lane. Formulas of kernels are templates of T = Pack or T = double.
+// This header is compiled once per instruction set, each time in a namespace of its own (see cmake/Simd.cmake).
 #pragma once
 
 #if defined(__x86_64__)
@@ -75,18 +75,17 @@ template <class T> inline T sign(T x) { return select(x < 0.0, constant<T>(-1.0)
 
 inline constexpr double pi = 3.14159265358979323846;
 
-// Nearest integer, for |x| < 2^51: adding and removing 1.5·2^52 leaves no room for a fraction.
+// Nearest integer, for |x| < 2^51. The sum with 1.5·2^52 has no bits left for a fraction.
 template <class T> inline T round(T x) {
     const double shift = 6755399441055744.0;
     return (x + shift) - shift;
 }
 
-// An angle to (−π, π].
+// The angle brought to (−π, π].
 template <class T> inline T wrap(T angle) { return angle - 2.0 * pi * round(angle * (0.5 / pi)); }
 
-// atan2 with y ≥ 0 or y < 0, good to two units in the last place; atan2(0, 0) = 0.
-// |q| ≤ tan(π/8) by atan(r) = π/4 + atan((r − 1)/(r + 1)); there a polynomial in q², interpolated at Chebyshev nodes (error
-// 4e-18).
+// atan2, accurate to two units in the last place; atan2(0, 0) = 0. The identity atan(r) = π/4 + atan((r − 1)/(r + 1)) reduces
+// the argument to |q| ≤ tan(π/8). There atan is a polynomial in q², interpolated at Chebyshev nodes (error 4e-18).
 template <class T> inline T atan2(T y, T x) {
     const double tan_pi_8 = 0.41421356237309504880;
     const T ax = abs(x), ay = abs(y);
@@ -118,7 +117,7 @@ template <class T> struct SineCosine {
     T sine, cosine;
 };
 
-// Of |x| ≤ π/2 (a little more is fine), by polynomials interpolated at Chebyshev nodes (errors 1e-16).
+// Sine and cosine for |x| ≤ π/2 and a little beyond, by polynomials interpolated at Chebyshev nodes (errors 1e-16).
 template <class T> inline SineCosine<T> sine_cosine_quarter(T x) {
     const T z = x * x;
     T sine = constant<T>(-7.374119385051447e-13);
@@ -139,7 +138,7 @@ template <class T> inline SineCosine<T> sine_cosine_quarter(T x) {
     return {x + x * z * sine, cosine * z + 1.0};
 }
 
-// Of any angle: half turns are taken away, each of which changes both signs.
+// Sine and cosine of any angle. Each half turn that is subtracted changes both signs.
 template <class T> inline SineCosine<T> sine_cosine(T x) {
     const T half_turns = round(x * (1.0 / pi));
     const SineCosine<T> rest = sine_cosine_quarter(x - pi * half_turns);
@@ -166,7 +165,7 @@ template <class T> inline Vec<T> select(MaskOf<T> mask, Vec<T> a, Vec<T> b) {
     return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};
 }
 
-// A unit vector perpendicular to the unit vector t, however it lies.
+// Some unit vector perpendicular to the unit vector t.
 template <class T> inline Vec<T> perpendicular(Vec<T> t) {
     const auto x_small = abs(t.x) < 0.6;
     const Vec<T> axis{select(x_small, constant<T>(1.0), T{}), select(x_small, T{}, constant<T>(1.0)), T{}};
@@ -174,7 +173,7 @@ template <class T> inline Vec<T> perpendicular(Vec<T> t) {
     return (1.0 / norm(p)) * p;
 }
 
-// v carried along by the smallest rotation that takes the unit vector a to the unit vector b (parallel transport).
+// Parallel transport of v: the smallest rotation that takes the unit vector a to the unit vector b, applied to v.
 template <class T> inline Vec<T> transport(Vec<T> v, Vec<T> a, Vec<T> b) {
     const Vec<T> axis = cross(a, b);
     const T cosine = max(dot(a, b), constant<T>(-1.0 + 1e-9));

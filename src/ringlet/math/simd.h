@@ -1,12 +1,12 @@
-// Which instruction set the kernels in *.simd.cpp run on: chosen once, at first use.
+// Instruction set that the kernels in *.simd.cpp run on; chosen once, at first use.
 #pragma once
 
 namespace ringlet {
 
 enum class Simd { baseline, avx2, avx512 };
 
-// The widest set that this build and this processor have; the environment variable RINGLET_SIMD (baseline, avx2, avx512)
-// lowers it, for testing one set against another.
+// The widest set that this build and this processor support. The environment variable RINGLET_SIMD (baseline, avx2, avx512)
+// lowers it, to test one set against another.
 Simd simd();
 const char *simd_name(Simd set);
 

@@ -23,7 +23,7 @@ Edge edge(const double *points, int i) {
     return {length, (1.0 / (length > 0.0 ? length : 1.0)) * e};
 }
 
-// The two bends of a corner, by the edges before and behind and by the turn of the director of the one behind.
+// Gradients of the two bends of a corner, by the edges before and after it and by the rotation of the director of the latter.
 struct Bends {
     EdgeGradient<double> by_edges[2];
     double by_turn[2];
@@ -48,7 +48,7 @@ Vector solve(Vector a, Vector b, Vector c, Vector v) {
     return (1.0 / dot(a, bc)) * Vector{dot(v, bc), dot(v, ca), dot(v, ab)};
 }
 
-// v turned about the direction of `turn` by its length [rad].
+// v rotated about the direction of `turn` by its length [rad].
 Vector rotate(Vector v, Vector turn) {
     const double angle = norm(turn);
     if (!(angle > 0.0)) return v;
@@ -62,17 +62,17 @@ Vector rotate(Vector v, Vector turn) {
 void balance(int n, int held, const double *points, const double *directors, const double *loads, const double *twisting,
              JointRows<double> forces) {
     for (int i = 0; i < n; ++i) forces.length[i] = forces.bend[2 * i] = forces.bend[2 * i + 1] = forces.twist[i] = 0.0;
-    Vector beyond{};
-    Edge next{};   // behind the edge k
-    Bends ahead{}; // of the corner between them
+    Vector beyond{}; // sum of the loads from the end of edge k to the tip
+    Edge next{};     // edge k + 1
+    Bends ahead{};   // of the corner between the two
     for (int k = n - 2; k >= held - 1; --k) {
         const Edge before = edge(points, k - 1), e = edge(points, k);
         const EdgeGradient<double> twist_before = twist_gradient(before, e);
         const Bends here = bends(before, e, row(directors, k));
         beyond = beyond + row(loads, k + 1);
 
-        // What the corner at its end and its own twist take of the load is known; of the twist before, that it differs by what
-        // the bend and what else turns the director do to that.
+        // The forces of the corner at the end of edge k, and its twist, are known. The twist of the edge before it follows from
+        // the moment balance of the director of edge k.
         const double behind = forces.twist[k] + twisting[k];
         Vector left = beyond - behind * twist_before.second;
         if (k + 2 < n) {

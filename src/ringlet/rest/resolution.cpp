@@ -5,7 +5,7 @@
 namespace ringlet {
 
 ResolutionFactors resolution_factors(double angle, double dihedral) {
-    // The helix of which a unit edge is a chord: it turns by β about the axis and climbs h at radius R.
+    // Helix with a unit edge as its chord: rotation β about the axis, rise h, radius R.
     const double C = std::cos(angle / 2), S = std::sin(angle / 2), q = std::cos(dihedral / 2),
                  z = std::abs(std::sin(dihedral / 2));
     const double D = 1 - C * C * q * q;
@@ -15,8 +15,7 @@ ResolutionFactors resolution_factors(double angle, double dihedral) {
     const double R = 0.5 * std::sqrt(1 - h * h) / std::sqrt(D);
     const double arc = std::hypot(R * beta, h), cos_pitch = R * beta / arc, sin_pitch = h / arc;
 
-    // Axial compliance by twist, of the chord over that of the arc; by bend, the same, where the coil is steep enough to have
-    // any.
+    // Ratios of the axial compliance of the chord to that of the arc: by twist, and by bend if the coil is steep enough.
     const double root = std::pow(D, 1.5);
     const double by_twist = std::pow(0.5 * C * q * S * S / root, 2) / (arc * R * R * cos_pitch * cos_pitch);
     const double by_bend = sin_pitch > 1e-6 ? std::pow(0.5 * z * S / root, 2) / (arc * R * R * sin_pitch * sin_pitch) : 1.0;

@@ -6,7 +6,7 @@
 namespace ringlet {
 namespace {
 
-// v carried by the smallest rotation from the direction of a to that of b.
+// Parallel transport of v from the direction of a to that of b.
 Vec3 transport(const Vec3 &v, const Vec3 &a, const Vec3 &b) { return Eigen::Quaterniond::FromTwoVectors(a, b) * v; }
 
 } // namespace
@@ -19,7 +19,7 @@ RestShape measure_rest_shape(View<int> offsets, View<Vec3> points) {
         const auto edge = [&](int i) -> Vec3 { return points[i + 1] - points[i]; };
         for (int i = first; i + 1 < end; ++i) rest.length[i] = edge(i).norm();
 
-        // Corners and their normals; a straight one takes its neighbour's, so that the dihedrals in between add up.
+        // Corners and their normals. A straight corner takes that of its neighbour, so that dihedral angles add up.
         int bent = first;
         for (int i = first + 1; i + 1 < end; ++i) {
             const Vec3 product = edge(i - 1).cross(edge(i));

@@ -1,4 +1,4 @@
-// The strains of a polyline: what a strand at rest in that shape remembers.
+// Rest shape of strands: the lengths and angles of a polyline at which the elastic energy is zero.
 #pragma once
 
 #include "ringlet/math/types.h"
@@ -7,12 +7,12 @@
 
 namespace ringlet {
 
-// One row per vertex of the packed strands; an edge's values stand where the edge begins. Rows without meaning are zero.
+// One row per vertex of the packed strands; values of an edge are in the row of its first vertex. Unused rows are zero.
 struct RestShape {
     std::vector<double> length;   // l̄ of the edge [m]
     std::vector<double> angle;    // θ̄ at the vertex [rad], 0 = straight
     std::vector<double> dihedral; // φ̄ of the edge [rad], in (−π, π]
-    std::vector<Vec3> normal;     // of the corner; where it is straight, that of a neighbour carried along
+    std::vector<Vec3> normal;     // of the corner; for a straight corner, parallel transport of a neighbour's
 };
 
 RestShape measure_rest_shape(View<int> offsets, View<Vec3> points);

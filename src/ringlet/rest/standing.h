@@ -1,9 +1,9 @@
-// Whether strands that are still stand: whether all of the second derivative of their energy is positive, and if not, how much
-// stiffer against bend and twist they would have to be.
+// Stability of strands in static equilibrium: whether the Hessian of the elastic energy is positive definite, and the least
+// stiffening of bend and twist that makes it so.
 //
-// Of ½ k r², a term of bend or of twist, that derivative is k ∇r ∇rᵀ + k r ∇²r. What a strand must hold where it is still, k r,
-// follows from its loads and its shape, however stiff it is. So as a strand is made s times stiffer, and remembers what it must
-// to be still where it was, only the first part grows: the whole is s A + B, with A ≥ 0.
+// A term ½ k r² of bend or twist has the Hessian k ∇r ∇rᵀ + k r ∇²r: its material and its geometric stiffness. The internal
+// force k r balances the loads and does not depend on the stiffness. So when a strand becomes s times stiffer, and its rest
+// shape changes such that the equilibrium stays, only the first term grows. The Hessian is s A + B, with A ≥ 0.
 #pragma once
 
 #include "ringlet/math/simd.h"
@@ -12,7 +12,7 @@
 
 namespace ringlet {
 
-// Packed like Curves, one row per vertex; an edge's values stand in the row of the vertex where it begins.
+// Strands in equilibrium, packed like Curves, one row per vertex; values of an edge are in the row of its first vertex.
 struct StillStrands {
     const int *offsets;
     const unsigned char *held;
@@ -23,14 +23,13 @@ struct StillStrands {
 
 // clang-format off
 RINGLET_DECLARE(
-    size_t standing_room(int vertices); // doubles that the next one works in
+    size_t standing_room(int vertices); // doubles of scratch memory for the next function
     double stiffness_to_stand(const StillStrands &strands, int strand, double left, double most, double *room);
 )
 // clang-format on
 
-// Of each of `count` strands, how many times stiffer it must be, at least 1, to stand and to resist in every direction what
-// bends and twists it with the part left[strand] (from 0 below 1) of what it does without load. Infinite where `most` times are
-// not enough.
+// Least factor on the stiffness, at least 1, with which each of `count` strands is stable with a reserve: in every direction at
+// least the fraction left[strand] (0 ≤ left < 1) of its material stiffness remains. Infinite if `most` is not enough.
 void stiffness_to_stand(int count, const StillStrands &strands, const double *left, double most, double *factors);
 
 } // namespace ringlet

@@ -8,40 +8,42 @@
 namespace ringlet::RINGLET_SIMD {
 namespace {
 
-constexpr int freedoms = 4;   // of a vertex: its position, and the turn of the director of the edge that begins there [rad]
-constexpr int reach = 11;     // unknowns of two edges that follow one another: three vertices and two directors
-constexpr double near = 0.01; // how near to the least stiffness is found, of it
-using Matrix = Banded<double, freedoms, reach>;
+constexpr int dofs = 4;                  // of a vertex: its position, and the rotation of the director of its edge [rad]
+constexpr int joint_dofs = 11;           // of two consecutive edges: three vertices and two directors
+constexpr double bisection_error = 0.01; // relative error of the least factor
+using Matrix = Banded<double, dofs, joint_dofs>;
 
 Vec<double> row(const double *values, int i) { return {values[3 * i], values[3 * i + 1], values[3 * i + 2]}; }
-Vec<Dual> known_row(Vec<double> v) { return {known(v.x), known(v.y), known(v.z)}; }
+Vec<Dual> known_row(Vec<double> v) { return {dual_constant(v.x), dual_constant(v.y), dual_constant(v.z)}; }
 
-// An edge with its director, by three unknowns of its vector and the turn of the director.
+// An edge with its director; the variables of the dual numbers are its vector and the rotation of the director.
 struct Edge {
-    Vec<Dual> before, tangent; // where it is, and as it would move
+    Vec<Dual> before, tangent; // current tangent as a constant, and as a function of the variables
     Dual length;
     Vec<Dual> director, across; // across: tangent × director
 
     Edge(Vec<double> vector, Vec<double> at, int number, int turn) {
-        const Vec<Dual> e{unknown(vector.x, number), unknown(vector.y, number + 1), unknown(vector.z, number + 2)};
+        const Vec<Dual> e{dual_variable(vector.x, number), dual_variable(vector.y, number + 1),
+                          dual_variable(vector.z, number + 2)};
         length = norm(e);
         tangent = (1.0 / length) * e;
         before = known_row({tangent.x.value, tangent.y.value, tangent.z.value});
         const Vec<Dual> carried = transport(known_row(at), before, tangent);
-        director = carried + unknown(0.0, turn) * cross(tangent, carried); // to first order, as far as its use here goes
+        director = carried + dual_variable(0.0, turn) * cross(tangent, carried); // first order is enough for the derivative
         across = cross(tangent, director);
     }
     Vec<Dual> spin_of() const { return spin(before, tangent, length); }
 };
 
-// A residual of two edges' energy by their unknowns: two vectors and two turns.
+// Residual r of one energy term of two consecutive edges, and its gradient by the two edge vectors and the two rotations of
+// directors. The dual numbers of the gradient hold the second derivatives.
 struct Residual {
     double value;
-    Vec<Dual> first, second; // its gradient, of which the dual numbers know the derivative
+    Vec<Dual> first, second;
     Dual turn0, turn1;
 };
 
-// Two edges that follow one another: what bends the corner between them and twists the first.
+// Two consecutive edges: the residuals of bend at the corner between them and of twist of the first.
 class Joint {
 public:
     Joint(const StillStrands &strands, int i)
@@ -55,8 +57,8 @@ public:
     Residual twist() const {
         const auto g = frame_twist_gradient(corner_, e0_.tangent, e1_.tangent, e0_.length, e1_.length);
         const Dual angle = frame_twist(e0_.director, e0_.tangent, e1_.director, e1_.tangent);
-        return {wrap(angle.value - strands_.rest_dihedral[i_]), g.first - e0_.spin_of(), g.second + e1_.spin_of(), known(-1.0),
-                known(1.0)};
+        return {wrap(angle.value - strands_.rest_dihedral[i_]), g.first - e0_.spin_of(), g.second + e1_.spin_of(),
+                dual_constant(-1.0), dual_constant(1.0)};
     }
 
 private:
@@ -64,7 +66,7 @@ private:
 
     Residual bend(Vec<Dual> axis, Dual by_turn, double rest) const {
         const auto g = turning_gradient(corner_, e0_.tangent, e1_.tangent, e0_.length, e1_.length, axis);
-        return {dot(turning_, axis).value - rest, g.first, g.second + by_turn * e1_.spin_of(), known(0.0), by_turn};
+        return {dot(turning_, axis).value - rest, g.first, g.second + by_turn * e1_.spin_of(), dual_constant(0.0), by_turn};
     }
 
     const StillStrands &strands_;
@@ -74,14 +76,15 @@ private:
     Vec<Dual> turning_;
 };
 
-// The second derivative of a strand's energy, and what of it grows as the strand is made stiffer.
-class Standing {
+// Hessian s A + B of a strand. `growing_` is A, the material stiffness of bend and twist. `fixed_` is B, their geometric
+// stiffness and the Hessian of stretch.
+class StabilityTest {
 public:
-    Standing(const StillStrands &strands, int strand, double *room)
+    StabilityTest(const StillStrands &strands, int strand, double *room)
         : strands_(strands), begin_(strands.offsets[strand]), count_(strands.offsets[strand + 1] - begin_),
           growing_(room, size()), fixed_(room + entries(), size()), sum_(room + 2 * entries(), size()) {}
 
-    static size_t room(int vertices) { return 3 * size_t(Matrix::entries(freedoms * vertices)); }
+    static size_t room(int vertices) { return 3 * size_t(Matrix::entries(dofs * vertices)); }
 
     void assemble() {
         growing_.set_zero();
@@ -93,32 +96,32 @@ public:
             add(i, joint.across(), bend);
             add(i, joint.along(), bend);
             if (twist > 0.0) add(i, joint.twist(), twist);
-            growing_.entry(freedoms * (i + 1) + 3)[0] += 1e-9 * bend; // where nothing holds a director
+            growing_.entry(dofs * (i + 1) + 3)[0] += 1e-9 * bend; // a director without any resistance
         }
-        hold();
+        prescribe();
     }
 
-    // The least of 1 … most at which growing_ · (factor − left) + fixed_ is positive definite.
+    // Least factor in 1 … most for which (factor − left) A + B is positive definite, by bisection; infinite if there is none.
     double least(double left, double most) {
-        if (stands(1.0 - left)) return 1.0;
-        if (!stands(most - left)) return __builtin_inf();
-        double falls = 1.0;
-        while (most > (1.0 + near) * falls) {
-            const double middle = __builtin_sqrt(most * falls);
-            (stands(middle - left) ? most : falls) = middle;
+        if (is_stable(1.0 - left)) return 1.0;
+        if (!is_stable(most - left)) return __builtin_inf();
+        double unstable = 1.0;
+        while (most > (1.0 + bisection_error) * unstable) {
+            const double middle = __builtin_sqrt(most * unstable);
+            (is_stable(middle - left) ? most : unstable) = middle;
         }
         return most;
     }
 
 private:
-    int size() const { return freedoms * count_; }
+    int size() const { return dofs * count_; }
     int entries() const { return Matrix::entries(size()); }
     bool held(int i) const { return strands_.held[begin_ + i] != 0; }
 
-    // The turn of a director is free from the second edge on, but where its edge is held.
+    // Directors rotate from the second edge on, except those of edges with two prescribed vertices.
     bool is_free(int unknown) const {
-        const int i = unknown / freedoms;
-        if (unknown % freedoms < 3) return !held(i);
+        const int i = unknown / dofs;
+        if (unknown % dofs < 3) return !held(i);
         return i > 0 && i + 1 < count_ && !(held(i) && held(i + 1));
     }
 
@@ -133,42 +136,42 @@ private:
                 const double value = (k - across) * tangent[a] * tangent[b] + (a == b ? across : 0.0);
                 for (int p = 0; p < 2; ++p)
                     for (int q = 0; q < 2; ++q)
-                        put(fixed_, freedoms * (i + p) + a, freedoms * (i + q) + b, p == q ? value : -value);
+                        add_lower(fixed_, dofs * (i + p) + a, dofs * (i + q) + b, p == q ? value : -value);
             }
     }
 
     void add(int i, const Residual &residual, double stiffness) {
-        // The two edges' unknowns by those of three vertices: an edge is the difference of its ends.
-        const Dual rows[reach] = {-residual.first.x,
-                                  -residual.first.y,
-                                  -residual.first.z,
-                                  residual.turn0,
-                                  residual.first.x - residual.second.x,
-                                  residual.first.y - residual.second.y,
-                                  residual.first.z - residual.second.z,
-                                  residual.turn1,
-                                  residual.second.x,
-                                  residual.second.y,
-                                  residual.second.z};
-        const double holds = stiffness * residual.value;
-        for (int r = 0; r < reach; ++r) {
+        // Chain rule from edge vectors to the positions of three vertices.
+        const Dual rows[joint_dofs] = {-residual.first.x,
+                                       -residual.first.y,
+                                       -residual.first.z,
+                                       residual.turn0,
+                                       residual.first.x - residual.second.x,
+                                       residual.first.y - residual.second.y,
+                                       residual.first.z - residual.second.z,
+                                       residual.turn1,
+                                       residual.second.x,
+                                       residual.second.y,
+                                       residual.second.z};
+        const double force = stiffness * residual.value;
+        for (int r = 0; r < joint_dofs; ++r) {
             const Dual::Derivatives &by = rows[r].by;
-            const double second[reach] = {-by[0],        -by[1], -by[2], by[6], by[0] - by[3], by[1] - by[4],
-                                          by[2] - by[5], by[7],  by[3],  by[4], by[5]};
+            const double second[joint_dofs] = {-by[0],        -by[1], -by[2], by[6], by[0] - by[3], by[1] - by[4],
+                                               by[2] - by[5], by[7],  by[3],  by[4], by[5]};
             for (int c = 0; c <= r; ++c) {
-                put(growing_, freedoms * i + r, freedoms * i + c, stiffness * rows[r].value * rows[c].value);
-                put(fixed_, freedoms * i + r, freedoms * i + c, holds * second[c]);
+                add_lower(growing_, dofs * i + r, dofs * i + c, stiffness * rows[r].value * rows[c].value);
+                add_lower(fixed_, dofs * i + r, dofs * i + c, force * second[c]);
             }
         }
     }
 
-    // The lower half is kept.
-    static void put(Matrix &matrix, int r, int c, double value) {
+    // Adds to the lower triangle, which is all that is stored.
+    static void add_lower(Matrix &matrix, int r, int c, double value) {
         if (r >= c) matrix.entry(c)[r - c] += value;
     }
 
-    // What is held has nothing to do with the rest, and stands.
-    void hold() {
+    // Replaces the rows and columns of prescribed degrees of freedom by those of the identity in B.
+    void prescribe() {
         for (int c = 0; c < size(); ++c) {
             const bool free = is_free(c);
             for (int k = 0; k < Matrix::rows(c); ++k)
@@ -177,8 +180,8 @@ private:
         }
     }
 
-    // Whether the sum is positive definite: by its factor, of which every pivot must be positive.
-    bool stands(double factor) {
+    // Whether factor · A + B is positive definite: all pivots of its factorisation are positive.
+    bool is_stable(double factor) {
         for (int k = 0; k < entries(); ++k) sum_.entry(0)[k] = factor * growing_.entry(0)[k] + fixed_.entry(0)[k];
         sum_.factor();
         for (int c = 0; c < size(); ++c)
@@ -193,12 +196,12 @@ private:
 
 } // namespace
 
-size_t standing_room(int vertices) { return Standing::room(vertices); }
+size_t standing_room(int vertices) { return StabilityTest::room(vertices); }
 
 double stiffness_to_stand(const StillStrands &strands, int strand, double left, double most, double *room) {
-    Standing standing(strands, strand, room);
-    standing.assemble();
-    return standing.least(left, most);
+    StabilityTest test(strands, strand, room);
+    test.assemble();
+    return test.least(left, most);
 }
 
 } // namespace ringlet::RINGLET_SIMD

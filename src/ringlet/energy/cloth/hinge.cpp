@@ -13,8 +13,8 @@ using Vector = baseline::Vec<double>;
 Vector plain(const Vec3 &v) { return {v.x(), v.y(), v.z()}; }
 Vec3 eigen(const Vector &v) { return {v.x, v.y, v.z}; }
 
-// The two triangles seen from their common edge. The normal of the second is turned round: then both point to the same side
-// where the sheet is flat.
+// Geometry of two triangles about their common edge. The normal of the second is reversed, so that both point to the same side
+// of a flat sheet.
 struct Fold {
     Vec3 edge, b1, b3;
     double length, height_a, height_b;

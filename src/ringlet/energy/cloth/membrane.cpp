@@ -9,13 +9,14 @@ namespace {
 
 double square(double x) { return x * x; }
 
-// v / ‖v‖, or some direction where v has none.
+// v / ‖v‖; some unit vector if v is zero.
 Vec3 direction(const Vec3 &v, double length) { return length > 1e-12 ? Vec3(v / length) : Vec3::UnitX(); }
 
 // a d dᵀ + b (I − d dᵀ) for a unit d.
 Mat3 along_and_across(const Vec3 &d, double a, double b) { return (a - b) * d * d.transpose() + b * Mat3::Identity(); }
 
-// ½ k (‖F‖ − s)²: k along F, k (1 − s/‖F‖) across it, which is left out in compression.
+// Adds the derivatives of ½ k (‖F‖ − s)². The eigenvalues are k along F and k (1 − s/‖F‖) across it; the latter is negative in
+// compression and clamped to 0.
 void add_stretch(const Vec3 &F, double rest, double stiffness, Vec3 &gradient, Mat3 &hessian) {
     const double length = F.norm(), w = length - rest;
     const Vec3 along = direction(F, length);
@@ -23,7 +24,7 @@ void add_stretch(const Vec3 &F, double rest, double stiffness, Vec3 &gradient, M
     hessian += along_and_across(along, stiffness, w > 0 ? stiffness * w / length : 0.0);
 }
 
-// The positive part of [a c; c b] with a + b ≥ 0, by its eigenvalues: (Σ max(λ, 0) (M − λ' I)) / (λ − λ').
+// PSD projection of [a c; c b] with a + b ≥ 0: (Σ max(λ, 0) (M − λ' I)) / (λ − λ') over its eigenvalues λ, λ'.
 struct Symmetric2 {
     double a, b, c;
 };
@@ -35,9 +36,9 @@ Symmetric2 positive_part(const Symmetric2 &m) {
     return {scale * (m.a - low), scale * (m.b - low), scale * m.c};
 }
 
-// ½ k w², w = Fᵤ·Fᵥ − s: k (g gᵀ + w H) with g = (Fᵥ, Fᵤ) and H exchanging the two. H is 1 on (a, a)/√2 and −1 on (a, −a)/√2,
-// and g lies in the plane of those with a along Fᵤ + Fᵥ and a along Fᵤ − Fᵥ: there are two eigenvalues in that plane, w twice
-// and −w twice.
+// Adds the derivatives of ½ k w², w = Fᵤ·Fᵥ − s. The Hessian is k (g gᵀ + w H) with g = (Fᵥ, Fᵤ), where H exchanges the two
+// vectors. H is 1 on (a, a)/√2 and −1 on (a, −a)/√2. The vector g lies in the plane of (a, a) with a along Fᵤ + Fᵥ and (a, −a)
+// with a along Fᵤ − Fᵥ. So two eigenvalues belong to that plane; the other four are w twice and −w twice.
 void add_shear(const MembraneShape &shape, double rest, double stiffness, Membrane &result) {
     const double w = shape.warp.dot(shape.weft) - rest;
     result.gradient_warp += stiffness * w * shape.weft;

@@ -1,23 +1,24 @@
-// Stretch and shear of one triangle of cloth, with Fᵤ and Fᵥ the images of its warp and weft directions:
-//   W = A [ ½ kᵤ (‖Fᵤ‖ − sᵤ)² + ½ kᵥ (‖Fᵥ‖ − sᵥ)² + ½ kₛ (Fᵤ·Fᵥ − s)² ],  A the area at rest [m²], k in N/m.
-// At rest sᵤ = sᵥ = 1 and s = 0. Stencil: three vertices. (Baraff and Witkin 1998, in the finite element form of Kim 2020.)
+// Membrane energy of one triangle of cloth, stretch and shear (Baraff and Witkin 1998, in the finite element form of Kim 2020):
+//   W = A [ ½ kᵤ (‖Fᵤ‖ − sᵤ)² + ½ kᵥ (‖Fᵥ‖ − sᵥ)² + ½ kₛ (Fᵤ·Fᵥ − s)² ]
+// Fᵤ and Fᵥ are the images of the unit vectors along warp and weft, A is the rest area [m²], and k is in N/m. The rest strains
+// are sᵤ = sᵥ = 1 and s = 0. Stencil: three vertices.
 #pragma once
 
 #include "ringlet/math/types.h"
 
 namespace ringlet {
 
-// F = Σ xᵢ wᵢ over the triangle's vertices; the weights of each direction add up to zero [1/m].
+// Rest shape of a triangle: the weights of F = Σ xᵢ wᵢ over its vertices, whose sum is zero for each direction [1/m].
 struct MembraneRest {
     Vec3 warp, weft; // a weight per vertex
     double area;     // [m²]
 };
 
-// Weights of a triangle at rest whose warp runs along the projection of `warp_direction` onto it. A triangle without area gets
-// no weights and no area.
+// Weights of a triangle whose warp is the projection of `warp_direction` onto it. They are zero, as is the area, for a
+// degenerate triangle.
 MembraneRest measure_membrane(const Vec3 (&rest)[3], const Vec3 &warp_direction);
 
-// What the energy measures: ‖Fᵤ‖, ‖Fᵥ‖ and Fᵤ·Fᵥ.
+// Strains ‖Fᵤ‖, ‖Fᵥ‖ and Fᵤ·Fᵥ.
 struct MembraneStrain {
     double warp, weft, shear;
 };
@@ -34,7 +35,7 @@ struct MembraneStiffness {
     double warp, weft, shear;
 };
 
-// W / A [J/m²], by Fᵤ and Fᵥ: gradient and Hessian, whose negative eigenvalues are left out.
+// Gradient of W / A [J/m²] by Fᵤ and Fᵥ, and its Hessian projected to be positive semi-definite.
 struct Membrane {
     Vec3 gradient_warp, gradient_weft; // ∂/∂Fᵤ, ∂/∂Fᵥ [N/m]
     Mat3 warp_warp, warp_weft, weft_weft;

@@ -1,13 +1,13 @@
-// The dihedral angle φ about the middle one of three edges b₁, b₂, b₃ in a row: between the plane of b₁, b₂ and that of b₂, b₃.
-// A strand's twist and a cloth's hinge are both made of it. With A = b₁×b₂ and B = b₂×b₃: φ = atan2(‖b₂‖ b₁·B, A·B).
+// Dihedral angle φ about the middle one of three consecutive edges b₁, b₂, b₃: from the plane of b₁, b₂ to that of b₂, b₃.
+// With A = b₁×b₂ and B = b₂×b₃: φ = atan2(‖b₂‖ b₁·B, A·B). The twist of a strand and the hinge of cloth both use it.
 #pragma once
 
 #include "ringlet/math/pack.h"
 
 namespace ringlet::RINGLET_SIMD {
 
-// φ in (−π, π] between unit normals n_a of b₁, b₂ and n_b of b₂, b₃; `height` is the distance of the end of b₃ from the line of
-// b₂. (b₃ and its height may be given in any unit.)
+// φ in (−π, π] from the unit normals n_a of b₁, b₂ and n_b of b₂, b₃. `height` is the distance of the end of b₃ from the line
+// of b₂, in the unit of b₃; any unit will do.
 template <class T> inline T dihedral_angle(Vec<T> n_a, Vec<T> n_b, Vec<T> b3, T height) {
     return atan2(dot(n_a, b3), height * dot(n_a, n_b));
 }

@@ -1,16 +1,16 @@
-// Bend at one vertex: E = ½ k (σθ − θ̄)², k = EI / l_v [N m]. Stencil: three vertices (two edges).
+// Bending energy at one vertex: E = ½ k (σθ − θ̄)², k = EI / l_v [N m]. Stencil: three vertices (two edges).
 // θ is the turning angle (0 = straight), σ = ±1 its sign (see strand/continuation_*.h).
-// Eigenvalues of the Hessian in edge space after Wu & Kim 2023, with each edge measured in units of its own length, so that
-// they hold for unequal edges too.
+// The eigenvalues of the Hessian in edge space are those of Wu & Kim 2023. Each edge is measured in units of its own length, so
+// that they hold for unequal edges too.
 #pragma once
 
 #include "ringlet/math/pack.h"
 
 namespace ringlet::RINGLET_SIMD {
 
-// Where two consecutive edges meet.
+// Turning angle and normal at the vertex of two consecutive edges.
 template <class T> struct Corner {
-    T sine, cosine, angle; // of the turning angle θ, in [0, π]
+    T sine, cosine, angle; // sin θ, cos θ and θ in [0, π]
     Vec<T> normal;         // unit normal of the plane of the two edges; any perpendicular where they are parallel
 };
 
@@ -36,15 +36,18 @@ template <class T> struct EdgeTerm {
 
 template <class T> struct Bend {
     Vec<T> gradient0, gradient1; // by the two edge vectors [N]
-    EdgeTerm<T> terms[4];        // the Hessian's positive part, as a sum of four squares
+    EdgeTerm<T> terms[4];        // Hessian, projected to be positive semi-definite, as a sum of four squares
 };
 
-// With w = θ − σθ̄ (σ² = 1 turns σθ − θ̄ into it), m = n × t, in units of each edge's length: the in-plane part couples
-// p = (t₀+t₁)/√2 with d = (m₀−m₁)/√2 (eigenvalues k(1 ± √(1+w²))) and q = (t₀−t₁)/√2 with s = (m₀+m₁)/√2 (eigenvalues ±k|w|);
-// out of the plane n₀ ± n₁ have −k w tan(θ/2) and k w cot(θ/2). Negative ones are left out.
+// Gradient and projected Hessian, with w = θ − σθ̄ (equal to σθ − θ̄ up to the sign σ) and m = n × t, in units of the lengths
+// of the edges. The Hessian has six eigenvalues:
+//   in the plane, p = (t₀+t₁)/√2 and d = (m₀−m₁)/√2 couple    k (1 ± √(1+w²))
+//   in the plane, q = (t₀−t₁)/√2 and s = (m₀+m₁)/√2 couple    ±k |w|
+//   out of the plane, along n₀ + n₁ and along n₀ − n₁         −k w tan(θ/2) and k w cot(θ/2)
+// Negative eigenvalues are clamped to 0.
 template <class T>
 inline Bend<T> bend(const Corner<T> &c, Vec<T> t0, Vec<T> t1, T length0, T length1, T sigma, T rest_angle, T stiffness) {
-    const double stiffest = 1e3; // an edge pair that is mirrored and nearly straight: cot(θ/2) has no bound
+    const double stiffest = 1e3; // bounds cot(θ/2) of a nearly straight pair whose turning angle has the wrong sign
     const T w = c.angle - sigma * rest_angle;
     const T inverse0 = 1.0 / length0, inverse1 = 1.0 / length1;
     const Vec<T> m0 = cross(c.normal, t0), m1 = cross(c.normal, t1);
@@ -69,11 +72,10 @@ inline Bend<T> bend(const Corner<T> &c, Vec<T> t0, Vec<T> t1, T length0, T lengt
     return result;
 }
 
-// An eigenvalue counts as clamped from this much below zero, by the element's stiffness: rounding does not.
+// Least magnitude of a negative eigenvalue that counts as clamped, as a fraction of the stiffness; smaller ones are rounding.
 inline constexpr double clamped_from = 1e-6;
 
-// How many of the six eigenvalues are negative, so that bend() leaves them out: one of each pair where the corner is bent and
-// not at its rest angle.
+// Number of the six eigenvalues that bend() clamps: one of each pair where the corner is bent and not at its rest angle.
 template <class T> inline T clamped_bend(const Corner<T> &c, T sigma, T rest_angle, T stiffness) {
     const T w = c.angle - sigma * rest_angle, one = constant<T>(1.0);
     const T one_plus_cosine = max(1.0 + c.cosine, constant<T>(1e-12));

@@ -1,8 +1,10 @@
-// Bend and twist of a strand with a material frame, a director D ⟂ t on every edge. With K = θ n the turning at a corner,
-//   bend  ½ k_b [ (K·D − θ̄)² + (K·(t×D))² ]   D of the edge behind the corner; stencil: three vertices and that director
-//   twist ½ k_t wrap(τ − φ̄)²                  τ: angle about an edge from its D to the next, carried back; stencil: three
-//                                             vertices and two directors
-// Hessians are sums of squares of the residuals' gradients (Gauss–Newton). After Bergou et al. 2008, 2010.
+// Bending and twisting energy of a strand with a material frame (discrete elastic rods: Bergou et al. 2008, 2010). Each edge
+// has a director D ⟂ t, and K = θ n is the curvature vector at a corner.
+//   bend  ½ k_b [ (K·D − θ̄)² + (K·(t×D))² ]   with D of the edge after the corner. Stencil: three vertices, that director
+//   twist ½ k_t wrap(τ − φ̄)²                  with τ the angle from D to the next director. Stencil: three vertices, two
+//                                             directors
+// The angle τ is measured about the edge, after parallel transport of the next director to it. Hessians are sums of squares of
+// the gradients of the residuals (Gauss–Newton).
 #pragma once
 
 #include "ringlet/energy/strand/bend.h"
@@ -10,21 +12,21 @@
 
 namespace ringlet::RINGLET_SIMD {
 
-// θ / sinθ, 1 where straight.
+// θ / sin θ; 1 for a straight corner.
 template <class T> inline T angle_by_sine(const Corner<T> &c) {
     const auto straight = c.sine < 1e-8;
     return select(straight, constant<T>(1.0), c.angle / select(straight, constant<T>(1.0), c.sine));
 }
 
-// K = θ n, smooth through straight.
+// K = θ n, smooth where the corner is straight.
 template <class T> inline Vec<T> turning(const Corner<T> &c, Vec<T> t0, Vec<T> t1) { return angle_by_sine(c) * cross(t0, t1); }
 
-// By the two edge vectors.
+// Gradient by the two edge vectors.
 template <class T> struct EdgeGradient {
     Vec<T> first, second;
 };
 
-// ∂(K·W)/∂e for a unit W ⟂ t₁ that is carried along with t₁.
+// ∂(K·W)/∂e for a unit vector W ⟂ t₁ under parallel transport with t₁.
 template <class T>
 inline EdgeGradient<T> turning_gradient(const Corner<T> &c, Vec<T> t0, Vec<T> t1, T length0, T length1, Vec<T> W) {
     const T r = angle_by_sine(c);
@@ -40,15 +42,15 @@ template <class T> inline T frame_twist(Vec<T> director, Vec<T> t, Vec<T> next_d
     return atan2(dot(cross(t, director), next), dot(director, next));
 }
 
-// ∂τ/∂e for directors carried along with their edges: half the curvature binormal 2 t×t'/(1 + t·t'), by each length.
+// ∂τ/∂e for directors under parallel transport with their edges: half the curvature binormal 2 t×t'/(1 + t·t'), by each length.
 template <class T>
 inline EdgeGradient<T> frame_twist_gradient(const Corner<T> &c, Vec<T> t, Vec<T> t_next, T length, T length_next) {
     const Vec<T> binormal = (1.0 / max(1.0 + c.cosine, constant<T>(1e-9))) * cross(t, t_next);
     return {(1.0 / length) * binormal, (1.0 / length_next) * binormal};
 }
 
-// How a director turns about its edge when the edge moves, if it is always carried straight from where the edge was before:
-// ∂γ/∂e.
+// ∂γ/∂e, the rotation of a director about its edge per motion of the edge, for parallel transport from a fixed reference
+// tangent `before` instead of from the current one.
 template <class T> inline Vec<T> spin(Vec<T> before, Vec<T> t, T length) {
     const T cosine = max(dot(before, t), constant<T>(-1.0 + 1e-9));
     return (-1.0 / ((1.0 + cosine) * length)) * cross(before, t);

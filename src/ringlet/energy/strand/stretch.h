@@ -1,14 +1,15 @@
-// Stretch of one edge: E = ½ k (‖e‖ − l̄)², k = EA / l̄ [N/m]. Stencil: two vertices.
+// Stretching energy of one edge: E = ½ k (‖e‖ − l̄)², k = EA / l̄ [N/m]. Stencil: two vertices.
 #pragma once
 
 #include "ringlet/math/pack.h"
 
 namespace ringlet::RINGLET_SIMD {
 
-// Force and stiffness of a stretch of the edge with unit tangent t:
-// ∂E/∂e = k (l − l̄) t,  H = k t tᵀ + k (1 − l̄/l)(I − t tᵀ); the second part is left out where it is negative (compression).
+// Derivatives by the edge vector, with the unit tangent t:
+//   ∂E/∂e = k (l − l̄) t,  H = k t tᵀ + k (1 − l̄/l)(I − t tᵀ)
+// The second term is negative in compression and clamped to 0.
 template <class T> struct Stretch {
-    Vec<T> gradient; // by the edge vector [N]
+    Vec<T> gradient; // ∂E/∂e [N]
     T along, across; // H = along t tᵀ + across (I − t tᵀ), both ≥ 0 [N/m]
 };
 

@@ -1,4 +1,4 @@
-#include "ringlet/geometry/near_cells.h"
+#include "ringlet/geometry/proximity_grid.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,8 @@
 
 namespace ringlet {
 
-NearCells::NearCells(const TriangleMesh &mesh, double distance) : distance_(distance) {
-    constexpr double most_cells = 128.0; // along the longest side
+ProximityGrid::ProximityGrid(const TriangleMesh &mesh, double distance) : distance_(distance) {
+    constexpr double max_cells = 128.0; // along the longest side
     const Vec3 infinite = Vec3::Constant(std::numeric_limits<double>::infinity());
     Vec3 low = infinite, high = -infinite;
     for (const Vec3 &p : mesh.points) {
@@ -16,7 +16,7 @@ NearCells::NearCells(const TriangleMesh &mesh, double distance) : distance_(dist
     }
     low.array() -= distance;
     high.array() += distance;
-    const double cell = std::max(distance, (high - low).maxCoeff() / most_cells);
+    const double cell = std::max(distance, (high - low).maxCoeff() / max_cells);
     if (!(cell > 0.0) || !std::isfinite(cell)) return;
     low_ = low;
     per_length_ = 1.0 / cell;

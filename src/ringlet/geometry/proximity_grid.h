@@ -1,5 +1,4 @@
-// Which places are certainly farther from a mesh than a distance, by a grid of cells: much quicker than to look for the
-// nearest.
+// Grid of the cells within a distance of a mesh. It rejects far points without a closest-point query.
 #pragma once
 
 #include "ringlet/geometry/triangle_mesh.h"
@@ -8,11 +7,13 @@
 
 namespace ringlet {
 
-class NearCells {
+class ProximityGrid {
 public:
-    NearCells(const TriangleMesh &mesh, double distance);
+    ProximityGrid(const TriangleMesh &mesh, double distance);
 
     double distance() const { return distance_; }
+
+    // False only if the place is farther from the mesh than distance().
     bool may_be_near(const Vec3 &place) const {
         const Eigen::Array3d at = (place - low_).array() * per_length_;
         if (!((at >= 0.0).all() && (at < size_.cast<double>()).all())) return false;
