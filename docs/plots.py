@@ -17,8 +17,8 @@ from ringlet.shot import Material, Strands
 
 from ringlet import validate
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "physics"))
-from stability import HELD, scenes
+sys.path.insert(0, str(Path(__file__).parents[1] / "tools" / "proof"))
+from releases import HELD, scenes
 
 FRAMES = Path(__file__).parents[1] / "bench" / "results" / "frames.json"
 RESOLUTION = re.compile(r"(?P<curve>.*), (?P<n>\d+) (edges|vertices a turn)$")

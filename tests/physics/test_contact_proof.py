@@ -9,15 +9,17 @@ from functools import cache
 import numpy as np
 import pytest
 from coils import helix
-from contact_scenes import SCENES, act, hooked_strands, onto_a_sheet, sheet, tightened
+from contact_scenes import SCENES, hooked_strands, onto_a_sheet, tightened
 from crossings import Judge
 from linking import linking
 from ringlet.curves import Curves
 from ringlet.shot import Material, Solver, Strands
 from ringlet.shot.scene import Contact, Scene
 from ringlet.validate.friction import CREEP, STEP, on_a_slope
+from surfaces import sheet
+from trial import judged_run
 
-outcome = cache(lambda name, newton: act(SCENES[name](), newton))
+outcome = cache(lambda name, newton: judged_run(SCENES[name](), newton))
 
 
 @pytest.mark.parametrize("newton", [1, 5])
@@ -135,7 +137,7 @@ for name in ("combed", "spun_head", "wound_coils"):
         done = subprocess.run(
             [sys.executable, "-c", program],
             env=environment,
-            cwd=pathlib.Path(__file__).parent,
+            cwd=pathlib.Path(__file__).parents[2] / "tools/proof",
             capture_output=True,
             text=True,
             check=True,

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 from coils import helix, jittered, rotation
+from releases import CLOSE, HELD, flattened, straightened
 from ringlet.curves import Curves
 from ringlet.shot import Material, Solver, Strands
-from stability import CLOSE, HELD, flattened, straightened
 
 FRAME = 1 / 24
 SAFEGUARDS = ("flip_history", "winding_number", "straight_fade")

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 from coils import helix, rotation
+from releases import CLOSE, HELD, release, scenes
 from ringlet.curves import Curves
 from ringlet.shot import Material, Solver, Strands
-from stability import CLOSE, HELD, release, scenes
 
 NAMES = [name for name, _, _ in scenes()]
 

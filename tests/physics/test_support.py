@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from coils import helix, rotation
-from rest_shapes import FPS, HEAD, grown
+from hairstyles import FPS, HEAD, grown
 from ringlet.curves import Curves
 from ringlet.groom.groom import Groom
 from ringlet.mesh import Clip, Mesh
