@@ -14,7 +14,7 @@ from conftest import Review, different
 from ringlet import build_groom, build_hairs
 
 
-def test_hairs_on_the_graphics_card_are_those_of_the_core(opened: Any, folder: Path):
+def test_gpu_hairs_equal_those_of_the_core(opened: Any, folder: Path):
     """The shader carries hairs as src/ringlet/groom/hairs.cpp does."""
     recipe = folder / "small.recipe.toml"
     recipe.write_text(
@@ -35,7 +35,7 @@ def test_hairs_on_the_graphics_card_are_those_of_the_core(opened: Any, folder: P
     assert not review.wrong
 
 
-def test_a_slider_changes_the_picture_and_the_recipe_and_undo_takes_it_back(opened: Any):
+def test_a_slider_changes_picture_and_recipe_and_undo_reverts_both(opened: Any):
     review: Review = opened()
     before, text = review.picture(), review.text()
     review.drag(review.slider("curl.width"), 0.35, 0.6, 0.9)
@@ -51,7 +51,7 @@ def test_a_slider_changes_the_picture_and_the_recipe_and_undo_takes_it_back(open
     assert not review.wrong
 
 
-def test_a_ramp_is_drawn_by_its_points(opened: Any):
+def test_a_ramp_is_edited_by_its_points(opened: Any):
     review: Review = opened()
     ramp = review.page.locator('[data-setting="curl.width.ramp"] svg.ramp')
     box = ramp.bounding_box()
@@ -112,7 +112,7 @@ def test_a_lock_is_isolated_dragged_and_returned(opened: Any):
     assert not review.wrong
 
 
-def test_saving_writes_the_file_and_a_new_page_sees_what_was_saved(opened: Any, folder: Path, serve: Any):
+def test_saving_writes_the_file_and_a_new_page_shows_it(opened: Any, folder: Path, serve: Any):
     server = serve("small.recipe.toml")
     review: Review = opened(server)
     field = review.page.locator('[data-setting="curl.pitch"] > .field-head input.number')
@@ -127,7 +127,7 @@ def test_saving_writes_the_file_and_a_new_page_sees_what_was_saved(opened: Any, 
     review.until("window.ringlet?.model.documents.recipe?.said.curl.pitch == 2.25")
 
 
-def test_one_edits_and_the_other_follows(opened: Any, serve: Any):
+def test_one_page_edits_and_the_other_follows(opened: Any, serve: Any):
     server = serve("small.recipe.toml")
     one: Review = opened(server)
     two: Review = opened(server)
@@ -142,7 +142,7 @@ def test_one_edits_and_the_other_follows(opened: Any, serve: Any):
     one.until("!ringlet.model.role.leads")
 
 
-def test_a_killed_server_loses_nothing(opened: Any, serve: Any):
+def test_no_edit_is_lost_when_the_server_is_killed(opened: Any, serve: Any):
     server = serve("small.recipe.toml")
     review: Review = opened(server)
     review.drag(review.slider("curl.width"), 0.35, 0.9)
@@ -160,7 +160,7 @@ def test_a_killed_server_loses_nothing(opened: Any, serve: Any):
     review.until("!ringlet.model.documents.recipe.dirty")
 
 
-def test_what_a_killed_server_had_not_answered_is_said_again(opened: Any, serve: Any):
+def test_unanswered_messages_are_resent_after_a_restart(opened: Any, serve: Any):
     server = serve("small.recipe.toml")
     review: Review = opened(server)
     session = review.get("ringlet.model.welcome.session")
@@ -201,7 +201,7 @@ def test_an_idle_page_draws_nothing(opened: Any):
 REACH = (Path(__file__).parent / "reach.js").read_text()
 
 
-def test_controls_have_names_and_keys_reach_them(opened: Any):
+def test_controls_are_labelled_legible_and_reachable_by_keyboard(opened: Any):
     review: Review = opened()
     review.get("ringlet.lock.choose(2)")
     assert review.page.evaluate(REACH) == {"nameless": [], "faint": []}
@@ -223,7 +223,7 @@ def test_controls_have_names_and_keys_reach_them(opened: Any):
     assert review.get("ringlet.viewer.camera.position.toArray()") != eye
 
 
-def test_nothing_is_loaded_from_elsewhere(opened: Any):
+def test_the_page_loads_no_external_resource(opened: Any):
     review: Review = opened()
     names = review.get("performance.getEntriesByType('resource').map(entry => new URL(entry.name).host)")
     assert set(names) == {review.get("location.host")}
@@ -262,7 +262,7 @@ def test_guides_are_sculpted_with_a_brush(opened: Any):
     assert not review.wrong
 
 
-def test_a_value_is_given_to_one_lock_alone_and_taken_back(opened: Any):
+def test_a_value_is_set_for_one_lock_and_reverted(opened: Any):
     review: Review = opened()
     before = np.array(review.get("Array.from(ringlet.viewer.hair.a.locks.points)")).reshape(8, -1)
     review.get("ringlet.lock.choose(2)")
@@ -295,7 +295,7 @@ def test_regions_and_overlays_are_chosen_from_lists(opened: Any, folder: Path):
     assert not review.wrong
 
 
-def test_two_looks_side_by_side(opened: Any):
+def test_two_looks_are_shown_side_by_side(opened: Any):
     review: Review = opened()
     beside = review.page.get_by_label("Show another look beside this one")
     beside.select_option("now")
@@ -316,7 +316,7 @@ def test_two_looks_side_by_side(opened: Any):
     review.until("!ringlet.viewer.compared")
 
 
-def test_pictures_and_movies_are_kept(opened: Any):
+def test_pictures_and_movies_are_saved(opened: Any):
     review: Review = opened()
     with review.page.expect_download() as picture:
         review.page.get_by_label("Keep a picture").click()
@@ -333,7 +333,7 @@ def test_pictures_and_movies_are_kept(opened: Any):
 
 
 @pytest.mark.parametrize("width, height", [(820, 1180), (1180, 820)])
-def test_on_a_tablet_every_control_can_be_reached(opened: Any, width: int, height: int):
+def test_every_control_is_reachable_on_a_tablet(opened: Any, width: int, height: int):
     review: Review = opened(viewport={"width": width, "height": height})
     review.get("ringlet.lock.choose(2)")
     outside = review.get(

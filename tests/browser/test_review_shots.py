@@ -15,7 +15,7 @@ import ringlet
 from ringlet import build_hairs
 
 
-def test_hairs_on_the_graphics_card_stay_below_a_cloth_as_those_of_the_core_do(opened: Any, folder: Path):
+def test_gpu_hairs_stay_below_a_cloth_like_those_of_the_core(opened: Any, folder: Path):
     top = write_roofed(folder)
     review: Review = opened("cache.usdc")
     review.until("ringlet.timeline.count == 1 && ringlet.timeline.settled")
@@ -56,7 +56,7 @@ def test_ten_frames_are_simulated_and_scrubbed(opened: Any, folder: Path):
     assert not review.wrong
 
 
-def test_the_material_of_a_cloth_is_changed_and_the_shot_is_run_with_it(opened: Any, folder: Path):
+def test_a_changed_cloth_material_is_simulated(opened: Any, folder: Path):
     write_wear(folder)
     shot = folder / "small.shot.toml"
     shot.write_text(shot.read_text() + SCARF + "[[collider]]\n")
@@ -105,7 +105,7 @@ def test_the_material_of_a_cloth_is_changed_and_the_shot_is_run_with_it(opened: 
     assert not review.wrong
 
 
-def test_of_a_long_cache_the_page_keeps_the_frames_about_the_one_that_is_seen(opened: Any, folder: Path):
+def test_the_page_keeps_only_frames_near_the_current_one(opened: Any, folder: Path):
     groom = ringlet.build_groom(folder / "small.recipe.toml")
     ringlet.write_groom(groom, folder / "groom.usda")
     numbers = np.arange(1.0, 301.0)
@@ -122,7 +122,7 @@ def test_of_a_long_cache_the_page_keeps_the_frames_about_the_one_that_is_seen(op
     assert not review.wrong
 
 
-def test_a_shot_beside_another_cache_with_overlays(opened: Any, folder: Path):
+def test_a_shot_is_compared_with_a_cache_and_overlays(opened: Any, folder: Path):
     groom = ringlet.build_groom(folder / "small.recipe.toml")
     ringlet.write_groom(groom, folder / "groom.usda")
     cache = ringlet.simulate(folder / "small.shot.toml", groom)

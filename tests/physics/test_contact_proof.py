@@ -24,7 +24,7 @@ outcome = cache(lambda name, newton: judged_run(SCENES[name](), newton))
 
 @pytest.mark.parametrize("newton", [1, 5])
 @pytest.mark.parametrize("name", SCENES)
-def test_nothing_passes_through_anything(name, newton):
+def test_contact_scenes_have_no_crossings_and_keep_their_linking_numbers(name, newton):
     result = outcome(name, newton)
     assert result.crossings == 0
     assert np.abs(result.links[1] - result.links[0]).max(initial=0.0) < 1e-6
@@ -32,7 +32,7 @@ def test_nothing_passes_through_anything(name, newton):
 
 @pytest.mark.parametrize("newton", [1, 5])
 @pytest.mark.parametrize("name", SCENES)
-def test_no_edge_is_torn(name, newton):
+def test_edges_stretch_to_less_than_three_times_their_length(name, newton):
     """What is pulled is pulled to less than twice its length: no edge may take all of it."""
     assert outcome(name, newton).stretch < 3.0
 
@@ -43,7 +43,7 @@ def test_positions_stay_finite(name):
     assert outcome(name, 5).finite
 
 
-def test_a_tie_that_tightens_gathers_curls():
+def test_a_shrinking_ring_of_cloth_gathers_curls():
     """All of them go through it to the end, and where it is they are in a third of the room."""
     play = tightened()
     curls, ring = play.scene.strands, play.scene.cloths[0]
@@ -61,7 +61,7 @@ def test_a_tie_that_tightens_gathers_curls():
 
 
 @pytest.mark.parametrize("load", [0.1, 0.5, 0.9])
-def test_what_sticks_gives_way_a_little_and_stays_there(load):
+def test_sticking_contact_creeps_below_its_bound_and_stops(load):
     """By less than W ε / 2μN for a load W and a creep speed ε times a step; a hundred times less in the next second."""
     (soon, _), (late, _) = on_a_slope(0.4, 0.4 * load, (0.25, 1.25))
     assert 0 < soon < 0.5 * load * CREEP * STEP
@@ -78,7 +78,7 @@ def test_the_linking_number_counts_turns(turns):
     assert linking(ring, coil + [2, 0, 0]) == pytest.approx(0, abs=1e-9)
 
 
-def test_the_judge_sees_what_passes():
+def test_ipctk_detects_strands_that_pass_through_each_other():
     """It can say no: the hooked strands carried through each other."""
     play = hooked_strands()
     judge, before = Judge(play.scene), play.scene.positions.copy()
@@ -89,7 +89,7 @@ def test_the_judge_sees_what_passes():
     assert judge.crossings(before, before + [0, 0.05, 0]) == 0
 
 
-def test_a_scene_that_moves_as_a_whole_does_the_same():
+def test_contact_is_invariant_under_uniform_motion():
     """At 100 m/s, with the air, to rounding: a strand that hits a sheet. Steps converge; else rounding decides."""
     positions = []
     for speed in (np.zeros(3), np.array([100.0, 0, 0])):
@@ -106,7 +106,7 @@ def test_a_scene_that_moves_as_a_whole_does_the_same():
 
 
 @pytest.mark.parametrize("name", ["squeezed", "tightened"])
-def test_what_a_scene_remembers_is_all_that_its_next_step_depends_on(name):
+def test_a_recalled_scene_takes_the_same_next_step(name):
     """To the last bit, friction included."""
     play, other = SCENES[name](), SCENES[name]()
     for k in range(1, 9):
@@ -119,7 +119,7 @@ def test_what_a_scene_remembers_is_all_that_its_next_step_depends_on(name):
     assert (play.scene.positions == other.scene.positions).all()
 
 
-def test_the_number_of_threads_does_not_matter():
+def test_contact_scenes_are_bit_identical_for_any_number_of_threads():
     """To the last bit."""
     program = """
 import hashlib
@@ -148,7 +148,7 @@ for name in ("combed", "spun_head", "wound_coils"):
 
 
 @pytest.mark.parametrize("scale", [1.0, 1e4])
-def test_what_begins_inside_a_body_comes_out_gently_however_stiff_it_is(scale):
+def test_a_strand_leaves_a_body_slowly_at_any_stiffness(scale):
     """A strand from above the ground into it, 8 mm deep: lifted at 2 cm/s, its tip hardly faster, and out then."""
     along = np.linspace(0.0, 0.1, 41)
     points = np.c_[along, 0.004 - 0.12 * along, 0 * along]

@@ -21,7 +21,7 @@ BARELY = MODE + "spring = 0.1\n"  # stiffened only as far as standing takes
 
 
 @pytest.mark.parametrize("points", [curl(), arc(), STRAIGHT, helix(30, per_turn=5, hand=-1)])
-def test_balance_is_the_gradient_of_the_energy_turned_round(points):
+def test_balanced_strands_have_the_loads_as_their_gradient(points):
     """Strands that remember what balance says of random loads have those loads as their gradient."""
     curves, material = Curves.from_list([points]), Material(bend_scale=1e3, correct_resolution=False)
     strands = Strands(curves, material)
@@ -38,7 +38,7 @@ def test_balance_is_the_gradient_of_the_energy_turned_round(points):
     assert np.abs(gradient - loads)[3:].max() < 1e-6 * np.abs(loads).max()
 
 
-def test_locks_stay_where_they_were_groomed_for_ten_seconds():
+def test_locks_in_equilibrium_stay_as_groomed_for_ten_seconds():
     shot, groom = scene(curl(), arc(), STRAIGHT, helix(60) * [1, 1, 1], more=MODE)
     made = with_sag(equilibrium(shot, groom), shot)
     strands = make_strands(shot, groom, made.rest, made.stiffened)
@@ -49,7 +49,7 @@ def test_locks_stay_where_they_were_groomed_for_ten_seconds():
     assert sag(strands.positions, groom.locks.points) < 0.1 * shot.strands.radius
 
 
-def test_a_lock_that_would_fall_is_stiffened_until_it_stands():
+def test_an_unstable_lock_is_stiffened_until_it_stands():
     """A coil that stands upright; nudged, it comes back."""
     standing = helix(100) * [1, -1, 1]
     shot, groom = scene(standing, curl(), more=BARELY)
@@ -65,7 +65,7 @@ def test_a_lock_that_would_fall_is_stiffened_until_it_stands():
     assert sag(soft.positions, groom.locks.points) > 0.01
 
 
-def test_what_falls_however_stiff_it_may_be_keeps_its_shape_and_is_told():
+def test_a_lock_that_cannot_stand_keeps_its_shape_and_is_reported():
     upright = np.c_[np.zeros(60), np.linspace(0, 0.5, 60), 1e-4 * np.linspace(0, 1, 60) ** 2]
     shot, groom = scene(upright, curl(), more=MODE)
     made = equilibrium(shot, groom)
@@ -73,7 +73,7 @@ def test_what_falls_however_stiff_it_may_be_keeps_its_shape_and_is_told():
     assert (made.rest.points[:60] == upright).all() and made.stiffened[0] == 1.0
 
 
-def test_a_curl_in_equilibrium_swings_as_fast_as_it_did():
+def test_equilibrium_keeps_the_natural_frequency_of_a_curl():
     shot, groom = scene(helix(60, radius=4e-3, pitch=4e-3), more="[strands]\ndamping = 0\ndrag = 0\n" + MODE)
     made = with_sag(equilibrium(shot, groom), shot)
     plain = first_frequency(make_strands(shot, groom), made.sagged)
@@ -93,7 +93,7 @@ def stiffness_at(strands, points):
 
 
 @pytest.mark.parametrize(("angle", "slower"), [(110, True), (0, False)])
-def test_what_weight_adds_to_the_square_of_a_frequency_is_the_same_however_stiff_a_lock_is(angle, slower):
+def test_gravity_shifts_squared_frequencies_independently_of_stiffness(angle, slower):
     """What stands up swings slower than without weight, what hangs swings faster, by g over a length."""
     groomed, added = helix(20, radius=4e-3, pitch=6e-3, per_turn=10) @ rotation((0, 0, 1), np.radians(angle)).T, []
     for scale in (8, 32):
@@ -130,7 +130,7 @@ def balanced_at(scale, points):
 
 
 @pytest.mark.parametrize("points", [STANDING, LEANING])
-def test_the_stiffness_to_stand_is_where_the_least_eigenvalue_changes_sign(points):
+def test_stiffness_to_stand_is_where_the_smallest_eigenvalue_changes_sign(points):
     needed = balanced_at(1, points).stiffness_to_stand(np.zeros(1), 1e4)[0]
     assert needed > 1.2
     for part, stands in ((0.96, False), (1.02, True)):
@@ -141,7 +141,7 @@ def test_the_stiffness_to_stand_is_where_the_least_eigenvalue_changes_sign(point
 
 
 @pytest.mark.parametrize("spring", [0.3, 0.7])
-def test_weight_leaves_a_lock_its_part_of_its_stiffness(spring):
+def test_gravity_leaves_a_lock_the_requested_fraction_of_its_stiffness(spring):
     """The part is that of the square of its frequency without weight. It is made no stiffer than that takes."""
     shot, groom = scene(STANDING, more=MODE + f"spring = {spring}\n[strands]\ncorrect_resolution = false\n")
     made = equilibrium(shot, groom)
@@ -152,7 +152,7 @@ def test_weight_leaves_a_lock_its_part_of_its_stiffness(spring):
     assert 0.95 * spring < under_weight / without < spring + 0.1
 
 
-def test_it_takes_up_what_the_loft_leaves():
+def test_equilibrium_balances_a_lock_that_loft_cannot():
     """The loft corrects a shape by how it hangs, and cannot where it falls."""
     standing = helix(80, radius=4e-3, pitch=6e-3) @ rotation((0, 0, 1), np.radians(110)).T
     lofted, balanced = loft(*scene(standing)), equilibrium(*scene(standing, more=MODE))
@@ -177,7 +177,7 @@ def over(height=0.0):
     return Obstacle(mesh, Clip(np.array([1.0]), mesh.points[None], 24.0))
 
 
-def test_what_lies_on_a_body_remembers_lying_and_stays():
+def test_the_rest_shape_of_a_lock_on_a_body_is_its_groomed_shape():
     """Balanced against gravity alone it would have to stand up from where it lies."""
     shot, groom = scene(lying(), more=MODE + "[strands]\nbend_scale = 4\n[contact]\nradius = 5e-4\n")
     hovering, resting = equilibrium(shot, groom), equilibrium(shot, groom, obstacles=[over()])
@@ -206,7 +206,7 @@ def pressed_and_lifted(shot, groom, made):
     return np.median(pressed), (strands.positions - groom.locks.points)[:, 1].max()
 
 
-def test_what_lies_on_a_body_presses_on_it_and_does_not_rise():
+def test_a_lock_on_a_body_presses_with_its_weight_and_does_not_rise():
     """Bent against gravity alone it hardly presses, and stands up as soon as it weighs less."""
     shot, groom = scene(lying(), more=MODE + "[strands]\nbend_scale = 4\n[contact]\nradius = 5e-4\n")
     pressed, lifted = pressed_and_lifted(shot, groom, loft(shot, groom))
@@ -223,7 +223,7 @@ def test_what_lies_on_a_body_presses_on_it_and_does_not_rise():
         (lying(), over(), "on = false"),
     ],
 )
-def test_what_cannot_push_bears_nothing(points, body, contact):
+def test_bodies_that_cannot_push_support_no_lock(points, body, contact):
     shot, groom = scene(points, more=MODE + f"[strands]\nbend_scale = 4\n[contact]\n{contact}\n")
     free, beside = equilibrium(shot, groom), equilibrium(shot, groom, obstacles=[body])
     assert (free.rest.points == beside.rest.points).all()
@@ -236,7 +236,7 @@ def nailed_near_tip(groom, firm):
     return Groom(locks, locks, groom.scalp)
 
 
-def test_a_soft_nail_bears_its_part_of_the_weight():
+def test_a_soft_nail_supports_its_share_of_the_weight():
     shot, groom = scene(STRAIGHT, more=MODE)
     groom = nailed_near_tip(groom, 0.5)
     made = equilibrium(shot, groom)
@@ -248,7 +248,7 @@ def test_a_soft_nail_bears_its_part_of_the_weight():
     assert sag(strands.positions, STRAIGHT) < 1e-6
 
 
-def test_a_lock_hangs_from_its_nails_too():
+def test_a_nailed_lock_hangs_from_its_nail():
     """Nailed near its tip it need not hold itself up, and does not move."""
     shot, groom = scene(STRAIGHT, more=MODE)
     free, groom = equilibrium(shot, groom), nailed_near_tip(groom, 1.0)
@@ -269,12 +269,12 @@ def test_a_lock_hangs_from_its_nails_too():
         ("held = 2\n" + MODE, "held is 2"),
     ],
 )
-def test_what_it_cannot_do_is_refused(more, words):
+def test_unsupported_settings_are_refused(more, words):
     with pytest.raises(UserError, match=words):
         equilibrium(*scene(curl(), more=more))
 
 
-def test_bdf2_keeps_it_still_as_well():
+def test_bdf2_keeps_equilibrium():
     shot, groom = scene(curl(), more=MODE)
     made = equilibrium(shot, groom)
     strands = make_strands(shot, groom, made.rest, made.stiffened)

@@ -9,7 +9,7 @@ from ringlet.shot.worn import carried
 
 
 @pytest.mark.parametrize("shot", SHOTS)
-def test_nothing_passes_through_anything_in_a_shot_of_the_example(shot):
+def test_shots_of_the_example_have_no_crossings(shot):
     """Its first frames, with a part of the locks."""
     motion = start(shot, locks=100)
     frames = list(judged(motion, 3))
@@ -21,7 +21,7 @@ def test_nothing_passes_through_anything_in_a_shot_of_the_example(shot):
         assert strain == pytest.approx(frame.statistics["max_stretch"], rel=1e-9)
 
 
-def test_what_begins_in_the_shirt_comes_out_and_passes_through_nothing_else():
+def test_locks_that_start_inside_the_shirt_leave_it_and_cross_nothing_else():
     """Hair that hangs down: some of it starts inside, and is judged against bodies once it is out."""
     motion = start("nod", "down", locks=100)
     frames = list(judged(motion, 3))
@@ -29,7 +29,7 @@ def test_what_begins_in_the_shirt_comes_out_and_passes_through_nothing_else():
     assert all(frame.crossings == 0 and frame.statistics["nan"] == 0 for frame in frames)
 
 
-def test_long_hair_between_a_head_that_turns_and_a_shirt_does_not_stop_them():
+def test_long_hair_between_a_turning_head_and_a_shirt_stops_neither():
     """What hangs on the shirt cannot go along with the head; all bodies stopped for it, for seconds."""
     frames = list(judged(start("nod", "down", locks=300), 26, every=5))
     assert sum(frame.crossings or 0 for frame in frames) == 0
@@ -37,7 +37,7 @@ def test_long_hair_between_a_head_that_turns_and_a_shirt_does_not_stop_them():
 
 
 @pytest.mark.parametrize("locks", [100, 150, 200])
-def test_cloth_that_is_put_into_hair_passes_through_nothing_and_goes_on_moving(locks):
+def test_cloth_put_into_hair_crosses_nothing_and_keeps_moving(locks):
     """A ribbon pushes locks aside, though the head rests; then it never goes along as if it were rigid for long."""
     motion = start("ribbon", locks=locks)
     (ribbon,), moved = motion.worn, []
@@ -50,7 +50,7 @@ def test_cloth_that_is_put_into_hair_passes_through_nothing_and_goes_on_moving(l
     assert all(max(pair) > 1e-6 for pair in itertools.pairwise(moved))
 
 
-def test_hair_in_equilibrium_stays_where_no_cloth_comes(tmp_path):
+def test_hair_in_equilibrium_stays_at_rest_away_from_cloth(tmp_path):
     """A ribbon is put into locks while the head rests: some are pushed aside, those that it does not touch stay."""
     motion = start("ribbon", locks=150, balanced=tmp_path / "ribbon.rest.usdc")
     curves = motion.scene.strands.curves

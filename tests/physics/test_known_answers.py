@@ -13,7 +13,7 @@ def test_the_simulator_gives_the_known_answer(name):
     assert not failed, "\n".join(failed)
 
 
-def test_hinges_tie_loose_waves_to_their_shape():
+def test_hinges_overestimate_the_frequency_of_loose_waves():
     """Why the material frame is the default: it is within half a per cent, the hinge a quarter too stiff at least."""
     from ringlet.validate.loose_waves import frequencies, theory
 

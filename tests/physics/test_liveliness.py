@@ -7,12 +7,12 @@ import ringlet
 EXAMPLE = Path(__file__).parents[2] / "examples/child"
 
 
-def test_locks_of_the_example_move_a_third_of_what_they_do_without_contact_at_least():
+def test_contact_leaves_the_example_a_third_of_its_motion():
     moves = beside("nod", 6)
     assert moves["with"]["moves_mm"] > moves["without"]["moves_mm"] / 3
 
 
-def test_locks_of_which_a_few_touch_a_cloth_move_too():
+def test_contact_beside_a_cloth_leaves_locks_a_quarter_of_their_motion():
     """All of them touch one another, and a few of them the ribbon."""
     moves = beside("ribbon", 9)
     assert moves["with"]["moves_mm"] > moves["without"]["moves_mm"] / 4

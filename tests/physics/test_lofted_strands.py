@@ -50,7 +50,7 @@ STRAIGHT = np.c_[np.linspace(0, 0.06, 40), np.zeros((40, 2))]
         (arc(), "least_energy"),
     ],
 )
-def test_a_lofted_strand_sags_less_than_a_fifth_of_what_it_sagged(groomed, continuation):
+def test_loft_reduces_sag_to_less_than_a_fifth(groomed, continuation):
     shot, groom = scene(groomed, more=f"[solver]\ncontinuation = '{continuation}'\n")
     made = loft(shot, groom)
     strands = make_strands(shot, groom, made.rest)
@@ -83,7 +83,7 @@ def first_frequency(strands, hanging):
     return np.fft.rfftfreq(16 * len(tip), dt)[spectrum.argmax()]
 
 
-def test_a_lofted_curl_swings_as_fast_as_it_did():
+def test_loft_keeps_the_natural_frequency_of_a_curl():
     shot, groom = scene(helix(60, radius=4e-3, pitch=4e-3), more="[strands]\ndamping = 0\ndrag = 0\n")
     made = loft(shot, groom)
     assert made.off.max() < shot.rest.tolerance < 0.2 * sag(made.sagged, groom.locks.points)
@@ -92,7 +92,7 @@ def test_a_lofted_curl_swings_as_fast_as_it_did():
     assert lofted == pytest.approx(plain, rel=0.1)
 
 
-def test_gain_is_the_part_of_the_sag_that_is_taken_away():
+def test_gain_is_the_fraction_of_sag_that_loft_removes():
     groomed = arc()
     sags = []
     for gain in (0.0, 0.5, 1.0):
@@ -102,7 +102,7 @@ def test_gain_is_the_part_of_the_sag_that_is_taken_away():
     assert sags[2] < 2e-5
 
 
-def test_gain_by_a_map_lofts_one_lock_and_leaves_the_other():
+def test_a_gain_map_lofts_one_lock_and_leaves_the_other():
     shot, groom = scene(arc(), arc() + [0, 0, 0.05], more="[rest]\ngain = { map = 'keep' }\n")
     groom.locks.curve["keep"] = np.array([1.0, 0.0])
     made = loft(shot, groom)
@@ -111,7 +111,7 @@ def test_gain_by_a_map_lofts_one_lock_and_leaves_the_other():
     assert np.allclose(made.lofted[40:], made.sagged[40:])
 
 
-def test_a_lock_that_cannot_stand_is_left_no_worse_than_it_was():
+def test_loft_does_not_increase_the_sag_of_an_unstable_lock():
     """Upright, straight and ten times as long as one that buckles under its own weight."""
     upright = np.c_[np.zeros(60), np.linspace(0, 0.5, 60), 1e-4 * np.linspace(0, 1, 60) ** 2]
     shot, groom = scene(upright, curl())
@@ -121,7 +121,7 @@ def test_a_lock_that_cannot_stand_is_left_no_worse_than_it_was():
     assert away <= np.linalg.norm(made.sagged - groom.locks.points, axis=1)[:60].max() + 1e-9
 
 
-def test_joints_give_the_shape_back():
+def test_joint_strains_reproduce_the_shape():
     curves = Curves.from_list([curl(), arc(), np.random.default_rng(1).normal(size=(7, 3))])
     shot, groom = scene()
     groom.locks = curves

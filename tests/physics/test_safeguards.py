@@ -29,7 +29,7 @@ def let_go(rest, start, solver, *, steps, variation=None, **material):
 
 
 @pytest.mark.parametrize("limit_twist", [True, False])
-def test_twist_stiffer_than_bend_gains_energy(limit_twist):
+def test_twist_stiffer_than_bend_gains_energy_unless_limited(limit_twist):
     """A flattened coil whose twist is varied up to ten times its bend, disturbed a little, in six ways."""
     rest = helix(100)
     stiff = {"twist": np.full(len(rest), 10 / 0.72)}
@@ -39,7 +39,7 @@ def test_twist_stiffer_than_bend_gains_energy(limit_twist):
 
 
 @pytest.mark.parametrize("without", [(), ("flip_history",)])
-def test_a_kink_pushed_through_straight_comes_back_only_if_the_flip_is_remembered(without):
+def test_a_kink_pushed_through_straight_returns_only_with_flip_history(without):
     """Without it the mirrored kink has its rest angle, and stays."""
     rest = 0.01 * np.array([[0, 0, 0], [0, -1, 0], [0, -2, 0], [0.6, -2.8, 0]])
     strand = Strands(Curves.from_list([rest]), Material(twist_ratio=0.0, mass_damping=20.0), 3)
@@ -54,7 +54,7 @@ def test_a_kink_pushed_through_straight_comes_back_only_if_the_flip_is_remembere
 
 
 @pytest.mark.parametrize("without", [(), ("winding_number",)])
-def test_twist_adds_up_over_whole_turns_only_if_they_are_counted(without):
+def test_twist_accumulates_over_turns_only_with_the_winding_number(without):
     """The far end is turned twice about the middle edge, which is a torsion spring: ½ k Δφ²."""
     rest = helix(6)
     strand = Strands(Curves.from_list([rest]), Material(), np.ones(6, bool))
@@ -72,7 +72,7 @@ def test_twist_adds_up_over_whole_turns_only_if_they_are_counted(without):
 
 
 @pytest.mark.parametrize("without", [(), ("straight_fade",)])
-def test_a_straightened_coil_comes_back_only_if_twist_has_faded_out(without):
+def test_a_straightened_coil_returns_only_with_the_straight_fade(without):
     """Where edges are in line the dihedral is undefined and its slope without bound: left in, it locks them."""
     rest = helix(100, per_turn=5)
     away, _ = let_go(rest, straightened(rest), history(without=without), steps=400)

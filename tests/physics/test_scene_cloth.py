@@ -75,7 +75,7 @@ def test_a_sheet_comes_to_rest_on_a_sphere():
 
 
 @pytest.mark.parametrize("newton", [1, 5])
-def test_a_strand_that_is_thrown_at_a_held_sheet_stays_on_its_side(newton):
+def test_a_strand_thrown_at_a_pinned_sheet_stays_on_its_side(newton):
     """At 20 m/s: half a metre a step, through a sheet that is one triangle thick."""
     mesh = level(0.2, 10, 0.0)
     rim = np.abs(mesh.points[:, [0, 2]]).max(axis=1) > 0.0999
@@ -94,7 +94,7 @@ def test_a_strand_that_is_thrown_at_a_held_sheet_stays_on_its_side(newton):
     assert (strand.positions[inside, 1] > cloth.positions[nearest[inside], 1] - 0.02).all()
 
 
-def test_a_sheet_falls_beside_a_strand_that_has_more_to_do():
+def test_a_sheet_falls_beside_a_strand_with_a_larger_residual():
     """What is left of the system is measured over all that hangs together; of the sheet nothing was solved then."""
     strand = Strands(
         Curves.from_list([line([-0.05, 0.0007, 0.013], [0.15, 0.0007, -0.011], 21)]), Material(radius=2e-4), 1
@@ -127,7 +127,7 @@ def thrown_at_a_strand(friction):
         yield report, np.concatenate([strand.positions, cloth.positions]), impulse, given
 
 
-def test_cloth_and_a_strand_that_meet_keep_their_momentum():
+def test_contact_of_cloth_and_strand_conserves_momentum():
     """Without friction what leaves one arrives at the other, and nothing is turned: Σ Δ(m v) = Σ x × Δ(m v) = 0."""
     for report, positions, impulse, given in thrown_at_a_strand(friction=0.0):
         assert not report["unconverged"]
@@ -135,7 +135,7 @@ def test_cloth_and_a_strand_that_meet_keep_their_momentum():
         assert np.linalg.norm(np.cross(positions, impulse).sum(axis=0)) < 1e-6 * given * 0.1  # m: the size of the sheet
 
 
-def test_friction_between_cloth_and_a_strand_keeps_momentum():
+def test_friction_of_cloth_and_strand_conserves_linear_momentum():
     """Its normal force is that of the last iteration, so that Newton's method need not converge to the last digit."""
     for _, _, impulse, given in thrown_at_a_strand(friction=0.5):
         assert np.linalg.norm(impulse.sum(axis=0)) < 1e-3 * given
@@ -163,7 +163,7 @@ def ends_of(make, system, tolerance):
 
 
 @pytest.mark.parametrize("held", ["corner", "edge"])
-def test_cloth_goes_along_with_what_is_held_of_it_as_one(held):
+def test_cloth_follows_a_rigid_motion_of_its_pins(held):
     """In the first move, so that a turn as such brings nothing of it together; an edge leaves no turn about it open."""
     mesh = level(0.1, 6, 0.0)
     row, column = np.divmod(np.arange(49), 7)
@@ -175,7 +175,7 @@ def test_cloth_goes_along_with_what_is_held_of_it_as_one(held):
     assert np.abs(scene.path[1] - turned).max() < 1e-8
 
 
-def test_all_ways_to_solve_the_system_agree_where_things_touch():
+def test_linear_solvers_agree_in_contact():
     scenes = {t: ends_of(coupled, "conjugate_gradient", t) for t in (1e-8, 1e-4)}
     direct = ends_of(coupled, "direct", 0.05)
     of_strands = direct.contacts[0] < len(direct.strands.positions)
@@ -186,7 +186,7 @@ def test_all_ways_to_solve_the_system_agree_where_things_touch():
     assert rough < 1e-2 * moved
 
 
-def test_all_ways_to_solve_the_system_agree_where_nothing_touches():
+def test_linear_solvers_agree_without_contact():
     """Strands alone are solved exactly by the factor of each: conjugate gradients, which begin with that, have nothing
     left to do, and a direct solver solves them all together."""
 
@@ -201,7 +201,7 @@ def test_all_ways_to_solve_the_system_agree_where_nothing_touches():
     assert np.abs(ends["direct"] - ends["banded"]).max() < 1e-9 * moved
 
 
-def test_strands_alone_do_not_solve_what_is_coupled():
+def test_the_banded_solver_refuses_a_coupled_scene():
     scene = coupled()
     before = scene.positions
     with pytest.raises(UserError, match="'banded'"):
@@ -209,7 +209,7 @@ def test_strands_alone_do_not_solve_what_is_coupled():
     assert (scene.strands.positions == before[: len(scene.strands.positions)]).all()
 
 
-def test_the_scene_does_not_know_how_fast_it_flies():
+def test_cloth_on_a_sphere_is_invariant_under_uniform_motion():
     """At 100 m/s it does what it does at rest."""
     ends = []
     for speed in (0.0, 100.0):

@@ -24,7 +24,7 @@ def listed(bad):
     return [name for name, is_bad in zip(NAMES, bad, strict=True) if is_bad]
 
 
-def test_every_scene_comes_back_to_rest(released):
+def test_every_scene_returns_to_rest(released):
     assert not listed(~(released.away < CLOSE))
 
 
@@ -33,19 +33,19 @@ def test_no_scene_gains_energy(released):
     assert not listed(~(released.gain < 1e-6))
 
 
-def test_no_scene_is_thrown_further_than_its_coil_is_long(released):
+def test_excursions_stay_below_the_length_of_the_coil(released):
     lengths = np.array([np.linalg.norm(np.diff(rest, axis=0), axis=1).sum() for _, rest, _ in scenes()])
     assert not listed(released.excursion > lengths)
 
 
-def test_one_newton_step_a_step_stays_stable():
+def test_one_newton_iteration_per_step_is_stable():
     """It may take longer, but nothing is thrown about and nothing breaks."""
     result = release(newton=1, steps=300)
     assert not listed(~(result.gain < 1e-6))
     assert np.isfinite(result.away).all()
 
 
-def test_what_the_frame_is_good_for():
+def test_least_energy_loses_a_coil_with_a_straight_middle():
     """Signs alone lose a coil whose middle is straight; the material frame does not."""
     middle = [name.startswith("coil with straight middle") for name in NAMES]
     assert (release(continuation="least_energy").away[middle] > 10 * CLOSE).any()
@@ -69,7 +69,7 @@ def teleported(time):
 @pytest.mark.parametrize("motion", [shaken, spun, teleported])
 @pytest.mark.parametrize("per_turn", [5, 12])
 @pytest.mark.parametrize("newton", [1, 5])
-def test_after_a_violent_motion_of_the_root_a_coil_comes_back(motion, per_turn, newton):
+def test_a_coil_returns_to_rest_after_violent_root_motion(motion, per_turn, newton):
     rest = Curves.from_list([helix(per_turn=per_turn, hand=hand) + [0.1, 0, 0.1 * k] for k, hand in enumerate((1, -1))])
     strands = Strands(rest, Material(), HELD)
     reach = rest.lengths().max()

@@ -16,7 +16,7 @@ def strands_of(points, **material):
 @pytest.mark.parametrize("continuation", CONTINUATIONS)
 @pytest.mark.parametrize("hand", [1, -1])
 @pytest.mark.parametrize("per_turn", [5, 12, 24])
-def test_gradient_agrees_with_differences(continuation, hand, per_turn):
+def test_gradient_agrees_with_finite_differences(continuation, hand, per_turn):
     rest = helix(24, per_turn=per_turn, hand=hand)
     strand = strands_of(rest, stretch_scale=1.0)
     x = jittered(rest, 2e-4, seed=per_turn, held=3)
@@ -43,7 +43,7 @@ def test_hessian_is_symmetric_and_positive_semidefinite(continuation, amount):
 
 
 @pytest.mark.parametrize("continuation", CONTINUATIONS)
-def test_the_rest_shape_has_no_energy_and_feels_no_force(continuation):
+def test_the_rest_shape_has_zero_energy_and_gradient(continuation):
     rest = helix(60)
     energy, gradient, _ = strands_of(rest).energy(rest, continuation=continuation)
     assert energy < 1e-25
@@ -52,7 +52,7 @@ def test_the_rest_shape_has_no_energy_and_feels_no_force(continuation):
 
 @pytest.mark.parametrize("shape", ["straight", "folded", "coincident"])
 @pytest.mark.parametrize("continuation", CONTINUATIONS)
-def test_degenerate_shapes_give_finite_numbers(shape, continuation):
+def test_degenerate_shapes_have_finite_energy_gradient_and_hessian(shape, continuation):
     rest = helix(20)
     x = rest.copy()
     along = np.array([0.0, -1e-3, 0.0])

@@ -29,7 +29,7 @@ def total_energy(report):
 
 @pytest.mark.parametrize("continuation", CONTINUATIONS)
 @pytest.mark.parametrize("newton", [1, 5])
-def test_at_rest_it_stays_at_rest(continuation, newton):
+def test_a_strand_at_rest_stays_at_rest(continuation, newton):
     rest = helix()
     strand = one(rest)
     for _ in range(20):
@@ -82,7 +82,7 @@ def test_a_straightened_coil_springs_back():
 
 
 @pytest.mark.parametrize("continuation", CONTINUATIONS)
-def test_a_rigid_jump_of_the_root_carries_the_strand_along(continuation):
+def test_a_rigid_jump_of_the_root_moves_the_strand_rigidly(continuation):
     """A teleport by half a turn and a metre in one frame is a rigid motion: no sign flips, nothing is bent."""
     rest = helix()
     strand = one(rest)
@@ -94,7 +94,7 @@ def test_a_rigid_jump_of_the_root_carries_the_strand_along(continuation):
     assert np.abs(strand.positions - there).max() < 1e-5
 
 
-def test_the_motion_does_not_depend_on_where_and_how_the_scene_stands():
+def test_motion_is_invariant_under_rigid_transforms():
     rest = helix(60)
     turn, shift = rotation([3, -1, 2], 1.1), np.array([0.3, -0.2, 0.5])
     here, there = one(rest), one(rest @ turn.T + shift)
@@ -148,7 +148,7 @@ def test_the_first_step_of_bdf2_is_one_of_backward_euler():
     assert np.abs(second[0] - second[1]).max() > 1e-5
 
 
-def test_bdf2_begins_anew_when_a_strand_is_placed():
+def test_bdf2_restarts_when_a_strand_is_placed():
     rest = helix(40)
     fresh, moved = one(rest, damping=0.01), one(rest, damping=0.01)
     shaken(moved, rest, 3, "bdf2")
@@ -176,7 +176,7 @@ def test_bdf2_follows_a_falling_root_to_second_order():
 
 
 @pytest.mark.parametrize("integrator", ["backward_euler", "bdf2"])
-def test_a_scene_in_which_nothing_touches_moves_with_the_same_integrator(integrator):
+def test_a_scene_without_contact_moves_like_its_strands_alone(integrator):
     rest = helix(20)
     alone, among = one(rest, damping=0.01), one(rest, damping=0.01)
     scene = Scene(among)
@@ -188,7 +188,7 @@ def test_a_scene_in_which_nothing_touches_moves_with_the_same_integrator(integra
     assert np.abs(scene.positions - alone.positions).max() < 1e-9
 
 
-def test_until_converged_goes_on_where_five_iterations_are_not_enough():
+def test_until_converged_iterates_beyond_five_iterations():
     rest = helix()
     there = rest @ rotation([0, 0, 1], 1.0).T
     for solver, unsolved in ((Solver(), 1), (Solver(until_converged=True), 0)):
@@ -197,7 +197,7 @@ def test_until_converged_goes_on_where_five_iterations_are_not_enough():
         assert (report["residual"][0] > solver.tolerance) == unsolved
 
 
-def test_five_iterations_follow_a_head_that_turns_nearly_as_converged_ones_do():
+def test_five_iterations_follow_a_turning_root_within_one_percent():
     """Were edges that turn to get longer, the search would keep little of any direction."""
     rest = helix(60)
 
@@ -217,7 +217,7 @@ def test_five_iterations_follow_a_head_that_turns_nearly_as_converged_ones_do():
     assert off[1] < 0.3 * moved
 
 
-def test_a_material_frame_leaves_no_eigenvalue_out_but_of_compressed_edges():
+def test_the_material_frame_clamps_only_eigenvalues_of_compressed_edges():
     rest = helix(40)
     for continuation in ("material_frame", "least_energy"):
         strand = one(rest)
@@ -235,7 +235,7 @@ def test_a_material_frame_leaves_no_eigenvalue_out_but_of_compressed_edges():
     assert counts[1] > counts[0]
 
 
-def test_drag_carries_a_strand_to_the_speed_of_the_wind():
+def test_drag_accelerates_a_strand_to_the_speed_of_the_wind():
     """With its root free to follow, a coil ends up moving as the air does."""
     rest = helix(30)
     strand = one(rest, drag=1e-2)
@@ -245,7 +245,7 @@ def test_drag_carries_a_strand_to_the_speed_of_the_wind():
     assert np.abs(strand.velocities[4:] - wind).max() < 1e-6
 
 
-def test_damping_does_not_hold_a_rigid_turn_back():
+def test_damping_does_not_resist_rigid_rotation():
     rest = helix(60)
     strand = one(rest, damping=10.0)
     step = 0.05
@@ -254,7 +254,7 @@ def test_damping_does_not_hold_a_rigid_turn_back():
     assert np.abs(strand.positions - rest @ rotation([0, 1, 0], step).T).max() < 2e-5
 
 
-def test_held_vertices_are_exactly_where_they_are_told_to_be():
+def test_prescribed_vertices_reach_their_targets():
     rest = helix(40)
     strand = one(rest)
     targets = rest + [0.01, 0.02, -0.03]
@@ -262,7 +262,7 @@ def test_held_vertices_are_exactly_where_they_are_told_to_be():
     assert (strand.positions[:4] == targets[:4]).all()
 
 
-def test_strands_of_different_lengths_move_as_if_each_were_alone():
+def test_strands_of_different_lengths_move_independently():
     counts = [20, 57, 33, 100, 8, 41, 64, 12, 29, 5]
     curves = [helix(n, hand=(-1) ** k, per_turn=8 + k) + [0.1 * k, 0, 0] for k, n in enumerate(counts)]
     material = Material()
@@ -276,7 +276,7 @@ def test_strands_of_different_lengths_move_as_if_each_were_alone():
         assert (alone.positions == together.curves.with_points(together.positions)[k]).all()
 
 
-def test_the_result_is_bit_for_bit_the_same_for_any_number_of_threads():
+def test_motion_is_bit_identical_for_any_number_of_threads():
     curves = Curves.from_list([helix(50, hand=(-1) ** k) + [0.1 * k, 0, 0] for k in range(40)])
     before = _core.thread_count()
     results = []
@@ -317,7 +317,7 @@ def test_every_instruction_set_gives_the_same_motion(tmp_path):
     assert np.abs(results[2] - results[0]).max() < 1e-9
 
 
-def test_a_start_that_is_not_finite_is_reported_and_harms_no_other_strand():
+def test_a_non_finite_start_is_reported_and_affects_no_other_strand():
     curves = Curves.from_list([helix(30) + [0.1 * k, 0, 0] for k in range(3)])
     strands = Strands(curves, Material())
     start = curves.points.copy()

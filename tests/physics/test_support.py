@@ -26,7 +26,7 @@ REACH = 1e-3  # at which two locks touch, and a lock and a body
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_forces_that_only_push_are_those_of_least_squares(seed):
+def test_compressive_forces_solve_nonnegative_least_squares(seed):
     """Of several problems at once; in the last, half of them may pull."""
     random = np.random.default_rng(seed)
     parts = [(random.normal(size=(12, 8)), random.normal(size=12)) for _ in range(4)]
@@ -42,7 +42,7 @@ def test_forces_that_only_push_are_those_of_least_squares(seed):
     assert (last == 0).any() and (found == 0).any()
 
 
-def test_the_energy_of_two_forces_together_is_summed_over_the_joints_that_both_strain():
+def test_energy_of_two_forces_is_summed_over_joints_that_both_strain():
     """Against the strains themselves, joint by joint: bend and twist by the moment there, stretch by the force."""
     random = np.random.default_rng(5)
     shot, groom = scene(*crossed(), more=SOFT)
@@ -93,7 +93,7 @@ def fallen(steps, ask=lambda touching: None):
     return touching
 
 
-def test_what_touches_is_what_a_step_that_ended_there_has_reported():
+def test_a_contact_query_returns_the_contacts_of_the_last_step():
     """Locks and a body, none of which touched to begin with."""
     touching = fallen(8)
     vertices, values = touching.contacts
@@ -103,7 +103,7 @@ def test_what_touches_is_what_a_step_that_ended_there_has_reported():
     assert of_locks.any() and not of_locks.all()
 
 
-def test_what_begins_too_near_touches_as_a_step_has_it_that_hardly_moves():
+def test_a_contact_query_before_a_step_agrees_with_a_tiny_step():
     shot, groom = scene(*crossed(), more=SOFT)
     away = 1e-9  # [m] by which a step parts them
     touching = Scene(make_strands(shot, groom), contact=shot.touching.model_copy(update={"parting_speed": away / 1e-6}))
@@ -115,7 +115,7 @@ def test_what_begins_too_near_touches_as_a_step_has_it_that_hardly_moves():
     assert where[:, 7] == pytest.approx(REACH)
 
 
-def test_no_step_depends_on_whether_what_touches_was_asked_for():
+def test_contact_queries_do_not_change_the_motion():
     plain, asked = fallen(8), fallen(8, ask=Scene.touching)
     assert (plain.positions == asked.positions).all()
     for name, values in plain.memory.items():
@@ -134,7 +134,7 @@ def stays(shot, groom, made, obstacles=(), steps=48, known=True):
     return sag(strands.positions, groom.locks.points)
 
 
-def test_a_lock_that_lies_on_another_is_borne_by_it():
+def test_a_lock_on_another_is_supported_by_it():
     """What one gains the other loses; each need remember less than if it bore itself, or more. And they stay."""
     shot, groom = scene(*crossed(), more=SOFT)
     borne, upper = bearing(shot, groom, []), slice(30, 60)
@@ -149,7 +149,7 @@ def test_a_lock_that_lies_on_another_is_borne_by_it():
 
 
 @pytest.mark.parametrize("friction", [0.0, 1.0])
-def test_what_touches_shares_what_bears_locks_and_does_so_from_the_first_step(friction):
+def test_contact_forces_support_a_lock_on_a_body_from_the_first_step(friction):
     """The shares act on the locks as what bears them does; nothing has to sink in, or to slide, before it bears."""
     lying, slope = on_slope(friction)
     shot, groom = scene(lying, lying + [0, 0, 0.2], more=SOFT)
@@ -162,19 +162,19 @@ def test_what_touches_shares_what_bears_locks_and_does_so_from_the_first_step(fr
     assert at_once < 1e-9 and at_once < 1e-3 * later
 
 
-def test_two_locks_bear_one_another_from_the_first_step():
+def test_contact_forces_support_crossed_locks_from_the_first_step():
     shot, groom = scene(*crossed(), more=SOFT)
     made = equilibrium(shot, groom)
     at_once, later = (stays(shot, groom, made, steps=1, known=known) for known in (True, False))
     assert at_once < 1e-9 and at_once < 1e-3 * later
 
 
-def test_what_bears_cannot_be_told_once_there_was_a_step():
+def test_support_forces_are_refused_after_the_first_step():
     with pytest.raises(ValueError, match="before the first step"):
         fallen(1).bear(np.zeros((0, 4)), np.zeros((0, 3)))
 
 
-def test_locks_that_lie_in_one_another_stay():
+def test_sixty_locks_in_contact_stay_as_groomed():
     """Sixty of hair that is down, for two seconds: none leaves its place by the radius of a hair."""
     style = grown("down", 60, HEAD, "scalp")
     shot, head = style.shot("equilibrium"), style.head(np.zeros(1), FPS)
@@ -184,7 +184,7 @@ def test_locks_that_lie_in_one_another_stay():
     assert sag(last, style.groom.locks.points) < shot.strands.radius
 
 
-def test_a_tip_bears_nothing():
+def test_a_tip_supports_nothing():
     """What lies on it would slide off."""
     below, above = crossed()
     borne, ends_there = (
@@ -198,7 +198,7 @@ RIDGE = 0.02 * np.array([[0, 0, -1], [0, 0, 1], [1, -1, -1], [1, -1, 1], [-1, -1
 
 
 @pytest.mark.parametrize("aside", [0.1, 0.3])
-def test_an_edge_pushes_a_lock_away_from_where_it_is_nearest(aside):
+def test_a_ridge_pushes_a_lock_from_its_closest_point(aside):
     """A straight lock that lies across a ridge, which is between two of its vertices: straight up, as in motion."""
     lock = np.c_[np.linspace(-0.02, 0.04, 31) - 2e-3 * aside, np.full(31, 0.9 * REACH), np.zeros(31)]
     mesh = Mesh("/ridge", RIDGE, np.array([[0, 1, 2], [1, 3, 2], [0, 4, 1], [1, 4, 5]], np.int32))
@@ -223,7 +223,7 @@ def on_slope(friction):
     return lying @ turn, obstacle
 
 
-def test_friction_holds_what_lies_on_a_slope():
+def test_friction_holds_a_lock_on_a_slope():
     """Counted on, the strand need not remember reaching uphill; and it does hold, without creeping."""
     lying, rough = on_slope(1.0)
     shot, groom = scene(lying, more=SOFT)
@@ -234,7 +234,7 @@ def test_friction_holds_what_lies_on_a_slope():
     assert late - soon < 0.05 * shot.strands.radius
 
 
-def test_a_curl_that_is_nailed_in_rows_hangs_between_them():
+def test_a_curl_with_rows_of_nails_hangs_between_them():
     """Nails in a row hold what is between as a clamp does, twist as well: it is as still as any other."""
     curl = helix(60, radius=4e-3, pitch=4e-3) @ rotation((0, 0, 1), np.radians(70)).T
     shot, groom = scene(curl, more=MODE)
@@ -252,7 +252,7 @@ def test_a_curl_that_is_nailed_in_rows_hangs_between_them():
     assert sag(strands.positions, curl) < 1e-7
 
 
-def test_who_is_borne_by_what_has_changed_is_balanced_anew():
+def test_a_lock_is_rebalanced_when_its_support_changes():
     """The lower beam goes away: the upper one, which has not changed, has to bear itself."""
     shot, groom = scene(*crossed(), more=SOFT)
     kept = keep(equilibrium(shot, groom), shot)

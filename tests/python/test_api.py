@@ -36,14 +36,14 @@ def test_every_public_name_is_there_and_documented():
         assert name == "__version__" or getattr(ringlet, name).__doc__, name
 
 
-def test_progress_ends_at_the_whole(tmp_path):
+def test_progress_ends_at_its_total(tmp_path):
     heard = []
     ringlet.build_groom(write_example(tmp_path) / "small.recipe.toml", progress=lambda *step: heard.append(step))
     ended = {stage: done == total for stage, done, total in heard}
     assert {"guides", "locks", "curl", "clean"} <= ended.keys() and all(ended.values())
 
 
-def test_a_groom_made_in_memory_says_what_a_simulation_lacks(tmp_path):
+def test_a_groom_in_memory_reports_what_a_simulation_lacks(tmp_path):
     example = write_example(tmp_path)
     groom = ringlet.build_groom(example / "small.recipe.toml")
     groom.scalp_file = None
@@ -52,7 +52,7 @@ def test_a_groom_made_in_memory_says_what_a_simulation_lacks(tmp_path):
 
 
 @pytest.mark.parametrize(("unit", "up", "head"), [(0.01, "Y", "usda"), (0.0254, "Z", "usda"), (1.0, "Z", "obj")])
-def test_a_recipe_moves_as_the_groom_that_was_written_of_it_to_the_bit(tmp_path, unit, up, head):
+def test_a_recipe_and_its_written_groom_simulate_bit_identically(tmp_path, unit, up, head):
     example = write_example(tmp_path)
     write_head(example / "head.usda", unit=unit, up=up)
     if head == "obj":
@@ -82,7 +82,7 @@ def write_obj(example, unit, up):
     (example / "small.recipe.toml").write_text(recipe.replace("head.usda", "head.obj"))
 
 
-def test_a_run_times_its_stages_and_refuses_a_bad_place_before_the_work(tmp_path):
+def test_a_run_times_its_stages_and_refuses_an_unwritable_path_first(tmp_path):
     (tmp_path / "file").touch()
     with ringlet.Run("test") as run:
         with run.stage("one"):
@@ -93,7 +93,7 @@ def test_a_run_times_its_stages_and_refuses_a_bad_place_before_the_work(tmp_path
     assert run.stages[0].wall >= 0
 
 
-def test_checking_a_place_leaves_nothing_behind(tmp_path):
+def test_checking_an_output_path_leaves_no_file(tmp_path):
     with ringlet.Run("test") as run, pytest.raises(ZeroDivisionError), run.stage("one", tmp_path / "a/b/c.usdc"):
         raise ZeroDivisionError
     assert list(tmp_path.iterdir()) == []

@@ -52,7 +52,7 @@ def root_triangle(project: Path) -> tuple[int, np.ndarray]:
     return int(groom.locks.ids[0]), groom.scalp.triangles[groom.locks.curve["root_triangle"][0]]
 
 
-def test_points_that_are_no_numbers_are_refused_with_frame_and_prim(project):
+def test_non_finite_points_are_refused_with_frame_and_prim(project):
     def lose(points):
         points[7] = np.nan
 
@@ -60,7 +60,7 @@ def test_points_that_are_no_numbers_are_refused_with_frame_and_prim(project):
     refused(sim(project), "head.usda", "/ball/skin", f"at frame {BAD}", "point 7", "finite")
 
 
-def test_a_transform_that_is_no_number_is_refused_with_frame_and_prim(project):
+def test_a_non_finite_transform_is_refused_with_frame_and_prim(project):
     stage = Usd.Stage.Open(str(project / "head.usda"))
     slide = UsdGeom.Xformable(stage.GetPrimAtPath("/ball")).AddTranslateOp()
     for frame in range(1, LAST + 1):
@@ -69,7 +69,7 @@ def test_a_transform_that_is_no_number_is_refused_with_frame_and_prim(project):
     refused(sim(project), "/ball/skin", f"at frame {BAD}", "finite")
 
 
-def test_a_scalp_triangle_without_area_is_refused_with_frame_and_lock_and_what_was_done_stays(project):
+def test_a_degenerate_scalp_triangle_is_refused_with_its_lock_and_keeps_earlier_frames(project):
     lock, corners = root_triangle(project)
     shot = project / "small.shot.toml"
     shot.write_text(shot.read_text().partition("\n[contact]")[0])  # so that the root is what notices
@@ -86,7 +86,7 @@ def test_a_scalp_triangle_without_area_is_refused_with_frame_and_lock_and_what_w
     assert ringlet.read_cache(project / "cache.usdc").frames.tolist() == list(range(1, BAD))
 
 
-def test_a_collider_triangle_without_area_is_refused_with_frame_and_prim(project):
+def test_a_degenerate_collider_triangle_is_refused_with_frame_and_prim(project):
     def flatten(points):
         points[-3:] = points[-1]
 
@@ -95,7 +95,7 @@ def test_a_collider_triangle_without_area_is_refused_with_frame_and_prim(project
     assert len(list((project / "cache.usdc.part").glob("step.*"))) == BAD - 1
 
 
-def test_a_mended_head_is_another_run(project):
+def test_a_repaired_head_starts_another_run(project):
     def flatten(points):
         points[-3:] = points[-1]
 
@@ -109,7 +109,7 @@ def test_a_mended_head_is_another_run(project):
     assert sim(project).exit_code == 0
 
 
-def test_a_head_that_teleports_is_survived_and_told(project):
+def test_a_teleporting_head_is_followed_and_reported(project):
     spoil_all_from(project, BAD, np.array([300.0, 0.0, 0.0]))  # 3 m in a frame
     assert sim(project).exit_code == 0
     cache, groom = ringlet.read_cache(project / "cache.usdc"), ringlet.build_groom(project / "small.recipe.toml")
@@ -134,7 +134,7 @@ def spoil_all_from(project: Path, frame: int, shift: np.ndarray) -> None:
         spoil(project, k, move)
 
 
-def test_a_collider_that_teleports_through_the_hair_is_survived(project):
+def test_a_collider_teleporting_through_hair_leaves_locks_intact(project):
     stage = Usd.Stage.CreateNew(str(project / "ball.usda"))
     UsdGeom.SetStageMetersPerUnit(stage, 0.01)
     stage.SetStartTimeCode(1)
@@ -156,7 +156,7 @@ def test_a_collider_that_teleports_through_the_hair_is_survived(project):
     assert np.isfinite(cache.points).all() and len(cache.frames) == LAST
 
 
-def test_roots_that_are_not_on_the_scalp_are_refused_with_their_triangle(project):
+def test_roots_off_the_scalp_are_refused_with_their_triangle(project):
     assert sim(project).exit_code == 0
     layer = Sdf.Layer.FindOrOpen(str(project / "cache.groom.usdc"))
     attribute = layer.GetAttributeAtPath("/groom/locks.primvars:ringlet:root_triangle")

@@ -62,7 +62,7 @@ def z_up(points: np.ndarray) -> np.ndarray:
     return np.stack([points[:, 0], -points[:, 2], points[:, 1]], axis=1)
 
 
-def test_curves_attributes_units_and_motion_arrive_in_blender(groom, blender, tmp_path):
+def test_blender_reads_curves_attributes_units_and_motion(groom, blender, tmp_path):
     scene, hairs = blender("plain", tmp_path / "hair.usdc"), hairs_of(groom)
     assert (scene["fps"], scene["range"]) == (24, [1, 3])
     for name, curves in (("locks", groom.locks), ("hairs", hairs)):
@@ -91,7 +91,7 @@ def test_curves_attributes_units_and_motion_arrive_in_blender(groom, blender, tm
     assert domain == "CURVE" and lock == hairs.curve["lock"].tolist()
 
 
-def test_the_add_on_sets_the_surface_and_plays_what_is_in_the_file(groom, blender, tmp_path):
+def test_the_add_on_sets_the_surface_and_plays_the_file(groom, blender, tmp_path):
     objects = blender("add-on", tmp_path / "hair.usdc")["objects"]
     for name in ("locks", "guides", "hairs"):
         assert (objects[name]["surface"], objects[name]["uv_map"]) == ("skin", "st")
@@ -100,7 +100,7 @@ def test_the_add_on_sets_the_surface_and_plays_what_is_in_the_file(groom, blende
     np.testing.assert_allclose(last - first, np.tile([0, 0, 0.02], (len(first), 1)), atol=1e-6)
 
 
-def test_the_add_on_lets_a_groom_play_a_cache(groom, blender, tmp_path):
+def test_the_add_on_plays_a_cache_on_a_groom(groom, blender, tmp_path):
     still = blender("add-on", tmp_path / "groom.usdc")["objects"]
     moving = blender("add-on", tmp_path / "groom.usdc", tmp_path / "cache.usdc")["objects"]
     assert not moving["locks"]["hidden"]
@@ -112,7 +112,7 @@ def test_the_add_on_lets_a_groom_play_a_cache(groom, blender, tmp_path):
         np.testing.assert_allclose(slid, np.tile([0.01 * (frame - 1), 0, 0], (len(slid), 1)), atol=1e-6)
 
 
-def test_the_add_on_refuses_what_is_no_groom_and_leaves_the_scene_alone(groom, blender, tmp_path):
+def test_the_add_on_refuses_other_files_and_leaves_the_scene_unchanged(groom, blender, tmp_path):
     said = blender("refused", tmp_path / "nowhere.usdc", tmp_path / "head.usdc")
     assert "there is no such file" in said["no file"]
     assert "head.usdc: is no groom of Ringlet's" in said["no groom"]
@@ -120,7 +120,7 @@ def test_the_add_on_refuses_what_is_no_groom_and_leaves_the_scene_alone(groom, b
     assert said["objects"] == 0
 
 
-def test_guides_come_back_from_blender_with_their_names(groom, blender, tmp_path):
+def test_guides_return_from_blender_with_their_names(groom, blender, tmp_path):
     blender("back", tmp_path / "groom.usdc", tmp_path / "edited.usdc")
     back = read_curves(tmp_path / "edited.usdc")
     assert back.ids.tolist() == groom.guides.ids.tolist()

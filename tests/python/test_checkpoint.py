@@ -70,7 +70,7 @@ def whole(folder):
     return points
 
 
-def test_a_killed_run_goes_on_to_the_same_bits(folder):
+def test_a_killed_run_resumes_to_bit_identical_frames(folder):
     expected, part = whole(folder), folder / "cache.usdc.part"
     assert not part.exists()
     killed(folder, lambda: (part / "memory.000020").exists())
@@ -82,7 +82,7 @@ def test_a_killed_run_goes_on_to_the_same_bits(folder):
     assert not part.exists()
 
 
-def test_frames_that_take_long_are_remembered_more_often(folder, monkeypatch):
+def test_larger_scenes_are_saved_more_often(folder, monkeypatch):
     groom = ringlet.build_groom(ringlet.read_recipe(folder / "small.recipe.toml"))
     vertices = len(groom.locks.points)
     assert checkpoint.frames_between(0) == checkpoint.frames_between(vertices) == checkpoint.EVERY
@@ -107,7 +107,7 @@ def broken_off(folder, monkeypatch, after, *more):
         return sim(folder, *more)
 
 
-def test_after_a_full_disk_the_run_goes_on(folder, monkeypatch):
+def test_a_run_resumes_after_a_full_disk(folder, monkeypatch):
     expected = whole(folder)
     result = broken_off(folder, monkeypatch, 25)
     assert result.exit_code == 2
@@ -117,7 +117,7 @@ def test_after_a_full_disk_the_run_goes_on(folder, monkeypatch):
 
 
 @pytest.mark.parametrize("damage", ["cut", "changed", "frame"])
-def test_what_is_damaged_is_noticed_and_the_memory_before_is_used(folder, monkeypatch, damage):
+def test_a_damaged_checkpoint_is_detected_and_the_previous_one_used(folder, monkeypatch, damage):
     shot, part = ringlet.read_shot(folder / "small.shot.toml"), folder / "cache.usdc.part"
     expected = ringlet.simulate(shot).points
     broken_off(folder, monkeypatch, 25)
@@ -135,7 +135,7 @@ def test_what_is_damaged_is_noticed_and_the_memory_before_is_used(folder, monkey
     assert (cache.points == expected).all()
 
 
-def test_what_another_run_left_is_not_gone_on_with(folder, monkeypatch):
+def test_checkpoints_of_another_run_are_not_resumed(folder, monkeypatch):
     broken_off(folder, monkeypatch, 25)
     shot = folder / "small.shot.toml"
     shot.write_text(shot.read_text() + "friction = 0.1\n")
@@ -144,7 +144,7 @@ def test_what_another_run_left_is_not_gone_on_with(folder, monkeypatch):
     assert sim(folder).exit_code == 0 and not (folder / "cache.usdc.part").exists()
 
 
-def test_a_run_whose_files_another_run_is_at_is_refused_and_the_other_goes_on(folder):
+def test_a_concurrent_run_on_the_same_files_is_refused(folder):
     expected, part, groom = whole(folder), folder / "cache.usdc.part", folder / "cache.groom.usdc"
     with started(folder) as other:
         while not (part / "step.000000").exists():
@@ -161,7 +161,7 @@ def test_a_run_whose_files_another_run_is_at_is_refused_and_the_other_goes_on(fo
     assert (read_cache(folder / "cache.usdc").points == expected).all()
 
 
-def test_a_run_whose_groom_is_refused_leaves_no_folder_and_one_that_was_left_stays(folder, monkeypatch):
+def test_a_refused_groom_leaves_no_folder_and_keeps_an_existing_one(folder, monkeypatch):
     part, recipe = folder / "cache.usdc.part", folder / "small.recipe.toml"
     right = recipe.read_text()
     for left in (False, True):
@@ -176,7 +176,7 @@ def test_a_run_whose_groom_is_refused_leaves_no_folder_and_one_that_was_left_sta
     assert sim(folder, "--resume").exit_code == 0 and not part.exists()
 
 
-def test_what_a_run_begins_anew_without_resume_is_told(folder, monkeypatch):
+def test_a_run_without_resume_reports_the_frames_it_discards(folder, monkeypatch):
     for after, more, told in [(5, (), ""), (25, (), ""), (15, (), "keeps 20 frames"), (15, ("--resume",), "")]:
         result = broken_off(folder, monkeypatch, after, *more)
         begin = result.stderr.partition("groom:")[0]  # before the first stage
@@ -185,7 +185,7 @@ def test_what_a_run_begins_anew_without_resume_is_told(folder, monkeypatch):
     assert "thrown away" not in sim(folder).stderr
 
 
-def test_a_program_that_holds_a_folder_keeps_it_after_a_simulation_in_it(folder):
+def test_a_program_keeps_its_lock_on_a_folder_after_a_simulation(folder):
     part = folder / "cache.usdc.part"
     with ringlet.hold_checkpoints(part):
         ringlet.simulate(folder / "small.shot.toml", checkpoints=part)
@@ -197,25 +197,25 @@ def test_a_program_that_holds_a_folder_keeps_it_after_a_simulation_in_it(folder)
         assert other.wait(120) == 0
 
 
-def test_without_anything_to_go_on_with_it_begins_anew(folder):
+def test_resume_without_checkpoints_simulates_from_the_start(folder):
     assert sim(folder, "--resume").exit_code == 0
 
 
-def test_a_file_of_arrays_comes_back_as_it_was(tmp_path):
+def test_a_file_of_arrays_round_trips(tmp_path):
     arrays = {"a": np.arange(6.0).reshape(2, 3), "b": np.array("text"), "c": np.zeros((0, 3), np.float32)}
     checkpoint.write(tmp_path / "some.000001", arrays)
     back = checkpoint.read(tmp_path / "some.000001")
     assert back.keys() == arrays.keys() and all((back[name] == arrays[name]).all() for name in arrays)
 
 
-def test_a_run_that_was_broken_off_gives_the_frames_that_it_has(folder, monkeypatch):
+def test_an_interrupted_run_provides_its_finished_frames(folder, monkeypatch):
     expected = whole(folder)
     broken_off(folder, monkeypatch, 25)
     assert sim(folder, "--resume", "--frames", "1:18").exit_code == 0
     assert (read_cache(folder / "cache.usdc").points == expected[:18]).all()
 
 
-def test_frames_that_go_to_the_file_one_by_one_are_those_of_a_simulation_in_memory(folder):
+def test_streamed_frames_equal_those_of_a_simulation_in_memory(folder):
     groom = ringlet.build_groom(folder / "small.recipe.toml")
     ringlet.write_groom(groom, folder / "groom.usdc")
     shot, path = ringlet.read_shot(folder / "small.shot.toml"), folder / "cache.usdc"
@@ -232,7 +232,7 @@ def touches(folder):
         return [read_touches(folder / "touches.usdc", frame)[0] for frame in cache.frames]
 
 
-def test_what_touched_before_a_run_was_broken_off_is_kept_with_the_frames(folder, monkeypatch):
+def test_contacts_before_an_interruption_are_kept_with_the_frames(folder, monkeypatch):
     asked, shot = ("--contacts", str(folder / "touches.usdc")), folder / "small.shot.toml"
     shot.write_text(shot.read_text().replace("radius = 1e-3", "radius = 1e-2"))
     assert sim(folder, *asked).exit_code == 0
@@ -245,7 +245,7 @@ def test_what_touched_before_a_run_was_broken_off_is_kept_with_the_frames(folder
             assert (getattr(frame, name) == getattr(before, name)).all()
 
 
-def test_what_touched_is_not_made_up_where_it_was_not_kept(folder, monkeypatch):
+def test_contacts_are_refused_for_frames_that_did_not_record_them(folder, monkeypatch):
     broken_off(folder, monkeypatch, 25)
     result = sim(folder, "--resume", "--contacts", str(folder / "touches.usdc"))
     assert result.exit_code == 2 and "did not keep what touched; leave out --contacts" in result.stderr

@@ -51,11 +51,11 @@ def test_without_arguments_the_commands_are_listed():
     assert all(command in result.stdout for command in COMMANDS)
 
 
-def test_version():
+def test_version_has_three_numbers():
     assert run("--version").stdout == f"ringlet {ringlet.__version__}\n"
 
 
-def test_help_needs_none_of_the_heavy_libraries():
+def test_help_imports_no_heavy_library():
     program = "import sys, ringlet.cli; print({'pxr', 'mitsuba', 'matplotlib', 'scipy'} & set(sys.modules))"
     assert subprocess.run([sys.executable, "-c", program], capture_output=True, text=True).stdout == "set()\n"
 
@@ -77,11 +77,11 @@ def test_help_needs_none_of_the_heavy_libraries():
         (["validate", "cantilver"], ["cantilver", "'cantilever'"]),
     ],
 )
-def test_a_mistake_on_the_command_line_is_told_in_one_line(arguments, words):
+def test_a_usage_error_is_one_line(arguments, words):
     refused(run(*arguments), *words)
 
 
-def test_a_mistake_in_ringlet_is_told_in_one_line_with_the_place_of_its_traceback(monkeypatch):
+def test_an_internal_error_is_one_line_with_the_path_of_its_traceback(monkeypatch):
     def broken(*_, **__):
         raise ZeroDivisionError("no such luck")
 
@@ -97,7 +97,7 @@ def test_a_mistake_in_ringlet_is_told_in_one_line_with_the_place_of_its_tracebac
     file.unlink()
 
 
-def test_a_mistake_in_ringlet_shows_its_traceback_when_asked(monkeypatch):
+def test_debug_shows_the_traceback_of_an_internal_error(monkeypatch):
     def broken(*_, **__):
         raise ZeroDivisionError
 
@@ -132,7 +132,7 @@ main()
 """
 
 
-def test_interrupting_ends_tidily():
+def test_an_interrupt_exits_with_130_and_one_line():
     with subprocess.Popen(
         [sys.executable, "-c", SLOW], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     ) as process:

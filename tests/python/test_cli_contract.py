@@ -57,7 +57,7 @@ class Answer:
         (["twirl", "--strands", "3", "--contacts", "on", "--steps", "4", "--heads", "2"], {"strands": 3, "heads": 2}),
     ],
 )
-def test_bench_prints_the_object_that_was_agreed(arguments, asked):
+def test_bench_prints_the_documented_object(arguments, asked):
     result = run("bench", *arguments, "--json", "--threads", "1")
     assert result.exit_code == 0, result.output
     told = json.loads(result.stdout)
@@ -70,7 +70,7 @@ def test_bench_prints_the_object_that_was_agreed(arguments, asked):
     assert all(time >= 0 for time in told["stages"].values())
 
 
-def test_bench_view_ends_its_server_and_says_nothing_besides():
+def test_bench_view_stops_its_server_and_prints_only_json():
     program = "import sys; from ringlet.cli import main; sys.argv[0] = 'ringlet'; main()"
     arguments = ["bench", "view", "--locks", "12", "--per_lock", "3", "--steps", "3", "--json"]
     done = subprocess.run([sys.executable, "-c", program, *arguments], capture_output=True, text=True, timeout=120)
@@ -95,19 +95,19 @@ def twirls(monkeypatch):
 run_growth = partial(ringlet.run_bench, "growth", least=64, most=256)
 
 
-def test_bench_growth_that_keeps_the_density_has_spheres_as_large_as_it_has_wisps(twirls):
+def test_bench_growth_at_constant_density_scales_the_sphere(twirls):
     told = run_growth(kept="density")
     density = pytest.approx(256 / 0.1525**2)
     assert [(n, n / radius**2, heads) for n, radius, heads in twirls] == [(n, density, 1) for n in (64, 128, 256)]
     assert told["exponent"] == pytest.approx(1.5) and told["contacts_exponent"] == pytest.approx(1.0)
 
 
-def test_bench_growth_that_keeps_the_heads_has_more_of_the_published_ones(twirls):
+def test_bench_growth_at_constant_size_adds_heads(twirls):
     run_growth(kept="heads")
     assert twirls == [(64, 0.1525, 1), (128, 0.1525, 2), (256, 0.1525, 4)]
 
 
-def test_bench_growth_counts_the_quickest_of_the_turns_of_each_size(monkeypatch):
+def test_bench_growth_takes_the_fastest_repetition_of_each_size(monkeypatch):
     times = iter([10.0, 40.0, 160.0, 12.0, 20.0, 40.0])  # the sizes by turns: the second is slow at the first turn
 
     def run_bench(name, **params):
@@ -128,7 +128,7 @@ def test_bench_growth_fits_a_power_to_the_times_of_all_sizes():
     assert min(steps) - 1e-9 <= told["exponent"] <= max(steps) + 1e-9
 
 
-def test_validate_prints_rows_and_succeeds_when_all_hold():
+def test_validate_prints_rows_and_succeeds_when_all_pass():
     result = run("validate", "cantilever", "--json")
     assert result.exit_code == 0, result.output
     rows = json.loads(result.stdout)
@@ -139,7 +139,7 @@ def test_validate_prints_rows_and_succeeds_when_all_hold():
 
 
 @pytest.mark.parametrize("got", [2.0, math.nan])
-def test_validate_exits_with_1_when_one_row_does_not_hold(monkeypatch, got):
+def test_validate_exits_with_1_when_a_row_fails(monkeypatch, got):
     rows = [Answer("good", 1.0, 1.0), Answer("bad", 1.0, got)]
     monkeypatch.setattr(ringlet, "run_validation", lambda *_, **__: rows)
     assert run("validate").exit_code == 1

@@ -55,7 +55,7 @@ def made(folder: Path) -> Path:
 
 
 @pytest.mark.parametrize(("unit", "size"), [(1.0, "18 m"), (0.001, "0.018 m")])
-def test_a_head_in_another_unit_than_it_says_is_told(copy, unit, size):
+def test_a_head_of_implausible_size_is_reported(copy, unit, size):
     stage = Usd.Stage.Open(str(copy / "head.usda"))
     UsdGeom.SetStageMetersPerUnit(stage, unit)
     stage.Save()
@@ -64,13 +64,13 @@ def test_a_head_in_another_unit_than_it_says_is_told(copy, unit, size):
     assert f"warning: the scalp is {size} across" in result.stderr and "metersPerUnit" in result.stderr
 
 
-def test_more_frames_than_a_shot_can_have_are_refused_before_the_first(copy):
+def test_too_many_frames_are_refused_before_the_first(copy):
     for frames in ("1:100001", "1:99999999999999999999", "20000000:20000001"):
         refused(run("sim", copy / "small.shot.toml", "-o", copy / "cache.usdc", "--frames", frames), frames, "must be")
     assert not list(copy.glob("cache.usdc*"))
 
 
-def test_what_the_review_cannot_show_is_told_before_there_is_a_server(copy):
+def test_files_without_hair_are_refused_before_the_review_server_starts(copy):
     (copy / "empty.usdc").touch()
     (copy / "dir.usdc").mkdir()
     for name, words in {"empty.usdc": "is empty", "dir.usdc": "is a folder", "head.usda": "has no hair"}.items():
@@ -92,7 +92,7 @@ def told(example: Path, name: str) -> dict:
         (["check", "small.recipe.toml", "--fix", "-o", "out.obj"], ".usdc, .usd or .usda"),
     ],
 )
-def test_a_file_that_would_not_be_written_in_the_end_is_refused_at_once(copy, monkeypatch, command, allowed):
+def test_an_output_format_is_refused_before_the_first_stage(copy, monkeypatch, command, allowed):
     monkeypatch.chdir(copy)
     result = run(*command)
     refused(result, "out.", allowed)
@@ -125,7 +125,7 @@ def hairs_at(file, frame):
     return np.array(UsdGeom.BasisCurves(stage.GetPrimAtPath("/groom/hairs")).GetPointsAttr().Get(frame))
 
 
-def test_hairs_of_a_cache_by_itself_are_those_of_its_groom_and_it(example, tmp_path):
+def test_hairs_of_a_cache_alone_equal_those_of_groom_and_cache(example, tmp_path):
     groom, cache = example / "groom.usdc", tmp_path / "cache.usdc"
     points = ringlet.read_groom(groom).locks.points.astype(np.float32)
     ringlet.write_cache(ringlet.Cache(np.arange(1.0, 4), np.stack([points, points + 1e-3, points])), groom, cache)
@@ -137,13 +137,13 @@ def test_hairs_of_a_cache_by_itself_are_those_of_its_groom_and_it(example, tmp_p
     assert not np.array_equal(second[0], third[0])
 
 
-def test_frames_of_hairs_that_do_not_move_are_refused(example, tmp_path):
+def test_frames_of_static_hairs_are_refused(example, tmp_path):
     result = run("hair", str(example / "groom.usdc"), "-o", str(tmp_path / "hair.usdc"), "--frames", "2:3")
     refused(result, "groom.usdc", "2:3", "cache")
     assert not (tmp_path / "hair.usdc").exists()
 
 
-def test_groom_tells_what_it_made(example):
+def test_groom_reports_its_output(example):
     groom = ringlet.read_groom(example / "groom.usdc")
     assert told(example, "groom") == {
         "path": str(example / "groom.usdc"),
@@ -156,7 +156,7 @@ def test_groom_tells_what_it_made(example):
     assert len(groom.locks) == 8
 
 
-def test_a_head_that_an_obj_has_stands_still_and_locks_touch_it(copy):
+def test_an_obj_head_is_static_and_locks_touch_it(copy):
     mesh = ringlet.read_groom(made(copy)).scalp
     corners = [f"f {a} {b} {c}" for a, b, c in (mesh.triangles + 1).tolist()]
     lines = [f"v {x} {y} {z}" for x, y, z in (100 * mesh.points).tolist()] + corners  # in centimetres
@@ -208,7 +208,7 @@ def test_a_shot_of_a_recipe_leaves_its_groom_beside_the_cache(example, tmp_path)
     )
 
 
-def test_caches_whose_names_differ_in_the_suffix_alone_have_a_groom_each(copy):
+def test_every_cache_of_a_recipe_has_a_groom_beside_it(copy):
     shot, recipe = copy / "small.shot.toml", copy / "small.recipe.toml"
     for suffix, points in (("usda", 40), ("usdc", 36), ("usd", 32)):
         edit(recipe, "points = 40", f"points = {points}")
@@ -220,13 +220,13 @@ def test_caches_whose_names_differ_in_the_suffix_alone_have_a_groom_each(copy):
         assert ringlet.read_cache(copy / f"cache.{suffix}").points.shape == (2, 8 * points, 3)
 
 
-def test_without_json_a_person_reads_one_line(example, tmp_path):
+def test_without_json_the_output_is_one_line(example, tmp_path):
     result = run("groom", example / "small.recipe.toml", "-o", tmp_path / "groom.usdc")
     assert len(result.stdout.splitlines()) == 1
     assert "8 locks" in result.stdout
 
 
-def test_a_report_is_written_where_it_is_asked_for(example, tmp_path):
+def test_a_report_is_written_to_the_requested_folder(example, tmp_path):
     result = run("sim", example / "small.shot.toml", "-o", tmp_path / "cache.usdc", "--report", tmp_path / "report")
     assert result.exit_code == 0, result.output
     report = json.loads((tmp_path / "report/report.json").read_text())
@@ -237,7 +237,7 @@ def test_a_report_is_written_where_it_is_asked_for(example, tmp_path):
     assert report["limits"] == [ringlet.run.FREE]
 
 
-def test_a_report_without_a_simulation_says_nothing_of_contact(example, tmp_path):
+def test_a_report_without_a_simulation_states_no_limit_of_contact(example, tmp_path):
     result = run("groom", example / "small.recipe.toml", "-o", tmp_path / "groom.usdc", "--report", tmp_path / "report")
     assert result.exit_code == 0, result.output
     assert json.loads((tmp_path / "report/report.json").read_text())["limits"] == []
@@ -253,7 +253,7 @@ def test_a_head_in_another_unit_or_up_axis_gives_the_same_groom(example, tmp_pat
     assert other.space.meters_per_unit == pytest.approx(unit)
 
 
-def test_the_installed_command_works_in_a_process_of_its_own(copy):
+def test_the_installed_command_writes_a_groom_and_refuses_a_missing_file(copy):
     command = Path(sys.executable).with_name("ringlet")
     done = subprocess.run([command, "groom", "small.recipe.toml"], cwd=copy, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
@@ -401,7 +401,7 @@ def test_bad_drawn_guides_are_refused(copy, curves, words):
     "command", ["groom small.recipe.toml -o", "sim small.shot.toml -o", "sim small.shot.toml --contacts"]
 )
 @pytest.mark.parametrize("place", ["file/groom.usdc", "folder.usdc", "groom.txt", "/dev/null/groom.usdc"])
-def test_a_place_that_cannot_be_written_is_refused_at_once(copy, monkeypatch, command, place):
+def test_an_unwritable_path_is_refused_before_the_first_stage(copy, monkeypatch, command, place):
     (copy / "file").touch()
     (copy / "folder.usdc").mkdir()
     before = sorted(copy.iterdir())
@@ -429,7 +429,7 @@ def test_a_place_that_cannot_be_written_is_refused_at_once(copy, monkeypatch, co
         ("sim small.shot.toml --contacts head.usda", "scalp.file"),
     ],
 )
-def test_nothing_is_written_over_what_the_same_run_reads_or_writes(copy, monkeypatch, command, what):
+def test_a_run_does_not_overwrite_its_own_files(copy, monkeypatch, command, what):
     made(copy)
     shot = copy / "small.shot.toml"
     shot.write_text(shot.read_text() + '[contact]\n[[collider]]\n[[collider]]\nfile = "chair.usda"\n')
@@ -444,7 +444,7 @@ def test_nothing_is_written_over_what_the_same_run_reads_or_writes(copy, monkeyp
 
 
 @pytest.mark.parametrize("name", ["cache.usdc", "groom.usdc", "head.usda"])
-def test_hairs_are_not_written_over_what_they_lie_over(example, tmp_path, monkeypatch, name):
+def test_hairs_do_not_overwrite_the_layers_they_refer_to(example, tmp_path, monkeypatch, name):
     shutil.copytree(example, tmp_path, dirs_exist_ok=True)
     monkeypatch.chdir(tmp_path)
     refused(run("hair", "groom.usdc", "--cache", "cache.usdc", "-o", name), f"{name}: is the file that it would refer")
@@ -458,7 +458,7 @@ def test_hairs_are_not_written_over_what_they_lie_over(example, tmp_path, monkey
         (["sim", "small.recipe.toml"], ["small.recipe.toml: is a recipe; give a shot file"]),
     ],
 )
-def test_a_recipe_and_a_shot_are_not_mistaken_for_one_another(copy, monkeypatch, arguments, words):
+def test_a_recipe_in_place_of_a_shot_is_refused_and_vice_versa(copy, monkeypatch, arguments, words):
     monkeypatch.chdir(copy)
     refused(run(*arguments, "-o", "out.usdc"), *words)
 

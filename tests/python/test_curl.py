@@ -157,7 +157,7 @@ phase_size = 4
     return angle, gaps
 
 
-def test_neighbours_share_their_phase_as_far_as_they_are_told():
+def test_phase_coherence_of_neighbours_follows_its_setting():
     def alike(value):
         angle, gaps = phases(value)
         return np.cos(angle - angle[gaps.argmin(axis=1)]).mean()
@@ -178,7 +178,7 @@ def hand(points):
     return np.sign(np.einsum("nx,nx->n", np.cross(edges[:-2], edges[1:-1]), edges[2:]))
 
 
-def test_the_hand_is_fixed_or_left_to_chance():
+def test_the_hand_is_fixed_or_random():
     many = straight(200, apart=0.0009)
     for wanted, share in ((1.0, 1.0), (0.0, 0.0), (0.7, 0.7)):
         locks = curled(f"curls = 5\nright_handed = {wanted}", many, points=60)
@@ -186,7 +186,7 @@ def test_the_hand_is_fixed_or_left_to_chance():
         assert right == pytest.approx(share, abs=0.1 if wanted == 0.7 else 0.0)
 
 
-def test_switchbacks_come_as_often_as_they_are_asked_for():
+def test_switchbacks_have_the_requested_frequency():
     many = straight(200, apart=0.0009)
     locks = curled("curls = 12\nwidth = 0.4\nswitchbacks = 1.5", many)
     changes = [np.count_nonzero(np.diff(hand(lock)[5:-5])) for lock in locks]
@@ -209,7 +209,7 @@ def test_a_skip_leaves_out_a_turn():
 # Phase lock
 
 
-def test_locked_neighbours_come_into_one_phase_and_hand_towards_the_tip():
+def test_locked_neighbours_align_phase_and_hand_towards_the_tip():
     guides = straight(9, apart=0.004)
     loose = "curls = 8\nwidth = 1\nphase_spread = 1\nright_handed = 0.5\n"
     alone = curled(loose, guides)
@@ -246,13 +246,13 @@ def test_the_length_is_kept_to_a_thousandth(how):
     assert np.abs(lengths / HEIGHT - 1.0).max() < 1e-3
 
 
-def test_kept_length_or_silhouette():
+def test_the_curl_keeps_either_length_or_silhouette():
     silhouette, length = (curled(f"pitch = 0.6\nwidth = 0.5\nkeep = '{keep}'") for keep in ("silhouette", "length"))
     assert np.allclose(np.ptp(silhouette[:, :, 1], axis=1), HEIGHT)
     assert np.allclose(np.ptp(length[:, :, 1], axis=1), HEIGHT / np.hypot(1.0, np.pi * 0.5 / 0.6), rtol=1e-2)
 
 
-def test_a_counted_curl_has_its_number_also_where_the_length_is_kept():
+def test_a_counted_curl_keeps_its_turns_when_the_length_is_kept():
     assert np.allclose(turns(curled("curls = 6\nwidth = 0.6\nkeep = 'length'")), 6.0, rtol=1e-3)
 
 
@@ -311,7 +311,7 @@ DRAGGED = {
 
 @pytest.mark.parametrize("keep", ["silhouette", "length"])
 @pytest.mark.parametrize("name", DRAGGED)
-def test_nothing_pops_while_a_value_is_dragged(name, keep):
+def test_locks_change_continuously_with_every_value(name, keep):
     low, high = DRAGGED[name]
     settings = {
         "width": 0.8,
@@ -339,7 +339,7 @@ def test_nothing_pops_while_a_value_is_dragged(name, keep):
     assert fine < 3e-4
 
 
-def test_phases_do_not_jump_when_guides_are_resampled():
+def test_phases_are_independent_of_the_resampling_of_guides():
     bent = [
         lock + [[0.02 * np.sin(20.0 * y), 0.0, 0.0] for y in lock[:, 1]]
         for lock in map(straight(5, 40).__getitem__, range(5))
@@ -367,6 +367,6 @@ def test_adding_a_guide_changes_no_other_lock():
     assert np.array_equal(few, curled(settings, more)[:5])
 
 
-def test_a_preset_and_its_curl_are_refused_where_the_points_do_not_suffice():
+def test_too_few_points_for_the_curls_are_refused_with_the_number_to_set():
     with pytest.raises(UserError, match=r"locks.points is 60: too few"):
         curled("pitch = 0.2", points=60)

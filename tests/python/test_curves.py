@@ -51,7 +51,7 @@ def test_frames_turn_with_the_curve():
     assert np.allclose(turned, turn @ still)
 
 
-def test_frames_survive_points_that_coincide_and_curves_that_turn_back():
+def test_frames_are_orthonormal_at_coincident_points_and_reversals():
     points = np.array([[0, 0, 0], [0, 1, 0], [0, 1, 0], [0, 0.5, 0], [0.5, 0.5, 0]], float)
     frames = frames_along(points)
     assert np.allclose(frames @ frames.transpose(0, 2, 1), np.eye(3), atol=1e-12)
@@ -65,7 +65,7 @@ def test_resampling_spaces_points_evenly_and_keeps_the_ends():
     assert np.array_equal(fine[[0, -1]], rough[[0, -1]])
 
 
-def test_a_root_binds_to_the_point_of_the_mesh_that_is_nearest():
+def test_a_root_binds_to_the_closest_point_of_the_mesh():
     mesh = ball()
     rng = np.random.default_rng(1)
     places = rng.normal(size=(200, 3))
@@ -81,7 +81,7 @@ def test_a_root_binds_to_the_point_of_the_mesh_that_is_nearest():
         assert np.linalg.norm(others - place, axis=1).min() >= nearest - 1e-12
 
 
-def test_a_root_binds_only_where_it_may():
+def test_a_root_binds_only_to_allowed_triangles():
     mesh = ball()
     below = np.array([[0.0, -0.1, 0.0]])
     triangle, _, distance = _core.bind_roots(mesh.points, mesh.triangles, below, mesh.regions["scalp"])
@@ -129,13 +129,13 @@ def test_the_normal_of_roots_is_smooth_across_edges():
     assert np.linalg.norm(np.diff(normals, axis=0), axis=1).max() < 0.02  # facets meet at 15°, a step of 0.26
 
 
-def test_binding_to_a_triangle_without_area_still_finds_its_nearest_point():
+def test_binding_to_a_degenerate_triangle_finds_the_closest_point():
     points = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0]], float)
     _, _, distance = _core.bind_roots(points, np.array([[0, 1, 2]], np.int32), np.array([[1.5, 1.0, 0.0]]))
     assert np.isclose(distance[0], 1.0)
 
 
-def test_a_mesh_that_names_a_missing_point_is_refused():
+def test_a_triangle_with_a_missing_point_is_refused():
     mesh = sheet()
     with pytest.raises(IndexError, match="point"):
         _core.bind_roots(mesh.points[:10], mesh.triangles, mesh.points[:1])
@@ -150,7 +150,7 @@ def test_a_mesh_that_names_a_missing_point_is_refused():
         ([], "no curves"),
     ],
 )
-def test_curves_that_nothing_could_use_are_refused(curves, words):
+def test_unusable_curves_are_refused(curves, words):
     with pytest.raises(UserError, match=words):
         Curves.from_list(curves).check("drawn guides")
 

@@ -60,7 +60,7 @@ def test_solution_of_touching_strands_agrees_with_a_dense_solver(method):
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_matrix_that_is_not_positive_definite_is_told(method):
+def test_an_indefinite_matrix_is_reported(method):
     i, j, blocks, dense = touching_coils()
     solver = DirectSolver(i, j, len(dense) // 3, method=method)
     assert not solver.factor(-blocks)
@@ -68,10 +68,10 @@ def test_matrix_that_is_not_positive_definite_is_told(method):
 
 
 @pytest.mark.skipif(open_pardiso(), reason="PARDISO is installed")
-def test_method_that_is_not_installed_is_named_with_the_remedy():
+def test_a_missing_method_is_refused_with_its_remedy():
     with pytest.raises(UserError, match=r"pardiso.*pip install 'ringlet\[direct\]'"):
         DirectSolver(np.zeros(1), np.zeros(1), 1, method="pardiso")
 
 
-def test_automatic_takes_what_there_is():
+def test_automatic_selects_an_installed_method():
     assert DirectSolver(np.zeros(1), np.zeros(1), 1).method == ("pardiso" if open_pardiso() else "builtin")

@@ -22,7 +22,7 @@ def entangled(points, triangles):
 
 
 @pytest.mark.parametrize("name", GARMENTS)
-def test_a_garment_is_fit_to_be_cloth(name):
+def test_a_garment_is_a_valid_cloth_mesh(name):
     mesh = io.read_body(CHILD / f"{name}.usdc").mesh
     assert not len(entangled(mesh.points, mesh.triangles))
     sides = mesh.points[mesh.triangles] - mesh.points[np.roll(mesh.triangles, 1, axis=1)]
@@ -33,7 +33,7 @@ def test_a_garment_is_fit_to_be_cloth(name):
 
 
 @pytest.mark.parametrize("name", GARMENTS)
-def test_its_script_makes_it(name, tmp_path, monkeypatch):
+def test_a_garment_equals_the_output_of_its_script(name, tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(str(CHILD))
     monkeypatch.setattr(sys, "argv", [f"make_{name}.py", "-o", str(tmp_path / "made.usdc")])
     __import__(f"make_{name}").main()
@@ -43,7 +43,7 @@ def test_its_script_makes_it(name, tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("name", GARMENTS)
-def test_its_shot_runs_and_nothing_is_pierced(name):
+def test_a_garment_shot_runs_without_new_intersections(name):
     shot = ringlet.read_shot(CHILD / f"{name}.shot.toml").model_copy(update={"preroll": 0})
     groom = ringlet.build_groom(shot.groom)
     first = shot.frames[0]

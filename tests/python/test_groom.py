@@ -52,7 +52,7 @@ def test_the_same_recipe_gives_the_same_groom_and_another_seed_another():
     assert not np.array_equal(first.locks.points, other.locks.points)
 
 
-def test_variations_that_add_up_leave_every_lock_some_length():
+def test_combined_variations_leave_every_guide_a_positive_length():
     wild = BASE.replace("length = 6", "length = { value = 6, vary = 1, noise = 1 }").replace(
         "count = 20", "count = 300"
     )
@@ -68,7 +68,7 @@ def test_roots_are_on_the_scalp_region_and_keep_their_distance():
     assert gaps.min() > 0.5 * np.sqrt(area / (2.0 * np.sqrt(3.0) * 300)) * 2.0  # half the distance of a perfect packing
 
 
-def test_one_lock_fewer_moves_no_other_lock():
+def test_removing_a_lock_moves_no_other_lock():
     more, fewer = groom(BASE.replace("count = 60", "count = 61")).locks, groom().locks
     assert set(fewer.ids) < set(more.ids)
     same = more.take(np.isin(more.ids, fewer.ids))
@@ -176,7 +176,7 @@ def test_length_scales_or_cuts():
     assert np.allclose(short.lengths(), 0.5 * plain.lengths())
 
 
-def test_a_zone_shortens_the_hair_it_looks_towards():
+def test_a_zone_shortens_the_hair_in_its_direction():
     zone = BASE.replace("length = 6", "length = 6\nzone = [{ toward = [0, 0, 1], spread = 60, length = 0.5 }]")
     plain, zoned = groom().guides, groom(zone).guides
     change = zoned.lengths() / plain.lengths()
@@ -185,7 +185,7 @@ def test_a_zone_shortens_the_hair_it_looks_towards():
     assert np.allclose(change[back], 1.0)
 
 
-def test_hair_flows_away_from_a_parting_and_locks_do_not_mix_its_sides():
+def test_hair_flows_away_from_a_part_line_and_locks_do_not_mix_its_sides():
     flat = BASE[: BASE.index("[curl]")].replace(
         "count = 20", "count = 150\nlift = 0.1\ndroop = 0\npart = { reach = 20 }"
     )
@@ -203,13 +203,13 @@ def test_drawn_guides_become_locks_of_the_same_name_when_no_number_is_asked():
     assert (locks.counts == 120).all()
 
 
-def test_a_lock_among_equal_guides_is_like_them():
+def test_a_lock_among_equal_guides_equals_them():
     locks = drawn("", locks="count = 30\npoints = 10").locks
     shape = locks.points.reshape(30, 10, 3) - locks.roots[:, None]
     assert np.allclose(shape, tall(1, 10)[0], atol=1e-9)
 
 
-def test_guides_in_another_unit_are_refused_and_the_unit_suspected():
+def test_guides_in_another_unit_are_refused_with_a_hint_at_the_unit():
     with pytest.raises(UserError, match=r"not on the scalp .* 100 times the head's size: check metersPerUnit"):
         drawn("", guides=Curves.from_list([tall(10)[i] * 100 for i in range(10)]))
 
@@ -263,7 +263,7 @@ def test_an_edit_recomputes_only_what_follows_it():
     assert kept == {"guides", "locks"}
 
 
-def test_progress_tells_every_stage_before_and_after():
+def test_progress_reports_every_stage_before_and_after():
     told = []
     groom(progress=lambda *step: told.append(step))
     assert told == [(name, done, 1) for name in ("guides", "locks", "curl", "clean") for done in (0, 1)]

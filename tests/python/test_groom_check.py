@@ -39,7 +39,7 @@ def dipping(depth=0.002):
     return np.stack([radius * np.sin(angle), radius * np.cos(angle), 0 * angle], axis=1)
 
 
-def test_inside_is_inside_also_where_the_mesh_has_a_sharp_edge():
+def test_inside_and_outside_are_correct_at_sharp_edges():
     corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
     faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
     triangles = np.array([t for a, b, c, d in faces for t in ((a, b, c), (a, c, d))], np.int32)
@@ -53,7 +53,7 @@ def test_inside_is_inside_also_where_the_mesh_has_a_sharp_edge():
     assert not (open_box.above(places[beyond])[0] < 0).any()
 
 
-def test_a_lock_that_dips_under_the_skin_is_found_with_its_depth_and_place():
+def test_a_lock_below_the_skin_is_reported_with_depth_and_position():
     told = check_groom(groom_of([up(x=0.03), dipping()])).told()
     assert told["scalp"]["locks"] == 1 and told["body"]["places"] == 0
     assert told["scalp"]["depth"] == pytest.approx(0.002, abs=2e-4)
@@ -62,21 +62,21 @@ def test_a_lock_that_dips_under_the_skin_is_found_with_its_depth_and_place():
     assert np.linalg.norm(worst["place"]) == pytest.approx(RADIUS - worst["depth"], abs=2e-4)
 
 
-def test_an_edge_that_goes_through_between_its_points_is_found():
+def test_an_edge_that_intersects_between_its_points_is_found():
     chord = np.array([[0, RADIUS, 0], [0, RADIUS + 0.01, 0], [0.0505, 0.0805, 0], [0.09, 0.03, 0], [0.1, 0.02, 0]])
     height = _core.Solid(ball(RADIUS, 32).points, ball(RADIUS, 32).triangles).above(chord[1:])[0]
     assert (height > 0).all()  # every point is outside
     assert check_groom(groom_of([chord])).told()["scalp"]["places"] > 0
 
 
-def test_roots_may_be_in_the_skin_as_deep_as_is_allowed():
+def test_roots_may_be_below_the_skin_to_the_allowed_depth():
     sunk = up(401) - np.array([0, 4e-4, 0])
     assert len(check_groom(groom_of([sunk]))) == 0
     told = check_groom(groom_of([sunk]), allowed=Allowed(root_depth=1e-4)).told()
     assert told["scalp"]["depth"] == pytest.approx(2e-4, abs=1e-4)  # beside the root, which is not looked at
 
 
-def test_locks_nearer_than_their_thickness_are_found_and_their_own_neighbours_are_not():
+def test_locks_nearer_than_their_thickness_are_found():
     crossing = up() + np.linspace(-0.01, 0.01, 41)[:, None] * [0, 0, 1] + [3e-5, 0, 0]
     findings = check_groom(groom_of([up(), crossing, up(x=0.03)]))
     told = findings.told()["hair"]
@@ -89,7 +89,7 @@ def test_locks_nearer_than_their_thickness_are_found_and_their_own_neighbours_ar
     assert check_groom(groom_of([own])).told()["hair"]["places"] > 0  # a lock that goes through itself
 
 
-def test_others_beside_the_scalp_are_bodies():
+def test_meshes_other_than_the_scalp_are_bodies():
     box = ball(0.01, 8)
     box = Mesh("box", box.points + [0.0, RADIUS + 0.03, 0.0], box.triangles)
     told = check_groom(groom_of([up()]), [box]).told()
@@ -97,7 +97,7 @@ def test_others_beside_the_scalp_are_bodies():
 
 
 @pytest.mark.parametrize("kind", ["scalp", "hair", "both"])
-def test_the_repair_leaves_nothing_and_moves_no_more_than_it_must(kind):
+def test_repair_removes_every_intersection_with_bounded_displacements(kind):
     straight = up(x=-0.01, z=-0.04)
     crossed = [straight, straight + np.linspace(-0.01, 0.01, 41)[:, None] * [0, 0, 1] + [3e-5, 0, 0]]
     lines = {"scalp": [dipping()], "hair": crossed, "both": [*crossed, dipping()]}[kind]
@@ -114,7 +114,7 @@ def test_the_repair_leaves_nothing_and_moves_no_more_than_it_must(kind):
 
 
 @pytest.mark.parametrize("dragged", ["width", "margin"])
-def test_locks_that_are_led_around_the_head_do_not_pop_while_a_value_is_dragged(dragged):
+def test_locks_guided_around_the_head_change_continuously(dragged):
     recipe = (
         "ringlet = 1\n[scalp]\nregion = 'scalp'\n[guides]\ncount = 20\nlength = 6\nlift = 0.15\ndroop = 0.6\n"
         "[locks]\npoints = 160\n[curl]\nwidth = {width}\npitch = 1\n[clean]\nmargin = {margin}\n"
@@ -131,14 +131,14 @@ def test_locks_that_are_led_around_the_head_do_not_pop_while_a_value_is_dragged(
     assert coarse < 1e-4 and fine < 1e-6  # at most ten times as far as the value: no jump, however small the step
 
 
-def test_what_cannot_be_repaired_is_told():
+def test_intersections_beyond_repair_are_reported():
     one = up()
     repair = fix_groom(groom_of([one, one.copy(), one.copy()]), allowed=Allowed(thickness=0.02))
     assert len(repair.left) > 0 and repair.told()["rounds"] > 1
     assert sum(of["places"] for of in repair.left.told().values()) == len(repair.left)
 
 
-def test_the_command_checks_repairs_and_pictures(tmp_path):
+def test_the_command_checks_repairs_and_draws(tmp_path):
     folder = write_example(tmp_path)
     recipe = folder / "small.recipe.toml"
     lying = (

@@ -33,7 +33,7 @@ def groom(hairs=""):
     return make_groom(parse_recipe(said + hairs), ball())
 
 
-def test_the_first_hair_of_a_lock_is_the_groom_guide_bit_for_bit():
+def test_the_first_hair_of_a_lock_is_bit_identical_to_the_lock():
     made = groom()
     hairs = make_hairs(made).curves
     first = hairs.points.reshape(40, 12, 60, 3)[:, 0]
@@ -79,7 +79,7 @@ def test_hairs_stay_within_the_radius_of_their_lock():
     assert np.linalg.norm(bundle - bundle[:, :1], axis=3).max() < 0.00101
 
 
-def test_a_fraction_of_the_hairs_are_the_first_ones():
+def test_a_fraction_selects_the_first_hairs():
     made = groom()
     everything, half = make_hairs(made).curves, make_hairs(made, fraction=0.5).curves
     kept = everything.take(np.isin(everything.ids, half.ids))
@@ -95,7 +95,7 @@ def test_hairs_thin_out_towards_the_tip():
     assert np.allclose(width[:, 0], 1e-4) and np.allclose(width[:, -1], 2e-5)
 
 
-def test_hairs_have_names_of_their_own_and_their_texture_coordinates():
+def test_hairs_have_unique_ids_and_texture_coordinates():
     made = groom()
     made.scalp.uv = made.scalp.points[made.scalp.triangles][:, :, [0, 2]]
     hairs = make_hairs(made).curves
@@ -104,7 +104,7 @@ def test_hairs_have_names_of_their_own_and_their_texture_coordinates():
     assert np.allclose(hairs.curve["st"], hairs.roots[:, [0, 2]], atol=1e-6)
 
 
-def test_settings_that_came_from_a_file_are_checked():
+def test_hair_settings_of_a_file_are_checked():
     made = groom()
     made.hairs["per_lock"] = 0
     with pytest.raises(UserError, match=r"groom: hairs: per_lock is 0; must be at least 1"):
@@ -147,7 +147,7 @@ def test_a_taper_draws_hairs_together_at_the_tip():
         assert away[-1] == pytest.approx(left * away[20] / (1.0 - taper * 20 / 59), abs=1e-5)
 
 
-def test_strays_leave_their_lock_and_do_not_jump_while_their_part_changes():
+def test_strays_leave_their_lock_and_change_continuously_with_their_fraction():
     def at(stray):
         return make_hairs(groom(f"stray = {stray}\nstray_radius = '9 mm'\nfrizz = 0\nshorter = 0\n")).curves.points
 
@@ -184,7 +184,7 @@ blend = {blend}
     return make_hairs(made).curves.points.reshape(2, 50, 40, 3)
 
 
-def test_hairs_between_two_locks_mix_both_but_not_across_a_parting():
+def test_hairs_between_two_locks_mix_both_but_not_across_a_part_line():
     apart, mixed = two_locks(0.0, 0.0)[:, :, 20, 0], two_locks(0.0, 1.0)[:, :, 20, 0]
     assert np.abs(apart).min() > 0.0029  # a gap between the locks
     assert np.abs(mixed).min() < 0.0015  # which mixed hairs fill
@@ -192,18 +192,18 @@ def test_hairs_between_two_locks_mix_both_but_not_across_a_parting():
     assert np.array_equal(two_locks(40.0, 0.0), two_locks(40.0, 1.0))
 
 
-def test_mixed_hairs_stand_on_their_own_roots():
+def test_mixed_hairs_keep_their_own_roots():
     assert np.allclose(two_locks(0.0, 0.0)[:, :, 0], two_locks(0.0, 1.0)[:, :, 0], atol=1e-7)
 
 
-def test_wider_hairs_make_up_for_those_left_out():
+def test_wider_hairs_compensate_for_a_smaller_fraction():
     made = groom("width = { value = 0.01, vary = 0 }\n")
     every, few = make_hairs(made).curves, make_hairs(made, fraction=0.25, wider=True).curves
     assert len(few) == len(every) // 4
     assert few.point["width"].sum() == pytest.approx(every.point["width"].sum(), rel=1e-5)
 
 
-def test_remembered_hairs_are_those_that_would_be_made_anew():
+def test_cached_hairs_equal_rebuilt_hairs():
     memory = HairMemory()
     make_hairs(groom(), memory=memory)
     kept = memory.hairs
@@ -215,7 +215,7 @@ def test_remembered_hairs_are_those_that_would_be_made_anew():
     assert memory.hairs is not kept
 
 
-def test_the_curl_of_hairs_survives_a_hard_motion_of_their_locks():
+def test_hairs_keep_their_curl_when_locks_swing():
     made = groom("radius = '0.3 mm'\nstray = 0\nfrizz = 0\nshorter = 0\n")
     hairs = make_hairs(made)
     bent = made.locks.points.copy()
@@ -233,7 +233,7 @@ def test_the_curl_of_hairs_survives_a_hard_motion_of_their_locks():
     assert np.allclose(bends(now), bends(rest), rtol=0.02)
 
 
-def test_pictures_that_hairs_ask_for_go_with_the_groom_file(tmp_path):
+def test_textures_of_hairs_are_stored_with_the_groom(tmp_path):
     write_head(tmp_path / "head.usdc")
     Image.fromarray(np.array([[255], [64]], np.uint8).repeat(2, axis=1)).save(tmp_path / "thick.png")
     (tmp_path / "a.recipe.toml").write_text(

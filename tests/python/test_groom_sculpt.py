@@ -40,7 +40,7 @@ def bent(guides: Curves, row: int) -> Curves:
     return guides.with_points(points)
 
 
-def test_sculpted_guides_are_where_they_were_put_and_locks_follow(recipe: Path):
+def test_sculpted_guides_keep_their_positions_and_locks_follow(recipe: Path):
     before = ringlet.build_groom(recipe)
     wanted = bent(before.guides, 2)
     sculpt(recipe, before, wanted)
@@ -53,7 +53,7 @@ def test_sculpted_guides_are_where_they_were_put_and_locks_follow(recipe: Path):
     np.testing.assert_array_equal(after.locks.roots, before.locks.roots)
 
 
-def test_a_cut_guide_is_cut_by_the_same_part_when_the_recipe_makes_it_longer(recipe: Path):
+def test_a_cut_guide_keeps_its_fraction_when_the_recipe_lengthens_it(recipe: Path):
     before = ringlet.build_groom(recipe)
     (recipe.parent / "small.edits.toml").write_text(
         f"ringlet = 1\n[[sculpt]]\nguide = {before.guides.ids[1]}\nlength = 0.5\n"
@@ -66,7 +66,7 @@ def test_a_cut_guide_is_cut_by_the_same_part_when_the_recipe_makes_it_longer(rec
     assert longer.guides.lengths()[1] > 1.4 * 0.5 * before.guides.lengths()[1]
 
 
-def test_what_was_sculpted_outlives_changes_of_the_guides(recipe: Path):
+def test_sculpting_survives_changes_of_the_guides(recipe: Path):
     before = ringlet.build_groom(recipe)
     sculpt(recipe, before, bent(before.guides, 2))
     way = ringlet.build_groom(recipe).guides[2][-1] - before.guides[2][-1]
@@ -76,17 +76,17 @@ def test_what_was_sculpted_outlives_changes_of_the_guides(recipe: Path):
     assert np.linalg.norm(later.guides[2][-1] - later.unsculpted[2][-1]) == pytest.approx(np.linalg.norm(way), rel=0.02)
 
 
-def test_what_leads_from_one_to_the_other_is_nothing_where_nothing_was_done(recipe: Path):
+def test_unchanged_guides_need_no_sculpt(recipe: Path):
     groom = ringlet.build_groom(recipe)
     assert sculpts_to(groom.guides, groom.guides, Scalp(groom.scalp, groom.region)) == []
 
 
-def test_a_guide_that_is_gone_is_told_of_and_its_shape_kept(recipe: Path):
+def test_a_sculpt_of_a_missing_guide_is_reported(recipe: Path):
     (recipe.parent / "small.edits.toml").write_text("ringlet = 1\n[[sculpt]]\nguide = 7\nlength = 0.5\n")
     assert "guide 7 was sculpted but is no longer there" in ringlet.build_groom(recipe).conflicts[0]
 
 
-def test_edits_of_locks_leave_those_of_guides_in_the_file(recipe: Path):
+def test_edits_of_locks_keep_sculpts_in_the_file(recipe: Path):
     groom = ringlet.build_groom(recipe)
     sculpt(recipe, groom, bent(groom.guides, 2))
     ringlet.edit_lock(recipe, int(groom.locks.ids[0]), settings={"curl.width": "8 mm"})
@@ -96,7 +96,7 @@ def test_edits_of_locks_leave_those_of_guides_in_the_file(recipe: Path):
     assert len(read_recipe(recipe).sculpt) == 1
 
 
-def test_mistakes_are_told(recipe: Path):
+def test_invalid_sculpts_are_refused(recipe: Path):
     text = recipe.read_text()
     with pytest.raises(UserError, match="changes nothing"):
         parse_recipe(text, recipe, "ringlet = 1\n[[sculpt]]\nguide = 3\n")

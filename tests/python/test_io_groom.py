@@ -50,7 +50,7 @@ def hairs_of(groom):
     return Curves(hairs.points, hairs.offsets, np.arange(len(hairs)), curve, {"width": hairs.point["width"]})
 
 
-def test_a_groom_comes_back_whole(folder):
+def test_a_groom_round_trips(folder):
     groom, back = make_groom(folder / "assets/head.usdc"), read_groom(folder / "out/groom.usdc")
     for name in ("recipe", "hairs", "region", "space", "scalp_prim"):
         assert getattr(back, name) == getattr(groom, name)
@@ -73,7 +73,7 @@ def test_the_same_groom_makes_the_same_file(folder):
     assert (folder / "out/again.usdc").read_bytes() == (folder / "out/groom.usdc").read_bytes()
 
 
-def test_widths_of_whole_curves_stay_widths_of_whole_curves(folder):
+def test_widths_of_curves_stay_uniform(folder):
     groom = make_groom(folder / "assets/head.usdc")
     groom.locks.curve["width"] = groom.locks.point.pop("width")[groom.locks.offsets[:-1]]
     write_groom(groom, folder / "out/groom.usdc")
@@ -82,7 +82,7 @@ def test_widths_of_whole_curves_stay_widths_of_whole_curves(folder):
     assert "width" not in locks.point
 
 
-def test_a_scalp_that_came_from_no_file_travels_inside_the_groom(tmp_path):
+def test_a_scalp_without_a_file_is_stored_in_the_groom(tmp_path):
     mesh = make_groom(write_head(tmp_path / "head.usda")).scalp
     write_groom(make_groom(None, mesh), tmp_path / "groom.usdc")
     back = read_groom(tmp_path / "groom.usdc")
@@ -92,7 +92,7 @@ def test_a_scalp_that_came_from_no_file_travels_inside_the_groom(tmp_path):
     assert read_clip(back.scalp_file, back.scalp_prim).points.shape == (1, 8, 3)
 
 
-def test_everything_written_keeps_the_rules_of_usd(folder):
+def test_written_files_pass_the_usd_validators(folder):
     groom = read_groom(folder / "out/groom.usdc")
     with HairWriter(folder / "out/hair.usdc", groom, hairs_of(groom), folder / "out/cache.usdc") as writer:
         writer.add(1, hairs_of(groom).points)
@@ -100,14 +100,14 @@ def test_everything_written_keeps_the_rules_of_usd(folder):
         assert problems(folder / f"out/{name}.usdc") == []
 
 
-def test_the_validators_see_what_breaks_a_rule(tmp_path):
+def test_the_usd_validators_detect_a_violation(tmp_path):
     stage = Usd.Stage.CreateNew(str(tmp_path / "a.usda"))
     UsdGeom.Xform.Define(stage, "/a")
     stage.Save()
     assert any("MissingDefaultPrim" in problem for problem in problems(tmp_path / "a.usda"))
 
 
-def test_the_head_comes_along_and_plays_even_after_both_have_moved(folder):
+def test_the_head_is_referenced_with_its_animation_after_both_files_move(folder):
     moved = folder.parent / f"{folder.name}-moved"
     shutil.move(folder, moved)
     bodies, hairs, _ = read_stage(moved / "out/groom.usdc")
@@ -118,7 +118,7 @@ def test_the_head_comes_along_and_plays_even_after_both_have_moved(folder):
     assert len(read_groom(moved / "out/cache.usdc").locks) == 5
 
 
-def test_a_cache_comes_back_and_leaves_the_groom_at_rest(folder):
+def test_a_cache_round_trips_and_leaves_the_groom_at_rest(folder):
     cache, groom = read_cache(folder / "out/cache.usdc"), make_groom(folder / "assets/head.usdc")
     np.testing.assert_array_equal(cache.frames, [1, 2, 3])
     np.testing.assert_allclose(cache.points[2] - cache.points[0], np.tile([0, 0.02, 0], (35, 1)), atol=1e-7)
@@ -127,7 +127,7 @@ def test_a_cache_comes_back_and_leaves_the_groom_at_rest(folder):
     np.testing.assert_allclose(read_groom(folder / "out/cache.usdc").locks.points, groom.locks.points, atol=2e-8)
 
 
-def test_hairs_come_back_at_every_frame_with_the_head_at_the_same_frame(folder):
+def test_hairs_and_head_round_trip_at_every_frame(folder):
     groom = read_groom(folder / "out/groom.usdc")
     hairs = hairs_of(groom)
     with HairWriter(folder / "out/hair.usdc", groom, hairs, folder / "out/cache.usdc") as writer:
@@ -168,7 +168,7 @@ def test_the_written_roots_are_where_the_locks_begin(folder):
     assert UsdGeom.Imageable(locks).ComputePurpose() == UsdGeom.Tokens.guide
 
 
-def test_drawn_guides_keep_their_names_and_primvars_on_the_way_through(tmp_path):
+def test_drawn_guides_keep_their_names_and_primvars_in_a_round_trip(tmp_path):
     write_head(tmp_path / "head.usdc")
     stage = Usd.Stage.CreateNew(str(tmp_path / "drawn.usda"))
     UsdGeom.SetStageMetersPerUnit(stage, 0.01)
@@ -211,7 +211,7 @@ def test_other_programs_can_read_the_locks_as_plain_curves(folder):
     np.testing.assert_array_equal(curves.ids, [7, 3, 11, 2**40, 5])
 
 
-def test_extents_hold_the_points_of_their_frame(folder):
+def test_extents_contain_the_points_of_their_frame(folder):
     stage = Usd.Stage.Open(str(folder / "out/cache.usdc"))
     locks = UsdGeom.BasisCurves(stage.GetPrimAtPath("/groom/locks"))
     for frame in (1, 2, 3):
@@ -221,7 +221,7 @@ def test_extents_hold_the_points_of_their_frame(folder):
         assert (high - low < np.ptp(points, axis=0) + 0.1).all()
 
 
-def test_what_breaks_off_leaves_the_old_file_and_nothing_else(folder):
+def test_an_interrupted_write_leaves_only_the_old_file(folder):
     out = folder / "out"
     before, files = (out / "cache.usdc").read_bytes(), sorted(out.iterdir())
     locks, space = make_groom(folder / "assets/head.usdc").locks, read_space(out / "groom.usdc")
@@ -232,7 +232,7 @@ def test_what_breaks_off_leaves_the_old_file_and_nothing_else(folder):
     assert sorted(out.iterdir()) == files
 
 
-def test_a_long_run_goes_to_the_file_while_it_runs(folder, monkeypatch):
+def test_frames_are_flushed_during_a_run(folder, monkeypatch):
     monkeypatch.setattr("ringlet.io.usd.stream.FLUSH", 100)
     groom = read_groom(folder / "out/groom.usdc")
     with CacheWriter(folder / "out/b.usdc", folder / "out/groom.usdc", groom.space) as writer:
@@ -251,7 +251,7 @@ def test_a_cache_of_another_groom_is_refused(folder):
         read_cache(folder / "out/cache.usdc")
 
 
-def test_a_cache_that_is_held_open_and_lies_over_another_groom_now_is_read_as_it_is(folder):
+def test_an_open_cache_is_reread_after_it_was_replaced(folder):
     groom, held = read_groom(folder / "out/groom.usdc"), []
     for name in "abcdefgh":  # in which order layers are read anew is chance
         path, under = folder / f"out/{name}.usdc", folder / f"out/{name}.groom.usdc"

@@ -51,13 +51,13 @@ def test_a_lofted_shot_begins_nearer_to_its_groom(folder):
 
 
 @pytest.mark.parametrize(("mode", "used"), [("none", False), ("lofted", True)])
-def test_a_shot_that_would_not_use_its_shape_is_told(folder, mode, used):
+def test_an_unused_rest_shape_is_reported(folder, mode, used):
     change(folder, "mode = 'lofted'", f"mode = '{mode}'")
     result = run("loft", folder / "small.shot.toml")
     assert result.exit_code == 0 and ("does not use this shape" in result.stdout) is not used
 
 
-def test_the_report_tells_what_is_lost_and_shows_it(folder):
+def test_the_report_compares_the_sag_with_and_without_loft(folder):
     result = run("loft", folder / "small.shot.toml", "-o", folder / "a.usdc", "--json", "--report", folder / "out")
     told = json.loads(result.stdout)
     assert told["locks"] == 8 and told["lost"]["away"]["with mean"] < told["lost"]["away"]["without mean"]
@@ -67,7 +67,7 @@ def test_the_report_tells_what_is_lost_and_shows_it(folder):
     assert (folder / "out/loft.png").stat().st_size > 10_000
 
 
-def test_without_its_file_a_lofted_shot_says_how_to_make_it(folder):
+def test_a_missing_loft_is_refused_with_the_command_that_makes_it(folder):
     result = run("sim", folder / "small.shot.toml", "-o", folder / "cache.usdc")
     assert result.exit_code == 2
     assert "small.rest.usdc" in result.stderr and "ringlet loft" in result.stderr
@@ -88,7 +88,7 @@ def test_without_its_file_a_lofted_shot_says_how_to_make_it(folder):
         ("width = 1.0", "width = 1.1", "small.recipe.toml", ["8 of 8 locks"]),
     ],
 )
-def test_a_stale_loft_is_refused_in_one_line_unless_it_is_allowed(folder, old, new, file, words):
+def test_a_stale_loft_is_refused_in_one_line_unless_allowed(folder, old, new, file, words):
     shot = folder / "small.shot.toml"
     assert run("loft", shot).exit_code == 0
     change(folder, old, new, file)
@@ -100,7 +100,7 @@ def test_a_stale_loft_is_refused_in_one_line_unless_it_is_allowed(folder, old, n
     assert run("sim", shot, "-o", folder / "cache.usdc", "--allow-stale").exit_code == 0
 
 
-def test_what_a_loft_does_not_depend_on_does_not_make_it_stale(folder):
+def test_unrelated_settings_do_not_make_a_loft_stale(folder):
     shot = folder / "small.shot.toml"
     assert run("loft", shot).exit_code == 0
     change(
@@ -113,7 +113,7 @@ def test_what_a_loft_does_not_depend_on_does_not_make_it_stale(folder):
     assert run("sim", shot, "--groom", folder / "groom.usdc", "-o", folder / "cache.usdc").exit_code == 0
 
 
-def test_other_locks_are_refused_always(folder):
+def test_a_loft_of_other_locks_is_always_refused(folder):
     shot = folder / "small.shot.toml"
     assert run("loft", shot).exit_code == 0
     change(folder, "count = 8", "count = 9", "small.recipe.toml")
@@ -121,7 +121,7 @@ def test_other_locks_are_refused_always(folder):
     assert result.exit_code == 2 and "other locks" in result.stderr
 
 
-def test_only_locks_that_have_changed_are_lofted_again(folder):
+def test_only_changed_locks_are_lofted_again(folder):
     shot, file = ringlet.read_shot(folder / "small.shot.toml"), folder / "small.rest.usdc"
     groom = ringlet.build_groom(folder / "small.recipe.toml")
     ringlet.write_loft(ringlet.loft(shot, groom), shot, file)
@@ -143,7 +143,7 @@ def test_only_locks_that_have_changed_are_lofted_again(folder):
     assert not seen
 
 
-def test_a_shot_in_equilibrium_stays_as_groomed_and_knows_how_stiff_its_locks_are(folder):
+def test_a_shot_in_equilibrium_stays_as_groomed_and_stores_its_stiffening(folder):
     change(folder, "preroll = 0", "preroll = 24\nstrands = { bend_scale = 0.2 }")
     change(folder, "mode = 'lofted'", "mode = 'equilibrium'")
     assert run("loft", folder / "small.shot.toml").exit_code == 0
@@ -155,7 +155,7 @@ def test_a_shot_in_equilibrium_stays_as_groomed_and_knows_how_stiff_its_locks_ar
     assert result.exit_code == 2 and "rest.mode was equilibrium and is lofted" in result.stderr
 
 
-def test_a_shape_that_lies_on_a_body_is_stale_when_contact_is_other(folder):
+def test_a_rest_shape_in_contact_is_stale_after_a_change_of_contact(folder):
     change(folder, "mode = 'lofted'", "mode = 'equilibrium'")
     shot = folder / "small.shot.toml"
     shot.write_text(shot.read_text() + "[contact]\nradius = 1e-3\n")

@@ -47,7 +47,7 @@ def off(made, extra=""):
     return np.linalg.norm(moved - rigid, axis=2).max(axis=0).reshape(len(made.locks), -1)
 
 
-def test_what_is_nailed_rigidly_moves_with_the_skin_and_the_rest_does_not():
+def test_rigidly_nailed_vertices_move_with_the_skin_and_tips_swing():
     made = groom("[[nail]]\nmask = { where = 'z > 0' }\nreach = 3\n")
     nail = made.locks.point["nail"].reshape(16, 24)
     front = made.locks.roots[:, 2] > 0
@@ -59,7 +59,7 @@ def test_what_is_nailed_rigidly_moves_with_the_skin_and_the_rest_does_not():
     assert np.median(away[front, -1]) < np.median(away[~front, -1])
 
 
-def test_soft_nails_hold_less_the_softer_they_are():
+def test_swing_increases_with_the_softness_of_nails():
     swing = [np.median(off(groom(f"[[nail]]\nfirm = {firm}\n"))[:, -1]) for firm in (0.0, 0.2, 0.5, 0.9)]
     assert swing[0] > 0.01
     assert all(b < 0.75 * a for a, b in pairwise(swing))
@@ -75,7 +75,7 @@ def test_a_nail_fades_out_along_the_lock():
     assert np.all(away[:, -1] > away[:, 12])
 
 
-def test_of_several_nails_the_firmest_holds():
+def test_the_firmest_of_several_nails_applies():
     made = groom("[[nail]]\nfirm = 0.2\n[[nail]]\nfirm = 0.6\nmask = { where = 'x > 0' }\n")
     nail = made.locks.point["nail"].reshape(16, 24)
     np.testing.assert_allclose(nail, np.where(made.locks.roots[:, 0] > 0, 0.6, 0.2)[:, None] * np.ones(24), atol=1e-6)
@@ -93,7 +93,7 @@ def test_nails_are_written_with_the_groom(tmp_path):
     np.testing.assert_allclose(again.locks.point["nail"], made.locks.point["nail"], atol=1e-7)
 
 
-def test_nails_that_cannot_be_are_refused():
+def test_invalid_nails_are_refused():
     for text, words in (("firm = 2", "nail[0].firm is 2; must be at most 1"), ("frim = 1", "did you mean 'firm'")):
         with pytest.raises(UserError) as error:
             parse_recipe(RECIPE + f"[[nail]]\n{text}\n")

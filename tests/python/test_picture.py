@@ -114,7 +114,7 @@ def test_the_front_view_looks_at_the_face_and_the_side_view_at_the_left_ear() ->
 
 
 @pytest.mark.parametrize(("scale", "at"), [(1.0, (0.0, 0.0, 0.0)), (0.01, (3.0, -2.0, 1.0))])
-def test_hair_is_seen_where_it_is(tmp_path: Path, scale: float, at: tuple[float, float, float]) -> None:
+def test_hair_appears_at_its_projected_position(tmp_path: Path, scale: float, at: tuple[float, float, float]) -> None:
     hairs, size = tuft(scale=scale, at=at), (64, 64)
     camera = frame([hairs.points], view="front")
     scene = build_scene([], hairs, camera, size=size, color=HAIR_COLORS["dark_brown"], max_depth=4)
@@ -130,7 +130,7 @@ def test_hair_is_seen_where_it_is(tmp_path: Path, scale: float, at: tuple[float,
     assert coverage[~near].max() < 0.05
 
 
-def test_a_still_is_neither_black_nor_burnt_and_the_hair_darkens_the_wall(tmp_path: Path) -> None:
+def test_a_still_is_neither_black_nor_overexposed_and_shows_the_hair(tmp_path: Path) -> None:
     path = still([ball()], tuft(), tmp_path / "still.png", width=64, height=64, samples=8, view="front")
     image = pixels(path)
     assert image.shape == (64, 64, 3)
@@ -139,7 +139,7 @@ def test_a_still_is_neither_black_nor_burnt_and_the_hair_darkens_the_wall(tmp_pa
     assert np.abs(image - pixels(empty)).max() > 40
 
 
-def test_what_is_behind_a_veil_is_seen_through_it(tmp_path: Path) -> None:
+def test_a_body_shows_through_a_transparent_one(tmp_path: Path) -> None:
     near, far = ball(at=(0.0, 0.0, 0.12)), ball(0.8, at=(0.0, -0.01, 0.0))
     for body, color in ((near, (0.8, 0.02, 0.02)), (far, (0.02, 0.02, 0.8))):
         body.mesh = Mesh(body.mesh.name, body.mesh.points, body.mesh.triangles, color=color)
@@ -162,7 +162,7 @@ def test_blond_hair_is_brighter_than_black(tmp_path: Path) -> None:
     assert light["blond"] > 1.5 * light["black"]
 
 
-def test_thin_hairs_are_still_seen(tmp_path: Path) -> None:
+def test_subpixel_hairs_are_visible(tmp_path: Path) -> None:
     hairs = tuft()
     hairs.point["width"][:] = 1e-9
     camera = frame([hairs.points], view="front")
@@ -170,7 +170,7 @@ def test_thin_hairs_are_still_seen(tmp_path: Path) -> None:
     assert trace(scene, samples=8)[:, :, 3].mean() > 0.05
 
 
-def test_a_still_tells_how_far_it_is_and_keeps_to_its_time(tmp_path: Path) -> None:
+def test_a_still_reports_progress_and_respects_its_time_limit(tmp_path: Path) -> None:
     told: list[tuple[str, int, int]] = []
     still([], tuft(4), tmp_path / "a.png", width=16, height=16, samples=16, progress=lambda *step: told.append(step))
     assert [done for _, done, _ in told] == list(range(told[-1][2] + 1))
@@ -189,7 +189,7 @@ def test_a_still_tells_how_far_it_is_and_keeps_to_its_time(tmp_path: Path) -> No
 
 
 @pytest.mark.parametrize("samples", [4, 40])
-def test_a_still_that_time_may_cut_short_is_traced_in_smaller_passes(tmp_path: Path, samples: int) -> None:
+def test_a_time_limit_splits_a_still_into_smaller_passes(tmp_path: Path, samples: int) -> None:
     """Noise is known from three passes on: they take no longer than two would without a limit, save of few samples."""
     passes = {}
     for seconds in (None, 1e9):
@@ -216,7 +216,7 @@ def seen(passes: np.ndarray) -> Passes:
     return added
 
 
-def test_a_speck_is_spread_over_its_neighbourhood_and_no_light_is_lost() -> None:
+def test_fireflies_are_spread_over_their_neighbourhood_and_light_is_conserved() -> None:
     passes = np.full((5, 40, 40, 4), 0.5)
     passes[2, 20, 20, :3] += 5.0  # one pass met a light by chance
     total = passes.sum(axis=0)
@@ -229,7 +229,7 @@ def test_a_speck_is_spread_over_its_neighbourhood_and_no_light_is_lost() -> None
 
 
 @pytest.mark.parametrize("where", [0, 1, 2])
-def test_a_speck_leaves_no_dot_on_skin_that_is_noisy(where: int) -> None:
+def test_fireflies_leave_no_dot_on_noisy_skin(where: int) -> None:
     passes = np.random.default_rng(where).uniform(0.4, 0.6, (3, 40, 40, 4))
     passes[where, 20, 20, :3] += 5.0
     all_of_it = seen(passes)
@@ -238,7 +238,7 @@ def test_a_speck_leaves_no_dot_on_skin_that_is_noisy(where: int) -> None:
     assert np.abs(calm[20, 20, :3] - around.mean()).max() < 0.1
 
 
-def test_noise_goes_and_edges_stay() -> None:
+def test_denoising_removes_noise_and_keeps_edges() -> None:
     clean = np.full((60, 60, 4), 0.2)
     clean[:, 30:] = 0.8
     noise = np.random.default_rng(4).normal(0.0, 0.05, clean.shape)
@@ -250,7 +250,7 @@ def test_noise_goes_and_edges_stay() -> None:
 
 
 @pytest.mark.parametrize("passes", [3, 4, 5, 10])
-def test_less_is_left_of_noise_that_is_not_judged_by_itself(passes: int) -> None:
+def test_cross_filtering_leaves_less_noise_than_self_filtering(passes: int) -> None:
     light = np.random.default_rng(passes).uniform(0.0, 1.0, (passes, 80, 80, 1)).repeat(4, axis=3)
     mean, variance = light.mean(axis=0), light.var(axis=0, ddof=1)
     all_of_it = seen(light)
@@ -259,7 +259,7 @@ def test_less_is_left_of_noise_that_is_not_judged_by_itself(passes: int) -> None
     assert calm.mean() == pytest.approx(mean.mean(), rel=5e-3)
 
 
-def test_hair_is_told_from_skin() -> None:
+def test_hair_is_distinguished_from_skin() -> None:
     hairs = tuft()
     camera = frame([hairs.points, ball().points], view="front")
     scene = build_scene([ball()], hairs, camera, size=(64, 64), color=HAIR_COLORS["black"], max_depth=2)
@@ -270,7 +270,7 @@ def test_hair_is_told_from_skin() -> None:
     assert share[int(below[1]) - 6, int(below[0])] < 0.01
 
 
-def test_bright_light_rolls_off_and_order_is_kept() -> None:
+def test_tone_mapping_is_monotone_and_compresses_highlights() -> None:
     ramp = np.linspace(0.0, 4.0, 400)[None, :, None].repeat(3, axis=2)
     values = develop(ramp)[0, :, 0].astype(int)
     assert values[0] <= 1
@@ -278,7 +278,7 @@ def test_bright_light_rolls_off_and_order_is_kept() -> None:
     assert values[100] < 240  # light of strength 1 is not yet white
 
 
-def test_a_body_is_made_of_what_its_name_says() -> None:
+def test_the_material_of_a_body_follows_its_name() -> None:
     eye = material(ball(name="head.usdc /child/eye_left/iris").mesh)["bsdf"]
     shirt = material(ball(name="head.usdc /child/shirt").mesh)["bsdf"]
     assert eye["roughness"] < shirt["roughness"]
@@ -325,21 +325,21 @@ def test_wrong_options_are_refused_by_name(tmp_path: Path, options: dict, named:
     assert list(tmp_path.iterdir()) == []
 
 
-def test_nothing_to_draw_is_refused(tmp_path: Path) -> None:
+def test_an_empty_picture_is_refused(tmp_path: Path) -> None:
     with pytest.raises(UserError, match="neither hairs nor bodies"):
         still([], tuft(1).take(np.arange(0)), tmp_path / "still.png")
     with pytest.raises(UserError, match="no frames"):
         sheet([], tmp_path / "sheet.png")
 
 
-def test_a_picture_that_cannot_be_written_leaves_nothing_behind(tmp_path: Path) -> None:
+def test_an_unwritable_picture_leaves_no_file(tmp_path: Path) -> None:
     (tmp_path / "place").write_text("in the way")
     with pytest.raises(UserError, match="cannot be written"):
         still([], tuft(1), tmp_path / "place" / "still.png", width=8, height=8, samples=1)
     assert [entry.name for entry in tmp_path.iterdir()] == ["place"]
 
 
-def test_points_that_are_not_finite_are_refused(tmp_path: Path) -> None:
+def test_non_finite_points_are_refused(tmp_path: Path) -> None:
     hairs, body = tuft(3), ball()
     hairs.points[70] = np.nan
     with pytest.raises(UserError, match="curve 1, point 9"):

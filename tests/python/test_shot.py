@@ -44,7 +44,7 @@ def turned(frame, points):
     return points @ about.T + [0, 0.01 * (frame - 1), 0]
 
 
-def test_held_vertices_ride_on_the_scalp_in_place_and_orientation():
+def test_prescribed_vertices_follow_the_scalp_in_position_and_orientation():
     made = groom()
     cache = simulate(parse_shot(SHOT), made, moving(turned))
     held = (made.locks.offsets[:-1, None] + np.arange(3)).ravel()
@@ -52,21 +52,21 @@ def test_held_vertices_ride_on_the_scalp_in_place_and_orientation():
         assert np.abs(points[held] - turned(frame, made.locks.points)[held]).max() < 1e-7
 
 
-def test_without_forces_a_still_groom_stays_as_it_was_groomed():
+def test_a_static_groom_without_forces_stays_as_groomed():
     made = groom()
     shot = parse_shot(SHOT + "[forces]\ngravity = [0, 0, 0]\n")
     cache = simulate(shot, made, moving(lambda frame, points: points))
     assert np.abs(cache.points - made.locks.points).max() < 1e-7
 
 
-def test_a_shot_begins_where_the_head_is_at_its_first_frame():
+def test_a_shot_starts_on_the_head_of_its_first_frame():
     made = groom()
     shot = parse_shot(SHOT + "[forces]\ngravity = [0, 0, 0]\n")
     cache = simulate(shot, made, moving(turned), frames=(4, 4))
     assert np.abs(cache.points[0] - turned(4, made.locks.points)).max() < 1e-7
 
 
-def test_a_preroll_lets_the_hair_hang_before_the_first_frame():
+def test_preroll_settles_the_hair_before_the_first_frame():
     made, clip = groom(), moving(lambda frame, points: points)
     fresh = simulate(parse_shot(SHOT), made, clip)
     hung = simulate(parse_shot(SHOT.replace("preroll = 0", "preroll = 200")), made, clip)
@@ -85,7 +85,7 @@ def test_substeps_divide_a_frame_and_its_motion():
     assert 0 < np.abs(cache.points[-1] - coarse.points[-1]).max() < 0.02
 
 
-def test_statistics_tell_what_the_solver_did():
+def test_statistics_describe_every_frame_of_the_solver():
     for statistics in simulate(parse_shot(SHOT), groom(), moving(turned)).statistics:
         assert 1 <= statistics["newton"] <= statistics["newton_max"] <= 5
         assert statistics["nan"] == 0 and statistics["max_stretch"] < 0.05
@@ -114,7 +114,7 @@ def test_statistics_tell_what_the_solver_did():
         (("ringlet = 1", "ringlet = "), ["TOML"]),
     ],
 )
-def test_a_mistake_in_a_shot_is_told_in_one_line(change, words):
+def test_an_invalid_shot_is_refused_in_one_line(change, words):
     with pytest.raises(UserError) as told:
         parse_shot(SHOT.replace(*change))
     assert "\n" not in str(told.value)
@@ -135,7 +135,7 @@ def flattened(frame, points):
         (lambda g: g.locks.points.__setitem__((50, 1), np.nan), moving(turned), ["curve 12", "finite"]),
     ],
 )
-def test_what_cannot_be_simulated_is_refused_in_one_line(spoil, clip, words):
+def test_an_invalid_groom_or_clip_is_refused_in_one_line(spoil, clip, words):
     made = groom()
     spoil(made)
     with pytest.raises(UserError) as told:
@@ -145,6 +145,6 @@ def test_what_cannot_be_simulated_is_refused_in_one_line(spoil, clip, words):
         assert word in str(told.value)
 
 
-def test_holding_more_vertices_than_a_lock_has_is_refused():
+def test_more_prescribed_vertices_than_a_lock_has_are_refused():
     with pytest.raises(UserError, match="held is 40"):
         simulate(parse_shot(SHOT.replace("preroll = 0", "held = 40")), groom(), moving(turned))

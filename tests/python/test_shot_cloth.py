@@ -57,7 +57,7 @@ LONG = SHOT.replace("12]", "30]") + CONTACT
 WEIGHTLESS = SHOT + "[forces]\ngravity = [0, 0, 0]\n" + CONTACT
 
 
-def test_cloth_falls_onto_locks_and_the_floor_and_through_neither():
+def test_cloth_falls_onto_locks_and_the_floor_without_intersections():
     cache = simulated(garment(), text=LONG)
     cloth, alone = cache.cloths[0].points.astype(float), simulated(text=LONG)
     assert cloth.shape == (30, 81, 3)
@@ -71,7 +71,7 @@ def test_cloth_falls_onto_locks_and_the_floor_and_through_neither():
     assert cache.points[12, :, 1].mean() < alone.points[12, :, 1].mean() - 1e-4
 
 
-def test_statistics_tell_of_each_cloth():
+def test_statistics_include_each_cloth():
     cache = simulated(garment(), garment(sheet(height=0.03, name="other")))
     assert [cloth.name for cloth in cache.cloths] == ["sheet", "other"]
     for frame in cache.statistics:
@@ -94,7 +94,7 @@ def turned(points, frames):
     return points @ rotation((0, 0, 1), 3 * frames).T + [0.002 * frames, 0, 0]
 
 
-def test_a_subset_is_held_by_the_collider_that_moves():
+def test_a_subset_is_pinned_to_a_moving_collider():
     begin, places = pinned(ball(0.01), turned, subset="front")
     front = begin[:, 2] <= 1e-9
     for k, now in enumerate(places):
@@ -102,14 +102,14 @@ def test_a_subset_is_held_by_the_collider_that_moves():
     assert np.abs(places[-1][~front] - turned(begin[~front], 11)).max() > 1e-5  # the rest follows by itself
 
 
-def test_what_is_near_a_collider_is_held_by_it():
+def test_vertices_near_a_collider_are_pinned_to_it():
     begin, places = pinned(ball(0.01), turned, within=0.022)
     near = np.linalg.norm(begin, axis=1) < 0.0315
     assert 0 < near.sum() < len(near) / 2
     assert np.abs(places[-1][near] - turned(begin[near], 11)).max() < 1e-6
 
 
-def test_a_map_says_how_strongly_springs_draw():
+def test_a_map_scales_the_stiffness_of_attachments():
     def shifted(points, frames):
         return points + [0, 0, 0.0005 * frames]
 
@@ -121,7 +121,7 @@ def test_a_map_says_how_strongly_springs_draw():
     assert np.abs((places[-1] - begin)[strong, 2].mean() - 0.0055) < 1e-3  # along with the collider
 
 
-def test_an_animated_mesh_leads_what_is_pinned_to_nothing_else():
+def test_pins_without_a_collider_follow_the_animated_mesh():
     mesh = sheet(height=0.03)
     clip = moving(mesh, lambda points, frames: points + [0, 0, 0.003 * frames])
     cache = simulated(garment(mesh, clip, pin=[{"subset": "front"}]), text=WEIGHTLESS)
@@ -129,7 +129,7 @@ def test_an_animated_mesh_leads_what_is_pinned_to_nothing_else():
     assert np.abs(cache.cloths[0].points[-1][front] - clip.points[-1][front]).max() < 1e-6
 
 
-def test_a_cloth_begins_where_what_it_lies_on_has_gone():
+def test_cloth_starts_on_its_collider_of_the_first_frame():
     """A shot that begins in the middle of an animation: the cloth is modelled for the rest pose."""
     collider = ball(0.01)
     obstacle = Obstacle(collider, moving(collider, turned))
@@ -145,7 +145,7 @@ def girth(points, rows=4):
     return np.linalg.norm(rings - np.roll(rings, 1, axis=1), axis=2).sum(axis=1).mean()
 
 
-def test_elastic_draws_together_as_its_frames_say():
+def test_elastic_shrinks_over_its_frames():
     band = tube(centre=(0, 0.05, 0))
     cache = simulated(garment(band, shrink=[[1, 1.0], [3, 1.0], [9, 0.5]]), text=WEIGHTLESS + "[solver]\nnewton = 20\n")
     sizes = [girth(points) / girth(band.points) for points in cache.cloths[0].points]
@@ -174,7 +174,7 @@ def test_a_band_gathers_the_locks_in_it():
 
 
 @pytest.mark.parametrize("pair", [("sheet", "floor"), ("floor", "sheet")])
-def test_friction_of_a_pair_replaces_what_both_say(pair):
+def test_friction_of_a_pair_replaces_the_friction_of_both(pair):
     """On a slope of 20°: tan 20° = 0.36."""
     slope = SHOT + f"[forces]\ngravity = [{9.81 * np.sin(0.35)}, {-9.81 * np.cos(0.35)}, 0]\n" + CONTACT
     low = sheet(height=0.0017)
@@ -189,7 +189,7 @@ def test_friction_of_a_pair_replaces_what_both_say(pair):
     assert abs(slid[1.0]) < 2e-3
 
 
-def test_what_begins_entangled_is_told():
+def test_initial_intersections_are_reported():
     cache = simulated(garment(sheet(height=0.006)), text=WEIGHTLESS)
     (told,) = cache.start["piercing"]
     assert told["what"] == "locks" and told["cloth"] == "sheet"
@@ -224,7 +224,7 @@ def test_piercings_are_those_of_a_plane():
         (CONTACT + "[[contact.pair]]\nbetween = ['locks']\nfriction = 1\n", ["contact.pair[0].between"]),
     ],
 )
-def test_a_mistake_in_the_settings_is_told_in_one_line(text, words):
+def test_invalid_cloth_settings_are_refused_in_one_line(text, words):
     with pytest.raises(UserError) as told:
         parse_shot(SHOT + text)
     assert "\n" not in str(told.value)
@@ -254,7 +254,7 @@ def flat(mesh):
         (lambda: garment(clip=Clip(np.array([1.0]), np.zeros((1, 5, 3)), 24.0)), ["sheet", "5 points", "81"]),
     ],
 )
-def test_cloth_that_cannot_be_simulated_is_refused_in_one_line(make, words):
+def test_invalid_cloth_is_refused_in_one_line(make, words):
     with pytest.raises(UserError) as told:
         simulated(make())
     assert "\n" not in str(told.value)
@@ -262,7 +262,7 @@ def test_cloth_that_cannot_be_simulated_is_refused_in_one_line(make, words):
         assert word in str(told.value)
 
 
-def test_friction_between_names_that_nothing_has_is_refused():
+def test_friction_between_unknown_names_is_refused():
     text = SHOT + CONTACT + '[[contact.pair]]\nbetween = ["locks", "sheat"]\nfriction = 1\n'
     with pytest.raises(UserError, match=r"contact\.pair\[0\]\.between\[1\] is 'sheat'.*did you mean 'sheet'\?"):
         simulated(garment(), text=text)

@@ -73,7 +73,7 @@ def sim(folder, shot="small.shot.toml", *more):
     return run("sim", folder / shot, "--groom", folder / "groom.usdc", "-o", folder / "cache.usdc", *more)
 
 
-def test_the_cache_moves_the_cloth_of_another_file_and_keeps_the_rules_of_usd(example):
+def test_the_cache_animates_the_cloth_of_another_file_in_valid_usd(example):
     result = sim(example, "small.shot.toml", "--json", "--report", example / "report")
     assert result.exit_code == 0, result.output
     assert json.loads(result.stdout)["cloths"] == 1
@@ -98,7 +98,7 @@ def test_the_cache_moves_the_cloth_of_another_file_and_keeps_the_rules_of_usd(ex
     assert "Cloth" in html and "scarf" in html
 
 
-def test_cloth_is_in_the_hairs_and_in_pictures(example):
+def test_cloth_is_referenced_by_hairs(example):
     assert sim(example).exit_code == 0
     groom, hair = example / "groom.usdc", example / "hair.usdc"
     ringlet.write_hairs(groom, hair, cache=example / "cache.usdc", frames=(2, 4))
@@ -136,7 +136,7 @@ def test_hairs_stay_below_a_cloth_that_their_locks_are_below(tmp_path):
     assert io.read_hairs(folder / "hair.usdc").points[:, 1].max() < top - 0.9e-4
 
 
-def test_hairs_at_rest_stay_below_what_is_visible_with_the_head(tmp_path):
+def test_hairs_at_rest_stay_below_visible_meshes_of_the_head(tmp_path):
     folder = write_example(tmp_path)
     recipe = folder / "small.recipe.toml"
     recipe.write_text(recipe.read_text() + 'radius = "6 mm"\n')
@@ -157,7 +157,7 @@ def test_hairs_at_rest_stay_below_what_is_visible_with_the_head(tmp_path):
         stage.RemovePrim(mesh.GetPath())
 
 
-def test_cloth_of_the_heads_own_file_is_no_collider_and_moves_there(example, tmp_path):
+def test_cloth_of_the_head_file_is_no_collider_and_is_animated_there(example, tmp_path):
     folder = write_example(tmp_path)
     stage = Usd.Stage.Open(str(folder / "head.usda"))
     at = np.linspace(-4, 4, 9)
@@ -213,7 +213,7 @@ def paint(mesh):
         (lambda mesh: None, SCARF + SCARF.replace("[contact]", ""), ["two cloths", "'scarf'"]),
     ],
 )
-def test_cloth_that_cannot_be_used_is_refused_and_leaves_nothing(example, tmp_path, change, text, words):
+def test_unusable_cloth_is_refused_and_leaves_no_file(example, tmp_path, change, text, words):
     folder = write_example(tmp_path)
     write_wear(folder, change)
     (folder / "small.shot.toml").write_text((folder / "small.shot.toml").read_text() + text)
@@ -233,7 +233,7 @@ def touched(example):
     return example / "contacts.usdc"
 
 
-def test_what_touches_is_written_as_points_that_keep_the_rules_of_usd(touched):
+def test_contacts_are_written_as_points_in_valid_usd(touched):
     assert io.problems(touched) == []
     stage = Usd.Stage.Open(str(touched))
     points = UsdGeom.Points(stage.GetPrimAtPath("/groom/touches"))
@@ -249,7 +249,7 @@ def test_what_touches_is_written_as_points_that_keep_the_rules_of_usd(touched):
     assert (head < 0.2).all()  # metres, on and around the ball of 9 cm
 
 
-def test_a_force_that_is_far_stronger_leaves_the_colours_of_the_others(touched):
+def test_an_outlying_force_leaves_the_colours_of_the_others(touched):
     cache = ringlet.read_cache(touched)
     force = np.full(200, 1e-3, np.float32)
     force[:100], force[0] = 1e-4, 1e3
@@ -261,7 +261,7 @@ def test_a_force_that_is_far_stronger_leaves_the_colours_of_the_others(touched):
     assert colors[-1, 1] < 0.1 and colors[1, 1] > 0.5  # a decade below them: yellow
 
 
-def test_colours_tell_forces_apart():
+def test_contact_forces_support_the_weight_of_a_resting_sheet():
     warm = io.heat(np.array([0.0, 0.5, 1.0]))
     assert warm[0, 2] > warm[0, 0] and warm[2, 0] > warm[2, 2]  # blue, red
     touches = simulated(garment(), text=LONG).touches
@@ -276,7 +276,7 @@ def test_colours_tell_forces_apart():
     assert 0.3 * weight < last.force[on_floor].sum() < 3 * weight
 
 
-def test_a_picture_shows_what_touches_and_where_the_start_was_worst(touched, tmp_path):
+def test_a_picture_shows_contacts_and_initial_overlaps(touched, tmp_path):
     pictures = {}
     for what in ("force", "gap", "start"):
         path = tmp_path / f"{what}.png"
@@ -289,7 +289,7 @@ def test_a_picture_shows_what_touches_and_where_the_start_was_worst(touched, tmp
     refused(run("picture", touched, "--contacts", "gap", "--frame", 40, "-o", tmp_path / "a.png"), "frame 40", "1 to 4")
 
 
-def test_a_picture_of_what_touches_sees_through_cloth_and_nothing_else(touched, tmp_path, monkeypatch):
+def test_a_picture_of_contacts_makes_only_cloth_transparent(touched, tmp_path, monkeypatch):
     drawn = []
     monkeypatch.setattr(ringlet.picture, "still", lambda bodies, *rest, **options: drawn.extend(bodies))
     ringlet.write_touches_picture(touched, tmp_path / "a.png", frame=4)

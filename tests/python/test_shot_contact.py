@@ -64,7 +64,7 @@ def simulated(text=SHOT + CONTACT, made=None, obstacles=()):
     return simulate(parse_shot(text), made, still(made.scalp), obstacles=obstacles)
 
 
-def test_locks_fall_onto_the_scalp_and_not_through_it():
+def test_locks_fall_onto_the_scalp_without_intersections():
     through = simulated(SHOT, obstacles=[Obstacle(floor(), still(floor()))])
     cache = simulated(obstacles=[Obstacle(floor(), still(floor()))])
     free = np.tile(np.arange(POINTS) >= 3, 3)
@@ -82,7 +82,7 @@ def test_a_thicker_collider_keeps_locks_farther_away():
     assert heights[1] > heights[0] + 1e-3
 
 
-def test_a_collider_that_moves_takes_locks_along_and_one_that_is_not_animated_does_not():
+def test_an_animated_collider_pushes_locks_and_a_static_one_does_not():
     hand = ball(0.012, (0.015, 0.014, 0.015), "hand")  # beside lock 11, at its height
     frames = np.arange(1.0, 13.0)
     sweep = Clip(frames, np.array([hand.points + [0, 0, -0.005 * (f - 1)] for f in frames]), 24.0)
@@ -98,7 +98,7 @@ def test_a_collider_that_moves_takes_locks_along_and_one_that_is_not_animated_do
     assert np.abs(tips[False] - tips[False][0]).max() < 1e-6
 
 
-def test_statistics_of_contact_are_there_frame_by_frame():
+def test_every_frame_has_contact_statistics():
     cache = simulated(obstacles=[Obstacle(floor(), still(floor()))])
     touched = [frame["contact"] for frame in cache.statistics]
     assert max(frame["contacts"] for frame in touched) > 0
@@ -109,7 +109,7 @@ def test_statistics_of_contact_are_there_frame_by_frame():
         assert all(frame[f"{phase}_ms"] >= 0 for phase in ("pairs", "assemble", "solve", "search", "filter"))
 
 
-def test_what_starts_inside_is_told_and_comes_out():
+def test_initial_penetration_is_reported_and_recovers():
     tip = groom().locks.points[POINTS - 1]  # of lock 11
     sphere = ball(0.004, tip + [0, 0, 0.001])
     shot = SHOT.replace("12]", "30]") + "[forces]\ngravity = [0, 0, 0]\n" + CONTACT
@@ -125,7 +125,7 @@ def test_what_starts_inside_is_told_and_comes_out():
 
 
 @pytest.mark.parametrize("parting_speed", [2e-3, 0.0])
-def test_locks_that_start_too_near_each_other_are_told(parting_speed):
+def test_initial_overlaps_of_locks_are_reported(parting_speed):
     touching = CONTACT + f"parting_speed = {parting_speed}\n"
     cache = simulated(SHOT + "[forces]\ngravity = [0, 0, 0]\n" + touching, made=groom(apart=5e-4))
     told = cache.start["overlapping"]
@@ -137,7 +137,7 @@ def test_locks_that_start_too_near_each_other_are_told(parting_speed):
     assert {told["worst"][0]["lock"], told["worst"][0]["other"]} in ({11, 12}, {12, 13})
 
 
-def test_locks_that_start_too_near_each_other_part():
+def test_initial_overlaps_of_locks_separate():
     """From 0.5 mm; the distance at which they push grows by 2 mm a second, which is 1 mm in this shot.
 
     Where straight strands lie along one another they touch nowhere in particular, and rounding decides how far one pair
@@ -151,7 +151,7 @@ def test_locks_that_start_too_near_each_other_part():
     assert np.median(apart) > 6e-4
 
 
-def test_depth_is_that_of_a_closed_mesh_and_of_no_sheet():
+def test_penetration_depth_needs_a_closed_mesh():
     mesh = ball(0.01)
     points = np.array([[0.0, 0.004, 0], [0, 0.02, 0], [0, -0.0095, 0]])
     depth = depths(points, mesh.triangles, mesh.points)
@@ -172,7 +172,7 @@ def test_depth_is_that_of_a_closed_mesh_and_of_no_sheet():
         ("[[collider]]\nfriction = 1\n", ["collider", "[contact]"]),
     ],
 )
-def test_a_mistake_in_the_settings_is_told_in_one_line(text, words):
+def test_invalid_contact_settings_are_refused_in_one_line(text, words):
     with pytest.raises(UserError) as told:
         parse_shot(SHOT + text)
     assert "\n" not in str(told.value)
@@ -180,14 +180,14 @@ def test_a_mistake_in_the_settings_is_told_in_one_line(text, words):
         assert word in str(told.value)
 
 
-def test_a_collider_that_loses_its_area_is_refused_with_the_frame():
+def test_a_degenerate_collider_is_refused_with_the_frame():
     mesh = floor()
     clip = Clip(np.array([1.0, 4.0]), np.array([mesh.points, mesh.points * [1, 1, 0]]), 24.0)
     with pytest.raises(UserError, match=r"floor: at frame 4 triangle 0 has no area .*\(2 of 2\)"):
         simulated(obstacles=[Obstacle(mesh, clip)])
 
 
-def test_a_collider_whose_points_change_in_number_is_refused():
+def test_a_collider_with_a_varying_point_count_is_refused():
     clip = Clip(np.array([1.0]), np.zeros((1, 5, 3)), 24.0)
     with pytest.raises(UserError, match="floor: has 5 points at frame 1, 4 in its rest pose"):
         simulated(obstacles=[Obstacle(floor(), clip)])
@@ -207,7 +207,7 @@ def sim(folder, *more):
     return run("sim", folder / "small.shot.toml", "--groom", folder / "groom.usdc", "-o", folder / "cache.usdc", *more)
 
 
-def test_the_head_is_a_collider_by_default_and_the_report_tells_of_contact(example):
+def test_the_head_is_a_collider_by_default_and_the_report_includes_contact(example):
     result = sim(example, "--json", "--report", example / "report")
     assert result.exit_code == 0, result.output
     told = json.loads(result.stdout)
@@ -237,7 +237,7 @@ def spoilt(example, tmp_path, change):
     return shot
 
 
-def test_a_collider_comes_from_another_file(example, tmp_path):
+def test_a_collider_is_read_from_another_file(example, tmp_path):
     shot = spoilt(example, tmp_path, lambda mesh: None)
     assert run("sim", shot, "--groom", example / "groom.usdc", "-o", tmp_path / "cache.usdc").exit_code == 0
 
@@ -266,14 +266,14 @@ def lose_area(mesh):
         (lose_area, "", ["/props/box", "triangle 0", "area"]),
     ],
 )
-def test_a_collider_that_cannot_be_used_is_refused_in_one_line(example, tmp_path, change, more, words):
+def test_an_unusable_collider_is_refused_in_one_line(example, tmp_path, change, more, words):
     shot = spoilt(example, tmp_path, change)
     shot.write_text(shot.read_text() + more)
     refused(run("sim", shot, "--groom", example / "groom.usdc", "-o", tmp_path / "cache.usdc"), *words)
     assert not (tmp_path / "cache.usdc").exists()
 
 
-def test_a_system_that_is_solved_further_takes_more_iterations_of_conjugate_gradients():
+def test_a_smaller_linear_tolerance_takes_more_iterations():
     iterations = []
     for tolerance in (0.5, 1e-3):
         shot = parse_shot(SHOT + f"[solver]\nlinear_tolerance = {tolerance}\n" + CONTACT)

@@ -51,11 +51,11 @@ def bent(points, first, last):
     return np.arctan2(np.linalg.norm(np.cross(a, b)), a @ b)
 
 
-def test_without_variation_nothing_varies():
+def test_a_shot_without_variation_has_no_factors():
     assert factors("", groom()) == {}
 
 
-def test_a_strand_that_is_stiffer_at_its_root_bends_less_there_and_as_much_at_its_tip():
+def test_a_strand_with_a_stiffer_root_bends_less_only_there():
     even, stiff = hung("")[0], hung("bend = { ramp = [[0, 4], [0.5, 4], [0.6, 1], [1, 1]] }")[0]
     assert bent(stiff, 2, 14) < 0.5 * bent(even, 2, 14)
     assert bent(stiff, 22, 29) > 0.9 * bent(even, 22, 29)
@@ -83,7 +83,7 @@ def test_a_map_makes_one_lock_stiffer_than_the_other(kind, values):
     assert np.abs(soft - hung("")[0]).max() < 1e-12
 
 
-def test_chance_belongs_to_a_lock_and_the_seed():
+def test_random_variation_depends_on_lock_and_seed():
     text = "damping = { value = 1, vary = 0.5 }"
     both = factors(text, groom())["damping"].reshape(2, POINTS)
     assert (both == both[:, :1]).all() and both[0, 0] != both[1, 0]
@@ -93,7 +93,7 @@ def test_chance_belongs_to_a_lock_and_the_seed():
     assert (factors(f"seed = 2\n{text}", made)["damping"] != both[1]).all()
 
 
-def test_a_stiffer_root_shows_in_a_simulated_shot():
+def test_a_stiffer_material_sags_less_in_a_simulated_shot():
     made = groom()
     still = Clip(np.array([1.0]), made.scalp.points[None], 24.0)
     shot = SHOT.replace("preroll = 0", "preroll = 40")
@@ -115,7 +115,7 @@ def test_a_stiffer_root_shows_in_a_simulated_shot():
         ("bned = 2", groom(), ["variation.bned", "'bend'"]),
     ],
 )
-def test_a_mistake_is_told_in_one_line(text, made, words):
+def test_invalid_variation_is_refused_in_one_line(text, made, words):
     with pytest.raises(UserError) as told:
         factors(text, made)
     assert "\n" not in str(told.value)

@@ -26,7 +26,7 @@ def closed_with(client: TestClient, url: str = "/session", **headers: str) -> in
     return end.value.code
 
 
-def test_a_page_is_told_all_there_is(folder: Path):
+def test_a_new_page_receives_document_locks_and_counts(folder: Path):
     with serving(folder) as client, page(client) as one:
         welcome = one.hear("welcome")
         assert one.heard[0]["kind"] == "welcome" and welcome["mode"] == "recipe"
@@ -50,13 +50,13 @@ def test_a_wrong_token_and_a_foreign_origin_are_refused(folder: Path):
             assert one.hear("welcome")
 
 
-def test_a_name_that_is_not_ours_gets_nothing(folder: Path):
+def test_a_foreign_host_name_is_refused(folder: Path):
     with serving(folder) as client:
         assert client.get("/", headers={"host": "rebound.example"}).status_code == 421
         assert closed_with(client, host="rebound.example") == REFUSED
 
 
-def test_nothing_but_a_hello_opens_the_talk(folder: Path):
+def test_a_connection_starts_with_hello(folder: Path):
     with serving(folder) as client, client.websocket_connect("/session", headers=HOST) as socket:
         Page(socket).say(kind="undo")
         with pytest.raises(WebSocketDisconnect) as end:
@@ -75,7 +75,7 @@ def test_nothing_but_a_hello_opens_the_talk(folder: Path):
         b"\0" * (MOST + 1),
     ],
 )
-def test_malformed_messages_are_told_and_do_no_harm(folder: Path, data: bytes):
+def test_malformed_messages_are_refused_and_the_session_continues(folder: Path, data: bytes):
     with serving(folder) as client, page(client) as one:
         one.socket.send_bytes(data)
         assert one.hear("trouble")["message"].startswith("message:")
@@ -83,7 +83,7 @@ def test_malformed_messages_are_told_and_do_no_harm(folder: Path, data: bytes):
         assert one.hear("document", dirty=True)
 
 
-def test_edits_that_make_no_sense_are_told_in_one_line(folder: Path):
+def test_invalid_edits_are_refused_in_one_line(folder: Path):
     with serving(folder) as client, page(client) as one:
         for changes in ([[["curl", "width"], -3]], [[["nothing", "here"], 1]], [[[], 1]], [[["shape", 4, "size"], 1]]):
             one.say(kind="set", changes=changes, gesture=1)
@@ -99,7 +99,7 @@ def test_edits_that_make_no_sense_are_told_in_one_line(folder: Path):
     [["scalp", "file"], ["extends"], ["edits"], ["guides", "file"], ["maps", "stiff"], ["curves", "tie", "file"]],
 )
 @pytest.mark.parametrize("outside", ["../other.usda", "/etc/passwd", "link.usda"])
-def test_files_outside_of_the_project_are_never_read(folder: Path, change: list[str], outside: str):
+def test_files_outside_the_project_are_not_read(folder: Path, change: list[str], outside: str):
     (folder.parent / "other.usda").write_text("#usda 1.0\n")
     (folder / "link.usda").symlink_to(folder.parent / "other.usda")
     with serving(folder) as client, page(client) as one:
@@ -109,7 +109,7 @@ def test_files_outside_of_the_project_are_never_read(folder: Path, change: list[
 
 
 @pytest.mark.parametrize("name", ["../new", "/tmp/new", ".hidden", "a/b"])
-def test_nothing_is_written_outside_of_the_project(folder: Path, name: str):
+def test_no_file_is_written_outside_the_project(folder: Path, name: str):
     before = sorted(folder.parent.rglob("*"))
     with serving(folder) as client, page(client) as one:
         one.say(kind="save", name=name)
@@ -117,6 +117,6 @@ def test_nothing_is_written_outside_of_the_project(folder: Path, name: str):
     assert sorted(folder.parent.rglob("*")) == before
 
 
-def test_a_file_outside_of_the_project_is_not_opened(folder: Path):
+def test_a_file_outside_the_project_is_not_opened(folder: Path):
     with pytest.raises(UserError, match="outside of the project"):
         Session(folder / "small.recipe.toml", Project(folder / "elsewhere"))

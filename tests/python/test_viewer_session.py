@@ -29,7 +29,7 @@ def test_an_edit_changes_the_groom_and_the_document_and_saving_writes_it(folder:
         assert "width = 2.0" in (folder / "small.recipe.toml").read_text()
 
 
-def test_muting_leaves_the_file_alone(folder: Path):
+def test_muting_leaves_the_file_unchanged(folder: Path):
     with serving(folder) as client, page(client) as one:
         curled = one.hear("locks")["points"]
         one.hear("numbers")
@@ -38,7 +38,7 @@ def test_muting_leaves_the_file_alone(folder: Path):
         assert np.abs(one.hear("locks", draft=False)["points"] - curled).max() > 0.002
 
 
-def test_one_leads_and_the_others_follow(folder: Path):
+def test_one_page_holds_the_edit_lock_and_the_others_follow(folder: Path):
     with serving(folder) as client, page(client, "one") as one, page(client, "two") as two:
         assert one.hear("role", leads=True) and two.hear("role", leads=False)
         two.say(kind="set", changes=[[["curl", "width"], 2.0]], gesture=1)
@@ -49,7 +49,7 @@ def test_one_leads_and_the_others_follow(folder: Path):
         assert two.hear("role", leads=True) and one.hear("role", leads=False)
 
 
-def test_a_server_that_was_started_anew_takes_back_what_a_page_still_had(folder: Path):
+def test_a_restarted_server_restores_the_document_of_a_page(folder: Path):
     with serving(folder) as client, page(client) as one:
         one.say(kind="set", changes=[[["curl", "width"], 1.7]], gesture=1)
         text = one.hear("document", dirty=True)["text"]
@@ -60,7 +60,7 @@ def test_a_server_that_was_started_anew_takes_back_what_a_page_still_had(folder:
         assert document["said"]["curl"]["width"] == 1.7 and document["undo"]
 
 
-def test_why_there_is_no_groom_is_told_to_every_page_until_there_is_one(folder: Path):
+def test_every_page_receives_the_build_error_until_the_groom_is_built(folder: Path):
     recipe = folder / "small.recipe.toml"
     recipe.write_text(recipe.read_text().replace('region = "scalp"', 'region = "gone"'))
     with serving(folder) as client:
@@ -77,7 +77,7 @@ def test_why_there_is_no_groom_is_told_to_every_page_until_there_is_one(folder: 
             assert one.hear("numbers")["locks"] == 8  # and no trouble before it
 
 
-def test_of_the_files_in_usd_a_page_is_offered_caches_to_compare_with(folder: Path, tmp_path, monkeypatch):
+def test_only_caches_are_offered_for_comparison(folder: Path, tmp_path, monkeypatch):
     def offered(one) -> list[str]:
         return [name for name in one.hear("files")["names"] if ".usd" in name]
 
@@ -111,7 +111,7 @@ def test_of_the_files_in_usd_a_page_is_offered_caches_to_compare_with(folder: Pa
             assert offered(two) == ["new.usdc", "text.usda"]
 
 
-def test_a_page_that_comes_back_is_told_how_much_of_what_it_said_was_heard(folder: Path):
+def test_a_reconnected_page_receives_the_count_of_processed_messages(folder: Path):
     with serving(folder) as client:
         with page(client) as one:
             assert one.hear("welcome")["heard"] == 0
@@ -125,7 +125,7 @@ def test_a_page_that_comes_back_is_told_how_much_of_what_it_said_was_heard(folde
             assert other.hear("welcome")["heard"] == 0
 
 
-def test_while_a_hand_moves_drafts_are_made_and_the_whole_when_it_rests(folder: Path):
+def test_a_drag_builds_drafts_and_its_end_the_full_groom(folder: Path):
     with serving(folder) as client, page(client) as one:
         one.hear("numbers", draft=False)
         one.say(kind="set", changes=[[["curl", "width"], 1.5]], gesture=1, resting=False)
@@ -137,7 +137,7 @@ def test_while_a_hand_moves_drafts_are_made_and_the_whole_when_it_rests(folder: 
         assert one.hear("document", dirty=False)
 
 
-def test_a_lock_that_is_not_isolated_is_not_dragged(folder: Path):
+def test_only_an_isolated_lock_is_dragged(folder: Path):
     with serving(folder) as client, page(client) as one:
         lock = int(one.hear("locks")["ids"][0])
         one.hear("numbers")
@@ -157,7 +157,7 @@ def stroke(one: Page, guides: dict[str, Any], gesture: int = 7, **more: Any) -> 
     one.say(kind="sculpt", at=tip, by=[0.01, 0, 0], **told)
 
 
-def test_a_stroke_of_the_brush_is_one_step_and_is_saved_beside_the_recipe(folder: Path):
+def test_a_brush_stroke_is_one_step_and_is_saved_beside_the_recipe(folder: Path):
     with serving(folder) as client, page(client) as one:
         guides = one.hear("guides")
         before = one.been_told("locks")["points"]
@@ -183,7 +183,7 @@ def test_a_stroke_of_the_brush_is_one_step_and_is_saved_beside_the_recipe(folder
         assert np.array_equal(one.been_told("guides")["points"], guides["points"])
 
 
-def test_what_was_sculpted_is_given_back_to_a_server_that_was_started_anew(folder: Path):
+def test_a_restarted_server_restores_sculpts(folder: Path):
     with serving(folder) as client, page(client) as one:
         stroke(one, one.hear("guides"))
         document = one.hear("document", dirty=True)
@@ -195,7 +195,7 @@ def test_what_was_sculpted_is_given_back_to_a_server_that_was_started_anew(folde
         assert one.hear("guides")["changed"].sum() == 0
 
 
-def test_steps_are_undone_in_the_order_in_which_they_were_done_whatever_the_file(folder: Path):
+def test_undo_follows_the_order_of_edits_across_files(folder: Path):
     with serving(folder, "small.shot.toml") as client, page(client) as one:
         for file in ("recipe", "shot"):
             one.been_told("document", file=file)
@@ -212,7 +212,7 @@ def test_steps_are_undone_in_the_order_in_which_they_were_done_whatever_the_file
         assert one.hear("document", file="recipe", dirty=True)["said"]["curl"]["width"] == 1.5
 
 
-def test_a_setting_of_one_lock_alone_changes_that_lock_and_no_other(folder: Path):
+def test_a_setting_of_one_lock_changes_no_other_lock(folder: Path):
     with serving(folder) as client, page(client) as one:
         locks = one.hear("locks")
         one.been_told("numbers", draft=False)

@@ -20,14 +20,14 @@ from ringlet import io
 from ringlet.groom import Groom
 
 
-def test_hairs_come_in_an_order_of_which_the_beginning_is_spread_over_the_locks(folder: Path):
+def test_the_first_hairs_are_spread_over_all_locks(folder: Path):
     with serving(folder) as client, page(client) as one:
         hairs = one.hear("hairs")
         assert sorted(hairs["lock"][:8]) == list(range(8))
         assert np.all(hairs["offset"][:16] == 0.0) and np.any(hairs["offset"][16:] != 0.0)
 
 
-def test_a_shot_runs_and_its_frames_come(folder: Path):
+def test_a_shot_streams_its_frames_and_reruns_from_a_frame(folder: Path):
     with serving(folder, "small.shot.toml") as client, page(client) as one:
         assert one.hear("welcome")["mode"] == "shot"
         one.been_told("timeline", state="still")
@@ -45,7 +45,7 @@ def test_a_shot_runs_and_its_frames_come(folder: Path):
         assert np.abs(again[1]["points"] - frames[3]["points"]).max() > 1e-6
 
 
-def test_a_groom_and_its_cache_are_shown_as_they_are(folder: Path):
+def test_a_groom_and_its_cache_are_shown_read_only(folder: Path):
     groom = ringlet.build_groom(folder / "small.recipe.toml")
     ringlet.write_groom(groom, folder / "groom.usda")
     ringlet.write_cache(
@@ -63,7 +63,7 @@ def test_a_groom_and_its_cache_are_shown_as_they_are(folder: Path):
         assert np.abs(last["points"] - second["points"]).max() > 1e-3
 
 
-def test_cloth_and_colliders_of_a_shot_are_seen_where_they_are(folder: Path):
+def test_cloth_and_colliders_of_a_shot_are_shown_in_place(folder: Path):
     write_wear(folder)
     write_head(folder / "hand.usda")
     shot = folder / "small.shot.toml"
@@ -91,7 +91,7 @@ def test_cloth_and_colliders_of_a_shot_are_seen_where_they_are(folder: Path):
         assert np.abs(last["bodies"][-len(scarf) :] - scarf).max() < 1e-6
 
 
-def test_a_cloth_that_cannot_be_read_is_told_and_the_groom_is_seen(folder: Path):
+def test_an_unreadable_cloth_is_reported_and_the_groom_shown(folder: Path):
     shot = folder / "small.shot.toml"
     shot.write_text(shot.read_text() + SCARF)
     with serving(folder, shot.name) as client, page(client) as one:
@@ -105,7 +105,7 @@ def test_a_cloth_that_cannot_be_read_is_told_and_the_groom_is_seen(folder: Path)
         assert "wear.usda: there is no such file" in message["message"]
 
 
-def test_of_a_cache_no_frame_is_read_but_those_that_are_looked_at(folder: Path, monkeypatch: pytest.MonkeyPatch):
+def test_only_requested_frames_of_a_cache_are_read(folder: Path, monkeypatch: pytest.MonkeyPatch):
     read: list[float] = []
     points = io.CacheFile.points
     monkeypatch.setattr(io.CacheFile, "points", lambda self, frame: (read.append(frame), points(self, frame))[1])
@@ -125,7 +125,7 @@ def test_of_a_cache_no_frame_is_read_but_those_that_are_looked_at(folder: Path, 
 
 
 @pytest.mark.parametrize("suffix", ["usda", "usdc"])
-def test_a_cache_that_is_replaced_while_it_plays_is_seen_as_it_is_then(folder: Path, suffix: str):
+def test_a_replaced_cache_is_reloaded_during_playback(folder: Path, suffix: str):
     groom, cache = small_groom(folder), folder / f"cache.{suffix}"
     write_marked_cache(groom, cache, 1, frames=30)
     with serving(folder, cache.name) as client, page(client) as one:
@@ -138,7 +138,7 @@ def test_a_cache_that_is_replaced_while_it_plays_is_seen_as_it_is_then(folder: P
         assert [mark_of(frame, groom) for frame in one.watch(8, 9)] == [2, 2]
 
 
-def test_no_frame_is_half_of_one_file_and_half_of_the_next(folder: Path):
+def test_no_frame_mixes_two_versions_of_a_cache(folder: Path):
     """A cache is replaced again and again while a page plays it, and opens it anew."""
     groom, cache = small_groom(folder), folder / "cache.usdc"
     write_marked_cache(groom, cache, 1, frames=20)
@@ -174,7 +174,7 @@ def test_no_frame_is_half_of_one_file_and_half_of_the_next(folder: Path):
         assert len(set(marks)) > 3 and marks == sorted(marks)
 
 
-def test_a_cache_of_another_groom_in_the_place_of_one_that_plays_is_told(folder: Path):
+def test_replacing_a_cache_by_one_of_another_groom_is_reported(folder: Path):
     groom, cache = small_groom(folder), folder / "cache.usdc"
     write_marked_cache(groom, cache, 1, frames=5)
     with serving(folder, cache.name) as client, page(client) as one:
@@ -187,7 +187,7 @@ def test_a_cache_of_another_groom_in_the_place_of_one_that_plays_is_told(folder:
         assert not len(one.hear("timeline")["frames"])
 
 
-def test_a_cache_that_is_gone_goes_on_playing(folder: Path):
+def test_a_deleted_cache_keeps_playing(folder: Path):
     groom, cache = small_groom(folder), folder / "cache.usdc"
     write_marked_cache(groom, cache, 1, frames=5)
     with serving(folder, cache.name) as client, page(client) as one:
@@ -217,7 +217,7 @@ def mark_of(frame: dict[str, Any], groom: Groom) -> int:
     return mark
 
 
-def test_a_frame_that_cannot_be_read_is_told_and_the_others_are_seen(folder: Path):
+def test_an_unreadable_frame_is_reported_and_the_others_shown(folder: Path):
     write_long_cache(folder, 3)
     stage = Usd.Stage.Open(str(folder / "cache.usda"))
     stage.GetPrimAtPath("/groom/locks").GetAttribute("points").Set([(0, 0, 0)], 2.0)
@@ -238,7 +238,7 @@ def write_long_cache(folder: Path, frames: int) -> None:
     ringlet.write_cache(ringlet.Cache(numbers, points), folder / "groom.usda", folder / "cache.usda")
 
 
-def test_frames_that_are_run_are_kept_in_a_file_and_told_where_that_is_full(monkeypatch: pytest.MonkeyPatch):
+def test_simulated_frames_are_stored_in_a_file_and_a_full_disk_is_reported(monkeypatch: pytest.MonkeyPatch):
     run = Run()
     for frame in (1.0, 2.0, 3.0):
         run.add(frame, bytes([int(frame)]) * 1000)
@@ -257,7 +257,7 @@ def test_frames_that_are_run_are_kept_in_a_file_and_told_where_that_is_full(monk
     assert not len(run.frames)
 
 
-def test_the_page_is_told_what_settings_may_name(folder: Path):
+def test_the_page_receives_the_names_that_settings_may_use(folder: Path):
     recipe = folder / "small.recipe.toml"
     recipe.write_text(recipe.read_text() + "[curves.tie]\npoints = [[0, 12, 0], [1, 12, 0]]\n")
     with serving(folder) as client, page(client) as one:
@@ -265,7 +265,7 @@ def test_the_page_is_told_what_settings_may_name(folder: Path):
         assert names["regions"] == ["scalp"] and names["curves"] == ["tie"]
 
 
-def test_nails_and_what_is_in_the_head_are_measured_at_rest(folder: Path):
+def test_nails_and_penetration_of_the_head_are_measured_at_rest(folder: Path):
     recipe = folder / "small.recipe.toml"
     recipe.write_text(recipe.read_text() + '[[nail]]\nreach = "1 cm"\n[clean]\nmargin = 0\n')
     text = recipe.read_text().replace("[clean]\nmargin = 0\n", "").replace("length = 5", "length = 5\ndroop = 3")
@@ -282,7 +282,7 @@ def test_nails_and_what_is_in_the_head_are_measured_at_rest(folder: Path):
         assert inside["inside"] > 0 and inside["depth"].max() > 0
 
 
-def test_frames_tell_what_touches_and_what_is_in_the_head(folder: Path):
+def test_frames_include_contacts_and_penetration_of_the_head(folder: Path):
     shot = folder / "small.shot.toml"
     shot.write_text(shot.read_text().replace("frames = [1, 4]", "frames = [1, 2]") + "[contact]\nradius = 0.004\n")
     recipe = folder / "small.recipe.toml"

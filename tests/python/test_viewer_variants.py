@@ -9,7 +9,7 @@ import pytest
 from pages import page, serving
 
 
-def test_a_variant_says_only_what_differs(folder: Path):
+def test_a_variant_contains_only_differences(folder: Path):
     with serving(folder) as client, page(client) as one:
         one.say(kind="set", changes=[[["curl", "width"], 1.5]], gesture=1)
         one.say(kind="save", name="wide", variant=True)
@@ -76,7 +76,7 @@ def test_operators_of_a_base_are_changed_and_removed_by_name(extended: Path):
         {"kind": "arrange", "action": "move", "at": 0, "to": 1},
     ],
 )
-def test_a_variant_makes_what_was_seen_also_where_something_was_taken_out(extended: Path, say: dict[str, Any]):
+def test_a_saved_variant_reproduces_changes_and_removals(extended: Path, say: dict[str, Any]):
     from ringlet.groom import read_recipe
 
     with serving(extended) as client, page(client) as one:
@@ -90,7 +90,7 @@ def test_a_variant_makes_what_was_seen_also_where_something_was_taken_out(extend
     assert "count = 6" not in (extended / "other.recipe.toml").read_text()
 
 
-def test_a_variant_that_cannot_say_what_was_changed_is_not_written(folder: Path):
+def test_a_change_that_a_variant_cannot_express_is_refused(folder: Path):
     with serving(folder) as client, page(client) as one:
         one.say(kind="set", changes=[[["locks", "count"], None]], gesture=1)  # a variant cannot say "no count"
         one.hear("document", dirty=True)
