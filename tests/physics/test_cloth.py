@@ -1,4 +1,4 @@
-"""How cloth hangs and moves: balance of forces, known shapes, what a step conserves and what it never does."""
+"""Cloth: balance of forces, known shapes, conservation and invariance of its motion."""
 
 import numpy as np
 import pytest
@@ -65,7 +65,7 @@ def test_a_folded_rest_shape_stays_at_rest():
 
 
 def test_a_hanging_sheet_carries_in_every_row_the_weight_below():
-    """The strain at height y of a sheet that hangs still is ρ g y / k: it is longer by ρ g H² / 2k."""
+    """The strain at height y is ρ g y / k, the extension of the sheet ρ g H² / 2k."""
     height, gravity, density, weft = 0.4, 9.81, 0.2, 50.0
     mesh = sheet(0.2, height, 6, 12)
     piece = cloth(mesh, top_of(mesh), density=density, stretch_weft=weft, stretch_warp=weft, shear=20.0)
@@ -79,7 +79,7 @@ def test_a_hanging_sheet_carries_in_every_row_the_weight_below():
 
 
 def test_a_sheet_between_two_edges_hangs_as_a_catenary():
-    """Without resistance to bend, and hard to stretch: y = a cosh(x / a), with a from its length and span."""
+    """Without bending stiffness and nearly inextensible: y = a cosh(x / a), with a from length and span."""
     length, span, columns = 0.5, 0.4, 40
     mesh = sheet(length, 0.05, columns, 2)
     along = mesh.points[:, 0].copy()
@@ -93,7 +93,7 @@ def test_a_sheet_between_two_edges_hangs_as_a_catenary():
     s = along - length / 2
     x = a * np.arcsinh(s / a)
     expected = np.c_[x - x.min(), np.sqrt(a**2 + s**2) - np.sqrt(a**2 + length**2 / 4), mesh.points[:, 2]]
-    guess = expected * (1.0, 0.9, 1.0)  # so that it has to find its shape
+    guess = expected * (1.0, 0.9, 1.0)  # away from the solution
     piece.positions[:] = guess
     piece.positions[ends] = expected[ends]
     for _ in range(5):
@@ -103,7 +103,7 @@ def test_a_sheet_between_two_edges_hangs_as_a_catenary():
 
 
 def cantilever(columns, width, gamma):
-    """Drop of the tip by the length, of a strip that sags under Γ = ρ g L³ / D. It is clamped by its first two rows."""
+    """Tip deflection over length of a strip under Γ = ρ g L³ / D, clamped by its first two rows."""
     length, bend, density = 0.1, 1e-5, 0.15
     mesh = lattice(columns, width, length / (columns - 0.5))
     mesh.points = mesh.points[:, [0, 2, 1]] - [0.5 * length / (columns - 0.5), 0, 0]
@@ -114,19 +114,19 @@ def cantilever(columns, width, gamma):
     return -strip.positions[np.isclose(x, x.max()), 1].mean() / length
 
 
-ELASTICA = {1: 0.123471, 4: 0.425159, 20: 0.829881}  # drop by length
+ELASTICA = {1: 0.123471, 4: 0.425159, 20: 0.829881}  # tip deflection over length
 
 
 @pytest.mark.parametrize("gamma", ELASTICA)
 def test_a_wide_strip_sags_as_the_elastica(gamma):
-    """Wide beside its length, a strip bends on a cylinder; what is left of the error shrinks with the triangles."""
+    """A strip wider than long bends to a cylinder; the error decreases with the size of the triangles."""
     errors = [abs(cantilever(columns, 0.2, gamma) / ELASTICA[gamma] - 1) for columns in (5, 10)]
     assert errors[1] < 1e-2
     assert errors[1] < errors[0]
 
 
 def test_a_narrow_strip_bends_as_a_plate_of_poisson_ratio_minus_a_third():
-    """Its long edges are free to curl, which leaves it 1 − 1/9 of its stiffness."""
+    """Anticlastic curvature of the free edges reduces the stiffness to 1 − ν² = 8/9."""
     assert abs(cantilever(20, 0.01, 8 / 9) / ELASTICA[1] - 1) < 5e-2
 
 
@@ -188,7 +188,7 @@ def test_damping_resists_strain_rates_and_not_rigid_motion():
         swinging[damping] = report["stretch"]
         mean = (piece.masses[:, None] * piece.velocities).sum(0) / piece.masses.sum()
         assert np.abs(mean - (0.5, 0.2, 0.0)).max() < 1e-8
-    assert swinging[1.0] > 2 * swinging[0.0], "a damped sheet has come back less far"
+    assert swinging[1.0] > 2 * swinging[0.0], "damping slows the return"
 
 
 def test_drag_accelerates_cloth_to_the_speed_of_the_wind():
@@ -201,7 +201,7 @@ def test_drag_accelerates_cloth_to_the_speed_of_the_wind():
 
 
 def test_an_attachment_extends_by_weight_over_stiffness():
-    """At rest the spring is longer by the weight that hangs on it."""
+    """In equilibrium the extension of the spring is the weight over its stiffness."""
     mesh = sheet(0.1, 0.1, 2, 2)
     attachment = np.zeros(9)
     attachment[4] = 30.0
@@ -249,7 +249,7 @@ def test_a_scaled_rest_shape_is_at_rest_and_keeps_its_mass():
     for scale in (0.5, 2.0, 1.0):
         piece.scale_rest(scale)
         assert piece.energy(scale * mesh.points)[0] < 1e-20
-        # ½ k (1/s − 1)² along both, over an area that is s² as large
+        # ½ k (1/s − 1)² in each direction, over the area s² A
         expected = area * scale**2 * 500.0 * (1 / scale - 1) ** 2
         assert abs(piece.energy(mesh.points)[0] - expected) < 1e-9
         assert piece.masses.sum() == mass
@@ -258,7 +258,7 @@ def test_a_scaled_rest_shape_is_at_rest_and_keeps_its_mass():
 
 
 def test_the_warp_follows_the_texture_coordinates():
-    """Stretched along u, only the warp resists, whichever way the sheet lies."""
+    """A stretch along u strains only the warp, for any orientation of the sheet."""
     mesh = sheet(0.1, 0.1, 2, 2)
     mesh.uv = mesh.points[mesh.triangles][:, :, [1, 0]]  # u along y
     piece = cloth(mesh, stretch_warp=1000.0, stretch_weft=1.0, shear=0.0, bend=0.0)

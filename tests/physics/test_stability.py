@@ -1,4 +1,4 @@
-"""Strands released from abuse come back to rest, gain no energy, and go no further than their start allows."""
+"""Strands released far from rest return, gain no energy and have bounded excursions."""
 
 import numpy as np
 import pytest
@@ -29,7 +29,7 @@ def test_every_scene_returns_to_rest(released):
 
 
 def test_no_scene_gains_energy(released):
-    """To one part in a million of what the start held, and never a number that is not finite."""
+    """Relative to the initial energy, to one part in a million; non-finite states count as an infinite gain."""
     assert not listed(~(released.gain < 1e-6))
 
 
@@ -39,14 +39,14 @@ def test_excursions_stay_below_the_length_of_the_coil(released):
 
 
 def test_one_newton_iteration_per_step_is_stable():
-    """It may take longer, but nothing is thrown about and nothing breaks."""
+    """The return may take longer, without energy gain and with finite positions."""
     result = release(newton=1, steps=300)
     assert not listed(~(result.gain < 1e-6))
     assert np.isfinite(result.away).all()
 
 
 def test_least_energy_loses_a_coil_with_a_straight_middle():
-    """Signs alone lose a coil whose middle is straight; the material frame does not."""
+    """Signs of dihedral angles cannot restore the twist of a straight section; the material frame can."""
     middle = [name.startswith("coil with straight middle") for name in NAMES]
     assert (release(continuation="least_energy").away[middle] > 10 * CLOSE).any()
 
@@ -62,7 +62,7 @@ def spun(time):
 
 
 def teleported(time):
-    """A metre away and upside down from one step to the next."""
+    """A jump by a metre and a half turn within one step."""
     return (rotation([1, 0, 0.3], 3.0), np.array([1.0, 0.5, -0.4])) if time > 0.25 else (np.eye(3), np.zeros(3))
 
 

@@ -1,4 +1,4 @@
-"""The assembled energy of whole strands: gradient against differences, Hessian positive semi-definite."""
+"""The assembled energy of strands: gradient against finite differences, positive semi-definite Hessian."""
 
 import numpy as np
 import pytest
@@ -29,7 +29,7 @@ def test_gradient_agrees_with_finite_differences(continuation, hand, per_turn):
             up, down = (strand.energy(x + s * step, continuation=continuation)[0] for s in (1, -1))
             expected[i, k] = (up - down) / (2 * h)
     assert np.abs(gradient - expected).max() < 1e-6 * np.abs(expected).max()
-    assert not gradient[:3].any(), "held vertices feel no force"
+    assert not gradient[:3].any(), "prescribed vertices have no gradient"
 
 
 @pytest.mark.parametrize("continuation", CONTINUATIONS)

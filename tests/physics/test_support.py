@@ -1,9 +1,10 @@
-"""What bears locks where they were groomed: nails, bodies with friction, and one another; and they stay so."""
+"""Supports that keep locks as groomed: nails, bodies with friction and other locks."""
 
 import numpy as np
 import pytest
 from coils import helix, rotation
 from hairstyles import FPS, HEAD, grown
+from locks import GRAVITY, sag, scene
 from ringlet.curves import Curves
 from ringlet.groom.groom import Groom
 from ringlet.mesh import Clip, Mesh
@@ -18,16 +19,15 @@ from ringlet.shot.strands import Solver
 from ringlet.shot.support import ARM, _Give
 from scipy.optimize import nnls
 from scipy.sparse import block_diag
-from test_lofted_strands import GRAVITY, sag, scene
 
 MODE = "[rest]\nmode = 'equilibrium'\n"
 SOFT = MODE + "[strands]\nbend_scale = 4\n[contact]\nradius = 5e-4\n"
-REACH = 1e-3  # at which two locks touch, and a lock and a body
+REACH = 1e-3  # [m] activation distance of two locks, and of a lock and a body
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_compressive_forces_solve_nonnegative_least_squares(seed):
-    """Of several problems at once; in the last, half of them may pull."""
+    """Several problems in one call; half of the forces of the last may also pull."""
     random = np.random.default_rng(seed)
     parts = [(random.normal(size=(12, 8)), random.normal(size=12)) for _ in range(4)]
     free = np.zeros(32, bool)
@@ -43,7 +43,7 @@ def test_compressive_forces_solve_nonnegative_least_squares(seed):
 
 
 def test_energy_of_two_forces_is_summed_over_joints_that_both_strain():
-    """Against the strains themselves, joint by joint: bend and twist by the moment there, stretch by the force."""
+    """Against strains per joint: bend and twist follow from the moment, stretch from the force."""
     random = np.random.default_rng(5)
     shot, groom = scene(*crossed(), more=SOFT)
     locks, strands = groom.locks, make_strands(shot, groom)
@@ -72,15 +72,15 @@ def test_energy_of_two_forces_is_summed_over_joints_that_both_strain():
 
 
 def crossed():
-    """A beam, and across it a longer one that lies on it."""
+    """A beam, and a longer one across it."""
     t = np.linspace(0, 1, 30)[:, None]
     below = [0, 0, 0] + t * [0.04, 0, 0]
     above = [0.02, 0.95 * REACH, -0.03] + t * [0, 0, 0.06]
     return below, above
 
 
-def fallen(steps, ask=lambda touching: None):
-    """Two beams that fall onto one another and onto a floor, of which something is asked before each step."""
+def fallen(steps, query=lambda scene: None):
+    """Two beams after a fall onto each other and onto a floor; ``query`` is called before each step."""
     below, above = crossed()
     shot, groom = scene(below, above + [0, 0.2 * REACH, 0], more=SOFT)
     at, size = np.array([0, -1.8 * REACH, 0]), 0.2
@@ -88,13 +88,13 @@ def fallen(steps, ask=lambda touching: None):
     strands = make_strands(shot, groom)
     touching = Scene(strands, [Body(floor, np.array([[0, 2, 1]], np.int32))], shot.touching)
     for _ in range(steps):
-        ask(touching)
+        query(touching)
         touching.step(groom.locks.points, 1 / 48, gravity=GRAVITY)
     return touching
 
 
 def test_a_contact_query_returns_the_contacts_of_the_last_step():
-    """Locks and a body, none of which touched to begin with."""
+    """Locks and a body, initially without contact."""
     touching = fallen(8)
     vertices, values = touching.contacts
     found, where = touching.touching()
@@ -105,7 +105,7 @@ def test_a_contact_query_returns_the_contacts_of_the_last_step():
 
 def test_a_contact_query_before_a_step_agrees_with_a_tiny_step():
     shot, groom = scene(*crossed(), more=SOFT)
-    away = 1e-9  # [m] by which a step parts them
+    away = 1e-9  # [m] separation by a step
     touching = Scene(make_strands(shot, groom), contact=shot.touching.model_copy(update={"parting_speed": away / 1e-6}))
     found, where = touching.touching()
     touching.step(groom.locks.points, 1e-6, solver=Solver(newton=1))
@@ -116,14 +116,14 @@ def test_a_contact_query_before_a_step_agrees_with_a_tiny_step():
 
 
 def test_contact_queries_do_not_change_the_motion():
-    plain, asked = fallen(8), fallen(8, ask=Scene.touching)
-    assert (plain.positions == asked.positions).all()
+    plain, queried = fallen(8), fallen(8, query=Scene.touching)
+    assert (plain.positions == queried.positions).all()
     for name, values in plain.memory.items():
-        assert np.array_equal(values, asked.memory[name])
+        assert np.array_equal(values, queried.memory[name])
 
 
 def stays(shot, groom, made, obstacles=(), steps=48, known=True):
-    """How far locks go from where they were groomed in 2 s [m]; ``known``: it is known what bears them."""
+    """Largest drift of locks from the groomed shape [m]; ``known``: support forces initialise the contacts."""
     strands = make_strands(shot, groom, made.rest, made.stiffened)
     strands.place(groom.locks.points)
     touching = Scene(strands, [one.body(1.0) for one in obstacles], shot.touching)
@@ -135,7 +135,7 @@ def stays(shot, groom, made, obstacles=(), steps=48, known=True):
 
 
 def test_a_lock_on_another_is_supported_by_it():
-    """What one gains the other loses; each need remember less than if it bore itself, or more. And they stay."""
+    """Support forces are equal and opposite, reduce the correction of the upper lock, and both locks stay."""
     shot, groom = scene(*crossed(), more=SOFT)
     borne, upper = bearing(shot, groom, []), slice(30, 60)
     assert np.abs(borne.sum(axis=0)).max() < 1e-12
@@ -150,7 +150,7 @@ def test_a_lock_on_another_is_supported_by_it():
 
 @pytest.mark.parametrize("friction", [0.0, 1.0])
 def test_contact_forces_support_a_lock_on_a_body_from_the_first_step(friction):
-    """The shares act on the locks as what bears them does; nothing has to sink in, or to slide, before it bears."""
+    """Contact forces sum to the support forces, so that no lock sinks in or slides before it is supported."""
     lying, slope = on_slope(friction)
     shot, groom = scene(lying, lying + [0, 0, 0.2], more=SOFT)
     made, groomed = equilibrium(shot, groom, obstacles=[slope]), make_strands(shot, groom)
@@ -175,17 +175,17 @@ def test_support_forces_are_refused_after_the_first_step():
 
 
 def test_sixty_locks_in_contact_stay_as_groomed():
-    """Sixty of hair that is down, for two seconds: none leaves its place by the radius of a hair."""
+    """Long hair for two seconds: no vertex drifts by more than the radius of a hair."""
     style = grown("down", 60, HEAD, "scalp")
     shot, head = style.shot("equilibrium"), style.head(np.zeros(1), FPS)
     made = equilibrium(shot, style.groom, obstacles=[head])
-    assert np.linalg.norm(made.borne, axis=1).max() > 1e-6  # or they would only hang
+    assert np.linalg.norm(made.borne, axis=1).max() > 1e-6  # some locks are supported
     *_, last = style.still(shot, keep(made, shot), 2.0)
     assert sag(last, style.groom.locks.points) < shot.strands.radius
 
 
 def test_a_tip_supports_nothing():
-    """What lies on it would slide off."""
+    """A lock on a tip would slide off."""
     below, above = crossed()
     borne, ends_there = (
         np.abs(bearing(*scene(below, upper, more=SOFT), [])).max()
@@ -199,7 +199,7 @@ RIDGE = 0.02 * np.array([[0, 0, -1], [0, 0, 1], [1, -1, -1], [1, -1, 1], [-1, -1
 
 @pytest.mark.parametrize("aside", [0.1, 0.3])
 def test_a_ridge_pushes_a_lock_from_its_closest_point(aside):
-    """A straight lock that lies across a ridge, which is between two of its vertices: straight up, as in motion."""
+    """A straight lock across a ridge between two of its vertices: the support points straight up."""
     lock = np.c_[np.linspace(-0.02, 0.04, 31) - 2e-3 * aside, np.full(31, 0.9 * REACH), np.zeros(31)]
     mesh = Mesh("/ridge", RIDGE, np.array([[0, 1, 2], [1, 3, 2], [0, 4, 1], [1, 4, 5]], np.int32))
     obstacle = Obstacle(mesh, Clip(np.array([1.0]), RIDGE[None], 24.0))
@@ -209,7 +209,7 @@ def test_a_ridge_pushes_a_lock_from_its_closest_point(aside):
 
 
 def on_slope(friction):
-    """A strand that comes down to a slope of 4° and lies on it across, and the slope."""
+    """A strand that lies across a slope of 4°, and the slope."""
     t = np.linspace(0, 1, 60)
     turn = rotation((0, 0, 1), np.radians(4)).T
     lying = np.c_[6e-3 * np.exp(-((t / 0.08) ** 2))[:, None] * [0, 1, 0]] + np.c_[0 * t, 0.9 * REACH + 0 * t, 0.08 * t]
@@ -224,7 +224,7 @@ def on_slope(friction):
 
 
 def test_friction_holds_a_lock_on_a_slope():
-    """Counted on, the strand need not remember reaching uphill; and it does hold, without creeping."""
+    """With friction the rest shape needs no uphill correction, and the strand stays without creep."""
     lying, rough = on_slope(1.0)
     shot, groom = scene(lying, more=SOFT)
     smooth, held = (equilibrium(shot, groom, obstacles=[on_slope(mu)[1]]) for mu in (0.0, 1.0))
@@ -235,7 +235,7 @@ def test_friction_holds_a_lock_on_a_slope():
 
 
 def test_a_curl_with_rows_of_nails_hangs_between_them():
-    """Nails in a row hold what is between as a clamp does, twist as well: it is as still as any other."""
+    """Rows of nails act as clamps, twist included; the curl between them is in equilibrium."""
     curl = helix(60, radius=4e-3, pitch=4e-3) @ rotation((0, 0, 1), np.radians(70)).T
     shot, groom = scene(curl, more=MODE)
     nail = np.zeros(60, np.float32)
@@ -253,7 +253,7 @@ def test_a_curl_with_rows_of_nails_hangs_between_them():
 
 
 def test_a_lock_is_rebalanced_when_its_support_changes():
-    """The lower beam goes away: the upper one, which has not changed, has to bear itself."""
+    """The lower beam moves away, so the unchanged upper beam needs a new equilibrium."""
     shot, groom = scene(*crossed(), more=SOFT)
     kept = keep(equilibrium(shot, groom), shot)
     groom.locks.points[3:30, 1] -= np.linspace(0, 2 * REACH, 27)
