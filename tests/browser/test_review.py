@@ -1,4 +1,4 @@
-"""What a designer does on the page, and what comes of it."""
+"""Editing on the review page."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ringlet import build_groom, build_hairs
 
 
 def test_gpu_hairs_equal_those_of_the_core(opened: Any, folder: Path):
-    """The shader carries hairs as src/ringlet/groom/hairs.cpp does."""
+    """The shader implements src/ringlet/groom/hairs.cpp."""
     recipe = folder / "small.recipe.toml"
     recipe.write_text(
         recipe.read_text().replace("per_lock = 3", "per_lock = 7\nfrizz = 0.3\nspread = 0.4\nblend = 0.6\ntaper = 0.4")
@@ -32,7 +32,7 @@ def test_gpu_hairs_equal_those_of_the_core(opened: Any, folder: Path):
     assert np.abs(drawn[:, :, :3] - expected).max() < 2e-6
     widths = hairs.curves.point["width"].reshape(count, points)[order]
     assert np.allclose(drawn[:, :, 3], widths, rtol=1e-4)
-    assert not review.wrong
+    assert not review.errors
 
 
 def test_a_slider_changes_picture_and_recipe_and_undo_reverts_both(opened: Any):
@@ -48,7 +48,7 @@ def test_a_slider_changes_picture_and_recipe_and_undo_reverts_both(opened: Any):
     assert review.text() == text
     review.settled()
     assert different(review.picture(), before) < 0.002
-    assert not review.wrong
+    assert not review.errors
 
 
 def test_a_ramp_is_edited_by_its_points(opened: Any):
@@ -84,7 +84,7 @@ def test_operators_are_added_muted_moved_and_removed(opened: Any):
     page.locator('[data-stage="shape/0"]').hover()
     page.get_by_label("Remove loft").click()
     review.until("ringlet.model.documents.recipe.stages[2].op == 'scraggle'")
-    assert not review.wrong
+    assert not review.errors
 
 
 def test_a_lock_is_isolated_dragged_and_returned(opened: Any):
@@ -109,7 +109,7 @@ def test_a_lock_is_isolated_dragged_and_returned(opened: Any):
     assert np.delete(moved, 2, axis=0).max() < 1e-6
     page.get_by_role("button", name="Return to the recipe").click()
     review.until("!ringlet.model.documents.recipe.said.edit")
-    assert not review.wrong
+    assert not review.errors
 
 
 def test_saving_writes_the_file_and_a_new_page_shows_it(opened: Any, folder: Path, serve: Any):
@@ -156,7 +156,7 @@ def test_no_edit_is_lost_when_the_server_is_killed(opened: Any, serve: Any):
     review.until("ringlet.model.documents.recipe !== before && ringlet.model.documents.recipe.dirty")
     assert review.text() == text
     assert review.page.get_by_role("button", name="Save", exact=True).is_enabled()
-    review.page.keyboard.press("Control+z")  # what was given back is a step of its own
+    review.page.keyboard.press("Control+z")  # the restored document is an undo step
     review.until("!ringlet.model.documents.recipe.dirty")
 
 
@@ -170,7 +170,7 @@ def test_unanswered_messages_are_resent_after_a_restart(opened: Any, serve: Any)
         field.fill(value)
         field.press("Enter")
 
-    server.process.send_signal(signal.SIGSTOP)  # it hears nothing more
+    server.process.send_signal(signal.SIGSTOP)  # the server receives no more messages
     fill("curl.width", "1.75")
     server.kill()
     review.until("document.documentElement.dataset.link == 'lost'")
@@ -237,7 +237,7 @@ def test_guides_are_sculpted_with_a_brush(opened: Any):
     before = np.array(review.get("Array.from(ringlet.model.guides.points)")).reshape(-1, 3)
     offsets = review.get("Array.from(ringlet.model.guides.offsets)")
     front = int(np.argmax(before[np.array(offsets[1:]) - 1] @ review.get("ringlet.viewer.camera.position.toArray()")))
-    at = review.place(before[offsets[front + 1] - 1])
+    at = review.project(before[offsets[front + 1] - 1])
     page.mouse.move(*at)
     page.mouse.down()
     page.mouse.move(at[0] + 50, at[1] - 20, steps=4)
@@ -248,7 +248,7 @@ def test_guides_are_sculpted_with_a_brush(opened: Any):
     assert np.linalg.norm(after - before, axis=1)[offsets[front + 1] - 1] > 0.003
     assert np.array_equal(after[offsets[:-1]], before[offsets[:-1]])  # roots stay
     eye = review.get("ringlet.viewer.camera.position.toArray()")
-    page.mouse.move(260, 600)  # beside the hair the hand turns the head
+    page.mouse.move(260, 600)  # a drag beside the hair orbits the camera
     page.mouse.down()
     page.mouse.move(300, 600, steps=2)
     page.mouse.up()
@@ -259,7 +259,7 @@ def test_guides_are_sculpted_with_a_brush(opened: Any):
     review.until("ringlet.model.guides.changed.some(one => one)")
     page.get_by_role("button", name="Return all guides").click()
     review.until("!ringlet.model.guides.changed.some(one => one)")
-    assert not review.wrong
+    assert not review.errors
 
 
 def test_a_value_is_set_for_one_lock_and_reverted(opened: Any):
@@ -275,7 +275,7 @@ def test_a_value_is_set_for_one_lock_and_reverted(opened: Any):
     assert moved[2] > 0.001 and np.delete(moved, 2).max() == 0.0
     review.page.get_by_label("Not its own curl width").click()
     review.until("!Object.keys(ringlet.model.documents.recipe.said.curl.width.lock ?? {}).length")
-    assert not review.wrong
+    assert not review.errors
 
 
 def test_regions_and_overlays_are_chosen_from_lists(opened: Any, folder: Path):
@@ -291,8 +291,8 @@ def test_regions_and_overlays_are_chosen_from_lists(opened: Any, folder: Path):
     review.until("ringlet.model.measured?.nail.length")
     review.page.get_by_label("Overlay").select_option("nail")
     assert review.page.get_by_role("note").inner_text().split() == ["free", "held"]
-    assert different(review.picture(), plain) > 0.002  # few hairs cover little of the picture
-    assert not review.wrong
+    assert different(review.picture(), plain) > 0.002  # few hairs cover few pixels
+    assert not review.errors
 
 
 def test_two_looks_are_shown_side_by_side(opened: Any):
@@ -301,7 +301,7 @@ def test_two_looks_are_shown_side_by_side(opened: Any):
     beside.select_option("now")
     review.until("ringlet.viewer.compared && ringlet.viewer.hair.b.table")
     left, right = np.split(review.picture(), 2, axis=1)
-    begin, end = (int(pixels) for pixels in review.get("ringlet.viewer.covered()"))  # by panels
+    begin, end = (int(pixels) for pixels in review.get("ringlet.viewer.covered()"))  # width of the panels
     half = left.shape[1]
     assert begin > 200 and end > 200 and half - max(begin, end) > 140
     heads = [np.flatnonzero((side.max(axis=2) > 100).any(axis=0)) for side in (left, right)]

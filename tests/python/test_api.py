@@ -1,4 +1,4 @@
-"""The public API, and the program of the README."""
+"""The public API and the program of the README."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def test_the_program_of_the_readme_runs(tmp_path, monkeypatch):
     lines = [line for line in program.splitlines() if line.strip()]
     assert len(lines) <= 12
 
-    # The same program on a small head and for a small picture.
+    # The program on the small example, with a smaller picture.
     small = write_example(tmp_path / "examples/child")
     (small / "small.recipe.toml").rename(small / "curls.recipe.toml")
     (small / "small.shot.toml").rename(small / "nod.shot.toml")
@@ -37,9 +37,9 @@ def test_every_public_name_is_there_and_documented():
 
 
 def test_progress_ends_at_its_total(tmp_path):
-    heard = []
-    ringlet.build_groom(write_example(tmp_path) / "small.recipe.toml", progress=lambda *step: heard.append(step))
-    ended = {stage: done == total for stage, done, total in heard}
+    steps = []
+    ringlet.build_groom(write_example(tmp_path) / "small.recipe.toml", progress=lambda *step: steps.append(step))
+    ended = {stage: done == total for stage, done, total in steps}
     assert {"guides", "locks", "curl", "clean"} <= ended.keys() and all(ended.values())
 
 
@@ -70,12 +70,12 @@ def test_a_recipe_and_its_written_groom_simulate_bit_identically(tmp_path, unit,
 
 
 def write_obj(example, unit, up):
-    """The head as an OBJ, of places that single precision does not hold, in place of the USD file."""
+    """Replaces the USD head by an OBJ with coordinates that single precision cannot represent."""
     head = io.read_mesh(example / "head.usda")
-    places = head.points * (1.0 + 1e-9) / unit
+    points = head.points * (1.0 + 1e-9) / unit
     if up == "Z":
-        places = places[:, [0, 2, 1]] * (1, -1, 1)
-    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in places.tolist()]
+        points = points[:, [0, 2, 1]] * (1, -1, 1)
+    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in points.tolist()]
     lines += ["f " + " ".join(map(str, triangle + 1)) for triangle in head.triangles]
     (example / "head.obj").write_text("\n".join(lines))
     recipe = (example / "small.recipe.toml").read_text().replace('region = "scalp"', f'unit = "m"\nup = "{up}"')
@@ -88,7 +88,7 @@ def test_a_run_times_its_stages_and_refuses_an_unwritable_path_first(tmp_path):
         with run.stage("one"):
             pass
         with pytest.raises(ringlet.UserError, match="cannot be written"), run.stage("two", tmp_path / "file/out.usdc"):
-            raise AssertionError("the work was begun")
+            raise AssertionError("the stage has run")
     assert [stage.name for stage in run.stages] == ["one"]
     assert run.stages[0].wall >= 0
 

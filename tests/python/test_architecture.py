@@ -1,4 +1,4 @@
-"""The arrows of docs/architecture.md hold, and the script that checks them sees one that does not."""
+"""The import tables of docs/architecture.md hold, and their script reports a violation."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The command line as people and programs meet it: help, exit codes, errors in one line, JSON."""
+"""The command line: help, exit codes, errors in one line, JSON."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ COMMANDS = ["demo", "groom", "edit", "check", "loft", "sim", "wedge", "hair", "p
 
 
 def run(*arguments: object):
-    """What a command line prints and the code it exits with."""
+    """Runs a command line; returns its output and exit code."""
     return CliRunner().invoke(app, [str(argument) for argument in arguments])
 
 
@@ -53,6 +53,7 @@ def test_without_arguments_the_commands_are_listed():
 
 def test_version_has_three_numbers():
     assert run("--version").stdout == f"ringlet {ringlet.__version__}\n"
+    assert ringlet.__version__.count(".") == 2
 
 
 def test_help_imports_no_heavy_library():
@@ -118,7 +119,7 @@ def test_schemas_are_json_and_describe_every_setting():
 
 SLOW = """
 import signal, sys, time
-signal.signal(signal.SIGINT, signal.default_int_handler)  # also where the tests run in the background
+signal.signal(signal.SIGINT, signal.default_int_handler)  # also when tests run in the background
 import ringlet
 from ringlet.cli import main
 

@@ -1,4 +1,4 @@
-"""What a file says makes nobody write elsewhere, read without end, or guess at a later format."""
+"""Untrusted files: no output elsewhere, bounded input, and no guesses at later formats."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ import ringlet
 
 @pytest.fixture
 def project(tmp_path) -> Path:
-    """The small example in a folder beside which nothing may appear."""
+    """The small example in a folder; no file may appear outside it."""
     return write_example(tmp_path / "project")
 
 
@@ -29,7 +29,7 @@ def names_below(folder: Path) -> list[str]:
     return sorted(str(path.relative_to(folder)) for path in folder.rglob("*"))
 
 
-# Places to write to
+# Output paths
 
 
 @pytest.mark.parametrize("place", ["../edits.toml", "sub/../../edits.toml", "{outside}/edits.toml", "link/edits.toml"])
@@ -57,8 +57,8 @@ def test_a_loft_is_written_beside_the_shot_by_default(project):
 def test_a_link_in_place_of_the_output_is_replaced_and_not_followed(tmp_path):
     (tmp_path / "precious").write_text("precious")
     (tmp_path / "out").symlink_to(tmp_path / "precious")
-    with replacing(tmp_path / "out") as aside:
-        aside.write_text("new")
+    with replacing(tmp_path / "out") as temporary:
+        temporary.write_text("new")
     assert (tmp_path / "precious").read_text() == "precious"
     assert not (tmp_path / "out").is_symlink() and (tmp_path / "out").read_text() == "new"
 
@@ -66,8 +66,8 @@ def test_a_link_in_place_of_the_output_is_replaced_and_not_followed(tmp_path):
 def test_a_link_in_place_of_the_temporary_file_is_not_followed(tmp_path):
     (tmp_path / "precious").write_text("precious")
     (tmp_path / f".out.{os.getpid()}.txt").symlink_to(tmp_path / "precious")
-    with replacing(tmp_path / "out.txt") as aside:
-        aside.write_text("new")
+    with replacing(tmp_path / "out.txt") as temporary:
+        temporary.write_text("new")
     assert (tmp_path / "precious").read_text() == "precious" and (tmp_path / "out.txt").read_text() == "new"
 
 
@@ -75,17 +75,17 @@ def test_a_read_only_folder_is_refused_before_the_first_stage(project, monkeypat
     closed = project / "closed"
     closed.mkdir()
     closed.chmod(0o500)
-    if os.access(closed, os.W_OK):  # root may write anywhere: let the system refuse
-        monkeypatch.setattr("ringlet.files.tempfile.TemporaryFile", raise_no_right)
+    if os.access(closed, os.W_OK):  # root ignores permissions, so the refusal is simulated
+        monkeypatch.setattr("ringlet.files.tempfile.TemporaryFile", deny)
     refused(run("groom", project / "small.recipe.toml", "-o", closed / "groom.usdc"), "cannot be written")
     assert list(closed.iterdir()) == []
 
 
-def raise_no_right(**_):
+def deny(**_):
     raise PermissionError(13, "Permission denied")
 
 
-# Files without end
+# Bounded input
 
 
 @pytest.mark.parametrize("text", ["ringlet = 1\na = " + "[" * 100_000, "ringlet = 1\nseed = " + "9" * 5000])
@@ -103,9 +103,9 @@ def test_a_pipe_in_place_of_a_file_is_refused(project):
 
 
 def numbers_of(schema: dict, place: str):
-    """Every whole number that a setting may be, with its place."""
-    for name, part in [*schema.get("properties", {}).items(), *schema.get("$defs", {}).items()]:
-        yield from numbers_of(part, f"{place}.{name}")
+    """Schemas of all integers among the settings, with their paths."""
+    for name, inner in [*schema.get("properties", {}).items(), *schema.get("$defs", {}).items()]:
+        yield from numbers_of(inner, f"{place}.{name}")
     for option in [*schema.get("anyOf", ()), *schema.get("oneOf", ())]:
         yield from numbers_of(option, place)
     for key in ("items", "additionalProperties"):
@@ -115,7 +115,7 @@ def numbers_of(schema: dict, place: str):
         yield place, schema
 
 
-NAMES_ONLY = ("lock", "guide", "set", "id", "frames", "frame")  # numbers that name something and are not counts
+NAMES_ONLY = ("lock", "guide", "set", "id", "frames", "frame")  # identifiers and frame numbers, which are no counts
 
 
 @pytest.mark.parametrize("kind", ["recipe", "shot"])
@@ -144,7 +144,7 @@ def test_a_removed_setting_is_refused_with_its_replacement(project):
 
 
 def as_version(path: Path, version: object) -> Path:
-    """Gives the layer of a cache or a rest shape another version."""
+    """Replaces the version in the layer of a cache or a rest shape."""
     layer = Sdf.Layer.FindOrOpen(str(path))
     data = dict(layer.customLayerData)
     kept = dict(data["ringlet"])
@@ -180,7 +180,3 @@ def test_a_loft_of_a_later_layout_is_refused_with_a_remedy(project):
     shot.write_text(shot.read_text() + '\n[rest]\nmode = "lofted"\n')
     as_version(rest, 3)
     refused(run("sim", shot, "-o", project / "cache.usdc"), "small.rest.usdc", "layout 3", "update it")
-
-
-def test_the_package_says_its_version():
-    assert ringlet.__version__.count(".") == 2

@@ -1,4 +1,4 @@
-"""The direct solver on strands that touch: the matrices that it is for."""
+"""The direct solver on systems of strands in contact."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def coil(index: int) -> np.ndarray:
 
 
 def touching_coils(count: int = 6) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Triplets i, j and their blocks, and the dense matrix, of coils that push at their neighbours."""
+    """Triplets i, j with blocks, and the dense matrix, of coils in contact with their neighbours."""
     size = 3 * count * VERTICES
     dense = np.zeros((size, size))
     for k in range(count):
@@ -30,7 +30,7 @@ def touching_coils(count: int = 6) -> tuple[np.ndarray, np.ndarray, np.ndarray, 
         stretched = rest * (1.0, 1.2, 1.0)
         own = slice(3 * VERTICES * k, 3 * VERTICES * (k + 1))
         dense[own, own] = strand.energy(stretched, continuation="least_energy", hessian=True)[2]
-    dense += 3e-6 * np.eye(size)  # mass / dt², about
+    dense += 3e-6 * np.eye(size)  # about mass / dt²
     random = np.random.default_rng(5)
     for _ in range(count * VERTICES):
         first = random.integers(count - 1)
@@ -52,7 +52,7 @@ def test_solution_of_touching_strands_agrees_with_a_dense_solver(method):
     solver = DirectSolver(i, j, len(dense) // 3, method=method)
     assert solver.method == method
     b = np.random.default_rng(2).normal(size=len(dense))
-    for scale in (1.0, 3.0):  # the pattern serves again
+    for scale in (1.0, 3.0):  # reuses the symbolic factorisation
         assert solver.factor(scale * blocks)
         x, residual = solver.solve(b)
         assert np.linalg.norm(x - np.linalg.solve(scale * dense, b)) < 1e-9 * np.linalg.norm(x)

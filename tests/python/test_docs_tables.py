@@ -1,4 +1,4 @@
-"""The tables of controls name tests: each of them must be there."""
+"""Tests that the documents name."""
 
 import re
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What the doctor says of an installation."""
+"""The diagnosis of an installation."""
 
 import json
 
@@ -30,10 +30,10 @@ def test_a_failed_check_is_reported_and_the_others_still_run(monkeypatch):
     monkeypatch.setattr(doctor, "_needed", lambda: ["numpy", "no-such-package"])
     result = CliRunner().invoke(app, ["doctor", "--json"])
     assert result.exit_code == 1
-    told = {entry["name"]: entry for entry in json.loads(result.stdout)}
-    assert told["numpy"]["state"] == "ok" and told["groom and USD"]["state"] == "ok"
-    assert told["no-such-package"]["state"] == "fails" and "pip install" in told["no-such-package"]["remedy"]
-    assert "out of order" in told["broken"]["found"]
+    findings = {entry["name"]: entry for entry in json.loads(result.stdout)}
+    assert findings["numpy"]["state"] == "ok" and findings["groom and USD"]["state"] == "ok"
+    assert findings["no-such-package"]["state"] == "fails" and "pip install" in findings["no-such-package"]["remedy"]
+    assert "out of order" in findings["broken"]["found"]
 
 
 def test_no_simulation_runs_without_the_self_test(monkeypatch):

@@ -1,5 +1,4 @@
-"""Hostile files: what fuzzing starts from and what it found is refused in one line or read, and takes neither long nor
-much memory."""
+"""Hostile files are read or refused in one line within bounded time and memory."""
 
 from __future__ import annotations
 
@@ -23,16 +22,16 @@ from targets import TARGETS, try_out  # noqa: E402
 
 
 def settings_of(*schemas: dict) -> list[str]:
-    """The names of all settings."""
+    """Names of all settings."""
     tables = [table for schema in schemas for table in (schema, *schema.get("$defs", {}).values())]
     return sorted({name for table in tables for name in table.get("properties", {})})
 
 
 SETTINGS = settings_of(*ringlet.schema().values())
-KEPT = [pytest.param(file, id=f"{file.parent.name}/{file.name}") for file in sorted((FUZZ / "corpus").glob("*/*"))]
+CORPUS = [pytest.param(file, id=f"{file.parent.name}/{file.name}") for file in sorted((FUZZ / "corpus").glob("*/*"))]
 
 
-@pytest.mark.parametrize("file", KEPT)
+@pytest.mark.parametrize("file", CORPUS)
 def test_corpus_files_are_read_or_refused_in_one_line(file, tmp_path):
     try_out(TARGETS[file.parent.name], file.read_bytes(), tmp_path)
 
@@ -41,7 +40,7 @@ def test_every_target_has_a_seed_corpus():
     assert {file.parent.name for file in (FUZZ / "corpus").glob("*/*")} == set(TARGETS)
 
 
-# Any input at all
+# Generated input
 
 quick = settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 counts = st.one_of(st.integers(0, 6), st.sampled_from([2**16, 2**31 - 1, 2**31, 2**32 - 1]))
@@ -71,7 +70,7 @@ def test_a_hair_file_of_any_counts_is_refused_or_has_its_counts(tmp_path, hairs,
     finally:
         _, most = tracemalloc.get_traced_memory()
         tracemalloc.stop()
-    assert most < 1_000_000  # whatever the counts promise
+    assert most < 1_000_000  # whatever counts the header states
 
 
 @quick

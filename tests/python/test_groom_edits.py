@@ -1,4 +1,4 @@
-"""Locks taken out of the recipe: they outlive what changes before them, and can be given back."""
+"""Edits of single locks: they survive changes of the recipe and can be reverted."""
 
 import json
 
@@ -86,7 +86,7 @@ def test_an_edit_follows_changes_of_the_recipe(recipe):
         row = int(np.flatnonzero(edited.locks.ids == lock)[0])
         difference = edited.locks[row] - plain.locks[row]
         u = np.linspace(0, 1, len(difference))
-        # as far as before at every place along the lock, and the recipe's change is in it
+        # the displacement is kept along the lock, on top of the change of the recipe
         np.testing.assert_allclose(np.linalg.norm(difference, axis=1), 0.01 * u, atol=2e-4)
         assert np.abs(plain.locks[row][-1] - before[5][-1]).max() > 1e-4
         others_stay(plain.locks, edited.locks, lock)
@@ -120,7 +120,7 @@ def test_an_edited_shape_is_still_curled_by_the_recipe(recipe):
     after = ringlet.build_groom(recipe)
     np.testing.assert_allclose(after.shapes[6], bent, atol=1e-8)
     straight = np.linalg.norm(np.diff(after.shapes[6], axis=0), axis=1).sum()
-    assert after.locks.lengths()[6] > 1.05 * straight  # it is curled
+    assert after.locks.lengths()[6] > 1.05 * straight  # the curl lengthens it
     others_stay(before.locks, after.locks, lock)
 
 
@@ -132,7 +132,7 @@ def test_a_setting_of_one_lock_changes_it_alone_and_overrides_the_recipe(recipe)
     wide = locks(recipe)
     others_stay(before, wide, lock)
     change(recipe, "width = 0.6", "width = 1.2")
-    assert np.abs(locks(recipe)[7] - wide[7]).max() < 1e-12  # it had that width already
+    assert np.abs(locks(recipe)[7] - wide[7]).max() < 1e-12  # its own width overrides the recipe
     assert ringlet.list_edits(recipe) == [
         {"lock": lock, "stage": "groom", "what": ["curl.width", "scraggle.amount"], "there": True}
     ]
@@ -157,7 +157,7 @@ def test_an_edit_of_a_missing_lock_is_reported_and_kept(recipe):
     lock = int(before.ids[0])
     ringlet.edit_lock(recipe, lock, settings={"curl.width": 2.0})
     kept = (recipe.parent / "a.edits.toml").read_bytes()
-    recipe.write_text("seed = 5\n" + recipe.read_text())  # other locks
+    recipe.write_text("seed = 5\n" + recipe.read_text())  # another seed grows other locks
     groom = ringlet.build_groom(recipe)
     assert lock not in groom.locks.ids
     assert groom.conflicts == [

@@ -21,7 +21,7 @@ def test_no_lock_intersects_the_head(groom):
     triangle, barycentric, distance = _core.bind_roots(scalp.points, scalp.triangles, points)
     nearest, frames = _core.root_frames(scalp.points, scalp.triangles, triangle, barycentric)
     inside = np.einsum("kx,kx->k", points - nearest, frames[:, :, 2]) < 0.0
-    assert (distance[inside] < 1e-9).all()  # roots, which are on the skin
+    assert (distance[inside] < 1e-9).all()  # only roots, which are on the skin
 
 
 def test_locks_resolve_their_curls(groom):

@@ -1,4 +1,4 @@
-"""Guides: where they grow, which way, on both sides, and from which files they are read."""
+"""Guides: density, direction, symmetry and files of drawn guides."""
 
 import struct
 
@@ -19,7 +19,7 @@ def groom(text, scalp=None, **options):
 
 
 def painted(name="thick", mesh=None):
-    """The ball with a map that is 1 on the right, 0.25 on the left."""
+    """The ball with a map of 1 on the right and 0.25 on the left."""
     mesh = mesh or ball()
     mesh.maps[name] = np.where(mesh.points[mesh.triangles].mean(axis=1, keepdims=True)[:, :, 0] > 0.0, 1.0, 0.25)
     mesh.maps[name] = np.broadcast_to(mesh.maps[name], mesh.triangles.shape).copy()
@@ -35,7 +35,7 @@ def test_a_painted_density_sets_the_spacing_and_keeps_the_count(kind):
     assert right.sum() / (~right).sum() == pytest.approx(4.0, rel=0.15)
     gaps = np.linalg.norm(curves.roots[:, None] - curves.roots[None], axis=2) + np.eye(400)
     nearest = gaps.min(axis=1)
-    assert nearest[right].min() > 0.4 * np.median(nearest[right])  # they keep their distance, as far as there is room
+    assert nearest[right].min() > 0.4 * np.median(nearest[right])  # the spacing is bounded below
     assert np.median(nearest[~right]) == pytest.approx(2.0 * np.median(nearest[right]), rel=0.2)
 
 
@@ -61,7 +61,7 @@ def test_lengths_are_painted_by_primvar_and_by_texture():
     assert np.allclose(guides.lengths()[guides.roots[:, 0] > 0.02], 0.06)
     assert np.allclose(guides.lengths()[guides.roots[:, 0] < -0.02], 0.03)
 
-    flat = sheet()  # u from x, v from z; the picture is black at v = 0 and white at v = 1
+    flat = sheet()  # u along x, v along z; the texture is black at v = 0 and white at v = 1
     flat.uv = (flat.points[flat.triangles][:, :, [0, 2]] + 0.1) / 0.2
     flat.textures["long"] = np.linspace(1.0, 0.0, 200)[:, None].repeat(3, axis=1)
     guides = groom("[guides]\ncount = 80\nlength = { value = 6, map = 'long' }", flat).guides
@@ -141,7 +141,7 @@ def test_guides_are_resampled_by_their_length():
 
 
 def curve_of(points):
-    """The same guides in each format: centimetres, Z up, on the ball of the small example."""
+    """Points in the space of the files: centimetres, Z up."""
     return np.round(np.asarray(points) * 100.0, 6)[:, [0, 2, 1]] * (1, -1, 1)
 
 
@@ -175,7 +175,7 @@ def write_hair(path, lines):
 
 
 def lines_on_the_ball():
-    """Four straight guides of 7 points that leave the ball at its top."""
+    """Four straight guides of 7 points on top of the ball, along its normals."""
     up = np.array([[0.02, 0.09, 0.0], [-0.03, 0.085, 0.01], [0.01, 0.085, -0.03], [0.0, 0.09, 0.02]])
     roots = 0.09 * up / np.linalg.norm(up, axis=1, keepdims=True)
     return [root + np.linspace(0, 0.05, 7)[:, None] * root / 0.09 for root in roots]
@@ -237,11 +237,11 @@ def test_a_texture_restricts_hair_on_an_obj_without_groups(tmp_path):
     mesh = ball()
     low, size = mesh.points.min(axis=0), np.ptp(mesh.points, axis=0)
     points = "".join(f"v {x} {y} {z}\n" for x, y, z in 100 * mesh.points)
-    texture = "".join(f"vt {u} {v}\n" for u, v, _ in (mesh.points - low) / size)  # from the front
+    texture = "".join(f"vt {u} {v}\n" for u, v, _ in (mesh.points - low) / size)  # a projection from the front
     faces = "".join(f"f {a}/{a} {b}/{b} {c}/{c}\n" for a, b, c in mesh.triangles + 1)
     (tmp_path / "head.obj").write_text(points + texture + faces)
     white = np.zeros((100, 100), np.uint8)
-    white[:25] = 255  # the uppermost quarter
+    white[:25] = 255  # the upper quarter
     Image.fromarray(white).save(tmp_path / "hair.png")
     recipe = tmp_path / "a.toml"
     recipe.write_text(
@@ -289,7 +289,7 @@ def test_textures_and_helper_curves_are_read_from_files_beside_the_recipe(tmp_pa
     np.testing.assert_allclose(made.scalp.textures["short"], [[0, 1], [0.4, 0.2]])
     line = lines_on_the_ball()[0]
     roots, tips = made.locks.points[made.locks.offsets[:-1]], made.locks.points[made.locks.offsets[1:] - 1]
-    beside = np.linalg.norm(roots - line[0], axis=1) < 0.05  # others would come through the ball, and are led around it
+    beside = np.linalg.norm(roots - line[0], axis=1) < 0.05  # others are guided around the ball
     assert beside.sum() >= 2
     np.testing.assert_allclose(tips[beside], np.broadcast_to(line[-1], tips[beside].shape), atol=1e-4)
     (tmp_path / "short.png").write_text("no picture")

@@ -1,4 +1,4 @@
-"""The shape operators: what each does to curves that are easy to think about, and what all of them keep."""
+"""Shape operators: invariants of all operators, and the effect of each on curves of known shape."""
 
 from itertools import pairwise
 
@@ -44,13 +44,13 @@ margin = 0
 
 
 def locks(shape="", count=40, top="", scalp=None):
-    """Locks on a ball, without curls, before they are cleaned."""
+    """Locks on a ball before curl and cleaning."""
     text = f"ringlet = 1\n{top}\n[scalp]\nregion = 'scalp'\n{TAIL}{GROWN.format(count=count)}{shape}"
     return uncleaned(parse_recipe(text), scalp or ball())
 
 
 def uncleaned(recipe, scalp):
-    """What the shape stack of a recipe makes, shape (count, points, 3) as curves."""
+    """Curves after the shape stack of a recipe."""
     surface, curves = Scalp(scalp, recipe.scalp.region), Curves.from_list([])
     helpers = {name: helper.given() for name, helper in recipe.curves.items()}
     for name, operator in [
@@ -84,7 +84,7 @@ def upright(count=11, height=0.1, x=0.02):
     return np.stack([0 * u + x, u, 0 * u], axis=1)
 
 
-# What all of them keep
+# Invariants
 
 
 @pytest.mark.parametrize("op", OPERATORS)
@@ -95,7 +95,7 @@ def test_every_operator_changes_shapes_and_leaves_roots_and_names(op):
     assert np.array_equal(shaped.ids, plain.ids) and np.isfinite(shaped.points).all()
 
 
-@pytest.mark.parametrize("op", [op for op in OPERATORS if op != "clump"])  # whose centres are locks themselves
+@pytest.mark.parametrize("op", [op for op in OPERATORS if op != "clump"])  # its centres are locks
 def test_operators_move_no_lock_when_another_is_removed(op):
     more, fewer = locks(step(op), 41), locks(step(op), 40)
     same = more.take(np.isin(more.ids, fewer.ids))
@@ -151,7 +151,7 @@ def test_a_region_mask_acts_in_its_region_with_a_falloff():
         grid(locks(step("lift", f"mask = {mask}"), 200, scalp=scalp)) - grid(plain)
     ).max(axis=(1, 2))
     hard, soft = moved("{ region = 'front' }"), moved("{ region = 'front', soft = 3 }")
-    behind = plain.roots[:, 2] < -0.012  # the facets' edge is not quite at 0
+    behind = plain.roots[:, 2] < -0.012  # the boundary of the region follows facets
     near, far = behind & (plain.roots[:, 2] > -0.02), plain.roots[:, 2] < -0.05
     assert near.sum() > 3 and far.sum() > 3
     assert not hard[behind].any() and not soft[far].any()
@@ -187,7 +187,7 @@ def test_invalid_masks_are_refused_in_one_line():
         assert words in str(error.value) and "\n" not in str(error.value)
 
 
-# What each of them does
+# Effects
 
 
 def test_smooth_removes_short_waves_and_halves_those_of_its_size():
@@ -209,7 +209,7 @@ def test_length_scales_sets_or_cuts():
     np.testing.assert_allclose(scaled[0] - bent[0], 0.5 * (bent - bent[0]), atol=1e-12)
     assert on_sheet("op = 'length'\nto = 6", [bent]).lengths()[0] == pytest.approx(0.06)
     cut = on_sheet("op = 'length'\nto = 6\ncut = true", [bent])
-    assert cut.lengths()[0] == pytest.approx(0.06, rel=0.02)  # a corner is cut off between points
+    assert cut.lengths()[0] == pytest.approx(0.06, rel=0.02)  # the cut is a chord of a corner
     assert np.abs(cut[0][-1] - bent).sum(axis=1).min() < 0.02 and cut.lengths()[0] < length
     np.testing.assert_allclose(on_sheet("op = 'length'\nto = 90\ncut = true", [bent])[0], bent, atol=1e-9)
 
@@ -226,7 +226,7 @@ def test_length_is_random_or_painted():
 
 
 def test_lift_rotates_a_lock_towards_the_normal_but_not_beyond():
-    lying = np.stack([np.linspace(0, 0.05, 6), np.linspace(0, 0.05, 6), np.zeros(6)], axis=1)  # at 45 degrees
+    lying = np.stack([np.linspace(0, 0.05, 6), np.linspace(0, 0.05, 6), np.zeros(6)], axis=1)  # inclined by 45°
     for angle, left in ((20, 25), (45, 0), (80, 0), (-30, 75)):
         lifted = on_sheet(f"op = 'lift'\nangle = {angle}", [lying])[0]
         chord = lifted[-1] / np.linalg.norm(lifted[-1])
@@ -286,12 +286,12 @@ def test_locks_part_at_a_plane_and_at_a_drawn_line():
 
 def test_gathered_locks_meet_at_the_tie_keep_their_length_and_hang_along_the_tail():
     gathered, plain = locks("[[shape]]\nop='length'\nto=40\n" + step("gather")), locks()
-    np.testing.assert_allclose(gathered.lengths(), 0.4, rtol=0.05)  # corners are cut off between points
+    np.testing.assert_allclose(gathered.lengths(), 0.4, rtol=0.05)  # chords cut corners
     tie = np.array([0, 0.08, -0.08])
     distance = np.linalg.norm(grid(gathered)[:, :, None] - tie, axis=3).min(axis=(1, 2))
-    assert distance.max() < 0.025  # the radius of the tie, and the distance of points along a lock
+    assert distance.max() < 0.025  # radius of the tie plus spacing of points
     assert grid(gathered)[:, -1, 1].max() < grid(plain)[:, -1, 1].min() + 0.1
-    assert (np.linalg.norm(grid(gathered), axis=2) > 0.085).all()  # round the head, not through it
+    assert (np.linalg.norm(grid(gathered), axis=2) > 0.085).all()  # around the head
 
 
 def test_flyaways_have_the_requested_share_and_other_locks_stay():

@@ -1,4 +1,4 @@
-"""Recipes: what they accept, and how they refuse."""
+"""Recipes: accepted values, defaults and refusals."""
 
 from pathlib import Path
 
@@ -79,7 +79,7 @@ SETTINGS = [
 
 def as_toml(value):
     if isinstance(value, dict):
-        return "{ " + ", ".join(f"{key} = {as_toml(part)}" for key, part in value.items()) + " }"
+        return "{ " + ", ".join(f"{key} = {as_toml(inner)}" for key, inner in value.items()) + " }"
     if isinstance(value, list):
         return "[" + ", ".join(map(as_toml, value)) + "]"
     return str(value).lower() if isinstance(value, bool) else f"'{value}'" if isinstance(value, str) else repr(value)
@@ -155,9 +155,9 @@ def test_the_schema_has_bounds_units_and_descriptions_of_every_setting():
     width = definitions["Curl"]["properties"]["width"]
     assert width["unit"] == "m" and width["anyOf"][0] == {"type": "number", "minimum": 0.0, "maximum": 0.2}
     for name, section in definitions.items():
-        for setting, told in section["properties"].items():
+        for setting, about in section["properties"].items():
             if setting not in ("op", "value"):
-                assert told.get("description"), f"{name}.{setting} has no description"
+                assert about.get("description"), f"{name}.{setting} has no description"
 
 
 def test_the_example_recipe_refers_to_its_head():

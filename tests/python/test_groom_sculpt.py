@@ -1,4 +1,4 @@
-"""Guides that were sculpted keep what was done to them, whatever changes before it."""
+"""Sculpted guides keep their sculpt when the recipe changes."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ def recipe(tmp_path: Path) -> Path:
 
 
 def sculpt(recipe: Path, groom: Groom, guides: Curves) -> None:
-    """Keeps guides beside the recipe as what was done by hand to those of a groom."""
+    """Writes the difference of guides to those of a groom as sculpts beside the recipe."""
     assert groom.unsculpted is not None
     made: list[dict[str, Any]] = sculpts_to(groom.unsculpted, guides, Scalp(groom.scalp, groom.region))
     (recipe.parent / "small.edits.toml").write_text(edits_text({"edit": [], "sculpt": made}))
 
 
 def bent(guides: Curves, row: int) -> Curves:
-    """One of the guides, its tip 2 cm aside."""
+    """Guides with the tip of one displaced by 2 cm."""
     points = guides.points.copy()
     here = slice(guides.offsets[row], guides.offsets[row + 1])
     points[here, 0] += 0.02 * np.linspace(0.0, 1.0, guides.counts[row]) ** 2
@@ -45,7 +45,7 @@ def test_sculpted_guides_keep_their_positions_and_locks_follow(recipe: Path):
     wanted = bent(before.guides, 2)
     sculpt(recipe, before, wanted)
     after = ringlet.build_groom(recipe)
-    assert np.abs(after.guides.points - wanted.points).max() < 2e-5  # kept to the hundredth of a millimetre
+    assert np.abs(after.guides.points - wanted.points).max() < 2e-5  # sculpts are rounded to 0.01 mm
     assert np.array_equal(
         np.delete(after.guides.points, slice(20, 30), 0), np.delete(before.guides.points, slice(20, 30), 0)
     )
@@ -69,11 +69,13 @@ def test_a_cut_guide_keeps_its_fraction_when_the_recipe_lengthens_it(recipe: Pat
 def test_sculpting_survives_changes_of_the_guides(recipe: Path):
     before = ringlet.build_groom(recipe)
     sculpt(recipe, before, bent(before.guides, 2))
-    way = ringlet.build_groom(recipe).guides[2][-1] - before.guides[2][-1]
+    displacement = ringlet.build_groom(recipe).guides[2][-1] - before.guides[2][-1]
     recipe.write_text(recipe.read_text().replace("length = 5", "length = 5\npoints = 16\nlift = 0.7"))
     later = ringlet.build_groom(recipe)
     assert later.unsculpted is not None and later.guides.counts[2] == 16
-    assert np.linalg.norm(later.guides[2][-1] - later.unsculpted[2][-1]) == pytest.approx(np.linalg.norm(way), rel=0.02)
+    assert np.linalg.norm(later.guides[2][-1] - later.unsculpted[2][-1]) == pytest.approx(
+        np.linalg.norm(displacement), rel=0.02
+    )
 
 
 def test_unchanged_guides_need_no_sculpt(recipe: Path):

@@ -1,4 +1,4 @@
-"""Recipes that change a few values of another."""
+"""Variants: recipes that change some values of another."""
 
 import json
 
@@ -134,7 +134,7 @@ def test_variants_are_written_as_usd_variants(folder):
     np.testing.assert_array_equal(again.locks.ids, down_groom.locks.ids)
     assert again.recipe == down_groom.recipe
 
-    stage = Usd.Stage.Open(str(folder / "groom.usdc"))  # as any other program sees it
+    stage = Usd.Stage.Open(str(folder / "groom.usdc"))  # as other programs read it
     choice = stage.GetPrimAtPath("/groom").GetVariantSets().GetVariantSet("groom")
     assert (sorted(choice.GetVariantNames()), choice.GetVariantSelection()) == (["base", "down"], "base")
     choice.SetVariantSelection("down")
@@ -181,13 +181,13 @@ def test_every_command_accepts_a_variant_and_its_output_records_it(folder):
     ringlet.write_groom(ringlet.build_groom(folder / "base.toml"), file, variants={"down": down})
     (folder / "a.shot.toml").write_text("ringlet = 1\ngroom = 'groom.usdc'\nframes = [1, 2]\npreroll = 0\n")
     chosen = ["--variant", "down"]
-    told = json.loads(run("check", file, *chosen, "--json"))
-    assert told["points"] == 12 * 96
+    checked = json.loads(run("check", file, *chosen, "--json"))
+    assert checked["points"] == 12 * 96
     run("loft", folder / "a.shot.toml", "-o", folder / "rest.usdc", *chosen)
     assert len(read_rest(folder / "rest.usdc")[0].points) == 12 * 96
     run("sim", folder / "a.shot.toml", "-o", cache, *chosen)
     assert (ringlet.read_groom(cache).variant, ringlet.read_cache(cache).points.shape[1]) == ("down", 12 * 96)
-    run("hair", file, "--cache", cache, "-o", hair)  # that of the cache, without being told
+    run("hair", file, "--cache", cache, "-o", hair)  # the variant of the cache, without an option
     assert ringlet.read_groom(hair).variant == "down" and len(ringlet.read_groom(hair).locks.points) == 12 * 96
     run("hair", file, *chosen, "-o", hair)
     assert ringlet.read_groom(hair).variant == "down"

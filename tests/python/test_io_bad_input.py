@@ -1,4 +1,4 @@
-"""Bad files and bad places: one line that says what and where, and never half a file."""
+"""Bad files and output paths: one line with file and value, and no partial file."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from ringlet import Cache, UserError
 
 
 def refused(call, *args) -> str:
-    """The line with which a call refuses."""
+    """The one-line message of a refused call."""
     with pytest.raises(UserError) as caught:
         call(*args)
     line = str(caught.value)
@@ -62,7 +62,7 @@ def test_files_other_than_usd_are_refused(tmp_path, capfd, name, content, says):
     for call in (read_mesh, read_space, read_clip, read_bodies, read_groom, read_cache, read_hairs):
         line = refused(call, path)
         assert says in line and str(path) in line
-    assert capfd.readouterr().err == ""  # what USD has to say stays off the screen
+    assert capfd.readouterr().err == ""  # messages of USD are suppressed
 
 
 @pytest.mark.parametrize(
@@ -171,7 +171,7 @@ def test_a_groom_of_a_later_layout_is_refused(tmp_path):
 
 def test_unwritable_paths_are_refused(tmp_path):
     groom = make_groom(write_head(tmp_path / "head.usda"))
-    (tmp_path / "file").write_text("in the way")
+    (tmp_path / "file").write_text("a file")
     assert "cannot be written" in refused(write_groom, groom, tmp_path / "file/groom.usdc")
     assert "ends in '.abc'" in refused(write_groom, groom, tmp_path / "groom.abc")
     assert "is the head that it would refer to" in refused(write_groom, groom, tmp_path / "head.usda")

@@ -1,4 +1,4 @@
-"""Curves from USD: every type, basis and wrap, against curves that are known in closed form."""
+"""Curves from USD of every type, basis and wrap, against closed forms."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ def write(path, counts, points, kind="cubic", basis="bezier", wrap="nonperiodic"
 
 
 def cubic(t):
-    """A cubic in each coordinate, over t in [0, 3]."""
+    """A cubic polynomial curve over t in [0, 3]."""
     t = np.asarray(t, float)
     return np.stack([t, t**2 / 4, t**3 / 8 - t], axis=-1)
 
 
 def bezier_controls():
-    """Control points of three Bézier segments that are that cubic."""
+    """Control points of three Bézier segments of the cubic."""
     derivative = lambda t: np.stack([1.0, t / 2, 3 * t**2 / 8 - 1], axis=-1)  # noqa: E731
     rows = [cubic(0.0)]
     for t in (0.0, 1.0, 2.0):
@@ -39,7 +39,7 @@ def bezier_controls():
 
 
 def bspline_controls():
-    """Control points of a uniform cubic B-spline that is that cubic: the blossom at three successive knots."""
+    """Control points of a uniform cubic B-spline of the cubic: its blossom at three successive knots."""
     blossom = lambda a, b, c: np.array([(a + b + c) / 3, (a * b + b * c + a * c) / 12, a * b * c / 8 - (a + b + c) / 3])  # noqa: E731
     return np.array([blossom(k - 1.0, float(k), k + 1.0) for k in range(-1, 5)])
 

@@ -1,4 +1,4 @@
-"""Grooms, caches and hairs: what is written comes back, moves with its head, and keeps the rules of USD."""
+"""Grooms, caches and hairs: round trips, animation with the head, and valid USD."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from ringlet import Cache, Curves, UserError, build_groom
 
 @pytest.fixture(params=[(0.01, "Y"), (1.0, "Z")], ids=["cm-Y", "m-Z"])
 def folder(tmp_path, request):
-    """A head, a groom on it, and a cache of the frames 1 to 3 in which the locks rise 0.01 m a frame."""
+    """A head, its groom, and a cache of frames 1 to 3 in which the locks rise 0.01 m a frame."""
     unit, axis = request.param
     (tmp_path / "assets").mkdir()
     head = write_head(tmp_path / "assets/head.usdc", unit=unit, axis=axis)
@@ -42,7 +42,7 @@ def folder(tmp_path, request):
 
 
 def hairs_of(groom):
-    """Two hairs beside every lock."""
+    """Two hairs for every lock."""
     lock = np.repeat(np.arange(len(groom.locks), dtype=np.int32), 2)
     hairs = groom.locks.take(lock)
     hairs.points = (hairs.points + np.repeat([0.0, 0.001] * len(groom.locks), 7)[:, None]).astype(np.float32)
@@ -57,15 +57,15 @@ def test_a_groom_round_trips(folder):
     assert back.scalp_file.samefile(groom.scalp_file)
     np.testing.assert_allclose(back.scalp.points, groom.scalp.points)
     for kind in ("locks", "guides"):
-        wrote, read = getattr(groom, kind), getattr(back, kind)
-        np.testing.assert_allclose(read.points, wrote.points, atol=2e-8)
-        np.testing.assert_array_equal(read.offsets, wrote.offsets)
-        np.testing.assert_array_equal(read.ids, wrote.ids)
-        assert read.curve.keys() == wrote.curve.keys() and read.point.keys() == wrote.point.keys()
-        for name, values in wrote.curve.items():
+        written, read = getattr(groom, kind), getattr(back, kind)
+        np.testing.assert_allclose(read.points, written.points, atol=2e-8)
+        np.testing.assert_array_equal(read.offsets, written.offsets)
+        np.testing.assert_array_equal(read.ids, written.ids)
+        assert read.curve.keys() == written.curve.keys() and read.point.keys() == written.point.keys()
+        for name, values in written.curve.items():
             np.testing.assert_array_equal(read.curve[name], values)
             assert read.curve[name].dtype.kind == values.dtype.kind
-        np.testing.assert_allclose(read.point.get("width", 0), wrote.point.get("width", 0), rtol=1e-6)
+        np.testing.assert_allclose(read.point.get("width", 0), written.point.get("width", 0), rtol=1e-6)
 
 
 def test_the_same_groom_makes_the_same_file(folder):
@@ -161,8 +161,8 @@ def test_the_written_roots_are_where_the_locks_begin(folder):
     value = lambda name: np.array(UsdGeom.PrimvarsAPI(locks).GetPrimvar(name).Get())  # noqa: E731
     np.testing.assert_array_equal(value("skinprim"), 5)  # the scalp of the cube is its last polygon
     # Houdini's (u, v) = (0, 0), (0, 1), (1, 1), (1, 0) are the corners (0, 0), (1, 0), (1, 1), (0, 1) of this quad.
-    place = value("skinprimuv") * 0.1
-    np.testing.assert_allclose(place[:, ::-1], groom.locks.roots[:, :2], atol=1e-7)
+    uv = value("skinprimuv") * 0.1
+    np.testing.assert_allclose(uv[:, ::-1], groom.locks.roots[:, :2], atol=1e-7)
     for name in ("st", "surface_uv_coordinate", "groom_root_uv"):
         np.testing.assert_allclose(value(name) * 0.1, groom.locks.roots[:, :2], atol=1e-7)
     assert UsdGeom.Imageable(locks).ComputePurpose() == UsdGeom.Tokens.guide
@@ -176,7 +176,7 @@ def test_drawn_guides_keep_their_names_and_primvars_in_a_round_trip(tmp_path):
     drawn.CreateTypeAttr("linear")
     drawn.CreateCurveVertexCountsAttr([3, 3])
     drawn.CreatePointsAttr([(3, 3, 10), (3, 3, 12), (3, 4, 14), (6, 6, 10), (6, 6, 12), (6, 7, 14)])
-    said = {
+    primvars = {
         "groom_id": ("int[]", "uniform", [70, 7]),
         "style": ("int[]", "uniform", [2, 9]),
         "artist": ("string[]", "uniform", ["ada", "bo"]),
@@ -184,7 +184,7 @@ def test_drawn_guides_keep_their_names_and_primvars_in_a_round_trip(tmp_path):
         "flow": ("float3[]", "vertex", [(k, 0, 1) for k in range(6)]),
         "density": ("float", "constant", 0.5),
     }
-    for name, (kind, interpolation, values) in said.items():
+    for name, (kind, interpolation, values) in primvars.items():
         primvar = UsdGeom.PrimvarsAPI(drawn).CreatePrimvar(name, Sdf.ValueTypeNames.Find(kind), interpolation)
         primvar.Set(values)
     stage.Save()
@@ -196,9 +196,9 @@ def test_drawn_guides_keep_their_names_and_primvars_in_a_round_trip(tmp_path):
         write_groom(build_groom(tmp_path / "a.recipe.toml") if once else read_groom(tmp_path / "once.usdc"), path)
         stage = Usd.Stage.Open(str(path))
         guides = UsdGeom.PrimvarsAPI(stage.GetPrimAtPath("/groom/guides"))
-        for name, (_, interpolation, values) in said.items():
+        for name, (_, interpolation, values) in primvars.items():
             kept = guides.GetPrimvar(name)
-            if name == "density":  # one value for all is kept as one for each
+            if name == "density":  # a constant value becomes one for each guide
                 interpolation, values = "uniform", [0.5, 0.5]
             assert kept.GetInterpolation() == interpolation, name
             assert [tuple(v) if name == "flow" else v for v in kept.Get()] == values, name
@@ -253,7 +253,7 @@ def test_a_cache_of_another_groom_is_refused(folder):
 
 def test_an_open_cache_is_reread_after_it_was_replaced(folder):
     groom, held = read_groom(folder / "out/groom.usdc"), []
-    for name in "abcdefgh":  # in which order layers are read anew is chance
+    for name in "abcdefgh":  # several, since the order of reloading layers is random
         path, under = folder / f"out/{name}.usdc", folder / f"out/{name}.groom.usdc"
         shutil.copy(folder / "out/cache.usdc", path)
         held.append(Sdf.Layer.FindOrOpen(str(path)))

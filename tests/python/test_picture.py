@@ -1,4 +1,4 @@
-"""Pictures show the hair where it is, from any place and at any scale, and leave nothing half done."""
+"""Pictures: splines, framing, stills, contact sheets and refusals."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def helix(turns: float, per_turn: int, radius: float = 0.004) -> np.ndarray:
 
 
 def tuft(count: int = 40, scale: float = 1.0, at: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> Curves:
-    """Curls side by side, 1 mm thick so that small pictures see them."""
+    """Parallel curls, 1 mm thick so that they cover pixels of small pictures."""
     curl = helix(5, 12)
     roots = np.stack([np.linspace(-0.06, 0.06, count), np.zeros(count), np.zeros(count)], axis=1)
     curves = Curves.from_list([scale * (curl + root) + at for root in roots])
@@ -37,7 +37,7 @@ def tuft(count: int = 40, scale: float = 1.0, at: tuple[float, float, float] = (
 
 
 def ball(scale: float = 1.0, at: tuple[float, float, float] = (0.0, 0.0, 0.0), name: str = "ball") -> PosedBody:
-    """An octahedron of radius 5 cm, under the tuft."""
+    """An octahedron of radius 5 cm below the tuft."""
     corners = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], float)
     points = 0.05 * scale * corners - np.array([0, 0.05 * scale, 0]) + at
     triangles = [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]]
@@ -63,12 +63,12 @@ def test_the_spline_passes_through_every_point(count: int) -> None:
 def test_a_curl_of_twelve_points_a_turn_keeps_its_radius() -> None:
     curl = helix(4, 12)
     controls = spline_controls(curl[None])[0]
-    along = np.linspace(6, len(curl) - 7, 500)  # away from the ends, which are straight
+    along = np.linspace(6, len(curl) - 7, 500)  # without the straight ends
     drawn = BSpline(np.arange(-3, len(curl) + 3, dtype=float), controls, 3)(along)
     radius = np.hypot(drawn[:, 0], drawn[:, 2])
     assert radius.min() > 0.999 * 0.004
     uncorrected = BSpline(np.arange(-3, len(curl) + 1, dtype=float), curl, 3)(along)
-    assert np.hypot(uncorrected[:, 0], uncorrected[:, 2]).max() < 0.96 * 0.004  # what the correction is for
+    assert np.hypot(uncorrected[:, 0], uncorrected[:, 2]).max() < 0.96 * 0.004  # without the correction
 
 
 def test_hairs_of_different_lengths_reach_the_renderer_whole() -> None:
@@ -77,9 +77,9 @@ def test_hairs_of_different_lengths_reach_the_renderer_whole() -> None:
     controls, offsets = fibres(hairs)
     shape = load_fibres(mitsuba(), controls, offsets, {"type": "hair"})
     parameters = mitsuba().traverse(shape)
-    held, guard = np.split(np.array(parameters["control_points"]).reshape(-1, 4), [len(controls)])
-    assert np.array_equal(held, controls)
-    assert guard[:, 3].max() < 1e-3 * controls[:, 3].min(), "the curve that ends the list is never seen"
+    loaded, guard = np.split(np.array(parameters["control_points"]).reshape(-1, 4), [len(controls)])
+    assert np.array_equal(loaded, controls)
+    assert guard[:, 3].max() < 1e-3 * controls[:, 3].min(), "the guard curve at the end of the list is invisible"
     assert len(np.array(parameters["segment_indices"])) == sum(len(hairs[k]) - 1 for k in range(3)) + 1
     for k in range(3):
         middle = controls[offsets[k] : offsets[k + 1]]
@@ -100,7 +100,7 @@ def test_everything_is_in_the_frame_and_fills_it(view: str | tuple[float, float]
     seen = frame([points[:90], points[90:]], view=view, aspect=aspect, margin=0.05).project(points)
     assert seen.min() >= 0.05 - 1e-9
     assert seen.max() <= 0.95 + 1e-9
-    assert np.ptp(seen, axis=0).max() == pytest.approx(0.9)  # one side is as full as the margins allow
+    assert np.ptp(seen, axis=0).max() == pytest.approx(0.9)  # one dimension fills the frame up to the margins
 
 
 def test_the_front_view_looks_at_the_face_and_the_side_view_at_the_left_ear() -> None:
@@ -122,7 +122,7 @@ def test_hair_appears_at_its_projected_position(tmp_path: Path, scale: float, at
     expected = np.zeros(size, bool)
     where = np.clip((camera.project(hairs.points) * 64).astype(int), 0, 63)
     expected[where[:, 1], where[:, 0]] = True
-    near = np.zeros(size, bool)  # every pixel that touches one with hair points
+    near = np.zeros(size, bool)  # pixels with hair points and their neighbours
     for dx in (-1, 0, 1):
         for dy in (-1, 0, 1):
             near |= np.roll(expected, (dy, dx), (0, 1))
@@ -147,7 +147,7 @@ def test_a_body_shows_through_a_transparent_one(tmp_path: Path) -> None:
     for opacity in (1.0, 0.3):
         near.opacity = opacity
         path = still([near, far], tuft(2), tmp_path / "veil.png", width=48, height=48, samples=32, view="front")
-        middle = pixels(path)[40:, 20:28].mean(axis=(0, 1))  # where one is before the other
+        middle = pixels(path)[40:, 20:28].mean(axis=(0, 1))  # the near body covers the far one
         blue[opacity] = middle[2] / middle[0]
     assert blue[0.3] > 2 * blue[1.0]
 
@@ -171,10 +171,10 @@ def test_subpixel_hairs_are_visible(tmp_path: Path) -> None:
 
 
 def test_a_still_reports_progress_and_respects_its_time_limit(tmp_path: Path) -> None:
-    told: list[tuple[str, int, int]] = []
-    still([], tuft(4), tmp_path / "a.png", width=16, height=16, samples=16, progress=lambda *step: told.append(step))
-    assert [done for _, done, _ in told] == list(range(told[-1][2] + 1))
-    told.clear()
+    steps: list[tuple[str, int, int]] = []
+    still([], tuft(4), tmp_path / "a.png", width=16, height=16, samples=16, progress=lambda *step: steps.append(step))
+    assert [done for _, done, _ in steps] == list(range(steps[-1][2] + 1))
+    steps.clear()
     still(
         [],
         tuft(4),
@@ -183,17 +183,17 @@ def test_a_still_reports_progress_and_respects_its_time_limit(tmp_path: Path) ->
         height=16,
         samples=10_000,
         seconds=0.0,
-        progress=lambda *step: told.append(step),
+        progress=lambda *step: steps.append(step),
     )
-    assert len(told) == 3  # the beginning, one pass, and the word that it is over
+    assert len(steps) == 3  # start, one pass, end
 
 
 @pytest.mark.parametrize("samples", [4, 40])
 def test_a_time_limit_splits_a_still_into_smaller_passes(tmp_path: Path, samples: int) -> None:
-    """Noise is known from three passes on: they take no longer than two would without a limit, save of few samples."""
+    """With a time limit passes are smaller, since the noise estimate needs three."""
     passes = {}
     for seconds in (None, 1e9):
-        told: list[int] = []
+        steps: list[int] = []
         still(
             [],
             tuft(4),
@@ -202,14 +202,14 @@ def test_a_time_limit_splits_a_still_into_smaller_passes(tmp_path: Path, samples
             height=16,
             samples=samples,
             seconds=seconds,
-            progress=lambda _, done, total, told=told: told.append(done),
+            progress=lambda _, done, total, steps=steps: steps.append(done),
         )
-        passes[seconds] = told[-1]
+        passes[seconds] = steps[-1]
     assert passes[1e9] >= (4 if samples == 4 else 1.5 * passes[None])
 
 
-def seen(passes: np.ndarray) -> Passes:
-    """Passes of one picture, shape (count, height, width, 4)."""
+def accumulate(passes: np.ndarray) -> Passes:
+    """Accumulates passes of a picture, shape (count, height, width, 4)."""
     added = Passes()
     for image in passes:
         added.add(image)
@@ -218,24 +218,24 @@ def seen(passes: np.ndarray) -> Passes:
 
 def test_fireflies_are_spread_over_their_neighbourhood_and_light_is_conserved() -> None:
     passes = np.full((5, 40, 40, 4), 0.5)
-    passes[2, 20, 20, :3] += 5.0  # one pass met a light by chance
+    passes[2, 20, 20, :3] += 5.0  # a firefly in one pass
     total = passes.sum(axis=0)
-    even, odd = seen(passes).without_specks()
-    calm = even + odd
-    assert calm[20, 20, 0] < 0.6 * total[20, 20, 0]
-    assert calm[:, :, :3].sum() == pytest.approx(total[:, :, :3].sum(), rel=1e-3)
-    assert np.array_equal(calm[:, :, 3], total[:, :, 3])
-    assert even[20, 20, 0] / odd[20, 20, 0] < 2.0  # three passes to two: the speck is taken from those that have it
+    even, odd = accumulate(passes).without_specks()
+    denoised = even + odd
+    assert denoised[20, 20, 0] < 0.6 * total[20, 20, 0]
+    assert denoised[:, :, :3].sum() == pytest.approx(total[:, :, :3].sum(), rel=1e-3)
+    assert np.array_equal(denoised[:, :, 3], total[:, :, 3])
+    assert even[20, 20, 0] / odd[20, 20, 0] < 2.0  # three passes against two, with the firefly removed from its half
 
 
 @pytest.mark.parametrize("where", [0, 1, 2])
 def test_fireflies_leave_no_dot_on_noisy_skin(where: int) -> None:
     passes = np.random.default_rng(where).uniform(0.4, 0.6, (3, 40, 40, 4))
     passes[where, 20, 20, :3] += 5.0
-    all_of_it = seen(passes)
-    calm = all_of_it.without_noise(all_of_it.without_specks())
-    around = calm[14:27, 14:27, :3]
-    assert np.abs(calm[20, 20, :3] - around.mean()).max() < 0.1
+    accumulated = accumulate(passes)
+    denoised = accumulated.without_noise(accumulated.without_specks())
+    around = denoised[14:27, 14:27, :3]
+    assert np.abs(denoised[20, 20, :3] - around.mean()).max() < 0.1
 
 
 def test_denoising_removes_noise_and_keeps_edges() -> None:
@@ -243,9 +243,9 @@ def test_denoising_removes_noise_and_keeps_edges() -> None:
     clean[:, 30:] = 0.8
     noise = np.random.default_rng(4).normal(0.0, 0.05, clean.shape)
     other = np.random.default_rng(5).normal(0.0, 0.05, clean.shape)
-    calm = denoise(clean + noise, clean + other, np.full(clean.shape, 0.05**2))
-    assert np.abs(calm - clean).mean() < 0.3 * np.abs(noise).mean()
-    assert (calm[:, 30] - calm[:, 29]).min() > 0.5
+    denoised = denoise(clean + noise, clean + other, np.full(clean.shape, 0.05**2))
+    assert np.abs(denoised - clean).mean() < 0.3 * np.abs(noise).mean()
+    assert (denoised[:, 30] - denoised[:, 29]).min() > 0.5
     assert np.allclose(denoise(clean, clean, np.zeros(clean.shape)), clean, atol=1e-3)
 
 
@@ -253,10 +253,10 @@ def test_denoising_removes_noise_and_keeps_edges() -> None:
 def test_cross_filtering_leaves_less_noise_than_self_filtering(passes: int) -> None:
     light = np.random.default_rng(passes).uniform(0.0, 1.0, (passes, 80, 80, 1)).repeat(4, axis=3)
     mean, variance = light.mean(axis=0), light.var(axis=0, ddof=1)
-    all_of_it = seen(light)
-    calm = all_of_it.without_noise([light[::2].sum(axis=0), light[1::2].sum(axis=0)])
-    assert calm.std() < 0.8 * denoise(mean, mean, variance / passes).std()
-    assert calm.mean() == pytest.approx(mean.mean(), rel=5e-3)
+    accumulated = accumulate(light)
+    denoised = accumulated.without_noise([light[::2].sum(axis=0), light[1::2].sum(axis=0)])
+    assert denoised.std() < 0.8 * denoise(mean, mean, variance / passes).std()
+    assert denoised.mean() == pytest.approx(mean.mean(), rel=5e-3)
 
 
 def test_hair_is_distinguished_from_skin() -> None:
@@ -274,8 +274,8 @@ def test_tone_mapping_is_monotone_and_compresses_highlights() -> None:
     ramp = np.linspace(0.0, 4.0, 400)[None, :, None].repeat(3, axis=2)
     values = develop(ramp)[0, :, 0].astype(int)
     assert values[0] <= 1
-    assert (np.diff(values) >= -2).all()  # the dither is one step
-    assert values[100] < 240  # light of strength 1 is not yet white
+    assert (np.diff(values) >= -2).all()  # dithering changes values by one
+    assert values[100] < 240  # radiance 1 is below white
 
 
 def test_the_material_of_a_body_follows_its_name() -> None:
@@ -308,11 +308,11 @@ def test_a_sheet_has_a_tile_for_every_frame_and_shows_the_motion(tmp_path: Path)
     assert image.shape[0] > 2 * 48
     assert image.shape[1] > 2 * 64
     first, second, third = image[10:58, 10:74], image[10:58, 84:148], image[92:140, 10:74]
-    assert np.abs(first - third).mean() < 1.0  # the camera stands still
+    assert np.abs(first - third).mean() < 1.0  # the camera is fixed
     assert np.abs(first - second).mean() > 3.0
 
 
-# What a user can get wrong
+# Refusals
 
 
 @pytest.mark.parametrize(
@@ -333,10 +333,10 @@ def test_an_empty_picture_is_refused(tmp_path: Path) -> None:
 
 
 def test_an_unwritable_picture_leaves_no_file(tmp_path: Path) -> None:
-    (tmp_path / "place").write_text("in the way")
+    (tmp_path / "file").write_text("a file")
     with pytest.raises(UserError, match="cannot be written"):
-        still([], tuft(1), tmp_path / "place" / "still.png", width=8, height=8, samples=1)
-    assert [entry.name for entry in tmp_path.iterdir()] == ["place"]
+        still([], tuft(1), tmp_path / "file" / "still.png", width=8, height=8, samples=1)
+    assert [entry.name for entry in tmp_path.iterdir()] == ["file"]
 
 
 def test_non_finite_points_are_refused(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""Cloth in files: in the cache, in hairs and pictures, and what touches it; what cannot be used is refused."""
+"""Cloth in files: caches, hairs, heads and refusals."""
 
 import json
 
@@ -41,7 +41,7 @@ def quads(columns, rows):
 
 
 def write_wear(folder, change=lambda mesh: None):
-    """A sheet of quads over the ball, in metres, under a transform; the ball is in centimetres."""
+    """Writes a sheet of quads over the ball, in metres and with a transform; the ball is in centimetres."""
     stage = Usd.Stage.CreateNew(str(folder / "wear.usda"))
     UsdGeom.SetStageMetersPerUnit(stage, 1.0)
     UsdGeom.SetStageUpAxis(stage, "Y")
@@ -60,7 +60,7 @@ def write_wear(folder, change=lambda mesh: None):
 
 @pytest.fixture(scope="module")
 def example(tmp_path_factory):
-    """The small example with a sheet over its head, with its groom."""
+    """The small example with its groom and a sheet over its head."""
     folder = write_example(tmp_path_factory.mktemp("cloth"))
     write_wear(folder)
     shot = folder / "small.shot.toml"
@@ -85,8 +85,8 @@ def test_the_cache_animates_the_cloth_of_another_file_in_valid_usd(example):
     assert mesh.GetPointsAttr().GetTimeSamples() == [float(f) for f in range(1, FRAMES + 1)]
     world = np.array(UsdGeom.XformCache(2.0).GetLocalToWorldTransform(mesh.GetPrim()))
     assert np.allclose(world, np.eye(4))
-    heights = np.array(mesh.GetPointsAttr().Get(1.0))[:, 1]  # in centimetres, as the head's file has it
-    assert heights.min() > 14 and heights.max() < 14.5  # g t² below 16: it has fallen for one implicit step
+    heights = np.array(mesh.GetPointsAttr().Get(1.0))[:, 1]  # in centimetres, the unit of the head's file
+    assert heights.min() > 14 and heights.max() < 14.5  # one implicit step of free fall, g t², below 16
 
     cache = ringlet.read_cache(example / "cache.usdc")
     (cloth,) = cache.cloths
@@ -110,7 +110,7 @@ def test_cloth_is_referenced_by_hairs(example):
 
 
 def write_roofed(folder):
-    """Wide locks of the small example at rest, with the sheet as a roof just above them; the height of that [m]."""
+    """Writes wide locks of the small example at rest with a horizontal sheet above them; returns its height [m]."""
     write_wear(folder)
     recipe = folder / "small.recipe.toml"
     recipe.write_text(recipe.read_text() + 'radius = "6 mm"\n')
@@ -140,7 +140,7 @@ def test_hairs_at_rest_stay_below_visible_meshes_of_the_head(tmp_path):
     folder = write_example(tmp_path)
     recipe = folder / "small.recipe.toml"
     recipe.write_text(recipe.read_text() + 'radius = "6 mm"\n')
-    top = 100 * ringlet.build_groom(recipe).locks.points[:, 1].max()  # the head's file is in centimetres
+    top = 100 * ringlet.build_groom(recipe).locks.points[:, 1].max()  # in centimetres, the unit of the head's file
     at = np.linspace(-20, 20, 9)
     x, z = np.meshgrid(at, at)
     stage = Usd.Stage.Open(str(folder / "head.usda"))
@@ -152,8 +152,8 @@ def test_hairs_at_rest_stay_below_visible_meshes_of_the_head(tmp_path):
         stage.Save()
         ringlet.write_groom(ringlet.build_groom(recipe), folder / "groom.usda")
         ringlet.write_hairs(folder / "groom.usda", folder / "hair.usda")
-        reached = 100 * io.read_hairs(folder / "hair.usda").points[:, 1].max()
-        assert reached < top + 0.091 if name == "hood" else reached > top + 0.2
+        highest = 100 * io.read_hairs(folder / "hair.usda").points[:, 1].max()
+        assert highest < top + 0.091 if name == "hood" else highest > top + 0.2
         stage.RemovePrim(mesh.GetPath())
 
 
@@ -190,8 +190,8 @@ def lose_a_number(mesh):
     mesh.GetPointsAttr().Set(Vt.Vec3fArray.FromNumpy(points))
 
 
-def sink(mesh, way):
-    UsdGeom.Xformable(mesh).AddTranslateOp().Set(Gf.Vec3d(0, way, 0))
+def lower(mesh, height):
+    UsdGeom.Xformable(mesh).AddTranslateOp().Set(Gf.Vec3d(0, -height, 0))
 
 
 def paint(mesh):
@@ -206,8 +206,8 @@ def paint(mesh):
         (lambda mesh: mesh.GetPrim().SetTypeName("Xform"), SCARF, ["wear.usda", "no Mesh"]),
         (lose_area, SCARF, ["/wear/scarf", "triangle", "no area"]),
         (lose_a_number, SCARF, ["/wear/scarf", "point 3", "finite"]),
-        (lambda mesh: sink(mesh, -0.1), SCARF, ["'scarf'", "begins inside 'skin'"]),
-        (lambda mesh: sink(mesh, -0.075), SCARF, ["'scarf'", "begins through 'skin'"]),
+        (lambda mesh: lower(mesh, 0.1), SCARF, ["'scarf'", "begins inside 'skin'"]),
+        (lambda mesh: lower(mesh, 0.075), SCARF, ["'scarf'", "begins through 'skin'"]),
         (paint, SCARF + '[[cloth.pin]]\nmap = "pin"\n', ["'scarf'", "pin[0]", "no vertex"]),
         (lambda mesh: None, SCARF + '[[cloth.pin]]\nto = "skin"\nwithin = 0.01\n', ["pin[0].within", "0.01 m"]),
         (lambda mesh: None, SCARF + SCARF.replace("[contact]", ""), ["two cloths", "'scarf'"]),
@@ -222,12 +222,12 @@ def test_unusable_cloth_is_refused_and_leaves_no_file(example, tmp_path, change,
     assert not (tmp_path / "cache.usdc").exists()
 
 
-# What touches, to be looked at
+# Contacts
 
 
 @pytest.fixture(scope="module")
 def touched(example):
-    """The example's contacts, with a sheet that begins on the scalp's locks."""
+    """Contacts of the example with its sheet on the locks."""
     result = sim(example, "small.shot.toml", "--contacts", example / "contacts.usdc")
     assert result.exit_code == 0, result.output
     return example / "contacts.usdc"
@@ -246,7 +246,7 @@ def test_contacts_are_written_as_points_in_valid_usd(touched):
     assert touches.places.shape == colors.shape == (counts[3], 3)
     assert (touches.gap > 0).all() and (touches.gap < 1.001).all() and (touches.force >= 0).all()
     head = np.linalg.norm(touches.places - [0, 0, 0], axis=1)
-    assert (head < 0.2).all()  # metres, on and around the ball of 9 cm
+    assert (head < 0.2).all()  # in metres, near the ball of 9 cm
 
 
 def test_an_outlying_force_leaves_the_colours_of_the_others(touched):
@@ -257,20 +257,21 @@ def test_an_outlying_force_leaves_the_colours_of_the_others(touched):
     cache.touches = [touches for _ in cache.frames]
     ringlet.write_touches(cache, touched.with_name("cache.usdc"), touched.with_name("strong.usdc"))
     _, colors = io.read_touches(touched.with_name("strong.usdc"))
-    assert np.allclose(colors[0], colors[-1])  # both red, though one is a million times the other
-    assert colors[-1, 1] < 0.1 and colors[1, 1] > 0.5  # a decade below them: yellow
+    assert np.allclose(colors[0], colors[-1])  # both red, though their ratio is 1e6
+    assert colors[-1, 1] < 0.1 and colors[1, 1] > 0.5  # yellow, a decade below
+
+
+def test_the_colour_map_goes_from_blue_to_red():
+    colors = io.heat(np.array([0.0, 0.5, 1.0]))
+    assert colors[0, 2] > colors[0, 0] and colors[2, 0] > colors[2, 2]
 
 
 def test_contact_forces_support_the_weight_of_a_resting_sheet():
-    warm = io.heat(np.array([0.0, 0.5, 1.0]))
-    assert warm[0, 2] > warm[0, 0] and warm[2, 0] > warm[2, 2]  # blue, red
-    touches = simulated(garment(), text=LONG).touches
-    assert touches == []  # only when asked for
+    assert simulated(garment(), text=LONG).touches == []  # contacts are recorded on request
     made = groom()
     obstacle = Obstacle(floor(), still(floor()))
     cache = simulate(parse_shot(LONG), made, still(floor()), obstacles=[obstacle], garments=[garment()], touches=True)
     last = cache.touches[-1]
-    # In the end it lies still: contacts with the floor bear the weight of the sheet.
     on_floor = last.places[:, 1] < 1e-3
     weight = 9.81 * 0.15 * 0.08**2
     assert 0.3 * weight < last.force[on_floor].sum() < 3 * weight
@@ -293,8 +294,8 @@ def test_a_picture_of_contacts_makes_only_cloth_transparent(touched, tmp_path, m
     drawn = []
     monkeypatch.setattr(ringlet.picture, "still", lambda bodies, *rest, **options: drawn.extend(bodies))
     ringlet.write_touches_picture(touched, tmp_path / "a.png", frame=4)
-    seen_through = {body.mesh.name.split()[-1] for body in drawn if body.opacity < 1}
-    assert seen_through == {"/groom/cloths/wear/scarf"}
+    transparent = {body.mesh.name.split()[-1] for body in drawn if body.opacity < 1}
+    assert transparent == {"/groom/cloths/wear/scarf"}
     assert len(drawn) > 2
 
 

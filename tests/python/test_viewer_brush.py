@@ -1,4 +1,4 @@
-"""What brushes do to guides: roots stay, and each does what its name says."""
+"""Brushes on guides: fixed roots, and the effect of each tool."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ringlet import Curves
 
 @pytest.fixture
 def guides() -> Curves:
-    """Three upright guides of 10 cm, side by side along x."""
+    """Three vertical guides of 10 cm in a row along x."""
     up = np.linspace(0.0, 0.1, 11)
     return Curves.from_list([np.stack([np.full(11, x), up, np.zeros(11)], axis=1) for x in (-0.05, 0.0, 0.05)])
 
@@ -21,8 +21,8 @@ def ball(x: float = 0.0, y: float = 0.08, by: tuple[float, float, float] = (0.0,
 
 
 def test_grab_moves_points_inside_the_brush_only(guides: Curves):
-    here = ball()
-    after = grab(guides, here, held(guides, here))
+    brush = ball()
+    after = grab(guides, brush, held(guides, brush))
     assert after[1][8] == pytest.approx([0.0, 0.08, 0.01])
     assert np.array_equal(after[1][:6], guides[1][:6])
     assert np.array_equal(after[0], guides[0]) and np.array_equal(after[2], guides[2])
@@ -46,9 +46,9 @@ def test_smooth_reduces_bends_and_keeps_the_length(guides: Curves):
 
 def test_cut_ends_a_guide_at_the_brush(guides: Curves):
     after = TOOLS["cut"](guides, ball())
-    assert after.lengths()[1] == pytest.approx(0.06, abs=0.0015)  # the ball reaches from 6 to 10 cm
+    assert after.lengths()[1] == pytest.approx(0.06, abs=0.0015)  # the brush covers 6 to 10 cm
     assert after.lengths()[[0, 2]] == pytest.approx([0.1, 0.1])
-    assert TOOLS["cut"](guides, ball(y=0.0)).lengths()[1] == pytest.approx(0.005)  # something is always left
+    assert TOOLS["cut"](guides, ball(y=0.0)).lengths()[1] == pytest.approx(0.005)  # a minimum length remains
 
 
 def test_growth_depends_on_the_path_of_the_brush_only(guides: Curves):

@@ -1,4 +1,4 @@
-"""A recipe that is edited setting by setting says what was set, and keeps all else, comments included."""
+"""Editing a recipe setting by setting keeps the rest of its text, comments included."""
 
 from __future__ import annotations
 
@@ -71,15 +71,15 @@ def test_a_new_setting_is_inserted_before_the_comment_of_the_next_table(document
 
 def test_a_missing_table_is_created(document: Document):
     document.set([(["clean", "margin"], "3 mm"), (["hairs", "radius", "value"], "2 mm")])
-    said = tomllib.loads(document.text)
-    assert said["clean"] == {"margin": "3 mm"} and said["hairs"]["radius"]["value"] == "2 mm"
+    settings = tomllib.loads(document.text)
+    assert settings["clean"] == {"margin": "3 mm"} and settings["hairs"]["radius"]["value"] == "2 mm"
 
 
 def test_settings_in_lists_and_operators_are_set_and_removed(document: Document):
     document.set([(["guides", "zone", 0, "spread"], 30), (["shape", 1, "size"], 2.5), (["shape", 0, "size"], None)])
-    said = document.said()
-    assert said["guides"]["zone"][0]["spread"] == 30
-    assert said["shape"] == [{"op": "clump"}, {"op": "scraggle", "amount": 0.5, "size": 2.5}]
+    settings = document.said()
+    assert settings["guides"]["zone"][0]["spread"] == 30
+    assert settings["shape"] == [{"op": "clump"}, {"op": "scraggle", "amount": 0.5, "size": 2.5}]
 
 
 def test_operators_move_with_their_comments(document: Document):

@@ -1,4 +1,4 @@
-"""The messages in Python and in TypeScript are the same."""
+"""Messages in Python and TypeScript are the same."""
 
 from __future__ import annotations
 

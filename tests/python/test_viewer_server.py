@@ -1,4 +1,4 @@
-"""What the server lets in, what it answers, and what it never reads."""
+"""The review server: access, errors and files outside the project."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ def closed_with(client: TestClient, url: str = "/session", **headers: str) -> in
 
 def test_a_new_page_receives_document_locks_and_counts(folder: Path):
     with serving(folder) as client, page(client) as one:
-        welcome = one.hear("welcome")
-        assert one.heard[0]["kind"] == "welcome" and welcome["mode"] == "recipe"
-        document, locks = one.hear("document"), one.hear("locks")
+        welcome = one.receive("welcome")
+        assert one.received[0]["kind"] == "welcome" and welcome["mode"] == "recipe"
+        document, locks = one.receive("document"), one.receive("locks")
         assert document["said"]["curl"]["width"] == 1.0
         assert document["values"]["curl"]["width"]["value"] == pytest.approx(0.01)
         assert len(locks["ids"]) == 8 and locks["points"].shape == (8 * 40 * 3,)
-        assert one.hear("numbers", draft=False)["hairs"] == 24
+        assert one.receive("numbers", draft=False)["hairs"] == 24
 
 
 def test_a_wrong_token_and_a_foreign_origin_are_refused(folder: Path):
@@ -46,8 +46,8 @@ def test_a_wrong_token_and_a_foreign_origin_are_refused(folder: Path):
         url = "/session?token=secret"
         with client.websocket_connect(url, headers={**HOST, "origin": "http://localhost"}) as socket:
             one = Page(socket)
-            one.say(kind="hello", version=VERSION, client="one")
-            assert one.hear("welcome")
+            one.send(kind="hello", version=VERSION, client="one")
+            assert one.receive("welcome")
 
 
 def test_a_foreign_host_name_is_refused(folder: Path):
@@ -58,7 +58,7 @@ def test_a_foreign_host_name_is_refused(folder: Path):
 
 def test_a_connection_starts_with_hello(folder: Path):
     with serving(folder) as client, client.websocket_connect("/session", headers=HOST) as socket:
-        Page(socket).say(kind="undo")
+        Page(socket).send(kind="undo")
         with pytest.raises(WebSocketDisconnect) as end:
             socket.receive_bytes()
         assert end.value.code == WRONG
@@ -78,20 +78,20 @@ def test_a_connection_starts_with_hello(folder: Path):
 def test_malformed_messages_are_refused_and_the_session_continues(folder: Path, data: bytes):
     with serving(folder) as client, page(client) as one:
         one.socket.send_bytes(data)
-        assert one.hear("trouble")["message"].startswith("message:")
-        one.say(kind="set", changes=[[["curl", "width"], 1.5]], gesture=1)
-        assert one.hear("document", dirty=True)
+        assert one.receive("trouble")["message"].startswith("message:")
+        one.send(kind="set", changes=[[["curl", "width"], 1.5]], gesture=1)
+        assert one.receive("document", dirty=True)
 
 
 def test_invalid_edits_are_refused_in_one_line(folder: Path):
     with serving(folder) as client, page(client) as one:
         for changes in ([[["curl", "width"], -3]], [[["nothing", "here"], 1]], [[[], 1]], [[["shape", 4, "size"], 1]]):
-            one.say(kind="set", changes=changes, gesture=1)
-            message = one.hear("trouble")["message"]
+            one.send(kind="set", changes=changes, gesture=1)
+            message = one.receive("trouble")["message"]
             assert "\n" not in message and "mistake in Ringlet" not in message
-        one.say(kind="redo")
-        one.say(kind="set", changes=[[["curl", "width"], 1.5]], gesture=1)
-        assert one.hear("document", dirty=True)["said"]["curl"]["width"] == 1.5
+        one.send(kind="redo")
+        one.send(kind="set", changes=[[["curl", "width"], 1.5]], gesture=1)
+        assert one.receive("document", dirty=True)["said"]["curl"]["width"] == 1.5
 
 
 @pytest.mark.parametrize(
@@ -103,8 +103,8 @@ def test_files_outside_the_project_are_not_read(folder: Path, change: list[str],
     (folder.parent / "other.usda").write_text("#usda 1.0\n")
     (folder / "link.usda").symlink_to(folder.parent / "other.usda")
     with serving(folder) as client, page(client) as one:
-        one.say(kind="set", changes=[[change, outside]], gesture=1)
-        message = one.hear("trouble")["message"]
+        one.send(kind="set", changes=[[change, outside]], gesture=1)
+        message = one.receive("trouble")["message"]
         assert "outside of the project" in message or "not a setting" in message
 
 
@@ -112,8 +112,8 @@ def test_files_outside_the_project_are_not_read(folder: Path, change: list[str],
 def test_no_file_is_written_outside_the_project(folder: Path, name: str):
     before = sorted(folder.parent.rglob("*"))
     with serving(folder) as client, page(client) as one:
-        one.say(kind="save", name=name)
-        assert "save" in one.hear("trouble")["message"]
+        one.send(kind="save", name=name)
+        assert "save" in one.receive("trouble")["message"]
     assert sorted(folder.parent.rglob("*")) == before
 
 

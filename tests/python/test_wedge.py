@@ -1,4 +1,4 @@
-"""Wedges: every combination of settings is run once, whatever dies on the way, and compared with the others."""
+"""Wedges: every combination of settings runs once, survives killed workers and is compared."""
 
 from __future__ import annotations
 
@@ -108,7 +108,7 @@ def test_an_invalid_wedge_is_refused_before_a_task_runs(shot, tmp_path, monkeypa
 @pytest.mark.parametrize("here", [[], ["--here"]])
 def test_an_unwritable_folder_is_refused_before_workers_start(shot, tmp_path, monkeypatch, here):
     for work in ("run_on_workers", "run_task"):
-        monkeypatch.setattr(sys.modules["ringlet.farm.wedge"], work, lambda *_, **__: pytest.fail("work was begun"))
+        monkeypatch.setattr(sys.modules["ringlet.farm.wedge"], work, lambda *_, **__: pytest.fail("work has started"))
     (tmp_path / "file").write_text("precious")
     before = sorted(tmp_path.iterdir())
     options = ["--set", "strands.bend=1", *here, "-o", tmp_path / "file/out"]
@@ -118,7 +118,7 @@ def test_an_unwritable_folder_is_refused_before_workers_start(shot, tmp_path, mo
 
 def test_local_workers_use_a_free_port_of_localhost(recwarn):
     with socket.socket() as taken:
-        with suppress(OSError):  # it may be taken already
+        with suppress(OSError):  # it may be in use already
             taken.bind(("127.0.0.1", 8787))
             taken.listen()
         with _client(None, 1, 0) as client:
@@ -134,11 +134,11 @@ def test_missing_dask_is_refused_with_remedies(shot, tmp_path, monkeypatch):
 
 def test_the_page_compares_tasks_and_finished_tasks_are_kept(shot, tmp_path):
     choices = ["--set", "strands.bend=1,8", "--here", "-o", tmp_path / "out"]
-    told = json.loads(run("wedge", shot, *choices, "--json").stdout)
-    assert [task["state"] for task in told["tasks"]] == ["done", "done"]
-    page = Path(told["page"]).read_text()
+    output = json.loads(run("wedge", shot, *choices, "--json").stdout)
+    assert [task["state"] for task in output["tasks"]] == ["done", "done"]
+    page = Path(output["page"]).read_text()
     assert page.count("data:image/jpeg;base64,") == 2 and "strands.bend_scale = 8" in page
-    assert not re.search(r"(src|href)=.(?!data:|#)", page)  # it stands on its own
+    assert not re.search(r"(src|href)=.(?!data:|#)", page)  # self-contained
     compared = json.loads((tmp_path / "out/wedge.json").read_text())["tasks"]
     assert compared[0]["away"] == 0.0 < compared[1]["away"]
     caches = {path: path.stat().st_mtime_ns for path in (tmp_path / "out").glob("*/cache.usdc")}
@@ -149,7 +149,7 @@ def test_the_page_compares_tasks_and_finished_tasks_are_kept(shot, tmp_path):
     assert again.exit_code == 0 and log_of(tmp_path / "out/strands.bend_scale=2").count("is done already") == 1
     shot.write_text(shot.read_text() + "friction = 0.9\n")
     assert run("wedge", shot, "--set", "strands.bend=2", "--no-picture", *choices[2:]).exit_code == 0
-    assert log_of(tmp_path / "out/strands.bend_scale=2").count("simulates frames") == 2  # it is another shot now
+    assert log_of(tmp_path / "out/strands.bend_scale=2").count("simulates frames") == 2  # the shot has changed
 
 
 def test_a_refused_task_does_not_stop_the_others(shot, tmp_path):
@@ -194,7 +194,7 @@ def test_a_task_of_a_concurrent_run_is_refused_and_its_folder_unchanged(shot, tm
 
 
 def kill_worker(part: Path, log: Path, killed: list[int]) -> None:
-    """Kills the process that runs a task as soon as it has remembered a few frames."""
+    """Kills the process of a task once it has saved some frames."""
     end = time.monotonic() + 120
     while time.monotonic() < end and not killed:
         if any(int(path.suffix[1:]) >= 20 for path in part.glob("memory.*")):
@@ -231,7 +231,7 @@ def test_an_existing_scheduler_is_used_and_left_running(shot, tmp_path):
     ) as cluster:
         address = cluster.scheduler_address
         for value in (1, 2):
-            told = run(
+            result = run(
                 "wedge",
                 shot,
                 "--set",
@@ -242,11 +242,12 @@ def test_an_existing_scheduler_is_used_and_left_running(shot, tmp_path):
                 "-o",
                 tmp_path / "out",
             )
-            assert told.exit_code == 0, told.output
+            assert result.exit_code == 0, result.output
+    assert [result.state for result in read_results(tmp_path / "out").values()] == ["done", "done"]
 
 
 def test_a_failing_task_is_abandoned_and_reported(shot, tmp_path):
-    (tmp_path / "out/strands.bend_scale=2/log.txt").mkdir(parents=True)  # nobody can write there
+    (tmp_path / "out/strands.bend_scale=2/log.txt").mkdir(parents=True)  # prevents the log file
     result = run("wedge", shot, "--set", "strands.bend=1,2", "--no-picture", "--retries", 1, "-o", tmp_path / "out")
     assert result.exit_code == 1
     found = {result.settings["strands.bend_scale"]: result.state for result in read_results(tmp_path / "out").values()}

@@ -1,4 +1,4 @@
-"""Small USD files for the tests of reading and writing."""
+"""Small USD files for tests of reading and writing."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def new_stage(path: Path, *, unit: float | None = 0.01, axis: str = "Y") -> Usd.
 def add_cube(
     stage: Usd.Stage, path: str = "/head/skin", *, points: np.ndarray = CUBE, scalp: bool = True
 ) -> UsdGeom.Mesh:
-    """A cube of quads whose last face, z = 1, is the scalp."""
+    """A cube of quads; its last face, z = 1, is the scalp."""
     mesh = UsdGeom.Mesh.Define(stage, path)
     mesh.CreatePointsAttr(Vt.Vec3fArray.FromNumpy(points.astype(np.float32)))
     mesh.CreateExtentAttr(UsdGeom.PointBased.ComputeExtent(mesh.GetPointsAttr().Get()))
