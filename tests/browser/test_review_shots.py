@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 from conftest import Review, different
-from test_shot_cloth_files import SCARF, write_roofed, write_wear
+from wear import SCARF, write_roofed, write_wear
 
 import ringlet
 from ringlet import build_hairs

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from commands import refused, run
 from pxr import Gf, Sdf, Usd, UsdGeom, Vt
 from small_example import write_example
-from test_cli import refused, run
 
 import ringlet
 from ringlet import Curves

@@ -13,8 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from ringlet.io import HairWriter, read_curves, read_space, write_cache, write_groom
-from test_io_groom import hairs_of
-from usd_scenes import make_groom, write_head
+from usd_scenes import hairs_of, make_groom, write_head
 
 from ringlet import Cache
 

@@ -9,32 +9,12 @@ import sys
 from pathlib import Path
 
 import pytest
-from ringlet.cli.app import app
+from commands import refused, run
 from ringlet.cli.progress import shown_progress
-from typer.testing import CliRunner
 
 import ringlet
 
 COMMANDS = ["demo", "groom", "edit", "check", "loft", "sim", "wedge", "hair", "picture", "validate", "bench", "schema"]
-
-
-def run(*arguments: object):
-    """Runs a command line; returns its output and exit code."""
-    return CliRunner().invoke(app, [str(argument) for argument in arguments])
-
-
-def refused(result, *words: str) -> str:
-    """Asserts that the input was refused in one line without a traceback; returns the line."""
-    assert result.exit_code == 2, result.output
-    assert result.stdout == ""
-    lines = result.stderr.strip().splitlines()
-    message = lines[-1]
-    assert message.startswith("error: ")
-    assert sum(line.startswith("error: ") for line in lines) == 1
-    assert "Traceback" not in result.output
-    for word in words:
-        assert word in message
-    return message
 
 
 @pytest.mark.parametrize("command", COMMANDS)

@@ -11,7 +11,7 @@ from functools import partial
 from itertools import pairwise
 
 import pytest
-from test_cli import run
+from commands import run
 
 import ringlet
 

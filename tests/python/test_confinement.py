@@ -6,10 +6,10 @@ import os
 from pathlib import Path
 
 import pytest
+from commands import refused, run
 from pxr import Sdf
 from ringlet.files import replacing
 from small_example import write_example
-from test_cli import refused, run
 
 import ringlet
 

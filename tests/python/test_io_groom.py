@@ -22,9 +22,9 @@ from ringlet.io import (
     write_cache,
     write_groom,
 )
-from usd_scenes import make_groom, write_head
+from usd_scenes import hairs_of, make_groom, write_head
 
-from ringlet import Cache, Curves, UserError, build_groom
+from ringlet import Cache, UserError, build_groom
 
 
 @pytest.fixture(params=[(0.01, "Y"), (1.0, "Z")], ids=["cm-Y", "m-Z"])
@@ -39,15 +39,6 @@ def folder(tmp_path, request):
     cache = Cache(np.array([1.0, 2.0, 3.0]), moved, [{"newton": k, "energy": np.float32(0.5)} for k in range(3)])
     write_cache(cache, tmp_path / "out/groom.usdc", tmp_path / "out/cache.usdc", read_space(head))
     return tmp_path
-
-
-def hairs_of(groom):
-    """Two hairs for every lock."""
-    lock = np.repeat(np.arange(len(groom.locks), dtype=np.int32), 2)
-    hairs = groom.locks.take(lock)
-    hairs.points = (hairs.points + np.repeat([0.0, 0.001] * len(groom.locks), 7)[:, None]).astype(np.float32)
-    curve = {name: hairs.curve[name] for name in ("root_triangle", "root_barycentric")} | {"lock": lock}
-    return Curves(hairs.points, hairs.offsets, np.arange(len(hairs)), curve, {"width": hairs.point["width"]})
 
 
 def test_a_groom_round_trips(folder):

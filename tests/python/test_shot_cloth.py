@@ -4,24 +4,13 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from cloth_scene import LONG, WEIGHTLESS, garment, sheet, simulated
+from floor_scene import CONTACT, SHOT, ball, floor, groom, still
 from ringlet.errors import UserError
 from ringlet.mesh import Clip, Mesh
-from ringlet.shot import Garment, Obstacle, ShotCloth, parse_shot, simulate
+from ringlet.shot import Obstacle, parse_shot, simulate
 from ringlet.shot.piercing import edges_of, piercings
 from shapes import rotation
-from test_shot_contact import CONTACT, SHOT, ball, floor, groom, still
-
-
-def sheet(cells=8, size=0.08, height=0.02, name="sheet"):
-    """A horizontal square sheet over the floor; its subset ``front`` has the triangles at z < 0."""
-    at = np.linspace(-size / 2, size / 2, cells + 1)
-    x, z = np.meshgrid(at, at, indexing="ij")
-    points = np.stack([x, np.full_like(x, height), z], axis=-1).reshape(-1, 3)
-    a = (np.arange(cells)[:, None] * (cells + 1) + np.arange(cells)).ravel()
-    corner = np.stack([a, a + 1, a + cells + 2, a, a + cells + 2, a + cells + 1], axis=1).reshape(-1, 3)
-    front = np.flatnonzero(points[corner, 2].mean(axis=1) < 0)
-    stiff = np.clip(points[:, 0] / size + 0.5, 0, 1)[corner]
-    return Mesh(name, points, corner.astype(np.int32), regions={"front": front}, maps={"stiff": stiff})
 
 
 def tube(radius=0.012, height=0.01, sides=24, rows=4, centre=(0.0, 0.0, 0.0)):
@@ -36,25 +25,10 @@ def tube(radius=0.012, height=0.01, sides=24, rows=4, centre=(0.0, 0.0, 0.0)):
     return Mesh("band", np.array(points) + centre, np.array(triangles, np.int32))
 
 
-def garment(mesh=None, clip=None, **settings):
-    mesh = mesh or sheet()
-    return Garment(mesh, clip or still(mesh), ShotCloth(name=mesh.name, file="cloth.usda", **settings))
-
-
-def simulated(*garments, text=SHOT + CONTACT, obstacles=None, made=None):
-    made = made or groom()
-    obstacles = [Obstacle(floor(), still(floor()))] if obstacles is None else obstacles
-    return simulate(parse_shot(text), made, still(made.scalp), obstacles=obstacles, garments=garments)
-
-
 def moving(mesh, move):
     """A clip of frames 1 to 12."""
     frames = np.arange(1.0, 13.0)
     return Clip(frames, np.array([move(mesh.points, f - 1) for f in frames]), 24.0)
-
-
-LONG = SHOT.replace("12]", "30]") + CONTACT
-WEIGHTLESS = SHOT + "[forces]\ngravity = [0, 0, 0]\n" + CONTACT
 
 
 def test_cloth_falls_onto_locks_and_the_floor_without_intersections():

@@ -4,81 +4,21 @@ import json
 
 import numpy as np
 import pytest
+from commands import refused, run
 from pxr import Gf, Sdf, Usd, UsdGeom, Vt
-from ringlet.shot import Obstacle, parse_shot, simulate
-from ringlet.shot.cache import Cache, CachedCloth, Touches
 from small_example import FRAMES, RADIUS, write_example
-from test_cli import refused, run
-from test_shot_cloth import LONG, garment, simulated
-from test_shot_contact import floor, groom, still
+from wear import SCARF, define, quads, sim, write_roofed, write_wear
 
 import ringlet
 from ringlet import io
 
-SCARF = """
-[contact]
-[[cloth]]
-file = "wear.usda"
-mesh = "/wear/scarf"
-[cloth.material]
-thickness = 2e-3
-"""
 
-
-def define(stage, path, points, faces):
-    mesh = UsdGeom.Mesh.Define(stage, path)
-    mesh.CreatePointsAttr(Vt.Vec3fArray.FromNumpy(np.asarray(points, np.float32)))
-    mesh.CreateExtentAttr(UsdGeom.PointBased.ComputeExtent(mesh.GetPointsAttr().Get()))
-    mesh.CreateFaceVertexCountsAttr([len(face) for face in faces])
-    mesh.CreateFaceVertexIndicesAttr([corner for face in faces for corner in face])
-    mesh.CreateSubdivisionSchemeAttr("none")
-    return mesh
-
-
-def quads(columns, rows):
-    return [[k + columns * j for k, j in ((i, r), (i + 1, r), (i + 1, r + 1), (i, r + 1))]
-            for r in range(rows - 1) for i in range(columns - 1)]  # fmt: skip
-
-
-def write_wear(folder, change=lambda mesh: None):
-    """Writes a sheet of quads over the ball, in metres and with a transform; the ball is in centimetres."""
-    stage = Usd.Stage.CreateNew(str(folder / "wear.usda"))
-    UsdGeom.SetStageMetersPerUnit(stage, 1.0)
-    UsdGeom.SetStageUpAxis(stage, "Y")
-    stage.SetTimeCodesPerSecond(24)
-    top = UsdGeom.Xform.Define(stage, "/wear")
-    stage.SetDefaultPrim(top.GetPrim())
-    top.AddTranslateOp().Set(Gf.Vec3d(0, 0.16, 0))
-    at = np.linspace(-0.04, 0.04, 9)
-    x, z = np.meshgrid(at, at)
-    points = np.stack([x, 0 * x, z], axis=-1).reshape(-1, 3)
-    mesh = define(stage, "/wear/scarf", points, quads(9, 9))
-    mesh.CreateNormalsAttr(Vt.Vec3fArray.FromNumpy(np.tile(np.float32([0, 1, 0]), (81, 1))))
-    change(mesh)
-    stage.Save()
-
-
-@pytest.fixture(scope="module")
-def example(tmp_path_factory):
-    """The small example with its groom and a sheet over its head."""
-    folder = write_example(tmp_path_factory.mktemp("cloth"))
-    write_wear(folder)
-    shot = folder / "small.shot.toml"
-    shot.write_text(shot.read_text() + SCARF)
-    assert run("groom", folder / "small.recipe.toml", "-o", folder / "groom.usdc").exit_code == 0
-    return folder
-
-
-def sim(folder, shot="small.shot.toml", *more):
-    return run("sim", folder / shot, "--groom", folder / "groom.usdc", "-o", folder / "cache.usdc", *more)
-
-
-def test_the_cache_animates_the_cloth_of_another_file_in_valid_usd(example):
-    result = sim(example, "small.shot.toml", "--json", "--report", example / "report")
+def test_the_cache_animates_the_cloth_of_another_file_in_valid_usd(cloth_example):
+    result = sim(cloth_example, "small.shot.toml", "--json", "--report", cloth_example / "report")
     assert result.exit_code == 0, result.output
     assert json.loads(result.stdout)["cloths"] == 1
-    assert io.problems(example / "cache.usdc") == []
-    stage = Usd.Stage.Open(str(example / "cache.usdc"))
+    assert io.problems(cloth_example / "cache.usdc") == []
+    stage = Usd.Stage.Open(str(cloth_example / "cache.usdc"))
     mesh = UsdGeom.Mesh(stage.GetPrimAtPath("/groom/cloths/wear/scarf"))
     assert len(mesh.GetFaceVertexCountsAttr().Get()) == 64
     assert mesh.GetNormalsAttr().Get(2.0) is None
@@ -88,44 +28,25 @@ def test_the_cache_animates_the_cloth_of_another_file_in_valid_usd(example):
     heights = np.array(mesh.GetPointsAttr().Get(1.0))[:, 1]  # in centimetres, the unit of the head's file
     assert heights.min() > 14 and heights.max() < 14.5  # one implicit step of free fall, g t², below 16
 
-    cache = ringlet.read_cache(example / "cache.usdc")
+    cache = ringlet.read_cache(cloth_example / "cache.usdc")
     (cloth,) = cache.cloths
     assert (cloth.name, cloth.prim) == ("scarf", "/wear/scarf")
-    assert cloth.file.resolve() == (example / "wear.usda").resolve()
+    assert cloth.file.resolve() == (cloth_example / "wear.usda").resolve()
     assert cloth.points.shape == (FRAMES, 81, 3)
     assert np.allclose(cloth.points[0, :, 1] * 100, heights, atol=1e-3)
-    html = (example / "report/report.html").read_text()
+    html = (cloth_example / "report/report.html").read_text()
     assert "Cloth" in html and "scarf" in html
 
 
-def test_cloth_is_referenced_by_hairs(example):
-    assert sim(example).exit_code == 0
-    groom, hair = example / "groom.usdc", example / "hair.usdc"
-    ringlet.write_hairs(groom, hair, cache=example / "cache.usdc", frames=(2, 4))
+def test_cloth_is_referenced_by_hairs(cloth_example):
+    assert sim(cloth_example).exit_code == 0
+    groom, hair = cloth_example / "groom.usdc", cloth_example / "hair.usdc"
+    ringlet.write_hairs(groom, hair, cache=cloth_example / "cache.usdc", frames=(2, 4))
     bodies, _, _ = io.read_stage(hair, 4)
     (scarf,) = [body for body in bodies if body.mesh.name.endswith("scarf")]
-    kept = ringlet.read_cache(example / "cache.usdc").cloths[0]
+    kept = ringlet.read_cache(cloth_example / "cache.usdc").cloths[0]
     assert np.abs(scarf.clip.at(4) - kept.points[-1]).max() < 1e-6
     assert io.problems(hair) == []
-
-
-def write_roofed(folder):
-    """Writes wide locks of the small example at rest with a horizontal sheet above them; returns its height [m]."""
-    write_wear(folder)
-    recipe = folder / "small.recipe.toml"
-    recipe.write_text(recipe.read_text() + 'radius = "6 mm"\n')
-    groom = ringlet.build_groom(recipe)
-    ringlet.write_groom(groom, folder / "groom.usdc")
-    locks = groom.locks.points
-    at = np.linspace(-0.2, 0.2, 9)
-    x, z = np.meshgrid(at, at)
-    top = float(locks[:, 1].max()) + 1e-3
-    roof = np.stack([x, 0 * x + top, z], axis=-1).reshape(1, -1, 3).astype(np.float32)
-    cloth = CachedCloth("scarf", folder / "wear.usda", "/wear/scarf", roof)
-    cache = Cache(np.array([1.0]), locks[None].astype(np.float32), cloths=[cloth])
-    ringlet.write_cache(cache, folder / "groom.usdc", folder / "cache.usdc")
-    ringlet.write_hairs(folder / "groom.usdc", folder / "hair.usdc", cache=folder / "cache.usdc")
-    return top
 
 
 def test_hairs_stay_below_a_cloth_that_their_locks_are_below(tmp_path):
@@ -157,7 +78,7 @@ def test_hairs_at_rest_stay_below_visible_meshes_of_the_head(tmp_path):
         stage.RemovePrim(mesh.GetPath())
 
 
-def test_cloth_of_the_head_file_is_no_collider_and_is_animated_there(example, tmp_path):
+def test_cloth_of_the_head_file_is_no_collider_and_is_animated_there(cloth_example, tmp_path):
     folder = write_example(tmp_path)
     stage = Usd.Stage.Open(str(folder / "head.usda"))
     at = np.linspace(-4, 4, 9)
@@ -213,109 +134,12 @@ def paint(mesh):
         (lambda mesh: None, SCARF + SCARF.replace("[contact]", ""), ["two cloths", "'scarf'"]),
     ],
 )
-def test_unusable_cloth_is_refused_and_leaves_no_file(example, tmp_path, change, text, words):
+def test_unusable_cloth_is_refused_and_leaves_no_file(cloth_example, tmp_path, change, text, words):
     folder = write_example(tmp_path)
     write_wear(folder, change)
     (folder / "small.shot.toml").write_text((folder / "small.shot.toml").read_text() + text)
-    result = run("sim", folder / "small.shot.toml", "--groom", example / "groom.usdc", "-o", tmp_path / "cache.usdc")
+    result = run(
+        "sim", folder / "small.shot.toml", "--groom", cloth_example / "groom.usdc", "-o", tmp_path / "cache.usdc"
+    )
     refused(result, *words)
     assert not (tmp_path / "cache.usdc").exists()
-
-
-# Contacts
-
-
-@pytest.fixture(scope="module")
-def touched(example):
-    """Contacts of the example with its sheet on the locks."""
-    result = sim(example, "small.shot.toml", "--contacts", example / "contacts.usdc")
-    assert result.exit_code == 0, result.output
-    return example / "contacts.usdc"
-
-
-def test_contacts_are_written_as_points_in_valid_usd(touched):
-    assert io.problems(touched) == []
-    stage = Usd.Stage.Open(str(touched))
-    points = UsdGeom.Points(stage.GetPrimAtPath("/groom/touches"))
-    assert points.GetPointsAttr().GetTimeSamples() == [float(f) for f in range(1, FRAMES + 1)]
-    counts = [frame["contact"]["contacts"] for frame in ringlet.read_cache(touched).statistics]
-    assert max(counts) > 0
-    for frame, count in enumerate(counts, 1):
-        assert len(points.GetPointsAttr().Get(float(frame))) == count
-    touches, colors = io.read_touches(touched, 4)
-    assert touches.places.shape == colors.shape == (counts[3], 3)
-    assert (touches.gap > 0).all() and (touches.gap < 1.001).all() and (touches.force >= 0).all()
-    head = np.linalg.norm(touches.places - [0, 0, 0], axis=1)
-    assert (head < 0.2).all()  # in metres, near the ball of 9 cm
-
-
-def test_an_outlying_force_leaves_the_colours_of_the_others(touched):
-    cache = ringlet.read_cache(touched)
-    force = np.full(200, 1e-3, np.float32)
-    force[:100], force[0] = 1e-4, 1e3
-    touches = Touches(np.zeros((200, 3), np.float32), force, np.ones(200, np.float32))
-    cache.touches = [touches for _ in cache.frames]
-    ringlet.write_touches(cache, touched.with_name("cache.usdc"), touched.with_name("strong.usdc"))
-    _, colors = io.read_touches(touched.with_name("strong.usdc"))
-    assert np.allclose(colors[0], colors[-1])  # both red, though their ratio is 1e6
-    assert colors[-1, 1] < 0.1 and colors[1, 1] > 0.5  # yellow, a decade below
-
-
-def test_the_colour_map_goes_from_blue_to_red():
-    colors = io.heat(np.array([0.0, 0.5, 1.0]))
-    assert colors[0, 2] > colors[0, 0] and colors[2, 0] > colors[2, 2]
-
-
-def test_contact_forces_support_the_weight_of_a_resting_sheet():
-    assert simulated(garment(), text=LONG).touches == []  # contacts are recorded on request
-    made = groom()
-    obstacle = Obstacle(floor(), still(floor()))
-    cache = simulate(parse_shot(LONG), made, still(floor()), obstacles=[obstacle], garments=[garment()], touches=True)
-    last = cache.touches[-1]
-    on_floor = last.places[:, 1] < 1e-3
-    weight = 9.81 * 0.15 * 0.08**2
-    assert 0.3 * weight < last.force[on_floor].sum() < 3 * weight
-
-
-def test_a_picture_shows_contacts_and_initial_overlaps(touched, tmp_path):
-    pictures = {}
-    for what in ("force", "gap", "start"):
-        path = tmp_path / f"{what}.png"
-        small = ("--samples", 2, "--width", 180, "--height", 200)
-        result = run("picture", touched, "--contacts", what, "--frame", 4, "-o", path, *small)
-        assert result.exit_code == 0, result.output
-        pictures[what] = path.read_bytes()
-    assert len(set(pictures.values())) == 3
-    refused(run("picture", touched, "--contacts", "forse", "-o", tmp_path / "a.png"), "forse", "did you mean 'force'?")
-    refused(run("picture", touched, "--contacts", "gap", "--frame", 40, "-o", tmp_path / "a.png"), "frame 40", "1 to 4")
-
-
-def test_a_picture_of_contacts_makes_only_cloth_transparent(touched, tmp_path, monkeypatch):
-    drawn = []
-    monkeypatch.setattr(ringlet.picture, "still", lambda bodies, *rest, **options: drawn.extend(bodies))
-    ringlet.write_touches_picture(touched, tmp_path / "a.png", frame=4)
-    transparent = {body.mesh.name.split()[-1] for body in drawn if body.opacity < 1}
-    assert transparent == {"/groom/cloths/wear/scarf"}
-    assert len(drawn) > 2
-
-
-def test_a_stage_without_contacts_is_refused(example, tmp_path):
-    assert sim(example).exit_code == 0
-    refused(
-        run("picture", example / "cache.usdc", "--contacts", "gap", "-o", tmp_path / "a.png"),
-        "no contacts",
-        "--contacts",
-    )
-
-
-def test_beads_are_round_and_face_outwards():
-    from ringlet.picture import beads
-
-    made = beads(np.array([[0.0, 0, 0], [1, 2, 3]]), np.array([[1.0, 0, 0], [0, 1, 0]]), 0.1)
-    assert len(made.mesh.triangles) == 40
-    assert np.allclose(np.linalg.norm(made.points[12:] - [1, 2, 3], axis=1), 0.1)
-    corners = made.points[made.mesh.triangles]
-    centres = np.repeat([[0.0, 0, 0], [1, 2, 3]], 20, axis=0)
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    assert (np.einsum("ni,ni->n", normals, corners.mean(axis=1) - centres) > 0).all()
-    assert np.allclose(made.mesh.colors[12:], [0, 1, 0])

@@ -18,6 +18,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from commands import refused, run
 from distributed import LocalCluster
 from ringlet.farm.cluster import _client
 from ringlet.farm.grid import choose, folder_name, make_tasks
@@ -25,7 +26,6 @@ from ringlet.farm.openjd import template
 from ringlet.farm.page import distances, read_results
 from ringlet.farm.task import Result, Wanted, run_task, write_result
 from small_example import write_example
-from test_cli import refused, run
 
 import ringlet
 

@@ -81,3 +81,12 @@ def make_groom(head: Path | None, scalp: Mesh | None = None) -> Groom:
     return Groom(
         guides, locks, mesh, head, "/head/skin" if head else None, "scalp", space, {"per_lock": 4}, "recipe = 'ñ'\n"
     )
+
+
+def hairs_of(groom):
+    """Two hairs for every lock."""
+    lock = np.repeat(np.arange(len(groom.locks), dtype=np.int32), 2)
+    hairs = groom.locks.take(lock)
+    hairs.points = (hairs.points + np.repeat([0.0, 0.001] * len(groom.locks), 7)[:, None]).astype(np.float32)
+    curve = {name: hairs.curve[name] for name in ("root_triangle", "root_barycentric")} | {"lock": lock}
+    return Curves(hairs.points, hairs.offsets, np.arange(len(hairs)), curve, {"width": hairs.point["width"]})
