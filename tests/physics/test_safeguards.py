@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from coils import helix, jittered, rotation
-from releases import CLOSE, HELD, flattened, straightened
+from releases import CLOSE, PRESCRIBED, flattened, straightened
 from ringlet.curves import Curves
 from ringlet.shot import Material, Solver, Strands
 
@@ -17,7 +17,7 @@ def history(*, without=()):
 
 def released(rest, start, solver, *, steps, variation=None, **material):
     """Final distance from rest [m] and largest energy increase in a step, relative to the initial energy."""
-    strand = Strands(Curves.from_list([rest]), Material(**material), HELD, variation or {})
+    strand = Strands(Curves.from_list([rest]), Material(**material), PRESCRIBED, variation or {})
     strand.place(start)
     first = before = strand.energy(start, continuation="history")[0]
     gain = 0.0

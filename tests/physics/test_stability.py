@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from coils import helix, rotation
-from releases import CLOSE, HELD, release, scenes
+from releases import CLOSE, PRESCRIBED, release, scenes
 from ringlet.curves import Curves
 from ringlet.shot import Material, Solver, Strands
 
@@ -71,7 +71,7 @@ def teleported(time):
 @pytest.mark.parametrize("newton", [1, 5])
 def test_a_coil_returns_to_rest_after_violent_root_motion(motion, per_turn, newton):
     rest = Curves.from_list([helix(per_turn=per_turn, hand=hand) + [0.1, 0, 0.1 * k] for k, hand in enumerate((1, -1))])
-    strands = Strands(rest, Material(), HELD)
+    strands = Strands(rest, Material(), PRESCRIBED)
     reach = rest.lengths().max()
     for step in range(1, 25):
         turn, shift = motion(step / 24)

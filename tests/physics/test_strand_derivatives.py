@@ -19,7 +19,7 @@ def strands_of(points, **material):
 def test_gradient_agrees_with_finite_differences(continuation, hand, per_turn):
     rest = helix(24, per_turn=per_turn, hand=hand)
     strand = strands_of(rest, stretch_scale=1.0)
-    x = jittered(rest, 2e-4, seed=per_turn, held=3)
+    x = jittered(rest, 2e-4, seed=per_turn, prescribed=3)
     _, gradient, _ = strand.energy(x, continuation=continuation)
     h, expected = 1e-8, np.zeros_like(x)
     for i in range(3, len(x)):

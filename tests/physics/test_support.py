@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from coils import helix, rotation
-from hairstyles import FPS, HEAD, grown
+from hairstyles import FPS, HEAD, make_style
 from locks import GRAVITY, sag, scene
 from ringlet.curves import Curves
 from ringlet.groom.groom import Groom
@@ -176,11 +176,11 @@ def test_support_forces_are_refused_after_the_first_step():
 
 def test_sixty_locks_in_contact_stay_as_groomed():
     """Long hair for two seconds: no vertex drifts by more than the radius of a hair."""
-    style = grown("down", 60, HEAD, "scalp")
+    style = make_style("down", 60, HEAD, "scalp")
     shot, head = style.shot("equilibrium"), style.head(np.zeros(1), FPS)
     made = equilibrium(shot, style.groom, obstacles=[head])
     assert np.linalg.norm(made.borne, axis=1).max() > 1e-6  # some locks are supported
-    *_, last = style.still(shot, keep(made, shot), 2.0)
+    *_, last = style.at_rest(shot, keep(made, shot), 2.0)
     assert sag(last, style.groom.locks.points) < shot.strands.radius
 
 

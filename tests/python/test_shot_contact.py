@@ -201,7 +201,7 @@ def test_a_collider_is_read_from_another_file(example, tmp_path):
     shot = with_box(example, tmp_path, lambda mesh: mesh.GetPointsAttr().Set(Vt.Vec3fArray.FromNumpy(around)))
     result = run("sim", shot, "--groom", example / "groom.usdc", "-o", tmp_path / "cache.usdc", "--json")
     (found,) = json.loads(result.stdout)["start"]["inside"]
-    assert found["mesh"] == "box" and locks.ids[0] in [worst["lock"] for worst in found["worst"]]
+    assert found["mesh"] == "props.usda /props/box" and locks.ids[0] in [worst["lock"] for worst in found["worst"]]
 
 
 def lose_points(mesh):

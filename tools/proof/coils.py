@@ -10,10 +10,10 @@ def helix(vertices=100, *, radius=5e-3, pitch=5e-3, per_turn=12, hand=1):
     return np.c_[radius * np.cos(turn), -pitch * turn / (2 * np.pi), hand * radius * np.sin(turn)]
 
 
-def jittered(points, amount, seed=0, held=4):
+def jittered(points, amount, seed=0, prescribed=4):
     """Points with Gaussian noise of root mean square ``amount`` [m] on the free vertices."""
     noise = np.random.default_rng(seed).normal(size=points.shape) * amount / np.sqrt(3)
-    noise[:held] = 0
+    noise[:prescribed] = 0
     return points + noise
 
 
@@ -28,8 +28,8 @@ def coiled(knots, radius, pitch, per_turn=10):
     """A helix around the cubic spline through ``knots`` [m], shape (n, 3)."""
     spline = CubicSpline(np.arange(len(knots)), knots)
     fine = np.linspace(0, len(knots) - 1, 4000)
-    way = np.r_[0, np.cumsum(np.linalg.norm(np.diff(spline(fine), axis=0), axis=1))]
-    at = np.interp(np.arange(0, way[-1], pitch / per_turn), way, fine)
+    arc = np.r_[0, np.cumsum(np.linalg.norm(np.diff(spline(fine), axis=0), axis=1))]
+    at = np.interp(np.arange(0, arc[-1], pitch / per_turn), arc, fine)
     along = spline(at, 1) / np.linalg.norm(spline(at, 1), axis=1)[:, None]
     out = np.cross(along, [0.0, 0.0, 1.0])
     out /= np.linalg.norm(out, axis=1)[:, None]

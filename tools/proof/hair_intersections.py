@@ -33,6 +33,8 @@ def run(shot: str = "hat", frame: int = 20, repeats: int = 9) -> dict[str, Any]:
     file = EXAMPLE / f"{shot}.shot.toml"
     if not file.is_file():
         raise ringlet.UserError(f"hair intersections: shot is {shot}; must be hat, tie, ribbon, scarf or nod")
+    if repeats < 2:
+        raise ringlet.UserError(f"hair intersections: repeats is {repeats}; must be at least 2")
     settings = ringlet.read_shot(file)
     groom = ringlet.load_groom(settings.groom)
     first = settings.frames[0]
@@ -83,7 +85,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("shot", help="hat, tie, ribbon, scarf or nod")
     parser.add_argument("frame", type=int, help="after the first of the shot")
-    parser.add_argument("--repeats", type=int, default=9, help="number of timed repetitions")
+    parser.add_argument("--repeats", type=int, default=9, help="number of repetitions, the first of which is not timed")
     options = parser.parse_args()
     ringlet.use_threads(1)
     print(json.dumps(run(options.shot, options.frame, options.repeats), indent=1))

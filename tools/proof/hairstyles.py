@@ -22,10 +22,10 @@ Array = NDArray[np.float64]
 HEAD = Path(__file__).parents[2] / "examples" / "child" / "head.usdc"
 TIE, IN_TIE = np.array([0.0, 0.44, -0.102]), 0.02  # [m] centre of the bun on the example head, and reach of its nails
 MODES = ("none", "lofted", "equilibrium")
-HANGS = 3.0  # [s] by then a lock without equilibrium has sagged
-FPS, FINE = 24.0, 96.0  # [1/s] step rates of the drift and of the bounce
+SAG_TIME = 3.0  # [s] by then a lock without equilibrium has sagged
+FPS, BOUNCE_FPS = 24.0, 96.0  # [1/s] step rates of the drift and of the bounce
 WEIGHTLESS = 0.5  # [s] duration without gravity
-DROP, FALL, SWING = 0.05, 0.1, 1.2  # drop [m], its duration [s], and the duration of the measurement [s]
+DROP, DROP_TIME, BOUNCE_TIME = 0.05, 0.1, 1.2  # drop [m], its duration [s], and the duration of the measurement [s]
 
 BASE = """
 ringlet = 1
@@ -89,7 +89,7 @@ gravity = [0, {gravity}, 0]
 radius = 4e-4
 parting_speed = 0
 """
-LYING = Collider(thickness=2e-3)  # distance of grooms from the skin
+SKIN = Collider(thickness=2e-3)  # distance of grooms from the skin
 
 
 @dataclass
@@ -106,23 +106,23 @@ class Style:
         """The head in vertical motion; ``heights``: its displacement in each frame [m]."""
         scalp = self.groom.scalp
         moving = np.asarray(scalp.points) + heights[:, None, None] * [0.0, 1.0, 0.0]
-        return Obstacle(scalp, Clip(np.arange(len(heights)) + 1.0, moving, fps), LYING)
+        return Obstacle(scalp, Clip(np.arange(len(heights)) + 1.0, moving, fps), SKIN)
 
-    def start(self, shot: Shot, rest: ringlet.Curves | None, head: Obstacle) -> Motion:
+    def motion(self, shot: Shot, rest: ringlet.Curves | None, head: Obstacle) -> Motion:
         return Motion(shot, self.groom, head.clip, rest, [head], [], 1.0)
 
-    def still(self, shot: Shot, rest: ringlet.Curves | None, seconds: float) -> Iterator[Array]:
+    def at_rest(self, shot: Shot, rest: ringlet.Curves | None, seconds: float) -> Iterator[Array]:
         """Positions of the locks in each step while the head stands still."""
-        motion = self.start(shot, rest, self.head(np.zeros(1), FPS))
+        motion = self.motion(shot, rest, self.head(np.zeros(1), FPS))
         for _ in range(round(seconds * FPS)):
             motion.advance(1, 1)
             yield motion.strands.positions
 
     def bounce(self, shot: Shot, rest: ringlet.Curves | None, begin: Array) -> tuple[Array, Array]:
         """Dominant frequency [1/s] and amplitude [m] of each tip relative to the head after the drop."""
-        fraction = np.clip(np.arange(round(SWING * FINE) + 1) / (FINE * FALL), 0, 1)
+        fraction = np.clip(np.arange(round(BOUNCE_TIME * BOUNCE_FPS) + 1) / (BOUNCE_FPS * DROP_TIME), 0, 1)
         height = -DROP * fraction**2 * (3 - 2 * fraction)
-        motion, tips = self.start(shot, rest, self.head(height, FINE)), self.groom.locks.offsets[1:] - 1
+        motion, tips = self.motion(shot, rest, self.head(height, BOUNCE_FPS)), self.groom.locks.offsets[1:] - 1
         motion.strands.place(begin)
         up = []
         for k in range(1, len(height)):
@@ -131,25 +131,25 @@ class Style:
         up = np.array(up)
         fade = np.hanning(2 * len(up))[len(up) :, None]
         spectrum = np.abs(np.fft.rfft((up - up.mean(axis=0)) * fade, 16 * len(up), axis=0))
-        return np.fft.rfftfreq(16 * len(up), 1 / FINE)[spectrum.argmax(axis=0)], np.abs(up).max(axis=0)
+        return np.fft.rfftfreq(16 * len(up), 1 / BOUNCE_FPS)[spectrum.argmax(axis=0)], np.abs(up).max(axis=0)
 
     def weightless(self, mode: str, rest: ringlet.Curves | None) -> Array:
         """Positions of the locks after ``WEIGHTLESS`` seconds without gravity."""
-        *_, end = self.still(self.shot(mode, 0.0), rest, WEIGHTLESS)
+        *_, end = self.at_rest(self.shot(mode, 0.0), rest, WEIGHTLESS)
         return end
 
-    def lying(self) -> NDArray[np.bool_]:
+    def on_head(self) -> NDArray[np.bool_]:
         """Marks the free vertices that touch the head, shape (n,)."""
         scalp, locks = self.groom.scalp, self.groom.locks
-        reach = LYING.thickness + self.shot("none").contact.radius
+        reach = SKIN.thickness + self.shot("none").contact.radius
         _, _, distance = _core.bind_roots(
             np.asarray(scalp.points, np.float64), scalp.triangles, np.asarray(locks.points, np.float64)
         )
         return (distance < reach) & ~held_vertices(locks, self.shot("none").held)
 
 
-def grown(name: str, locks: int, head: Path, region: str) -> Style:
-    """The groom of a style."""
+def make_style(name: str, locks: int, head: Path, region: str) -> Style:
+    """Grows the groom of a style."""
     mesh = 'mesh = "/child/skin"\n' if head == HEAD else ""
     with tempfile.TemporaryDirectory() as folder:
         recipe = Path(folder) / "style.recipe.toml"

@@ -10,7 +10,7 @@ from coils import helix, jittered, rotation
 from ringlet.curves import Curves
 from ringlet.shot import Material, Solver, Strands
 
-VERTICES, HELD = 100, 4
+VERTICES, PRESCRIBED = 100, 4
 CLOSE = 1e-5  # [m] a strand nearer to its rest shape has returned
 
 
@@ -35,23 +35,23 @@ def coil_with_straight_middle():
 
 def straightened(rest):
     """The rest shape pulled straight downwards."""
-    lengths = np.linalg.norm(np.diff(rest[HELD - 1 :], axis=0), axis=1)
+    lengths = np.linalg.norm(np.diff(rest[PRESCRIBED - 1 :], axis=0), axis=1)
     shape = rest.copy()
-    shape[HELD:] = rest[HELD - 1] - np.c_[0 * lengths, np.cumsum(lengths), 0 * lengths]
+    shape[PRESCRIBED:] = rest[PRESCRIBED - 1] - np.c_[0 * lengths, np.cumsum(lengths), 0 * lengths]
     return shape
 
 
 def flattened(rest):
     """The rest shape projected to a plane."""
     shape = rest.copy()
-    shape[HELD:, 2] = rest[HELD - 1, 2]
+    shape[PRESCRIBED:, 2] = rest[PRESCRIBED - 1, 2]
     return shape
 
 
 def compressed(rest):
     """The rest shape compressed to 30 % of its height."""
     shape = rest.copy()
-    shape[HELD:, 1] = rest[HELD - 1, 1] + 0.3 * (rest[HELD:, 1] - rest[HELD - 1, 1])
+    shape[PRESCRIBED:, 1] = rest[PRESCRIBED - 1, 1] + 0.3 * (rest[PRESCRIBED:, 1] - rest[PRESCRIBED - 1, 1])
     return shape
 
 
@@ -96,9 +96,9 @@ def release(continuation="material_frame", newton=5, fps=24.0, steps=600, integr
     """Releases all scenes together, with the default material."""
     _, rests, starts = zip(*scenes(), strict=True)
     rest, start = Curves.from_list(rests), np.concatenate(starts)
-    strands = Strands(rest, Material(), HELD)
+    strands = Strands(rest, Material(), PRESCRIBED)
     strands.place(start)
-    single = [Strands(Curves.from_list([r]), Material(), HELD) for r in rests]
+    single = [Strands(Curves.from_list([r]), Material(), PRESCRIBED) for r in rests]
     first = np.array([s.energy(x, continuation=continuation)[0] for s, x in zip(single, starts, strict=True)])
     solver = Solver(newton=newton, continuation=continuation, integrator=integrator)
 

@@ -18,7 +18,7 @@ import time
 from pathlib import Path
 
 import numpy as np
-from hairstyles import FPS, HANGS, HEAD, MODES, STYLES, Array, Style, grown
+from hairstyles import FPS, HEAD, MODES, SAG_TIME, STYLES, Array, Style, make_style
 from ringlet.groom.groom import Groom
 from ringlet.shot import preload
 from ringlet.shot.stale import keep
@@ -29,26 +29,27 @@ import ringlet
 def table(name: str, style: Style, seconds: float, picture: Path | None) -> None:
     """Prints the rows of a style, one for each rest mode."""
     groomed, ends, swings = np.asarray(style.groom.locks.points, np.float64), {}, {}
-    lying, risen = style.lying(), {}
+    on_head, weightless = style.on_head(), {}
     for mode in MODES:
         shot, began = style.shot(mode), time.process_time()
         made = None if mode == "none" else preload(shot, style.groom, obstacles=[style.head(np.zeros(1), FPS)])
         took = time.process_time() - began
         rest = made and keep(made, shot)
-        for points in style.still(shot, rest, seconds if mode == "equilibrium" else min(seconds, HANGS)):
+        for points in style.at_rest(shot, rest, seconds if mode == "equilibrium" else min(seconds, SAG_TIME)):
             ends[mode] = points.copy()
-        off = np.linalg.norm(ends[mode] - groomed, axis=1)
+        drift = np.linalg.norm(ends[mode] - groomed, axis=1)
         if mode != "lofted":
             swings[mode] = style.bounce(shot, rest, ends[mode])
-        if rest is not None and lying.any():
-            risen[f"{mode}, weightless"] = style.weightless(mode, rest)
-            offset = 1e3 * np.linalg.norm(rest.points - groomed, axis=1)[lying].mean()
+        if rest is not None and on_head.any():
+            weightless[f"{mode}, weightless"] = style.weightless(mode, rest)
+            offset = 1e3 * np.linalg.norm(rest.points - groomed, axis=1)[on_head].mean()
             print(
-                f"{name}, {mode}: {lying.mean():.2%} touch the head, rest shape {offset:.3g} mm from groom", flush=True
+                f"{name}, {mode}: {on_head.mean():.2%} touch the head, rest shape {offset:.3g} mm from groom",
+                flush=True,
             )
         stiffened = 0 if made is None or made.stiffened is None else int((made.stiffened > 1).sum())
         away = 0.0 if rest is None else np.linalg.norm(rest.points - groomed, axis=1).mean()
-        columns = [1e3 * off.mean(), *(1e6 * np.percentile(off, [99, 100])), 1e3 * away, took]
+        columns = [1e3 * drift.mean(), *(1e6 * np.percentile(drift, [99, 100])), 1e3 * away, took]
         print(f"| {name} | {mode} |", *(f"{value:.3g} |" for value in columns), f"{stiffened} |", flush=True)
     swings["weightless"] = style.bounce(style.shot("none", 0.0), None, groomed)
     for plain in ("none", "weightless"):
@@ -57,13 +58,13 @@ def table(name: str, style: Style, seconds: float, picture: Path | None) -> None
         print(
             f"{name}, bounce relative to {plain}: frequency x {frequency:.2f}, amplitude x {amplitude:.2f}", flush=True
         )
-    for mode, points in risen.items():
-        rise = 1e3 * np.linalg.norm(points - groomed, axis=1)[lying].mean()
+    for mode, points in weightless.items():
+        rise = 1e3 * np.linalg.norm(points - groomed, axis=1)[on_head].mean()
         print(f"{name}, {mode}: vertices on the head move by {rise:.3g} mm", flush=True)
     if picture is not None:
         draw(name, style.groom, {"groomed": groomed, **ends}, picture)
-        if risen:
-            draw(f"{name} weightless", style.groom, {"groomed": groomed, **risen}, picture)
+        if weightless:
+            draw(f"{name} weightless", style.groom, {"groomed": groomed, **weightless}, picture)
 
 
 def springs(name: str, style: Style, values: list[float], seconds: float) -> None:
@@ -77,7 +78,7 @@ def springs(name: str, style: Style, values: list[float], seconds: float) -> Non
         shot = style.shot("equilibrium", spring=spring)
         made = preload(shot, style.groom, obstacles=[style.head(np.zeros(1), FPS)])
         rest = keep(made, shot)
-        *_, begin = style.still(shot, rest, seconds)
+        *_, begin = style.at_rest(shot, rest, seconds)
         frequency, amplitude = style.bounce(shot, rest, begin.copy())
         frequencies = ", ".join(f"{ratio:.2f}" for ratio in np.percentile(frequency / plain_frequency, [10, 50, 90]))
         cells.append(f"{frequencies}; {np.median(amplitude / plain_amplitude):.2f}; {made.stiffened.mean():.3g}")
@@ -112,7 +113,7 @@ def main() -> None:
         columns = "drift, mean [mm] | 99 % [µm] | largest [µm] | rest from groom, mean [mm] | CPU [s] | stiffer"
         print(f"| style | rest | {columns} |")
     for name in options.styles or STYLES:
-        style = grown(name, options.locks, options.head, options.region)
+        style = make_style(name, options.locks, options.head, options.region)
         if options.springs:
             springs(name, style, options.springs, options.seconds)
         else:
