@@ -8,10 +8,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from coils import helix
-from contact_scenes import SCENES, hooked_strands, onto_a_sheet, tightened
-from crossings import Judge
-from linking import linking
+from contact_scenes import SCENES, onto_a_sheet, tightened
 from ringlet.curves import Curves
 from ringlet.shot import Material, Solver, Strands
 from ringlet.shot.scene import Contact, Scene
@@ -40,8 +37,8 @@ def test_edges_stretch_to_less_than_three_times_their_length(name, newton):
 
 def test_a_shrinking_ring_of_cloth_gathers_curls():
     """All curls stay inside the ring, within less than half of their initial distance from its centre."""
-    play = tightened()
-    curls, ring = play.scene.strands, play.scene.cloths[0]
+    trial = tightened()
+    curls, ring = trial.scene.strands, trial.scene.cloths[0]
 
     def reach():  # largest distance of a curl from the centre of the ring, in the plane of the ring
         middle = ring.positions.mean(axis=0)
@@ -50,8 +47,8 @@ def test_a_shrinking_ring_of_cloth_gathers_curls():
         return max(np.hypot(points[:, 0], points[:, 2]).min() for points in through)
 
     before = reach()
-    for k in range(1, play.steps + 1):
-        play.step(k, Solver())
+    for k in range(1, trial.steps + 1):
+        trial.step(k, Solver())
     assert reach() < before / 2.5
 
 
@@ -63,38 +60,17 @@ def test_sticking_contact_creeps_below_its_bound_and_stops(load):
     assert abs(late - soon) < 0.01 * soon
 
 
-@pytest.mark.parametrize("turns", [1, 2, 3])
-def test_the_linking_number_counts_turns(turns):
-    """A coil around a ring has its turns as the linking number, a coil beside the ring has 0."""
-    angle = 2 * np.pi * np.arange(40) / 40
-    ring = np.c_[np.cos(angle), np.sin(angle), 0 * angle]
-    coil = helix(12 * turns, radius=0.4, pitch=0.0) + [1, 0, 0]
-    assert abs(linking(ring, coil)) == pytest.approx(turns, abs=1e-9)
-    assert linking(ring, coil + [2, 0, 0]) == pytest.approx(0, abs=1e-9)
-
-
-def test_ipctk_detects_strands_that_pass_through_each_other():
-    """Hooked strands that are moved through each other cross; a rest and a common translation do not."""
-    play = hooked_strands()
-    judge, before = Judge(play.scene), play.scene.positions.copy()
-    after = before.copy()
-    after[: len(after) // 2] += [0, 0.05, 0]
-    assert judge.crossings(before, before) == 0
-    assert judge.crossings(before, after) > 0
-    assert judge.crossings(before, before + [0, 0.05, 0]) == 0
-
-
 def test_contact_is_invariant_under_uniform_motion():
     """A strand that hits a sheet at rest and at 100 m/s, air included; steps converge, so only rounding differs."""
     positions = []
     for speed in (np.zeros(3), np.array([100.0, 0, 0])):
-        play = onto_a_sheet()
-        play.scene.strands.velocities[:] += speed
-        play, contacts = play.moved(speed), 0
-        for k in range(1, play.steps + 1):
-            contacts += play.step(k, Solver(newton=150, tolerance=1e-12))["contacts"]
+        trial = onto_a_sheet()
+        trial.scene.strands.velocities[:] += speed
+        trial, contacts = trial.moved(speed), 0
+        for k in range(1, trial.steps + 1):
+            contacts += trial.step(k, Solver(newton=150, tolerance=1e-12))["contacts"]
         assert contacts > 0
-        positions.append(play.scene.positions - speed * k * play.dt)
+        positions.append(trial.scene.positions - speed * k * trial.dt)
     # At the final distance of 21 m positions round to 4e-15 m and edge vectors to twice that; k dt² / m is about 1e6.
     assert np.abs(positions[1] - positions[0]).max() < 8e-9
 
@@ -102,15 +78,15 @@ def test_contact_is_invariant_under_uniform_motion():
 @pytest.mark.parametrize("name", ["squeezed", "tightened"])
 def test_a_recalled_scene_takes_the_same_next_step(name):
     """Bit identical, with the friction state."""
-    play, other = SCENES[name](), SCENES[name]()
+    trial, other = SCENES[name](), SCENES[name]()
     for k in range(1, 9):
-        report = play.step(k, Solver())
+        report = trial.step(k, Solver())
     assert report["contacts"] > 0
-    other.scene.recall(play.scene.memory)
-    other.scene.strands.recall(play.scene.strands.memory)
-    for each in (play, other):
+    other.scene.recall(trial.scene.memory)
+    other.scene.strands.recall(trial.scene.strands.memory)
+    for each in (trial, other):
         each.step(9, Solver())
-    assert (play.scene.positions == other.scene.positions).all()
+    assert (trial.scene.positions == other.scene.positions).all()
 
 
 def test_contact_scenes_are_bit_identical_for_any_number_of_threads():
@@ -119,10 +95,10 @@ import hashlib
 from contact_scenes import SCENES
 from ringlet.shot import Solver
 for name in ("combed", "spun_head", "wound_coils"):
-    play = SCENES[name]()
+    trial = SCENES[name]()
     for k in range(1, 8):
-        play.step(k, Solver())
-    print(name, hashlib.sha256(play.scene.positions.tobytes()).hexdigest())
+        trial.step(k, Solver())
+    print(name, hashlib.sha256(trial.scene.positions.tobytes()).hexdigest())
 """
     hashes = []
     for threads in ("1", "2", "5"):
