@@ -75,7 +75,7 @@ def test_a_strand_thrown_at_a_pinned_sheet_stays_on_its_side(newton):
 
 
 def test_a_sheet_falls_beside_a_strand_with_a_larger_residual():
-    """The residual of the linear system is measured over the cluster; the sheet must be solved all the same."""
+    """The residual covers the cluster, and the sheet is solved although the strand dominates it."""
     strand = Strands(
         Curves.from_list([np.linspace([-0.05, 0.0007, 0.013], [0.15, 0.0007, -0.011], 21)]), Material(radius=2e-4), 1
     )

@@ -57,7 +57,7 @@ def shaken(time):
 
 
 def spun(time):
-    """Three turns a second about the vertical, half a coil's length off the axis."""
+    """Three turns a second about a vertical axis 10 cm away."""
     return rotation([0, 1, 0], 2 * np.pi * 3 * time), np.zeros(3)
 
 

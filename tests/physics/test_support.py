@@ -122,7 +122,7 @@ def test_contact_queries_do_not_change_the_motion():
         assert np.array_equal(values, queried.memory[name])
 
 
-def stays(shot, groom, made, obstacles=(), steps=48, known=True):
+def drift(shot, groom, made, obstacles=(), steps=48, known=True):
     """Largest drift of locks from the groomed shape [m]; ``known``: support forces initialise the contacts."""
     strands = make_strands(shot, groom, made.rest, made.stiffened)
     strands.place(groom.locks.points)
@@ -145,7 +145,7 @@ def test_a_lock_on_another_is_supported_by_it():
     alone = equilibrium(*scene(*crossed(), more=SOFT.replace("radius = 5e-4", "on = false")))
     assert sag(together.rest.points[upper], crossed()[1]) < 0.5 * sag(alone.rest.points[upper], crossed()[1])
     assert (together.stiffened == 1).all()
-    assert stays(shot, groom, together) < 0.2 * shot.strands.radius
+    assert drift(shot, groom, together) < 0.2 * shot.strands.radius
 
 
 @pytest.mark.parametrize("friction", [0.0, 1.0])
@@ -158,14 +158,14 @@ def test_contact_forces_support_a_lock_on_a_body_from_the_first_step(friction):
     assert len(forces) > 0 and (forces[:, 0] > 0).all()
     total = np.linalg.norm(forces, axis=1).sum()
     assert total == pytest.approx(np.linalg.norm(made.borne[~groomed.held], axis=1).sum(), rel=1e-9)
-    at_once, later = (stays(shot, groom, made, [slope], 1, known) for known in (True, False))
+    at_once, later = (drift(shot, groom, made, [slope], 1, known) for known in (True, False))
     assert at_once < 1e-9 and at_once < 1e-3 * later
 
 
 def test_contact_forces_support_crossed_locks_from_the_first_step():
     shot, groom = scene(*crossed(), more=SOFT)
     made = equilibrium(shot, groom)
-    at_once, later = (stays(shot, groom, made, steps=1, known=known) for known in (True, False))
+    at_once, later = (drift(shot, groom, made, steps=1, known=known) for known in (True, False))
     assert at_once < 1e-9 and at_once < 1e-3 * later
 
 
@@ -229,7 +229,7 @@ def test_friction_holds_a_lock_on_a_slope():
     shot, groom = scene(lying, more=SOFT)
     smooth, held = (equilibrium(shot, groom, obstacles=[on_slope(mu)[1]]) for mu in (0.0, 1.0))
     assert sag(held.rest.points, lying) < 0.1 * sag(smooth.rest.points, lying)
-    soon, late = (stays(shot, groom, held, [rough], steps) for steps in (48, 240))
+    soon, late = (drift(shot, groom, held, [rough], steps) for steps in (48, 240))
     assert late < shot.strands.radius
     assert late - soon < 0.05 * shot.strands.radius
 
