@@ -17,8 +17,8 @@ from ringlet.shot import Material, Strands
 
 from ringlet import validate
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "physics"))
-from stability import HELD, scenes
+sys.path.insert(0, str(Path(__file__).parents[1] / "tools" / "proof"))
+from releases import PRESCRIBED, scenes
 
 FRAMES = Path(__file__).parents[1] / "bench" / "results" / "frames.json"
 RESOLUTION = re.compile(r"(?P<curve>.*), (?P<n>\d+) (edges|vertices a turn)$")
@@ -93,7 +93,7 @@ def write_release(path: Path) -> None:
     steps = (0, 2, 12, 48, 300)
     chosen = [(rest, start) for name, rest, start in scenes() if name in RELEASED]
     rest = Curves.from_list([shape for shape, _ in chosen])
-    strands = Strands(rest, Material(), HELD)
+    strands = Strands(rest, Material(), PRESCRIBED)
     strands.place(np.concatenate([start for _, start in chosen]))
     figure = Figure(figsize=(11, 11), layout="constrained")
     panels = figure.subplots(len(steps), len(chosen), sharey="col")

@@ -1,4 +1,4 @@
-"""The review page in a real browser, against the real server, drawn in software."""
+"""The review page in a browser with software rendering, against the real server."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ STATIC = Path(__file__).parents[2] / "python/ringlet/viewer/static/index.html"
 CHROMIUM = next(
     (found for name in ("chromium", "chromium-browser", "google-chrome") if (found := shutil.which(name))), None
 )
-REQUIRED = os.environ.get("RINGLET_BROWSER") == "required"  # so in continuous integration
+REQUIRED = os.environ.get("RINGLET_BROWSER") == "required"  # set in continuous integration
 FLAGS = [
     "--no-sandbox",
     "--use-angle=swiftshader",
@@ -37,7 +37,7 @@ FLAGS = [
     "--disable-component-update",
     "--disable-sync",
 ]
-PATIENCE = 90.0  # seconds; a loaded machine draws slowly in software
+PATIENCE = 90.0  # [s] for slow software rendering
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -59,7 +59,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 class Server:
-    """``ringlet view`` as a process of its own."""
+    """``ringlet view`` in its own process."""
 
     def __init__(self, file: Path) -> None:
         with socket.socket() as free:
@@ -95,13 +95,15 @@ class Server:
 
 
 class Review:
-    """A page of the review, as a person has it before them."""
+    """An open page of the review."""
 
     def __init__(self, page: Any, address: str) -> None:
         self.page = page
-        self.wrong: list[str] = []
-        page.on("pageerror", lambda error: self.wrong.append(str(error)))
-        page.on("console", lambda told: self.wrong.append(told.text) if "shader" in told.text.lower() else None)
+        self.errors: list[str] = []
+        page.on("pageerror", lambda error: self.errors.append(str(error)))
+        page.on(
+            "console", lambda message: self.errors.append(message.text) if "shader" in message.text.lower() else None
+        )
         page.goto(address)
         self.until("window.ringlet?.viewer.hair.a.table && ringlet.model.settled")
 
@@ -115,33 +117,33 @@ class Review:
             if self.get(f"Boolean({expression})"):
                 return
             time.sleep(0.05)
-        raise AssertionError(f"did not come to be: {expression}; {self.wrong}")
+        raise AssertionError(f"timeout: {expression}; {self.errors}")
 
     def text(self, file: str = "recipe") -> str:
         return self.get(f"ringlet.model.documents.{file}.text")
 
     def answered(self) -> None:
-        """Waits until the server has heard all that was said so far: it answers in the order in which it hears."""
+        """Waits until the server has processed all messages so far, by an exchange of the edit lock."""
         self.get("(window.role = ringlet.model.role, ringlet.model.say({ kind: 'lead' }))")
         self.until("ringlet.model.role !== role")
 
     def settled(self) -> None:
-        """Waits until what was asked for is made and drawn."""
+        """Waits until all requests are built and drawn."""
         before = self.get("ringlet.viewer.pictures")
         self.until("ringlet.model.settled")
         self.get("ringlet.viewer.invalidate()")
         self.until(f"ringlet.viewer.pictures > {before}")
 
     def picture(self) -> np.ndarray:
-        """What the canvas shows, (height, width, 3)."""
+        """Pixels of the canvas, shape (height, width, 3)."""
         self.get("ringlet.viewer.drawNow()")
         data = self.page.evaluate(
             "() => { ringlet.viewer.drawNow(); return ringlet.viewer.renderer.domElement.toDataURL('image/png') }"
         )
         return np.asarray(Image.open(io.BytesIO(base64.b64decode(data.split(",")[1]))).convert("RGB"), np.float64)
 
-    def place(self, point: np.ndarray) -> tuple[float, float]:
-        """Where a point [m] is on the page."""
+    def project(self, point: np.ndarray) -> tuple[float, float]:
+        """Position of a point [m] on the page [px]."""
         self.get("ringlet.viewer.camera.updateMatrixWorld()")
         x, y = self.page.evaluate(
             "(p) => { const v = ringlet.viewer, to = v.camera.position.clone().fromArray(p).project(v.camera); "
@@ -156,20 +158,20 @@ class Review:
     def slider(self, setting: str) -> Any:
         return self.page.locator(f'[data-setting="{setting}"] > input[type=range]')
 
-    def drag(self, locator: Any, *places: float) -> None:
-        """Drags along an element, from part to part of its width, until the server has heard of it."""
+    def drag(self, locator: Any, *fractions: float) -> None:
+        """Drags along an element between fractions of its width and waits for the server."""
         box = locator.bounding_box()
         mouse = self.page.mouse
-        mouse.move(box["x"] + places[0] * box["width"], box["y"] + box["height"] / 2)
+        mouse.move(box["x"] + fractions[0] * box["width"], box["y"] + box["height"] / 2)
         mouse.down()
-        for place in places[1:]:
-            mouse.move(box["x"] + place * box["width"], box["y"] + box["height"] / 2, steps=4)
+        for fraction in fractions[1:]:
+            mouse.move(box["x"] + fraction * box["width"], box["y"] + box["height"] / 2, steps=4)
         mouse.up()
         self.answered()
 
 
 def different(a: np.ndarray, b: np.ndarray) -> float:
-    """The part of the pixels that differ."""
+    """Fraction of pixels that differ."""
     return float((np.abs(a - b).max(axis=2) > 12).mean())
 
 
@@ -208,8 +210,8 @@ def opened(browser: Any, serve: Callable[[str], Server]) -> Iterator[Callable[..
 
     def open_page(server: Server | str = "small.recipe.toml", **more: Any) -> Review:
         address = (serve(server) if isinstance(server, str) else server).address
-        how = {"viewport": {"width": 1000, "height": 640}, "color_scheme": "dark", **more}
-        contexts.append(browser.new_context(**how))
+        options = {"viewport": {"width": 1000, "height": 640}, "color_scheme": "dark", **more}
+        contexts.append(browser.new_context(**options))
         contexts[-1].set_default_timeout(1000 * PATIENCE)
         return Review(contexts[-1].new_page(), address)
 

@@ -1,4 +1,4 @@
-// What keeps people from reaching or reading a page: controls without a name, and text that is too faint.
+// Accessibility of a page: controls without a label, and text of low contrast.
 (() => {
   const named = (e) =>
     e.labels?.length || e.getAttribute("aria-label") || (e.matches("button, circle") && e.textContent.trim());
@@ -6,7 +6,7 @@
     .filter((e) => !e.matches("[role=status], [role=note]") && !named(e))
     .map((e) => e.outerHTML.slice(0, 160));
 
-  // Contrast after WCAG 2: at least 4.5 to 1, against the nearest background that hides more than it lets through.
+  // WCAG 2 contrast of at least 4.5 : 1 against the nearest background of at least half opacity.
   const numbers = (color) => color.match(/[\d.]+/g).map(Number);
   const linear = (c) => (c <= 0.03928 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4);
   const luminance = ([r, g, b]) => 0.2126 * linear(r / 255) + 0.7152 * linear(g / 255) + 0.0722 * linear(b / 255);

@@ -1,4 +1,4 @@
-"""Shots and caches on the page: run, played, compared, with the cloths that they bring along."""
+"""Shots, caches and cloth on the review page."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 from conftest import Review, different
-from test_shot_cloth_files import SCARF, write_roofed, write_wear
+from wear import SCARF, write_roofed, write_wear
 
 import ringlet
 from ringlet import build_hairs
 
 
-def test_hairs_on_the_graphics_card_stay_below_a_cloth_as_those_of_the_core_do(opened: Any, folder: Path):
+def test_gpu_hairs_stay_below_a_cloth_like_those_of_the_core(opened: Any, folder: Path):
     top = write_roofed(folder)
     review: Review = opened("cache.usdc")
     review.until("ringlet.timeline.count == 1 && ringlet.timeline.settled")
@@ -28,8 +28,8 @@ def test_hairs_on_the_graphics_card_stay_below_a_cloth_as_those_of_the_core_do(o
     kept = ringlet.io.read_hairs(folder / "hair.usdc", 1.0).points.reshape(count, number, 3)[order]
     assert hairs.curves.points[:, 1].max() > top + 1e-3
     assert drawn[..., 1].max() < top
-    assert np.abs(drawn - kept).max() < 1e-4  # a share has 255 steps
-    assert not review.wrong
+    assert np.abs(drawn - kept).max() < 1e-4  # weights are quantised to 255 steps
+    assert not review.errors
 
 
 def test_ten_frames_are_simulated_and_scrubbed(opened: Any, folder: Path):
@@ -53,10 +53,10 @@ def test_ten_frames_are_simulated_and_scrubbed(opened: Any, folder: Path):
     review.page.get_by_label("Run again from this frame", exact=False).click()
     review.until("ringlet.model.timeline.key == 3 || ringlet.model.timeline.state == 'done'")
     review.until("ringlet.timeline.count == 10 && ringlet.model.timeline.state == 'done'")
-    assert not review.wrong
+    assert not review.errors
 
 
-def test_the_material_of_a_cloth_is_changed_and_the_shot_is_run_with_it(opened: Any, folder: Path):
+def test_a_changed_cloth_material_is_simulated(opened: Any, folder: Path):
     write_wear(folder)
     shot = folder / "small.shot.toml"
     shot.write_text(shot.read_text() + SCARF + "[[collider]]\n")
@@ -92,7 +92,7 @@ def test_the_material_of_a_cloth_is_changed_and_the_shot_is_run_with_it(opened: 
         at = f"ringlet.viewer.bodies.get(1).geometry.{side}.getAttribute('position').array"
         return np.array(review.get(f"Array.from({at})")).reshape(-1, 3)
 
-    assert np.abs(scarf("b") - cache.cloths[0].points[3]).max() < 1e-6  # each side has its own
+    assert np.abs(scarf("b") - cache.cloths[0].points[3]).max() < 1e-6  # each side shows its own cloth
     assert np.array_equal(scarf("a").ravel(), moved[1][-scarf("a").size :])
     review.choose("curl")
     field = review.page.locator('[data-setting="curl.width"] > .field-head input.number')
@@ -101,11 +101,11 @@ def test_the_material_of_a_cloth_is_changed_and_the_shot_is_run_with_it(opened: 
     review.until("ringlet.model.settled && !ringlet.timeline.drawn.shot")
     rest = review.get("Array.from(ringlet.viewer.bodies.get(1).rest)")
     review.until("!ringlet.timeline.count")
-    assert np.array_equal(scarf("a").ravel(), rest)  # as the hair
-    assert not review.wrong
+    assert np.array_equal(scarf("a").ravel(), rest)  # cloth at rest, like the hair
+    assert not review.errors
 
 
-def test_of_a_long_cache_the_page_keeps_the_frames_about_the_one_that_is_seen(opened: Any, folder: Path):
+def test_the_page_keeps_only_frames_near_the_current_one(opened: Any, folder: Path):
     groom = ringlet.build_groom(folder / "small.recipe.toml")
     ringlet.write_groom(groom, folder / "groom.usda")
     numbers = np.arange(1.0, 301.0)
@@ -119,10 +119,10 @@ def test_of_a_long_cache_the_page_keeps_the_frames_about_the_one_that_is_seen(op
     assert sorted(kept) == list(range(100, 116))
     review.page.get_by_label("Play what is there").click()
     review.until("ringlet.timeline.frame > 130 && ringlet.timeline.frame < 300")
-    assert not review.wrong
+    assert not review.errors
 
 
-def test_a_shot_beside_another_cache_with_overlays(opened: Any, folder: Path):
+def test_a_shot_is_compared_with_a_cache_and_overlays(opened: Any, folder: Path):
     groom = ringlet.build_groom(folder / "small.recipe.toml")
     ringlet.write_groom(groom, folder / "groom.usda")
     cache = ringlet.simulate(folder / "small.shot.toml", groom)
@@ -139,9 +139,9 @@ def test_a_shot_beside_another_cache_with_overlays(opened: Any, folder: Path):
     plain = review.picture()
     for overlay in ("stretch", "curl"):
         review.page.get_by_label("Overlay").select_option(overlay)
-        assert different(review.picture(), plain) > 0.002  # few hairs cover little of the picture
+        assert different(review.picture(), plain) > 0.002  # few hairs cover few pixels
     assert review.page.locator('[data-number="inside"]').is_visible()
-    ringlet.write_cache(cache, folder / "groom.usda", folder / "cache.usda")  # the page is open, and is told
+    ringlet.write_cache(cache, folder / "groom.usda", folder / "cache.usda")  # the open page is notified
     review.page.get_by_label("Compare with a cache").select_option("cache.usda")
     review.until("ringlet.viewer.compared && ringlet.model.timeline.against == 'cache.usda'")
     review.until("ringlet.viewer.hair.b.table")
@@ -150,4 +150,4 @@ def test_a_shot_beside_another_cache_with_overlays(opened: Any, folder: Path):
     review.until("ringlet.timeline.settled")
     left, right = np.split(review.picture(), 2, axis=1)
     assert different(left, right) > 0.002
-    assert not review.wrong
+    assert not review.errors

@@ -1,8 +1,7 @@
-"""Looks for files that a reader cannot bear, guided by coverage: python tests/fuzz/fuzz.py TARGET SECONDS [FOLDER].
+"""Coverage-guided fuzzing of a reader: python tests/fuzz/fuzz.py TARGET SECONDS [FOLDER].
 
-Needs atheris. What is found is written to the current folder as crash-…, timeout-… or oom-…; put it into
-tests/fuzz/corpus/TARGET and mend the reader: the tests run all that is there. FOLDER keeps what was
-learnt.
+Needs atheris. Findings are written to the current folder as crash-…, timeout-… or oom-…. Add them to
+tests/fuzz/corpus/TARGET, which the tests run, and repair the reader. FOLDER keeps the inputs that extended coverage.
 """
 
 from __future__ import annotations
@@ -23,8 +22,10 @@ LIMITS = ("-rss_limit_mb=3000", "-timeout=20", "-max_len=4096")
 
 
 def functions() -> Iterator[types.FunctionType]:
-    """All functions of ours and of the TOML parser. Their import is not instrumented: an editable install has a loader
-    of its own, which atheris does not know."""
+    """Functions of Ringlet and of the TOML parser, to be instrumented.
+
+    Atheris cannot instrument their import, since an editable install uses its own loader.
+    """
     for name, module in list(sys.modules.items()):
         if name.partition(".")[0] not in ("ringlet", tomllib.__name__):
             continue
@@ -36,7 +37,7 @@ def functions() -> Iterator[types.FunctionType]:
 
 
 def words() -> Iterator[str]:
-    """All names of settings, for the fuzzer to put together."""
+    """Names of all settings, for the dictionary of the fuzzer."""
     tables = list(ringlet.schema().values())
     while tables:
         table = tables.pop()
@@ -45,21 +46,21 @@ def words() -> Iterator[str]:
 
 
 def main() -> None:
-    """Fuzzes one target for a time, from the inputs that are kept for it."""
+    """Fuzzes one target for a time, starting from its corpus."""
     name, seconds, *more = sys.argv[1:]
     target = TARGETS[name]
     seeds = Path(__file__).parent / "corpus" / name
     with tempfile.TemporaryDirectory() as folder:
         dictionary = Path(folder) / "words.txt"
         dictionary.write_text("".join(f'"{word}"\n' for word in sorted(set(words()))))
-        place = Path(folder) / "files"
-        place.mkdir()
-        learnt = Path(*more) if more else Path(folder) / "learnt"
-        learnt.mkdir(exist_ok=True)
-        options = [f"-max_total_time={seconds}", f"-dict={dictionary}", *LIMITS, str(learnt), str(seeds)]
+        files = Path(folder) / "files"
+        files.mkdir()
+        found = Path(*more) if more else Path(folder) / "found"
+        found.mkdir(exist_ok=True)
+        options = [f"-max_total_time={seconds}", f"-dict={dictionary}", *LIMITS, str(found), str(seeds)]
         for function in functions():
             atheris.instrument_func(function)
-        atheris.Setup([sys.argv[0], *options], lambda data: try_out(target, data, place))
+        atheris.Setup([sys.argv[0], *options], lambda data: try_out(target, data, files))
         atheris.Fuzz()
 
 

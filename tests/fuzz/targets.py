@@ -1,7 +1,7 @@
-"""What is fuzzed: each reader with bytes as its file. It may refuse with UserError and do nothing else but read.
+"""Fuzz targets: each reader on a file of arbitrary bytes. A reader reads or raises UserError.
 
-A target is a function of bytes and an empty folder. Text and binary files are these bytes; USD is built from them:
-arrays of hostile lengths, counts, indices and values. What USD's own parsers do with bytes is not ours to test.
+A target is a function of bytes and an empty folder. Text and binary files consist of these bytes. USD stages are built
+from them with arbitrary lengths, counts, indices and values, since the parsers of USD are not under test.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ from ringlet.shot import parse_shot
 
 from ringlet.groom import parse_recipe
 
-MOST = 64  # entries of an array that is built
+MOST = 64  # entries of a generated array
 
 
 class Given:
-    """Takes values from bytes, zeros when there are none left, so that every input means something."""
+    """Decodes values from bytes, with zeros after their end, so that every input is valid."""
 
     def __init__(self, data: bytes) -> None:
         self._data, self._at = data, 0
@@ -33,36 +33,36 @@ class Given:
         return taken.ljust(count, b"\0")
 
     def below(self, count: int) -> int:
-        """A whole number from 0."""
+        """An integer from 0 to ``count`` - 1."""
         return self.bytes(1)[0] % count
 
     def whole(self) -> int:
-        """A whole number, often small, sometimes at the end of its range."""
+        """An integer, often small, sometimes at the limits of its range."""
         kind = self.below(8)
         if kind < 6:
             return self.bytes(1)[0] - 4 * (kind == 5)
         return struct.unpack("<i", self.bytes(4))[0]
 
     def wholes(self) -> list[int]:
-        """A list of whole numbers."""
+        """A list of integers."""
         return [self.whole() for _ in range(self.below(MOST))]
 
     def number(self) -> float:
-        """A number: small, or any that there is, also infinite and not a number."""
+        """A float: small, or arbitrary bits, infinities and NaN included."""
         return (self.bytes(1)[0] - 128) / 16 if self.below(4) else struct.unpack("<f", self.bytes(4))[0]
 
     def vectors(self, size: int, count: int | None = None) -> np.ndarray:
-        """Rows of numbers, float32."""
+        """Rows of floats, float32."""
         rows = self.below(MOST) if count is None else count
         return np.array([[self.number() for _ in range(size)] for _ in range(rows)], np.float32).reshape(rows, size)
 
     def one_of(self, names: tuple[str, ...]) -> str:
-        """One of some names."""
+        """One of the given names."""
         return names[self.below(len(names))]
 
 
 def recipe(data: bytes, folder: Path) -> None:
-    """A recipe that names files in its folder only."""
+    """A recipe whose files are in its folder."""
     parse_recipe(data.decode("utf-8", "replace"), folder / "a.recipe.toml")
 
 
@@ -168,7 +168,7 @@ TARGETS: dict[str, Callable[[bytes, Path], None]] = {
 
 
 def allowed(read: Callable[[Path], object], path: Path) -> None:
-    """Reads; a refusal in one line is as it should be."""
+    """Reads a file and accepts a refusal in one line."""
     try:
         read(path)
     except UserError as error:
@@ -176,7 +176,7 @@ def allowed(read: Callable[[Path], object], path: Path) -> None:
 
 
 def try_out(target: Callable[[bytes, Path], None], data: bytes, folder: Path) -> None:
-    """Runs a target; everything but a refusal in one line is a finding."""
+    """Runs a target; every exception but a refusal in one line is a finding."""
     try:
         target(data, folder)
     except UserError as error:

@@ -1,4 +1,6 @@
-import pathlib
-import sys
+"""Makes the judges and scenes of tools/proof importable in the tests."""
 
-sys.path.insert(0, str(pathlib.Path(__file__).parent))
+import sys
+from pathlib import Path
+
+sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parents[2] / "tools/proof")]

@@ -1,4 +1,4 @@
-"""How cloth hangs and moves: balance of forces, known shapes, what a step conserves and what it never does."""
+"""Cloth: balance of forces, known shapes, conservation and invariance of its motion."""
 
 import numpy as np
 import pytest
@@ -30,7 +30,7 @@ def total_energy(report):
     return sum(report[name] for name in ("stretch", "bend", "gravity", "kinetic"))
 
 
-def test_gradient_agrees_with_differences():
+def test_gradient_agrees_with_finite_differences():
     mesh = sheet(0.1, 0.1, 3, 3)
     piece = cloth(mesh, [0, 3], shear=400.0, stretch_weft=700.0, bend=1e-3)
     x = jittered(mesh, 3e-3)
@@ -53,7 +53,7 @@ def test_hessian_is_symmetric_and_positive_semidefinite(amount):
     assert values[0] > -1e-12 * values[-1]
 
 
-def test_a_folded_rest_shape_is_at_rest_and_stays_there():
+def test_a_folded_rest_shape_stays_at_rest():
     mesh = sheet(0.2, 0.2, 6, 6)
     mesh.points[:, 2] = 0.03 * np.abs(np.sin(40 * mesh.points[:, 0]))
     piece = cloth(mesh, [0])
@@ -64,8 +64,8 @@ def test_a_folded_rest_shape_is_at_rest_and_stays_there():
     assert np.abs(piece.positions - mesh.points).max() < 1e-10
 
 
-def test_a_sheet_that_hangs_from_its_top_edge_carries_in_every_row_the_weight_below():
-    """The strain at height y of a sheet that hangs still is ρ g y / k: it is longer by ρ g H² / 2k."""
+def test_a_hanging_sheet_carries_in_every_row_the_weight_below():
+    """The strain at height y is ρ g y / k, the extension of the sheet ρ g H² / 2k."""
     height, gravity, density, weft = 0.4, 9.81, 0.2, 50.0
     mesh = sheet(0.2, height, 6, 12)
     piece = cloth(mesh, top_of(mesh), density=density, stretch_weft=weft, stretch_warp=weft, shear=20.0)
@@ -78,8 +78,8 @@ def test_a_sheet_that_hangs_from_its_top_edge_carries_in_every_row_the_weight_be
     assert np.abs(pull[~piece.held]).max() < 1e-6 * piece.masses.sum() * gravity
 
 
-def test_a_sheet_that_hangs_between_two_edges_takes_the_shape_of_a_catenary():
-    """Without resistance to bend, and hard to stretch: y = a cosh(x / a), with a from its length and span."""
+def test_a_sheet_between_two_edges_hangs_as_a_catenary():
+    """Without bending stiffness and nearly inextensible: y = a cosh(x / a), with a from length and span."""
     length, span, columns = 0.5, 0.4, 40
     mesh = sheet(length, 0.05, columns, 2)
     along = mesh.points[:, 0].copy()
@@ -93,7 +93,7 @@ def test_a_sheet_that_hangs_between_two_edges_takes_the_shape_of_a_catenary():
     s = along - length / 2
     x = a * np.arcsinh(s / a)
     expected = np.c_[x - x.min(), np.sqrt(a**2 + s**2) - np.sqrt(a**2 + length**2 / 4), mesh.points[:, 2]]
-    guess = expected * (1.0, 0.9, 1.0)  # so that it has to find its shape
+    guess = expected * (1.0, 0.9, 1.0)  # away from the solution
     piece.positions[:] = guess
     piece.positions[ends] = expected[ends]
     for _ in range(5):
@@ -103,7 +103,7 @@ def test_a_sheet_that_hangs_between_two_edges_takes_the_shape_of_a_catenary():
 
 
 def cantilever(columns, width, gamma):
-    """Drop of the tip by the length, of a strip that sags under Γ = ρ g L³ / D. It is clamped by its first two rows."""
+    """Tip deflection over length of a strip under Γ = ρ g L³ / D, clamped by its first two rows."""
     length, bend, density = 0.1, 1e-5, 0.15
     mesh = lattice(columns, width, length / (columns - 0.5))
     mesh.points = mesh.points[:, [0, 2, 1]] - [0.5 * length / (columns - 0.5), 0, 0]
@@ -114,23 +114,23 @@ def cantilever(columns, width, gamma):
     return -strip.positions[np.isclose(x, x.max()), 1].mean() / length
 
 
-ELASTICA = {1: 0.123471, 4: 0.425159, 20: 0.829881}  # drop by length
+ELASTICA = {1: 0.123471, 4: 0.425159, 20: 0.829881}  # tip deflection over length
 
 
 @pytest.mark.parametrize("gamma", ELASTICA)
-def test_a_wide_strip_sags_as_the_elastica_does(gamma):
-    """Wide beside its length, a strip bends on a cylinder; what is left of the error shrinks with the triangles."""
+def test_a_wide_strip_sags_as_the_elastica(gamma):
+    """A strip wider than long bends to a cylinder; the error decreases with the size of the triangles."""
     errors = [abs(cantilever(columns, 0.2, gamma) / ELASTICA[gamma] - 1) for columns in (5, 10)]
     assert errors[1] < 1e-2
     assert errors[1] < errors[0]
 
 
-def test_a_narrow_strip_bends_as_a_plate_does_whose_poisson_ratio_is_minus_a_third():
-    """Its long edges are free to curl, which leaves it 1 − 1/9 of its stiffness."""
+def test_a_narrow_strip_bends_as_a_plate_of_poisson_ratio_minus_a_third():
+    """Anticlastic curvature of the free edges reduces the stiffness to 1 − ν² = 8/9."""
     assert abs(cantilever(20, 0.01, 8 / 9) / ELASTICA[1] - 1) < 5e-2
 
 
-def test_energy_never_rises():
+def test_energy_never_increases():
     mesh = sheet(0.3, 0.3, 8, 8)
     for newton in (1, 5):
         piece = cloth(mesh, top_of(mesh), bend=1e-4)
@@ -146,7 +146,7 @@ def test_energy_never_rises():
             before = now
 
 
-def test_free_cloth_keeps_its_momentum_and_falls_as_everything_does():
+def test_free_cloth_conserves_momentum_in_free_fall():
     mesh = sheet(0.2, 0.2, 6, 6)
     piece = cloth(mesh, bend=1e-3)
     piece.positions[:] = jittered(mesh, 2e-3)
@@ -159,7 +159,7 @@ def test_free_cloth_keeps_its_momentum_and_falls_as_everything_does():
         assert np.abs((mass * piece.velocities).sum(0) - fallen).max() < 1e-8 * np.abs(fallen).max()
 
 
-def test_the_motion_does_not_depend_on_where_the_scene_stands_or_how_fast_it_moves():
+def test_motion_is_invariant_under_rigid_transforms_and_uniform_motion():
     mesh = sheet(0.2, 0.2, 6, 6)
     turn, shift, speed = rotation([3, -1, 2], 1.1), np.array([0.3, -0.2, 0.5]), np.array([100.0, -50.0, 20.0])
     turned = Mesh("turned", mesh.points @ turn.T + shift, mesh.triangles)
@@ -176,7 +176,7 @@ def test_the_motion_does_not_depend_on_where_the_scene_stands_or_how_fast_it_mov
         assert np.abs(here.positions @ turn.T + shift + along - there.positions).max() < 1e-7
 
 
-def test_damping_slows_strains_and_not_rigid_motion():
+def test_damping_resists_strain_rates_and_not_rigid_motion():
     mesh = sheet(0.2, 0.2, 6, 6)
     swinging = {}
     for damping in (0.0, 1.0):
@@ -188,10 +188,10 @@ def test_damping_slows_strains_and_not_rigid_motion():
         swinging[damping] = report["stretch"]
         mean = (piece.masses[:, None] * piece.velocities).sum(0) / piece.masses.sum()
         assert np.abs(mean - (0.5, 0.2, 0.0)).max() < 1e-8
-    assert swinging[1.0] > 2 * swinging[0.0], "a damped sheet has come back less far"
+    assert swinging[1.0] > 2 * swinging[0.0], "damping slows the return"
 
 
-def test_drag_carries_cloth_to_the_speed_of_the_wind():
+def test_drag_accelerates_cloth_to_the_speed_of_the_wind():
     mesh = sheet(0.2, 0.2, 4, 4)
     piece = cloth(mesh, drag=5.0)
     wind = (0.5, 0.0, 0.2)
@@ -200,8 +200,8 @@ def test_drag_carries_cloth_to_the_speed_of_the_wind():
     assert np.abs(piece.velocities - wind).max() < 1e-6
 
 
-def test_an_attached_vertex_is_pulled_to_its_target_by_a_spring():
-    """At rest the spring is longer by the weight that hangs on it."""
+def test_an_attachment_extends_by_weight_over_stiffness():
+    """In equilibrium the extension of the spring is the weight over its stiffness."""
     mesh = sheet(0.1, 0.1, 2, 2)
     attachment = np.zeros(9)
     attachment[4] = 30.0
@@ -211,7 +211,7 @@ def test_an_attached_vertex_is_pulled_to_its_target_by_a_spring():
     assert abs(mesh.points[4, 1] - piece.positions[4, 1] - expected) < 1e-6 * expected
 
 
-def test_held_vertices_are_exactly_where_they_are_told_to_be():
+def test_prescribed_vertices_reach_their_targets():
     mesh = sheet(0.2, 0.2, 4, 4)
     piece = cloth(mesh, top_of(mesh))
     targets = mesh.points + [0.01, 0.02, -0.03]
@@ -219,7 +219,7 @@ def test_held_vertices_are_exactly_where_they_are_told_to_be():
     assert (piece.positions[piece.held] == targets[piece.held]).all()
 
 
-def test_the_result_is_bit_for_bit_the_same_for_any_number_of_threads():
+def test_motion_is_bit_identical_for_any_number_of_threads():
     mesh = sheet(0.3, 0.3, 12, 12)
     before, results = _core.thread_count(), []
     try:
@@ -234,14 +234,14 @@ def test_the_result_is_bit_for_bit_the_same_for_any_number_of_threads():
     assert (results[0] == results[1]).all() and (results[0] == results[2]).all()
 
 
-def test_a_start_that_is_not_finite_is_reported():
+def test_a_non_finite_start_is_reported():
     mesh = sheet(0.2, 0.2, 4, 4)
     piece = cloth(mesh)
     piece.positions[3] = np.nan
     assert piece.step(mesh.points, FRAME)["nan"] == 1
 
 
-def test_a_rest_shape_that_is_scaled_is_at_rest_in_its_new_size_and_weighs_the_same():
+def test_a_scaled_rest_shape_is_at_rest_and_keeps_its_mass():
     mesh = sheet(0.1, 0.1, 4, 4)
     mesh.points[:, 2] = 0.3 * np.abs(mesh.points[:, 0] - 0.05)  # with a fold
     piece = cloth(mesh, stretch_warp=500.0, stretch_weft=500.0)
@@ -249,7 +249,7 @@ def test_a_rest_shape_that_is_scaled_is_at_rest_in_its_new_size_and_weighs_the_s
     for scale in (0.5, 2.0, 1.0):
         piece.scale_rest(scale)
         assert piece.energy(scale * mesh.points)[0] < 1e-20
-        # ½ k (1/s − 1)² along both, over an area that is s² as large
+        # ½ k (1/s − 1)² in each direction, over the area s² A
         expected = area * scale**2 * 500.0 * (1 / scale - 1) ** 2
         assert abs(piece.energy(mesh.points)[0] - expected) < 1e-9
         assert piece.masses.sum() == mass
@@ -257,8 +257,8 @@ def test_a_rest_shape_that_is_scaled_is_at_rest_in_its_new_size_and_weighs_the_s
         piece.scale_rest(0.0)
 
 
-def test_the_warp_follows_the_texture():
-    """Stretched along u, only the warp resists, whichever way the sheet lies."""
+def test_the_warp_follows_the_texture_coordinates():
+    """A stretch along u strains only the warp, for any orientation of the sheet."""
     mesh = sheet(0.1, 0.1, 2, 2)
     mesh.uv = mesh.points[mesh.triangles][:, :, [1, 0]]  # u along y
     piece = cloth(mesh, stretch_warp=1000.0, stretch_weft=1.0, shear=0.0, bend=0.0)
@@ -267,7 +267,7 @@ def test_the_warp_follows_the_texture():
 
 
 @pytest.mark.parametrize(("what", "message"), [("flat", "triangle 1 has no area"), ("loose", "vertex 9 belongs to no")])
-def test_a_mesh_that_cannot_be_cloth_is_refused(what, message):
+def test_an_invalid_cloth_mesh_is_refused(what, message):
     mesh = sheet(0.1, 0.1, 2, 2)
     if what == "flat":
         mesh.triangles[1] = (0, 1, 1)

@@ -1,8 +1,9 @@
-"""Locks in equilibrium stay exactly where they were groomed, stand, and are no less lively for it."""
+"""Locks in equilibrium stay as groomed, are stable and keep their natural frequencies."""
 
 import numpy as np
 import pytest
 from coils import helix, rotation
+from locks import GRAVITY, STRAIGHT, arc, curl, first_frequency, sag, scene
 from ringlet.curves import Curves
 from ringlet.errors import UserError
 from ringlet.groom.groom import Groom
@@ -14,21 +15,20 @@ from ringlet.shot.nails import pull
 from ringlet.shot.scene import Scene
 from ringlet.shot.simulate import make_strands
 from ringlet.shot.strands import Solver, Strands
-from test_lofted_strands import GRAVITY, STRAIGHT, arc, curl, first_frequency, sag, scene
 
 MODE = "[rest]\nmode = 'equilibrium'\n"
-BARELY = MODE + "spring = 0.1\n"  # stiffened only as far as standing takes
+BARELY = MODE + "spring = 0.1\n"  # only the stiffness that stability needs
 
 
 @pytest.mark.parametrize("points", [curl(), arc(), STRAIGHT, helix(30, per_turn=5, hand=-1)])
-def test_balance_is_the_gradient_of_the_energy_turned_round(points):
-    """Strands that remember what balance says of random loads have those loads as their gradient."""
+def test_balanced_strands_have_the_loads_as_their_gradient(points):
+    """With the strains of `balance` as rest state, the gradient of the energy equals the given random loads."""
     curves, material = Curves.from_list([points]), Material(bend_scale=1e3, correct_resolution=False)
     strands = Strands(curves, material)
     loads = 1e-5 * np.random.default_rng(3).normal(size=points.shape)
     frames = strands.directors.copy()
     forces = balance(curves, points, frames, loads, 3)
-    for _ in range(3):  # a rest shape has other lengths, and stiffness with them
+    for _ in range(3):  # the lengths of the rest shape change the stiffness
         stretch, bend, twist = (np.where(stiffness > 0, stiffness, np.inf) for stiffness in strands.stiffness)
         strain = Joints(forces.length / stretch, forces.bend / bend[:, None], forces.twist / twist)
         rest, _ = shape(curves, measure(curves, points, frames).plus(strain, -1.0), frames)
@@ -38,7 +38,7 @@ def test_balance_is_the_gradient_of_the_energy_turned_round(points):
     assert np.abs(gradient - loads)[3:].max() < 1e-6 * np.abs(loads).max()
 
 
-def test_locks_stay_where_they_were_groomed_for_ten_seconds():
+def test_locks_in_equilibrium_stay_as_groomed_for_ten_seconds():
     shot, groom = scene(curl(), arc(), STRAIGHT, helix(60) * [1, 1, 1], more=MODE)
     made = with_sag(equilibrium(shot, groom), shot)
     strands = make_strands(shot, groom, made.rest, made.stiffened)
@@ -49,8 +49,8 @@ def test_locks_stay_where_they_were_groomed_for_ten_seconds():
     assert sag(strands.positions, groom.locks.points) < 0.1 * shot.strands.radius
 
 
-def test_a_lock_that_would_fall_is_stiffened_until_it_stands():
-    """A coil that stands upright; nudged, it comes back."""
+def test_an_unstable_lock_is_stiffened_until_it_stands():
+    """A coil that stands upright returns after a perturbation."""
     standing = helix(100) * [1, -1, 1]
     shot, groom = scene(standing, curl(), more=BARELY)
     made = equilibrium(shot, groom)
@@ -65,7 +65,7 @@ def test_a_lock_that_would_fall_is_stiffened_until_it_stands():
     assert sag(soft.positions, groom.locks.points) > 0.01
 
 
-def test_what_falls_however_stiff_it_may_be_keeps_its_shape_and_is_told():
+def test_a_lock_that_cannot_stand_keeps_its_shape_and_is_reported():
     upright = np.c_[np.zeros(60), np.linspace(0, 0.5, 60), 1e-4 * np.linspace(0, 1, 60) ** 2]
     shot, groom = scene(upright, curl(), more=MODE)
     made = equilibrium(shot, groom)
@@ -73,7 +73,7 @@ def test_what_falls_however_stiff_it_may_be_keeps_its_shape_and_is_told():
     assert (made.rest.points[:60] == upright).all() and made.stiffened[0] == 1.0
 
 
-def test_a_curl_in_equilibrium_swings_as_fast_as_it_did():
+def test_equilibrium_keeps_the_natural_frequency_of_a_curl():
     shot, groom = scene(helix(60, radius=4e-3, pitch=4e-3), more="[strands]\ndamping = 0\ndrag = 0\n" + MODE)
     made = with_sag(equilibrium(shot, groom), shot)
     plain = first_frequency(make_strands(shot, groom), made.sagged)
@@ -82,7 +82,7 @@ def test_a_curl_in_equilibrium_swings_as_fast_as_it_did():
 
 
 def stiffness_at(strands, points):
-    """The second derivative of the energy by the free coordinates, frames following [N/m]; by differences."""
+    """Hessian of the energy with adapted frames over the free coordinates [N/m], by finite differences."""
     step, size = 1e-6, points.size
     rows = np.empty((size - 9, size))
     for row, i in enumerate(range(9, size)):
@@ -93,8 +93,8 @@ def stiffness_at(strands, points):
 
 
 @pytest.mark.parametrize(("angle", "slower"), [(110, True), (0, False)])
-def test_what_weight_adds_to_the_square_of_a_frequency_is_the_same_however_stiff_a_lock_is(angle, slower):
-    """What stands up swings slower than without weight, what hangs swings faster, by g over a length."""
+def test_gravity_shifts_squared_frequencies_independently_of_stiffness(angle, slower):
+    """Gravity lowers the squared frequency of a standing lock and raises that of a hanging one, by g over a length."""
     groomed, added = helix(20, radius=4e-3, pitch=6e-3, per_turn=10) @ rotation((0, 0, 1), np.radians(angle)).T, []
     for scale in (8, 32):
         shot, groom = scene(groomed, more=MODE + f"[strands]\nbend_scale = {scale}\ncorrect_resolution = false\n")
@@ -115,11 +115,11 @@ LEANING = helix(50, pitch=9e-3, per_turn=8) @ rotation((0, 0, 1), 2).T
 
 
 def balanced_at(scale, points):
-    """A lock of some ``bend_scale`` that remembers what it must to be still as groomed, whether it stands or not."""
+    """A lock of the given ``bend_scale`` in equilibrium as groomed, stable or unstable."""
     shot, groom = scene(points, more=f"[strands]\ncorrect_resolution = false\nbend_scale = {scale}\n")
     strands, locks = make_strands(shot, groom), groom.locks
     frames = strands.directors.copy()
-    for _ in range(4):  # a rest shape has other lengths, and stiffness with them
+    for _ in range(4):  # the lengths of the rest shape change the stiffness
         forces = balance(locks, points, frames, strands.loads(GRAVITY), 3)
         stretch, bend, twist = (np.where(stiffness > 0, stiffness, np.inf) for stiffness in strands.stiffness)
         strain = Joints(forces.length / stretch, forces.bend / bend[:, None], forces.twist / twist)
@@ -130,19 +130,19 @@ def balanced_at(scale, points):
 
 
 @pytest.mark.parametrize("points", [STANDING, LEANING])
-def test_the_stiffness_to_stand_is_where_the_least_eigenvalue_changes_sign(points):
+def test_stiffness_to_stand_is_where_the_smallest_eigenvalue_changes_sign(points):
     needed = balanced_at(1, points).stiffness_to_stand(np.zeros(1), 1e4)[0]
     assert needed > 1.2
-    for part, stands in ((0.96, False), (1.02, True)):
-        strands = balanced_at(part * needed, points)
+    for factor, stands in ((0.96, False), (1.02, True)):
+        strands = balanced_at(factor * needed, points)
         assert (np.linalg.eigvalsh(stiffness_at(strands, points))[0] > 0) == stands
         assert (strands.stiffness_to_stand(np.zeros(1), 1e4)[0] == 1) == stands
     assert np.isinf(balanced_at(1, points).stiffness_to_stand(np.zeros(1), 0.9 * needed)[0])
 
 
 @pytest.mark.parametrize("spring", [0.3, 0.7])
-def test_weight_leaves_a_lock_its_part_of_its_stiffness(spring):
-    """The part is that of the square of its frequency without weight. It is made no stiffer than that takes."""
+def test_gravity_leaves_a_lock_the_requested_fraction_of_its_stiffness(spring):
+    """The squared lowest frequency stays above the fraction `spring` of that without gravity, by less than 0.1."""
     shot, groom = scene(STANDING, more=MODE + f"spring = {spring}\n[strands]\ncorrect_resolution = false\n")
     made = equilibrium(shot, groom)
     assert made.stiffened[0] > 1.1
@@ -152,8 +152,8 @@ def test_weight_leaves_a_lock_its_part_of_its_stiffness(spring):
     assert 0.95 * spring < under_weight / without < spring + 0.1
 
 
-def test_it_takes_up_what_the_loft_leaves():
-    """The loft corrects a shape by how it hangs, and cannot where it falls."""
+def test_equilibrium_balances_a_lock_that_loft_cannot():
+    """Loft iterates on the hanging shape and fails where that is unstable."""
     standing = helix(80, radius=4e-3, pitch=6e-3) @ rotation((0, 0, 1), np.radians(110)).T
     lofted, balanced = loft(*scene(standing)), equilibrium(*scene(standing, more=MODE))
     assert balanced.off[0] < 1e-6 < lofted.off[0]
@@ -162,23 +162,23 @@ def test_it_takes_up_what_the_loft_leaves():
 FLOOR = Mesh(
     "/floor", 0.1 * np.array([[-1, 0, -1], [1, 0, -1], [1, 0, 1], [-1, 0, 1.0]]), np.array([[0, 2, 1], [0, 3, 2]])
 )
-REACH = 1e-3  # how near contact begins, of a lock on a body
+REACH = 1e-3  # [m] activation distance of a lock and a body
 
 
 def lying():
-    """A wavy strand of 8 cm that comes down to the floor and lies on it."""
+    """A wavy strand of 8 cm whose root is above the floor and whose length lies on it."""
     t = np.linspace(0, 1, 60)
     return np.c_[0.08 * t - 0.04, 0.9 * REACH + 6e-3 * np.exp(-((t / 0.08) ** 2)), 4e-3 * np.sin(12 * t)]
 
 
 def over(height=0.0):
-    """The floor as something to lie on, at a height."""
+    """The floor as an obstacle, at a height."""
     mesh = Mesh(FLOOR.name, FLOOR.points + [0, height, 0], FLOOR.triangles.astype(np.int32))
     return Obstacle(mesh, Clip(np.array([1.0]), mesh.points[None], 24.0))
 
 
-def test_what_lies_on_a_body_remembers_lying_and_stays():
-    """Balanced against gravity alone it would have to stand up from where it lies."""
+def test_the_rest_shape_of_a_lock_on_a_body_is_its_groomed_shape():
+    """In equilibrium with gravity alone its rest shape would rise from the floor."""
     shot, groom = scene(lying(), more=MODE + "[strands]\nbend_scale = 4\n[contact]\nradius = 5e-4\n")
     hovering, resting = equilibrium(shot, groom), equilibrium(shot, groom, obstacles=[over()])
     assert sag(resting.rest.points, lying()) < 0.01 * sag(hovering.rest.points, lying())
@@ -193,7 +193,7 @@ def test_what_lies_on_a_body_remembers_lying_and_stays():
 
 
 def pressed_and_lifted(shot, groom, made):
-    """With what part of its weight a strand presses on the floor, and how far it rises when nothing weighs any more."""
+    """Fraction of its weight with which a strand presses on the floor, and its rise without gravity [m]."""
     strands, floor = make_strands(shot, groom, made.rest, made.stiffened), over()
     strands.place(groom.locks.points)
     touching, pressed = Scene(strands, [floor.body(1.0)], shot.touching), []
@@ -206,8 +206,8 @@ def pressed_and_lifted(shot, groom, made):
     return np.median(pressed), (strands.positions - groom.locks.points)[:, 1].max()
 
 
-def test_what_lies_on_a_body_presses_on_it_and_does_not_rise():
-    """Bent against gravity alone it hardly presses, and stands up as soon as it weighs less."""
+def test_a_lock_on_a_body_presses_with_its_weight_and_does_not_rise():
+    """Lofted against gravity alone it hardly presses, and rises without gravity."""
     shot, groom = scene(lying(), more=MODE + "[strands]\nbend_scale = 4\n[contact]\nradius = 5e-4\n")
     pressed, lifted = pressed_and_lifted(shot, groom, loft(shot, groom))
     assert pressed < 0.1 and lifted > 0.01
@@ -218,12 +218,12 @@ def test_what_lies_on_a_body_presses_on_it_and_does_not_rise():
 @pytest.mark.parametrize(
     ("points", "body", "contact"),
     [
-        (lying() * [1, -1, 1], over(), "radius = 5e-4"),  # hanging under it, where it could only pull
-        (lying(), over(-0.3 * REACH), "radius = 5e-4"),  # out of reach
+        (lying() * [1, -1, 1], over(), "radius = 5e-4"),  # below the floor, which could only pull
+        (lying(), over(-0.3 * REACH), "radius = 5e-4"),  # beyond the activation distance
         (lying(), over(), "on = false"),
     ],
 )
-def test_what_cannot_push_bears_nothing(points, body, contact):
+def test_bodies_that_cannot_push_support_no_lock(points, body, contact):
     shot, groom = scene(points, more=MODE + f"[strands]\nbend_scale = 4\n[contact]\n{contact}\n")
     free, beside = equilibrium(shot, groom), equilibrium(shot, groom, obstacles=[body])
     assert (free.rest.points == beside.rest.points).all()
@@ -236,7 +236,7 @@ def nailed_near_tip(groom, firm):
     return Groom(locks, locks, groom.scalp)
 
 
-def test_a_soft_nail_bears_its_part_of_the_weight():
+def test_a_soft_nail_supports_its_share_of_the_weight():
     shot, groom = scene(STRAIGHT, more=MODE)
     groom = nailed_near_tip(groom, 0.5)
     made = equilibrium(shot, groom)
@@ -248,8 +248,8 @@ def test_a_soft_nail_bears_its_part_of_the_weight():
     assert sag(strands.positions, STRAIGHT) < 1e-6
 
 
-def test_a_lock_hangs_from_its_nails_too():
-    """Nailed near its tip it need not hold itself up, and does not move."""
+def test_a_nailed_lock_hangs_from_its_nail():
+    """With a nail near its tip the rest shape stays close to the groomed shape, and the lock does not move."""
     shot, groom = scene(STRAIGHT, more=MODE)
     free, groom = equilibrium(shot, groom), nailed_near_tip(groom, 1.0)
     nailed = equilibrium(shot, groom)
@@ -269,12 +269,12 @@ def test_a_lock_hangs_from_its_nails_too():
         ("held = 2\n" + MODE, "held is 2"),
     ],
 )
-def test_what_it_cannot_do_is_refused(more, words):
+def test_unsupported_settings_are_refused(more, words):
     with pytest.raises(UserError, match=words):
         equilibrium(*scene(curl(), more=more))
 
 
-def test_bdf2_keeps_it_still_as_well():
+def test_bdf2_keeps_equilibrium():
     shot, groom = scene(curl(), more=MODE)
     made = equilibrium(shot, groom)
     strands = make_strands(shot, groom, made.rest, made.stiffened)

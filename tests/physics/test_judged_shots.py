@@ -1,4 +1,4 @@
-"""Nothing passes through anything in shots of the example, says ipctk; `judged_shots.py` plays all of them."""
+"""Shots of the example without intersections, judged by ipctk; `tools/proof/shots.py` plays all their frames."""
 
 import itertools
 
@@ -9,8 +9,8 @@ from ringlet.shot.worn import carried
 
 
 @pytest.mark.parametrize("shot", SHOTS)
-def test_nothing_passes_through_anything_in_a_shot_of_the_example(shot):
-    """Its first frames, with a part of the locks."""
+def test_shots_of_the_example_have_no_crossings(shot):
+    """The first frames, with 100 locks."""
     motion = start(shot, locks=100)
     frames = list(judged(motion, 3))
     assert len(frames) == 3
@@ -21,24 +21,24 @@ def test_nothing_passes_through_anything_in_a_shot_of_the_example(shot):
         assert strain == pytest.approx(frame.statistics["max_stretch"], rel=1e-9)
 
 
-def test_what_begins_in_the_shirt_comes_out_and_passes_through_nothing_else():
-    """Hair that hangs down: some of it starts inside, and is judged against bodies once it is out."""
+def test_locks_that_start_inside_the_shirt_leave_it_and_cross_nothing_else():
+    """Vertices that start inside are tested against bodies from the frame after they leave."""
     motion = start("nod", "down", locks=100)
     frames = list(judged(motion, 3))
     assert 0 < frames[-1].statistics["contact"]["excused"] < sum(found["vertices"] for found in motion.start["inside"])
     assert all(frame.crossings == 0 and frame.statistics["nan"] == 0 for frame in frames)
 
 
-def test_long_hair_between_a_head_that_turns_and_a_shirt_does_not_stop_them():
-    """What hangs on the shirt cannot go along with the head; all bodies stopped for it, for seconds."""
+def test_long_hair_between_a_turning_head_and_a_shirt_stops_neither():
+    """Locks on the shirt cannot follow the rotation of the head; every step still completes its motion."""
     frames = list(judged(start("nod", "down", locks=300), 26, every=5))
     assert sum(frame.crossings or 0 for frame in frames) == 0
     assert all(frame.statistics["contact"]["fraction"] == 1.0 for frame in frames)
 
 
 @pytest.mark.parametrize("locks", [100, 150, 200])
-def test_cloth_that_is_put_into_hair_passes_through_nothing_and_goes_on_moving(locks):
-    """A ribbon pushes locks aside, though the head rests; then it never goes along as if it were rigid for long."""
+def test_cloth_put_into_hair_crosses_nothing_and_keeps_moving(locks):
+    """A ribbon pushes locks aside on a resting head; it never moves rigidly for two frames in a row."""
     motion = start("ribbon", locks=locks)
     (ribbon,), moved = motion.worn, []
     before = ribbon.cloth.positions.copy()
@@ -50,8 +50,8 @@ def test_cloth_that_is_put_into_hair_passes_through_nothing_and_goes_on_moving(l
     assert all(max(pair) > 1e-6 for pair in itertools.pairwise(moved))
 
 
-def test_hair_in_equilibrium_stays_where_no_cloth_comes(tmp_path):
-    """A ribbon is put into locks while the head rests: some are pushed aside, those that it does not touch stay."""
+def test_hair_in_equilibrium_stays_at_rest_away_from_cloth(tmp_path):
+    """A ribbon is put into locks on a resting head: it pushes some aside, and the others stay in place."""
     motion = start("ribbon", locks=150, balanced=tmp_path / "ribbon.rest.usdc")
     curves = motion.scene.strands.curves
     begin = motion.scene.positions[: len(curves.points)].copy()
@@ -59,4 +59,4 @@ def test_hair_in_equilibrium_stays_where_no_cloth_comes(tmp_path):
     away = np.linalg.norm(motion.scene.positions[: len(begin)] - begin, axis=1)
     moved = np.maximum.reduceat(away, curves.offsets[:-1])
     assert moved.max() > 0.01
-    assert np.quantile(moved, 0.8) < 35e-6  # a hair's radius [m]
+    assert np.quantile(moved, 0.8) < 35e-6  # [m] radius of a hair

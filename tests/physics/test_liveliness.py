@@ -1,4 +1,4 @@
-"""Hair that lies in hair moves: nothing would pass through anything either if all of it stood still."""
+"""Hair in contact keeps moving; a solver that stops all hair would also avoid intersections."""
 
 from pathlib import Path
 
@@ -7,22 +7,22 @@ import ringlet
 EXAMPLE = Path(__file__).parents[2] / "examples/child"
 
 
-def test_locks_of_the_example_move_a_third_of_what_they_do_without_contact_at_least():
-    moves = beside("nod", 6)
+def test_contact_leaves_the_example_a_third_of_its_motion():
+    moves = motion("nod", 6)
     assert moves["with"]["moves_mm"] > moves["without"]["moves_mm"] / 3
 
 
-def test_locks_of_which_a_few_touch_a_cloth_move_too():
-    """All of them touch one another, and a few of them the ribbon."""
-    moves = beside("ribbon", 9)
+def test_contact_beside_a_cloth_leaves_locks_a_quarter_of_their_motion():
+    """All locks touch each other, and a few touch the ribbon."""
+    moves = motion("ribbon", 9)
     assert moves["with"]["moves_mm"] > moves["without"]["moves_mm"] / 4
     assert moves["with"]["still"] == 0
 
 
-def beside(name, frames):
-    """How far locks of a shot of the example move, with contact and without."""
+def motion(name, frames):
+    """Motion of the locks of a shot of the example, with and without contact."""
     contact = ringlet.read_shot(EXAMPLE / f"{name}.shot.toml").contact
     assert contact is not None
-    told = str(contact.stiffness)
-    off = ringlet.run_bench("liveliness", shot=name, frames=frames, stiffness=told)["off"]
-    return {"with": off[told], "without": off["without"]}
+    stiffness = str(contact.stiffness)
+    off = ringlet.run_bench("liveliness", shot=name, frames=frames, stiffness=stiffness)["off"]
+    return {"with": off[stiffness], "without": off["without"]}

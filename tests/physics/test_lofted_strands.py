@@ -1,43 +1,13 @@
-"""Lofted strands hang as they were groomed, and are no stiffer for it."""
+"""Lofted strands hang as they were groomed and keep their stiffness."""
 
 import numpy as np
 import pytest
-from coils import helix, rotation
+from coils import helix
+from locks import GRAVITY, STRAIGHT, arc, curl, first_frequency, sag, scene
 from ringlet.curves import Curves
-from ringlet.groom.groom import Groom
-from ringlet.mesh import Mesh
-from ringlet.shot import loft, parse_shot
+from ringlet.shot import loft
 from ringlet.shot.joints import measure, shape
 from ringlet.shot.simulate import make_strands
-from ringlet.shot.strands import Solver
-
-SHOT = 'ringlet = 1\ngroom = "groom.usdc"\nframes = [1, 1]\n'
-GRAVITY = (0.0, -9.81, 0.0)
-
-
-def scene(*strands, more=""):
-    """A shot and a groom of these strands."""
-    mesh = Mesh("none", np.zeros((3, 3)), np.array([[0, 1, 2]], np.int32))
-    locks = Curves.from_list(list(strands))
-    return parse_shot(SHOT + more), Groom(locks, locks, mesh)
-
-
-def curl():
-    """A corkscrew that comes out sideways from its root."""
-    return helix(80, radius=4e-3, pitch=6e-3) @ rotation((0, 0, 1), np.radians(70)).T
-
-
-def arc():
-    """A smooth strand of 8 cm that leaves sideways and bends upwards."""
-    angle = np.linspace(0, 1.0, 40)
-    return 0.08 * np.c_[np.sin(angle), 1 - np.cos(angle), 0 * angle]
-
-
-def sag(points, groomed):
-    return float(np.linalg.norm(points - groomed, axis=1).max())
-
-
-STRAIGHT = np.c_[np.linspace(0, 0.06, 40), np.zeros((40, 2))]
 
 
 @pytest.mark.parametrize(
@@ -46,11 +16,11 @@ STRAIGHT = np.c_[np.linspace(0, 0.06, 40), np.zeros((40, 2))]
         (curl(), "material_frame"),
         (arc(), "material_frame"),
         (STRAIGHT, "material_frame"),
-        (curl(), "least_energy"),  # hinges cannot tell which way a straight strand was pre-bent
+        (curl(), "least_energy"),  # hinges cannot store the pre-bend of a straight strand
         (arc(), "least_energy"),
     ],
 )
-def test_a_lofted_strand_sags_less_than_a_fifth_of_what_it_sagged(groomed, continuation):
+def test_loft_reduces_sag_to_less_than_a_fifth(groomed, continuation):
     shot, groom = scene(groomed, more=f"[solver]\ncontinuation = '{continuation}'\n")
     made = loft(shot, groom)
     strands = make_strands(shot, groom, made.rest)
@@ -68,22 +38,7 @@ def test_a_lofted_curl_hangs_as_groomed_within_the_tolerance():
     assert sag(made.lofted, curl()) < shot.rest.tolerance
 
 
-def first_frequency(strands, hanging):
-    """Of small swings about where a strand hangs [1/s], from how its tip crosses its mean after a gentle push."""
-    dt = 1 / 1000
-    strands.place(hanging)
-    strands.settle(gravity=GRAVITY, tolerance=1e-9)
-    rest = strands.positions.copy()
-    strands.velocities[:] = 1e-3 * (rest - rest[0])[:, [1]] * [0, 0, 1] / 0.01
-    tip = []
-    for _ in range(1500):
-        strands.step(rest, dt, gravity=GRAVITY, solver=Solver(newton=20, tolerance=1e-10))
-        tip.append(strands.positions[-1, 2] - rest[-1, 2])
-    spectrum = np.abs(np.fft.rfft(np.array(tip) * np.hanning(len(tip)), 16 * len(tip)))
-    return np.fft.rfftfreq(16 * len(tip), dt)[spectrum.argmax()]
-
-
-def test_a_lofted_curl_swings_as_fast_as_it_did():
+def test_loft_keeps_the_natural_frequency_of_a_curl():
     shot, groom = scene(helix(60, radius=4e-3, pitch=4e-3), more="[strands]\ndamping = 0\ndrag = 0\n")
     made = loft(shot, groom)
     assert made.off.max() < shot.rest.tolerance < 0.2 * sag(made.sagged, groom.locks.points)
@@ -92,7 +47,7 @@ def test_a_lofted_curl_swings_as_fast_as_it_did():
     assert lofted == pytest.approx(plain, rel=0.1)
 
 
-def test_gain_is_the_part_of_the_sag_that_is_taken_away():
+def test_gain_is_the_fraction_of_sag_that_loft_removes():
     groomed = arc()
     sags = []
     for gain in (0.0, 0.5, 1.0):
@@ -102,7 +57,7 @@ def test_gain_is_the_part_of_the_sag_that_is_taken_away():
     assert sags[2] < 2e-5
 
 
-def test_gain_by_a_map_lofts_one_lock_and_leaves_the_other():
+def test_a_gain_map_lofts_one_lock_and_leaves_the_other():
     shot, groom = scene(arc(), arc() + [0, 0, 0.05], more="[rest]\ngain = { map = 'keep' }\n")
     groom.locks.curve["keep"] = np.array([1.0, 0.0])
     made = loft(shot, groom)
@@ -111,8 +66,8 @@ def test_gain_by_a_map_lofts_one_lock_and_leaves_the_other():
     assert np.allclose(made.lofted[40:], made.sagged[40:])
 
 
-def test_a_lock_that_cannot_stand_is_left_no_worse_than_it_was():
-    """Upright, straight and ten times as long as one that buckles under its own weight."""
+def test_loft_does_not_increase_the_sag_of_an_unstable_lock():
+    """An upright straight lock, ten times as long as the buckling length under its own weight."""
     upright = np.c_[np.zeros(60), np.linspace(0, 0.5, 60), 1e-4 * np.linspace(0, 1, 60) ** 2]
     shot, groom = scene(upright, curl())
     made = loft(shot, groom)
@@ -121,7 +76,7 @@ def test_a_lock_that_cannot_stand_is_left_no_worse_than_it_was():
     assert away <= np.linalg.norm(made.sagged - groom.locks.points, axis=1)[:60].max() + 1e-9
 
 
-def test_joints_give_the_shape_back():
+def test_joint_strains_reproduce_the_shape():
     curves = Curves.from_list([curl(), arc(), np.random.default_rng(1).normal(size=(7, 3))])
     shot, groom = scene()
     groom.locks = curves

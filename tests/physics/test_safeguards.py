@@ -1,11 +1,11 @@
-"""What each safeguard of `history` is for: a scene that goes well with it, and badly as soon as it is turned off."""
+"""Safeguards of `history`: each has a scene that succeeds with it and fails without it."""
 
 import numpy as np
 import pytest
 from coils import helix, jittered, rotation
+from releases import CLOSE, PRESCRIBED, flattened, straightened
 from ringlet.curves import Curves
 from ringlet.shot import Material, Solver, Strands
-from stability import CLOSE, HELD, flattened, straightened
 
 FRAME = 1 / 24
 SAFEGUARDS = ("flip_history", "winding_number", "straight_fade")
@@ -15,9 +15,9 @@ def history(*, without=()):
     return Solver(continuation="history", safeguards=[name for name in SAFEGUARDS if name not in without])
 
 
-def let_go(rest, start, solver, *, steps, variation=None, **material):
-    """Distance from rest at the end [m], and the largest rise of the energy in a step, by that at the start."""
-    strand = Strands(Curves.from_list([rest]), Material(**material), HELD, variation or {})
+def released(rest, start, solver, *, steps, variation=None, **material):
+    """Final distance from rest [m] and largest energy increase in a step, relative to the initial energy."""
+    strand = Strands(Curves.from_list([rest]), Material(**material), PRESCRIBED, variation or {})
     strand.place(start)
     first = before = strand.energy(start, continuation="history")[0]
     gain = 0.0
@@ -29,18 +29,20 @@ def let_go(rest, start, solver, *, steps, variation=None, **material):
 
 
 @pytest.mark.parametrize("limit_twist", [True, False])
-def test_twist_stiffer_than_bend_gains_energy(limit_twist):
-    """A flattened coil whose twist is varied up to ten times its bend, disturbed a little, in six ways."""
+def test_twist_stiffer_than_bend_gains_energy_unless_limited(limit_twist):
+    """A flattened coil with twist ten times as stiff as bend, from six perturbed initial shapes."""
     rest = helix(100)
     stiff = {"twist": np.full(len(rest), 10 / 0.72)}
     starts = [jittered(flattened(rest), 1e-8, seed) for seed in range(6)]
-    gains = [let_go(rest, start, history(), steps=40, variation=stiff, limit_twist=limit_twist)[1] for start in starts]
+    gains = [
+        released(rest, start, history(), steps=40, variation=stiff, limit_twist=limit_twist)[1] for start in starts
+    ]
     assert max(gains) < 1e-2 if limit_twist else min(gains) > 2e-2
 
 
 @pytest.mark.parametrize("without", [(), ("flip_history",)])
-def test_a_kink_pushed_through_straight_comes_back_only_if_the_flip_is_remembered(without):
-    """Without it the mirrored kink has its rest angle, and stays."""
+def test_a_kink_pushed_through_straight_returns_only_with_flip_history(without):
+    """Without the history the mirrored kink has its rest angle and is in equilibrium."""
     rest = 0.01 * np.array([[0, 0, 0], [0, -1, 0], [0, -2, 0], [0.6, -2.8, 0]])
     strand = Strands(Curves.from_list([rest]), Material(twist_ratio=0.0, mass_damping=20.0), 3)
     push = np.zeros_like(rest)
@@ -48,14 +50,14 @@ def test_a_kink_pushed_through_straight_comes_back_only_if_the_flip_is_remembere
         push[3, 0] = -2e-4 if step < 120 else 0.0
         strand.step(rest, FRAME, forces=push, solver=history(without=without))
         if step == 119:
-            assert strand.positions[3, 0] < -0.004, "it is on the other side"
+            assert strand.positions[3, 0] < -0.004, "the kink is on the other side"
     mirrored = rest[3] * [-1, 1, 1]
     assert np.abs(strand.positions[3] - (mirrored if without else rest[3])).max() < CLOSE
 
 
 @pytest.mark.parametrize("without", [(), ("winding_number",)])
-def test_twist_adds_up_over_whole_turns_only_if_they_are_counted(without):
-    """The far end is turned twice about the middle edge, which is a torsion spring: ½ k Δφ²."""
+def test_twist_accumulates_over_turns_only_with_the_winding_number(without):
+    """The end is rotated twice about the middle edge, a torsion spring of energy ½ k Δφ²."""
     rest = helix(6)
     strand = Strands(Curves.from_list([rest]), Material(), np.ones(6, bool))
     energies = []
@@ -72,9 +74,9 @@ def test_twist_adds_up_over_whole_turns_only_if_they_are_counted(without):
 
 
 @pytest.mark.parametrize("without", [(), ("straight_fade",)])
-def test_a_straightened_coil_comes_back_only_if_twist_has_faded_out(without):
-    """Where edges are in line the dihedral is undefined and its slope without bound: left in, it locks them."""
+def test_a_straightened_coil_returns_only_with_the_straight_fade(without):
+    """Collinear edges have an undefined dihedral angle with an unbounded gradient, which locks the strand."""
     rest = helix(100, per_turn=5)
-    away, _ = let_go(rest, straightened(rest), history(without=without), steps=400)
+    away, _ = released(rest, straightened(rest), history(without=without), steps=400)
     assert (away < CLOSE) == (not without)
     assert not without or away > 0.1

@@ -1,11 +1,11 @@
-"""Strands released from abuse come back to rest, gain no energy, and go no further than their start allows."""
+"""Strands released far from rest return, gain no energy and have bounded excursions."""
 
 import numpy as np
 import pytest
 from coils import helix, rotation
+from releases import CLOSE, PRESCRIBED, release, scenes
 from ringlet.curves import Curves
 from ringlet.shot import Material, Solver, Strands
-from stability import CLOSE, HELD, release, scenes
 
 NAMES = [name for name, _, _ in scenes()]
 
@@ -24,29 +24,29 @@ def listed(bad):
     return [name for name, is_bad in zip(NAMES, bad, strict=True) if is_bad]
 
 
-def test_every_scene_comes_back_to_rest(released):
+def test_every_scene_returns_to_rest(released):
     assert not listed(~(released.away < CLOSE))
 
 
 def test_no_scene_gains_energy(released):
-    """To one part in a million of what the start held, and never a number that is not finite."""
+    """Relative to the initial energy, to one part in a million; non-finite states count as an infinite gain."""
     assert not listed(~(released.gain < 1e-6))
 
 
-def test_no_scene_is_thrown_further_than_its_coil_is_long(released):
+def test_excursions_stay_below_the_length_of_the_coil(released):
     lengths = np.array([np.linalg.norm(np.diff(rest, axis=0), axis=1).sum() for _, rest, _ in scenes()])
     assert not listed(released.excursion > lengths)
 
 
-def test_one_newton_step_a_step_stays_stable():
-    """It may take longer, but nothing is thrown about and nothing breaks."""
+def test_one_newton_iteration_per_step_is_stable():
+    """The return may take longer, without energy gain and with finite positions."""
     result = release(newton=1, steps=300)
     assert not listed(~(result.gain < 1e-6))
     assert np.isfinite(result.away).all()
 
 
-def test_what_the_frame_is_good_for():
-    """Signs alone lose a coil whose middle is straight; the material frame does not."""
+def test_least_energy_loses_a_coil_with_a_straight_middle():
+    """Signs of dihedral angles cannot restore the twist of a straight section; the material frame can."""
     middle = [name.startswith("coil with straight middle") for name in NAMES]
     assert (release(continuation="least_energy").away[middle] > 10 * CLOSE).any()
 
@@ -57,21 +57,21 @@ def shaken(time):
 
 
 def spun(time):
-    """Three turns a second about the vertical, half a coil's length off the axis."""
+    """Three turns a second about a vertical axis 10 cm away."""
     return rotation([0, 1, 0], 2 * np.pi * 3 * time), np.zeros(3)
 
 
 def teleported(time):
-    """A metre away and upside down from one step to the next."""
+    """A jump by a metre and a half turn within one step."""
     return (rotation([1, 0, 0.3], 3.0), np.array([1.0, 0.5, -0.4])) if time > 0.25 else (np.eye(3), np.zeros(3))
 
 
 @pytest.mark.parametrize("motion", [shaken, spun, teleported])
 @pytest.mark.parametrize("per_turn", [5, 12])
 @pytest.mark.parametrize("newton", [1, 5])
-def test_after_a_violent_motion_of_the_root_a_coil_comes_back(motion, per_turn, newton):
+def test_a_coil_returns_to_rest_after_violent_root_motion(motion, per_turn, newton):
     rest = Curves.from_list([helix(per_turn=per_turn, hand=hand) + [0.1, 0, 0.1 * k] for k, hand in enumerate((1, -1))])
-    strands = Strands(rest, Material(), HELD)
+    strands = Strands(rest, Material(), PRESCRIBED)
     reach = rest.lengths().max()
     for step in range(1, 25):
         turn, shift = motion(step / 24)

@@ -1,4 +1,4 @@
-"""The assembled energy of whole strands: gradient against differences, Hessian positive semi-definite."""
+"""The assembled energy of strands: gradient against finite differences, positive semi-definite Hessian."""
 
 import numpy as np
 import pytest
@@ -16,10 +16,10 @@ def strands_of(points, **material):
 @pytest.mark.parametrize("continuation", CONTINUATIONS)
 @pytest.mark.parametrize("hand", [1, -1])
 @pytest.mark.parametrize("per_turn", [5, 12, 24])
-def test_gradient_agrees_with_differences(continuation, hand, per_turn):
+def test_gradient_agrees_with_finite_differences(continuation, hand, per_turn):
     rest = helix(24, per_turn=per_turn, hand=hand)
     strand = strands_of(rest, stretch_scale=1.0)
-    x = jittered(rest, 2e-4, seed=per_turn, held=3)
+    x = jittered(rest, 2e-4, seed=per_turn, prescribed=3)
     _, gradient, _ = strand.energy(x, continuation=continuation)
     h, expected = 1e-8, np.zeros_like(x)
     for i in range(3, len(x)):
@@ -29,7 +29,7 @@ def test_gradient_agrees_with_differences(continuation, hand, per_turn):
             up, down = (strand.energy(x + s * step, continuation=continuation)[0] for s in (1, -1))
             expected[i, k] = (up - down) / (2 * h)
     assert np.abs(gradient - expected).max() < 1e-6 * np.abs(expected).max()
-    assert not gradient[:3].any(), "held vertices feel no force"
+    assert not gradient[:3].any(), "prescribed vertices have no gradient"
 
 
 @pytest.mark.parametrize("continuation", CONTINUATIONS)
@@ -43,7 +43,7 @@ def test_hessian_is_symmetric_and_positive_semidefinite(continuation, amount):
 
 
 @pytest.mark.parametrize("continuation", CONTINUATIONS)
-def test_the_rest_shape_has_no_energy_and_feels_no_force(continuation):
+def test_the_rest_shape_has_zero_energy_and_gradient(continuation):
     rest = helix(60)
     energy, gradient, _ = strands_of(rest).energy(rest, continuation=continuation)
     assert energy < 1e-25
@@ -52,7 +52,7 @@ def test_the_rest_shape_has_no_energy_and_feels_no_force(continuation):
 
 @pytest.mark.parametrize("shape", ["straight", "folded", "coincident"])
 @pytest.mark.parametrize("continuation", CONTINUATIONS)
-def test_degenerate_shapes_give_finite_numbers(shape, continuation):
+def test_degenerate_shapes_have_finite_energy_gradient_and_hessian(shape, continuation):
     rest = helix(20)
     x = rest.copy()
     along = np.array([0.0, -1e-3, 0.0])

@@ -1,9 +1,10 @@
-"""What bears locks where they were groomed: nails, bodies with friction, and one another; and they stay so."""
+"""Supports that keep locks as groomed: nails, bodies with friction and other locks."""
 
 import numpy as np
 import pytest
 from coils import helix, rotation
-from rest_shapes import FPS, HEAD, grown
+from hairstyles import FPS, HEAD, make_style
+from locks import GRAVITY, sag, scene
 from ringlet.curves import Curves
 from ringlet.groom.groom import Groom
 from ringlet.mesh import Clip, Mesh
@@ -18,16 +19,15 @@ from ringlet.shot.strands import Solver
 from ringlet.shot.support import ARM, _Give
 from scipy.optimize import nnls
 from scipy.sparse import block_diag
-from test_lofted_strands import GRAVITY, sag, scene
 
 MODE = "[rest]\nmode = 'equilibrium'\n"
 SOFT = MODE + "[strands]\nbend_scale = 4\n[contact]\nradius = 5e-4\n"
-REACH = 1e-3  # at which two locks touch, and a lock and a body
+REACH = 1e-3  # [m] activation distance of two locks, and of a lock and a body
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_forces_that_only_push_are_those_of_least_squares(seed):
-    """Of several problems at once; in the last, half of them may pull."""
+def test_compressive_forces_solve_nonnegative_least_squares(seed):
+    """Several problems in one call; half of the forces of the last may also pull."""
     random = np.random.default_rng(seed)
     parts = [(random.normal(size=(12, 8)), random.normal(size=12)) for _ in range(4)]
     free = np.zeros(32, bool)
@@ -42,8 +42,8 @@ def test_forces_that_only_push_are_those_of_least_squares(seed):
     assert (last == 0).any() and (found == 0).any()
 
 
-def test_the_energy_of_two_forces_together_is_summed_over_the_joints_that_both_strain():
-    """Against the strains themselves, joint by joint: bend and twist by the moment there, stretch by the force."""
+def test_energy_of_two_forces_is_summed_over_joints_that_both_strain():
+    """Against strains per joint: bend and twist follow from the moment, stretch from the force."""
     random = np.random.default_rng(5)
     shot, groom = scene(*crossed(), more=SOFT)
     locks, strands = groom.locks, make_strands(shot, groom)
@@ -72,15 +72,15 @@ def test_the_energy_of_two_forces_together_is_summed_over_the_joints_that_both_s
 
 
 def crossed():
-    """A beam, and across it a longer one that lies on it."""
+    """A beam, and a longer one across it."""
     t = np.linspace(0, 1, 30)[:, None]
     below = [0, 0, 0] + t * [0.04, 0, 0]
     above = [0.02, 0.95 * REACH, -0.03] + t * [0, 0, 0.06]
     return below, above
 
 
-def fallen(steps, ask=lambda touching: None):
-    """Two beams that fall onto one another and onto a floor, of which something is asked before each step."""
+def fallen(steps, query=lambda scene: None):
+    """Two beams after a fall onto each other and onto a floor; ``query`` is called before each step."""
     below, above = crossed()
     shot, groom = scene(below, above + [0, 0.2 * REACH, 0], more=SOFT)
     at, size = np.array([0, -1.8 * REACH, 0]), 0.2
@@ -88,13 +88,13 @@ def fallen(steps, ask=lambda touching: None):
     strands = make_strands(shot, groom)
     touching = Scene(strands, [Body(floor, np.array([[0, 2, 1]], np.int32))], shot.touching)
     for _ in range(steps):
-        ask(touching)
+        query(touching)
         touching.step(groom.locks.points, 1 / 48, gravity=GRAVITY)
     return touching
 
 
-def test_what_touches_is_what_a_step_that_ended_there_has_reported():
-    """Locks and a body, none of which touched to begin with."""
+def test_a_contact_query_returns_the_contacts_of_the_last_step():
+    """Locks and a body, initially without contact."""
     touching = fallen(8)
     vertices, values = touching.contacts
     found, where = touching.touching()
@@ -103,9 +103,9 @@ def test_what_touches_is_what_a_step_that_ended_there_has_reported():
     assert of_locks.any() and not of_locks.all()
 
 
-def test_what_begins_too_near_touches_as_a_step_has_it_that_hardly_moves():
+def test_a_contact_query_before_a_step_agrees_with_a_tiny_step():
     shot, groom = scene(*crossed(), more=SOFT)
-    away = 1e-9  # [m] by which a step parts them
+    away = 1e-9  # [m] separation by a step
     touching = Scene(make_strands(shot, groom), contact=shot.touching.model_copy(update={"parting_speed": away / 1e-6}))
     found, where = touching.touching()
     touching.step(groom.locks.points, 1e-6, solver=Solver(newton=1))
@@ -115,15 +115,15 @@ def test_what_begins_too_near_touches_as_a_step_has_it_that_hardly_moves():
     assert where[:, 7] == pytest.approx(REACH)
 
 
-def test_no_step_depends_on_whether_what_touches_was_asked_for():
-    plain, asked = fallen(8), fallen(8, ask=Scene.touching)
-    assert (plain.positions == asked.positions).all()
+def test_contact_queries_do_not_change_the_motion():
+    plain, queried = fallen(8), fallen(8, query=Scene.touching)
+    assert (plain.positions == queried.positions).all()
     for name, values in plain.memory.items():
-        assert np.array_equal(values, asked.memory[name])
+        assert np.array_equal(values, queried.memory[name])
 
 
-def stays(shot, groom, made, obstacles=(), steps=48, known=True):
-    """How far locks go from where they were groomed in 2 s [m]; ``known``: it is known what bears them."""
+def drift(shot, groom, made, obstacles=(), steps=48, known=True):
+    """Largest drift of locks from the groomed shape [m]; ``known``: support forces initialise the contacts."""
     strands = make_strands(shot, groom, made.rest, made.stiffened)
     strands.place(groom.locks.points)
     touching = Scene(strands, [one.body(1.0) for one in obstacles], shot.touching)
@@ -134,8 +134,8 @@ def stays(shot, groom, made, obstacles=(), steps=48, known=True):
     return sag(strands.positions, groom.locks.points)
 
 
-def test_a_lock_that_lies_on_another_is_borne_by_it():
-    """What one gains the other loses; each need remember less than if it bore itself, or more. And they stay."""
+def test_a_lock_on_another_is_supported_by_it():
+    """Support forces are equal and opposite, reduce the correction of the upper lock, and both locks stay."""
     shot, groom = scene(*crossed(), more=SOFT)
     borne, upper = bearing(shot, groom, []), slice(30, 60)
     assert np.abs(borne.sum(axis=0)).max() < 1e-12
@@ -145,12 +145,12 @@ def test_a_lock_that_lies_on_another_is_borne_by_it():
     alone = equilibrium(*scene(*crossed(), more=SOFT.replace("radius = 5e-4", "on = false")))
     assert sag(together.rest.points[upper], crossed()[1]) < 0.5 * sag(alone.rest.points[upper], crossed()[1])
     assert (together.stiffened == 1).all()
-    assert stays(shot, groom, together) < 0.2 * shot.strands.radius
+    assert drift(shot, groom, together) < 0.2 * shot.strands.radius
 
 
 @pytest.mark.parametrize("friction", [0.0, 1.0])
-def test_what_touches_shares_what_bears_locks_and_does_so_from_the_first_step(friction):
-    """The shares act on the locks as what bears them does; nothing has to sink in, or to slide, before it bears."""
+def test_contact_forces_support_a_lock_on_a_body_from_the_first_step(friction):
+    """Contact forces sum to the support forces, so that no lock sinks in or slides before it is supported."""
     lying, slope = on_slope(friction)
     shot, groom = scene(lying, lying + [0, 0, 0.2], more=SOFT)
     made, groomed = equilibrium(shot, groom, obstacles=[slope]), make_strands(shot, groom)
@@ -158,34 +158,34 @@ def test_what_touches_shares_what_bears_locks_and_does_so_from_the_first_step(fr
     assert len(forces) > 0 and (forces[:, 0] > 0).all()
     total = np.linalg.norm(forces, axis=1).sum()
     assert total == pytest.approx(np.linalg.norm(made.borne[~groomed.held], axis=1).sum(), rel=1e-9)
-    at_once, later = (stays(shot, groom, made, [slope], 1, known) for known in (True, False))
+    at_once, later = (drift(shot, groom, made, [slope], 1, known) for known in (True, False))
     assert at_once < 1e-9 and at_once < 1e-3 * later
 
 
-def test_two_locks_bear_one_another_from_the_first_step():
+def test_contact_forces_support_crossed_locks_from_the_first_step():
     shot, groom = scene(*crossed(), more=SOFT)
     made = equilibrium(shot, groom)
-    at_once, later = (stays(shot, groom, made, steps=1, known=known) for known in (True, False))
+    at_once, later = (drift(shot, groom, made, steps=1, known=known) for known in (True, False))
     assert at_once < 1e-9 and at_once < 1e-3 * later
 
 
-def test_what_bears_cannot_be_told_once_there_was_a_step():
+def test_support_forces_are_refused_after_the_first_step():
     with pytest.raises(ValueError, match="before the first step"):
         fallen(1).bear(np.zeros((0, 4)), np.zeros((0, 3)))
 
 
-def test_locks_that_lie_in_one_another_stay():
-    """Sixty of hair that is down, for two seconds: none leaves its place by the radius of a hair."""
-    style = grown("down", 60, HEAD, "scalp")
+def test_sixty_locks_in_contact_stay_as_groomed():
+    """Long hair for two seconds: no vertex drifts by more than the radius of a hair."""
+    style = make_style("down", 60, HEAD, "scalp")
     shot, head = style.shot("equilibrium"), style.head(np.zeros(1), FPS)
     made = equilibrium(shot, style.groom, obstacles=[head])
-    assert np.linalg.norm(made.borne, axis=1).max() > 1e-6  # or they would only hang
-    *_, last = style.still(shot, keep(made, shot), 2.0)
+    assert np.linalg.norm(made.borne, axis=1).max() > 1e-6  # some locks are supported
+    *_, last = style.at_rest(shot, keep(made, shot), 2.0)
     assert sag(last, style.groom.locks.points) < shot.strands.radius
 
 
-def test_a_tip_bears_nothing():
-    """What lies on it would slide off."""
+def test_a_tip_supports_nothing():
+    """A lock on a tip would slide off."""
     below, above = crossed()
     borne, ends_there = (
         np.abs(bearing(*scene(below, upper, more=SOFT), [])).max()
@@ -198,8 +198,8 @@ RIDGE = 0.02 * np.array([[0, 0, -1], [0, 0, 1], [1, -1, -1], [1, -1, 1], [-1, -1
 
 
 @pytest.mark.parametrize("aside", [0.1, 0.3])
-def test_an_edge_pushes_a_lock_away_from_where_it_is_nearest(aside):
-    """A straight lock that lies across a ridge, which is between two of its vertices: straight up, as in motion."""
+def test_a_ridge_pushes_a_lock_from_its_closest_point(aside):
+    """A straight lock across a ridge between two of its vertices: the support points straight up."""
     lock = np.c_[np.linspace(-0.02, 0.04, 31) - 2e-3 * aside, np.full(31, 0.9 * REACH), np.zeros(31)]
     mesh = Mesh("/ridge", RIDGE, np.array([[0, 1, 2], [1, 3, 2], [0, 4, 1], [1, 4, 5]], np.int32))
     obstacle = Obstacle(mesh, Clip(np.array([1.0]), RIDGE[None], 24.0))
@@ -209,7 +209,7 @@ def test_an_edge_pushes_a_lock_away_from_where_it_is_nearest(aside):
 
 
 def on_slope(friction):
-    """A strand that comes down to a slope of 4° and lies on it across, and the slope."""
+    """A strand that lies across a slope of 4°, and the slope."""
     t = np.linspace(0, 1, 60)
     turn = rotation((0, 0, 1), np.radians(4)).T
     lying = np.c_[6e-3 * np.exp(-((t / 0.08) ** 2))[:, None] * [0, 1, 0]] + np.c_[0 * t, 0.9 * REACH + 0 * t, 0.08 * t]
@@ -223,19 +223,19 @@ def on_slope(friction):
     return lying @ turn, obstacle
 
 
-def test_friction_holds_what_lies_on_a_slope():
-    """Counted on, the strand need not remember reaching uphill; and it does hold, without creeping."""
+def test_friction_holds_a_lock_on_a_slope():
+    """With friction the rest shape needs no uphill correction, and the strand stays without creep."""
     lying, rough = on_slope(1.0)
     shot, groom = scene(lying, more=SOFT)
     smooth, held = (equilibrium(shot, groom, obstacles=[on_slope(mu)[1]]) for mu in (0.0, 1.0))
     assert sag(held.rest.points, lying) < 0.1 * sag(smooth.rest.points, lying)
-    soon, late = (stays(shot, groom, held, [rough], steps) for steps in (48, 240))
+    soon, late = (drift(shot, groom, held, [rough], steps) for steps in (48, 240))
     assert late < shot.strands.radius
     assert late - soon < 0.05 * shot.strands.radius
 
 
-def test_a_curl_that_is_nailed_in_rows_hangs_between_them():
-    """Nails in a row hold what is between as a clamp does, twist as well: it is as still as any other."""
+def test_a_curl_with_rows_of_nails_hangs_between_them():
+    """Rows of nails act as clamps, twist included; the curl between them is in equilibrium."""
     curl = helix(60, radius=4e-3, pitch=4e-3) @ rotation((0, 0, 1), np.radians(70)).T
     shot, groom = scene(curl, more=MODE)
     nail = np.zeros(60, np.float32)
@@ -252,8 +252,8 @@ def test_a_curl_that_is_nailed_in_rows_hangs_between_them():
     assert sag(strands.positions, curl) < 1e-7
 
 
-def test_who_is_borne_by_what_has_changed_is_balanced_anew():
-    """The lower beam goes away: the upper one, which has not changed, has to bear itself."""
+def test_a_lock_is_rebalanced_when_its_support_changes():
+    """The lower beam moves away, so the unchanged upper beam needs a new equilibrium."""
     shot, groom = scene(*crossed(), more=SOFT)
     kept = keep(equilibrium(shot, groom), shot)
     groom.locks.points[3:30, 1] -= np.linspace(0, 2 * REACH, 27)

@@ -1,6 +1,6 @@
-"""Run by Blender's Python, not ours: opens files in a way that is asked for, and writes what is in the scene as JSON.
+"""Runs in the Python of Blender: performs an action on files and writes the scene as JSON.
 
-in_blender.py SAID.json WAY [FILE …]
+in_blender.py SCENE.json ACTION [FILE …]
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ VALUES = {"FLOAT_VECTOR": ("vector", 3), "FLOAT2": ("vector", 2), "FLOAT": ("val
 
 
 def scene(frames: list[int]) -> dict:
-    """What there is: rate and range, and every object, curves with attributes and their points in the world [m]."""
-    told = {}
+    """Frame rate, frame range and all objects, curves with attributes, and world positions of their points [m]."""
+    objects = {}
     for thing in bpy.data.objects:
-        one = told[thing.name] = {"type": thing.type, "hidden": thing.hide_get(), "frames": {}}
+        one = objects[thing.name] = {"type": thing.type, "hidden": thing.hide_get(), "frames": {}}
         if thing.type == "CURVES":
             one["counts"] = [len(curve.points) for curve in thing.data.curves]
             one["kinds"] = (
@@ -38,13 +38,13 @@ def scene(frames: list[int]) -> dict:
         bpy.context.scene.frame_set(frame)
         for thing in bpy.data.objects:
             if thing.type in ("CURVES", "MESH"):
-                told[thing.name]["frames"][str(frame)] = world(thing)
+                objects[thing.name]["frames"][str(frame)] = world(thing)
     settings = bpy.context.scene
-    return {"fps": settings.render.fps, "range": [settings.frame_start, settings.frame_end], "objects": told}
+    return {"fps": settings.render.fps, "range": [settings.frame_start, settings.frame_end], "objects": objects}
 
 
 def values(attribute: bpy.types.Attribute) -> list:
-    """The values of an attribute, a row for each element."""
+    """Values of an attribute, a row for each element."""
     name, size = VALUES[attribute.data_type]
     flat = np.empty(size * len(attribute.data), np.int32 if attribute.data_type == "INT" else np.float32)
     attribute.data.foreach_get(name, flat)
@@ -52,7 +52,7 @@ def values(attribute: bpy.types.Attribute) -> list:
 
 
 def world(thing: bpy.types.Object) -> list:
-    """The points of an object as they are seen now, in metres with Z up."""
+    """Evaluated points of an object in the current frame, in metres with Z up."""
     seen = thing.evaluated_get(bpy.context.evaluated_depsgraph_get())
     points = np.array(values(seen.data.attributes["position"]))
     matrix = np.array(seen.matrix_world)
@@ -60,7 +60,7 @@ def world(thing: bpy.types.Object) -> list:
 
 
 def refused(operator, **settings) -> str:
-    """The message with which an operator refuses; empty where it does not."""
+    """The error message of an operator, empty on success."""
     try:
         operator(**settings)
     except RuntimeError as error:
@@ -68,24 +68,24 @@ def refused(operator, **settings) -> str:
     return ""
 
 
-def main(way: str, *files: str) -> dict:
-    """One way to open files; ``files`` as that way takes them."""
+def main(action: str, *files: str) -> dict:
+    """Performs an action; returns the scene or the error messages."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     ringlet_groom.register()
-    if way == "plain":
+    if action == "plain":
         bpy.ops.wm.usd_import(filepath=files[0], import_guide=True)
-    elif way == "add-on":
+    elif action == "add-on":
         bpy.ops.ringlet.import_groom(filepath=files[0])
         if len(files) > 1:
             bpy.ops.ringlet.play_cache(filepath=files[1])
-    elif way == "refused":
+    elif action == "refused":
         return {
             "no file": refused(bpy.ops.ringlet.import_groom, filepath=files[0]),
             "no groom": refused(bpy.ops.ringlet.import_groom, filepath=files[1]),
-            "nothing to play": refused(bpy.ops.ringlet.play_cache, filepath=files[1]),
+            "no groom to play": refused(bpy.ops.ringlet.play_cache, filepath=files[1]),
             "objects": len(bpy.data.objects),
         }
-    elif way == "back":
+    elif action == "back":
         bpy.ops.ringlet.import_groom(filepath=files[0])
         for thing in bpy.data.objects:
             thing.select_set(thing.name == "guides")

@@ -1,4 +1,4 @@
-"""The review's server, and pages without a browser."""
+"""The review server, and pages without a browser."""
 
 from __future__ import annotations
 
@@ -21,40 +21,40 @@ HOST = {"host": "localhost"}
 
 
 class Page:
-    """A page without a browser."""
+    """A connected page without a browser; collects the messages that it receives."""
 
     def __init__(self, socket: WebSocketTestSession) -> None:
         self.socket = socket
-        self.heard: list[dict[str, Any]] = []
+        self.received: list[dict[str, Any]] = []
 
-    def say(self, **message: Any) -> None:
+    def send(self, **message: Any) -> None:
         text = json.dumps(message).encode()
         self.socket.send_bytes(struct.pack("<I", len(text)) + text)
 
-    def hear(self, kind: str, **wanted: Any) -> dict[str, Any]:
-        """The next message of a kind that has the wanted values."""
+    def receive(self, kind: str, **wanted: Any) -> dict[str, Any]:
+        """Waits for the next message of a kind with the wanted values."""
         for _ in range(200):
             message = read(self.socket.receive_bytes())
-            self.heard.append(message)
+            self.received.append(message)
             if message["kind"] == kind and all(message[name] == value for name, value in wanted.items()):
                 return message
             assert message["kind"] != "trouble", message["message"]
-        raise AssertionError(f"no {kind} among {[m['kind'] for m in self.heard]}")
+        raise AssertionError(f"no {kind} among {[m['kind'] for m in self.received]}")
 
     def watch(self, *frames: float) -> list[dict[str, Any]]:
-        """The frames of the shot with these numbers, once they are there."""
-        there = self.been_told("timeline")
-        while not set(frames) <= set(there["frames"].tolist()):
-            there = self.hear("timeline")
-        self.say(kind="watch", shot=frames)
-        return [self.hear("frame") for _ in frames]
+        """Waits until frames are simulated, requests them and returns them."""
+        timeline = self.latest("timeline")
+        while not set(frames) <= set(timeline["frames"].tolist()):
+            timeline = self.receive("timeline")
+        self.send(kind="watch", shot=frames)
+        return [self.receive("frame") for _ in frames]
 
-    def been_told(self, kind: str, **wanted: Any) -> dict[str, Any]:
-        """The same, of those that were heard already, too: subjects come in no order of their own."""
-        for message in reversed(self.heard):
+    def latest(self, kind: str, **wanted: Any) -> dict[str, Any]:
+        """The latest message of a kind with the wanted values, or the next one; kinds arrive in any order."""
+        for message in reversed(self.received):
             if message["kind"] == kind and all(message[name] == value for name, value in wanted.items()):
                 return message
-        return self.hear(kind, **wanted)
+        return self.receive(kind, **wanted)
 
 
 def read(data: bytes) -> dict[str, Any]:
@@ -79,5 +79,5 @@ def page(client: TestClient, name: str = "one", hello: bool = True, **headers: s
     with client.websocket_connect("/session", headers={**HOST, **headers}) as socket:
         found = Page(socket)
         if hello:
-            found.say(kind="hello", version=VERSION, client=name)
+            found.send(kind="hello", version=VERSION, client=name)
         yield found

@@ -6,7 +6,7 @@ from ringlet import Mesh
 
 
 def ball(radius: float = 0.09, rings: int = 16) -> Mesh:
-    """A closed sphere around the origin; its upper half is the region ``scalp``."""
+    """A closed sphere about the origin; its upper half is the region ``scalp``."""
     around = 2 * rings
     polar = np.linspace(0.0, np.pi, rings + 1)[1:-1, None]
     azimuth = np.linspace(0.0, 2.0 * np.pi, around, endpoint=False)[None, :]
@@ -31,7 +31,7 @@ def ball(radius: float = 0.09, rings: int = 16) -> Mesh:
 
 
 def sheet(cells: int = 8, size: float = 0.2) -> Mesh:
-    """A flat square in the plane y = 0, facing up, around the origin."""
+    """A square in the plane y = 0, facing up, centred on the origin."""
     at = np.linspace(-size / 2, size / 2, cells + 1)
     x, z = np.meshgrid(at, at, indexing="ij")
     points = np.stack([x, np.zeros_like(x), z], axis=-1).reshape(-1, 3)
@@ -42,7 +42,7 @@ def sheet(cells: int = 8, size: float = 0.2) -> Mesh:
 
 
 def rotation(axis: tuple[float, float, float], degrees: float) -> np.ndarray:
-    """The rotation about an axis (Rodrigues)."""
+    """Rotation matrix about an axis (Rodrigues)."""
     k = np.array(axis) / np.linalg.norm(axis)
     cross = np.array([[0.0, -k[2], k[1]], [k[2], 0.0, -k[0]], [-k[1], k[0], 0.0]])
     angle = np.radians(degrees)

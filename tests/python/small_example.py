@@ -1,4 +1,4 @@
-"""A head of a few triangles with a few locks: the whole pipeline in a moment."""
+"""A small example of the whole pipeline: a sphere as head, eight locks, four frames."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ preroll = 0
 
 
 def write_head(path: Path, *, unit: float = 0.01, up: str = "Y") -> Path:
-    """A ball whose upper half is the scalp, turning about the vertical; of the same size in any unit."""
+    """A sphere that turns about the vertical, its upper half the scalp, of the same size in any unit."""
     size, rings, sides = RADIUS * 0.01 / unit, 8, 16
     polar = np.linspace(0, np.pi, rings + 1)[1:-1, None]
     around = np.linspace(0, 2 * np.pi, sides, endpoint=False)

@@ -1,4 +1,4 @@
-"""The public API, and the program of the README."""
+"""The public API and the program of the README."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def test_the_program_of_the_readme_runs(tmp_path, monkeypatch):
     lines = [line for line in program.splitlines() if line.strip()]
     assert len(lines) <= 12
 
-    # The same program on a small head and for a small picture.
+    # The program on the small example, with a smaller picture.
     small = write_example(tmp_path / "examples/child")
     (small / "small.recipe.toml").rename(small / "curls.recipe.toml")
     (small / "small.shot.toml").rename(small / "nod.shot.toml")
@@ -36,14 +36,14 @@ def test_every_public_name_is_there_and_documented():
         assert name == "__version__" or getattr(ringlet, name).__doc__, name
 
 
-def test_progress_ends_at_the_whole(tmp_path):
-    heard = []
-    ringlet.build_groom(write_example(tmp_path) / "small.recipe.toml", progress=lambda *step: heard.append(step))
-    ended = {stage: done == total for stage, done, total in heard}
+def test_progress_ends_at_its_total(tmp_path):
+    steps = []
+    ringlet.build_groom(write_example(tmp_path) / "small.recipe.toml", progress=lambda *step: steps.append(step))
+    ended = {stage: done == total for stage, done, total in steps}
     assert {"guides", "locks", "curl", "clean"} <= ended.keys() and all(ended.values())
 
 
-def test_a_groom_made_in_memory_says_what_a_simulation_lacks(tmp_path):
+def test_a_groom_in_memory_reports_what_a_simulation_lacks(tmp_path):
     example = write_example(tmp_path)
     groom = ringlet.build_groom(example / "small.recipe.toml")
     groom.scalp_file = None
@@ -52,7 +52,7 @@ def test_a_groom_made_in_memory_says_what_a_simulation_lacks(tmp_path):
 
 
 @pytest.mark.parametrize(("unit", "up", "head"), [(0.01, "Y", "usda"), (0.0254, "Z", "usda"), (1.0, "Z", "obj")])
-def test_a_recipe_moves_as_the_groom_that_was_written_of_it_to_the_bit(tmp_path, unit, up, head):
+def test_a_recipe_and_its_written_groom_simulate_bit_identically(tmp_path, unit, up, head):
     example = write_example(tmp_path)
     write_head(example / "head.usda", unit=unit, up=up)
     if head == "obj":
@@ -70,30 +70,30 @@ def test_a_recipe_moves_as_the_groom_that_was_written_of_it_to_the_bit(tmp_path,
 
 
 def write_obj(example, unit, up):
-    """The head as an OBJ, of places that single precision does not hold, in place of the USD file."""
+    """Replaces the USD head by an OBJ with coordinates that single precision cannot represent."""
     head = io.read_mesh(example / "head.usda")
-    places = head.points * (1.0 + 1e-9) / unit
+    points = head.points * (1.0 + 1e-9) / unit
     if up == "Z":
-        places = places[:, [0, 2, 1]] * (1, -1, 1)
-    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in places.tolist()]
+        points = points[:, [0, 2, 1]] * (1, -1, 1)
+    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in points.tolist()]
     lines += ["f " + " ".join(map(str, triangle + 1)) for triangle in head.triangles]
     (example / "head.obj").write_text("\n".join(lines))
     recipe = (example / "small.recipe.toml").read_text().replace('region = "scalp"', f'unit = "m"\nup = "{up}"')
     (example / "small.recipe.toml").write_text(recipe.replace("head.usda", "head.obj"))
 
 
-def test_a_run_times_its_stages_and_refuses_a_bad_place_before_the_work(tmp_path):
+def test_a_run_times_its_stages_and_refuses_an_unwritable_path_first(tmp_path):
     (tmp_path / "file").touch()
     with ringlet.Run("test") as run:
         with run.stage("one"):
             pass
         with pytest.raises(ringlet.UserError, match="cannot be written"), run.stage("two", tmp_path / "file/out.usdc"):
-            raise AssertionError("the work was begun")
+            raise AssertionError("the stage has run")
     assert [stage.name for stage in run.stages] == ["one"]
     assert run.stages[0].wall >= 0
 
 
-def test_checking_a_place_leaves_nothing_behind(tmp_path):
+def test_checking_an_output_path_leaves_no_file(tmp_path):
     with ringlet.Run("test") as run, pytest.raises(ZeroDivisionError), run.stage("one", tmp_path / "a/b/c.usdc"):
         raise ZeroDivisionError
     assert list(tmp_path.iterdir()) == []

@@ -1,4 +1,4 @@
-"""The arrows of docs/architecture.md hold, and the script that checks them sees one that does not."""
+"""The import tables of docs/architecture.md hold, and their script reports a violation."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def problems():
     return module.problems
 
 
-def test_the_tree_keeps_to_the_table(problems):
+def test_the_source_tree_satisfies_the_table(problems):
     assert problems(ROOT) == []
 
 
@@ -39,7 +39,7 @@ def test_the_tree_keeps_to_the_table(problems):
         ("bench/groom.py", "import ringlet._core", "bench may use the public API only"),
     ],
 )
-def test_a_forbidden_arrow_is_found(problems, tmp_path, file, text, complaint):
+def test_a_forbidden_import_is_reported(problems, tmp_path, file, text, complaint):
     for place in ("src/ringlet", "python/ringlet/groom", "python/ringlet/picture", "bench", "examples"):
         (tmp_path / place).mkdir(parents=True)
     for module in ("__init__", "groom/__init__", "groom/curl", "picture/__init__"):
@@ -54,7 +54,7 @@ def test_a_forbidden_arrow_is_found(problems, tmp_path, file, text, complaint):
     assert complaint in found[0]
 
 
-def test_what_the_table_allows_is_not_reported(problems, tmp_path):
+def test_allowed_imports_are_not_reported(problems, tmp_path):
     for file, text in {
         "src/ringlet/energy/bend.h": '#include "ringlet/geometry/curves.h"\n#include "ringlet/energy/common.h"',
         "python/ringlet/groom/groom.py": "from ringlet.curves import Curves",

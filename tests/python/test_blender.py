@@ -1,5 +1,7 @@
-"""Blender opens what Ringlet writes, and Ringlet what Blender gives back. Needs bpy in an environment of its own, since
-it is large and pins libraries: make blender."""
+"""Exchange with Blender in both directions.
+
+Needs bpy in a separate environment, since it is large and pins libraries: make blender.
+"""
 
 from __future__ import annotations
 
@@ -11,8 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from ringlet.io import HairWriter, read_curves, read_space, write_cache, write_groom
-from test_io_groom import hairs_of
-from usd_scenes import make_groom, write_head
+from usd_scenes import hairs_of, make_groom, write_head
 
 from ringlet import Cache
 
@@ -24,11 +25,11 @@ pytestmark = pytest.mark.skipif(not BLENDER.exists(), reason=f"Blender is not in
 
 @pytest.fixture(params=[(0.01, "Y"), (1.0, "Z")], ids=["cm-Y", "m-Z"])
 def groom(tmp_path, request):
-    """A groom, and beside it a cache in which the locks rise 0.01 m a frame, and hairs over that."""
+    """A groom, a cache in which the locks rise 0.01 m a frame, and hairs of the cache."""
     unit, axis = request.param
     head = write_head(tmp_path / "head.usdc", unit=unit, axis=axis)
     groom = make_groom(head)
-    groom.guides.ids[:] = 4_711_000_003, -1 - 4_711_000_003  # Blender knows no numbers of 64 bits
+    groom.guides.ids[:] = 4_711_000_003, -1 - 4_711_000_003  # Blender has no 64-bit integer attributes
     write_groom(groom, tmp_path / "groom.usdc")
     rise = np.array([[0, 0.01 * k, 0] for k in range(3)], np.float32)
     moved = (groom.locks.points + rise[:, None]).astype(np.float32)
@@ -43,26 +44,26 @@ def groom(tmp_path, request):
 
 @pytest.fixture
 def blender(tmp_path):
-    """Says what is in Blender's scene after it has opened files in a way (tests/python/in_blender.py)."""
-    # what the environment says of the Python that runs the tests is not for Blender's
+    """Returns the Blender scene after an action on files (tests/python/in_blender.py)."""
+    # PYTHON… variables of the test run must not reach the Python of Blender.
     clean = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
 
-    def said(*arguments: object) -> dict:
+    def scene_after(*arguments: object) -> dict:
         script = Path(__file__).with_name("in_blender.py")
-        command = [str(part) for part in (BLENDER, script, tmp_path / "said.json", *arguments)]
+        command = [str(word) for word in (BLENDER, script, tmp_path / "scene.json", *arguments)]
         done = subprocess.run(command, capture_output=True, text=True, timeout=120, env=clean, check=False)
         assert done.returncode == 0, done.stderr[-2000:]
-        return json.loads((tmp_path / "said.json").read_text())
+        return json.loads((tmp_path / "scene.json").read_text())
 
-    return said
+    return scene_after
 
 
 def z_up(points: np.ndarray) -> np.ndarray:
-    """Points with Y up as Blender has them."""
+    """Points with Y up in the Z-up frame of Blender."""
     return np.stack([points[:, 0], -points[:, 2], points[:, 1]], axis=1)
 
 
-def test_curves_attributes_units_and_motion_arrive_in_blender(groom, blender, tmp_path):
+def test_blender_reads_curves_attributes_units_and_motion(groom, blender, tmp_path):
     scene, hairs = blender("plain", tmp_path / "hair.usdc"), hairs_of(groom)
     assert (scene["fps"], scene["range"]) == (24, [1, 3])
     for name, curves in (("locks", groom.locks), ("hairs", hairs)):
@@ -91,7 +92,7 @@ def test_curves_attributes_units_and_motion_arrive_in_blender(groom, blender, tm
     assert domain == "CURVE" and lock == hairs.curve["lock"].tolist()
 
 
-def test_the_add_on_sets_the_surface_and_plays_what_is_in_the_file(groom, blender, tmp_path):
+def test_the_add_on_sets_the_surface_and_plays_the_file(groom, blender, tmp_path):
     objects = blender("add-on", tmp_path / "hair.usdc")["objects"]
     for name in ("locks", "guides", "hairs"):
         assert (objects[name]["surface"], objects[name]["uv_map"]) == ("skin", "st")
@@ -100,7 +101,7 @@ def test_the_add_on_sets_the_surface_and_plays_what_is_in_the_file(groom, blende
     np.testing.assert_allclose(last - first, np.tile([0, 0, 0.02], (len(first), 1)), atol=1e-6)
 
 
-def test_the_add_on_lets_a_groom_play_a_cache(groom, blender, tmp_path):
+def test_the_add_on_plays_a_cache_on_a_groom(groom, blender, tmp_path):
     still = blender("add-on", tmp_path / "groom.usdc")["objects"]
     moving = blender("add-on", tmp_path / "groom.usdc", tmp_path / "cache.usdc")["objects"]
     assert not moving["locks"]["hidden"]
@@ -112,15 +113,15 @@ def test_the_add_on_lets_a_groom_play_a_cache(groom, blender, tmp_path):
         np.testing.assert_allclose(slid, np.tile([0.01 * (frame - 1), 0, 0], (len(slid), 1)), atol=1e-6)
 
 
-def test_the_add_on_refuses_what_is_no_groom_and_leaves_the_scene_alone(groom, blender, tmp_path):
-    said = blender("refused", tmp_path / "nowhere.usdc", tmp_path / "head.usdc")
-    assert "there is no such file" in said["no file"]
-    assert "head.usdc: is no groom of Ringlet's" in said["no groom"]
-    assert "There is no groom in the scene" in said["nothing to play"]
-    assert said["objects"] == 0
+def test_the_add_on_refuses_other_files_and_leaves_the_scene_unchanged(groom, blender, tmp_path):
+    scene = blender("refused", tmp_path / "nowhere.usdc", tmp_path / "head.usdc")
+    assert "there is no such file" in scene["no file"]
+    assert "head.usdc: is no groom of Ringlet's" in scene["no groom"]
+    assert "There is no groom in the scene" in scene["no groom to play"]
+    assert scene["objects"] == 0
 
 
-def test_guides_come_back_from_blender_with_their_names(groom, blender, tmp_path):
+def test_guides_return_from_blender_with_their_names(groom, blender, tmp_path):
     blender("back", tmp_path / "groom.usdc", tmp_path / "edited.usdc")
     back = read_curves(tmp_path / "edited.usdc")
     assert back.ids.tolist() == groom.guides.ids.tolist()

@@ -1,4 +1,4 @@
-"""A run that is killed goes on to the same result; what was damaged on the way is noticed."""
+"""Checkpoints: a killed run resumes to bit-identical frames; damaged files are detected."""
 
 import os
 import signal
@@ -21,7 +21,7 @@ CONTACT = "\n[contact]\nradius = 1e-3\n"
 
 @pytest.fixture
 def folder(tmp_path):
-    """The small example with contact, for 40 frames."""
+    """The small example with contact and 40 frames."""
     write_example(tmp_path)
     shot = tmp_path / "small.shot.toml"
     shot.write_text(shot.read_text().replace("[1, 4]", "[1, 40]") + CONTACT)
@@ -33,7 +33,7 @@ def sim(folder, *more):
 
 
 def started(folder):
-    """The shot as it runs in a process of its own."""
+    """Starts the shot in its own process."""
     command = [
         sys.executable,
         "-c",
@@ -57,21 +57,21 @@ def killed(folder, until):
     process = started(folder)
     while process.poll() is None and not until():
         time.sleep(0.002)
-    assert process.poll() is None, "it was done before it could be killed"
+    assert process.poll() is None, "the run ended before the kill"
     process.send_signal(signal.SIGKILL)
     process.wait()
 
 
-def whole(folder):
-    """The result of a run that nothing breaks off."""
+def uninterrupted(folder):
+    """The frames of an uninterrupted run."""
     assert sim(folder).exit_code == 0
     points = read_cache(folder / "cache.usdc").points
     (folder / "cache.usdc").unlink()
     return points
 
 
-def test_a_killed_run_goes_on_to_the_same_bits(folder):
-    expected, part = whole(folder), folder / "cache.usdc.part"
+def test_a_killed_run_resumes_to_bit_identical_frames(folder):
+    expected, part = uninterrupted(folder), folder / "cache.usdc.part"
     assert not part.exists()
     killed(folder, lambda: (part / "memory.000020").exists())
     assert not (folder / "cache.usdc").exists()
@@ -82,18 +82,18 @@ def test_a_killed_run_goes_on_to_the_same_bits(folder):
     assert not part.exists()
 
 
-def test_frames_that_take_long_are_remembered_more_often(folder, monkeypatch):
+def test_larger_scenes_are_saved_more_often(folder, monkeypatch):
     groom = ringlet.build_groom(ringlet.read_recipe(folder / "small.recipe.toml"))
     vertices = len(groom.locks.points)
     assert checkpoint.frames_between(0) == checkpoint.frames_between(vertices) == checkpoint.EVERY
     assert checkpoint.frames_between(10_000 * 100) == checkpoint.frames_between(10**8) == 1
     monkeypatch.setattr(checkpoint, "VERTICES", 3 * vertices)
-    broken_off(folder, monkeypatch, 8)
+    interrupted(folder, monkeypatch, 8)
     memories = (folder / "cache.usdc.part").glob("memory.*")
     assert sorted(path.name for path in memories) == ["memory.000003", "memory.000006"]
 
 
-def broken_off(folder, monkeypatch, after, *more):
+def interrupted(folder, monkeypatch, after, *more):
     """Runs the shot until the disk is full."""
     keep = checkpoint.Checkpoints.keep
 
@@ -107,9 +107,9 @@ def broken_off(folder, monkeypatch, after, *more):
         return sim(folder, *more)
 
 
-def test_after_a_full_disk_the_run_goes_on(folder, monkeypatch):
-    expected = whole(folder)
-    result = broken_off(folder, monkeypatch, 25)
+def test_a_run_resumes_after_a_full_disk(folder, monkeypatch):
+    expected = uninterrupted(folder)
+    result = interrupted(folder, monkeypatch, 25)
     assert result.exit_code == 2
     assert "No space left" in result.stderr and "--resume" in result.stderr
     assert sim(folder, "--resume").exit_code == 0
@@ -117,10 +117,10 @@ def test_after_a_full_disk_the_run_goes_on(folder, monkeypatch):
 
 
 @pytest.mark.parametrize("damage", ["cut", "changed", "frame"])
-def test_what_is_damaged_is_noticed_and_the_memory_before_is_used(folder, monkeypatch, damage):
+def test_a_damaged_checkpoint_is_detected_and_the_previous_one_used(folder, monkeypatch, damage):
     shot, part = ringlet.read_shot(folder / "small.shot.toml"), folder / "cache.usdc.part"
     expected = ringlet.simulate(shot).points
-    broken_off(folder, monkeypatch, 25)
+    interrupted(folder, monkeypatch, 25)
     name = "step.000015" if damage == "frame" else "memory.000020"
     content = (part / name).read_bytes()
     middle = len(content) // 2
@@ -128,15 +128,14 @@ def test_what_is_damaged_is_noticed_and_the_memory_before_is_used(folder, monkey
     (part / name).write_bytes(content[:middle] if damage == "cut" else flipped)
     with pytest.raises(checkpoint.DamagedError):
         checkpoint.read(part / name)
-    seen = []
-    cache = ringlet.simulate(shot, checkpoints=part, resume=True, progress=lambda *step: seen.append(step))
-    steps = [done for name, done, _ in seen if name == "sim"]
-    assert steps[0] == 11
+    steps = []
+    cache = ringlet.simulate(shot, checkpoints=part, resume=True, progress=lambda *step: steps.append(step))
+    assert next(done for name, done, _ in steps if name == "sim") == 11
     assert (cache.points == expected).all()
 
 
-def test_what_another_run_left_is_not_gone_on_with(folder, monkeypatch):
-    broken_off(folder, monkeypatch, 25)
+def test_checkpoints_of_another_run_are_not_resumed(folder, monkeypatch):
+    interrupted(folder, monkeypatch, 25)
     shot = folder / "small.shot.toml"
     shot.write_text(shot.read_text() + "friction = 0.1\n")
     result = sim(folder, "--resume")
@@ -144,8 +143,8 @@ def test_what_another_run_left_is_not_gone_on_with(folder, monkeypatch):
     assert sim(folder).exit_code == 0 and not (folder / "cache.usdc.part").exists()
 
 
-def test_a_run_whose_files_another_run_is_at_is_refused_and_the_other_goes_on(folder):
-    expected, part, groom = whole(folder), folder / "cache.usdc.part", folder / "cache.groom.usdc"
+def test_a_concurrent_run_on_the_same_files_is_refused(folder):
+    expected, part, groom = uninterrupted(folder), folder / "cache.usdc.part", folder / "cache.groom.usdc"
     with started(folder) as other:
         while not (part / "step.000000").exists():
             assert other.poll() is None
@@ -161,13 +160,13 @@ def test_a_run_whose_files_another_run_is_at_is_refused_and_the_other_goes_on(fo
     assert (read_cache(folder / "cache.usdc").points == expected).all()
 
 
-def test_a_run_whose_groom_is_refused_leaves_no_folder_and_one_that_was_left_stays(folder, monkeypatch):
+def test_a_refused_groom_leaves_no_folder_and_keeps_an_existing_one(folder, monkeypatch):
     part, recipe = folder / "cache.usdc.part", folder / "small.recipe.toml"
     right = recipe.read_text()
     for left in (False, True):
         if left:
             recipe.write_text(right)
-            broken_off(folder, monkeypatch, 25)
+            interrupted(folder, monkeypatch, 25)
         recipe.write_text(right.replace("count = 8", "count = -8"))
         assert sim(folder).exit_code == 2
         assert part.exists() == left
@@ -176,16 +175,16 @@ def test_a_run_whose_groom_is_refused_leaves_no_folder_and_one_that_was_left_sta
     assert sim(folder, "--resume").exit_code == 0 and not part.exists()
 
 
-def test_what_a_run_begins_anew_without_resume_is_told(folder, monkeypatch):
-    for after, more, told in [(5, (), ""), (25, (), ""), (15, (), "keeps 20 frames"), (15, ("--resume",), "")]:
-        result = broken_off(folder, monkeypatch, after, *more)
+def test_a_run_without_resume_reports_the_frames_it_discards(folder, monkeypatch):
+    for after, more, message in [(5, (), ""), (25, (), ""), (15, (), "keeps 20 frames"), (15, ("--resume",), "")]:
+        result = interrupted(folder, monkeypatch, after, *more)
         begin = result.stderr.partition("groom:")[0]  # before the first stage
-        assert told in begin and ("--resume goes on from there; without it" in begin) == bool(told)
+        assert message in begin and ("--resume goes on from there; without it" in begin) == bool(message)
     assert "keeps 10 frames" in sim(folder).stderr and not (folder / "cache.usdc.part").exists()
     assert "thrown away" not in sim(folder).stderr
 
 
-def test_a_program_that_holds_a_folder_keeps_it_after_a_simulation_in_it(folder):
+def test_a_program_keeps_its_lock_on_a_folder_after_a_simulation(folder):
     part = folder / "cache.usdc.part"
     with ringlet.hold_checkpoints(part):
         ringlet.simulate(folder / "small.shot.toml", checkpoints=part)
@@ -197,34 +196,36 @@ def test_a_program_that_holds_a_folder_keeps_it_after_a_simulation_in_it(folder)
         assert other.wait(120) == 0
 
 
-def test_without_anything_to_go_on_with_it_begins_anew(folder):
+def test_resume_without_checkpoints_simulates_from_the_start(folder):
+    expected = uninterrupted(folder)
     assert sim(folder, "--resume").exit_code == 0
+    assert (read_cache(folder / "cache.usdc").points == expected).all()
 
 
-def test_a_file_of_arrays_comes_back_as_it_was(tmp_path):
+def test_a_file_of_arrays_round_trips(tmp_path):
     arrays = {"a": np.arange(6.0).reshape(2, 3), "b": np.array("text"), "c": np.zeros((0, 3), np.float32)}
     checkpoint.write(tmp_path / "some.000001", arrays)
     back = checkpoint.read(tmp_path / "some.000001")
     assert back.keys() == arrays.keys() and all((back[name] == arrays[name]).all() for name in arrays)
 
 
-def test_a_run_that_was_broken_off_gives_the_frames_that_it_has(folder, monkeypatch):
-    expected = whole(folder)
-    broken_off(folder, monkeypatch, 25)
+def test_an_interrupted_run_provides_its_finished_frames(folder, monkeypatch):
+    expected = uninterrupted(folder)
+    interrupted(folder, monkeypatch, 25)
     assert sim(folder, "--resume", "--frames", "1:18").exit_code == 0
     assert (read_cache(folder / "cache.usdc").points == expected[:18]).all()
 
 
-def test_frames_that_go_to_the_file_one_by_one_are_those_of_a_simulation_in_memory(folder):
+def test_streamed_frames_equal_those_of_a_simulation_in_memory(folder):
     groom = ringlet.build_groom(folder / "small.recipe.toml")
     ringlet.write_groom(groom, folder / "groom.usdc")
     shot, path = ringlet.read_shot(folder / "small.shot.toml"), folder / "cache.usdc"
-    told = ringlet.write_simulation(shot, groom, folder / "groom.usdc", path, checkpoints=folder / "part")
-    assert told.frames == list(range(1, 41))
-    ringlet.write_cache(ringlet.simulate(shot, groom), folder / "groom.usdc", folder / "whole.usdc")
-    cache, at_once = read_cache(path), read_cache(folder / "whole.usdc")
+    written = ringlet.write_simulation(shot, groom, folder / "groom.usdc", path, checkpoints=folder / "part")
+    assert written.frames == list(range(1, 41))
+    ringlet.write_cache(ringlet.simulate(shot, groom), folder / "groom.usdc", folder / "at_once.usdc")
+    cache, at_once = read_cache(path), read_cache(folder / "at_once.usdc")
     assert (cache.points == at_once.points).all() and (cache.frames == at_once.frames).all()
-    assert cache.statistics == told.statistics and cache.start == told.start == at_once.start
+    assert cache.statistics == written.statistics and cache.start == written.start == at_once.start
 
 
 def touches(folder):
@@ -232,21 +233,21 @@ def touches(folder):
         return [read_touches(folder / "touches.usdc", frame)[0] for frame in cache.frames]
 
 
-def test_what_touched_before_a_run_was_broken_off_is_kept_with_the_frames(folder, monkeypatch):
-    asked, shot = ("--contacts", str(folder / "touches.usdc")), folder / "small.shot.toml"
+def test_contacts_before_an_interruption_are_kept_with_the_frames(folder, monkeypatch):
+    option, shot = ("--contacts", str(folder / "touches.usdc")), folder / "small.shot.toml"
     shot.write_text(shot.read_text().replace("radius = 1e-3", "radius = 1e-2"))
-    assert sim(folder, *asked).exit_code == 0
+    assert sim(folder, *option).exit_code == 0
     expected = touches(folder)
     assert any(len(frame.force) for frame in expected[:20])
-    broken_off(folder, monkeypatch, 25, *asked)
-    assert sim(folder, "--resume", *asked).exit_code == 0
+    interrupted(folder, monkeypatch, 25, *option)
+    assert sim(folder, "--resume", *option).exit_code == 0
     for frame, before in zip(touches(folder), expected, strict=True):
         for name in ("places", "force", "gap"):
             assert (getattr(frame, name) == getattr(before, name)).all()
 
 
-def test_what_touched_is_not_made_up_where_it_was_not_kept(folder, monkeypatch):
-    broken_off(folder, monkeypatch, 25)
+def test_contacts_are_refused_for_frames_that_did_not_record_them(folder, monkeypatch):
+    interrupted(folder, monkeypatch, 25)
     result = sim(folder, "--resume", "--contacts", str(folder / "touches.usdc"))
     assert result.exit_code == 2 and "did not keep what touched; leave out --contacts" in result.stderr
     assert sim(folder, "--resume").exit_code == 0

@@ -1,4 +1,4 @@
-"""The command line as people and programs meet it: help, exit codes, errors in one line, JSON."""
+"""The command line: help, exit codes, errors in one line, JSON."""
 
 from __future__ import annotations
 
@@ -9,32 +9,12 @@ import sys
 from pathlib import Path
 
 import pytest
-from ringlet.cli.app import app
+from commands import refused, run
 from ringlet.cli.progress import shown_progress
-from typer.testing import CliRunner
 
 import ringlet
 
 COMMANDS = ["demo", "groom", "edit", "check", "loft", "sim", "wedge", "hair", "picture", "validate", "bench", "schema"]
-
-
-def run(*arguments: object):
-    """What a command line prints and the code it exits with."""
-    return CliRunner().invoke(app, [str(argument) for argument in arguments])
-
-
-def refused(result, *words: str) -> str:
-    """Asserts that the input was refused in one line without a traceback; returns the line."""
-    assert result.exit_code == 2, result.output
-    assert result.stdout == ""
-    lines = result.stderr.strip().splitlines()
-    message = lines[-1]
-    assert message.startswith("error: ")
-    assert sum(line.startswith("error: ") for line in lines) == 1
-    assert "Traceback" not in result.output
-    for word in words:
-        assert word in message
-    return message
 
 
 @pytest.mark.parametrize("command", COMMANDS)
@@ -51,11 +31,12 @@ def test_without_arguments_the_commands_are_listed():
     assert all(command in result.stdout for command in COMMANDS)
 
 
-def test_version():
+def test_version_has_three_numbers():
     assert run("--version").stdout == f"ringlet {ringlet.__version__}\n"
+    assert ringlet.__version__.count(".") == 2
 
 
-def test_help_needs_none_of_the_heavy_libraries():
+def test_help_imports_no_heavy_library():
     program = "import sys, ringlet.cli; print({'pxr', 'mitsuba', 'matplotlib', 'scipy'} & set(sys.modules))"
     assert subprocess.run([sys.executable, "-c", program], capture_output=True, text=True).stdout == "set()\n"
 
@@ -77,11 +58,11 @@ def test_help_needs_none_of_the_heavy_libraries():
         (["validate", "cantilver"], ["cantilver", "'cantilever'"]),
     ],
 )
-def test_a_mistake_on_the_command_line_is_told_in_one_line(arguments, words):
+def test_a_usage_error_is_one_line(arguments, words):
     refused(run(*arguments), *words)
 
 
-def test_a_mistake_in_ringlet_is_told_in_one_line_with_the_place_of_its_traceback(monkeypatch):
+def test_an_internal_error_is_one_line_with_the_path_of_its_traceback(monkeypatch):
     def broken(*_, **__):
         raise ZeroDivisionError("no such luck")
 
@@ -97,7 +78,7 @@ def test_a_mistake_in_ringlet_is_told_in_one_line_with_the_place_of_its_tracebac
     file.unlink()
 
 
-def test_a_mistake_in_ringlet_shows_its_traceback_when_asked(monkeypatch):
+def test_debug_shows_the_traceback_of_an_internal_error(monkeypatch):
     def broken(*_, **__):
         raise ZeroDivisionError
 
@@ -118,7 +99,7 @@ def test_schemas_are_json_and_describe_every_setting():
 
 SLOW = """
 import signal, sys, time
-signal.signal(signal.SIGINT, signal.default_int_handler)  # also where the tests run in the background
+signal.signal(signal.SIGINT, signal.default_int_handler)  # also when tests run in the background
 import ringlet
 from ringlet.cli import main
 
@@ -132,7 +113,7 @@ main()
 """
 
 
-def test_interrupting_ends_tidily():
+def test_an_interrupt_exits_with_130_and_one_line():
     with subprocess.Popen(
         [sys.executable, "-c", SLOW], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     ) as process:

@@ -1,4 +1,4 @@
-"""What programs rely on: the JSON of ``bench`` and ``validate``, and their exit codes."""
+"""The interface for programs: JSON and exit codes of ``bench`` and ``validate``."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from functools import partial
 from itertools import pairwise
 
 import pytest
-from test_cli import run
+from commands import run
 
 import ringlet
 
 
 @dataclass
 class Answer:
-    """A row of a validation, made up."""
+    """A fake row of a validation."""
 
     case: str
     expected: float
@@ -38,7 +38,7 @@ class Answer:
 
 
 @pytest.mark.parametrize(
-    ("arguments", "asked"),
+    ("arguments", "expected"),
     [
         (["groom", "--locks", "20", "--hairs", "60"], {"locks": 20, "hairs": 60}),
         (["cloth", "--side", "5", "--steps", "3"], {"side": 5, "steps": 3}),
@@ -57,78 +57,80 @@ class Answer:
         (["twirl", "--strands", "3", "--contacts", "on", "--steps", "4", "--heads", "2"], {"strands": 3, "heads": 2}),
     ],
 )
-def test_bench_prints_the_object_that_was_agreed(arguments, asked):
+def test_bench_prints_the_documented_object(arguments, expected):
     result = run("bench", *arguments, "--json", "--threads", "1")
     assert result.exit_code == 0, result.output
-    told = json.loads(result.stdout)
-    assert told["name"] == arguments[0]
-    assert asked.items() <= told["params"].items()
-    assert told["threads"] == 1
-    assert told["simd"] in ("baseline", "avx2", "avx512")
-    for times in (told["cpu_ms"], told["wall_ms"]):
+    output = json.loads(result.stdout)
+    assert output["name"] == arguments[0]
+    assert expected.items() <= output["params"].items()
+    assert output["threads"] == 1
+    assert output["simd"] in ("baseline", "avx2", "avx512")
+    for times in (output["cpu_ms"], output["wall_ms"]):
         assert 0 < times["min"] <= times["median"] <= times["max"]
-    assert all(time >= 0 for time in told["stages"].values())
+    assert all(time >= 0 for time in output["stages"].values())
 
 
-def test_bench_view_ends_its_server_and_says_nothing_besides():
+def test_bench_view_stops_its_server_and_prints_only_json():
     program = "import sys; from ringlet.cli import main; sys.argv[0] = 'ringlet'; main()"
     arguments = ["bench", "view", "--locks", "12", "--per_lock", "3", "--steps", "3", "--json"]
     done = subprocess.run([sys.executable, "-c", program, *arguments], capture_output=True, text=True, timeout=120)
-    told = json.loads(done.stdout)
-    assert done.stderr == "" and told["hairs"] == 36 and told["frame_bytes"] > 12 * 12 * 96
+    output = json.loads(done.stdout)
+    assert done.stderr == "" and output["hairs"] == 36 and output["frame_bytes"] > 12 * 12 * 96
 
 
 @pytest.fixture
 def twirls(monkeypatch):
-    """What ``ringlet bench growth`` asks of the twirl scene, which is not run."""
-    asked = []
+    """Records the parameters that ``ringlet bench growth`` passes to the twirl scene, without running it."""
+    calls = []
 
     def run_bench(name, **params):
-        asked.append((params["strands"], params["radius"], params["heads"]))
+        calls.append((params["strands"], params["radius"], params["heads"]))
         counts = {"contacts": 2.0 * params["strands"], "candidates": 0, "linear_iterations": 0}
         return {"cpu_ms": {"median": 3.0 * params["strands"] ** 1.5}, **counts}
 
     monkeypatch.setattr(ringlet, "run_bench", run_bench)
-    return asked
+    return calls
 
 
 run_growth = partial(ringlet.run_bench, "growth", least=64, most=256)
 
 
-def test_bench_growth_that_keeps_the_density_has_spheres_as_large_as_it_has_wisps(twirls):
-    told = run_growth(kept="density")
+def test_bench_growth_at_constant_density_scales_the_sphere(twirls):
+    output = run_growth(kept="density")
     density = pytest.approx(256 / 0.1525**2)
     assert [(n, n / radius**2, heads) for n, radius, heads in twirls] == [(n, density, 1) for n in (64, 128, 256)]
-    assert told["exponent"] == pytest.approx(1.5) and told["contacts_exponent"] == pytest.approx(1.0)
+    assert output["exponent"] == pytest.approx(1.5) and output["contacts_exponent"] == pytest.approx(1.0)
 
 
-def test_bench_growth_that_keeps_the_heads_has_more_of_the_published_ones(twirls):
+def test_bench_growth_at_constant_size_adds_heads(twirls):
     run_growth(kept="heads")
     assert twirls == [(64, 0.1525, 1), (128, 0.1525, 2), (256, 0.1525, 4)]
 
 
-def test_bench_growth_counts_the_quickest_of_the_turns_of_each_size(monkeypatch):
-    times = iter([10.0, 40.0, 160.0, 12.0, 20.0, 40.0])  # the sizes by turns: the second is slow at the first turn
+def test_bench_growth_takes_the_fastest_repetition_of_each_size(monkeypatch):
+    times = iter(
+        [10.0, 40.0, 160.0, 12.0, 20.0, 40.0]
+    )  # two rounds over three sizes; the first time of the second size is an outlier
 
     def run_bench(name, **params):
         return {"cpu_ms": {"median": next(times)}, "contacts": 1, "candidates": 0, "linear_iterations": 0}
 
     monkeypatch.setattr(ringlet, "run_bench", run_bench)
-    told = run_growth(turns=2)
-    assert [size["cpu_ms"] for size in told["sizes"]] == [10, 20, 40] and told["exponent"] == pytest.approx(1.0)
+    output = run_growth(turns=2)
+    assert [size["cpu_ms"] for size in output["sizes"]] == [10, 20, 40] and output["exponent"] == pytest.approx(1.0)
     with pytest.raises(ringlet.UserError, match="turns is 0; must be at least 1"):
         run_growth(turns=0)
 
 
 def test_bench_growth_fits_a_power_to_the_times_of_all_sizes():
     result = run("bench", "growth", "--least", "2", "--most", "9", "--steps", "4", "--json", "--threads", "1")
-    told = json.loads(result.stdout)
-    assert [size["strands"] for size in told["sizes"]] == [2, 4, 8]
-    steps = [math.log2(b["cpu_ms"] / a["cpu_ms"]) for a, b in pairwise(told["sizes"])]
-    assert min(steps) - 1e-9 <= told["exponent"] <= max(steps) + 1e-9
+    output = json.loads(result.stdout)
+    assert [size["strands"] for size in output["sizes"]] == [2, 4, 8]
+    steps = [math.log2(b["cpu_ms"] / a["cpu_ms"]) for a, b in pairwise(output["sizes"])]
+    assert min(steps) - 1e-9 <= output["exponent"] <= max(steps) + 1e-9
 
 
-def test_validate_prints_rows_and_succeeds_when_all_hold():
+def test_validate_prints_rows_and_succeeds_when_all_pass():
     result = run("validate", "cantilever", "--json")
     assert result.exit_code == 0, result.output
     rows = json.loads(result.stdout)
@@ -139,7 +141,7 @@ def test_validate_prints_rows_and_succeeds_when_all_hold():
 
 
 @pytest.mark.parametrize("got", [2.0, math.nan])
-def test_validate_exits_with_1_when_one_row_does_not_hold(monkeypatch, got):
+def test_validate_exits_with_1_when_a_row_fails(monkeypatch, got):
     rows = [Answer("good", 1.0, 1.0), Answer("bad", 1.0, got)]
     monkeypatch.setattr(ringlet, "run_validation", lambda *_, **__: rows)
     assert run("validate").exit_code == 1
@@ -150,6 +152,6 @@ def test_validate_exits_with_1_when_one_row_does_not_hold(monkeypatch, got):
 
 def test_validate_shows_a_table(monkeypatch):
     monkeypatch.setattr(ringlet, "run_validation", lambda *_, **__: [Answer("a rod that bends", 1.0, 2.0)])
-    shown = run("validate").stdout
-    assert "a rod that bends" in shown
-    assert "FAILS" in shown
+    output = run("validate").stdout
+    assert "a rod that bends" in output
+    assert "FAILS" in output

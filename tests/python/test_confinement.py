@@ -1,4 +1,4 @@
-"""What a file says makes nobody write elsewhere, read without end, or guess at a later format."""
+"""Untrusted files: no output elsewhere, bounded input, and no guesses at later formats."""
 
 from __future__ import annotations
 
@@ -6,17 +6,17 @@ import os
 from pathlib import Path
 
 import pytest
+from commands import refused, run
 from pxr import Sdf
 from ringlet.files import replacing
 from small_example import write_example
-from test_cli import refused, run
 
 import ringlet
 
 
 @pytest.fixture
 def project(tmp_path) -> Path:
-    """The small example in a folder beside which nothing may appear."""
+    """The small example in a folder; no file may appear outside it."""
     return write_example(tmp_path / "project")
 
 
@@ -29,7 +29,7 @@ def names_below(folder: Path) -> list[str]:
     return sorted(str(path.relative_to(folder)) for path in folder.rglob("*"))
 
 
-# Places to write to
+# Output paths
 
 
 @pytest.mark.parametrize("place", ["../edits.toml", "sub/../../edits.toml", "{outside}/edits.toml", "link/edits.toml"])
@@ -44,7 +44,7 @@ def test_edits_are_written_beside_the_recipe_only(project, place):
     assert names_below(project.parent) == before
 
 
-def test_a_loft_goes_beside_the_shot_unless_the_user_says_otherwise(project):
+def test_a_loft_is_written_beside_the_shot_by_default(project):
     shot = project / "small.shot.toml"
     shot.write_text(shot.read_text() + '\n[rest]\nmode = "lofted"\nfile = "../rest.usdc"\n')
     before = names_below(project.parent)
@@ -54,48 +54,48 @@ def test_a_loft_goes_beside_the_shot_unless_the_user_says_otherwise(project):
     assert (project.parent / "rest.usdc").exists()
 
 
-def test_a_link_in_the_place_of_a_file_is_replaced_and_not_followed(tmp_path):
+def test_a_link_in_place_of_the_output_is_replaced_and_not_followed(tmp_path):
     (tmp_path / "precious").write_text("precious")
     (tmp_path / "out").symlink_to(tmp_path / "precious")
-    with replacing(tmp_path / "out") as aside:
-        aside.write_text("new")
+    with replacing(tmp_path / "out") as temporary:
+        temporary.write_text("new")
     assert (tmp_path / "precious").read_text() == "precious"
     assert not (tmp_path / "out").is_symlink() and (tmp_path / "out").read_text() == "new"
 
 
-def test_a_link_that_waits_where_we_write_aside_is_not_followed(tmp_path):
+def test_a_link_in_place_of_the_temporary_file_is_not_followed(tmp_path):
     (tmp_path / "precious").write_text("precious")
     (tmp_path / f".out.{os.getpid()}.txt").symlink_to(tmp_path / "precious")
-    with replacing(tmp_path / "out.txt") as aside:
-        aside.write_text("new")
+    with replacing(tmp_path / "out.txt") as temporary:
+        temporary.write_text("new")
     assert (tmp_path / "precious").read_text() == "precious" and (tmp_path / "out.txt").read_text() == "new"
 
 
-def test_a_folder_without_the_right_to_write_is_refused_before_work_is_done(project, monkeypatch):
+def test_a_read_only_folder_is_refused_before_the_first_stage(project, monkeypatch):
     closed = project / "closed"
     closed.mkdir()
     closed.chmod(0o500)
-    if os.access(closed, os.W_OK):  # root may write anywhere: let the system refuse
-        monkeypatch.setattr("ringlet.files.tempfile.TemporaryFile", raise_no_right)
+    if os.access(closed, os.W_OK):  # root ignores permissions, so the refusal is simulated
+        monkeypatch.setattr("ringlet.files.tempfile.TemporaryFile", deny)
     refused(run("groom", project / "small.recipe.toml", "-o", closed / "groom.usdc"), "cannot be written")
     assert list(closed.iterdir()) == []
 
 
-def raise_no_right(**_):
+def deny(**_):
     raise PermissionError(13, "Permission denied")
 
 
-# Files without end
+# Bounded input
 
 
 @pytest.mark.parametrize("text", ["ringlet = 1\na = " + "[" * 100_000, "ringlet = 1\nseed = " + "9" * 5000])
 @pytest.mark.parametrize("command", ["groom", "sim"])
-def test_nesting_and_digits_without_end_are_refused(tmp_path, command, text):
+def test_unbounded_nesting_and_digits_are_refused(tmp_path, command, text):
     (tmp_path / "deep.toml").write_text(text)
     refused(run(command, tmp_path / "deep.toml", "-o", tmp_path / "out.usdc"), "deep.toml", "not valid TOML")
 
 
-def test_what_is_no_file_is_not_read(project):
+def test_a_pipe_in_place_of_a_file_is_refused(project):
     os.mkfifo(project / "pipe")
     refused(run("groom", project / "pipe", "-o", project / "groom.usdc"), "pipe", "is no file")
     recipe = add_line(project / "small.recipe.toml", 'extends = "pipe"')
@@ -103,9 +103,9 @@ def test_what_is_no_file_is_not_read(project):
 
 
 def numbers_of(schema: dict, place: str):
-    """Every whole number that a setting may be, with its place."""
-    for name, part in [*schema.get("properties", {}).items(), *schema.get("$defs", {}).items()]:
-        yield from numbers_of(part, f"{place}.{name}")
+    """Schemas of all integers among the settings, with their paths."""
+    for name, inner in [*schema.get("properties", {}).items(), *schema.get("$defs", {}).items()]:
+        yield from numbers_of(inner, f"{place}.{name}")
     for option in [*schema.get("anyOf", ()), *schema.get("oneOf", ())]:
         yield from numbers_of(option, place)
     for key in ("items", "additionalProperties"):
@@ -115,7 +115,7 @@ def numbers_of(schema: dict, place: str):
         yield place, schema
 
 
-NAMES_ONLY = ("lock", "guide", "set", "id", "frames", "frame")  # numbers that name something and are not counts
+NAMES_ONLY = ("lock", "guide", "set", "id", "frames", "frame")  # identifiers and frame numbers, which are no counts
 
 
 @pytest.mark.parametrize("kind", ["recipe", "shot"])
@@ -132,19 +132,19 @@ def test_every_count_in_a_recipe_and_a_shot_has_a_bound(kind):
 
 
 @pytest.mark.parametrize(("command", "file"), [("groom", "small.recipe.toml"), ("sim", "small.shot.toml")])
-def test_a_recipe_and_a_shot_of_a_later_format_say_what_to_do(project, command, file):
+def test_a_later_format_is_refused_with_a_remedy(project, command, file):
     path = project / file
     path.write_text(path.read_text().replace("ringlet = 1", "ringlet = 2"))
     refused(run(command, path, "-o", project / "out.usdc"), file, "ringlet is 2", "update it")
 
 
-def test_a_setting_of_an_earlier_version_says_what_stands_for_it_now(project):
+def test_a_removed_setting_is_refused_with_its_replacement(project):
     recipe = add_line(project / "small.recipe.toml", "rate = [[0, 1], [1, 2]]", below="[curl]")
     refused(run("groom", recipe, "-o", project / "groom.usdc"), "curl.rate", "any more", "give curls", "pitch a ramp")
 
 
 def as_version(path: Path, version: object) -> Path:
-    """Gives the layer of a cache or a rest shape another version."""
+    """Replaces the version in the layer of a cache or a rest shape."""
     layer = Sdf.Layer.FindOrOpen(str(path))
     data = dict(layer.customLayerData)
     kept = dict(data["ringlet"])
@@ -155,7 +155,7 @@ def as_version(path: Path, version: object) -> Path:
     return path
 
 
-def test_a_cache_of_a_later_layout_says_what_to_do_and_one_without_a_version_opens(project):
+def test_a_cache_of_a_later_layout_is_refused_and_one_without_a_version_opens(project):
     shot, cache = project / "small.shot.toml", project / "cache.usdc"
     assert run("sim", shot, "-o", cache).exit_code == 0
     points = ringlet.read_cache(cache).points
@@ -174,13 +174,9 @@ def as_version_again(path: Path, version: int) -> Path:
     return path
 
 
-def test_a_loft_of_a_later_layout_says_what_to_do(project):
+def test_a_loft_of_a_later_layout_is_refused_with_a_remedy(project):
     shot, rest = project / "small.shot.toml", project / "small.rest.usdc"
     assert run("loft", shot, "-o", rest).exit_code == 0
     shot.write_text(shot.read_text() + '\n[rest]\nmode = "lofted"\n')
     as_version(rest, 3)
     refused(run("sim", shot, "-o", project / "cache.usdc"), "small.rest.usdc", "layout 3", "update it")
-
-
-def test_the_package_says_its_version():
-    assert ringlet.__version__.count(".") == 2

@@ -1,4 +1,4 @@
-"""Every control of the curl, on locks that are easy to think about."""
+"""Controls of the curl, on locks of known shape."""
 
 import numpy as np
 import pytest
@@ -12,14 +12,14 @@ HEIGHT = 0.08
 
 
 def straight(count=3, points=8, apart=0.02):
-    """Straight guides of 80 mm on the sheet, in a row along x."""
+    """Straight guides of 80 mm in a row along x on the sheet."""
     up = np.linspace(0.0, HEIGHT, points)
     at = apart * (np.arange(count) - 0.5 * (count - 1))
     return Curves.from_list([np.stack([0 * up + x, up, 0 * up], axis=1) for x in at], ids=range(5, 5 + count))
 
 
 def curled(settings, guides=None, points=240, plain=PLAIN, **options):
-    """Locks (count, points, 3) of drawn guides with that ``[curl]``."""
+    """Locks of drawn guides with ``[curl]`` settings, shape (count, points, 3)."""
     kept = [line for line in plain.splitlines() if line.split(" ")[0] not in settings]
     recipe = "ringlet = 1\n[guides]\nfile='g.usda'\n[locks]\npoints = {}\n[clean]\nmargin = 0\n[curl]\n{}\n{}".format(
         points, "\n".join(kept), settings
@@ -29,9 +29,9 @@ def curled(settings, guides=None, points=240, plain=PLAIN, **options):
 
 
 def about(locks):
-    """Radius [m] and unwrapped angle [turns] of locks about their straight guides, shape (count, points) each."""
+    """Radius [m] and unwrapped angle [turns] of locks about their straight guides, shapes (count, points)."""
     off = locks - straight(len(locks)).roots[:, None]
-    off[:, 0] += [1e-15, 0.0, 0.0]  # on the root itself: where the phase counts from
+    off[:, 0] += [1e-15, 0.0, 0.0]  # defines the phase at the root
     radius, angle = np.hypot(off[..., 0], off[..., 2]), np.arctan2(off[..., 0], off[..., 2])
     return radius, np.unwrap(angle, axis=1) / (2.0 * np.pi)
 
@@ -63,11 +63,11 @@ def test_the_width_is_painted_set_in_a_region_and_overridden_for_a_lock():
     width = "curls = 6\nwidth = { value = 1, map = 'paint', region = { left = 0.6 }, lock = { 7 = 0.2 } }"
     recipe = f"ringlet = 1\n[guides]\nfile='g.usda'\n[locks]\npoints = 240\n[clean]\nmargin = 0\n[curl]\n{PLAIN}{width}"
     locks = make_groom(parse_recipe(recipe), scalp, drawn_guides=guides).locks.points.reshape(5, 240, 3)
-    off = locks - guides.roots[:, None]  # the fourth stands a fifth of the way from paint 1 to paint 0.5
+    off = locks - guides.roots[:, None]  # the fourth is a fifth between the painted values 1 and 0.5
     assert np.allclose(np.hypot(off[:, -1, 0], off[:, -1, 2]), [0.003, 0.003, 0.001, 0.0045, 0.0025], rtol=1e-3)
 
 
-# How many
+# Number of turns
 
 
 def test_curls_pitch_and_curls_per_cm_count_the_same_turns():
@@ -126,7 +126,7 @@ def test_the_phase_turns_the_curl():
     assert np.allclose(np.abs((quarter - same + 0.5) % 1.0 - 0.5), 0.25, atol=1e-3)
 
 
-def phases(alike):
+def phases(coherence):
     recipe = f"""
 ringlet = 1
 [scalp]
@@ -143,7 +143,7 @@ margin = 0
 curls = 3
 start = 0
 right_handed = 1
-phase_alike = {alike}
+phase_alike = {coherence}
 phase_size = 4
 """
     groom = make_groom(parse_recipe(recipe), ball())
@@ -157,12 +157,12 @@ phase_size = 4
     return angle, gaps
 
 
-def test_neighbours_share_their_phase_as_far_as_they_are_told():
-    def alike(value):
+def test_phase_coherence_of_neighbours_follows_its_setting():
+    def coherence(value):
         angle, gaps = phases(value)
         return np.cos(angle - angle[gaps.argmin(axis=1)]).mean()
 
-    own, half, shared = alike(0.0), alike(0.5), alike(1.0)
+    own, half, shared = coherence(0.0), coherence(0.5), coherence(1.0)
     assert abs(own) < 0.2 < half < shared
     angle, gaps = phases(1.0)
     far = (gaps > 0.1) & (gaps < 9.0)
@@ -173,20 +173,22 @@ def test_neighbours_share_their_phase_as_far_as_they_are_told():
 
 
 def hand(points):
-    """+1 where a curve (n, 3) winds right-handed, -1 where left-handed, along its edges."""
+    """Handedness along the edges of a curve (n, 3): +1 right, -1 left."""
     edges = np.diff(points, axis=0)
     return np.sign(np.einsum("nx,nx->n", np.cross(edges[:-2], edges[1:-1]), edges[2:]))
 
 
-def test_the_hand_is_fixed_or_left_to_chance():
+def test_the_hand_is_fixed_or_random():
     many = straight(200, apart=0.0009)
     for wanted, share in ((1.0, 1.0), (0.0, 0.0), (0.7, 0.7)):
         locks = curled(f"curls = 5\nright_handed = {wanted}", many, points=60)
         right = np.mean([hand(lock).mean() > 0.0 for lock in locks])
         assert right == pytest.approx(share, abs=0.1 if wanted == 0.7 else 0.0)
+    by_default = curled("curls = 5", many, points=60, plain=PLAIN.replace("right_handed = 1\n", ""))
+    assert 0.4 < np.mean([hand(lock).mean() > 0.0 for lock in by_default]) < 0.6
 
 
-def test_switchbacks_come_as_often_as_they_are_asked_for():
+def test_switchbacks_have_the_requested_frequency():
     many = straight(200, apart=0.0009)
     locks = curled("curls = 12\nwidth = 0.4\nswitchbacks = 1.5", many)
     changes = [np.count_nonzero(np.diff(hand(lock)[5:-5])) for lock in locks]
@@ -201,7 +203,7 @@ def test_a_skip_leaves_out_a_turn():
     off[:, 0] = [1.0, 0.0, 0.0]
     angle = np.unwrap(np.arctan2(off[..., 0], off[..., 2]), axis=1) / (2.0 * np.pi)
     missing = 12.0 - np.abs(angle[:, -1] - angle[:, 0])
-    assert missing.mean() == pytest.approx(2.0, abs=0.5)  # those at the ends are half outside, some overlap
+    assert missing.mean() == pytest.approx(2.0, abs=0.5)  # skips at the ends are clipped, and some overlap
     alone = missing[(missing > 0.9) & (missing < 1.1)]
     assert len(alone) > 20 and np.allclose(alone, 1.0, atol=0.1)
 
@@ -209,15 +211,15 @@ def test_a_skip_leaves_out_a_turn():
 # Phase lock
 
 
-def test_locked_neighbours_come_into_one_phase_and_hand_towards_the_tip():
+def test_locked_neighbours_align_phase_and_hand_towards_the_tip():
     guides = straight(9, apart=0.004)
     loose = "curls = 8\nwidth = 1\nphase_spread = 1\nright_handed = 0.5\n"
     alone = curled(loose, guides)
     locked = curled(loose + "phase_lock = { size = 40, length = 4, cohesion = 0 }", guides)
 
-    def agreement(locks, part):
+    def agreement(locks, height):
         off = locks - guides.roots[:, None]
-        at = [[np.interp(part, lock[:, 1], lock[:, c]) for c in (0, 2)] for lock in off]
+        at = [[np.interp(height, lock[:, 1], lock[:, c]) for c in (0, 2)] for lock in off]
         angle = np.arctan2(*np.moveaxis(at, 1, 0))
         return np.abs(np.exp(1j * angle).mean(axis=0)).mean()
 
@@ -229,8 +231,8 @@ def test_locked_neighbours_come_into_one_phase_and_hand_towards_the_tip():
 
 def test_cohesion_draws_locked_neighbours_together():
     guides = straight(9, apart=0.004)
-    asked = "curls = 8\nwidth = 1\nphase_spread = 1\nphase_lock = {{ size = 40, length = 4, cohesion = {} }}"
-    apart, together = (curled(asked.format(cohesion), guides)[:, -1] for cohesion in (0, 1))
+    settings = "curls = 8\nwidth = 1\nphase_spread = 1\nphase_lock = {{ size = 40, length = 4, cohesion = {} }}"
+    apart, together = (curled(settings.format(cohesion), guides)[:, -1] for cohesion in (0, 1))
     assert np.ptp(apart[:, 0]) > 0.025
     assert np.ptp(together, axis=0).max() < 1e-6
 
@@ -246,13 +248,16 @@ def test_the_length_is_kept_to_a_thousandth(how):
     assert np.abs(lengths / HEIGHT - 1.0).max() < 1e-3
 
 
-def test_kept_length_or_silhouette():
+def test_the_curl_keeps_either_length_or_silhouette():
     silhouette, length = (curled(f"pitch = 0.6\nwidth = 0.5\nkeep = '{keep}'") for keep in ("silhouette", "length"))
     assert np.allclose(np.ptp(silhouette[:, :, 1], axis=1), HEIGHT)
-    assert np.allclose(np.ptp(length[:, :, 1], axis=1), HEIGHT / np.hypot(1.0, np.pi * 0.5 / 0.6), rtol=1e-2)
+    longer = np.hypot(1.0, np.pi * 0.5 / 0.6)  # length of a helix over its height
+    assert np.allclose(np.ptp(length[:, :, 1], axis=1), HEIGHT / longer, rtol=1e-2)
+    edges = np.linalg.norm(np.diff(silhouette, axis=1), axis=2)
+    assert np.allclose(edges.sum(axis=1), HEIGHT * longer, rtol=0.02)  # edges are chords
 
 
-def test_a_counted_curl_has_its_number_also_where_the_length_is_kept():
+def test_a_counted_curl_keeps_its_turns_when_the_length_is_kept():
     assert np.allclose(turns(curled("curls = 6\nwidth = 0.6\nkeep = 'length'")), 6.0, rtol=1e-3)
 
 
@@ -287,9 +292,9 @@ def test_the_s_wave_runs_in_a_plane_under_the_curl():
     assert np.count_nonzero(np.diff(np.sign(along[2:-2, 0]))) == 3  # two waves of 40 mm in 80 mm
 
 
-# What must not happen
+# Continuity and independence
 
-DRAGGED = {
+RANGES = {
     "width": (0.2, 2.0),
     "pitch": (0.8, 3.0),
     "start": (0.0, 4.0),
@@ -310,9 +315,9 @@ DRAGGED = {
 
 
 @pytest.mark.parametrize("keep", ["silhouette", "length"])
-@pytest.mark.parametrize("name", DRAGGED)
-def test_nothing_pops_while_a_value_is_dragged(name, keep):
-    low, high = DRAGGED[name]
+@pytest.mark.parametrize("name", RANGES)
+def test_locks_change_continuously_with_every_value(name, keep):
+    low, high = RANGES[name]
     settings = {
         "width": 0.8,
         "pitch": 1.5,
@@ -327,7 +332,7 @@ def test_nothing_pops_while_a_value_is_dragged(name, keep):
     guides = straight(40, apart=0.0045)
 
     def at(value):
-        text = "\n".join(f"{key} = {said}" for key, said in {**settings, name: value}.items())
+        text = "\n".join(f"{key} = {setting}" for key, setting in {**settings, name: value}.items())
         return curled(text, guides, points=160, plain="")
 
     def worst_move(step):
@@ -335,11 +340,11 @@ def test_nothing_pops_while_a_value_is_dragged(name, keep):
         return max(np.linalg.norm(at(v + step) - at(v), axis=2).max() for v in values)
 
     coarse, fine = worst_move(1e-3 * (high - low)), worst_move(1e-5 * (high - low))
-    assert fine < 0.1 * coarse + 1e-6  # a jump would not get smaller with the step
+    assert fine < 0.1 * coarse + 1e-6  # a jump would not decrease with the step
     assert fine < 3e-4
 
 
-def test_phases_do_not_jump_when_guides_are_resampled():
+def test_phases_are_independent_of_the_resampling_of_guides():
     bent = [
         lock + [[0.02 * np.sin(20.0 * y), 0.0, 0.0] for y in lock[:, 1]]
         for lock in map(straight(5, 40).__getitem__, range(5))
@@ -367,6 +372,6 @@ def test_adding_a_guide_changes_no_other_lock():
     assert np.array_equal(few, curled(settings, more)[:5])
 
 
-def test_a_preset_and_its_curl_are_refused_where_the_points_do_not_suffice():
-    with pytest.raises(UserError, match=r"locks.points is 60: too few"):
+def test_too_few_points_for_the_curls_are_refused_with_the_number_to_set():
+    with pytest.raises(UserError, match=r"locks.points is 60: too few for 40.0 curls .* set it to 480"):
         curled("pitch = 0.2", points=60)

@@ -1,4 +1,4 @@
-"""Curves, frames along them, and roots on a moving mesh."""
+"""Curves, frames along curves and roots on a moving mesh."""
 
 import numpy as np
 import pytest
@@ -31,7 +31,7 @@ def test_frames_do_not_turn_about_the_tangent():
     frames = frames_along(helix(points=4000))
     change = np.diff(frames[:, :, 0], axis=0)
     turning = np.abs(np.einsum("nx,nx->n", change, frames[:-1, :, 1]))
-    assert turning.max() < 1e-5  # the frame of Frenet turns by 1.4e-3 an edge here
+    assert turning.max() < 1e-5  # the Frenet frame rotates by 1.4e-3 an edge here
 
 
 def test_in_a_plane_the_frame_keeps_its_normal():
@@ -51,7 +51,7 @@ def test_frames_turn_with_the_curve():
     assert np.allclose(turned, turn @ still)
 
 
-def test_frames_survive_points_that_coincide_and_curves_that_turn_back():
+def test_frames_are_orthonormal_at_coincident_points_and_reversals():
     points = np.array([[0, 0, 0], [0, 1, 0], [0, 1, 0], [0, 0.5, 0], [0.5, 0.5, 0]], float)
     frames = frames_along(points)
     assert np.allclose(frames @ frames.transpose(0, 2, 1), np.eye(3), atol=1e-12)
@@ -65,23 +65,23 @@ def test_resampling_spaces_points_evenly_and_keeps_the_ends():
     assert np.array_equal(fine[[0, -1]], rough[[0, -1]])
 
 
-def test_a_root_binds_to_the_point_of_the_mesh_that_is_nearest():
+def test_a_root_binds_to_the_closest_point_of_the_mesh():
     mesh = ball()
     rng = np.random.default_rng(1)
-    places = rng.normal(size=(200, 3))
-    places *= 0.11 / np.linalg.norm(places, axis=1)[:, None]
-    triangle, barycentric, distance = _core.bind_roots(mesh.points, mesh.triangles, places)
+    points = rng.normal(size=(200, 3))
+    points *= 0.11 / np.linalg.norm(points, axis=1)[:, None]
+    triangle, barycentric, distance = _core.bind_roots(mesh.points, mesh.triangles, points)
     corners = mesh.points[mesh.triangles]
     bound = np.einsum("kc,kcx->kx", barycentric, corners[triangle])
-    assert np.allclose(np.linalg.norm(bound - places, axis=1), distance)
+    assert np.allclose(np.linalg.norm(bound - points, axis=1), distance)
     assert (barycentric >= 0.0).all() and np.allclose(barycentric.sum(axis=1), 1.0)
-    inside = rng.dirichlet([1, 1, 1], size=30)  # no other point of any triangle is nearer
+    inside = rng.dirichlet([1, 1, 1], size=30)  # samples of all triangles, none of which is closer
     others = np.einsum("sc,mcx->msx", inside, corners).reshape(-1, 3)
-    for place, nearest in zip(places[:40], distance, strict=False):
-        assert np.linalg.norm(others - place, axis=1).min() >= nearest - 1e-12
+    for point, nearest in zip(points[:40], distance, strict=False):
+        assert np.linalg.norm(others - point, axis=1).min() >= nearest - 1e-12
 
 
-def test_a_root_binds_only_where_it_may():
+def test_a_root_binds_only_to_allowed_triangles():
     mesh = ball()
     below = np.array([[0.0, -0.1, 0.0]])
     triangle, _, distance = _core.bind_roots(mesh.points, mesh.triangles, below, mesh.regions["scalp"])
@@ -102,13 +102,13 @@ def test_a_root_is_carried_rigidly_by_a_mesh_that_moves_rigidly():
 def test_each_curve_is_carried_by_its_own_rotation():
     first, second = helix(points=40), helix(radius=0.02, points=25) + 0.1
     turns = np.stack([rotation((0.2, 1.0, -0.4), 130.0), rotation((1.0, 0.0, 0.3), -20.0)])
-    from_places, to_places = np.array([[0.1, 0, 0], [0, 0.2, 0]], float), np.array([[1, 2, 3], [-1, 0, 5]], float)
+    from_points, to_points = np.array([[0.1, 0, 0], [0, 0.2, 0]], float), np.array([[1, 2, 3], [-1, 0, 5]], float)
     offsets = np.array([0, 40, 65], np.int32)
-    carried = _core.carry_curves(np.concatenate([first, second]), offsets, turns, from_places, to_places)
-    assert np.allclose(carried[:40], (first - from_places[0]) @ turns[0].T + to_places[0])
-    assert np.allclose(carried[40:], (second - from_places[1]) @ turns[1].T + to_places[1])
+    carried = _core.carry_curves(np.concatenate([first, second]), offsets, turns, from_points, to_points)
+    assert np.allclose(carried[:40], (first - from_points[0]) @ turns[0].T + to_points[0])
+    assert np.allclose(carried[40:], (second - from_points[1]) @ turns[1].T + to_points[1])
     with pytest.raises(ValueError, match="one row a curve"):
-        _core.carry_curves(first, offsets[:2], turns, from_places, to_places)
+        _core.carry_curves(first, offsets[:2], turns, from_points, to_points)
 
 
 def test_flat_triangles_are_those_without_area_or_not_finite():
@@ -126,16 +126,16 @@ def test_the_normal_of_roots_is_smooth_across_edges():
     triangle, barycentric, _ = _core.bind_roots(mesh.points, mesh.triangles, path)
     normals = _core.root_frames(mesh.points, mesh.triangles, triangle, barycentric)[1][:, :, 2]
     assert len(np.unique(triangle)) > 4
-    assert np.linalg.norm(np.diff(normals, axis=0), axis=1).max() < 0.02  # facets meet at 15°, a step of 0.26
+    assert np.linalg.norm(np.diff(normals, axis=0), axis=1).max() < 0.02  # facets meet at 15°, a jump of 0.26
 
 
-def test_binding_to_a_triangle_without_area_still_finds_its_nearest_point():
+def test_binding_to_a_degenerate_triangle_finds_the_closest_point():
     points = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0]], float)
     _, _, distance = _core.bind_roots(points, np.array([[0, 1, 2]], np.int32), np.array([[1.5, 1.0, 0.0]]))
     assert np.isclose(distance[0], 1.0)
 
 
-def test_a_mesh_that_names_a_missing_point_is_refused():
+def test_a_triangle_with_a_missing_point_is_refused():
     mesh = sheet()
     with pytest.raises(IndexError, match="point"):
         _core.bind_roots(mesh.points[:10], mesh.triangles, mesh.points[:1])
@@ -150,7 +150,7 @@ def test_a_mesh_that_names_a_missing_point_is_refused():
         ([], "no curves"),
     ],
 )
-def test_curves_that_nothing_could_use_are_refused(curves, words):
+def test_unusable_curves_are_refused(curves, words):
     with pytest.raises(UserError, match=words):
         Curves.from_list(curves).check("drawn guides")
 

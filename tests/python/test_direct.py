@@ -1,4 +1,4 @@
-"""The direct solver on strands that touch: the matrices that it is for."""
+"""The direct solver on systems of strands in contact."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def coil(index: int) -> np.ndarray:
 
 
 def touching_coils(count: int = 6) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Triplets i, j and their blocks, and the dense matrix, of coils that push at their neighbours."""
+    """Triplets i, j with blocks, and the dense matrix, of coils in contact with their neighbours."""
     size = 3 * count * VERTICES
     dense = np.zeros((size, size))
     for k in range(count):
@@ -30,7 +30,7 @@ def touching_coils(count: int = 6) -> tuple[np.ndarray, np.ndarray, np.ndarray, 
         stretched = rest * (1.0, 1.2, 1.0)
         own = slice(3 * VERTICES * k, 3 * VERTICES * (k + 1))
         dense[own, own] = strand.energy(stretched, continuation="least_energy", hessian=True)[2]
-    dense += 3e-6 * np.eye(size)  # mass / dt², about
+    dense += 3e-6 * np.eye(size)  # about mass / dt²
     random = np.random.default_rng(5)
     for _ in range(count * VERTICES):
         first = random.integers(count - 1)
@@ -52,7 +52,7 @@ def test_solution_of_touching_strands_agrees_with_a_dense_solver(method):
     solver = DirectSolver(i, j, len(dense) // 3, method=method)
     assert solver.method == method
     b = np.random.default_rng(2).normal(size=len(dense))
-    for scale in (1.0, 3.0):  # the pattern serves again
+    for scale in (1.0, 3.0):  # reuses the symbolic factorisation
         assert solver.factor(scale * blocks)
         x, residual = solver.solve(b)
         assert np.linalg.norm(x - np.linalg.solve(scale * dense, b)) < 1e-9 * np.linalg.norm(x)
@@ -60,7 +60,7 @@ def test_solution_of_touching_strands_agrees_with_a_dense_solver(method):
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_matrix_that_is_not_positive_definite_is_told(method):
+def test_an_indefinite_matrix_is_reported(method):
     i, j, blocks, dense = touching_coils()
     solver = DirectSolver(i, j, len(dense) // 3, method=method)
     assert not solver.factor(-blocks)
@@ -68,10 +68,10 @@ def test_matrix_that_is_not_positive_definite_is_told(method):
 
 
 @pytest.mark.skipif(open_pardiso(), reason="PARDISO is installed")
-def test_method_that_is_not_installed_is_named_with_the_remedy():
+def test_a_missing_method_is_refused_with_its_remedy():
     with pytest.raises(UserError, match=r"pardiso.*pip install 'ringlet\[direct\]'"):
         DirectSolver(np.zeros(1), np.zeros(1), 1, method="pardiso")
 
 
-def test_automatic_takes_what_there_is():
+def test_automatic_selects_an_installed_method():
     assert DirectSolver(np.zeros(1), np.zeros(1), 1).method == ("pardiso" if open_pardiso() else "builtin")

@@ -1,4 +1,4 @@
-"""The tables of controls name tests: each of them must be there."""
+"""Tests that the documents name."""
 
 import re
 from pathlib import Path
@@ -6,7 +6,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 
 
-def test_every_test_that_the_documents_name_exists():
+def test_every_test_named_in_the_documents_exists():
     named = {name for page in (ROOT / "docs").glob("*.md") for name in re.findall(r"`(test_\w+)`", page.read_text())}
     written = {
         name

@@ -1,4 +1,4 @@
-"""What the doctor says of an installation."""
+"""The diagnosis of an installation."""
 
 import json
 
@@ -9,7 +9,7 @@ import ringlet
 from ringlet import doctor
 
 
-def test_this_installation_works():
+def test_the_doctor_finds_this_installation_complete():
     findings = {finding.name: finding for finding in ringlet.diagnose()}
     assert {finding.state for finding in findings.values()} <= {"ok", "optional"}
     assert "known answers hold" in findings["simulation"].found
@@ -19,7 +19,7 @@ def test_this_installation_works():
     assert findings["picture"].state == "ok"
 
 
-def test_what_breaks_is_told_and_the_rest_still_looked_at(monkeypatch):
+def test_a_failed_check_is_reported_and_the_others_still_run(monkeypatch):
     def broken(folder):
         raise RuntimeError("out of order")
 
@@ -30,13 +30,13 @@ def test_what_breaks_is_told_and_the_rest_still_looked_at(monkeypatch):
     monkeypatch.setattr(doctor, "_needed", lambda: ["numpy", "no-such-package"])
     result = CliRunner().invoke(app, ["doctor", "--json"])
     assert result.exit_code == 1
-    told = {entry["name"]: entry for entry in json.loads(result.stdout)}
-    assert told["numpy"]["state"] == "ok" and told["groom and USD"]["state"] == "ok"
-    assert told["no-such-package"]["state"] == "fails" and "pip install" in told["no-such-package"]["remedy"]
-    assert "out of order" in told["broken"]["found"]
+    findings = {entry["name"]: entry for entry in json.loads(result.stdout)}
+    assert findings["numpy"]["state"] == "ok" and findings["groom and USD"]["state"] == "ok"
+    assert findings["no-such-package"]["state"] == "fails" and "pip install" in findings["no-such-package"]["remedy"]
+    assert "out of order" in findings["broken"]["found"]
 
 
-def test_without_the_self_test_nothing_is_tried(monkeypatch):
+def test_no_simulation_runs_without_the_self_test(monkeypatch):
     monkeypatch.setattr(doctor, "_test_core", None)
     result = CliRunner().invoke(app, ["doctor", "--no-self-test"])
     assert result.exit_code == 0 and "processor" in result.stdout and "simulation" not in result.stdout

@@ -1,4 +1,4 @@
-"""The example's garments: their files are what their scripts say, nothing in them is entangled, and their shots run."""
+"""Garments of the example: files equal the output of their scripts, without intersections, and their shots run."""
 
 import sys
 from pathlib import Path
@@ -14,17 +14,17 @@ CHILD = Path(__file__).parents[2] / "examples" / "child"
 GARMENTS = ("scarf", "hat", "tie", "ribbon")
 
 
-def entangled(points, triangles):
-    """Edges that go through triangles of the same mesh which they do not touch."""
+def self_intersections(points, triangles):
+    """Intersections of edges and triangles of a mesh that share no vertex."""
     edges = edges_of(triangles)
     pairs = piercings(points[edges], points[triangles])
     return pairs[~(edges[pairs[:, 0], :, None] == triangles[pairs[:, 1], None, :]).any(axis=(1, 2))]
 
 
 @pytest.mark.parametrize("name", GARMENTS)
-def test_a_garment_is_fit_to_be_cloth(name):
+def test_a_garment_is_a_valid_cloth_mesh(name):
     mesh = io.read_body(CHILD / f"{name}.usdc").mesh
-    assert not len(entangled(mesh.points, mesh.triangles))
+    assert not len(self_intersections(mesh.points, mesh.triangles))
     sides = mesh.points[mesh.triangles] - mesh.points[np.roll(mesh.triangles, 1, axis=1)]
     areas = 0.5 * np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
     assert areas.min() > 0.1 * np.median(areas)
@@ -33,7 +33,7 @@ def test_a_garment_is_fit_to_be_cloth(name):
 
 
 @pytest.mark.parametrize("name", GARMENTS)
-def test_its_script_makes_it(name, tmp_path, monkeypatch):
+def test_a_garment_equals_the_output_of_its_script(name, tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(str(CHILD))
     monkeypatch.setattr(sys, "argv", [f"make_{name}.py", "-o", str(tmp_path / "made.usdc")])
     __import__(f"make_{name}").main()
@@ -43,7 +43,7 @@ def test_its_script_makes_it(name, tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("name", GARMENTS)
-def test_its_shot_runs_and_nothing_is_pierced(name):
+def test_a_garment_shot_runs_without_new_intersections(name):
     shot = ringlet.read_shot(CHILD / f"{name}.shot.toml").model_copy(update={"preroll": 0})
     groom = ringlet.build_groom(shot.groom)
     first = shot.frames[0]
@@ -51,15 +51,15 @@ def test_its_shot_runs_and_nothing_is_pierced(name):
     assert cache.start["inside"] == []
     (cloth,) = cache.cloths
     triangles = io.read_body(cloth.file).mesh.triangles
-    told = sum(found["places"] for found in cache.start["piercing"] if found["what"] == "locks")
+    initial = sum(found["places"] for found in cache.start["piercing"] if found["what"] == "locks")
     locks = groom.locks
     segments = np.delete(np.arange(len(locks.points) - 1), locks.offsets[1:-1] - 1)[:, None] + [0, 1]
     for k, statistics in enumerate(cache.statistics):
-        places = cloth.points[k].astype(float)
-        assert not len(entangled(places, triangles))
-        through = piercings(cache.points[k].astype(float)[segments], places[triangles])
-        assert len(through) <= told  # what began through it stays so
+        points = cloth.points[k].astype(float)
+        assert not len(self_intersections(points, triangles))
+        through = piercings(cache.points[k].astype(float)[segments], points[triangles])
+        assert len(through) <= initial  # initial intersections persist
         assert statistics["contact"]["fraction"] == 1.0 and statistics["nan"] == 0
-        # What is made smaller than its mesh begins as stretched as that.
-        begun = 1.0 / shot.cloth[0].scale(cache.frames[k]) - 1.0
-        assert statistics["cloth"][cloth.name]["max_stretch"] < begun + 0.3
+        # A cloth that is scaled below its mesh starts with that stretch.
+        initial_stretch = 1.0 / shot.cloth[0].scale(cache.frames[k]) - 1.0
+        assert statistics["cloth"][cloth.name]["max_stretch"] < initial_stretch + 0.3

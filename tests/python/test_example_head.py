@@ -1,4 +1,4 @@
-"""The example head: a mesh that hair can grow on, and a clip that a head could make."""
+"""The example head: a closed mesh with a scalp, and a plausible motion."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from pxr import Usd, UsdGeom, UsdValidation
+from ringlet.io import problems, read_mesh
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
@@ -22,7 +23,7 @@ FRAMES = np.arange(1.0, 49.0)
 
 @dataclass
 class Surface:
-    """A mesh as in the file [cm]: rest (n, 3), triangles (m, 3), clip (48, n, 3), faces of regions, uv (m, 3, 2)."""
+    """A mesh in the units of the file [cm]: rest (n, 3), triangles (m, 3), clip (48, n, 3), regions, uv (m, 3, 2)."""
 
     rest: NDArray
     triangles: NDArray
@@ -100,7 +101,7 @@ def test_a_body_is_one_closed_surface_without_handles(name: str, request: pytest
 
 
 @pytest.mark.parametrize("name", ["skin", "shirt"])
-def test_triangles_are_neither_slivers_nor_turned_inside(name: str, request: pytest.FixtureRequest) -> None:
+def test_triangles_are_neither_slivers_nor_inverted(name: str, request: pytest.FixtureRequest) -> None:
     body = request.getfixturevalue(name)
     corners = body.rest[body.triangles]
     ahead, behind = np.roll(corners, -1, axis=1) - corners, np.roll(corners, 1, axis=1) - corners
@@ -130,7 +131,7 @@ def test_scalp_is_one_patch_without_holes_and_covers_what_hair_covers(skin: Surf
     assert np.argmin(np.where(y > y.max() - 14.0, x, 0.0)) in where["ear_right"], "the rim of the right ear"
 
 
-def test_regions_share_out_the_skin(skin: Surface) -> None:
+def test_regions_partition_the_skin(skin: Surface) -> None:
     together = np.concatenate(list(skin.regions.values()))
     assert np.array_equal(np.sort(together), np.arange(len(skin.triangles)))
 
@@ -145,11 +146,11 @@ def test_scalp_is_the_same_left_and_right(skin: Surface) -> None:
     assert cKDTree(points).query(points * [-1.0, 1.0, 1.0])[0].max() < 1.2 * edge
 
 
-def test_a_place_in_the_texture_belongs_to_one_place_on_the_skin(skin: Surface) -> None:
+def test_texture_coordinates_are_injective(skin: Surface) -> None:
     assert skin.uv is not None
     a, b, c = (skin.uv[:, k] for k in range(3))
     signed = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
-    assert (signed > 0.0).all(), "a triangle is turned over or empty in the texture"
+    assert (signed > 0.0).all(), "a triangle is inverted or degenerate in the texture"
     covering = np.zeros(600, int)
     for k, spot in enumerate(np.random.default_rng(1).random((len(covering), 2))):
         sides = [
@@ -161,7 +162,7 @@ def test_a_place_in_the_texture_belongs_to_one_place_on_the_skin(skin: Surface) 
 
 
 def test_scalp_keeps_its_areas_in_the_texture(skin: Surface) -> None:
-    """So that a density painted there is a density on the head: within a factor of two of the mean."""
+    """The ratio of areas is within a factor of two of its median, so painted densities hold on the head."""
     assert skin.uv is not None
     chosen = skin.regions["scalp"]
     a, b, c = (skin.uv[chosen, k] for k in range(3))
@@ -197,7 +198,7 @@ def test_head_nods_turns_and_hops(skin: Surface) -> None:
     assert 8.0 < (skin.clip[33:, :, 1].min(axis=1) - skin.rest[:, 1].min()).max() < 14.0
 
 
-def test_in_the_air_only_gravity_acts(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_only_gravity_acts_in_the_air(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.syspath_prepend(str(CHILD))
     import motion
 
@@ -224,15 +225,15 @@ def test_chin_keeps_clear_of_neck_and_shirt(skin: Surface, shirt: Surface) -> No
         assert cKDTree(np.concatenate([posed[low], cloth])).query(posed[chin])[0].min() > 1.0
 
 
-@pytest.mark.parametrize("part", ["eye_left/eyeball", "eye_right/iris", "brow_left", "lash_right"])
-def test_parts_of_the_face_go_with_it(part: str, stage: Usd.Stage, skin: Surface) -> None:
-    moved = read(stage, f"/child/{part}").clip.mean(axis=1)
+@pytest.mark.parametrize("feature", ["eye_left/eyeball", "eye_right/iris", "brow_left", "lash_right"])
+def test_features_of_the_face_move_with_the_head(feature: str, stage: Usd.Stage, skin: Surface) -> None:
+    moved = read(stage, f"/child/{feature}").clip.mean(axis=1)
     nose = skin.clip[:, np.argmax(skin.rest[:, 2])]
     distance = np.linalg.norm(moved - nose, axis=1)
-    assert np.abs(distance - distance[0]).max() < 0.5  # the eyes turn a little within the head
+    assert np.abs(distance - distance[0]).max() < 0.5  # the eyes rotate a little in the head
 
 
-def test_extents_hold_the_points_at_every_frame(stage: Usd.Stage) -> None:
+def test_extents_contain_the_points_of_every_frame(stage: Usd.Stage) -> None:
     for prim in stage.Traverse():
         if mesh := UsdGeom.Mesh(prim):
             for time in (Usd.TimeCode.Default(), *map(Usd.TimeCode, FRAMES)):
@@ -242,15 +243,16 @@ def test_extents_hold_the_points_at_every_frame(stage: Usd.Stage) -> None:
                 assert (points <= high).all(), (prim.GetPath(), time)
 
 
-def test_file_is_valid_usd_and_small(stage: Usd.Stage) -> None:
+def test_file_is_small_valid_usd_with_a_scalp(stage: Usd.Stage) -> None:
     validators = UsdValidation.ValidationRegistry().GetOrLoadAllValidators()
     errors = UsdValidation.ValidationContext(validators).Validate(stage)
-    assert [error.GetErrorAsString() for error in errors] == []
+    assert [error.GetErrorAsString() for error in errors] == [] == problems(HEAD)
+    assert len(read_mesh(HEAD).region("scalp")) > 100
     assert stage.GetDefaultPrim().GetPath() == "/child"
     assert HEAD.stat().st_size < 5e6
 
 
-def test_the_program_makes_the_head_that_is_kept(tmp_path: Path, stage: Usd.Stage, skin: Surface) -> None:
+def test_the_head_equals_the_output_of_its_script(tmp_path: Path, stage: Usd.Stage, skin: Surface) -> None:
     pytest.importorskip("skimage", reason="making the head again needs scikit-image")
     subprocess.run(
         [sys.executable, CHILD / "make_head.py", "-o", tmp_path / "head.usdc"], check=True, capture_output=True
@@ -258,7 +260,7 @@ def test_the_program_makes_the_head_that_is_kept(tmp_path: Path, stage: Usd.Stag
     again = Usd.Stage.Open(str(tmp_path / "head.usdc"))
     assert [str(p.GetPath()) for p in again.Traverse()] == [str(p.GetPath()) for p in stage.Traverse()]
 
-    # Another version of a library may cut the surface into other triangles, but the surface has to stay.
+    # Library versions may triangulate the surface differently, so surfaces are compared.
     made = read(again, "/child/skin")
     normals = np.zeros_like(skin.rest)
     for k in range(3):

@@ -1,5 +1,4 @@
-"""Hostile files: what fuzzing starts from and what it found is refused in one line or read, and takes neither long nor
-much memory."""
+"""Hostile files are read or refused in one line within bounded time and memory."""
 
 from __future__ import annotations
 
@@ -23,25 +22,25 @@ from targets import TARGETS, try_out  # noqa: E402
 
 
 def settings_of(*schemas: dict) -> list[str]:
-    """The names of all settings."""
+    """Names of all settings."""
     tables = [table for schema in schemas for table in (schema, *schema.get("$defs", {}).values())]
     return sorted({name for table in tables for name in table.get("properties", {})})
 
 
 SETTINGS = settings_of(*ringlet.schema().values())
-KEPT = [pytest.param(file, id=f"{file.parent.name}/{file.name}") for file in sorted((FUZZ / "corpus").glob("*/*"))]
+CORPUS = [pytest.param(file, id=f"{file.parent.name}/{file.name}") for file in sorted((FUZZ / "corpus").glob("*/*"))]
 
 
-@pytest.mark.parametrize("file", KEPT)
-def test_kept_inputs_are_read_or_refused(file, tmp_path):
+@pytest.mark.parametrize("file", CORPUS)
+def test_corpus_files_are_read_or_refused_in_one_line(file, tmp_path):
     try_out(TARGETS[file.parent.name], file.read_bytes(), tmp_path)
 
 
-def test_every_target_has_something_to_start_from():
+def test_every_target_has_a_seed_corpus():
     assert {file.parent.name for file in (FUZZ / "corpus").glob("*/*")} == set(TARGETS)
 
 
-# Any input at all
+# Generated input
 
 quick = settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 counts = st.one_of(st.integers(0, 6), st.sampled_from([2**16, 2**31 - 1, 2**31, 2**32 - 1]))
@@ -58,9 +57,7 @@ values = st.recursive(
 
 @quick
 @given(hairs=counts, points=counts, arrays=st.integers(0, 31), segments=counts, body=st.binary(max_size=200))
-def test_a_hair_file_of_any_counts_is_refused_or_holds_as_many_as_it_says(
-    tmp_path, hairs, points, arrays, segments, body
-):
+def test_a_hair_file_of_any_counts_is_refused_or_has_its_counts(tmp_path, hairs, points, arrays, segments, body):
     file = tmp_path / "a.hair"
     file.write_bytes(HEADER.pack(b"HAIR", hairs, points, arrays, segments, 0.1, 0.0, 1.0, 1.0, 1.0, b"") + body)
     tracemalloc.start()
@@ -73,7 +70,7 @@ def test_a_hair_file_of_any_counts_is_refused_or_holds_as_many_as_it_says(
     finally:
         _, most = tracemalloc.get_traced_memory()
         tracemalloc.stop()
-    assert most < 1_000_000  # whatever the counts promise
+    assert most < 1_000_000  # whatever counts the header states
 
 
 @quick
@@ -82,7 +79,7 @@ def test_a_hair_file_of_any_counts_is_refused_or_holds_as_many_as_it_says(
     faces=st.lists(st.lists(st.one_of(st.integers(-8, 8), st.integers()), max_size=6), max_size=6),
     lines=st.lists(st.lists(st.one_of(st.integers(-8, 8), st.integers()), max_size=6), max_size=4),
 )
-def test_an_obj_of_any_indices_is_refused_or_uses_points_that_are_there(tmp_path, points, faces, lines):
+def test_an_obj_of_any_indices_is_refused_or_uses_existing_points(tmp_path, points, faces, lines):
     file = tmp_path / "a.obj"
     text = [f"v {k} {k * k} 0" for k in range(points)]
     text += ["f " + " ".join(map(str, face)) for face in faces] + ["l " + " ".join(map(str, line)) for line in lines]
@@ -108,5 +105,5 @@ def test_usd_of_any_counts_and_offsets_is_refused_or_read(tmp_path, target, data
 @quick
 @given(tables=st.dictionaries(st.sampled_from(SETTINGS), values, max_size=5))
 @pytest.mark.parametrize("target", ["recipe", "shot"])
-def test_tables_of_any_values_are_refused_in_one_line_or_taken(tmp_path, target, tables):
+def test_tables_of_any_values_are_refused_in_one_line_or_accepted(tmp_path, target, tables):
     try_out(TARGETS[target], to_toml({"ringlet": 1, **tables}).encode("utf-8", "replace"), tmp_path)

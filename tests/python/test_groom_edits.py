@@ -1,4 +1,4 @@
-"""Locks taken out of the recipe: they outlive what changes before them, and can be given back."""
+"""Edits of single locks: they survive changes of the recipe and can be reverted."""
 
 import json
 
@@ -59,7 +59,7 @@ def others_stay(before, after, lock):
     np.testing.assert_array_equal(before.take(keep).points, after.take(keep).points)
 
 
-def test_moved_points_are_where_they_were_put_and_no_other_lock_changes(recipe):
+def test_moved_points_keep_their_positions_and_no_other_lock_changes(recipe):
     before = locks(recipe)
     lock = int(before.ids[5])
     wanted = before[5] + np.linspace(0, 1, 64)[:, None] * [0.01, 0.002, -0.004]
@@ -69,7 +69,7 @@ def test_moved_points_are_where_they_were_put_and_no_other_lock_changes(recipe):
     others_stay(before, after, lock)
 
 
-def test_an_edit_goes_with_what_changes_before_it(recipe):
+def test_an_edit_follows_changes_of_the_recipe(recipe):
     before = locks(recipe)
     lock = int(before.ids[5])
     ringlet.edit_lock(recipe, lock, points=before[5] + np.linspace(0, 1, 64)[:, None] * [0.01, 0.0, 0.0])
@@ -86,13 +86,13 @@ def test_an_edit_goes_with_what_changes_before_it(recipe):
         row = int(np.flatnonzero(edited.locks.ids == lock)[0])
         difference = edited.locks[row] - plain.locks[row]
         u = np.linspace(0, 1, len(difference))
-        # as far as before at every place along the lock, and the recipe's change is in it
+        # the displacement is kept along the lock, on top of the change of the recipe
         np.testing.assert_allclose(np.linalg.norm(difference, axis=1), 0.01 * u, atol=2e-4)
         assert np.abs(plain.locks[row][-1] - before[5][-1]).max() > 1e-4
         others_stay(plain.locks, edited.locks, lock)
 
 
-def test_a_frozen_lock_stays_as_it_was_whatever_the_recipe_does(recipe):
+def test_a_frozen_lock_ignores_changes_of_the_recipe(recipe):
     before = ringlet.build_groom(recipe)
     lock = int(before.locks.ids[3])
     ringlet.edit_lock(recipe, lock)
@@ -103,7 +103,7 @@ def test_a_frozen_lock_stays_as_it_was_whatever_the_recipe_does(recipe):
     assert np.abs(after[4] - before.locks[4]).max() > 1e-3
 
 
-def test_a_replaced_curve_is_what_was_given(recipe):
+def test_a_replaced_curve_equals_its_input(recipe):
     before = locks(recipe)
     root = before[2][0]
     line = root + np.linspace(0, 1, 20)[:, None] * (root / np.linalg.norm(root)) * 0.05
@@ -120,11 +120,11 @@ def test_an_edited_shape_is_still_curled_by_the_recipe(recipe):
     after = ringlet.build_groom(recipe)
     np.testing.assert_allclose(after.shapes[6], bent, atol=1e-8)
     straight = np.linalg.norm(np.diff(after.shapes[6], axis=0), axis=1).sum()
-    assert after.locks.lengths()[6] > 1.05 * straight  # it is curled
+    assert after.locks.lengths()[6] > 1.05 * straight  # the curl lengthens it
     others_stay(before.locks, after.locks, lock)
 
 
-def test_a_setting_of_one_lock_changes_it_alone_and_goes_with_the_rest(recipe):
+def test_a_setting_of_one_lock_changes_it_alone_and_overrides_the_recipe(recipe):
     before = locks(recipe)
     lock = int(before.ids[7])
     ringlet.edit_lock(recipe, lock, settings={"curl.width": "12 mm"})
@@ -132,13 +132,13 @@ def test_a_setting_of_one_lock_changes_it_alone_and_goes_with_the_rest(recipe):
     wide = locks(recipe)
     others_stay(before, wide, lock)
     change(recipe, "width = 0.6", "width = 1.2")
-    assert np.abs(locks(recipe)[7] - wide[7]).max() < 1e-12  # it had that width already
+    assert np.abs(locks(recipe)[7] - wide[7]).max() < 1e-12  # its own width overrides the recipe
     assert ringlet.list_edits(recipe) == [
         {"lock": lock, "stage": "groom", "what": ["curl.width", "scraggle.amount"], "there": True}
     ]
 
 
-def test_locks_are_given_back_to_the_recipe(recipe):
+def test_edits_of_locks_are_reverted(recipe):
     before = locks(recipe)
     ids = [int(before.ids[k]) for k in (1, 2, 3)]
     for lock in ids:
@@ -152,12 +152,12 @@ def test_locks_are_given_back_to_the_recipe(recipe):
         ringlet.release_locks(recipe, [ids[0]])
 
 
-def test_a_lock_that_is_no_longer_there_is_told_of_and_its_edit_kept(recipe):
+def test_an_edit_of_a_missing_lock_is_reported_and_kept(recipe):
     before = locks(recipe)
     lock = int(before.ids[0])
     ringlet.edit_lock(recipe, lock, settings={"curl.width": 2.0})
     kept = (recipe.parent / "a.edits.toml").read_bytes()
-    recipe.write_text("seed = 5\n" + recipe.read_text())  # other locks
+    recipe.write_text("seed = 5\n" + recipe.read_text())  # another seed grows other locks
     groom = ringlet.build_groom(recipe)
     assert lock not in groom.locks.ids
     assert groom.conflicts == [
@@ -170,7 +170,7 @@ def test_a_lock_that_is_no_longer_there_is_told_of_and_its_edit_kept(recipe):
     assert np.abs(locks(recipe)[0] - before[0]).max() > 1e-3
 
 
-def test_edits_that_cannot_be_are_refused_and_leave_the_file_as_it_was(recipe):
+def test_invalid_edits_are_refused_and_leave_the_file_unchanged(recipe):
     lock = int(locks(recipe).ids[0])
     for action, words in (
         (lambda: ringlet.edit_lock(recipe, lock, settings={"crul.width": 1}), "did you mean 'curl'"),
@@ -188,7 +188,7 @@ def test_edits_that_cannot_be_are_refused_and_leave_the_file_as_it_was(recipe):
         ringlet.edit_lock(recipe, lock)
 
 
-def test_a_moved_place_takes_its_neighbourhood_along_and_the_root_stays(recipe):
+def test_a_moved_point_moves_its_neighbourhood_and_keeps_the_rest(recipe):
     before = locks(recipe)
     change(
         recipe,
@@ -201,7 +201,7 @@ def test_a_moved_place_takes_its_neighbourhood_along_and_the_root_stays(recipe):
     assert not moved[np.abs(u - 0.5) > 0.25].any()
 
 
-def test_the_command_edits_lists_and_gives_back(recipe):
+def test_the_command_edits_lists_and_reverts(recipe):
     def run(*args):
         done = CliRunner().invoke(app, ["edit", str(recipe), *args])
         return done.exit_code, done.stdout, done.stderr
@@ -215,7 +215,7 @@ def test_the_command_edits_lists_and_gives_back(recipe):
     assert run("--release", str(lock)) == (0, "no lock is edited\n", "")
 
 
-def test_the_hairs_of_an_edited_lock_go_with_it_and_may_have_settings_of_their_own(recipe, tmp_path):
+def test_hairs_follow_an_edited_lock_and_its_own_settings(recipe, tmp_path):
     lock = int(locks(recipe).ids[4])
     change(recipe, "[curl]", '[hairs]\nper_lock = 5\nwidth = "0.1 mm"\n[curl]')
     ringlet.edit_lock(recipe, lock, points=locks(recipe)[4] + np.linspace(0, 0.01, 64)[:, None])
@@ -230,6 +230,6 @@ def test_the_hairs_of_an_edited_lock_go_with_it_and_may_have_settings_of_their_o
     assert widths[own].mean() == pytest.approx(3e-4, rel=0.15) and widths[~own].mean() == pytest.approx(1e-4, rel=0.1)
 
 
-def test_a_setting_of_no_stage_is_refused_with_what_was_probably_meant(recipe):
+def test_a_setting_of_an_unknown_stage_is_refused_with_a_suggestion(recipe):
     with pytest.raises(UserError, match=r"hair.width is no setting of an operator.*hairs"):
         ringlet.edit_lock(recipe, int(locks(recipe).ids[0]), settings={"hair.width": "1 mm"})

@@ -16,15 +16,15 @@ def groom():
     return ringlet.build_groom(RECIPE)
 
 
-def test_no_lock_goes_through_the_head(groom):
+def test_no_lock_intersects_the_head(groom):
     scalp, points = groom.scalp, groom.locks.points
     triangle, barycentric, distance = _core.bind_roots(scalp.points, scalp.triangles, points)
     nearest, frames = _core.root_frames(scalp.points, scalp.triangles, triangle, barycentric)
     inside = np.einsum("kx,kx->k", points - nearest, frames[:, :, 2]) < 0.0
-    assert (distance[inside] < 1e-9).all()  # roots, which are on the skin
+    assert (distance[inside] < 1e-9).all()  # only roots, which are on the skin
 
 
-def test_locks_have_points_enough_for_their_curls(groom):
+def test_locks_resolve_their_curls(groom):
     edges = np.diff(groom.locks.points.reshape(len(groom.locks), -1, 3), axis=1)
     edges /= np.linalg.norm(edges, axis=2, keepdims=True)
     turn = np.degrees(np.arccos(np.clip(np.sum(edges[:, 1:] * edges[:, :-1], axis=2), -1.0, 1.0)))
@@ -32,13 +32,13 @@ def test_locks_have_points_enough_for_their_curls(groom):
     assert turn.max() < 90.0
 
 
-def test_it_is_a_full_head_of_hair_of_different_locks(groom):
+def test_the_example_has_about_a_thousand_locks_of_varied_length(groom):
     assert 900 <= len(groom.locks) <= 1500
     lengths = groom.locks.lengths()
     assert lengths.min() > 0.05 and lengths.std() > 0.1 * lengths.mean()
 
 
-def test_its_hairs_start_on_the_scalp_region(groom):
+def test_hairs_of_the_example_start_on_the_scalp_region(groom):
     hairs = ringlet.build_hairs(groom, fraction=0.25).curves
     assert np.isin(hairs.curve["root_triangle"], groom.scalp.regions["scalp"]).all()
     assert np.isfinite(hairs.points).all()

@@ -1,4 +1,4 @@
-"""Guides: where they grow, which way, on both sides, and from which files they are read."""
+"""Guides: density, direction, symmetry and files of drawn guides."""
 
 import struct
 
@@ -19,7 +19,7 @@ def groom(text, scalp=None, **options):
 
 
 def painted(name="thick", mesh=None):
-    """The ball with a map that is 1 on the right, 0.25 on the left."""
+    """The ball with a map of 1 on the right and 0.25 on the left."""
     mesh = mesh or ball()
     mesh.maps[name] = np.where(mesh.points[mesh.triangles].mean(axis=1, keepdims=True)[:, :, 0] > 0.0, 1.0, 0.25)
     mesh.maps[name] = np.broadcast_to(mesh.maps[name], mesh.triangles.shape).copy()
@@ -27,7 +27,7 @@ def painted(name="thick", mesh=None):
 
 
 @pytest.mark.parametrize("kind", ["guides", "locks"])
-def test_a_painted_density_says_how_close_they_stand_and_keeps_their_number(kind):
+def test_a_painted_density_sets_the_spacing_and_keeps_the_count(kind):
     other = "[locks]\npoints = 10" if kind == "guides" else "[guides]\ncount = 20"
     curves = getattr(groom(f"[{kind}]\ncount = 400\ndensity = 'thick'\n{other}", painted()), kind)
     right = curves.roots[:, 0] > 0.0
@@ -35,11 +35,11 @@ def test_a_painted_density_says_how_close_they_stand_and_keeps_their_number(kind
     assert right.sum() / (~right).sum() == pytest.approx(4.0, rel=0.15)
     gaps = np.linalg.norm(curves.roots[:, None] - curves.roots[None], axis=2) + np.eye(400)
     nearest = gaps.min(axis=1)
-    assert nearest[right].min() > 0.4 * np.median(nearest[right])  # they keep their distance, as far as there is room
+    assert nearest[right].min() > 0.4 * np.median(nearest[right])  # the spacing is bounded below
     assert np.median(nearest[~right]) == pytest.approx(2.0 * np.median(nearest[right]), rel=0.2)
 
 
-def test_a_density_of_zero_grows_nothing_there_or_is_refused_everywhere():
+def test_zero_density_grows_nothing_and_is_refused_everywhere():
     mesh = painted()
     mesh.maps["thick"][mesh.maps["thick"] < 0.5] = 0.0
     guides = groom("[guides]\ncount = 100\ndensity = 'thick'", mesh).guides
@@ -49,7 +49,7 @@ def test_a_density_of_zero_grows_nothing_there_or_is_refused_everywhere():
         groom("[guides]\ncount = 100\ndensity = 'thick'", mesh)
 
 
-def test_one_guide_fewer_of_a_density_moves_no_other():
+def test_a_painted_density_keeps_the_other_guides_when_one_is_removed():
     more, fewer = (groom(f"[guides]\ncount = {n}\ndensity = 'thick'", painted()).guides for n in (301, 300))
     assert set(fewer.ids) < set(more.ids)
 
@@ -61,7 +61,7 @@ def test_lengths_are_painted_by_primvar_and_by_texture():
     assert np.allclose(guides.lengths()[guides.roots[:, 0] > 0.02], 0.06)
     assert np.allclose(guides.lengths()[guides.roots[:, 0] < -0.02], 0.03)
 
-    flat = sheet()  # u from x, v from z; the picture is black at v = 0 and white at v = 1
+    flat = sheet()  # u along x, v along z; the texture is black at v = 0 and white at v = 1
     flat.uv = (flat.points[flat.triangles][:, :, [0, 2]] + 0.1) / 0.2
     flat.textures["long"] = np.linspace(1.0, 0.0, 200)[:, None].repeat(3, axis=1)
     guides = groom("[guides]\ncount = 80\nlength = { value = 6, map = 'long' }", flat).guides
@@ -73,7 +73,7 @@ def test_lengths_are_painted_by_primvar_and_by_texture():
         groom("[guides]\ncount = 80\nlength = { value = 6, map = 'long' }", flat)
 
 
-def test_directions_are_painted_and_keep_the_flow_where_nothing_is_painted():
+def test_painted_directions_replace_the_flow_where_they_are_nonzero():
     mesh = sheet()
     right = mesh.points[mesh.triangles].mean(axis=1)[:, 0] > 0.0
     mesh.vectors["comb"] = np.where(right[:, None, None], [0.0, 0.0, 2.0], 0.0) * np.ones((1, 3, 1))
@@ -87,7 +87,7 @@ def test_directions_are_painted_and_keep_the_flow_where_nothing_is_painted():
         groom(plain + "direction = 'combe'", mesh)
 
 
-def test_a_zone_may_be_a_region_and_must_be_somewhere():
+def test_a_zone_may_be_a_region_and_needs_a_place():
     mesh = ball()
     mesh.regions["front"] = np.flatnonzero(mesh.points[mesh.triangles].mean(axis=1)[:, 2] > 0.0).astype(np.int32)
     text = "[guides]\ncount = 60\nlength = 6\nzone = [{ mask = { region = 'front' }, length = 0.5 }]"
@@ -98,7 +98,7 @@ def test_a_zone_may_be_a_region_and_must_be_somewhere():
         groom("[guides]\nzone = [{ length = 0.5 }]")
 
 
-def test_guides_turn_away_from_a_drawn_parting():
+def test_guides_turn_away_from_a_drawn_part_line():
     line = "[curves.parting]\npoints = [[3, 0, -9], [3, 0, 9]]\n"
     text = f"[guides]\ncount = 200\nlift = 0.2\ndroop = 0\nwhorl = [0, 0, 1]\npart = {{ line = 'parting' }}\n{line}"
     guides = groom(text, sheet()).guides
@@ -118,7 +118,7 @@ def test_mirrored_guides_are_symmetric_and_named_after_their_originals():
     assert np.isin(image.curve["root_triangle"], ball().regions["scalp"]).any()
 
 
-def test_mirroring_keeps_what_is_on_the_plane_once_and_needs_something_to_keep():
+def test_mirroring_keeps_guides_on_the_plane_once_and_refuses_an_empty_side():
     lines = Curves.from_list([np.array([[x, 0, 0], [x, 0.03, 0.01], [x, 0.06, 0]]) for x in (0.0, 0.04, -0.07)])
     drawn = "[guides]\nfile = 'g.obj'\nmirror = {}"
     guides = groom(drawn, sheet(), drawn_guides=lines).guides
@@ -141,7 +141,7 @@ def test_guides_are_resampled_by_their_length():
 
 
 def curve_of(points):
-    """The same guides in each format: centimetres, Z up, on the ball of the small example."""
+    """Points in the space of the files: centimetres, Z up."""
     return np.round(np.asarray(points) * 100.0, 6)[:, [0, 2, 1]] * (1, -1, 1)
 
 
@@ -175,7 +175,7 @@ def write_hair(path, lines):
 
 
 def lines_on_the_ball():
-    """Four straight guides of 7 points that leave the ball at its top."""
+    """Four straight guides of 7 points on top of the ball, along its normals."""
     up = np.array([[0.02, 0.09, 0.0], [-0.03, 0.085, 0.01], [0.01, 0.085, -0.03], [0.0, 0.09, 0.02]])
     roots = 0.09 * up / np.linalg.norm(up, axis=1, keepdims=True)
     return [root + np.linspace(0, 0.05, 7)[:, None] * root / 0.09 for root in roots]
@@ -192,7 +192,7 @@ def lines_on_the_ball():
         ("hair", "", "", ""),
     ],
 )
-def test_drawn_guides_come_from_every_format_to_the_same_places(tmp_path, suffix, kind, basis, wrap):
+def test_drawn_guides_of_every_format_have_the_same_positions(tmp_path, suffix, kind, basis, wrap):
     lines, path = lines_on_the_ball(), tmp_path / f"drawn.{suffix}"
     write_head(tmp_path / "head.usda")
     if suffix.startswith("usd"):
@@ -217,7 +217,7 @@ def test_periodic_guides_are_refused(tmp_path):
         ringlet.build_groom(tmp_path / "a.toml")
 
 
-def test_an_obj_scalp_is_taken_in_the_unit_that_the_recipe_says(tmp_path):
+def test_an_obj_scalp_has_the_unit_of_the_recipe(tmp_path):
     mesh = ball()
     points = "".join(f"v {x} {y} {z}\n" for x, y, z in curve_of(mesh.points))
     faces = "".join(f"f {a + 1} {b + 1} {c + 1}\n" for a, b, c in mesh.triangles)
@@ -233,15 +233,15 @@ def test_an_obj_scalp_is_taken_in_the_unit_that_the_recipe_says(tmp_path):
     np.testing.assert_allclose(again.locks.points, made.locks.points, atol=1e-6)
 
 
-def test_on_an_obj_without_groups_hair_grows_where_a_picture_is_white(tmp_path):
+def test_a_texture_restricts_hair_on_an_obj_without_groups(tmp_path):
     mesh = ball()
     low, size = mesh.points.min(axis=0), np.ptp(mesh.points, axis=0)
     points = "".join(f"v {x} {y} {z}\n" for x, y, z in 100 * mesh.points)
-    texture = "".join(f"vt {u} {v}\n" for u, v, _ in (mesh.points - low) / size)  # from the front
+    texture = "".join(f"vt {u} {v}\n" for u, v, _ in (mesh.points - low) / size)  # a projection from the front
     faces = "".join(f"f {a}/{a} {b}/{b} {c}/{c}\n" for a, b, c in mesh.triangles + 1)
     (tmp_path / "head.obj").write_text(points + texture + faces)
     white = np.zeros((100, 100), np.uint8)
-    white[:25] = 255  # the uppermost quarter
+    white[:25] = 255  # the upper quarter
     Image.fromarray(white).save(tmp_path / "hair.png")
     recipe = tmp_path / "a.toml"
     recipe.write_text(
@@ -289,7 +289,7 @@ def test_textures_and_helper_curves_are_read_from_files_beside_the_recipe(tmp_pa
     np.testing.assert_allclose(made.scalp.textures["short"], [[0, 1], [0.4, 0.2]])
     line = lines_on_the_ball()[0]
     roots, tips = made.locks.points[made.locks.offsets[:-1]], made.locks.points[made.locks.offsets[1:] - 1]
-    beside = np.linalg.norm(roots - line[0], axis=1) < 0.05  # others would come through the ball, and are led around it
+    beside = np.linalg.norm(roots - line[0], axis=1) < 0.05  # others are guided around the ball
     assert beside.sum() >= 2
     np.testing.assert_allclose(tips[beside], np.broadcast_to(line[-1], tips[beside].shape), atol=1e-4)
     (tmp_path / "short.png").write_text("no picture")

@@ -28,12 +28,12 @@ per_lock = 12
 
 
 def groom(hairs=""):
-    """A groom with those settings of its hairs; 12 of them a lock unless they say it."""
-    said = RECIPE if "per_lock" not in hairs else RECIPE.replace("per_lock = 12\n", "")
-    return make_groom(parse_recipe(said + hairs), ball())
+    """A groom with settings of its hairs, by default 12 per lock."""
+    recipe = RECIPE if "per_lock" not in hairs else RECIPE.replace("per_lock = 12\n", "")
+    return make_groom(parse_recipe(recipe + hairs), ball())
 
 
-def test_the_first_hair_of_a_lock_is_the_groom_guide_bit_for_bit():
+def test_the_first_hair_of_a_lock_is_bit_identical_to_the_lock():
     made = groom()
     hairs = make_hairs(made).curves
     first = hairs.points.reshape(40, 12, 60, 3)[:, 0]
@@ -79,7 +79,7 @@ def test_hairs_stay_within_the_radius_of_their_lock():
     assert np.linalg.norm(bundle - bundle[:, :1], axis=3).max() < 0.00101
 
 
-def test_a_fraction_of_the_hairs_are_the_first_ones():
+def test_a_fraction_selects_the_first_hairs():
     made = groom()
     everything, half = make_hairs(made).curves, make_hairs(made, fraction=0.5).curves
     kept = everything.take(np.isin(everything.ids, half.ids))
@@ -95,7 +95,7 @@ def test_hairs_thin_out_towards_the_tip():
     assert np.allclose(width[:, 0], 1e-4) and np.allclose(width[:, -1], 2e-5)
 
 
-def test_hairs_have_names_of_their_own_and_their_texture_coordinates():
+def test_hairs_have_unique_ids_and_texture_coordinates():
     made = groom()
     made.scalp.uv = made.scalp.points[made.scalp.triangles][:, :, [0, 2]]
     hairs = make_hairs(made).curves
@@ -104,7 +104,7 @@ def test_hairs_have_names_of_their_own_and_their_texture_coordinates():
     assert np.allclose(hairs.curve["st"], hairs.roots[:, [0, 2]], atol=1e-6)
 
 
-def test_settings_that_came_from_a_file_are_checked():
+def test_hair_settings_of_a_file_are_checked():
     made = groom()
     made.hairs["per_lock"] = 0
     with pytest.raises(UserError, match=r"groom: hairs: per_lock is 0; must be at least 1"):
@@ -119,7 +119,7 @@ def test_single_locks_have_their_own_number_of_hairs():
 
 
 def section(hairs):
-    """Places of the hairs about the first lock near its middle, in the two directions in which they spread most [m]."""
+    """Principal coordinates of the hairs in a cross-section of the first lock near its middle [m]."""
     bundle = make_hairs(groom("radius = '1 mm'\nstray = 0\nfrizz = 0\nshorter = 0\nper_lock = 200\n" + hairs))
     points = bundle.curves.points.reshape(40, 200, 60, 3)[0, :, 20].astype(float)
     off = points - points[0]
@@ -147,7 +147,7 @@ def test_a_taper_draws_hairs_together_at_the_tip():
         assert away[-1] == pytest.approx(left * away[20] / (1.0 - taper * 20 / 59), abs=1e-5)
 
 
-def test_strays_leave_their_lock_and_do_not_jump_while_their_part_changes():
+def test_strays_leave_their_lock_and_change_continuously_with_their_fraction():
     def at(stray):
         return make_hairs(groom(f"stray = {stray}\nstray_radius = '9 mm'\nfrizz = 0\nshorter = 0\n")).curves.points
 
@@ -158,7 +158,7 @@ def test_strays_leave_their_lock_and_do_not_jump_while_their_part_changes():
 
 
 def two_locks(lean, blend):
-    """Hairs of two straight locks 8 mm apart that lean by so much to either side [degrees]; points (2, 50, 40, 3)."""
+    """Hairs of two straight locks 8 mm apart, tilted apart by ``lean`` [degrees] each, shape (2, 50, 40, 3)."""
     up = np.linspace(0.0, 0.06, 12)
     angle = np.radians([-lean, lean])
     lines = [
@@ -184,26 +184,26 @@ blend = {blend}
     return make_hairs(made).curves.points.reshape(2, 50, 40, 3)
 
 
-def test_hairs_between_two_locks_mix_both_but_not_across_a_parting():
+def test_hairs_between_two_locks_mix_both_but_not_across_a_part_line():
     apart, mixed = two_locks(0.0, 0.0)[:, :, 20, 0], two_locks(0.0, 1.0)[:, :, 20, 0]
-    assert np.abs(apart).min() > 0.0029  # a gap between the locks
-    assert np.abs(mixed).min() < 0.0015  # which mixed hairs fill
-    assert np.allclose(mixed[:, 0], [-0.004, 0.004], atol=1e-6)  # the locks themselves stay
+    assert np.abs(apart).min() > 0.0029  # a gap between the locks without blend
+    assert np.abs(mixed).min() < 0.0015  # filled by mixed hairs
+    assert np.allclose(mixed[:, 0], [-0.004, 0.004], atol=1e-6)  # the first hairs stay
     assert np.array_equal(two_locks(40.0, 0.0), two_locks(40.0, 1.0))
 
 
-def test_mixed_hairs_stand_on_their_own_roots():
+def test_mixed_hairs_keep_their_own_roots():
     assert np.allclose(two_locks(0.0, 0.0)[:, :, 0], two_locks(0.0, 1.0)[:, :, 0], atol=1e-7)
 
 
-def test_wider_hairs_make_up_for_those_left_out():
+def test_wider_hairs_compensate_for_a_smaller_fraction():
     made = groom("width = { value = 0.01, vary = 0 }\n")
     every, few = make_hairs(made).curves, make_hairs(made, fraction=0.25, wider=True).curves
     assert len(few) == len(every) // 4
     assert few.point["width"].sum() == pytest.approx(every.point["width"].sum(), rel=1e-5)
 
 
-def test_remembered_hairs_are_those_that_would_be_made_anew():
+def test_cached_hairs_equal_rebuilt_hairs():
     memory = HairMemory()
     make_hairs(groom(), memory=memory)
     kept = memory.hairs
@@ -215,11 +215,11 @@ def test_remembered_hairs_are_those_that_would_be_made_anew():
     assert memory.hairs is not kept
 
 
-def test_the_curl_of_hairs_survives_a_hard_motion_of_their_locks():
+def test_hairs_keep_their_curl_when_locks_swing():
     made = groom("radius = '0.3 mm'\nstray = 0\nfrizz = 0\nshorter = 0\n")
     hairs = make_hairs(made)
     bent = made.locks.points.copy()
-    for i, lock in enumerate(made.locks.points.reshape(40, 60, 3)):  # every lock swings about its root by 140 degrees
+    for i, lock in enumerate(made.locks.points.reshape(40, 60, 3)):  # rotates every lock about its root by 140°
         bent[60 * i : 60 * i + 60] = lock[0] + (lock - lock[0]) @ rotation((1.0, 0.2, 0.3), 140.0).T
     now = hairs.at(bent, made.scalp.points).reshape(40, 12, 60, 3).astype(float)
     rest = hairs.curves.points.reshape(40, 12, 60, 3).astype(float)
@@ -233,7 +233,7 @@ def test_the_curl_of_hairs_survives_a_hard_motion_of_their_locks():
     assert np.allclose(bends(now), bends(rest), rtol=0.02)
 
 
-def test_pictures_that_hairs_ask_for_go_with_the_groom_file(tmp_path):
+def test_textures_of_hairs_are_stored_with_the_groom(tmp_path):
     write_head(tmp_path / "head.usdc")
     Image.fromarray(np.array([[255], [64]], np.uint8).repeat(2, axis=1)).save(tmp_path / "thick.png")
     (tmp_path / "a.recipe.toml").write_text(
@@ -251,7 +251,7 @@ def test_pictures_that_hairs_ask_for_go_with_the_groom_file(tmp_path):
 def test_hairs_stay_on_their_locks_side_of_surfaces():
     made = groom("radius = 0.004\n")
     hairs = make_hairs(made)
-    # The locks lie side by side, half a millimetre below a roof.
+    # Parallel locks, half a millimetre below a roof.
     x, z = np.meshgrid(np.linspace(0.0, 0.1, 60), np.linspace(-0.1, 0.1, 40))
     locks = np.stack([x, 0 * x + 0.2, z], axis=-1)
     roof = sheet(20, 0.5)
@@ -262,8 +262,8 @@ def test_hairs_stay_on_their_locks_side_of_surfaces():
     after_roots = np.s_[:, :, 10:]
     assert free[after_roots][..., 1].max() > 0.2015
     assert kept[after_roots][..., 1].max() < 0.2005 - 0.9e-4
-    assert np.array_equal(kept[:, 0], free[:, 0])  # locks themselves stay what they are
-    assert np.array_equal(kept[:, :, 0], free[:, :, 0])  # and so do roots
+    assert np.array_equal(kept[:, 0], free[:, 0])  # the first hairs keep the shape of their locks
+    assert np.array_equal(kept[:, :, 0], free[:, :, 0])  # roots stay
     assert 0.2 < (kept == free).all(axis=(2, 3)).mean() < 0.8
     left = hairs.left_beside(locks.reshape(-1, 3), hairs.carriage(made.scalp.points), beside).reshape(40, 12, 60)
     assert np.array_equal((left < 255).any(axis=2), (kept != free).any(axis=(2, 3)))

@@ -1,4 +1,4 @@
-"""The shape operators: what each does to curves that are easy to think about, and what all of them keep."""
+"""Shape operators: invariants of all operators, and the effect of each on curves of known shape."""
 
 from itertools import pairwise
 
@@ -44,13 +44,13 @@ margin = 0
 
 
 def locks(shape="", count=40, top="", scalp=None):
-    """Locks on a ball, without curls, before they are cleaned."""
+    """Locks on a ball before curl and cleaning."""
     text = f"ringlet = 1\n{top}\n[scalp]\nregion = 'scalp'\n{TAIL}{GROWN.format(count=count)}{shape}"
     return uncleaned(parse_recipe(text), scalp or ball())
 
 
 def uncleaned(recipe, scalp):
-    """What the shape stack of a recipe makes, shape (count, points, 3) as curves."""
+    """Curves after the shape stack of a recipe."""
     surface, curves = Scalp(scalp, recipe.scalp.region), Curves.from_list([])
     helpers = {name: helper.given() for name, helper in recipe.curves.items()}
     for name, operator in [
@@ -84,7 +84,7 @@ def upright(count=11, height=0.1, x=0.02):
     return np.stack([0 * u + x, u, 0 * u], axis=1)
 
 
-# What all of them keep
+# Invariants
 
 
 @pytest.mark.parametrize("op", OPERATORS)
@@ -95,8 +95,8 @@ def test_every_operator_changes_shapes_and_leaves_roots_and_names(op):
     assert np.array_equal(shaped.ids, plain.ids) and np.isfinite(shaped.points).all()
 
 
-@pytest.mark.parametrize("op", [op for op in OPERATORS if op != "clump"])  # whose centres are locks themselves
-def test_one_lock_fewer_moves_no_other_lock(op):
+@pytest.mark.parametrize("op", [op for op in OPERATORS if op != "clump"])  # its centres are locks
+def test_operators_move_no_lock_when_another_is_removed(op):
     more, fewer = locks(step(op), 41), locks(step(op), 40)
     same = more.take(np.isin(more.ids, fewer.ids))
     np.testing.assert_allclose(same.points, fewer.points, atol=1e-12)
@@ -110,7 +110,7 @@ def test_a_mask_of_zero_and_a_blend_of_zero_change_nothing(op):
 
 
 @pytest.mark.parametrize("op", OPERATORS)
-def test_a_mask_by_lock_leaves_the_others_exactly_and_changes_its_own_fully(op):
+def test_a_mask_by_lock_changes_its_locks_fully_and_no_others(op):
     plain, all_of_them, some = locks(), locks(step(op)), locks(step(op, "mask = { where = 'id % 2 == 0' }"))
     even = plain.ids % 2 == 0
     assert 5 < even.sum() < 35
@@ -119,7 +119,7 @@ def test_a_mask_by_lock_leaves_the_others_exactly_and_changes_its_own_fully(op):
 
 
 @pytest.mark.parametrize("op", OPERATORS)
-def test_a_growing_blend_goes_from_the_one_shape_to_the_other_without_a_jump(op):
+def test_blend_interpolates_between_both_shapes_without_a_jump(op):
     ends = grid(locks()), grid(locks(step(op)))
     shapes = [ends[0], *(grid(locks(step(op, f"blend = {b}"))) for b in (0.25, 0.5, 0.75)), ends[1]]
     whole = np.linalg.norm(ends[1] - ends[0], axis=2).max()
@@ -128,7 +128,7 @@ def test_a_growing_blend_goes_from_the_one_shape_to_the_other_without_a_jump(op)
 
 
 @pytest.mark.parametrize("op", KEEPING_LENGTH)
-def test_operators_that_turn_locks_keep_their_lengths_whatever_the_mask(op):
+def test_operators_that_rotate_locks_keep_their_lengths_under_any_mask(op):
     plain = locks().lengths()
     for more in ("", "mask = { ramp = [[0, 0], [1, 1]] }", "blend = 0.4"):
         np.testing.assert_allclose(locks(step(op, more)).lengths(), plain, rtol=1e-9)
@@ -141,7 +141,7 @@ def test_a_mask_with_a_ramp_leaves_the_base_of_locks():
     assert np.abs(shaped[:, -1] - plain[:, -1]).min() > 0.0
 
 
-def test_a_region_mask_acts_there_and_fades_out_softly():
+def test_a_region_mask_acts_in_its_region_with_a_falloff():
     scalp = ball()
     front = scalp.triangles[scalp.points[scalp.triangles].mean(axis=1)[:, 2] > 0.0]
     scalp.regions["front"] = np.flatnonzero(scalp.points[scalp.triangles].mean(axis=1)[:, 2] > 0.0).astype(np.int32)
@@ -151,14 +151,14 @@ def test_a_region_mask_acts_there_and_fades_out_softly():
         grid(locks(step("lift", f"mask = {mask}"), 200, scalp=scalp)) - grid(plain)
     ).max(axis=(1, 2))
     hard, soft = moved("{ region = 'front' }"), moved("{ region = 'front', soft = 3 }")
-    behind = plain.roots[:, 2] < -0.012  # the facets' edge is not quite at 0
+    behind = plain.roots[:, 2] < -0.012  # the boundary of the region follows facets
     near, far = behind & (plain.roots[:, 2] > -0.02), plain.roots[:, 2] < -0.05
     assert near.sum() > 3 and far.sum() > 3
     assert not hard[behind].any() and not soft[far].any()
     assert soft[near].all()
 
 
-def test_a_painted_mask_weighs_every_lock_by_what_is_under_its_root():
+def test_a_painted_mask_weights_every_lock_by_the_value_at_its_root():
     scalp = ball()
     scalp.maps["right"] = (scalp.points[scalp.triangles][:, :, 0] > 0.0).astype(float)
     plain, shaped = locks(scalp=scalp), locks(step("bend", "mask = { map = 'right' }"), scalp=scalp)
@@ -166,7 +166,7 @@ def test_a_painted_mask_weighs_every_lock_by_what_is_under_its_root():
     assert moved[plain.roots[:, 0] > 0.02].all() and not moved[plain.roots[:, 0] < -0.02].any()
 
 
-def test_masks_that_cannot_be_are_refused_in_one_line():
+def test_invalid_masks_are_refused_in_one_line():
     for mask, words in (
         ("{ map = 'nothing' }", "scraggle.mask.map is 'nothing', which neither the locks nor ball have"),
         ("{ region = 'scalpp' }", "scraggle.mask.region: ball has no region 'scalpp'; it has: scalp"),
@@ -187,10 +187,10 @@ def test_masks_that_cannot_be_are_refused_in_one_line():
         assert words in str(error.value) and "\n" not in str(error.value)
 
 
-# What each of them does
+# Effects
 
 
-def test_smooth_takes_short_waves_out_halves_those_of_its_size_and_keeps_straight_locks():
+def test_smooth_removes_short_waves_and_halves_those_of_its_size():
     u = np.linspace(0.0, 0.16, 161)
     wave = lambda length: np.stack([0.0003 * np.sin(2 * np.pi * u / length), u, 0 * u], axis=1)  # noqa: E731
     smoothed = on_sheet("op = 'smooth'\nsize = 2", [wave(0.005), wave(0.02), wave(0.08), upright(161, 0.16)])
@@ -209,7 +209,7 @@ def test_length_scales_sets_or_cuts():
     np.testing.assert_allclose(scaled[0] - bent[0], 0.5 * (bent - bent[0]), atol=1e-12)
     assert on_sheet("op = 'length'\nto = 6", [bent]).lengths()[0] == pytest.approx(0.06)
     cut = on_sheet("op = 'length'\nto = 6\ncut = true", [bent])
-    assert cut.lengths()[0] == pytest.approx(0.06, rel=0.02)  # a corner is cut off between points
+    assert cut.lengths()[0] == pytest.approx(0.06, rel=0.02)  # the cut is a chord of a corner
     assert np.abs(cut[0][-1] - bent).sum(axis=1).min() < 0.02 and cut.lengths()[0] < length
     np.testing.assert_allclose(on_sheet("op = 'length'\nto = 90\ncut = true", [bent])[0], bent, atol=1e-9)
 
@@ -225,8 +225,8 @@ def test_length_is_random_or_painted():
     assert 0.7 <= chance.min() < 0.8 and 1.2 < chance.max() <= 1.3
 
 
-def test_lift_turns_a_lock_towards_the_normal_by_the_angle_but_not_beyond():
-    lying = np.stack([np.linspace(0, 0.05, 6), np.linspace(0, 0.05, 6), np.zeros(6)], axis=1)  # at 45 degrees
+def test_lift_rotates_a_lock_towards_the_normal_but_not_beyond():
+    lying = np.stack([np.linspace(0, 0.05, 6), np.linspace(0, 0.05, 6), np.zeros(6)], axis=1)  # inclined by 45°
     for angle, left in ((20, 25), (45, 0), (80, 0), (-30, 75)):
         lifted = on_sheet(f"op = 'lift'\nangle = {angle}", [lying])[0]
         chord = lifted[-1] / np.linalg.norm(lifted[-1])
@@ -252,7 +252,7 @@ def test_noise_moves_neighbours_together_and_scraggle_does_not():
         assert np.linalg.norm(moved[0] - moved[2]) > 0.2 * np.linalg.norm(moved[0])
 
 
-def test_frizz_goes_across_the_lock_and_is_refused_where_the_shape_is_too_coarse():
+def test_frizz_is_transverse_and_refused_on_a_coarse_shape():
     frizzed = on_sheet("op = 'frizz'\namount = 0.2\nsize = 2", [upright(61)])[0]
     np.testing.assert_allclose(frizzed[:, 1], upright(61)[:, 1], atol=1e-12)
     assert 0.0005 < np.abs(frizzed[10:, [0, 2]] - [0.02, 0]).max() < 0.02
@@ -275,7 +275,7 @@ def test_clumps_of_a_second_level_are_within_those_of_the_first():
     assert near(soft + "levels = 3\n") < 0.7 * near(soft)
 
 
-def test_locks_are_combed_away_from_a_plane_and_from_a_drawn_line():
+def test_locks_part_at_a_plane_and_at_a_drawn_line():
     beside = [upright(x=0.01), upright(x=-0.01), upright(x=0.09)]
     for parting in ("", "parting = { line = 'middle' }"):
         text = f"op = 'part'\namount = 3\n{parting}\n[curves.middle]\npoints = [[0, 0, -9], [0, 0, 9]]"
@@ -286,15 +286,15 @@ def test_locks_are_combed_away_from_a_plane_and_from_a_drawn_line():
 
 def test_gathered_locks_meet_at_the_tie_keep_their_length_and_hang_along_the_tail():
     gathered, plain = locks("[[shape]]\nop='length'\nto=40\n" + step("gather")), locks()
-    np.testing.assert_allclose(gathered.lengths(), 0.4, rtol=0.05)  # corners are cut off between points
+    np.testing.assert_allclose(gathered.lengths(), 0.4, rtol=0.05)  # chords cut corners
     tie = np.array([0, 0.08, -0.08])
     distance = np.linalg.norm(grid(gathered)[:, :, None] - tie, axis=3).min(axis=(1, 2))
-    assert distance.max() < 0.025  # the radius of the tie, and the distance of points along a lock
+    assert distance.max() < 0.025  # radius of the tie plus spacing of points
     assert grid(gathered)[:, -1, 1].max() < grid(plain)[:, -1, 1].min() + 0.1
-    assert (np.linalg.norm(grid(gathered), axis=2) > 0.085).all()  # round the head, not through it
+    assert (np.linalg.norm(grid(gathered), axis=2) > 0.085).all()  # around the head
 
 
-def test_flyaways_are_as_many_as_asked_and_the_rest_stays():
+def test_flyaways_have_the_requested_share_and_other_locks_stay():
     plain, flown = locks(count=400), locks("[[shape]]\nop='flyaways'\nshare=0.2\n", 400)
     moved = np.abs(grid(flown) - grid(plain)).max(axis=(1, 2)) > 0.0
     assert 0.14 < moved.mean() < 0.26
@@ -318,7 +318,7 @@ def test_attracted_locks_end_on_the_curve_and_those_out_of_reach_stay():
     np.testing.assert_allclose(far, upright(x=-0.05), atol=1e-12)
 
 
-def test_a_helper_curve_that_is_not_there_is_refused_with_the_nearest_name():
+def test_an_unknown_helper_curve_is_refused_with_the_nearest_name():
     with pytest.raises(UserError, match=r"attract.curve is 'tial', which is no helper curve; did you mean 'tail'"):
         locks("[[shape]]\nop='attract'\ncurve='tial'\n")
     with pytest.raises(UserError, match=r"curves.tail needs either 'points' or a 'file'"):

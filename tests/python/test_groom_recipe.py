@@ -1,4 +1,4 @@
-"""Recipes: what they accept, and how they refuse."""
+"""Recipes: accepted values, defaults and refusals."""
 
 from pathlib import Path
 
@@ -47,7 +47,7 @@ def recipe(text):
         ("x = = 1", "not valid TOML: invalid value (at line 2"),
     ],
 )
-def test_mistakes_are_refused_with_file_setting_and_remedy(text, message):
+def test_invalid_settings_are_refused_with_file_setting_and_remedy(text, message):
     with pytest.raises(UserError) as error:
         recipe(text)
     assert str(error.value).startswith("curls.recipe.toml: ")
@@ -79,7 +79,7 @@ SETTINGS = [
 
 def as_toml(value):
     if isinstance(value, dict):
-        return "{ " + ", ".join(f"{key} = {as_toml(part)}" for key, part in value.items()) + " }"
+        return "{ " + ", ".join(f"{key} = {as_toml(inner)}" for key, inner in value.items()) + " }"
     if isinstance(value, list):
         return "[" + ", ".join(map(as_toml, value)) + "]"
     return str(value).lower() if isinstance(value, bool) else f"'{value}'" if isinstance(value, str) else repr(value)
@@ -87,7 +87,7 @@ def as_toml(value):
 
 @settings(max_examples=400, deadline=None)
 @given(st.sampled_from(SETTINGS), anything)
-def test_whatever_stands_in_a_setting_is_read_or_refused_in_one_line(place, value):
+def test_any_value_of_a_setting_is_read_or_refused_in_one_line(place, value):
     section, setting = place
     try:
         recipe(f"[{section}]\n{setting} = {as_toml(value)}")
@@ -95,14 +95,14 @@ def test_whatever_stands_in_a_setting_is_read_or_refused_in_one_line(place, valu
         assert "\n" not in str(error)
 
 
-def test_a_file_that_is_no_recipe_is_refused(tmp_path):
+def test_a_file_without_a_recipe_is_refused(tmp_path):
     with pytest.raises(UserError, match="cannot be read"):
         read_recipe(tmp_path / "none.toml")
     with pytest.raises(UserError, match="first line must be 'ringlet = 1'"):
         parse_recipe("name = 'x'")
 
 
-def test_numbers_count_in_the_recipe_unit_and_texts_in_their_own():
+def test_numbers_are_in_the_recipe_unit_and_strings_in_their_own():
     for text in (
         "[guides]\nlength = 8",
         "unit = 'mm'\n[guides]\nlength = 80",
@@ -111,7 +111,7 @@ def test_numbers_count_in_the_recipe_unit_and_texts_in_their_own():
         assert recipe(text).guides.length.value == pytest.approx(0.08)
 
 
-def test_a_preset_fills_only_what_the_recipe_does_not_say():
+def test_a_preset_fills_only_unset_values():
     for unit in ("cm", "m"):
         curl = recipe(f"unit = '{unit}'\n[curl]\npreset = '3C'\ncurls = 5\nstart = '2 mm'").curl
         assert curl.width.value == pytest.approx(0.009)
@@ -150,15 +150,15 @@ def test_a_ramp_passes_through_its_knots_and_never_overshoots():
     assert along.min() >= 0.0 and along.max() <= 1.0
 
 
-def test_the_schema_tells_bounds_units_and_descriptions_of_every_setting():
+def test_the_schema_has_bounds_units_and_descriptions_of_every_setting():
     definitions = schema()["$defs"]
     width = definitions["Curl"]["properties"]["width"]
     assert width["unit"] == "m" and width["anyOf"][0] == {"type": "number", "minimum": 0.0, "maximum": 0.2}
     for name, section in definitions.items():
-        for setting, told in section["properties"].items():
+        for setting, about in section["properties"].items():
             if setting not in ("op", "value"):
-                assert told.get("description"), f"{name}.{setting} has no description"
+                assert about.get("description"), f"{name}.{setting} has no description"
 
 
-def test_the_example_reads():
+def test_the_example_recipe_refers_to_its_head():
     assert read_recipe(EXAMPLE).scalp_file == EXAMPLE.parent / "head.usdc"

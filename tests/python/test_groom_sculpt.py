@@ -1,4 +1,4 @@
-"""Guides that were sculpted keep what was done to them, whatever changes before it."""
+"""Sculpted guides keep their sculpt when the recipe changes."""
 
 from __future__ import annotations
 
@@ -26,26 +26,26 @@ def recipe(tmp_path: Path) -> Path:
 
 
 def sculpt(recipe: Path, groom: Groom, guides: Curves) -> None:
-    """Keeps guides beside the recipe as what was done by hand to those of a groom."""
+    """Writes the difference of guides to those of a groom as sculpts beside the recipe."""
     assert groom.unsculpted is not None
     made: list[dict[str, Any]] = sculpts_to(groom.unsculpted, guides, Scalp(groom.scalp, groom.region))
     (recipe.parent / "small.edits.toml").write_text(edits_text({"edit": [], "sculpt": made}))
 
 
 def bent(guides: Curves, row: int) -> Curves:
-    """One of the guides, its tip 2 cm aside."""
+    """Guides with the tip of one displaced by 2 cm."""
     points = guides.points.copy()
     here = slice(guides.offsets[row], guides.offsets[row + 1])
     points[here, 0] += 0.02 * np.linspace(0.0, 1.0, guides.counts[row]) ** 2
     return guides.with_points(points)
 
 
-def test_sculpted_guides_are_where_they_were_put_and_locks_follow(recipe: Path):
+def test_sculpted_guides_keep_their_positions_and_locks_follow(recipe: Path):
     before = ringlet.build_groom(recipe)
     wanted = bent(before.guides, 2)
     sculpt(recipe, before, wanted)
     after = ringlet.build_groom(recipe)
-    assert np.abs(after.guides.points - wanted.points).max() < 2e-5  # kept to the hundredth of a millimetre
+    assert np.abs(after.guides.points - wanted.points).max() < 2e-5  # sculpts are rounded to 0.01 mm
     assert np.array_equal(
         np.delete(after.guides.points, slice(20, 30), 0), np.delete(before.guides.points, slice(20, 30), 0)
     )
@@ -53,7 +53,7 @@ def test_sculpted_guides_are_where_they_were_put_and_locks_follow(recipe: Path):
     np.testing.assert_array_equal(after.locks.roots, before.locks.roots)
 
 
-def test_a_cut_guide_is_cut_by_the_same_part_when_the_recipe_makes_it_longer(recipe: Path):
+def test_a_cut_guide_keeps_its_fraction_when_the_recipe_lengthens_it(recipe: Path):
     before = ringlet.build_groom(recipe)
     (recipe.parent / "small.edits.toml").write_text(
         f"ringlet = 1\n[[sculpt]]\nguide = {before.guides.ids[1]}\nlength = 0.5\n"
@@ -66,27 +66,29 @@ def test_a_cut_guide_is_cut_by_the_same_part_when_the_recipe_makes_it_longer(rec
     assert longer.guides.lengths()[1] > 1.4 * 0.5 * before.guides.lengths()[1]
 
 
-def test_what_was_sculpted_outlives_changes_of_the_guides(recipe: Path):
+def test_sculpting_survives_changes_of_the_guides(recipe: Path):
     before = ringlet.build_groom(recipe)
     sculpt(recipe, before, bent(before.guides, 2))
-    way = ringlet.build_groom(recipe).guides[2][-1] - before.guides[2][-1]
+    displacement = ringlet.build_groom(recipe).guides[2][-1] - before.guides[2][-1]
     recipe.write_text(recipe.read_text().replace("length = 5", "length = 5\npoints = 16\nlift = 0.7"))
     later = ringlet.build_groom(recipe)
     assert later.unsculpted is not None and later.guides.counts[2] == 16
-    assert np.linalg.norm(later.guides[2][-1] - later.unsculpted[2][-1]) == pytest.approx(np.linalg.norm(way), rel=0.02)
+    assert np.linalg.norm(later.guides[2][-1] - later.unsculpted[2][-1]) == pytest.approx(
+        np.linalg.norm(displacement), rel=0.02
+    )
 
 
-def test_what_leads_from_one_to_the_other_is_nothing_where_nothing_was_done(recipe: Path):
+def test_unchanged_guides_need_no_sculpt(recipe: Path):
     groom = ringlet.build_groom(recipe)
     assert sculpts_to(groom.guides, groom.guides, Scalp(groom.scalp, groom.region)) == []
 
 
-def test_a_guide_that_is_gone_is_told_of_and_its_shape_kept(recipe: Path):
+def test_a_sculpt_of_a_missing_guide_is_reported(recipe: Path):
     (recipe.parent / "small.edits.toml").write_text("ringlet = 1\n[[sculpt]]\nguide = 7\nlength = 0.5\n")
     assert "guide 7 was sculpted but is no longer there" in ringlet.build_groom(recipe).conflicts[0]
 
 
-def test_edits_of_locks_leave_those_of_guides_in_the_file(recipe: Path):
+def test_edits_of_locks_keep_sculpts_in_the_file(recipe: Path):
     groom = ringlet.build_groom(recipe)
     sculpt(recipe, groom, bent(groom.guides, 2))
     ringlet.edit_lock(recipe, int(groom.locks.ids[0]), settings={"curl.width": "8 mm"})
@@ -96,7 +98,7 @@ def test_edits_of_locks_leave_those_of_guides_in_the_file(recipe: Path):
     assert len(read_recipe(recipe).sculpt) == 1
 
 
-def test_mistakes_are_told(recipe: Path):
+def test_invalid_sculpts_are_refused(recipe: Path):
     text = recipe.read_text()
     with pytest.raises(UserError, match="changes nothing"):
         parse_recipe(text, recipe, "ringlet = 1\n[[sculpt]]\nguide = 3\n")

@@ -1,4 +1,4 @@
-"""Recipes that change a few values of another."""
+"""Variants: recipes that change some values of another."""
 
 import json
 
@@ -55,7 +55,7 @@ def variant(folder, text, name="down.toml"):
     return folder / name
 
 
-def test_a_variant_changes_what_it_says_and_nothing_else(folder):
+def test_a_variant_changes_only_its_own_values(folder):
     path = variant(
         folder, 'extends = "base.toml"\nname = "down"\n[guides]\nlength = 12\n[curl]\nwidth = { vary = 0.3 }\n'
     )
@@ -67,7 +67,7 @@ def test_a_variant_changes_what_it_says_and_nothing_else(folder):
     assert down.guides.count == base.guides.count and down.guides.part == base.guides.part
 
 
-def test_operators_are_changed_by_name_and_taken_away_with_false(folder):
+def test_operators_are_changed_by_name_and_removed_with_false(folder):
     text = 'extends = "base.toml"\ncurl = false\n[shape]\nloft = false\n"scraggle 2" = { amount = 0.7 }\n'
     down = read_recipe(variant(folder, text))
     assert [op.op for op in down.shape] == ["scraggle", "scraggle"]
@@ -76,7 +76,7 @@ def test_operators_are_changed_by_name_and_taken_away_with_false(folder):
     assert read_recipe(variant(folder, 'extends = "base.toml"\nshape = []\n')).shape == []
 
 
-def test_values_are_taken_away_with_false(folder):
+def test_values_are_removed_with_false(folder):
     base = read_recipe(folder / "base.toml")
     assert base.scalp.region is not None and base.curl.preset is not None
     text = 'extends = "base.toml"\n[scalp]\nregion = false\n[curl]\npreset = false\ncurls = 5\n'
@@ -93,7 +93,7 @@ def test_a_variant_of_a_variant_in_another_folder_finds_the_files_of_the_base(fo
     assert len(ringlet.build_groom(path).locks) == 12
 
 
-def test_the_text_that_is_kept_with_the_groom_is_a_recipe_of_its_own(folder):
+def test_the_text_stored_with_the_groom_is_a_complete_recipe(folder):
     groom = ringlet.build_groom(variant(folder, 'extends = "base.toml"\n[guides]\nlength = 9\n'))
     assert groom.recipe is not None and "extends" not in groom.recipe
     again = ringlet.build_groom(parse_recipe(groom.recipe, folder / "again.toml"))
@@ -115,13 +115,13 @@ def test_the_text_that_is_kept_with_the_groom_is_a_recipe_of_its_own(folder):
         ('extends = "base.toml"\n[curl]\nwidht = 3', "curl.widht is not a setting; did you mean 'width'?"),
     ],
 )
-def test_variants_that_cannot_be_are_refused_in_one_line(folder, text, words):
+def test_invalid_variants_are_refused_in_one_line(folder, text, words):
     with pytest.raises(UserError) as error:
         read_recipe(variant(folder, text))
     assert words in str(error.value) and "\n" not in str(error.value)
 
 
-def test_variants_are_variants_of_the_usd_file(folder):
+def test_variants_are_written_as_usd_variants(folder):
     from pxr import Usd, UsdGeom
 
     down = variant(folder, 'extends = "base.toml"\n[guides]\nlength = 12\n[locks]\npoints = 96\n')
@@ -134,7 +134,7 @@ def test_variants_are_variants_of_the_usd_file(folder):
     np.testing.assert_array_equal(again.locks.ids, down_groom.locks.ids)
     assert again.recipe == down_groom.recipe
 
-    stage = Usd.Stage.Open(str(folder / "groom.usdc"))  # as any other program sees it
+    stage = Usd.Stage.Open(str(folder / "groom.usdc"))  # as other programs read it
     choice = stage.GetPrimAtPath("/groom").GetVariantSets().GetVariantSet("groom")
     assert (sorted(choice.GetVariantNames()), choice.GetVariantSelection()) == (["base", "down"], "base")
     choice.SetVariantSelection("down")
@@ -146,7 +146,7 @@ def test_variants_are_variants_of_the_usd_file(folder):
         ringlet.write_groom(base_groom, folder / "groom.usdc", variants={"hair down": down_groom})
 
 
-def test_the_head_of_a_variant_in_another_folder_is_the_same_head(folder, monkeypatch):
+def test_a_variant_in_another_folder_uses_the_same_head(folder, monkeypatch):
     monkeypatch.chdir(folder)
     (folder / "other").mkdir()
     (folder / "other/down.toml").write_text("ringlet = 1\nextends = '../base.toml'\n[locks]\npoints = 96\n")
@@ -155,7 +155,7 @@ def test_the_head_of_a_variant_in_another_folder_is_the_same_head(folder, monkey
     assert len(ringlet.read_groom("groom.usdc", variant="down").locks.points) == 12 * 96
 
 
-def test_a_cache_lies_over_the_selected_variant(folder):
+def test_a_cache_is_layered_over_the_selected_variant(folder):
     down = ringlet.build_groom(variant(folder, 'extends = "base.toml"\n[locks]\npoints = 96\n'))
     base = ringlet.build_groom(folder / "base.toml")
     ringlet.write_groom(base, folder / "groom.usdc", variants={"down": down})
@@ -165,7 +165,7 @@ def test_a_cache_lies_over_the_selected_variant(folder):
     assert len(ringlet.read_groom(folder / "cache.usdc").locks) == 12
 
 
-def test_the_example_has_its_hair_down():
+def test_the_example_has_a_variant_with_longer_hair():
     from pathlib import Path
 
     child = Path(__file__).parents[2] / "examples" / "child"
@@ -175,19 +175,19 @@ def test_the_example_has_its_hair_down():
     assert np.median(down.locks.lengths()) > 1.7 * np.median(up.locks.lengths())
 
 
-def test_every_command_takes_a_variant_of_a_groom_file_and_what_is_made_of_it_remembers_which(folder):
+def test_every_command_accepts_a_variant_and_its_output_records_it(folder):
     down = ringlet.build_groom(variant(folder, 'extends = "base.toml"\n[locks]\npoints = 96\n'))
     file, cache, hair = (folder / f"{name}.usdc" for name in ("groom", "cache", "hair"))
     ringlet.write_groom(ringlet.build_groom(folder / "base.toml"), file, variants={"down": down})
     (folder / "a.shot.toml").write_text("ringlet = 1\ngroom = 'groom.usdc'\nframes = [1, 2]\npreroll = 0\n")
     chosen = ["--variant", "down"]
-    told = json.loads(run("check", file, *chosen, "--json"))
-    assert told["points"] == 12 * 96
+    checked = json.loads(run("check", file, *chosen, "--json"))
+    assert checked["points"] == 12 * 96
     run("loft", folder / "a.shot.toml", "-o", folder / "rest.usdc", *chosen)
     assert len(read_rest(folder / "rest.usdc")[0].points) == 12 * 96
     run("sim", folder / "a.shot.toml", "-o", cache, *chosen)
     assert (ringlet.read_groom(cache).variant, ringlet.read_cache(cache).points.shape[1]) == ("down", 12 * 96)
-    run("hair", file, "--cache", cache, "-o", hair)  # that of the cache, without being told
+    run("hair", file, "--cache", cache, "-o", hair)  # the variant of the cache, without an option
     assert ringlet.read_groom(hair).variant == "down" and len(ringlet.read_groom(hair).locks.points) == 12 * 96
     run("hair", file, *chosen, "-o", hair)
     assert ringlet.read_groom(hair).variant == "down"

@@ -1,4 +1,4 @@
-"""Bad files and bad places: one line that says what and where, and never half a file."""
+"""Bad files and output paths: one line with file and value, and no partial file."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from ringlet import Cache, UserError
 
 
 def refused(call, *args) -> str:
-    """The line with which a call refuses."""
+    """The one-line message of a refused call."""
     with pytest.raises(UserError) as caught:
         call(*args)
     line = str(caught.value)
@@ -51,7 +51,7 @@ def names_in(folder) -> list[str]:
         ("notes.txt", b"hello", "cannot be read as USD"),
     ],
 )
-def test_files_that_are_no_usd_are_refused(tmp_path, capfd, name, content, says):
+def test_files_other_than_usd_are_refused(tmp_path, capfd, name, content, says):
     path = tmp_path / name
     if content == "folder":
         path.mkdir()
@@ -62,7 +62,7 @@ def test_files_that_are_no_usd_are_refused(tmp_path, capfd, name, content, says)
     for call in (read_mesh, read_space, read_clip, read_bodies, read_groom, read_cache, read_hairs):
         line = refused(call, path)
         assert says in line and str(path) in line
-    assert capfd.readouterr().err == ""  # what USD has to say stays off the screen
+    assert capfd.readouterr().err == ""  # messages of USD are suppressed
 
 
 @pytest.mark.parametrize(
@@ -102,7 +102,7 @@ def set_uv(mesh, values, indices=None):
         primvar.SetIndices(indices)
 
 
-def test_a_mesh_that_changes_its_points_count_is_refused(tmp_path):
+def test_a_mesh_with_a_varying_point_count_is_refused(tmp_path):
     stage = new_stage(tmp_path / "a.usda")
     mesh = add_cube(stage)
     mesh.GetPointsAttr().Set([Gf.Vec3f(0)] * 8, 1)
@@ -111,14 +111,14 @@ def test_a_mesh_that_changes_its_points_count_is_refused(tmp_path):
     assert "has 9 points at frame 2, 8 before" in refused(read_clip, tmp_path / "a.usda")
 
 
-def test_a_prim_that_is_not_there_is_answered_with_the_nearest(tmp_path):
+def test_a_missing_prim_is_refused_with_the_nearest_name(tmp_path):
     path = write_head(tmp_path / "head.usda")
     assert "has no prim /head/skn; did you mean /head/skin?" in refused(read_mesh, path, "/head/skn")
     assert "did you mean /head/skin?" in refused(read_mesh, path, "head/skin")
     assert "has no prim" in refused(read_mesh, path, "not a path!")
 
 
-def test_no_mesh_and_many_meshes_are_told_apart(tmp_path):
+def test_missing_and_ambiguous_meshes_are_refused(tmp_path):
     stage = new_stage(tmp_path / "a.usda")
     stage.Save()
     assert "has no Mesh prim" in refused(read_mesh, tmp_path / "a.usda")
@@ -146,7 +146,7 @@ def test_units_and_rates_that_are_not_positive_are_refused(tmp_path, unit, rate,
     assert "must be above 0" in refused(read_space, path)
 
 
-def test_what_is_no_groom_or_lost_its_groom_or_its_head_is_refused(tmp_path):
+def test_files_without_groom_or_head_are_refused(tmp_path):
     head = write_head(tmp_path / "head.usda")
     assert "is no groom of Ringlet's" in refused(read_groom, head)
     assert "is no groom of Ringlet's" in refused(read_cache, head)
@@ -169,9 +169,9 @@ def test_a_groom_of_a_later_layout_is_refused(tmp_path):
     assert "has layout 2; this Ringlet reads up to 1" in refused(read_groom, tmp_path / "later.usda")
 
 
-def test_places_that_cannot_be_written_are_refused(tmp_path):
+def test_unwritable_paths_are_refused(tmp_path):
     groom = make_groom(write_head(tmp_path / "head.usda"))
-    (tmp_path / "file").write_text("in the way")
+    (tmp_path / "file").write_text("a file")
     assert "cannot be written" in refused(write_groom, groom, tmp_path / "file/groom.usdc")
     assert "ends in '.abc'" in refused(write_groom, groom, tmp_path / "groom.abc")
     assert "is the head that it would refer to" in refused(write_groom, groom, tmp_path / "head.usda")
@@ -193,7 +193,7 @@ except UserError as error:
 """
 
 
-def test_a_full_disk_leaves_nothing_behind(tmp_path):
+def test_a_full_disk_leaves_no_file(tmp_path):
     write_groom(make_groom(write_head(tmp_path / "head.usda")), tmp_path / "groom.usdc")
     done = subprocess.run([sys.executable, "-c", FULL], cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.stdout.startswith("cache.usdc: cannot be written") and done.stdout.count("\n") == 1, done

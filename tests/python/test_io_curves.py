@@ -1,4 +1,4 @@
-"""Curves from USD: every type, basis and wrap, against curves that are known in closed form."""
+"""Curves from USD of every type, basis and wrap, against closed forms."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ def write(path, counts, points, kind="cubic", basis="bezier", wrap="nonperiodic"
 
 
 def cubic(t):
-    """A cubic in each coordinate, over t in [0, 3]."""
+    """A cubic polynomial curve over t in [0, 3]."""
     t = np.asarray(t, float)
     return np.stack([t, t**2 / 4, t**3 / 8 - t], axis=-1)
 
 
 def bezier_controls():
-    """Control points of three Bézier segments that are that cubic."""
+    """Control points of three Bézier segments of the cubic."""
     derivative = lambda t: np.stack([1.0, t / 2, 3 * t**2 / 8 - 1], axis=-1)  # noqa: E731
     rows = [cubic(0.0)]
     for t in (0.0, 1.0, 2.0):
@@ -39,7 +39,7 @@ def bezier_controls():
 
 
 def bspline_controls():
-    """Control points of a uniform cubic B-spline that is that cubic: the blossom at three successive knots."""
+    """Control points of a uniform cubic B-spline of the cubic: its blossom at three successive knots."""
     blossom = lambda a, b, c: np.array([(a + b + c) / 3, (a * b + b * c + a * c) / 12, a * b * c / 8 - (a + b + c) / 3])  # noqa: E731
     return np.array([blossom(k - 1.0, float(k), k + 1.0) for k in range(-1, 5)])
 
@@ -53,7 +53,7 @@ def primvar(curves, name, interpolation):
 
 
 @pytest.mark.parametrize("basis", ["bezier", "bspline"])
-def test_cubic_curves_are_evaluated_where_their_polynomials_go(tmp_path, basis):
+def test_cubic_curves_are_evaluated_exactly(tmp_path, basis):
     controls = bezier_controls() if basis == "bezier" else bspline_controls()
     write(tmp_path / "a.usda", [len(controls)] * 2, np.concatenate([controls, controls]), basis=basis)
     curves = read_curves(tmp_path / "a.usda")
@@ -94,14 +94,14 @@ def test_pinned_b_splines_reach_their_end_vertices(tmp_path):
     np.testing.assert_allclose(curves[0][6], (vertices[0] + 4 * vertices[1] + vertices[2]) / 6, atol=1e-6)
 
 
-def test_curves_come_in_metres_and_upright_with_their_transform(tmp_path):
+def test_curves_are_read_in_metres_with_y_up_and_their_transform(tmp_path):
     stage, curves = write(tmp_path / "a.usda", [2], [[0, 0, 0], [0, 0, 10]], "linear", unit=0.01, axis="Z")
     curves.AddTranslateOp().Set(Gf.Vec3d(5, 0, 0))
     stage.Save()
     np.testing.assert_allclose(read_curves(tmp_path / "a.usda").points, [[0.05, 0, 0], [0.05, 0.1, 0]], atol=1e-9)
 
 
-def test_names_widths_and_primvars_come_along(tmp_path):
+def test_names_widths_and_primvars_are_read(tmp_path):
     stage, curves = write(tmp_path / "a.usda", [4, 4], np.random.default_rng(2).random((8, 3)), unit=0.01)
     api = UsdGeom.PrimvarsAPI(curves)
     types = Sdf.ValueTypeNames

@@ -1,4 +1,4 @@
-"""Grooms, caches and hairs: what is written comes back, moves with its head, and keeps the rules of USD."""
+"""Grooms, caches and hairs: round trips, animation with the head, and valid USD."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ from ringlet.io import (
     write_cache,
     write_groom,
 )
-from usd_scenes import make_groom, write_head
+from usd_scenes import hairs_of, make_groom, write_head
 
-from ringlet import Cache, Curves, UserError, build_groom
+from ringlet import Cache, UserError, build_groom
 
 
 @pytest.fixture(params=[(0.01, "Y"), (1.0, "Z")], ids=["cm-Y", "m-Z"])
 def folder(tmp_path, request):
-    """A head, a groom on it, and a cache of the frames 1 to 3 in which the locks rise 0.01 m a frame."""
+    """A head, its groom, and a cache of frames 1 to 3 in which the locks rise 0.01 m a frame."""
     unit, axis = request.param
     (tmp_path / "assets").mkdir()
     head = write_head(tmp_path / "assets/head.usdc", unit=unit, axis=axis)
@@ -41,31 +41,22 @@ def folder(tmp_path, request):
     return tmp_path
 
 
-def hairs_of(groom):
-    """Two hairs beside every lock."""
-    lock = np.repeat(np.arange(len(groom.locks), dtype=np.int32), 2)
-    hairs = groom.locks.take(lock)
-    hairs.points = (hairs.points + np.repeat([0.0, 0.001] * len(groom.locks), 7)[:, None]).astype(np.float32)
-    curve = {name: hairs.curve[name] for name in ("root_triangle", "root_barycentric")} | {"lock": lock}
-    return Curves(hairs.points, hairs.offsets, np.arange(len(hairs)), curve, {"width": hairs.point["width"]})
-
-
-def test_a_groom_comes_back_whole(folder):
+def test_a_groom_round_trips(folder):
     groom, back = make_groom(folder / "assets/head.usdc"), read_groom(folder / "out/groom.usdc")
     for name in ("recipe", "hairs", "region", "space", "scalp_prim"):
         assert getattr(back, name) == getattr(groom, name)
     assert back.scalp_file.samefile(groom.scalp_file)
     np.testing.assert_allclose(back.scalp.points, groom.scalp.points)
     for kind in ("locks", "guides"):
-        wrote, read = getattr(groom, kind), getattr(back, kind)
-        np.testing.assert_allclose(read.points, wrote.points, atol=2e-8)
-        np.testing.assert_array_equal(read.offsets, wrote.offsets)
-        np.testing.assert_array_equal(read.ids, wrote.ids)
-        assert read.curve.keys() == wrote.curve.keys() and read.point.keys() == wrote.point.keys()
-        for name, values in wrote.curve.items():
+        written, read = getattr(groom, kind), getattr(back, kind)
+        np.testing.assert_allclose(read.points, written.points, atol=2e-8)
+        np.testing.assert_array_equal(read.offsets, written.offsets)
+        np.testing.assert_array_equal(read.ids, written.ids)
+        assert read.curve.keys() == written.curve.keys() and read.point.keys() == written.point.keys()
+        for name, values in written.curve.items():
             np.testing.assert_array_equal(read.curve[name], values)
             assert read.curve[name].dtype.kind == values.dtype.kind
-        np.testing.assert_allclose(read.point.get("width", 0), wrote.point.get("width", 0), rtol=1e-6)
+        np.testing.assert_allclose(read.point.get("width", 0), written.point.get("width", 0), rtol=1e-6)
 
 
 def test_the_same_groom_makes_the_same_file(folder):
@@ -73,7 +64,7 @@ def test_the_same_groom_makes_the_same_file(folder):
     assert (folder / "out/again.usdc").read_bytes() == (folder / "out/groom.usdc").read_bytes()
 
 
-def test_widths_of_whole_curves_stay_widths_of_whole_curves(folder):
+def test_widths_of_curves_stay_uniform(folder):
     groom = make_groom(folder / "assets/head.usdc")
     groom.locks.curve["width"] = groom.locks.point.pop("width")[groom.locks.offsets[:-1]]
     write_groom(groom, folder / "out/groom.usdc")
@@ -82,7 +73,7 @@ def test_widths_of_whole_curves_stay_widths_of_whole_curves(folder):
     assert "width" not in locks.point
 
 
-def test_a_scalp_that_came_from_no_file_travels_inside_the_groom(tmp_path):
+def test_a_scalp_without_a_file_is_stored_in_the_groom(tmp_path):
     mesh = make_groom(write_head(tmp_path / "head.usda")).scalp
     write_groom(make_groom(None, mesh), tmp_path / "groom.usdc")
     back = read_groom(tmp_path / "groom.usdc")
@@ -92,7 +83,7 @@ def test_a_scalp_that_came_from_no_file_travels_inside_the_groom(tmp_path):
     assert read_clip(back.scalp_file, back.scalp_prim).points.shape == (1, 8, 3)
 
 
-def test_everything_written_keeps_the_rules_of_usd(folder):
+def test_written_files_pass_the_usd_validators(folder):
     groom = read_groom(folder / "out/groom.usdc")
     with HairWriter(folder / "out/hair.usdc", groom, hairs_of(groom), folder / "out/cache.usdc") as writer:
         writer.add(1, hairs_of(groom).points)
@@ -100,14 +91,14 @@ def test_everything_written_keeps_the_rules_of_usd(folder):
         assert problems(folder / f"out/{name}.usdc") == []
 
 
-def test_the_validators_see_what_breaks_a_rule(tmp_path):
+def test_the_usd_validators_detect_a_violation(tmp_path):
     stage = Usd.Stage.CreateNew(str(tmp_path / "a.usda"))
     UsdGeom.Xform.Define(stage, "/a")
     stage.Save()
     assert any("MissingDefaultPrim" in problem for problem in problems(tmp_path / "a.usda"))
 
 
-def test_the_head_comes_along_and_plays_even_after_both_have_moved(folder):
+def test_the_head_is_referenced_with_its_animation_after_both_files_move(folder):
     moved = folder.parent / f"{folder.name}-moved"
     shutil.move(folder, moved)
     bodies, hairs, _ = read_stage(moved / "out/groom.usdc")
@@ -118,7 +109,7 @@ def test_the_head_comes_along_and_plays_even_after_both_have_moved(folder):
     assert len(read_groom(moved / "out/cache.usdc").locks) == 5
 
 
-def test_a_cache_comes_back_and_leaves_the_groom_at_rest(folder):
+def test_a_cache_round_trips_and_leaves_the_groom_at_rest(folder):
     cache, groom = read_cache(folder / "out/cache.usdc"), make_groom(folder / "assets/head.usdc")
     np.testing.assert_array_equal(cache.frames, [1, 2, 3])
     np.testing.assert_allclose(cache.points[2] - cache.points[0], np.tile([0, 0.02, 0], (35, 1)), atol=1e-7)
@@ -127,7 +118,7 @@ def test_a_cache_comes_back_and_leaves_the_groom_at_rest(folder):
     np.testing.assert_allclose(read_groom(folder / "out/cache.usdc").locks.points, groom.locks.points, atol=2e-8)
 
 
-def test_hairs_come_back_at_every_frame_with_the_head_at_the_same_frame(folder):
+def test_hairs_and_head_round_trip_at_every_frame(folder):
     groom = read_groom(folder / "out/groom.usdc")
     hairs = hairs_of(groom)
     with HairWriter(folder / "out/hair.usdc", groom, hairs, folder / "out/cache.usdc") as writer:
@@ -161,14 +152,14 @@ def test_the_written_roots_are_where_the_locks_begin(folder):
     value = lambda name: np.array(UsdGeom.PrimvarsAPI(locks).GetPrimvar(name).Get())  # noqa: E731
     np.testing.assert_array_equal(value("skinprim"), 5)  # the scalp of the cube is its last polygon
     # Houdini's (u, v) = (0, 0), (0, 1), (1, 1), (1, 0) are the corners (0, 0), (1, 0), (1, 1), (0, 1) of this quad.
-    place = value("skinprimuv") * 0.1
-    np.testing.assert_allclose(place[:, ::-1], groom.locks.roots[:, :2], atol=1e-7)
+    uv = value("skinprimuv") * 0.1
+    np.testing.assert_allclose(uv[:, ::-1], groom.locks.roots[:, :2], atol=1e-7)
     for name in ("st", "surface_uv_coordinate", "groom_root_uv"):
         np.testing.assert_allclose(value(name) * 0.1, groom.locks.roots[:, :2], atol=1e-7)
     assert UsdGeom.Imageable(locks).ComputePurpose() == UsdGeom.Tokens.guide
 
 
-def test_drawn_guides_keep_their_names_and_primvars_on_the_way_through(tmp_path):
+def test_drawn_guides_keep_their_names_and_primvars_in_a_round_trip(tmp_path):
     write_head(tmp_path / "head.usdc")
     stage = Usd.Stage.CreateNew(str(tmp_path / "drawn.usda"))
     UsdGeom.SetStageMetersPerUnit(stage, 0.01)
@@ -176,7 +167,7 @@ def test_drawn_guides_keep_their_names_and_primvars_on_the_way_through(tmp_path)
     drawn.CreateTypeAttr("linear")
     drawn.CreateCurveVertexCountsAttr([3, 3])
     drawn.CreatePointsAttr([(3, 3, 10), (3, 3, 12), (3, 4, 14), (6, 6, 10), (6, 6, 12), (6, 7, 14)])
-    said = {
+    primvars = {
         "groom_id": ("int[]", "uniform", [70, 7]),
         "style": ("int[]", "uniform", [2, 9]),
         "artist": ("string[]", "uniform", ["ada", "bo"]),
@@ -184,7 +175,7 @@ def test_drawn_guides_keep_their_names_and_primvars_on_the_way_through(tmp_path)
         "flow": ("float3[]", "vertex", [(k, 0, 1) for k in range(6)]),
         "density": ("float", "constant", 0.5),
     }
-    for name, (kind, interpolation, values) in said.items():
+    for name, (kind, interpolation, values) in primvars.items():
         primvar = UsdGeom.PrimvarsAPI(drawn).CreatePrimvar(name, Sdf.ValueTypeNames.Find(kind), interpolation)
         primvar.Set(values)
     stage.Save()
@@ -196,9 +187,9 @@ def test_drawn_guides_keep_their_names_and_primvars_on_the_way_through(tmp_path)
         write_groom(build_groom(tmp_path / "a.recipe.toml") if once else read_groom(tmp_path / "once.usdc"), path)
         stage = Usd.Stage.Open(str(path))
         guides = UsdGeom.PrimvarsAPI(stage.GetPrimAtPath("/groom/guides"))
-        for name, (_, interpolation, values) in said.items():
+        for name, (_, interpolation, values) in primvars.items():
             kept = guides.GetPrimvar(name)
-            if name == "density":  # one value for all is kept as one for each
+            if name == "density":  # a constant value becomes one for each guide
                 interpolation, values = "uniform", [0.5, 0.5]
             assert kept.GetInterpolation() == interpolation, name
             assert [tuple(v) if name == "flow" else v for v in kept.Get()] == values, name
@@ -211,7 +202,7 @@ def test_other_programs_can_read_the_locks_as_plain_curves(folder):
     np.testing.assert_array_equal(curves.ids, [7, 3, 11, 2**40, 5])
 
 
-def test_extents_hold_the_points_of_their_frame(folder):
+def test_extents_contain_the_points_of_their_frame(folder):
     stage = Usd.Stage.Open(str(folder / "out/cache.usdc"))
     locks = UsdGeom.BasisCurves(stage.GetPrimAtPath("/groom/locks"))
     for frame in (1, 2, 3):
@@ -221,7 +212,7 @@ def test_extents_hold_the_points_of_their_frame(folder):
         assert (high - low < np.ptp(points, axis=0) + 0.1).all()
 
 
-def test_what_breaks_off_leaves_the_old_file_and_nothing_else(folder):
+def test_an_interrupted_write_leaves_only_the_old_file(folder):
     out = folder / "out"
     before, files = (out / "cache.usdc").read_bytes(), sorted(out.iterdir())
     locks, space = make_groom(folder / "assets/head.usdc").locks, read_space(out / "groom.usdc")
@@ -232,7 +223,7 @@ def test_what_breaks_off_leaves_the_old_file_and_nothing_else(folder):
     assert sorted(out.iterdir()) == files
 
 
-def test_a_long_run_goes_to_the_file_while_it_runs(folder, monkeypatch):
+def test_frames_are_flushed_during_a_run(folder, monkeypatch):
     monkeypatch.setattr("ringlet.io.usd.stream.FLUSH", 100)
     groom = read_groom(folder / "out/groom.usdc")
     with CacheWriter(folder / "out/b.usdc", folder / "out/groom.usdc", groom.space) as writer:
@@ -251,9 +242,9 @@ def test_a_cache_of_another_groom_is_refused(folder):
         read_cache(folder / "out/cache.usdc")
 
 
-def test_a_cache_that_is_held_open_and_lies_over_another_groom_now_is_read_as_it_is(folder):
+def test_an_open_cache_is_reread_after_it_was_replaced(folder):
     groom, held = read_groom(folder / "out/groom.usdc"), []
-    for name in "abcdefgh":  # in which order layers are read anew is chance
+    for name in "abcdefgh":  # several, since the order of reloading layers is random
         path, under = folder / f"out/{name}.usdc", folder / f"out/{name}.groom.usdc"
         shutil.copy(folder / "out/cache.usdc", path)
         held.append(Sdf.Layer.FindOrOpen(str(path)))

@@ -41,7 +41,7 @@ def test_an_obj_is_a_scalp_with_its_groups_as_regions(tmp_path):
     np.testing.assert_allclose(read_clip(path, space=CM).at(3), mesh.points)
 
 
-def test_a_groom_on_an_obj_holds_the_head_itself(tmp_path):
+def test_a_groom_on_an_obj_stores_the_head(tmp_path):
     path = write_cube(tmp_path / "head.obj")
     groom = make_groom(None, read_mesh(path, space=CM))
     groom.scalp_file = path
@@ -77,7 +77,7 @@ def test_broken_obj_files_are_refused(tmp_path, content, says):
         read_mesh(tmp_path / "a.obj")
 
 
-def test_an_obj_that_is_not_there_or_asked_for_a_prim_is_refused(tmp_path):
+def test_a_missing_obj_and_a_prim_of_an_obj_are_refused(tmp_path):
     with pytest.raises(UserError, match=r"no.obj: cannot be read"):
         read_mesh(tmp_path / "no.obj")
     with pytest.raises(UserError, match="has no prims such as /head"):
@@ -95,7 +95,7 @@ def hair_file(points, segments=None, *, hairs=2, default=1, thickness=None, coun
     return header + b"".join(array.tobytes() for array in arrays)
 
 
-def test_hair_files_come_with_their_widths(tmp_path):
+def test_hair_files_have_points_and_widths(tmp_path):
     points = np.random.default_rng(0).random((5, 3))
     path = tmp_path / "a.hair"
     path.write_bytes(hair_file(points, [2, 1], thickness=[1, 2, 3, 4, 5]))

@@ -1,4 +1,4 @@
-"""Nails: hair that the recipe holds to the skin stays there while the head moves."""
+"""Nails attach hair to the moving skin."""
 
 from itertools import pairwise
 
@@ -33,7 +33,7 @@ def groom(nails=""):
 
 
 def shaken(made, extra=""):
-    """The locks on the ball as it turns quickly to and fro, and where they would be if they were rigid; per frame."""
+    """Locks on a ball that oscillates about the vertical, and rigidly attached locks, per frame."""
     frames = np.arange(1.0, 13.0)
     turns = [rotation((0, 1, 0), 25 * np.sin(0.9 * (frame - 1))) for frame in frames]
     clip = Clip(frames, np.stack([made.scalp.points @ turn.T for turn in turns]), 24.0)
@@ -41,41 +41,41 @@ def shaken(made, extra=""):
     return cache.points, np.stack([made.locks.points @ turn.T for turn in turns])
 
 
-def off(made, extra=""):
-    """How far each point of each lock goes from where it was groomed, at most [m]; shape (count, points)."""
+def swing(made, extra=""):
+    """Largest distance of each point from rigid motion [m], shape (count, points)."""
     moved, rigid = shaken(made, extra)
     return np.linalg.norm(moved - rigid, axis=2).max(axis=0).reshape(len(made.locks), -1)
 
 
-def test_what_is_nailed_rigidly_moves_with_the_skin_and_the_rest_does_not():
+def test_rigidly_nailed_vertices_move_with_the_skin_and_tips_swing():
     made = groom("[[nail]]\nmask = { where = 'z > 0' }\nreach = 3\n")
     nail = made.locks.point["nail"].reshape(16, 24)
     front = made.locks.roots[:, 2] > 0
     along = np.linspace(0, 1, 24) * made.locks.lengths()[:, None]
     assert np.array_equal(nail > 0, front[:, None] & (along <= 0.03 + 1e-6))
-    away = off(made)
+    away = swing(made)
     assert away[nail == 1].max() < 1e-6
-    assert away[:, -1].min() > 0.0015  # all the tips swing
+    assert away[:, -1].min() > 0.0015  # all tips swing
     assert np.median(away[front, -1]) < np.median(away[~front, -1])
 
 
-def test_soft_nails_hold_less_the_softer_they_are():
-    swing = [np.median(off(groom(f"[[nail]]\nfirm = {firm}\n"))[:, -1]) for firm in (0.0, 0.2, 0.5, 0.9)]
-    assert swing[0] > 0.01
-    assert all(b < 0.75 * a for a, b in pairwise(swing))
-    assert swing[-1] < 0.25 * swing[0]
+def test_swing_increases_with_the_softness_of_nails():
+    swings = [np.median(swing(groom(f"[[nail]]\nfirm = {firm}\n"))[:, -1]) for firm in (0.0, 0.2, 0.5, 0.9)]
+    assert swings[0] > 0.01
+    assert all(b < 0.75 * a for a, b in pairwise(swings))
+    assert swings[-1] < 0.25 * swings[0]
 
 
 def test_a_nail_fades_out_along_the_lock():
     made = groom("[[nail]]\nreach = 2\nfade = 3\n")
     nail = made.locks.point["nail"].reshape(16, 24)
     assert np.all(np.diff(nail, axis=1) <= 1e-9) and np.all(nail[:, 0] == 1) and np.all(nail[:, -1] < 1)
-    away = off(made)
+    away = swing(made)
     assert away[nail >= 0.999].max() < 1e-6
     assert np.all(away[:, -1] > away[:, 12])
 
 
-def test_of_several_nails_the_firmest_holds():
+def test_the_firmest_of_several_nails_applies():
     made = groom("[[nail]]\nfirm = 0.2\n[[nail]]\nfirm = 0.6\nmask = { where = 'x > 0' }\n")
     nail = made.locks.point["nail"].reshape(16, 24)
     np.testing.assert_allclose(nail, np.where(made.locks.roots[:, 0] > 0, 0.6, 0.2)[:, None] * np.ones(24), atol=1e-6)
@@ -83,7 +83,7 @@ def test_of_several_nails_the_firmest_holds():
 
 def test_nails_hold_in_contact_as_well(tmp_path):
     made = groom("[[nail]]\nreach = 3\n")
-    assert off(made, "[contact]\nradius = 2e-4\n")[made.locks.point["nail"].reshape(16, 24) == 1].max() < 1e-6
+    assert swing(made, "[contact]\nradius = 2e-4\n")[made.locks.point["nail"].reshape(16, 24) == 1].max() < 1e-6
 
 
 def test_nails_are_written_with_the_groom(tmp_path):
@@ -93,7 +93,7 @@ def test_nails_are_written_with_the_groom(tmp_path):
     np.testing.assert_allclose(again.locks.point["nail"], made.locks.point["nail"], atol=1e-7)
 
 
-def test_nails_that_cannot_be_are_refused():
+def test_invalid_nails_are_refused():
     for text, words in (("firm = 2", "nail[0].firm is 2; must be at most 1"), ("frim = 1", "did you mean 'firm'")):
         with pytest.raises(UserError) as error:
             parse_recipe(RECIPE + f"[[nail]]\n{text}\n")

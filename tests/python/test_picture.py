@@ -1,4 +1,4 @@
-"""Pictures show the hair where it is, from any place and at any scale, and leave nothing half done."""
+"""Pictures: splines, framing, stills, contact sheets and refusals."""
 
 from __future__ import annotations
 
@@ -13,8 +13,6 @@ from ringlet.mesh import Mesh
 from ringlet.picture import HAIR_COLORS, VIEWS, PosedBody, sheet, still
 from ringlet.picture.bodies import material
 from ringlet.picture.camera import frame
-from ringlet.picture.denoise import denoise
-from ringlet.picture.passes import Passes
 from ringlet.picture.render import build_scene, hair_share, mitsuba, trace
 from ringlet.picture.strands import fibres, load_fibres, spline_controls
 from ringlet.picture.tone import develop
@@ -28,7 +26,7 @@ def helix(turns: float, per_turn: int, radius: float = 0.004) -> np.ndarray:
 
 
 def tuft(count: int = 40, scale: float = 1.0, at: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> Curves:
-    """Curls side by side, 1 mm thick so that small pictures see them."""
+    """Parallel curls, 1 mm thick so that they cover pixels of small pictures."""
     curl = helix(5, 12)
     roots = np.stack([np.linspace(-0.06, 0.06, count), np.zeros(count), np.zeros(count)], axis=1)
     curves = Curves.from_list([scale * (curl + root) + at for root in roots])
@@ -37,7 +35,7 @@ def tuft(count: int = 40, scale: float = 1.0, at: tuple[float, float, float] = (
 
 
 def ball(scale: float = 1.0, at: tuple[float, float, float] = (0.0, 0.0, 0.0), name: str = "ball") -> PosedBody:
-    """An octahedron of radius 5 cm, under the tuft."""
+    """An octahedron of radius 5 cm below the tuft."""
     corners = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], float)
     points = 0.05 * scale * corners - np.array([0, 0.05 * scale, 0]) + at
     triangles = [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]]
@@ -63,12 +61,12 @@ def test_the_spline_passes_through_every_point(count: int) -> None:
 def test_a_curl_of_twelve_points_a_turn_keeps_its_radius() -> None:
     curl = helix(4, 12)
     controls = spline_controls(curl[None])[0]
-    along = np.linspace(6, len(curl) - 7, 500)  # away from the ends, which are straight
+    along = np.linspace(6, len(curl) - 7, 500)  # without the straight ends
     drawn = BSpline(np.arange(-3, len(curl) + 3, dtype=float), controls, 3)(along)
     radius = np.hypot(drawn[:, 0], drawn[:, 2])
     assert radius.min() > 0.999 * 0.004
     uncorrected = BSpline(np.arange(-3, len(curl) + 1, dtype=float), curl, 3)(along)
-    assert np.hypot(uncorrected[:, 0], uncorrected[:, 2]).max() < 0.96 * 0.004  # what the correction is for
+    assert np.hypot(uncorrected[:, 0], uncorrected[:, 2]).max() < 0.96 * 0.004  # without the correction
 
 
 def test_hairs_of_different_lengths_reach_the_renderer_whole() -> None:
@@ -77,9 +75,9 @@ def test_hairs_of_different_lengths_reach_the_renderer_whole() -> None:
     controls, offsets = fibres(hairs)
     shape = load_fibres(mitsuba(), controls, offsets, {"type": "hair"})
     parameters = mitsuba().traverse(shape)
-    held, guard = np.split(np.array(parameters["control_points"]).reshape(-1, 4), [len(controls)])
-    assert np.array_equal(held, controls)
-    assert guard[:, 3].max() < 1e-3 * controls[:, 3].min(), "the curve that ends the list is never seen"
+    loaded, guard = np.split(np.array(parameters["control_points"]).reshape(-1, 4), [len(controls)])
+    assert np.array_equal(loaded, controls)
+    assert guard[:, 3].max() < 1e-3 * controls[:, 3].min(), "the guard curve at the end of the list is invisible"
     assert len(np.array(parameters["segment_indices"])) == sum(len(hairs[k]) - 1 for k in range(3)) + 1
     for k in range(3):
         middle = controls[offsets[k] : offsets[k + 1]]
@@ -100,7 +98,7 @@ def test_everything_is_in_the_frame_and_fills_it(view: str | tuple[float, float]
     seen = frame([points[:90], points[90:]], view=view, aspect=aspect, margin=0.05).project(points)
     assert seen.min() >= 0.05 - 1e-9
     assert seen.max() <= 0.95 + 1e-9
-    assert np.ptp(seen, axis=0).max() == pytest.approx(0.9)  # one side is as full as the margins allow
+    assert np.ptp(seen, axis=0).max() == pytest.approx(0.9)  # one dimension fills the frame up to the margins
 
 
 def test_the_front_view_looks_at_the_face_and_the_side_view_at_the_left_ear() -> None:
@@ -114,7 +112,7 @@ def test_the_front_view_looks_at_the_face_and_the_side_view_at_the_left_ear() ->
 
 
 @pytest.mark.parametrize(("scale", "at"), [(1.0, (0.0, 0.0, 0.0)), (0.01, (3.0, -2.0, 1.0))])
-def test_hair_is_seen_where_it_is(tmp_path: Path, scale: float, at: tuple[float, float, float]) -> None:
+def test_hair_appears_at_its_projected_position(tmp_path: Path, scale: float, at: tuple[float, float, float]) -> None:
     hairs, size = tuft(scale=scale, at=at), (64, 64)
     camera = frame([hairs.points], view="front")
     scene = build_scene([], hairs, camera, size=size, color=HAIR_COLORS["dark_brown"], max_depth=4)
@@ -122,7 +120,7 @@ def test_hair_is_seen_where_it_is(tmp_path: Path, scale: float, at: tuple[float,
     expected = np.zeros(size, bool)
     where = np.clip((camera.project(hairs.points) * 64).astype(int), 0, 63)
     expected[where[:, 1], where[:, 0]] = True
-    near = np.zeros(size, bool)  # every pixel that touches one with hair points
+    near = np.zeros(size, bool)  # pixels with hair points and their neighbours
     for dx in (-1, 0, 1):
         for dy in (-1, 0, 1):
             near |= np.roll(expected, (dy, dx), (0, 1))
@@ -130,7 +128,7 @@ def test_hair_is_seen_where_it_is(tmp_path: Path, scale: float, at: tuple[float,
     assert coverage[~near].max() < 0.05
 
 
-def test_a_still_is_neither_black_nor_burnt_and_the_hair_darkens_the_wall(tmp_path: Path) -> None:
+def test_a_still_is_neither_black_nor_overexposed_and_shows_the_hair(tmp_path: Path) -> None:
     path = still([ball()], tuft(), tmp_path / "still.png", width=64, height=64, samples=8, view="front")
     image = pixels(path)
     assert image.shape == (64, 64, 3)
@@ -139,7 +137,7 @@ def test_a_still_is_neither_black_nor_burnt_and_the_hair_darkens_the_wall(tmp_pa
     assert np.abs(image - pixels(empty)).max() > 40
 
 
-def test_what_is_behind_a_veil_is_seen_through_it(tmp_path: Path) -> None:
+def test_a_body_shows_through_a_transparent_one(tmp_path: Path) -> None:
     near, far = ball(at=(0.0, 0.0, 0.12)), ball(0.8, at=(0.0, -0.01, 0.0))
     for body, color in ((near, (0.8, 0.02, 0.02)), (far, (0.02, 0.02, 0.8))):
         body.mesh = Mesh(body.mesh.name, body.mesh.points, body.mesh.triangles, color=color)
@@ -147,7 +145,7 @@ def test_what_is_behind_a_veil_is_seen_through_it(tmp_path: Path) -> None:
     for opacity in (1.0, 0.3):
         near.opacity = opacity
         path = still([near, far], tuft(2), tmp_path / "veil.png", width=48, height=48, samples=32, view="front")
-        middle = pixels(path)[40:, 20:28].mean(axis=(0, 1))  # where one is before the other
+        middle = pixels(path)[40:, 20:28].mean(axis=(0, 1))  # the near body covers the far one
         blue[opacity] = middle[2] / middle[0]
     assert blue[0.3] > 2 * blue[1.0]
 
@@ -162,7 +160,7 @@ def test_blond_hair_is_brighter_than_black(tmp_path: Path) -> None:
     assert light["blond"] > 1.5 * light["black"]
 
 
-def test_thin_hairs_are_still_seen(tmp_path: Path) -> None:
+def test_subpixel_hairs_are_visible(tmp_path: Path) -> None:
     hairs = tuft()
     hairs.point["width"][:] = 1e-9
     camera = frame([hairs.points], view="front")
@@ -170,11 +168,11 @@ def test_thin_hairs_are_still_seen(tmp_path: Path) -> None:
     assert trace(scene, samples=8)[:, :, 3].mean() > 0.05
 
 
-def test_a_still_tells_how_far_it_is_and_keeps_to_its_time(tmp_path: Path) -> None:
-    told: list[tuple[str, int, int]] = []
-    still([], tuft(4), tmp_path / "a.png", width=16, height=16, samples=16, progress=lambda *step: told.append(step))
-    assert [done for _, done, _ in told] == list(range(told[-1][2] + 1))
-    told.clear()
+def test_a_still_reports_progress_and_respects_its_time_limit(tmp_path: Path) -> None:
+    steps: list[tuple[str, int, int]] = []
+    still([], tuft(4), tmp_path / "a.png", width=16, height=16, samples=16, progress=lambda *step: steps.append(step))
+    assert [done for _, done, _ in steps] == list(range(steps[-1][2] + 1))
+    steps.clear()
     still(
         [],
         tuft(4),
@@ -183,17 +181,17 @@ def test_a_still_tells_how_far_it_is_and_keeps_to_its_time(tmp_path: Path) -> No
         height=16,
         samples=10_000,
         seconds=0.0,
-        progress=lambda *step: told.append(step),
+        progress=lambda *step: steps.append(step),
     )
-    assert len(told) == 3  # the beginning, one pass, and the word that it is over
+    assert len(steps) == 3  # start, one pass, end
 
 
 @pytest.mark.parametrize("samples", [4, 40])
-def test_a_still_that_time_may_cut_short_is_traced_in_smaller_passes(tmp_path: Path, samples: int) -> None:
-    """Noise is known from three passes on: they take no longer than two would without a limit, save of few samples."""
+def test_a_time_limit_splits_a_still_into_smaller_passes(tmp_path: Path, samples: int) -> None:
+    """With a time limit passes are smaller, since the noise estimate needs three."""
     passes = {}
     for seconds in (None, 1e9):
-        told: list[int] = []
+        steps: list[int] = []
         still(
             [],
             tuft(4),
@@ -202,64 +200,13 @@ def test_a_still_that_time_may_cut_short_is_traced_in_smaller_passes(tmp_path: P
             height=16,
             samples=samples,
             seconds=seconds,
-            progress=lambda _, done, total, told=told: told.append(done),
+            progress=lambda _, done, total, steps=steps: steps.append(done),
         )
-        passes[seconds] = told[-1]
+        passes[seconds] = steps[-1]
     assert passes[1e9] >= (4 if samples == 4 else 1.5 * passes[None])
 
 
-def seen(passes: np.ndarray) -> Passes:
-    """Passes of one picture, shape (count, height, width, 4)."""
-    added = Passes()
-    for image in passes:
-        added.add(image)
-    return added
-
-
-def test_a_speck_is_spread_over_its_neighbourhood_and_no_light_is_lost() -> None:
-    passes = np.full((5, 40, 40, 4), 0.5)
-    passes[2, 20, 20, :3] += 5.0  # one pass met a light by chance
-    total = passes.sum(axis=0)
-    even, odd = seen(passes).without_specks()
-    calm = even + odd
-    assert calm[20, 20, 0] < 0.6 * total[20, 20, 0]
-    assert calm[:, :, :3].sum() == pytest.approx(total[:, :, :3].sum(), rel=1e-3)
-    assert np.array_equal(calm[:, :, 3], total[:, :, 3])
-    assert even[20, 20, 0] / odd[20, 20, 0] < 2.0  # three passes to two: the speck is taken from those that have it
-
-
-@pytest.mark.parametrize("where", [0, 1, 2])
-def test_a_speck_leaves_no_dot_on_skin_that_is_noisy(where: int) -> None:
-    passes = np.random.default_rng(where).uniform(0.4, 0.6, (3, 40, 40, 4))
-    passes[where, 20, 20, :3] += 5.0
-    all_of_it = seen(passes)
-    calm = all_of_it.without_noise(all_of_it.without_specks())
-    around = calm[14:27, 14:27, :3]
-    assert np.abs(calm[20, 20, :3] - around.mean()).max() < 0.1
-
-
-def test_noise_goes_and_edges_stay() -> None:
-    clean = np.full((60, 60, 4), 0.2)
-    clean[:, 30:] = 0.8
-    noise = np.random.default_rng(4).normal(0.0, 0.05, clean.shape)
-    other = np.random.default_rng(5).normal(0.0, 0.05, clean.shape)
-    calm = denoise(clean + noise, clean + other, np.full(clean.shape, 0.05**2))
-    assert np.abs(calm - clean).mean() < 0.3 * np.abs(noise).mean()
-    assert (calm[:, 30] - calm[:, 29]).min() > 0.5
-    assert np.allclose(denoise(clean, clean, np.zeros(clean.shape)), clean, atol=1e-3)
-
-
-@pytest.mark.parametrize("passes", [3, 4, 5, 10])
-def test_less_is_left_of_noise_that_is_not_judged_by_itself(passes: int) -> None:
-    light = np.random.default_rng(passes).uniform(0.0, 1.0, (passes, 80, 80, 1)).repeat(4, axis=3)
-    mean, variance = light.mean(axis=0), light.var(axis=0, ddof=1)
-    all_of_it = seen(light)
-    calm = all_of_it.without_noise([light[::2].sum(axis=0), light[1::2].sum(axis=0)])
-    assert calm.std() < 0.8 * denoise(mean, mean, variance / passes).std()
-    assert calm.mean() == pytest.approx(mean.mean(), rel=5e-3)
-
-
-def test_hair_is_told_from_skin() -> None:
+def test_hair_is_distinguished_from_skin() -> None:
     hairs = tuft()
     camera = frame([hairs.points, ball().points], view="front")
     scene = build_scene([ball()], hairs, camera, size=(64, 64), color=HAIR_COLORS["black"], max_depth=2)
@@ -270,15 +217,15 @@ def test_hair_is_told_from_skin() -> None:
     assert share[int(below[1]) - 6, int(below[0])] < 0.01
 
 
-def test_bright_light_rolls_off_and_order_is_kept() -> None:
+def test_tone_mapping_is_monotone_and_compresses_highlights() -> None:
     ramp = np.linspace(0.0, 4.0, 400)[None, :, None].repeat(3, axis=2)
     values = develop(ramp)[0, :, 0].astype(int)
     assert values[0] <= 1
-    assert (np.diff(values) >= -2).all()  # the dither is one step
-    assert values[100] < 240  # light of strength 1 is not yet white
+    assert (np.diff(values) >= -2).all()  # dithering changes values by one
+    assert values[100] < 240  # radiance 1 is below white
 
 
-def test_a_body_is_made_of_what_its_name_says() -> None:
+def test_the_material_of_a_body_follows_its_name() -> None:
     eye = material(ball(name="head.usdc /child/eye_left/iris").mesh)["bsdf"]
     shirt = material(ball(name="head.usdc /child/shirt").mesh)["bsdf"]
     assert eye["roughness"] < shirt["roughness"]
@@ -308,11 +255,11 @@ def test_a_sheet_has_a_tile_for_every_frame_and_shows_the_motion(tmp_path: Path)
     assert image.shape[0] > 2 * 48
     assert image.shape[1] > 2 * 64
     first, second, third = image[10:58, 10:74], image[10:58, 84:148], image[92:140, 10:74]
-    assert np.abs(first - third).mean() < 1.0  # the camera stands still
+    assert np.abs(first - third).mean() < 1.0  # the camera is fixed
     assert np.abs(first - second).mean() > 3.0
 
 
-# What a user can get wrong
+# Refusals
 
 
 @pytest.mark.parametrize(
@@ -325,21 +272,21 @@ def test_wrong_options_are_refused_by_name(tmp_path: Path, options: dict, named:
     assert list(tmp_path.iterdir()) == []
 
 
-def test_nothing_to_draw_is_refused(tmp_path: Path) -> None:
+def test_an_empty_picture_is_refused(tmp_path: Path) -> None:
     with pytest.raises(UserError, match="neither hairs nor bodies"):
         still([], tuft(1).take(np.arange(0)), tmp_path / "still.png")
     with pytest.raises(UserError, match="no frames"):
         sheet([], tmp_path / "sheet.png")
 
 
-def test_a_picture_that_cannot_be_written_leaves_nothing_behind(tmp_path: Path) -> None:
-    (tmp_path / "place").write_text("in the way")
+def test_an_unwritable_picture_leaves_no_file(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("a file")
     with pytest.raises(UserError, match="cannot be written"):
-        still([], tuft(1), tmp_path / "place" / "still.png", width=8, height=8, samples=1)
-    assert [entry.name for entry in tmp_path.iterdir()] == ["place"]
+        still([], tuft(1), tmp_path / "file" / "still.png", width=8, height=8, samples=1)
+    assert [entry.name for entry in tmp_path.iterdir()] == ["file"]
 
 
-def test_points_that_are_not_finite_are_refused(tmp_path: Path) -> None:
+def test_non_finite_points_are_refused(tmp_path: Path) -> None:
     hairs, body = tuft(3), ball()
     hairs.points[70] = np.nan
     with pytest.raises(UserError, match="curve 1, point 9"):

@@ -1,4 +1,4 @@
-"""A report tells all that was measured, stands on its own, and is either whole or not there."""
+"""Reports: complete, self-contained and written atomically."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from ringlet.report.model import plain
 
 
 def frames(count: int = 6) -> list[dict]:
-    """Statistics as a simulation gives them, with numpy numbers among them."""
+    """Statistics as of a simulation, with numpy scalars."""
     return [
         {
             "frame": float(k + 1),
@@ -56,64 +56,66 @@ def report(folder: Path) -> RunReport:
     )
 
 
-def test_the_page_holds_every_stage_picture_warning_and_limit(tmp_path: Path) -> None:
+def test_the_page_contains_every_stage_picture_warning_and_limit(tmp_path: Path) -> None:
     _, html_path = write_report(report(tmp_path), tmp_path)
     html = html_path.read_text(encoding="utf-8")
     for text in ("groom", "simulate", "avx2", "1.2.3", "Curls at frame 24", "3 locks were left out.", "still.png"):
         assert text in html
     assert "Strands may pass through the head." in html
-    assert html.count("<svg") == 6  # strands, motion, stretch, Newton, time, steps cut; no curl changed
+    assert html.count("<svg") == 6  # strands, motion, stretch, Newton, time, step lengths; no changes of curls
 
 
-def test_the_page_is_well_formed_and_needs_nothing_from_outside(tmp_path: Path) -> None:
+def test_the_page_is_well_formed_and_self_contained(tmp_path: Path) -> None:
     _, html_path = write_report(report(tmp_path), tmp_path)
     html = html_path.read_text(encoding="utf-8")
     xml.dom.minidom.parseString(html.removeprefix("<!doctype html>\n"))
-    assert "<small>" not in html  # what a user typed is text, not markup
+    assert "<small>" not in html  # user input is escaped
     assert "<script" not in html
     assert re.findall(r'(?:src|href)\s*=\s*["\'](?!data:)', html) == []
     assert re.findall(r"url\(|@import|https?://", html) == []
     assert 'alt="Curls at frame 24"' in html
 
 
-def test_the_json_can_be_read_back_to_the_same_report(tmp_path: Path) -> None:
+def test_the_json_of_a_report_round_trips(tmp_path: Path) -> None:
     made = report(tmp_path)
     json_path, _ = write_report(made, tmp_path)
-    held = json.loads(json_path.read_text())
-    assert held["format"] == 1
-    assert held["statistics"][2]["residual"] is None
-    assert held["stages"][0] == {"name": "groom", "wall_ms": 12.0, "cpu_ms": 20.0}
-    again = RunReport.model_validate(held)
+    stored = json.loads(json_path.read_text())
+    assert stored["format"] == 1
+    assert stored["statistics"][2]["residual"] is None
+    assert stored["stages"][0] == {"name": "groom", "wall_ms": 12.0, "cpu_ms": 20.0}
+    again = RunReport.model_validate(stored)
     assert again.counts == made.counts
     assert again.date == made.date
 
 
-def test_a_chart_is_left_out_when_its_numbers_are_missing(tmp_path: Path) -> None:
+def test_charts_without_numbers_are_omitted(tmp_path: Path) -> None:
     made = report(tmp_path)
     made.statistics = [{"frame": k, "newton": 3.0} for k in range(4)]
     _, html_path = write_report(made, tmp_path)
     assert html_path.read_text(encoding="utf-8").count("<svg") == 1
 
 
-def test_an_empty_report_is_a_page_too(tmp_path: Path) -> None:
+def test_an_empty_report_is_a_page_without_charts(tmp_path: Path) -> None:
     _, html_path = write_report(RunReport(name="groom", version="1"), tmp_path)
-    xml.dom.minidom.parseString(html_path.read_text(encoding="utf-8").removeprefix("<!doctype html>\n"))
+    html = html_path.read_text(encoding="utf-8")
+    xml.dom.minidom.parseString(html.removeprefix("<!doctype html>\n"))
+    assert "groom" in html and "<svg" not in html
 
 
-def test_a_report_is_written_whole_or_not_at_all(tmp_path: Path) -> None:
+def test_a_report_is_written_atomically(tmp_path: Path) -> None:
     made = report(tmp_path)
-    place = tmp_path / "out"
-    (place / "report.html").mkdir(parents=True)  # in the way
+    out = tmp_path / "out"
+    (out / "report.html").mkdir(parents=True)  # prevents the page
     with pytest.raises(UserError, match=r"report\.html"):
-        write_report(made, place)
-    assert [entry.name for entry in place.iterdir()] == ["report.html"]
+        write_report(made, out)
+    assert [entry.name for entry in out.iterdir()] == ["report.html"]
     made.pictures = [Picture(path=str(tmp_path / "lost.png"), caption="")]
     with pytest.raises(UserError, match=r"lost\.png"):
         write_report(made, tmp_path / "other")
     assert not (tmp_path / "other").exists()
 
 
-def test_the_worst_frame_is_the_one_that_broke_before_the_one_that_stretched() -> None:
+def test_failed_frames_rank_worse_than_stretched_ones() -> None:
     statistics = frames()
     assert (explain_worst(statistics) or "").startswith("Frame 4 ")
     statistics[1]["unconverged"] = 2
@@ -122,21 +124,21 @@ def test_the_worst_frame_is_the_one_that_broke_before_the_one_that_stretched() -
     assert (explain_worst(statistics) or "").startswith("Frame 6 ")
 
 
-def test_the_worst_frame_is_not_told_by_what_all_frames_have() -> None:
+def test_properties_of_all_frames_do_not_select_the_worst_one() -> None:
     statistics = frames()
     for frame in statistics:
-        frame["unconverged"] = 1  # where locks touch
-    assert (explain_worst(statistics) or "").startswith("Frame 4 ")  # the most stretch
+        frame["unconverged"] = 1  # usual with contact
+    assert (explain_worst(statistics) or "").startswith("Frame 4 ")  # the largest stretch
     assert (explain_worst(statistics[:1]) or "").startswith("Frame 1 ")
 
 
-def test_the_verdict_names_what_went_wrong_and_when_all_is_well_says_so() -> None:
+def test_the_verdict_names_failures_or_success() -> None:
     assert any("Every strand was solved" in sentence for sentence in verdict(frames()))
     statistics = frames()
     statistics[0]["nan"], statistics[2]["flips"] = 3, 2
-    said = verdict(statistics)
-    assert "do not use" in said[0]
-    assert any("flipped: 2" in sentence for sentence in said)
+    sentences = verdict(statistics)
+    assert "do not use" in sentences[0]
+    assert any("flipped: 2" in sentence for sentence in sentences)
 
 
 @pytest.mark.parametrize(("low", "high"), [(0.0, 1.0), (-3.2, 7.9), (1e-9, 4e-9), (0.0, 0.0), (5.0, 5.0), (0.0, 48.0)])
@@ -149,17 +151,17 @@ def test_ticks_are_round_and_cover_the_range(low: float, high: float) -> None:
     assert round(float(leading), 6) in (1.0, 2.0, 5.0)
 
 
-def test_a_line_is_interrupted_where_a_value_is_missing_and_its_unit_suits_it() -> None:
+def test_a_chart_line_has_gaps_at_missing_values_and_a_scaled_unit() -> None:
     svg = line_chart("Energy", "J", [1, 2, 3, 4, 5], {"bend": [1e-6, 2e-6, float("nan"), 3e-6, 1e-6]})
     assert svg.count("<polyline") == 2
     assert "µJ" in svg
 
 
-def test_the_slowest_frame_is_explained_by_what_it_had_more_of() -> None:
+def test_the_slowest_frame_is_explained_by_its_excess_iterations() -> None:
     many = plain(frames())
     many[2] |= {"wall_ms": 900.0, "newton": 7.5}
-    said = explain_slowest(many)
-    assert said is not None
-    assert said.startswith("Frame 3 took longest, 0.90 s; half of the frames took 0.02 s or less")
-    assert "Newton iterations 7.5 instead of 2.5" in said and "cut short" not in said
+    sentence = explain_slowest(many)
+    assert sentence is not None
+    assert sentence.startswith("Frame 3 took longest, 0.90 s; half of the frames took 0.02 s or less")
+    assert "Newton iterations 7.5 instead of 2.5" in sentence and "cut short" not in sentence
     assert explain_slowest(many[:2]) is None and explain_slowest([{"frame": 1.0}] * 5) is None

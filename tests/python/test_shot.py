@@ -1,4 +1,4 @@
-"""Shots: what their files may say, and how locks follow a moving scalp."""
+"""Shots: settings, and locks on a moving scalp."""
 
 import numpy as np
 import pytest
@@ -20,7 +20,7 @@ def scalp():
 
 
 def groom():
-    """Three coils that stand on the patch."""
+    """Three coils on the patch."""
     turn = 2 * np.pi * np.arange(40) / 12
     coil = np.c_[0.003 * np.cos(turn) - 0.003, 0.004 * turn / (2 * np.pi), 0.003 * np.sin(turn)]
     roots = np.array([[0.03, 0, 0.05], [0.05, 0, 0.02], [0.08, 0, 0.07]])
@@ -38,54 +38,56 @@ def moving(motion, frames=6):
 
 
 def turned(frame, points):
-    """By 10° a frame about y, rising by 1 cm a frame."""
+    """Points rotated by 10° a frame about y and raised by 1 cm a frame."""
     angle = np.radians(10) * (frame - 1)
     about = np.array([[np.cos(angle), 0, np.sin(angle)], [0, 1, 0], [-np.sin(angle), 0, np.cos(angle)]])
     return points @ about.T + [0, 0.01 * (frame - 1), 0]
 
 
-def test_held_vertices_ride_on_the_scalp_in_place_and_orientation():
+def test_prescribed_vertices_follow_the_scalp_in_position_and_orientation():
     made = groom()
     cache = simulate(parse_shot(SHOT), made, moving(turned))
-    held = (made.locks.offsets[:-1, None] + np.arange(3)).ravel()
+    prescribed = (made.locks.offsets[:-1, None] + np.arange(3)).ravel()
     for frame, points in zip(cache.frames, cache.points, strict=True):
-        assert np.abs(points[held] - turned(frame, made.locks.points)[held]).max() < 1e-7
+        assert np.abs(points[prescribed] - turned(frame, made.locks.points)[prescribed]).max() < 1e-7
 
 
-def test_without_forces_a_still_groom_stays_as_it_was_groomed():
+def test_a_static_groom_without_forces_stays_as_groomed():
     made = groom()
     shot = parse_shot(SHOT + "[forces]\ngravity = [0, 0, 0]\n")
     cache = simulate(shot, made, moving(lambda frame, points: points))
     assert np.abs(cache.points - made.locks.points).max() < 1e-7
 
 
-def test_a_shot_begins_where_the_head_is_at_its_first_frame():
+def test_a_shot_starts_on_the_head_of_its_first_frame():
     made = groom()
     shot = parse_shot(SHOT + "[forces]\ngravity = [0, 0, 0]\n")
     cache = simulate(shot, made, moving(turned), frames=(4, 4))
     assert np.abs(cache.points[0] - turned(4, made.locks.points)).max() < 1e-7
 
 
-def test_a_preroll_lets_the_hair_hang_before_the_first_frame():
+def test_preroll_settles_the_hair_before_the_first_frame():
     made, clip = groom(), moving(lambda frame, points: points)
     fresh = simulate(parse_shot(SHOT), made, clip)
-    hung = simulate(parse_shot(SHOT.replace("preroll = 0", "preroll = 200")), made, clip)
-    settles = [np.abs(cache.points[-1] - cache.points[0]).max() for cache in (fresh, hung)]
-    assert settles[1] < 0.01 * settles[0]
+    settled = simulate(parse_shot(SHOT.replace("preroll = 0", "preroll = 200")), made, clip)
+    drifts = [np.abs(cache.points[-1] - cache.points[0]).max() for cache in (fresh, settled)]
+    assert drifts[1] < 0.01 * drifts[0]
 
 
 def test_substeps_divide_a_frame_and_its_motion():
     made = groom()
-    seen = []
+    streamed = []
     shot = parse_shot(SHOT + "[solver]\nsubsteps = 3\n")
-    cache = simulate(shot, made, moving(turned), on_frame=lambda frame, points, _: seen.append((frame, points.copy())))
-    assert [frame for frame, _ in seen] == list(cache.frames) == [1, 2, 3, 4, 5, 6]
-    assert all((points == kept).all() for (_, points), kept in zip(seen, cache.points, strict=True))
+    cache = simulate(
+        shot, made, moving(turned), on_frame=lambda frame, points, _: streamed.append((frame, points.copy()))
+    )
+    assert [frame for frame, _ in streamed] == list(cache.frames) == [1, 2, 3, 4, 5, 6]
+    assert all((points == kept).all() for (_, points), kept in zip(streamed, cache.points, strict=True))
     coarse = simulate(parse_shot(SHOT), made, moving(turned))
     assert 0 < np.abs(cache.points[-1] - coarse.points[-1]).max() < 0.02
 
 
-def test_statistics_tell_what_the_solver_did():
+def test_statistics_describe_every_frame_of_the_solver():
     for statistics in simulate(parse_shot(SHOT), groom(), moving(turned)).statistics:
         assert 1 <= statistics["newton"] <= statistics["newton_max"] <= 5
         assert statistics["nan"] == 0 and statistics["max_stretch"] < 0.05
@@ -114,12 +116,12 @@ def test_statistics_tell_what_the_solver_did():
         (("ringlet = 1", "ringlet = "), ["TOML"]),
     ],
 )
-def test_a_mistake_in_a_shot_is_told_in_one_line(change, words):
-    with pytest.raises(UserError) as told:
+def test_an_invalid_shot_is_refused_in_one_line(change, words):
+    with pytest.raises(UserError) as caught:
         parse_shot(SHOT.replace(*change))
-    assert "\n" not in str(told.value)
+    assert "\n" not in str(caught.value)
     for word in words:
-        assert word in str(told.value)
+        assert word in str(caught.value)
 
 
 def flattened(frame, points):
@@ -135,16 +137,16 @@ def flattened(frame, points):
         (lambda g: g.locks.points.__setitem__((50, 1), np.nan), moving(turned), ["curve 12", "finite"]),
     ],
 )
-def test_what_cannot_be_simulated_is_refused_in_one_line(spoil, clip, words):
+def test_an_invalid_groom_or_clip_is_refused_in_one_line(spoil, clip, words):
     made = groom()
     spoil(made)
-    with pytest.raises(UserError) as told:
+    with pytest.raises(UserError) as caught:
         simulate(parse_shot(SHOT), made, clip)
-    assert "\n" not in str(told.value)
+    assert "\n" not in str(caught.value)
     for word in words:
-        assert word in str(told.value)
+        assert word in str(caught.value)
 
 
-def test_holding_more_vertices_than_a_lock_has_is_refused():
+def test_more_prescribed_vertices_than_a_lock_has_are_refused():
     with pytest.raises(UserError, match="held is 40"):
         simulate(parse_shot(SHOT.replace("preroll = 0", "held = 40")), groom(), moving(turned))

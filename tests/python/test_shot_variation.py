@@ -1,4 +1,4 @@
-"""A material that varies: by ramps along the strand, by maps over the head, by chance from lock to lock."""
+"""Varying materials: ramps along the strand, maps over the head and random variation of locks."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ POINTS = 31
 
 
 def groom(curve=None, point=None, maps=None):
-    """Two straight level strands of 6 cm on a patch; the first is rooted at its edge z = 0, the second at z = 10 cm."""
+    """Two straight horizontal strands of 6 cm on a patch, with roots at z = 0 and z = 10 cm."""
     mesh = Mesh(
         "patch",
         np.array([[0, 0, 0], [0.1, 0, 0], [0.1, 0, 0.1], [0, 0, 0.1]]),
@@ -38,8 +38,8 @@ def factors(text, made):
     return parse_shot(f"{SHOT}[variation]\n{text}").variation.factors(made)
 
 
-def hung(text, made=None):
-    """The strands at rest under gravity."""
+def settled(text, made=None):
+    """Strands in equilibrium under gravity."""
     strands = make_strands(parse_shot(f"{SHOT}[variation]\n{text}"), made or groom())
     assert strands.settle(gravity=(0, -9.81, 0), tolerance=1e-8)
     return strands.positions.reshape(2, POINTS, 3)
@@ -51,12 +51,12 @@ def bent(points, first, last):
     return np.arctan2(np.linalg.norm(np.cross(a, b)), a @ b)
 
 
-def test_without_variation_nothing_varies():
+def test_a_shot_without_variation_has_no_factors():
     assert factors("", groom()) == {}
 
 
-def test_a_strand_that_is_stiffer_at_its_root_bends_less_there_and_as_much_at_its_tip():
-    even, stiff = hung("")[0], hung("bend = { ramp = [[0, 4], [0.5, 4], [0.6, 1], [1, 1]] }")[0]
+def test_a_strand_with_a_stiffer_root_bends_less_only_there():
+    even, stiff = settled("")[0], settled("bend = { ramp = [[0, 4], [0.5, 4], [0.6, 1], [1, 1]] }")[0]
     assert bent(stiff, 2, 14) < 0.5 * bent(even, 2, 14)
     assert bent(stiff, 22, 29) > 0.9 * bent(even, 22, 29)
 
@@ -78,12 +78,12 @@ def test_a_ramp_counts_arc_length_from_root_to_tip():
 def test_a_map_makes_one_lock_stiffer_than_the_other(kind, values):
     made = groom(**{kind: {"stiff": np.array(values)}})
     assert np.allclose(factors('bend = { map = "stiff" }', made)["bend"], np.repeat([1, 8], POINTS))
-    soft, stiff = hung('bend = { map = "stiff" }', made)
+    soft, stiff = settled('bend = { map = "stiff" }', made)
     assert soft[-1, 1] < 2 * stiff[-1, 1] < 0
-    assert np.abs(soft - hung("")[0]).max() < 1e-12
+    assert np.abs(soft - settled("")[0]).max() < 1e-12
 
 
-def test_chance_belongs_to_a_lock_and_the_seed():
+def test_random_variation_depends_on_lock_and_seed():
     text = "damping = { value = 1, vary = 0.5 }"
     both = factors(text, groom())["damping"].reshape(2, POINTS)
     assert (both == both[:, :1]).all() and both[0, 0] != both[1, 0]
@@ -93,7 +93,7 @@ def test_chance_belongs_to_a_lock_and_the_seed():
     assert (factors(f"seed = 2\n{text}", made)["damping"] != both[1]).all()
 
 
-def test_a_stiffer_root_shows_in_a_simulated_shot():
+def test_a_stiffer_material_sags_less_in_a_simulated_shot():
     made = groom()
     still = Clip(np.array([1.0]), made.scalp.points[None], 24.0)
     shot = SHOT.replace("preroll = 0", "preroll = 40")
@@ -115,12 +115,12 @@ def test_a_stiffer_root_shows_in_a_simulated_shot():
         ("bned = 2", groom(), ["variation.bned", "'bend'"]),
     ],
 )
-def test_a_mistake_is_told_in_one_line(text, made, words):
-    with pytest.raises(UserError) as told:
+def test_invalid_variation_is_refused_in_one_line(text, made, words):
+    with pytest.raises(UserError) as caught:
         factors(text, made)
-    assert "\n" not in str(told.value)
+    assert "\n" not in str(caught.value)
     for word in words:
-        assert word in str(told.value)
+        assert word in str(caught.value)
 
 
 @pytest.mark.parametrize("interpolation", ["constant", "uniform", "vertex", "faceVarying"])
@@ -146,7 +146,7 @@ def test_floats_painted_on_the_scalp_are_read_as_maps(tmp_path, interpolation):
 
 
 def write_example_recipe(folder):
-    """The recipe of the small example on a head that is there already."""
+    """The recipe of the small example on the head in ``folder``."""
     other = write_example(folder / "other")
     recipe = (other / "small.recipe.toml").read_text().replace("head.usda", "../head.usda")
     (other / "small.recipe.toml").write_text(recipe)

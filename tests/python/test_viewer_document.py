@@ -1,4 +1,4 @@
-"""A recipe that is edited setting by setting says what was set, and keeps all else, comments included."""
+"""Editing a recipe setting by setting keeps the rest of its text, comments included."""
 
 from __future__ import annotations
 
@@ -50,18 +50,18 @@ def comments(text: str) -> list[str]:
     return [line.split("#")[1] for line in text.splitlines() if "#" in line]
 
 
-def test_a_value_is_replaced_where_it_stands(document: Document):
+def test_a_value_is_replaced_in_place(document: Document):
     document.set([(["curl", "width", "value"], "8 mm"), (["guides", "count"], 20)])
     assert document.text == TEXT.replace("9 mm", "8 mm").replace("count = 12", "count = 20")
 
 
-def test_a_value_becomes_a_table_when_more_is_said_of_it(document: Document):
+def test_a_value_becomes_a_table_when_it_gains_fields(document: Document):
     document.set([(["guides", "length", "vary"], 0.1)])
     assert document.said()["guides"]["length"] == {"value": 8, "vary": 0.1}
     assert comments(document.text) == comments(TEXT)
 
 
-def test_a_new_setting_stands_in_its_table_and_not_after_the_next_comment(document: Document):
+def test_a_new_setting_is_inserted_before_the_comment_of_the_next_table(document: Document):
     document.set([(["curl", "start"], "12 mm"), (["guides", "whorl_turn"], 10.0), (["seed"], 4)])
     lines = document.text.splitlines()
     assert lines.index("whorl_turn = 10.0") < lines.index("[[shape]]")
@@ -69,17 +69,17 @@ def test_a_new_setting_stands_in_its_table_and_not_after_the_next_comment(docume
     assert document.said()["curl"]["start"] == "12 mm"
 
 
-def test_a_table_that_is_not_there_is_made(document: Document):
+def test_a_missing_table_is_created(document: Document):
     document.set([(["clean", "margin"], "3 mm"), (["hairs", "radius", "value"], "2 mm")])
-    said = tomllib.loads(document.text)
-    assert said["clean"] == {"margin": "3 mm"} and said["hairs"]["radius"]["value"] == "2 mm"
+    settings = tomllib.loads(document.text)
+    assert settings["clean"] == {"margin": "3 mm"} and settings["hairs"]["radius"]["value"] == "2 mm"
 
 
-def test_settings_in_lists_and_operators_can_be_set_and_taken_out(document: Document):
+def test_settings_in_lists_and_operators_are_set_and_removed(document: Document):
     document.set([(["guides", "zone", 0, "spread"], 30), (["shape", 1, "size"], 2.5), (["shape", 0, "size"], None)])
-    said = document.said()
-    assert said["guides"]["zone"][0]["spread"] == 30
-    assert said["shape"] == [{"op": "clump"}, {"op": "scraggle", "amount": 0.5, "size": 2.5}]
+    settings = document.said()
+    assert settings["guides"]["zone"][0]["spread"] == 30
+    assert settings["shape"] == [{"op": "clump"}, {"op": "scraggle", "amount": 0.5, "size": 2.5}]
 
 
 def test_operators_move_with_their_comments(document: Document):
@@ -99,7 +99,7 @@ def test_an_operator_is_added_before_the_curl_and_removed_again(document: Docume
     assert document.text.index("[[shape]]") < document.text.index("[curl]")
 
 
-def test_what_is_not_valid_is_refused_and_changes_nothing(document: Document):
+def test_an_invalid_change_is_refused_and_changes_nothing(document: Document):
     with pytest.raises(UserError, match="at least 0"):
         document.set([(["curl", "width", "value"], -1)])
     with pytest.raises(UserError, match="none at 7"):
@@ -109,7 +109,7 @@ def test_what_is_not_valid_is_refused_and_changes_nothing(document: Document):
     assert document.text == TEXT and not document.can_undo
 
 
-def test_a_gesture_is_one_step_back_and_one_forth(document: Document):
+def test_a_gesture_is_one_step_of_undo_and_redo(document: Document):
     for width in ("7 mm", "6 mm", "5 mm"):
         document.set([(["curl", "width", "value"], width)], gesture=1)
     document.set([(["guides", "count"], 20)], gesture=2)
@@ -121,7 +121,7 @@ def test_a_gesture_is_one_step_back_and_one_forth(document: Document):
     assert document.said()["curl"]["width"]["value"] == "5 mm" and document.dirty
 
 
-def test_changes_against_the_saved_file_and_saving(document: Document):
+def test_changes_are_listed_against_the_saved_file_until_saved(document: Document):
     document.set([(["guides", "count"], 20)])
     changed = {(change.sign, change.line) for change in document.changes() if change.sign != " "}
     assert changed == {("-", "count = 12"), ("+", "count = 20")}

@@ -1,4 +1,4 @@
-"""What the server lets in, what it answers, and what it never reads."""
+"""The review server: access, errors and files outside the project."""
 
 from __future__ import annotations
 
@@ -26,15 +26,15 @@ def closed_with(client: TestClient, url: str = "/session", **headers: str) -> in
     return end.value.code
 
 
-def test_a_page_is_told_all_there_is(folder: Path):
+def test_a_new_page_receives_document_locks_and_counts(folder: Path):
     with serving(folder) as client, page(client) as one:
-        welcome = one.hear("welcome")
-        assert one.heard[0]["kind"] == "welcome" and welcome["mode"] == "recipe"
-        document, locks = one.hear("document"), one.hear("locks")
+        welcome = one.receive("welcome")
+        assert one.received[0]["kind"] == "welcome" and welcome["mode"] == "recipe"
+        document, locks = one.receive("document"), one.receive("locks")
         assert document["said"]["curl"]["width"] == 1.0
         assert document["values"]["curl"]["width"]["value"] == pytest.approx(0.01)
         assert len(locks["ids"]) == 8 and locks["points"].shape == (8 * 40 * 3,)
-        assert one.hear("numbers", draft=False)["hairs"] == 24
+        assert one.receive("numbers", draft=False)["hairs"] == 24
 
 
 def test_a_wrong_token_and_a_foreign_origin_are_refused(folder: Path):
@@ -46,19 +46,19 @@ def test_a_wrong_token_and_a_foreign_origin_are_refused(folder: Path):
         url = "/session?token=secret"
         with client.websocket_connect(url, headers={**HOST, "origin": "http://localhost"}) as socket:
             one = Page(socket)
-            one.say(kind="hello", version=VERSION, client="one")
-            assert one.hear("welcome")
+            one.send(kind="hello", version=VERSION, client="one")
+            assert one.receive("welcome")
 
 
-def test_a_name_that_is_not_ours_gets_nothing(folder: Path):
+def test_a_foreign_host_name_is_refused(folder: Path):
     with serving(folder) as client:
         assert client.get("/", headers={"host": "rebound.example"}).status_code == 421
         assert closed_with(client, host="rebound.example") == REFUSED
 
 
-def test_nothing_but_a_hello_opens_the_talk(folder: Path):
+def test_a_connection_starts_with_hello(folder: Path):
     with serving(folder) as client, client.websocket_connect("/session", headers=HOST) as socket:
-        Page(socket).say(kind="undo")
+        Page(socket).send(kind="undo")
         with pytest.raises(WebSocketDisconnect) as end:
             socket.receive_bytes()
         assert end.value.code == WRONG
@@ -75,23 +75,23 @@ def test_nothing_but_a_hello_opens_the_talk(folder: Path):
         b"\0" * (MOST + 1),
     ],
 )
-def test_malformed_messages_are_told_and_do_no_harm(folder: Path, data: bytes):
+def test_malformed_messages_are_refused_and_the_session_continues(folder: Path, data: bytes):
     with serving(folder) as client, page(client) as one:
         one.socket.send_bytes(data)
-        assert one.hear("trouble")["message"].startswith("message:")
-        one.say(kind="set", changes=[[["curl", "width"], 1.5]], gesture=1)
-        assert one.hear("document", dirty=True)
+        assert one.receive("trouble")["message"].startswith("message:")
+        one.send(kind="set", changes=[[["curl", "width"], 1.5]], gesture=1)
+        assert one.receive("document", dirty=True)
 
 
-def test_edits_that_make_no_sense_are_told_in_one_line(folder: Path):
+def test_invalid_edits_are_refused_in_one_line(folder: Path):
     with serving(folder) as client, page(client) as one:
         for changes in ([[["curl", "width"], -3]], [[["nothing", "here"], 1]], [[[], 1]], [[["shape", 4, "size"], 1]]):
-            one.say(kind="set", changes=changes, gesture=1)
-            message = one.hear("trouble")["message"]
+            one.send(kind="set", changes=changes, gesture=1)
+            message = one.receive("trouble")["message"]
             assert "\n" not in message and "mistake in Ringlet" not in message
-        one.say(kind="redo")
-        one.say(kind="set", changes=[[["curl", "width"], 1.5]], gesture=1)
-        assert one.hear("document", dirty=True)["said"]["curl"]["width"] == 1.5
+        one.send(kind="redo")
+        one.send(kind="set", changes=[[["curl", "width"], 1.5]], gesture=1)
+        assert one.receive("document", dirty=True)["said"]["curl"]["width"] == 1.5
 
 
 @pytest.mark.parametrize(
@@ -99,24 +99,24 @@ def test_edits_that_make_no_sense_are_told_in_one_line(folder: Path):
     [["scalp", "file"], ["extends"], ["edits"], ["guides", "file"], ["maps", "stiff"], ["curves", "tie", "file"]],
 )
 @pytest.mark.parametrize("outside", ["../other.usda", "/etc/passwd", "link.usda"])
-def test_files_outside_of_the_project_are_never_read(folder: Path, change: list[str], outside: str):
+def test_files_outside_the_project_are_not_read(folder: Path, change: list[str], outside: str):
     (folder.parent / "other.usda").write_text("#usda 1.0\n")
     (folder / "link.usda").symlink_to(folder.parent / "other.usda")
     with serving(folder) as client, page(client) as one:
-        one.say(kind="set", changes=[[change, outside]], gesture=1)
-        message = one.hear("trouble")["message"]
+        one.send(kind="set", changes=[[change, outside]], gesture=1)
+        message = one.receive("trouble")["message"]
         assert "outside of the project" in message or "not a setting" in message
 
 
 @pytest.mark.parametrize("name", ["../new", "/tmp/new", ".hidden", "a/b"])
-def test_nothing_is_written_outside_of_the_project(folder: Path, name: str):
+def test_no_file_is_written_outside_the_project(folder: Path, name: str):
     before = sorted(folder.parent.rglob("*"))
     with serving(folder) as client, page(client) as one:
-        one.say(kind="save", name=name)
-        assert "save" in one.hear("trouble")["message"]
+        one.send(kind="save", name=name)
+        assert "save" in one.receive("trouble")["message"]
     assert sorted(folder.parent.rglob("*")) == before
 
 
-def test_a_file_outside_of_the_project_is_not_opened(folder: Path):
+def test_a_file_outside_the_project_is_not_opened(folder: Path):
     with pytest.raises(UserError, match="outside of the project"):
         Session(folder / "small.recipe.toml", Project(folder / "elsewhere"))

@@ -1,4 +1,4 @@
-"""A variant that is saved from the review says what differs, and makes what was seen."""
+"""Variants saved from the review contain the differences and reproduce the groom."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ import pytest
 from pages import page, serving
 
 
-def test_a_variant_says_only_what_differs(folder: Path):
+def test_a_variant_contains_only_differences(folder: Path):
     with serving(folder) as client, page(client) as one:
-        one.say(kind="set", changes=[[["curl", "width"], 1.5]], gesture=1)
-        one.say(kind="save", name="wide", variant=True)
-        one.hear("saved")
+        one.send(kind="set", changes=[[["curl", "width"], 1.5]], gesture=1)
+        one.send(kind="save", name="wide", variant=True)
+        one.receive("saved")
     text = (folder / "wide.recipe.toml").read_text()
     assert 'extends = "small.recipe.toml"' in text and "width = 1.5" in text and "pitch" not in text
 
@@ -42,27 +42,27 @@ def extended(folder: Path) -> Path:
 
 def test_operators_of_a_base_are_changed_and_removed_by_name(extended: Path):
     with serving(extended, "more.recipe.toml") as client, page(client) as one:
-        assert [stage["op"] for stage in one.hear("document")["stages"]][2:5] == ["scraggle", "clump", "scraggle"]
-        one.say(kind="set", changes=[[["shape", 2, "amount"], 0.4]], gesture=1)
-        document = one.hear("document", dirty=True)
+        assert [stage["op"] for stage in one.receive("document")["stages"]][2:5] == ["scraggle", "clump", "scraggle"]
+        one.send(kind="set", changes=[[["shape", 2, "amount"], 0.4]], gesture=1)
+        document = one.receive("document", dirty=True)
         assert document["said"]["shape"] == [{}, {}, {"amount": 0.4}]
         assert document["values"]["shape"][2]["amount"]["value"] == 0.004
-        one.say(kind="arrange", action="remove", at=0)
-        document = one.hear("document")
+        one.send(kind="arrange", action="remove", at=0)
+        document = one.receive("document")
         assert [stage["op"] for stage in document["stages"]][2:4] == ["clump", "scraggle"]
         assert document["values"]["shape"][1]["amount"]["value"] == 0.004
-        one.say(kind="arrange", action="remove", at=1)
-        assert [stage["op"] for stage in one.hear("document")["stages"]][2:4] == ["clump", "curl"]
-        one.say(kind="arrange", action="move", at=0, to=0)
-        assert "neither move nor add" in one.hear("trouble")["message"]
-        one.say(kind="save")
-        one.hear("saved")
+        one.send(kind="arrange", action="remove", at=1)
+        assert [stage["op"] for stage in one.receive("document")["stages"]][2:4] == ["clump", "curl"]
+        one.send(kind="arrange", action="move", at=0, to=0)
+        assert "neither move nor add" in one.receive("trouble")["message"]
+        one.send(kind="save")
+        one.receive("saved")
     text = (extended / "more.recipe.toml").read_text()
     assert "scraggle = false" in text and '"scraggle 2" = false' in text
 
 
 @pytest.mark.parametrize(
-    "say",
+    "message",
     [
         {"kind": "set", "changes": [[["hairs"], None]]},
         {"kind": "set", "changes": [[["locks", "points"], None]]},
@@ -76,24 +76,24 @@ def test_operators_of_a_base_are_changed_and_removed_by_name(extended: Path):
         {"kind": "arrange", "action": "move", "at": 0, "to": 1},
     ],
 )
-def test_a_variant_makes_what_was_seen_also_where_something_was_taken_out(extended: Path, say: dict[str, Any]):
+def test_a_saved_variant_reproduces_changes_and_removals(extended: Path, message: dict[str, Any]):
     from ringlet.groom import read_recipe
 
     with serving(extended) as client, page(client) as one:
-        one.hear("document")
-        one.say(**say, **({"gesture": 1} if say["kind"] == "set" else {}))
-        values = one.hear("document", dirty=True)["values"]
-        one.say(kind="save", name="other", variant=True)
-        one.hear("saved")
+        one.receive("document")
+        one.send(**message, **({"gesture": 1} if message["kind"] == "set" else {}))
+        values = one.receive("document", dirty=True)["values"]
+        one.send(kind="save", name="other", variant=True)
+        one.receive("saved")
     made = read_recipe(extended / "other.recipe.toml").model_dump(mode="json")
     assert {**made, "extends": None, "sculpt": None} == {**values, "sculpt": None}
     assert "count = 6" not in (extended / "other.recipe.toml").read_text()
 
 
-def test_a_variant_that_cannot_say_what_was_changed_is_not_written(folder: Path):
+def test_a_change_that_a_variant_cannot_express_is_refused(folder: Path):
     with serving(folder) as client, page(client) as one:
-        one.say(kind="set", changes=[[["locks", "count"], None]], gesture=1)  # a variant cannot say "no count"
-        one.hear("document", dirty=True)
-        one.say(kind="save", name="other", variant=True)
-        assert "save a copy instead" in one.hear("trouble")["message"]
+        one.send(kind="set", changes=[[["locks", "count"], None]], gesture=1)  # a variant cannot remove a count
+        one.receive("document", dirty=True)
+        one.send(kind="save", name="other", variant=True)
+        assert "save a copy instead" in one.receive("trouble")["message"]
     assert not (folder / "other.recipe.toml").exists()

@@ -1,4 +1,4 @@
-"""Wedges: every combination of settings is run once, whatever dies on the way, and compared with the others."""
+"""Wedges: every combination of settings runs once, survives killed workers and is compared."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from commands import refused, run
 from distributed import LocalCluster
 from ringlet.farm.cluster import _client
 from ringlet.farm.grid import choose, folder_name, make_tasks
@@ -25,7 +26,6 @@ from ringlet.farm.openjd import template
 from ringlet.farm.page import distances, read_results
 from ringlet.farm.task import Result, Wanted, run_task, write_result
 from small_example import write_example
-from test_cli import refused, run
 
 import ringlet
 
@@ -50,7 +50,7 @@ def log_of(folder: Path) -> str:
     return (folder / "log.txt").read_text()
 
 
-def test_names_of_settings_may_be_cut_short_where_they_can_be_no_other():
+def test_unambiguous_names_of_settings_may_be_abbreviated():
     assert choose("strands.bend", "1,2").name == "strands.bend_scale"
     assert choose("contact.fric", [0.1]).place == ("contact", "friction")
     assert choose("collider[0].friction", [0.1]).place == ("collider", 0, "friction")
@@ -60,14 +60,14 @@ def test_names_of_settings_may_be_cut_short_where_they_can_be_no_other():
         choose("s.bend", [1])
 
 
-def test_values_are_those_of_toml_and_else_text():
+def test_values_are_parsed_as_toml_or_text():
     assert choose("rest.mode", "none, lofted").values == ("none", "lofted")
     assert choose("forces.wind", "[0,0,0],[0,0,2.5]").values == ([0, 0, 0], [0, 0, 2.5])
     assert choose("contact.on", "true,false").values == (True, False)
     assert choose("name", '"a,b",c').values == ("a,b", "c")
 
 
-def test_a_task_is_the_shot_with_its_settings_and_stands_in_a_folder_of_its_own(shot, tmp_path):
+def test_a_task_is_the_shot_with_its_settings_in_its_own_folder(shot, tmp_path):
     tasks = make_tasks(shot, [choose("strands.bend", "1,2"), choose("contact.friction", "0.1,0.3")], tmp_path / "out")
     assert [list(task.settings.values()) for task in tasks] == [[1, 0.1], [1, 0.3], [2, 0.1], [2, 0.3]]
     tasks[3].folder.mkdir(parents=True)
@@ -78,7 +78,7 @@ def test_a_task_is_the_shot_with_its_settings_and_stands_in_a_folder_of_its_own(
 
 
 @pytest.mark.parametrize("value", ["../../x", "/etc/passwd", "..", "a\nb", "x" * 300, "\0", "ñ"])
-def test_no_value_leads_out_of_the_folder(value, tmp_path):
+def test_no_value_escapes_the_folder(value, tmp_path):
     name = folder_name({"name": value})
     assert (tmp_path / name).resolve().parent == tmp_path.resolve()
     assert len(name) <= 100 and name.isascii()
@@ -98,7 +98,7 @@ def test_no_value_leads_out_of_the_folder(value, tmp_path):
         (["--set", "strands.bend=1", "--openjd", "x.yaml"], ["x.yaml", ".json"]),
     ],
 )
-def test_what_cannot_be_is_refused_before_anything_runs(shot, tmp_path, monkeypatch, options, words):
+def test_an_invalid_wedge_is_refused_before_a_task_runs(shot, tmp_path, monkeypatch, options, words):
     monkeypatch.setattr("ringlet.farm.cluster.PATIENCE", "1s")
     before = sorted(tmp_path.iterdir())
     refused(run("wedge", shot, *options, "-o", tmp_path / "out"), *words)
@@ -106,9 +106,9 @@ def test_what_cannot_be_is_refused_before_anything_runs(shot, tmp_path, monkeypa
 
 
 @pytest.mark.parametrize("here", [[], ["--here"]])
-def test_a_folder_that_cannot_be_written_to_is_refused_before_workers_start(shot, tmp_path, monkeypatch, here):
+def test_an_unwritable_folder_is_refused_before_workers_start(shot, tmp_path, monkeypatch, here):
     for work in ("run_on_workers", "run_task"):
-        monkeypatch.setattr(sys.modules["ringlet.farm.wedge"], work, lambda *_, **__: pytest.fail("work was begun"))
+        monkeypatch.setattr(sys.modules["ringlet.farm.wedge"], work, lambda *_, **__: pytest.fail("work has started"))
     (tmp_path / "file").write_text("precious")
     before = sorted(tmp_path.iterdir())
     options = ["--set", "strands.bend=1", *here, "-o", tmp_path / "file/out"]
@@ -116,9 +116,9 @@ def test_a_folder_that_cannot_be_written_to_is_refused_before_workers_start(shot
     assert sorted(tmp_path.iterdir()) == before and (tmp_path / "file").read_text() == "precious"
 
 
-def test_workers_here_want_no_certain_port_and_are_not_seen_from_elsewhere(recwarn):
+def test_local_workers_use_a_free_port_of_localhost(recwarn):
     with socket.socket() as taken:
-        with suppress(OSError):  # it may be taken already
+        with suppress(OSError):  # it may be in use already
             taken.bind(("127.0.0.1", 8787))
             taken.listen()
         with _client(None, 1, 0) as client:
@@ -127,18 +127,18 @@ def test_workers_here_want_no_certain_port_and_are_not_seen_from_elsewhere(recwa
     assert not [warning for warning in recwarn if "8787" in str(warning.message)]
 
 
-def test_without_dask_it_says_so(shot, tmp_path, monkeypatch):
+def test_missing_dask_is_refused_with_remedies(shot, tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
     refused(run("wedge", shot, "--set", "strands.bend=1", "-o", tmp_path / "out"), "ringlet[farm]", "--here")
 
 
-def test_the_page_compares_what_the_tasks_gave_and_what_is_done_is_kept(shot, tmp_path):
+def test_the_page_compares_tasks_and_finished_tasks_are_kept(shot, tmp_path):
     choices = ["--set", "strands.bend=1,8", "--here", "-o", tmp_path / "out"]
-    told = json.loads(run("wedge", shot, *choices, "--json").stdout)
-    assert [task["state"] for task in told["tasks"]] == ["done", "done"]
-    page = Path(told["page"]).read_text()
+    output = json.loads(run("wedge", shot, *choices, "--json").stdout)
+    assert [task["state"] for task in output["tasks"]] == ["done", "done"]
+    page = Path(output["page"]).read_text()
     assert page.count("data:image/jpeg;base64,") == 2 and "strands.bend_scale = 8" in page
-    assert not re.search(r"(src|href)=.(?!data:|#)", page)  # it stands on its own
+    assert not re.search(r"(src|href)=.(?!data:|#)", page)  # self-contained
     compared = json.loads((tmp_path / "out/wedge.json").read_text())["tasks"]
     assert compared[0]["away"] == 0.0 < compared[1]["away"]
     caches = {path: path.stat().st_mtime_ns for path in (tmp_path / "out").glob("*/cache.usdc")}
@@ -149,10 +149,10 @@ def test_the_page_compares_what_the_tasks_gave_and_what_is_done_is_kept(shot, tm
     assert again.exit_code == 0 and log_of(tmp_path / "out/strands.bend_scale=2").count("is done already") == 1
     shot.write_text(shot.read_text() + "friction = 0.9\n")
     assert run("wedge", shot, "--set", "strands.bend=2", "--no-picture", *choices[2:]).exit_code == 0
-    assert log_of(tmp_path / "out/strands.bend_scale=2").count("simulates frames") == 2  # it is another shot now
+    assert log_of(tmp_path / "out/strands.bend_scale=2").count("simulates frames") == 2  # the shot has changed
 
 
-def test_one_task_that_is_refused_does_not_stop_the_others(shot, tmp_path):
+def test_a_refused_task_does_not_stop_the_others(shot, tmp_path):
     result = run("wedge", shot, "--set", "held=3,60", "--here", "--no-picture", "-o", tmp_path / "out")
     assert result.exit_code == 1
     states = {result.settings["held"]: result for result in read_results(tmp_path / "out").values()}
@@ -160,7 +160,7 @@ def test_one_task_that_is_refused_does_not_stop_the_others(shot, tmp_path):
     assert "held is 60" in (tmp_path / "out/wedge.html").read_text()
 
 
-def test_texts_stand_in_the_order_in_which_they_were_given_and_numbers_by_size(shot, tmp_path):
+def test_tasks_keep_the_order_of_texts_and_sort_numbers(shot, tmp_path):
     choices = [choose("rest.mode", "none,lofted,equilibrium"), choose("strands.bend", [2, 10])]
     tasks = make_tasks(shot, choices, tmp_path / "out")
     for task in reversed(tasks):
@@ -169,7 +169,7 @@ def test_texts_stand_in_the_order_in_which_they_were_given_and_numbers_by_size(s
     assert list(read_results(tmp_path / "out")) == [task.folder for task in tasks]
 
 
-def test_places_are_compared_with_those_of_the_first(tmp_path):
+def test_positions_are_compared_with_the_first_task(tmp_path):
     for k, shift in enumerate((0.0, 3.0)):
         folder = tmp_path / f"{k}"
         folder.mkdir()
@@ -179,7 +179,7 @@ def test_places_are_compared_with_those_of_the_first(tmp_path):
 
 
 @pytest.mark.parametrize("here", [True, False])
-def test_a_task_that_another_run_is_at_is_refused_and_its_folder_stays_as_it_is(shot, tmp_path, here):
+def test_a_task_of_a_concurrent_run_is_refused_and_its_folder_unchanged(shot, tmp_path, here):
     own = tmp_path / "out/strands.bend_scale=1"
     own.mkdir(parents=True)
     with ringlet.hold_checkpoints(own / "cache.usdc.part"):
@@ -194,7 +194,7 @@ def test_a_task_that_another_run_is_at_is_refused_and_its_folder_stays_as_it_is(
 
 
 def kill_worker(part: Path, log: Path, killed: list[int]) -> None:
-    """Kills the process that runs a task as soon as it has remembered a few frames."""
+    """Kills the process of a task once it has saved some frames."""
     end = time.monotonic() + 120
     while time.monotonic() < end and not killed:
         if any(int(path.suffix[1:]) >= 20 for path in part.glob("memory.*")):
@@ -203,7 +203,7 @@ def kill_worker(part: Path, log: Path, killed: list[int]) -> None:
         time.sleep(0.002)
 
 
-def test_a_worker_that_dies_costs_only_the_time_of_its_task(shot, tmp_path):
+def test_a_killed_worker_repeats_only_its_task(shot, tmp_path):
     longer(shot, 250)
     folder, killed = tmp_path / "out", []
     victim, other = folder / "strands.bend_scale=1", folder / "strands.bend_scale=2"
@@ -225,13 +225,13 @@ def test_a_worker_that_dies_costs_only_the_time_of_its_task(shot, tmp_path):
     ).all()
 
 
-def test_a_scheduler_that_is_there_already_is_used_and_left_running(shot, tmp_path):
+def test_an_existing_scheduler_is_used_and_left_running(shot, tmp_path):
     with LocalCluster(
         n_workers=1, threads_per_worker=1, dashboard_address="127.0.0.1:0", silence_logs=logging.ERROR
     ) as cluster:
         address = cluster.scheduler_address
         for value in (1, 2):
-            told = run(
+            result = run(
                 "wedge",
                 shot,
                 "--set",
@@ -242,11 +242,12 @@ def test_a_scheduler_that_is_there_already_is_used_and_left_running(shot, tmp_pa
                 "-o",
                 tmp_path / "out",
             )
-            assert told.exit_code == 0, told.output
+            assert result.exit_code == 0, result.output
+    assert [result.state for result in read_results(tmp_path / "out").values()] == ["done", "done"]
 
 
-def test_a_task_that_breaks_off_is_given_up_and_told(shot, tmp_path):
-    (tmp_path / "out/strands.bend_scale=2/log.txt").mkdir(parents=True)  # nobody can write there
+def test_a_failing_task_is_abandoned_and_reported(shot, tmp_path):
+    (tmp_path / "out/strands.bend_scale=2/log.txt").mkdir(parents=True)  # prevents the log file
     result = run("wedge", shot, "--set", "strands.bend=1,2", "--no-picture", "--retries", 1, "-o", tmp_path / "out")
     assert result.exit_code == 1
     found = {result.settings["strands.bend_scale"]: result.state for result in read_results(tmp_path / "out").values()}
@@ -271,7 +272,7 @@ def test_open_job_description_runs_every_combination(shot, tmp_path):
     assert (out / "wedge.html").exists()
 
 
-def test_the_template_asks_for_what_the_command_was_asked_for():
+def test_the_template_has_the_options_of_the_command():
     job = template(Path("a.shot.toml"), [choose("strands.bend", "1,2")], Wanted((2, 9), 5, False, 4))
     words = job["steps"][0]["script"]["actions"]["onRun"]["args"]
     assert words[-7:] == ["--frames", "2:9", "--frame", "5", "--threads", "4", "--no-picture"]

@@ -1,4 +1,4 @@
-"""Small USD files for the tests of reading and writing."""
+"""Small USD files for tests of reading and writing."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def new_stage(path: Path, *, unit: float | None = 0.01, axis: str = "Y") -> Usd.
 def add_cube(
     stage: Usd.Stage, path: str = "/head/skin", *, points: np.ndarray = CUBE, scalp: bool = True
 ) -> UsdGeom.Mesh:
-    """A cube of quads whose last face, z = 1, is the scalp."""
+    """A cube of quads; its last face, z = 1, is the scalp."""
     mesh = UsdGeom.Mesh.Define(stage, path)
     mesh.CreatePointsAttr(Vt.Vec3fArray.FromNumpy(points.astype(np.float32)))
     mesh.CreateExtentAttr(UsdGeom.PointBased.ComputeExtent(mesh.GetPointsAttr().Get()))
@@ -81,3 +81,12 @@ def make_groom(head: Path | None, scalp: Mesh | None = None) -> Groom:
     return Groom(
         guides, locks, mesh, head, "/head/skin" if head else None, "scalp", space, {"per_lock": 4}, "recipe = 'ñ'\n"
     )
+
+
+def hairs_of(groom):
+    """Two hairs for every lock."""
+    lock = np.repeat(np.arange(len(groom.locks), dtype=np.int32), 2)
+    hairs = groom.locks.take(lock)
+    hairs.points = (hairs.points + np.repeat([0.0, 0.001] * len(groom.locks), 7)[:, None]).astype(np.float32)
+    curve = {name: hairs.curve[name] for name in ("root_triangle", "root_barycentric")} | {"lock": lock}
+    return Curves(hairs.points, hairs.offsets, np.arange(len(hairs)), curve, {"width": hairs.point["width"]})

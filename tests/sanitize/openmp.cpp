@@ -1,8 +1,8 @@
-// The part of GCC's OpenMP runtime that the core uses, made of what the thread sanitizer can see.
+// A replacement of the functions of GCC's OpenMP runtime that the core uses, visible to the thread sanitizer.
 //
-// libgomp waits by futexes of its own, of which the sanitizer knows nothing: every loop would be reported as a race. With
-// this in its place it sees who waits for whom, and nothing more: chunks of a loop are handed out by a relaxed counter, so that
-// no order is made up between iterations that have none.
+// libgomp synchronises by futexes that the sanitizer does not know, so it would report every loop as a race. This runtime
+// uses mutexes and condition variables. A relaxed counter distributes the chunks of a loop, which adds no order between
+// iterations.
 
 #include <algorithm>
 #include <atomic>
@@ -22,10 +22,10 @@ int max_threads = [] {
     return count > 0 ? count : 4;
 }();
 
-std::mutex critical;   // sections without a name share one
-std::mutex reductions; // of more than one variable
+std::mutex critical;   // shared by unnamed critical sections
+std::mutex reductions; // of several variables
 
-// A loop of which threads take chunks until there are none.
+// A loop whose chunks threads take until none is left.
 struct Loop {
     std::atomic<long> next;
     long end, step;
@@ -38,7 +38,7 @@ struct Team {
     std::condition_variable arrival;
     int arrived = 0, barriers = 0;
     std::deque<Loop> loops;
-    size_t begun_with = 0; // loops that are there before the first thread
+    size_t begun_with = 0; // loops that exist before the threads start
 
     explicit Team(int count) : size(count) {}
 
@@ -71,7 +71,7 @@ void work(Team &in, int as, void (*body)(void *), void *data) {
     team = outer, number = outer_number, loops_begun = outer_loops, loop = outer_loop;
 }
 
-// Threads that wait for regions.
+// Threads that wait for parallel regions.
 class Pool {
 public:
     ~Pool() {
@@ -84,7 +84,7 @@ public:
     }
 
     void run(Team &here, void (*body)(void *), void *data) {
-        const std::scoped_lock alone(region_); // of another thread that begins a region of its own
+        const std::scoped_lock alone(region_); // one region at a time
         const int count = here.size;
         {
             const std::scoped_lock lock(mutex_);

@@ -1,4 +1,4 @@
-"""Strands released from shapes far from rest: how they come back. As a program it prints the table of the documents."""
+"""Strands released from shapes far from rest; `stability.py` prints the tables."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from coils import helix, jittered, rotation
 from ringlet.curves import Curves
 from ringlet.shot import Material, Solver, Strands
 
-VERTICES, HELD = 100, 4
-CLOSE = 1e-5  # [m] this near to rest counts as back
+VERTICES, PRESCRIBED = 100, 4
+CLOSE = 1e-5  # [m] a strand nearer to its rest shape has returned
 
 
 def zigzag():
-    """A 4B curl: planar, bent to and fro."""
+    """A 4B curl: a planar zigzag."""
     k = np.arange(VERTICES)
     return np.c_[2e-3 * (k % 2), -1.5e-3 * k, 0 * k]
 
@@ -27,43 +27,43 @@ def straight():
 
 
 def coil_with_straight_middle():
-    """A coil with ten edges in line in its middle, whose virtual triangles are degenerate."""
+    """A coil with ten collinear edges in its middle, whose hinge triangles are degenerate."""
     edges = np.diff(helix(VERTICES), axis=0)
     edges[45:55] = edges[44]
     return np.concatenate([helix(1), helix(1) + np.cumsum(edges, axis=0)])
 
 
 def straightened(rest):
-    """Pulled out straight, downwards."""
-    lengths = np.linalg.norm(np.diff(rest[HELD - 1 :], axis=0), axis=1)
+    """The rest shape pulled straight downwards."""
+    lengths = np.linalg.norm(np.diff(rest[PRESCRIBED - 1 :], axis=0), axis=1)
     shape = rest.copy()
-    shape[HELD:] = rest[HELD - 1] - np.c_[0 * lengths, np.cumsum(lengths), 0 * lengths]
+    shape[PRESCRIBED:] = rest[PRESCRIBED - 1] - np.c_[0 * lengths, np.cumsum(lengths), 0 * lengths]
     return shape
 
 
 def flattened(rest):
-    """Pressed into a plane."""
+    """The rest shape projected to a plane."""
     shape = rest.copy()
-    shape[HELD:, 2] = rest[HELD - 1, 2]
+    shape[PRESCRIBED:, 2] = rest[PRESCRIBED - 1, 2]
     return shape
 
 
 def compressed(rest):
-    """To 30 % of its height."""
+    """The rest shape compressed to 30 % of its height."""
     shape = rest.copy()
-    shape[HELD:, 1] = rest[HELD - 1, 1] + 0.3 * (rest[HELD:, 1] - rest[HELD - 1, 1])
+    shape[PRESCRIBED:, 1] = rest[PRESCRIBED - 1, 1] + 0.3 * (rest[PRESCRIBED:, 1] - rest[PRESCRIBED - 1, 1])
     return shape
 
 
 def tip_twisted(rest):
-    """The last vertex turned by 45° about the edge before."""
+    """The last vertex rotated by 45° about the second last edge."""
     shape = rest.copy()
     shape[-1] = rest[-2] + rotation(rest[-2] - rest[-3], np.pi / 4) @ (rest[-1] - rest[-2])
     return shape
 
 
 def scenes():
-    """Name, rest shape and start of every scene."""
+    """Name, rest shape and initial shape of every scene."""
     for per_turn, hand in itertools.product((5, 12), (1, -1)):
         rest = helix(VERTICES, per_turn=per_turn, hand=hand)
         coil = f"{'right' if hand > 0 else 'left'}-handed coil, {per_turn} vertices a turn"
@@ -78,12 +78,12 @@ def scenes():
 
 @dataclass
 class Release:
-    """What became of each scene, arrays of shape (scenes,).
+    """Result of each scene, arrays of shape (scenes,).
 
-    away:      distance from rest at the end [m]
-    excursion: largest distance from rest on the way [m]
-    gain:      largest rise of the energy in a step, by the energy of the start
-    back:      steps after which it stayed close to rest, or -1
+    away:      final distance from rest [m]
+    excursion: largest distance from rest [m]
+    gain:      largest increase of the energy in a step, relative to the initial energy
+    back:      number of steps until it stays close to rest, or -1
     """
 
     away: np.ndarray
@@ -93,12 +93,12 @@ class Release:
 
 
 def release(continuation="material_frame", newton=5, fps=24.0, steps=600, integrator="backward_euler"):
-    """Lets all scenes go at once, with the default material."""
+    """Releases all scenes together, with the default material."""
     _, rests, starts = zip(*scenes(), strict=True)
     rest, start = Curves.from_list(rests), np.concatenate(starts)
-    strands = Strands(rest, Material(), HELD)
+    strands = Strands(rest, Material(), PRESCRIBED)
     strands.place(start)
-    single = [Strands(Curves.from_list([r]), Material(), HELD) for r in rests]
+    single = [Strands(Curves.from_list([r]), Material(), PRESCRIBED) for r in rests]
     first = np.array([s.energy(x, continuation=continuation)[0] for s, x in zip(single, starts, strict=True)])
     solver = Solver(newton=newton, continuation=continuation, integrator=integrator)
 
@@ -116,28 +116,3 @@ def release(continuation="material_frame", newton=5, fps=24.0, steps=600, integr
         excursion = np.maximum(excursion, away)
         back = np.where(away < CLOSE, np.where(back < 0, step, back), -1)
     return Release(away, excursion, gain, back)
-
-
-def cells(result, k):
-    """One scene's columns of a table: steps until back, or how far away it stayed; excursion; gain."""
-    end = f"{result.back[k]}" if result.back[k] > 0 else f"**{100 * result.away[k]:.2g} cm away**"
-    gain = f"{100 * result.gain[k]:.2g} %" if result.gain[k] > 1e-5 else "–"
-    return end, f"{100 * result.excursion[k]:.2g} cm", gain
-
-
-def main():
-    """Prints a table in Markdown for each model: by setting the end, the worst excursion and the energy gained."""
-    settings = [(5, 24), (1, 24), (5, 12)]
-    models = [(name, "backward_euler") for name in ("material_frame", "least_energy", "history")]
-    for continuation, integrator in [*models, ("material_frame", "bdf2")]:
-        title = f"`{continuation}`" if integrator == "backward_euler" else f"`{continuation}` with `{integrator}`"
-        print(f"\n## {title}\n")
-        columns = [f"{n} × 1/{fps} s | excursion | gain" for n, fps in settings]
-        print("| scene |", " | ".join(columns), "|\n|---|" + "---|" * (3 * len(columns)))
-        results = [release(continuation, n, fps, 1500, integrator) for n, fps in settings]
-        for k, (name, _, _) in enumerate(scenes()):
-            print(f"| {name} |", " | ".join(cell for result in results for cell in cells(result, k)), "|")
-
-
-if __name__ == "__main__":
-    main()

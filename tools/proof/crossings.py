@@ -1,38 +1,38 @@
-"""An independent judge of whether anything passed through anything: continuous collision detection by ipctk."""
+"""An independent judge of motion without intersections: continuous collision detection by ipctk."""
 
 import ipctk
 import numpy as np
 
 
 class Judge:
-    """Looks at the strands, cloths and bodies of a scene, but not at pairs that move as they are told on both sides."""
+    """Tests all pairs of strands, cloths and bodies of a scene, except pairs of two prescribed elements."""
 
     def __init__(self, scene):
         curves = scene.strands.curves
         first = np.arange(len(curves.points) - 1)
         edges = np.c_[first, first + 1][~np.isin(first + 1, curves.offsets)]
         triangles, begin = np.zeros((0, 3), int), len(curves.points)
-        moves = [~scene.strands.held]
+        prescribed = [scene.strands.held]
         for cloth in scene.cloths:
             triangles = np.concatenate([triangles, cloth.mesh.triangles + begin])
             begin += len(cloth.positions)
-            moves.append(~cloth.held)
+            prescribed.append(cloth.held)
         for body in scene.bodies:
             triangles = np.concatenate([triangles, body.triangles + begin])
             begin += len(body.points)
-            moves.append(np.zeros(len(body.points), bool))
+            prescribed.append(np.ones(len(body.points), bool))
         sides = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
         edges = np.concatenate([edges, np.unique(np.sort(sides, axis=1), axis=0)])
         self.mesh = ipctk.CollisionMesh(scene.positions, edges.astype(np.int32), triangles.astype(np.int32))
-        self._strands, self._told = scene.strands.curves, ~np.concatenate(moves)
-        self.excuse(np.zeros(0, int))
-        # Additive advancement: what comes nearer than a ten-thousandth of its distance at the start has met.
+        self._strands, self._prescribed = scene.strands.curves, np.concatenate(prescribed)
+        self.exclude(np.zeros(0, int))
+        # Additive CCD reports an impact once the gap falls below a ten-thousandth of the initial gap.
         self.ccd = ipctk.AdditiveCCD(max_iterations=100_000, conservative_rescaling=0.9999)
 
-    def excuse(self, vertices):
-        """Does not look, from now on, at these vertices of strands and those beside them where they meet bodies."""
-        patches = np.arange(len(self._told))  # what moves as it is told is of one patch, every other vertex of its own
-        patches[self._told] = len(patches)
+    def exclude(self, vertices):
+        """Excludes only these strand vertices and their neighbours from tests against bodies."""
+        patches = np.arange(len(self._prescribed))  # prescribed vertices share one patch
+        patches[self._prescribed] = len(patches)
         lock = np.searchsorted(self._strands.offsets, vertices, side="right")
         for step in (-1, 0, 1):
             beside = np.clip(vertices + step, 0, len(self._strands.points) - 1)
@@ -40,8 +40,8 @@ class Judge:
         self.mesh.can_collide = ipctk.make_vertex_patches_filter(patches.astype(np.int32))
 
     def crossings(self, before, after):
-        """How many pairs meet while every vertex goes straight from ``before`` to ``after`` [m], shape (n, 3)."""
-        # In millimetres, and without what all vertices share: the library's idea of rounding has units.
+        """Number of pairs that collide while vertices move linearly from ``before`` to ``after`` [m], shape (n, 3)."""
+        # The tolerances of ipctk are absolute, so positions are centred and in millimetres.
         before, after = (1e3 * (x - x.mean(axis=0)) for x in (before, after))
         pairs = ipctk.Candidates()
         pairs.build(self.mesh, before, after)

@@ -1,10 +1,10 @@
-"""How often closed polylines wind round one another: a whole number, which changes only where one passes another."""
+"""Linking number of closed polylines: an integer that changes only where one curve passes through the other."""
 
 import numpy as np
 
 
 def solid_angle(a, b, c):
-    """Signed solid angles of triangles seen from the origin (Van Oosterom & Strackee 1983); corners (…, 3)."""
+    """Signed solid angles of triangles at the origin (Van Oosterom & Strackee 1983); corners (…, 3)."""
     la, lb, lc = (np.linalg.norm(x, axis=-1) for x in (a, b, c))
     volume = np.einsum("...k,...k", a, np.cross(b, c))
     ab, bc, ca = (np.einsum("...k,...k", x, y) for x, y in ((a, b), (b, c), (c, a)))
@@ -14,7 +14,7 @@ def solid_angle(a, b, c):
 def linking(first, second):
     """Gauss's integral ∮∮ (r₁ − r₂)·(dr₁ × dr₂) / (4π |r₁ − r₂|³) of two closed polylines, shapes (n, 3) and (m, 3).
 
-    A pair of segments adds the solid angle of the parallelogram of their differences, which is exact.
+    The integral over a pair of segments is the solid angle of the parallelogram of their differences, exactly.
     """
     start, end = first[:, None], np.roll(first, -1, axis=0)[:, None]
     other, next_other = second[None], np.roll(second, -1, axis=0)[None]
@@ -23,5 +23,5 @@ def linking(first, second):
 
 
 def closed(points, away):
-    """A strand made a loop: both ends go on straight by ``away`` [m], shape (3,), and join there."""
+    """A strand closed into a loop: both ends continue by ``away`` [m], shape (3,), and join there."""
     return np.concatenate([points, [points[-1] + away, points[0] + away]])

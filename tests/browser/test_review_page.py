@@ -1,0 +1,91 @@
+"""The review page: accessibility, layout, drawing on demand and downloads."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from conftest import Review
+
+SIXTY_FRAMES = """() => new Promise(done => {
+    let left = 60;
+    const next = () => left-- ? requestAnimationFrame(next) : done();
+    next();
+})"""
+
+
+def test_an_idle_page_draws_nothing(opened: Any):
+    review: Review = opened()
+    review.settled()
+    review.until("ringlet.model.measured && ringlet.viewer.idle")
+    before = review.get("ringlet.viewer.pictures")
+    review.page.evaluate(SIXTY_FRAMES)
+    assert review.get("ringlet.viewer.pictures") == before
+
+
+REACH = (Path(__file__).parent / "reach.js").read_text()
+
+
+def test_controls_are_labelled_legible_and_reachable_by_keyboard(opened: Any):
+    review: Review = opened()
+    review.get("ringlet.lock.choose(2)")
+    assert review.page.evaluate(REACH) == {"nameless": [], "faint": []}
+    review.get("ringlet.brush.show(true)")
+    assert review.page.evaluate(REACH) == {"nameless": [], "faint": []}
+    review.page.keyboard.press("Escape")
+    assert not review.get("ringlet.brush.on")
+    dark = review.picture().mean()
+    review.page.get_by_label("Dark or light").press("Enter")
+    assert review.get("document.documentElement.dataset.theme") == "light"
+    assert review.page.evaluate(REACH) == {"nameless": [], "faint": []}
+    assert review.picture().mean() > dark + 20
+    review.slider("curl.width").focus()
+    review.page.keyboard.press("ArrowRight")
+    review.until("ringlet.model.documents.recipe.dirty")
+    eye = review.get("ringlet.viewer.camera.position.toArray()")
+    review.page.locator("main canvas").focus()
+    review.page.keyboard.press("ArrowLeft")
+    assert review.get("ringlet.viewer.camera.position.toArray()") != eye
+
+
+def test_the_page_loads_no_external_resource(opened: Any):
+    review: Review = opened()
+    names = review.get("performance.getEntriesByType('resource').map(entry => new URL(entry.name).host)")
+    assert set(names) == {review.get("location.host")}
+
+
+def test_pictures_and_movies_are_saved(opened: Any):
+    review: Review = opened()
+    with review.page.expect_download() as picture:
+        review.page.get_by_label("Keep a picture").click()
+    assert picture.value.suggested_filename == "small.png"
+    assert Path(picture.value.path()).read_bytes()[:4] == b"\x89PNG"
+    film = review.page.get_by_label("Record a movie")
+    film.click()
+    for turn in (0.3, 0.6):
+        review.get(f"(ringlet.viewer.orbit({turn}, 0), ringlet.viewer.move())")
+        review.page.wait_for_timeout(700)
+    with review.page.expect_download() as movie:
+        film.click()
+    assert Path(movie.value.path()).stat().st_size > 1000
+
+
+@pytest.mark.parametrize("width, height", [(820, 1180), (1180, 820)])
+def test_every_control_is_reachable_on_a_tablet(opened: Any, width: int, height: int):
+    review: Review = opened(viewport={"width": width, "height": height})
+    review.get("ringlet.lock.choose(2)")
+    outside = review.get(
+        "[...document.querySelectorAll('.bar, .panel, .viewbar, .status, .bar button, .viewbar button')].filter(e => "
+        "e.checkVisibility()).map(e => [e.className, e.getBoundingClientRect()]).filter(([, box]) => box.width && ("
+        "box.left < -0.5 || box.top < -0.5 || box.right > innerWidth + 0.5 || box.bottom > innerHeight + 0.5))"
+        ".map(([name]) => name)"
+    )
+    assert outside == []
+    hidden = review.get(
+        "[...document.querySelectorAll('.bar button, .viewbar button, .viewbar select, .lock button')].filter(e => "
+        "e.checkVisibility() && e.getBoundingClientRect().width).filter(e => { const box = e.getBoundingClientRect(); "
+        "return !e.contains(document.elementFromPoint(box.x + box.width / 2, box.y + box.height / 2)); })"
+        ".map(e => e.ariaLabel || e.textContent)"
+    )
+    assert hidden == []

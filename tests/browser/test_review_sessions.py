@@ -1,0 +1,63 @@
+"""Sessions of the review: several pages, and restarts of the server."""
+
+from __future__ import annotations
+
+import signal
+from typing import Any
+
+from conftest import Review, different
+
+
+def test_one_page_edits_and_the_other_follows(opened: Any, serve: Any):
+    server = serve("small.recipe.toml")
+    one: Review = opened(server)
+    two: Review = opened(server)
+    assert one.get("ringlet.model.role.leads") and not two.get("ringlet.model.role.leads")
+    before = two.picture()
+    one.drag(one.slider("curl.width"), 0.35, 0.9)
+    two.until("ringlet.model.documents.recipe.dirty")
+    two.settled()
+    assert different(two.picture(), before) > 0.005
+    two.page.get_by_role("button", name="Take the lead").click()
+    two.until("ringlet.model.role.leads")
+    one.until("!ringlet.model.role.leads")
+
+
+def test_no_edit_is_lost_when_the_server_is_killed(opened: Any, serve: Any):
+    server = serve("small.recipe.toml")
+    review: Review = opened(server)
+    review.drag(review.slider("curl.width"), 0.35, 0.9)
+    review.until("ringlet.model.documents.recipe.dirty")
+    text, session = review.text(), review.get("ringlet.model.welcome.session")
+    review.get("(window.before = ringlet.model.documents.recipe)")
+    server.kill()
+    review.until("document.documentElement.dataset.link == 'lost'")
+    server.start()
+    review.until(f"ringlet.model.welcome.session != '{session}'")
+    review.until("ringlet.model.documents.recipe !== before && ringlet.model.documents.recipe.dirty")
+    assert review.text() == text
+    assert review.page.get_by_role("button", name="Save", exact=True).is_enabled()
+    review.page.keyboard.press("Control+z")  # the restored document is an undo step
+    review.until("!ringlet.model.documents.recipe.dirty")
+
+
+def test_unanswered_messages_are_resent_after_a_restart(opened: Any, serve: Any):
+    server = serve("small.recipe.toml")
+    review: Review = opened(server)
+    session = review.get("ringlet.model.welcome.session")
+
+    def fill(setting: str, value: str) -> None:
+        field = review.page.locator(f'[data-setting="{setting}"] > .field-head input.number')
+        field.fill(value)
+        field.press("Enter")
+
+    server.process.send_signal(signal.SIGSTOP)  # the server receives no more messages
+    fill("curl.width", "1.75")
+    server.kill()
+    review.until("document.documentElement.dataset.link == 'lost'")
+    fill("curl.pitch", "2.25")
+    server.start()
+    review.until(f"ringlet.model.welcome.session != '{session}'")
+    review.until("ringlet.model.documents.recipe.said.curl.pitch == 2.25")
+    assert review.get("ringlet.model.documents.recipe.said.curl.width") == 1.75
+    review.until("ringlet.model.settled")

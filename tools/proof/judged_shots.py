@@ -1,0 +1,72 @@
+"""The example's shots, each move of which ipctk judges; `shots.py` prints the table."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from crossings import Judge
+
+from ringlet import api
+
+EXAMPLE = Path(__file__).parents[2] / "examples/child"
+SHOTS = sorted(file.name.removesuffix(".shot.toml") for file in EXAMPLE.glob("*.shot.toml"))
+
+
+@dataclass
+class Judged:
+    """A frame: crossings counted by ipctk, None if the frame was not judged; statistics of the frame and its edges."""
+
+    crossings: int | None
+    statistics: dict
+    edges: dict
+
+
+def start(shot: str, recipe: str | None = None, locks: int | None = None, balanced: Path | None = None):
+    """Starts a shot of the example by its name, optionally with another recipe or number of locks.
+
+    balanced: file for rest shapes in equilibrium; None: the shot's own rest shapes
+    """
+    settings = api.read_shot(EXAMPLE / f"{shot}.shot.toml")
+    made = api.read_recipe(EXAMPLE / f"{recipe}.recipe.toml" if recipe else settings.groom)
+    count = made.locks.count if locks is None else locks
+    groom = api.build_groom(made.model_copy(update={"locks": made.locks.model_copy(update={"count": count})}))
+    if balanced is not None:
+        rest = settings.rest.model_copy(update={"mode": "equilibrium", "file": balanced})
+        settings = settings.model_copy(update={"rest": rest})
+        api.write_loft(api.loft(settings, groom), settings, balanced)
+    return api.start_motion(settings, groom)
+
+
+def judged(motion, frames: int | None = None, every: int = 1) -> Iterator[Judged]:
+    """Simulates a shot, repeating its clip up to ``frames``, and judges all moves of every ``every``-th frame.
+
+    A vertex that starts inside a body may leave through its surface; its tests against bodies begin one frame later.
+    """
+    judge, (first, last) = Judge(motion.scene), motion.shot.frames
+    embedded = motion.scene.memory["embedded_vertices"]
+    for k in range(last - first if frames is None else frames):
+        motion.scene.record(is_judged := k % every == 0)
+        begin = first + k % (last - first)
+        before, embedded = embedded, motion.scene.memory["embedded_vertices"]
+        assert np.isin(embedded, before).all(), f"frame {k}: a vertex entered a body"
+        judge.exclude(embedded)
+        statistics = motion.advance(begin, begin + 1)
+        assert np.isfinite(motion.scene.positions).all(), f"frame {k}: a position is not finite"
+        moves = itertools.pairwise(motion.scene.path) if is_judged else ()
+        crossings = sum(judge.crossings(*move) for move in moves) if is_judged else None
+        yield Judged(crossings, statistics, strained(motion))
+
+
+def strained(motion) -> dict:
+    """Largest extension and compression of lock edges at the end of a frame, and the number extended by over 0.1."""
+    within = np.setdiff1d(np.arange(len(motion.locks.points) - 1), motion.locks.offsets[1:-1] - 1)
+    before, now = (
+        np.linalg.norm(np.diff(points, axis=0)[within], axis=1)
+        for points in (motion.locks.points, motion.strands.positions)
+    )
+    strain = now / before - 1
+    return {"drawn_out": strain.max(), "pressed": -strain.min(), "drawn_out_by_a_tenth": int((strain > 0.1).sum())}
