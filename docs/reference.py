@@ -9,7 +9,7 @@ from typing import Any
 
 import typer.main
 from ringlet.cli.app import app
-from ringlet.files import replacing
+from ringlet.data.files import replacing
 
 import ringlet
 from ringlet import validate

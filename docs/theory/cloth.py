@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from ringlet.mesh import Mesh
+from ringlet.data.mesh import Mesh
 from ringlet.shot import Cloth, ClothMaterial
 
 from theory.answer import Answer, Panel

@@ -36,21 +36,21 @@ from ringlet.api import (
     write_touches,
     write_touches_picture,
 )
-from ringlet.curves import Curves
-from ringlet.demo import run_demo
-from ringlet.doctor import Finding, diagnose
-from ringlet.errors import UserError
-from ringlet.files import check_place
-from ringlet.mesh import Clip, Mesh
-from ringlet.run import Run
-from ringlet.stage import StageSpace
+from ringlet.api.demo import run_demo
+from ringlet.api.doctor import Finding, diagnose
+from ringlet.api.run import Run
+from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
+from ringlet.data.files import check_place
+from ringlet.data.mesh import Clip, Mesh
+from ringlet.data.stage import StageSpace
 
 if TYPE_CHECKING:
-    from ringlet.bench import Clock, solver_counts
+    from ringlet.api.clock import Clock, solver_counts
+    from ringlet.data.cache import Cache
+    from ringlet.data.groom import Groom
     from ringlet.farm import compare_wedge, wedge, write_wedge_template
-    from ringlet.groom.groom import Groom
     from ringlet.groom.stack import Memory
-    from ringlet.shot.cache import Cache
     from ringlet.shot.cloth import Cloth, ClothMaterial, ClothSolver
     from ringlet.shot.direct import DirectSolver
     from ringlet.shot.loft import Loft
@@ -127,14 +127,14 @@ __all__ = [
 # These live in packages that load slowly, so they are imported when they are first asked for.
 _SLOW = {
     "Body": "ringlet.shot.scene",
-    "Cache": "ringlet.shot.cache",
-    "Clock": "ringlet.bench",
+    "Cache": "ringlet.data.cache",
+    "Clock": "ringlet.api.clock",
     "Cloth": "ringlet.shot.cloth",
     "ClothMaterial": "ringlet.shot.cloth",
     "ClothSolver": "ringlet.shot.cloth",
     "Contact": "ringlet.shot.scene",
     "DirectSolver": "ringlet.shot.direct",
-    "Groom": "ringlet.groom.groom",
+    "Groom": "ringlet.data.groom",
     "Loft": "ringlet.shot.loft",
     "Material": "ringlet.shot.strands",
     "Memory": "ringlet.groom.stack",
@@ -142,7 +142,7 @@ _SLOW = {
     "Solver": "ringlet.shot.strands",
     "Strands": "ringlet.shot.strands",
     "compare_wedge": "ringlet.farm",
-    "solver_counts": "ringlet.bench",
+    "solver_counts": "ringlet.api.clock",
     "view": "ringlet.viewer",
     "wedge": "ringlet.farm",
     "write_wedge_template": "ringlet.farm",

@@ -14,8 +14,8 @@ import numpy as np
 from coils import helix, rotation
 from crossings import Judge
 from linking import closed, linking
-from ringlet.curves import Curves
-from ringlet.mesh import Mesh
+from ringlet.data.curves import Curves
+from ringlet.data.mesh import Mesh
 from ringlet.shot import Material, Solver, Strands
 from ringlet.shot.cloth import Cloth, ClothMaterial
 from ringlet.shot.scene import Body, Contact, Scene

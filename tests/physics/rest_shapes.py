@@ -22,8 +22,8 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from ringlet.groom.groom import Groom
-from ringlet.mesh import Clip
+from ringlet.data.groom import Groom
+from ringlet.data.mesh import Clip
 from ringlet.shot import Collider, Motion, Obstacle, Shot, parse_shot, preload
 from ringlet.shot.nails import held_vertices
 from ringlet.shot.stale import keep

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from coils import helix, jittered, rotation
-from ringlet.curves import Curves
+from ringlet.data.curves import Curves
 from ringlet.shot import Material, Solver, Strands
 
 VERTICES, HELD = 100, 4

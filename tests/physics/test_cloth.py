@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from coils import rotation
-from ringlet.errors import UserError
-from ringlet.mesh import Mesh
+from ringlet.data.errors import UserError
+from ringlet.data.mesh import Mesh
 from ringlet.shot.cloth import Cloth, ClothMaterial, ClothSolver
 from sheets import lattice, sheet
 

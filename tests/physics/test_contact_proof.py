@@ -12,7 +12,7 @@ from coils import helix
 from contact_scenes import SCENES, act, hooked_strands, onto_a_sheet, sheet, tightened
 from crossings import Judge
 from linking import linking
-from ringlet.curves import Curves
+from ringlet.data.curves import Curves
 from ringlet.shot import Material, Solver, Strands
 from ringlet.shot.scene import Contact, Scene
 from ringlet.validate.friction import CREEP, STEP, on_a_slope

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 from coils import helix, rotation
-from ringlet.curves import Curves
-from ringlet.errors import UserError
-from ringlet.groom.groom import Groom
-from ringlet.mesh import Clip, Mesh
+from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
+from ringlet.data.groom import Groom
+from ringlet.data.mesh import Clip, Mesh
 from ringlet.shot import Material, Obstacle, equilibrium, loft, with_sag
 from ringlet.shot.balance import balance
 from ringlet.shot.joints import Joints, measure, shape

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 from coils import helix, rotation
-from ringlet.curves import Curves
-from ringlet.groom.groom import Groom
-from ringlet.mesh import Mesh
+from ringlet.data.curves import Curves
+from ringlet.data.groom import Groom
+from ringlet.data.mesh import Mesh
 from ringlet.shot import loft, parse_shot
 from ringlet.shot.joints import measure, shape
 from ringlet.shot.simulate import make_strands

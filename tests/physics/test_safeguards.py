@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from coils import helix, jittered, rotation
-from ringlet.curves import Curves
+from ringlet.data.curves import Curves
 from ringlet.shot import Material, Solver, Strands
 from stability import CLOSE, HELD, flattened, straightened
 

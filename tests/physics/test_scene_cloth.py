@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from coils import rotation
 from crossings import Judge
-from ringlet.curves import Curves
-from ringlet.errors import UserError
+from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
 from ringlet.shot.cloth import Cloth, ClothMaterial
 from ringlet.shot.scene import Body, Contact, Scene
 from ringlet.shot.strands import Material, Solver, Strands

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from coils import helix, jittered
-from ringlet.curves import Curves
+from ringlet.data.curves import Curves
 from ringlet.shot import Material, Strands
 
 CONTINUATIONS = ["history", "least_energy", "material_frame"]

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from coils import helix, jittered, rotation
-from ringlet.curves import Curves
+from ringlet.data.curves import Curves
 from ringlet.shot import Material, Solver, Strands
 from ringlet.shot.scene import Scene
 
@@ -296,7 +296,7 @@ SCRIPT = """
 import sys; sys.path.insert(0, sys.argv[1])
 import numpy as np
 from coils import helix
-from ringlet.curves import Curves
+from ringlet.data.curves import Curves
 from ringlet.shot import Material, Solver, Strands
 curves = Curves.from_list([helix(50, hand=(-1) ** k) + [0.1 * k, 0, 0] for k in range(11)])
 strands = Strands(curves, Material())

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from coils import helix, rotation
 from rest_shapes import FPS, HEAD, grown
-from ringlet.curves import Curves
-from ringlet.groom.groom import Groom
-from ringlet.mesh import Clip, Mesh
+from ringlet.data.curves import Curves
+from ringlet.data.groom import Groom
+from ringlet.data.mesh import Clip, Mesh
 from ringlet.shot import Obstacle, equilibrium, keep, made_from, refresh
 from ringlet.shot.equilibrium import bearing
 from ringlet.shot.joints import edges

@@ -34,8 +34,8 @@ def test_the_tree_keeps_to_the_table(problems):
         ("python/ringlet/io/usd.py", "from ringlet import _core", "io may not use _core"),
         ("python/ringlet/io/usd.py", "def f():\n    import ringlet.groom.curl", "io may not use groom"),
         ("python/ringlet/cli/groom.py", "from ringlet.groom import make_groom", "cli may not use groom"),
-        ("python/ringlet/groom/groom.py", "from ringlet.groom.curl import curl", "groom.groom may not use groom"),
-        ("python/ringlet/hats.py", "", "'hats' is not a module"),
+        ("python/ringlet/data/groom.py", "from ringlet.groom.curl import curl", "data may not use groom"),
+        ("python/ringlet/hats/hat.py", "", "'hats' is not a folder"),
         ("bench/groom.py", "import ringlet._core", "bench may use the public API only"),
     ],
 )
@@ -57,11 +57,11 @@ def test_a_forbidden_arrow_is_found(problems, tmp_path, file, text, complaint):
 def test_what_the_table_allows_is_not_reported(problems, tmp_path):
     for file, text in {
         "src/ringlet/energy/bend.h": '#include "ringlet/geometry/curves.h"\n#include "ringlet/energy/common.h"',
-        "python/ringlet/groom/groom.py": "from ringlet.curves import Curves",
-        "python/ringlet/curves.py": "from ringlet.errors import UserError",
-        "python/ringlet/errors.py": "",
-        "python/ringlet/io/usd.py": "from ringlet.groom.groom import Groom",
-        "python/ringlet/__init__.py": "from ringlet.curves import Curves",
+        "python/ringlet/data/curves.py": "from ringlet.data.errors import UserError",
+        "python/ringlet/data/errors.py": "",
+        "python/ringlet/groom/stack.py": "from ringlet.data.curves import Curves",
+        "python/ringlet/io/usd.py": "from ringlet.data.curves import Curves",
+        "python/ringlet/__init__.py": "from ringlet.data.curves import Curves",
         "examples/try.py": "import ringlet",
     }.items():
         (tmp_path / file).parent.mkdir(parents=True, exist_ok=True)

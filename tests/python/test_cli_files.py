@@ -234,7 +234,7 @@ def test_a_report_is_written_where_it_is_asked_for(example, tmp_path):
     assert len(report["statistics"]) == FRAMES
     assert [stage["name"] for stage in report["stages"]] == ["groom", "simulate"]
     assert "<html" in (tmp_path / "report/report.html").read_text()
-    assert report["limits"] == [ringlet.run.FREE]
+    assert report["limits"] == [ringlet.api.run.FREE]
 
 
 def test_a_report_without_a_simulation_says_nothing_of_contact(example, tmp_path):

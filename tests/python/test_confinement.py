@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from pxr import Sdf
-from ringlet.files import replacing
+from ringlet.data.files import replacing
 from small_example import write_example
 from test_cli import refused, run
 
@@ -76,7 +76,7 @@ def test_a_folder_without_the_right_to_write_is_refused_before_work_is_done(proj
     closed.mkdir()
     closed.chmod(0o500)
     if os.access(closed, os.W_OK):  # root may write anywhere: let the system refuse
-        monkeypatch.setattr("ringlet.files.tempfile.TemporaryFile", raise_no_right)
+        monkeypatch.setattr("ringlet.data.files.tempfile.TemporaryFile", raise_no_right)
     refused(run("groom", project / "small.recipe.toml", "-o", closed / "groom.usdc"), "cannot be written")
     assert list(closed.iterdir()) == []
 

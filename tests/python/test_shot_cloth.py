@@ -4,8 +4,8 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from ringlet.errors import UserError
-from ringlet.mesh import Clip, Mesh
+from ringlet.data.errors import UserError
+from ringlet.data.mesh import Clip, Mesh
 from ringlet.shot import Garment, Obstacle, ShotCloth, parse_shot, simulate
 from ringlet.shot.piercing import edges_of, piercings
 from shapes import rotation

@@ -5,10 +5,10 @@ import json
 import numpy as np
 import pytest
 from pxr import Usd, UsdGeom, Vt
-from ringlet.curves import Curves
-from ringlet.errors import UserError
-from ringlet.groom.groom import Groom
-from ringlet.mesh import Clip, Mesh
+from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
+from ringlet.data.groom import Groom
+from ringlet.data.mesh import Clip, Mesh
 from ringlet.shot import Collider, Obstacle, parse_shot, simulate
 from ringlet.shot.start import depths, winding
 from small_example import FRAMES, write_example

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 from pxr import Sdf, Usd, UsdGeom, Vt
-from ringlet.curves import Curves
-from ringlet.errors import UserError
-from ringlet.groom.groom import Groom
-from ringlet.mesh import Clip, Mesh
+from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
+from ringlet.data.groom import Groom
+from ringlet.data.mesh import Clip, Mesh
 from ringlet.shot import parse_shot, simulate
 from ringlet.shot.simulate import make_strands
 from small_example import write_example, write_head

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from pages import page, read, serving
 from pxr import Usd
-from ringlet.errors import UserError
+from ringlet.data.errors import UserError
 from ringlet.viewer.reel import Run
 from small_example import write_head
 from test_shot_cloth_files import SCARF, write_wear

@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ringlet.api.progress import Progress
-from ringlet.errors import UserError
+from ringlet.data.errors import UserError
 
 if TYPE_CHECKING:
+    from ringlet.data.groom import Groom
+    from ringlet.data.mesh import Mesh
     from ringlet.groom import Memory, Recipe
-    from ringlet.groom.groom import Groom
-    from ringlet.mesh import Mesh
 
 
 def read_recipe(path: Path | str) -> Recipe:
@@ -180,7 +180,7 @@ def check_groom(
     variant:     of the groom file, in place of the one that is selected in it
     """
     from ringlet import groom as grooms
-    from ringlet.groom.groom import Groom
+    from ringlet.data.groom import Groom
 
     if not isinstance(groom, Groom):
         groom = load_groom(groom, variant=variant, progress=progress)

@@ -9,8 +9,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from ringlet.api.progress import Progress
-from ringlet.settings import check_name
-from ringlet.share import share
+from ringlet.data.settings import check_name
+from ringlet.data.share import share
 
 if TYPE_CHECKING:
     from ringlet.validate import Row

@@ -11,16 +11,16 @@ import numpy as np
 
 from ringlet.api.grooms import load_groom
 from ringlet.api.progress import OnFrame, Progress
-from ringlet.curves import Curves
-from ringlet.errors import UserError
-from ringlet.files import within
+from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
+from ringlet.data.files import within
 
 if TYPE_CHECKING:
-    from ringlet.groom.groom import Groom
+    from ringlet.data.cache import Cache, Told
+    from ringlet.data.groom import Groom
+    from ringlet.data.mesh import Clip
     from ringlet.io import CacheFile
-    from ringlet.mesh import Clip
     from ringlet.shot import Checkpoints, Garment, Motion, Obstacle, Shot
-    from ringlet.shot.cache import Cache, Told
     from ringlet.shot.loft import Loft
 
 
@@ -157,7 +157,7 @@ def _taken(groom: Groom | Path | str, progress: Progress | None = None) -> Groom
     Steps end before they have converged to the last digit, and what differs there grows.
     """
     from ringlet import io
-    from ringlet.groom.groom import Groom
+    from ringlet.data.groom import Groom
 
     return io.as_written(groom if isinstance(groom, Groom) else load_groom(groom, progress=progress))
 
@@ -250,7 +250,7 @@ def _rest_shape(shot: Shot, groom: Groom, obstacles: Sequence[Obstacle], allow_s
 def scalp_clip(groom: Groom) -> Clip:
     """How the scalp of a groom moves; one that an OBJ has stands still."""
     from ringlet import io
-    from ringlet.mesh import Clip
+    from ringlet.data.mesh import Clip
 
     if groom.scalp_file is None:
         raise UserError("groom: names no file for its scalp; write the head as USD and name it in the recipe")

@@ -1,6 +1,6 @@
 """Shots: strands that move with an animated scalp."""
 
-from ringlet.shot.cache import Cache, CachedCloth, Told, Touches
+from ringlet.data.cache import Cache, CachedCloth, Told, Touches
 from ringlet.shot.checkpoint import Checkpoints, frames_between, holding
 from ringlet.shot.cloth import Cloth, ClothMaterial, ClothSolver
 from ringlet.shot.collider import Collider, Obstacle, ShotContact

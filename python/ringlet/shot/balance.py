@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ringlet import _core
-from ringlet.curves import Curves
+from ringlet.data.curves import Curves
 from ringlet.shot.joints import Joints
 
 Array = NDArray[np.float64]

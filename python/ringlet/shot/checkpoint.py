@@ -20,8 +20,8 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from ringlet.errors import UserError
-from ringlet.files import replacing
+from ringlet.data.errors import UserError
+from ringlet.data.files import replacing
 
 VERSION = b"ringlet checkpoint 2\n"
 EVERY = 10  # frames from one memory to the next, at most

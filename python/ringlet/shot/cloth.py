@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from ringlet import _core
-from ringlet.errors import UserError
-from ringlet.mesh import Mesh
-from ringlet.settings import Section
+from ringlet.data.errors import UserError
+from ringlet.data.mesh import Mesh
+from ringlet.data.settings import Section
 
 Vector = tuple[float, float, float]
 

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from ringlet import _core
-from ringlet.errors import UserError
-from ringlet.mesh import Clip, Mesh
-from ringlet.settings import Section, did_you_mean
+from ringlet.data.errors import UserError
+from ringlet.data.mesh import Clip, Mesh
+from ringlet.data.settings import Section, did_you_mean
 from ringlet.shot.scene import Body, Contact
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ringlet import _core
-from ringlet.errors import UserError
+from ringlet.data.errors import UserError
 
 Method = Literal["automatic", "builtin", "pardiso"]
 

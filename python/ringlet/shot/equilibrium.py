@@ -15,9 +15,9 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from ringlet.curves import Curves
-from ringlet.errors import UserError
-from ringlet.groom.groom import Groom
+from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
+from ringlet.data.groom import Groom
 from ringlet.shot.balance import balance
 from ringlet.shot.collider import Obstacle
 from ringlet.shot.joints import Joints, measure, shape

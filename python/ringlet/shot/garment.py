@@ -9,8 +9,8 @@ from typing import Annotated, Self
 import numpy as np
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
-from ringlet.mesh import Clip, Mesh
-from ringlet.settings import Section, refuse
+from ringlet.data.mesh import Clip, Mesh
+from ringlet.data.settings import Section, refuse
 from ringlet.shot.cloth import ClothMaterial
 
 Scale = Annotated[float, Field(gt=0.01, le=100)]

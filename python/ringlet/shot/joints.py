@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ringlet import _core
-from ringlet.curves import Curves
+from ringlet.data.curves import Curves
 
 Array = NDArray[np.float64]
 

@@ -16,9 +16,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ringlet.curves import Curves
-from ringlet.errors import UserError
-from ringlet.groom.groom import Groom
+from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
+from ringlet.data.groom import Groom
 from ringlet.shot.joints import Joints, edges, measure, rotate, shape
 from ringlet.shot.shot import Shot
 from ringlet.shot.simulate import make_strands

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ringlet.curves import Curves
+from ringlet.data.curves import Curves
 from ringlet.shot.strands import Strands
 
 RIGID = 0.999  # what is held more firmly than this moves rigidly

@@ -7,8 +7,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from ringlet.groom.settings import Quantity
-from ringlet.settings import Section
+from ringlet.data.quantities import Quantity
+from ringlet.data.settings import Section
 from ringlet.shot.variation import Mapped
 
 

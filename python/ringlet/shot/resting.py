@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array, csc_array, diags_array, eye_array
 from scipy.sparse.linalg import splu
 
-from ringlet.curves import Curves
+from ringlet.data.curves import Curves
 from ringlet.shot.collider import Obstacle, ShotContact
 from ringlet.shot.scene import Body, Scene
 from ringlet.shot.start import depths

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ringlet import _core
-from ringlet.errors import UserError
-from ringlet.groom.groom import Groom
+from ringlet.data.errors import UserError
+from ringlet.data.groom import Groom
 
 
 @dataclass

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from ringlet import _core
-from ringlet.curves import Curves
-from ringlet.errors import UserError
-from ringlet.settings import Section
-from ringlet.shot.cache import Touches
+from ringlet.data.cache import Touches
+from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
+from ringlet.data.settings import Section
 from ringlet.shot.cloth import Cloth
 from ringlet.shot.strands import Material, Solver, Strands, Vector
 

@@ -7,7 +7,7 @@ from typing import Any, Literal
 
 from pydantic import Field, PrivateAttr, ValidationError, ValidationInfo, field_validator
 
-from ringlet.settings import Section, explain, parse_toml, read_toml, refuse
+from ringlet.data.settings import Section, explain, parse_toml, read_toml, refuse
 from ringlet.shot.collider import Collider, ShotContact
 from ringlet.shot.garment import ShotCloth
 from ringlet.shot.rest import Rest

@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ringlet.curves import Curves
-from ringlet.errors import UserError
-from ringlet.groom.groom import Groom
-from ringlet.mesh import Clip
+from ringlet.data.cache import Cache, CachedCloth, Touches
+from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
+from ringlet.data.groom import Groom
+from ringlet.data.mesh import Clip
 from ringlet.shot import start
-from ringlet.shot.cache import Cache, CachedCloth, Touches
 from ringlet.shot.checkpoint import Checkpoints, digest
 from ringlet.shot.collider import LOCKS, Obstacle, with_pairs
 from ringlet.shot.garment import Garment

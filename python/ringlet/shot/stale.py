@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ringlet.curves import Curves
-from ringlet.errors import UserError
-from ringlet.groom.groom import Groom
+from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
+from ringlet.data.groom import Groom
 from ringlet.shot.checkpoint import digest
 from ringlet.shot.collider import Obstacle
 from ringlet.shot.equilibrium import bearing, equilibrium, loads

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ringlet import _core
-from ringlet.curves import Curves
-from ringlet.errors import UserError
-from ringlet.mesh import Mesh
+from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
+from ringlet.data.mesh import Mesh
 from ringlet.shot.piercing import edges_of, piercings
 from ringlet.shot.scene import Body, Scene
 from ringlet.shot.worn import Worn

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from pydantic import Field, ValidationInfo, field_validator
 
 from ringlet import _core
-from ringlet.curves import Curves
-from ringlet.settings import Section, refuse
+from ringlet.data.curves import Curves
+from ringlet.data.settings import Section, refuse
 
 Vector = tuple[float, float, float]
 Continuation = Literal["material_frame", "least_energy", "history"]

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
 
-from ringlet.curves import Curves
+from ringlet.data.curves import Curves
 from ringlet.shot.collider import LOCKS, Obstacle, ShotContact, with_pairs
 from ringlet.shot.joints import corners, edges, twists
 from ringlet.shot.nails import fixed

@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from ringlet.curves import Curves
-from ringlet.errors import UserError
-from ringlet.groom.groom import Groom
-from ringlet.groom.painted import per_lock
-from ringlet.groom.random import Random
-from ringlet.groom.settings import Quantity, Ramped
-from ringlet.settings import Section
+from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
+from ringlet.data.groom import Groom
+from ringlet.data.painted import per_lock
+from ringlet.data.quantities import Quantity, Ramped
+from ringlet.data.random import Random
+from ringlet.data.settings import Section
 from ringlet.shot.strands import VARIATIONS
 
 

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ringlet import _core
-from ringlet.errors import UserError
-from ringlet.mesh import Mesh
-from ringlet.settings import did_you_mean
+from ringlet.data.errors import UserError
+from ringlet.data.mesh import Mesh
+from ringlet.data.settings import did_you_mean
 from ringlet.shot.cloth import Cloth
 from ringlet.shot.collider import Obstacle
 from ringlet.shot.garment import Garment, Pin

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ringlet.curves import Curves
+from ringlet.data.curves import Curves
 from ringlet.shot.scene import Body, Contact, Scene
 from ringlet.shot.strands import Material, Solver, Strands
 from ringlet.validate.case import Case, Row

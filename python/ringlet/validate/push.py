@@ -12,7 +12,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from ringlet.curves import Curves
+from ringlet.data.curves import Curves
 from ringlet.shot.scene import Body, Contact, Scene
 from ringlet.shot.strands import Material, Solver, Strands
 from ringlet.validate.case import Case, Row

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from ringlet.curves import Curves
+from ringlet.data.curves import Curves
 from ringlet.shot.strands import Material, Strands
 
 

@@ -9,14 +9,14 @@ from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from ringlet import _core
-from ringlet.curves import Curves, offsets_from_counts
-from ringlet.errors import UserError
+from ringlet.data.curves import Curves, offsets_from_counts
+from ringlet.data.errors import UserError
+from ringlet.data.quantities import Quantity, Ramp, Ramped, Varied, along, refuse
+from ringlet.data.random import tipping
 from ringlet.groom.operators.operator import Context, Operator, packed
 from ringlet.groom.operators.phase_lock import PhaseLock
 from ringlet.groom.presets import PRESETS, Preset
-from ringlet.groom.random import tipping
 from ringlet.groom.scalp import axes
-from ringlet.groom.settings import Quantity, Ramp, Ramped, Varied, along, refuse
 
 RAMP_SAMPLES = 128
 NOISE_VALUES = 24

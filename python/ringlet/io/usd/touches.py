@@ -14,14 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 from pxr import Usd, UsdGeom
 
-from ringlet.errors import UserError
+from ringlet.data.cache import Cache, Told, Touches
+from ringlet.data.errors import UserError
+from ringlet.data.stage import StageSpace
 from ringlet.io.space import from_metres, to_metres
 from ringlet.io.usd.groom import GROOM
 from ringlet.io.usd.stage import reading
 from ringlet.io.usd.stream import StreamWriter
 from ringlet.io.usd.values import Types, float3, to_usd
-from ringlet.shot.cache import Cache, Told, Touches
-from ringlet.stage import StageSpace
 
 TOUCHES, START = f"{GROOM}/touches", f"{GROOM}/start"
 SIZE = 1e-3  # diameter of a point [m]

@@ -8,8 +8,8 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from ringlet import api
-from ringlet.run import Run
-from ringlet.share import share
+from ringlet.api.run import Run
+from ringlet.data.share import share
 
 FIRST_FRAME = 1  # of the clip; before it the ribbon is put into the hair
 STILL_FRAME = 22  # in the middle of the quick turn

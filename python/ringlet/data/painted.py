@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ringlet.curves import Curves
-from ringlet.errors import UserError
-from ringlet.groom.random import Random
-from ringlet.groom.settings import Varied
-from ringlet.mesh import Mesh
-from ringlet.settings import did_you_mean
+from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
+from ringlet.data.mesh import Mesh
+from ringlet.data.quantities import Varied
+from ringlet.data.random import Random
+from ringlet.data.settings import did_you_mean
 
 
 def per_lock(setting: Varied, random: Random, curves: Curves, scalp: Mesh, what: str) -> NDArray[np.float64]:

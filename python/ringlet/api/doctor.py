@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 
 from ringlet import _core, api
-from ringlet.curves import Curves
-from ringlet.share import share
+from ringlet.data.curves import Curves
+from ringlet.data.share import share
 
 ENOUGH_MEMORY = 4 * 2**30  # for the example and its picture
 PICTURE = 96  # height of the self-test's picture [pixels]
@@ -123,7 +123,7 @@ def _openjd() -> Finding:
 
 
 def _page() -> Finding:
-    if (Path(__file__).parent / "viewer" / "static" / "index.html").exists():
+    if (Path(__file__).parents[1] / "viewer" / "static" / "index.html").exists():
         return Finding("review page", "ok", "built")
     return Finding("review page", "optional", "is not built", "for ringlet view, in a clone: make build")
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ringlet.errors import UserError
+from ringlet.data.errors import UserError
 
 
 def share(name: str) -> Path:
     """The folder ``name`` that comes with Ringlet: ``examples/child`` or ``bench``."""
-    package = Path(__file__).parent
+    package = Path(__file__).parents[1]
     for root in (package.parents[1], package / "share"):
         if (root / name).exists():
             return root / name

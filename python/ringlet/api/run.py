@@ -12,10 +12,10 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
-from ringlet.files import check_place
+from ringlet.data.files import check_place
 
 if TYPE_CHECKING:
-    from ringlet.shot.cache import Cache, Told
+    from ringlet.data.cache import Cache, Told
 
 FREE = "Contact was off: locks may pass through the head and one another. A table [contact] in the shot turns it on."
 CARRIED = "Locks touch, single hairs do not: they go with their lock, and may dip into what it touches."

@@ -22,10 +22,10 @@ from pydantic import (
 from pydantic_core import PydanticCustomError, core_schema
 from scipy.interpolate import PchipInterpolator
 
-from ringlet import settings
-from ringlet.errors import UserError
-from ringlet.groom.random import Random
-from ringlet.settings import Location, refuse
+from ringlet.data import settings
+from ringlet.data.errors import UserError
+from ringlet.data.random import Random
+from ringlet.data.settings import Location, refuse
 
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254}
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from ringlet.errors import UserError
+from ringlet.data.errors import UserError
 
 
 @dataclass

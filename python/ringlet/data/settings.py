@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
 from pydantic_core import PydanticCustomError
 
-from ringlet.errors import UserError
+from ringlet.data.errors import UserError
 
 FORMAT = 1  # of recipes, shots and files of edits
 MOST_TEXT = 256e6  # bytes of such a file

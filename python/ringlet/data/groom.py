@@ -6,9 +6,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from ringlet.curves import Curves
-from ringlet.mesh import Mesh
-from ringlet.stage import StageSpace
+from ringlet.data.curves import Curves
+from ringlet.data.mesh import Mesh
+from ringlet.data.stage import StageSpace
 
 
 @dataclass

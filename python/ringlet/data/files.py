@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from ringlet.errors import UserError
+from ringlet.data.errors import UserError
 
 
 @contextmanager
