@@ -48,7 +48,7 @@ void bind_rest(nb::module_ &module) {
                                   to_numpy<double>(std::move(twist), {n}));
         },
         "offsets"_a, "held"_a, "points"_a, "directors"_a, "loads"_a, "twisting"_a,
-        "Forces along edges [N], moments at corners and about edges [N m] that balance loads; see shot/balance.py.");
+        "Forces along edges [N], moments at corners and about edges [N m] that balance loads; see rest/inverse_statics.py.");
 
     module.def(
         "shape_of_joints",
@@ -65,5 +65,5 @@ void bind_rest(nb::module_ &module) {
             return nb::make_tuple(to_numpy<double>(std::move(made), {n, 3}), to_numpy<double>(std::move(frames), {n, 3}));
         },
         "offsets"_a, "length"_a, "bend"_a, "twist"_a, "points"_a, "directors"_a,
-        "Points [m] and directors, shapes (n, 3), of strands of such joints; see shot/joints.py.");
+        "Points [m] and directors, shapes (n, 3), of strands of such joints; see rest/rod_strains.py.");
 }

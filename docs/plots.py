@@ -13,7 +13,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from ringlet.data.curves import Curves
 from ringlet.data.files import replacing
-from ringlet.shot import Material, Strands
+from ringlet.shot import Material
+from ringlet.sim import Strands
 
 from ringlet import validate
 

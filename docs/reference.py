@@ -120,7 +120,7 @@ def commands() -> Iterator[str]:
 
 def public_names() -> Iterator[str]:
     """Everything that ``import ringlet`` gives: functions in the order of the pipeline, then classes."""
-    names = [name for name in ringlet.__all__ if not name.startswith("__")]
+    names = [name for name in sorted(ringlet.__all__) if not name.startswith("__")]
     classes = [name for name in names if inspect.isclass(getattr(ringlet, name))]
     functions = sorted(set(names) - set(classes), key=lambda name: inspect.getsourcelines(getattr(ringlet, name))[1])
     yield "## Functions\n\n```{eval-rst}"

@@ -34,15 +34,17 @@ API = "the public API"  # ringlet/__init__.py
 PYTHON = {
     "data": set(),
     "groom": {"data", "_core"},
-    "shot": {"data", "_core"},
-    "validate": {"data", "_core", "shot"},
+    "shot": {"data"},
+    "sim": {"data", "_core", "shot"},
+    "rest": {"data", "_core", "shot", "sim"},
+    "validate": {"data", "_core", "shot", "sim"},
     "io": {"data"},
     "picture": {"data"},
     "report": {"data"},
-    "api": {"data", "_core", "groom", "shot", "validate", "io", "picture", "report"},
-    "viewer": {"data", "_core", "groom", "shot", "io", "picture", "api"},
+    "api": {"data", "_core", "groom", "shot", "sim", "rest", "validate", "io", "picture", "report"},
+    "viewer": {"data", "_core", "groom", "shot", "sim", "io", "picture", "api"},
     "farm": {"data", "groom", "shot", "report", "api"},
-    API: {"data", "api", "groom", "shot", "viewer", "farm"},
+    API: {"data", "api", "groom", "shot", "sim", "rest", "viewer", "farm"},
     "cli": {API},
 }
 OUTSIDE = ("bench", "examples")  # these use the public API only

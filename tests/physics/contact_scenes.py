@@ -16,9 +16,13 @@ from crossings import Judge
 from linking import closed, linking
 from ringlet.data.curves import Curves
 from ringlet.data.mesh import Mesh
-from ringlet.shot import Material, Solver, Strands
-from ringlet.shot.cloth import Cloth, ClothMaterial
-from ringlet.shot.scene import Body, Contact, Scene
+from ringlet.shot import Material, Solver
+from ringlet.shot.cloth import ClothMaterial
+from ringlet.shot.contact import Contact
+from ringlet.sim import Strands
+from ringlet.sim.cloth import Cloth
+from ringlet.sim.obstacle import Body
+from ringlet.sim.scene import Scene
 from scipy.interpolate import CubicSpline
 
 FRAME = 1 / 24

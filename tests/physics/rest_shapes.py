@@ -24,12 +24,14 @@ import numpy as np
 from numpy.typing import NDArray
 from ringlet.data.groom import Groom
 from ringlet.data.mesh import Clip
-from ringlet.shot import Collider, Motion, Obstacle, Shot, parse_shot, preload
-from ringlet.shot.nails import held_vertices
-from ringlet.shot.stale import keep
+from ringlet.rest.staleness import to_curves
+from ringlet.shot import Collider, Shot, parse_shot
+from ringlet.sim import Motion, Obstacle
+from ringlet.sim.nails import held_vertices
 
 import ringlet
 from ringlet import _core
+from ringlet.rest import solve_rest_shape
 
 Array = NDArray[np.float64]
 
@@ -181,9 +183,9 @@ def table(name: str, style: Style, seconds: float, picture: Path | None) -> None
     lying, risen = style.lying(), {}
     for mode in MODES:
         shot, began = style.shot(mode), time.process_time()
-        made = None if mode == "none" else preload(shot, style.groom, obstacles=[style.head(np.zeros(1), FPS)])
+        made = None if mode == "none" else solve_rest_shape(shot, style.groom, obstacles=[style.head(np.zeros(1), FPS)])
         took = time.process_time() - began
-        rest = made and keep(made, shot)
+        rest = made and to_curves(made, shot)
         for points in style.still(shot, rest, seconds if mode == "equilibrium" else min(seconds, HANGS)):
             ends[mode] = points.copy()
         off = np.linalg.norm(ends[mode] - groomed, axis=1)
@@ -223,8 +225,8 @@ def springs(name: str, style: Style, values: list[float], seconds: float) -> Non
     plainly, so_far = style.bounce(style.shot("none", 0.0), None, groomed)
     for spring in values:
         shot = style.shot("equilibrium", spring=spring)
-        made = preload(shot, style.groom, obstacles=[style.head(np.zeros(1), FPS)])
-        rest = keep(made, shot)
+        made = solve_rest_shape(shot, style.groom, obstacles=[style.head(np.zeros(1), FPS)])
+        rest = to_curves(made, shot)
         *_, begin = style.still(shot, rest, seconds)
         often, far = style.bounce(shot, rest, begin.copy())
         often = ", ".join(f"{ratio:.2f}" for ratio in np.percentile(often / plainly, [10, 50, 90]))

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from coils import helix, jittered, rotation
 from ringlet.data.curves import Curves
-from ringlet.shot import Material, Solver, Strands
+from ringlet.shot import Material, Solver
+from ringlet.sim import Strands
 
 VERTICES, HELD = 100, 4
 CLOSE = 1e-5  # [m] this near to rest counts as back

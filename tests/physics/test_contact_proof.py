@@ -13,8 +13,10 @@ from contact_scenes import SCENES, act, hooked_strands, onto_a_sheet, sheet, tig
 from crossings import Judge
 from linking import linking
 from ringlet.data.curves import Curves
-from ringlet.shot import Material, Solver, Strands
-from ringlet.shot.scene import Contact, Scene
+from ringlet.shot import Material, Solver
+from ringlet.shot.contact import Contact
+from ringlet.sim import Strands
+from ringlet.sim.scene import Scene
 from ringlet.validate.friction import CREEP, STEP, on_a_slope
 
 outcome = cache(lambda name, newton: act(SCENES[name](), newton))

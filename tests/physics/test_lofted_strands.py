@@ -6,10 +6,12 @@ from coils import helix, rotation
 from ringlet.data.curves import Curves
 from ringlet.data.groom import Groom
 from ringlet.data.mesh import Mesh
-from ringlet.shot import loft, parse_shot
-from ringlet.shot.joints import measure, shape
-from ringlet.shot.simulate import make_strands
-from ringlet.shot.strands import Solver
+from ringlet.rest.rod_strains import measure_strains, shape_of_strains
+from ringlet.shot import parse_shot
+from ringlet.shot.solver import Solver
+from ringlet.sim.motion import make_strands
+
+from ringlet.rest import loft
 
 SHOT = 'ringlet = 1\ngroom = "groom.usdc"\nframes = [1, 1]\n'
 GRAVITY = (0.0, -9.81, 0.0)
@@ -126,8 +128,8 @@ def test_joints_give_the_shape_back():
     shot, groom = scene()
     groom.locks = curves
     directors = make_strands(shot, groom).directors.copy()
-    joints = measure(curves, curves.points, directors)
-    points, made = shape(curves, joints, directors)
+    joints = measure_strains(curves, curves.points, directors)
+    points, made = shape_of_strains(curves, joints, directors)
     assert np.abs(points - curves.points).max() < 1e-12
-    again = measure(curves, points, made)
+    again = measure_strains(curves, points, made)
     assert np.abs(again.bend - joints.bend).max() < 1e-9 and np.abs(again.minus(joints).twist).max() < 1e-9

@@ -6,9 +6,14 @@ from coils import rotation
 from crossings import Judge
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
-from ringlet.shot.cloth import Cloth, ClothMaterial
-from ringlet.shot.scene import Body, Contact, Scene
-from ringlet.shot.strands import Material, Solver, Strands
+from ringlet.shot.cloth import ClothMaterial
+from ringlet.shot.contact import Contact
+from ringlet.shot.material import Material
+from ringlet.shot.solver import Solver
+from ringlet.sim.cloth import Cloth
+from ringlet.sim.obstacle import Body
+from ringlet.sim.scene import Scene
+from ringlet.sim.strands import Strands
 from sheets import sheet
 
 FRAME = 1 / 24

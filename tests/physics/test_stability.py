@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from coils import helix, rotation
 from ringlet.data.curves import Curves
-from ringlet.shot import Material, Solver, Strands
+from ringlet.shot import Material, Solver
+from ringlet.sim import Strands
 from stability import CLOSE, HELD, release, scenes
 
 NAMES = [name for name, _, _ in scenes()]

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from coils import helix, jittered
 from ringlet.data.curves import Curves
-from ringlet.shot import Material, Strands
+from ringlet.shot import Material
+from ringlet.sim import Strands
 
 CONTINUATIONS = ["history", "least_energy", "material_frame"]
 

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 from coils import helix, jittered, rotation
 from ringlet.data.curves import Curves
-from ringlet.shot import Material, Solver, Strands
-from ringlet.shot.scene import Scene
+from ringlet.shot import Material, Solver
+from ringlet.sim import Strands
+from ringlet.sim.scene import Scene
 
 from ringlet import _core
 

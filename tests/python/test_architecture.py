@@ -35,14 +35,17 @@ def test_the_tree_keeps_to_the_table(problems):
         ("python/ringlet/io/usd.py", "def f():\n    import ringlet.groom.curl", "io may not use groom"),
         ("python/ringlet/cli/groom.py", "from ringlet.groom import make_groom", "cli may not use groom"),
         ("python/ringlet/data/groom.py", "from ringlet.groom.curl import curl", "data may not use groom"),
+        ("python/ringlet/sim/run.py", "from ringlet.rest import loft", "sim may not use rest"),
+        ("python/ringlet/shot/shot.py", "from ringlet.sim.motion import Motion", "shot may not use sim"),
         ("python/ringlet/hats/hat.py", "", "'hats' is not a folder"),
         ("bench/groom.py", "import ringlet._core", "bench may use the public API only"),
     ],
 )
 def test_a_forbidden_arrow_is_found(problems, tmp_path, file, text, complaint):
-    for place in ("src/ringlet", "python/ringlet/groom", "python/ringlet/picture", "bench", "examples"):
+    folders = [f"python/ringlet/{name}" for name in ("groom", "picture", "rest", "sim")]
+    for place in ("src/ringlet", "bench", "examples", *folders):
         (tmp_path / place).mkdir(parents=True)
-    for module in ("__init__", "groom/__init__", "groom/curl", "picture/__init__"):
+    for module in ("__init__", "groom/__init__", "groom/curl", "picture/__init__", "rest/__init__", "sim/motion"):
         (tmp_path / f"python/ringlet/{module}.py").touch()
     (tmp_path / file).parent.mkdir(parents=True, exist_ok=True)
     (tmp_path / file).write_text(text)

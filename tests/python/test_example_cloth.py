@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from ringlet.shot.piercing import edges_of, piercings
+from ringlet.sim.penetration import edge_triangle_intersections, mesh_edges
 
 import ringlet
 from ringlet import io
@@ -16,8 +16,8 @@ GARMENTS = ("scarf", "hat", "tie", "ribbon")
 
 def entangled(points, triangles):
     """Edges that go through triangles of the same mesh which they do not touch."""
-    edges = edges_of(triangles)
-    pairs = piercings(points[edges], points[triangles])
+    edges = mesh_edges(triangles)
+    pairs = edge_triangle_intersections(points[edges], points[triangles])
     return pairs[~(edges[pairs[:, 0], :, None] == triangles[pairs[:, 1], None, :]).any(axis=(1, 2))]
 
 
@@ -57,7 +57,7 @@ def test_its_shot_runs_and_nothing_is_pierced(name):
     for k, statistics in enumerate(cache.statistics):
         places = cloth.points[k].astype(float)
         assert not len(entangled(places, triangles))
-        through = piercings(cache.points[k].astype(float)[segments], places[triangles])
+        through = edge_triangle_intersections(cache.points[k].astype(float)[segments], places[triangles])
         assert len(through) <= told  # what began through it stays so
         assert statistics["contact"]["fraction"] == 1.0 and statistics["nan"] == 0
         # What is made smaller than its mesh begins as stretched as that.

@@ -6,7 +6,8 @@ from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.groom import Groom
 from ringlet.data.mesh import Clip, Mesh
-from ringlet.shot import parse_shot, simulate
+from ringlet.shot import parse_shot
+from ringlet.sim import simulate
 
 from ringlet import _core
 

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Clip, Mesh
-from ringlet.shot import Garment, Obstacle, ShotCloth, parse_shot, simulate
-from ringlet.shot.piercing import edges_of, piercings
+from ringlet.shot import ShotCloth, parse_shot
+from ringlet.sim import Garment, Obstacle, simulate
+from ringlet.sim.penetration import edge_triangle_intersections, mesh_edges
 from shapes import rotation
 from test_shot_contact import CONTACT, SHOT, ball, floor, groom, still
 
@@ -66,7 +67,7 @@ def test_cloth_falls_onto_locks_and_the_floor_and_through_neither():
     triangles = sheet().triangles
     segments = np.delete(np.arange(92), [30, 61])[:, None] + [0, 1]
     for locks, places in zip(cache.points, cloth, strict=True):
-        assert not len(piercings(locks.astype(float)[segments], places[triangles]))
+        assert not len(edge_triangle_intersections(locks.astype(float)[segments], places[triangles]))
     # The locks bear it: they are lower than without it.
     assert cache.points[12, :, 1].mean() < alone.points[12, :, 1].mean() - 1e-4
 
@@ -169,7 +170,9 @@ def test_a_band_gathers_the_locks_in_it():
     triangles = band.triangles
     segments = np.delete(np.arange(92), [30, 61])[:, None] + [0, 1]
     assert not len(
-        piercings(cache.points[-1].astype(float)[segments], cache.cloths[0].points[-1].astype(float)[triangles])
+        edge_triangle_intersections(
+            cache.points[-1].astype(float)[segments], cache.cloths[0].points[-1].astype(float)[triangles]
+        )
     )
 
 
@@ -205,8 +208,8 @@ def test_piercings_are_those_of_a_plane():
     at = ends[:, 0] + t[:, None] * (ends[:, 1] - ends[:, 0])
     through = (t > 0) & (t < 1) & (at[:, 0] > 0) & (at[:, 1] > 0) & (at[:, 0] + at[:, 1] < 1)
     assert 5 < through.sum() < 100
-    assert set(piercings(ends, corners)[:, 0]) == set(np.flatnonzero(through))
-    assert len(edges_of(sheet().triangles)) == 3 * 64 + 2 * 8
+    assert set(edge_triangle_intersections(ends, corners)[:, 0]) == set(np.flatnonzero(through))
+    assert len(mesh_edges(sheet().triangles)) == 3 * 64 + 2 * 8
 
 
 @pytest.mark.parametrize(

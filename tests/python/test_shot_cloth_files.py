@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from pxr import Gf, Sdf, Usd, UsdGeom, Vt
 from ringlet.data.cache import Cache, CachedCloth, Touches
-from ringlet.shot import Obstacle, parse_shot, simulate
+from ringlet.shot import parse_shot
+from ringlet.sim import Obstacle, simulate
 from small_example import FRAMES, RADIUS, write_example
 from test_cli import refused, run
 from test_shot_cloth import LONG, garment, simulated

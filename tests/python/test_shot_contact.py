@@ -9,8 +9,9 @@ from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.groom import Groom
 from ringlet.data.mesh import Clip, Mesh
-from ringlet.shot import Collider, Obstacle, parse_shot, simulate
-from ringlet.shot.start import depths, winding
+from ringlet.shot import Collider, parse_shot
+from ringlet.sim import Obstacle, simulate
+from ringlet.sim.penetration import penetration_depths, winding_numbers
 from small_example import FRAMES, write_example
 from test_cli import refused, run
 
@@ -121,7 +122,7 @@ def test_what_starts_inside_is_told_and_comes_out():
     assert 0.0025 < told["depth"] <= 0.003
     left = [frame["contact"]["excused"] for frame in cache.statistics]
     assert left[0] == 2 and left[-1] == 0
-    assert not depths(cache.points[-1], sphere.triangles, sphere.points).any()
+    assert not penetration_depths(cache.points[-1], sphere.triangles, sphere.points).any()
 
 
 @pytest.mark.parametrize("parting_speed", [2e-3, 0.0])
@@ -154,11 +155,11 @@ def test_locks_that_start_too_near_each_other_part():
 def test_depth_is_that_of_a_closed_mesh_and_of_no_sheet():
     mesh = ball(0.01)
     points = np.array([[0.0, 0.004, 0], [0, 0.02, 0], [0, -0.0095, 0]])
-    depth = depths(points, mesh.triangles, mesh.points)
+    depth = penetration_depths(points, mesh.triangles, mesh.points)
     assert 0.005 < depth[0] < 0.0061 and depth[1] == 0 and 0 < depth[2] < 6e-4
     sheet = floor()
-    assert not depths(points - [0, 0.005, 0], sheet.triangles, sheet.points).any()
-    numbers = winding(points, mesh.points[mesh.triangles])
+    assert not penetration_depths(points - [0, 0.005, 0], sheet.triangles, sheet.points).any()
+    numbers = winding_numbers(points, mesh.points[mesh.triangles])
     assert np.allclose(numbers, [1, 0, 1], atol=1e-9)
 
 

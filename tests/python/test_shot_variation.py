@@ -7,8 +7,10 @@ from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.groom import Groom
 from ringlet.data.mesh import Clip, Mesh
-from ringlet.shot import parse_shot, simulate
-from ringlet.shot.simulate import make_strands
+from ringlet.shot import parse_shot
+from ringlet.sim import simulate
+from ringlet.sim.motion import make_strands
+from ringlet.sim.variation import material_factors
 from small_example import write_example, write_head
 
 import ringlet
@@ -35,7 +37,7 @@ def groom(curve=None, point=None, maps=None):
 
 
 def factors(text, made):
-    return parse_shot(f"{SHOT}[variation]\n{text}").variation.factors(made)
+    return material_factors(parse_shot(f"{SHOT}[variation]\n{text}").variation, made)
 
 
 def hung(text, made=None):

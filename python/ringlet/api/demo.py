@@ -11,6 +11,8 @@ from ringlet import api
 from ringlet.api.run import Run
 from ringlet.data.share import share
 
+__all__ = ["run_demo"]
+
 FIRST_FRAME = 1  # of the clip; before it the ribbon is put into the hair
 STILL_FRAME = 22  # in the middle of the quick turn
 STILL_SECONDS = 110.0  # a slow machine gets a noisier picture, not a longer wait

@@ -20,6 +20,8 @@ from ringlet import _core, api
 from ringlet.data.curves import Curves
 from ringlet.data.share import share
 
+__all__ = ["Finding", "diagnose"]
+
 ENOUGH_MEMORY = 4 * 2**30  # for the example and its picture
 PICTURE = 96  # height of the self-test's picture [pixels]
 
@@ -97,7 +99,7 @@ def _package(name: str) -> Callable[[], Finding]:
 
 
 def _pardiso() -> Finding:
-    from ringlet.shot.direct import open_pardiso  # not before it is asked for: it brings all of the simulation in
+    from ringlet.sim.direct import open_pardiso  # not before it is asked for: it brings all of the simulation in
 
     if open_pardiso():
         return Finding("MKL PARDISO", "ok", "opened")
@@ -149,7 +151,8 @@ def _test_core(_: Path) -> Finding:
 
 def _test_contact(_: Path) -> Finding:
     """A strand that falls onto another has to stay above it."""
-    from ringlet.shot import Contact, Material, Scene, Strands
+    from ringlet.shot import Contact, Material
+    from ringlet.sim import Scene, Strands
 
     start = time.perf_counter()
     x = np.linspace(-0.02, 0.02, 9)

@@ -17,6 +17,18 @@ if TYPE_CHECKING:
     from ringlet.data.mesh import Mesh
     from ringlet.groom import Memory, Recipe
 
+__all__ = [
+    "build_groom",
+    "check_groom",
+    "edit_lock",
+    "list_edits",
+    "load_groom",
+    "read_groom",
+    "read_recipe",
+    "release_locks",
+    "write_groom",
+]
+
 
 def read_recipe(path: Path | str) -> Recipe:
     """Reads a recipe from a TOML file, with every setting checked."""

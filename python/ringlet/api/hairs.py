@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from ringlet.data.groom import Groom
     from ringlet.groom import Hairs, Memory
 
+__all__ = ["build_hairs", "write_hairs"]
+
 
 def build_hairs(groom: Groom, *, fraction: float = 1.0, wider: bool = False, memory: Memory | None = None) -> Hairs:
     """Makes the hairs of every lock. ``fraction`` of them: the same ones every time, in (0, 1]; with ``wider`` these

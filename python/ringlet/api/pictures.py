@@ -15,7 +15,9 @@ from ringlet.data.errors import UserError
 from ringlet.data.settings import check_name
 
 if TYPE_CHECKING:
-    from ringlet.shot.loft import Loft
+    from ringlet.rest.preload import Loft
+
+__all__ = ["write_loft_picture", "write_sheet", "write_still", "write_touches_picture"]
 
 
 LOCK_WIDTH = 8e-4  # of locks among their contacts: thinner ones are lost before skin in a quick picture [m]

@@ -15,6 +15,8 @@ from ringlet.data.share import share
 if TYPE_CHECKING:
     from ringlet.validate import Row
 
+__all__ = ["run_bench", "run_validation", "schema", "use_threads"]
+
 
 def run_validation(cases: Sequence[str] | None = None, *, progress: Progress | None = None) -> list[Row]:
     """Compares the simulator with known answers: all cases, or the named ones."""

@@ -17,6 +17,8 @@ from ringlet.data.files import check_place
 if TYPE_CHECKING:
     from ringlet.data.cache import Cache, Told
 
+__all__ = ["Run"]
+
 FREE = "Contact was off: locks may pass through the head and one another. A table [contact] in the shot turns it on."
 CARRIED = "Locks touch, single hairs do not: they go with their lock, and may dip into what it touches."
 

@@ -20,8 +20,23 @@ if TYPE_CHECKING:
     from ringlet.data.groom import Groom
     from ringlet.data.mesh import Clip
     from ringlet.io import CacheFile
-    from ringlet.shot import Checkpoints, Garment, Motion, Obstacle, Shot
-    from ringlet.shot.loft import Loft
+    from ringlet.rest.preload import Loft
+    from ringlet.shot import Shot
+    from ringlet.sim import Checkpoints, Garment, Motion, Obstacle
+
+__all__ = [
+    "hold_checkpoints",
+    "loft",
+    "open_cache",
+    "read_cache",
+    "read_shot",
+    "rest_place",
+    "simulate",
+    "write_cache",
+    "write_loft",
+    "write_simulation",
+    "write_touches",
+]
 
 
 def read_shot(path: Path | str) -> Shot:
@@ -52,12 +67,13 @@ def simulate(
     touches:     keep what touches in every frame, for ``write_touches``
     """
     from ringlet import shot as shots
+    from ringlet import sim
 
     if not isinstance(shot, shots.Shot):
         shot = read_shot(shot)
     groom = _taken(groom or shot.groom, progress)
     inputs = _inputs(shot, groom, allow_stale)
-    return shots.simulate(
+    return sim.simulate(
         shot,
         groom,
         frames=frames,
@@ -90,27 +106,27 @@ def write_simulation(
     touches:     keep what touches in every frame there too, for ``write_touches``
     on_frame:    called with each frame's number and statistics, as soon as it is there
     """
-    from ringlet import io
-    from ringlet import shot as shots
+    from ringlet import io, sim
+    from ringlet.data.cache import Told
 
     io.check_target(path, under)
     groom = _taken(groom)
     inputs = _inputs(shot, groom, allow_stale)
     kept = _checkpoints(checkpoints, shot, groom, inputs, frames)
     first, last = frames or shot.frames
-    motion = shots.Motion(shot, groom, first=first, **inputs)
-    for frame in shots.play(motion, last, touches=touches, progress=progress, checkpoints=kept, resume=resume):
+    motion = sim.Motion(shot, groom, first=first, **inputs)
+    for frame in sim.play(motion, last, touches=touches, progress=progress, checkpoints=kept, resume=resume):
         if on_frame:
             on_frame(frame.number, frame.statistics)
     steps = shot.preroll + last - first + 1
-    told = shots.Told(
+    told = Told(
         start=motion.start,
         cloths={worn.name: len(worn.cloth.positions) for worn in motion.worn},
-        touches=shots.KeptTouches(motion, kept, steps) if touches else (),
+        touches=sim.StoredTouches(motion, kept, steps) if touches else (),
     )
     with io.CacheWriter(path, under, io.read_space(Path(under)), motion.cloths(0), groom.variant) as writer:
         writer.start = motion.start
-        for frame in shots.played(motion, kept, steps):
+        for frame in sim.replay(motion, kept, steps):
             told.frames.append(frame.number)
             told.statistics.append(frame.statistics)
             writer.add(frame.number, frame.points, frame.statistics, frame.cloths)
@@ -130,25 +146,25 @@ def hold_checkpoints(folder: Path | str) -> AbstractContextManager[int]:
             ringlet.write_groom(groom, "groom.usdc")
             ringlet.write_simulation(shot, groom, "groom.usdc", "cache.usdc", checkpoints="cache.usdc.part")
     """
-    from ringlet import shot as shots
+    from ringlet import sim
 
-    return shots.holding(Path(folder))
+    return sim.holding(Path(folder))
 
 
 def made_from(shot: Shot, groom: Groom, *, frames: tuple[int, int] | None = None) -> str:
     """A digest of all that the frames of a simulation depend on: two runs with the same give the same bits."""
-    from ringlet import shot as shots
+    from ringlet import sim
 
     groom = _taken(groom)
-    return shots.made_of(shot, groom, frames=frames, **_inputs(shot, groom, False))
+    return sim.digest_of_run(shot, groom, frames=frames, **_inputs(shot, groom, False))
 
 
 def start_motion(shot: Shot, groom: Groom, *, allow_stale: bool = False) -> Motion:
     """The locks of a groom at the start of a shot, to be moved frame by frame by who wants to see each."""
-    from ringlet import shot as shots
+    from ringlet import sim
 
     groom = _taken(groom)
-    return shots.Motion(shot, groom, first=shot.frames[0], **_inputs(shot, groom, allow_stale))
+    return sim.Motion(shot, groom, first=shot.frames[0], **_inputs(shot, groom, allow_stale))
 
 
 def _taken(groom: Groom | Path | str, progress: Progress | None = None) -> Groom:
@@ -163,7 +179,7 @@ def _taken(groom: Groom | Path | str, progress: Progress | None = None) -> Groom
 
 
 def _inputs(shot: Shot, groom: Groom, allow_stale: bool) -> dict[str, Any]:
-    """What files hold that a shot and its groom name: what ``shots.simulate`` takes besides the two."""
+    """What files hold that a shot and its groom name: what ``sim.simulate`` takes besides the two."""
     clip, garments = scalp_clip(groom), _garments(shot, groom)
     obstacles = _obstacles(shot, groom, garments)
     rest = _rest_shape(shot, groom, obstacles, allow_stale)
@@ -174,10 +190,10 @@ def _checkpoints(
     folder: Path | str, shot: Shot, groom: Groom, inputs: dict[str, Any], frames: tuple[int, int] | None
 ) -> Checkpoints:
     """The folder that keeps what a run has done."""
-    from ringlet import shot as shots
+    from ringlet import sim
 
-    made_from = shots.made_of(shot, groom, frames=frames, **inputs)
-    return shots.Checkpoints(Path(folder), made_from, every=shots.frames_between(len(groom.locks.points)))
+    made_from = sim.digest_of_run(shot, groom, frames=frames, **inputs)
+    return sim.Checkpoints(Path(folder), made_from, every=sim.frames_between(len(groom.locks.points)))
 
 
 def loft(
@@ -194,7 +210,7 @@ def loft(
     known: a file that ``write_loft`` wrote: locks that have not changed since are taken from it
     sag:   look how the locks hang without it too, which equilibrium need not know
     """
-    from ringlet import io
+    from ringlet import io, rest
     from ringlet import shot as shots
 
     if not isinstance(shot, shots.Shot):
@@ -202,10 +218,10 @@ def loft(
     groom = _taken(groom or shot.groom, progress)
     obstacles = _lain_on(shot, groom)
     if known is None or not Path(known).exists():
-        made = shots.preload(shot, groom, obstacles=obstacles, progress=progress)
+        made = rest.solve_rest_shape(shot, groom, obstacles=obstacles, progress=progress)
     else:
-        made = shots.refresh(shot, groom, *io.read_rest(Path(known)), obstacles=obstacles, progress=progress)
-    return shots.with_sag(made, shot) if sag else made
+        made = rest.update_rest_shape(shot, groom, *io.read_rest(Path(known)), obstacles=obstacles, progress=progress)
+    return rest.with_sag(made, shot) if sag else made
 
 
 def rest_place(shot: Shot) -> Path:
@@ -216,11 +232,10 @@ def rest_place(shot: Shot) -> Path:
 
 def write_loft(loft: Loft, shot: Shot, path: Path | str) -> None:
     """Writes the shape that locks remember, with what it was made from, for ``simulate``."""
-    from ringlet import io
-    from ringlet import shot as shots
+    from ringlet import io, rest
 
-    made_from = shots.made_from(shot, _lain_on(shot, loft.groom))
-    io.write_rest(shots.keep(loft, shot), made_from, Path(path), loft.groom.space)
+    made_from = rest.dependencies(shot, _lain_on(shot, loft.groom))
+    io.write_rest(rest.to_curves(loft, shot), made_from, Path(path), loft.groom.space)
 
 
 def _lain_on(shot: Shot, groom: Groom) -> list[Obstacle]:
@@ -232,8 +247,7 @@ def _lain_on(shot: Shot, groom: Groom) -> list[Obstacle]:
 
 def _rest_shape(shot: Shot, groom: Groom, obstacles: Sequence[Obstacle], allow_stale: bool) -> Curves | None:
     """What the locks remember: nothing but the groom, or a lofted shape that fits."""
-    from ringlet import io
-    from ringlet import shot as shots
+    from ringlet import io, rest
 
     if shot.rest.mode == "none":
         return None
@@ -244,7 +258,9 @@ def _rest_shape(shot: Shot, groom: Groom, obstacles: Sequence[Obstacle], allow_s
     if not shot.rest_file.exists():
         raise UserError(f"{shot.rest_file}: there is no lofted shape; make it with: ringlet loft {shot.path}")
     kept, made_from = io.read_rest(shot.rest_file)
-    return shots.check(kept, made_from, shot, groom, shot.rest_file, obstacles=obstacles, allow_stale=allow_stale)
+    return rest.check_current(
+        kept, made_from, shot, groom, shot.rest_file, obstacles=obstacles, allow_stale=allow_stale
+    )
 
 
 def scalp_clip(groom: Groom) -> Clip:
@@ -266,7 +282,7 @@ def _is_still(groom: Groom) -> bool:
 
 def _obstacles(shot: Shot, groom: Groom, garments: Sequence[Garment]) -> list[Obstacle]:
     """What locks and cloth of a shot touch besides one another: of several settings for one mesh, the last."""
-    from ringlet import io
+    from ringlet import io, sim
     from ringlet import shot as shots
 
     if not shot.touching:
@@ -280,7 +296,7 @@ def _obstacles(shot: Shot, groom: Groom, garments: Sequence[Garment]) -> list[Ob
         else:
             bodies = io.read_bodies(file, collider.mesh)
         for body in bodies:
-            found[file.resolve(), body.prim] = shots.Obstacle(body.mesh, body.clip, collider)
+            found[file.resolve(), body.prim] = sim.Obstacle(body.mesh, body.clip, collider)
     for garment in garments:  # cloth is no obstacle, even where its file is the head's
         assert garment.file is not None
         found.pop((garment.file.resolve(), garment.prim), None)
@@ -297,15 +313,14 @@ def brought_along(shot: Shot, groom: Groom) -> tuple[list[Garment], list[Obstacl
 
 def _garments(shot: Shot, groom: Groom) -> list[Garment]:
     """The meshes that become cloth in a shot."""
-    from ringlet import io
-    from ringlet import shot as shots
+    from ringlet import io, sim
 
     garments: list[Garment] = []
     for cloth in shot.cloth:
         file = cloth.file or groom.scalp_file
         assert file is not None  # as for the scalp's clip
         body = io.read_body(file, cloth.mesh)
-        garments.append(shots.Garment(body.mesh, body.clip, cloth, file, body.prim))
+        garments.append(sim.Garment(body.mesh, body.clip, cloth, file, body.prim))
         if garments[-1].name in [garment.name for garment in garments[:-1]]:
             raise UserError(f"shot: two cloths are called '{garments[-1].name}'; give one of them another `name`")
     return garments

@@ -48,7 +48,7 @@ class Cache:
     frames:     frame numbers (time codes), shape (k,)
     points:     positions [m], shape (k, n, 3), float32; the same points as ``groom.locks``
     statistics: what the solver reports, one dict per frame
-    start:      what was in the way when the shot began (see ``shot/start.py``); empty without contact
+    start:      what was in the way when the shot began (see ``sim/initial_penetration.py``); empty without contact
     cloths:     each at the same frames
     touches:    what touches at the end of each frame, where that was asked for
     """

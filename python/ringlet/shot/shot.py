@@ -8,10 +8,11 @@ from typing import Any, Literal
 from pydantic import Field, PrivateAttr, ValidationError, ValidationInfo, field_validator
 
 from ringlet.data.settings import Section, explain, parse_toml, read_toml, refuse
-from ringlet.shot.collider import Collider, ShotContact
-from ringlet.shot.garment import ShotCloth
+from ringlet.shot.cloth import ShotCloth
+from ringlet.shot.contact import Collider, ShotContact
+from ringlet.shot.material import Material
 from ringlet.shot.rest import Rest
-from ringlet.shot.strands import Material, Solver
+from ringlet.shot.solver import Solver
 from ringlet.shot.variation import Variation
 
 MOST_FRAMES = 100_000  # of a shot

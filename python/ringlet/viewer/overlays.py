@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ringlet import _core
 from ringlet.data.curves import Curves
 from ringlet.data.mesh import Mesh
-from ringlet.shot.simulate import Motion
+from ringlet.sim.motion import Motion
 
 Bytes = NDArray[np.uint8]
 

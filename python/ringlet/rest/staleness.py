@@ -13,15 +13,15 @@ from numpy.typing import NDArray
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.groom import Groom
-from ringlet.shot.checkpoint import digest
-from ringlet.shot.collider import Obstacle
-from ringlet.shot.equilibrium import bearing, equilibrium, loads
-from ringlet.shot.loft import Loft, Progress, loft, per_lock
-from ringlet.shot.nails import softly
+from ringlet.rest.equilibrium import equilibrium, external_loads, support_forces
+from ringlet.rest.preload import Loft, Progress, largest_per_lock, loft
 from ringlet.shot.shot import Shot
-from ringlet.shot.simulate import make_strands
-from ringlet.shot.strands import VARIATIONS
-from ringlet.shot.variation import at_vertices
+from ringlet.shot.variation import VARIATIONS
+from ringlet.sim.checkpoint import digest
+from ringlet.sim.motion import make_strands
+from ringlet.sim.nails import spring_fraction
+from ringlet.sim.obstacle import Obstacle
+from ringlet.sim.variation import at_vertices, material_factors
 
 NAILED = ("nail", "led_by_nail")  # how firmly, and what comes of it in a step
 KNOWN_OR_NOT = ("sagged", "borne")  # of a loft
@@ -38,7 +38,7 @@ _FREE = {
 }
 
 
-def made_from(shot: Shot, obstacles: Sequence[Obstacle] = ()) -> dict[str, Any]:
+def dependencies(shot: Shot, obstacles: Sequence[Obstacle] = ()) -> dict[str, Any]:
     """The settings of a shot that a loft depends on, and what locks may lie on, as plain values."""
     settings = shot.model_dump(mode="json", exclude=_FREE)
     made = {**settings, "rest": {**settings["rest"], "mode": _mode(shot)}}
@@ -56,7 +56,7 @@ def _told(body: Obstacle) -> dict[str, Any]:
     return {**told, "shape": digest(points, body.mesh.triangles)[:8]}
 
 
-def preload(
+def solve_rest_shape(
     shot: Shot,
     groom: Groom,
     *,
@@ -75,7 +75,7 @@ def _mode(shot: Shot) -> str:
     return "lofted" if shot.rest.mode == "none" else shot.rest.mode
 
 
-def keep(loft: Loft, shot: Shot) -> Curves:
+def to_curves(loft: Loft, shot: Shot) -> Curves:
     """The rest shape of a loft with all that it was made from, and what it does, as attributes."""
     rest = loft.rest
     point = {"groomed": loft.groom.locks.points, "lofted": loft.lofted, **_values(shot, loft.groom)}
@@ -87,8 +87,8 @@ def keep(loft: Loft, shot: Shot) -> Curves:
     return Curves(rest.points, rest.offsets, rest.ids, curve, floats)
 
 
-def recall(kept: Curves, groom: Groom) -> Loft:
-    """The loft that ``keep`` kept, of the same locks."""
+def from_curves(kept: Curves, groom: Groom) -> Loft:
+    """The loft that ``to_curves`` kept, of the same locks."""
     lofted, off, moving = kept.point["lofted"], kept.curve["off"].copy(), kept.curve["moving"].copy()
     stiffened = kept.curve["stiffened"].copy() if "stiffened" in kept.curve else None
     known = (np.asarray(kept.point[name], np.float64) if name in kept.point else None for name in KNOWN_OR_NOT)
@@ -96,7 +96,7 @@ def recall(kept: Curves, groom: Groom) -> Loft:
     return Loft(groom, kept, sagged, np.asarray(lofted, np.float64), off, moving, stiffened, borne)
 
 
-def refresh(
+def update_rest_shape(
     shot: Shot,
     groom: Groom,
     kept: Curves,
@@ -107,24 +107,26 @@ def refresh(
 ) -> Loft:
     """The loft of a groom; locks that have not changed since a kept one was made are taken from it."""
     if not same_locks(kept, groom):
-        return preload(shot, groom, obstacles=obstacles, progress=progress)
-    whole, changed = recall(kept, groom), changed_locks(kept, shot, groom)
-    if made != (now := made_from(shot, obstacles)):
+        return solve_rest_shape(shot, groom, obstacles=obstacles, progress=progress)
+    whole, changed = from_curves(kept, groom), changed_locks(kept, shot, groom)
+    if made != (now := dependencies(shot, obstacles)):
         same = not changed.any() and _weight_and_rests(made) == _weight_and_rests(now)
-        return preload(shot, groom, obstacles=obstacles, borne=whole.borne if same else None, progress=progress)
+        return solve_rest_shape(
+            shot, groom, obstacles=obstacles, borne=whole.borne if same else None, progress=progress
+        )
     if not changed.any():
         return whole
     borne, known = None, {}
     if whole.borne is not None:
         strands = make_strands(shot, groom)
         frames = strands.directors.copy()
-        borne = bearing(shot, groom, obstacles, strands)
-        changed |= _borne_otherwise(loads(shot, strands), groom.locks, whole.borne, borne)
+        borne = support_forces(shot, groom, obstacles, strands)
+        changed |= _borne_otherwise(external_loads(shot, strands), groom.locks, whole.borne, borne)
         known = {"borne": borne, "frames": frames}
     rows = np.repeat(changed, groom.locks.counts)
     part = replace(groom, locks=groom.locks.take(changed))
     of_part = {name: values[rows] for name, values in known.items()}
-    part = preload(shot, part, obstacles=obstacles, **of_part, progress=progress)
+    part = solve_rest_shape(shot, part, obstacles=obstacles, **of_part, progress=progress)
     whole.rest.points[rows], whole.lofted[rows] = part.rest.points, part.lofted
     whole.off[changed], whole.moving[changed] = part.off, part.moving
     if whole.stiffened is not None and part.stiffened is not None:
@@ -148,7 +150,7 @@ def _borne_otherwise(
 ) -> NDArray[np.bool_]:
     """Which locks are borne otherwise than before, since those that they touch have changed, shape (count,)."""
     weight = np.add.reduceat(np.linalg.norm(pulls, axis=1), locks.offsets[:-1])
-    return per_lock(locks, np.linalg.norm(now - before, axis=1)) > BARELY * weight
+    return largest_per_lock(locks, np.linalg.norm(now - before, axis=1)) > BARELY * weight
 
 
 def same_locks(kept: Curves, groom: Groom) -> bool:
@@ -166,7 +168,7 @@ def changed_locks(kept: Curves, shot: Shot, groom: Groom) -> NDArray[np.bool_]:
     return np.logical_or.reduceat(changed, groom.locks.offsets[:-1])
 
 
-def check(
+def check_current(
     kept: Curves,
     made: dict[str, Any],
     shot: Shot,
@@ -182,7 +184,7 @@ def check(
         raise UserError(f"{path}: was made from other locks ({len(kept)}, the groom has {len(groom.locks)}); {again}")
     if allow_stale:
         return kept
-    reason = next(_differences(made, made_from(shot, obstacles)), None)
+    reason = next(_differences(made, dependencies(shot, obstacles)), None)
     if reason is None and (changed := changed_locks(kept, shot, groom)).any():
         reason = f"{changed.sum()} of {len(changed)} locks or their material have changed"
     if reason is not None:
@@ -192,9 +194,9 @@ def check(
 
 def _values(shot: Shot, groom: Groom) -> dict[str, NDArray[np.float64]]:
     """What a lock's rest shape depends on besides its points, at the vertices, shape (n,) each."""
-    values = {"gain": at_vertices(shot.rest.gain, groom, "rest.gain"), **shot.variation.factors(groom)}
+    values = {"gain": at_vertices(shot.rest.gain, groom, "rest.gain"), **material_factors(shot.variation, groom)}
     if "nail" in groom.locks.point:
-        led = softly(groom.locks, 1.0 / (groom.space.fps * shot.solver.substeps))
+        led = spring_fraction(groom.locks, 1.0 / (groom.space.fps * shot.solver.substeps))
         values |= dict(zip(NAILED, (groom.locks.point["nail"], led), strict=True))
     return values
 

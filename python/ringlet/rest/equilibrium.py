@@ -1,7 +1,7 @@
 """Equilibrium: rest shapes from which a groom hangs as it was groomed, exactly, and stands where it is put.
 
-What a strand must hold inside is known from the loads alone (``balance``): its weight, and what bears it where it lies
-(``support``). Divided by the stiffness these are strains, and the groom less its strains is what the strand has to
+What a strand must hold inside is known from the loads alone (``internal_forces``): its weight, and what bears it where it lies
+(``contact_support``). Divided by the stiffness these are strains, and the groom less its strains is what the strand has to
 remember. A lock that is too soft for its load, which would have to be bent into itself or would fall over however it is
 pre-bent, is made stiffer until it stands.
 """
@@ -18,16 +18,16 @@ from numpy.typing import NDArray
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.groom import Groom
-from ringlet.shot.balance import balance
-from ringlet.shot.collider import Obstacle
-from ringlet.shot.joints import Joints, measure, shape
-from ringlet.shot.loft import STILL, Loft, Progress, hang_plain, per_lock
-from ringlet.shot.nails import fixed, softly
+from ringlet.rest.contact_support import contact_support
+from ringlet.rest.inverse_statics import internal_forces
+from ringlet.rest.preload import STILL, Loft, Progress, hang_groom, largest_per_lock
+from ringlet.rest.rod_strains import RodStrains, measure_strains, shape_of_strains
 from ringlet.shot.shot import Shot
-from ringlet.shot.simulate import make_strands
-from ringlet.shot.strands import Strands
-from ringlet.shot.support import support
 from ringlet.shot.variation import Mapped
+from ringlet.sim.motion import make_strands
+from ringlet.sim.nails import rigid_elements, spring_fraction
+from ringlet.sim.obstacle import Obstacle
+from ringlet.sim.strands import Strands
 
 Array = NDArray[np.float64]
 Locks = NDArray[np.bool_]
@@ -81,7 +81,7 @@ def equilibrium(
     _check(shot, locks)
     strands, most = make_strands(shot, groom), shot.rest.stiffen
     frames = strands.directors.copy() if frames is None else frames
-    borne = bearing(shot, groom, obstacles, strands) if borne is None else borne
+    borne = support_forces(shot, groom, obstacles, strands) if borne is None else borne
     held_up = borne + _drawn(shot, groom, strands)
     going, soft, factor = np.ones(len(locks), bool), np.zeros(len(locks), bool), np.ones(len(locks))
     made = _nothing_tried(groom, borne)
@@ -133,7 +133,7 @@ def _put(made: Loft, going: Locks, tried: _Try, better: Locks) -> None:
 
 def _plain(shot: Shot, groom: Groom) -> _Try:
     """How locks hang that remember the groom."""
-    plain, ones = hang_plain(shot, groom), np.ones(len(groom.locks))
+    plain, ones = hang_groom(shot, groom), np.ones(len(groom.locks))
     rest = np.array(groom.locks.points, np.float64)
     return _Try(ones, rest, plain.points, plain.moving, plain.off, plain.off < FALLING, ones)
 
@@ -156,22 +156,24 @@ def _check(shot: Shot, locks: Curves) -> None:
         raise UserError(f"loft: held is {shot.held}, but a lock has {locks.counts.min()} points; hold fewer")
 
 
-def bearing(shot: Shot, groom: Groom, obstacles: Sequence[Obstacle], strands: Strands | None = None) -> Array:
+def support_forces(shot: Shot, groom: Groom, obstacles: Sequence[Obstacle], strands: Strands | None = None) -> Array:
     """What bears the locks of a groom where they were groomed: bodies, nails and one another [N], shape (n, 3).
 
-    strands: those locks, there, as ``support`` takes them; by default they are made
+    strands: those locks, there, as ``contact_support`` takes them; by default they are made
     """
     strands = make_strands(shot, groom) if strands is None else strands
-    return support(shot, groom.locks, strands, loads(shot, strands) + _drawn(shot, groom, strands), obstacles)
+    return contact_support(
+        shot, groom.locks, strands, external_loads(shot, strands) + _drawn(shot, groom, strands), obstacles
+    )
 
 
 def _drawn(shot: Shot, groom: Groom, strands: Strands) -> Array:
     """What soft nails bear of the weight [N], shape (n, 3)."""
-    part = softly(groom.locks, 1.0 / (groom.space.fps * shot.solver.substeps))
+    part = spring_fraction(groom.locks, 1.0 / (groom.space.fps * shot.solver.substeps))
     return -np.outer(part * strands.masses, shot.forces.gravity)
 
 
-def loads(shot: Shot, strands: Strands) -> Array:
+def external_loads(shot: Shot, strands: Strands) -> Array:
     """What pulls at the vertices that move [N], shape (n, 3)."""
     pulls = strands.loads(shot.forces.gravity, shot.forces.wind)
     pulls[strands.held] = 0.0
@@ -190,9 +192,9 @@ def _try(shot: Shot, groom: Groom, frames: Array, borne: Array, factor: Array, f
     strands.place(groomed)
     needed = strands.stiffness_to_stand(shot.rest.spring / factor, shot.rest.stiffen)
     if fall:
-        _let_go(strands, shot, borne + _push(loads(shot, strands), locks), 1)
+        _let_go(strands, shot, borne + _push(external_loads(shot, strands), locks), 1)
     moving = _let_go(strands, shot, borne, FALL if fall else 1)
-    off = per_lock(locks, np.linalg.norm(strands.positions - groomed, axis=1))
+    off = largest_per_lock(locks, np.linalg.norm(strands.positions - groomed, axis=1))
     still = balanced & (off < FALLING)
     good = still & (needed == 1.0)
     needed = np.where(still, needed, np.maximum(needed, STIFFER))
@@ -214,7 +216,7 @@ def _let_go(strands: Strands, shot: Shot, borne: Array, steps: int) -> Array:
         settle(steps=steps - 1)
     before = strands.positions.copy()
     settle(steps=1)
-    return per_lock(strands.curves, np.linalg.norm(strands.positions - before, axis=1))
+    return largest_per_lock(strands.curves, np.linalg.norm(strands.positions - before, axis=1))
 
 
 def _balanced(shot: Shot, groom: Groom, frames: Array, borne: Array, stiffened: Array) -> tuple[Curves, Locks]:
@@ -223,20 +225,20 @@ def _balanced(shot: Shot, groom: Groom, frames: Array, borne: Array, stiffened: 
     Stiffness and mass depend a little on the rest shape, so it takes some rounds.
     """
     locks, groomed = groom.locks, np.asarray(groom.locks.points, np.float64)
-    shaped = measure(locks, groomed, frames)
+    shaped = measure_strains(locks, groomed, frames)
     strain = shaped.take(np.ones(len(groomed), bool))
     rest, going, good = groomed.copy(), np.ones(len(locks), bool), np.zeros(len(locks), bool)
     for done in range(shot.rest.iterations):
         rows = np.repeat(going, locks.counts)
         part = replace(groom, locks=locks.take(going))
         strands = make_strands(shot, part, part.locks.with_points(rest[rows]), stiffened[going])
-        pulls = loads(shot, strands) + borne[rows]
-        balanced = partial(balance, part.locks, groomed[rows], frames[rows], pulls, shot.held)
+        pulls = external_loads(shot, strands) + borne[rows]
+        balanced = partial(internal_forces, part.locks, groomed[rows], frames[rows], pulls, shot.held)
         now = _strain_between_nails(strands, balanced)
         joints = shaped.take(rows).plus(now, -1.0)
-        rest[rows], _ = shape(part.locks, joints, frames[rows])
+        rest[rows], _ = shape_of_strains(part.locks, joints, frames[rows])
         size, change, sharp = (
-            per_lock(part.locks, np.linalg.norm(bend, axis=1))
+            largest_per_lock(part.locks, np.linalg.norm(bend, axis=1))
             for bend in (now.bend, now.bend - strain.bend[rows], joints.bend)
         )
         strain.put(rows, now)
@@ -248,19 +250,19 @@ def _balanced(shot: Shot, groom: Groom, frames: Array, borne: Array, stiffened: 
     return locks.with_points(rest), good
 
 
-def _strain(strands: Strands, forces: Joints) -> Joints:
+def _strain(strands: Strands, forces: RodStrains) -> RodStrains:
     """By how much lengths, bends and twists differ from rest where they hold these forces.
 
     What lies between held vertices need not hold any; it stays as groomed, which is how the core knows its frames.
     """
     stretch, bend, twist = (
         np.where((stiffness > 0.0) & ~never, stiffness, np.inf)
-        for stiffness, never in zip(strands.stiffness, fixed(np.asarray(strands.held)), strict=True)
+        for stiffness, never in zip(strands.stiffness, rigid_elements(np.asarray(strands.held)), strict=True)
     )
-    return Joints(forces.length / stretch, forces.bend / bend[:, None], forces.twist / twist)
+    return RodStrains(forces.length / stretch, forces.bend / bend[:, None], forces.twist / twist)
 
 
-def _strain_between_nails(strands: Strands, balanced: Callable[[Array], Joints]) -> Joints:
+def _strain_between_nails(strands: Strands, balanced: Callable[[Array], RodStrains]) -> RodStrains:
     """The strains that balance the loads, with nails that turn edges about themselves such that these stay.
 
     The director of an edge between nails is where twist at rest leads it from the root. In the groom it is there too if
@@ -278,7 +280,7 @@ def _strain_between_nails(strands: Strands, balanced: Callable[[Array], Joints])
     which = (which - np.append(0, which)[locks.offsets[:-1]].repeat(locks.counts))[nailed] - 1
     place, rows = np.flatnonzero(nailed), which.max() + 1
 
-    def turned(strain: Joints) -> Array:
+    def turned(strain: RodStrains) -> Array:
         """By how much the first edge of each row of nails is turned, shape (count, rows)."""
         angle, sums = np.zeros((len(locks), rows)), np.append(0.0, np.cumsum(strain.twist))
         angle[lock, which] = sums[place] - sums[locks.offsets[lock]]
@@ -296,7 +298,7 @@ def _strain_between_nails(strands: Strands, balanced: Callable[[Array], Joints])
 
 def _first_nailed(strands: Strands) -> Locks:
     """The edges at which a row of nails begins that hold them, shape (n,)."""
-    held_edge, _, _ = fixed(np.asarray(strands.held))
+    held_edge, _, _ = rigid_elements(np.asarray(strands.held))
     held_edge[strands.curves.offsets[1:] - 1] = False
     return held_edge & ~np.append(True, held_edge[:-1]) & ~_at(strands.curves.offsets[:-1], len(held_edge))
 

@@ -11,10 +11,11 @@ from scipy.sparse import coo_array, csc_array, diags_array, eye_array
 from scipy.sparse.linalg import splu
 
 from ringlet.data.curves import Curves
-from ringlet.shot.collider import Obstacle, ShotContact
-from ringlet.shot.scene import Body, Scene
-from ringlet.shot.start import depths
-from ringlet.shot.strands import Strands
+from ringlet.shot.contact import ShotContact
+from ringlet.sim.obstacle import Body, Obstacle
+from ringlet.sim.penetration import penetration_depths
+from ringlet.sim.scene import Scene
+from ringlet.sim.strands import Strands
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -23,7 +24,7 @@ VAGUE = 1e-9  # of forces that act on the same vertices alike, the least are tak
 
 
 @dataclass
-class Resting:
+class RestingContacts:
     """Where locks are borne by what touches them.
 
     vertices: the four of each pair, those of a body after the locks', shape (k, 4)
@@ -42,7 +43,9 @@ class Resting:
     body: Indices
 
 
-def resting(contact: ShotContact, locks: Curves, strands: Strands, obstacles: Sequence[Obstacle]) -> Resting:
+def resting_contacts(
+    contact: ShotContact, locks: Curves, strands: Strands, obstacles: Sequence[Obstacle]
+) -> RestingContacts:
     """Locks that are as near to a body or to one another as they touch are pushed away from it, as the scene has it.
 
     Two locks where they are nearest, a lock and a body where they are nearest to each vertex. Not what begins inside a
@@ -66,7 +69,7 @@ def resting(contact: ShotContact, locks: Curves, strands: Strands, obstacles: Se
     counts = np.where(body == 0, (lock[:, 0] != lock[:, 1]) & ~at_tip, ~np.asarray(strands.held)[main])
     for k, surface in enumerate(surfaces):
         on_it = np.flatnonzero((body == k + 1) & counts)
-        counts[on_it] = depths(at[main[on_it]], obstacles[k].mesh.triangles, surface) == 0.0
+        counts[on_it] = penetration_depths(at[main[on_it]], obstacles[k].mesh.triangles, surface) == 0.0
     chosen = np.flatnonzero(counts)
     apart = np.linalg.norm(np.einsum("kv,kvi->ki", weights[chosen], at[vertices[chosen]]), axis=1)
     by_distance = chosen[np.argsort(apart, kind="stable")]
@@ -76,7 +79,7 @@ def resting(contact: ShotContact, locks: Curves, strands: Strands, obstacles: Se
     away = away / np.linalg.norm(away, axis=1, keepdims=True)
     aside = at[vertices[nearest, 3]] - at[vertices[nearest, 2]]
     aside = aside - (aside * away).sum(axis=1, keepdims=True) * away
-    return Resting(
+    return RestingContacts(
         vertices[nearest],
         np.where(of_lock[nearest], weights[nearest], 0.0),
         np.where(of_lock[nearest], vertices[nearest], main[nearest, None]).astype(np.int64),
@@ -86,7 +89,7 @@ def resting(contact: ShotContact, locks: Curves, strands: Strands, obstacles: Se
     )
 
 
-def shared(
+def initial_contact_forces(
     contact: ShotContact, locks: Curves, strands: Strands, obstacles: Sequence[Obstacle], borne: Array
 ) -> tuple[NDArray[np.int32], Array]:
     """How what touches locks shares what bears them, as ``Scene.bear`` takes it: vertices (k, 4), forces [N] (k, 3).
@@ -95,7 +98,7 @@ def shared(
 
     Every vertex is borne by the sum of what touches there: as many equations as vertices, and fewer forces.
     """
-    rests = resting(contact, locks, strands, obstacles)
+    rests = resting_contacts(contact, locks, strands, obstacles)
     rows, columns = rests.acting.ravel(), np.repeat(np.arange(len(rests.body)), 4)
     acts = coo_array((rests.weights.ravel(), (rows, columns)), (len(borne), len(rests.body))).tocsr()
     acts = diags_array((~np.asarray(strands.held)).astype(float)) @ acts  # what is held bears all that it has to

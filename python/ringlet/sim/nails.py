@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ringlet.data.curves import Curves
-from ringlet.shot.strands import Strands
+from ringlet.sim.strands import Strands
 
 RIGID = 0.999  # what is held more firmly than this moves rigidly
 HALF_TIME = 0.02  # time in which a place held with 1/2 comes back, but for 1/e [s]
@@ -21,7 +21,7 @@ def held_vertices(locks: Curves, from_root: int) -> NDArray[np.bool_]:
     return held | (locks.point["nail"] >= RIGID) if "nail" in locks.point else held
 
 
-def fixed(held: NDArray[np.bool_]) -> tuple[NDArray[np.bool_], NDArray[np.bool_], NDArray[np.bool_]]:
+def rigid_elements(held: NDArray[np.bool_]) -> tuple[NDArray[np.bool_], NDArray[np.bool_], NDArray[np.bool_]]:
     """Which edges, corners and twists lie between held vertices alone, and never change; shapes (n,).
 
     An edge that is held at both ends holds its director too.
@@ -31,7 +31,7 @@ def fixed(held: NDArray[np.bool_]) -> tuple[NDArray[np.bool_], NDArray[np.bool_]
     return edge, edge & before, edge & np.append(edge[1:], False)
 
 
-def pull(
+def spring_forces(
     locks: Curves, strands: Strands, targets: NDArray[np.float64], dt: float, gravity: Sequence[float]
 ) -> NDArray[np.float64] | None:
     """The forces [N] that draw softly held vertices to their targets [m], shape (n, 3); None where there are none.
@@ -39,7 +39,7 @@ def pull(
     They lead a vertex that nothing else holds a part ``1 - exp(-dt / τ)`` of the way from where it would be after the
     step, with ``τ = 0.02 s · (1 - w) / w`` for a hold w. However firm, that never goes beyond the target.
     """
-    part = softly(locks, dt)
+    part = spring_fraction(locks, dt)
     soft = np.flatnonzero(part)
     if not soft.size:
         return None
@@ -50,7 +50,7 @@ def pull(
     return forces
 
 
-def softly(locks: Curves, dt: float) -> NDArray[np.float64]:
+def spring_fraction(locks: Curves, dt: float) -> NDArray[np.float64]:
     """The part of the way to its target that a vertex is led in a step of ``dt`` [s], shape (n,); 0 of what is held."""
     hold = np.asarray(locks.point.get("nail", np.zeros(len(locks.points))), np.float64)
     hold = np.where(hold < RIGID, hold, 0.0)

@@ -8,62 +8,21 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
 
 from ringlet import _core
 from ringlet.data.cache import Touches
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
-from ringlet.data.settings import Section
-from ringlet.shot.cloth import Cloth
-from ringlet.shot.strands import Material, Solver, Strands, Vector
+from ringlet.shot.contact import Contact
+from ringlet.shot.material import Material
+from ringlet.shot.solver import Solver
+from ringlet.sim.cloth import Cloth
+from ringlet.sim.core import Vector, assign, solver_arguments
+from ringlet.sim.friction import friction_matrix
+from ringlet.sim.obstacle import Body
+from ringlet.sim.strands import Strands
 
 _OF_CLOTH = ("positions", "velocities")  # all that a cloth remembers
-
-
-class Contact(Section):
-    """How strands touch one another and bodies."""
-
-    radius: float = Field(
-        default=5e-4, gt=0, le=0.1, description="[m] half the distance at which two locks begin to push each other away"
-    )
-    friction: float = Field(default=0.3, ge=0, le=10, description="Coulomb's μ of lock on lock")
-    stiffness: float = Field(
-        default=1.0,
-        gt=0,
-        le=1e6,
-        description="scales how hard contacts push, which is as hard as what they have to bear asks for",
-    )
-    creep_speed: float = Field(
-        default=1e-3,
-        gt=0,
-        le=1,
-        description="[m/s] times a step: what is sheared less than that sticks. By default 1e-5 where rest.mode is "
-        "'equilibrium'",
-    )
-    parting_speed: float = Field(
-        default=2e-3,
-        ge=0,
-        le=1,
-        description="[m/s] at which locks that begin nearer than they may be part; 0, which is the default where "
-        "rest.mode is 'equilibrium': they stay",
-    )
-
-
-@dataclass
-class Body:
-    """A surface that moves as it is told, touched from both sides.
-
-    points:    positions [m] to begin with, shape (n, 3)
-    triangles: indices into points, shape (m, 3)
-    thickness: [m] how far from the surface contact begins, besides what touches it
-    friction:  Coulomb's μ of a lock on it
-    """
-
-    points: NDArray[np.floating]
-    triangles: NDArray[np.integer]
-    thickness: float = 5e-4
-    friction: float = 0.3
 
 
 @dataclass
@@ -76,7 +35,7 @@ class Scene:
     cloths:    in motion as well; contact begins half their thickness from them
     pinned_to: per cloth the body that carries its held vertices, which these may touch; -1: none. Shape (cloths,)
     friction:  Coulomb's μ of each pair of materials: strands, then each cloth, then each body; by default
-               ``friction_of`` them
+               ``friction_matrix``
     """
 
     strands: Strands = field(default_factory=lambda: Strands(Curves.from_list([]), Material()))
@@ -88,12 +47,9 @@ class Scene:
     friction: NDArray[np.floating] | None = None
 
     def __post_init__(self) -> None:
-        settings = _core.SceneContact()
+        settings = assign(_core.SceneContact(), self.contact, without={"radius", "friction", "on", "pair"})
         settings.strand_radius = self.contact.radius
-        settings.stiffness = self.contact.stiffness
-        settings.creep_speed = self.contact.creep_speed
-        settings.parting_speed = self.contact.parting_speed
-        friction = friction_of(self.contact, self.cloths, self.bodies) if self.friction is None else self.friction
+        friction = friction_matrix(self.contact, self.cloths, self.bodies) if self.friction is None else self.friction
         settings.friction = friction.ravel().tolist()
         pinned = [-1] * len(self.cloths) if self.pinned_to is None else [int(body) for body in self.pinned_to]
         cloths = [
@@ -225,10 +181,7 @@ class Scene:
                 dt,
                 gravity,
                 wind,
-                *solver.for_core(),
-                getattr(_core.System, solver.system),
-                solver.linear_tolerance,
-                solver.extra,
+                **solver_arguments(solver),
             )
         except _core.CoupledError as error:
             raise UserError(
@@ -237,20 +190,6 @@ class Scene:
             ) from error
         report = dict(zip(_core.SCENE_REPORT, totals.tolist(), strict=True))
         return report, dict(zip(_core.REPORT, rows.T, strict=True))
-
-
-def friction_of(contact: Contact, cloths: Sequence[Cloth], bodies: Sequence[Body]) -> NDArray[np.float64]:
-    """Coulomb's μ of each pair of materials: of strands, then of each cloth, then of each body.
-
-    A body and a cloth say what a lock on them has; two of them, the geometric mean. Bodies do not touch each other.
-    """
-    on_it = [cloth.material.friction for cloth in cloths] + [body.friction for body in bodies]
-    friction = np.zeros((1 + len(on_it),) * 2)
-    friction[0, 0] = contact.friction
-    friction[0, 1:] = friction[1:, 0] = on_it
-    friction[1:, 1:] = np.sqrt(np.outer(on_it, on_it))
-    friction[1 + len(cloths) :, 1 + len(cloths) :] = 0.0
-    return friction
 
 
 def _rows(parts: Sequence[NDArray[np.floating]] | None, otherwise: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -8,48 +8,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ringlet import _core
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Mesh
-from ringlet.shot.piercing import edges_of, piercings
-from ringlet.shot.scene import Body, Scene
-from ringlet.shot.worn import Worn
+from ringlet.sim.garment import Worn
+from ringlet.sim.obstacle import Body
+from ringlet.sim.penetration import edge_triangle_intersections, mesh_edges, penetration_depths
+from ringlet.sim.scene import Scene
 
 Array = NDArray[np.float64]
 
 WORST = 5  # places that are told
 
 
-def depths(points: NDArray[np.floating], triangles: NDArray[np.int32], corners: NDArray[np.floating]) -> Array:
-    """How deep points are inside a closed mesh with those corners [m], 0 outside; shape (n,).
-
-    What is behind the nearest triangle is a candidate; inside is what the mesh winds around.
-    """
-    depth = np.zeros(len(points))
-    near = np.flatnonzero(((points > corners.min(axis=0)) & (points < corners.max(axis=0))).all(axis=1))
-    places, surface = np.asarray(points[near], np.float64), np.asarray(corners, np.float64)
-    triangle, barycentric, distance = _core.bind_roots(surface, triangles, places)
-    foot, axes = _core.root_frames(surface, triangles, triangle, barycentric)
-    behind = np.flatnonzero(np.einsum("ni,ni->n", places - foot, axes[:, :, 2]) < 0.0)
-    inside = behind[winding(places[behind], surface[triangles]) > 0.5]
-    depth[near[inside]] = distance[inside]
-    return depth
-
-
-def winding(points: Array, corners: Array) -> Array:
-    """How often triangles (m, 3, 3) wind around points, shape (n,): Σ Ω / 4π (Jacobson et al. 2013, eq. 5)."""
-    numbers = np.empty(len(points))
-    for k, point in enumerate(points):
-        a, b, c = (corners[:, i] - point for i in range(3))
-        la, lb, lc = (np.linalg.norm(side, axis=1) for side in (a, b, c))
-        volume = np.einsum("ni,ni->n", a, np.cross(b, c))
-        dots = (np.einsum("ni,ni->n", u, v) * w for u, v, w in ((a, b, lc), (b, c, la), (c, a, lb)))
-        numbers[k] = 2.0 * np.arctan2(volume, la * lb * lc + sum(dots)).sum() / (4.0 * np.pi)
-    return numbers
-
-
-def tell_inside(locks: Curves, mesh: Mesh, depth: Array) -> dict[str, Any]:
+def report_inside(locks: Curves, mesh: Mesh, depth: Array) -> dict[str, Any]:
     """What is inside a mesh, as numbers: how many vertices of how many locks, and the deepest of them."""
     inside = np.flatnonzero(depth > 0.0)
     deepest = inside[np.argsort(-depth[inside], kind="stable")[:WORST]]
@@ -63,7 +35,7 @@ def tell_inside(locks: Curves, mesh: Mesh, depth: Array) -> dict[str, Any]:
     }
 
 
-def tell_overlapping(locks: Curves, scene: Scene) -> dict[str, Any]:
+def report_overlaps(locks: Curves, scene: Scene) -> dict[str, Any]:
     """Which locks are nearer to one another than they may be, as numbers."""
     at = scene.strands.positions
     vertices, values = scene.touching()
@@ -88,16 +60,16 @@ def tell_overlapping(locks: Curves, scene: Scene) -> dict[str, Any]:
     }
 
 
-def refuse_pierced(worn: Worn, names: Sequence[str], bodies: Sequence[Body]) -> None:
+def refuse_intersecting(worn: Worn, names: Sequence[str], bodies: Sequence[Body]) -> None:
     """Refuses a cloth that a body goes through or holds inside; but not where it is held by that body."""
     cloth, triangles = worn.cloth, worn.cloth.mesh.triangles
     for k, (name, body) in enumerate(zip(names, bodies, strict=True)):
         free = ~cloth.held if k == worn.pinned_to else np.ones(len(cloth.held), bool)
-        edges, faces = edges_of(triangles), triangles[free[triangles].all(axis=1)]
+        edges, faces = mesh_edges(triangles), triangles[free[triangles].all(axis=1)]
         edges = edges[free[edges].all(axis=1)]
         surface, sides = np.asarray(body.points, np.float64), np.asarray(body.triangles, np.int32)
-        through = piercings(cloth.positions[edges], surface[sides])
-        back = piercings(surface[edges_of(sides)], cloth.positions[faces])
+        through = edge_triangle_intersections(cloth.positions[edges], surface[sides])
+        back = edge_triangle_intersections(surface[mesh_edges(sides)], cloth.positions[faces])
         places = [edges[through[:, 0], 0], faces[back[:, 1], 0], _inside(cloth.positions, free, sides, surface)]
         vertices = np.unique(np.concatenate(places))
         if len(vertices):
@@ -111,20 +83,20 @@ def refuse_pierced(worn: Worn, names: Sequence[str], bodies: Sequence[Body]) -> 
 
 def _inside(points: Array, free: NDArray[np.bool_], triangles: NDArray[np.int32], corners: Array) -> NDArray[np.int64]:
     """Which of the free points are inside a closed mesh."""
-    return np.flatnonzero(free & (depths(points, triangles, corners) > 0.0))
+    return np.flatnonzero(free & (penetration_depths(points, triangles, corners) > 0.0))
 
 
-def tell_piercing(locks: Curves, worn: Sequence[Worn]) -> list[dict[str, Any]]:
+def report_intersections(locks: Curves, worn: Sequence[Worn]) -> list[dict[str, Any]]:
     """What goes through each cloth, as numbers: locks, itself, other cloths. It stays so."""
-    return [told for one in worn for told in _piercing(locks, one, worn) if told["places"]]
+    return [told for one in worn for told in _intersections(locks, one, worn) if told["places"]]
 
 
-def _piercing(locks: Curves, through: Worn, all_worn: Sequence[Worn]) -> Iterator[dict[str, Any]]:
+def _intersections(locks: Curves, through: Worn, all_worn: Sequence[Worn]) -> Iterator[dict[str, Any]]:
     triangles = through.cloth.mesh.triangles
     corners = through.cloth.positions[triangles]
     segments = np.delete(np.arange(len(locks.points) - 1), locks.offsets[1:-1] - 1)
     points = np.asarray(locks.points, np.float64)
-    found = np.unique(piercings(points[segments[:, None] + [0, 1]], corners)[:, 0])
+    found = np.unique(edge_triangle_intersections(points[segments[:, None] + [0, 1]], corners)[:, 0])
     vertices = segments[found]
     yield {
         "what": "locks",
@@ -135,8 +107,8 @@ def _piercing(locks: Curves, through: Worn, all_worn: Sequence[Worn]) -> Iterato
         "marks": _marks(locks.points[vertices], np.ones(len(vertices))),
     }
     for other in all_worn:
-        edges = edges_of(other.cloth.mesh.triangles)
-        pairs = piercings(other.cloth.positions[edges], corners)
+        edges = mesh_edges(other.cloth.mesh.triangles)
+        pairs = edge_triangle_intersections(other.cloth.positions[edges], corners)
         if other is through:
             pairs = pairs[~(edges[pairs[:, 0], :, None] == triangles[pairs[:, 1], None, :]).any(axis=(1, 2))]
         places = other.cloth.positions[edges[pairs[:, 0], 0]]
@@ -145,7 +117,9 @@ def _piercing(locks: Curves, through: Worn, all_worn: Sequence[Worn]) -> Iterato
         yield {"what": other.name, "cloth": through.name, "places": len(pairs), "worst": worst, "marks": marks}
 
 
-def told(inside: list[dict[str, Any]], piercing: list[dict[str, Any]], overlapping: dict[str, Any]) -> dict[str, Any]:
+def start_report(
+    inside: list[dict[str, Any]], piercing: list[dict[str, Any]], overlapping: dict[str, Any]
+) -> dict[str, Any]:
     """All that there is to tell of a start, with the ``marks`` of every place in one list."""
     marks = [mark for found in (*inside, *piercing, overlapping) for mark in found.pop("marks")]
     return {"inside": inside, "piercing": piercing, "overlapping": overlapping, "marks": marks}

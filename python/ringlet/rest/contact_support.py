@@ -18,14 +18,15 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 
 from ringlet.data.curves import Curves
-from ringlet.shot.collider import LOCKS, Obstacle, ShotContact, with_pairs
-from ringlet.shot.joints import corners, edges, twists
-from ringlet.shot.nails import fixed
-from ringlet.shot.pushing import least_pushing
-from ringlet.shot.resting import Resting, resting
-from ringlet.shot.scene import friction_of
+from ringlet.rest.nonnegative_qp import solve_nonnegative_qp
+from ringlet.rest.rod_strains import corners, edges, twists
+from ringlet.shot.contact import ShotContact
 from ringlet.shot.shot import Shot
-from ringlet.shot.strands import Strands
+from ringlet.sim.friction import LOCKS, friction_matrix, override_pairs
+from ringlet.sim.nails import rigid_elements
+from ringlet.sim.obstacle import Obstacle
+from ringlet.sim.resting_contacts import RestingContacts, resting_contacts
+from ringlet.sim.strands import Strands
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -54,7 +55,7 @@ class Ways:
     free: NDArray[np.bool_]
 
 
-def support(shot: Shot, locks: Curves, strands: Strands, loads: Array, obstacles: Sequence[Obstacle]) -> Array:
+def contact_support(shot: Shot, locks: Curves, strands: Strands, loads: Array, obstacles: Sequence[Obstacle]) -> Array:
     """The forces [N] that bear locks where they were groomed, at their vertices, shape (n, 3).
 
     strands: the locks, with their stiffness, where they were groomed
@@ -63,7 +64,7 @@ def support(shot: Shot, locks: Curves, strands: Strands, loads: Array, obstacles
     forces, contact = np.zeros_like(loads), shot.touching
     ways = [_nails(shot.held, locks, np.asarray(strands.held))]
     if contact is not None:
-        rests = resting(contact, locks, strands, obstacles)
+        rests = resting_contacts(contact, locks, strands, obstacles)
         ways.append(_pushing(rests, HOLDS * _friction(contact, obstacles)[0, rests.body]))
     all_ways = _joined(ways)
     if all_ways.free.size:
@@ -104,10 +105,10 @@ def _friction(contact: ShotContact, obstacles: Sequence[Obstacle]) -> Array:
     """Coulomb's μ of each pair of materials: locks, then each obstacle."""
     names = [LOCKS, *(obstacle.name for obstacle in obstacles)]
     told = [pair for pair in contact.pair if set(pair.between) <= set(names)]
-    return with_pairs(friction_of(contact, [], [one.body(0.0) for one in obstacles]), told, names)
+    return override_pairs(friction_matrix(contact, [], [one.body(0.0) for one in obstacles]), told, names)
 
 
-def _pushing(rests: Resting, friction: Array) -> Ways:
+def _pushing(rests: RestingContacts, friction: Array) -> Ways:
     """What touches pushes, and holds across by friction, shape (k,).
 
     A cone of friction has four edges here; a force within is a sum of pushes along them.
@@ -129,7 +130,7 @@ def _least(ways: Ways, held: int, locks: Curves, strands: Strands, loads: Array)
 
     Minimises Σ strain² stiffness + SHY · E · Σ (f / weight)², where E is the first sum of a lock under its loads alone.
     """
-    give, count = _Give(held, locks, strands), len(ways.free)
+    give, count = Compliance(held, locks, strands), len(ways.free)
     everywhere = np.arange(len(loads))
     by_loads, by_ways = give.pull(everywhere, loads), give.pull(ways.vertex, ways.force, ways.couple)
     weight = np.maximum(np.add.reduceat(np.linalg.norm(loads, axis=1), locks.offsets[:-1]), 1e-300)
@@ -150,10 +151,10 @@ def _least(ways: Ways, held: int, locks: Curves, strands: Strands, loads: Array)
         row.append(force.repeat(len(force)))
         entries.append(square.ravel())
     matrix = coo_array((np.concatenate(entries), (np.concatenate(row), np.concatenate(column))), (count, count))
-    return least_pushing(matrix.tocsr(), slope, ways.free)
+    return solve_nonnegative_qp(matrix.tocsr(), slope, ways.free)
 
 
-class _Give:
+class Compliance:
     """How locks give way to forces at their vertices, as beams that are clamped at their roots.
 
     A pull is a force with its moment about the lock's root, (moment, force). All joints before the vertex at which it
@@ -174,7 +175,7 @@ class _Give:
                 (everywhere, corners(locks), twists(locks)),
                 (held - 1, held - 1, held - 2),
                 strands.stiffness,
-                fixed(np.asarray(strands.held)),
+                rigid_elements(np.asarray(strands.held)),
                 strict=True,
             )
         )
@@ -205,7 +206,7 @@ class _Give:
 
 
 def _softness(arms: Array, tangents: Array, stretch: Array, bend: Array, twist: Array) -> Array:
-    """The matrices C of ``_Give``, of joints at ``arms`` from their roots, shape (n, 6, 6); of 1 / stiffness, (n,).
+    """The matrices C of ``Compliance``, of joints at ``arms`` from their roots, shape (n, 6, 6); of 1 / stiffness, (n,).
 
     A pull (m, f) has the moment M = m - arm × f at a joint. With A = bend (1 - t tᵀ) + twist t tᵀ its energy there is
     M · A M + stretch (t · f)².

@@ -1,97 +1,21 @@
-"""A cloth of a shot in motion: where it begins, what holds it, and how large its rest shape is."""
+"""Pins of a cloth: which vertices are pinned, how firmly, and where they belong at each frame."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ringlet import _core
 from ringlet.data.errors import UserError
-from ringlet.data.mesh import Mesh
+from ringlet.data.mesh import Clip, Mesh
 from ringlet.data.settings import did_you_mean
-from ringlet.shot.cloth import Cloth
-from ringlet.shot.collider import Obstacle
-from ringlet.shot.garment import Garment, Pin
+from ringlet.shot.cloth import Pin
+from ringlet.sim.obstacle import Obstacle
 
 Array = NDArray[np.float64]
-
-
-class Worn:
-    """A garment that is simulated.
-
-    cloth:     in motion, where it is at the frame ``first``
-    pinned_to: which obstacle carries its held vertices; -1: none
-    """
-
-    def __init__(self, garment: Garment, obstacles: Sequence[Obstacle], first: float) -> None:
-        self.garment = garment
-        settings, mesh = garment.settings, garment.mesh
-        begin = beginning(garment, obstacles, first)
-        self._pins = [_Pinned(garment, pin, k, obstacles, begin, first) for k, pin in enumerate(settings.pin)]
-        held, attachment = np.zeros(len(begin), bool), np.zeros(len(begin))
-        holder = np.full(len(begin), -1)
-        for pin in self._pins:
-            held[pin.vertices], holder[pin.vertices] = pin.stiffness is None, pin.obstacle
-            attachment[pin.vertices] = 0.0 if pin.stiffness is None else pin.stiffness
-        self.cloth = Cloth(mesh, settings.material, held, attachment=attachment)
-        self.cloth.positions[:] = begin
-        self.pinned_to = _most(holder[held])
-        self.cloth.scale_rest(settings.least_scale)  # contact within it must leave room for the smallest that it gets
-        self._begin = begin
-
-    @property
-    def name(self) -> str:
-        """What it is called."""
-        return self.garment.name
-
-    def draw_together(self, frame: float) -> None:
-        """Gives the rest shape the size that it has at a frame."""
-        self.cloth.scale_rest(self.garment.settings.scale(frame))
-
-    def targets(self, frame: float) -> Array:
-        """Where its vertices belong at a frame [m], shape (n, 3); of those that are not pinned, where they began."""
-        targets = self._begin.copy()
-        for pin in self._pins:
-            targets[pin.vertices] = pin.places(frame)
-        return targets
-
-
-def beginning(garment: Garment, obstacles: Sequence[Obstacle], first: float) -> Array:
-    """Where a cloth is at the first frame [m], shape (n, 3).
-
-    Where its file does not move it, it has gone along with what it lies on since the rest pose: as one, as the places
-    of the obstacles that were next to its vertices have.
-    """
-    points = garment.clip.at(first)
-    if points.shape != garment.mesh.points.shape:
-        raise UserError(
-            f"{garment.mesh.name}: has {len(points)} points at frame {first:g}, {len(garment.mesh.points)} in its rest "
-            "pose; must not change"
-        )
-    if garment.is_animated or not obstacles:
-        return points.copy()
-    ends = [obstacle.at(first) for obstacle in obstacles]
-    bound = [_core.bind_roots(obstacle.mesh.points, obstacle.mesh.triangles, points) for obstacle in obstacles]
-    nearest = np.argmin([distance for _, _, distance in bound], axis=0)
-    before, after = np.empty_like(points), np.empty_like(points)
-    for k, (obstacle, end) in enumerate(zip(obstacles, ends, strict=True)):
-        of = nearest == k
-        corners = obstacle.mesh.triangles[bound[k][0][of]]
-        for places, at in ((before, obstacle.mesh.points), (after, end)):
-            places[of] = np.einsum("nk,nki->ni", bound[k][1][of], at[corners])
-    return carried(points, before, after)
-
-
-def carried(points: Array, before: Array, after: Array) -> Array:
-    """Points moved as one as places have moved, shapes (n, 3): the rigid motion of least squares (Kabsch 1976)."""
-    from_centre, to_centre = before.mean(axis=0), after.mean(axis=0)
-    left, _, right = np.linalg.svd((before - from_centre).T @ (after - to_centre))
-    mirror = np.array([1.0, 1.0, np.sign(np.linalg.det(left @ right))])
-    return (points - from_centre) @ (left * mirror @ right) + to_centre
 
 
 @dataclass
@@ -116,7 +40,7 @@ class _Binding:
         return place + np.einsum("nij,nj->ni", axes, self.away)
 
 
-class _Pinned:
+class PinnedVertices:
     """The vertices of a pin, how they are pinned and where to.
 
     stiffness: of their springs [N/m], shape (k,); None: they are held
@@ -124,12 +48,11 @@ class _Pinned:
     """
 
     def __init__(
-        self, garment: Garment, pin: Pin, index: int, obstacles: Sequence[Obstacle], begin: Array, first: float
+        self, mesh: Mesh, clip: Clip, pin: Pin, where: str, obstacles: Sequence[Obstacle], begin: Array, first: float
     ) -> None:
-        self._where = f"shot: cloth '{garment.name}', pin[{index}]"
-        self._clip = garment.clip
+        self._where, self._clip = where, clip
         self.obstacle = -1 if pin.to is None else self._named(pin.to, obstacles)
-        mesh, chosen, strength = garment.mesh, np.ones(len(begin), bool), np.ones(len(begin))
+        chosen, strength = np.ones(len(begin), bool), np.ones(len(begin))
         if pin.subset is not None:
             chosen &= _of_subset(mesh, pin.subset, self._where)
         if pin.map is not None:
@@ -188,9 +111,3 @@ def _of_map(mesh: Mesh, name: str, where: str) -> Array:
     if not np.isfinite(mesh.maps[name]).all():
         raise UserError(f"{where}.map is '{name}', which has a value that is no number on {mesh.name}; paint it again")
     return values
-
-
-def _most(holders: NDArray[Any]) -> int:
-    """The obstacle that holds most vertices; -1: none does."""
-    of = holders[holders >= 0]
-    return int(np.bincount(of).argmax()) if len(of) else -1

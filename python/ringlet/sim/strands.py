@@ -4,143 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, Literal, get_args
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, ValidationInfo, field_validator
 
 from ringlet import _core
 from ringlet.data.curves import Curves
-from ringlet.data.settings import Section, refuse
-
-Vector = tuple[float, float, float]
-Continuation = Literal["material_frame", "least_energy", "history"]
-
-
-class Material(Section):
-    """What a lock is made of: a hair's values, since hairs that do not stick together move like one of them."""
-
-    youngs_modulus: float = Field(default=4e9, gt=0, le=1e13, description="E [Pa]; hair: 2e9 to 6e9")
-    radius: float = Field(default=35e-6, gt=1e-7, le=0.1, description="r of one hair [m]")
-    density: float = Field(default=1300.0, gt=0, le=1e5, description="[kg/m³]")
-    stretch_scale: float = Field(
-        default=0.01, gt=0, le=100, description="scales the resistance to stretch, E π r²; hair is hard to stretch"
-    )
-    bend_scale: float = Field(default=1.0, ge=0, le=1e6, description="scales the resistance to bend, E π r⁴ / 4")
-    limit_twist: bool = Field(
-        default=True, description="twist never exceeds bend; off only to study what this safeguard is for"
-    )
-    twist_ratio: float = Field(
-        default=0.72,
-        ge=0,
-        le=100,
-        description="twist stiffness as a part of bend stiffness, at most 1: the spring constant of a coil",
-    )
-    damping: float = Field(
-        default=0.005,
-        ge=0,
-        le=100,
-        description="[s] every strain resists its own rate with this time times its stiffness",
-    )
-    mass_damping: float = Field(default=0.0, ge=0, le=1e4, description="[1/s] rate at which velocities decay")
-    drag: float = Field(default=2e-5, ge=0, le=100, description="air drag per length and speed [kg/(m s)]")
-    correct_resolution: bool = Field(
-        default=True, description="make coils of few vertices a turn as soft as smooth ones"
-    )
-
-    @field_validator("twist_ratio")
-    @classmethod
-    def _within_bend(cls, ratio: float, info: ValidationInfo) -> float:
-        if ratio > 1 and info.data.get("limit_twist"):
-            raise refuse(f"is {ratio}; must be at most 1 (or limit_twist = false, to study what the limit is for)")
-        return ratio
-
-    def core(self) -> _core.StrandMaterial:
-        """The same, for the core."""
-        material = _core.StrandMaterial()
-        for name, value in self:
-            setattr(material, name, value)
-        return material
-
-
-Safeguard = Literal["flip_history", "winding_number", "straight_fade"]
-SAFEGUARDS: tuple[Safeguard, ...] = get_args(Safeguard)
-MOST_ITERATIONS = 1000
-
-
-class Solver(Section):
-    """How a time step is solved."""
-
-    newton: int = Field(
-        default=5,
-        ge=1,
-        le=MOST_ITERATIONS,
-        description="Newton iterations per step; 1 is stable, but with few hair comes late: "
-        "5 for a look, 20 for the last run",
-    )
-    extra: int = Field(
-        default=60,
-        ge=0,
-        le=MOST_ITERATIONS,
-        description="iterations more, at most, for locks held back and stretched by over 3 %; fewer bound "
-        "what a step costs, and leave them stretched",
-    )
-    until_converged: bool = Field(
-        default=False,
-        description=f"go on until every lock has converged, at most {MOST_ITERATIONS} iterations, whatever newton is",
-    )
-    substeps: int = Field(default=1, ge=1, le=1000, description="steps per frame")
-    tolerance: float = Field(
-        default=1e-6, gt=0, le=1e-2, description="[m] a lock has converged when no vertex moves more than this"
-    )
-    system: Literal["automatic", "banded", "conjugate_gradient", "direct"] = Field(
-        default="automatic",
-        description="how the linear system of locks that touch is solved: each alone (an error where something couples "
-        "them), together by conjugate gradients, or by factoring the whole; automatic: alone or together, as needed",
-    )
-    linear_tolerance: float = Field(
-        default=0.1,
-        gt=0,
-        le=0.5,
-        description="what conjugate gradients leave of the linear system, as a part of what there was; the less, the "
-        "more hair moves that lies in hair: 0.02 for the last run",
-    )
-    integrator: Literal["backward_euler", "bdf2"] = Field(
-        default="backward_euler",
-        description="first order and calm, or second order (BDF-2), which keeps a swing going for longer",
-    )
-    continuation: Continuation = Field(
-        default="material_frame",
-        description="how the signs of bends and the turns of twist are found: see the theory page",
-    )
-    safeguards: tuple[Safeguard, ...] = Field(
-        default=SAFEGUARDS, description="those of `history` that are on; fewer only to study what each is for"
-    )
-
-    @field_validator("safeguards")
-    @classmethod
-    def _of_history(cls, safeguards: tuple[Safeguard, ...], info: ValidationInfo) -> tuple[Safeguard, ...]:
-        continuation = info.data.get("continuation")
-        if continuation != "history" and set(safeguards) != set(SAFEGUARDS):
-            raise refuse(f"is {list(safeguards)}; continuation is '{continuation}', only 'history' can be without one")
-        return safeguards
-
-    @property
-    def iterations(self) -> int:
-        """Newton iterations per step, at most."""
-        return MOST_ITERATIONS if self.until_converged else self.newton
-
-    def for_core(self) -> tuple[int, float, _core.Continuation, _core.Integrator, _core.Safeguards]:
-        """Iterations, tolerance, model, integrator and safeguards, as a step of the core takes them."""
-        safeguards = _core.Safeguards()
-        for name in SAFEGUARDS:
-            setattr(safeguards, name, name in self.safeguards)
-        continuation = getattr(_core.Continuation, self.continuation)
-        return self.iterations, self.tolerance, continuation, getattr(_core.Integrator, self.integrator), safeguards
-
-
-VARIATIONS = ("radius", "stretch", "bend", "twist", "damping")
+from ringlet.shot.material import Material
+from ringlet.shot.solver import Continuation, Solver
+from ringlet.shot.variation import VARIATIONS
+from ringlet.sim.core import OF_STRANDS, Vector, assign, solver_arguments
 
 
 @dataclass
@@ -169,7 +43,7 @@ class Strands:
             self.curves.offsets,
             np.ascontiguousarray(self.curves.points, np.float64),
             np.ascontiguousarray(self.held, np.uint8),
-            self.material.core(),
+            assign(_core.StrandMaterial(), self.material),
             **{name: np.ascontiguousarray(self.variation.get(name, ()), np.float64) for name in VARIATIONS},
         )
         self._no_forces = np.zeros_like(self.curves.points, np.float64)
@@ -240,7 +114,7 @@ class Strands:
             dt,
             gravity,
             wind,
-            *solver.for_core(),
+            **solver_arguments(solver, OF_STRANDS),
         )
         return dict(zip(_core.REPORT, rows.T, strict=True))
 

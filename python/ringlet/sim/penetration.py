@@ -1,4 +1,4 @@
-"""Edges that go through triangles: what is entangled when a shot begins stays so, since nothing passes through it."""
+"""Penetration: how deep points are inside closed meshes, and which edges go through which triangles."""
 
 from __future__ import annotations
 
@@ -6,13 +6,45 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
+from ringlet import _core
+
 Array = NDArray[np.float64]
 Indices = NDArray[np.integer]
 
 PARALLEL = 1e-9  # the sine below which a segment counts as lying in the plane of a triangle
 
 
-def piercings(ends: Array, corners: Array) -> NDArray[np.int64]:
+def penetration_depths(
+    points: NDArray[np.floating], triangles: NDArray[np.int32], corners: NDArray[np.floating]
+) -> Array:
+    """How deep points are inside a closed mesh with those corners [m], 0 outside; shape (n,).
+
+    What is behind the nearest triangle is a candidate; inside is what the mesh winds around.
+    """
+    depth = np.zeros(len(points))
+    near = np.flatnonzero(((points > corners.min(axis=0)) & (points < corners.max(axis=0))).all(axis=1))
+    places, surface = np.asarray(points[near], np.float64), np.asarray(corners, np.float64)
+    triangle, barycentric, distance = _core.bind_roots(surface, triangles, places)
+    foot, axes = _core.root_frames(surface, triangles, triangle, barycentric)
+    behind = np.flatnonzero(np.einsum("ni,ni->n", places - foot, axes[:, :, 2]) < 0.0)
+    inside = behind[winding_numbers(places[behind], surface[triangles]) > 0.5]
+    depth[near[inside]] = distance[inside]
+    return depth
+
+
+def winding_numbers(points: Array, corners: Array) -> Array:
+    """How often triangles (m, 3, 3) wind around points, shape (n,): Σ Ω / 4π (Jacobson et al. 2013, eq. 5)."""
+    numbers = np.empty(len(points))
+    for k, point in enumerate(points):
+        a, b, c = (corners[:, i] - point for i in range(3))
+        la, lb, lc = (np.linalg.norm(side, axis=1) for side in (a, b, c))
+        volume = np.einsum("ni,ni->n", a, np.cross(b, c))
+        dots = (np.einsum("ni,ni->n", u, v) * w for u, v, w in ((a, b, lc), (b, c, la), (c, a, lb)))
+        numbers[k] = 2.0 * np.arctan2(volume, la * lb * lc + sum(dots)).sum() / (4.0 * np.pi)
+    return numbers
+
+
+def edge_triangle_intersections(ends: Array, corners: Array) -> NDArray[np.int64]:
     """Which segments go through which triangles: rows of (segment, triangle), shape (k, 2).
 
     ends:    of the segments [m], shape (n, 2, 3)
@@ -32,7 +64,7 @@ def piercings(ends: Array, corners: Array) -> NDArray[np.int64]:
     return pairs[slanted & (u >= 0) & (v >= 0) & (u + v <= 1) & (t >= 0) & (t <= 1)]
 
 
-def edges_of(triangles: Indices) -> NDArray[np.int64]:
+def mesh_edges(triangles: Indices) -> NDArray[np.int64]:
     """Every edge of a mesh once, shape (k, 2)."""
     sides = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
     return np.unique(np.sort(sides.astype(np.int64), axis=1), axis=0)

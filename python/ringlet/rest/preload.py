@@ -19,11 +19,11 @@ from numpy.typing import NDArray
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.groom import Groom
-from ringlet.shot.joints import Joints, edges, measure, rotate, shape
+from ringlet.rest.rod_strains import RodStrains, edges, measure_strains, rotate, shape_of_strains
 from ringlet.shot.shot import Shot
-from ringlet.shot.simulate import make_strands
-from ringlet.shot.strands import Strands
-from ringlet.shot.variation import at_vertices
+from ringlet.sim.motion import make_strands
+from ringlet.sim.strands import Strands
+from ringlet.sim.variation import at_vertices
 
 Progress = Callable[[str, int, int], None]
 Array = NDArray[np.float64]
@@ -93,9 +93,9 @@ class Loft:
 class Hanging:
     """Strands that hang still from the rest shape ``joints``: where, with what strains, and how far from their goal."""
 
-    joints: Joints
+    joints: RodStrains
     points: Array
-    strain: Joints
+    strain: RodStrains
     off: Array
     moving: Array
 
@@ -143,14 +143,14 @@ def loft(shot: Shot, groom: Groom, *, progress: Progress | None = None) -> Loft:
     return Loft(groom, tries.rest(best.joints), sagged, best.points, best.off, best.moving)
 
 
-def hang_plain(shot: Shot, groom: Groom) -> Hanging:
+def hang_groom(shot: Shot, groom: Groom) -> Hanging:
     """How locks hang that remember the groom."""
     return _Tries(shot, groom).sagged
 
 
 def with_sag(loft: Loft, shot: Shot) -> Loft:
     """The same, which knows how its locks hang when they remember the groom."""
-    return loft if loft.sagged is not None else replace(loft, sagged=hang_plain(shot, loft.groom).points)
+    return loft if loft.sagged is not None else replace(loft, sagged=hang_groom(shot, loft.groom).points)
 
 
 class _Tries:
@@ -160,7 +160,7 @@ class _Tries:
         self._shot, self._groom = shot, groom
         self._gain = at_vertices(shot.rest.gain, groom, "rest.gain")
         self._frames = make_strands(shot, groom).directors.copy()
-        self._groomed = measure(groom.locks, np.asarray(groom.locks.points, np.float64), self._frames)
+        self._groomed = measure_strains(groom.locks, np.asarray(groom.locks.points, np.float64), self._frames)
         self._all = np.ones(len(groom.locks), bool)
         self.sagged = self.hang(self._groomed, self._all)
 
@@ -168,26 +168,26 @@ class _Tries:
         """The vertices of some locks, as a mask."""
         return np.repeat(locks, self._groom.locks.counts)
 
-    def rest(self, joints: Joints) -> Curves:
+    def rest(self, joints: RodStrains) -> Curves:
         """The rest shape of all locks."""
         locks = self._groom.locks
-        return locks.with_points(shape(locks, joints, self._frames)[0])
+        return locks.with_points(shape_of_strains(locks, joints, self._frames)[0])
 
-    def first_guess(self) -> Joints:
+    def first_guess(self) -> RodStrains:
         """The groom less what holds it, from a small part of the load."""
         return self._groomed.plus(self.hang(self._groomed, self._all, SMALL).strain, -self._gain / SMALL)
 
-    def next_guess(self, now: Hanging, pace: Array) -> Joints:
+    def next_guess(self, now: Hanging, pace: Array) -> RodStrains:
         """From where they are now, a part of the way to the groom less what holds them now."""
         wanted = self._groomed.plus(now.strain, -self._gain)
         return now.joints.plus(wanted.minus(now.joints), np.repeat(pace, self._groom.locks.counts))
 
-    def hang(self, joints: Joints, chosen: Locks, load: float = 1.0) -> Hanging:
+    def hang(self, joints: RodStrains, chosen: Locks, load: float = 1.0) -> Hanging:
         """Lets the chosen locks hang still from the groom, remembering ``joints``, under a part of the load."""
         rows = self.vertices(chosen)
         groom = replace(self._groom, locks=self._groom.locks.take(chosen))
         locks, frames, joints = groom.locks, self._frames[rows], joints.take(rows)
-        points, directors = shape(locks, joints, frames)
+        points, directors = shape_of_strains(locks, joints, frames)
         strands = make_strands(self._shot, groom, locks.with_points(points))
         turn = _angle(locks, points, directors, strands.directors)
         strands.place(locks.points)
@@ -196,9 +196,9 @@ class _Tries:
             strands.place(strands.positions)  # which finds the directors
         hung = strands.positions.copy()
         _, tangents = edges(locks, hung)
-        strain = measure(locks, hung, rotate(strands.directors, -turn[:, None] * tangents)).minus(joints)
-        goal, _ = shape(locks, self._groomed.take(rows).plus(strain, 1.0 - self._gain[rows]), frames)
-        return Hanging(joints, hung, strain, per_lock(locks, np.linalg.norm(hung - goal, axis=1)), moving)
+        strain = measure_strains(locks, hung, rotate(strands.directors, -turn[:, None] * tangents)).minus(joints)
+        goal, _ = shape_of_strains(locks, self._groomed.take(rows).plus(strain, 1.0 - self._gain[rows]), frames)
+        return Hanging(joints, hung, strain, largest_per_lock(locks, np.linalg.norm(hung - goal, axis=1)), moving)
 
 
 def _angle(locks: Curves, points: Array, ours: Array, theirs: Array) -> Array:
@@ -222,9 +222,9 @@ def _settle(strands: Strands, shot: Shot, load: float) -> Array:
     hang(STEPS - 1)
     before = strands.positions.copy()
     hang(1)
-    return per_lock(strands.curves, np.linalg.norm(strands.positions - before, axis=1))
+    return largest_per_lock(strands.curves, np.linalg.norm(strands.positions - before, axis=1))
 
 
-def per_lock(locks: Curves, values: Array) -> Array:
+def largest_per_lock(locks: Curves, values: Array) -> Array:
     """The largest of the vertices' values for each lock, shape (count,)."""
     return np.maximum.reduceat(values, locks.offsets[:-1])

@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass
-class Joints:
+class RodStrains:
     """Lengths, bends and twists of packed strands, one row per vertex; rows without an edge or a corner are zero.
 
     length: of the edge that begins at the vertex [m], shape (n,)
@@ -31,44 +31,44 @@ class Joints:
     bend: Array
     twist: Array
 
-    def plus(self, change: Joints, part: Array | float = 1.0) -> Joints:
+    def plus(self, change: RodStrains, part: Array | float = 1.0) -> RodStrains:
         """These and a part, one per vertex or one for all, of a change."""
         part = np.broadcast_to(part, self.twist.shape)
-        return Joints(
+        return RodStrains(
             self.length + part * change.length,
             self.bend + part[:, None] * change.bend,
             self.twist + part * change.twist,
         )
 
-    def minus(self, other: Joints) -> Joints:
+    def minus(self, other: RodStrains) -> RodStrains:
         """What others must change by to become these."""
-        return Joints(self.length - other.length, self.bend - other.bend, wrap(self.twist - other.twist))
+        return RodStrains(self.length - other.length, self.bend - other.bend, wrap(self.twist - other.twist))
 
-    def take(self, vertices: NDArray[np.bool_]) -> Joints:
+    def take(self, vertices: NDArray[np.bool_]) -> RodStrains:
         """Those of some vertices."""
-        return Joints(self.length[vertices], self.bend[vertices], self.twist[vertices])
+        return RodStrains(self.length[vertices], self.bend[vertices], self.twist[vertices])
 
-    def put(self, vertices: NDArray[np.bool_], other: Joints) -> None:
+    def put(self, vertices: NDArray[np.bool_], other: RodStrains) -> None:
         """Sets those of some vertices."""
         self.length[vertices], self.bend[vertices], self.twist[vertices] = other.length, other.bend, other.twist
 
 
-def measure(curves: Curves, points: Array, directors: Array) -> Joints:
+def measure_strains(curves: Curves, points: Array, directors: Array) -> RodStrains:
     """Lengths, bends and twists of strands at ``points`` [m] with their directors, shapes (n, 3)."""
     lengths, tangents = edges(curves, points)
     corner, twisting = corners(curves), twists(curves)
     before, tangent, director = tangents[corner - 1], tangents[corner], directors[corner]
-    turning = turns(before, tangent)
-    joints = Joints(lengths, np.zeros((len(points), 2)), np.zeros(len(points)))
+    turning = minimal_rotations(before, tangent)
+    joints = RodStrains(lengths, np.zeros((len(points), 2)), np.zeros(len(points)))
     joints.bend[corner, 0] = _dot(turning, director)
     joints.bend[corner, 1] = _dot(turning, np.cross(tangent, director))
     tangent, director = tangents[twisting], directors[twisting]
-    carried = rotate(directors[twisting + 1], -turns(tangent, tangents[twisting + 1]))
+    carried = rotate(directors[twisting + 1], -minimal_rotations(tangent, tangents[twisting + 1]))
     joints.twist[twisting] = np.arctan2(_dot(np.cross(tangent, director), carried), _dot(director, carried))
     return joints
 
 
-def shape(curves: Curves, joints: Joints, directors: Array) -> tuple[Array, Array]:
+def shape_of_strains(curves: Curves, joints: RodStrains, directors: Array) -> tuple[Array, Array]:
     """Points [m] and directors, shapes (n, 3), of strands that begin where ``curves`` do, along the same edges.
 
     directors: those of ``curves``, of which each strand takes over its first
@@ -119,7 +119,7 @@ def rotate(vectors: Array, turns: Array) -> Array:
     return along + np.cos(angle) * (vectors - along) + np.sin(angle) * np.cross(axis, vectors)
 
 
-def turns(before: Array, after: Array) -> Array:
+def minimal_rotations(before: Array, after: Array) -> Array:
     """The turns that carry directions straight into others, shapes (k, 3)."""
     normal = np.cross(before, after)
     sine = np.linalg.norm(normal, axis=1)

@@ -15,7 +15,7 @@ PATIENCE = 3  # rounds in which no fewer forces are wrong before they are put ri
 ROUNDING = 1e-9
 
 
-def least_pushing(matrix: csr_array, slope: Array, free: NDArray[np.bool_]) -> Array:
+def solve_nonnegative_qp(matrix: csr_array, slope: Array, free: NDArray[np.bool_]) -> Array:
     """The x at which ½ xᵀ A x + bᵀ x is least, none of it negative but what is free; shape (n,).
 
     matrix: A, symmetric and positive definite, sparse, shape (n, n)
