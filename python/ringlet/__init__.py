@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ringlet.data.groom import Groom
     from ringlet.farm import compare_wedge, wedge, write_wedge_template
     from ringlet.groom.stack import Memory
-    from ringlet.rest.preload import Loft
+    from ringlet.rest.loft import Loft
     from ringlet.shot.cloth import ClothMaterial
     from ringlet.shot.contact import Contact
     from ringlet.shot.material import Material
@@ -41,7 +41,7 @@ _SLOW = {
     "Contact": "ringlet.shot.contact",
     "DirectSolver": "ringlet.sim.direct",
     "Groom": "ringlet.data.groom",
-    "Loft": "ringlet.rest.preload",
+    "Loft": "ringlet.rest.loft",
     "Material": "ringlet.shot.material",
     "Memory": "ringlet.groom.stack",
     "Scene": "ringlet.sim.scene",

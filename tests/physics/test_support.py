@@ -7,7 +7,7 @@ from rest_shapes import FPS, HEAD, grown
 from ringlet.data.curves import Curves
 from ringlet.data.groom import Groom
 from ringlet.data.mesh import Clip, Mesh
-from ringlet.rest.contact_support import ARM, Compliance
+from ringlet.rest.compliance import ARM, Compliance
 from ringlet.rest.equilibrium import support_forces
 from ringlet.rest.nonnegative_qp import solve_nonnegative_qp
 from ringlet.rest.rod_strains import edges
@@ -70,7 +70,7 @@ def test_the_energy_of_two_forces_together_is_summed_over_the_joints_that_both_s
 
     each = np.stack([strains(k) for k in range(8)])
     give = Compliance(shot.held, locks, strands)
-    found = give.under_two(rows, vertex, give.pull(30 + vertex, force, couple))
+    found = give.of_pairs(rows, vertex, give.wrenches(30 + vertex, force, couple))
     assert found == pytest.approx(each @ each.T, rel=1e-9, abs=1e-9 * np.abs(found).max())
 
 

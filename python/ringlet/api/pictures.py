@@ -15,7 +15,7 @@ from ringlet.data.errors import UserError
 from ringlet.data.settings import check_name
 
 if TYPE_CHECKING:
-    from ringlet.rest.preload import Loft
+    from ringlet.rest.loft import Loft
 
 __all__ = ["write_loft_picture", "write_sheet", "write_still", "write_touches_picture"]
 

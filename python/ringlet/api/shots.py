@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ringlet.data.groom import Groom
     from ringlet.data.mesh import Clip
     from ringlet.io import CacheFile
-    from ringlet.rest.preload import Loft
+    from ringlet.rest.loft import Loft
     from ringlet.shot import Shot
     from ringlet.sim import Checkpoints, Garment, Motion, Obstacle
 

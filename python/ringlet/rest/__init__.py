@@ -1,7 +1,8 @@
 """Rest shapes: what locks must remember to hang as they were groomed."""
 
 from ringlet.rest.equilibrium import equilibrium
-from ringlet.rest.preload import Loft, loft, with_sag
+from ringlet.rest.loft import Loft
+from ringlet.rest.preload import loft, with_sag
 from ringlet.rest.staleness import (
     check_current,
     dependencies,

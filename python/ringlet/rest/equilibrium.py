@@ -1,14 +1,13 @@
-"""Equilibrium: rest shapes from which a groom hangs as it was groomed, exactly, and stands where it is put.
+"""Equilibrium: rest shapes with which a groom is exactly in static equilibrium, and stable.
 
-What a strand must hold inside is known from the loads alone (``internal_forces``): its weight, and what bears it where it lies
-(``contact_support``). Divided by the stiffness these are strains, and the groom less its strains is what the strand has to
-remember. A lock that is too soft for its load, which would have to be bent into itself or would fall over however it is
-pre-bent, is made stiffer until it stands.
+Inverse statics gives the rest shape of a lock under its weight and the forces that support it. A lock that is too soft
+for its load has none, or one that is bent into itself, or it would buckle: it is stiffened until it stands. Stability
+is that of the second derivative of the energy, which must be positive in every direction.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -19,32 +18,30 @@ from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.groom import Groom
 from ringlet.rest.contact_support import contact_support
-from ringlet.rest.inverse_statics import internal_forces
-from ringlet.rest.preload import STILL, Loft, Progress, hang_groom, largest_per_lock
-from ringlet.rest.rod_strains import RodStrains, measure_strains, shape_of_strains
+from ringlet.rest.inverse_statics import balanced_rest_shape, external_loads
+from ringlet.rest.loft import Loft, Progress, largest_per_lock
+from ringlet.rest.preload import STILL, hang_groom
 from ringlet.shot.shot import Shot
 from ringlet.shot.variation import Mapped
 from ringlet.sim.motion import make_strands
-from ringlet.sim.nails import rigid_elements, spring_fraction
+from ringlet.sim.nails import spring_fraction
 from ringlet.sim.obstacle import Obstacle
 from ringlet.sim.strands import Strands
 
 Array = NDArray[np.float64]
 Locks = NDArray[np.bool_]
 
-SAME = 1e-5  # change of a lock's strains from round to round, by their size, at which they are found
-SHARPEST = 2.6  # bend of a corner at rest above which a lock counts as too soft [rad]
-STIFFER = 1.5  # a lock that does not balance becomes so much stiffer at once
+STIFFER = 1.5  # factor by which a lock without equilibrium becomes stiffer at once
 TRIES = 20  # to make locks stiff enough
-PUSH = 1e-5  # of its weight: with so much a lock is pushed that falls, to begin with
+PUSH = 1e-5  # force that perturbs a lock that is unstable, relative to its weight
 FALL = 12  # steps of 1 s in which it falls
-FALLING = 1e-5  # a lock that hangs farther away than this from the groom that it remembers falls [m]
-MUCH_LESS = 0.1  # of how far it is away: so near is what is kept though it does not stand
+STANDS = 1e-5  # largest distance from the groom of a lock that stands [m]
+MUCH_NEARER = 0.1  # distance, relative to that with the groom as rest shape, at which an unstable lock keeps its own
 
 
 @dataclass
-class _Try:
-    """Locks that remember some shape, some times as stiff: where they come to rest, and which balance and stand.
+class _Trial:
+    """Locks with some stiffness and their rest shape: where they come to rest, and which are in stable equilibrium.
 
     needed: times that each must be stiffer still, as far as is known
     """
@@ -67,13 +64,13 @@ def equilibrium(
     frames: Array | None = None,
     progress: Progress | None = None,
 ) -> Loft:
-    """Finds what the locks of ``groom`` must remember to be still as groomed, under the forces of ``shot``.
+    """Finds the rest shape with which the locks of ``groom`` are still as groomed, under the forces of ``shot``.
 
     obstacles: what locks may lie on, where the shot has contact, in the rest pose
-    borne:     what ``bearing`` says of these locks, where they are some of a groom [N], shape (n, 3)
-    frames:    their directors where they were groomed, shape (n, 3), where they are known
+    borne:     the ``support_forces`` of these locks [N], shape (n, 3), where they are some of a groom
+    frames:    their directors where they were groomed, shape (n, 3), where these are known
 
-    A lock that would fall is stiffened, up to ``rest.stiffen`` times; one that falls even so keeps its stiffness and
+    A lock that would fall is stiffened, up to ``rest.stiffen`` times. One that falls even so keeps its stiffness and
     its groomed shape, or what hangs ten times nearer to it.
     """
     locks = groom.locks
@@ -82,13 +79,13 @@ def equilibrium(
     strands, most = make_strands(shot, groom), shot.rest.stiffen
     frames = strands.directors.copy() if frames is None else frames
     borne = support_forces(shot, groom, obstacles, strands) if borne is None else borne
-    held_up = borne + _drawn(shot, groom, strands)
+    support = borne + _nail_springs(shot, groom, strands)
     going, soft, factor = np.ones(len(locks), bool), np.zeros(len(locks), bool), np.ones(len(locks))
-    made = _nothing_tried(groom, borne)
+    made = _nothing_found(groom, borne)
 
-    def tried(which: Locks, fall: bool = False) -> _Try:
+    def tried(which: Locks, fall: bool = False) -> _Trial:
         part, rows = replace(groom, locks=locks.take(which)), np.repeat(which, locks.counts)
-        return _try(shot, part, frames[rows], held_up[rows], factor[which], fall)
+        return _try(shot, part, frames[rows], support[rows], factor[which], fall)
 
     for _ in range(TRIES):
         if progress:
@@ -105,40 +102,31 @@ def equilibrium(
     if soft.any():
         factor[soft] = most
         _put(made, soft, tried(soft, fall=True), np.ones(soft.sum(), bool))
-        plain = _plain(shot, replace(groom, locks=locks.take(soft)))
-        _put(made, soft, plain, made.off[soft] >= MUCH_LESS * plain.off)
+        plain = _as_groomed(shot, replace(groom, locks=locks.take(soft)))
+        _put(made, soft, plain, made.off[soft] >= MUCH_NEARER * plain.off)
     if progress:
         progress("loft", len(locks), len(locks))
     return made
 
 
-def _nothing_tried(groom: Groom, borne: Array) -> Loft:
-    count, points = len(groom.locks), np.array(groom.locks.points, np.float64)
-    nowhere = np.full(count, np.inf)
-    return Loft(
-        groom, groom.locks.with_points(points), None, points.copy(), nowhere, nowhere.copy(), nowhere.copy(), borne
-    )
+def support_forces(shot: Shot, groom: Groom, obstacles: Sequence[Obstacle], strands: Strands | None = None) -> Array:
+    """The forces of bodies, nails and other locks that support a groom [N], shape (n, 3).
+
+    strands: its locks, as ``contact_support`` takes them; by default they are made
+    """
+    strands = make_strands(shot, groom) if strands is None else strands
+    loads = external_loads(shot, strands) + _nail_springs(shot, groom, strands)
+    return contact_support(shot, groom.locks, strands, loads, obstacles)
 
 
-def _put(made: Loft, going: Locks, tried: _Try, better: Locks) -> None:
-    """Takes over what was tried of the locks that are still going where it is better."""
-    assert made.stiffened is not None
-    found, counts = going.copy(), made.rest.counts
-    found[going] = better
-    rows, among = np.repeat(found, counts), np.repeat(better, counts[going])
-    made.rest.points[rows], made.lofted[rows] = tried.rest[among], tried.points[among]
-    made.off[found], made.moving[found] = tried.off[better], tried.moving[better]
-    made.stiffened[found] = tried.factor[better]
-
-
-def _plain(shot: Shot, groom: Groom) -> _Try:
-    """How locks hang that remember the groom."""
-    plain, ones = hang_groom(shot, groom), np.ones(len(groom.locks))
-    rest = np.array(groom.locks.points, np.float64)
-    return _Try(ones, rest, plain.points, plain.moving, plain.off, plain.off < FALLING, ones)
+def _nail_springs(shot: Shot, groom: Groom, strands: Strands) -> Array:
+    """The share of the weight that soft nails carry [N], shape (n, 3)."""
+    share = spring_fraction(groom.locks, 1.0 / (groom.space.fps * shot.solver.substeps))
+    return -np.outer(share * strands.masses, shot.forces.gravity)
 
 
 def _check(shot: Shot, locks: Curves) -> None:
+    """Refuses settings with which there is no equilibrium to find."""
     if shot.solver.continuation != "material_frame":
         raise UserError(
             f"loft: rest.mode is 'equilibrium', which needs solver.continuation = 'material_frame'; it is "
@@ -156,155 +144,67 @@ def _check(shot: Shot, locks: Curves) -> None:
         raise UserError(f"loft: held is {shot.held}, but a lock has {locks.counts.min()} points; hold fewer")
 
 
-def support_forces(shot: Shot, groom: Groom, obstacles: Sequence[Obstacle], strands: Strands | None = None) -> Array:
-    """What bears the locks of a groom where they were groomed: bodies, nails and one another [N], shape (n, 3).
-
-    strands: those locks, there, as ``contact_support`` takes them; by default they are made
-    """
-    strands = make_strands(shot, groom) if strands is None else strands
-    return contact_support(
-        shot, groom.locks, strands, external_loads(shot, strands) + _drawn(shot, groom, strands), obstacles
+def _nothing_found(groom: Groom, borne: Array) -> Loft:
+    """A loft to be filled, lock by lock."""
+    count, points = len(groom.locks), np.array(groom.locks.points, np.float64)
+    nowhere = np.full(count, np.inf)
+    return Loft(
+        groom, groom.locks.with_points(points), None, points.copy(), nowhere, nowhere.copy(), nowhere.copy(), borne
     )
 
 
-def _drawn(shot: Shot, groom: Groom, strands: Strands) -> Array:
-    """What soft nails bear of the weight [N], shape (n, 3)."""
-    part = spring_fraction(groom.locks, 1.0 / (groom.space.fps * shot.solver.substeps))
-    return -np.outer(part * strands.masses, shot.forces.gravity)
+def _put(made: Loft, going: Locks, trial: _Trial, better: Locks) -> None:
+    """Takes over those of the ``going`` locks whose trial is better."""
+    assert made.stiffened is not None
+    found, counts = going.copy(), made.rest.counts
+    found[going] = better
+    rows, among = np.repeat(found, counts), np.repeat(better, counts[going])
+    made.rest.points[rows], made.lofted[rows] = trial.rest[among], trial.points[among]
+    made.off[found], made.moving[found] = trial.off[better], trial.moving[better]
+    made.stiffened[found] = trial.factor[better]
 
 
-def external_loads(shot: Shot, strands: Strands) -> Array:
-    """What pulls at the vertices that move [N], shape (n, 3)."""
-    pulls = strands.loads(shot.forces.gravity, shot.forces.wind)
-    pulls[strands.held] = 0.0
-    return pulls
+def _as_groomed(shot: Shot, groom: Groom) -> _Trial:
+    """Locks whose rest shape is the groom."""
+    plain, ones = hang_groom(shot, groom), np.ones(len(groom.locks))
+    rest = np.array(groom.locks.points, np.float64)
+    return _Trial(ones, rest, plain.points, plain.moving, plain.off, plain.off < STANDS, ones)
 
 
-def _try(shot: Shot, groom: Groom, frames: Array, borne: Array, factor: Array, fall: bool) -> _Try:
-    """Balances locks that are some times as stiff against bend, and sees whether they stand and are still.
+def _try(shot: Shot, groom: Groom, frames: Array, support: Array, factor: Array, fall: bool) -> _Trial:
+    """Finds the rest shape of locks that are some times as stiff against bend, and whether they stand with it.
 
     frames: the directors of the locks where they were groomed, shape (n, 3)
-    fall:   push them and let them fall, until they hang
+    fall:   perturb them and let them fall, until they hang
     """
     locks, groomed = groom.locks, np.asarray(groom.locks.points, np.float64)
-    rest, balanced = _balanced(shot, groom, frames, borne, factor)
+    rest, balanced = balanced_rest_shape(shot, groom, frames, support, factor)
     strands = make_strands(shot, groom, rest, factor)
     strands.place(groomed)
     needed = strands.stiffness_to_stand(shot.rest.spring / factor, shot.rest.stiffen)
     if fall:
-        _let_go(strands, shot, borne + _push(external_loads(shot, strands), locks), 1)
-    moving = _let_go(strands, shot, borne, FALL if fall else 1)
+        _release(strands, shot, support + _perturbation(external_loads(shot, strands), locks), 1)
+    moving = _release(strands, shot, support, FALL if fall else 1)
     off = largest_per_lock(locks, np.linalg.norm(strands.positions - groomed, axis=1))
-    still = balanced & (off < FALLING)
+    still = balanced & (off < STANDS)
     good = still & (needed == 1.0)
     needed = np.where(still, needed, np.maximum(needed, STIFFER))
-    return _Try(factor, np.asarray(rest.points, np.float64), strands.positions.copy(), moving, off, good, needed)
+    return _Trial(factor, np.asarray(rest.points, np.float64), strands.positions.copy(), moving, off, good, needed)
 
 
-def _push(pulls: Array, locks: Curves) -> Array:
-    """A small part of the size of what pulls at each lock [N], each in some direction of its own, shape (n, 3)."""
-    way = np.random.default_rng(1).standard_normal((len(locks), 3))
-    way /= np.linalg.norm(way, axis=1, keepdims=True)
-    return PUSH * np.linalg.norm(pulls, axis=1, keepdims=True) * np.repeat(way, locks.counts, axis=0)
+def _perturbation(loads: Array, locks: Curves) -> Array:
+    """A small fraction of the load at each vertex [N], in a random direction per lock, shape (n, 3)."""
+    direction = np.random.default_rng(1).standard_normal((len(locks), 3))
+    direction /= np.linalg.norm(direction, axis=1, keepdims=True)
+    return PUSH * np.linalg.norm(loads, axis=1, keepdims=True) * np.repeat(direction, locks.counts, axis=0)
 
 
-def _let_go(strands: Strands, shot: Shot, borne: Array, steps: int) -> Array:
-    """Lets strands go where they want for a time; returns how far each moved in the last step [m]."""
+def _release(strands: Strands, shot: Shot, forces: Array, steps: int) -> Array:
+    """Lets strands move freely for some steps of 1 s; returns how far each moved in the last one [m]."""
     gravity, wind = shot.forces.gravity, shot.forces.wind
-    settle = partial(strands.settle, gravity=gravity, wind=wind, forces=borne, tolerance=STILL)
+    settle = partial(strands.settle, gravity=gravity, wind=wind, forces=forces, tolerance=STILL)
     if steps > 1:
         settle(steps=steps - 1)
     before = strands.positions.copy()
     settle(steps=1)
     return largest_per_lock(strands.curves, np.linalg.norm(strands.positions - before, axis=1))
-
-
-def _balanced(shot: Shot, groom: Groom, frames: Array, borne: Array, stiffened: Array) -> tuple[Curves, Locks]:
-    """The shape that locks must remember to balance their loads as groomed, and for which of them there is one.
-
-    Stiffness and mass depend a little on the rest shape, so it takes some rounds.
-    """
-    locks, groomed = groom.locks, np.asarray(groom.locks.points, np.float64)
-    shaped = measure_strains(locks, groomed, frames)
-    strain = shaped.take(np.ones(len(groomed), bool))
-    rest, going, good = groomed.copy(), np.ones(len(locks), bool), np.zeros(len(locks), bool)
-    for done in range(shot.rest.iterations):
-        rows = np.repeat(going, locks.counts)
-        part = replace(groom, locks=locks.take(going))
-        strands = make_strands(shot, part, part.locks.with_points(rest[rows]), stiffened[going])
-        pulls = external_loads(shot, strands) + borne[rows]
-        balanced = partial(internal_forces, part.locks, groomed[rows], frames[rows], pulls, shot.held)
-        now = _strain_between_nails(strands, balanced)
-        joints = shaped.take(rows).plus(now, -1.0)
-        rest[rows], _ = shape_of_strains(part.locks, joints, frames[rows])
-        size, change, sharp = (
-            largest_per_lock(part.locks, np.linalg.norm(bend, axis=1))
-            for bend in (now.bend, now.bend - strain.bend[rows], joints.bend)
-        )
-        strain.put(rows, now)
-        balanced, soft = change <= SAME * size, sharp > SHARPEST
-        good[going] = balanced & ~soft
-        going[going] = ~balanced & ~(soft & (done > 0))
-        if not going.any():
-            break
-    return locks.with_points(rest), good
-
-
-def _strain(strands: Strands, forces: RodStrains) -> RodStrains:
-    """By how much lengths, bends and twists differ from rest where they hold these forces.
-
-    What lies between held vertices need not hold any; it stays as groomed, which is how the core knows its frames.
-    """
-    stretch, bend, twist = (
-        np.where((stiffness > 0.0) & ~never, stiffness, np.inf)
-        for stiffness, never in zip(strands.stiffness, rigid_elements(np.asarray(strands.held)), strict=True)
-    )
-    return RodStrains(forces.length / stretch, forces.bend / bend[:, None], forces.twist / twist)
-
-
-def _strain_between_nails(strands: Strands, balanced: Callable[[Array], RodStrains]) -> RodStrains:
-    """The strains that balance the loads, with nails that turn edges about themselves such that these stay.
-
-    The director of an edge between nails is where twist at rest leads it from the root. In the groom it is there too if
-    the twists by which these two differ cancel from the root to the nail; twist is linear in what nails turn with.
-
-    balanced: the forces and moments that balance the loads with what turns each edge's director besides [N m], (n,)
-    """
-    locks, stiffness = strands.curves, strands.stiffness[2]
-    turning = np.zeros(len(stiffness))
-    strain = _strain(strands, balanced(turning))
-    nailed = _first_nailed(strands)
-    if not nailed.any():
-        return strain
-    lock, which = np.searchsorted(locks.offsets, np.flatnonzero(nailed), side="right") - 1, np.cumsum(nailed)
-    which = (which - np.append(0, which)[locks.offsets[:-1]].repeat(locks.counts))[nailed] - 1
-    place, rows = np.flatnonzero(nailed), which.max() + 1
-
-    def turned(strain: RodStrains) -> Array:
-        """By how much the first edge of each row of nails is turned, shape (count, rows)."""
-        angle, sums = np.zeros((len(locks), rows)), np.append(0.0, np.cumsum(strain.twist))
-        angle[lock, which] = sums[place] - sums[locks.offsets[lock]]
-        return angle
-
-    by_loads, by_each = turned(strain), np.tile(np.eye(rows), (len(locks), 1, 1))
-    for k in range(rows):
-        of = which == k
-        turning[:] = 0.0
-        turning[place[of]] = stiffness[place[of] - 1]
-        by_each[lock[of], :, k] = (turned(_strain(strands, balanced(turning))) - by_loads)[lock[of]]
-    turning[place] = np.linalg.solve(by_each, -by_loads[:, :, None])[lock, which, 0] * stiffness[place - 1]
-    return _strain(strands, balanced(turning))
-
-
-def _first_nailed(strands: Strands) -> Locks:
-    """The edges at which a row of nails begins that hold them, shape (n,)."""
-    held_edge, _, _ = rigid_elements(np.asarray(strands.held))
-    held_edge[strands.curves.offsets[1:] - 1] = False
-    return held_edge & ~np.append(True, held_edge[:-1]) & ~_at(strands.curves.offsets[:-1], len(held_edge))
-
-
-def _at(rows: NDArray[np.integer], count: int) -> Locks:
-    """Some of so many rows, as a mask."""
-    mask = np.zeros(count, bool)
-    mask[rows] = True
-    return mask

@@ -1,4 +1,4 @@
-"""The least of a quadratic function of forces that only push."""
+"""The nonnegative quadratic program, by block principal pivoting (Júdice & Pires 1994)."""
 
 from __future__ import annotations
 
@@ -11,42 +11,41 @@ from scipy.sparse.linalg import splu
 Array = NDArray[np.float64]
 
 ROUNDS = 200
-PATIENCE = 3  # rounds in which no fewer forces are wrong before they are put right one by one
+PATIENCE = 3  # rounds in which no fewer unknowns are infeasible before they are exchanged one by one
 ROUNDING = 1e-9
 
 
-def solve_nonnegative_qp(matrix: csr_array, slope: Array, free: NDArray[np.bool_]) -> Array:
-    """The x at which ½ xᵀ A x + bᵀ x is least, none of it negative but what is free; shape (n,).
+def solve_nonnegative_qp(matrix: csr_array, gradient: Array, free: NDArray[np.bool_]) -> Array:
+    """The x that minimises ½ xᵀ A x + bᵀ x, with x ≥ 0 but for what is free; shape (n,).
 
-    matrix: A, symmetric and positive definite, sparse, shape (n, n)
-    slope:  b, shape (n,)
+    matrix:   A, symmetric and positive definite, sparse, shape (n, n)
+    gradient: b, shape (n,)
 
-    Each force either acts or does not; those that would pull, or that would take energy away if they acted, change
-    over, all at once, until there is none. Where that goes round in a circle only the last of them does. Parts that the
-    matrix does not couple are on their own. Block principal pivoting: Júdice & Pires 1994.
+    Each unknown is either passive, and solved for, or zero. Unknowns that come out negative, or whose increase from
+    zero would lower the objective, are exchanged, all at once, until there are none. Where that cycles only the last of
+    them is. Components that the matrix does not couple proceed on their own.
     """
     scale = 1.0 / np.sqrt(matrix.diagonal())
     scaled = diags_array(scale)
-    a, b = (scaled @ matrix @ scaled).tocsr(), scale * slope
-    parts, part = connected_components(a, directed=False)
-    enough = ROUNDING * np.maximum(_most(np.abs(b), part, parts), 1e-300)[part]
-    acts, x = free.copy(), np.zeros(len(b))
-    fewest, patience = np.full(parts, len(b) + 1), np.full(parts, PATIENCE)
+    a, b = (scaled @ matrix @ scaled).tocsr(), scale * gradient
+    count, component = connected_components(a, directed=False)
+    tolerance = ROUNDING * np.maximum(_largest(np.abs(b), component, count), 1e-300)[component]
+    passive, x = free.copy(), np.zeros(len(b))
+    fewest, patience = np.full(count, len(b) + 1), np.full(count, PATIENCE)
     for _ in range(ROUNDS):
         x[:] = 0.0
-        inside = np.flatnonzero(acts)
+        inside = np.flatnonzero(passive)
         if inside.size:
             x[inside] = _solved(a[inside][:, inside], -b[inside])
-        wrong = ~free & np.where(acts, x < -enough, a @ x + b < -enough)
-        if not wrong.any():
+        infeasible = ~free & np.where(passive, x < -tolerance, a @ x + b < -tolerance)
+        if not infeasible.any():
             break
-        count = np.bincount(part[wrong], minlength=parts)
-        fewer = count < fewest
-        patience = np.where(fewer, PATIENCE, patience - 1)
-        fewest = np.minimum(fewest, count)
-        last = np.full(parts, -1)
-        last[part[wrong]] = np.flatnonzero(wrong)  # of each part, the last is kept
-        acts ^= wrong & ((patience >= 0)[part] | (np.arange(len(b)) == last[part]))
+        number = np.bincount(component[infeasible], minlength=count)
+        patience = np.where(number < fewest, PATIENCE, patience - 1)
+        fewest = np.minimum(fewest, number)
+        last = np.full(count, -1)
+        last[component[infeasible]] = np.flatnonzero(infeasible)  # of each component, the last is kept
+        passive ^= infeasible & ((patience >= 0)[component] | (np.arange(len(b)) == last[component]))
     return scale * np.where(free, x, np.maximum(x, 0.0))
 
 
@@ -56,8 +55,8 @@ def _solved(matrix: csr_array, right: Array) -> Array:
     return factor.solve(right)
 
 
-def _most(values: Array, part: NDArray[np.int32], parts: int) -> Array:
-    """The largest of the values of each part."""
-    most = np.zeros(parts)
-    np.maximum.at(most, part, values)
-    return most
+def _largest(values: Array, component: NDArray[np.int32], count: int) -> Array:
+    """The largest value of each component."""
+    largest = np.zeros(count)
+    np.maximum.at(largest, component, values)
+    return largest

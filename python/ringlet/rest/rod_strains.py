@@ -1,8 +1,7 @@
-"""Strands as lengths, bends and twists in their material frame: numbers from a shape, and a shape from numbers.
+"""Strains of discrete rods: edge lengths, bends and twists in the material frame, from a shape and back to it.
 
-An edge carries a director D across it, as in the model of a strand. What a strand at rest remembers is how long each
-edge is, how each corner bends, as two numbers, and how each edge twists; from where its first edge lies they give the
-whole shape back.
+The rod is that of Bergou et al., *Discrete Elastic Rods*, 2008, with one director D per edge. Its rest shape is given
+by these numbers and by the position of the first edge.
 """
 
 from __future__ import annotations
@@ -23,57 +22,59 @@ class RodStrains:
     """Lengths, bends and twists of packed strands, one row per vertex; rows without an edge or a corner are zero.
 
     length: of the edge that begins at the vertex [m], shape (n,)
-    bend:   turning at the vertex [rad], along D of the edge behind it and across, shape (n, 2)
+    bend:   turning angle at the vertex [rad], along D of the edge behind it and across, shape (n, 2)
     twist:  angle [rad] about the edge that begins at the vertex, from its D to the next, in (−π, π], shape (n,)
+
+    Forces in these directions have the same layout: tension [N], bending and twisting moments [N m].
     """
 
     length: Array
     bend: Array
     twist: Array
 
-    def plus(self, change: RodStrains, part: Array | float = 1.0) -> RodStrains:
-        """These and a part, one per vertex or one for all, of a change."""
-        part = np.broadcast_to(part, self.twist.shape)
+    def plus(self, change: RodStrains, factor: Array | float = 1.0) -> RodStrains:
+        """The sum with ``factor``, one per vertex or one for all, times a change."""
+        factor = np.broadcast_to(factor, self.twist.shape)
         return RodStrains(
-            self.length + part * change.length,
-            self.bend + part[:, None] * change.bend,
-            self.twist + part * change.twist,
+            self.length + factor * change.length,
+            self.bend + factor[:, None] * change.bend,
+            self.twist + factor * change.twist,
         )
 
     def minus(self, other: RodStrains) -> RodStrains:
-        """What others must change by to become these."""
+        """The difference; angles of twist within (−π, π]."""
         return RodStrains(self.length - other.length, self.bend - other.bend, wrap(self.twist - other.twist))
 
     def take(self, vertices: NDArray[np.bool_]) -> RodStrains:
-        """Those of some vertices."""
+        """The rows of some vertices."""
         return RodStrains(self.length[vertices], self.bend[vertices], self.twist[vertices])
 
     def put(self, vertices: NDArray[np.bool_], other: RodStrains) -> None:
-        """Sets those of some vertices."""
+        """Sets the rows of some vertices."""
         self.length[vertices], self.bend[vertices], self.twist[vertices] = other.length, other.bend, other.twist
 
 
 def measure_strains(curves: Curves, points: Array, directors: Array) -> RodStrains:
-    """Lengths, bends and twists of strands at ``points`` [m] with their directors, shapes (n, 3)."""
+    """Strains of strands at ``points`` [m] with their directors, shapes (n, 3)."""
     lengths, tangents = edges(curves, points)
     corner, twisting = corners(curves), twists(curves)
     before, tangent, director = tangents[corner - 1], tangents[corner], directors[corner]
     turning = minimal_rotations(before, tangent)
-    joints = RodStrains(lengths, np.zeros((len(points), 2)), np.zeros(len(points)))
-    joints.bend[corner, 0] = _dot(turning, director)
-    joints.bend[corner, 1] = _dot(turning, np.cross(tangent, director))
+    strains = RodStrains(lengths, np.zeros((len(points), 2)), np.zeros(len(points)))
+    strains.bend[corner, 0] = _dot(turning, director)
+    strains.bend[corner, 1] = _dot(turning, np.cross(tangent, director))
     tangent, director = tangents[twisting], directors[twisting]
     carried = rotate(directors[twisting + 1], -minimal_rotations(tangent, tangents[twisting + 1]))
-    joints.twist[twisting] = np.arctan2(_dot(np.cross(tangent, director), carried), _dot(director, carried))
-    return joints
+    strains.twist[twisting] = np.arctan2(_dot(np.cross(tangent, director), carried), _dot(director, carried))
+    return strains
 
 
-def shape_of_strains(curves: Curves, joints: RodStrains, directors: Array) -> tuple[Array, Array]:
-    """Points [m] and directors, shapes (n, 3), of strands that begin where ``curves`` do, along the same edges.
+def shape_of_strains(curves: Curves, strains: RodStrains, directors: Array) -> tuple[Array, Array]:
+    """Points [m] and directors, shapes (n, 3), of strands with these strains that begin with the edges of ``curves``.
 
-    directors: those of ``curves``, of which each strand takes over its first
+    directors: those of ``curves``, of which the first of each strand is kept
     """
-    numbers = (np.ascontiguousarray(of, np.float64) for of in (joints.length, joints.bend, joints.twist))
+    numbers = (np.ascontiguousarray(of, np.float64) for of in (strains.length, strains.bend, strains.twist))
     begin = (np.ascontiguousarray(of, np.float64) for of in (curves.points, directors))
     points, made = _core.shape_of_joints(curves.offsets, *numbers, *begin)
     return points, made
@@ -107,20 +108,20 @@ def _but_ends(curves: Curves, last: int) -> NDArray[np.int64]:
 
 
 def wrap(angle: Array) -> Array:
-    """An angle within (−π, π]."""
+    """The same angle within (−π, π]."""
     return np.pi - np.mod(np.pi - angle, 2.0 * np.pi)
 
 
-def rotate(vectors: Array, turns: Array) -> Array:
-    """Vectors turned about axes by angles, which are their directions and lengths [rad]; shapes (k, 3)."""
-    angle = np.linalg.norm(turns, axis=1, keepdims=True)
-    axis = turns / np.where(angle > 0.0, angle, 1.0)
+def rotate(vectors: Array, rotations: Array) -> Array:
+    """Vectors rotated by rotation vectors [rad], shapes (k, 3); Rodrigues' formula."""
+    angle = np.linalg.norm(rotations, axis=1, keepdims=True)
+    axis = rotations / np.where(angle > 0.0, angle, 1.0)
     along = _dot(axis, vectors)[:, None] * axis
     return along + np.cos(angle) * (vectors - along) + np.sin(angle) * np.cross(axis, vectors)
 
 
 def minimal_rotations(before: Array, after: Array) -> Array:
-    """The turns that carry directions straight into others, shapes (k, 3)."""
+    """Rotation vectors [rad] of the smallest rotations from directions to others, shapes (k, 3)."""
     normal = np.cross(before, after)
     sine = np.linalg.norm(normal, axis=1)
     angle = np.arctan2(sine, _dot(before, after))

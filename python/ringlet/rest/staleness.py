@@ -14,7 +14,8 @@ from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.groom import Groom
 from ringlet.rest.equilibrium import equilibrium, external_loads, support_forces
-from ringlet.rest.preload import Loft, Progress, largest_per_lock, loft
+from ringlet.rest.loft import Loft, Progress, largest_per_lock
+from ringlet.rest.preload import loft
 from ringlet.shot.shot import Shot
 from ringlet.shot.variation import VARIATIONS
 from ringlet.sim.checkpoint import digest
