@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 from ringlet.data.groom import Groom
 from ringlet.data.mesh import Clip
-from ringlet.rest.staleness import to_curves
+from ringlet.rest.update import to_curves
 from ringlet.shot import Collider, Shot, parse_shot
 from ringlet.sim import Motion, Obstacle
 from ringlet.sim.nails import held_vertices
