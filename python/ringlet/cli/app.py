@@ -10,14 +10,32 @@ import sys
 import tempfile
 import traceback
 from collections.abc import Sequence
+from importlib import import_module
 from typing import Annotated, Any
 
 import typer
 from typer.core import TyperGroup
 
 import ringlet
-from ringlet.cli import bench, check, demo, doctor, edit, groom, hair, loft, picture, schema, sim, validate, view, wedge
 
+# In the order of the help. Each is the function of the same name in the file of the same name.
+COMMANDS = [
+    "demo",
+    "groom",
+    "edit",
+    "check",
+    "loft",
+    "sim",
+    "wedge",
+    "hair",
+    "picture",
+    "view",
+    "validate",
+    "schema",
+    "doctor",
+    "bench",
+]
+CONTEXT = {"bench": {"allow_extra_args": True, "ignore_unknown_options": True}}  # a benchmark takes what it likes
 INTERRUPTED = 130  # what typer makes of a KeyboardInterrupt
 
 
@@ -106,24 +124,8 @@ def front(
         print(context.get_help())
 
 
-for name, command in {
-    "demo": demo.demo,
-    "groom": groom.groom,
-    "edit": edit.edit,
-    "check": check.check,
-    "loft": loft.loft,
-    "sim": sim.sim,
-    "wedge": wedge.wedge,
-    "hair": hair.hair,
-    "picture": picture.picture,
-    "view": view.view,
-    "validate": validate.validate,
-    "schema": schema.schema,
-    "doctor": doctor.doctor,
-}.items():
-    app.command(name)(command)
-# What a benchmark takes is the benchmark's own affair.
-app.command("bench", context_settings={"allow_extra_args": True, "ignore_unknown_options": True})(bench.bench)
+for name in COMMANDS:
+    app.command(name, context_settings=CONTEXT.get(name))(getattr(import_module(f"ringlet.cli.{name}"), name))
 
 
 def main() -> None:
