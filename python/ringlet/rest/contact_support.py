@@ -106,7 +106,7 @@ def _friction(contact: ShotContact, obstacles: Sequence[Obstacle]) -> Array:
 
 def _contact_forces(contacts: RestingContacts, friction: Array) -> UnitForces:
     """Contacts push, and hold across by friction, shape (k,): along the four edges of a linearised friction cone."""
-    normal, vertex, weight = contacts.away, contacts.acting, contacts.weights
+    normal, vertex, weight = contacts.normal, contacts.acting, contacts.weights
     tangent = np.cross(normal, np.eye(3)[np.abs(normal).argmin(axis=1)])
     tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
     tangents = np.stack([tangent, -tangent, np.cross(normal, tangent), -np.cross(normal, tangent)], axis=1)

@@ -1,8 +1,8 @@
-"""Checkpoints: what a run has done so far, in a folder, so that a run that was killed goes on where it was.
+"""Checkpoints: a folder from which a run that was interrupted resumes, to the same bits.
 
-Every frame is kept as soon as it is there, and every few frames all that the next one depends on. A file is written
-aside and renamed, and begins with a digest of the rest: half a file is never read, and one that was damaged is noticed.
-A folder is of one program at a time; who writes files beside it that go with the run holds it before the first.
+Every frame is written as soon as it is done, and every few frames the state that the next one depends on. A file is
+written aside, renamed, and begins with a digest of the rest: an incomplete or damaged one is never read. One program at
+a time locks a folder; a program that writes other files of the run locks it before the first of them.
 """
 
 from __future__ import annotations
@@ -24,27 +24,27 @@ from ringlet.data.errors import UserError
 from ringlet.data.files import replacing
 
 VERSION = b"ringlet checkpoint 2\n"
-EVERY = 10  # frames from one memory to the next, at most
-VERTICES = 1_000_000  # between memories: a frame of that many may take minutes
-HELD = "held"  # the file that a program holds while it runs
-KEPT = 2  # memories: where the last is damaged, the one before is used
+EVERY = 10  # frames from one state to the next, at most
+VERTICES = 1_000_000  # simulated between states: a frame of that many may take minutes
+HELD = "held"  # the file that a program locks while it runs
+KEPT = 2  # states: where the last is damaged, the one before is used
 
 Arrays = Mapping[str, NDArray[Any]]
 
-_held_here: dict[Path, BinaryIO] = {}  # by folder, what ``holding`` holds in this program
+_held_here: dict[Path, BinaryIO] = {}  # by folder, the files that ``holding`` locks in this program
 
 
 class DamagedError(ValueError):
-    """A file is not what was written."""
+    """A file does not match its digest."""
 
 
 @dataclass
 class Checkpoints:
     """The folder of a run.
 
-    folder: where everything is kept
-    made_from: a digest of all that the run is made from; what another run left behind is not gone on with
-    every:  frames from one memory to the next
+    folder:    where its files are
+    made_from: the digest of the run; files of another run are refused
+    every:     frames from one state to the next
     """
 
     folder: Path
@@ -53,9 +53,9 @@ class Checkpoints:
     _held: BinaryIO | None = field(default=None, repr=False)
 
     def begin(self, resume: bool) -> tuple[int, dict[str, NDArray[Any]]] | None:
-        """Where to go on: the steps that are done, and the memory after them; None where it is to begin anew.
+        """The number of steps that are done and the state after them; None for a new run.
 
-        Without ``resume`` what is there is thrown away. Raises UserError where it is of another run.
+        Without ``resume`` the folder is emptied. Raises UserError where it is of another run.
         """
         self._hold()
         if not resume:
@@ -82,21 +82,21 @@ class Checkpoints:
         return None
 
     def _hold(self) -> None:
-        """Keeps other programs out of the folder as long as this one runs."""
+        """Locks the folder for this program."""
         self._held = _held_here.get(self.folder.resolve()) or _held(self.folder)
 
     def keep(self, step: int, arrays: Arrays, statistics: dict[str, Any]) -> None:
-        """Keeps what a step gave."""
+        """Writes the results of a step."""
         write(self._frame(step), {**arrays, "statistics": np.array(json.dumps(statistics))})
 
     def remember(self, done: int, memory: Arrays) -> None:
-        """Keeps a memory after so many steps, and drops those that are too old to be wanted."""
+        """Writes the state after so many steps, and removes all but the last two."""
         write(self.folder / f"memory.{done:06d}", memory)
         for path in sorted(self.folder.glob("memory.*"))[:-KEPT]:
             path.unlink()
 
     def kept(self, done: int) -> Iterator[tuple[dict[str, NDArray[Any]], dict[str, Any]]]:
-        """What the first steps gave: their arrays and statistics."""
+        """The results of the first steps: their arrays and statistics."""
         for step in range(done):
             arrays = read(self._frame(step))
             yield arrays, json.loads(str(arrays.pop("statistics")))
@@ -114,11 +114,11 @@ class Checkpoints:
 
 @contextmanager
 def holding(folder: Path) -> Iterator[int]:
-    """Keeps other programs out of a folder of checkpoints while the block runs; see ``ringlet.hold_checkpoints``."""
+    """Locks a folder of checkpoints while the block runs; see ``ringlet.hold_checkpoints``."""
     at = folder.resolve()
     if at in _held_here:
         raise _goes_on(folder)
-    # To close a file gives up the locks of its whole program, so checkpoints in this folder use this one.
+    # Closing a file releases the locks of its whole program, so checkpoints in this folder use this one.
     _held_here[at] = _held(folder)
     try:
         yield max((int(path.suffix[1:]) for path in at.glob("memory.*")), default=0)
@@ -126,12 +126,12 @@ def holding(folder: Path) -> Iterator[int]:
         if [path.name for path in at.glob("*")] == [HELD]:
             (at / HELD).unlink()
         _held_here.pop(at).close()
-        with suppress(OSError):  # what has been kept stays
+        with suppress(OSError):  # a folder with checkpoints stays
             at.rmdir()
 
 
 def _held(folder: Path) -> BinaryIO:
-    """The file that holds a folder for as long as it is open."""
+    """The file that locks a folder as long as it is open."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
         file = (folder / HELD).open("ab")
@@ -142,7 +142,7 @@ def _held(folder: Path) -> BinaryIO:
     except (BlockingIOError, PermissionError):
         file.close()
         raise _goes_on(folder) from None
-    except OSError:  # the disk knows no locks
+    except OSError:  # a file system without locks
         pass
     return file
 
@@ -152,7 +152,7 @@ def _goes_on(folder: Path) -> UserError:
 
 
 def frames_between(vertices: int) -> int:
-    """How many frames go by from one memory to the next where strands have so many vertices: more take longer."""
+    """Frames from one state to the next for strands of so many vertices, of which more take longer."""
     return max(1, min(EVERY, VERTICES // max(vertices, 1)))
 
 

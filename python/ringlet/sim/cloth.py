@@ -14,11 +14,11 @@ from ringlet.sim.core import Vector, assign
 
 
 class Cloth:
-    """Cloth in motion, at rest in its rest shape to begin with.
+    """Cloth in motion, at the start at rest in its rest shape.
 
     mesh:       the rest shape with its folds
-    material:   what it is made of
-    held:       which vertices follow ``targets``: indices, or a mask of shape (n,)
+    material:   its material
+    held:       the vertices that follow ``targets``: indices, or a mask of shape (n,)
     attachment: stiffness [N/m] of a spring from each vertex to its target, shape (n,); none by default
     warp:       a direction whose projection on each triangle is the warp; by default that of the texture's u, and x
                 where there is no texture
@@ -59,10 +59,10 @@ class Cloth:
         return self._core.velocities
 
     def scale_rest(self, scale: float) -> None:
-        """Makes the rest shape ``scale`` times the mesh: elastic that draws together, below 1.
+        """Scales the rest shape to ``scale`` times the mesh: elastic that contracts, below 1.
 
-        Masses and the resistance to bend stay. A scene lets the cloth come as near to itself as its rest shape is when
-        the scene is made.
+        Masses and bend stiffness stay. Self-contact in a scene leaves room for the rest shape with which the scene is
+        made.
         """
         self._core.scale_rest(scale)
 
@@ -83,7 +83,7 @@ class Cloth:
     ) -> dict[str, float]:
         """Advances by ``dt`` [s]; held vertices end where ``targets`` [m], shape (n, 3), has them.
 
-        forces: what pulls at each vertex besides gravity and air [N], shape (n, 3)
+        forces: on each vertex besides gravity and air [N], shape (n, 3)
         Returns the report (see ``_core.CLOTH_REPORT``): energies [J], iterations, residuals.
         """
         solver = solver or ClothSolver()
@@ -116,7 +116,7 @@ class Cloth:
         dt: float = 1.0,
         steps: int = 200,
     ) -> bool:
-        """Lets the cloth come to rest under gravity and forces [N], in large steps; what is held stays put.
+        """Lets the cloth come to rest under gravity and forces [N], in large steps; held vertices stay.
 
         Returns whether it has: no coordinate moved more than ``tolerance`` [m] in the last step.
         """
@@ -145,7 +145,7 @@ def warp_directions(mesh: Mesh, warp: Vector | None = None) -> NDArray[np.float6
 
 
 def _check(mesh: Mesh, held: NDArray[np.bool_]) -> None:
-    """What a mesh must be like to hang as cloth."""
+    """Refuses a mesh with triangles without area or with vertices without triangles."""
     corners = mesh.points[mesh.triangles]
     e1, e2 = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     longest = np.maximum((e1 * e1).sum(1), (e2 * e2).sum(1))

@@ -13,13 +13,13 @@ from ringlet.shot.contact import Contact, Pair
 from ringlet.sim.cloth import Cloth
 from ringlet.sim.obstacle import Body
 
-LOCKS = "locks"  # what they are called where friction is told
+LOCKS = "locks"  # their name in pairs of materials
 
 
 def friction_matrix(contact: Contact, cloths: Sequence[Cloth], bodies: Sequence[Body]) -> NDArray[np.float64]:
     """Coulomb's μ of each pair of materials: of strands, then of each cloth, then of each body.
 
-    A body and a cloth say what a lock on them has; two of them, the geometric mean. Bodies do not touch each other.
+    The friction of a lock on a body or a cloth is theirs; of two of these, the geometric mean. Bodies do not touch.
     """
     on_it = [cloth.material.friction for cloth in cloths] + [body.friction for body in bodies]
     friction = np.zeros((1 + len(on_it),) * 2)
@@ -31,7 +31,7 @@ def friction_matrix(contact: Contact, cloths: Sequence[Cloth], bodies: Sequence[
 
 
 def override_pairs(friction: NDArray[np.float64], pairs: Sequence[Pair], names: Sequence[str]) -> NDArray[np.float64]:
-    """Friction of materials on one another, shape (k, k), with that of some pairs told by name.
+    """The friction of materials on one another, shape (k, k), with that of some pairs by name.
 
     names: of the materials, k of them; several may have one name
     """

@@ -1,4 +1,4 @@
-"""A cloth of a shot in motion: its mesh, where it begins, what holds it, and how large its rest shape is."""
+"""Garments: meshes that become cloth in a shot, with their pins, their start and the scale of their rest shape."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ class Garment:
     """A mesh that becomes cloth.
 
     mesh:     its rest shape [m]
-    clip:     how its file moves it: where it begins, and where what is pinned to nothing else goes
-    settings: what it is made of, and what pins it
-    file:     the USD file of its mesh, and
+    clip:     its animation: where it begins, and the targets of pins to nothing else
+    settings: its material and its pins
+    file:     the USD file of its mesh
     prim:     its path there
     """
 
@@ -40,20 +40,20 @@ class Garment:
 
     @property
     def name(self) -> str:
-        """What it is called in the shot, in statistics and in messages."""
+        """Its name in the shot, in statistics and in messages."""
         return self.settings.name or self.prim.rpartition("/")[2]
 
     @property
     def is_animated(self) -> bool:
-        """Whether its file moves it."""
+        """Whether its file animates it."""
         return len(self.clip.frames) > 1
 
 
 class Worn:
-    """A garment that is simulated.
+    """A garment in simulation.
 
-    cloth:     in motion, where it is at the frame ``first``
-    pinned_to: which obstacle carries its held vertices; -1: none
+    cloth:     its cloth, at the start where it is at the frame ``first``
+    pinned_to: the index of the obstacle that carries its held vertices; -1: none
     """
 
     def __init__(self, garment: Garment, obstacles: Sequence[Obstacle], first: float) -> None:
@@ -73,20 +73,20 @@ class Worn:
         self.cloth = Cloth(mesh, settings.material, held, attachment=attachment)
         self.cloth.positions[:] = begin
         self.pinned_to = _most(holder[held])
-        self.cloth.scale_rest(settings.least_scale)  # contact within it must leave room for the smallest that it gets
+        self.cloth.scale_rest(settings.least_scale)  # contact leaves room for the smallest scale
         self._begin = begin
 
     @property
     def name(self) -> str:
-        """What it is called."""
+        """The name of its garment."""
         return self.garment.name
 
     def draw_together(self, frame: float) -> None:
-        """Gives the rest shape the size that it has at a frame."""
+        """Scales the rest shape as at a frame."""
         self.cloth.scale_rest(self.garment.settings.scale(frame))
 
     def targets(self, frame: float) -> Array:
-        """Where its vertices belong at a frame [m], shape (n, 3); of those that are not pinned, where they began."""
+        """The targets of its vertices at a frame [m], shape (n, 3); those that are not pinned stay where they began."""
         targets = self._begin.copy()
         for pin in self._pins:
             targets[pin.vertices] = pin.places(frame)
@@ -94,10 +94,9 @@ class Worn:
 
 
 def beginning(garment: Garment, obstacles: Sequence[Obstacle], first: float) -> Array:
-    """Where a cloth is at the first frame [m], shape (n, 3).
+    """The positions of a cloth at the first frame [m], shape (n, 3).
 
-    Where its file does not move it, it has gone along with what it lies on since the rest pose: as one, as the places
-    of the obstacles that were next to its vertices have.
+    Without animation it has moved rigidly with the obstacles since the rest pose, as the nearest places on them have.
     """
     points = garment.clip.at(first)
     if points.shape != garment.mesh.points.shape:
@@ -120,7 +119,7 @@ def beginning(garment: Garment, obstacles: Sequence[Obstacle], first: float) -> 
 
 
 def carried(points: Array, before: Array, after: Array) -> Array:
-    """Points moved as one as places have moved, shapes (n, 3): the rigid motion of least squares (Kabsch 1976)."""
+    """Points moved by the rigid motion that fits places before and after best, shapes (n, 3) (Kabsch 1976)."""
     from_centre, to_centre = before.mean(axis=0), after.mean(axis=0)
     left, _, right = np.linalg.svd((before - from_centre).T @ (after - to_centre))
     mirror = np.array([1.0, 1.0, np.sign(np.linalg.det(left @ right))])
@@ -128,6 +127,6 @@ def carried(points: Array, before: Array, after: Array) -> Array:
 
 
 def _most(holders: NDArray[Any]) -> int:
-    """The obstacle that holds most vertices; -1: none does."""
+    """The index of the obstacle that holds most vertices; -1: none does."""
     of = holders[holders >= 0]
     return int(np.bincount(of).argmax()) if len(of) else -1

@@ -1,4 +1,4 @@
-"""How a shot starts: what is inside a collider, what goes through cloth, which locks are nearer than they may be."""
+"""Initial penetration: vertices inside colliders, edges through cloth and overlaps of locks as a shot begins."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from ringlet.sim.scene import Scene
 
 Array = NDArray[np.float64]
 
-WORST = 5  # places that are told
+WORST = 5  # places that a report lists
 
 
 def report_inside(locks: Curves, mesh: Mesh, depth: Array) -> dict[str, Any]:
-    """What is inside a mesh, as numbers: how many vertices of how many locks, and the deepest of them."""
+    """Vertices of locks inside a mesh: how many of how many locks, and the deepest of them."""
     inside = np.flatnonzero(depth > 0.0)
     deepest = inside[np.argsort(-depth[inside], kind="stable")[:WORST]]
     return {
@@ -36,7 +36,7 @@ def report_inside(locks: Curves, mesh: Mesh, depth: Array) -> dict[str, Any]:
 
 
 def report_overlaps(locks: Curves, scene: Scene) -> dict[str, Any]:
-    """Which locks are nearer to one another than they may be, as numbers."""
+    """Initial overlaps between locks: pairs nearer than the distance of contact."""
     at = scene.strands.positions
     vertices, values = scene.touching()
     pairs = _lock_of(locks, vertices[:, [0, 3]])
@@ -61,7 +61,7 @@ def report_overlaps(locks: Curves, scene: Scene) -> dict[str, Any]:
 
 
 def refuse_intersecting(worn: Worn, names: Sequence[str], bodies: Sequence[Body]) -> None:
-    """Refuses a cloth that a body goes through or holds inside; but not where it is held by that body."""
+    """Refuses a cloth that intersects a body or begins inside it, but for vertices that this body holds."""
     cloth, triangles = worn.cloth, worn.cloth.mesh.triangles
     for k, (name, body) in enumerate(zip(names, bodies, strict=True)):
         free = ~cloth.held if k == worn.pinned_to else np.ones(len(cloth.held), bool)
@@ -82,13 +82,13 @@ def refuse_intersecting(worn: Worn, names: Sequence[str], bodies: Sequence[Body]
 
 
 def _inside(points: Array, free: NDArray[np.bool_], triangles: NDArray[np.int32], corners: Array) -> NDArray[np.int64]:
-    """Which of the free points are inside a closed mesh."""
+    """The free points inside a closed mesh."""
     return np.flatnonzero(free & (penetration_depths(points, triangles, corners) > 0.0))
 
 
 def report_intersections(locks: Curves, worn: Sequence[Worn]) -> list[dict[str, Any]]:
-    """What goes through each cloth, as numbers: locks, itself, other cloths. It stays so."""
-    return [told for one in worn for told in _intersections(locks, one, worn) if told["places"]]
+    """Intersections of each cloth with locks, with itself and with other cloths, which stay as they are."""
+    return [found for one in worn for found in _intersections(locks, one, worn) if found["places"]]
 
 
 def _intersections(locks: Curves, through: Worn, all_worn: Sequence[Worn]) -> Iterator[dict[str, Any]]:
@@ -120,24 +120,25 @@ def _intersections(locks: Curves, through: Worn, all_worn: Sequence[Worn]) -> It
 def start_report(
     inside: list[dict[str, Any]], piercing: list[dict[str, Any]], overlapping: dict[str, Any]
 ) -> dict[str, Any]:
-    """All that there is to tell of a start, with the ``marks`` of every place in one list."""
+    """The report of a start, with the ``marks`` of every place in one list."""
     marks = [mark for found in (*inside, *piercing, overlapping) for mark in found.pop("marks")]
     return {"inside": inside, "piercing": piercing, "overlapping": overlapping, "marks": marks}
 
 
 def _marks(places: NDArray[np.floating], depth: Array) -> list[list[float]]:
-    """Rows of a place [m], to a tenth of a millimetre, and how bad it is by the worst of its kind, from 0 to 1."""
-    bad = np.clip(depth / max(float(depth.max(initial=0.0)), 1e-12), 0.0, 1.0)
-    return [[*(round(float(x), 4) for x in place), round(float(b), 3)] for place, b in zip(places, bad, strict=True)]
+    """Rows of a place [m], to a tenth of a millimetre, and its depth relative to the worst of its kind, from 0 to 1."""
+    depths = np.clip(depth / max(float(depth.max(initial=0.0)), 1e-12), 0.0, 1.0)
+    rows = zip(places, depths, strict=True)
+    return [[*(round(float(x), 4) for x in place), round(float(d), 3)] for place, d in rows]
 
 
 def _lock_of(locks: Curves, vertices: NDArray[np.integer]) -> NDArray[np.int64]:
-    """The place in the list of the lock that each vertex belongs to."""
+    """The index of the lock that each vertex belongs to."""
     return np.searchsorted(locks.offsets, vertices, side="right") - 1
 
 
 def _place(locks: Curves, vertex: int) -> dict[str, Any]:
-    """A vertex as an artist finds it: the id of its lock, its number from the root, where it is [m]."""
+    """A vertex for an artist: the id of its lock, its number from the root, its position [m]."""
     lock = int(_lock_of(locks, np.array(vertex)))
     return {
         "lock": int(locks.ids[lock]),

@@ -30,7 +30,7 @@ from ringlet.sim.variation import material_factors
 def make_strands(
     shot: Shot, groom: Groom, rest: Curves | None = None, stiffened: NDArray[np.float64] | None = None
 ) -> Strands:
-    """The locks of a groom as strands of a shot's material that remember the groomed shape, or another one.
+    """The locks of a groom as strands of a shot's material, whose rest shape is the groomed or another one.
 
     stiffened: times that each lock is stiffer against bend than that material, shape (count,)
     """
@@ -44,8 +44,8 @@ class Motion:
     """Locks on their moving scalp, in contact where the shot has it; see ``simulate`` for what it is made of.
 
     first: the frame at which everything starts
-    scene: everything that touches; None without contact
-    start: what is in the way then (see ``start.py``)
+    scene: all that is in contact; None without contact
+    start: the report of initial penetration (see ``initial_penetration.py``)
     worn:  the cloths that move with the locks
     """
 
@@ -84,7 +84,7 @@ class Motion:
         self.scene.bear(np.where(vertices < of_locks, vertices, vertices + of_cloths), shares)
 
     def cloths(self, frames: int) -> list[CachedCloth]:
-        """The cloths as a cache has them, with room for so many frames."""
+        """The cloths of a cache with room for so many frames."""
         return [
             CachedCloth(
                 worn.name,
@@ -96,21 +96,15 @@ class Motion:
         ]
 
     @property
-    def positions(self) -> dict[str, NDArray[np.float64]]:
-        """Where everything is [m]: ``locks``, shape (n, 3), and each cloth."""
-        cloths = {f"cloth {n}": worn.cloth.positions for n, worn in enumerate(self.worn)}
-        return {"locks": self.strands.positions, **cloths}
-
-    @property
     def memory(self) -> dict[str, NDArray[Any]]:
-        """All that the next frame depends on besides what this was made from, as arrays by name."""
+        """The state that the next frame depends on, as arrays by name."""
         memory = {f"strands {name}": values for name, values in self.strands.memory.items()}
         if self.scene:
             memory |= {f"scene {name}": values for name, values in self.scene.memory.items()}
         return memory
 
     def recall(self, memory: Mapping[str, NDArray[Any]]) -> None:
-        """Goes back to a memory of a motion that was made from the same."""
+        """Restores the state of a motion that was made from the same."""
 
         def of(part: str) -> dict[str, NDArray[Any]]:
             return {name.removeprefix(part): values for name, values in memory.items() if name.startswith(part)}

@@ -1,4 +1,4 @@
-"""Obstacles: the meshes that locks cannot pass through, and how they move."""
+"""Obstacles: the animated meshes that locks cannot pass through."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from ringlet.shot.contact import Collider
 
 @dataclass
 class Body:
-    """A surface that moves as it is told, touched from both sides.
+    """A surface with prescribed motion, in contact on both sides.
 
-    points:    positions [m] to begin with, shape (n, 3)
+    points:    positions [m] at the start, shape (n, 3)
     triangles: indices into points, shape (m, 3)
     thickness: [m] how far from the surface contact begins, besides what touches it
     friction:  Coulomb's μ of a lock on it
@@ -31,11 +31,11 @@ class Body:
 
 @dataclass
 class Obstacle:
-    """A mesh in the way of locks.
+    """A mesh that locks cannot pass through.
 
     mesh:     its triangles, and its points in the rest pose [m]
-    clip:     how it moves
-    settings: its thickness and friction, and whether it moves
+    clip:     its animation
+    settings: its thickness and friction, and whether it is animated
     """
 
     mesh: Mesh
@@ -44,17 +44,17 @@ class Obstacle:
 
     @property
     def name(self) -> str:
-        """What it is called in the shot."""
+        """Its name in the shot."""
         return self.settings.name or self.mesh.name.rpartition("/")[2]
 
     def starting_at(self, frame: float) -> Obstacle:
-        """The same for a shot that begins at ``frame``: what is not animated stays as it is there."""
+        """The same for a shot that begins at ``frame``; without animation it stays as it is there."""
         if self.settings.animated:
             return self
         return Obstacle(self.mesh, Clip(np.array([frame]), self.clip.at(frame)[None], self.clip.fps), self.settings)
 
     def at(self, frame: float) -> NDArray[np.float64]:
-        """Its points at a frame [m], shape (n, 3); refuses what nothing can touch."""
+        """Its points at a frame [m], shape (n, 3); refuses degenerate triangles."""
         points = self.clip.at(frame)
         if points.shape != self.mesh.points.shape:
             raise UserError(
@@ -70,7 +70,7 @@ class Obstacle:
         return points
 
     def body(self, frame: float) -> Body:
-        """The same for a scene that begins at ``frame``."""
+        """The body of a scene that begins at ``frame``."""
         return Body(self.at(frame), self.mesh.triangles, self.settings.thickness, self.settings.friction)
 
     def is_surface_of(self, scalp: Mesh) -> bool:

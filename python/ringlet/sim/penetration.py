@@ -1,4 +1,4 @@
-"""Penetration: how deep points are inside closed meshes, and which edges go through which triangles."""
+"""Penetration: the depth of points inside closed meshes, and intersections of edges with triangles."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ PARALLEL = 1e-9  # the sine below which a segment counts as lying in the plane o
 def penetration_depths(
     points: NDArray[np.floating], triangles: NDArray[np.int32], corners: NDArray[np.floating]
 ) -> Array:
-    """How deep points are inside a closed mesh with those corners [m], 0 outside; shape (n,).
+    """The depth of points inside a closed mesh with those corners [m], 0 outside; shape (n,).
 
-    What is behind the nearest triangle is a candidate; inside is what the mesh winds around.
+    Points behind their nearest triangle are candidates; those with a winding number above ½ are inside.
     """
     depth = np.zeros(len(points))
     near = np.flatnonzero(((points > corners.min(axis=0)) & (points < corners.max(axis=0))).all(axis=1))
@@ -33,7 +33,7 @@ def penetration_depths(
 
 
 def winding_numbers(points: Array, corners: Array) -> Array:
-    """How often triangles (m, 3, 3) wind around points, shape (n,): Σ Ω / 4π (Jacobson et al. 2013, eq. 5)."""
+    """Winding numbers of triangles (m, 3, 3) about points, shape (n,): Σ Ω / 4π (Jacobson et al. 2013, eq. 5)."""
     numbers = np.empty(len(points))
     for k, point in enumerate(points):
         a, b, c = (corners[:, i] - point for i in range(3))
@@ -45,21 +45,21 @@ def winding_numbers(points: Array, corners: Array) -> Array:
 
 
 def edge_triangle_intersections(ends: Array, corners: Array) -> NDArray[np.int64]:
-    """Which segments go through which triangles: rows of (segment, triangle), shape (k, 2).
+    """Pairs of a segment and a triangle that intersect, shape (k, 2), by Möller and Trumbore 1997.
 
     ends:    of the segments [m], shape (n, 2, 3)
     corners: of the triangles [m], shape (m, 3, 3)
     """
     pairs = _near(ends, corners)
-    start, way = ends[pairs[:, 0], 0], ends[pairs[:, 0], 1] - ends[pairs[:, 0], 0]
+    start, direction = ends[pairs[:, 0], 0], ends[pairs[:, 0], 1] - ends[pairs[:, 0], 0]
     a, b, c = (corners[pairs[:, 1], k] for k in range(3))
-    # Möller and Trumbore 1997: start + t way = a + u (b − a) + v (c − a)
-    across, turned = np.cross(way, c - a), np.cross(start - a, b - a)
+    # start + t direction = a + u (b − a) + v (c − a)
+    across, turned = np.cross(direction, c - a), np.cross(start - a, b - a)
     determinant = _dot(b - a, across)
-    sizes = np.linalg.norm(way, axis=1) * np.linalg.norm(b - a, axis=1) * np.linalg.norm(c - a, axis=1)
+    sizes = np.linalg.norm(direction, axis=1) * np.linalg.norm(b - a, axis=1) * np.linalg.norm(c - a, axis=1)
     slanted = np.abs(determinant) > PARALLEL * sizes
     determinant[~slanted] = 1.0
-    u, v = _dot(start - a, across) / determinant, _dot(way, turned) / determinant
+    u, v = _dot(start - a, across) / determinant, _dot(direction, turned) / determinant
     t = _dot(c - a, turned) / determinant
     return pairs[slanted & (u >= 0) & (v >= 0) & (u + v <= 1) & (t >= 0) & (t <= 1)]
 
@@ -71,7 +71,7 @@ def mesh_edges(triangles: Indices) -> NDArray[np.int64]:
 
 
 def _near(ends: Array, corners: Array) -> NDArray[np.int64]:
-    """Pairs of a segment and a triangle whose balls overlap, shape (k, 2)."""
+    """Pairs of a segment and a triangle whose bounding spheres overlap, shape (k, 2)."""
     segments, triangles = _within(ends, corners), _within(corners, ends)
     none = np.zeros((0, 2), np.int64)
     if not len(segments) or not len(triangles):
@@ -88,7 +88,7 @@ def _near(ends: Array, corners: Array) -> NDArray[np.int64]:
 
 
 def _within(these: Array, others: Array) -> NDArray[np.int64]:
-    """Which of the shapes (n, k, 3) have a box that meets the one around all others."""
+    """The shapes (n, k, 3) whose bounding box meets that of all others."""
     if not len(these) or not len(others):
         return np.zeros(0, np.int64)
     low, high = others.min(axis=(0, 1)), others.max(axis=(0, 1))

@@ -1,4 +1,4 @@
-"""Pins of a cloth: which vertices are pinned, how firmly, and where they belong at each frame."""
+"""Pins of a cloth: their vertices, stiffness and targets at each frame."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ Array = NDArray[np.float64]
 
 @dataclass
 class _Binding:
-    """Places on a surface that carry what is pinned there, rigidly with the surface about each."""
+    """Points bound to a surface, each carried rigidly with the frame of its nearest place."""
 
     obstacle: Obstacle
     triangle: NDArray[np.int32]
     barycentric: Array
-    away: Array  # from each place, in its frame
+    offset: Array  # from each place, in its frame
 
     @classmethod
     def of(cls, points: Array, obstacle: Obstacle, frame: float) -> _Binding:
@@ -37,14 +37,14 @@ class _Binding:
     def places(self, frame: float) -> Array:
         surface, triangles = self.obstacle.at(frame), self.obstacle.mesh.triangles
         place, axes = _core.root_frames(surface, triangles, self.triangle, self.barycentric)
-        return place + np.einsum("nij,nj->ni", axes, self.away)
+        return place + np.einsum("nij,nj->ni", axes, self.offset)
 
 
 class PinnedVertices:
-    """The vertices of a pin, how they are pinned and where to.
+    """The vertices of a pin, and what holds them.
 
     stiffness: of their springs [N/m], shape (k,); None: they are held
-    obstacle:  which one carries them; -1: none
+    obstacle:  the index of the one that carries them; -1: none
     """
 
     def __init__(
@@ -67,7 +67,7 @@ class PinnedVertices:
         self._binding = None if pin.to is None else _Binding.of(begin[self.vertices], obstacles[self.obstacle], first)
 
     def places(self, frame: float) -> Array:
-        """Where the vertices belong at a frame [m], shape (k, 3)."""
+        """The targets of the vertices at a frame [m], shape (k, 3)."""
         return self._binding.places(frame) if self._binding else self._clip.at(frame)[self.vertices]
 
     def _named(self, name: str, obstacles: Sequence[Obstacle]) -> int:

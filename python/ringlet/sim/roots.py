@@ -1,4 +1,4 @@
-"""Roots that follow the scalp: how the held vertices of every lock move with the animated mesh."""
+"""Roots that follow the animated scalp, and carry the held vertices of their locks."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ringlet.data.groom import Groom
 
 @dataclass
 class Roots:
-    """Carries every lock rigidly with the place where it is rooted, in position and orientation."""
+    """Carries every lock rigidly with the frame of its root on the scalp."""
 
     groom: Groom
 
@@ -25,7 +25,7 @@ class Roots:
         self._rest = self._frames(self.groom.scalp.points, "rest pose")
 
     def carry(self, scalp_points: NDArray[np.float64], frame: float) -> NDArray[np.float64]:
-        """The groomed locks on the scalp as it stands at ``frame``, each moved rigidly; positions [m], shape (n, 3)."""
+        """The groomed locks on the scalp at ``frame``, each moved rigidly; positions [m], shape (n, 3)."""
         rest_place, rest_axes = self._rest
         place, axes = self._frames(scalp_points, f"frame {frame:g}")
         locks, turns = self.groom.locks, axes @ rest_axes.transpose(0, 2, 1)

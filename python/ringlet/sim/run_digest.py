@@ -13,7 +13,7 @@ from ringlet.sim.checkpoint import digest
 from ringlet.sim.garment import Garment
 from ringlet.sim.obstacle import Obstacle
 
-# Where things are read from is not what they are, and neither is how far a run goes.
+# Settings that change no frame: file names, whose content is part of the digest, and how far a run goes.
 _PLACES = {
     "groom": True,
     "frames": True,
@@ -32,7 +32,7 @@ def digest_of_run(
     garments: Sequence[Garment],
     frames: tuple[int, int] | None,
 ) -> str:
-    """A digest of all that a run is made from."""
+    """A digest of all that the frames of a run depend on."""
     curves = [groom.locks] if rest is None else [groom.locks, rest]
     arrays = [
         part for c in curves for part in (c.offsets, c.ids, c.points, *(c.curve[name] for name in sorted(c.curve)))

@@ -1,4 +1,4 @@
-"""Scenes: strands, cloth and bodies that touch one another, solved together."""
+"""Scenes: strands, cloth and bodies in contact, solved together."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ from ringlet.sim.friction import friction_matrix
 from ringlet.sim.obstacle import Body
 from ringlet.sim.strands import Strands
 
-_OF_CLOTH = ("positions", "velocities")  # all that a cloth remembers
+_OF_CLOTH = ("positions", "velocities")  # the state of a cloth
 
 
 @dataclass
 class Scene:
-    """Strands, cloths and bodies in contact, in one implicit step; nothing passes through anything.
+    """Strands, cloths and bodies in contact, in one implicit step without intersections.
 
-    strands:   in motion; they go on being stepped here; by default there are none
-    bodies:    the surfaces that they touch
+    strands:   in motion, stepped by the scene from now on; by default there are none
+    bodies:    surfaces with prescribed motion
     rooted_in: per strand the body that holds its root, which the held vertices may touch; -1: none. Shape (count,)
     cloths:    in motion as well; contact begins half their thickness from them
     pinned_to: per cloth the body that carries its held vertices, which these may touch; -1: none. Shape (cloths,)
@@ -76,14 +76,14 @@ class Scene:
 
     @property
     def memory(self) -> dict[str, NDArray[Any]]:
-        """All that the next step depends on besides the memory of the strands, as arrays by name."""
+        """The state that the next step depends on besides that of the strands, as arrays by name."""
         cloths = {
             f"cloth_{k}_{name}": getattr(cloth, name) for k, cloth in enumerate(self.cloths) for name in _OF_CLOTH
         }
         return {**self._core.memory, **{name: values.copy() for name, values in cloths.items()}}
 
     def recall(self, memory: Mapping[str, NDArray[Any]]) -> None:
-        """Goes back to a memory of a scene that was made in the same way."""
+        """Restores the state of a scene that was made from the same."""
         self._core.recall({name: values for name, values in memory.items() if not name.startswith("cloth_")})
         for k, cloth in enumerate(self.cloths):
             for name in _OF_CLOTH:
@@ -93,7 +93,7 @@ class Scene:
     def path(self) -> NDArray[np.float64]:
         """Positions [m] at the start and after each move of the last step, shape (k, n, 3); needs ``record()``.
 
-        Nothing meets while every vertex goes straight from one to the next.
+        There is no intersection while every vertex moves straight from one to the next.
         """
         return self._core.path
 
@@ -102,12 +102,12 @@ class Scene:
         self._core.record(on)
 
     def excuse(self, vertices: NDArray[np.integer], body: int) -> None:
-        """Lets vertices of strands be inside a body until they have been pushed out of it, gently."""
+        """Tolerates initial penetration: vertices of strands may be inside a body until they are pushed out of it."""
         self._core.excuse(np.ascontiguousarray(vertices, np.int32), body)
 
     @property
     def excused(self) -> int:
-        """How many vertices are still inside a body, excused."""
+        """How many vertices with initial penetration are still inside a body."""
         return self._core.excused
 
     @property
@@ -116,15 +116,15 @@ class Scene:
         return self._core.contacts
 
     def touching(self) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
-        """What touches where everything is now, without a step: vertices (k, 4); weights, normal, distance [m], (k, 8).
+        """Contacts at the present positions, without a step: vertices (k, 4); weights, normal, distance [m], (k, 8).
 
-        Of all pairs that are nearer than their distance, however they began. No step depends on it.
+        All pairs nearer than their distance of contact, also initial overlaps. No step depends on it.
         """
         vertices, values = self._core.touching()
         return vertices, values[:, :8]
 
     def bear(self, vertices: NDArray[np.integer], forces: NDArray[np.floating]) -> None:
-        """Says what pairs that touch as everything begins bear there, before the first step: they do so at once.
+        """Sets the contact forces of pairs at the start, before the first step, which then begins with them.
 
         vertices: of pairs, as ``touching`` has them, shape (k, 4)
         forces:   on the first of the two [N], shape (k, 3): away from the second; across, towards the last vertex from
@@ -134,7 +134,7 @@ class Scene:
 
     @property
     def touches(self) -> Touches:
-        """Where the last step's contacts are, how near, and how hard they push."""
+        """The positions, gaps and normal forces of the last step's contacts."""
         vertices, values = self.contacts
         at, weights = self.positions[vertices], values[:, :4]
         one, other = (np.einsum("kv,kvi->ki", np.maximum(sign * weights, 0.0), at) for sign in (1.0, -1.0))
@@ -143,7 +143,7 @@ class Scene:
 
     @property
     def cloth_reports(self) -> list[dict[str, float]]:
-        """Of each cloth, what happened to it in the last step (see ``Cloth.step``)."""
+        """The report of each cloth for the last step (see ``Cloth.step``)."""
         return [dict(zip(_core.CLOTH_REPORT, row.tolist(), strict=True)) for row in self._cloth_rows]
 
     def step(
@@ -164,7 +164,7 @@ class Scene:
         targets: of the vertices of strands; None: they stay
         cloths:  where each cloth's held and attached vertices end [m], shape (n, 3) each; without it they stay
         bodies:  where each body's points end [m]; without it they stay
-        forces:  what pulls at each vertex of strands besides gravity and air [N], shape (n, 3)
+        forces:  on each vertex of strands besides gravity and air [N], shape (n, 3)
         cloth_forces: likewise at those of each cloth
         Returns the scene's report and that of every strand (see ``Strands.step``).
         """
@@ -192,7 +192,7 @@ class Scene:
         return report, dict(zip(_core.REPORT, rows.T, strict=True))
 
 
-def _rows(parts: Sequence[NDArray[np.floating]] | None, otherwise: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The parts' rows one after another, or what stands for them."""
-    rows = otherwise if parts is None else np.concatenate([np.zeros((0, 3)), *parts])
+def _rows(arrays: Sequence[NDArray[np.floating]] | None, otherwise: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The rows of all arrays; without arrays those of ``otherwise``."""
+    rows = otherwise if arrays is None else np.concatenate([np.zeros((0, 3)), *arrays])
     return np.ascontiguousarray(rows, np.float64)

@@ -1,8 +1,8 @@
-"""Running a shot: frame by frame, the scalp moves, and strands and cloth follow."""
+"""The run of a shot: frame by frame, the scalp moves, and strands and cloth follow."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -20,7 +20,7 @@ from ringlet.sim.garment import Garment
 from ringlet.sim.motion import Motion
 from ringlet.sim.obstacle import Obstacle
 
-TOUCHES = "touches "  # before the names of arrays that tell what touches
+CLOTH, TOUCHES = "cloth ", "touches "  # prefixes of the arrays of cloths and of contacts in checkpoints
 
 Progress = Callable[[str, int, int], None]
 OnFrame = Callable[[float, NDArray[np.float32], dict[str, Any]], None]
@@ -43,16 +43,15 @@ def simulate(
 ) -> Cache:
     """Moves the locks of ``groom`` while its scalp plays ``clip``.
 
-    rest:      the shape that the locks remember, in the rest pose of the scalp; the groomed one by default. Its
-               attribute ``stiffened`` says how many times each is stiffer against bend
-    obstacles: what the locks touch, where the shot has contact
-    garments:  what becomes cloth there
-    frames:    first and last frame, in place of the shot's
-    touches:   keep what touches in every frame
-    progress:  called as progress("sim", done, total)
-    on_frame:  called with each frame's number, positions [m] of shape (n, 3) and statistics, as soon as it is there
-    checkpoints: where to keep what is done, so that ``resume`` goes on after a run that was broken off, to the same
-               bits
+    rest:        the rest shape of the locks, in the rest pose of the scalp; the groomed one by default. Its attribute
+                 ``stiffened`` has the times that each lock is stiffer against bend
+    obstacles:   meshes in contact with the locks, where the shot has contact
+    garments:    meshes that become cloth there
+    frames:      first and last frame, in place of the shot's
+    touches:     keep the contacts of every frame
+    progress:    called as progress("sim", done, total)
+    on_frame:    called with each frame's number, positions [m] of shape (n, 3) and statistics, as soon as it is done
+    checkpoints: the folder from which ``resume`` continues a run that was interrupted, to the same bits
     """
     first, last = frames or shot.frames
     motion = Motion(shot, groom, clip, rest, obstacles, garments, first)
@@ -80,13 +79,13 @@ def _check_frames(first: int, last: int) -> None:
 
 @dataclass
 class Frame:
-    """What a run gives at one frame.
+    """The result of a run at one frame.
 
     number:     of the frame
     points:     positions of the locks [m], shape (n, 3), float32
     cloths:     those of each cloth
-    statistics: what the solver reports
-    touches:    what touches, where that was asked for
+    statistics: the report of the solver
+    touches:    the contacts, where they were asked for
     """
 
     number: float
@@ -94,6 +93,26 @@ class Frame:
     cloths: list[NDArray[np.float32]]
     statistics: dict[str, Any]
     touches: Touches | None = None
+
+    @classmethod
+    def now(cls, number: float, motion: Motion, statistics: dict[str, Any], touches: bool) -> Frame:
+        """The frame at which a motion is."""
+        cloths = [np.asarray(worn.cloth.positions, np.float32) for worn in motion.worn]
+        contacts = motion.scene.touches if touches and motion.scene else None
+        return cls(number, np.asarray(motion.strands.positions, np.float32), cloths, statistics, contacts)
+
+    @classmethod
+    def stored(cls, number: float, arrays: Mapping[str, NDArray[Any]], statistics: dict[str, Any]) -> Frame:
+        """The frame of arrays in a checkpoint."""
+        contacts = {name.removeprefix(TOUCHES): values for name, values in arrays.items() if name.startswith(TOUCHES)}
+        cloths = [values for name, values in arrays.items() if name.startswith(CLOTH)]
+        return cls(number, arrays["locks"], cloths, statistics, Touches(**contacts) if contacts else None)
+
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """Its arrays for a checkpoint, by name."""
+        cloths = {f"{CLOTH}{k}": points for k, points in enumerate(self.cloths)}
+        contacts = {f"{TOUCHES}{name}": values for name, values in vars(self.touches).items()} if self.touches else {}
+        return {"locks": self.points, **cloths, **contacts}
 
 
 def play(
@@ -105,52 +124,49 @@ def play(
     checkpoints: Checkpoints | None = None,
     resume: bool = False,
 ) -> Iterator[Frame]:
-    """Yields the frames from the first of a motion to ``last``, each as soon as it is there; see ``simulate``."""
+    """Yields the frames from the first of a motion to ``last``, each as soon as it is done; see ``simulate``."""
     _check_frames(motion.first, last)
-    before = motion.shot.preroll
-    total = before + last - motion.first + 1
-    done, memory = (checkpoints.begin(resume) if checkpoints else None) or (0, {})
+    preroll = motion.shot.preroll
+    total = preroll + last - motion.first + 1
+    done, state = (checkpoints.begin(resume) if checkpoints else None) or (0, {})
     done = min(done, total)
     if checkpoints and done:
-        for frame in replay(motion, checkpoints, done):
-            if touches and not frame.touches:
-                raise UserError(
-                    f"{checkpoints.folder}: the run that left it did not keep what touched; "
-                    "leave out --contacts, or run without --resume to start over"
-                )
-            yield frame
-        motion.recall(memory)
+        yield from _resumed(motion, checkpoints, done, touches)
+        motion.recall(state)
     for step in range(done, total):
-        k = step - before
+        k = step - preroll  # from the first frame; negative while the head is still
         statistics = motion.advance(motion.first + max(k - 1, 0), motion.first + max(k, 0))
-        moved = {name: np.asarray(points, np.float32) for name, points in motion.positions.items()} if k >= 0 else {}
-        touching = motion.scene.touches if touches and motion.scene and k >= 0 else None
+        frame = Frame.now(motion.first + k, motion, statistics, touches) if k >= 0 else None
         if checkpoints:
-            kept = {f"{TOUCHES}{name}": values for name, values in vars(touching).items()} if touching else {}
-            checkpoints.keep(step, moved | kept, statistics)
+            checkpoints.keep(step, frame.arrays() if frame else {}, statistics)
             if (step + 1) % checkpoints.every == 0 and step + 1 < total:
                 checkpoints.remember(step + 1, motion.memory)
         if progress:
             progress("sim", step + 1, total)
-        if k >= 0:
-            yield Frame(motion.first + k, moved.pop("locks"), list(moved.values()), statistics, touching)
+        if frame:
+            yield frame
+
+
+def _resumed(motion: Motion, checkpoints: Checkpoints, done: int, touches: bool) -> Iterator[Frame]:
+    """The frames that an interrupted run left behind; refuses those without contacts where these are wanted."""
+    for frame in replay(motion, checkpoints, done):
+        if touches and not frame.touches:
+            raise UserError(
+                f"{checkpoints.folder}: the run that left it did not keep what touched; "
+                "leave out --contacts, or run without --resume to start over"
+            )
+        yield frame
 
 
 def replay(motion: Motion, checkpoints: Checkpoints, steps: int) -> Iterator[Frame]:
-    """The frames among the first steps of a motion, from where they are kept."""
+    """The frames among the first steps of a motion, from its checkpoints."""
     for k, (arrays, statistics) in enumerate(checkpoints.kept(steps), -motion.shot.preroll):
         if k >= 0:
-            touching = {name: arrays.pop(name) for name in [*arrays] if name.startswith(TOUCHES)}
-            touches = (
-                Touches(**{name.removeprefix(TOUCHES): values for name, values in touching.items()})
-                if touching
-                else None
-            )
-            yield Frame(motion.first + k, arrays.pop("locks"), list(arrays.values()), statistics, touches)
+            yield Frame.stored(motion.first + k, arrays, statistics)
 
 
 class StoredTouches:
-    """What touched in the first steps of a motion, frame by frame, from where it is kept."""
+    """The contacts of the first steps of a motion, frame by frame, from its checkpoints."""
 
     def __init__(self, motion: Motion, checkpoints: Checkpoints, steps: int) -> None:
         self._of = motion, checkpoints, steps

@@ -19,12 +19,12 @@ from ringlet.sim.core import OF_STRANDS, Vector, assign, solver_arguments
 
 @dataclass
 class Strands:
-    """Strands in motion, at rest in their rest shape to begin with.
+    """Strands in motion, at the start at rest in their rest shape.
 
     curves:    the rest shape, positions [m]
-    material:  what they are made of
-    held:      which vertices follow ``targets``: a number of them from each root (three hold position and frame), or a
-               mask of shape (n,) that contains the roots
+    material:  their material
+    held:      the vertices that follow ``targets``: a number of them from each root (three hold position and frame), or
+               a mask of shape (n,) that contains the roots
     variation: factors on the material per vertex, shape (n,) each, by name: radius, stretch, bend, twist, damping
     """
 
@@ -70,7 +70,7 @@ class Strands:
         return self._core.masses
 
     def loads(self, gravity: Vector, wind: Vector = (0.0, 0.0, 0.0)) -> NDArray[np.float64]:
-        """What gravity [m/s²] and wind [m/s] do to strands that are still [N], shape (n, 3)."""
+        """The forces of gravity [m/s²] and wind [m/s] on strands that are still [N], shape (n, 3)."""
         return np.outer(self._core.masses, gravity) + np.outer(self._core.drag, wind)
 
     @property
@@ -80,16 +80,16 @@ class Strands:
         return self._core.stretch_stiffness, self._core.bend_stiffness, self._core.twist_stiffness
 
     def place(self, positions: NDArray[np.floating]) -> None:
-        """Puts the strands at rest at other positions [m], shape (n, 3); the rest shape stays what it was."""
+        """Puts the strands at rest at other positions [m], shape (n, 3), and keeps their rest shape."""
         self._core.place(np.ascontiguousarray(positions, np.float64))
 
     @property
     def memory(self) -> dict[str, NDArray[Any]]:
-        """All that the next step depends on besides what the strands were made from, as arrays by name."""
+        """The state that the next step depends on, as arrays by name."""
         return self._core.memory
 
     def recall(self, memory: Mapping[str, NDArray[Any]]) -> None:
-        """Goes back to a memory of strands that were made from the same."""
+        """Restores the state of strands that were made from the same."""
         self._core.recall(dict(memory))
 
     def step(
@@ -104,7 +104,7 @@ class Strands:
     ) -> dict[str, NDArray[np.float64]]:
         """Advances by ``dt`` [s]; held vertices end where ``targets`` [m], shape (n, 3), has them.
 
-        forces: what pulls at each vertex besides gravity and air [N], shape (n, 3)
+        forces: on each vertex besides gravity and air [N], shape (n, 3)
         Returns the report of every strand, one array of shape (count,) per quantity (see ``_core.REPORT``).
         """
         solver = solver or Solver()
@@ -126,12 +126,12 @@ class Strands:
         return self._core.energy(points, getattr(_core.Continuation, continuation), hessian)
 
     def stiffness_to_stand(self, left: NDArray[np.float64], most: float) -> NDArray[np.float64]:
-        """How many times stiffer against bend and twist each strand must be, at least 1, to stand where it is still.
+        """The factors on bend and twist stiffness, at least 1, with which strands in equilibrium are stable.
 
-        It stands where all of its energy's second derivative is positive, whatever it is nudged by.
-        left: the part of its resistance to bend and twist without load that it must keep, in every direction; from 0
-              below 1, shape (count,)
-        most: infinite where so much does not suffice
+        A strand is stable where the second derivative of its energy is positive in every direction.
+        left: the fraction of its stiffness without load that it must keep in every direction, from 0 below 1, shape
+              (count,)
+        most: the largest factor; infinite where it does not suffice
         """
         return self._core.stiffness_to_stand(np.ascontiguousarray(left, np.float64), most)
 
@@ -146,7 +146,7 @@ class Strands:
         steps: int = 2000,
         continuation: Continuation = "material_frame",
     ) -> bool:
-        """Lets the strands come to rest under gravity, wind and forces [N], in large steps; what is held stays put.
+        """Lets the strands come to rest under gravity, wind and forces [N], in large steps; held vertices stay.
 
         Returns whether they have: no coordinate moved more than ``tolerance`` [m] in the last step.
         """

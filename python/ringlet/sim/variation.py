@@ -38,7 +38,7 @@ def at_vertices(varied: Mapped, groom: Groom, setting: str, seed: int = 1) -> ND
 
 
 def _places(locks: Curves) -> NDArray[np.float64]:
-    """How far along its lock each vertex is, from 0 at the root to 1 at the tip, by arc length; shape (n,)."""
+    """Arc length of each vertex relative to its lock's, from 0 at the root to 1 at the tip, shape (n,)."""
     steps = np.linalg.norm(np.diff(locks.points, axis=0, prepend=locks.points[:1]), axis=1)
     steps[locks.offsets[:-1]] = 0.0
     run = np.cumsum(steps)
@@ -46,7 +46,7 @@ def _places(locks: Curves) -> NDArray[np.float64]:
 
 
 def _at_points(name: str, locks: Curves, setting: str) -> NDArray[np.float64]:
-    """What is painted on the points of the locks, shape (n,)."""
+    """Values painted on the points of the locks, shape (n,)."""
     values = np.asarray(locks.point[name], np.float64)
     if values.ndim != 1:
         raise UserError(
