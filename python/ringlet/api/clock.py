@@ -1,4 +1,4 @@
-"""What benchmarks measure with, and the object that they print."""
+"""The clock of benchmarks, and the object that they print."""
 
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ class Clock:
 
     @contextmanager
     def __call__(self, stage: str) -> Iterator[None]:
-        """Adds the time that the block takes."""
+        """Adds the time of the block."""
         cpu, wall = time.process_time(), time.perf_counter()
         yield
         self.cpu.setdefault(stage, []).append(1e3 * (time.process_time() - cpu))
         self.wall.setdefault(stage, []).append(1e3 * (time.perf_counter() - wall))
 
     def result(self, name: str, params: dict[str, Any], *, per: str, warm_up: int, **counts: Any) -> dict[str, Any]:
-        """The contract object of ``ringlet bench``: what was asked, times of the stage ``per`` and of all, and counts.
+        """The JSON object of ``ringlet bench``: parameters, times of the stage ``per`` and of all stages, and counts.
 
         The first ``warm_up`` evaluations are left out of every time.
         """
@@ -58,7 +58,7 @@ class Clock:
 def solver_counts(
     strands: list[dict[str, NDArray[np.float64]]], scenes: Sequence[dict[str, float]] = ()
 ) -> dict[str, Any]:
-    """What a benchmark of the solver counts, from the reports of all its steps: of ``Strands.step``, or the two of
+    """Counts of a benchmark of the solver, from the reports of all its steps: of ``Strands.step``, or the two of
     ``Scene.step``. Counts of contact are means over the steps."""
 
     def mean(name: str) -> float:

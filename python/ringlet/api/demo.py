@@ -1,4 +1,4 @@
-"""The whole way on the example, from a recipe to moving curls and a picture of them."""
+"""The whole pipeline on the example, from a recipe to moving curls and a picture of them."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ STILL_FRAME = 22  # in the middle of the quick turn
 STILL_SECONDS = 110.0  # a slow machine gets a noisier picture, not a longer wait
 MOVING = 1 / 6  # share of the hairs that move in hair.usdc, which keeps it small; the still has all of them
 
-# How much of the whole each stage takes, as measured; only the overall bar depends on it.
+# The share of each stage in the total time, as measured; only the overall bar depends on it.
 SHARES = {"groom": 1, "simulate": 23, "hairs": 1, "still": 48, "sheet": 27}
 
 
@@ -33,14 +33,14 @@ def run_demo(folder: Path | str, *, progress: api.Progress | None = None) -> Run
             groom = api.build_groom(example / "ribbon.recipe.toml", progress=_overall("groom", progress))
             api.write_groom(groom, groom_file)
             run.count(guides=len(groom.guides), locks=len(groom.locks))
-        with run.stage("simulate", cache_file, "the guides and a ribbon in motion"), _aside(folder) as kept:
-            shot, part = api.read_shot(example / "ribbon.shot.toml"), _overall("simulate", progress)
-            told = api.write_simulation(shot, groom, groom_file, cache_file, checkpoints=kept, progress=part)
-            run.count(frames=len(told.frames))
-            run.simulated(told)
+        with run.stage("simulate", cache_file, "the guides and a ribbon in motion"), _aside(folder) as checkpoints:
+            shot, inner = api.read_shot(example / "ribbon.shot.toml"), _overall("simulate", progress)
+            record = api.write_simulation(shot, groom, groom_file, cache_file, checkpoints=checkpoints, progress=inner)
+            run.count(frames=len(record.frames))
+            run.simulated(record)
         with run.stage("hairs", hair_file, f"hairs in motion, {MOVING:.0%} of all"):
-            part, clip = _overall("hairs", progress), (FIRST_FRAME, shot.frames[1])
-            api.write_hairs(groom_file, hair_file, cache=cache_file, frames=clip, fraction=MOVING, progress=part)
+            inner, clip = _overall("hairs", progress), (FIRST_FRAME, shot.frames[1])
+            api.write_hairs(groom_file, hair_file, cache=cache_file, frames=clip, fraction=MOVING, progress=inner)
         with (
             run.stage("still", still_file, f"frame {STILL_FRAME} with all hairs, path-traced"),
             _aside(folder) as aside,
@@ -68,21 +68,21 @@ def run_demo(folder: Path | str, *, progress: api.Progress | None = None) -> Run
 
 @contextmanager
 def _aside(folder: Path) -> Iterator[Path]:
-    """A folder beside the files that is gone in the end."""
+    """A temporary folder beside the files."""
     with tempfile.TemporaryDirectory(dir=folder) as aside:
         yield Path(aside)
 
 
-def _overall(part: str, progress: api.Progress | None) -> api.Progress | None:
-    """Reports a part as itself and as its share of the whole, in per cent."""
+def _overall(stage: str, progress: api.Progress | None) -> api.Progress | None:
+    """Reports the progress of a stage and, in per cent, of the whole demo."""
     if progress is None:
         return None
     names = list(SHARES)
-    before = sum(SHARES[name] for name in names[: names.index(part)])
+    before = sum(SHARES[name] for name in names[: names.index(stage)])
 
-    def report(stage: str, done: int, total: int) -> None:
-        progress("demo", round(before + SHARES[part] * done / max(total, 1)), 100)
-        progress(stage, done, total)
+    def report(name: str, done: int, total: int) -> None:
+        progress("demo", round(before + SHARES[stage] * done / max(total, 1)), 100)
+        progress(name, done, total)
 
     progress("demo", before, 100)
     return report

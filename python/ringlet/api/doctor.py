@@ -1,4 +1,4 @@
-"""What is installed and whether it works: versions, processors, optional parts, and a self-test of some seconds."""
+"""A check of the installation: versions, processor, optional packages, and a self-test of some seconds."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ PICTURE = 96  # height of the self-test's picture [pixels]
 
 @dataclass
 class Finding:
-    """One thing that was looked at.
+    """One item of the check.
 
     state:  ``ok``; ``optional``: not there, and not needed; ``fails``
-    remedy: what to do about it; empty where there is nothing to do
+    remedy: what to do about it; empty where nothing needs doing
     """
 
     name: str
@@ -45,7 +45,7 @@ class Finding:
 
 
 def diagnose(*, self_test: bool = True, progress: api.Progress | None = None) -> list[Finding]:
-    """Looks at the installation and, with ``self_test``, lets it groom, simulate, write, read and draw a little."""
+    """Checks the installation and, with ``self_test``, grooms, simulates, writes, reads and draws a little."""
     looks = [_ringlet, _processor, _memory, *(_package(name) for name in _needed()), _pardiso, _dask, _openjd, _page]
     tests: list[Callable[[Path], Finding]] = (
         [_test_core, _test_contact, _test_files, _test_picture] if self_test else []
@@ -99,7 +99,7 @@ def _package(name: str) -> Callable[[], Finding]:
 
 
 def _pardiso() -> Finding:
-    from ringlet.sim.direct import open_pardiso  # not before it is asked for: it brings all of the simulation in
+    from ringlet.sim.direct import open_pardiso  # imported late, since it loads all of the simulation
 
     if open_pardiso():
         return Finding("MKL PARDISO", "ok", "opened")

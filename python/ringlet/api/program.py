@@ -1,4 +1,4 @@
-"""What is about Ringlet itself: known answers, benchmarks, schemas, threads."""
+"""Known answers, benchmarks, schemas and threads."""
 
 from __future__ import annotations
 

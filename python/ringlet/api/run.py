@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Self
 from ringlet.data.files import check_place
 
 if TYPE_CHECKING:
-    from ringlet.data.cache import Cache, Told
+    from ringlet.data.cache import Cache, SimulationRecord
 
 __all__ = ["Run"]
 
@@ -25,7 +25,7 @@ CARRIED = "Locks touch, single hairs do not: they go with their lock, and may di
 
 @dataclass
 class Stage:
-    """A part of a run.
+    """A stage of a run.
 
     name: what was done
     wall: time on the clock [s]
@@ -42,7 +42,7 @@ class Stage:
 
 
 class Run:
-    """Collects what one run did; when the block ends well, the report is written to ``folder``, if there is one.
+    """Collects the stages and results of a run; when the block succeeds, writes the report to ``folder``, if given.
 
     Example::
 
@@ -59,7 +59,7 @@ class Run:
         self.pictures: dict[Path, str] = {}
         self.tables: list[tuple[str, list[str], list[list[str]]]] = []
         self.warnings: list[str] = []
-        self.cache: Cache | Told | None = None
+        self.cache: Cache | SimulationRecord | None = None
         self.slowest: str | None = None
         if self.folder is not None:
             check_place(self.folder / "report.html")
@@ -73,7 +73,7 @@ class Run:
 
     @contextmanager
     def stage(self, name: str, file: Path | str | None = None, what: str = "") -> Iterator[None]:
-        """Times a part of the run. A ``file`` that it cannot write is refused before the work for it is done."""
+        """Times a stage of the run. A ``file`` that cannot be written is refused before the work for it."""
         if file is not None:
             check_place(file)
         wall, cpu = time.perf_counter(), time.process_time()
@@ -85,11 +85,11 @@ class Run:
         )
 
     def count(self, **counts: int) -> None:
-        """Notes how many there are of what was made: ``run.count(locks=1200)``."""
+        """Notes counts of the result: ``run.count(locks=1200)``."""
         self.counts |= counts
 
-    def simulated(self, cache: Cache | Told) -> None:
-        """Notes a simulation, for the charts of its statistics, and what was in the way when it started."""
+    def simulated(self, cache: Cache | SimulationRecord) -> None:
+        """Notes a simulation: its statistics for the charts, and its report of initial penetration."""
         from ringlet.report import explain_slowest, start_table, start_warnings
 
         self.cache = cache
@@ -107,7 +107,7 @@ class Run:
         self.tables.append((title, columns, rows))
 
     def warn(self, sentence: str) -> None:
-        """Notes what the reader of the report should know."""
+        """Notes a warning for the reader of the report."""
         self.warnings.append(sentence)
 
     def _write_report(self, folder: Path) -> None:

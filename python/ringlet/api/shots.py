@@ -1,4 +1,4 @@
-"""Shots: read, lofted and simulated, and the caches that come of them."""
+"""Shots, lofts and simulations, and the caches that they make."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from ringlet.data.errors import UserError
 from ringlet.data.files import within
 
 if TYPE_CHECKING:
-    from ringlet.data.cache import Cache, Told
+    from ringlet.data.cache import Cache, SimulationRecord
     from ringlet.data.groom import Groom
     from ringlet.data.mesh import Clip
     from ringlet.io import CacheFile
@@ -62,9 +62,9 @@ def simulate(
     groom:       in place of the one that the shot names
     frames:      first and last frame, in place of the shot's
     allow_stale: use a lofted shape although it was made from another groom, material or forces
-    checkpoints: a folder that keeps what is done while it runs; to be taken away when its result has been written
-    resume:      go on with what a run that was broken off left there, to the same bits
-    touches:     keep what touches in every frame, for ``write_touches``
+    checkpoints: a folder for checkpoints; to be removed when the result has been written
+    resume:      continue an interrupted run from its checkpoints, to the same bits
+    touches:     keep the contacts of every frame, for ``write_touches``
     """
     from ringlet import shot as shots
     from ringlet import sim
@@ -98,16 +98,16 @@ def write_simulation(
     touches: bool = False,
     progress: Progress | None = None,
     on_frame: OnFrame | None = None,
-) -> Told:
+) -> SimulationRecord:
     """``simulate`` and ``write_cache`` in one, with one frame at a time in memory, however long the shot is.
 
-    under:       the USD file that ``write_groom`` made of the groom, over which the cache is laid
-    checkpoints: the folder that keeps the frames; they go to ``path`` when all are there
-    touches:     keep what touches in every frame there too, for ``write_touches``
-    on_frame:    called with each frame's number and statistics, as soon as it is there
+    under:       the USD file that ``write_groom`` made of the groom, the layer below the cache
+    checkpoints: the folder of the frames, which are written to ``path`` when all are done
+    touches:     keep the contacts of every frame there too, for ``write_touches``
+    on_frame:    called with each frame's number and statistics, as soon as it is done
     """
     from ringlet import io, sim
-    from ringlet.data.cache import Told
+    from ringlet.data.cache import SimulationRecord
 
     io.check_target(path, under)
     groom = _taken(groom)
@@ -119,7 +119,7 @@ def write_simulation(
         if on_frame:
             on_frame(frame.number, frame.statistics)
     steps = shot.preroll + last - first + 1
-    told = Told(
+    record = SimulationRecord(
         start=motion.start,
         cloths={worn.name: len(worn.cloth.positions) for worn in motion.worn},
         touches=sim.StoredTouches(motion, kept, steps) if touches else (),
@@ -127,18 +127,18 @@ def write_simulation(
     with io.CacheWriter(path, under, io.read_space(Path(under)), motion.cloths(0), groom.variant) as writer:
         writer.start = motion.start
         for frame in sim.replay(motion, kept, steps):
-            told.frames.append(frame.number)
-            told.statistics.append(frame.statistics)
+            record.frames.append(frame.number)
+            record.statistics.append(frame.statistics)
             writer.add(frame.number, frame.points, frame.statistics, frame.cloths)
-    return told
+    return record
 
 
 def hold_checkpoints(folder: Path | str) -> AbstractContextManager[int]:
-    """Keeps other programs out of a folder of checkpoints while the block runs, also before there are any.
+    """Locks a folder of checkpoints for this program while the block runs, also before there are any.
 
-    For who writes other files that go with a run, such as its groom, before ``write_simulation``. A folder in which
-    nothing was kept is gone after the block. Gives the number of steps (frames, and those of the preroll) that a run
-    which was broken off left to ``resume`` after, 0 for none. Raises UserError where another run is at it.
+    For programs that write other files of a run, such as its groom, before ``write_simulation``. An empty folder is
+    removed after the block. Gives the number of steps (frames, and those of the preroll) after which an interrupted run
+    can ``resume``, 0 for none. Raises UserError where another run has locked it.
 
     Example::
 
@@ -152,7 +152,7 @@ def hold_checkpoints(folder: Path | str) -> AbstractContextManager[int]:
 
 
 def made_from(shot: Shot, groom: Groom, *, frames: tuple[int, int] | None = None) -> str:
-    """A digest of all that the frames of a simulation depend on: two runs with the same give the same bits."""
+    """A digest of all that a simulation depends on: two runs with the same digest give the same bits."""
     from ringlet import sim
 
     groom = _taken(groom)
@@ -160,7 +160,7 @@ def made_from(shot: Shot, groom: Groom, *, frames: tuple[int, int] | None = None
 
 
 def start_motion(shot: Shot, groom: Groom, *, allow_stale: bool = False) -> Motion:
-    """The locks of a groom at the start of a shot, to be moved frame by frame by who wants to see each."""
+    """The locks of a groom at the start of a shot, for callers that advance it frame by frame."""
     from ringlet import sim
 
     groom = _taken(groom)
@@ -168,9 +168,9 @@ def start_motion(shot: Shot, groom: Groom, *, allow_stale: bool = False) -> Moti
 
 
 def _taken(groom: Groom | Path | str, progress: Progress | None = None) -> Groom:
-    """The groom as a shot takes it: with the numbers of its file, also where it comes from a recipe.
+    """The groom of a shot, rounded as in its file, also where it comes from a recipe.
 
-    Steps end before they have converged to the last digit, and what differs there grows.
+    Steps end before they converge to the last digit, and differences there grow.
     """
     from ringlet import io
     from ringlet.data.groom import Groom
@@ -179,7 +179,7 @@ def _taken(groom: Groom | Path | str, progress: Progress | None = None) -> Groom
 
 
 def _inputs(shot: Shot, groom: Groom, allow_stale: bool) -> dict[str, Any]:
-    """What files hold that a shot and its groom name: what ``sim.simulate`` takes besides the two."""
+    """The contents of the files that a shot and its groom name: the further arguments of ``sim.simulate``."""
     clip, garments = scalp_clip(groom), _garments(shot, groom)
     obstacles = _obstacles(shot, groom, garments)
     rest = _rest_shape(shot, groom, obstacles, allow_stale)
@@ -189,7 +189,7 @@ def _inputs(shot: Shot, groom: Groom, allow_stale: bool) -> dict[str, Any]:
 def _checkpoints(
     folder: Path | str, shot: Shot, groom: Groom, inputs: dict[str, Any], frames: tuple[int, int] | None
 ) -> Checkpoints:
-    """The folder that keeps what a run has done."""
+    """The checkpoints of a run."""
     from ringlet import sim
 
     made_from = sim.digest_of_run(shot, groom, frames=frames, **inputs)
@@ -204,11 +204,11 @@ def loft(
     sag: bool = False,
     progress: Progress | None = None,
 ) -> Loft:
-    """Pre-bends the shape that the locks remember, so that the groom is what hangs under the forces of the shot.
+    """Finds the rest shape of the locks with which they hang as groomed under the forces of the shot.
 
     groom: in place of the one that the shot names
     known: a file that ``write_loft`` wrote: locks that have not changed since are taken from it
-    sag:   look how the locks hang without it too, which equilibrium need not know
+    sag:   find how the locks hang without the loft too, which equilibrium does not need
     """
     from ringlet import io, rest
     from ringlet import shot as shots
@@ -225,13 +225,13 @@ def loft(
 
 
 def rest_place(shot: Shot) -> Path:
-    """Where the loft of a shot goes when nobody says otherwise: beside the shot or below, whatever it says."""
+    """The default file of a shot's loft, which must be beside the shot or below."""
     assert shot.path is not None and shot.rest_file is not None  # a shot from a file has a place for it
     return within(shot.rest_file, shot.path.parent, f"{shot.path.name}: rest.file")
 
 
 def write_loft(loft: Loft, shot: Shot, path: Path | str) -> None:
-    """Writes the shape that locks remember, with what it was made from, for ``simulate``."""
+    """Writes a rest shape, with all that it depends on, for ``simulate``."""
     from ringlet import io, rest
 
     made_from = rest.dependencies(shot, _lain_on(shot, loft.groom))
@@ -239,14 +239,14 @@ def write_loft(loft: Loft, shot: Shot, path: Path | str) -> None:
 
 
 def _lain_on(shot: Shot, groom: Groom) -> list[Obstacle]:
-    """The bodies that a groom may lie on, as far as its rest shape asks for them."""
+    """The bodies that may support a groom, where its rest shape depends on them."""
     if shot.rest.mode != "equilibrium" or groom.scalp_file is None:
         return []
     return _obstacles(shot, groom, _garments(shot, groom))
 
 
 def _rest_shape(shot: Shot, groom: Groom, obstacles: Sequence[Obstacle], allow_stale: bool) -> Curves | None:
-    """What the locks remember: nothing but the groom, or a lofted shape that fits."""
+    """The rest shape of the locks: None for the groom, or a stored one that fits."""
     from ringlet import io, rest
 
     if shot.rest.mode == "none":
@@ -264,7 +264,7 @@ def _rest_shape(shot: Shot, groom: Groom, obstacles: Sequence[Obstacle], allow_s
 
 
 def scalp_clip(groom: Groom) -> Clip:
-    """How the scalp of a groom moves; one that an OBJ has stands still."""
+    """The animation of the scalp of a groom; one from an OBJ file stands still."""
     from ringlet import io
     from ringlet.data.mesh import Clip
 
@@ -276,12 +276,12 @@ def scalp_clip(groom: Groom) -> Clip:
 
 
 def _is_still(groom: Groom) -> bool:
-    """Whether the scalp is of a file that says nothing of motion."""
+    """Whether the scalp is of a file without animation."""
     return groom.scalp_file is not None and groom.scalp_file.suffix.lower() == ".obj"
 
 
 def _obstacles(shot: Shot, groom: Groom, garments: Sequence[Garment]) -> list[Obstacle]:
-    """What locks and cloth of a shot touch besides one another: of several settings for one mesh, the last."""
+    """The obstacles of a shot; of several settings for one mesh the last counts."""
     from ringlet import io, sim
     from ringlet import shot as shots
 
@@ -304,7 +304,7 @@ def _obstacles(shot: Shot, groom: Groom, garments: Sequence[Garment]) -> list[Ob
 
 
 def brought_along(shot: Shot, groom: Groom) -> tuple[list[Garment], list[Obstacle]]:
-    """What is seen of a shot besides what is visible with the head: its cloths, and colliders of other files."""
+    """The visible meshes of a shot besides those of the head's file: its cloths, and colliders of other files."""
     garments = _garments(shot, groom)
     apart = tuple(collider for collider in shot.collider if collider.file not in (None, groom.scalp_file))
     obstacles = _obstacles(shot.model_copy(update={"collider": apart}), groom, garments) if apart else []
@@ -333,8 +333,8 @@ def write_cache(cache: Cache, groom: Path | str, path: Path | str, *, variant: s
     io.write_cache(cache, Path(groom), Path(path), io.read_space(Path(groom)), variant)
 
 
-def write_touches(cache: Cache | Told, cache_path: Path | str, path: Path | str) -> None:
-    """Writes what touched in a simulation as coloured points: a USD layer over the file of its cache."""
+def write_touches(cache: Cache | SimulationRecord, cache_path: Path | str, path: Path | str) -> None:
+    """Writes the contacts of a simulation as coloured points: a USD layer over the file of its cache."""
     from ringlet import io
 
     io.write_touches(cache, Path(cache_path), Path(path), io.read_space(Path(cache_path)))
@@ -343,7 +343,7 @@ def write_touches(cache: Cache | Told, cache_path: Path | str, path: Path | str)
 def open_cache(path: Path | str) -> AbstractContextManager[CacheFile]:
     """Opens simulated guides to read one frame at a time, however many there are.
 
-    What it gives has ``frames``, ``size`` (points of all locks), ``statistics`` and ``start``, and
+    The file has ``frames``, ``size`` (points of all locks), ``statistics`` and ``start``, and
     ``points(frame)``: positions [m], shape (size, 3).
 
     Example::

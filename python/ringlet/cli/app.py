@@ -1,4 +1,4 @@
-"""The command ``ringlet``: its commands, and what becomes of an error.
+"""The command ``ringlet``: its commands and its errors.
 
 Exit codes: 0 success, 1 what was checked does not hold, 2 bad input, 3 a mistake in Ringlet itself, 130 interrupted.
 """
@@ -40,7 +40,7 @@ INTERRUPTED = 130  # what typer makes of a KeyboardInterrupt
 
 
 class Front(TyperGroup):
-    """Tells every error in one line, and never shows a traceback that was not asked for."""
+    """Prints every error in one line, without a traceback unless one was asked for."""
 
     def main(self, args: Sequence[str] | None = None, *rest: Any, standalone_mode: bool = True, **extra: Any) -> Any:
         """Runs a command line and exits with its code."""
@@ -72,7 +72,7 @@ def fail(message: str, code: int) -> int:
 
 
 def bug() -> str:
-    """What to say of an exception that should not have happened; its traceback goes to a file, or is shown."""
+    """The message for an unexpected exception, whose traceback is written to a file or printed."""
     if os.environ.get("RINGLET_DEBUG"):
         traceback.print_exc()
         where = "above"

@@ -1,4 +1,4 @@
-"""The result of a simulation: where every groom guide is, frame by frame."""
+"""The result of a simulation: the positions of all groom guides, frame by frame."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 class CachedCloth:
     """Simulated cloth over time.
 
-    name:   what the shot calls it
+    name:   its name in the shot
     file:   the USD file of its mesh, None where it has none
     prim:   the path of the mesh there
     points: positions [m], shape (k, n, 3), float32; the same points as the mesh's
@@ -29,11 +29,11 @@ class CachedCloth:
 
 @dataclass
 class Touches:
-    """What touches at one time.
+    """The contacts at one time.
 
-    places: in the middle between the two that touch [m], shape (k, 3), float32
-    force:  with which they push each other away [N], shape (k,), float32
-    gap:    between them, as a part of the distance at which they begin to push, from 0 to 1, shape (k,), float32
+    places: midpoints of the closest points [m], shape (k, 3), float32
+    force:  normal force [N], shape (k,), float32
+    gap:    relative to the activation distance, from 0 to 1, shape (k,), float32
     """
 
     places: NDArray[np.float32]
@@ -47,10 +47,10 @@ class Cache:
 
     frames:     frame numbers (time codes), shape (k,)
     points:     positions [m], shape (k, n, 3), float32; the same points as ``groom.locks``
-    statistics: what the solver reports, one dict per frame
-    start:      what was in the way when the shot began (see ``sim/initial_penetration.py``); empty without contact
-    cloths:     each at the same frames
-    touches:    what touches at the end of each frame, where that was asked for
+    statistics: the reports of the solver, one dict per frame
+    start:      the report of initial penetration (see ``sim/initial_penetration.py``); empty without contact
+    cloths:     the cloths at the same frames
+    touches:    the contacts at the end of each frame, where they were asked for
     """
 
     frames: NDArray[np.float64]
@@ -62,11 +62,11 @@ class Cache:
 
 
 @dataclass
-class Told:
-    """What a simulation tells besides where everything is; see ``Cache``.
+class SimulationRecord:
+    """The result of a simulation but for positions; see ``Cache``.
 
-    cloths:  how many points each has, by name
-    touches: read from where they are kept each time they are gone through, since they may be many
+    cloths:  the number of points of each, by name
+    touches: read from checkpoints each time they are iterated over, since they may be many
     """
 
     frames: list[float] = field(default_factory=list)

@@ -16,7 +16,7 @@ class Curves:
     """A set of polylines, root first, packed one after another.
 
     points:  positions [m], shape (n, 3), float64 (float32 for dense hairs)
-    offsets: where each curve begins in ``points``, and the end of the last; shape (count + 1,), int32
+    offsets: the first row of each curve in ``points``, and the end of the last; shape (count + 1,), int32
     ids:     stable names of the curves, shape (count,), int64; never reused, never an index
     curve:   attributes with one row per curve, e.g. ``root_triangle``
     point:   attributes with one row per point, e.g. ``width``
@@ -75,13 +75,13 @@ class Curves:
         )
 
     def with_points(self, points: NDArray[np.floating]) -> Curves:
-        """The same curves at other places; ``points`` has the shape of the old ones."""
+        """The same curves with other points, of the same shape."""
         if points.shape != self.points.shape:
             raise ValueError(f"curves: points have shape {points.shape}; must be {self.points.shape}")
         return Curves(points, self.offsets, self.ids, self.curve, self.point)
 
     def check(self, what: str) -> Curves:
-        """Refuses curves that nothing downstream could use; ``what`` names them in the message. Returns self."""
+        """Refuses invalid curves; ``what`` names them in the message. Returns self."""
         if len(self) == 0:
             raise UserError(f"{what}: there are no curves; give at least one")
         if self.offsets[0] != 0 or self.offsets[-1] != len(self.points) or (self.counts < 0).any():

@@ -1,4 +1,4 @@
-"""Writing without leaving half a file: write aside, then rename."""
+"""Atomic writes: a file is written aside, then renamed."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ringlet.data.errors import UserError
 
 @contextmanager
 def replacing(path: Path | str) -> Iterator[Path]:
-    """Yields a path beside ``path`` to write to; it takes the place of ``path`` only when the block succeeds.
+    """Yields a path beside ``path`` to write to, which replaces ``path`` only when the block succeeds.
 
     The suffix is kept, since writers choose their format by it. A link at ``path`` is replaced, not followed. Raises
     UserError where the place cannot be written.
@@ -31,14 +31,14 @@ def replacing(path: Path | str) -> Iterator[Path]:
     except OSError as error:
         raise UserError(f"{path}: cannot be written ({error.strerror or error}); choose another place") from error
     finally:
-        with suppress(OSError):  # where the folder is no folder there is nothing to take away
+        with suppress(OSError):  # where the folder is no folder there is nothing to remove
             aside.unlink()
 
 
 def check_place(path: Path | str, taken: Mapping[str, Path | None] | None = None) -> None:
-    """Refuses a file that could not be written, and leaves nothing behind.
+    """Refuses a file that cannot be written, without creating it.
 
-    taken: other files of the same run by what they are; where it is one of these it is refused, too
+    taken: other files of the same run, by their role; these are refused too
     """
     path = Path(path)
     for what, other in (taken or {}).items():
@@ -55,15 +55,15 @@ def check_place(path: Path | str, taken: Mapping[str, Path | None] | None = None
 
 
 def same_place(path: Path | str, other: Path | str) -> bool:
-    """Whether what is written to one path takes the place of the other; a link is replaced, and not followed."""
+    """Whether writing one path replaces the other; a link is replaced, not followed."""
     one, two = (Path(p).absolute() for p in (path, other))
     return one.name == two.name and one.parent.resolve() == two.parent.resolve()
 
 
 def within(path: Path, folder: Path, what: str) -> Path:
-    """The path, where it is in a folder or below, links followed; for places that a file names and we would write to.
+    """The path, if it is in a folder or below, links followed; for outputs that an input file names.
 
-    what: says in the message who names it: ``curls.recipe.toml: edits``
+    what: the setting that names it, for the message: ``curls.recipe.toml: edits``
     """
     if not path.resolve().is_relative_to(folder.resolve()):
         raise UserError(f"{what} is '{path}', outside of {folder.resolve()}; name a file in that folder, or below it")

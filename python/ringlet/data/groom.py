@@ -1,4 +1,4 @@
-"""What a recipe makes: guides, locks and the scalp they grow on."""
+"""The groom that a recipe makes: guides, locks and the scalp they grow on."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Triangle meshes: the scalp, bodies, and how they move."""
+"""Triangle meshes, such as the scalp and bodies, and their animation."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 @dataclass
 class Mesh:
-    """A triangle mesh in metres, as it stands in its rest pose.
+    """A triangle mesh in its rest pose, in metres.
 
-    name:      where it comes from, for messages, e.g. ``head.usdc /child/head``
+    name:      its source, for messages, e.g. ``head.usdc /child/head``
     points:    positions [m], shape (n, 3), float64
     triangles: vertex indices, counter-clockwise from outside, shape (m, 3), int32
     uv:        texture coordinates per triangle corner, shape (m, 3, 2), or None

@@ -1,4 +1,4 @@
-"""Values that are painted: on the locks, on the scalp as primvars, or as textures over it."""
+"""Painted values: on the locks, on the scalp as primvars, or as textures over it."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from ringlet.data.settings import did_you_mean
 
 
 def per_lock(setting: Varied, random: Random, curves: Curves, scalp: Mesh, what: str) -> NDArray[np.float64]:
-    """A varied setting for each curve, shape (count,): what it is in the region of the root, varied by chance and by
-    noise, times its map; what a single lock is given, it has exactly.
+    """A varied setting for each curve, shape (count,): its value in the region of the root, varied by chance and by
+    noise, times its map. The values of single locks count as they are.
 
     what: the name of the setting, for messages
     """
@@ -31,7 +31,7 @@ def per_lock(setting: Varied, random: Random, curves: Curves, scalp: Mesh, what:
 
 
 def painted(name: str, curves: Curves, scalp: Mesh, what: str) -> NDArray[np.float64]:
-    """What is painted under a name: on each curve itself, or on the scalp at its root; shape (count,)."""
+    """The values painted under a name: on each curve itself, or on the scalp at its root; shape (count,)."""
     own = {key for key, values in curves.curve.items() if values.ndim == 1 and values.dtype.kind == "f"}
     if name in own:
         values = np.asarray(curves.curve[name], np.float64)
@@ -55,7 +55,7 @@ def painted(name: str, curves: Curves, scalp: Mesh, what: str) -> NDArray[np.flo
 
 
 def painted_directions(name: str, curves: Curves, scalp: Mesh, what: str) -> NDArray[np.float64]:
-    """Directions that are painted on the scalp under a name, at the root of each curve; shape (count, 3)."""
+    """The directions painted on the scalp under a name, at the root of each curve; shape (count, 3)."""
     if name not in scalp.vectors:
         remedy = did_you_mean(name, scalp.vectors) if scalp.vectors else "; paint a primvar of vectors"
         raise UserError(f"{what} is '{name}', which {scalp.name} has no directions for{remedy}")
@@ -67,7 +67,7 @@ def painted_directions(name: str, curves: Curves, scalp: Mesh, what: str) -> NDA
 
 
 def in_region(name: str, curves: Curves, scalp: Mesh, what: str) -> NDArray[np.bool_]:
-    """Which curves have their root in a named region of the scalp, shape (count,)."""
+    """The curves with their root in a named region of the scalp, as a mask of shape (count,)."""
     return np.isin(curves.curve["root_triangle"], region(name, scalp, what))
 
 

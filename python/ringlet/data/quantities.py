@@ -1,4 +1,4 @@
-"""What recipe sections are made of: lengths with units, values that vary from lock to lock, ramps; readable errors."""
+"""Quantities of recipes: lengths with units, values that vary from lock to lock, ramps; readable errors."""
 
 from __future__ import annotations
 
@@ -48,12 +48,12 @@ class Section(settings.Section):
 
     @classmethod
     def defaults(cls, data: dict[str, Any]) -> dict[str, Any]:
-        """What holds where ``data`` says nothing, as a recipe would say it."""
+        """The values of settings that ``data`` lacks, as a recipe states them."""
         varied = {name: field for name, field in cls.model_fields.items() if isinstance(field.default, Varied)}
-        return {name: _as_said(field.default, field.metadata) for name, field in varied.items()}
+        return {name: _as_stated(field.default, field.metadata) for name, field in varied.items()}
 
 
-def _as_said(value: Varied, metadata: list[Any]) -> dict[str, Any]:
+def _as_stated(value: Varied, metadata: list[Any]) -> dict[str, Any]:
     said = value.model_dump(exclude_unset=True)
     if any(isinstance(part, Quantity) and part.unit == "m" for part in metadata):
         said["value"] = f"{said['value']!r} m"
@@ -162,13 +162,13 @@ class Varied(Section):
         return self.value * self.factors(random, ids, places)
 
     def factors(self, random: Random, ids: NDArray, places: NDArray) -> NDArray[np.float64]:
-        """What chance and noise make of the value, shape (len(ids),)."""
+        """The factors of chance and noise on the value, shape (len(ids),)."""
         factor = np.ones(len(ids))
         if self.vary > 0.0:
             factor += self.vary * (2.0 * random.uniform(ids) - 1.0)
         if self.noise > 0.0:
             factor += self.noise * random.field(places, self.noise_size)
-        return np.maximum(factor, 0.05)  # variations that add up never turn a value around
+        return np.maximum(factor, 0.05)  # variations that add up never change the sign of a value
 
 
 def _in_order(ramp: list[tuple[float, float]]) -> list[tuple[float, float]]:

@@ -1,6 +1,6 @@
-"""Random numbers with an address: (seed, what for, stable id, column) always gives the same number.
+"""Random numbers by key: (seed, purpose, stable id, column) always gives the same number.
 
-Nothing depends on the order in which numbers are asked for, so adding a guide changes no other lock.
+The order of requests does not matter, so adding a guide changes no other lock.
 """
 
 from __future__ import annotations
@@ -60,8 +60,10 @@ class Random:
         return total
 
 
-def tipping(part: NDArray, chance: NDArray) -> NDArray[np.float64]:
-    """1 for that part of the numbers between 0 and 1, 0 for the others, and something between for the few (one in 50)
-    that are about to tip, so that nothing jumps while the part changes."""
+def soft_threshold(fraction: NDArray, chance: NDArray) -> NDArray[np.float64]:
+    """1 where a random number in [0, 1) is below ``fraction``, 0 above it, and linear between for one in 50.
+
+    So the result is continuous in the fraction.
+    """
     width = 0.02
-    return np.clip(((1.0 + width) * part - chance) / width, 0.0, 1.0)
+    return np.clip(((1.0 + width) * fraction - chance) / width, 0.0, 1.0)

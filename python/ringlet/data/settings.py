@@ -1,4 +1,4 @@
-"""What the tables of our TOML files are made of, and how their mistakes are told."""
+"""The tables of TOML files: their models, and messages for their mistakes."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ringlet.data.errors import UserError
 
 FORMAT = 1  # of recipes, shots and files of edits
 MOST_TEXT = 256e6  # bytes of such a file
-TELLING = {"recipe": {"scalp", "extends"}, "shot": {"groom"}}  # what each kind of file has, and the other has not
+OWN_KEYS = {"recipe": {"scalp", "extends"}, "shot": {"groom"}}  # keys of one kind of file alone
 
 Location = tuple[int | str, ...]  # where in a model pydantic found a mistake
 
@@ -30,7 +30,7 @@ class Section(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
-    gone: ClassVar[dict[str, str]] = {}  # settings of earlier versions, and what to write in their place
+    removed: ClassVar[dict[str, str]] = {}  # settings of earlier versions, and their replacements
 
     @model_validator(mode="before")
     @classmethod
@@ -39,7 +39,7 @@ class Section(BaseModel):
             known = [field.alias or name for name, field in cls.model_fields.items()]
             for key in data:
                 if key not in known:
-                    hint = f" any more; {cls.gone[key]}" if key in cls.gone else did_you_mean(key, known)
+                    hint = f" any more; {cls.removed[key]}" if key in cls.removed else did_you_mean(key, known)
                     raise PydanticCustomError("unknown", "{key}{hint}", {"key": key, "hint": hint})
         return data
 
@@ -81,8 +81,8 @@ def parse_toml(text: str, where: str, kind: str) -> dict[str, Any]:
         raise UserError(f"{where}: is not a Ringlet {kind}; its first line must be 'ringlet = 1'")
     if isinstance(version := data["ringlet"], int) and version > FORMAT:
         raise UserError(f"{where}: ringlet is {version}; this Ringlet reads {kind} files up to {FORMAT}: update it")
-    for other, telling in TELLING.items():
-        if kind in TELLING and other != kind and telling & data.keys() and not TELLING[kind] & data.keys():
+    for other, keys in OWN_KEYS.items():
+        if kind in OWN_KEYS and other != kind and keys & data.keys() and not OWN_KEYS[kind] & data.keys():
             raise UserError(f"{where}: is a {other}; give a {kind} file")
     return data
 

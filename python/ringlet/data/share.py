@@ -1,4 +1,4 @@
-"""Where the example and the benchmarks are: in the repository when working in it, beside the package when installed."""
+"""The folders of the example and the benchmarks: in the repository, or beside an installed package."""
 
 from __future__ import annotations
 

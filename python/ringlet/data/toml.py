@@ -31,7 +31,7 @@ def _is_tables(value: Any) -> bool:
 
 
 def toml_key(key: str) -> str:
-    """A key as TOML says it, quoted where it must be."""
+    """A key in TOML, quoted where it must be."""
     return key if re.fullmatch(r"[A-Za-z0-9_-]+", key) else json.dumps(key, ensure_ascii=False)
 
 

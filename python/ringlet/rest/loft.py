@@ -39,7 +39,7 @@ class Loft:
     borne: Array | None = None
 
     def lost(self) -> dict[str, dict[str, float]]:
-        """What is lost of the groom, with the loft and, if known, without [m]: ``with max`` … of each measure.
+        """The deviation from the groom, with the loft and, if known, without [m]: ``with max`` … of each measure.
 
         away:   how far the vertices hang from where they were groomed
         drop:   how much deeper the tips of the locks hang

@@ -95,7 +95,7 @@ def loft(shot: Shot, groom: Groom, *, progress: Progress | None = None) -> Loft:
 
 
 def hang_groom(shot: Shot, groom: Groom) -> Hanging:
-    """How locks hang with the groom as their rest shape."""
+    """Locks that hang with the groom as their rest shape."""
     return _Hanger(shot, groom).sagged
 
 

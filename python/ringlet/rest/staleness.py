@@ -51,7 +51,7 @@ def dependencies(shot: Shot, obstacles: Sequence[Obstacle] = ()) -> dict[str, An
 
 
 def _of_body(body: Obstacle) -> dict[str, Any]:
-    """What support by a body depends on."""
+    """The properties of a body that support depends on."""
     return {
         "thickness": body.settings.thickness,
         "friction": body.settings.friction,

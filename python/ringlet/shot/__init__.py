@@ -1,4 +1,4 @@
-"""Shots: the file that says which groom moves, how, and for how long."""
+"""Shots: the settings of a simulation, from a TOML file."""
 
 from ringlet.shot.cloth import ClothMaterial, Pin, ShotCloth
 from ringlet.shot.contact import Collider, Contact, Pair, ShotContact

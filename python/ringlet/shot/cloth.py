@@ -108,7 +108,7 @@ class ShotCloth(Section):
         return self
 
     def scale(self, frame: float) -> float:
-        """How large the rest shape is at a frame, by what the mesh is."""
+        """The scale of the rest shape at a frame, relative to the mesh."""
         if not isinstance(self.shrink, tuple):
             return self.shrink
         frames, scales = zip(*self.shrink, strict=True)
@@ -116,5 +116,5 @@ class ShotCloth(Section):
 
     @property
     def least_scale(self) -> float:
-        """How small the rest shape ever is, by what the mesh is."""
+        """The smallest scale of the rest shape, relative to the mesh."""
         return min(scale for _, scale in self.shrink) if isinstance(self.shrink, tuple) else self.shrink

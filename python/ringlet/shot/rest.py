@@ -1,4 +1,4 @@
-"""The shape that strands remember: the groom itself, or one that carries gravity, so that the groom is what hangs."""
+"""The rest shape of strands: the groom itself, or one with which it hangs as groomed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How time steps are solved."""
+"""Solvers of time steps."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ class Solver(Section):
 
     @property
     def iterations(self) -> int:
-        """Newton iterations per step, at most."""
+        """The largest number of Newton iterations in a step."""
         return MOST_ITERATIONS if self.until_converged else self.newton
 
 

@@ -1,4 +1,4 @@
-"""Values that vary: from root to tip by a ramp, over the head by a map, and from lock to lock by chance."""
+"""Variation of the material: from root to tip by a ramp, over the head by a map, and from lock to lock by chance."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The scene of a shot at its first frame: who carries whom, friction, and what begins inside of what."""
+"""The scene of a shot at its first frame: carriers, friction and initial penetration."""
 
 from __future__ import annotations
 
@@ -32,9 +32,9 @@ def scene_at_start(
     worn: Sequence[Worn],
     first: float,
 ) -> tuple[Scene, dict[str, Any]]:
-    """The locks and cloths of a shot in a scene with its obstacles, and a report of what is in the way there.
+    """The locks and cloths of a shot in a scene with its obstacles, and the report of initial penetration.
 
-    Vertices that begin inside an obstacle are excused until they are out of it.
+    Vertices of locks that begin inside an obstacle are tolerated until they are out of it. A cloth that does is refused.
     """
     locks = groom.locks.with_points(strands.positions.copy())
     bodies, cloths = [obstacle.body(first) for obstacle in obstacles], [one.cloth for one in worn]

@@ -1,4 +1,4 @@
-"""Statistics of a frame: what the solver reports of its substeps, summed up."""
+"""Statistics of a frame: the solver's reports of its substeps, summed up."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 @dataclass
 class StepReports:
-    """What the solver reports of the steps of one frame, step by step.
+    """The solver's reports of the steps of one frame.
 
-    strands: one array of a value per strand for each quantity
-    scene:   one value for each quantity; empty without contact
-    cloths:  the same of each cloth
+    strands: per step an array of a value per strand, by quantity
+    scene:   per step a value, by quantity; empty without contact
+    cloths:  per step the same of each cloth
     """
 
     strands: list[dict[str, NDArray[np.float64]]] = field(default_factory=list)
@@ -30,7 +30,7 @@ def frame_statistics(
 
     locks:   their ids, shape (count,)
     cloths:  their names
-    excused: how many vertices are still inside a body that they began in
+    excused: the number of vertices with initial penetration that are still inside a body
     """
     return {
         **_of_strands(reports.strands, locks),

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pxr import Usd, UsdGeom
 
-from ringlet.data.cache import Cache, Told, Touches
+from ringlet.data.cache import Cache, SimulationRecord, Touches
 from ringlet.data.errors import UserError
 from ringlet.data.stage import StageSpace
 from ringlet.io.space import from_metres, to_metres
@@ -42,7 +42,7 @@ def strengths(force: NDArray[np.floating], strong: float) -> NDArray[np.float64]
     return np.clip(1.0 + np.log10(np.maximum(part, 1e-30)) / DECADES, 0.0, 1.0)
 
 
-def write_touches(cache: Cache | Told, cache_path: Path | str, path: Path | str, space: StageSpace) -> None:
+def write_touches(cache: Cache | SimulationRecord, cache_path: Path | str, path: Path | str, space: StageSpace) -> None:
     """Writes what touches as a layer over the cache."""
     strong = max((float(np.quantile(t.force, STRONG)) for t in cache.touches if len(t.force)), default=0.0)
     with TouchesWriter(path, cache_path, space) as writer:
