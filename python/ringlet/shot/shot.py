@@ -87,7 +87,7 @@ class Shot(Section):
 
     @property
     def touching(self) -> ShotContact | None:
-        """The settings of contact, if it is on; in equilibrium with the groom it neither parts nor creeps by default."""
+        """The settings of contact, if it is on. In equilibrium it neither parts nor creeps, unless settings say so."""
         if not (self.contact and self.contact.on):
             return None
         stays = STAYS if self.rest.mode == "equilibrium" else {}

@@ -34,7 +34,7 @@ def scene_at_start(
 ) -> tuple[Scene, dict[str, Any]]:
     """The locks and cloths of a shot in a scene with its obstacles, and the report of initial penetration.
 
-    Vertices of locks that begin inside an obstacle are tolerated until they are out of it. A cloth that does is refused.
+    Vertices of locks that begin inside an obstacle are tolerated until they are out; such a cloth is refused.
     """
     locks = groom.locks.with_points(strands.positions.copy())
     bodies, cloths = [obstacle.body(first) for obstacle in obstacles], [one.cloth for one in worn]
