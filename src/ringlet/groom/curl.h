@@ -40,6 +40,11 @@ struct CurlSettings {
     bool keep_length = false; // the curled length is that of the shape, and the silhouette shortens; else the reverse
 };
 
+// The helix p(v) = c(v) + r(v) (a(v) cos φ(v) + b(v) sin φ(v)) about each shape curve c, where a and b are its
+// rotation-minimising frame and φ' the turns per length; `count` points per lock, evenly spaced along the curl.
+// With `kink` cos φ becomes a zigzag in the plane of a; with a leader, φ, r and c go over into the leader's.
+std::vector<Vec3> curl(const CurveView &shapes, const CurlSettings &settings, int count);
+
 // The arrays of a curl by name, for callers that fill them by name: a new array needs a line here, and none where it is bound.
 enum class CurlArray { value, ramp, noise, events }; // one a lock; samples for all locks; noise_count or event_count a lock
 
@@ -76,10 +81,5 @@ inline constexpr CurlField curl_fields[] = {
     {"switchbacks", &CurlSettings::switchbacks, CurlArray::events},
     {"skips", &CurlSettings::skips, CurlArray::events},
 };
-
-// The helix p(v) = c(v) + r(v) (a(v) cos φ(v) + b(v) sin φ(v)) about each shape curve c, where a and b are its
-// rotation-minimising frame and φ' the turns per length; `count` points per lock, evenly spaced along the curl.
-// With `kink` cos φ becomes a zigzag in the plane of a; with a leader, φ, r and c go over into the leader's.
-std::vector<Vec3> curl(const CurveView &shapes, const CurlSettings &settings, int count);
 
 } // namespace ringlet
