@@ -8,6 +8,7 @@
 #include "ringlet/groom/sample.h"
 
 #include <cstdint>
+#include <iterator>
 #include <nanobind/stl/optional.h>
 #include <stdexcept>
 #include <string>
@@ -53,55 +54,22 @@ nb::ndarray<nb::numpy, double> curl_curves(const Array3<double> &points, const A
     require(axis.shape(0) == locks && leader.size() == locks && count >= 2,
             "axis and leader need a value a lock, locks 2 points");
     for (const int i : view(leader)) require(i >= 0 && static_cast<size_t>(i) < locks, "a leader is not one of the locks");
-    const auto value = [&](const char *name) {
-        const View<double> values = named<double>(arrays, name);
-        if (values.size() != locks) throw std::invalid_argument(std::string(name) + " needs one value a lock");
-        return values;
-    };
-    const auto ramp = [&](const char *name) {
-        const View<double> values = named<double>(arrays, name);
-        if (values.empty()) throw std::invalid_argument(std::string(name) + " needs a value");
-        return values;
-    };
-    const size_t noises = locks ? named<double>(arrays, "sway").size() / locks : 1;
-    const size_t events = locks ? named<double>(arrays, "skips").size() / locks : 0;
-    const auto rows = [&](const char *name, size_t columns) {
-        const View<double> values = named<double>(arrays, name);
-        if (values.size() != locks * columns) throw std::invalid_argument(std::string(name) + " needs one row a lock");
-        return values;
-    };
-    require(noises > 0, "sway needs a value a lock");
-    const CurlSettings settings{.axis = vectors<Vec3>(axis),
-                                .radius = value("radius"),
-                                .turns = value("turns"),
-                                .phase = value("phase"),
-                                .flip = value("flip"),
-                                .start = value("start"),
-                                .end = value("end"),
-                                .taper = value("taper"),
-                                .flatness = value("flatness"),
-                                .kink = value("kink"),
-                                .wave = value("wave"),
-                                .wave_turns = value("wave_turns"),
-                                .width_ramp = ramp("width_ramp"),
-                                .rate_ramp = ramp("rate_ramp"),
-                                .opening = ramp("opening"),
-                                .closing = ramp("closing"),
-                                .taper_ramp = ramp("taper_ramp"),
-                                .wave_ramp = ramp("wave_ramp"),
-                                .width_noise = rows("width_noise", noises),
-                                .rate_noise = rows("rate_noise", noises),
-                                .sway = rows("sway", noises),
-                                .switchbacks = rows("switchbacks", events),
-                                .skips = rows("skips", events),
-                                .leader = view(leader),
-                                .join = value("join"),
-                                .join_over = value("join_over"),
-                                .cohesion = value("cohesion"),
-                                .noise_count = static_cast<int>(noises),
-                                .event_count = static_cast<int>(events),
-                                .counted = counted,
-                                .keep_length = keep_length};
+    CurlSettings settings{.axis = vectors<Vec3>(axis), .leader = view(leader), .counted = counted, .keep_length = keep_length};
+    if (locks > 0) {
+        settings.noise_count = static_cast<int>(named<double>(arrays, "sway").size() / locks);
+        settings.event_count = static_cast<int>(named<double>(arrays, "skips").size() / locks);
+    }
+    require(settings.noise_count > 0, "sway needs a value a lock");
+    for (const auto &[name, array, kind] : curl_fields) {
+        const View<double> values = settings.*array = named<double>(arrays, name);
+        const auto rows_of = [&](size_t columns) { return values.size() == locks * columns; };
+        const bool fits = kind == CurlArray::ramp     ? !values.empty()
+                          : kind == CurlArray::noise  ? rows_of(settings.noise_count)
+                          : kind == CurlArray::events ? rows_of(settings.event_count)
+                                                      : rows_of(1);
+        if (!fits) throw std::invalid_argument(std::string(name) + " has another size than the locks ask for");
+    }
+    require(arrays.size() == std::size(curl_fields), "an array is not one of a curl");
     std::vector<Vec3> result;
     {
         nb::gil_scoped_release release;

@@ -1,4 +1,4 @@
-// ringlet._core: internal forces of strands in equilibrium, and shapes from lengths, bends and twists.
+// ringlet._core: what strands must hold inside, and the shapes of their joints.
 #include "arrays.h"
 
 #include "ringlet/rest/balance.h"
@@ -13,7 +13,7 @@ namespace {
 
 using Pairs = nb::ndarray<const double, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
 
-// Calls work(first vertex, number of vertices) for each strand, in parallel.
+// work(first vertex, count of vertices) for each strand, in parallel.
 template <class Work> void for_each_strand(View<int> offsets, const Work &work) {
     const nb::gil_scoped_release release;
 #pragma omp parallel for schedule(static)
@@ -48,7 +48,7 @@ void bind_rest(nb::module_ &module) {
                                   to_numpy<double>(std::move(twist), {n}));
         },
         "offsets"_a, "held"_a, "points"_a, "directors"_a, "loads"_a, "twisting"_a,
-        "Internal forces along edges [N], moments at corners and about edges [N m] that balance loads; see shot/balance.py.");
+        "Forces along edges [N], moments at corners and about edges [N m] that balance loads; see rest/inverse_statics.py.");
 
     module.def(
         "shape_of_joints",
@@ -65,5 +65,5 @@ void bind_rest(nb::module_ &module) {
             return nb::make_tuple(to_numpy<double>(std::move(made), {n, 3}), to_numpy<double>(std::move(frames), {n, 3}));
         },
         "offsets"_a, "length"_a, "bend"_a, "twist"_a, "points"_a, "directors"_a,
-        "Points [m] and directors, shape (n, 3), of strands with these lengths, bends and twists; see shot/joints.py.");
+        "Points [m] and directors, shapes (n, 3), of strands of such joints; see rest/rod_strains.py.");
 }

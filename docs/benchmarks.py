@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from ringlet.files import replacing
+from ringlet.data.files import replacing
 
 RESULTS = Path(__file__).parents[1] / "bench" / "results"
 

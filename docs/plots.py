@@ -11,9 +11,10 @@ from pathlib import Path
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
-from ringlet.curves import Curves
-from ringlet.files import replacing
-from ringlet.shot import Material, Strands
+from ringlet.data.curves import Curves
+from ringlet.data.files import replacing
+from ringlet.shot import Material
+from ringlet.sim import Strands
 
 from ringlet import validate
 

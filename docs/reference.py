@@ -9,10 +9,12 @@ from typing import Any
 
 import typer.main
 from ringlet.cli.app import app
-from ringlet.files import replacing
+from ringlet.data.files import replacing
 
 import ringlet
 from ringlet import validate
+
+PIPELINE = ("grooms", "shots", "hairs", "pictures")  # modules of ringlet.api
 
 
 def write_references(folder: Path) -> None:
@@ -120,14 +122,21 @@ def commands() -> Iterator[str]:
 
 def public_names() -> Iterator[str]:
     """Everything that ``import ringlet`` gives: functions in the order of the pipeline, then classes."""
-    names = [name for name in ringlet.__all__ if not name.startswith("__")]
+    names = [name for name in sorted(ringlet.__all__) if not name.startswith("__")]
     classes = [name for name in names if inspect.isclass(getattr(ringlet, name))]
-    functions = sorted(set(names) - set(classes), key=lambda name: inspect.getsourcelines(getattr(ringlet, name))[1])
+    functions = sorted(set(names) - set(classes), key=in_pipeline)
     yield "## Functions\n\n```{eval-rst}"
     yield from (f".. autofunction:: ringlet.{name}" for name in functions)
     yield "```\n\n## Classes\n\n```{eval-rst}"
     yield from (f".. autoclass:: ringlet.{name}\n   :members:\n   :exclude-members: model_config" for name in classes)
     yield "```"
+
+
+def in_pipeline(name: str) -> tuple[int, str, int]:
+    """The place of a public function among all: by its module, in the order of the pipeline, then by its line."""
+    function = getattr(ringlet, name)
+    module = function.__module__.rpartition(".")[2]
+    return PIPELINE.index(module) if module in PIPELINE else len(PIPELINE), module, inspect.getsourcelines(function)[1]
 
 
 def cases() -> Iterator[str]:

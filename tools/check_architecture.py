@@ -29,30 +29,22 @@ CORE = {
     "scene": {"solver", "strand", "cloth", "contact", "ccd", "collision", "linear", "geometry", "math"},
 }
 
-# Module of python/ringlet → modules that it may import. DATA is plain data and small helpers, which all may share.
-DATA = {"curves", "mesh", "stage", "files", "errors", "settings", "share", "toml", "shot.cache"} | {
-    "groom.groom",
-    "groom.painted",
-    "groom.random",
-    "groom.settings",
-}
+# Folder of python/ringlet → folders that it may import.
 API = "the public API"  # ringlet/__init__.py
 PYTHON = {
-    **dict.fromkeys(DATA, DATA),
-    "groom": DATA | {"_core"},
-    "shot": DATA | {"_core"},
-    "validate": DATA | {"_core", "shot"},
-    "io": DATA,
-    "picture": DATA,
-    "report": DATA,
-    "api": DATA | {"_core", "groom", "shot", "validate", "io", "picture", "report"},
-    "bench": {"_core"},
-    "viewer": DATA | {"_core", "groom", "shot", "io", "picture", "api"},
-    "farm": DATA | {"groom", "shot", "report", "api"},
-    "run": DATA | {"_core", "report"},
-    "demo": DATA | {"api", "run"},
-    "doctor": DATA | {"_core", "api", "shot"},
-    API: DATA | {"api", "run", "demo", "doctor", "groom", "shot", "bench", "viewer", "farm"},
+    "data": set(),
+    "groom": {"data", "_core"},
+    "shot": {"data"},
+    "sim": {"data", "_core", "shot"},
+    "rest": {"data", "_core", "shot", "sim"},
+    "validate": {"data", "_core", "shot", "sim"},
+    "io": {"data"},
+    "picture": {"data"},
+    "report": {"data"},
+    "api": {"data", "_core", "groom", "shot", "sim", "rest", "validate", "io", "picture", "report"},
+    "viewer": {"data", "_core", "groom", "shot", "sim", "io", "picture", "api"},
+    "farm": {"data", "groom", "shot", "report", "api"},
+    API: {"data", "api", "groom", "shot", "sim", "rest", "viewer", "farm"},
     "cli": {API},
 }
 OUTSIDE = ("bench", "examples")  # these use the public API only
@@ -89,7 +81,7 @@ class Package:
 
     def row(self, module: str) -> str:
         """The row of the table for a module."""
-        return module if module in DATA else module.split(".")[0] or API
+        return module.split(".")[0] or API
 
     def used(self, file: Path) -> set[str]:
         """Rows that a file imports, wherever in it the import stands."""
@@ -122,7 +114,7 @@ def python_problems(root: Path) -> Iterator[str]:
     for module, file in package.modules.items():
         where, row = file.relative_to(root), package.row(module)
         if row not in PYTHON:
-            yield f"{where}: '{row}' is not a module of the table"
+            yield f"{where}: '{row}' is not a folder of the package"
             continue
         for used in sorted(package.used(file) - PYTHON[row] - {row}):
             yield f"{where}: {row} may not use {used}"

@@ -9,7 +9,7 @@ import matplotlib as mpl
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 from numpy.typing import ArrayLike
-from ringlet.files import replacing
+from ringlet.data.files import replacing
 
 
 @dataclass

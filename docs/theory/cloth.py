@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from ringlet.mesh import Mesh
-from ringlet.shot import Cloth, ClothMaterial
+from ringlet.data.mesh import Mesh
+from ringlet.shot import ClothMaterial
+from ringlet.sim import Cloth
 
 from theory.answer import Answer, Panel
 from theory.strand import elastica

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
-from ringlet.errors import UserError
+from ringlet.data.errors import UserError
 from ringlet.io import read_bodies, read_clip, read_curves, read_groom, read_mesh
 from ringlet.shot import parse_shot
 

@@ -2,11 +2,11 @@
 
 import numpy as np
 from coils import helix, rotation
-from ringlet.curves import Curves
-from ringlet.groom.groom import Groom
-from ringlet.mesh import Mesh
+from ringlet.data.curves import Curves
+from ringlet.data.groom import Groom
+from ringlet.data.mesh import Mesh
 from ringlet.shot import parse_shot
-from ringlet.shot.strands import Solver
+from ringlet.shot.solver import Solver
 
 SHOT = 'ringlet = 1\ngroom = "groom.usdc"\nframes = [1, 1]\n'
 GRAVITY = (0.0, -9.81, 0.0)

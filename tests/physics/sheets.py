@@ -1,7 +1,7 @@
 """Sheets of cloth for the tests."""
 
 import numpy as np
-from ringlet.mesh import Mesh
+from ringlet.data.mesh import Mesh
 
 
 def sheet(width, height, columns, rows):

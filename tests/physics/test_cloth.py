@@ -3,9 +3,11 @@
 import numpy as np
 import pytest
 from coils import rotation
-from ringlet.errors import UserError
-from ringlet.mesh import Mesh
-from ringlet.shot.cloth import Cloth, ClothMaterial, ClothSolver
+from ringlet.data.errors import UserError
+from ringlet.data.mesh import Mesh
+from ringlet.shot.cloth import ClothMaterial
+from ringlet.shot.solver import ClothSolver
+from ringlet.sim.cloth import Cloth
 from sheets import lattice, sheet
 
 from ringlet import _core

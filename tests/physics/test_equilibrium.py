@@ -4,17 +4,21 @@ import numpy as np
 import pytest
 from coils import helix, rotation
 from locks import GRAVITY, STRAIGHT, arc, curl, first_frequency, sag, scene
-from ringlet.curves import Curves
-from ringlet.errors import UserError
-from ringlet.groom.groom import Groom
-from ringlet.mesh import Clip, Mesh
-from ringlet.shot import Material, Obstacle, equilibrium, loft, with_sag
-from ringlet.shot.balance import balance
-from ringlet.shot.joints import Joints, measure, shape
-from ringlet.shot.nails import pull
-from ringlet.shot.scene import Scene
-from ringlet.shot.simulate import make_strands
-from ringlet.shot.strands import Solver, Strands
+from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
+from ringlet.data.groom import Groom
+from ringlet.data.mesh import Clip, Mesh
+from ringlet.rest.inverse_statics import internal_forces
+from ringlet.rest.rod_strains import RodStrains, measure_strains, shape_of_strains
+from ringlet.shot import Material
+from ringlet.shot.solver import Solver
+from ringlet.sim import Obstacle
+from ringlet.sim.motion import make_strands
+from ringlet.sim.nails import spring_forces
+from ringlet.sim.scene import Scene
+from ringlet.sim.strands import Strands
+
+from ringlet.rest import equilibrium, loft, with_sag
 
 MODE = "[rest]\nmode = 'equilibrium'\n"
 BARELY = MODE + "spring = 0.1\n"  # only the stiffness that stability needs
@@ -27,11 +31,11 @@ def test_balanced_strands_have_the_loads_as_their_gradient(points):
     strands = Strands(curves, material)
     loads = 1e-5 * np.random.default_rng(3).normal(size=points.shape)
     frames = strands.directors.copy()
-    forces = balance(curves, points, frames, loads, 3)
+    forces = internal_forces(curves, points, frames, loads, 3)
     for _ in range(3):  # the lengths of the rest shape change the stiffness
         stretch, bend, twist = (np.where(stiffness > 0, stiffness, np.inf) for stiffness in strands.stiffness)
-        strain = Joints(forces.length / stretch, forces.bend / bend[:, None], forces.twist / twist)
-        rest, _ = shape(curves, measure(curves, points, frames).plus(strain, -1.0), frames)
+        strain = RodStrains(forces.length / stretch, forces.bend / bend[:, None], forces.twist / twist)
+        rest, _ = shape_of_strains(curves, measure_strains(curves, points, frames).plus(strain, -1.0), frames)
         strands = Strands(curves.with_points(rest), material)
     strands.place(points)
     _, gradient, _ = strands.energy(points)
@@ -120,10 +124,10 @@ def balanced_at(scale, points):
     strands, locks = make_strands(shot, groom), groom.locks
     frames = strands.directors.copy()
     for _ in range(4):  # the lengths of the rest shape change the stiffness
-        forces = balance(locks, points, frames, strands.loads(GRAVITY), 3)
+        forces = internal_forces(locks, points, frames, strands.loads(GRAVITY), 3)
         stretch, bend, twist = (np.where(stiffness > 0, stiffness, np.inf) for stiffness in strands.stiffness)
-        strain = Joints(forces.length / stretch, forces.bend / bend[:, None], forces.twist / twist)
-        rest, _ = shape(locks, measure(locks, points, frames).plus(strain, -1.0), frames)
+        strain = RodStrains(forces.length / stretch, forces.bend / bend[:, None], forces.twist / twist)
+        rest, _ = shape_of_strains(locks, measure_strains(locks, points, frames).plus(strain, -1.0), frames)
         strands = make_strands(shot, groom, locks.with_points(rest))
     strands.place(points)
     return strands
@@ -243,7 +247,7 @@ def test_a_soft_nail_supports_its_share_of_the_weight():
     strands = make_strands(shot, groom, made.rest, made.stiffened)
     strands.place(STRAIGHT)
     for _ in range(48):
-        forces = pull(groom.locks, strands, STRAIGHT, 1 / 24, GRAVITY)
+        forces = spring_forces(groom.locks, strands, STRAIGHT, 1 / 24, GRAVITY)
         strands.step(STRAIGHT, 1 / 24, gravity=GRAVITY, forces=forces)
     assert sag(strands.positions, STRAIGHT) < 1e-6
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from coils import helix
 from ringlet.shot import Solver
-from ringlet.shot.scene import Scene
+from ringlet.sim.scene import Scene
 from undamped import undamped_strand
 
 FRAME = 1 / 24

@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 import pytest
 from judged_shots import SHOTS, judged, start
-from ringlet.shot.worn import carried
+from ringlet.sim.garment import carried
 
 
 @pytest.mark.parametrize("shot", SHOTS)

@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 from coils import helix
 from locks import GRAVITY, STRAIGHT, arc, curl, first_frequency, sag, scene
-from ringlet.curves import Curves
-from ringlet.shot import loft
-from ringlet.shot.joints import measure, shape
-from ringlet.shot.simulate import make_strands
+from ringlet.data.curves import Curves
+from ringlet.rest.rod_strains import measure_strains, shape_of_strains
+from ringlet.sim.motion import make_strands
+
+from ringlet.rest import loft
 
 
 @pytest.mark.parametrize(
@@ -81,8 +82,8 @@ def test_joint_strains_reproduce_the_shape():
     shot, groom = scene()
     groom.locks = curves
     directors = make_strands(shot, groom).directors.copy()
-    joints = measure(curves, curves.points, directors)
-    points, made = shape(curves, joints, directors)
+    joints = measure_strains(curves, curves.points, directors)
+    points, made = shape_of_strains(curves, joints, directors)
     assert np.abs(points - curves.points).max() < 1e-12
-    again = measure(curves, points, made)
+    again = measure_strains(curves, points, made)
     assert np.abs(again.bend - joints.bend).max() < 1e-9 and np.abs(again.minus(joints).twist).max() < 1e-9

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from coils import helix, jittered, rotation
 from releases import CLOSE, PRESCRIBED, flattened, straightened
-from ringlet.curves import Curves
-from ringlet.shot import Material, Solver, Strands
+from ringlet.data.curves import Curves
+from ringlet.shot import Material, Solver
+from ringlet.sim import Strands
 
 FRAME = 1 / 24
 SAFEGUARDS = ("flip_history", "winding_number", "straight_fade")

@@ -4,11 +4,16 @@ import numpy as np
 import pytest
 from coils import rotation
 from crossings import Judge
-from ringlet.curves import Curves
-from ringlet.errors import UserError
-from ringlet.shot.cloth import Cloth, ClothMaterial
-from ringlet.shot.scene import Body, Contact, Scene
-from ringlet.shot.strands import Material, Solver, Strands
+from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
+from ringlet.shot.cloth import ClothMaterial
+from ringlet.shot.contact import Contact
+from ringlet.shot.material import Material
+from ringlet.shot.solver import Solver
+from ringlet.sim.cloth import Cloth
+from ringlet.sim.obstacle import Body
+from ringlet.sim.scene import Scene
+from ringlet.sim.strands import Strands
 from sheets import sheet
 from surfaces import sphere
 

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from coils import helix, rotation
 from releases import CLOSE, PRESCRIBED, release, scenes
-from ringlet.curves import Curves
-from ringlet.shot import Material, Solver, Strands
+from ringlet.data.curves import Curves
+from ringlet.shot import Material, Solver
+from ringlet.sim import Strands
 
 NAMES = [name for name, _, _ in scenes()]
 

@@ -7,8 +7,9 @@ from pathlib import Path
 
 import numpy as np
 from coils import helix
-from ringlet.curves import Curves
-from ringlet.shot import Material, Strands
+from ringlet.data.curves import Curves
+from ringlet.shot import Material
+from ringlet.sim import Strands
 
 from ringlet import _core
 
@@ -50,7 +51,7 @@ SCRIPT = """
 import sys; sys.path.insert(0, sys.argv[1])
 import numpy as np
 from coils import helix
-from ringlet.curves import Curves
+from ringlet.data.curves import Curves
 from ringlet.shot import Material, Solver, Strands
 curves = Curves.from_list([helix(50, hand=(-1) ** k) + [0.1 * k, 0, 0] for k in range(11)])
 strands = Strands(curves, Material())

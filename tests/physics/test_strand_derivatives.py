@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 from coils import helix, jittered
-from ringlet.curves import Curves
-from ringlet.shot import Material, Strands
+from ringlet.data.curves import Curves
+from ringlet.shot import Material
+from ringlet.sim import Strands
 
 CONTINUATIONS = ["history", "least_energy", "material_frame"]
 

@@ -5,20 +5,23 @@ import pytest
 from coils import helix, rotation
 from hairstyles import FPS, HEAD, make_style
 from locks import GRAVITY, sag, scene
-from ringlet.curves import Curves
-from ringlet.groom.groom import Groom
-from ringlet.mesh import Clip, Mesh
-from ringlet.shot import Obstacle, equilibrium, keep, made_from, refresh
-from ringlet.shot.equilibrium import bearing
-from ringlet.shot.joints import edges
-from ringlet.shot.pushing import least_pushing
-from ringlet.shot.resting import shared
-from ringlet.shot.scene import Body, Scene
-from ringlet.shot.simulate import make_strands
-from ringlet.shot.strands import Solver
-from ringlet.shot.support import ARM, _Give
+from ringlet.data.curves import Curves
+from ringlet.data.groom import Groom
+from ringlet.data.mesh import Clip, Mesh
+from ringlet.rest.compliance import ARM, Compliance
+from ringlet.rest.equilibrium import support_forces
+from ringlet.rest.nonnegative_qp import solve_nonnegative_qp
+from ringlet.rest.rod_strains import edges
+from ringlet.shot.solver import Solver
+from ringlet.sim import Obstacle
+from ringlet.sim.motion import make_strands
+from ringlet.sim.obstacle import Body
+from ringlet.sim.resting_contacts import initial_contact_forces
+from ringlet.sim.scene import Scene
 from scipy.optimize import nnls
 from scipy.sparse import block_diag
+
+from ringlet.rest import dependencies, equilibrium, to_curves, update_rest_shape
 
 MODE = "[rest]\nmode = 'equilibrium'\n"
 SOFT = MODE + "[strands]\nbend_scale = 4\n[contact]\nradius = 5e-4\n"
@@ -32,7 +35,7 @@ def test_compressive_forces_solve_nonnegative_least_squares(seed):
     parts = [(random.normal(size=(12, 8)), random.normal(size=12)) for _ in range(4)]
     free = np.zeros(32, bool)
     free[24:28] = True
-    found = least_pushing(
+    found = solve_nonnegative_qp(
         block_diag([a.T @ a for a, _ in parts], "csr"), np.concatenate([-a.T @ b for a, b in parts]), free
     )
     pulls = np.concatenate([parts[3][0], -parts[3][0][:, :4]], axis=1)
@@ -66,8 +69,8 @@ def test_energy_of_two_forces_is_summed_over_joints_that_both_strain():
         return (there * (np.arange(30) < vertex[k])[:, None]).ravel()
 
     each = np.stack([strains(k) for k in range(8)])
-    give = _Give(shot.held, locks, strands)
-    found = give.under_two(rows, vertex, give.pull(30 + vertex, force, couple))
+    give = Compliance(shot.held, locks, strands)
+    found = give.of_pairs(rows, vertex, give.wrenches(30 + vertex, force, couple))
     assert found == pytest.approx(each @ each.T, rel=1e-9, abs=1e-9 * np.abs(found).max())
 
 
@@ -128,7 +131,9 @@ def drift(shot, groom, made, obstacles=(), steps=48, known=True):
     strands.place(groom.locks.points)
     touching = Scene(strands, [one.body(1.0) for one in obstacles], shot.touching)
     if known:
-        touching.bear(*shared(shot.touching, groom.locks, make_strands(shot, groom), obstacles, made.borne))
+        touching.set_initial_forces(
+            *initial_contact_forces(shot.touching, groom.locks, make_strands(shot, groom), obstacles, made.borne)
+        )
     for _ in range(steps):
         touching.step(groom.locks.points, 1 / 24, gravity=GRAVITY)
     return sag(strands.positions, groom.locks.points)
@@ -137,7 +142,7 @@ def drift(shot, groom, made, obstacles=(), steps=48, known=True):
 def test_a_lock_on_another_is_supported_by_it():
     """Support forces are equal and opposite, reduce the correction of the upper lock, and both locks stay."""
     shot, groom = scene(*crossed(), more=SOFT)
-    borne, upper = bearing(shot, groom, []), slice(30, 60)
+    borne, upper = support_forces(shot, groom, []), slice(30, 60)
     assert np.abs(borne.sum(axis=0)).max() < 1e-12
     strands = make_strands(shot, groom)
     assert 0.1 < borne[upper, 1].sum() / (9.81 * strands.masses[upper].sum()) < 1
@@ -154,7 +159,7 @@ def test_contact_forces_support_a_lock_on_a_body_from_the_first_step(friction):
     lying, slope = on_slope(friction)
     shot, groom = scene(lying, lying + [0, 0, 0.2], more=SOFT)
     made, groomed = equilibrium(shot, groom, obstacles=[slope]), make_strands(shot, groom)
-    _, forces = shared(shot.touching, groom.locks, groomed, [slope], made.borne)
+    _, forces = initial_contact_forces(shot.touching, groom.locks, groomed, [slope], made.borne)
     assert len(forces) > 0 and (forces[:, 0] > 0).all()
     total = np.linalg.norm(forces, axis=1).sum()
     assert total == pytest.approx(np.linalg.norm(made.borne[~groomed.held], axis=1).sum(), rel=1e-9)
@@ -171,7 +176,7 @@ def test_contact_forces_support_crossed_locks_from_the_first_step():
 
 def test_support_forces_are_refused_after_the_first_step():
     with pytest.raises(ValueError, match="before the first step"):
-        fallen(1).bear(np.zeros((0, 4)), np.zeros((0, 3)))
+        fallen(1).set_initial_forces(np.zeros((0, 4)), np.zeros((0, 3)))
 
 
 def test_sixty_locks_in_contact_stay_as_groomed():
@@ -180,7 +185,7 @@ def test_sixty_locks_in_contact_stay_as_groomed():
     shot, head = style.shot("equilibrium"), style.head(np.zeros(1), FPS)
     made = equilibrium(shot, style.groom, obstacles=[head])
     assert np.linalg.norm(made.borne, axis=1).max() > 1e-6  # some locks are supported
-    *_, last = style.at_rest(shot, keep(made, shot), 2.0)
+    *_, last = style.at_rest(shot, to_curves(made, shot), 2.0)
     assert sag(last, style.groom.locks.points) < shot.strands.radius
 
 
@@ -188,7 +193,7 @@ def test_a_tip_supports_nothing():
     """A lock on a tip would slide off."""
     below, above = crossed()
     borne, ends_there = (
-        np.abs(bearing(*scene(below, upper, more=SOFT), [])).max()
+        np.abs(support_forces(*scene(below, upper, more=SOFT), [])).max()
         for upper in (above, above * [1, 1, 0] + np.linspace(-0.06, 0, 30)[:, None] * [0, 0, 1])
     )
     assert ends_there == 0 < borne
@@ -204,7 +209,7 @@ def test_a_ridge_pushes_a_lock_from_its_closest_point(aside):
     mesh = Mesh("/ridge", RIDGE, np.array([[0, 1, 2], [1, 3, 2], [0, 4, 1], [1, 4, 5]], np.int32))
     obstacle = Obstacle(mesh, Clip(np.array([1.0]), RIDGE[None], 24.0))
     obstacle.settings = obstacle.settings.model_copy(update={"friction": 0.0})
-    borne = bearing(*scene(lock, more=SOFT), [obstacle]).sum(axis=0)
+    borne = support_forces(*scene(lock, more=SOFT), [obstacle]).sum(axis=0)
     assert borne[1] > 0 and np.abs(borne[0]) < 1e-3 * borne[1]
 
 
@@ -255,9 +260,13 @@ def test_a_curl_with_rows_of_nails_hangs_between_them():
 def test_a_lock_is_rebalanced_when_its_support_changes():
     """The lower beam moves away, so the unchanged upper beam needs a new equilibrium."""
     shot, groom = scene(*crossed(), more=SOFT)
-    kept = keep(equilibrium(shot, groom), shot)
+    kept = to_curves(equilibrium(shot, groom), shot)
     groom.locks.points[3:30, 1] -= np.linspace(0, 2 * REACH, 27)
-    before, again, anew = kept.points.copy(), refresh(shot, groom, kept, made_from(shot)), equilibrium(shot, groom)
+    before, again, anew = (
+        kept.points.copy(),
+        update_rest_shape(shot, groom, kept, dependencies(shot)),
+        equilibrium(shot, groom),
+    )
     upper = slice(30, 60)
     assert np.abs(again.rest.points - anew.rest.points).max() < 1e-6
     assert sag(again.rest.points[upper], before[upper]) > 1e-3

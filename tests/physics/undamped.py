@@ -1,7 +1,8 @@
 """A single undamped strand for tests of its motion."""
 
-from ringlet.curves import Curves
-from ringlet.shot import Material, Strands
+from ringlet.data.curves import Curves
+from ringlet.shot import Material
+from ringlet.sim import Strands
 
 
 def undamped_strand(points, prescribed=4, **material):

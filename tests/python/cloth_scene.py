@@ -2,8 +2,9 @@
 
 import numpy as np
 from floor_scene import CONTACT, SHOT, floor, groom, still
-from ringlet.mesh import Mesh
-from ringlet.shot import Garment, Obstacle, ShotCloth, parse_shot, simulate
+from ringlet.data.mesh import Mesh
+from ringlet.shot import ShotCloth, parse_shot
+from ringlet.sim import Garment, Obstacle, simulate
 
 
 def sheet(cells=8, size=0.08, height=0.02, name="sheet"):

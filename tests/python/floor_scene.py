@@ -1,9 +1,9 @@
 """Three strands above a floor, and colliders, for tests of contact in shots."""
 
 import numpy as np
-from ringlet.curves import Curves
-from ringlet.groom.groom import Groom
-from ringlet.mesh import Clip, Mesh
+from ringlet.data.curves import Curves
+from ringlet.data.groom import Groom
+from ringlet.data.mesh import Clip, Mesh
 
 from ringlet import _core
 

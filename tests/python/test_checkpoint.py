@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from ringlet.cli.app import app
 from ringlet.io import open_cache, read_cache, read_touches
-from ringlet.shot import checkpoint
+from ringlet.sim import checkpoint
 from small_example import write_example
 from typer.testing import CliRunner
 

@@ -151,7 +151,7 @@ def test_a_report_is_written_to_the_requested_folder(pipeline, tmp_path):
     assert len(report["statistics"]) == FRAMES
     assert [stage["name"] for stage in report["stages"]] == ["groom", "simulate"]
     assert "<html" in (tmp_path / "report/report.html").read_text()
-    assert report["limits"] == [ringlet.run.FREE]
+    assert report["limits"] == [ringlet.api.run.FREE]
 
 
 def test_a_report_without_a_simulation_states_no_limit_of_contact(pipeline, tmp_path):

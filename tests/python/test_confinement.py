@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from commands import refused, run
 from pxr import Sdf
-from ringlet.files import replacing
+from ringlet.data.files import replacing
 from small_example import write_example
 
 import ringlet
@@ -76,7 +76,7 @@ def test_a_read_only_folder_is_refused_before_the_first_stage(project, monkeypat
     closed.mkdir()
     closed.chmod(0o500)
     if os.access(closed, os.W_OK):  # root ignores permissions, so the refusal is simulated
-        monkeypatch.setattr("ringlet.files.tempfile.TemporaryFile", deny)
+        monkeypatch.setattr("ringlet.data.files.tempfile.TemporaryFile", deny)
     refused(run("groom", project / "small.recipe.toml", "-o", closed / "groom.usdc"), "cannot be written")
     assert list(closed.iterdir()) == []
 

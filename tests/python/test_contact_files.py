@@ -6,8 +6,9 @@ from cloth_scene import LONG, garment, simulated
 from commands import refused, run
 from floor_scene import floor, groom, still
 from pxr import Usd, UsdGeom
-from ringlet.shot import Obstacle, parse_shot, simulate
-from ringlet.shot.cache import Touches
+from ringlet.data.cache import Touches
+from ringlet.shot import parse_shot
+from ringlet.sim import Obstacle, simulate
 from small_example import FRAMES
 from wear import sim
 

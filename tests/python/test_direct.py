@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from ringlet.shot.direct import open_pardiso
+from ringlet.sim.direct import open_pardiso
 
 from ringlet import Curves, DirectSolver, Material, Strands, UserError
 

@@ -2,11 +2,11 @@
 
 import json
 
+from ringlet.api import doctor
 from ringlet.cli.app import app
 from typer.testing import CliRunner
 
 import ringlet
-from ringlet import doctor
 
 
 def test_the_doctor_finds_this_installation_complete():

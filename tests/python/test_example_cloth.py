@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from ringlet.shot.piercing import edges_of, piercings
+from ringlet.sim.penetration import edge_triangle_intersections, mesh_edges
 
 import ringlet
 from ringlet import io
@@ -16,8 +16,8 @@ GARMENTS = ("scarf", "hat", "tie", "ribbon")
 
 def self_intersections(points, triangles):
     """Intersections of edges and triangles of a mesh that share no vertex."""
-    edges = edges_of(triangles)
-    pairs = piercings(points[edges], points[triangles])
+    edges = mesh_edges(triangles)
+    pairs = edge_triangle_intersections(points[edges], points[triangles])
     return pairs[~(edges[pairs[:, 0], :, None] == triangles[pairs[:, 1], None, :]).any(axis=(1, 2))]
 
 
@@ -57,7 +57,7 @@ def test_a_garment_shot_runs_without_new_intersections(name):
     for k, statistics in enumerate(cache.statistics):
         points = cloth.points[k].astype(float)
         assert not len(self_intersections(points, triangles))
-        through = piercings(cache.points[k].astype(float)[segments], points[triangles])
+        through = edge_triangle_intersections(cache.points[k].astype(float)[segments], points[triangles])
         assert len(through) <= initial  # initial intersections persist
         assert statistics["contact"]["fraction"] == 1.0 and statistics["nan"] == 0
         # A cloth that is scaled below its mesh starts with that stretch.

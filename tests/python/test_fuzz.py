@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from ringlet.data.toml import to_toml
 from ringlet.io import read_curves, read_mesh
 from ringlet.io.hair import HEADER
-from ringlet.toml import to_toml
 
 import ringlet
 

@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 from ringlet.cli.app import app
-from ringlet.groom.groom import Groom
+from ringlet.data.groom import Groom
 from shapes import ball
 from small_example import write_example
 from typer.testing import CliRunner

@@ -4,8 +4,8 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from ringlet.shot import simulate
 from ringlet.shot.shot import parse_shot
+from ringlet.sim import simulate
 from shapes import ball, rotation
 
 import ringlet

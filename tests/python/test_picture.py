@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image
-from ringlet.curves import Curves
-from ringlet.errors import UserError
-from ringlet.mesh import Mesh
+from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
+from ringlet.data.mesh import Mesh
 from ringlet.picture import HAIR_COLORS, VIEWS, PosedBody, sheet, still
 from ringlet.picture.bodies import material
 from ringlet.picture.camera import frame

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image
-from ringlet.errors import UserError
+from ringlet.data.errors import UserError
 from ringlet.report import Machine, MadeFile, Picture, RunReport, Stage, write_report
 from ringlet.report.charts import line_chart, nice_ticks
 from ringlet.report.findings import explain_slowest, explain_worst, verdict

@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
-from ringlet.curves import Curves
-from ringlet.errors import UserError
-from ringlet.groom.groom import Groom
-from ringlet.mesh import Clip, Mesh
-from ringlet.shot import parse_shot, simulate
+from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
+from ringlet.data.groom import Groom
+from ringlet.data.mesh import Clip, Mesh
+from ringlet.shot import parse_shot
+from ringlet.sim import simulate
 
 from ringlet import _core
 

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 from cloth_scene import LONG, WEIGHTLESS, garment, sheet, simulated
 from floor_scene import CONTACT, SHOT, ball, floor, groom, still
-from ringlet.errors import UserError
-from ringlet.mesh import Clip, Mesh
-from ringlet.shot import Obstacle, parse_shot, simulate
-from ringlet.shot.piercing import edges_of, piercings
+from ringlet.data.errors import UserError
+from ringlet.data.mesh import Clip, Mesh
+from ringlet.shot import parse_shot
+from ringlet.sim import Obstacle, simulate
+from ringlet.sim.penetration import edge_triangle_intersections, mesh_edges
 from shapes import rotation
 
 
@@ -40,7 +41,7 @@ def test_cloth_falls_onto_locks_and_the_floor_without_intersections():
     triangles = sheet().triangles
     segments = np.delete(np.arange(92), [30, 61])[:, None] + [0, 1]
     for locks, points in zip(cache.points, cloth, strict=True):
-        assert not len(piercings(locks.astype(float)[segments], points[triangles]))
+        assert not len(edge_triangle_intersections(locks.astype(float)[segments], points[triangles]))
     # Its weight lowers the locks.
     assert cache.points[12, :, 1].mean() < alone.points[12, :, 1].mean() - 1e-4
 
@@ -145,7 +146,9 @@ def test_a_band_gathers_the_locks_in_it():
     triangles = band.triangles
     segments = np.delete(np.arange(92), [30, 61])[:, None] + [0, 1]
     assert not len(
-        piercings(cache.points[-1].astype(float)[segments], cache.cloths[0].points[-1].astype(float)[triangles])
+        edge_triangle_intersections(
+            cache.points[-1].astype(float)[segments], cache.cloths[0].points[-1].astype(float)[triangles]
+        )
     )
 
 
@@ -181,8 +184,8 @@ def test_piercings_are_those_of_a_plane():
     at = ends[:, 0] + t[:, None] * (ends[:, 1] - ends[:, 0])
     through = (t > 0) & (t < 1) & (at[:, 0] > 0) & (at[:, 1] > 0) & (at[:, 0] + at[:, 1] < 1)
     assert 5 < through.sum() < 100
-    assert set(piercings(ends, corners)[:, 0]) == set(np.flatnonzero(through))
-    assert len(edges_of(sheet().triangles)) == 3 * 64 + 2 * 8
+    assert set(edge_triangle_intersections(ends, corners)[:, 0]) == set(np.flatnonzero(through))
+    assert len(mesh_edges(sheet().triangles)) == 3 * 64 + 2 * 8
 
 
 @pytest.mark.parametrize(

@@ -7,10 +7,11 @@ import pytest
 from commands import refused, run
 from floor_scene import CONTACT, POINTS, SHOT, ball, floor, groom, still
 from pxr import Usd, UsdGeom, Vt
-from ringlet.errors import UserError
-from ringlet.mesh import Clip
-from ringlet.shot import Collider, Obstacle, parse_shot, simulate
-from ringlet.shot.start import depths, winding
+from ringlet.data.errors import UserError
+from ringlet.data.mesh import Clip
+from ringlet.shot import Collider, parse_shot
+from ringlet.sim import Obstacle, simulate
+from ringlet.sim.penetration import penetration_depths, winding_numbers
 from small_example import FRAMES, write_example
 
 import ringlet
@@ -78,7 +79,7 @@ def test_initial_penetration_is_reported_and_recovers():
     assert 0.0025 < found["depth"] <= 0.003
     penetrating = [frame["contact"]["excused"] for frame in cache.statistics]
     assert penetrating[0] == 2 and penetrating[-1] == 0
-    assert not depths(cache.points[-1], sphere.triangles, sphere.points).any()
+    assert not penetration_depths(cache.points[-1], sphere.triangles, sphere.points).any()
 
 
 @pytest.mark.parametrize("parting_speed", [2e-3, 0.0])
@@ -111,11 +112,11 @@ def test_initial_overlaps_of_locks_separate():
 def test_penetration_depth_needs_a_closed_mesh():
     mesh = ball(0.01)
     points = np.array([[0.0, 0.004, 0], [0, 0.02, 0], [0, -0.0095, 0]])
-    depth = depths(points, mesh.triangles, mesh.points)
+    depth = penetration_depths(points, mesh.triangles, mesh.points)
     assert 0.005 < depth[0] < 0.0061 and depth[1] == 0 and 0 < depth[2] < 6e-4
     sheet = floor()
-    assert not depths(points - [0, 0.005, 0], sheet.triangles, sheet.points).any()
-    numbers = winding(points, mesh.points[mesh.triangles])
+    assert not penetration_depths(points - [0, 0.005, 0], sheet.triangles, sheet.points).any()
+    numbers = winding_numbers(points, mesh.points[mesh.triangles])
     assert np.allclose(numbers, [1, 0, 1], atol=1e-9)
 
 

@@ -3,12 +3,14 @@
 import numpy as np
 import pytest
 from pxr import Sdf, Usd, UsdGeom, Vt
-from ringlet.curves import Curves
-from ringlet.errors import UserError
-from ringlet.groom.groom import Groom
-from ringlet.mesh import Clip, Mesh
-from ringlet.shot import parse_shot, simulate
-from ringlet.shot.simulate import make_strands
+from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
+from ringlet.data.groom import Groom
+from ringlet.data.mesh import Clip, Mesh
+from ringlet.shot import parse_shot
+from ringlet.sim import simulate
+from ringlet.sim.motion import make_strands
+from ringlet.sim.variation import material_factors
 from small_example import write_example, write_head
 
 import ringlet
@@ -35,7 +37,7 @@ def groom(curve=None, point=None, maps=None):
 
 
 def factors(text, made):
-    return parse_shot(f"{SHOT}[variation]\n{text}").variation.factors(made)
+    return material_factors(parse_shot(f"{SHOT}[variation]\n{text}").variation, made)
 
 
 def settled(text, made=None):

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from pages import page, read, serving
 from pxr import Usd
-from ringlet.errors import UserError
+from ringlet.data.errors import UserError
 from ringlet.viewer.reel import Run
 
 import ringlet

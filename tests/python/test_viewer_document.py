@@ -6,7 +6,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
-from ringlet.errors import UserError
+from ringlet.data.errors import UserError
 from ringlet.viewer.document import Document
 
 from ringlet.groom import parse_recipe

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from fastapi.testclient import TestClient
 from pages import HOST, Page, page, serving
-from ringlet.errors import UserError
+from ringlet.data.errors import UserError
 from ringlet.viewer.project import Project
 from ringlet.viewer.protocol import VERSION
 from ringlet.viewer.server import REFUSED, WRONG, Door

@@ -3,7 +3,7 @@
 import numpy as np
 from commands import run
 from pxr import Gf, Usd, UsdGeom, Vt
-from ringlet.shot.cache import Cache, CachedCloth
+from ringlet.data.cache import Cache, CachedCloth
 
 import ringlet
 

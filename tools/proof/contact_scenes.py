@@ -6,10 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 from coils import coiled, helix, rotation
-from ringlet.curves import Curves
-from ringlet.shot import Material, Strands
-from ringlet.shot.cloth import Cloth, ClothMaterial
-from ringlet.shot.scene import Body, Contact, Scene
+from ringlet.data.curves import Curves
+from ringlet.shot import Material
+from ringlet.shot.cloth import ClothMaterial
+from ringlet.shot.contact import Contact
+from ringlet.sim import Strands
+from ringlet.sim.cloth import Cloth
+from ringlet.sim.obstacle import Body
+from ringlet.sim.scene import Scene
 from surfaces import as_mesh, band, rod, sheet, sphere
 from trial import Trial
 

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from ringlet.api import scalp_clip
-from ringlet.shot.piercing import piercings
+from ringlet.sim.penetration import edge_triangle_intersections
 
 import ringlet
 
@@ -77,7 +77,9 @@ def intersections(hold: NDArray, points: NDArray[np.float32], surfaces: list[tup
     free = np.flatnonzero(hold[:-1] == 0.0)
     each = points.reshape(-1, number, 3).astype(np.float64)
     ends = np.stack([each[:, free], each[:, free + 1]], axis=2).reshape(-1, 2, 3)
-    return [len(np.unique(piercings(ends, corners[triangles])[:, 0])) for corners, triangles in surfaces]
+    return [
+        len(np.unique(edge_triangle_intersections(ends, corners[triangles])[:, 0])) for corners, triangles in surfaces
+    ]
 
 
 def main() -> None:

@@ -9,10 +9,11 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from ringlet.groom.groom import Groom
-from ringlet.mesh import Clip
-from ringlet.shot import Collider, Motion, Obstacle, Shot, parse_shot
-from ringlet.shot.nails import held_vertices
+from ringlet.data.groom import Groom
+from ringlet.data.mesh import Clip
+from ringlet.shot import Collider, Shot, parse_shot
+from ringlet.sim import Motion, Obstacle
+from ringlet.sim.nails import held_vertices
 
 import ringlet
 from ringlet import _core

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from coils import helix, jittered, rotation
-from ringlet.curves import Curves
-from ringlet.shot import Material, Solver, Strands
+from ringlet.data.curves import Curves
+from ringlet.shot import Material, Solver
+from ringlet.sim import Strands
 
 VERTICES, PRESCRIBED = 100, 4
 CLOSE = 1e-5  # [m] a strand nearer to its rest shape has returned

@@ -19,11 +19,11 @@ from pathlib import Path
 
 import numpy as np
 from hairstyles import FPS, HEAD, MODES, SAG_TIME, STYLES, Array, Style, make_style
-from ringlet.groom.groom import Groom
-from ringlet.shot import preload
-from ringlet.shot.stale import keep
+from ringlet.data.groom import Groom
+from ringlet.rest.update import to_curves
 
 import ringlet
+from ringlet.rest import solve_rest_shape
 
 
 def table(name: str, style: Style, seconds: float, picture: Path | None) -> None:
@@ -32,9 +32,9 @@ def table(name: str, style: Style, seconds: float, picture: Path | None) -> None
     on_head, weightless = style.on_head(), {}
     for mode in MODES:
         shot, began = style.shot(mode), time.process_time()
-        made = None if mode == "none" else preload(shot, style.groom, obstacles=[style.head(np.zeros(1), FPS)])
+        made = None if mode == "none" else solve_rest_shape(shot, style.groom, obstacles=[style.head(np.zeros(1), FPS)])
         took = time.process_time() - began
-        rest = made and keep(made, shot)
+        rest = made and to_curves(made, shot)
         for points in style.at_rest(shot, rest, seconds if mode == "equilibrium" else min(seconds, SAG_TIME)):
             ends[mode] = points.copy()
         drift = np.linalg.norm(ends[mode] - groomed, axis=1)
@@ -76,8 +76,8 @@ def springs(name: str, style: Style, values: list[float], seconds: float) -> Non
     plain_frequency, plain_amplitude = style.bounce(style.shot("none", 0.0), None, groomed)
     for spring in values:
         shot = style.shot("equilibrium", spring=spring)
-        made = preload(shot, style.groom, obstacles=[style.head(np.zeros(1), FPS)])
-        rest = keep(made, shot)
+        made = solve_rest_shape(shot, style.groom, obstacles=[style.head(np.zeros(1), FPS)])
+        rest = to_curves(made, shot)
         *_, begin = style.at_rest(shot, rest, seconds)
         frequency, amplitude = style.bounce(shot, rest, begin.copy())
         frequencies = ", ".join(f"{ratio:.2f}" for ratio in np.percentile(frequency / plain_frequency, [10, 50, 90]))

@@ -1,8 +1,8 @@
 """Triangle meshes of the contact trials: sheets, rods, spheres and bands."""
 
 import numpy as np
-from ringlet.mesh import Mesh
-from ringlet.shot.scene import Body
+from ringlet.data.mesh import Mesh
+from ringlet.sim.obstacle import Body
 
 
 def sheet(corner, first, second, squares, **body):

@@ -10,7 +10,7 @@ import numpy as np
 from crossings import Judge
 from linking import closed, linking
 from ringlet.shot import Solver
-from ringlet.shot.scene import Scene
+from ringlet.sim.scene import Scene
 from surfaces import edges_of
 
 AWAY = 10.0  # [m] distance at which the ends of a strand are joined into a loop

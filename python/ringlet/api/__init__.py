@@ -2,96 +2,35 @@
 
 They follow the data: recipe → groom → cache → hairs → pictures. Heavy libraries are imported where they are used, so
 that ``import ringlet`` is quick. ``progress``, wherever it is taken, is called as ``progress(stage, done, total)``.
+
+Each module lists its public names in ``__all__``; they are public in ``ringlet`` too.
 """
 
 from __future__ import annotations
 
-from ringlet.api.grooms import (
-    build_groom,
-    check_groom,
-    edit_lock,
-    groom_inputs,
-    list_edits,
-    load_groom,
-    read_groom,
-    read_recipe,
-    release_locks,
-    write_groom,
-)
-from ringlet.api.hairs import (
-    build_hairs,
-    write_hairs,
-)
-from ringlet.api.pictures import (
-    write_loft_picture,
-    write_sheet,
-    write_still,
-    write_touches_picture,
-)
-from ringlet.api.program import (
-    run_bench,
-    run_validation,
-    schema,
-    use_threads,
-)
-from ringlet.api.progress import (
-    OnFrame,
-    Progress,
-)
-from ringlet.api.shots import (
-    brought_along,
-    hold_checkpoints,
-    loft,
-    made_from,
-    open_cache,
-    read_cache,
-    read_shot,
-    rest_place,
-    scalp_clip,
-    simulate,
-    start_motion,
-    write_cache,
-    write_loft,
-    write_simulation,
-    write_touches,
-)
+from ringlet.api import demo, doctor, grooms, hairs, pictures, program, run, shots
+from ringlet.api.demo import *
+from ringlet.api.doctor import *
+from ringlet.api.grooms import *
+from ringlet.api.grooms import groom_inputs as groom_inputs
+from ringlet.api.hairs import *
+from ringlet.api.pictures import *
+from ringlet.api.program import *
+from ringlet.api.progress import OnFrame as OnFrame
+from ringlet.api.progress import Progress as Progress
+from ringlet.api.run import *
+from ringlet.api.shots import *
+from ringlet.api.shots import brought_along as brought_along
+from ringlet.api.shots import made_from as made_from
+from ringlet.api.shots import scalp_clip as scalp_clip
+from ringlet.api.shots import start_motion as start_motion
 
-__all__ = [
-    "OnFrame",
-    "Progress",
-    "brought_along",
-    "build_groom",
-    "build_hairs",
-    "check_groom",
-    "edit_lock",
-    "groom_inputs",
-    "hold_checkpoints",
-    "list_edits",
-    "load_groom",
-    "loft",
-    "made_from",
-    "open_cache",
-    "read_cache",
-    "read_groom",
-    "read_recipe",
-    "read_shot",
-    "release_locks",
-    "rest_place",
-    "run_bench",
-    "run_validation",
-    "scalp_clip",
-    "schema",
-    "simulate",
-    "start_motion",
-    "use_threads",
-    "write_cache",
-    "write_groom",
-    "write_hairs",
-    "write_loft",
-    "write_loft_picture",
-    "write_sheet",
-    "write_simulation",
-    "write_still",
-    "write_touches",
-    "write_touches_picture",
-]
+__all__: list[str] = []
+__all__ += demo.__all__
+__all__ += doctor.__all__
+__all__ += grooms.__all__
+__all__ += hairs.__all__
+__all__ += pictures.__all__
+__all__ += program.__all__
+__all__ += run.__all__
+__all__ += shots.__all__

@@ -10,12 +10,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ringlet.api.progress import Progress
-from ringlet.errors import UserError
+from ringlet.data.errors import UserError
 
 if TYPE_CHECKING:
+    from ringlet.data.groom import Groom
+    from ringlet.data.mesh import Mesh
     from ringlet.groom import Memory, Recipe
-    from ringlet.groom.groom import Groom
-    from ringlet.mesh import Mesh
+
+__all__ = [
+    "build_groom",
+    "check_groom",
+    "edit_lock",
+    "list_edits",
+    "load_groom",
+    "read_groom",
+    "read_recipe",
+    "release_locks",
+    "write_groom",
+]
 
 
 def read_recipe(path: Path | str) -> Recipe:
@@ -180,7 +192,7 @@ def check_groom(
     variant:     of the groom file, in place of the one that is selected in it
     """
     from ringlet import groom as grooms
-    from ringlet.groom.groom import Groom
+    from ringlet.data.groom import Groom
 
     if not isinstance(groom, Groom):
         groom = load_groom(groom, variant=variant, progress=progress)

@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING
 from ringlet.api.grooms import read_groom
 from ringlet.api.progress import Progress
 from ringlet.api.shots import scalp_clip
-from ringlet.errors import UserError
+from ringlet.data.errors import UserError
 
 if TYPE_CHECKING:
+    from ringlet.data.groom import Groom
     from ringlet.groom import Hairs, Memory
-    from ringlet.groom.groom import Groom
+
+__all__ = ["build_hairs", "write_hairs"]
 
 
 def build_hairs(groom: Groom, *, fraction: float = 1.0, wider: bool = False, memory: Memory | None = None) -> Hairs:

@@ -10,12 +10,14 @@ import numpy as np
 from ringlet.api.grooms import read_groom
 from ringlet.api.hairs import build_hairs
 from ringlet.api.progress import Progress
-from ringlet.curves import Curves
-from ringlet.errors import UserError
-from ringlet.settings import check_name
+from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
+from ringlet.data.settings import check_name
 
 if TYPE_CHECKING:
-    from ringlet.shot.loft import Loft
+    from ringlet.rest.loft import Loft
+
+__all__ = ["write_loft_picture", "write_sheet", "write_still", "write_touches_picture"]
 
 
 LOCK_WIDTH = 8e-4  # of locks among their contacts: thinner ones are lost before skin in a quick picture [m]

@@ -1,4 +1,4 @@
-"""What is about Ringlet itself: known answers, benchmarks, schemas, threads."""
+"""Known answers, benchmarks, schemas and threads."""
 
 from __future__ import annotations
 
@@ -9,11 +9,13 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from ringlet.api.progress import Progress
-from ringlet.settings import check_name
-from ringlet.share import share
+from ringlet.data.settings import check_name
+from ringlet.data.share import share
 
 if TYPE_CHECKING:
     from ringlet.validate import Row
+
+__all__ = ["run_bench", "run_validation", "schema", "use_threads"]
 
 
 def run_validation(cases: Sequence[str] | None = None, *, progress: Progress | None = None) -> list[Row]:

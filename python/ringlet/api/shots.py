@@ -1,4 +1,4 @@
-"""Shots: read, lofted and simulated, and the caches that come of them."""
+"""Shots, lofts and simulations, and the caches that they make."""
 
 from __future__ import annotations
 
@@ -11,17 +11,32 @@ import numpy as np
 
 from ringlet.api.grooms import load_groom
 from ringlet.api.progress import OnFrame, Progress
-from ringlet.curves import Curves
-from ringlet.errors import UserError
-from ringlet.files import within
+from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
+from ringlet.data.files import within
 
 if TYPE_CHECKING:
-    from ringlet.groom.groom import Groom
+    from ringlet.data.cache import Cache, SimulationRecord
+    from ringlet.data.groom import Groom
+    from ringlet.data.mesh import Clip
     from ringlet.io import CacheFile
-    from ringlet.mesh import Clip
-    from ringlet.shot import Checkpoints, Garment, Motion, Obstacle, Shot
-    from ringlet.shot.cache import Cache, Told
-    from ringlet.shot.loft import Loft
+    from ringlet.rest.loft import Loft
+    from ringlet.shot import Shot
+    from ringlet.sim import Checkpoints, Garment, Motion, Obstacle
+
+__all__ = [
+    "hold_checkpoints",
+    "loft",
+    "open_cache",
+    "read_cache",
+    "read_shot",
+    "rest_place",
+    "simulate",
+    "write_cache",
+    "write_loft",
+    "write_simulation",
+    "write_touches",
+]
 
 
 def read_shot(path: Path | str) -> Shot:
@@ -47,17 +62,18 @@ def simulate(
     groom:       in place of the one that the shot names
     frames:      first and last frame, in place of the shot's
     allow_stale: use a lofted shape although it was made from another groom, material or forces
-    checkpoints: a folder that keeps what is done while it runs; to be taken away when its result has been written
-    resume:      go on with what a run that was broken off left there, to the same bits
-    touches:     keep what touches in every frame, for ``write_touches``
+    checkpoints: a folder for checkpoints; to be removed when the result has been written
+    resume:      continue an interrupted run from its checkpoints, to the same bits
+    touches:     keep the contacts of every frame, for ``write_touches``
     """
     from ringlet import shot as shots
+    from ringlet import sim
 
     if not isinstance(shot, shots.Shot):
         shot = read_shot(shot)
     groom = _taken(groom or shot.groom, progress)
     inputs = _inputs(shot, groom, allow_stale)
-    return shots.simulate(
+    return sim.simulate(
         shot,
         groom,
         frames=frames,
@@ -82,47 +98,47 @@ def write_simulation(
     touches: bool = False,
     progress: Progress | None = None,
     on_frame: OnFrame | None = None,
-) -> Told:
+) -> SimulationRecord:
     """``simulate`` and ``write_cache`` in one, with one frame at a time in memory, however long the shot is.
 
-    under:       the USD file that ``write_groom`` made of the groom, over which the cache is laid
-    checkpoints: the folder that keeps the frames; they go to ``path`` when all are there
-    touches:     keep what touches in every frame there too, for ``write_touches``
-    on_frame:    called with each frame's number and statistics, as soon as it is there
+    under:       the USD file that ``write_groom`` made of the groom, the layer below the cache
+    checkpoints: the folder of the frames, which are written to ``path`` when all are done
+    touches:     keep the contacts of every frame there too, for ``write_touches``
+    on_frame:    called with each frame's number and statistics, as soon as it is done
     """
-    from ringlet import io
-    from ringlet import shot as shots
+    from ringlet import io, sim
+    from ringlet.data.cache import SimulationRecord
 
     io.check_target(path, under)
     groom = _taken(groom)
     inputs = _inputs(shot, groom, allow_stale)
     kept = _checkpoints(checkpoints, shot, groom, inputs, frames)
     first, last = frames or shot.frames
-    motion = shots.Motion(shot, groom, first=first, **inputs)
-    for frame in shots.play(motion, last, touches=touches, progress=progress, checkpoints=kept, resume=resume):
+    motion = sim.Motion(shot, groom, first=first, **inputs)
+    for frame in sim.play(motion, last, touches=touches, progress=progress, checkpoints=kept, resume=resume):
         if on_frame:
             on_frame(frame.number, frame.statistics)
     steps = shot.preroll + last - first + 1
-    told = shots.Told(
+    record = SimulationRecord(
         start=motion.start,
         cloths={worn.name: len(worn.cloth.positions) for worn in motion.worn},
-        touches=shots.KeptTouches(motion, kept, steps) if touches else (),
+        touches=sim.StoredTouches(motion, kept, steps) if touches else (),
     )
     with io.CacheWriter(path, under, io.read_space(Path(under)), motion.cloths(0), groom.variant) as writer:
         writer.start = motion.start
-        for frame in shots.played(motion, kept, steps):
-            told.frames.append(frame.number)
-            told.statistics.append(frame.statistics)
+        for frame in sim.replay(motion, kept, steps):
+            record.frames.append(frame.number)
+            record.statistics.append(frame.statistics)
             writer.add(frame.number, frame.points, frame.statistics, frame.cloths)
-    return told
+    return record
 
 
 def hold_checkpoints(folder: Path | str) -> AbstractContextManager[int]:
-    """Keeps other programs out of a folder of checkpoints while the block runs, also before there are any.
+    """Locks a folder of checkpoints for this program while the block runs, also before there are any.
 
-    For who writes other files that go with a run, such as its groom, before ``write_simulation``. A folder in which
-    nothing was kept is gone after the block. Gives the number of steps (frames, and those of the preroll) that a run
-    which was broken off left to ``resume`` after, 0 for none. Raises UserError where another run is at it.
+    For programs that write other files of a run, such as its groom, before ``write_simulation``. An empty folder is
+    removed after the block. Gives the number of steps (frames, and those of the preroll) after which an interrupted run
+    can ``resume``, 0 for none. Raises UserError where another run has locked it.
 
     Example::
 
@@ -130,40 +146,40 @@ def hold_checkpoints(folder: Path | str) -> AbstractContextManager[int]:
             ringlet.write_groom(groom, "groom.usdc")
             ringlet.write_simulation(shot, groom, "groom.usdc", "cache.usdc", checkpoints="cache.usdc.part")
     """
-    from ringlet import shot as shots
+    from ringlet import sim
 
-    return shots.holding(Path(folder))
+    return sim.holding(Path(folder))
 
 
 def made_from(shot: Shot, groom: Groom, *, frames: tuple[int, int] | None = None) -> str:
-    """A digest of all that the frames of a simulation depend on: two runs with the same give the same bits."""
-    from ringlet import shot as shots
+    """A digest of all that a simulation depends on: two runs with the same digest give the same bits."""
+    from ringlet import sim
 
     groom = _taken(groom)
-    return shots.made_of(shot, groom, frames=frames, **_inputs(shot, groom, False))
+    return sim.digest_of_run(shot, groom, frames=frames, **_inputs(shot, groom, False))
 
 
 def start_motion(shot: Shot, groom: Groom, *, allow_stale: bool = False) -> Motion:
-    """The locks of a groom at the start of a shot, to be moved frame by frame by who wants to see each."""
-    from ringlet import shot as shots
+    """The locks of a groom at the start of a shot, for callers that advance it frame by frame."""
+    from ringlet import sim
 
     groom = _taken(groom)
-    return shots.Motion(shot, groom, first=shot.frames[0], **_inputs(shot, groom, allow_stale))
+    return sim.Motion(shot, groom, first=shot.frames[0], **_inputs(shot, groom, allow_stale))
 
 
 def _taken(groom: Groom | Path | str, progress: Progress | None = None) -> Groom:
-    """The groom as a shot takes it: with the numbers of its file, also where it comes from a recipe.
+    """The groom of a shot, rounded as in its file, also where it comes from a recipe.
 
-    Steps end before they have converged to the last digit, and what differs there grows.
+    Steps end before they converge to the last digit, and differences there grow.
     """
     from ringlet import io
-    from ringlet.groom.groom import Groom
+    from ringlet.data.groom import Groom
 
     return io.as_written(groom if isinstance(groom, Groom) else load_groom(groom, progress=progress))
 
 
 def _inputs(shot: Shot, groom: Groom, allow_stale: bool) -> dict[str, Any]:
-    """What files hold that a shot and its groom name: what ``shots.simulate`` takes besides the two."""
+    """The contents of the files that a shot and its groom name: the further arguments of ``sim.simulate``."""
     clip, garments = scalp_clip(groom), _garments(shot, groom)
     obstacles = _obstacles(shot, groom, garments)
     rest = _rest_shape(shot, groom, obstacles, allow_stale)
@@ -173,11 +189,11 @@ def _inputs(shot: Shot, groom: Groom, allow_stale: bool) -> dict[str, Any]:
 def _checkpoints(
     folder: Path | str, shot: Shot, groom: Groom, inputs: dict[str, Any], frames: tuple[int, int] | None
 ) -> Checkpoints:
-    """The folder that keeps what a run has done."""
-    from ringlet import shot as shots
+    """The checkpoints of a run."""
+    from ringlet import sim
 
-    made_from = shots.made_of(shot, groom, frames=frames, **inputs)
-    return shots.Checkpoints(Path(folder), made_from, every=shots.frames_between(len(groom.locks.points)))
+    made_from = sim.digest_of_run(shot, groom, frames=frames, **inputs)
+    return sim.Checkpoints(Path(folder), made_from, every=sim.frames_between(len(groom.locks.points)))
 
 
 def loft(
@@ -188,13 +204,13 @@ def loft(
     sag: bool = False,
     progress: Progress | None = None,
 ) -> Loft:
-    """Pre-bends the shape that the locks remember, so that the groom is what hangs under the forces of the shot.
+    """Finds the rest shape of the locks with which they hang as groomed under the forces of the shot.
 
     groom: in place of the one that the shot names
     known: a file that ``write_loft`` wrote: locks that have not changed since are taken from it
-    sag:   look how the locks hang without it too, which equilibrium need not know
+    sag:   find how the locks hang without the loft too, which equilibrium does not need
     """
-    from ringlet import io
+    from ringlet import io, rest
     from ringlet import shot as shots
 
     if not isinstance(shot, shots.Shot):
@@ -202,38 +218,36 @@ def loft(
     groom = _taken(groom or shot.groom, progress)
     obstacles = _lain_on(shot, groom)
     if known is None or not Path(known).exists():
-        made = shots.preload(shot, groom, obstacles=obstacles, progress=progress)
+        made = rest.solve_rest_shape(shot, groom, obstacles=obstacles, progress=progress)
     else:
-        made = shots.refresh(shot, groom, *io.read_rest(Path(known)), obstacles=obstacles, progress=progress)
-    return shots.with_sag(made, shot) if sag else made
+        made = rest.update_rest_shape(shot, groom, *io.read_rest(Path(known)), obstacles=obstacles, progress=progress)
+    return rest.with_sag(made, shot) if sag else made
 
 
 def rest_place(shot: Shot) -> Path:
-    """Where the loft of a shot goes when nobody says otherwise: beside the shot or below, whatever it says."""
+    """The default file of a shot's loft, which must be beside the shot or below."""
     assert shot.path is not None and shot.rest_file is not None  # a shot from a file has a place for it
     return within(shot.rest_file, shot.path.parent, f"{shot.path.name}: rest.file")
 
 
 def write_loft(loft: Loft, shot: Shot, path: Path | str) -> None:
-    """Writes the shape that locks remember, with what it was made from, for ``simulate``."""
-    from ringlet import io
-    from ringlet import shot as shots
+    """Writes a rest shape, with all that it depends on, for ``simulate``."""
+    from ringlet import io, rest
 
-    made_from = shots.made_from(shot, _lain_on(shot, loft.groom))
-    io.write_rest(shots.keep(loft, shot), made_from, Path(path), loft.groom.space)
+    made_from = rest.dependencies(shot, _lain_on(shot, loft.groom))
+    io.write_rest(rest.to_curves(loft, shot), made_from, Path(path), loft.groom.space)
 
 
 def _lain_on(shot: Shot, groom: Groom) -> list[Obstacle]:
-    """The bodies that a groom may lie on, as far as its rest shape asks for them."""
+    """The bodies that may support a groom, where its rest shape depends on them."""
     if shot.rest.mode != "equilibrium" or groom.scalp_file is None:
         return []
     return _obstacles(shot, groom, _garments(shot, groom))
 
 
 def _rest_shape(shot: Shot, groom: Groom, obstacles: Sequence[Obstacle], allow_stale: bool) -> Curves | None:
-    """What the locks remember: nothing but the groom, or a lofted shape that fits."""
-    from ringlet import io
-    from ringlet import shot as shots
+    """The rest shape of the locks: None for the groom, or a stored one that fits."""
+    from ringlet import io, rest
 
     if shot.rest.mode == "none":
         return None
@@ -244,13 +258,15 @@ def _rest_shape(shot: Shot, groom: Groom, obstacles: Sequence[Obstacle], allow_s
     if not shot.rest_file.exists():
         raise UserError(f"{shot.rest_file}: there is no lofted shape; make it with: ringlet loft {shot.path}")
     kept, made_from = io.read_rest(shot.rest_file)
-    return shots.check(kept, made_from, shot, groom, shot.rest_file, obstacles=obstacles, allow_stale=allow_stale)
+    return rest.check_current(
+        kept, made_from, shot, groom, shot.rest_file, obstacles=obstacles, allow_stale=allow_stale
+    )
 
 
 def scalp_clip(groom: Groom) -> Clip:
-    """How the scalp of a groom moves; one that an OBJ has stands still."""
+    """The animation of the scalp of a groom; one from an OBJ file stands still."""
     from ringlet import io
-    from ringlet.mesh import Clip
+    from ringlet.data.mesh import Clip
 
     if groom.scalp_file is None:
         raise UserError("groom: names no file for its scalp; write the head as USD and name it in the recipe")
@@ -260,13 +276,13 @@ def scalp_clip(groom: Groom) -> Clip:
 
 
 def _is_still(groom: Groom) -> bool:
-    """Whether the scalp is of a file that says nothing of motion."""
+    """Whether the scalp is of a file without animation."""
     return groom.scalp_file is not None and groom.scalp_file.suffix.lower() == ".obj"
 
 
 def _obstacles(shot: Shot, groom: Groom, garments: Sequence[Garment]) -> list[Obstacle]:
-    """What locks and cloth of a shot touch besides one another: of several settings for one mesh, the last."""
-    from ringlet import io
+    """The obstacles of a shot; of several settings for one mesh the last counts."""
+    from ringlet import io, sim
     from ringlet import shot as shots
 
     if not shot.touching:
@@ -280,7 +296,7 @@ def _obstacles(shot: Shot, groom: Groom, garments: Sequence[Garment]) -> list[Ob
         else:
             bodies = io.read_bodies(file, collider.mesh)
         for body in bodies:
-            found[file.resolve(), body.prim] = shots.Obstacle(body.mesh, body.clip, collider)
+            found[file.resolve(), body.prim] = sim.Obstacle(body.mesh, body.clip, collider)
     for garment in garments:  # cloth is no obstacle, even where its file is the head's
         assert garment.file is not None
         found.pop((garment.file.resolve(), garment.prim), None)
@@ -288,7 +304,7 @@ def _obstacles(shot: Shot, groom: Groom, garments: Sequence[Garment]) -> list[Ob
 
 
 def brought_along(shot: Shot, groom: Groom) -> tuple[list[Garment], list[Obstacle]]:
-    """What is seen of a shot besides what is visible with the head: its cloths, and colliders of other files."""
+    """The visible meshes of a shot besides those of the head's file: its cloths, and colliders of other files."""
     garments = _garments(shot, groom)
     apart = tuple(collider for collider in shot.collider if collider.file not in (None, groom.scalp_file))
     obstacles = _obstacles(shot.model_copy(update={"collider": apart}), groom, garments) if apart else []
@@ -297,15 +313,14 @@ def brought_along(shot: Shot, groom: Groom) -> tuple[list[Garment], list[Obstacl
 
 def _garments(shot: Shot, groom: Groom) -> list[Garment]:
     """The meshes that become cloth in a shot."""
-    from ringlet import io
-    from ringlet import shot as shots
+    from ringlet import io, sim
 
     garments: list[Garment] = []
     for cloth in shot.cloth:
         file = cloth.file or groom.scalp_file
         assert file is not None  # as for the scalp's clip
         body = io.read_body(file, cloth.mesh)
-        garments.append(shots.Garment(body.mesh, body.clip, cloth, file, body.prim))
+        garments.append(sim.Garment(body.mesh, body.clip, cloth, file, body.prim))
         if garments[-1].name in [garment.name for garment in garments[:-1]]:
             raise UserError(f"shot: two cloths are called '{garments[-1].name}'; give one of them another `name`")
     return garments
@@ -318,8 +333,8 @@ def write_cache(cache: Cache, groom: Path | str, path: Path | str, *, variant: s
     io.write_cache(cache, Path(groom), Path(path), io.read_space(Path(groom)), variant)
 
 
-def write_touches(cache: Cache | Told, cache_path: Path | str, path: Path | str) -> None:
-    """Writes what touched in a simulation as coloured points: a USD layer over the file of its cache."""
+def write_touches(cache: Cache | SimulationRecord, cache_path: Path | str, path: Path | str) -> None:
+    """Writes the contacts of a simulation as coloured points: a USD layer over the file of its cache."""
     from ringlet import io
 
     io.write_touches(cache, Path(cache_path), Path(path), io.read_space(Path(cache_path)))
@@ -328,7 +343,7 @@ def write_touches(cache: Cache | Told, cache_path: Path | str, path: Path | str)
 def open_cache(path: Path | str) -> AbstractContextManager[CacheFile]:
     """Opens simulated guides to read one frame at a time, however many there are.
 
-    What it gives has ``frames``, ``size`` (points of all locks), ``statistics`` and ``start``, and
+    The file has ``frames``, ``size`` (points of all locks), ``statistics`` and ``start``, and
     ``points(frame)``: positions [m], shape (size, 3).
 
     Example::

@@ -1,4 +1,4 @@
-"""The command ``ringlet``: its commands, and what becomes of an error.
+"""The command ``ringlet``: its commands and its errors.
 
 Exit codes: 0 success, 1 what was checked does not hold, 2 bad input, 3 a mistake in Ringlet itself, 130 interrupted.
 """
@@ -10,19 +10,37 @@ import sys
 import tempfile
 import traceback
 from collections.abc import Sequence
+from importlib import import_module
 from typing import Annotated, Any
 
 import typer
 from typer.core import TyperGroup
 
 import ringlet
-from ringlet.cli import bench, check, demo, doctor, edit, groom, hair, loft, picture, schema, sim, validate, view, wedge
 
+# In the order of the help. Each is the function of the same name in the file of the same name.
+COMMANDS = [
+    "demo",
+    "groom",
+    "edit",
+    "check",
+    "loft",
+    "sim",
+    "wedge",
+    "hair",
+    "picture",
+    "view",
+    "validate",
+    "schema",
+    "doctor",
+    "bench",
+]
+CONTEXT = {"bench": {"allow_extra_args": True, "ignore_unknown_options": True}}  # a benchmark takes what it likes
 INTERRUPTED = 130  # what typer makes of a KeyboardInterrupt
 
 
 class Front(TyperGroup):
-    """Tells every error in one line, and never shows a traceback that was not asked for."""
+    """Prints every error in one line, without a traceback unless one was asked for."""
 
     def main(self, args: Sequence[str] | None = None, *rest: Any, standalone_mode: bool = True, **extra: Any) -> Any:
         """Runs a command line and exits with its code."""
@@ -54,7 +72,7 @@ def fail(message: str, code: int) -> int:
 
 
 def bug() -> str:
-    """What to say of an exception that should not have happened; its traceback goes to a file, or is shown."""
+    """The message for an unexpected exception, whose traceback is written to a file or printed."""
     if os.environ.get("RINGLET_DEBUG"):
         traceback.print_exc()
         where = "above"
@@ -106,24 +124,8 @@ def front(
         print(context.get_help())
 
 
-for name, command in {
-    "demo": demo.demo,
-    "groom": groom.groom,
-    "edit": edit.edit,
-    "check": check.check,
-    "loft": loft.loft,
-    "sim": sim.sim,
-    "wedge": wedge.wedge,
-    "hair": hair.hair,
-    "picture": picture.picture,
-    "view": view.view,
-    "validate": validate.validate,
-    "schema": schema.schema,
-    "doctor": doctor.doctor,
-}.items():
-    app.command(name)(command)
-# What a benchmark takes is the benchmark's own affair.
-app.command("bench", context_settings={"allow_extra_args": True, "ignore_unknown_options": True})(bench.bench)
+for name in COMMANDS:
+    app.command(name, context_settings=CONTEXT.get(name))(getattr(import_module(f"ringlet.cli.{name}"), name))
 
 
 def main() -> None:

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from ringlet.errors import UserError
+from ringlet.data.errors import UserError
 from ringlet.farm.grid import Task
 from ringlet.farm.task import Result, Wanted, run_task, write_result
 

@@ -12,10 +12,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, get_args
 
-from ringlet.errors import UserError
-from ringlet.settings import Location, Section, did_you_mean, read_toml, setting_name
+from ringlet.data.errors import UserError
+from ringlet.data.settings import Location, Section, did_you_mean, read_toml, setting_name
+from ringlet.data.toml import to_toml
 from ringlet.shot import Shot, parse_shot
-from ringlet.toml import to_toml
 
 MOST_TASKS = 10_000
 LONGEST_NAME = 100  # of a folder

@@ -13,11 +13,11 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from ringlet.errors import UserError
+from ringlet.data.errors import UserError
+from ringlet.data.files import replacing
+from ringlet.data.toml import to_toml
 from ringlet.farm.grid import Choice
 from ringlet.farm.task import Wanted
-from ringlet.files import replacing
-from ringlet.toml import to_toml
 
 VERSION = "jobtemplate-2023-09"
 LONGEST_NAME = 64  # of a parameter, a job or a step

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
+from ringlet.data.files import replacing
 from ringlet.farm.task import RESULT, Result, read_result
-from ringlet.files import replacing
 from ringlet.report import Picture, Table, document, figure, line_chart, table
 
 PAGE = "wedge.html"

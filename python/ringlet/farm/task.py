@@ -25,11 +25,11 @@ from typing import Any, Literal
 import numpy as np
 
 from ringlet import api
-from ringlet.errors import UserError
+from ringlet.data.errors import UserError
+from ringlet.data.files import replacing
+from ringlet.data.groom import Groom
 from ringlet.farm.grid import Task
-from ringlet.files import replacing
 from ringlet.groom import hair_count
-from ringlet.groom.groom import Groom
 from ringlet.shot import Shot
 
 FORMAT = 1

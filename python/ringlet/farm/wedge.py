@@ -9,13 +9,13 @@ from pathlib import Path
 from typing import Any
 
 from ringlet import api
-from ringlet.errors import UserError
+from ringlet.data.errors import UserError
+from ringlet.data.files import check_place
 from ringlet.farm.cluster import run_on_workers
 from ringlet.farm.grid import Choice, Task, choose, make_tasks
 from ringlet.farm.openjd import write_template
 from ringlet.farm.page import PAGE, read_results, write_page
 from ringlet.farm.task import Result, Wanted, run_task
-from ringlet.files import check_place
 
 
 def wedge(

@@ -1,9 +1,9 @@
 """The groom: from a recipe and a scalp to every hair."""
 
+from ringlet.data.groom import Groom
 from ringlet.groom.check import Allowed, check_groom
 from ringlet.groom.edits_file import add_points, add_settings, release, row_of, taken_back
 from ringlet.groom.fix import fix_groom
-from ringlet.groom.groom import Groom
 from ringlet.groom.hairs import HairMemory, Hairs, HairSettings, hair_count, lay_hairs, make_hairs
 from ringlet.groom.presets import PRESETS
 from ringlet.groom.recipe import Recipe, parse_recipe, read_recipe, schema

@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ringlet import _core
-from ringlet.curves import Curves
-from ringlet.errors import UserError
-from ringlet.groom.groom import Groom
+from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
+from ringlet.data.groom import Groom
+from ringlet.data.mesh import Mesh
 from ringlet.groom.operators.operator import packed
-from ringlet.mesh import Mesh
 
 Array = NDArray[np.float64]
 

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from ringlet import _core
-from ringlet.curves import Curves
+from ringlet.data.curves import Curves
+from ringlet.data.quantities import Quantity, Section, refuse
 from ringlet.groom.helpers import Place
 from ringlet.groom.operators.operator import Context, Operator, grid, packed, with_grid
-from ringlet.groom.settings import Quantity, Section, refuse
 
 Value = float | int | str
 

@@ -10,15 +10,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ringlet.errors import UserError
-from ringlet.files import replacing, within
+from ringlet.data.errors import UserError
+from ringlet.data.files import replacing, within
+from ringlet.data.groom import Groom
+from ringlet.data.settings import did_you_mean
+from ringlet.data.toml import to_toml
 from ringlet.groom.edits import offsets_to
-from ringlet.groom.groom import Groom
 from ringlet.groom.load import EDITS, read_edits
 from ringlet.groom.recipe import Recipe
 from ringlet.groom.scalp import Scalp
-from ringlet.settings import did_you_mean
-from ringlet.toml import to_toml
 
 
 def edits_path(recipe: Recipe) -> Path:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ringlet.settings import did_you_mean, refuse
+from ringlet.data.settings import did_you_mean, refuse
 
 NAMES = ("id", "random", "length", "x", "y", "z")  # [m] where it is a length; x, y, z: the root
 FUNCTIONS: dict[str, Callable[..., Any]] = {

@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ringlet import _core
+from ringlet.data.groom import Groom
+from ringlet.data.mesh import Mesh
 from ringlet.groom.check import Allowed, Bodies, Findings, find, lock_of
-from ringlet.groom.groom import Groom
 from ringlet.groom.operators.operator import packed
-from ringlet.mesh import Mesh
 
 Array = NDArray[np.float64]
 

@@ -13,14 +13,14 @@ from pydantic import Field, ValidationError
 from scipy.spatial import KDTree
 
 from ringlet import _core
-from ringlet.curves import Curves, offsets_from_counts
-from ringlet.errors import UserError
-from ringlet.groom.groom import Groom
-from ringlet.groom.painted import per_lock as for_each_lock
-from ringlet.groom.random import Random, tipping
+from ringlet.data.curves import Curves, offsets_from_counts
+from ringlet.data.errors import UserError
+from ringlet.data.groom import Groom
+from ringlet.data.mesh import Mesh
+from ringlet.data.painted import per_lock as for_each_lock
+from ringlet.data.quantities import Quantity, Ramped, Section, Varied, explain
+from ringlet.data.random import Random, soft_threshold
 from ringlet.groom.scalp import axes
-from ringlet.groom.settings import Quantity, Ramped, Section, Varied, explain
-from ringlet.mesh import Mesh
 
 IDS_PER_LOCK = 10_000  # the id of a hair: id of its lock · 10 000 + number in it
 FRIZZ_KNOTS = 8
@@ -352,7 +352,7 @@ def _layout(
     random = Random(settings.seed, "hairs")
     free = number > 0
     tip = 1.0 - per_lock("shorter")[lock] * free * random.uniform(ids, 0) ** 2
-    strays = tipping(per_lock("stray")[lock], random.uniform(ids, 1))
+    strays = soft_threshold(per_lock("stray")[lock], random.uniform(ids, 1))
     frizz, stray = per_lock("frizz")[lock], per_lock("stray_radius")[lock]
     reach = (frizz + strays * (stray - frizz)) * free
     knots = (

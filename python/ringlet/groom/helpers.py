@@ -7,8 +7,8 @@ from typing import Annotated
 import numpy as np
 from pydantic import BeforeValidator, Field, ValidationInfo, model_validator
 
-from ringlet.curves import Curves
-from ringlet.groom.settings import Quantity, refuse
+from ringlet.data.curves import Curves
+from ringlet.data.quantities import Quantity, refuse
 from ringlet.groom.source import Source
 
 

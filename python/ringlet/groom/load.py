@@ -6,9 +6,9 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
-from ringlet.errors import UserError
-from ringlet.settings import did_you_mean, parse_toml, read_toml
-from ringlet.toml import to_toml
+from ringlet.data.errors import UserError
+from ringlet.data.settings import did_you_mean, parse_toml, read_toml
+from ringlet.data.toml import to_toml
 
 FILES = (("scalp", "file"), ("guides", "file"))
 EDITS = ("edit", "sculpt")  # tables of a file of edits: of locks, of guides

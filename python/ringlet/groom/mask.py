@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 from pydantic import AfterValidator, Field
 
 from ringlet import _core
-from ringlet.curves import Curves
-from ringlet.errors import UserError
+from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
+from ringlet.data.mesh import Mesh
+from ringlet.data.painted import painted, region
+from ringlet.data.quantities import Quantity, Ramp, Section, along
+from ringlet.data.random import Random
 from ringlet.groom import expression
-from ringlet.groom.painted import painted, region
-from ringlet.groom.random import Random
-from ringlet.groom.settings import Quantity, Ramp, Section, along
-from ringlet.mesh import Mesh
 
 
 class Mask(Section):

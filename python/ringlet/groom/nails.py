@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from ringlet.curves import Curves
+from ringlet.data.curves import Curves
+from ringlet.data.mesh import Mesh
+from ringlet.data.quantities import Quantity, Section
+from ringlet.data.random import Random
 from ringlet.groom.mask import Mask
 from ringlet.groom.operators.operator import arc_lengths, grid
-from ringlet.groom.random import Random
-from ringlet.groom.settings import Quantity, Section
-from ringlet.mesh import Mesh
 
 NAIL = "nail"  # point attribute of locks: 0 free … 1 moves rigidly with the place on the skin where the lock is rooted
 

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, FiniteFloat
 
-from ringlet.curves import Curves
-from ringlet.groom.settings import Quantity, Section
+from ringlet.data.curves import Curves
+from ringlet.data.quantities import Quantity, Section
 
 Vector = tuple[FiniteFloat, FiniteFloat, FiniteFloat]
 

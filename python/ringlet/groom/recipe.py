@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, PrivateAttr, Tag, ValidationError
 
+from ringlet.data.quantities import UNITS, Section, explain
 from ringlet.groom.edits import Edit
 from ringlet.groom.hairs import HairSettings
 from ringlet.groom.helpers import HelperCurves
@@ -14,7 +15,6 @@ from ringlet.groom.load import load, load_text
 from ringlet.groom.nails import Nail
 from ringlet.groom.operators import Clean, Curl, Drawn, Grown, Locks, ShapeOperator
 from ringlet.groom.sculpt import Sculpt
-from ringlet.groom.settings import UNITS, Section, explain
 from ringlet.groom.source import Source
 
 

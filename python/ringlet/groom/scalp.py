@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ringlet import _core
-from ringlet.curves import Curves
-from ringlet.errors import UserError
-from ringlet.groom.painted import painted
-from ringlet.groom.random import Random
-from ringlet.mesh import Mesh
+from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
+from ringlet.data.mesh import Mesh
+from ringlet.data.painted import painted
+from ringlet.data.random import Random
 
 IDS_PER_TRIANGLE = 1_000_000  # the id of a grown curve says where it stands: triangle · 1 000 000 + number in it
 

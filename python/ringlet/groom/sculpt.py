@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from ringlet import _core
-from ringlet.curves import Curves
+from ringlet.data.curves import Curves
+from ringlet.data.quantities import Quantity, Section, refuse
 from ringlet.groom.edits import resampled
 from ringlet.groom.helpers import Place
 from ringlet.groom.operators.operator import Context, Operator, arc_lengths, at_lengths, packed
 from ringlet.groom.scalp import Scalp
-from ringlet.groom.settings import Quantity, Section, refuse
 
 MOVED = 2e-5  # [m] a point that is nearer than this to where it was has not been sculpted
 

@@ -6,8 +6,8 @@ from typing import Literal
 
 from pydantic import Field
 
-from ringlet.groom.settings import UNITS, Section
-from ringlet.stage import StageSpace
+from ringlet.data.quantities import UNITS, Section
+from ringlet.data.stage import StageSpace
 
 
 class Source(Section):

@@ -11,21 +11,21 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ringlet.curves import Curves
-from ringlet.errors import UserError
+from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
+from ringlet.data.groom import Groom
+from ringlet.data.mesh import Mesh
+from ringlet.data.painted import painted
+from ringlet.data.quantities import Varied
+from ringlet.data.stage import StageSpace
 from ringlet.groom.edits import Edit, Edits
-from ringlet.groom.groom import Groom
 from ringlet.groom.hairs import HairMemory, HairSettings
 from ringlet.groom.load import stage_names
 from ringlet.groom.nails import nailed
 from ringlet.groom.operators import Context, Drawn, Operator, Resample
-from ringlet.groom.painted import painted
 from ringlet.groom.recipe import Recipe
 from ringlet.groom.scalp import Scalp
 from ringlet.groom.sculpt import Sculpted
-from ringlet.groom.settings import Varied
-from ringlet.mesh import Mesh
-from ringlet.stage import StageSpace
 
 Progress = Callable[[str, int, int], None]
 

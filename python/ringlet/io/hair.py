@@ -11,10 +11,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ringlet.curves import Curves, offsets_from_counts
-from ringlet.errors import UserError
+from ringlet.data.curves import Curves, offsets_from_counts
+from ringlet.data.errors import UserError
+from ringlet.data.stage import StageSpace
 from ringlet.io.space import to_metres
-from ringlet.stage import StageSpace
 
 HEADER = struct.Struct(
     "<4sIIIIff3f88s"

@@ -11,12 +11,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ringlet.curves import Curves
-from ringlet.errors import UserError
+from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
+from ringlet.data.mesh import Mesh
+from ringlet.data.stage import StageSpace
 from ringlet.io.polygons import check_polygons, fans
 from ringlet.io.space import check_points, to_metres
-from ringlet.mesh import Mesh
-from ringlet.stage import StageSpace
 
 MOST_POINTS = 2**31 - 1
 MOST_GROUPS = 100  # that a face can be in

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ringlet.errors import UserError
+from ringlet.data.errors import UserError
 
 
 def check_polygons(counts: NDArray, indices: NDArray, points: int, where: str) -> None:

@@ -6,15 +6,15 @@ from pathlib import Path
 
 import numpy as np
 
-from ringlet.curves import Curves
-from ringlet.errors import UserError
+from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
+from ringlet.data.mesh import Clip, Mesh
+from ringlet.data.stage import StageSpace
 from ringlet.io.hair import read_hair
 from ringlet.io.obj import read_obj_curves, read_obj_mesh
 from ringlet.io.usd.curves import read_usd_curves
 from ringlet.io.usd.mesh import read_usd_clip, read_usd_mesh
 from ringlet.io.usd.stage import read_usd_space
-from ringlet.mesh import Clip, Mesh
-from ringlet.stage import StageSpace
 
 METRES = StageSpace()
 

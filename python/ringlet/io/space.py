@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ringlet.errors import UserError
-from ringlet.stage import StageSpace
+from ringlet.data.errors import UserError
+from ringlet.data.stage import StageSpace
 
 
 def to_metres(points: NDArray, space: StageSpace) -> NDArray:

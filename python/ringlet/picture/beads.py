@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ringlet.mesh import Mesh
+from ringlet.data.mesh import Mesh
 from ringlet.picture.bodies import PosedBody
 
 # A regular icosahedron in a ball of radius 1, its corners on three rectangles with sides in the golden ratio.

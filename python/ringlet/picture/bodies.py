@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ringlet.errors import UserError
-from ringlet.mesh import Mesh
+from ringlet.data.errors import UserError
+from ringlet.data.mesh import Mesh
 
 
 @dataclass

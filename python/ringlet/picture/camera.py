@@ -9,7 +9,7 @@ from math import atan, cos, degrees, radians, sin
 import numpy as np
 from numpy.typing import NDArray
 
-from ringlet.errors import UserError
+from ringlet.data.errors import UserError
 
 # Where the camera stands, seen from the subject: turn from the front (+Z) to its left (+X), and height [degrees].
 VIEWS: dict[str, tuple[float, float]] = {

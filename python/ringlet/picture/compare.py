@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageChops, ImageDraw, ImageFilter
 
-from ringlet.curves import Curves
-from ringlet.files import replacing
+from ringlet.data.curves import Curves
+from ringlet.data.files import replacing
 from ringlet.picture.bodies import PosedBody
 from ringlet.picture.camera import Camera
 from ringlet.picture.render import Progress, hair_color

@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from ringlet.files import replacing
+from ringlet.data.files import replacing
 
 COLORS = ("#d62728", "#ff7f0e", "#1f77b4", "#2ca02c")
 VIEWS = {"front": (0, 1, 1.0), "side": (2, 1, 1.0), "top": (0, 2, -1.0)}  # axes across and up, and the sign of that

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
 
-from ringlet.curves import Curves
-from ringlet.errors import UserError
+from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
 from ringlet.picture.bodies import COLORS, PosedBody, material
 from ringlet.picture.camera import Camera
 from ringlet.picture.passes import Passes

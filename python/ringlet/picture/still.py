@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from ringlet.curves import Curves
-from ringlet.errors import UserError
-from ringlet.files import replacing
+from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
+from ringlet.data.files import replacing
 from ringlet.picture.bodies import PosedBody
 from ringlet.picture.camera import frame
 from ringlet.picture.render import Progress, build_scene, hair_color, over_backdrop, trace

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solve_banded
 
-from ringlet.curves import Curves, offsets_from_counts
+from ringlet.data.curves import Curves, offsets_from_counts
 
 # A hair without a width: the diameter of a curly human hair [m].
 DEFAULT_WIDTH = 70e-6

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from PIL import Image
 
-from ringlet.errors import UserError
+from ringlet.data.errors import UserError
 from ringlet.report.charts import line_chart
 from ringlet.report.findings import PHASES, explain_slowest, explain_worst, series, total, value, verdict
 from ringlet.report.model import MadeFile, Picture, RunReport, Stage, Table

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ringlet.files import replacing
+from ringlet.data.files import replacing
 from ringlet.report.model import RunReport
 from ringlet.report.page import page
 

@@ -1,59 +1,25 @@
-"""Shots: strands that move with an animated scalp."""
+"""Shots: the settings of a simulation, from a TOML file."""
 
-from ringlet.shot.cache import Cache, CachedCloth, Told, Touches
-from ringlet.shot.checkpoint import Checkpoints, frames_between, holding
-from ringlet.shot.cloth import Cloth, ClothMaterial, ClothSolver
-from ringlet.shot.collider import Collider, Obstacle, ShotContact
-from ringlet.shot.equilibrium import equilibrium
-from ringlet.shot.garment import Garment, Pin, ShotCloth
-from ringlet.shot.loft import Loft, loft, with_sag
-from ringlet.shot.scene import Body, Contact, Scene
+from ringlet.shot.cloth import ClothMaterial, Pin, ShotCloth
+from ringlet.shot.contact import Collider, Contact, Pair, ShotContact
+from ringlet.shot.material import Material
 from ringlet.shot.shot import Forces, Shot, parse_shot, read_shot, schema
-from ringlet.shot.simulate import KeptTouches, Motion, made_of, play, played, simulate
-from ringlet.shot.stale import check, keep, made_from, preload, refresh
-from ringlet.shot.strands import Material, Solver, Strands
+from ringlet.shot.solver import ClothSolver, Solver
 
 __all__ = [
-    "Body",
-    "Cache",
-    "CachedCloth",
-    "Checkpoints",
-    "Cloth",
     "ClothMaterial",
     "ClothSolver",
     "Collider",
     "Contact",
     "Forces",
-    "Garment",
-    "KeptTouches",
-    "Loft",
     "Material",
-    "Motion",
-    "Obstacle",
+    "Pair",
     "Pin",
-    "Scene",
     "Shot",
     "ShotCloth",
     "ShotContact",
     "Solver",
-    "Strands",
-    "Told",
-    "Touches",
-    "check",
-    "equilibrium",
-    "frames_between",
-    "holding",
-    "keep",
-    "loft",
-    "made_from",
-    "made_of",
     "parse_shot",
-    "play",
-    "played",
-    "preload",
     "read_shot",
-    "refresh",
     "schema",
-    "simulate",
-    "with_sag",
 ]

@@ -1,17 +1,16 @@
-"""Cloth that moves: the core's solver with named settings."""
+"""Cloth in a shot: its material, and what pins it."""
 
 from __future__ import annotations
 
+from pathlib import Path
+from typing import Annotated, Self
+
 import numpy as np
-from numpy.typing import NDArray
-from pydantic import Field
+from pydantic import Field, ValidationInfo, field_validator, model_validator
 
-from ringlet import _core
-from ringlet.errors import UserError
-from ringlet.mesh import Mesh
-from ringlet.settings import Section
+from ringlet.data.settings import Section, refuse
 
-Vector = tuple[float, float, float]
+Scale = Annotated[float, Field(gt=0.01, le=100)]
 
 
 class ClothMaterial(Section):
@@ -40,179 +39,82 @@ class ClothMaterial(Section):
     thickness: float = Field(default=1e-3, gt=0, le=0.1, description="[m] how near other things come")
     friction: float = Field(default=0.3, ge=0, le=10, description="Coulomb's μ of a lock on it")
 
-    def core(self) -> _core.ClothMaterial:
-        """The same, for the core."""
-        material = _core.ClothMaterial()
-        for name, value in self:
-            if name != "friction":  # which is of a pair: the scene's
-                setattr(material, name, value)
-        return material
 
+class Pin(Section):
+    """Vertices of a cloth that go where they are told: all of it, or those that fulfil every condition here."""
 
-class ClothSolver(Section):
-    """How a time step of cloth is solved."""
-
-    newton: int = Field(default=5, ge=1, le=1000, description="Newton iterations per step, at most")
-    tolerance: float = Field(
-        default=1e-6, gt=0, le=1e-2, description="[m] converged when no vertex moves more than this"
+    to: str | None = Field(
+        default=None,
+        description="the collider that they go along with, by its name; by default the cloth's own animation",
     )
-    linear_tolerance: float = Field(
-        default=1e-3, gt=0, lt=1, description="residual of each linear system, as a part of its right-hand side"
+    subset: str | None = Field(default=None, description="a GeomSubset of faces: only the vertices of these")
+    map: str | None = Field(
+        default=None, description="a primvar of floats: only where it is above 0; `stiffness` is multiplied by it"
     )
-    linear_iterations: int = Field(default=2000, ge=1, le=100000, description="conjugate gradients per system, at most")
+    within: float | None = Field(
+        default=None, ge=0, le=10, description="[m] only those that begin no farther than this from the surface of `to`"
+    )
+    stiffness: float | None = Field(
+        default=None,
+        gt=0,
+        le=1e6,
+        description="[N/m] of a spring from each to its place; without it they are held there",
+    )
 
-    def for_core(self, dt: float, gravity: Vector, wind: Vector) -> _core.StepSettings:
-        """A step of ``dt`` [s] under gravity [m/s²] and wind [m/s], for the core."""
-        step = _core.StepSettings()
-        step.dt, step.gravity, step.wind = dt, gravity, wind
-        for name, value in self:
-            setattr(step, name, value)
-        return step
+    @field_validator("within")
+    @classmethod
+    def _of_something(cls, within: float | None, info: ValidationInfo) -> float | None:
+        if within is not None and info.data.get("to") is None:
+            raise refuse(f"is {within}, but there is no `to`; name the collider that this is the distance from")
+        return within
 
 
-class Cloth:
-    """Cloth in motion, at rest in its rest shape to begin with.
+class ShotCloth(Section):
+    """A cloth that locks, colliders, other cloths and itself touch: the same step moves it with the locks."""
 
-    mesh:       the rest shape with its folds
-    material:   what it is made of
-    held:       which vertices follow ``targets``: indices, or a mask of shape (n,)
-    attachment: stiffness [N/m] of a spring from each vertex to its target, shape (n,); none by default
-    warp:       a direction whose projection on each triangle is the warp; by default that of the texture's u, and x
-                where there is no texture
-    """
+    name: str = Field(
+        default="", pattern="^([A-Za-z_][A-Za-z0-9_]*)?$", description="by default the last part of its prim's path"
+    )
+    file: Path | None = Field(
+        default=None, description="USD file; by default that of the head. A relative name counts from the shot"
+    )
+    mesh: str | None = Field(
+        default=None,
+        description="path of its prim: the mesh there, or the only one below it; without it the only one in `file`",
+    )
+    material: ClothMaterial = Field(default=ClothMaterial(), description="what it is made of")
+    pin: tuple[Pin, ...] = Field(
+        default=(), description="vertices that go where they are told; a later entry counts more"
+    )
+    shrink: Scale | tuple[tuple[float, Scale], ...] = Field(
+        default=1.0,
+        description="how large its rest shape is, by what the mesh is: below 1 it is elastic that draws together. Or "
+        "a list of `[frame, scale]`, straight in between",
+    )
 
-    def __init__(
-        self,
-        mesh: Mesh,
-        material: ClothMaterial | None = None,
-        held: NDArray[np.integer] | NDArray[np.bool_] | None = None,
-        *,
-        attachment: NDArray[np.floating] | None = None,
-        warp: Vector | None = None,
-    ) -> None:
-        self.mesh, self.material = mesh, material or ClothMaterial()
-        self.held = np.zeros(len(mesh.points), bool)
-        if held is not None:
-            self.held[held] = True
-        _check(mesh, self.held)
-        self._core = _core.Cloth(
-            np.ascontiguousarray(mesh.triangles, np.int32),
-            np.ascontiguousarray(mesh.points, np.float64),
-            np.ascontiguousarray(warp_directions(mesh, warp), np.float64),
-            np.ascontiguousarray(self.held, np.uint8),
-            np.ascontiguousarray(() if attachment is None else attachment, np.float64),
-            self.material.core(),
-        )
-        self._no_forces = np.zeros((len(mesh.points), 3))
+    @field_validator("shrink")
+    @classmethod
+    def _in_order(cls, shrink: float | tuple[tuple[float, float], ...]) -> float | tuple[tuple[float, float], ...]:
+        if isinstance(shrink, tuple):
+            frames = [frame for frame, _ in shrink]
+            if not frames or frames != sorted(set(frames)):
+                raise refuse(f"has the frames {frames}; give at least one, each later than the one before")
+        return shrink
+
+    @model_validator(mode="after")
+    def _somewhere(self) -> Self:
+        if self.file is None and self.mesh is None:
+            raise refuse("names no mesh; give `mesh`, a prim in the file of the head, or `file`")
+        return self
+
+    def scale(self, frame: float) -> float:
+        """The scale of the rest shape at a frame, relative to the mesh."""
+        if not isinstance(self.shrink, tuple):
+            return self.shrink
+        frames, scales = zip(*self.shrink, strict=True)
+        return float(np.interp(frame, frames, scales))
 
     @property
-    def positions(self) -> NDArray[np.float64]:
-        """Positions [m], shape (n, 3): the solver's own memory."""
-        return self._core.positions
-
-    @property
-    def velocities(self) -> NDArray[np.float64]:
-        """Velocities [m/s], shape (n, 3): the solver's own memory."""
-        return self._core.velocities
-
-    def scale_rest(self, scale: float) -> None:
-        """Makes the rest shape ``scale`` times the mesh: elastic that draws together, below 1.
-
-        Masses and the resistance to bend stay. A scene lets the cloth come as near to itself as its rest shape is when
-        the scene is made.
-        """
-        self._core.scale_rest(scale)
-
-    @property
-    def masses(self) -> NDArray[np.float64]:
-        """Mass of each vertex [kg], shape (n,): a third of its triangles'."""
-        return self._core.masses
-
-    def step(
-        self,
-        targets: NDArray[np.floating],
-        dt: float,
-        *,
-        gravity: Vector = (0.0, 0.0, 0.0),
-        wind: Vector = (0.0, 0.0, 0.0),
-        forces: NDArray[np.floating] | None = None,
-        solver: ClothSolver | None = None,
-    ) -> dict[str, float]:
-        """Advances by ``dt`` [s]; held vertices end where ``targets`` [m], shape (n, 3), has them.
-
-        forces: what pulls at each vertex besides gravity and air [N], shape (n, 3)
-        Returns the report (see ``_core.CLOTH_REPORT``): energies [J], iterations, residuals.
-        """
-        solver = solver or ClothSolver()
-        shape = self.positions.shape
-        for name, rows in (("targets", targets), ("forces", self._no_forces if forces is None else forces)):
-            if np.shape(rows) != shape:
-                raise ValueError(f"cloth: {name} has shape {np.shape(rows)}; must be {shape}")
-        row = self._core.step(
-            np.ascontiguousarray(targets, np.float64),
-            self._no_forces if forces is None else np.ascontiguousarray(forces, np.float64),
-            solver.for_core(dt, gravity, wind),
-        )
-        return dict(zip(_core.CLOTH_REPORT, row.tolist(), strict=True))
-
-    def energy(
-        self, positions: NDArray[np.floating], *, hessian: bool = False
-    ) -> tuple[float, NDArray[np.float64], NDArray[np.float64]]:
-        """Elastic energy [J], its gradient [N], shape (n, 3), and the Hessian Newton uses, dense, shape (3n, 3n)."""
-        return self._core.energy(np.ascontiguousarray(positions, np.float64), hessian)
-
-    def settle(
-        self,
-        *,
-        gravity: Vector = (0.0, 0.0, 0.0),
-        forces: NDArray[np.floating] | None = None,
-        tolerance: float = 1e-9,
-        dt: float = 1.0,
-        steps: int = 200,
-    ) -> bool:
-        """Lets the cloth come to rest under gravity and forces [N], in large steps; what is held stays put.
-
-        Returns whether it has: no coordinate moved more than ``tolerance`` [m] in the last step.
-        """
-        still = self.positions.copy()
-        solver = ClothSolver(newton=100, tolerance=max(tolerance * 1e-2, 1e-14), linear_tolerance=1e-6)
-        for _ in range(steps):
-            before = self.positions.copy()
-            self.velocities[:] = 0.0
-            self.step(still, dt, gravity=gravity, forces=forces, solver=solver)
-            if np.abs(self.positions - before).max() < tolerance:
-                return True
-        return False
-
-
-def warp_directions(mesh: Mesh, warp: Vector | None = None) -> NDArray[np.float64]:
-    """A direction of the warp for each triangle, shape (m, 3)."""
-    count = len(mesh.triangles)
-    if warp is not None or mesh.uv is None:
-        return np.tile(np.array((1.0, 0.0, 0.0) if warp is None else warp), (count, 1))
-    corners = mesh.points[mesh.triangles]
-    e1, e2 = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    v1, v2 = mesh.uv[:, 1, 1] - mesh.uv[:, 0, 1], mesh.uv[:, 2, 1] - mesh.uv[:, 0, 1]
-    u1, u2 = mesh.uv[:, 1, 0] - mesh.uv[:, 0, 0], mesh.uv[:, 2, 0] - mesh.uv[:, 0, 0]
-    along_u = v2[:, None] * e1 - v1[:, None] * e2  # ∂x/∂u, up to the determinant, which may be negative
-    return np.where((u1 * v2 - u2 * v1)[:, None] < 0, -along_u, along_u)
-
-
-def _check(mesh: Mesh, held: NDArray[np.bool_]) -> None:
-    """What a mesh must be like to hang as cloth."""
-    corners = mesh.points[mesh.triangles]
-    e1, e2 = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    longest = np.maximum((e1 * e1).sum(1), (e2 * e2).sum(1))
-    flat = ~(np.linalg.norm(np.cross(e1, e2), axis=1) > 1e-12 * longest)
-    if flat.any():
-        raise UserError(
-            f"{mesh.name}: triangle {flat.argmax()} has no area ({flat.sum()} of {len(flat)} have none); "
-            "cloth needs triangles with an area: remove or repair them"
-        )
-    loose = ~held
-    loose[mesh.triangles] = False
-    if loose.any():
-        raise UserError(
-            f"{mesh.name}: vertex {loose.argmax()} belongs to no triangle "
-            f"({loose.sum()} of {len(loose)} belong to none); remove or hold them"
-        )
+    def least_scale(self) -> float:
+        """The smallest scale of the rest shape, relative to the mesh."""
+        return min(scale for _, scale in self.shrink) if isinstance(self.shrink, tuple) else self.shrink

@@ -1,4 +1,4 @@
-"""The shape that strands remember: the groom itself, or one that carries gravity, so that the groom is what hangs."""
+"""The rest shape of strands: the groom itself, or one with which it hangs as groomed."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from ringlet.groom.settings import Quantity
-from ringlet.settings import Section
+from ringlet.data.quantities import Quantity
+from ringlet.data.settings import Section
 from ringlet.shot.variation import Mapped
 
 

@@ -1,4 +1,4 @@
-"""The shot: which groom moves, how, and for how long, as a TOML file."""
+"""The shot, a TOML file: its groom, frames, material, solver, forces, contact and cloth."""
 
 from __future__ import annotations
 
@@ -7,16 +7,17 @@ from typing import Any, Literal
 
 from pydantic import Field, PrivateAttr, ValidationError, ValidationInfo, field_validator
 
-from ringlet.settings import Section, explain, parse_toml, read_toml, refuse
-from ringlet.shot.collider import Collider, ShotContact
-from ringlet.shot.garment import ShotCloth
+from ringlet.data.settings import Section, explain, parse_toml, read_toml, refuse
+from ringlet.shot.cloth import ShotCloth
+from ringlet.shot.contact import Collider, ShotContact
+from ringlet.shot.material import Material
 from ringlet.shot.rest import Rest
-from ringlet.shot.strands import Material, Solver
+from ringlet.shot.solver import Solver
 from ringlet.shot.variation import Variation
 
 MOST_FRAMES = 100_000  # of a shot
-FARTHEST_FRAME = 10_000_000  # from zero, either way
-STAYS = {"parting_speed": 0.0, "creep_speed": 1e-5}  # of contact that is to stay as it was groomed [m/s]
+FARTHEST_FRAME = 10_000_000  # largest distance of a frame number from zero
+STAYS = {"parting_speed": 0.0, "creep_speed": 1e-5}  # defaults of contact in equilibrium with the groom [m/s]
 
 
 class Forces(Section):
@@ -86,16 +87,16 @@ class Shot(Section):
 
     @property
     def touching(self) -> ShotContact | None:
-        """How locks touch, if they do. What is to stay as groomed does not part or creep unless it is told to."""
+        """The settings of contact, if it is on. In equilibrium it neither parts nor creeps, unless settings say so."""
         if not (self.contact and self.contact.on):
             return None
         stays = STAYS if self.rest.mode == "equilibrium" else {}
-        told = self.contact.model_fields_set
-        return self.contact.model_copy(update={name: value for name, value in stays.items() if name not in told})
+        given = self.contact.model_fields_set
+        return self.contact.model_copy(update={name: value for name, value in stays.items() if name not in given})
 
     @property
     def rest_file(self) -> Path | None:
-        """Where the lofted rest shape is: ``rest.file``, or beside the shot, after its name."""
+        """The file of the rest shape: ``rest.file``, or beside the shot, after its name."""
         if self.rest.file is not None:
             return self.rest.file
         return self._path and self._path.with_name(
@@ -103,7 +104,7 @@ class Shot(Section):
         )
 
     def named_files(self) -> dict[str, Path]:
-        """The files that it names, by their setting."""
+        """The files that the shot names, by their setting."""
         files = {"groom": self.groom, "rest.file": self.rest.file}
         files |= {f"collider[{k}].file": one.file for k, one in enumerate(self.collider)}
         files |= {f"cloth[{k}].file": one.file for k, one in enumerate(self.cloth)}
@@ -111,7 +112,7 @@ class Shot(Section):
 
     @property
     def path(self) -> Path | None:
-        """The file it was read from."""
+        """The file of the shot."""
         return self._path
 
 
@@ -123,7 +124,7 @@ def read_shot(path: Path | str) -> Shot:
 
 
 def parse_shot(text: str, path: Path | None = None) -> Shot:
-    """A shot from its text; ``path`` names it in messages and is where relative file names count from."""
+    """A shot from its text; ``path`` names it in messages, and relative file names are relative to it."""
     return _shot(parse_toml(text, path.name if path else "shot", "shot"), path)
 
 
@@ -147,7 +148,7 @@ def schema() -> dict[str, Any]:
 
 
 def wrong_frames(first: int, last: int) -> str:
-    """What must be otherwise in a range of frames; nothing for one that a shot can have."""
+    """The condition that a range of frames violates; empty for a valid one."""
     if last < first:
         return "the last must not come before the first"
     if last - first >= MOST_FRAMES:

@@ -1,21 +1,15 @@
-"""Values that vary: from root to tip by a ramp, over the head by a map, and from lock to lock by chance."""
+"""Variation of the material: from root to tip by a ramp, over the head by a map, and from lock to lock by chance."""
 
 from __future__ import annotations
 
 from typing import Annotated
 
-import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field
 
-from ringlet.curves import Curves
-from ringlet.errors import UserError
-from ringlet.groom.groom import Groom
-from ringlet.groom.painted import per_lock
-from ringlet.groom.random import Random
-from ringlet.groom.settings import Quantity, Ramped
-from ringlet.settings import Section
-from ringlet.shot.strands import VARIATIONS
+from ringlet.data.quantities import Quantity, Ramped
+from ringlet.data.settings import Section
+
+VARIATIONS = ("radius", "stretch", "bend", "twist", "damping")  # the material's quantities that may vary
 
 
 class Mapped(Ramped):
@@ -41,50 +35,3 @@ class Variation(Section):
     twist: Factor = Field(default=Mapped(), description="on `strands.twist_ratio`; their product goes up to 1")
     damping: Factor = Field(default=Mapped(), description="on `strands.damping`")
     seed: int = Field(default=1, ge=0, le=2**31, description="another seed, another chance for `vary` and `noise`")
-
-    def factors(self, groom: Groom) -> dict[str, NDArray[np.float64]]:
-        """The factors that differ from 1 at the vertices of the locks, by name, shape (n,) each."""
-        factors: dict[str, NDArray[np.float64]] = {}
-        for name in VARIATIONS:
-            if (varied := getattr(self, name)) == Mapped():
-                continue
-            factor = at_vertices(varied, groom, f"variation.{name}", self.seed)
-            if name in ("radius", "stretch") and not factor.min() > 0.0:
-                raise UserError(f"shot: variation.{name} is 0 somewhere; it must be above 0, raise its ramp or map")
-            if (factor != 1.0).any():
-                factors[name] = factor
-        return factors
-
-
-def at_vertices(varied: Mapped, groom: Groom, setting: str, seed: int = 1) -> NDArray[np.float64]:
-    """A value at each vertex of the locks, shape (n,); ``setting`` is its name in the shot, for messages."""
-    locks = groom.locks
-    of_point = varied.map if varied.map in locks.point else None
-    plain = varied.model_copy(update={"map": None}) if of_point else varied
-    value = per_lock(plain, Random(seed, setting), locks, groom.scalp, f"shot: {setting}")
-    values = np.repeat(value, locks.counts) * varied.along(_places(locks))
-    return values if of_point is None else values * _at_points(of_point, locks, setting)
-
-
-def _places(locks: Curves) -> NDArray[np.float64]:
-    """How far along its lock each vertex is, from 0 at the root to 1 at the tip, by arc length; shape (n,)."""
-    steps = np.linalg.norm(np.diff(locks.points, axis=0, prepend=locks.points[:1]), axis=1)
-    steps[locks.offsets[:-1]] = 0.0
-    run = np.cumsum(steps)
-    return (run - np.repeat(run[locks.offsets[:-1]], locks.counts)) / np.repeat(locks.lengths(), locks.counts)
-
-
-def _at_points(name: str, locks: Curves, setting: str) -> NDArray[np.float64]:
-    """What is painted on the points of the locks, shape (n,)."""
-    values = np.asarray(locks.point[name], np.float64)
-    if values.ndim != 1:
-        raise UserError(
-            f"shot: {setting}.map '{name}' has {values.shape[1]} numbers a point; must be one, paint another"
-        )
-    if (bad := np.flatnonzero(~(np.isfinite(values) & (values >= 0.0)))).size:
-        lock = locks.ids[np.searchsorted(locks.offsets, bad[0], side="right") - 1]
-        raise UserError(
-            f"shot: {setting}.map '{name}' is {values[bad[0]]:g} on lock {lock}; must be at least 0 and finite, "
-            "paint it again"
-        )
-    return values

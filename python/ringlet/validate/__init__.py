@@ -1,7 +1,7 @@
 """Known answers that the simulator is held to: each with its error at several resolutions."""
 
-from ringlet.errors import UserError
-from ringlet.settings import did_you_mean
+from ringlet.data.errors import UserError
+from ringlet.data.settings import did_you_mean
 from ringlet.validate import (
     buckling,
     cantilever,

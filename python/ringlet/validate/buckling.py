@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh
 
-from ringlet.shot.strands import Strands
+from ringlet.sim.strands import Strands
 from ringlet.validate.case import Case, Row, convergence
 from ringlet.validate.rods import bending_stiffness, gravity_for, masses, rod_material, stiffness, straight_rod, strand
 

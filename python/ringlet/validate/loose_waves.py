@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh
 
-from ringlet.shot.strands import Continuation, Strands
+from ringlet.shot.solver import Continuation
+from ringlet.sim.strands import Strands
 from ringlet.validate.case import Case, Row, convergence
 from ringlet.validate.rods import bending_stiffness, line_density, masses, rod_material, strand
 

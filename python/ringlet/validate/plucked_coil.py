@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from scipy.linalg import eigh
 from scipy.optimize import curve_fit
 
-from ringlet.shot.strands import Solver, Strands
+from ringlet.shot.solver import Solver
+from ringlet.sim.strands import Strands
 from ringlet.validate.case import Case, Row
 from ringlet.validate.rods import masses, rod_material, strand
 

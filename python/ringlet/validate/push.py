@@ -12,9 +12,13 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from ringlet.curves import Curves
-from ringlet.shot.scene import Body, Contact, Scene
-from ringlet.shot.strands import Material, Solver, Strands
+from ringlet.data.curves import Curves
+from ringlet.shot.contact import Contact
+from ringlet.shot.material import Material
+from ringlet.shot.solver import Solver
+from ringlet.sim.obstacle import Body
+from ringlet.sim.scene import Scene
+from ringlet.sim.strands import Strands
 from ringlet.validate.case import Case, Row
 
 DISTANCE, STEP = 1e-3, 1 / 240  # r [m] where contact begins, [s]

@@ -7,8 +7,9 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from ringlet.curves import Curves
-from ringlet.shot.strands import Material, Strands
+from ringlet.data.curves import Curves
+from ringlet.shot.material import Material
+from ringlet.sim.strands import Strands
 
 
 def rod_material(*, twist_ratio: float = 0.72, correct_resolution: bool = True) -> Material:

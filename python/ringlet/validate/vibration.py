@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from scipy.linalg import eigh
 from scipy.optimize import curve_fit
 
-from ringlet.shot.strands import Solver, Strands
+from ringlet.shot.solver import Solver
+from ringlet.sim.strands import Strands
 from ringlet.validate.case import Case, Row, convergence
 from ringlet.validate.rods import bending_stiffness, line_density, masses, rod_material, stiffness, straight_rod
 

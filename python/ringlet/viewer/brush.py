@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ringlet.curves import Curves
+from ringlet.data.curves import Curves
 from ringlet.groom.sculpt import lengthened
 
 Array = NDArray[np.floating]

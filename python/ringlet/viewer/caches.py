@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ringlet import io
-from ringlet.errors import UserError
+from ringlet.data.errors import UserError
 from ringlet.viewer.project import Project
 
 PATTERNS = ("*.usdc", "*.usda", "*.usd")

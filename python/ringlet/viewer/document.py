@@ -13,9 +13,9 @@ from typing import Any
 import tomlkit
 from tomlkit.exceptions import TOMLKitError
 
-from ringlet.errors import UserError
-from ringlet.files import replacing
-from ringlet.toml import toml_key
+from ringlet.data.errors import UserError
+from ringlet.data.files import replacing
+from ringlet.data.toml import toml_key
 from ringlet.viewer import blocks
 from ringlet.viewer.protocol import Change, Place
 

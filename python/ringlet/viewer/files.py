@@ -5,12 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from ringlet.errors import UserError
-from ringlet.files import replacing
+from ringlet.data.errors import UserError
+from ringlet.data.files import replacing
+from ringlet.data.settings import parse_toml, read_toml
 from ringlet.groom import Recipe, parse_recipe
 from ringlet.groom.edits_file import edits_text
 from ringlet.groom.load import inherited, parse_edits
-from ringlet.settings import parse_toml, read_toml
 from ringlet.shot import Shot, parse_shot
 from ringlet.viewer import protocol
 from ringlet.viewer.document import Document, History, put

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ringlet.errors import UserError
+from ringlet.data.errors import UserError
 from ringlet.groom import row_of
 from ringlet.viewer import protocol
 from ringlet.viewer.files import Files

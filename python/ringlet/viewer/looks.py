@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ringlet import api
-from ringlet.curves import Curves
-from ringlet.errors import UserError
+from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
+from ringlet.data.mesh import Mesh
 from ringlet.groom import Groom, HairMemory, Hairs, Memory, Recipe, lay_hairs, make_groom
 from ringlet.groom.operators import Clean, Context, Drawn
-from ringlet.mesh import Mesh
 from ringlet.viewer import protocol
 from ringlet.viewer.project import Project
 from ringlet.viewer.wire import pack

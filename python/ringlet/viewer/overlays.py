@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ringlet import _core
-from ringlet.curves import Curves
-from ringlet.mesh import Mesh
-from ringlet.shot.simulate import Motion
+from ringlet.data.curves import Curves
+from ringlet.data.mesh import Mesh
+from ringlet.sim.motion import Motion
 
 Bytes = NDArray[np.uint8]
 

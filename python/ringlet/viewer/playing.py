@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 
 from ringlet import api
-from ringlet.errors import UserError
-from ringlet.mesh import Clip
+from ringlet.data.errors import UserError
+from ringlet.data.mesh import Clip
 from ringlet.viewer import protocol
 from ringlet.viewer.board import Board
 from ringlet.viewer.files import Files

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ringlet.errors import UserError
+from ringlet.data.errors import UserError
 
 
 class Project:

@@ -13,7 +13,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ringlet.errors import UserError
+from ringlet.data.errors import UserError
 from ringlet.viewer.scene import Moved
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import uvicorn
 
-from ringlet.errors import UserError
+from ringlet.data.errors import UserError
 from ringlet.viewer.project import Project
 from ringlet.viewer.server import LOOPBACK, STATIC, Door, make_app
 from ringlet.viewer.session import Session

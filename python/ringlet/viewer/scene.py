@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ringlet import api, io
-from ringlet.errors import UserError
+from ringlet.data.errors import UserError
+from ringlet.data.mesh import Clip, Mesh
 from ringlet.groom import Groom, lay_hairs
-from ringlet.mesh import Clip, Mesh
 from ringlet.picture import made_of
 from ringlet.shot import Shot
 from ringlet.viewer import protocol

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ringlet.curves import Curves
-from ringlet.errors import UserError
+from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
 from ringlet.groom import Groom, Recipe
 from ringlet.groom.load import parse_edits
 from ringlet.groom.scalp import Scalp

@@ -14,7 +14,7 @@ from fastapi import FastAPI, Request, Response, WebSocket, WebSocketDisconnect
 from fastapi.staticfiles import StaticFiles
 from starlette.middleware.base import RequestResponseEndpoint
 
-from ringlet.errors import UserError
+from ringlet.data.errors import UserError
 from ringlet.viewer import protocol
 from ringlet.viewer.session import Page, Session
 from ringlet.viewer.wire import trouble, unpack

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from ringlet import api
-from ringlet.errors import UserError
+from ringlet.data.errors import UserError
 from ringlet.groom import Recipe
 from ringlet.picture import HAIR_COLORS
 from ringlet.viewer import overlays, protocol

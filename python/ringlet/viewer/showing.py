@@ -6,9 +6,9 @@ from collections.abc import Collection
 
 import numpy as np
 
-from ringlet.curves import Curves
+from ringlet.data.curves import Curves
+from ringlet.data.mesh import Mesh
 from ringlet.groom import Groom
-from ringlet.mesh import Mesh
 from ringlet.shot import Shot
 from ringlet.viewer import overlays, protocol
 from ringlet.viewer.board import Board

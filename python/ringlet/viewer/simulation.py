@@ -13,11 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ringlet import api
-from ringlet.errors import UserError
+from ringlet.data.errors import UserError
+from ringlet.data.mesh import Clip
 from ringlet.groom import Groom, Hairs
-from ringlet.mesh import Clip
 from ringlet.shot import Shot
-from ringlet.shot.simulate import Motion
+from ringlet.sim.motion import Motion
 from ringlet.viewer import overlays, protocol
 from ringlet.viewer.looks import spread_order
 from ringlet.viewer.reel import Run

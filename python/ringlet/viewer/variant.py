@@ -9,11 +9,11 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from ringlet.errors import UserError
+from ringlet.data.errors import UserError
+from ringlet.data.quantities import Quantity
+from ringlet.data.toml import toml_key
 from ringlet.groom import Recipe
 from ringlet.groom.load import stage_names
-from ringlet.groom.settings import Quantity
-from ringlet.toml import toml_key
 from ringlet.viewer.document import Document, written
 
 OWN = ("ringlet", "extends", "edits")  # what every recipe says for itself

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import ValidationError
 
-from ringlet.errors import UserError
+from ringlet.data.errors import UserError
 from ringlet.viewer.protocol import FROM_PAGE, FromPage, Message, Trouble
 
 MOST = 1_000_000  # bytes of a message from a page

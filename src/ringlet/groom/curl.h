@@ -46,4 +46,41 @@ struct CurlSettings {
 // curl. With `kink`, cos φ becomes a zigzag in the plane of a. With a leader, φ, r and c blend into those of the leader.
 std::vector<Vec3> curl(const CurveView &shapes, const CurlSettings &settings, int count);
 
+// The arrays of a curl by name, for callers that fill them by name: a new array needs a line here, and none where it is bound.
+enum class CurlArray { value, ramp, noise, events }; // one a lock; samples for all locks; noise_count or event_count a lock
+
+struct CurlField {
+    const char *name;
+    View<double> CurlSettings::*array;
+    CurlArray kind;
+};
+
+inline constexpr CurlField curl_fields[] = {
+    {"radius", &CurlSettings::radius, CurlArray::value},
+    {"turns", &CurlSettings::turns, CurlArray::value},
+    {"phase", &CurlSettings::phase, CurlArray::value},
+    {"flip", &CurlSettings::flip, CurlArray::value},
+    {"start", &CurlSettings::start, CurlArray::value},
+    {"end", &CurlSettings::end, CurlArray::value},
+    {"taper", &CurlSettings::taper, CurlArray::value},
+    {"flatness", &CurlSettings::flatness, CurlArray::value},
+    {"kink", &CurlSettings::kink, CurlArray::value},
+    {"wave", &CurlSettings::wave, CurlArray::value},
+    {"wave_turns", &CurlSettings::wave_turns, CurlArray::value},
+    {"join", &CurlSettings::join, CurlArray::value},
+    {"join_over", &CurlSettings::join_over, CurlArray::value},
+    {"cohesion", &CurlSettings::cohesion, CurlArray::value},
+    {"width_ramp", &CurlSettings::width_ramp, CurlArray::ramp},
+    {"rate_ramp", &CurlSettings::rate_ramp, CurlArray::ramp},
+    {"opening", &CurlSettings::opening, CurlArray::ramp},
+    {"closing", &CurlSettings::closing, CurlArray::ramp},
+    {"taper_ramp", &CurlSettings::taper_ramp, CurlArray::ramp},
+    {"wave_ramp", &CurlSettings::wave_ramp, CurlArray::ramp},
+    {"width_noise", &CurlSettings::width_noise, CurlArray::noise},
+    {"rate_noise", &CurlSettings::rate_noise, CurlArray::noise},
+    {"sway", &CurlSettings::sway, CurlArray::noise},
+    {"switchbacks", &CurlSettings::switchbacks, CurlArray::events},
+    {"skips", &CurlSettings::skips, CurlArray::events},
+};
+
 } // namespace ringlet

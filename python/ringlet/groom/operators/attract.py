@@ -10,10 +10,10 @@ from pydantic import Field
 from scipy.spatial import KDTree
 
 from ringlet import _core
-from ringlet.curves import Curves
+from ringlet.data.curves import Curves
+from ringlet.data.quantities import Quantity, Ramped
 from ringlet.groom.operators.operator import Context, packed
 from ringlet.groom.operators.shape import Shape
-from ringlet.groom.settings import Quantity, Ramped
 
 
 class Attract(Shape):

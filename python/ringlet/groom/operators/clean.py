@@ -7,9 +7,9 @@ from typing import Annotated
 from pydantic import Field
 
 from ringlet import _core
-from ringlet.curves import Curves
+from ringlet.data.curves import Curves
+from ringlet.data.quantities import Quantity
 from ringlet.groom.operators.operator import Context, Operator, packed
-from ringlet.groom.settings import Quantity
 
 
 class Clean(Operator):

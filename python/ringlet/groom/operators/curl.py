@@ -9,14 +9,14 @@ from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from ringlet import _core
-from ringlet.curves import Curves, offsets_from_counts
-from ringlet.errors import UserError
+from ringlet.data.curves import Curves, offsets_from_counts
+from ringlet.data.errors import UserError
+from ringlet.data.quantities import Quantity, Ramp, Ramped, Varied, along, refuse
+from ringlet.data.random import soft_threshold
 from ringlet.groom.operators.operator import Context, Operator, packed
 from ringlet.groom.operators.phase_lock import PhaseLock
 from ringlet.groom.presets import PRESETS, Preset
-from ringlet.groom.random import tipping
 from ringlet.groom.scalp import axes
-from ringlet.groom.settings import Quantity, Ramp, Ramped, Varied, along, refuse
 
 RAMP_SAMPLES = 128
 NOISE_VALUES = 24
@@ -34,7 +34,7 @@ class Curl(Operator):
     ``keep = "length"``: the hair has the shape's length, to a thousandth, and the silhouette is shorter instead.
     """
 
-    gone: ClassVar[dict[str, str]] = {"rate": "give curls, curls_per_cm or pitch a ramp"}
+    removed: ClassVar[dict[str, str]] = {"rate": "give curls, curls_per_cm or pitch a ramp"}
 
     preset: Preset | None = Field(default=None, description="curl type; fills what is not given here")
     width: Annotated[Ramped, Quantity("m", 0.0, 0.2)] = Field(
@@ -168,7 +168,7 @@ class Curl(Operator):
             turns=turns,
             phase=np.radians(self._phase(curves, context)),
             # The few that are about to change their hand do so somewhere on their way.
-            flip=2.0 - 3.0 * tipping(values("right_handed"), context.random("hand").uniform(ids)),
+            flip=2.0 - 3.0 * soft_threshold(values("right_handed"), context.random("hand").uniform(ids)),
             start=np.hypot(values("start"), LEAST_START),
             end=values("end"),
             taper=np.minimum(values("taper"), 1.0),

@@ -6,10 +6,10 @@ from typing import Annotated
 
 from pydantic import Field
 
-from ringlet.curves import Curves
+from ringlet.data.curves import Curves
+from ringlet.data.quantities import Quantity
 from ringlet.groom.operators.guides import Guides
 from ringlet.groom.operators.operator import Context
-from ringlet.groom.settings import Quantity
 from ringlet.groom.source import Source
 
 

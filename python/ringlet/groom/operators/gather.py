@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from ringlet.curves import Curves
+from ringlet.data.curves import Curves
+from ringlet.data.quantities import Quantity
 from ringlet.groom.operators.operator import Context, arc_lengths, at_lengths, unit
 from ringlet.groom.operators.shape import Shape
-from ringlet.groom.settings import Quantity
 
 HEAD_POINTS = 24  # of the way over the head
 

@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
-from ringlet.curves import Curves, offsets_from_counts
+from ringlet.data.curves import Curves, offsets_from_counts
+from ringlet.data.painted import painted_directions
+from ringlet.data.quantities import Quantity, Section, Varied, refuse
 from ringlet.groom.mask import Mask
 from ringlet.groom.operators.guides import Guides
 from ringlet.groom.operators.operator import UP, Context, unit
-from ringlet.groom.painted import painted_directions
 from ringlet.groom.parting import Parting, Vector
-from ringlet.groom.settings import Quantity, Section, Varied, refuse
 
 
 class Zone(Section):

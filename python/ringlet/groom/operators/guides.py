@@ -8,10 +8,10 @@ import numpy as np
 from pydantic import Field
 
 from ringlet import _core
-from ringlet.curves import Curves, offsets_from_counts
+from ringlet.data.curves import Curves, offsets_from_counts
+from ringlet.data.quantities import Quantity
 from ringlet.groom.operators.mirror import Mirror
 from ringlet.groom.operators.operator import Context, Operator, packed
-from ringlet.groom.settings import Quantity
 
 
 class Guides(Operator):

@@ -10,9 +10,9 @@ from pydantic import Field, model_validator
 from scipy.spatial import KDTree
 
 from ringlet import _core
-from ringlet.curves import Curves, offsets_from_counts
+from ringlet.data.curves import Curves, offsets_from_counts
+from ringlet.data.quantities import Quantity, refuse
 from ringlet.groom.operators.operator import Context, Operator, arc_lengths, packed, unit
-from ringlet.groom.settings import Quantity, refuse
 
 
 class Locks(Operator):

@@ -7,11 +7,11 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field
 
-from ringlet.curves import Curves, offsets_from_counts
-from ringlet.errors import UserError
+from ringlet.data.curves import Curves, offsets_from_counts
+from ringlet.data.errors import UserError
+from ringlet.data.quantities import Quantity, Section
 from ringlet.groom.operators.operator import Context, unit
 from ringlet.groom.parting import Vector
-from ringlet.groom.settings import Quantity, Section
 
 
 class Mirror(Section):

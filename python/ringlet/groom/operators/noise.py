@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from ringlet.curves import Curves
+from ringlet.data.curves import Curves
+from ringlet.data.quantities import Quantity, Ramped
 from ringlet.groom.operators.operator import Context
 from ringlet.groom.operators.shape import Shape
-from ringlet.groom.settings import Quantity, Ramped
 
 
 class Noise(Shape):

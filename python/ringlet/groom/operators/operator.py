@@ -8,13 +8,13 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from ringlet.curves import Curves
-from ringlet.errors import UserError
-from ringlet.groom.painted import per_lock
-from ringlet.groom.random import Random
+from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
+from ringlet.data.painted import per_lock
+from ringlet.data.quantities import Section, Varied
+from ringlet.data.random import Random
+from ringlet.data.settings import did_you_mean
 from ringlet.groom.scalp import Scalp
-from ringlet.groom.settings import Section, Varied
-from ringlet.settings import did_you_mean
 
 UP = np.array([0.0, 1.0, 0.0])
 

@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from ringlet.curves import Curves
+from ringlet.data.curves import Curves
+from ringlet.data.quantities import Quantity, Ramped
 from ringlet.groom.operators.operator import Context, along_edges, between_edges, pulled
 from ringlet.groom.operators.shape import Shape
 from ringlet.groom.parting import Parting
-from ringlet.groom.settings import Quantity, Ramped
 
 
 class Part(Shape):

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 from pydantic import Field
 from scipy.spatial import KDTree
 
-from ringlet.curves import Curves
+from ringlet.data.curves import Curves
+from ringlet.data.quantities import Quantity, Section, Varied
 from ringlet.groom.operators.operator import Context
-from ringlet.groom.settings import Quantity, Section, Varied
 
 
 class PhaseLock(Section):

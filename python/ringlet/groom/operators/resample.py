@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field
 
 from ringlet import _core
-from ringlet.curves import Curves, offsets_from_counts
+from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.groom.operators.operator import Context, Operator, packed
 
 

@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from ringlet.curves import Curves
+from ringlet.data.curves import Curves
+from ringlet.data.quantities import Quantity
 from ringlet.groom.mask import Mask
 from ringlet.groom.operators.operator import Context, Operator, along_edges, grid, unit, with_grid
-from ringlet.groom.settings import Quantity
 
 
 class Shape(Operator):

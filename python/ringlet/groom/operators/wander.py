@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ringlet.groom.random import Random
+from ringlet.data.random import Random
 
 
 def wander(random: Random, ids: NDArray, along: NDArray, size: float) -> NDArray[np.float64]:

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pxr import Usd, UsdGeom
 
-from ringlet.curves import offsets_from_counts
-from ringlet.errors import UserError
+from ringlet.data.curves import offsets_from_counts
+from ringlet.data.errors import UserError
 
 STEPS = 6  # points per segment of a cubic curve
 

@@ -12,15 +12,15 @@ import numpy as np
 from numpy.typing import NDArray
 from pxr import Sdf, Usd, UsdGeom
 
-from ringlet.errors import UserError
+from ringlet.data.cache import Cache, CachedCloth
+from ringlet.data.errors import UserError
+from ringlet.data.stage import StageSpace
 from ringlet.io.space import to_metres
 from ringlet.io.usd.cloths import ClothPrims, read_cloth, set_cloth, told_of
 from ringlet.io.usd.groom import LOCKS, VERSION, check_version, groom_prim
 from ringlet.io.usd.mesh import clip_at, mesh_at, visible_meshes
 from ringlet.io.usd.stage import Source, parse_json, reading, reading_more
 from ringlet.io.usd.stream import StreamWriter
-from ringlet.shot.cache import Cache, CachedCloth
-from ringlet.stage import StageSpace
 
 
 def write_cache(

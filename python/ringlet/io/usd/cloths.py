@@ -12,13 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 from pxr import Sdf, Tf, Usd, UsdGeom
 
-from ringlet.errors import UserError
+from ringlet.data.cache import CachedCloth
+from ringlet.data.errors import UserError
+from ringlet.data.stage import StageSpace
 from ringlet.io.space import from_metres, to_metres
 from ringlet.io.usd.groom import BODY, GROOM, scalp_source
 from ringlet.io.usd.stage import Source, relative
 from ringlet.io.usd.values import float3
-from ringlet.shot.cache import CachedCloth
-from ringlet.stage import StageSpace
 
 CLOTHS = f"{GROOM}/cloths"
 

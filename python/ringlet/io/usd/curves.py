@@ -13,8 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 from pxr import Sdf, Usd, UsdGeom, Vt
 
-from ringlet.curves import Curves, offsets_from_counts
-from ringlet.errors import UserError
+from ringlet.data.curves import Curves, offsets_from_counts
+from ringlet.data.errors import UserError
+from ringlet.data.mesh import Mesh
+from ringlet.data.stage import StageSpace
 from ringlet.io.space import from_metres, to_metres
 from ringlet.io.usd.basis import Sampling
 from ringlet.io.usd.stage import Source, choose, find_prim, prims, reading
@@ -28,8 +30,6 @@ from ringlet.io.usd.values import (
     set_primvar,
     transformed,
 )
-from ringlet.mesh import Mesh
-from ringlet.stage import StageSpace
 
 OWN = "ringlet:"
 ID_NAMES = ("ringlet:id", "groom_id", "id", "hair_id", "hairid", "curve_id")

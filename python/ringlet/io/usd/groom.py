@@ -19,9 +19,12 @@ import numpy as np
 from numpy.typing import NDArray
 from pxr import Sdf, Tf, Usd, UsdGeom
 
-from ringlet.curves import Curves
-from ringlet.errors import UserError
-from ringlet.groom.groom import Groom
+from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
+from ringlet.data.groom import Groom
+from ringlet.data.mesh import Mesh
+from ringlet.data.settings import did_you_mean
+from ringlet.data.stage import StageSpace
 from ringlet.io.space import from_metres, to_metres
 from ringlet.io.usd.curves import define_curves, own_curves, set_points, set_roots
 from ringlet.io.usd.mesh import define_mesh, read_usd_mesh, select_mesh
@@ -38,9 +41,6 @@ from ringlet.io.usd.stage import (
     writing,
 )
 from ringlet.io.usd.values import Types, float3
-from ringlet.mesh import Mesh
-from ringlet.settings import did_you_mean
-from ringlet.stage import StageSpace
 
 GROOM, LOCKS, GUIDES, BODY = "/groom", "/groom/locks", "/groom/guides", "/groom/body"
 VARIANTS, BASE = "groom", "base"

@@ -12,16 +12,16 @@ import numpy as np
 from numpy.typing import NDArray
 from pxr import Usd, UsdGeom
 
-from ringlet.curves import Curves, offsets_from_counts
-from ringlet.errors import UserError
-from ringlet.groom.groom import Groom
+from ringlet.data.curves import Curves, offsets_from_counts
+from ringlet.data.errors import UserError
+from ringlet.data.groom import Groom
+from ringlet.data.mesh import Clip
 from ringlet.io.usd.curves import curve_widths, curves_at, define_curves, own_curves, set_roots
 from ringlet.io.usd.groom import GROOM
 from ringlet.io.usd.mesh import Body, clip_at, mesh_at, visible_meshes, whole_frames
 from ringlet.io.usd.stage import Source, prims, reading
 from ringlet.io.usd.stream import StreamWriter
 from ringlet.io.usd.values import Types, rest_time, set_primvar
-from ringlet.mesh import Clip
 
 HAIRS = f"{GROOM}/hairs"
 COLOR = (0.06, 0.035, 0.02)  # dark brown, for viewports

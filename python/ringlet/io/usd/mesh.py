@@ -12,7 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 from pxr import Usd, UsdGeom, UsdSkel, Vt
 
-from ringlet.errors import UserError
+from ringlet.data.errors import UserError
+from ringlet.data.mesh import Clip, Mesh
+from ringlet.data.stage import StageSpace
 from ringlet.io.polygons import check_polygons, fans
 from ringlet.io.space import check_points, from_metres, to_metres
 from ringlet.io.usd.stage import Source, choose, find_prim, prims, reading
@@ -29,8 +31,6 @@ from ringlet.io.usd.values import (
     transformed,
     vector_primvars,
 )
-from ringlet.mesh import Clip, Mesh
-from ringlet.stage import StageSpace
 
 SCALP = "scalp"
 MOST_FRAMES = 100_000

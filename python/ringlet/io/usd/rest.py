@@ -8,12 +8,12 @@ from typing import Any
 
 from pxr import Usd, UsdGeom
 
-from ringlet.curves import Curves
-from ringlet.errors import UserError
+from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
+from ringlet.data.stage import StageSpace
 from ringlet.io.usd.curves import define_curves, own_curves, set_points
 from ringlet.io.usd.groom import GROOM, LOCKS, VERSION, check_version
 from ringlet.io.usd.stage import new_stage, parse_json, reading, writing
-from ringlet.stage import StageSpace
 
 
 def write_rest(rest: Curves, made_from: dict[str, Any], path: Path | str, space: StageSpace) -> None:

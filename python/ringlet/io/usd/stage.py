@@ -19,9 +19,9 @@ from typing import Any
 
 from pxr import Sdf, Tf, Usd, UsdGeom, UsdUtils
 
-from ringlet.errors import UserError
-from ringlet.files import replacing, same_place
-from ringlet.stage import StageSpace
+from ringlet.data.errors import UserError
+from ringlet.data.files import replacing, same_place
+from ringlet.data.stage import StageSpace
 
 NOT_TEXT = "it holds text that is not UTF-8"
 SUFFIXES = (".usd", ".usda", ".usdc", ".usdz")

@@ -9,10 +9,10 @@ from types import TracebackType
 from numpy.typing import NDArray
 from pxr import Sdf, Usd, UsdGeom
 
+from ringlet.data.stage import StageSpace
 from ringlet.io.usd.curves import set_points
 from ringlet.io.usd.groom import choose_variant, groom_prim
 from ringlet.io.usd.stage import check_target, new_stage, reading, refuse_itself, writing
-from ringlet.stage import StageSpace
 
 FLUSH = 64e6  # bytes of points held in memory before they go to the file
 

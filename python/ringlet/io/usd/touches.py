@@ -14,14 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 from pxr import Usd, UsdGeom
 
-from ringlet.errors import UserError
+from ringlet.data.cache import Cache, SimulationRecord, Touches
+from ringlet.data.errors import UserError
+from ringlet.data.stage import StageSpace
 from ringlet.io.space import from_metres, to_metres
 from ringlet.io.usd.groom import GROOM
 from ringlet.io.usd.stage import reading
 from ringlet.io.usd.stream import StreamWriter
 from ringlet.io.usd.values import Types, float3, to_usd
-from ringlet.shot.cache import Cache, Told, Touches
-from ringlet.stage import StageSpace
 
 TOUCHES, START = f"{GROOM}/touches", f"{GROOM}/start"
 SIZE = 1e-3  # diameter of a point [m]
@@ -42,7 +42,7 @@ def strengths(force: NDArray[np.floating], strong: float) -> NDArray[np.float64]
     return np.clip(1.0 + np.log10(np.maximum(part, 1e-30)) / DECADES, 0.0, 1.0)
 
 
-def write_touches(cache: Cache | Told, cache_path: Path | str, path: Path | str, space: StageSpace) -> None:
+def write_touches(cache: Cache | SimulationRecord, cache_path: Path | str, path: Path | str, space: StageSpace) -> None:
     """Writes what touches as a layer over the cache."""
     strong = max((float(np.quantile(t.force, STRONG)) for t in cache.touches if len(t.force)), default=0.0)
     with TouchesWriter(path, cache_path, space) as writer:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pxr import Sdf, Usd, UsdGeom, Vt
 
-from ringlet.errors import UserError
+from ringlet.data.errors import UserError
 from ringlet.io.space import check_points
 
 Types = Sdf.ValueTypeNames

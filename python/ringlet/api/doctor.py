@@ -1,0 +1,196 @@
+"""A check of the installation: versions, processor, optional packages, and a self-test of some seconds."""
+
+from __future__ import annotations
+
+import os
+import platform
+import re
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from importlib.metadata import PackageNotFoundError, requires, version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ringlet import _core, api
+from ringlet.data.curves import Curves
+from ringlet.data.share import share
+
+__all__ = ["Finding", "diagnose"]
+
+ENOUGH_MEMORY = 4 * 2**30  # for the example and its picture
+PICTURE = 96  # height of the self-test's picture [pixels]
+
+
+@dataclass
+class Finding:
+    """One item of the check.
+
+    state:  ``ok``; ``optional``: not there, and not needed; ``fails``
+    remedy: what to do about it; empty where nothing needs doing
+    """
+
+    name: str
+    state: str
+    found: str
+    remedy: str = ""
+
+    def json(self) -> dict[str, Any]:
+        """As plain values."""
+        return asdict(self)
+
+
+def diagnose(*, self_test: bool = True, progress: api.Progress | None = None) -> list[Finding]:
+    """Checks the installation and, with ``self_test``, grooms, simulates, writes, reads and draws a little."""
+    looks = [_ringlet, _processor, _memory, *(_package(name) for name in _needed()), _pardiso, _dask, _openjd, _page]
+    tests: list[Callable[[Path], Finding]] = (
+        [_test_core, _test_contact, _test_files, _test_picture] if self_test else []
+    )
+    findings = [look() for look in looks]
+    with tempfile.TemporaryDirectory(prefix="ringlet-") as folder:
+        for done, test in enumerate(tests):
+            if progress:
+                progress("self-test", done, len(tests))
+            findings.append(_guarded(test, Path(folder)))
+    if progress and tests:
+        progress("self-test", len(tests), len(tests))
+    return findings
+
+
+def _ringlet() -> Finding:
+    return Finding("Ringlet", "ok", f"{version('ringlet')}, Python {platform.python_version()}, {platform.platform()}")
+
+
+def _processor() -> Finding:
+    slow = _core.simd() == "baseline" and platform.machine() in ("x86_64", "AMD64")
+    remedy = "a processor with AVX2 is several times faster" if slow else ""
+    return Finding("processor", "ok", f"{_core.simd()}, {_core.thread_count()} of {os.cpu_count()} threads", remedy)
+
+
+def _memory() -> Finding:
+    if sys.platform != "linux":
+        return Finding("memory", "ok", "not measured on this system")
+    total = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    enough = total >= ENOUGH_MEMORY
+    remedy = "" if enough else "the example takes up to 4 GiB; simulate fewer locks and draw fewer hairs"
+    return Finding("memory", "ok" if enough else "fails", f"{total / 2**30:.1f} GiB", remedy)
+
+
+def _needed() -> list[str]:
+    """Packages that Ringlet does not run without."""
+    lines = [line for line in requires("ringlet") or [] if "extra ==" not in line]
+    return [re.split(r"[ <>=!~;\[]", line)[0] for line in lines]
+
+
+def _package(name: str) -> Callable[[], Finding]:
+    def look() -> Finding:
+        try:
+            return Finding(name, "ok", version(name))
+        except PackageNotFoundError:
+            return Finding(
+                name, "fails", "is not installed", "install Ringlet again: pip install --force-reinstall ringlet"
+            )
+
+    return look
+
+
+def _pardiso() -> Finding:
+    from ringlet.sim.direct import open_pardiso  # imported late, since it loads all of the simulation
+
+    if open_pardiso():
+        return Finding("MKL PARDISO", "ok", "opened")
+    return Finding(
+        "MKL PARDISO", "optional", "is not installed", "for large direct solves: pip install 'ringlet[direct]'"
+    )
+
+
+def _dask() -> Finding:
+    try:
+        return Finding("dask.distributed", "ok", version("distributed"))
+    except PackageNotFoundError:
+        return Finding("dask.distributed", "optional", "is not installed", "for wedges: pip install 'ringlet[farm]'")
+
+
+def _openjd() -> Finding:
+    try:
+        return Finding("Open Job Description", "ok", version("openjd-cli"))
+    except PackageNotFoundError:
+        return Finding(
+            "Open Job Description", "optional", "is not installed", "to run templates: pip install 'ringlet[farm]'"
+        )
+
+
+def _page() -> Finding:
+    if (Path(__file__).parents[1] / "viewer" / "static" / "index.html").exists():
+        return Finding("review page", "ok", "built")
+    return Finding("review page", "optional", "is not built", "for ringlet view, in a clone: make build")
+
+
+def _guarded(test: Callable[[Path], Finding], folder: Path) -> Finding:
+    """The finding of a test, also where it breaks off."""
+    try:
+        return test(folder)
+    except Exception as error:  # whatever it is, it is what was asked for
+        remedy = "run it with --debug, and report what it prints"
+        return Finding(test.__name__.removeprefix("_test_"), "fails", f"{type(error).__name__}: {error}", remedy)
+
+
+def _test_core(_: Path) -> Finding:
+    """A cantilever against its known answer."""
+    start = time.perf_counter()
+    rows = api.run_validation(["cantilever"])
+    held, took = sum(row.passed for row in rows), f"{time.perf_counter() - start:.1f} s"
+    state = "ok" if held == len(rows) else "fails"
+    remedy = "" if state == "ok" else "run: ringlet validate, and report it"
+    return Finding("simulation", state, f"{held} of {len(rows)} known answers hold, {took}", remedy)
+
+
+def _test_contact(_: Path) -> Finding:
+    """A strand that falls onto another has to stay above it."""
+    from ringlet.shot import Contact, Material
+    from ringlet.sim import Scene, Strands
+
+    start = time.perf_counter()
+    x = np.linspace(-0.02, 0.02, 9)
+    below, above = np.c_[x, 0 * x, 0 * x], np.c_[0 * x, 0 * x + 5e-3, x]
+    held = np.isin(np.arange(2 * len(x)), (0, 8, 9))
+    strands = Strands(Curves.from_list([below, above]), Material(bend_scale=0.0), held)
+    scene, touched = Scene(strands, contact=Contact()), False
+    for _step in range(24):
+        scene.step(strands.curves.points, 1 / 240, gravity=(0.0, -98.1, 0.0))
+        touched = touched or len(scene.contacts[0]) > 0
+    gap = strands.positions[13, 1] - strands.positions[4, 1]
+    works = touched and bool(gap > 0.0)
+    found = (
+        f"a strand fell onto another and {'stopped' if works else 'went through'}, {time.perf_counter() - start:.1f} s"
+    )
+    return Finding(
+        "contact", "ok" if works else "fails", found, "" if works else "run: ringlet validate, and report it"
+    )
+
+
+def _test_files(folder: Path) -> Finding:
+    """The example's groom, to USD and back."""
+    start = time.perf_counter()
+    recipe = share("examples/child") / "curls.recipe.toml"
+    groom = api.build_groom(recipe)
+    api.write_groom(groom, folder / "groom.usdc")
+    off = np.abs(api.read_groom(folder / "groom.usdc").locks.points - groom.locks.points).max()
+    same = bool(off < 1e-6)
+    found = f"{len(groom.locks):,} locks groomed, written and read, {time.perf_counter() - start:.1f} s"
+    remedy = "" if same else f"points come back {off:.2g} m away; report it"
+    return Finding("groom and USD", "ok" if same else "fails", found, remedy)
+
+
+def _test_picture(folder: Path) -> Finding:
+    """A small picture of that groom."""
+    start = time.perf_counter()
+    api.write_hairs(folder / "groom.usdc", folder / "hair.usdc", fraction=0.01)
+    path = folder / "still.png"
+    api.write_still(folder / "hair.usdc", path, width=PICTURE * 3 // 4, height=PICTURE, samples=2)
+    found = f"drawn, {path.stat().st_size / 1024:.0f} kB, {time.perf_counter() - start:.1f} s"
+    return Finding("picture", "ok", found)

@@ -1,0 +1,1 @@
+"""Plain data and small helpers that every package may use: curves, meshes, grooms, caches, files, settings, errors."""

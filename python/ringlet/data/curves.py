@@ -1,0 +1,116 @@
+"""One data structure for guides, locks, groom guides and hairs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ringlet.data.errors import UserError
+
+
+@dataclass
+class Curves:
+    """A set of polylines, root first, packed one after another.
+
+    points:  positions [m], shape (n, 3), float64 (float32 for dense hairs)
+    offsets: the first row of each curve in ``points``, and the end of the last; shape (count + 1,), int32
+    ids:     stable names of the curves, shape (count,), int64; never reused, never an index
+    curve:   attributes with one row per curve, e.g. ``root_triangle``
+    point:   attributes with one row per point, e.g. ``width``
+    """
+
+    points: NDArray[np.floating]
+    offsets: NDArray[np.int32]
+    ids: NDArray[np.int64]
+    curve: dict[str, NDArray] = field(default_factory=dict)
+    point: dict[str, NDArray] = field(default_factory=dict)
+
+    @classmethod
+    def from_list(cls, curves: Sequence[NDArray], ids: Sequence[int] | None = None) -> Curves:
+        """Packs a list of (k, 3) arrays; ids default to 0, 1, 2 …"""
+        counts = [len(c) for c in curves]
+        points = np.concatenate(curves) if curves else np.empty((0, 3))
+        names = np.arange(len(counts)) if ids is None else np.asarray(ids)
+        return cls(np.ascontiguousarray(points, np.float64), offsets_from_counts(counts), names.astype(np.int64))
+
+    def __len__(self) -> int:
+        return len(self.offsets) - 1
+
+    def __getitem__(self, index: int) -> NDArray[np.floating]:
+        """The points of one curve, a view of shape (k, 3)."""
+        return self.points[self.offsets[index] : self.offsets[index + 1]]
+
+    @property
+    def counts(self) -> NDArray[np.int32]:
+        """Points per curve, shape (count,)."""
+        return np.diff(self.offsets)
+
+    @property
+    def roots(self) -> NDArray[np.floating]:
+        """First point of every curve [m], shape (count, 3)."""
+        return self.points[self.offsets[:-1]]
+
+    def lengths(self) -> NDArray[np.floating]:
+        """Arc length of every curve [m], shape (count,)."""
+        along = np.zeros(len(self.points))
+        along[1:] = np.linalg.norm(np.diff(self.points, axis=0), axis=1)
+        along[self.offsets[:-1]] = 0.0  # the jump from one curve to the next is no edge
+        return np.add.reduceat(along, self.offsets[:-1]) if len(self) else np.empty(0)
+
+    def take(self, indices: NDArray) -> Curves:
+        """The chosen curves (indices or a mask), with their attributes."""
+        chosen = np.arange(len(self))[indices]
+        counts = self.counts[chosen]
+        offsets = offsets_from_counts(counts)
+        rows = np.repeat(self.offsets[chosen] - offsets[:-1], counts) + np.arange(offsets[-1])
+        return Curves(
+            self.points[rows],
+            offsets,
+            self.ids[chosen],
+            {name: values[chosen] for name, values in self.curve.items()},
+            {name: values[rows] for name, values in self.point.items()},
+        )
+
+    def with_points(self, points: NDArray[np.floating]) -> Curves:
+        """The same curves with other points, of the same shape."""
+        if points.shape != self.points.shape:
+            raise ValueError(f"curves: points have shape {points.shape}; must be {self.points.shape}")
+        return Curves(points, self.offsets, self.ids, self.curve, self.point)
+
+    def check(self, what: str) -> Curves:
+        """Refuses invalid curves; ``what`` names them in the message. Returns self."""
+        if len(self) == 0:
+            raise UserError(f"{what}: there are no curves; give at least one")
+        if self.offsets[0] != 0 or self.offsets[-1] != len(self.points) or (self.counts < 0).any():
+            raise UserError(
+                f"{what}: point counts add up to {self.offsets[-1]}, but there are {len(self.points)} points"
+            )
+        if (short := np.flatnonzero(self.counts < 2)).size:
+            raise UserError(
+                f"{what}: curve {self.ids[short[0]]} has {self.counts[short[0]]} point(s); must have at least 2"
+            )
+        if not (finite := np.isfinite(self.points).all(axis=1)).all():
+            row = int(np.flatnonzero(~finite)[0])
+            curve = int(np.searchsorted(self.offsets, row, side="right") - 1)
+            raise UserError(
+                f"{what}: curve {self.ids[curve]}, point {row - self.offsets[curve]} is {self.points[row]}; "
+                "must be finite"
+            )
+        if (flat := np.flatnonzero(self.lengths() <= 0)).size:
+            raise UserError(f"{what}: curve {self.ids[flat[0]]} has length 0; remove it or draw it out")
+        if len(np.unique(self.ids)) != len(self):
+            values, uses = np.unique(self.ids, return_counts=True)
+            raise UserError(f"{what}: id {values[uses > 1][0]} is used by {uses.max()} curves; ids must be unique")
+        return self
+
+
+def offsets_from_counts(counts: Sequence[int] | NDArray) -> NDArray[np.int32]:
+    """Running offsets, shape (count + 1,), of curves with that many points each."""
+    offsets = np.zeros(len(counts) + 1, np.int64)
+    np.cumsum(counts, out=offsets[1:])
+    if offsets[-1] > np.iinfo(np.int32).max:
+        raise UserError(f"curves: {offsets[-1]} points; must be under {np.iinfo(np.int32).max}")
+    return offsets.astype(np.int32)

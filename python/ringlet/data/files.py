@@ -1,0 +1,70 @@
+"""Atomic writes: a file is written aside, then renamed."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from ringlet.data.errors import UserError
+
+
+@contextmanager
+def replacing(path: Path | str) -> Iterator[Path]:
+    """Yields a path beside ``path`` to write to, which replaces ``path`` only when the block succeeds.
+
+    The suffix is kept, since writers choose their format by it. A link at ``path`` is replaced, not followed. Raises
+    UserError where the place cannot be written.
+    """
+    path = Path(path)
+    aside = path.with_name(f".{path.stem}.{os.getpid()}{path.suffix}")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        if path.is_dir():
+            raise UserError(f"{path}: is a folder; give a file name")
+        aside.unlink(missing_ok=True)
+        os.close(os.open(aside, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))  # ours, and no link to elsewhere
+        yield aside
+        aside.replace(path)
+    except OSError as error:
+        raise UserError(f"{path}: cannot be written ({error.strerror or error}); choose another place") from error
+    finally:
+        with suppress(OSError):  # where the folder is no folder there is nothing to remove
+            aside.unlink()
+
+
+def check_place(path: Path | str, taken: Mapping[str, Path | None] | None = None) -> None:
+    """Refuses a file that cannot be written, without creating it.
+
+    taken: other files of the same run, by their role; these are refused too
+    """
+    path = Path(path)
+    for what, other in (taken or {}).items():
+        if other is not None and same_place(path, other):
+            raise UserError(f"{path}: is the {what} of the same run; choose another name")
+    try:
+        if path.is_dir():
+            raise UserError(f"{path}: is a folder; give a file name")
+        there = next(folder for folder in path.absolute().parents if folder.exists())
+        with tempfile.TemporaryFile(dir=there):
+            pass
+    except OSError as error:
+        raise UserError(f"{path}: cannot be written ({error.strerror or error}); choose another place") from error
+
+
+def same_place(path: Path | str, other: Path | str) -> bool:
+    """Whether writing one path replaces the other; a link is replaced, not followed."""
+    one, two = (Path(p).absolute() for p in (path, other))
+    return one.name == two.name and one.parent.resolve() == two.parent.resolve()
+
+
+def within(path: Path, folder: Path, what: str) -> Path:
+    """The path, if it is in a folder or below, links followed; for outputs that an input file names.
+
+    what: the setting that names it, for the message: ``curls.recipe.toml: edits``
+    """
+    if not path.resolve().is_relative_to(folder.resolve()):
+        raise UserError(f"{what} is '{path}', outside of {folder.resolve()}; name a file in that folder, or below it")
+    return path

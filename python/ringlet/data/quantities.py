@@ -1,0 +1,226 @@
+"""Quantities of recipes: lengths with units, values that vary from lock to lock, ramps; readable errors."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Annotated, Any, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    Field,
+    FiniteFloat,
+    ValidationError,
+    ValidationInfo,
+    model_validator,
+)
+from pydantic_core import PydanticCustomError, core_schema
+from scipy.interpolate import PchipInterpolator
+
+from ringlet.data import settings
+from ringlet.data.errors import UserError
+from ringlet.data.random import Random
+from ringlet.data.settings import Location, refuse
+
+UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254}
+
+
+class Section(settings.Section):
+    """A table of the recipe. A value that is given without its variation or ramp keeps those of the default."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _with_defaults(cls, data: Any) -> Any:
+        if isinstance(data, dict):
+            for name, default in cls.defaults(data).items():
+                if name in data:
+                    given = data[name]
+                    if isinstance(default, dict) and not isinstance(given, BaseModel):
+                        data = {**data, name: {**default, **(given if isinstance(given, dict) else {"value": given})}}
+                else:
+                    data = {**data, name: default}
+        return data
+
+    @classmethod
+    def defaults(cls, data: dict[str, Any]) -> dict[str, Any]:
+        """The values of settings that ``data`` lacks, as a recipe states them."""
+        varied = {name: field for name, field in cls.model_fields.items() if isinstance(field.default, Varied)}
+        return {name: _as_stated(field.default, field.metadata) for name, field in varied.items()}
+
+
+def _as_stated(value: Varied, metadata: list[Any]) -> dict[str, Any]:
+    said = value.model_dump(exclude_unset=True)
+    if any(isinstance(part, Quantity) and part.unit == "m" for part in metadata):
+        said["value"] = f"{said['value']!r} m"
+    return said
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """The unit and bounds of a setting. Unit ``m``: a number counts in the recipe's unit, a text carries its own, as in
+    ``"5 mm"``."""
+
+    unit: str = ""
+    least: float = -np.inf
+    most: float = np.inf
+
+    def number(self, value: Any, unit: float) -> float:
+        """``value`` in SI, within the bounds."""
+        if isinstance(value, str):
+            match = re.fullmatch(r"\s*([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*([a-z]+)\s*", value)
+            if self.unit != "m" or not match or match[2] not in UNITS:
+                raise refuse(
+                    f"is '{value}'; must be a number" + (' or a length such as "5 mm"' if self.unit == "m" else "")
+                )
+            try:
+                value = float(match[1]) * UNITS[match[2]]
+            except ValueError:
+                raise refuse(f"is '{value}'; must be a length such as \"5 mm\"") from None
+        elif isinstance(value, bool) or not isinstance(value, int | float) or abs(value) > 1e300:
+            raise refuse(f"is {value!r}; must be a number")
+        elif self.unit == "m":
+            value = value * unit
+        value = float(value)
+        suffix = f" {self.unit}" if self.unit else ""
+        if not np.isfinite(value):
+            raise refuse(f"is {value}; must be finite")
+        if value < self.least:
+            raise refuse(f"is {value:.6g}{suffix}; must be at least {self.least:.6g}{suffix}")
+        if value > self.most:
+            raise refuse(f"is {value:.6g}{suffix}; must be at most {self.most:.6g}{suffix}")
+        return value
+
+    def _read(self, value: Any, table: bool, info: ValidationInfo) -> Any:
+        unit = (info.context or {}).get("unit", 1.0)
+        if value is None or isinstance(value, BaseModel):
+            return value
+        if table and isinstance(value, dict):
+            read = {**value, "value": self.number(value["value"], unit)} if "value" in value else {**value}
+            for kind in ("region", "lock"):
+                if isinstance(given := value.get(kind), dict):
+                    read[kind] = {name: self._of(kind, name, number, unit) for name, number in given.items()}
+            return read
+        number = self.number(value, unit)
+        return {"value": number} if table else number
+
+    def _of(self, kind: str, name: str, value: Any, unit: float) -> float:
+        """The value for one region or lock."""
+        try:
+            return self.number(value, unit)
+        except PydanticCustomError as error:
+            raise refuse(f"for {kind} '{name}' {error.message()}") from None
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: Callable[[Any], core_schema.CoreSchema]
+    ) -> core_schema.CoreSchema:
+        table = any(isinstance(kind, type) and issubclass(kind, Section) for kind in (source, *get_args(source)))
+        return core_schema.with_info_before_validator_function(
+            lambda value, info: self._read(value, table, info), handler(source)
+        )
+
+    def __get_pydantic_json_schema__(self, schema: core_schema.CoreSchema, handler: Callable) -> dict[str, Any]:
+        bounds = {"minimum": self.least, "maximum": self.most}
+        number = {"type": "number", **{name: bound for name, bound in bounds.items() if np.isfinite(bound)}}
+        choices = [number, {"type": "string"}] if self.unit == "m" else [number]
+        inner = handler(schema)
+        tables = [part for part in inner.get("anyOf", [inner]) if "$ref" in part or part.get("type") == "null"]
+        return {"anyOf": choices + tables, "unit": self.unit}
+
+
+class Varied(Section):
+    """A value that may differ from lock to lock. In a recipe: a number, or a table
+    ``{ value = …, vary = …, noise = …, map = "…", region = { name = … }, lock = { id = … } }``."""
+
+    value: float
+    vary: float = Field(
+        default=0.0, ge=0.0, le=1.0, description="random change per lock, as a part of the value: 0.2 is ±20 %"
+    )
+    noise: float = Field(
+        default=0.0, ge=0.0, le=1.0, description="smooth change over the scalp, as a part of the value"
+    )
+    noise_size: Annotated[float, Quantity("m", 1e-4, 10.0)] = Field(
+        default=0.03, description="distance over which the noise changes"
+    )
+    map: str | None = Field(
+        default=None,
+        description="painted values that multiply it: of the locks, or of the scalp at their roots (a primvar of "
+        "floats, or a texture of `[maps]`)",
+    )
+    region: dict[str, float] = Field(default={}, description="the value in named regions of the scalp")
+    lock: dict[int, float] = Field(default={}, description="the value of single locks, by their id")
+
+    def per_curve(self, random: Random, ids: NDArray, places: NDArray) -> NDArray[np.float64]:
+        """The value for each curve, shape (len(ids),), as far as it needs no scalp (see ``painted.per_lock``).
+
+        places: roots [m], shape (len(ids), 3)
+        """
+        return self.value * self.factors(random, ids, places)
+
+    def factors(self, random: Random, ids: NDArray, places: NDArray) -> NDArray[np.float64]:
+        """The factors of chance and noise on the value, shape (len(ids),)."""
+        factor = np.ones(len(ids))
+        if self.vary > 0.0:
+            factor += self.vary * (2.0 * random.uniform(ids) - 1.0)
+        if self.noise > 0.0:
+            factor += self.noise * random.field(places, self.noise_size)
+        return np.maximum(factor, 0.05)  # variations that add up never change the sign of a value
+
+
+def _in_order(ramp: list[tuple[float, float]]) -> list[tuple[float, float]]:
+    places = [at for at, _ in ramp]
+    if not ramp:
+        raise refuse("is empty; give at least one [place, factor]")
+    if min(places) < 0.0 or max(places) > 1.0:
+        outside = min(places) if min(places) < 0.0 else max(places)
+        raise refuse(f"has a place at {outside}; must be between 0 (root) and 1 (tip)")
+    if any(b <= a for a, b in pairwise(places)):
+        raise refuse(f"has places {places}; must ascend")
+    if any(factor < 0.0 for _, factor in ramp):
+        raise refuse(f"has a factor of {min(f for _, f in ramp)}; must be at least 0")
+    return ramp
+
+
+Ramp = Annotated[list[tuple[FiniteFloat, FiniteFloat]], AfterValidator(_in_order)]
+
+
+def along(ramp: list[tuple[float, float]], u: NDArray) -> NDArray[np.float64]:
+    """A ramp's factor at places ``u`` from root (0) to tip (1): smooth, no overshoot (Fritsch and Carlson 1980)."""
+    at, factor = np.array(ramp).T
+    if len(at) == 1:
+        return np.full(np.shape(u), factor[0])
+    return PchipInterpolator(at, factor)(np.clip(u, at[0], at[-1]))
+
+
+class Ramped(Varied):
+    """A varied value with a ramp from root to tip: ``{ value = …, ramp = [[0, 1], [1, 0.5]] }`` multiplies it by 1 at
+    the root and by 0.5 at the tip, smoothly between and without overshoot."""
+
+    ramp: Ramp = Field(default=[(0.0, 1.0), (1.0, 1.0)], description="[place, factor] from root (0) to tip (1)")
+
+    def along(self, u: NDArray) -> NDArray[np.float64]:
+        """The ramp's factor at places ``u`` between root (0) and tip (1)."""
+        return along(self.ramp, u)
+
+
+def explain(error: ValidationError, where: str) -> UserError:
+    """The first mistake in a recipe, in one line: file, setting, value, remedy."""
+    return settings.explain(error, where, _setting)
+
+
+def _setting(loc: Location) -> str:
+    """A setting's name as it stands in the recipe: ``curl.width``, ``shape[0].amplitude``."""
+    name = ""
+    for depth, part in enumerate(loc):
+        if isinstance(part, int):
+            name += f"[{part}]"
+        elif depth != _KIND_AT.get(str(loc[0])):
+            name += f".{part}"
+    return name.removeprefix(".").removesuffix(".value")
+
+
+_KIND_AT = {"guides": 1, "shape": 2}  # where pydantic puts in the kind of a union, which no recipe says

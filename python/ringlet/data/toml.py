@@ -1,0 +1,45 @@
+"""Plain values as TOML."""
+
+from __future__ import annotations
+
+import json
+import re
+from typing import Any
+
+
+def to_toml(data: dict[str, Any]) -> str:
+    """The text of a TOML file: single values first, then tables, and lists of tables as ``[[name]]``."""
+    return "".join(_lines(data, ())).lstrip("\n")
+
+
+def _lines(table: dict[str, Any], place: tuple[str, ...]) -> list[str]:
+    tables = {key: value for key, value in table.items() if isinstance(value, dict)}
+    lists = {key: value for key, value in table.items() if _is_tables(value)}
+    lines = [f"{toml_key(key)} = {_value(v)}\n" for key, v in table.items() if key not in tables and key not in lists]
+    for key, value in tables.items():
+        name = ".".join(map(toml_key, (*place, key)))
+        lines += [f"\n[{name}]\n", *_lines(value, (*place, key))]
+    for key, values in lists.items():
+        name = ".".join(map(toml_key, (*place, key)))
+        for value in values:
+            lines += [f"\n[[{name}]]\n", *(f"{toml_key(k)} = {_value(v)}\n" for k, v in value.items())]
+    return lines
+
+
+def _is_tables(value: Any) -> bool:
+    return isinstance(value, list) and bool(value) and all(isinstance(part, dict) for part in value)
+
+
+def toml_key(key: str) -> str:
+    """A key in TOML, quoted where it must be."""
+    return key if re.fullmatch(r"[A-Za-z0-9_-]+", key) else json.dumps(key, ensure_ascii=False)
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{toml_key(key)} = {_value(part)}" for key, part in value.items()) + "}"
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join(map(_value, value)) + "]"
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    return repr(value) if isinstance(value, float) else json.dumps(value)

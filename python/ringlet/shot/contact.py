@@ -1,0 +1,77 @@
+"""Contact and friction of locks, colliders and cloth."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from pydantic import Field
+
+from ringlet.data.settings import Section
+
+
+class Contact(Section):
+    """How strands touch one another and bodies."""
+
+    radius: float = Field(
+        default=5e-4, gt=0, le=0.1, description="[m] half the distance at which two locks begin to push each other away"
+    )
+    friction: float = Field(default=0.3, ge=0, le=10, description="Coulomb's μ of lock on lock")
+    stiffness: float = Field(
+        default=1.0,
+        gt=0,
+        le=1e6,
+        description="scales how hard contacts push, which is as hard as what they have to bear asks for",
+    )
+    creep_speed: float = Field(
+        default=1e-3,
+        gt=0,
+        le=1,
+        description="[m/s] times a step: what is sheared less than that sticks. By default 1e-5 where rest.mode is "
+        "'equilibrium'",
+    )
+    parting_speed: float = Field(
+        default=2e-3,
+        ge=0,
+        le=1,
+        description="[m/s] at which locks that begin nearer than they may be part; 0, which is the default where "
+        "rest.mode is 'equilibrium': they stay",
+    )
+
+
+class Pair(Section):
+    """The friction of two materials on each other, in place of what each of them says."""
+
+    between: tuple[str, str] = Field(
+        description="`locks`, or the names of colliders and cloths; twice the same name: on itself"
+    )
+    friction: float = Field(ge=0, le=10, description="Coulomb's μ")
+
+
+class ShotContact(Contact):
+    """How locks touch one another, the colliders and cloth."""
+
+    on: bool = Field(default=True, description="false: everything passes through everything, as without this table")
+    pair: tuple[Pair, ...] = Field(
+        default=(),
+        description="friction of pairs; by default a lock on something has what that says, and two others the "
+        "geometric mean of what both say",
+    )
+
+
+class Collider(Section):
+    """Meshes that locks cannot pass through. Where several entries name one mesh, the last of them counts."""
+
+    name: str = Field(default="", description="for pins and friction; by default the last part of each mesh's path")
+    file: Path | None = Field(
+        default=None,
+        description="USD file with the animation of the groom's head; by default that head. A relative name counts "
+        "from the shot",
+    )
+    mesh: str | None = Field(
+        default=None, description="path of a prim: the meshes at and below it; by default all that are visible"
+    )
+    animated: bool = Field(default=True, description="false: it stays as it is at the first frame of the shot")
+    thickness: float = Field(
+        default=5e-4, ge=0, le=0.1, description="[m] how far from the surface contact begins, besides `contact.radius`"
+    )
+    friction: float = Field(default=0.3, ge=0, le=10, description="Coulomb's μ of a lock on it")

@@ -1,0 +1,90 @@
+"""Solvers of time steps."""
+
+from __future__ import annotations
+
+from typing import Literal, get_args
+
+from pydantic import Field, ValidationInfo, field_validator
+
+from ringlet.data.settings import Section, refuse
+
+Continuation = Literal["material_frame", "least_energy", "history"]
+Safeguard = Literal["flip_history", "winding_number", "straight_fade"]
+SAFEGUARDS: tuple[Safeguard, ...] = get_args(Safeguard)
+MOST_ITERATIONS = 1000
+
+
+class Solver(Section):
+    """How a time step is solved."""
+
+    newton: int = Field(
+        default=5,
+        ge=1,
+        le=MOST_ITERATIONS,
+        description="Newton iterations per step; 1 is stable, but with few hair comes late: "
+        "5 for a look, 20 for the last run",
+    )
+    extra: int = Field(
+        default=60,
+        ge=0,
+        le=MOST_ITERATIONS,
+        description="iterations more, at most, for locks held back and stretched by over 3 %; fewer bound "
+        "what a step costs, and leave them stretched",
+    )
+    until_converged: bool = Field(
+        default=False,
+        description=f"go on until every lock has converged, at most {MOST_ITERATIONS} iterations, whatever newton is",
+    )
+    substeps: int = Field(default=1, ge=1, le=1000, description="steps per frame")
+    tolerance: float = Field(
+        default=1e-6, gt=0, le=1e-2, description="[m] a lock has converged when no vertex moves more than this"
+    )
+    system: Literal["automatic", "banded", "conjugate_gradient", "direct"] = Field(
+        default="automatic",
+        description="how the linear system of locks that touch is solved: each alone (an error where something couples "
+        "them), together by conjugate gradients, or by factoring the whole; automatic: alone or together, as needed",
+    )
+    linear_tolerance: float = Field(
+        default=0.1,
+        gt=0,
+        le=0.5,
+        description="what conjugate gradients leave of the linear system, as a part of what there was; the less, the "
+        "more hair moves that lies in hair: 0.02 for the last run",
+    )
+    integrator: Literal["backward_euler", "bdf2"] = Field(
+        default="backward_euler",
+        description="first order and calm, or second order (BDF-2), which keeps a swing going for longer",
+    )
+    continuation: Continuation = Field(
+        default="material_frame",
+        description="how the signs of bends and the turns of twist are found: see the theory page",
+    )
+    safeguards: tuple[Safeguard, ...] = Field(
+        default=SAFEGUARDS, description="those of `history` that are on; fewer only to study what each is for"
+    )
+
+    @field_validator("safeguards")
+    @classmethod
+    def _of_history(cls, safeguards: tuple[Safeguard, ...], info: ValidationInfo) -> tuple[Safeguard, ...]:
+        continuation = info.data.get("continuation")
+        if continuation != "history" and set(safeguards) != set(SAFEGUARDS):
+            raise refuse(f"is {list(safeguards)}; continuation is '{continuation}', only 'history' can be without one")
+        return safeguards
+
+    @property
+    def iterations(self) -> int:
+        """The largest number of Newton iterations in a step."""
+        return MOST_ITERATIONS if self.until_converged else self.newton
+
+
+class ClothSolver(Section):
+    """How a time step of cloth is solved."""
+
+    newton: int = Field(default=5, ge=1, le=1000, description="Newton iterations per step, at most")
+    tolerance: float = Field(
+        default=1e-6, gt=0, le=1e-2, description="[m] converged when no vertex moves more than this"
+    )
+    linear_tolerance: float = Field(
+        default=1e-3, gt=0, lt=1, description="residual of each linear system, as a part of its right-hand side"
+    )
+    linear_iterations: int = Field(default=2000, ge=1, le=100000, description="conjugate gradients per system, at most")

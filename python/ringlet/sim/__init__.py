@@ -1,0 +1,29 @@
+"""The simulation of a shot: strands, cloth and bodies in motion and in contact, frame by frame."""
+
+from ringlet.sim.checkpoint import Checkpoints, frames_between, holding
+from ringlet.sim.cloth import Cloth
+from ringlet.sim.garment import Garment
+from ringlet.sim.motion import Motion
+from ringlet.sim.obstacle import Body, Obstacle
+from ringlet.sim.run_digest import digest_of_run
+from ringlet.sim.scene import Scene
+from ringlet.sim.simulate import StoredTouches, play, replay, simulate
+from ringlet.sim.strands import Strands
+
+__all__ = [
+    "Body",
+    "Checkpoints",
+    "Cloth",
+    "Garment",
+    "Motion",
+    "Obstacle",
+    "Scene",
+    "StoredTouches",
+    "Strands",
+    "digest_of_run",
+    "frames_between",
+    "holding",
+    "play",
+    "replay",
+    "simulate",
+]

@@ -1,0 +1,183 @@
+"""Checkpoints: a folder from which a run that was interrupted resumes, to the same bits.
+
+Every frame is written as soon as it is done, and every few frames the state that the next one depends on. A file is
+written aside, renamed, and begins with a digest of the rest: an incomplete or damaged one is never read. One program at
+a time locks a folder; a program that writes other files of the run locks it before the first of them.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import hashlib
+import io
+import json
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, BinaryIO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ringlet.data.errors import UserError
+from ringlet.data.files import replacing
+
+VERSION = b"ringlet checkpoint 2\n"
+EVERY = 10  # frames from one state to the next, at most
+VERTICES = 1_000_000  # simulated between states: a frame of that many may take minutes
+HELD = "held"  # the file that a program locks while it runs
+KEPT = 2  # states: where the last is damaged, the one before is used
+
+Arrays = Mapping[str, NDArray[Any]]
+
+_held_here: dict[Path, BinaryIO] = {}  # by folder, the files that ``holding`` locks in this program
+
+
+class DamagedError(ValueError):
+    """A file does not match its digest."""
+
+
+@dataclass
+class Checkpoints:
+    """The folder of a run.
+
+    folder:    where its files are
+    made_from: the digest of the run; files of another run are refused
+    every:     frames from one state to the next
+    """
+
+    folder: Path
+    made_from: str
+    every: int = EVERY
+    _held: BinaryIO | None = field(default=None, repr=False)
+
+    def begin(self, resume: bool) -> tuple[int, dict[str, NDArray[Any]]] | None:
+        """The number of steps that are done and the state after them; None for a new run.
+
+        Without ``resume`` the folder is emptied. Raises UserError where it is of another run.
+        """
+        self._hold()
+        if not resume:
+            for path in self.folder.iterdir():
+                if path.name != HELD:
+                    path.unlink()
+        key = self.folder / "made_from"
+        if key.exists() and key.read_text() != self.made_from:
+            raise UserError(
+                f"{self.folder}: was left by a run with other settings, another groom, first frame or Ringlet; "
+                "run without --resume to start over"
+            )
+        with replacing(key) as aside:
+            aside.write_text(self.made_from)
+        for path in sorted(self.folder.glob("memory.*"), reverse=True):
+            try:
+                memory = read(path)
+            except DamagedError:
+                path.unlink()
+                continue
+            done = int(path.suffix[1:])
+            if all(self._has(step) for step in range(done)):
+                return done, memory
+        return None
+
+    def _hold(self) -> None:
+        """Locks the folder for this program."""
+        self._held = _held_here.get(self.folder.resolve()) or _held(self.folder)
+
+    def keep(self, step: int, arrays: Arrays, statistics: dict[str, Any]) -> None:
+        """Writes the results of a step."""
+        write(self._frame(step), {**arrays, "statistics": np.array(json.dumps(statistics))})
+
+    def remember(self, done: int, memory: Arrays) -> None:
+        """Writes the state after so many steps, and removes all but the last two."""
+        write(self.folder / f"memory.{done:06d}", memory)
+        for path in sorted(self.folder.glob("memory.*"))[:-KEPT]:
+            path.unlink()
+
+    def kept(self, done: int) -> Iterator[tuple[dict[str, NDArray[Any]], dict[str, Any]]]:
+        """The results of the first steps: their arrays and statistics."""
+        for step in range(done):
+            arrays = read(self._frame(step))
+            yield arrays, json.loads(str(arrays.pop("statistics")))
+
+    def _frame(self, step: int) -> Path:
+        return self.folder / f"step.{step:06d}"
+
+    def _has(self, step: int) -> bool:
+        try:
+            read(self._frame(step))
+        except (DamagedError, OSError):
+            return False
+        return True
+
+
+@contextmanager
+def holding(folder: Path) -> Iterator[int]:
+    """Locks a folder of checkpoints while the block runs; see ``ringlet.hold_checkpoints``."""
+    at = folder.resolve()
+    if at in _held_here:
+        raise _goes_on(folder)
+    # Closing a file releases the locks of its whole program, so checkpoints in this folder use this one.
+    _held_here[at] = _held(folder)
+    try:
+        yield max((int(path.suffix[1:]) for path in at.glob("memory.*")), default=0)
+    finally:
+        if [path.name for path in at.glob("*")] == [HELD]:
+            (at / HELD).unlink()
+        _held_here.pop(at).close()
+        with suppress(OSError):  # a folder with checkpoints stays
+            at.rmdir()
+
+
+def _held(folder: Path) -> BinaryIO:
+    """The file that locks a folder as long as it is open."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        file = (folder / HELD).open("ab")
+    except OSError as error:
+        raise UserError(f"{folder}: cannot be written ({error.strerror}); choose another place") from error
+    try:
+        fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except (BlockingIOError, PermissionError):
+        file.close()
+        raise _goes_on(folder) from None
+    except OSError:  # a file system without locks
+        pass
+    return file
+
+
+def _goes_on(folder: Path) -> UserError:
+    return UserError(f"{folder}: is of a run that goes on; let it end, or choose another place")
+
+
+def frames_between(vertices: int) -> int:
+    """Frames from one state to the next for strands of so many vertices, of which more take longer."""
+    return max(1, min(EVERY, VERTICES // max(vertices, 1)))
+
+
+def digest(*parts: Any) -> str:
+    """A digest of arrays and of plain values."""
+    found = hashlib.sha256(VERSION)
+    for part in parts:
+        array = isinstance(part, np.ndarray)
+        found.update(np.ascontiguousarray(part).tobytes() if array else json.dumps(part, sort_keys=True).encode())
+    return found.hexdigest()
+
+
+def write(path: Path, arrays: Arrays) -> None:
+    """Writes arrays by name, all or nothing."""
+    content = io.BytesIO()
+    np.savez(content, allow_pickle=False, **arrays)
+    with replacing(path) as aside:
+        aside.write_bytes(VERSION + hashlib.sha256(content.getvalue()).digest() + content.getvalue())
+
+
+def read(path: Path) -> dict[str, NDArray[Any]]:
+    """Reads what ``write`` wrote; raises DamagedError where it is not that."""
+    content = path.read_bytes()
+    begin = len(VERSION) + hashlib.sha256().digest_size
+    if content[: len(VERSION)] != VERSION or hashlib.sha256(content[begin:]).digest() != content[len(VERSION) : begin]:
+        raise DamagedError(f"{path}: is damaged")
+    with np.load(io.BytesIO(content[begin:]), allow_pickle=False) as arrays:
+        return dict(arrays)

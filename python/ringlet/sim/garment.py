@@ -1,0 +1,132 @@
+"""Garments: meshes that become cloth in a shot, with their pins, their start and the scale of their rest shape."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ringlet import _core
+from ringlet.data.errors import UserError
+from ringlet.data.mesh import Clip, Mesh
+from ringlet.shot.cloth import ShotCloth
+from ringlet.sim.cloth import Cloth
+from ringlet.sim.obstacle import Obstacle
+from ringlet.sim.pins import PinnedVertices
+
+Array = NDArray[np.float64]
+
+
+@dataclass
+class Garment:
+    """A mesh that becomes cloth.
+
+    mesh:     its rest shape [m]
+    clip:     its animation: where it begins, and the targets of pins to nothing else
+    settings: its material and its pins
+    file:     the USD file of its mesh
+    prim:     its path there
+    """
+
+    mesh: Mesh
+    clip: Clip
+    settings: ShotCloth = field(default_factory=lambda: ShotCloth(mesh="/cloth"))
+    file: Path | None = None
+    prim: str = "/cloth"
+
+    @property
+    def name(self) -> str:
+        """Its name in the shot, in statistics and in messages."""
+        return self.settings.name or self.prim.rpartition("/")[2]
+
+    @property
+    def is_animated(self) -> bool:
+        """Whether its file animates it."""
+        return len(self.clip.frames) > 1
+
+
+class Worn:
+    """A garment in simulation.
+
+    cloth:     its cloth, at the start where it is at the frame ``first``
+    pinned_to: the index of the obstacle that carries its held vertices; -1: none
+    """
+
+    def __init__(self, garment: Garment, obstacles: Sequence[Obstacle], first: float) -> None:
+        self.garment = garment
+        settings, mesh = garment.settings, garment.mesh
+        begin = beginning(garment, obstacles, first)
+        where = f"shot: cloth '{garment.name}', pin"
+        self._pins = [
+            PinnedVertices(mesh, garment.clip, pin, f"{where}[{k}]", obstacles, begin, first)
+            for k, pin in enumerate(settings.pin)
+        ]
+        held, attachment = np.zeros(len(begin), bool), np.zeros(len(begin))
+        holder = np.full(len(begin), -1)
+        for pin in self._pins:
+            held[pin.vertices], holder[pin.vertices] = pin.stiffness is None, pin.obstacle
+            attachment[pin.vertices] = 0.0 if pin.stiffness is None else pin.stiffness
+        self.cloth = Cloth(mesh, settings.material, held, attachment=attachment)
+        self.cloth.positions[:] = begin
+        self.pinned_to = _most(holder[held])
+        self.cloth.scale_rest(settings.least_scale)  # contact leaves room for the smallest scale
+        self._begin = begin
+
+    @property
+    def name(self) -> str:
+        """The name of its garment."""
+        return self.garment.name
+
+    def draw_together(self, frame: float) -> None:
+        """Scales the rest shape as at a frame."""
+        self.cloth.scale_rest(self.garment.settings.scale(frame))
+
+    def targets(self, frame: float) -> Array:
+        """The targets of its vertices at a frame [m], shape (n, 3); those that are not pinned stay where they began."""
+        targets = self._begin.copy()
+        for pin in self._pins:
+            targets[pin.vertices] = pin.places(frame)
+        return targets
+
+
+def beginning(garment: Garment, obstacles: Sequence[Obstacle], first: float) -> Array:
+    """The positions of a cloth at the first frame [m], shape (n, 3).
+
+    Without animation it has moved rigidly with the obstacles since the rest pose, as the nearest places on them have.
+    """
+    points = garment.clip.at(first)
+    if points.shape != garment.mesh.points.shape:
+        raise UserError(
+            f"{garment.mesh.name}: has {len(points)} points at frame {first:g}, {len(garment.mesh.points)} in its rest "
+            "pose; must not change"
+        )
+    if garment.is_animated or not obstacles:
+        return points.copy()
+    ends = [obstacle.at(first) for obstacle in obstacles]
+    bound = [_core.bind_roots(obstacle.mesh.points, obstacle.mesh.triangles, points) for obstacle in obstacles]
+    nearest = np.argmin([distance for _, _, distance in bound], axis=0)
+    before, after = np.empty_like(points), np.empty_like(points)
+    for k, (obstacle, end) in enumerate(zip(obstacles, ends, strict=True)):
+        of = nearest == k
+        corners = obstacle.mesh.triangles[bound[k][0][of]]
+        for places, at in ((before, obstacle.mesh.points), (after, end)):
+            places[of] = np.einsum("nk,nki->ni", bound[k][1][of], at[corners])
+    return carried(points, before, after)
+
+
+def carried(points: Array, before: Array, after: Array) -> Array:
+    """Points moved by the rigid motion that fits places before and after best, shapes (n, 3) (Kabsch 1976)."""
+    from_centre, to_centre = before.mean(axis=0), after.mean(axis=0)
+    left, _, right = np.linalg.svd((before - from_centre).T @ (after - to_centre))
+    mirror = np.array([1.0, 1.0, np.sign(np.linalg.det(left @ right))])
+    return (points - from_centre) @ (left * mirror @ right) + to_centre
+
+
+def _most(holders: NDArray[Any]) -> int:
+    """The index of the obstacle that holds most vertices; -1: none does."""
+    of = holders[holders >= 0]
+    return int(np.bincount(of).argmax()) if len(of) else -1

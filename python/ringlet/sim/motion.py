@@ -1,0 +1,171 @@
+"""Locks and cloth in motion: their state, and how one frame's time advances it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ringlet.data.cache import CachedCloth
+from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
+from ringlet.data.groom import Groom
+from ringlet.data.mesh import Clip
+from ringlet.shot.shot import Shot
+from ringlet.sim.garment import Garment, Worn
+from ringlet.sim.nails import held_vertices, spring_forces
+from ringlet.sim.obstacle import Obstacle
+from ringlet.sim.resting_contacts import initial_contact_forces
+from ringlet.sim.roots import Roots
+from ringlet.sim.scene import Scene
+from ringlet.sim.start import scene_at_start
+from ringlet.sim.statistics import StepReports, frame_statistics
+from ringlet.sim.strands import Strands
+from ringlet.sim.variation import material_factors
+
+
+def make_strands(
+    shot: Shot, groom: Groom, rest: Curves | None = None, stiffened: NDArray[np.float64] | None = None
+) -> Strands:
+    """The locks of a groom as strands of a shot's material, whose rest shape is the groomed or another one.
+
+    stiffened: times that each lock is stiffer against bend than that material, shape (count,)
+    """
+    factors = material_factors(shot.variation, groom)
+    if stiffened is not None:
+        factors["bend"] = factors.get("bend", 1.0) * np.repeat(stiffened, groom.locks.counts)
+    return Strands(rest or groom.locks, shot.strands, held_vertices(groom.locks, shot.held), factors)
+
+
+class Motion:
+    """Locks on their moving scalp, in contact where the shot has it; see ``simulate`` for what it is made of.
+
+    first: the frame at which everything starts
+    scene: all that is in contact; None without contact
+    start: the report of initial penetration (see ``initial_penetration.py``)
+    worn:  the cloths that move with the locks
+    """
+
+    def __init__(
+        self,
+        shot: Shot,
+        groom: Groom,
+        clip: Clip,
+        rest: Curves | None,
+        obstacles: Sequence[Obstacle],
+        garments: Sequence[Garment],
+        first: int,
+    ) -> None:
+        _check(shot, groom.locks)
+        self.shot, self.clip, self.locks, self.first = shot, clip, groom.locks, first
+        self.roots = Roots(groom)
+        self.strands = make_strands(shot, groom, rest, None if rest is None else rest.curve.get("stiffened"))
+        self.strands.place(self.roots.carry(clip.at(first), first))
+        self.obstacles = [obstacle.starting_at(first) for obstacle in obstacles]
+        self.worn = [Worn(garment, self.obstacles, first) for garment in garments]
+        self.scene: Scene | None = None
+        self.start: dict[str, Any] = {}
+        if shot.touching:
+            self.scene, self.start = scene_at_start(
+                shot.touching, groom, self.strands, self.obstacles, self.worn, first
+            )
+            if rest is not None and "borne" in rest.point:
+                self._support(groom, np.asarray(rest.point["borne"], np.float64))
+
+    def _support(self, groom: Groom, forces: NDArray[np.float64]) -> None:
+        """Contacts carry from the first step what supports the locks where they were groomed: ``forces`` [N]."""
+        assert self.scene is not None and self.shot.touching is not None
+        groomed, of_locks = make_strands(self.shot, groom), len(groom.locks.points)
+        vertices, shares = initial_contact_forces(self.shot.touching, groom.locks, groomed, self.obstacles, forces)
+        of_cloths = sum(len(worn.cloth.positions) for worn in self.worn)  # between those of locks and of bodies
+        self.scene.set_initial_forces(np.where(vertices < of_locks, vertices, vertices + of_cloths), shares)
+
+    def cloths(self, frames: int) -> list[CachedCloth]:
+        """The cloths of a cache with room for so many frames."""
+        return [
+            CachedCloth(
+                worn.name,
+                worn.garment.file,
+                worn.garment.prim,
+                np.empty((frames, len(worn.cloth.positions), 3), np.float32),
+            )
+            for worn in self.worn
+        ]
+
+    @property
+    def memory(self) -> dict[str, NDArray[Any]]:
+        """The state that the next frame depends on, as arrays by name."""
+        memory = {f"strands {name}": values for name, values in self.strands.memory.items()}
+        if self.scene:
+            memory |= {f"scene {name}": values for name, values in self.scene.memory.items()}
+        return memory
+
+    def recall(self, memory: Mapping[str, NDArray[Any]]) -> None:
+        """Restores the state of a motion that was made from the same."""
+
+        def of(part: str) -> dict[str, NDArray[Any]]:
+            return {name.removeprefix(part): values for name, values in memory.items() if name.startswith(part)}
+
+        self.strands.recall(of("strands "))
+        if self.scene:
+            self.scene.recall(of("scene "))
+
+    def advance(self, begin: float, end: float) -> dict[str, Any]:
+        """One frame's time passes while the scalp goes from frame ``begin`` to ``end``; returns its statistics."""
+        wall, cpu = time.perf_counter(), time.process_time()
+        substeps = self.shot.solver.substeps
+        reports = StepReports()
+        for k in range(1, substeps + 1):
+            self._step(begin + (end - begin) * k / substeps, 1.0 / (self.clip.fps * substeps), reports)
+        return {
+            "frame": float(end),
+            "wall_ms": 1e3 * (time.perf_counter() - wall),
+            "cpu_ms": 1e3 * (time.process_time() - cpu),
+            **frame_statistics(
+                reports,
+                self.strands.curves.ids,
+                [worn.name for worn in self.worn],
+                self.scene.penetrating if self.scene else 0,
+            ),
+        }
+
+    def _step(self, frame: float, dt: float, reports: StepReports) -> None:
+        """One time step of ``dt`` [s]: roots, bodies and pinned cloth go to their places at ``frame``."""
+        forces = self.shot.forces
+        targets = self.roots.carry(self.clip.at(frame), frame)
+        drawn = spring_forces(self.locks, self.strands, targets, dt, forces.gravity)
+        if self.scene is None:
+            reports.strands.append(
+                self.strands.step(
+                    targets, dt, gravity=forces.gravity, wind=forces.wind, forces=drawn, solver=self.shot.solver
+                )
+            )
+            return
+        bodies = [obstacle.at(frame) for obstacle in self.obstacles]
+        for worn in self.worn:
+            worn.draw_together(frame)
+        scene, strands = self.scene.step(
+            targets,
+            dt,
+            cloths=[worn.targets(frame) for worn in self.worn],
+            bodies=bodies,
+            gravity=forces.gravity,
+            wind=forces.wind,
+            forces=drawn,
+            solver=self.shot.solver,
+        )
+        reports.strands.append(strands)
+        reports.scene.append(scene)
+        reports.cloths.append(self.scene.cloth_reports)
+
+
+def _check(shot: Shot, locks: Curves) -> None:
+    """Refuses locks with no vertex that is free to move."""
+    locks.check("sim: locks")
+    if (locks.counts <= shot.held).any():
+        raise UserError(
+            f"sim: held is {shot.held}, but a lock has {locks.counts.min()} points; hold fewer, or resample the locks"
+        )

@@ -1,0 +1,53 @@
+"""Roots that follow the animated scalp, and carry the held vertices of their locks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ringlet import _core
+from ringlet.data.errors import UserError
+from ringlet.data.groom import Groom
+
+
+@dataclass
+class Roots:
+    """Carries every lock rigidly with the frame of its root on the scalp."""
+
+    groom: Groom
+
+    def __post_init__(self) -> None:
+        locks = self.groom.locks
+        if "root_triangle" not in locks.curve or "root_barycentric" not in locks.curve:
+            raise UserError("sim: the locks are not bound to a scalp; make the groom again from its recipe")
+        self._rest = self._frames(self.groom.scalp.points, "rest pose")
+
+    def carry(self, scalp_points: NDArray[np.float64], frame: float) -> NDArray[np.float64]:
+        """The groomed locks on the scalp at ``frame``, each moved rigidly; positions [m], shape (n, 3)."""
+        rest_place, rest_axes = self._rest
+        place, axes = self._frames(scalp_points, f"frame {frame:g}")
+        locks, turns = self.groom.locks, axes @ rest_axes.transpose(0, 2, 1)
+        points = np.asarray(locks.points, np.float64)
+        return _core.carry_curves(points, locks.offsets, turns, rest_place, place)
+
+    def _frames(self, scalp_points: NDArray[np.float64], when: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        scalp, locks = self.groom.scalp, self.groom.locks
+        if scalp_points.shape != scalp.points.shape:
+            raise UserError(
+                f"{scalp.name}: has {len(scalp_points)} points at {when}, but the groom was made on one with "
+                f"{len(scalp.points)}; make the groom again on this mesh"
+            )
+        points, roots = np.ascontiguousarray(scalp_points, np.float64), locks.curve["root_triangle"]
+        place, axes = _core.root_frames(points, scalp.triangles, roots, locks.curve["root_barycentric"])
+        flat = _core.flat_triangles(points, scalp.triangles)[roots]
+        good = np.isfinite(place).all(axis=1) & np.isfinite(axes).all(axis=(1, 2)) & ~flat
+        if not good.all():
+            lock = int(np.flatnonzero(~good)[0])
+            triangle = roots[lock]
+            raise UserError(
+                f"{scalp.name}: at {when} triangle {triangle}, where lock {locks.ids[lock]} is rooted, has no area or "
+                "is not finite; mend the mesh or its animation"
+            )
+        return place, axes
