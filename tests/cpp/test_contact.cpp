@@ -1,5 +1,5 @@
 // Distances, impacts, and which pairs can meet.
-#include "ringlet/ccd/impact.h"
+#include "ringlet/ccd/time_of_impact.h"
 #include "ringlet/geometry/distance.h"
 #include "ringlet/geometry/edge_batch.h"
 
@@ -80,7 +80,7 @@ double distance(bool edges, const Four &x) {
 }
 
 double impact_time(bool edges, const Four &x, const Four &p, double min_distance) {
-    return (edges ? edge_edge_impact : point_triangle_impact)(x.data(), p.data(), min_distance);
+    return (edges ? edge_edge_toi : point_triangle_toi)(x.data(), p.data(), min_distance);
 }
 
 Four at(const Four &x, const Four &p, double t) { return {x[0] + t * p[0], x[1] + t * p[1], x[2] + t * p[2], x[3] + t * p[3]}; }

@@ -1,6 +1,6 @@
 // What contacts do: forces from energies, and moves that pass through nothing.
-#include "ringlet/ccd/meeting.h"
-#include "ringlet/ccd/step_filter.h"
+#include "ringlet/ccd/impact_zones.h"
+#include "ringlet/ccd/motion_limiter.h"
 #include "ringlet/contact/contact.h"
 #include "ringlet/contact/contact_set.h"
 
@@ -62,41 +62,46 @@ struct Crowd {
         mesh.rest = start;
     }
 
-    FilterScene scene(bool still) const {
-        return {mesh, View<double>(mass), View<int>(offsets), [](int, const Vec3 &point) { return point; }, View<int>(), {},
-                still};
+    ConnectedMesh connected() const { return {mesh, View<int>(offsets)}; }
+
+    CcdReport limit(std::vector<Vec3> &limited) const {
+        NearPairs pairs(mesh);
+        pairs.note(start, start, 0.005, 0.0);
+        limited = end;
+        return limit_motion({.connected = connected(), .start = start}, pairs, limited);
     }
 
-    FilterReport filter(bool still, std::vector<Vec3> &filtered) const {
-        NearPairs near(mesh);
-        if (still) near.note(start, start, 0.005, 0.0);
-        filtered = end;
-        return filter_step(scene(still), near, start, filtered);
+    CcdReport resolve(std::vector<Vec3> &resolved) const {
+        NearPairs pairs(mesh);
+        resolved = end;
+        return resolve_impact_zones({.connected = connected(),
+                                     .start = start,
+                                     .mass = View<double>(mass),
+                                     .advect = [](int, const Vec3 &point) { return point; }},
+                                    pairs, resolved);
     }
 
-    // The same, of strands that are still; then every third goes less far of its own accord, and the rest is filtered again.
-    FilterReport filter_and_shorten(std::vector<Vec3> &filtered) const {
-        NearPairs near(mesh);
-        near.note(start, end, 0.0005, 0.1);
-        filtered = end;
-        filter_step(scene(true), near, start, filtered);
+    // Limits a move; then every third strand is shortened further, and the rest of the move is limited again.
+    CcdReport limit_and_shorten(std::vector<Vec3> &limited) const {
+        NearPairs pairs(mesh);
+        pairs.note(start, end, 0.0005, 0.1);
+        limited = end;
+        limit_motion({.connected = connected(), .start = start}, pairs, limited);
         std::vector<unsigned char> changed(start.size(), 0);
         for (size_t v = 0; v < start.size(); ++v)
             if (mesh.object[v] % 3 == 0) {
                 changed[v] = 1;
-                filtered[v] = start[v] + 0.3 * (filtered[v] - start[v]);
+                limited[v] = start[v] + 0.3 * (limited[v] - start[v]);
             }
-        FilterScene rest = scene(true);
-        rest.whole = true;
-        rest.changed = changed;
-        return filter_step(rest, near, start, filtered);
+        return limit_motion({.connected = connected(), .start = start, .whole_strands = true, .changed = changed}, pairs,
+                            limited);
     }
 
-    // Whether any two come nearer than they may, asked of all.
-    bool meets(const std::vector<Vec3> &to) const {
+    // Whether any pair has an impact, asked of all pairs.
+    bool has_impacts(const std::vector<Vec3> &to) const {
         NearPairs all(mesh);
         all.set_out(start, to);
-        return !find_met(scene(true), all, start, to).empty();
+        return !find_impacts(mesh, all.may_meet(), start, to).empty();
     }
 
     // The least distance of any two strands on the way, by dense sampling.
@@ -239,8 +244,8 @@ BOOST_AUTO_TEST_CASE(a_filtered_move_keeps_of_every_distance_half_of_contact_or_
             const Crowd crowd(12, 0.02, 0.03, seed);
             if (crowd.closest(crowd.start) < 1e-5) continue;
             std::vector<Vec3> filtered;
-            const FilterReport report = crowd.filter(still, filtered);
-            violations += report.violations;
+            const CcdReport report = still ? crowd.limit(filtered) : crowd.resolve(filtered);
+            violations += report.impacts;
             BOOST_TEST(crowd.closest(filtered) > 1e-6);
             BOOST_TEST(crowd.least_kept(filtered) > 1.0 - 1e-9);
         }
@@ -253,8 +258,8 @@ BOOST_AUTO_TEST_CASE(long_strands_that_are_in_one_another_s_way_everywhere_meet_
     for (unsigned seed = 0; seed < 200; ++seed) {
         const Crowd crowd(60, 0.02, 0.01, seed, 30);
         std::vector<Vec3> filtered;
-        violations += crowd.filter(true, filtered).violations;
-        BOOST_TEST(!crowd.meets(filtered), "crowd " << seed);
+        violations += crowd.limit(filtered).impacts;
+        BOOST_TEST(!crowd.has_impacts(filtered), "crowd " << seed);
     }
     BOOST_TEST(violations > 10000);
 }
@@ -264,8 +269,8 @@ BOOST_AUTO_TEST_CASE(strands_that_go_less_far_than_they_were_let_meet_nothing_ei
     for (unsigned seed = 0; seed < 50; ++seed) {
         const Crowd crowd(60, 0.02, 0.01, seed, 30);
         std::vector<Vec3> filtered;
-        violations += crowd.filter_and_shorten(filtered).violations;
-        BOOST_TEST(!crowd.meets(filtered), "crowd " << seed);
+        violations += crowd.limit_and_shorten(filtered).impacts;
+        BOOST_TEST(!crowd.has_impacts(filtered), "crowd " << seed);
     }
     BOOST_TEST(violations > 100);
 }
@@ -273,7 +278,7 @@ BOOST_AUTO_TEST_CASE(strands_that_go_less_far_than_they_were_let_meet_nothing_ei
 BOOST_AUTO_TEST_CASE(a_move_that_meets_nothing_is_left_alone) {
     const Crowd crowd(1, 0.02, 0.03, 3);
     std::vector<Vec3> filtered;
-    BOOST_TEST(crowd.filter(true, filtered).violations == 0);
+    BOOST_TEST(crowd.limit(filtered).impacts == 0);
     BOOST_TEST((filtered == crowd.end));
 }
 
@@ -287,8 +292,8 @@ BOOST_AUTO_TEST_CASE(a_chain_of_strands_stops_in_one_round) {
         crowd.end[v] = crowd.start[v] - Vec3(4.5e-3 * strand, 0.0, 0.0);
     }
     std::vector<Vec3> filtered;
-    const FilterReport report = crowd.filter(true, filtered);
-    BOOST_TEST(report.violations >= strands - 1);
+    const CcdReport report = crowd.limit(filtered);
+    BOOST_TEST(report.impacts >= strands - 1);
     BOOST_TEST(report.rounds == 1);
     BOOST_TEST(report.fraction == 1.0);
     BOOST_TEST(crowd.least_kept(filtered) > 1.0 - 1e-9);
@@ -301,12 +306,12 @@ BOOST_AUTO_TEST_CASE(a_chain_of_strands_stops_in_one_round) {
 BOOST_AUTO_TEST_CASE(only_relative_motion_is_filtered) {
     Crowd crowd(12, 0.02, 0.03, 5);
     std::vector<Vec3> filtered, filtered_flying;
-    const FilterReport report = crowd.filter(false, filtered);
+    const CcdReport report = crowd.resolve(filtered);
     const Vec3 flight(100.0 / 24, 0.0, 0.0);
     for (Vec3 &place : crowd.end) place += flight;
-    const FilterReport flying = crowd.filter(false, filtered_flying);
-    BOOST_TEST(report.violations > 0);
-    BOOST_TEST(report.violations == flying.violations);
+    const CcdReport flying = crowd.resolve(filtered_flying);
+    BOOST_TEST(report.impacts > 0);
+    BOOST_TEST(report.impacts == flying.impacts);
     for (size_t v = 0; v < filtered.size(); ++v) BOOST_TEST((filtered_flying[v] - flight - filtered[v]).norm() < 1e-8);
 }
 

@@ -1,5 +1,5 @@
 // Which pairs may touch: against looking at all of them.
-#include "ringlet/ccd/impact.h"
+#include "ringlet/ccd/time_of_impact.h"
 #include "ringlet/collision/near_pairs.h"
 
 #include <boost/test/unit_test.hpp>
@@ -122,7 +122,7 @@ Pairs coming_near(const CollisionMesh &mesh, const NearPairs &near, const std::v
             for (const int v : a) x[i] = start[v], p[i++] = end[v] - start[v];
             for (const int v : b) x[i] = start[v], p[i++] = end[v] - start[v];
             const double kept = 0.5 * pair->distance;
-            const double time = pair->of_edges ? edge_edge_impact(x, p, kept) : point_triangle_impact(x, p, kept);
+            const double time = pair->of_edges ? edge_edge_toi(x, p, kept) : point_triangle_toi(x, p, kept);
             if (time <= 1.0) pairs.insert({pair->of_edges, pair->of[0], pair->of[1]});
         });
     return pairs;

@@ -113,7 +113,7 @@ double Scene::Parts::advance(const SceneInput &input, const SceneStep &scene_ste
     };
     keep_held();
     const std::vector<Vec3> guess = to;
-    filter(now, to, {.still = true, .whole = false, .few = true}, report);
+    limit(now, to, {.few = true}, report);
     SceneProgress progress(system);
     progress.moved(now, guess, to);
     progress.judge(step.tolerance);

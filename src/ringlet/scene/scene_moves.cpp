@@ -1,7 +1,5 @@
 #include "ringlet/scene/scene_parts.h"
 
-#include "ringlet/ccd/step_filter.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -13,40 +11,51 @@ double part_of_way(const Vec3 &now, const Vec3 &wanted, const Vec3 &to) {
     return way.dot(to - now) / way.squaredNorm();
 }
 
+void add(SceneReport &report, const CcdReport &of) {
+    report.candidates = of.candidates;
+    report.violations += of.impacts;
+    report.zone_vertices += of.corrected_vertices;
+}
+
 } // namespace
 
-// Everything is to go from `now` to `to`: this becomes a place as near as nothing passes through anything. Returns what part of
-// the way that is.
-double Scene::Parts::filter(View<Vec3> now, std::vector<Vec3> &to, const MoveKind &kind, SceneReport &report) {
+// A move on which nothing kinematic moves; returns what fraction of it is made.
+double Scene::Parts::limit(View<Vec3> now, std::vector<Vec3> &to, const LimitedMove &move, SceneReport &report) {
     const Stopwatch watch(report.time_filter);
     constexpr double far = 0.3; // [m]: a corridor as long as that holds too many
-    const View<Vec3> via = kind.via != nullptr ? View<Vec3>(*kind.via) : View<Vec3>();
-    if (kind.still && kind.changed.empty()) {
-        const bool stays = std::equal(to.begin(), to.end(), now.begin()) && std::equal(via.begin(), via.end(), now.begin());
-        const bool known = near.knows_all_here() && (stays || kind.few);
+    if (move.changed.empty()) {
+        const View<Vec3> apex = move.apex != nullptr ? View<Vec3>(*move.apex) : View<Vec3>();
+        const bool stays = std::equal(to.begin(), to.end(), now.begin()) && std::equal(apex.begin(), apex.end(), now.begin());
+        const bool known = near.knows_all_here() && (stays || move.few);
         const double margin = stays ? 0.0 : 0.2 * settings.strand_radius; // what stays hardly stays for long
-        if (!known) near.note(now, to, margin, far, via, kind.lasts);
+        if (!known) near.note(now, to, margin, far, apex, move.lasting);
         if (stays) return 1.0;
     }
+    const CcdReport limited = limit_motion({.connected = connected(),
+                                            .start = now,
+                                            .whole_strands = move.whole_strands,
+                                            .changed = move.changed,
+                                            .apex = move.apex},
+                                           near, to);
+    add(report, limited);
+    return limited.fraction;
+}
+
+// A move with kinematic bodies; returns what fraction of it is made.
+double Scene::Parts::resolve(View<Vec3> now, std::vector<Vec3> &to, int hopeful_rounds, SceneReport &report) {
+    const Stopwatch watch(report.time_filter);
     const SceneCarry with = carry();
-    const FilterScene scene{vertices.mesh,
-                            vertices.mass,
-                            View<int>(model.offsets),
-                            [&](int vertex, const Vec3 &point) { return with.carried(vertex, point); },
-                            kind.still ? View<int>() : View<int>(rigid),
-                            as_one,
-                            kind.still,
-                            kind.whole,
-                            kind.changed,
-                            kind.via,
-                            View<int>(vertices.cloths),
-                            &neighbours,
-                            kind.hopeful};
-    const FilterReport filtered = filter_step(scene, near, now, to);
-    report.candidates = filtered.candidates;
-    report.violations += filtered.violations;
-    report.zone_vertices += filtered.zone_vertices;
-    return filtered.fraction;
+    const CcdReport resolved =
+        resolve_impact_zones({.connected = connected(),
+                              .start = now,
+                              .mass = vertices.mass,
+                              .advect = [&](int vertex, const Vec3 &point) { return with.carried(vertex, point); },
+                              .rigid_motion = as_one,
+                              .rigid = rigid,
+                              .hopeful_rounds = hopeful_rounds},
+                             near, to);
+    add(report, resolved);
+    return resolved.fraction;
 }
 
 void Scene::Parts::arrive(std::vector<Vec3> &now, const std::vector<Vec3> &to) {
@@ -73,13 +82,13 @@ RigidMotion Scene::Parts::motion_of_most(View<Vec3> now, View<Vec3> to) const {
 // between it and another, all goes along with the space between bodies, and no further than they can go at once.
 Carried Scene::Parts::go_along(std::vector<Vec3> &now, double dt, SceneReport &report) {
     const bool bodies = vertices.bodies.front() < vertices.bodies.back();
-    const int hopeful = bodies ? 6 : FilterScene::most_rounds; // rounds
-    const int attempts = bodies ? 5 : 0;                       // with space, each half as far as the one before
+    const int hopeful = bodies ? 6 : ccd::max_zone_rounds; // rounds
+    const int attempts = bodies ? 5 : 0;                   // with space, each half as far as the one before
     std::vector<Vec3> to = given;
     std::vector<int> bodies_of_cloths;
     rigid = carry_rigidly(carry(), View<int>(model.offsets), carriers(bodies_of_cloths, dt), to);
     as_one = motion_of_most(now, to);
-    Carried carried{filter(now, to, {false, false, {}, hopeful}, report), true};
+    Carried carried{resolve(now, to, hopeful, report), true};
     const std::vector<Vec3> told = given;
     for (int attempt = 0; attempt < attempts && carried.fraction < std::ldexp(1.0, -attempt); ++attempt) {
         const double part = std::ldexp(1.0, -attempt);
@@ -89,7 +98,7 @@ Carried Scene::Parts::go_along(std::vector<Vec3> &now, double dt, SceneReport &r
         std::fill(rigid.begin(), rigid.end(), -1);
         carry_with_space(carry(), to);
         as_one = motion_of_most(now, to);
-        carried = {part * filter(now, to, {false, false, {}, hopeful}, report), false};
+        carried = {part * resolve(now, to, hopeful, report), false};
     }
     near.arrive_as_one(now, to);
     make_move(now, to);
@@ -121,7 +130,7 @@ void Scene::Parts::hold_back(View<Vec3> now, bool whole, bool lasts, std::vector
     };
     set_out();
     to = wanted;
-    filter(now, to, {.still = true, .whole = true, .lasts = lasts, .via = &via}, report);
+    limit(now, to, {.whole_strands = true, .apex = &via, .lasting = lasts}, report);
     std::vector<double> left = parts_left(now, wanted, to);
     std::vector<unsigned char> goes_straight(vertices.parts(), 0), asked(vertices.parts(), 0), changed(vertices.count(), 0);
     for (int p = 0; p < vertices.parts(); ++p) {
@@ -137,7 +146,7 @@ void Scene::Parts::hold_back(View<Vec3> now, bool whole, bool lasts, std::vector
     set_out();
     for (int v = 0; v < vertices.moving_vertices(); ++v)
         if (vertices.mesh.moves[v] && asked[vertices.part_of(v)]) changed[v] = 1, to[v] = wanted[v];
-    filter(now, to, {.still = true, .whole = whole, .changed = changed, .via = &via}, report);
+    limit(now, to, {.whole_strands = whole, .changed = changed, .apex = &via}, report);
     progress.moved(now, wanted, to);
     progress.cut(left);
     take(now, wanted, to);

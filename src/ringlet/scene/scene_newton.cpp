@@ -87,7 +87,7 @@ int Scene::Parts::newton(const SceneStep &scene_step, const StrandStep &step, st
             std::vector<unsigned char> changed(vertices.count(), 0);
             for (int v = 0; v < vertices.moving_vertices(); ++v)
                 if (found.step[vertices.part_of(v)] < 1.0) changed[v] = 1, to[v] = system.position(x, v);
-            filter(now, to, {true, true, changed}, report);
+            limit(now, to, {.whole_strands = true, .changed = changed}, report);
         }
         arrive(now, to);
         system.scatter(now, x);

@@ -2,7 +2,8 @@
 // method.
 #pragma once
 
-#include "ringlet/ccd/filter_scene.h"
+#include "ringlet/ccd/impact_zones.h"
+#include "ringlet/ccd/motion_limiter.h"
 #include "ringlet/scene/embedded.h"
 #include "ringlet/scene/scene.h"
 #include "ringlet/scene/scene_carry.h"
@@ -24,14 +25,13 @@ private:
     std::chrono::steady_clock::time_point start_;
 };
 
-struct MoveKind {
-    bool still;                             // what is kinematic stays
-    bool whole;                             // strands only go a part of their way as a whole
-    View<unsigned char> changed = {};       // per vertex, what ends elsewhere than on the last move; empty: all is new
-    int hopeful = FilterScene::most_rounds; // this and the next as FilterScene has them
-    bool lasts = true;                      // what is noted of pairs is to serve moves to come
-    std::vector<Vec3> *via = nullptr;
-    bool few = false; // vertices move: pairs need not be noted for moves to come
+// What limit() is told of a move on which nothing kinematic moves; the first three as LimitMotionInput has them.
+struct LimitedMove {
+    bool whole_strands = false;
+    View<unsigned char> changed = {};
+    std::vector<Vec3> *apex = nullptr;
+    bool lasting = true; // motion bounds are to serve moves to come
+    bool few = false;    // vertices move: pairs need not be cached for moves to come
 };
 
 // How everything went along with what is kinematic.
@@ -86,7 +86,11 @@ struct Scene::Parts {
     void set_stiffness();
     void note_touched();
     SceneCarriers carriers(std::vector<int> &of_cloths, double dt) const;
-    double filter(View<Vec3> now, std::vector<Vec3> &to, const MoveKind &kind, SceneReport &report);
+    ConnectedMesh connected() const {
+        return {vertices.mesh, View<int>(model.offsets), View<int>(vertices.cloths), &neighbours};
+    }
+    double limit(View<Vec3> now, std::vector<Vec3> &to, const LimitedMove &move, SceneReport &report);
+    double resolve(View<Vec3> now, std::vector<Vec3> &to, int hopeful_rounds, SceneReport &report);
     void arrive(std::vector<Vec3> &now, const std::vector<Vec3> &to);
     void make_move(std::vector<Vec3> &now, const std::vector<Vec3> &to);
     RigidMotion motion_of_most(View<Vec3> now, View<Vec3> to) const;
