@@ -65,14 +65,14 @@ struct Crowd {
     ConnectedMesh connected() const { return {mesh, View<int>(offsets)}; }
 
     CcdReport limit(std::vector<Vec3> &limited) const {
-        NearPairs pairs(mesh);
-        pairs.note(start, start, 0.005, 0.0);
+        PairCache pairs(mesh);
+        pairs.update_bounds({start, start}, {.margin = 0.005, .max_path = 0.0});
         limited = end;
         return limit_motion({.connected = connected(), .start = start}, pairs, limited);
     }
 
     CcdReport resolve(std::vector<Vec3> &resolved) const {
-        NearPairs pairs(mesh);
+        PairCache pairs(mesh);
         resolved = end;
         return resolve_impact_zones({.connected = connected(),
                                      .start = start,
@@ -83,8 +83,8 @@ struct Crowd {
 
     // Limits a move; then every third strand is shortened further, and the rest of the move is limited again.
     CcdReport limit_and_shorten(std::vector<Vec3> &limited) const {
-        NearPairs pairs(mesh);
-        pairs.note(start, end, 0.0005, 0.1);
+        PairCache pairs(mesh);
+        pairs.update_bounds({start, end}, {.margin = 0.0005, .max_path = 0.1});
         limited = end;
         limit_motion({.connected = connected(), .start = start}, pairs, limited);
         std::vector<unsigned char> changed(start.size(), 0);
@@ -99,9 +99,9 @@ struct Crowd {
 
     // Whether any pair has an impact, asked of all pairs.
     bool has_impacts(const std::vector<Vec3> &to) const {
-        NearPairs all(mesh);
-        all.set_out(start, to);
-        return !find_impacts(mesh, all.may_meet(), start, to).empty();
+        PairCache all(mesh);
+        all.begin_move({start, to});
+        return !find_impacts(mesh, all.impact_candidates(), start, to).empty();
     }
 
     // The least distance of any two strands on the way, by dense sampling.
@@ -128,7 +128,7 @@ struct Crowd {
                 for (const auto &b : mesh.edges) {
                     if (share_vertex(a, b)) continue;
                     const double first = std::sqrt(closest_points(start, a, b).distance2);
-                    const double kept = std::min(0.5 * contact_distance(mesh, a, b), 0.2 * first);
+                    const double kept = std::min(0.5 * activation_distance(mesh, a, b), 0.2 * first);
                     least = std::min(least, std::sqrt(closest_points(now, a, b).distance2) / kept);
                 }
         }
@@ -228,10 +228,10 @@ BOOST_AUTO_TEST_CASE(edges_that_touch_at_held_ends_are_no_stiffer_than_their_oth
     for (const double turned : {0.0, 1e-6, 1e-3}) {
         const std::vector<Vec3> now = {{0, 0, 0}, {0.01, 0, 0}, {turned, -turned, 1e-3}, {turned, 0.01, 1e-3}};
         mesh.rest = now;
-        NearPairs near(mesh);
-        near.note(now, now, 1e-3, 0.1);
+        PairCache near(mesh);
+        near.update_bounds({now, now}, {.margin = 1e-3, .max_path = 0.1});
         ContactSet contacts;
-        contacts.find(mesh, material, near.touching(now), now, now);
+        contacts.find(mesh, material, near.contact_pairs(now), now, now);
         BOOST_REQUIRE(contacts.contacts().size() == 1u);
         BOOST_TEST(contacts.contacts()[0].stiffness == 2.0, boost::test_tools::tolerance(1e-12));
     }

@@ -1,6 +1,6 @@
 // Which pairs may touch: against looking at all of them.
 #include "ringlet/ccd/time_of_impact.h"
-#include "ringlet/collision/near_pairs.h"
+#include "ringlet/collision/pair_cache.h"
 
 #include <boost/test/unit_test.hpp>
 #include <cmath>
@@ -74,7 +74,7 @@ template <size_t N> bool any_moves(const CollisionMesh &mesh, const std::array<i
 }
 
 template <class A, class B> bool excluded(const CollisionMesh &mesh, const A &a, const B &b) {
-    return share_vertex(a, b) || carries(mesh, a, b) || (!any_moves(mesh, a) && !any_moves(mesh, b));
+    return share_vertex(a, b) || anchored(mesh, a, b) || (!any_moves(mesh, a) && !any_moves(mesh, b));
 }
 
 // How far two primitives are from touching where they come nearest, at 41 times.
@@ -86,12 +86,12 @@ template <class A, class B> double nearest_gap(const Scene &scene, const A &a, c
         for (int v : b) x[v] = scene.start[v] + k / 40.0 * (scene.end[v] - scene.start[v]);
         nearest = std::min(nearest, std::sqrt(closest_points(x, a, b).distance2));
     }
-    return nearest - contact_distance(scene.mesh, a, b);
+    return nearest - activation_distance(scene.mesh, a, b);
 }
 
-PathBoxes ways(const CollisionMesh &mesh, const std::vector<Vec3> &start, const std::vector<Vec3> &end, double margin) {
-    PathBoxes boxes(mesh);
-    boxes.fit(start, end, {start[0], end[0]}, margin);
+SweptBoxes ways(const CollisionMesh &mesh, const std::vector<Vec3> &start, const std::vector<Vec3> &end, double margin) {
+    SweptBoxes boxes(mesh);
+    boxes.fit({start, end}, {start[0], end[0]}, margin);
     return boxes;
 }
 
@@ -112,25 +112,25 @@ template <class Pairs> bool ascending(const Pairs &pairs) {
 using Pairs = std::set<std::array<int, 3>>;
 
 // Of those that may meet, the pairs that do, going straight.
-Pairs coming_near(const CollisionMesh &mesh, const NearPairs &near, const std::vector<Vec3> &start,
-                  const std::vector<Vec3> &end) {
+Pairs coming_near(const CollisionMesh &mesh, PairCache &near, const std::vector<Vec3> &start, const std::vector<Vec3> &end) {
     Pairs pairs;
-    for (const NearPair *pair : near.may_meet())
+    for (const CandidatePair *pair : near.impact_candidates())
         with_vertices(mesh, *pair, [&](const auto &a, const auto &b) {
             Vec3 x[4], p[4];
             int i = 0;
             for (const int v : a) x[i] = start[v], p[i++] = end[v] - start[v];
             for (const int v : b) x[i] = start[v], p[i++] = end[v] - start[v];
-            const double kept = 0.5 * pair->distance;
-            const double time = pair->of_edges ? edge_edge_toi(x, p, kept) : point_triangle_toi(x, p, kept);
-            if (time <= 1.0) pairs.insert({pair->of_edges, pair->of[0], pair->of[1]});
+            const double kept = 0.5 * pair->d_hat;
+            const double time = pair->edge_edge ? edge_edge_toi(x, p, kept) : point_triangle_toi(x, p, kept);
+            if (time <= 1.0) pairs.insert({pair->edge_edge, pair->primitive[0], pair->primitive[1]});
         });
     return pairs;
 }
 
-Pairs touching(NearPairs &near, const std::vector<Vec3> &positions) {
+Pairs touching(PairCache &near, const std::vector<Vec3> &positions) {
     Pairs pairs;
-    for (const Touch &touch : near.touching(positions)) pairs.insert({touch.of_edges, touch.of[0], touch.of[1]});
+    for (const ContactPair &touch : near.contact_pairs(positions))
+        pairs.insert({touch.edge_edge, touch.primitive[0], touch.primitive[1]});
     return pairs;
 }
 
@@ -203,11 +203,11 @@ BOOST_AUTO_TEST_CASE(a_strand_that_is_groomed_through_itself_touches_at_a_hundre
     mesh.radius.assign(5, 0.001);
     mesh.object.assign(5, 0);
     const std::array<int, 2> first{0, 1}, last{3, 4}, third{2, 3};
-    BOOST_TEST(contact_distance(mesh, first, last) == 0.00002, boost::test_tools::tolerance(1e-12));
-    BOOST_TEST(contact_distance(mesh, first, third) == 0.002); // all of it
+    BOOST_TEST(activation_distance(mesh, first, last) == 0.00002, boost::test_tools::tolerance(1e-12));
+    BOOST_TEST(activation_distance(mesh, first, third) == 0.002); // all of it
     mesh.rest[4].z() = 0.002;
     const double apart = std::sqrt(closest_points(mesh.rest, first, last).distance2);
-    BOOST_TEST(contact_distance(mesh, first, last) == std::min(0.002, 0.9 * apart), boost::test_tools::tolerance(1e-12));
+    BOOST_TEST(activation_distance(mesh, first, last) == std::min(0.002, 0.9 * apart), boost::test_tools::tolerance(1e-12));
 }
 
 BOOST_AUTO_TEST_CASE(pairs_do_not_depend_on_threads_nor_on_what_was_asked_before) {
@@ -230,10 +230,10 @@ BOOST_AUTO_TEST_CASE(a_tree_that_no_longer_fits_is_built_again) {
     Candidates candidates;
     for (int k = 0; k < 3; ++k)
         broad.find(ways(scene.mesh, scene.start, scene.end, 0.001 * k), candidates); // a wider margin is no reason
-    BOOST_TEST(broad.built() == 1);
+    BOOST_TEST(broad.builds() == 1);
     std::shuffle(scene.start.begin(), scene.start.end(), scene.random);
     broad.find(ways(scene.mesh, scene.start, scene.start, 0.01), candidates);
-    BOOST_TEST(broad.built() == 2);
+    BOOST_TEST(broad.builds() == 2);
     scene.end = scene.start;
     BOOST_TEST(same(candidates, found(scene, 0.01)));
 }
@@ -254,28 +254,28 @@ BOOST_AUTO_TEST_CASE(what_is_known_of_pairs_changes_nothing_that_is_found) {
         scene.end[v] = scene.start[v] + scene.anywhere(!mesh.moves[v] ? 0.0 : v % 50 == 0 ? 0.1 : 0.005);
     std::vector<Vec3> middle = scene.end;
     for (size_t v = 0; v < middle.size(); ++v) middle[v] = 0.5 * (scene.start[v] + scene.end[v]);
-    NearPairs knowing(mesh), unknowing(mesh);
-    knowing.note(scene.start, scene.start, 0.01, 0.0);
-    for (NearPairs *near : {&knowing, &unknowing}) near->set_out(scene.start, scene.end);
-    BOOST_TEST(knowing.may_meet().size() < size_t(knowing.count()));
+    PairCache knowing(mesh), unknowing(mesh);
+    knowing.update_bounds({scene.start, scene.start}, {.margin = 0.01, .max_path = 0.0});
+    for (PairCache *near : {&knowing, &unknowing}) near->begin_move({scene.start, scene.end});
+    BOOST_TEST(knowing.impact_candidates().size() < size_t(knowing.size()));
     BOOST_TEST(coming_near(mesh, knowing, scene.start, scene.end).size() > 10);
     BOOST_TEST((coming_near(mesh, knowing, scene.start, scene.end) == coming_near(mesh, unknowing, scene.start, scene.end)));
-    NearPairs going_along(mesh); // pairs noted along the way: only what goes far is quick
-    going_along.note(scene.start, scene.end, 0.001, 0.02);
-    going_along.set_out(scene.start, scene.end);
+    PairCache going_along(mesh); // pairs noted along the way: only what goes far is quick
+    going_along.update_bounds({scene.start, scene.end}, {.margin = 0.001, .max_path = 0.02});
+    going_along.begin_move({scene.start, scene.end});
     BOOST_TEST(
         (coming_near(mesh, going_along, scene.start, scene.end) == coming_near(mesh, unknowing, scene.start, scene.end)));
     const std::vector<unsigned char> changed(scene.start.size(), 1);
-    for (NearPairs *near : {&knowing, &unknowing, &going_along}) near->set_out_anew(scene.start, middle, changed);
+    for (PairCache *near : {&knowing, &unknowing, &going_along}) near->update_move({scene.start, middle}, changed);
     BOOST_TEST((coming_near(mesh, knowing, scene.start, middle) == coming_near(mesh, unknowing, scene.start, middle)));
     BOOST_TEST((coming_near(mesh, going_along, scene.start, middle) == coming_near(mesh, unknowing, scene.start, middle)));
-    for (NearPairs *near : {&knowing, &unknowing, &going_along}) near->arrive(scene.start, middle);
+    for (PairCache *near : {&knowing, &unknowing, &going_along}) near->commit_move(scene.start, middle);
     BOOST_TEST(touching(knowing, middle).size() > 10);
     BOOST_TEST((touching(knowing, middle) == touching(unknowing, middle)));
     BOOST_TEST((touching(going_along, middle) == touching(unknowing, middle)));
-    for (NearPairs *near : {&knowing, &unknowing, &going_along}) {
-        near->set_out(middle, scene.start);
-        near->arrive(middle, scene.start);
+    for (PairCache *near : {&knowing, &unknowing, &going_along}) {
+        near->begin_move({middle, scene.start});
+        near->commit_move(middle, scene.start);
     }
     BOOST_TEST((touching(knowing, scene.start) == touching(unknowing, scene.start)));
 }
@@ -286,12 +286,12 @@ BOOST_AUTO_TEST_CASE(what_goes_far_together_comes_near_little_of_what_lies_on_it
     const CollisionMesh &mesh = scene.mesh;
     for (size_t v = 0; v < scene.end.size(); ++v)
         if (mesh.moves[v]) scene.end[v] = scene.start[v] + Vec3(0.05, 0.06, 0.04) + scene.anywhere(0.005);
-    NearPairs near(mesh), unknowing(mesh);
-    near.note(scene.start, scene.end, 0.0001, 1.0);
-    for (NearPairs *pairs : {&near, &unknowing}) pairs->set_out(scene.start, scene.end);
-    BOOST_TEST(near.passing().empty());
-    BOOST_TEST(2 * near.may_come_near().size() < size_t(near.count()));
-    BOOST_TEST(2 * near.may_meet().size() < near.may_come_near().size());
+    PairCache near(mesh), unknowing(mesh);
+    near.update_bounds({scene.start, scene.end}, {.margin = 0.0001, .max_path = 1.0});
+    for (PairCache *pairs : {&near, &unknowing}) pairs->begin_move({scene.start, scene.end});
+    BOOST_TEST(near.transient_pairs().empty());
+    BOOST_TEST(2 * near.path_candidates().size() < size_t(near.size()));
+    BOOST_TEST(2 * near.impact_candidates().size() < near.path_candidates().size());
     BOOST_TEST(coming_near(mesh, near, scene.start, scene.end).size() > 10);
     BOOST_TEST((coming_near(mesh, near, scene.start, scene.end) == coming_near(mesh, unknowing, scene.start, scene.end)));
 }
@@ -308,15 +308,15 @@ BOOST_AUTO_TEST_CASE(what_may_bend_knows_the_pairs_of_all_of_its_triangle) {
         const double one = double(v % 7) / 6.0;
         elsewhere[v] = scene.start[v] + 0.9 * (one * (scene.end[v] - scene.start[v]) + (1.0 - one) * (via[v] - scene.start[v]));
     }
-    NearPairs near(mesh), unknowing(mesh);
-    near.note(scene.start, scene.end, 0.0001, 0.05, via);
-    near.set_out(scene.start, scene.end, via);
+    PairCache near(mesh), unknowing(mesh);
+    near.update_bounds({scene.start, scene.end, via}, {.margin = 0.0001, .max_path = 0.05});
+    near.begin_move({scene.start, scene.end, via});
     const std::vector<unsigned char> changed(scene.start.size(), 1);
-    near.set_out_anew(scene.start, elsewhere, changed, via);
-    unknowing.set_out(scene.start, elsewhere);
+    near.update_move({scene.start, elsewhere, via}, changed);
+    unknowing.begin_move({scene.start, elsewhere});
     BOOST_TEST(coming_near(mesh, unknowing, scene.start, elsewhere).size() > 10);
     BOOST_TEST((coming_near(mesh, near, scene.start, elsewhere) == coming_near(mesh, unknowing, scene.start, elsewhere)));
-    for (NearPairs *pairs : {&near, &unknowing}) pairs->arrive(scene.start, elsewhere);
+    for (PairCache *pairs : {&near, &unknowing}) pairs->commit_move(scene.start, elsewhere);
     BOOST_TEST(touching(near, elsewhere).size() > 10);
     BOOST_TEST((touching(near, elsewhere) == touching(unknowing, elsewhere)));
 }
@@ -326,7 +326,7 @@ BOOST_AUTO_TEST_CASE(what_may_bend_knows_the_pairs_of_all_of_its_triangle) {
 BOOST_AUTO_TEST_CASE(pairs_noted_for_one_move_are_all_of_that_move_and_serve_no_other) {
     Scene scene(13, 0.0);
     const CollisionMesh &mesh = scene.mesh;
-    NearPairs near(mesh), lasting(mesh);
+    PairCache near(mesh), lasting(mesh);
     std::vector<Vec3> now = scene.start;
     const auto go = [&](double far, bool lasts) {
         std::vector<Vec3> end = now, via = now, to = now;
@@ -336,42 +336,42 @@ BOOST_AUTO_TEST_CASE(pairs_noted_for_one_move_are_all_of_that_move_and_serve_no_
             via[v] += scene.anywhere(far);
             to[v] += 0.4 * (end[v] - now[v]) + 0.5 * (via[v] - now[v]);
         }
-        near.note(now, end, 0.002, 0.05, via, lasts);
-        lasting.note(now, end, 0.002, 0.05, via);
-        NearPairs unknowing(mesh);
-        for (NearPairs *pairs : {&near, &lasting}) {
-            pairs->set_out(now, end, via);
-            pairs->set_out_anew(now, to, std::vector<unsigned char>(now.size(), 1), via);
+        near.update_bounds({now, end, via}, {.margin = 0.002, .max_path = 0.05, .lasting = lasts});
+        lasting.update_bounds({now, end, via}, {.margin = 0.002, .max_path = 0.05});
+        PairCache unknowing(mesh);
+        for (PairCache *pairs : {&near, &lasting}) {
+            pairs->begin_move({now, end, via});
+            pairs->update_move({now, to, via}, std::vector<unsigned char>(now.size(), 1));
         }
-        unknowing.set_out(now, to);
+        unknowing.begin_move({now, to});
         BOOST_TEST(coming_near(mesh, unknowing, now, to).size() > 10);
         BOOST_TEST((coming_near(mesh, near, now, to) == coming_near(mesh, unknowing, now, to)));
-        for (NearPairs *pairs : {&near, &lasting, &unknowing}) pairs->arrive(now, to);
+        for (PairCache *pairs : {&near, &lasting, &unknowing}) pairs->commit_move(now, to);
         now = to;
         BOOST_TEST((touching(near, now) == touching(unknowing, now)));
     };
     go(0.01, true), go(0.01, true);
     for (const double far : {0.01, 0.001, 0.0001}) {
         go(far, false);
-        BOOST_TEST(near.count() < lasting.count());
+        BOOST_TEST(near.size() < lasting.size());
     }
     go(0.01, false); // what served a move before is noted with a margin again
-    BOOST_TEST(near.count() == lasting.count());
+    BOOST_TEST(near.size() == lasting.size());
     go(0.01, false);
-    BOOST_TEST(near.count() < lasting.count());
+    BOOST_TEST(near.size() < lasting.size());
     RigidMotion turn{Eigen::AngleAxisd(0.5, Vec3::UnitY()).toRotationMatrix(), now[0], now[1]};
     std::vector<Vec3> to = now;
     for (Vec3 &x : to) x = turn(x) + scene.anywhere(0.0001);
-    near.set_out_as_one(now, to, turn, mesh.object);
-    near.arrive_as_one(now, to);
-    NearPairs unknowing(mesh);
-    unknowing.set_out(now, to);
-    unknowing.arrive(now, to);
+    near.begin_rigid_move({now, to}, turn, mesh.object);
+    near.commit_rigid_move(now, to);
+    PairCache unknowing(mesh);
+    unknowing.begin_move({now, to});
+    unknowing.commit_move(now, to);
     now = to;
     BOOST_TEST(touching(near, now).size() > 10);
     BOOST_TEST((touching(near, now) == touching(unknowing, now)));
     go(0.01, true);
-    BOOST_TEST(near.count() == lasting.count());
+    BOOST_TEST(near.size() == lasting.size());
 }
 
 // Objects turn together, from step to step, most vertices of each nearly exactly so, some not at all; in between each of them
@@ -387,32 +387,32 @@ BOOST_AUTO_TEST_CASE(what_is_known_of_pairs_goes_along_with_what_moves_nearly_as
         });
         return pairs;
     };
-    NearPairs near(mesh);
-    near.note(scene.start, scene.start, 0.01, 0.0);
+    PairCache near(mesh);
+    near.update_bounds({scene.start, scene.start}, {.margin = 0.01, .max_path = 0.0});
     std::vector<Vec3> now = scene.start, to(now.size());
     for (int step = 0; step < 8; ++step) {
         const RigidMotion motion{Eigen::AngleAxisd(0.5, Vec3(1.0, 2.0, 2.0) / 3.0).toRotationMatrix(), now[0], now[1]};
         for (size_t v = 0; v < now.size(); ++v)
             to[v] = v % 10 == 0 ? now[v] + scene.anywhere(0.05) : motion(now[v]) + scene.anywhere(0.05 * radius);
-        NearPairs unknowing(mesh);
-        unknowing.set_out(now, to);
-        near.set_out_as_one(now, to, motion, mesh.object);
+        PairCache unknowing(mesh);
+        unknowing.begin_move({now, to});
+        near.begin_rigid_move({now, to}, motion, mesh.object);
         BOOST_TEST((of_two_objects(coming_near(mesh, near, now, to)) == of_two_objects(coming_near(mesh, unknowing, now, to))));
         BOOST_TEST(of_two_objects(coming_near(mesh, near, now, to)).size() > 10);
-        BOOST_TEST(near.passing().size() < unknowing.passing().size());
-        unknowing.arrive(now, to);
-        near.arrive_as_one(now, to);
-        BOOST_TEST(near.knows_all_here());
+        BOOST_TEST(near.transient_pairs().size() < unknowing.transient_pairs().size());
+        unknowing.commit_move(now, to);
+        near.commit_rigid_move(now, to);
+        BOOST_TEST(near.is_complete());
         BOOST_TEST(touching(near, to).size() > 10);
         BOOST_TEST((touching(near, to) == touching(unknowing, to)));
         now = to;
         for (size_t v = 0; v < now.size(); ++v)
             if (mesh.moves[v]) to[v] += scene.anywhere(v % 2 == 0 ? 0.002 : 0.01);
-        near.note(now, to, 0.004, 0.1);
-        near.set_out(now, to);
-        unknowing.set_out(now, to);
+        near.update_bounds({now, to}, {.margin = 0.004, .max_path = 0.1});
+        near.begin_move({now, to});
+        unknowing.begin_move({now, to});
         BOOST_TEST((coming_near(mesh, near, now, to) == coming_near(mesh, unknowing, now, to)));
-        near.arrive(now, to);
+        near.commit_move(now, to);
         now = to;
     }
 }
@@ -430,9 +430,9 @@ BOOST_AUTO_TEST_CASE(what_sets_out_as_one_anew_meets_what_has_changed) {
             if (v % 10 == 0) rigid[v] = -1;
             to[v] = motion(now[v]) + scene.anywhere(v % 10 == 0 ? 0.05 : 0.0);
         }
-        NearPairs near(mesh);
-        if (knows) near.note(now, now, 0.01, 0.0);
-        near.set_out_as_one(now, to, motion, rigid);
+        PairCache near(mesh);
+        if (knows) near.update_bounds({now, now}, {.margin = 0.01, .max_path = 0.0});
+        near.begin_rigid_move({now, to}, motion, rigid);
         for (int round = 0; round < 2; ++round) {
             std::vector<unsigned char> changed(now.size(), 0);
             for (size_t v = round; v < now.size(); v += 7) {
@@ -441,9 +441,9 @@ BOOST_AUTO_TEST_CASE(what_sets_out_as_one_anew_meets_what_has_changed) {
                 rigid[v] = -1;
                 to[v] += scene.anywhere(v % 2 == 0 ? 0.0001 : 0.1);
             }
-            near.set_out_as_one_anew(now, to, motion, rigid, changed);
-            NearPairs unknowing(mesh);
-            unknowing.set_out(now, to);
+            near.update_rigid_move({now, to}, motion, rigid, changed);
+            PairCache unknowing(mesh);
+            unknowing.begin_move({now, to});
             Pairs all = coming_near(mesh, unknowing, now, to);
             std::erase_if(all, [&](const auto &pair) {
                 const auto any = [&](const auto &primitive) { return any_of(View<unsigned char>(changed), primitive); };
@@ -453,10 +453,10 @@ BOOST_AUTO_TEST_CASE(what_sets_out_as_one_anew_meets_what_has_changed) {
             BOOST_TEST(all.size() > 10);
             BOOST_TEST((coming_near(mesh, near, now, to) == all));
         }
-        near.arrive_as_one(now, to);
-        NearPairs unknowing(mesh);
-        unknowing.set_out(now, to);
-        unknowing.arrive(now, to);
+        near.commit_rigid_move(now, to);
+        PairCache unknowing(mesh);
+        unknowing.begin_move({now, to});
+        unknowing.commit_move(now, to);
         BOOST_TEST(touching(near, to).size() > 10);
         BOOST_TEST((touching(near, to) == touching(unknowing, to)));
     }
@@ -471,14 +471,14 @@ BOOST_AUTO_TEST_CASE(a_pair_that_comes_a_little_nearer_as_one_is_measured_again)
     mesh.moves.assign(4, 1);
     mesh.object = {0, 0, 1, 1};
     mesh.anchor.assign(4, -1);
-    NearPairs near(mesh);
-    near.note(mesh.rest, mesh.rest, 0.001, 0.0);
+    PairCache near(mesh);
+    near.update_bounds({mesh.rest, mesh.rest}, {.margin = 0.001, .max_path = 0.0});
     BOOST_TEST(touching(near, mesh.rest).empty());
     std::vector<Vec3> to = mesh.rest;
     for (int v = 0; v < 4; ++v) to[v] += (v < 2 ? 1.0 : -1.0) * Vec3(0.0, 0.00006, 0.00006);
-    near.set_out_as_one(mesh.rest, to, RigidMotion(), mesh.object);
-    near.arrive_as_one(mesh.rest, to);
-    BOOST_TEST(near.passing().empty());
+    near.begin_rigid_move({mesh.rest, to}, RigidMotion(), mesh.object);
+    near.commit_rigid_move(mesh.rest, to);
+    BOOST_TEST(near.transient_pairs().empty());
     BOOST_TEST(touching(near, to).size() == 1u);
 }
 
@@ -487,17 +487,17 @@ BOOST_AUTO_TEST_CASE(a_rotation_by_half_a_turn_is_looked_at_as_a_whole) {
     const CollisionMesh &mesh = scene.mesh;
     const RigidMotion motion{Eigen::AngleAxisd(3.0, Vec3::UnitX()).toRotationMatrix(), scene.start[0], scene.start[0]};
     for (size_t v = 0; v < scene.end.size(); ++v) scene.end[v] = motion(scene.start[v]);
-    NearPairs near(mesh), unknowing(mesh);
-    near.note(scene.start, scene.start, 0.01, 0.0);
-    near.set_out_as_one(scene.start, scene.end, motion, mesh.object);
-    unknowing.set_out(scene.start, scene.end);
+    PairCache near(mesh), unknowing(mesh);
+    near.update_bounds({scene.start, scene.start}, {.margin = 0.01, .max_path = 0.0});
+    near.begin_rigid_move({scene.start, scene.end}, motion, mesh.object);
+    unknowing.begin_move({scene.start, scene.end});
     BOOST_TEST((coming_near(mesh, near, scene.start, scene.end) == coming_near(mesh, unknowing, scene.start, scene.end)));
 }
 
 BOOST_AUTO_TEST_CASE(nothing_meets_nothing) {
     CollisionMesh mesh;
     Candidates candidates;
-    BroadPhase(mesh).find(PathBoxes(mesh), candidates);
+    BroadPhase(mesh).find(SweptBoxes(mesh), candidates);
     BOOST_TEST((candidates.edge_edge.empty() && candidates.point_triangle.empty()));
 }
 

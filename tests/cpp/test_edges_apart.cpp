@@ -1,5 +1,5 @@
 // Edges of which it is told many at a time that they never touch.
-#include "ringlet/collision/edges_apart.h"
+#include "ringlet/collision/separating_axis.h"
 
 #include "ringlet/geometry/distance.h"
 
@@ -24,9 +24,9 @@ BOOST_AUTO_TEST_CASE(edges_that_are_apart_wherever_they_are_in_their_corridors_a
     int wrong = 0, left_out = 0, never_touch = 0;
     for (int round = 0; round < 500; ++round) {
         const double size = round % 3 == 0 ? 0.0 : 0.1, reach = round % 4 == 0 ? 0.0 : 0.2, far = round % 5 == 0 ? 1000.0 : 0.0;
-        EdgePairs pairs;
-        std::array<std::array<Eigen::AlignedBox3d, 4>, EdgePairs::room> corridors;
-        for (int k = 0; k < EdgePairs::room; ++k) {
+        BoxedEdgePairs pairs;
+        std::array<std::array<Eigen::AlignedBox3d, 4>, BoxedEdgePairs::room> corridors;
+        for (int k = 0; k < BoxedEdgePairs::room; ++k) {
             for (int end = 0; end < 4; ++end) {
                 const Vec3 middle = anywhere() + Vec3::Constant(far), half = size * anywhere().cwiseAbs();
                 Eigen::AlignedBox3d &box = corridors[k][end] = {middle - half, middle + half};
@@ -39,8 +39,8 @@ BOOST_AUTO_TEST_CASE(edges_that_are_apart_wherever_they_are_in_their_corridors_a
             }
             pairs.reach[k] = float(reach + 0x1p-19 * (1.0 + far));
         }
-        const unsigned apart = RINGLET_DISPATCH(apart, pairs);
-        for (int k = 0; k < EdgePairs::room; ++k) {
+        const unsigned apart = RINGLET_DISPATCH(separated_in_boxes, pairs);
+        for (int k = 0; k < BoxedEdgePairs::room; ++k) {
             double nearest = 1e9;
             for (int sample = 0; sample < 300; ++sample) {
                 Vec3 x[4];
@@ -59,13 +59,13 @@ BOOST_AUTO_TEST_CASE(edges_that_are_apart_wherever_they_are_in_their_corridors_a
     }
     BOOST_TEST(wrong == 0);
     BOOST_TEST(left_out > 0.8 * never_touch, left_out << " of " << never_touch);
-    EdgePairs odd = {}; // nothing is certain of what is at one place, has no end or is no number
+    BoxedEdgePairs odd = {}; // nothing is certain of what is at one place, has no end or is no number
     for (int end = 0; end < 4; ++end)
-        for (int k = 0; k < EdgePairs::room; ++k) {
+        for (int k = 0; k < BoxedEdgePairs::room; ++k) {
             const float x = k % 2 == 0 ? 0.0f : k % 4 == 1 ? std::numeric_limits<float>::infinity() : std::nanf("");
             odd.low[end][0][k] = -x, odd.high[end][0][k] = x;
         }
-    BOOST_TEST(RINGLET_DISPATCH(apart, odd) == 0u);
+    BOOST_TEST(RINGLET_DISPATCH(separated_in_boxes, odd) == 0u);
 }
 
 // Edges whose ends are somewhere on their ways, which are long and nearly one: none is left out that touches, and most of those
@@ -78,9 +78,9 @@ BOOST_AUTO_TEST_CASE(edges_that_are_apart_on_their_ways_are_left_out) {
     for (int round = 0; round < 500; ++round) {
         const double reach = round % 4 == 0 ? 0.0 : 0.2, far = round % 5 == 0 ? 1000.0 : 0.0,
                      alone = round % 3 == 0 ? 1.0 : 0.1;
-        EdgeWays pairs;
-        std::array<std::array<std::array<Vec3, 4>, 3>, EdgeWays::room> places;
-        for (int k = 0; k < EdgeWays::room; ++k) {
+        MovingEdgePairs pairs;
+        std::array<std::array<std::array<Vec3, 4>, 3>, MovingEdgePairs::room> places;
+        for (int k = 0; k < MovingEdgePairs::room; ++k) {
             const Vec3 way = round % 7 == 0 ? Vec3(Vec3::Zero()) : Vec3(2.0 * anywhere()), via = anywhere();
             for (int end = 0; end < 4; ++end) {
                 const Vec3 start = Vec3::Constant(far) + anywhere();
@@ -91,9 +91,9 @@ BOOST_AUTO_TEST_CASE(edges_that_are_apart_on_their_ways_are_left_out) {
             }
             pairs.reach[k] = float(reach + 0x1p-19 * (1.0 + far));
         }
-        const std::array<unsigned, 2> apart = {RINGLET_DISPATCH(apart_anywhere, pairs),
-                                               RINGLET_DISPATCH(apart_together, pairs)};
-        for (int k = 0; k < EdgeWays::room; ++k) {
+        const std::array<unsigned, 2> apart = {RINGLET_DISPATCH(separated_in_triangles, pairs),
+                                               RINGLET_DISPATCH(separated_in_motion, pairs)};
+        for (int k = 0; k < MovingEdgePairs::room; ++k) {
             const auto distance = [&](const auto &weights_of) { // of its three places, for each end
                 Vec3 x[4];
                 for (int end = 0; end < 4; ++end) {
@@ -124,16 +124,16 @@ BOOST_AUTO_TEST_CASE(edges_that_are_apart_on_their_ways_are_left_out) {
     BOOST_TEST(wrong[1] == 0);
     BOOST_TEST(left_out[0] > 0.7 * never_touch[0], left_out[0] << " of " << never_touch[0]);
     BOOST_TEST(left_out[1] > 0.7 * never_touch[1], left_out[1] << " of " << never_touch[1]);
-    EdgeWays odd = {}; // nothing is certain of what is at one place, has no end or is no number
+    MovingEdgePairs odd = {}; // nothing is certain of what is at one place, has no end or is no number
     for (int place = 0; place < 3; ++place)
         for (int end = 0; end < 4; ++end)
-            for (int k = 0; k < EdgeWays::room; ++k)
+            for (int k = 0; k < MovingEdgePairs::room; ++k)
                 odd.at[place][end][end % 3][k] = k % 2 == 0 ? 0.0f
                                                  : k % 4 == 1
                                                      ? (end % 2 == 0 ? -1.0f : 1.0f) * std::numeric_limits<float>::infinity()
                                                      : std::nanf("");
-    BOOST_TEST(RINGLET_DISPATCH(apart_anywhere, odd) == 0u);
-    BOOST_TEST(RINGLET_DISPATCH(apart_together, odd) == 0u);
+    BOOST_TEST(RINGLET_DISPATCH(separated_in_triangles, odd) == 0u);
+    BOOST_TEST(RINGLET_DISPATCH(separated_in_motion, odd) == 0u);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -1,7 +1,7 @@
 #include "ringlet/ccd/impact.h"
 
 #include "ringlet/ccd/time_of_impact.h"
-#include "ringlet/collision/collect.h"
+#include "ringlet/math/collect.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,14 +17,14 @@ template <size_t N, size_t M> bool share_motion(View<int> rigid, const std::arra
 }
 
 template <size_t N, size_t M>
-double time_of_impact(NearPair &pair, const std::array<int, N> &a, const std::array<int, M> &b, View<Vec3> start,
+double time_of_impact(CandidatePair &pair, const std::array<int, N> &a, const std::array<int, M> &b, View<Vec3> start,
                       View<Vec3> end) {
-    const double approach = most_nearer(a, b, start, end);
-    if (pair.apart - ccd::separation_of_d_hat * pair.distance > approach) return no_impact;
+    const double approach = max_approach(a, b, start, end);
+    if (pair.min_gap - ccd::separation_of_d_hat * pair.d_hat > approach) return no_impact;
     const ClosestPoints nearest = closest_points(start, a, b);
-    pair.apart = std::sqrt(nearest.distance2);
-    const double separation = ccd::min_separation(pair.distance, pair.apart);
-    if (pair.apart - separation > approach) return no_impact;
+    pair.min_gap = std::sqrt(nearest.distance2);
+    const double separation = ccd::min_separation(pair.d_hat, pair.min_gap);
+    if (pair.min_gap - separation > approach) return no_impact;
     Vec3 x[4], p[4];
     for (size_t i = 0; i < 4; ++i) {
         const int v = i < N ? a[i] : b[i - N];
@@ -36,11 +36,11 @@ double time_of_impact(NearPair &pair, const std::array<int, N> &a, const std::ar
 
 } // namespace
 
-double time_of_impact(const CollisionMesh &mesh, NearPair &pair, View<Vec3> start, View<Vec3> end) {
+double time_of_impact(const CollisionMesh &mesh, CandidatePair &pair, View<Vec3> start, View<Vec3> end) {
     return with_vertices(mesh, pair, [&](const auto &a, const auto &b) { return time_of_impact(pair, a, b, start, end); });
 }
 
-std::vector<Impact> find_impacts(const CollisionMesh &mesh, const std::vector<NearPair *> &pairs, View<Vec3> start,
+std::vector<Impact> find_impacts(const CollisionMesh &mesh, const std::vector<CandidatePair *> &pairs, View<Vec3> start,
                                  View<Vec3> end, View<int> rigid) {
     return collect<Impact>(int(pairs.size()), [&](int k, std::vector<Impact> &impacts) {
         with_vertices(mesh, *pairs[k], [&](const auto &a, const auto &b) {

@@ -1,7 +1,7 @@
 // Impacts: candidate pairs that come nearer on a move than their minimum separation.
 #pragma once
 
-#include "ringlet/collision/near_pairs.h"
+#include "ringlet/collision/pair_cache.h"
 
 #include <array>
 #include <vector>
@@ -15,10 +15,10 @@ struct Impact {
 
 // The time of impact of a candidate pair whose vertices move straight from `start` to `end`; above 1 if it has none. Where the
 // pair's lower bound on the gap decides nothing, the gap at the start is measured and becomes the bound.
-double time_of_impact(const CollisionMesh &mesh, NearPair &pair, View<Vec3> start, View<Vec3> end);
+double time_of_impact(const CollisionMesh &mesh, CandidatePair &pair, View<Vec3> start, View<Vec3> end);
 
 // In the order of the pairs. Vertices with one number ≥ 0 in `rigid` share an affine motion and have no impacts.
-std::vector<Impact> find_impacts(const CollisionMesh &mesh, const std::vector<NearPair *> &pairs, View<Vec3> start,
+std::vector<Impact> find_impacts(const CollisionMesh &mesh, const std::vector<CandidatePair *> &pairs, View<Vec3> start,
                                  View<Vec3> end, View<int> rigid = {});
 
 // Marks the moving vertices of impacts.

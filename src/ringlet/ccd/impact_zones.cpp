@@ -63,23 +63,23 @@ void ImpactZones::correct(const std::vector<Impact> &impacts, bool keep_own, std
         if (corrections[v].weight > 0.0) end[v] += corrections[v].weight * (start[v] + corrections[v].motion - end[v]);
 }
 
-CcdReport resolve_impact_zones(const ImpactZonesInput &input, NearPairs &pairs, std::vector<Vec3> &end) {
+CcdReport resolve_impact_zones(const ImpactZonesInput &input, PairCache &pairs, std::vector<Vec3> &end) {
     const CollisionMesh &mesh = input.connected.mesh;
     CcdReport report;
     std::vector<unsigned char> corrected(end.size(), 0);
     std::optional<ImpactZones> zones;
     std::vector<int> rigid(input.rigid.begin(), input.rigid.end()); // without the vertices that are corrected
-    pairs.set_out_as_one(input.start, end, input.rigid_motion, rigid);
+    pairs.begin_rigid_move({input.start, end}, input.rigid_motion, rigid);
     for (;; ++report.rounds) {
-        const std::vector<Impact> impacts = find_impacts(mesh, pairs.may_meet(), input.start, end, rigid);
+        const std::vector<Impact> impacts = find_impacts(mesh, pairs.impact_candidates(), input.start, end, rigid);
         const int count = int(impacts.size());
-        if (report.rounds == 0) report.candidates = pairs.count(), report.impacts = count;
+        if (report.rounds == 0) report.candidates = pairs.size(), report.impacts = count;
         if (impacts.empty()) break;
         mark_vertices(mesh, impacts, corrected);
         const bool hopeless = report.rounds >= input.hopeful_rounds && ccd::impacts_per_remaining * count > report.impacts;
         if (hopeless || report.rounds >= ccd::max_zone_rounds) {
             report.fraction = truncate_before_first(impacts, input.start, end);
-            pairs.set_out_as_one(input.start, end, input.rigid_motion, rigid);
+            pairs.begin_rigid_move({input.start, end}, input.rigid_motion, rigid);
             break;
         }
         if (!zones) zones.emplace(input);
@@ -94,7 +94,7 @@ CcdReport resolve_impact_zones(const ImpactZonesInput &input, NearPairs &pairs, 
             changed[v] = 1;
             if (!rigid.empty()) rigid[v] = -1;
         }
-        pairs.set_out_as_one_anew(input.start, end, input.rigid_motion, rigid, changed);
+        pairs.update_rigid_move({input.start, end}, input.rigid_motion, rigid, changed);
     }
     report.corrected_vertices = int(std::count(corrected.begin(), corrected.end(), 1));
     return report;

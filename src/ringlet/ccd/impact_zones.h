@@ -26,7 +26,7 @@ struct ImpactZonesInput {
 // Changes `end` so that no pair has an impact while every vertex moves straight from `start` to `end`. Vertices of impacts form
 // zones; a zone moves as the body that it touches, or by its mean motion. Zones grow while there are impacts at their border.
 // Where this fails the whole move, kinematic bodies included, is truncated. Only relative motion counts.
-CcdReport resolve_impact_zones(const ImpactZonesInput &input, NearPairs &pairs, std::vector<Vec3> &end);
+CcdReport resolve_impact_zones(const ImpactZonesInput &input, PairCache &pairs, std::vector<Vec3> &end);
 
 // The zones of a move as disjoint sets, each named by its smallest vertex, so that the order of merging has no effect.
 class ImpactZones {

@@ -9,16 +9,16 @@
 
 namespace ringlet {
 
-MotionLimiter::MotionLimiter(const LimitMotionInput &input, NearPairs &pairs, std::vector<Vec3> &end)
+MotionLimiter::MotionLimiter(const LimitMotionInput &input, PairCache &pairs, std::vector<Vec3> &end)
     : input_(input), mesh_(input.connected.mesh), end_(end), strands_(int(input.connected.strands.size()) - 1),
-      transient_(pairs.passing()), fraction_(strands_, 1.0), changed_(end.size(), 0) {
+      transient_(pairs.transient_pairs()), fraction_(strands_, 1.0), changed_(end.size(), 0) {
     pairs_of_strand_ = {size_t(strands_), [&](const auto &add) {
-                            const auto consider = [&](NearPair &pair) {
-                                const auto [a, b] = pair.objects;
-                                if (pair.of_edges && a < strands_ && b < strands_ && a != b) add(a, &pair), add(b, &pair);
+                            const auto consider = [&](CandidatePair &pair) {
+                                const auto [a, b] = pair.object;
+                                if (pair.edge_edge && a < strands_ && b < strands_ && a != b) add(a, &pair), add(b, &pair);
                             };
-                            for (NearPair *pair : pairs.may_come_near()) consider(*pair);
-                            for (NearPair &pair : transient_) consider(pair);
+                            for (CandidatePair *pair : pairs.path_candidates()) consider(*pair);
+                            for (CandidatePair &pair : transient_) consider(pair);
                         }};
 }
 
@@ -100,9 +100,9 @@ void MotionLimiter::limit_strand(int strand, double fraction, std::vector<Event>
     for (int v = offsets[strand]; v < offsets[strand + 1]; ++v)
         if (mesh_.moves[v]) scale_motion(v, factor);
     fraction_[strand] = fraction;
-    for (NearPair *pair : pairs_of_strand_.of(strand)) {
-        if (fraction_[pair->objects[0]] == fraction_[pair->objects[1]]) continue; // its impact is known from before
-        const auto &a = mesh_.edges[pair->of[0]], &b = mesh_.edges[pair->of[1]];
+    for (CandidatePair *pair : pairs_of_strand_.of(strand)) {
+        if (fraction_[pair->object[0]] == fraction_[pair->object[1]]) continue; // its impact is known from before
+        const auto &a = mesh_.edges[pair->primitive[0]], &b = mesh_.edges[pair->primitive[1]];
         if (strand_of(a[0], a[1]) < 0 || strand_of(b[0], b[1]) < 0) continue;
         const double toi = time_of_impact(mesh_, *pair, input_.start, end_);
         if (toi <= 1.0) add_event({{a[0], a[1], b[0], b[1]}, toi}, events);
@@ -130,7 +130,7 @@ void MotionLimiter::scale_motion(int v, double factor) {
     mark_changed(v);
 }
 
-CcdReport limit_motion(const LimitMotionInput &input, NearPairs &pairs, std::vector<Vec3> &end) {
+CcdReport limit_motion(const LimitMotionInput &input, PairCache &pairs, std::vector<Vec3> &end) {
     const auto &[mesh, strands, cloths, neighbours] = input.connected;
     const int max_rounds = int(strands.size() + cloths.size()) + ccd::spare_rounds;
     const auto apex = [&] { return input.apex != nullptr ? View<Vec3>(*input.apex) : View<Vec3>(); };
@@ -138,22 +138,22 @@ CcdReport limit_motion(const LimitMotionInput &input, NearPairs &pairs, std::vec
     std::vector<unsigned char> corrected(end.size(), 0);
     std::optional<MotionLimiter> limiter;
     if (input.changed.empty())
-        pairs.set_out(input.start, end, apex());
+        pairs.begin_move({input.start, end, apex()});
     else
-        pairs.set_out_anew(input.start, end, input.changed, apex());
+        pairs.update_move({input.start, end, apex()}, input.changed);
     for (;; ++report.rounds) {
-        const std::vector<Impact> impacts = find_impacts(mesh, pairs.may_meet(), input.start, end);
-        if (report.rounds == 0) report.candidates = pairs.count(), report.impacts = int(impacts.size());
+        const std::vector<Impact> impacts = find_impacts(mesh, pairs.impact_candidates(), input.start, end);
+        if (report.rounds == 0) report.candidates = pairs.size(), report.impacts = int(impacts.size());
         if (impacts.empty()) break;
         mark_vertices(mesh, impacts, corrected);
         if (report.rounds >= max_rounds) {
             report.fraction = truncate_before_first(impacts, input.start, end);
-            pairs.set_out(input.start, end, apex());
+            pairs.begin_move({input.start, end, apex()});
             break;
         }
         if (!limiter) limiter.emplace(input, pairs, end);
         limiter->resolve(impacts);
-        pairs.set_out_anew(input.start, end, limiter->changed(), apex());
+        pairs.update_move({input.start, end, apex()}, limiter->changed());
     }
     report.corrected_vertices = int(std::count(corrected.begin(), corrected.end(), 1));
     return report;

@@ -22,7 +22,7 @@ struct LimitMotionInput {
 
 // Changes `end` so that no pair has an impact while every vertex moves straight from `start` to `end`. A strand is scaled as a
 // whole, which keeps its shape, and both strands of an impact to the same fraction. Cloth is corrected locally.
-CcdReport limit_motion(const LimitMotionInput &input, NearPairs &pairs, std::vector<Vec3> &end);
+CcdReport limit_motion(const LimitMotionInput &input, PairCache &pairs, std::vector<Vec3> &end);
 
 // One move of limit_motion(). The strands of an impact are scaled to its time, and one that then hits a strand with a smaller
 // fraction takes that fraction. Such chains are resolved within a round, event by event, the smallest fraction first. After
@@ -30,7 +30,7 @@ CcdReport limit_motion(const LimitMotionInput &input, NearPairs &pairs, std::vec
 class MotionLimiter {
 public:
     // `pairs` has begun the move from `input.start` to `end`, which is changed.
-    MotionLimiter(const LimitMotionInput &input, NearPairs &pairs, std::vector<Vec3> &end);
+    MotionLimiter(const LimitMotionInput &input, PairCache &pairs, std::vector<Vec3> &end);
 
     void resolve(const std::vector<Impact> &impacts);                      // of what the last round changed
     const std::vector<unsigned char> &changed() const { return changed_; } // vertices, in the last round
@@ -64,10 +64,10 @@ private:
     const CollisionMesh &mesh_;
     std::vector<Vec3> &end_;
     int strands_, round_ = 0;
-    std::vector<NearPair> transient_;    // as in the first round; later rounds change those of the cache
-    Lists<NearPair *> pairs_of_strand_;  // pairs with another strand that may close on their paths
-    std::vector<double> fraction_;       // of its motion that each strand makes
-    std::vector<unsigned char> changed_; // per vertex
+    std::vector<CandidatePair> transient_;   // as in the first round; later rounds change those of the cache
+    Lists<CandidatePair *> pairs_of_strand_; // pairs with another strand that may close on their paths
+    std::vector<double> fraction_;           // of its motion that each strand makes
+    std::vector<unsigned char> changed_;     // per vertex
     std::vector<int> changed_list_;
 };
 

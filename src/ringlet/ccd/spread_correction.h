@@ -1,8 +1,8 @@
 // Corrections of a move and their spreading to neighbours, so that no edge is strained by more than a few per cent.
 #pragma once
 
-#include "ringlet/collision/collision_mesh.h"
-#include "ringlet/collision/vertex_lists.h"
+#include "ringlet/collision/incidence.h"
+#include "ringlet/collision/mesh.h"
 
 #include <vector>
 

@@ -1,6 +1,6 @@
 #include "ringlet/contact/contact_set.h"
 
-#include "ringlet/collision/collect.h"
+#include "ringlet/math/collect.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -15,8 +15,9 @@ constexpr double least_room = 0.01; // of its distance, in which a pair that beg
 
 // Ascending as pairs are, and as the contacts of one pair are.
 constexpr int places_of_pair = 7; // at most
-uint64_t name(const Touch &touch, int which = 0) {
-    return uint64_t(!touch.of_edges) << 63 | uint64_t(touch.of[0]) << 33 | uint64_t(touch.of[1]) << 3 | uint64_t(which);
+uint64_t name(const ContactPair &touch, int which = 0) {
+    return uint64_t(!touch.edge_edge) << 63 | uint64_t(touch.primitive[0]) << 33 | uint64_t(touch.primitive[1]) << 3 |
+           uint64_t(which);
 }
 
 // Where a pair pushes, and with what share of its stiffness.
@@ -29,15 +30,16 @@ struct Place {
 // The nearest points of two edges that are almost parallel jump from end to end as they turn. What pushes there is shared out
 // among the ends of both, each with what is nearest on the other edge, and nothing jumps. On a surface, points do this. Calls
 // work with each place, in order.
-template <class Work> void for_places(const CollisionMesh &mesh, const Touch &touch, View<Vec3> now, const Work &work) {
+template <class Work> void for_places(const CollisionMesh &mesh, const ContactPair &touch, View<Vec3> now, const Work &work) {
     constexpr double almost = 0.01; // sin² of the angle
-    if (!touch.of_edges || std::max(touch.of[0], touch.of[1]) >= mesh.strand_edges) return work(Place{touch.nearest, 1.0, 0});
-    const auto [a0, a1] = mesh.edges[touch.of[0]];
-    const auto [b0, b1] = mesh.edges[touch.of[1]];
+    if (!touch.edge_edge || std::max(touch.primitive[0], touch.primitive[1]) >= mesh.strand_edges)
+        return work(Place{touch.closest, 1.0, 0});
+    const auto [a0, a1] = mesh.edges[touch.primitive[0]];
+    const auto [b0, b1] = mesh.edges[touch.primitive[1]];
     const Vec3 a = now[a1] - now[a0], b = now[b1] - now[b0];
     const double aa = a.squaredNorm(), bb = b.squaredNorm(), sine2 = a.cross(b).squaredNorm();
     const double s = std::min(sine2 / (almost * aa * bb + 1e-300), 1.0), crossing = s * s * (3.0 - 2.0 * s);
-    if (crossing > 0.0) work(Place{touch.nearest, crossing, 0});
+    if (crossing > 0.0) work(Place{touch.closest, crossing, 0});
     if (crossing == 1.0) return;
     const double share = 0.5 * (1.0 - crossing); // two of the four ends are beside the other edge, as a rule
     const auto at = [&](double u, double v, int which) {
@@ -54,8 +56,8 @@ struct Sides {
     int first; // of these are the first's
 };
 
-Sides sides(const CollisionMesh &mesh, const Touch &touch, const ClosestPoints &nearest) {
-    Sides sides{{}, nearest.weights, touch.of_edges ? 2 : 1};
+Sides sides(const CollisionMesh &mesh, const ContactPair &touch, const ClosestPoints &nearest) {
+    Sides sides{{}, nearest.weights, touch.edge_edge ? 2 : 1};
     with_vertices(mesh, touch, [&](const auto &a, const auto &b) {
         std::copy(b.begin(), b.end(), std::copy(a.begin(), a.end(), sides.vertex.begin()));
     });
@@ -89,7 +91,7 @@ void for_known(const std::vector<Known> &before, std::vector<Found> &now, const 
 }
 
 // Without what depends on from where on it pushes.
-Contact contact(const CollisionMesh &mesh, const ContactMaterial &material, const Touch &touch, const Place &place,
+Contact contact(const CollisionMesh &mesh, const ContactMaterial &material, const ContactPair &touch, const Place &place,
                 View<Vec3> now) {
     const Sides of = sides(mesh, touch, place.nearest);
     Contact contact{};
@@ -121,14 +123,14 @@ void go_on(const Hold &held, Contact &contact) {
 
 } // namespace
 
-void ContactSet::begin(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<Touch> &touching,
+void ContactSet::begin(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<ContactPair> &touching,
                        View<Bearing> bearing, View<Vec3> now) {
     std::map<std::array<int, 4>, Vec3> forces;
     for (const Bearing &bears : bearing) forces[bears.vertex] = bears.force;
     early_.clear(), expected_.clear(), held_.clear();
-    for (const Touch &touch : touching) {
-        const Sides of = sides(mesh, touch, touch.nearest);
-        const double apart = std::sqrt(touch.nearest.distance2);
+    for (const ContactPair &touch : touching) {
+        const Sides of = sides(mesh, touch, touch.closest);
+        const double apart = std::sqrt(touch.closest.distance2);
         Beginning &early = early_[name(touch)] = {apart, 0.0, apart};
         const auto force = forces.find(of.vertex);
         if (force == forces.end() || !(apart > 0.0 && force->second[0] > 0.0)) continue;
@@ -145,7 +147,7 @@ void ContactSet::part_early(double way) {
     for (auto &[pair, early] : early_) early.push = early.apart += way;
 }
 
-void ContactSet::stay_early(const std::vector<Touch> &touching, View<Vec3> now, double way) {
+void ContactSet::stay_early(const std::vector<ContactPair> &touching, View<Vec3> now, double way) {
     constexpr double nearest = 0.01;
     for (auto &[pair, early] : early_) early.bears = 0.0;
     for (const Contact &contact : contacts_) {
@@ -153,11 +155,11 @@ void ContactSet::stay_early(const std::vector<Touch> &touching, View<Vec3> now, 
         if (early != early_.end()) early->second.bears += contact_force(contact, separation(contact, now));
     }
     Early stay;
-    for (const Touch &touch : touching) {
+    for (const ContactPair &touch : touching) {
         const auto found = early_.find(name(touch));
         if (found == early_.end()) continue;
         Beginning &early = stay[found->first] = found->second;
-        const double least = nearest * touch.distance;
+        const double least = nearest * touch.d_hat;
         if (early.apart < least) early.apart = std::min(early.apart + way, least);
     }
     early_ = std::move(stay);
@@ -176,12 +178,12 @@ void ContactSet::hold(View<Vec3> now) {
 // Calls work(where it pushes, at what distance, from which distance on [m], where its barrier ends [m], what part of its
 // distance it has to come to bear).
 template <class Work>
-void ContactSet::for_pushing(const CollisionMesh &mesh, const Touch &touch, View<Vec3> now, const Work &work) const {
+void ContactSet::for_pushing(const CollisionMesh &mesh, const ContactPair &touch, View<Vec3> now, const Work &work) const {
     const auto early = early_.find(name(touch));
-    double distance = touch.distance, room = 1.0;
-    if (early != early_.end() && early->second.apart < touch.distance) {
+    double distance = touch.d_hat, room = 1.0;
+    if (early != early_.end() && early->second.apart < touch.d_hat) {
         distance = std::min(distance, early->second.push);
-        if (early->second.bears > 0.0) room = std::max(1.0 - early->second.apart / touch.distance, least_room);
+        if (early->second.bears > 0.0) room = std::max(1.0 - early->second.apart / touch.d_hat, least_room);
     }
     const bool by_planes = with_vertices(mesh, touch, [&](const auto &a, const auto &b) {
         return goes_by_planes(mesh.object[a[0]]) || goes_by_planes(mesh.object[b[0]]);
@@ -190,15 +192,15 @@ void ContactSet::for_pushing(const CollisionMesh &mesh, const Touch &touch, View
         const double apart = std::sqrt(place.nearest.distance2);
         if (!(apart > 0.0 && apart < distance)) return;
         double barrier_end = distance / 100;
-        if (by_planes) barrier_end = std::min(std::clamp(0.25 * apart, barrier_end, touch.distance / 64), distance / 64);
+        if (by_planes) barrier_end = std::min(std::clamp(0.25 * apart, barrier_end, touch.d_hat / 64), distance / 64);
         work(place, apart, distance, barrier_end, room);
     });
 }
 
 std::vector<Contact> ContactSet::of_touching(const CollisionMesh &mesh, const ContactMaterial &material,
-                                             const std::vector<Touch> &touching, View<Vec3> start, View<Vec3> now) const {
+                                             const std::vector<ContactPair> &touching, View<Vec3> start, View<Vec3> now) const {
     std::vector<Contact> found = collect<Contact>(int(touching.size()), [&](int k, std::vector<Contact> &contacts) {
-        const Touch &touch = touching[k];
+        const ContactPair &touch = touching[k];
         for_pushing(mesh, touch, now, [&](const Place &place, double apart, double distance, double barrier_end, double room) {
             Contact contact = ringlet::contact(mesh, material, touch, place, now);
             contact.distance = distance;
@@ -215,9 +217,9 @@ std::vector<Contact> ContactSet::of_touching(const CollisionMesh &mesh, const Co
 }
 
 std::vector<ContactSet::Push> ContactSet::pushing(const CollisionMesh &mesh, const ContactMaterial &material,
-                                                  const std::vector<Touch> &touching, View<Vec3> elsewhere) const {
+                                                  const std::vector<ContactPair> &touching, View<Vec3> elsewhere) const {
     std::vector<Push> found = collect<Push>(int(touching.size()), [&](int k, std::vector<Push> &pushes) {
-        const Touch &touch = touching[k];
+        const ContactPair &touch = touching[k];
         for_pushing(mesh, touch, elsewhere, [&](const Place &place, double apart, double distance, double barrier_end, double) {
             const Sides of = sides(mesh, touch, place.nearest);
             pushes.push_back({name(touch, place.which),
@@ -230,13 +232,13 @@ std::vector<ContactSet::Push> ContactSet::pushing(const CollisionMesh &mesh, con
     return found;
 }
 
-void ContactSet::find(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<Touch> &touching,
+void ContactSet::find(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<ContactPair> &touching,
                       View<Vec3> start, View<Vec3> now) {
-    for (const Touch &touch : touching) {
+    for (const ContactPair &touch : touching) {
         const auto found = early_.find(name(touch));
         if (found == early_.end()) continue;
         Beginning &early = found->second; // stays the same until contacts are found again, whatever stiffness is then
-        early.push = distance_to_bear(early.bears / stiffness(sides(mesh, touch, touch.nearest), material), early.apart);
+        early.push = distance_to_bear(early.bears / stiffness(sides(mesh, touch, touch.closest), material), early.apart);
     }
     std::vector<Contact> found = of_touching(mesh, material, touching, start, now);
     for_known(expected_, found, [](const Expected &before, Contact &now) { now.grip = before.force; });

@@ -1,7 +1,7 @@
 // All contacts of a scene at the present positions, and how vertices find those that act on them.
 #pragma once
 
-#include "ringlet/collision/near_pairs.h"
+#include "ringlet/collision/pair_cache.h"
 #include "ringlet/contact/contact.h"
 #include "ringlet/math/lists.h"
 
@@ -36,10 +36,10 @@ public:
         Vec3 force;                // on the first of the two: away from the second, towards the last vertex from the one
                                    // before as far as that is across, and across both [N]
     };
-    void begin(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<Touch> &touching,
+    void begin(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<ContactPair> &touching,
                View<Bearing> bearing, View<Vec3> now);
     void part_early(double way);
-    void stay_early(const std::vector<Touch> &touching, View<Vec3> now, double way);
+    void stay_early(const std::vector<ContactPair> &touching, View<Vec3> now, double way);
     struct Beginning {
         double apart; // how near they began [m]
         double bears; // what they push with as near as that [N]
@@ -73,14 +73,14 @@ public:
         double stiffness, potential;                            // [N/m], [m²]
         double energy() const { return stiffness * potential; } // [J]
     };
-    std::vector<Push> pushing(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<Touch> &touching,
-                              View<Vec3> elsewhere) const;
+    std::vector<Push> pushing(const CollisionMesh &mesh, const ContactMaterial &material,
+                              const std::vector<ContactPair> &touching, View<Vec3> elsewhere) const;
 
     // Goes over to the contacts of those that touch at the positions `now`; `start` says where the step began, for how they
     // were sheared since. Friction's normal force is what was expected of the pair before, nothing if it is new: what a contact
     // pushes with on the way to balance says little of what it will bear.
-    void find(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<Touch> &touching, View<Vec3> start,
-              View<Vec3> now);
+    void find(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<ContactPair> &touching,
+              View<Vec3> start, View<Vec3> now);
 
     void expect(int contact, double force) { expected_[contact].force = force; }
 
@@ -95,9 +95,9 @@ public:
 
 private:
     template <class Work>
-    void for_pushing(const CollisionMesh &mesh, const Touch &touch, View<Vec3> now, const Work &work) const;
+    void for_pushing(const CollisionMesh &mesh, const ContactPair &touch, View<Vec3> now, const Work &work) const;
     std::vector<Contact> of_touching(const CollisionMesh &mesh, const ContactMaterial &material,
-                                     const std::vector<Touch> &touching, View<Vec3> start, View<Vec3> now) const;
+                                     const std::vector<ContactPair> &touching, View<Vec3> start, View<Vec3> now) const;
     void index(const CollisionMesh &mesh);
     bool goes_by_planes(int object) const { return size_t(object) < by_planes_.size() && by_planes_[object]; }
 

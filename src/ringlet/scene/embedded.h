@@ -1,7 +1,7 @@
 // Vertices that begin inside a body: excused from contact with it, pushed out gently, guarded once they are out.
 #pragma once
 
-#include "ringlet/collision/collision_mesh.h"
+#include "ringlet/collision/mesh.h"
 #include "ringlet/solver/lift.h"
 
 #include <utility>

@@ -99,7 +99,7 @@ double Scene::Parts::advance(const SceneInput &input, const SceneStep &scene_ste
     constexpr double speed = 0.02; // [m/s] of what began inside a body, out of it
     const int excused = embedded.count();
     system.lifts = embedded.push_out(vertices.mesh, now, View<int>(model.offsets), stiffness.hardest(), speed * step.dt);
-    if (embedded.count() < excused) near.forget(); // pairs that were none
+    if (embedded.count() < excused) near.clear(); // pairs that were none
     // Then to where Newton's method begins.
     constexpr double hardly = 1e-12; // [m]
     begin_cloths(input, step, now);
@@ -120,7 +120,7 @@ double Scene::Parts::advance(const SceneInput &input, const SceneStep &scene_ste
     arrive(now, to);
     system.scatter(now, x);
     const int iteration = newton(scene_step, step, now, progress, report);
-    const std::vector<Touch> touching = near.touching(now);
+    const std::vector<ContactPair> touching = near.contact_pairs(now);
     system.touch(touching, now);
     system.contacts.hold(now);
     constexpr double slowly = 1e-4; // [m/s]
@@ -155,7 +155,7 @@ void Scene::Parts::find_placed() {
     const auto place = [&](View<Vec3> positions, int first) {
         const auto known = vertices.positions.begin() + first;
         if (std::equal(positions.begin(), positions.end(), known)) return;
-        near.forget();
+        near.clear();
         std::copy(positions.begin(), positions.end(), known);
     };
     place(state.positions, 0);
@@ -164,23 +164,23 @@ void Scene::Parts::find_placed() {
 
 std::vector<Contact> Scene::Parts::touching() {
     find_placed();
-    near.forget();
-    near.note(vertices.positions, vertices.positions, 0.0, 0.0);
+    near.clear();
+    near.update_bounds({vertices.positions, vertices.positions}, {.margin = 0.0, .max_path = 0.0});
     ContactMaterial material = vertices.material;
     material.stiffness.assign(vertices.count(), 1.0);
     ContactSet contacts; // which knows of nothing that was before
-    contacts.find(vertices.mesh, material, near.touching(vertices.positions), vertices.positions, vertices.positions);
-    near.forget();
+    contacts.find(vertices.mesh, material, near.contact_pairs(vertices.positions), vertices.positions, vertices.positions);
+    near.clear();
     return contacts.contacts();
 }
 
 void Scene::Parts::begin(double dt) {
-    near.note(vertices.positions, vertices.positions, 0.0, 0.0);
+    near.update_bounds({vertices.positions, vertices.positions}, {.margin = 0.0, .max_path = 0.0});
     vertices.material.give = settings.creep_speed * dt;
     stiffness.begin(system, settings.stiffness, dt);
     set_stiffness();
     const std::vector<Vec3> &now = vertices.positions;
-    const std::vector<Touch> touching = near.touching(now);
+    const std::vector<ContactPair> touching = near.contact_pairs(now);
     system.contacts.begin(vertices.mesh, vertices.material, touching, bearing, now);
     system.contacts.find(vertices.mesh, vertices.material, touching, now, now);
     stiffness.bear(system.contacts);
@@ -236,14 +236,14 @@ void Scene::excuse(int vertex, int body) {
     if (vertex < 0 || vertex >= parts_->vertices.strand_vertices())
         throw std::invalid_argument("scene: only vertices of strands are excused");
     if (body < 0 || body >= int(parts_->embedded_bodies.size())) throw std::invalid_argument("scene: there is no such body");
-    parts_->near.forget();
+    parts_->near.clear();
     parts_->embedded.add(vertex, parts_->embedded_bodies[body], parts_->vertices.mesh);
 }
 
 int Scene::excused() const { return parts_->embedded.count(); }
 
 SceneMemory Scene::memory() const {
-    parts_->near.forget(); // as whoever recalls it: then even what is counted is the same
+    parts_->near.clear(); // as whoever recalls it: then even what is counted is the same
     const View<Vec3> all = parts_->positions();
     const int bodies = parts_->vertices.moving_vertices();
     return {parts_->begun,
@@ -261,7 +261,7 @@ void Scene::recall(const SceneMemory &memory) {
     if (memory.bodies.size() != size_t(parts.vertices.count() - parts.vertices.moving_vertices()) ||
         memory.touched.size() != parts.touched.size() || memory.borne.size() != size_t(parts.vertices.count()))
         throw std::invalid_argument("scene: what is to be recalled is of another scene");
-    parts.near.forget();
+    parts.near.clear();
     parts.begun = memory.begun;
     std::copy(memory.bodies.begin(), memory.bodies.end(), parts.vertices.positions.begin() + parts.vertices.moving_vertices());
     parts.system.contacts.recall(memory.early);

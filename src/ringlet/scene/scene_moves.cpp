@@ -26,9 +26,9 @@ double Scene::Parts::limit(View<Vec3> now, std::vector<Vec3> &to, const LimitedM
     if (move.changed.empty()) {
         const View<Vec3> apex = move.apex != nullptr ? View<Vec3>(*move.apex) : View<Vec3>();
         const bool stays = std::equal(to.begin(), to.end(), now.begin()) && std::equal(apex.begin(), apex.end(), now.begin());
-        const bool known = near.knows_all_here() && (stays || move.few);
+        const bool known = near.is_complete() && (stays || move.few);
         const double margin = stays ? 0.0 : 0.2 * settings.strand_radius; // what stays hardly stays for long
-        if (!known) near.note(now, to, margin, far, apex, move.lasting);
+        if (!known) near.update_bounds({now, to, apex}, {.margin = margin, .max_path = far, .lasting = move.lasting});
         if (stays) return 1.0;
     }
     const CcdReport limited = limit_motion({.connected = connected(),
@@ -59,7 +59,7 @@ double Scene::Parts::resolve(View<Vec3> now, std::vector<Vec3> &to, int hopeful_
 }
 
 void Scene::Parts::arrive(std::vector<Vec3> &now, const std::vector<Vec3> &to) {
-    near.arrive(now, to);
+    near.commit_move(now, to);
     make_move(now, to);
 }
 
@@ -100,7 +100,7 @@ Carried Scene::Parts::go_along(std::vector<Vec3> &now, double dt, SceneReport &r
         as_one = motion_of_most(now, to);
         carried = {part * resolve(now, to, hopeful, report), false};
     }
-    near.arrive_as_one(now, to);
+    near.commit_rigid_move(now, to);
     make_move(now, to);
     if (carried.fraction < 1.0) {
         for (int v = 0; v < vertices.count(); ++v)

@@ -16,7 +16,7 @@ int Scene::Parts::newton(const SceneStep &scene_step, const StrandStep &step, st
         if (iteration >= step.newton && (iteration >= step.newton + scene_step.extra || !progress.narrow(system, now))) break;
         {
             const Stopwatch watch(report.time_pairs);
-            system.touch(near.touching(now), now);
+            system.touch(near.contact_pairs(now), now);
         }
         {
             const Stopwatch watch(report.time_assemble);
@@ -57,7 +57,7 @@ int Scene::Parts::newton(const SceneStep &scene_step, const StrandStep &step, st
             if (!went.moved) break;
             shorten(system, went.step, way);
             std::vector<double> unused;
-            const PairsInReach in_reach = near.in_reach(system.active_parts());
+            const ReachablePairs in_reach = near.reachable_pairs(system.active_parts());
             system.energies(x, &in_reach, {}, std::vector<double>(vertices.parts(), 0.0), all_parts, unused);
         } else {
             tried = worth_going(system, x, way.straight);

@@ -51,7 +51,7 @@ struct Scene::Parts {
     SceneSystem system;
     SceneSolver solver;
     ContactStiffness stiffness;
-    NearPairs near;
+    PairCache near;
     VertexLists neighbours; // of the vertices of cloths
 
     std::vector<Embedded::Body> embedded_bodies; // per body

@@ -54,7 +54,7 @@ std::vector<unsigned char> with_touched(const SceneSystem &system, const std::ve
     return all;
 }
 
-SceneSearch search(SceneSystem &system, const NearPairs *near, const SceneWay &way, const std::vector<unsigned char> &all_of_it,
+SceneSearch search(SceneSystem &system, const PairCache *near, const SceneWay &way, const std::vector<unsigned char> &all_of_it,
                    AlignedVector &x) {
     constexpr double least_decrease = 1e-4;
     constexpr int halvings = 4, most_shorter = 8; // then it goes a quarter as far, and after these it stays
@@ -62,8 +62,8 @@ SceneSearch search(SceneSystem &system, const NearPairs *near, const SceneWay &w
     const int parts = system.vertices.parts();
     SceneSearch result{false, 0, std::vector<double>(parts, 1.0)};
     std::vector<double> &step = result.step;
-    const PairsInReach in_reach = near != nullptr ? near->in_reach(system.active_parts()) : PairsInReach();
-    const PairsInReach *pairs = near != nullptr ? &in_reach : nullptr;
+    const ReachablePairs in_reach = near != nullptr ? near->reachable_pairs(system.active_parts()) : ReachablePairs();
+    const ReachablePairs *pairs = near != nullptr ? &in_reach : nullptr;
     const View<unsigned char> undecided = near != nullptr ? View<unsigned char>() : View<unsigned char>(all_of_it);
     std::vector<double> now, before;
     std::vector<unsigned char> changed(parts, 0), rises(parts), any_rises(parts);

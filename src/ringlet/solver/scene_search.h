@@ -20,7 +20,7 @@ struct SceneSearch {
 // they touch: what a direction does on both sides of a contact belongs together. A cluster stays where what the filter left of
 // its way leads nowhere down. Parts that are to go `all_of_it` do, whatever the energy; without `near`, by contacts
 // alone, they are yet to be searched, and what the others have to do with them does not count.
-SceneSearch search(SceneSystem &system, const NearPairs *near, const SceneWay &way, const std::vector<unsigned char> &all_of_it,
+SceneSearch search(SceneSystem &system, const PairCache *near, const SceneWay &way, const std::vector<unsigned char> &all_of_it,
                    AlignedVector &x);
 
 } // namespace ringlet

@@ -39,7 +39,7 @@ void SceneSystem::scatter(View<Vec3> from, AlignedVector &into) const {
         for (int k = 0; k < 3; ++k) into[slot(v) + k * stride(v)] = from[v][k];
 }
 
-void SceneSystem::touch(const std::vector<Touch> &touching, View<Vec3> now) {
+void SceneSystem::touch(const std::vector<ContactPair> &touching, View<Vec3> now) {
     find_planes(touching);
     contacts.find(vertices.mesh, vertices.material, touching, vertices.positions, now);
     contacts_found_ = true;
@@ -50,11 +50,11 @@ void SceneSystem::touch(const std::vector<Touch> &touching, View<Vec3> now) {
                 }};
 }
 
-void SceneSystem::find_planes(const std::vector<Touch> &touching) {
+void SceneSystem::find_planes(const std::vector<ContactPair> &touching) {
     by_planes_.assign(vertices.parts(), 0);
     std::fill(by_planes_.begin() + vertices.strands, by_planes_.end(), 1);
     if (cloths.empty()) return;
-    for (const Touch &touch : touching)
+    for (const ContactPair &touch : touching)
         with_vertices(vertices.mesh, touch, [&](const auto &a, const auto &b) {
             const int one = vertices.part_of(a[0]), other = vertices.part_of(b[0]);
             if (one >= vertices.strands && other >= 0) by_planes_[other] = 1;
@@ -98,7 +98,7 @@ std::vector<unsigned char> SceneSystem::active_parts() const {
     return active;
 }
 
-void SceneSystem::energies(const AlignedVector &x, const PairsInReach *pairs, View<unsigned char> undecided,
+void SceneSystem::energies(const AlignedVector &x, const ReachablePairs *pairs, View<unsigned char> undecided,
                            const std::vector<double> &gone, const std::vector<unsigned char> &changed,
                            std::vector<double> &of) {
     std::vector<unsigned char> asked(unit_count(), 0);
@@ -129,7 +129,7 @@ void SceneSystem::energies(const AlignedVector &x, const PairsInReach *pairs, Vi
 }
 
 // Energies of contacts, anew where one of the two parts has changed.
-void SceneSystem::share_contacts(const PairsInReach *pairs, View<unsigned char> undecided, const std::vector<double> &gone,
+void SceneSystem::share_contacts(const ReachablePairs *pairs, View<unsigned char> undecided, const std::vector<double> &gone,
                                  const std::vector<unsigned char> &changed) {
     const std::vector<Contact> &all = contacts.contacts();
     if (contacts_found_) rubbed_.assign(all.size(), 0.0);
@@ -148,7 +148,7 @@ void SceneSystem::share_contacts(const PairsInReach *pairs, View<unsigned char> 
         }
     } else if (pairs != nullptr) {
         const auto part = [&](int object) { return object < vertices.parts() ? object : -1; };
-        const std::vector<Touch> there = touching(vertices.mesh, *pairs, places_, anew, gone);
+        const std::vector<ContactPair> there = contact_pairs(vertices.mesh, *pairs, places_, anew, gone);
         for (const ContactSet::Push &push : contacts.pushing(vertices.mesh, vertices.material, there, places_))
             pushed_.push_back({part(push.objects[0]), part(push.objects[1]), push.energy()});
     } else {

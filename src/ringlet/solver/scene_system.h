@@ -78,7 +78,7 @@ public:
     void scatter(View<Vec3> from, AlignedVector &into) const;
 
     // Goes over to the contacts of what touches where everything is now.
-    void touch(const std::vector<Touch> &touching, View<Vec3> now);
+    void touch(const std::vector<ContactPair> &touching, View<Vec3> now);
     // Of a cloth P has no more than an incomplete factor: it counts as coupled whatever touches it.
     bool is_alone(int part) const { return part < vertices.strands && !couplings.couples(part); }
     bool any_coupled() const { return !cloths.empty() || couplings.count() > 0; } // their own factors do not solve all
@@ -92,7 +92,7 @@ public:
     // count; none are if it is empty. `gone` says which part of its way each part is there. Only parts that have `changed`
     // since this was last asked, or since they were assembled, are asked again, and contacts only of these. What is asked first
     // after contacts were found has to be asked there.
-    void energies(const AlignedVector &x, const PairsInReach *pairs, View<unsigned char> undecided,
+    void energies(const AlignedVector &x, const ReachablePairs *pairs, View<unsigned char> undecided,
                   const std::vector<double> &gone, const std::vector<unsigned char> &changed, std::vector<double> &of_parts);
 
     void linearise(const AlignedVector &x);               // the contacts, before units are assembled
@@ -114,8 +114,8 @@ public:
     const std::vector<ContactValue> &values() const { return values_; } // of the contacts
 
 private:
-    void find_planes(const std::vector<Touch> &touching);
-    void share_contacts(const PairsInReach *pairs, View<unsigned char> undecided, const std::vector<double> &gone,
+    void find_planes(const std::vector<ContactPair> &touching);
+    void share_contacts(const ReachablePairs *pairs, View<unsigned char> undecided, const std::vector<double> &gone,
                         const std::vector<unsigned char> &changed);
     void evaluate(int unit, const AlignedVector &x, bool to_assemble); // its own energies
     void add_to_strand(int vertex);

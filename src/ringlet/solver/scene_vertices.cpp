@@ -87,7 +87,7 @@ SceneVertices number_vertices(const StrandModel &strands, const StrandState &sta
         add_strand(all, strands, state, s, {contact.strand_radius, s, anchor, contact.strand_material});
     }
     all.mesh.strand_edges = int(all.mesh.edges.size());
-    know_along_strands(all.mesh, View<int>(strands.offsets));
+    cache_activation_distances(all.mesh, View<int>(strands.offsets));
     for (int c = 0; c < int(cloths.size()); ++c) {
         all.cloths.push_back(all.count());
         add_cloth(all, cloths[c],

@@ -1,17 +1,17 @@
-#include "ringlet/collision/moving_tree.h"
+#include "ringlet/collision/bvh.h"
 
 #include <algorithm>
 
 namespace ringlet {
 
-// Halves the shares of each depth at the median of their longest axis.
-void MovingTree::arrange(std::vector<Centre> &centres) {
+// Splits the groups of each depth at the median of their longest axis.
+void Bvh::arrange(std::vector<Centre> &centres) {
     depth_ = 0;
     while (count_ > int64_t(4) << depth_) ++depth_;
     for (int depth = 0; depth < depth_; ++depth) {
-#pragma omp parallel for schedule(dynamic, 1) if (count_ > small)
-        for (int share = 0; share < 1 << depth; ++share) {
-            const auto first = centres.begin() + begin(share, depth), last = centres.begin() + begin(share + 1, depth);
+#pragma omp parallel for schedule(dynamic, 1) if (count_ > collision::serial_nodes)
+        for (int group = 0; group < 1 << depth; ++group) {
+            const auto first = centres.begin() + begin(group, depth), last = centres.begin() + begin(group + 1, depth);
             Eigen::Array3f low = Eigen::Array3f::Constant(std::numeric_limits<float>::infinity()), high = -low;
             for (auto c = first; c != last; ++c) {
                 low = low.min(Eigen::Map<const Eigen::Array3f>(c->at));
@@ -19,7 +19,7 @@ void MovingTree::arrange(std::vector<Centre> &centres) {
             }
             int axis = 0;
             (high - low).maxCoeff(&axis);
-            const auto middle = centres.begin() + begin(2 * int64_t(share) + 1, depth + 1);
+            const auto middle = centres.begin() + begin(2 * int64_t(group) + 1, depth + 1);
             std::nth_element(first, middle, last, [&](const Centre &a, const Centre &b) {
                 return a.at[axis] != b.at[axis] ? a.at[axis] < b.at[axis] : a.primitive < b.primitive;
             });
@@ -31,7 +31,7 @@ void MovingTree::arrange(std::vector<Centre> &centres) {
     const size_t nodes = size_t(first_leaf_) + leaves();
     BoxQuad empty;
     EndQuad empty_end;
-    for (int k = 0; k < 4; ++k) set_box(empty, empty_end, k, MovingBox::nothing());
+    for (int k = 0; k < 4; ++k) set_box(empty, empty_end, k, SweptBox::empty());
     nodes_.assign(nodes + 1, empty);
     ends_.assign(nodes + 1, empty_end);
     listed_.assign(nodes, 0);
@@ -44,8 +44,8 @@ void MovingTree::arrange(std::vector<Centre> &centres) {
         }
 }
 
-// All above nodes of one level, that are listed; in the end none is.
-void MovingTree::refit_above(std::vector<int> &nodes) {
+// Refits the ancestors of listed nodes of one level, and unlists them.
+void Bvh::refit_above(std::vector<int> &nodes) {
     std::vector<int> parents;
     for (; !nodes.empty(); std::swap(nodes, parents)) {
         parents.clear();
@@ -54,12 +54,12 @@ void MovingTree::refit_above(std::vector<int> &nodes) {
             const int parent = (node - 1) / 4;
             if (node > 0 && !listed_[parent]) listed_[parent] = 1, parents.push_back(parent);
         }
-        for (const int node : parents) put(node, around(node));
+        for (const int node : parents) set(node, union_of(node));
     }
 }
 
-// The size of all leaves together, at the start: how far apart those have gone that were neighbours.
-double MovingTree::looseness() const {
+// The sum of the sizes of all leaves at the start, which grows as neighbours move apart [m].
+double Bvh::leaf_extent() const {
     double sum = 0.0;
     for (int leaf = first_leaf_; leaf < first_leaf_ + leaves() && leaf > 0; ++leaf) {
         const BoxQuad &parent = nodes_[(leaf - 1) / 4];
