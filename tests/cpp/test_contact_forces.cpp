@@ -1,6 +1,5 @@
-// What contacts do: forces from energies, and moves that pass through nothing.
-#include "ringlet/ccd/impact_zones.h"
-#include "ringlet/ccd/motion_limiter.h"
+// Contact forces from energies.
+#include "random.h"
 #include "ringlet/contact/contact.h"
 #include "ringlet/contact/contact_set.h"
 
@@ -8,17 +7,10 @@
 
 #include <Eigen/Eigenvalues>
 #include <limits>
-#include <random>
 
 using namespace ringlet;
 
 namespace {
-
-struct Random {
-    std::mt19937 engine{7};
-    double operator()(double low, double high) { return std::uniform_real_distribution<>(low, high)(engine); }
-    Vec3 vector(double size) { return {(*this)(-size, size), (*this)(-size, size), (*this)(-size, size)}; }
-};
 
 Contact some_contact(Random &random) {
     Contact contact{};
@@ -33,108 +25,6 @@ Contact some_contact(Random &random) {
     contact.force = random(0.0, 1e-3);
     return contact;
 }
-
-// Strands that start anywhere and wish to be anywhere else.
-struct Crowd {
-    CollisionMesh mesh;
-    std::vector<Vec3> start, end;
-    std::vector<int> offsets{0};
-    std::vector<double> mass;
-
-    Crowd(int strands, double size, double way, unsigned seed, int vertices = 3) {
-        Random random{std::mt19937(seed)};
-        for (int s = 0; s < strands; ++s) {
-            const Vec3 place = random.vector(size), along = random.vector(size), wish = random.vector(way);
-            for (int k = 0; k < vertices; ++k) {
-                const int v = int(start.size());
-                start.push_back(place + k * along);
-                end.push_back(start.back() + wish + random.vector(0.3 * way));
-                mesh.points.push_back(v);
-                mesh.radius.push_back(1e-3);
-                mesh.moves.push_back(1);
-                mesh.object.push_back(s);
-                mesh.anchor.push_back(-1);
-                mass.push_back(random(0.5, 2.0));
-                if (k > 0) mesh.edges.push_back({v - 1, v});
-            }
-            offsets.push_back(int(start.size()));
-        }
-        mesh.rest = start;
-    }
-
-    ConnectedMesh connected() const { return {mesh, View<int>(offsets)}; }
-
-    CcdReport limit(std::vector<Vec3> &limited) const {
-        PairCache pairs(mesh);
-        pairs.update_bounds({start, start}, {.margin = 0.005, .max_path = 0.0});
-        limited = end;
-        return limit_motion({.connected = connected(), .start = start}, pairs, limited);
-    }
-
-    CcdReport resolve(std::vector<Vec3> &resolved) const {
-        PairCache pairs(mesh);
-        resolved = end;
-        return resolve_impact_zones({.connected = connected(),
-                                     .start = start,
-                                     .mass = View<double>(mass),
-                                     .advect = [](int, const Vec3 &point) { return point; }},
-                                    pairs, resolved);
-    }
-
-    // Limits a move; then every third strand is shortened further, and the rest of the move is limited again.
-    CcdReport limit_and_shorten(std::vector<Vec3> &limited) const {
-        PairCache pairs(mesh);
-        pairs.update_bounds({start, end}, {.margin = 0.0005, .max_path = 0.1});
-        limited = end;
-        limit_motion({.connected = connected(), .start = start}, pairs, limited);
-        std::vector<unsigned char> changed(start.size(), 0);
-        for (size_t v = 0; v < start.size(); ++v)
-            if (mesh.object[v] % 3 == 0) {
-                changed[v] = 1;
-                limited[v] = start[v] + 0.3 * (limited[v] - start[v]);
-            }
-        return limit_motion({.connected = connected(), .start = start, .whole_strands = true, .changed = changed}, pairs,
-                            limited);
-    }
-
-    // Whether any pair has an impact, asked of all pairs.
-    bool has_impacts(const std::vector<Vec3> &to) const {
-        PairCache all(mesh);
-        all.begin_move({start, to});
-        return !find_impacts(mesh, all.impact_candidates(), start, to).empty();
-    }
-
-    // The least distance of any two strands on the way, by dense sampling.
-    double closest(const std::vector<Vec3> &to) const {
-        double least = 1.0;
-        std::vector<Vec3> now(start.size());
-        for (int step = 0; step <= 400; ++step) {
-            for (size_t v = 0; v < start.size(); ++v) now[v] = start[v] + (step / 400.0) * (to[v] - start[v]);
-            for (size_t a = 0; a < mesh.edges.size(); ++a)
-                for (size_t b = 0; b < a; ++b)
-                    if (!share_vertex(mesh.edges[a], mesh.edges[b]))
-                        least = std::min(least, std::sqrt(closest_points(now, mesh.edges[a], mesh.edges[b]).distance2));
-        }
-        return least;
-    }
-
-    // Of what every pair keeps on the way, the least relative to what it is to keep.
-    double least_kept(const std::vector<Vec3> &to) const {
-        double least = 1e9;
-        std::vector<Vec3> now(start.size());
-        for (int step = 0; step <= 100; ++step) {
-            for (size_t v = 0; v < start.size(); ++v) now[v] = start[v] + (step / 100.0) * (to[v] - start[v]);
-            for (const auto &a : mesh.edges)
-                for (const auto &b : mesh.edges) {
-                    if (share_vertex(a, b)) continue;
-                    const double first = std::sqrt(closest_points(start, a, b).distance2);
-                    const double kept = std::min(0.5 * activation_distance(mesh, a, b), 0.2 * first);
-                    least = std::min(least, std::sqrt(closest_points(now, a, b).distance2) / kept);
-                }
-        }
-        return least;
-    }
-};
 
 } // namespace
 
@@ -235,84 +125,6 @@ BOOST_AUTO_TEST_CASE(edges_that_touch_at_held_ends_are_no_stiffer_than_their_oth
         BOOST_REQUIRE(contacts.contacts().size() == 1u);
         BOOST_TEST(contacts.contacts()[0].stiffness == 2.0, boost::test_tools::tolerance(1e-12));
     }
-}
-
-BOOST_AUTO_TEST_CASE(a_filtered_move_keeps_of_every_distance_half_of_contact_or_a_fifth) {
-    int violations = 0;
-    for (unsigned seed = 0; seed < 20; ++seed)
-        for (const bool still : {true, false}) {
-            const Crowd crowd(12, 0.02, 0.03, seed);
-            if (crowd.closest(crowd.start) < 1e-5) continue;
-            std::vector<Vec3> filtered;
-            const CcdReport report = still ? crowd.limit(filtered) : crowd.resolve(filtered);
-            violations += report.impacts;
-            BOOST_TEST(crowd.closest(filtered) > 1e-6);
-            BOOST_TEST(crowd.least_kept(filtered) > 1.0 - 1e-9);
-        }
-    BOOST_TEST(violations > 100);
-}
-
-// Some are held back near what they meet, and stop as a whole for others: what met is asked again until it no longer does.
-BOOST_AUTO_TEST_CASE(long_strands_that_are_in_one_another_s_way_everywhere_meet_nowhere) {
-    int violations = 0;
-    for (unsigned seed = 0; seed < 200; ++seed) {
-        const Crowd crowd(60, 0.02, 0.01, seed, 30);
-        std::vector<Vec3> filtered;
-        violations += crowd.limit(filtered).impacts;
-        BOOST_TEST(!crowd.has_impacts(filtered), "crowd " << seed);
-    }
-    BOOST_TEST(violations > 10000);
-}
-
-BOOST_AUTO_TEST_CASE(strands_that_go_less_far_than_they_were_let_meet_nothing_either) {
-    int violations = 0;
-    for (unsigned seed = 0; seed < 50; ++seed) {
-        const Crowd crowd(60, 0.02, 0.01, seed, 30);
-        std::vector<Vec3> filtered;
-        violations += crowd.limit_and_shorten(filtered).impacts;
-        BOOST_TEST(!crowd.has_impacts(filtered), "crowd " << seed);
-    }
-    BOOST_TEST(violations > 100);
-}
-
-BOOST_AUTO_TEST_CASE(a_move_that_meets_nothing_is_left_alone) {
-    const Crowd crowd(1, 0.02, 0.03, 3);
-    std::vector<Vec3> filtered;
-    BOOST_TEST(crowd.limit(filtered).impacts == 0);
-    BOOST_TEST((filtered == crowd.end));
-}
-
-// Strands in a row, 4 mm apart, that are drawn together towards the first, which stays: every one is in the way of the next.
-BOOST_AUTO_TEST_CASE(a_chain_of_strands_stops_in_one_round) {
-    constexpr int strands = 20;
-    Crowd crowd(strands, 0.02, 0.03, 0);
-    for (int v = 0; v < 3 * strands; ++v) {
-        const int strand = v / 3;
-        crowd.start[v] = crowd.mesh.rest[v] = {4e-3 * strand, 0.01 * (v % 3), 1e-4 * strand};
-        crowd.end[v] = crowd.start[v] - Vec3(4.5e-3 * strand, 0.0, 0.0);
-    }
-    std::vector<Vec3> filtered;
-    const CcdReport report = crowd.limit(filtered);
-    BOOST_TEST(report.impacts >= strands - 1);
-    BOOST_TEST(report.rounds == 1);
-    BOOST_TEST(report.fraction == 1.0);
-    BOOST_TEST(crowd.least_kept(filtered) > 1.0 - 1e-9);
-    const double part = (filtered[3] - crowd.start[3]).norm() / 4.5e-3;
-    BOOST_TEST(part > 0.6);
-    for (int v = 3; v < 3 * strands; ++v) // each as a whole, and all the same part of their ways
-        BOOST_TEST((filtered[v] - crowd.start[v] - part * (crowd.end[v] - crowd.start[v])).norm() < 1e-12);
-}
-
-BOOST_AUTO_TEST_CASE(only_relative_motion_is_filtered) {
-    Crowd crowd(12, 0.02, 0.03, 5);
-    std::vector<Vec3> filtered, filtered_flying;
-    const CcdReport report = crowd.resolve(filtered);
-    const Vec3 flight(100.0 / 24, 0.0, 0.0);
-    for (Vec3 &place : crowd.end) place += flight;
-    const CcdReport flying = crowd.resolve(filtered_flying);
-    BOOST_TEST(report.impacts > 0);
-    BOOST_TEST(report.impacts == flying.impacts);
-    for (size_t v = 0; v < filtered.size(); ++v) BOOST_TEST((filtered_flying[v] - flight - filtered[v]).norm() < 1e-8);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

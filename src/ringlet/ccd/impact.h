@@ -30,7 +30,7 @@ double truncate_before_first(const std::vector<Impact> &impacts, View<Vec3> star
 // What limit_motion() and resolve_impact_zones() did.
 struct CcdReport {
     int candidates = 0;         // pairs in the cache
-    int impacts = 0;            // of the move as it was asked for
+    int impacts = 0;            // of the move before any correction
     int corrected_vertices = 0; // moving vertices with an impact in any round
     int rounds = 0;
     double fraction = 1.0; // of the move that everything makes; below 1 where no correction was found

@@ -76,7 +76,7 @@ CcdReport resolve_impact_zones(const ImpactZonesInput &input, PairCache &pairs, 
         if (report.rounds == 0) report.candidates = pairs.size(), report.impacts = count;
         if (impacts.empty()) break;
         mark_vertices(mesh, impacts, corrected);
-        const bool hopeless = report.rounds >= input.hopeful_rounds && ccd::impacts_per_remaining * count > report.impacts;
+        const bool hopeless = report.rounds >= input.hopeful_rounds && ccd::hopeful_reduction * count > report.impacts;
         if (hopeless || report.rounds >= ccd::max_zone_rounds) {
             report.fraction = truncate_before_first(impacts, input.start, end);
             pairs.begin_rigid_move({input.start, end}, input.rigid_motion, rigid);

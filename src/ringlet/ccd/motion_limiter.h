@@ -26,13 +26,13 @@ CcdReport limit_motion(const LimitMotionInput &input, PairCache &pairs, std::vec
 
 // One move of limit_motion(). The strands of an impact are scaled to its time, and one that then hits a strand with a smaller
 // fraction takes that fraction. Such chains are resolved within a round, event by event, the smallest fraction first. After
-// some rounds what still has an impact stays, and two that stay have none.
+// some rounds strands with an impact rest, and two that rest have none.
 class MotionLimiter {
 public:
     // `pairs` has begun the move from `input.start` to `end`, which is changed.
     MotionLimiter(const LimitMotionInput &input, PairCache &pairs, std::vector<Vec3> &end);
 
-    void resolve(const std::vector<Impact> &impacts);                      // of what the last round changed
+    void resolve(const std::vector<Impact> &impacts);                      // among the vertices that the last round changed
     const std::vector<unsigned char> &changed() const { return changed_; } // vertices, in the last round
 
 private:

@@ -1,19 +1,22 @@
 // Constants that decide what continuous collision detection returns. Without a unit they are fractions or counts.
 #pragma once
 
+#include "ringlet/collision/settings.h"
+
 #include <algorithm>
 
 namespace ringlet::ccd {
 
 // Additive conservative advancement (time_of_impact.h), as fractions of gap − minimum separation.
-inline constexpr double advancement_rest = 0.1;     // what one advancement leaves
-inline constexpr double convergence = 0.01;         // where it stops, of the value at the start
-inline constexpr double zero_distance = 1e-100;     // [m]; below it a pair has no separating direction
-inline constexpr int max_advancements = 200;        // per pair
-inline constexpr double separation_of_d_hat = 0.5;  // minimum separation at most, of the activation distance
+inline constexpr double advancement_rest = 0.1; // left by one advancement
+inline constexpr double convergence = 0.01;     // where it stops, of the value at the start
+inline constexpr double zero_distance = 1e-100; // [m]; below it a pair has no separating direction
+inline constexpr int max_advancements = 200;    // per pair
+inline constexpr double separation_of_d_hat =
+    collision::impact_distance;                     // minimum separation at most, of the activation distance
 inline constexpr double separation_of_gap = 0.2;    // and of the gap at the start
 inline constexpr double d_hat_per_separation = 250; // but not less than the activation distance divided by this
-inline constexpr double separation_limit = 0.9;     // nor more than this part of the gap at the start
+inline constexpr double separation_limit = 0.9;     // and not more than this fraction of the gap at the start
 
 // Both resolution loops.
 inline constexpr double max_strain = 0.05;         // that spreading a correction puts into an edge
@@ -28,8 +31,8 @@ inline constexpr double hardly_moves = 0.2;   // a strand that keeps no more of 
 
 // resolve_impact_zones
 inline constexpr int max_zone_rounds = 16;
-inline constexpr int own_motion_rounds = 3;      // in which zones keep their own motion up to the impact
-inline constexpr int impacts_per_remaining = 10; // resolution is hopeless while more than one impact in ten remains
+inline constexpr int own_motion_rounds = 3;  // in which zones keep their own motion up to the impact
+inline constexpr int hopeful_reduction = 10; // factor by which the impacts must have decreased after the hopeful rounds
 
 // Least distance [m] that a pair keeps on a move which it begins at a distance of `gap`.
 inline double min_separation(double d_hat, double gap) {

@@ -1,10 +1,10 @@
 // The time of impact of two moving primitives by additive conservative advancement (Mirtich 1996; Li et al. 2021, section 4.2).
 //
-// For any unit vector n, the distance at time t is at least min over (i, j) of n·(x_i − x_j) + t n·(p_i − p_j), with vertices i
-// of one primitive and j of the other. This is the gap of their projections onto n. Each advancement takes n between the
-// closest points and moves t to where this bound leaves a tenth of the distance that may close. The bound holds for every n, so
-// rounding in the closest points is harmless. Only differences of displacements occur, so a motion that all vertices share has
-// no effect.
+// For any unit vector n and time t, the distance is at least the minimum over (i, j) of n·(x_i − x_j) + t n·(p_i − p_j).
+// Vertices i are of one primitive and j of the other, so this is the gap of their projections onto n. Each advancement takes n
+// between the closest points and moves t to where this bound leaves a tenth of the distance that may close. The bound holds for
+// every n, so rounding in the closest points is harmless. Only differences of displacements occur, so a shared motion has no
+// effect.
 #pragma once
 
 #include "ringlet/ccd/settings.h"

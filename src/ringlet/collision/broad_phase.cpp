@@ -82,17 +82,20 @@ BroadPhase::BroadPhase(const CollisionMesh &mesh) : mesh_(mesh), incidence_(mesh
     }
 }
 
+template <class Work> void BroadPhase::for_trees(const Work &work) {
+    work(edge_tree_, mesh_.edges, [](const SweptBoxes &boxes, int i) { return boxes.of_edge(i); });
+    work(point_tree_, points_, [&](const SweptBoxes &boxes, int i) { return boxes.of_vertex(points_[i][0]); });
+    work(triangle_tree_, mesh_.triangles, [](const SweptBoxes &boxes, int i) { return boxes.of_triangle(i); });
+}
+
 void BroadPhase::find(const SweptBoxes &boxes, Candidates &candidates, View<unsigned char> changed, const SweptBoxes *move) {
-    const auto fit = [&](Bvh &tree, const auto &primitives, const auto &box_of) {
+    for_trees([&](Bvh &tree, const auto &primitives, const auto &box_of) {
         tree.fit(int(primitives.size()), [&](int i) {
-            SweptBox box = box_of(primitives[i], i);
+            SweptBox box = box_of(boxes, i);
             box.set_flags(changed.empty() || any_of(changed, primitives[i]), any_of(mesh_.moves, primitives[i]));
             return box;
         });
-    };
-    fit(edge_tree_, mesh_.edges, [&](const auto &, int i) { return boxes.of_edge(i); });
-    fit(point_tree_, points_, [&](const auto &point, int) { return boxes.of_vertex(point[0]); });
-    fit(triangle_tree_, mesh_.triangles, [&](const auto &, int i) { return boxes.of_triangle(i); });
+    });
     search_all(boxes, candidates, move);
     unbounded_.assign(mesh_.moves.size(), 0);
 }
@@ -105,24 +108,22 @@ void BroadPhase::find_escaped(const SweptBoxes &move, const SweptBoxes &bounds, 
         stale_[v] |= leaves || changed[v];
         unbounded_[v] = leaves;
     }
-    for (Bvh *tree : {&edge_tree_, &point_tree_, &triangle_tree_}) tree->deactivate();
     const MeshSubset stale(mesh_, incidence_, stale_);
-    const auto refit = [&](Bvh &tree, const std::vector<int> &some, const auto &primitives, const auto &box_of) {
-        if (primitives.empty()) return;
-        tree.refit(some, [&](int i) {
-            SweptBox box = box_of(any_of(escaped, primitives[i]) ? move : bounds, primitives[i], i);
-            box.set_flags(any_of(changed, primitives[i]), any_of(mesh_.moves, primitives[i]));
-            return box;
-        });
-    };
-    refit(edge_tree_, stale.edges, mesh_.edges, [](const SweptBoxes &boxes, const auto &, int i) { return boxes.of_edge(i); });
     std::vector<int> points;
     for (const int v : stale.vertices)
         if (point_of_[v] >= 0) points.push_back(point_of_[v]);
-    refit(point_tree_, points, points_,
-          [](const SweptBoxes &boxes, const auto &point, int) { return boxes.of_vertex(point[0]); });
-    refit(triangle_tree_, stale.triangles, mesh_.triangles,
-          [](const SweptBoxes &boxes, const auto &, int i) { return boxes.of_triangle(i); });
+    for_trees([&](Bvh &tree, const auto &primitives, const auto &box_of) {
+        tree.deactivate();
+        if (primitives.empty()) return;
+        tree.refit(&tree == &edge_tree_    ? stale.edges
+                   : &tree == &point_tree_ ? points
+                                           : stale.triangles,
+                   [&](int i) {
+                       SweptBox box = box_of(any_of(escaped, primitives[i]) ? move : bounds, i);
+                       box.set_flags(any_of(changed, primitives[i]), any_of(mesh_.moves, primitives[i]));
+                       return box;
+                   });
+    });
     search_all(move, candidates);
     const auto neither = [&](const auto &a, const auto &b) { return !any_of(escaped, a) && !any_of(escaped, b); };
     std::erase_if(candidates.edge_edge, [&](const Pair &pair) { return neither(mesh_.edges[pair[0]], mesh_.edges[pair[1]]); });

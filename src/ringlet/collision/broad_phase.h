@@ -16,7 +16,7 @@ struct Candidates {                                 // in ascending order, each 
 };
 
 // Candidates are the same for any number of threads and any earlier queries. Left out are pairs that share a vertex, pairs that
-// are kinematic, and what is anchored against its anchor. Borrows the mesh, which must outlive it.
+// are kinematic, and primitives with the object that they are anchored to. Borrows the mesh, which must outlive it.
 class BroadPhase {
 public:
     explicit BroadPhase(const CollisionMesh &mesh);
@@ -39,6 +39,8 @@ public:
 private:
     using Pairs = std::vector<std::array<int, 2>>;
 
+    // Calls work(tree, primitives, box_of) for edges, points and triangles, with box_of(boxes, i).
+    template <class Work> void for_trees(const Work &work);
     void search_all(const SweptBoxes &boxes, Candidates &candidates, const SweptBoxes *move = nullptr);
     template <class A, class B>
     void search(const Bvh &tree_a, const A &all_a, const Bvh &tree_b, const B &all_b, const SweptBoxes &boxes,

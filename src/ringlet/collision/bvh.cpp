@@ -58,7 +58,7 @@ void Bvh::refit_above(std::vector<int> &nodes) {
     }
 }
 
-// The sum of the sizes of all leaves at the start, which grows as neighbours move apart [m].
+// The sum of the sizes of all leaves at the start, which grows as neighbours separate [m].
 double Bvh::leaf_extent() const {
     double sum = 0.0;
     for (int leaf = first_leaf_; leaf < first_leaf_ + leaves() && leaf > 0; ++leaf) {

@@ -1,4 +1,4 @@
-// A bounding volume hierarchy of swept AABBs: built once, then refitted as things move.
+// A bounding volume hierarchy of swept AABBs: built once, then refitted as vertices move.
 #pragma once
 
 #include "ringlet/collision/swept_box.h"

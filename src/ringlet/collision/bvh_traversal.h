@@ -42,7 +42,7 @@ struct Traversal {
     NodePair nodes[room], boxes[room];
 };
 
-// Visits pairs of nodes until none is left, there might be no room for more, or `max_visits` are made.
+// Visits pairs of nodes until none is left, the buffers might overflow, or `max_visits` are made.
 RINGLET_DECLARE(void traverse(Traversal &traversal, int max_visits);)
 
 } // namespace ringlet

@@ -42,7 +42,7 @@ Floats ignored(const BoxQuad &a, const BoxQuad &b, int chunk) {
     return greater(of_first(a.active, chunk) + of_second(b.active), of_first(a.moves, chunk) + of_second(b.moves));
 }
 
-// Pairs that overlap along each axis at some time; what they hold may still never meet.
+// Pairs that overlap along each axis at some time, perhaps at different ones.
 unsigned may_overlap(const BoxQuad &a, const EndQuad &end_a, const BoxQuad &b, const EndQuad &end_b) {
     unsigned which = 0;
     for (int chunk = 0; chunk < chunks; ++chunk) {

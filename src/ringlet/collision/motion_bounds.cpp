@@ -5,7 +5,7 @@
 namespace ringlet {
 namespace {
 
-// The corners of the part of a vertex's path that its bound encloses.
+// The corners of the section of a vertex's path that its bound encloses.
 std::array<Vec3, 3> enclosed(const Move &move, double max_path, int v) {
     const Vec3 &start = move.start[v], &end = move.end[v], &apex = move.apex.empty() ? end : move.apex[v];
     const bool is_long = std::max((end - start).squaredNorm(), (apex - start).squaredNorm()) > max_path * max_path;

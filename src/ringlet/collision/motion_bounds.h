@@ -22,7 +22,7 @@ public:
     struct Fit {
         double margin, max_path;
     };
-    // The vertices whose part of the move that fit() encloses is not inside their bounds grown by `slack` on each side [m].
+    // The vertices whose section of the move that fit() encloses is not inside their bounds grown by `slack` on each side [m].
     std::vector<int> outside(const Move &move, double max_path, double slack) const;
     void fit(const Move &move, const Fit &how);                                   // of all vertices
     void fit(const Move &move, const Fit &how, const std::vector<int> &vertices); // of some

@@ -95,7 +95,7 @@ void PairCache::begin_move(const Move &move) {
     reachable_ = collect_ranges<CandidatePair *>(int(cached_.size()), [&](int begin, int end, auto &kept) {
         PairCuller<CandidatePair> culler(boxes_, Motion::in_triangles, kept);
         for (int k = begin; k < end; ++k)
-            if (CandidatePair &pair = cached_[k]; !escaped(pair) && may_touch(pair)) {
+            if (CandidatePair &pair = cached_[k]; !escaped(pair) && may_contact(pair)) {
                 const bool culled = state_ == State::OneMove && pair.edge_edge; // when it was found
                 culled ? kept.push_back(&pair) : culler.add(pair);
             }
@@ -154,7 +154,7 @@ std::vector<ContactPair> PairCache::contact_pairs(View<Vec3> positions) {
         return collect_ranges<ContactPair>(int(count), [&](int begin, int end, std::vector<ContactPair> &found) {
             NarrowPhase<CandidatePair, decltype(raise)> narrow_phase(mesh_, positions, raise, found);
             for (int k = begin; k < end; ++k)
-                if (CandidatePair &pair = pair_of(k); may_touch(pair)) narrow_phase.add(pair);
+                if (CandidatePair &pair = pair_of(k); may_contact(pair)) narrow_phase.add(pair);
         });
     };
     std::vector<ContactPair> all = find(reachable_.size(), [&](int k) -> CandidatePair & { return *reachable_[k]; });
@@ -164,7 +164,7 @@ std::vector<ContactPair> PairCache::contact_pairs(View<Vec3> positions) {
 
 ReachablePairs PairCache::reachable_pairs(View<unsigned char> objects) const {
     const auto consider = [&](const CandidatePair &pair, ReachablePairs &found) {
-        if (may_touch(pair) && any_marked(pair, objects))
+        if (may_contact(pair) && any_marked(pair, objects))
             found.push_back({pair, pair.object, pair.min_gap - pair.d_hat, paths_.lengths(pair)});
     };
     ReachablePairs all =

@@ -3,8 +3,8 @@
 
 #include "ringlet/collision/broad_phase.h"
 #include "ringlet/collision/motion_bounds.h"
+#include "ringlet/collision/narrow_phase.h"
 #include "ringlet/collision/primitive_paths.h"
-#include "ringlet/collision/reachable_pairs.h"
 #include "ringlet/collision/rigid_advection.h"
 
 #include <vector>
@@ -41,7 +41,7 @@ public:
     void update_move(const Move &move, View<unsigned char> changed);
     void commit_move(View<Vec3> start, View<Vec3> end); // or any fraction of the move
 
-    // The same for a move that nearly follows one rigid motion: only what deviates from it needs a search. Vertices with one
+    // The same for a move that nearly follows one rigid motion: only deviating vertices need a search. Vertices with one
     // number ≥ 0 in `rigid` share an affine motion. Updates may lead anywhere.
     void begin_rigid_move(const Move &move, const RigidMotion &motion, View<int> rigid);
     void update_rigid_move(const Move &move, const RigidMotion &motion, View<int> rigid, View<unsigned char> changed);
@@ -77,8 +77,10 @@ private:
     template <class Filter> std::vector<CandidatePair *> cull_straight(const Filter &filter) const;
     void follow(const Move &move, const RigidMotion &motion, View<int> rigid, const MeshSubset &changed);
     void add_transient_candidates();
-    bool may_touch(const CandidatePair &pair) const { return pair.min_gap - paths_.length(pair) < pair.d_hat; }
-    bool may_impact(const CandidatePair &pair) const { return pair.min_gap - paths_.length(pair) < 0.5 * pair.d_hat; }
+    bool may_contact(const CandidatePair &pair) const { return pair.min_gap - paths_.length(pair) < pair.d_hat; }
+    bool may_impact(const CandidatePair &pair) const {
+        return pair.min_gap - paths_.length(pair) < collision::impact_distance * pair.d_hat;
+    }
     bool escaped(const CandidatePair &pair) const { return bounds_.any_escaped() && paths_.escaped(pair); }
 
     const CollisionMesh &mesh_;
@@ -93,8 +95,9 @@ private:
     bool complete_ = false;
     bool boxes_searched_ = false; // on a rigid move: the broad phase holds the boxes of the move
 
-    std::vector<CandidatePair> cached_, transient_;                                // in order
-    std::vector<CandidatePair *> reachable_, path_candidates_, impact_candidates_; // reachable: cached pairs that may touch
+    std::vector<CandidatePair> cached_, transient_; // in order
+    std::vector<CandidatePair *> reachable_, path_candidates_,
+        impact_candidates_; // reachable: cached pairs that may come into contact
 };
 
 } // namespace ringlet

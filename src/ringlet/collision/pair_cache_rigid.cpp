@@ -43,7 +43,8 @@ void PairCache::follow(const Move &move, const RigidMotion &motion, View<int> ri
     if (all_rigid) return;
     impact_candidates_ = collect<CandidatePair *>(int(cached_.size()), [&](int k, auto &candidates) {
         CandidatePair &pair = cached_[k];
-        if (!escaped(pair) && paths_.changed(pair) && kept * pair.min_gap - advection_.deviation(pair) < 0.5 * pair.d_hat &&
+        if (!escaped(pair) && paths_.changed(pair) &&
+            kept * pair.min_gap - advection_.deviation(pair) < collision::impact_distance * pair.d_hat &&
             boxes_.with_boxes(pair, may_overlap))
             candidates.push_back(&pair);
     });

@@ -13,7 +13,7 @@ class RigidAdvection {
 public:
     explicit RigidAdvection(const CollisionMesh &mesh);
 
-    // Two points that move straight to where a rotation by θ leads them keep this part of their distance: cos ½θ.
+    // Two points that move straight to where a rotation by θ leads them keep this fraction of their distance: cos ½θ.
     static double kept_distance(const RigidMotion &motion);
 
     // Measures how far `changed` vertices end from where the rigid motion leads them, and adds those to the escaped ones that
@@ -32,7 +32,7 @@ public:
 
 private:
     const CollisionMesh &mesh_;
-    double least_radius_;           // of what moves [m]
+    double least_radius_;           // of moving vertices [m]
     std::vector<double> deviation_; // per vertex [m]
     double largest_ = 0.0;          // of those that follow [m]
     bool nearly_exact_ = false;

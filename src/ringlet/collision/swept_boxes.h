@@ -67,14 +67,14 @@ public:
     float rounding() const { return 2.0f * inflation_; } // largest error of a distance [m]
 
 private:
-    // Of a vertex, or the corners of a static box, in one place since pairs access them in random order.
+    // Of a vertex, or the corners of a static box, stored together since pairs access them in random order.
     struct Path {
         Eigen::Array4f start, end, apex;
     };
 
     using Four = std::array<std::array<const Path *, 4>, 4>; // ends of four pairs of edges
 
-    // Calls work with four pairs at a time and the number of the first; the last pair fills up what is missing.
+    // Calls work with four pairs at a time and the number of the first; the last pair pads the last four.
     template <class EdgesOf, class Work> void for_fours(int count, const EdgesOf &edges_of, const Work &work) const {
         for (int k = 0; k < count; k += 4) {
             Four four;

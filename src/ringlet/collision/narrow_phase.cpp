@@ -1,4 +1,4 @@
-#include "ringlet/collision/reachable_pairs.h"
+#include "ringlet/collision/narrow_phase.h"
 
 #include "ringlet/math/collect.h"
 
