@@ -21,7 +21,7 @@ BOOST_AUTO_TEST_CASE(cached_pairs_change_no_impact_and_no_contact) {
     BOOST_TEST(cached.impact_candidates().size() < size_t(cached.size()));
     BOOST_TEST(impacts(mesh, cached, scene.start, scene.end).size() > 10);
     BOOST_TEST((impacts(mesh, cached, scene.start, scene.end) == impacts(mesh, uncached, scene.start, scene.end)));
-    PairCache along_paths(mesh); // pairs noted along the way: only what goes far is quick
+    PairCache along_paths(mesh); // bounds around the paths: only vertices with long paths escape
     along_paths.update_bounds({scene.start, scene.end}, {.margin = 0.001, .max_path = 0.02});
     along_paths.begin_move({scene.start, scene.end});
     BOOST_TEST((impacts(mesh, along_paths, scene.start, scene.end) == impacts(mesh, uncached, scene.start, scene.end)));
@@ -114,7 +114,7 @@ BOOST_AUTO_TEST_CASE(pairs_cached_for_one_move_are_exact_on_it_and_serve_no_othe
         go(far, false);
         BOOST_TEST(cache.size() < lasting.size());
     }
-    go(0.01, false); // what served a move before is noted with a margin again
+    go(0.01, false); // after pairs for one move all bounds have a margin again
     BOOST_TEST(cache.size() == lasting.size());
     go(0.01, false);
     BOOST_TEST(cache.size() < lasting.size());

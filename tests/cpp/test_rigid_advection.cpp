@@ -134,7 +134,7 @@ BOOST_AUTO_TEST_CASE(an_updated_rigid_move_has_the_impacts_of_what_changed) {
 }
 
 BOOST_AUTO_TEST_CASE(a_small_deviation_is_subtracted_from_the_bound_on_the_gap) {
-    CollisionMesh mesh; // two edges, a twentieth further apart than they touch
+    CollisionMesh mesh; // two edges, a twentieth beyond their activation distance
     mesh.rest = {{0.0, 0.0, 0.0}, {0.01, 0.0, 0.0}, {0.0, 0.0015, 0.0015}, {0.01, 0.0015, 0.0015}};
     mesh.edges = {{0, 1}, {2, 3}};
     mesh.radius.assign(4, 0.001);

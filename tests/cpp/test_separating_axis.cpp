@@ -15,7 +15,7 @@ using namespace ringlet;
 BOOST_AUTO_TEST_SUITE(separating_axis)
 
 // Above all long edges, with ends at corners of their boxes or anywhere.
-BOOST_AUTO_TEST_CASE(edges_in_boxes_are_culled_only_beyond_their_reach_and_mostly_then) {
+BOOST_AUTO_TEST_CASE(culling_in_boxes_is_conservative_and_mostly_sharp) {
     std::mt19937 random(10);
     std::uniform_real_distribution<double> in(-1.0, 1.0), part(0.0, 1.0);
     const auto anywhere = [&] { return Vec3(in(random), in(random), in(random)); };
@@ -67,7 +67,7 @@ BOOST_AUTO_TEST_CASE(edges_in_boxes_are_culled_only_beyond_their_reach_and_mostl
 }
 
 // Their motions are long and nearly shared.
-BOOST_AUTO_TEST_CASE(moving_edges_are_culled_only_beyond_their_reach_and_mostly_then) {
+BOOST_AUTO_TEST_CASE(culling_on_moves_is_conservative_and_mostly_sharp) {
     std::mt19937 random(11);
     std::uniform_real_distribution<double> in(-1.0, 1.0), part(0.0, 1.0);
     const auto anywhere = [&] { return Vec3(in(random), in(random), in(random)); };

@@ -40,7 +40,7 @@ struct Chain {
 
 } // namespace
 
-BOOST_AUTO_TEST_SUITE(spread_correction_)
+BOOST_AUTO_TEST_SUITE(corrections)
 
 BOOST_AUTO_TEST_CASE(no_edge_is_strained_beyond_the_limit_and_the_weight_vanishes_far_away) {
     for (const bool cloth : {false, true}) {

@@ -9,8 +9,8 @@
 
 namespace ringlet {
 
-MotionLimiter::MotionLimiter(const LimitMotionInput &input, PairCache &pairs, std::vector<Vec3> &end)
-    : input_(input), mesh_(input.connected.mesh), end_(end), strands_(int(input.connected.strands.size()) - 1),
+MotionLimiter::MotionLimiter(const LimitMotionInput &input, PairCache &pairs, std::vector<Vec3> &end, std::vector<Vec3> *apex)
+    : input_(input), mesh_(input.connected.mesh), end_(end), apex_(apex), strands_(int(input.connected.strands.size()) - 1),
       transient_(pairs.transient_pairs()), fraction_(strands_, 1.0), changed_(end.size(), 0) {
     pairs_of_strand_ = {size_t(strands_), [&](const auto &add) {
                             const auto consider = [&](CandidatePair &pair) {
@@ -126,21 +126,21 @@ void MotionLimiter::add_event(const Impact &impact, std::vector<Event> &events) 
 void MotionLimiter::scale_motion(int v, double factor) {
     const Vec3 &start = input_.start[v];
     end_[v] = start + factor * (end_[v] - start);
-    if (input_.apex != nullptr) (*input_.apex)[v] = start + factor * ((*input_.apex)[v] - start);
+    if (apex_ != nullptr) (*apex_)[v] = start + factor * ((*apex_)[v] - start);
     mark_changed(v);
 }
 
-CcdReport limit_motion(const LimitMotionInput &input, PairCache &pairs, std::vector<Vec3> &end) {
+CcdReport limit_motion(const LimitMotionInput &input, PairCache &pairs, std::vector<Vec3> &end, std::vector<Vec3> *apex) {
     const auto &[mesh, strands, cloths, neighbours] = input.connected;
     const int max_rounds = int(strands.size() + cloths.size()) + ccd::spare_rounds;
-    const auto apex = [&] { return input.apex != nullptr ? View<Vec3>(*input.apex) : View<Vec3>(); };
+    const auto move = [&] { return Move{input.start, end, apex != nullptr ? View<Vec3>(*apex) : View<Vec3>()}; };
     CcdReport report;
     std::vector<unsigned char> corrected(end.size(), 0);
     std::optional<MotionLimiter> limiter;
     if (input.changed.empty())
-        pairs.begin_move({input.start, end, apex()});
+        pairs.begin_move(move());
     else
-        pairs.update_move({input.start, end, apex()}, input.changed);
+        pairs.update_move(move(), input.changed);
     for (;; ++report.rounds) {
         const std::vector<Impact> impacts = find_impacts(mesh, pairs.impact_candidates(), input.start, end);
         if (report.rounds == 0) report.candidates = pairs.size(), report.impacts = int(impacts.size());
@@ -148,12 +148,12 @@ CcdReport limit_motion(const LimitMotionInput &input, PairCache &pairs, std::vec
         mark_vertices(mesh, impacts, corrected);
         if (report.rounds >= max_rounds) {
             report.fraction = truncate_before_first(impacts, input.start, end);
-            pairs.begin_move({input.start, end, apex()});
+            pairs.begin_move(move());
             break;
         }
-        if (!limiter) limiter.emplace(input, pairs, end);
+        if (!limiter) limiter.emplace(input, pairs, end, apex);
         limiter->resolve(impacts);
-        pairs.update_move({input.start, end, apex()}, limiter->changed());
+        pairs.update_move(move(), limiter->changed());
     }
     report.corrected_vertices = int(std::count(corrected.begin(), corrected.end(), 1));
     return report;

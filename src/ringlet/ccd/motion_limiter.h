@@ -15,22 +15,22 @@ struct LimitMotionInput {
     bool whole_strands = false;
     // Continues the move that was limited last: vertices whose end differs since. Empty: a new move.
     View<unsigned char> changed = {};
-    // Per vertex, the apex of a curved path: until the move is committed its end may be anywhere in the triangle of start, end
-    // and apex. The apex is scaled with the end. Null: paths are straight.
-    std::vector<Vec3> *apex = nullptr;
 };
 
 // Changes `end` so that no pair has an impact while every vertex moves straight from `start` to `end`. A strand is scaled as a
 // whole, which keeps its shape, and both strands of an impact to the same fraction. Cloth is corrected locally.
-CcdReport limit_motion(const LimitMotionInput &input, PairCache &pairs, std::vector<Vec3> &end);
+// The apexes of curved paths, if given, are scaled with `end`: until the move is committed an end may be updated to anywhere in
+// the triangle of start, end and apex.
+CcdReport limit_motion(const LimitMotionInput &input, PairCache &pairs, std::vector<Vec3> &end,
+                       std::vector<Vec3> *apex = nullptr);
 
 // One move of limit_motion(). The strands of an impact are scaled to its time, and one that then hits a strand with a smaller
 // fraction takes that fraction. Such chains are resolved within a round, event by event, the smallest fraction first. After
 // some rounds strands with an impact rest, and two that rest have none.
 class MotionLimiter {
 public:
-    // `pairs` has begun the move from `input.start` to `end`, which is changed.
-    MotionLimiter(const LimitMotionInput &input, PairCache &pairs, std::vector<Vec3> &end);
+    // `pairs` has begun the move from `input.start` to `end`, which is changed, as is `apex`.
+    MotionLimiter(const LimitMotionInput &input, PairCache &pairs, std::vector<Vec3> &end, std::vector<Vec3> *apex);
 
     void resolve(const std::vector<Impact> &impacts);                      // among the vertices that the last round changed
     const std::vector<unsigned char> &changed() const { return changed_; } // vertices, in the last round
@@ -63,6 +63,7 @@ private:
     const LimitMotionInput &input_;
     const CollisionMesh &mesh_;
     std::vector<Vec3> &end_;
+    std::vector<Vec3> *apex_; // null: paths are straight
     int strands_, round_ = 0;
     std::vector<CandidatePair> transient_;   // as in the first round; later rounds change those of the cache
     Lists<CandidatePair *> pairs_of_strand_; // pairs with another strand that may close on their paths

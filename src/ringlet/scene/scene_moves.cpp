@@ -31,12 +31,9 @@ double Scene::Parts::limit(View<Vec3> now, std::vector<Vec3> &to, const LimitedM
         if (!known) near.update_bounds({now, to, apex}, {.margin = margin, .max_path = far, .lasting = move.lasting});
         if (stays) return 1.0;
     }
-    const CcdReport limited = limit_motion({.connected = connected(),
-                                            .start = now,
-                                            .whole_strands = move.whole_strands,
-                                            .changed = move.changed,
-                                            .apex = move.apex},
-                                           near, to);
+    const CcdReport limited =
+        limit_motion({.connected = connected(), .start = now, .whole_strands = move.whole_strands, .changed = move.changed},
+                     near, to, move.apex);
     add(report, limited);
     return limited.fraction;
 }

@@ -25,7 +25,7 @@ private:
     std::chrono::steady_clock::time_point start_;
 };
 
-// What limit() is told of a move on which nothing kinematic moves; the first three as LimitMotionInput has them.
+// What limit() is told of a move on which nothing kinematic moves; the first three as limit_motion() has them.
 struct LimitedMove {
     bool whole_strands = false;
     View<unsigned char> changed = {};
