@@ -137,8 +137,7 @@ struct SpringScene {
         blocks = std::make_unique<BlockSet>(all, table);
         objective = std::make_unique<Objective>(*blocks, table);
         system = std::make_unique<LinearSystem>(*objective);
-        configuration = std::make_unique<Configuration>(
-            table, Connectivity{no_strands, no_cloths, neighbours(table.mesh, no_cloths[0], no_cloths[1])}, positions, radius);
+        configuration = std::make_unique<Configuration>(table, no_strands, no_cloths, positions, radius);
         stiffness = std::make_unique<ContactStiffness>(table.count());
     }
 
@@ -155,9 +154,10 @@ struct SpringScene {
     }
 
     // The pairs that touch at the positions.
-    std::vector<Touch> touching() {
-        configuration->pairs.note(configuration->positions, configuration->positions, 0.0, 0.0);
-        return configuration->pairs.touching(configuration->positions);
+    std::vector<ContactPair> touching() {
+        configuration->pairs.update_bounds({configuration->positions, configuration->positions},
+                                           {.margin = 0.0, .max_path = 0.0});
+        return configuration->pairs.contact_pairs(configuration->positions);
     }
 
     SolverEffort step(double dt, const Vec3 &gravity = Vec3::Zero(), int iterations = 50) {
@@ -166,7 +166,7 @@ struct SpringScene {
         AlignedVector x = unknowns();
         Refinement refinement(*objective);
         SceneReport report;
-        Move stay{start, {}};
+        PlannedMove stay{start, {}};
         configuration->limit(stay, {}, report);
         Newton newton(table, *objective, *system, *configuration, *stiffness);
         const SolverEffort effort =

@@ -1,22 +1,16 @@
 // Contacts: barrier, friction, and the stiffness of a pair.
-#include "ringlet/collision/near_pairs.h"
+#include "random.h"
+#include "ringlet/collision/pair_cache.h"
 #include "ringlet/contact/contact_set.h"
 
 #include <boost/test/unit_test.hpp>
 
 #include <Eigen/Eigenvalues>
 #include <limits>
-#include <random>
 
 using namespace ringlet;
 
 namespace {
-
-struct Random {
-    std::mt19937 engine{7};
-    double operator()(double low, double high) { return std::uniform_real_distribution<>(low, high)(engine); }
-    Vec3 vector(double size) { return {(*this)(-size, size), (*this)(-size, size), (*this)(-size, size)}; }
-};
 
 Contact some_contact(Random &random) {
     Contact contact{};
@@ -125,10 +119,10 @@ BOOST_AUTO_TEST_CASE(edges_that_touch_at_prescribed_ends_are_no_stiffer_than_the
     for (const double turned : {0.0, 1e-6, 1e-3}) {
         const std::vector<Vec3> now = {{0, 0, 0}, {0.01, 0, 0}, {turned, -turned, 1e-3}, {turned, 0.01, 1e-3}};
         mesh.rest = now;
-        NearPairs near(mesh);
-        near.note(now, now, 1e-3, 0.1);
+        PairCache pairs(mesh);
+        pairs.update_bounds({now, now}, {.margin = 1e-3, .max_path = 0.1});
         ContactSet contacts;
-        contacts.find(mesh, material, near.touching(now), now, now);
+        contacts.find(mesh, material, pairs.contact_pairs(now), now, now);
         BOOST_REQUIRE(contacts.contacts().size() == 1u);
         BOOST_TEST(contacts.contacts()[0].stiffness == 2.0, boost::test_tools::tolerance(1e-12));
     }

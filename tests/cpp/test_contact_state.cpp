@@ -32,7 +32,7 @@ BOOST_AUTO_TEST_CASE(a_vertex_is_as_stiff_as_its_load_asks_for) {
 }
 
 BOOST_AUTO_TEST_CASE(an_initial_overlap_pushes_only_as_far_as_its_activation_distance_has_grown) {
-    const Touch pair{{0, 1}, true, 1e-3, {}};
+    const ContactPair pair{{{0, 1}, true, 1e-3}, {}};
     InitialOverlaps overlaps;
     overlaps.add(contact_name(pair), 4e-4, 0.0);
     BOOST_TEST(overlaps.find(pair)->activation == 4e-4); // no force where it begins
@@ -45,7 +45,7 @@ BOOST_AUTO_TEST_CASE(an_initial_overlap_pushes_only_as_far_as_its_activation_dis
 BOOST_AUTO_TEST_CASE(an_overlap_that_stays_bears_its_force_at_any_stiffness) {
     CollisionMesh mesh;
     mesh.edges = {{0, 1}, {2, 3}};
-    const Touch pair{{0, 1}, true, 1e-3, {{0.5, 0.5, -0.5, -0.5}, 1e-8}};
+    const ContactPair pair{{{0, 1}, true, 1e-3}, {{0.5, 0.5, -0.5, -0.5}, 1e-8}};
     for (const double stiffness : {1.0, 10.0, 1e4}) {
         InitialOverlaps overlaps;
         overlaps.add(contact_name(pair), 1e-4, 2e-4);

@@ -85,7 +85,7 @@ BOOST_AUTO_TEST_CASE(the_models_of_the_contact_energy_agree_where_contacts_were_
     const std::vector<unsigned char> all(4, 1);
     std::vector<double> known, exact, linearised;
     scene.objective->energies_at_linearisation(known);
-    const PairsInReach pairs = scene.configuration->pairs.in_reach(scene.blocks->active_objects());
+    const ReachablePairs pairs = scene.configuration->pairs.reachable_pairs(scene.blocks->active_objects());
     scene.objective->exact_energies(x, pairs, std::vector<double>(4, 0.0), all, exact);
     scene.objective->linearised_energies_at_linearisation({}, linearised);
     for (int object = 0; object < 4; ++object) {
@@ -159,7 +159,7 @@ BOOST_AUTO_TEST_CASE(the_line_search_shortens_a_cluster_and_leaves_the_others_al
     scene.system->solve({.tolerance = 1e-10}, path.straight);
     for (size_t i = 0; i < 18; ++i) path.straight[i] *= 3.0; // the cluster overshoots: its energy would rise
     AlignedVector to = x.copy();
-    ExactModel model(*scene.objective, scene.configuration->pairs.in_reach(scene.blocks->active_objects()));
+    ExactModel model(*scene.objective, scene.configuration->pairs.reachable_pairs(scene.blocks->active_objects()));
     const LineSearchResult found = line_search(*scene.objective, model, path, std::vector<unsigned char>(4, 0), to);
     BOOST_TEST(found.moved);
     BOOST_TEST(found.cuts > 0);

@@ -28,7 +28,7 @@ struct Contact {
     double lagged_force = 0.0;    // N [N]
     uint64_t pair = 0;            // name of the pair of primitives, and of the place on it
 
-    bool of_edges() const { return first == 2; }
+    bool edge_edge() const { return first == 2; }
 };
 
 // Energy of a contact with its derivatives by the separation; the Hessian is positive semi-definite.

@@ -1,6 +1,6 @@
 #include "ringlet/contact/contact_set.h"
 
-#include "ringlet/collision/collect.h"
+#include "ringlet/math/collect.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -24,8 +24,8 @@ void for_known(const std::vector<Known> &before, std::vector<Found> &found, cons
 }
 
 // The contact of a pair at one of its points, but for what depends on the activation distance.
-Contact contact_at(const CollisionMesh &mesh, const ContactMaterial &material, const Touch &pair, const ContactPoint &point,
-                   View<Vec3> positions) {
+Contact contact_at(const CollisionMesh &mesh, const ContactMaterial &material, const ContactPair &pair,
+                   const ContactPoint &point, View<Vec3> positions) {
     const Stencil at = stencil(mesh, pair, point.closest);
     Contact contact{};
     contact.vertex = at.vertex, contact.weight = at.weight, contact.first = at.first;
@@ -55,14 +55,14 @@ void resume_slip(const FrictionState &before, Contact &contact) {
 
 } // namespace
 
-void ContactSet::begin(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<Touch> &touching,
+void ContactSet::begin(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<ContactPair> &touching,
                        View<InitialForce> initial, View<Vec3> positions) {
     std::map<std::array<int, 4>, Vec3> forces;
     for (const InitialForce &of : initial) forces[of.vertex] = of.force;
     overlaps.clear(), lagged_.clear(), friction_.clear();
-    for (const Touch &pair : touching) {
-        const double gap = std::sqrt(pair.nearest.distance2);
-        const auto force = forces.find(stencil(mesh, pair, pair.nearest).vertex);
+    for (const ContactPair &pair : touching) {
+        const double gap = std::sqrt(pair.closest.distance2);
+        const auto force = forces.find(stencil(mesh, pair, pair.closest).vertex);
         const bool bears = force != forces.end() && gap > 0.0 && force->second[0] > 0.0;
         overlaps.add(contact_name(pair), gap, bears ? force->second[0] : 0.0);
         if (!bears) continue;
@@ -85,11 +85,12 @@ void ContactSet::commit_friction(View<Vec3> positions) {
 
 // Calls work(point, gap, activation distance, barrier end, loaded fraction) for the points of a pair that push.
 template <class Work>
-void ContactSet::for_active_points(const CollisionMesh &mesh, const Touch &pair, View<Vec3> positions, const Work &work) const {
-    double d_hat = pair.distance, loaded = 1.0;
+void ContactSet::for_active_points(const CollisionMesh &mesh, const ContactPair &pair, View<Vec3> positions,
+                                   const Work &work) const {
+    double d_hat = pair.d_hat, loaded = 1.0;
     if (const InitialOverlap *overlap = overlaps.find(pair)) {
         d_hat = std::min(d_hat, overlap->activation);
-        if (overlap->force > 0.0) loaded = std::max(1.0 - overlap->gap / pair.distance, least_loaded_fraction);
+        if (overlap->force > 0.0) loaded = std::max(1.0 - overlap->gap / pair.d_hat, least_loaded_fraction);
     }
     const bool by_planes = with_vertices(mesh, pair, [&](const auto &a, const auto &b) {
         return uses_planes(mesh.object[a[0]]) || uses_planes(mesh.object[b[0]]);
@@ -98,13 +99,14 @@ void ContactSet::for_active_points(const CollisionMesh &mesh, const Touch &pair,
         const double gap = std::sqrt(point.closest.distance2);
         if (!(gap > 0.0 && gap < d_hat)) return;
         double barrier_end = d_hat / 100;
-        if (by_planes) barrier_end = std::min(std::clamp(0.25 * gap, barrier_end, pair.distance / 64), d_hat / 64);
+        if (by_planes) barrier_end = std::min(std::clamp(0.25 * gap, barrier_end, pair.d_hat / 64), d_hat / 64);
         work(point, gap, d_hat, barrier_end, loaded);
     });
 }
 
 std::vector<Contact> ContactSet::linearise(const CollisionMesh &mesh, const ContactMaterial &material,
-                                           const std::vector<Touch> &touching, View<Vec3> start, View<Vec3> positions) const {
+                                           const std::vector<ContactPair> &touching, View<Vec3> start,
+                                           View<Vec3> positions) const {
     std::vector<Contact> found = collect<Contact>(int(touching.size()), [&](int k, std::vector<Contact> &contacts) {
         for_active_points(mesh, touching[k], positions,
                           [&](const ContactPoint &point, double gap, double d_hat, double barrier_end, double loaded) {
@@ -123,9 +125,9 @@ std::vector<Contact> ContactSet::linearise(const CollisionMesh &mesh, const Cont
 }
 
 std::vector<PairEnergy> ContactSet::energies(const CollisionMesh &mesh, const ContactMaterial &material,
-                                             const std::vector<Touch> &touching, View<Vec3> positions) const {
+                                             const std::vector<ContactPair> &touching, View<Vec3> positions) const {
     std::vector<PairEnergy> found = collect<PairEnergy>(int(touching.size()), [&](int k, std::vector<PairEnergy> &energies) {
-        const Touch &pair = touching[k];
+        const ContactPair &pair = touching[k];
         for_active_points(mesh, pair, positions,
                           [&](const ContactPoint &point, double gap, double d_hat, double barrier_end, double) {
                               const Stencil at = stencil(mesh, pair, point.closest);
@@ -139,7 +141,7 @@ std::vector<PairEnergy> ContactSet::energies(const CollisionMesh &mesh, const Co
     return found;
 }
 
-void ContactSet::find(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<Touch> &touching,
+void ContactSet::find(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<ContactPair> &touching,
                       View<Vec3> start, View<Vec3> positions) {
     overlaps.activate(mesh, material, touching); // the same until contacts are found again, whatever the stiffness is then
     std::vector<Contact> found = linearise(mesh, material, touching, start, positions);

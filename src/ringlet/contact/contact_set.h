@@ -41,13 +41,13 @@ public:
     InitialOverlaps overlaps;
 
     // Pairs that touch before the first step are initial overlaps; some bear a force.
-    void begin(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<Touch> &touching,
+    void begin(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<ContactPair> &touching,
                View<InitialForce> forces, View<Vec3> positions);
 
     // Replaces the contacts by those of the pairs that touch at `positions`; `start` says where the step began, for the slip.
     // The normal force of friction is lagged; it is 0 for a new contact: the force at an iterate says little of the solution.
-    void find(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<Touch> &touching, View<Vec3> start,
-              View<Vec3> positions);
+    void find(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<ContactPair> &touching,
+              View<Vec3> start, View<Vec3> positions);
 
     // Keeps the slip of the contacts as a step ends, up to the stick length: what has slipped farther has slid.
     void commit_friction(View<Vec3> positions);
@@ -55,7 +55,7 @@ public:
     // Barrier energies at other positions, of the pairs that touch there. A pair that is a contact keeps its stiffness, so that
     // energies can be compared.
     std::vector<PairEnergy> energies(const CollisionMesh &mesh, const ContactMaterial &material,
-                                     const std::vector<Touch> &touching, View<Vec3> positions) const;
+                                     const std::vector<ContactPair> &touching, View<Vec3> positions) const;
 
     // Objects whose line search knows contacts by their planes (see solver/plane_search.h). Iterates cross these planes, so
     // that the barriers end early.
@@ -79,9 +79,9 @@ public:
 
 private:
     template <class Work>
-    void for_active_points(const CollisionMesh &mesh, const Touch &pair, View<Vec3> positions, const Work &work) const;
+    void for_active_points(const CollisionMesh &mesh, const ContactPair &pair, View<Vec3> positions, const Work &work) const;
     std::vector<Contact> linearise(const CollisionMesh &mesh, const ContactMaterial &material,
-                                   const std::vector<Touch> &touching, View<Vec3> start, View<Vec3> positions) const;
+                                   const std::vector<ContactPair> &touching, View<Vec3> start, View<Vec3> positions) const;
     void index(const CollisionMesh &mesh);
     bool uses_planes(int object) const { return size_t(object) < plane_objects_.size() && plane_objects_[object]; }
 

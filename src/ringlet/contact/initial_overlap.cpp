@@ -8,8 +8,8 @@ void InitialOverlaps::grow(double length) {
     for (auto &[name, overlap] : pairs_) overlap.activation = overlap.gap += length;
 }
 
-void InitialOverlaps::settle(const std::vector<Touch> &touching, const std::vector<Contact> &contacts, View<Vec3> positions,
-                             double length) {
+void InitialOverlaps::settle(const std::vector<ContactPair> &touching, const std::vector<Contact> &contacts,
+                             View<Vec3> positions, double length) {
     constexpr double least_gap = 0.01; // of the activation distance
     for (auto &[name, overlap] : pairs_) overlap.force = 0.0;
     for (const Contact &contact : contacts) {
@@ -17,29 +17,30 @@ void InitialOverlaps::settle(const std::vector<Touch> &touching, const std::vect
         if (found != pairs_.end()) found->second.force += normal_force(contact, separation(contact, positions));
     }
     Pairs left;
-    for (const Touch &pair : touching) {
+    for (const ContactPair &pair : touching) {
         const auto found = pairs_.find(contact_name(pair));
         if (found == pairs_.end()) continue;
         InitialOverlap &overlap = left[found->first] = found->second;
-        const double least = least_gap * pair.distance;
+        const double least = least_gap * pair.d_hat;
         if (overlap.gap < least) overlap.gap = std::min(overlap.gap + length, least);
     }
     pairs_ = std::move(left);
 }
 
-void InitialOverlaps::activate(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<Touch> &touching) {
-    for (const Touch &pair : touching) {
+void InitialOverlaps::activate(const CollisionMesh &mesh, const ContactMaterial &material,
+                               const std::vector<ContactPair> &touching) {
+    for (const ContactPair &pair : touching) {
         const auto found = pairs_.find(contact_name(pair));
         if (found == pairs_.end()) continue;
         InitialOverlap &overlap = found->second;
-        const double stiffness = pair_stiffness(stencil(mesh, pair, pair.nearest), material);
+        const double stiffness = pair_stiffness(stencil(mesh, pair, pair.closest), material);
         overlap.activation = activation_distance(overlap.force / stiffness, overlap.gap);
     }
 }
 
-const InitialOverlap *InitialOverlaps::find(const Touch &pair) const {
+const InitialOverlap *InitialOverlaps::find(const ContactPair &pair) const {
     const auto found = pairs_.find(contact_name(pair));
-    return found != pairs_.end() && found->second.gap < pair.distance ? &found->second : nullptr;
+    return found != pairs_.end() && found->second.gap < pair.d_hat ? &found->second : nullptr;
 }
 
 } // namespace ringlet

@@ -28,12 +28,13 @@ public:
 
     // Forgets the pairs that have parted, and notes the force of the others. What is closer than a hundredth of its activation
     // distance can hardly move: it parts by a length a step until it is no longer.
-    void settle(const std::vector<Touch> &touching, const std::vector<Contact> &contacts, View<Vec3> positions, double length);
+    void settle(const std::vector<ContactPair> &touching, const std::vector<Contact> &contacts, View<Vec3> positions,
+                double length);
 
     // Activates each pair where it bears its force at the present stiffness.
-    void activate(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<Touch> &touching);
+    void activate(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<ContactPair> &touching);
 
-    const InitialOverlap *find(const Touch &pair) const; // null where it did not overlap, or has parted
+    const InitialOverlap *find(const ContactPair &pair) const; // null where it did not overlap, or has parted
 
     const Pairs &pairs() const { return pairs_; }
     void recall(Pairs pairs) { pairs_ = std::move(pairs); }

@@ -5,8 +5,8 @@
 
 namespace ringlet {
 
-Stencil stencil(const CollisionMesh &mesh, const Touch &pair, const ClosestPoints &closest) {
-    Stencil stencil{{}, closest.weights, pair.of_edges ? 2 : 1};
+Stencil stencil(const CollisionMesh &mesh, const ContactPair &pair, const ClosestPoints &closest) {
+    Stencil stencil{{}, closest.weights, pair.edge_edge ? 2 : 1};
     with_vertices(mesh, pair, [&](const auto &a, const auto &b) {
         std::copy(b.begin(), b.end(), std::copy(a.begin(), a.end(), stencil.vertex.begin()));
     });

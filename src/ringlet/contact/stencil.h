@@ -1,7 +1,7 @@
 // Where two primitives are in contact: their vertices, and the weights of the closest points.
 #pragma once
 
-#include "ringlet/collision/touching.h"
+#include "ringlet/collision/narrow_phase.h"
 #include "ringlet/contact/material.h"
 
 #include <cstdint>
@@ -11,8 +11,9 @@ namespace ringlet {
 // Names of contacts ascend as pairs do, and as the contact points of one pair do.
 inline constexpr int max_points_of_pair = 7;
 
-inline uint64_t contact_name(const Touch &pair, int point = 0) {
-    return uint64_t(!pair.of_edges) << 63 | uint64_t(pair.of[0]) << 33 | uint64_t(pair.of[1]) << 3 | uint64_t(point);
+inline uint64_t contact_name(const ContactPair &pair, int point = 0) {
+    return uint64_t(!pair.edge_edge) << 63 | uint64_t(pair.primitive[0]) << 33 | uint64_t(pair.primitive[1]) << 3 |
+           uint64_t(point);
 }
 inline uint64_t pair_of(uint64_t contact_name) { return contact_name & ~uint64_t(max_points_of_pair); }
 
@@ -22,7 +23,7 @@ struct Stencil {
     int first;                    // vertices of the first primitive
 };
 
-Stencil stencil(const CollisionMesh &mesh, const Touch &pair, const ClosestPoints &closest);
+Stencil stencil(const CollisionMesh &mesh, const ContactPair &pair, const ClosestPoints &closest);
 
 // That of the softer side [N/m]. A prescribed vertex beside a free one of the same edge is as soft as that: else the free one
 // would be pushed without bound.
@@ -39,16 +40,16 @@ struct ContactPoint {
 // and the points closest to them, which move continuously. (On surfaces, points against triangles do this.) Calls
 // work(ContactPoint) in order.
 template <class Work>
-void for_contact_points(const CollisionMesh &mesh, const Touch &pair, View<Vec3> positions, const Work &work) {
+void for_contact_points(const CollisionMesh &mesh, const ContactPair &pair, View<Vec3> positions, const Work &work) {
     constexpr double almost_parallel = 0.01; // sin² of the angle
-    if (!pair.of_edges || std::max(pair.of[0], pair.of[1]) >= mesh.strand_edges)
-        return work(ContactPoint{pair.nearest, 1.0, 0});
-    const auto [a0, a1] = mesh.edges[pair.of[0]];
-    const auto [b0, b1] = mesh.edges[pair.of[1]];
+    if (!pair.edge_edge || std::max(pair.primitive[0], pair.primitive[1]) >= mesh.strand_edges)
+        return work(ContactPoint{pair.closest, 1.0, 0});
+    const auto [a0, a1] = mesh.edges[pair.primitive[0]];
+    const auto [b0, b1] = mesh.edges[pair.primitive[1]];
     const Vec3 a = positions[a1] - positions[a0], b = positions[b1] - positions[b0];
     const double aa = a.squaredNorm(), bb = b.squaredNorm(), sine2 = a.cross(b).squaredNorm();
     const double s = std::min(sine2 / (almost_parallel * aa * bb + 1e-300), 1.0), crossing = s * s * (3.0 - 2.0 * s);
-    if (crossing > 0.0) work(ContactPoint{pair.nearest, crossing, 0});
+    if (crossing > 0.0) work(ContactPoint{pair.closest, crossing, 0});
     if (crossing == 1.0) return;
     const double share = 0.5 * (1.0 - crossing); // two of the four ends lie beside the other edge, as a rule
     const auto at = [&](double u, double v, int number) {

@@ -1,6 +1,6 @@
 #include "ringlet/scene/advection.h"
 
-#include "ringlet/ccd/step_filter.h"
+#include "ringlet/ccd/impact_zones.h"
 #include "ringlet/geometry/rigid_motion.h"
 
 #include <Eigen/Geometry>
@@ -172,19 +172,16 @@ namespace {
 double limit_advection(const PrescribedMotion &motion, View<int> rigid, const RigidMotion &most, int hopeful_rounds,
                        Configuration &configuration, std::vector<Vec3> &end, SceneReport &report) {
     const Stopwatch watch(report.time_filter);
-    const FilterScene scene{.mesh = motion.vertices.mesh,
-                            .mass = motion.vertices.mass,
-                            .offsets = configuration.connectivity.strands,
-                            .carried_by = [&](int vertex, const Vec3 &point) { return motion.carry(vertex, point); },
-                            .rigid = rigid,
-                            .as_one = most,
-                            .cloths = configuration.connectivity.cloths,
-                            .neighbours = &configuration.connectivity.neighbours,
-                            .hopeful = hopeful_rounds};
-    const FilterReport limited = filter_step(scene, configuration.pairs, configuration.positions, end);
-    report.candidates = limited.candidates;
-    report.violations += limited.violations;
-    report.zone_vertices += limited.zone_vertices;
+    const CcdReport limited =
+        resolve_impact_zones({.connected = configuration.connected(),
+                              .start = configuration.positions,
+                              .mass = motion.vertices.mass,
+                              .advect = [&](int vertex, const Vec3 &point) { return motion.carry(vertex, point); },
+                              .rigid_motion = most,
+                              .rigid = rigid,
+                              .hopeful_rounds = hopeful_rounds},
+                             configuration.pairs, end);
+    Configuration::add(limited, report);
     return limited.fraction;
 }
 
@@ -193,7 +190,7 @@ double limit_advection(const PrescribedMotion &motion, View<int> rigid, const Ri
 Advected advect(const SceneVertices &vertices, View<Vec3> target, View<int> offsets, const Carriers &carriers,
                 Configuration &configuration, SceneReport &report) {
     const bool bodies = vertices.bodies.front() < vertices.bodies.back();
-    const int hopeful_rounds = bodies ? 6 : FilterScene::most_rounds;
+    const int hopeful_rounds = bodies ? 6 : ccd::max_zone_rounds;
     const int attempts = bodies ? 5 : 0; // through space, each half as far as the one before
     const std::vector<Vec3> &now = configuration.positions;
     std::vector<Vec3> end(target.begin(), target.end());

@@ -1,7 +1,7 @@
 // Initial penetration: vertices of strands that begin inside a body, and how they come out.
 #pragma once
 
-#include "ringlet/collision/collision_mesh.h"
+#include "ringlet/collision/mesh.h"
 #include "ringlet/solver/recovery_spring.h"
 
 #include <utility>

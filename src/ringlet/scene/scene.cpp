@@ -38,17 +38,13 @@ std::vector<Vec3> all_positions(const StrandState &strands, const std::vector<Sc
     return all;
 }
 
-Connectivity connectivity(const StrandModel &model, const SceneVertices &all) {
-    return {View<int>(model.offsets), View<int>(all.cloths), neighbours(all.mesh, all.cloths.front(), all.cloths.back())};
-}
-
 } // namespace
 
 SceneParts::SceneParts(const StrandModel &model_, StrandState &state_, const std::vector<SceneCloth> &cloths_,
                        const std::vector<BodyModel> &bodies_, const std::vector<int> &rooted_in_, const SceneContact &contact_)
     : model(model_), state(state_), contact(contact_), rooted_in(rooted_in_), pinned_to(pins(cloths_)),
       touched(cloths_.size(), -1), vertices(number_vertices(model_, state_, cloths_, bodies_, rooted_in_, contact_)),
-      configuration(vertices, connectivity(model_, vertices), all_positions(state_, cloths_, bodies_), contact_.strand_radius),
+      configuration(vertices, model_.offsets, vertices.cloths, all_positions(state_, cloths_, bodies_), contact_.strand_radius),
       strands(make_strand_blocks(model_, state_)), cloths(make_cloth_blocks(cloths_, vertices)),
       blocks(all_blocks(strands, cloths), vertices), objective(blocks, vertices), system(objective),
       stiffness(vertices.count()), newton(vertices, objective, system, configuration, stiffness) {
@@ -71,7 +67,7 @@ void SceneParts::take_placed() {
     };
     take(state.positions, 0);
     for (size_t c = 0; c < cloths.size(); ++c) take(cloths[c]->state().positions, vertices.cloths[c]);
-    configuration.pairs.forget();
+    configuration.pairs.clear();
 }
 
 Scene::Scene(const StrandModel &model, StrandState &state, const std::vector<SceneCloth> &cloths,
@@ -107,15 +103,15 @@ void Scene::place() { parts_->take_placed(); }
 
 std::vector<Contact> Scene::touching() {
     const SceneVertices &vertices = parts_->vertices;
-    NearPairs &pairs = parts_->configuration.pairs;
+    PairCache &pairs = parts_->configuration.pairs;
     const std::vector<Vec3> &now = parts_->configuration.positions;
-    pairs.forget();
-    pairs.note(now, now, 0.0, 0.0);
+    pairs.clear();
+    pairs.update_bounds({now, now}, {.margin = 0.0, .max_path = 0.0});
     ContactMaterial material = vertices.material;
     material.stiffness.assign(vertices.count(), 1.0);
     ContactSet contacts; // without a past
-    contacts.find(vertices.mesh, material, pairs.touching(now), now, now);
-    pairs.forget();
+    contacts.find(vertices.mesh, material, pairs.contact_pairs(now), now, now);
+    pairs.clear();
     return contacts.contacts();
 }
 
@@ -128,7 +124,7 @@ void Scene::allow_penetration(int vertex, int body) {
     if (vertex < 0 || vertex >= parts_->vertices.strand_vertices())
         throw std::invalid_argument("scene: only vertices of strands may penetrate a body");
     if (body < 0 || body >= int(parts_->bodies.size())) throw std::invalid_argument("scene: there is no such body");
-    parts_->configuration.pairs.forget();
+    parts_->configuration.pairs.clear();
     parts_->penetration.add(vertex, parts_->bodies[body], parts_->vertices.mesh);
 }
 
@@ -138,7 +134,7 @@ void Scene::record(bool on) { parts_->configuration.record(on); }
 const std::vector<std::vector<Vec3>> &Scene::path() const { return parts_->configuration.recorded(); }
 
 SceneMemory Scene::memory() const {
-    parts_->configuration.pairs.forget(); // as in a scene that recalls it: then even what is counted is the same
+    parts_->configuration.pairs.clear(); // as in a scene that recalls it: then even what is counted is the same
     const View<Vec3> all = positions();
     const ContactSet &contacts = parts_->objective.contacts;
     return {parts_->begun,

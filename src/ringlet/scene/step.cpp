@@ -22,9 +22,9 @@ void begin_contact(SceneParts &scene, double dt) {
 void find_initial_contacts(SceneParts &scene, double dt) {
     const std::vector<Vec3> &now = scene.configuration.positions;
     ContactSet &contacts = scene.objective.contacts;
-    scene.configuration.pairs.note(now, now, 0.0, 0.0);
+    scene.configuration.pairs.update_bounds({now, now}, {.margin = 0.0, .max_path = 0.0});
     begin_contact(scene, dt);
-    const std::vector<Touch> touching = scene.configuration.pairs.touching(now);
+    const std::vector<ContactPair> touching = scene.configuration.pairs.contact_pairs(now);
     contacts.begin(scene.vertices.mesh, scene.vertices.material, touching, scene.initial_forces, now);
     contacts.find(scene.vertices.mesh, scene.vertices.material, touching, now, now);
     scene.stiffness.raise_loads(contacts);
@@ -90,7 +90,7 @@ void move_to_initial_guess(SceneParts &scene, bool rigidly, double tolerance, Al
     const std::vector<Vec3> now = scene.configuration.positions;
     scene.blocks.scatter(now, x);
     scene.blocks.for_active([&](int b) { scene.blocks[b].initial_guess(scene.blocks.of(b, x)); });
-    Move move{now, {}};
+    PlannedMove move{now, {}};
     if (rigidly) scene.blocks.gather(x, move.to);
     for (int v = 0; v < vertices.dynamic_vertices; ++v)
         if (!vertices.mesh.moves[v] || (move.to[v] - now[v]).squaredNorm() < rounding * rounding) move.to[v] = now[v];
@@ -106,7 +106,7 @@ void move_to_initial_guess(SceneParts &scene, bool rigidly, double tolerance, Al
 void commit(SceneParts &scene, View<Vec3> start, double dt, const SolverEffort &effort, const AlignedVector &x,
             SceneReport &report) {
     const std::vector<Vec3> &now = scene.configuration.positions;
-    const std::vector<Touch> touching = scene.configuration.pairs.touching(now);
+    const std::vector<ContactPair> touching = scene.configuration.pairs.contact_pairs(now);
     ContactSet &contacts = scene.objective.contacts;
     scene.objective.find_contacts(touching, start, now);
     contacts.commit_friction(now);
@@ -134,7 +134,7 @@ double take_substep(SceneParts &scene, const SceneInput &input, const SceneStep 
     scene.objective.springs =
         scene.penetration.recover(scene.vertices.mesh, scene.configuration.positions, View<int>(scene.model.offsets),
                                   scene.stiffness.largest(), recovery_speed * dt);
-    if (scene.penetration.count() < inside) scene.configuration.pairs.forget(); // of pairs that were exempt
+    if (scene.penetration.count() < inside) scene.configuration.pairs.clear(); // of pairs that were exempt
 
     const StrandStep &step = settings.strands;
     for (const auto &block : scene.strands) block->configure(step);

@@ -99,7 +99,7 @@ SceneVertices number_vertices(const StrandModel &strands, const StrandState &sta
         numbering.add_strand(strands, state, s, {contact.strand_radius, s, carrier, contact.strand_material});
     }
     all.mesh.strand_edges = int(all.mesh.edges.size());
-    know_along_strands(all.mesh, View<int>(strands.offsets));
+    cache_activation_distances(all.mesh, View<int>(strands.offsets));
     for (int c = 0; c < int(cloths.size()); ++c) {
         all.cloths.push_back(all.count());
         numbering.add_cloth(cloths[c], {0.5 * cloths[c].model->thickness, all.strands + c, object_of_body(cloths[c].pinned_to),

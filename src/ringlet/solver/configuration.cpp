@@ -1,7 +1,5 @@
 #include "ringlet/solver/configuration.h"
 
-#include "ringlet/ccd/step_filter.h"
-
 #include <algorithm>
 
 namespace ringlet {
@@ -12,54 +10,48 @@ constexpr double bound_margin = 0.2;     // of the radius of strands, for moves 
 
 } // namespace
 
-Configuration::Configuration(const VertexTable &table, Connectivity connectivity_, std::vector<Vec3> positions_,
+Configuration::Configuration(const VertexTable &table, View<int> strands, View<int> cloths, std::vector<Vec3> positions_,
                              double strand_radius)
-    : positions(std::move(positions_)), pairs(table.mesh), connectivity(std::move(connectivity_)), table_(table),
-      strand_radius_(strand_radius) {}
+    : positions(std::move(positions_)), pairs(table.mesh), table_(table), strands_(strands), cloths_(cloths),
+      cloth_neighbours_(neighbours(table.mesh, cloths.front(), cloths.back())), strand_radius_(strand_radius) {}
 
-void Configuration::limit(Move &move, const LimitSettings &settings, SceneReport &report) {
+void Configuration::limit(PlannedMove &move, const LimitSettings &settings, SceneReport &report) {
     const bool stays = std::equal(move.to.begin(), move.to.end(), positions.begin()) &&
                        std::equal(move.apex.begin(), move.apex.end(), positions.begin());
-    if (!(pairs.knows_all_here() && (stays || settings.few))) {
+    if (!(pairs.is_complete() && (stays || settings.few))) {
         const Stopwatch watch(report.time_filter);
         const double margin = stays ? 0.0 : bound_margin * strand_radius_; // what stays rarely does so for long
-        pairs.note(positions, move.to, margin, max_bound_length, move.apex, settings.lasts);
+        pairs.update_bounds({positions, move.to, move.apex},
+                            {.margin = margin, .max_path = max_bound_length, .lasting = settings.lasts});
     }
     if (!stays) limit(move, settings.whole, {}, report);
 }
 
-void Configuration::limit_again(Move &move, bool whole, View<unsigned char> changed, SceneReport &report) {
+void Configuration::limit_again(PlannedMove &move, bool whole, View<unsigned char> changed, SceneReport &report) {
     limit(move, whole, changed, report);
 }
 
-void Configuration::limit(Move &move, bool whole, View<unsigned char> changed, SceneReport &report) {
+void Configuration::limit(PlannedMove &move, bool whole, View<unsigned char> changed, SceneReport &report) {
     const Stopwatch watch(report.time_filter);
-    const FilterScene scene{.mesh = table_.mesh,
-                            .mass = table_.mass,
-                            .offsets = connectivity.strands,
-                            .carried_by = {},
-                            .rigid = {},
-                            .as_one = {},
-                            .still = true,
-                            .whole = whole,
-                            .changed = changed,
-                            .via = move.apex.empty() ? nullptr : &move.apex,
-                            .cloths = connectivity.cloths,
-                            .neighbours = &connectivity.neighbours};
-    const FilterReport limited = filter_step(scene, pairs, positions, move.to);
+    add(limit_motion({.connected = connected(), .start = positions, .whole_strands = whole, .changed = changed}, pairs, move.to,
+                     move.apex.empty() ? nullptr : &move.apex),
+        report);
+}
+
+void Configuration::add(const CcdReport &limited, SceneReport &report) {
     report.candidates = limited.candidates;
-    report.violations += limited.violations;
-    report.zone_vertices += limited.zone_vertices;
+    report.violations += limited.impacts;
+    report.zone_vertices += limited.corrected_vertices;
 }
 
 void Configuration::commit(const std::vector<Vec3> &to) {
-    pairs.arrive(positions, to);
+    pairs.commit_move(positions, to);
     positions = to;
     add_to_record();
 }
 
 void Configuration::commit_rigid(const std::vector<Vec3> &to) {
-    pairs.arrive_as_one(positions, to);
+    pairs.commit_rigid_move(positions, to);
     positions = to;
     add_to_record();
 }

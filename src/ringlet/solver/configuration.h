@@ -1,8 +1,7 @@
 // The configuration of a scene: where all vertices are, with the candidate pairs that move along with them.
 #pragma once
 
-#include "ringlet/collision/near_pairs.h"
-#include "ringlet/collision/vertex_lists.h"
+#include "ringlet/ccd/motion_limiter.h"
 #include "ringlet/solver/report.h"
 #include "ringlet/solver/vertex_table.h"
 
@@ -10,26 +9,22 @@
 
 namespace ringlet {
 
-// How vertices hang together, for corrections that spread from one to the next.
-struct Connectivity {
-    View<int> strands;      // where each strand begins among the vertices, and the end
-    View<int> cloths;       // likewise; objects of cloths follow those of strands
-    VertexLists neighbours; // of the vertices of cloths
-};
-
 // A move of all dynamic vertices while prescribed ones stay.
-struct Move {
+struct PlannedMove {
     std::vector<Vec3> to;   // where it ends
     std::vector<Vec3> apex; // the path is in the triangle of the start, this and the end; empty: it is straight
 };
 
 class Configuration {
 public:
-    Configuration(const VertexTable &table, Connectivity connectivity, std::vector<Vec3> positions, double strand_radius);
+    // `strands` and `cloths` say where each begins among the vertices, and the end; corrections spread along them.
+    Configuration(const VertexTable &table, View<int> strands, View<int> cloths, std::vector<Vec3> positions,
+                  double strand_radius);
 
     std::vector<Vec3> positions;
-    NearPairs pairs;
-    const Connectivity connectivity;
+    PairCache pairs;
+
+    ConnectedMesh connected() const { return {table_.mesh, strands_, cloths_, &cloth_neighbours_}; }
 
     // Shortens a move so that no pair comes closer than it may. Strands keep their shape and take a fraction of the whole move
     // (`whole`), or may be limited near the pair alone where else they could hardly move. `lasts`: candidates serve later
@@ -38,13 +33,14 @@ public:
         bool whole = true, lasts = true;
         bool few = false; // vertices move: candidates need not be bounded for later moves
     };
-    void limit(Move &move, const LimitSettings &settings, SceneReport &report);
+    void limit(PlannedMove &move, const LimitSettings &settings, SceneReport &report);
     // The same where some vertices of the last limited move end elsewhere.
-    void limit_again(Move &move, bool whole, View<unsigned char> changed, SceneReport &report);
+    void limit_again(PlannedMove &move, bool whole, View<unsigned char> changed, SceneReport &report);
 
     // Takes the last limited move, or any fraction of it.
     void commit(const std::vector<Vec3> &to);
     void commit_rigid(const std::vector<Vec3> &to); // all of an advection
+    static void add(const CcdReport &limited, SceneReport &report);
 
     // Keeps the positions after each move of a step; no pair meets while vertices go straight from one to the next.
     void record(bool on) { recording_ = on; }
@@ -53,9 +49,11 @@ public:
     const std::vector<std::vector<Vec3>> &recorded() const { return recorded_; }
 
 private:
-    void limit(Move &move, bool whole, View<unsigned char> changed, SceneReport &report);
+    void limit(PlannedMove &move, bool whole, View<unsigned char> changed, SceneReport &report);
 
     const VertexTable &table_;
+    View<int> strands_, cloths_;
+    VertexLists cloth_neighbours_;
     double strand_radius_;
     bool recording_ = false;
     std::vector<std::vector<Vec3>> recorded_;

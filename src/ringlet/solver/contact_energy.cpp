@@ -32,10 +32,11 @@ void ContactEnergy::at_linearisation(View<Vec3> positions, View<unsigned char> a
     measure_friction(positions, active);
 }
 
-void ContactEnergy::exact(const PairsInReach &pairs, View<Vec3> positions, View<double> traveled, View<unsigned char> changed) {
+void ContactEnergy::exact(const ReachablePairs &pairs, View<Vec3> positions, View<double> traveled,
+                          View<unsigned char> changed) {
     remove(changed);
     const auto dynamic = [&](int object) { return object < table_.objects ? object : -1; };
-    const std::vector<Touch> there = touching(table_.mesh, pairs, positions, changed, traveled);
+    const std::vector<ContactPair> there = contact_pairs(table_.mesh, pairs, positions, changed, traveled);
     for (const PairEnergy &pair : contacts_.energies(table_.mesh, table_.material, there, positions))
         barriers_.push_back({dynamic(pair.objects[0]), dynamic(pair.objects[1]), pair.energy()});
     measure_friction(positions, changed);

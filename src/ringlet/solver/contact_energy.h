@@ -1,7 +1,7 @@
 // Contact energies shared out to the objects, cached between the trials of a line search.
 #pragma once
 
-#include "ringlet/collision/pairs_in_reach.h"
+#include "ringlet/collision/narrow_phase.h"
 #include "ringlet/contact/contact_set.h"
 #include "ringlet/solver/vertex_table.h"
 
@@ -22,7 +22,7 @@ public:
     void at_linearisation(View<Vec3> positions, View<unsigned char> active);
 
     // `traveled` says which part of its longest path each object has covered: a lower bound on gaps.
-    void exact(const PairsInReach &pairs, View<Vec3> positions, View<double> traveled, View<unsigned char> changed);
+    void exact(const ReachablePairs &pairs, View<Vec3> positions, View<double> traveled, View<unsigned char> changed);
 
     // Contacts of `ignored` objects do not count.
     void linearised(View<Vec3> positions, View<unsigned char> by_planes, View<unsigned char> ignored,

@@ -1,7 +1,7 @@
 // Backtracking Armijo line search along the limited path, with one step length per cluster of objects in contact.
 #pragma once
 
-#include "ringlet/collision/pairs_in_reach.h"
+#include "ringlet/collision/narrow_phase.h"
 #include "ringlet/solver/objective.h"
 #include "ringlet/solver/search_path.h"
 
@@ -28,14 +28,14 @@ public:
 // The energy itself, of all pairs that may come into contact on the last move.
 class ExactModel final : public SearchModel {
 public:
-    ExactModel(Objective &objective, PairsInReach pairs) : objective_(objective), pairs_(std::move(pairs)) {}
+    ExactModel(Objective &objective, ReachablePairs pairs) : objective_(objective), pairs_(std::move(pairs)) {}
     void at_start(std::vector<double> &of_objects) override { objective_.energies_at_linearisation(of_objects); }
     void at(const AlignedVector &x, const std::vector<double> &step, const std::vector<unsigned char> &changed,
             std::vector<double> &of_objects) override;
 
 private:
     Objective &objective_;
-    PairsInReach pairs_;
+    ReachablePairs pairs_;
 };
 
 // Moves x along the path as far as each object may. One that touches nothing dynamic halves its step, later quarters it, until

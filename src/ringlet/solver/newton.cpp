@@ -42,7 +42,7 @@ SolverEffort Newton::minimise(View<Vec3> start, const NewtonSettings &settings, 
 void Newton::find_contacts(View<Vec3> start, SceneReport &report) {
     const Stopwatch watch(report.time_pairs);
     const std::vector<Vec3> &now = configuration_.positions;
-    objective_.find_contacts(configuration_.pairs.touching(now), start, now);
+    objective_.find_contacts(configuration_.pairs.contact_pairs(now), start, now);
 }
 
 void Newton::solve(const NewtonSettings &settings, const AlignedVector &x, SceneReport &report, Iteration &iteration) {
@@ -88,7 +88,7 @@ bool Newton::choose_path(const NewtonSettings &settings, const AlignedVector &x,
 
 LineSearchResult Newton::search(const Iteration &iteration, SceneReport &report, AlignedVector &x) {
     const Stopwatch watch(report.time_search);
-    ExactModel model(objective_, configuration_.pairs.in_reach(objective_.blocks.active_objects()));
+    ExactModel model(objective_, configuration_.pairs.reachable_pairs(objective_.blocks.active_objects()));
     const std::vector<unsigned char> all(table_.objects, 1);
     const LineSearchResult found =
         line_search(objective_, model, iteration.path, iteration.converged ? all : objective_.by_planes(), x);
@@ -98,7 +98,7 @@ LineSearchResult Newton::search(const Iteration &iteration, SceneReport &report,
 
 void Newton::accept(const LineSearchResult &found, SceneReport &report, Iteration &iteration, AlignedVector &x) {
     const BlockSet &blocks = objective_.blocks;
-    Move &move = iteration.move;
+    PlannedMove &move = iteration.move;
     for (int o = 0; o < table_.objects; ++o)
         if (blocks.is_active(o)) taken_[o] = iteration.step[o] * found.step[o];
     if (found.cuts > 0) { // objects no longer move in the proportion that was limited

@@ -33,7 +33,7 @@ private:
         bool converged; // no coordinate of the direction is above the tolerance
         SearchPath path;
         std::vector<double> step; // per object: the fraction of the direction that is tried
-        Move move;
+        PlannedMove move;
     };
 
     void find_contacts(View<Vec3> start, SceneReport &report);

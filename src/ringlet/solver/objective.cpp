@@ -21,7 +21,7 @@ std::vector<double> Objective::contact_stiffness(double scale, double dt) const 
     return stiffness;
 }
 
-void Objective::find_contacts(const std::vector<Touch> &touching, View<Vec3> start, View<Vec3> positions) {
+void Objective::find_contacts(const std::vector<ContactPair> &touching, View<Vec3> start, View<Vec3> positions) {
     find_planes(touching);
     contacts.find(table.mesh, table.material, touching, start, positions);
     values_.resize(contacts.contacts().size());
@@ -31,14 +31,14 @@ void Objective::find_contacts(const std::vector<Touch> &touching, View<Vec3> sta
                 }};
 }
 
-void Objective::find_planes(const std::vector<Touch> &touching) {
+void Objective::find_planes(const std::vector<ContactPair> &touching) {
     by_planes_.assign(table.objects, 0);
     for (int object = 0; object < table.objects; ++object)
         by_planes_[object] = blocks.of_object(object).is_searched_by_planes();
     const std::vector<unsigned char> itself = by_planes_;
     if (std::count(itself.begin(), itself.end(), 1) == 0) return;
-    for (const Touch &touch : touching)
-        with_vertices(table.mesh, touch, [&](const auto &a, const auto &b) {
+    for (const ContactPair &pair : touching)
+        with_vertices(table.mesh, pair, [&](const auto &a, const auto &b) {
             const int one = table.object_of(a[0]), other = table.object_of(b[0]);
             if (one < 0 || other < 0) return;
             if (itself[one]) by_planes_[other] = 1;
@@ -74,7 +74,7 @@ void Objective::energies_at_linearisation(std::vector<double> &of_objects) {
     sum_energies({}, of_objects);
 }
 
-void Objective::exact_energies(const AlignedVector &x, const PairsInReach &pairs, View<double> traveled,
+void Objective::exact_energies(const AlignedVector &x, const ReachablePairs &pairs, View<double> traveled,
                                const std::vector<unsigned char> &changed, std::vector<double> &of_objects) {
     evaluate(x, changed);
     std::vector<unsigned char> anew = blocks.active_objects();

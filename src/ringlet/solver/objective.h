@@ -28,7 +28,7 @@ public:
     std::vector<double> contact_stiffness(double scale, double dt) const;
 
     // Replaces the contacts by those of the pairs that touch at `positions`; the step began at `start`.
-    void find_contacts(const std::vector<Touch> &touching, View<Vec3> start, View<Vec3> positions);
+    void find_contacts(const std::vector<ContactPair> &touching, View<Vec3> start, View<Vec3> positions);
 
     // Objects that a factor of their own solves: exact blocks that nothing couples.
     bool is_alone(int object) const { return blocks.of_object(object).is_exact() && !couplings.couples(object); }
@@ -40,7 +40,7 @@ public:
     // Energies [J] of the objects, in one of the models of contact_energy.h. Those at the linearisation come first after
     // contacts were found and the system assembled; later only objects that have `changed` since are evaluated.
     void energies_at_linearisation(std::vector<double> &of_objects);
-    void exact_energies(const AlignedVector &x, const PairsInReach &pairs, View<double> traveled,
+    void exact_energies(const AlignedVector &x, const ReachablePairs &pairs, View<double> traveled,
                         const std::vector<unsigned char> &changed, std::vector<double> &of_objects);
     void linearised_energies_at_linearisation(View<unsigned char> ignored, std::vector<double> &of_objects);
     void linearised_energies(const AlignedVector &x, View<unsigned char> ignored, const std::vector<unsigned char> &changed,
@@ -60,7 +60,7 @@ public:
     void lag_normal_forces(const AlignedVector &direction);
 
 private:
-    void find_planes(const std::vector<Touch> &touching);
+    void find_planes(const std::vector<ContactPair> &touching);
     void evaluate(const AlignedVector &x, const std::vector<unsigned char> &changed);
     void sum_energies(View<unsigned char> ignored, std::vector<double> &of_objects) const;
 

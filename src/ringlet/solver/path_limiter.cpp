@@ -24,9 +24,9 @@ std::vector<double> fractions_left(const VertexTable &table, View<Vec3> now, Vie
 }
 
 // Where a path leads, with the apex of the triangles that hold it.
-Move end_of_path(const BlockSet &blocks, const VertexTable &table, View<Vec3> now, const AlignedVector &x,
-                 const SearchPath &path) {
-    Move move{{now.begin(), now.end()}, {now.begin(), now.end()}};
+PlannedMove end_of_path(const BlockSet &blocks, const VertexTable &table, View<Vec3> now, const AlignedVector &x,
+                        const SearchPath &path) {
+    PlannedMove move{{now.begin(), now.end()}, {now.begin(), now.end()}};
     AlignedVector end = x.copy();
     move_along(blocks, x, std::vector<double>(table.objects, 1.0), path, std::vector<unsigned char>(table.objects, 1), end);
     for (int v = 0; v < table.dynamic_vertices; ++v) {
@@ -57,12 +57,12 @@ void take_limited(const BlockSet &blocks, const VertexTable &table, View<Vec3> n
 
 } // namespace
 
-Move limit_path(const Objective &objective, Configuration &configuration, const AlignedVector &x, bool whole, bool lasts,
-                SearchPath &path, Refinement &refinement, SceneReport &report) {
+PlannedMove limit_path(const Objective &objective, Configuration &configuration, const AlignedVector &x, bool whole, bool lasts,
+                       SearchPath &path, Refinement &refinement, SceneReport &report) {
     const VertexTable &table = objective.table;
     const BlockSet &blocks = objective.blocks;
     const std::vector<Vec3> &now = configuration.positions;
-    Move wanted = end_of_path(blocks, table, now, x, path), move = wanted;
+    PlannedMove wanted = end_of_path(blocks, table, now, x, path), move = wanted;
     configuration.limit(move, {.whole = true, .lasts = lasts}, report);
 
     std::vector<double> left = fractions_left(table, now, wanted.to, move.to);

@@ -11,7 +11,7 @@ namespace ringlet {
 // Strands first take the bent path. What meets something early on it goes straight instead, and half as far: the linear system
 // knows the contacts in that direction, while the bend leads the rest of a strand anywhere. What meets something later goes
 // that fraction. Both are limited once more.
-Move limit_path(const Objective &objective, Configuration &configuration, const AlignedVector &x, bool whole, bool lasts,
-                SearchPath &path, Refinement &refinement, SceneReport &report);
+PlannedMove limit_path(const Objective &objective, Configuration &configuration, const AlignedVector &x, bool whole, bool lasts,
+                       SearchPath &path, Refinement &refinement, SceneReport &report);
 
 } // namespace ringlet

@@ -1,7 +1,7 @@
 // The vertices of a scene in one row: those of the blocks' objects, then those of bodies.
 #pragma once
 
-#include "ringlet/collision/collision_mesh.h"
+#include "ringlet/collision/mesh.h"
 #include "ringlet/contact/material.h"
 
 #include <vector>

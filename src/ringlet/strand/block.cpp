@@ -81,7 +81,8 @@ void StrandBlock::add_contacts(int v, const ContactSet &contacts, View<ContactVa
         gradient += c.weight[role.as] * value.gradient;
         diagonal += c.weight[role.as] * c.weight[role.as] * value.hessian;
         const int other = role.as ^ 1; // of the same edge
-        if (c.of_edges() && c.vertex[other] == v + 1 && next_moves) next += c.weight[role.as] * c.weight[other] * value.hessian;
+        if (c.edge_edge() && c.vertex[other] == v + 1 && next_moves)
+            next += c.weight[role.as] * c.weight[other] * value.hessian;
     }
     const size_t at = slot(v);
     for (int i = 0; i < 3; ++i) system_.gradient[at + i * lanes_] += gradient[i];

@@ -1,0 +1,44 @@
+// Constants that decide what continuous collision detection returns. Without a unit they are fractions or counts.
+#pragma once
+
+#include "ringlet/collision/settings.h"
+
+#include <algorithm>
+
+namespace ringlet::ccd {
+
+// Additive conservative advancement (time_of_impact.h), as fractions of gap − minimum separation.
+inline constexpr double advancement_rest = 0.1; // left by one advancement
+inline constexpr double convergence = 0.01;     // where it stops, of the value at the start
+inline constexpr double zero_distance = 1e-100; // [m]; below it a pair has no separating direction
+inline constexpr int max_advancements = 200;    // per pair
+
+// Minimum separation: the lesser of the first two, but at least the third, and in any case at most the fourth.
+inline constexpr double separation_of_d_hat = collision::impact_distance; // of the activation distance
+inline constexpr double separation_of_gap = 0.2;                          // of the gap at the start
+inline constexpr double d_hat_per_separation = 250;                       // divides the activation distance
+inline constexpr double separation_limit = 0.9;                           // of the gap at the start
+
+// Both resolution loops.
+inline constexpr double max_strain = 0.05;         // that spreading a correction puts into an edge
+inline constexpr double before_first_impact = 0.9; // of the first time of impact, where a whole move is truncated
+
+// limit_motion
+inline constexpr int strand_rounds = 8;       // then strands with impacts rest
+inline constexpr int local_strand_rounds = 2; // in which strands that could hardly move are corrected locally
+inline constexpr int local_cloth_rounds = 16; // in which corrections of cloth are spread; then whole cloths rest
+inline constexpr int spare_rounds = 16;       // beyond one for each strand and cloth
+inline constexpr double hardly_moves = 0.2;   // a strand that keeps no more of its motion is corrected locally
+
+// resolve_impact_zones
+inline constexpr int max_zone_rounds = 16;
+inline constexpr int own_motion_rounds = 3;  // in which zones keep their own motion up to the impact
+inline constexpr int hopeful_reduction = 10; // factor by which the impacts must have decreased after the hopeful rounds
+
+// Least distance [m] that a pair keeps on a move which it begins at a distance of `gap`.
+inline double min_separation(double d_hat, double gap) {
+    return std::min(
+        {separation_of_d_hat * d_hat, std::max(separation_of_gap * gap, d_hat / d_hat_per_separation), separation_limit * gap});
+}
+
+} // namespace ringlet::ccd

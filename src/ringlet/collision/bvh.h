@@ -1,0 +1,120 @@
+// A bounding volume hierarchy of swept AABBs: built once, then refitted as vertices move.
+#pragma once
+
+#include "ringlet/collision/swept_box.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace ringlet {
+
+// A perfect tree with four children a node: those of node i are 4i + 1 … 4i + 4. Primitives are ordered by median splits and
+// cut into 2^depth groups of at most four, one to a leaf. An odd depth leaves the root half empty.
+class Bvh {
+public:
+    // Fits the tree to box(i) of each of `count` primitives i; rebuilds it where its leaves have grown too much.
+    template <class Box> void fit(int count, const Box &box);
+
+    // Fits the tree to new boxes of some primitives, and of those that share their leaves.
+    template <class Box> void refit(View<int> primitives, const Box &box);
+
+    // Makes every box inactive until it is refitted.
+    void deactivate() {
+        for (BoxQuad &boxes : nodes_) std::fill_n(boxes.active, 4, SweptBox::no);
+    }
+
+    bool empty() const { return count_ == 0; }
+    bool is_leaf(int node) const { return node >= first_leaf_; }
+    static int child(int node, int k) { return 4 * node + 1 + k; }
+    // The boxes of each node's children or, in a leaf, primitives.
+    BvhNodes nodes() const { return {nodes_.data(), ends_.data(), first_leaf_, depth_ % 2 ? 2 : 4}; }
+    SweptBox box(int slot) const { return box_of(nodes_[slot / 4], ends_[slot / 4], slot % 4); } // slot: lane + 4 · leaf
+    int primitive(int slot) const { return primitives_[slot - 4 * first_leaf_]; }                // likewise; −1: none
+    int builds() const { return builds_; }                                                       // so far
+
+private:
+    struct Centre {
+        float at[3];
+        int primitive;
+    };
+
+    template <class Box> void build(const Box &box);
+    void arrange(std::vector<Centre> &centres);
+    template <class Box> void refit_leaf(int leaf, const Box &box);
+    template <class Box> void refit_all(const Box &box);
+    void refit_above(std::vector<int> &nodes);
+    double leaf_extent() const;
+    int begin(int64_t group, int depth) const { return static_cast<int>(group * count_ >> depth); }
+    int leaves() const { return 1 << depth_; }
+    void set(int node, const SweptBox &all) { // in its parent
+        if (node > 0) set_box(nodes_[(node - 1) / 4], ends_[(node - 1) / 4], (node - 1) % 4, all);
+    }
+    SweptBox union_of(int node) const { return box_of(nodes_[node], ends_[node]); }
+
+    std::vector<int> primitives_;       // four to a leaf; −1: none
+    std::vector<int> leaf_of_;          // of each primitive
+    std::vector<unsigned char> listed_; // per node, during a refit
+    std::vector<BoxQuad> nodes_;        // and one more, as of ends: kernels read beyond the last
+    std::vector<EndQuad> ends_;
+    int count_ = 0, depth_ = 0, first_leaf_ = 0, builds_ = 0;
+    double built_extent_ = 0.0;
+};
+
+template <class Box> void Bvh::fit(int count, const Box &box) {
+    const bool fresh = count != count_;
+    count_ = count;
+    if (count == 0) return;
+    if (fresh) build(box);
+    refit_all(box);
+    if (!fresh && leaf_extent() > collision::rebuild_growth * built_extent_) {
+        build(box);
+        refit_all(box);
+        built_extent_ = leaf_extent();
+    } else if (fresh)
+        built_extent_ = leaf_extent();
+}
+
+template <class Box> void Bvh::build(const Box &box) {
+    std::vector<Centre> centres(count_);
+    for (int i = 0; i < count_; ++i) {
+        const SweptBox at = box(i);
+        const Eigen::Array4f middle = at.low + at.high;
+        centres[i] = {{middle[0], middle[1], middle[2]}, i};
+    }
+    arrange(centres);
+    ++builds_;
+}
+
+template <class Box> void Bvh::refit_leaf(int leaf, const Box &box) {
+    SweptBox boxes[4], all = SweptBox::empty();
+    for (int k = 0; k < 4; ++k) {
+        const int i = primitive(4 * leaf + k);
+        boxes[k] = i >= 0 ? box(i) : SweptBox::empty();
+        all.include(boxes[k]);
+    }
+    set_boxes(nodes_[leaf], ends_[leaf], boxes);
+    set(leaf, all);
+}
+
+template <class Box> void Bvh::refit_all(const Box &box) {
+    int first = first_leaf_, count = leaves();
+#pragma omp parallel for schedule(static) if (count_ > collision::serial_nodes)
+    for (int leaf = first; leaf < first + count; ++leaf) refit_leaf(leaf, box);
+    while (first > 1) { // level by level
+        first = (first - 1) / 4;
+        count /= 4;
+#pragma omp parallel for schedule(static) if (count > collision::serial_nodes)
+        for (int node = first; node < first + count; ++node) set(node, union_of(node));
+    }
+}
+
+template <class Box> void Bvh::refit(View<int> primitives, const Box &box) {
+    std::vector<int> leaves;
+    for (const int i : primitives)
+        if (!listed_[leaf_of_[i]]) listed_[leaf_of_[i]] = 1, leaves.push_back(leaf_of_[i]);
+#pragma omp parallel for schedule(static) if (int(leaves.size()) > collision::serial_nodes)
+    for (size_t k = 0; k < leaves.size(); ++k) refit_leaf(leaves[k], box);
+    refit_above(leaves);
+}
+
+} // namespace ringlet

@@ -1,0 +1,63 @@
+// Incidence of a collision mesh: the neighbours, edges and triangles of each vertex.
+#pragma once
+
+#include "ringlet/collision/mesh.h"
+#include "ringlet/math/lists.h"
+
+#include <numeric>
+#include <vector>
+
+namespace ringlet {
+
+using VertexLists = Lists<int>;
+
+// The vertices that share an edge with a vertex, for vertices from `first` up to `end`; others have none.
+inline VertexLists neighbours(const CollisionMesh &mesh, int first, int end) {
+    return {mesh.moves.size(), [&](const auto &add) {
+                for (const auto &[a, b] : mesh.edges)
+                    if (std::min(a, b) >= first && std::max(a, b) < end) add(a, b), add(b, a);
+            }};
+}
+
+// The primitives of each vertex.
+template <size_t N> VertexLists primitives_of(size_t vertices, const std::vector<std::array<int, N>> &primitives) {
+    return {vertices, [&](const auto &add) {
+                for (int i = 0; i < int(primitives.size()); ++i)
+                    for (const int v : primitives[i]) add(v, i);
+            }};
+}
+
+struct Incidence {
+    VertexLists edges, triangles; // of each vertex
+
+    explicit Incidence(const CollisionMesh &mesh)
+        : edges(primitives_of(mesh.moves.size(), mesh.edges)), triangles(primitives_of(mesh.moves.size(), mesh.triangles)) {}
+};
+
+// Some vertices of a mesh and the primitives that have any of them, each once.
+struct MeshSubset {
+    std::vector<int> vertices, edges, triangles;
+
+    explicit MeshSubset(const CollisionMesh &mesh) // everything
+        : vertices(mesh.moves.size()), edges(mesh.edges.size()), triangles(mesh.triangles.size()) {
+        for (auto *all : {&vertices, &edges, &triangles}) std::iota(all->begin(), all->end(), 0);
+    }
+
+    MeshSubset(const CollisionMesh &mesh, const Incidence &incidence, View<unsigned char> marked) {
+        const auto add = [&](int v, const VertexLists &lists, const auto &primitives, std::vector<int> &subset) {
+            for (const int i : lists.of(v)) {
+                const auto first =
+                    std::find_if(primitives[i].begin(), primitives[i].end(), [&](int w) { return marked[w] != 0; });
+                if (*first == v) subset.push_back(i);
+            }
+        };
+        for (int v = 0; v < int(marked.size()); ++v)
+            if (marked[v]) {
+                vertices.push_back(v);
+                add(v, incidence.edges, mesh.edges, edges);
+                add(v, incidence.triangles, mesh.triangles, triangles);
+            }
+    }
+};
+
+} // namespace ringlet

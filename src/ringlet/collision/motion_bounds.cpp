@@ -1,0 +1,53 @@
+#include "ringlet/collision/motion_bounds.h"
+
+#include <algorithm>
+
+namespace ringlet {
+namespace {
+
+// The corners of the section of a vertex's path that its bound encloses.
+std::array<Vec3, 3> enclosed(const Move &move, double max_path, int v) {
+    const Vec3 &start = move.start[v], &end = move.end[v], &apex = move.apex.empty() ? end : move.apex[v];
+    const bool is_long = std::max((end - start).squaredNorm(), (apex - start).squaredNorm()) > max_path * max_path;
+    if (is_long) return {start, start, start};
+    return {start, end, apex};
+}
+
+} // namespace
+
+std::vector<int> MotionBounds::outside(const Move &move, double max_path, double slack) const {
+    std::vector<int> vertices;
+    for (int v = 0; v < int(move.start.size()); ++v) {
+        const std::array<Vec3, 3> corners = enclosed(move, max_path, v);
+        if (empty() || std::any_of(corners.begin(), corners.end(), [&](const Vec3 &x) { return leaves(v, x, slack); }))
+            vertices.push_back(v);
+    }
+    return vertices;
+}
+
+void MotionBounds::fit_vertex(const Move &move, const Fit &how, int v) {
+    const auto [a, b, c] = enclosed(move, how.max_path, v);
+    low_[v] = a.cwiseMin(b).cwiseMin(c).array() - how.margin;
+    high_[v] = a.cwiseMax(b).cwiseMax(c).array() + how.margin;
+}
+
+void MotionBounds::fit(const Move &move, const Fit &how) {
+    low_.resize(move.start.size()), high_.resize(move.start.size());
+    for (int v = 0; v < int(low_.size()); ++v) fit_vertex(move, how, v);
+    boxes_.fit_static(low_, high_);
+}
+
+void MotionBounds::fit(const Move &move, const Fit &how, const std::vector<int> &vertices) {
+    for (const int v : vertices) fit_vertex(move, how, v);
+    boxes_.refit({low_, high_}, vertices);
+}
+
+void MotionBounds::find_escaped(const Move &move) {
+    clear_escaped();
+    const auto escapes = [&](int v) {
+        return leaves(v, move.start[v]) || leaves(v, move.end[v]) || (!move.apex.empty() && leaves(v, move.apex[v]));
+    };
+    add_escaped([&](int v) { return empty() ? mesh_.moves[v] != 0 : escapes(v); });
+}
+
+} // namespace ringlet

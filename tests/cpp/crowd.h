@@ -1,0 +1,112 @@
+// A crowd of strands whose motions have impacts, limited and resolved.
+#pragma once
+
+#include "random.h"
+#include "ringlet/ccd/impact_zones.h"
+#include "ringlet/ccd/motion_limiter.h"
+
+namespace ringlet {
+
+// Strands at random places that are to move to random others.
+struct Crowd {
+    CollisionMesh mesh;
+    std::vector<Vec3> start, end;
+    std::vector<int> offsets{0};
+    std::vector<double> mass;
+
+    Crowd(int strands, double size, double motion, unsigned seed, int vertices = 3) {
+        Random random{std::mt19937(seed)};
+        for (int s = 0; s < strands; ++s) {
+            const Vec3 place = random.vector(size), along = random.vector(size), shared = random.vector(motion);
+            for (int k = 0; k < vertices; ++k) {
+                const int v = int(start.size());
+                start.push_back(place + k * along);
+                end.push_back(start.back() + shared + random.vector(0.3 * motion));
+                mesh.points.push_back(v);
+                mesh.radius.push_back(1e-3);
+                mesh.moves.push_back(1);
+                mesh.object.push_back(s);
+                mesh.anchor.push_back(-1);
+                mass.push_back(random(0.5, 2.0));
+                if (k > 0) mesh.edges.push_back({v - 1, v});
+            }
+            offsets.push_back(int(start.size()));
+        }
+        mesh.rest = start;
+    }
+
+    ConnectedMesh connected() const { return {mesh, View<int>(offsets)}; }
+
+    CcdReport limit(std::vector<Vec3> &limited) const {
+        PairCache pairs(mesh);
+        pairs.update_bounds({start, start}, {.margin = 0.005, .max_path = 0.0});
+        limited = end;
+        return limit_motion({.connected = connected(), .start = start}, pairs, limited);
+    }
+
+    CcdReport resolve(std::vector<Vec3> &resolved) const {
+        PairCache pairs(mesh);
+        resolved = end;
+        return resolve_impact_zones({.connected = connected(),
+                                     .start = start,
+                                     .mass = View<double>(mass),
+                                     .advect = [](int, const Vec3 &point) { return point; }},
+                                    pairs, resolved);
+    }
+
+    // Limits a move; then every third strand is shortened further, and the rest of the move is limited again.
+    CcdReport limit_and_shorten(std::vector<Vec3> &limited) const {
+        PairCache pairs(mesh);
+        pairs.update_bounds({start, end}, {.margin = 0.0005, .max_path = 0.1});
+        limited = end;
+        limit_motion({.connected = connected(), .start = start}, pairs, limited);
+        std::vector<unsigned char> changed(start.size(), 0);
+        for (size_t v = 0; v < start.size(); ++v)
+            if (mesh.object[v] % 3 == 0) {
+                changed[v] = 1;
+                limited[v] = start[v] + 0.3 * (limited[v] - start[v]);
+            }
+        return limit_motion({.connected = connected(), .start = start, .whole_strands = true, .changed = changed}, pairs,
+                            limited);
+    }
+
+    // Whether any pair has an impact, asked of all pairs.
+    bool has_impacts(const std::vector<Vec3> &to) const {
+        PairCache all(mesh);
+        all.begin_move({start, to});
+        return !find_impacts(mesh, all.impact_candidates(), start, to).empty();
+    }
+
+    // The least distance of any two strands on the move, from dense samples [m].
+    double closest(const std::vector<Vec3> &to) const {
+        double least = 1.0;
+        std::vector<Vec3> now(start.size());
+        for (int step = 0; step <= 400; ++step) {
+            for (size_t v = 0; v < start.size(); ++v) now[v] = start[v] + (step / 400.0) * (to[v] - start[v]);
+            for (size_t a = 0; a < mesh.edges.size(); ++a)
+                for (size_t b = 0; b < a; ++b)
+                    if (!share_vertex(mesh.edges[a], mesh.edges[b]))
+                        least = std::min(least, std::sqrt(closest_points(now, mesh.edges[a], mesh.edges[b]).distance2));
+        }
+        return least;
+    }
+
+    // The least distance of any pair on the move, relative to its minimum separation.
+    double least_separation(const std::vector<Vec3> &to) const {
+        double least = 1e9;
+        std::vector<Vec3> now(start.size());
+        for (int step = 0; step <= 100; ++step) {
+            for (size_t v = 0; v < start.size(); ++v) now[v] = start[v] + (step / 100.0) * (to[v] - start[v]);
+            for (const auto &a : mesh.edges)
+                for (const auto &b : mesh.edges) {
+                    if (share_vertex(a, b)) continue;
+                    const double first = std::sqrt(closest_points(start, a, b).distance2);
+                    const double separation = std::min(0.5 * activation_distance(mesh, a, b), 0.2 * first);
+                    least = std::min(least, std::sqrt(closest_points(now, a, b).distance2) / separation);
+                }
+        }
+        return least;
+    }
+};
+
+} // namespace ringlet

@@ -1,0 +1,75 @@
+// Moves that are limited so that nothing has an impact.
+#include "crowd.h"
+
+#include <boost/test/unit_test.hpp>
+
+using namespace ringlet;
+
+BOOST_AUTO_TEST_SUITE(motion_limiter)
+
+BOOST_AUTO_TEST_CASE(a_limited_move_keeps_every_minimum_separation) {
+    int violations = 0;
+    for (unsigned seed = 0; seed < 20; ++seed) {
+        const Crowd crowd(12, 0.02, 0.03, seed);
+        if (crowd.closest(crowd.start) < 1e-5) continue;
+        std::vector<Vec3> limited;
+        const CcdReport report = crowd.limit(limited);
+        violations += report.impacts;
+        BOOST_TEST(crowd.closest(limited) > 1e-6);
+        BOOST_TEST(crowd.least_separation(limited) > 1.0 - 1e-9);
+    }
+    BOOST_TEST(violations > 50);
+}
+
+// Some are corrected locally and scaled as a whole for others: their impacts are checked again.
+BOOST_AUTO_TEST_CASE(long_strands_that_obstruct_each_other_everywhere_have_no_impact) {
+    int violations = 0;
+    for (unsigned seed = 0; seed < 200; ++seed) {
+        const Crowd crowd(60, 0.02, 0.01, seed, 30);
+        std::vector<Vec3> limited;
+        violations += crowd.limit(limited).impacts;
+        BOOST_TEST(!crowd.has_impacts(limited), "crowd " << seed);
+    }
+    BOOST_TEST(violations > 10000);
+}
+
+BOOST_AUTO_TEST_CASE(strands_that_are_shortened_further_have_no_impact_either) {
+    int violations = 0;
+    for (unsigned seed = 0; seed < 50; ++seed) {
+        const Crowd crowd(60, 0.02, 0.01, seed, 30);
+        std::vector<Vec3> limited;
+        violations += crowd.limit_and_shorten(limited).impacts;
+        BOOST_TEST(!crowd.has_impacts(limited), "crowd " << seed);
+    }
+    BOOST_TEST(violations > 100);
+}
+
+BOOST_AUTO_TEST_CASE(a_move_without_impacts_is_left_alone) {
+    const Crowd crowd(1, 0.02, 0.03, 3);
+    std::vector<Vec3> limited;
+    BOOST_TEST(crowd.limit(limited).impacts == 0);
+    BOOST_TEST((limited == crowd.end));
+}
+
+// Strands in a row, 4 mm apart, are drawn together towards the first, which stays: each obstructs the next.
+BOOST_AUTO_TEST_CASE(a_chain_of_strands_stops_in_one_round) {
+    constexpr int strands = 20;
+    Crowd crowd(strands, 0.02, 0.03, 0);
+    for (int v = 0; v < 3 * strands; ++v) {
+        const int strand = v / 3;
+        crowd.start[v] = crowd.mesh.rest[v] = {4e-3 * strand, 0.01 * (v % 3), 1e-4 * strand};
+        crowd.end[v] = crowd.start[v] - Vec3(4.5e-3 * strand, 0.0, 0.0);
+    }
+    std::vector<Vec3> limited;
+    const CcdReport report = crowd.limit(limited);
+    BOOST_TEST(report.impacts >= strands - 1);
+    BOOST_TEST(report.rounds == 1);
+    BOOST_TEST(report.fraction == 1.0);
+    BOOST_TEST(crowd.least_separation(limited) > 1.0 - 1e-9);
+    const double fraction = (limited[3] - crowd.start[3]).norm() / 4.5e-3;
+    BOOST_TEST(fraction > 0.6);
+    for (int v = 3; v < 3 * strands; ++v) // each as a whole, and all by the same fraction
+        BOOST_TEST((limited[v] - crowd.start[v] - fraction * (crowd.end[v] - crowd.start[v])).norm() < 1e-12);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
