@@ -199,19 +199,19 @@ def check_groom(
     allowed = grooms.Allowed(root_depth, root_length, thickness)
     others = _beside_scalp(groom)
     findings = grooms.check_groom(groom, others, allowed)
-    told: dict[str, Any] = {"locks": len(groom.locks), "points": len(groom.locks.points), "found": findings.told()}
+    summary: dict[str, Any] = {"locks": len(groom.locks), "points": len(groom.locks.points), "found": findings.told()}
     if fixed is not None:
         repair = grooms.fix_groom(groom, others, allowed, progress)
         write_groom(repair.groom, fixed)
         findings = repair.left
-        told |= {"left": findings.told(), "repair": repair.told()}
+        summary |= {"left": findings.told(), "repair": repair.told()}
     if picture is not None:
         from ringlet.picture import write_places
 
         body = np.concatenate([mesh.points for mesh in (groom.scalp, *others)])
         title = "left after the repair" if fixed is not None else "found"
         write_places(body, findings.locks.points, findings.by_kind(), picture, title)
-    return told
+    return summary
 
 
 def _beside_scalp(groom: Groom) -> list[Mesh]:

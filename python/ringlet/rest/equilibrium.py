@@ -60,14 +60,14 @@ def equilibrium(
     groom: Groom,
     *,
     obstacles: Sequence[Obstacle] = (),
-    borne: Array | None = None,
+    support: Array | None = None,
     frames: Array | None = None,
     progress: Progress | None = None,
 ) -> Loft:
     """Finds the rest shape with which the locks of ``groom`` are still as groomed, under the forces of ``shot``.
 
     obstacles: what locks may lie on, where the shot has contact, in the rest pose
-    borne:     the ``support_forces`` of these locks [N], shape (n, 3), where they are some of a groom
+    support:   the ``support_forces`` of these locks [N], shape (n, 3), where they are some of a groom
     frames:    their directors where they were groomed, shape (n, 3), where these are known
 
     A lock that would fall is stiffened, up to ``rest.stiffen`` times. One that falls even so keeps its stiffness and
@@ -78,14 +78,14 @@ def equilibrium(
     _check(shot, locks)
     strands, most = make_strands(shot, groom), shot.rest.stiffen
     frames = strands.directors.copy() if frames is None else frames
-    borne = support_forces(shot, groom, obstacles, strands) if borne is None else borne
-    support = borne + _nail_springs(shot, groom, strands)
+    support = support_forces(shot, groom, obstacles, strands) if support is None else support
+    carried = support + _nail_springs(shot, groom, strands)
     going, soft, factor = np.ones(len(locks), bool), np.zeros(len(locks), bool), np.ones(len(locks))
-    made = _nothing_found(groom, borne)
+    made = _nothing_found(groom, support)
 
     def tried(which: Locks, fall: bool = False) -> _Trial:
         part, rows = replace(groom, locks=locks.take(which)), np.repeat(which, locks.counts)
-        return _try(shot, part, frames[rows], support[rows], factor[which], fall)
+        return _try(shot, part, frames[rows], carried[rows], factor[which], fall)
 
     for _ in range(TRIES):
         if progress:
@@ -144,12 +144,12 @@ def _check(shot: Shot, locks: Curves) -> None:
         raise UserError(f"loft: held is {shot.held}, but a lock has {locks.counts.min()} points; hold fewer")
 
 
-def _nothing_found(groom: Groom, borne: Array) -> Loft:
+def _nothing_found(groom: Groom, support: Array) -> Loft:
     """A loft to be filled, lock by lock."""
     count, points = len(groom.locks), np.array(groom.locks.points, np.float64)
     nowhere = np.full(count, np.inf)
     return Loft(
-        groom, groom.locks.with_points(points), None, points.copy(), nowhere, nowhere.copy(), nowhere.copy(), borne
+        groom, groom.locks.with_points(points), None, points.copy(), nowhere, nowhere.copy(), nowhere.copy(), support
     )
 
 

@@ -29,13 +29,13 @@ def solve_rest_shape(
     groom: Groom,
     *,
     obstacles: Sequence[Obstacle] = (),
-    borne: NDArray[np.float64] | None = None,
+    support: NDArray[np.float64] | None = None,
     frames: NDArray[np.float64] | None = None,
     progress: Progress | None = None,
 ) -> Loft:
     """The rest shape that a shot asks for, by its method; one that asks for none gets a loft. See ``equilibrium``."""
     if rest_mode(shot) == "equilibrium":
-        return equilibrium(shot, groom, obstacles=obstacles, borne=borne, frames=frames, progress=progress)
+        return equilibrium(shot, groom, obstacles=obstacles, support=support, frames=frames, progress=progress)
     return loft(shot, groom, progress=progress)
 
 
@@ -55,8 +55,10 @@ def from_curves(stored: Curves, groom: Groom) -> Loft:
     """The loft of the same locks from what ``to_curves`` gave."""
     lofted, off, moving = stored.point["lofted"], stored.curve["off"].copy(), stored.curve["moving"].copy()
     stiffened = stored.curve["stiffened"].copy() if "stiffened" in stored.curve else None
-    sagged, borne = (np.asarray(stored.point[name], np.float64) if name in stored.point else None for name in OPTIONAL)
-    return Loft(groom, stored, sagged, np.asarray(lofted, np.float64), off, moving, stiffened, borne)
+    sagged, support = (
+        np.asarray(stored.point[name], np.float64) if name in stored.point else None for name in OPTIONAL
+    )
+    return Loft(groom, stored, sagged, np.asarray(lofted, np.float64), off, moving, stiffened, support)
 
 
 def update_rest_shape(
@@ -78,17 +80,17 @@ def update_rest_shape(
     if made != (now := dependencies(shot, obstacles)):
         same = not changed.any() and _of_support(made) == _of_support(now)
         return solve_rest_shape(
-            shot, groom, obstacles=obstacles, borne=whole.borne if same else None, progress=progress
+            shot, groom, obstacles=obstacles, support=whole.borne if same else None, progress=progress
         )
     if not changed.any():
         return whole
-    borne, known = None, {}
+    support, known = None, {}
     if whole.borne is not None:
         strands = make_strands(shot, groom)
         frames = strands.directors.copy()
-        borne = support_forces(shot, groom, obstacles, strands)
-        changed |= _support_changed(external_loads(shot, strands), groom.locks, whole.borne, borne)
-        known = {"borne": borne, "frames": frames}
+        support = support_forces(shot, groom, obstacles, strands)
+        changed |= _support_changed(external_loads(shot, strands), groom.locks, whole.borne, support)
+        known = {"support": support, "frames": frames}
     rows = np.repeat(changed, groom.locks.counts)
     part = replace(groom, locks=groom.locks.take(changed))
     of_part = {name: values[rows] for name, values in known.items()}
@@ -99,7 +101,7 @@ def update_rest_shape(
         whole.stiffened[changed] = part.stiffened
     if whole.sagged is not None and part.sagged is not None:
         whole.sagged[rows] = part.sagged
-    return replace(whole, borne=borne, sagged=None if part.sagged is None else whole.sagged)
+    return replace(whole, borne=support, sagged=None if part.sagged is None else whole.sagged)
 
 
 def _of_support(made: dict[str, Any]) -> dict[str, Any]:

@@ -24,17 +24,17 @@ class StepReports:
 
 
 def frame_statistics(
-    reports: StepReports, locks: NDArray[np.integer], cloths: list[str], excused: int
+    reports: StepReports, locks: NDArray[np.integer], cloths: list[str], penetrating: int
 ) -> dict[str, Any]:
     """Statistics of a frame, by name: of strands, of contact and of each cloth, where there are any.
 
     locks:   their ids, shape (count,)
     cloths:  their names
-    excused: the number of vertices with initial penetration that are still inside a body
+    penetrating: the number of vertices with initial penetration that are still inside a body
     """
     return {
         **_of_strands(reports.strands, locks),
-        **(_of_contact(reports.scene, excused) if reports.scene else {}),
+        **(_of_contact(reports.scene, penetrating) if reports.scene else {}),
         **({"cloth": _of_cloths(reports.cloths, cloths)} if cloths else {}),
     }
 
@@ -80,7 +80,7 @@ def _of_cloths(reports: list[list[dict[str, float]]], names: list[str]) -> dict[
     }
 
 
-def _of_contact(reports: list[dict[str, float]], excused: int) -> dict[str, Any]:
+def _of_contact(reports: list[dict[str, float]], penetrating: int) -> dict[str, Any]:
     """Over all substeps of a scene. It is solved as one, so its iterations replace those of the strands."""
 
     def total(name: str) -> float:
@@ -101,7 +101,7 @@ def _of_contact(reports: list[dict[str, float]], excused: int) -> dict[str, Any]
             "closest": closest if np.isfinite(closest) else None,
             "violations": int(total("violations")),
             "zone_vertices": int(total("zone_vertices")),
-            "excused": excused,
+            "excused": penetrating,
             "linear_iterations": int(total("linear_iterations")),
             "fraction": min(report["fraction"] for report in reports),
             **{f"{name}_ms".removeprefix("time_"): 1e3 * total(name) for name in times},
