@@ -1,4 +1,4 @@
-"""The groom: from a recipe and a scalp to every hair."""
+"""The groom: builds guides, locks and render hairs from a recipe and a scalp mesh."""
 
 from ringlet.groom.check import Allowed, check_groom
 from ringlet.groom.edits_file import add_points, add_settings, release, row_of, taken_back
