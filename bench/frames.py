@@ -52,8 +52,8 @@ def run(
         shot.write_text(settings + "[forces]\nwind = [2.0, 0.0, 1.0]\n")
         groom = build_groom(read_recipe(recipe))
         write_groom(groom, groom_file)
-        begin, cache, part = time.perf_counter(), Path(place) / "cache.usdc", Path(place) / "part"
-        write_simulation(read_shot(shot), groom, groom_file, cache, checkpoints=part, on_frame=measure_frame)
+        begin, cache, checkpoints = time.perf_counter(), Path(place) / "cache.usdc", Path(place) / "part"
+        write_simulation(read_shot(shot), groom, groom_file, cache, checkpoints=checkpoints, on_frame=measure_frame)
         after, peak, seconds = (
             resident(),
             resource.getrusage(resource.RUSAGE_SELF).ru_maxrss,
@@ -82,7 +82,7 @@ def run(
             "megabytes_hairs": hairs_megabytes,
             "megabytes_most": round(1.024e-3 * peak, 1),
             "megabytes_of_cache": round(1e-6 * cache.stat().st_size, 1),
-            "megabytes_of_checkpoints": round(1e-6 * sum(file.stat().st_size for file in part.iterdir()), 1),
+            "megabytes_of_checkpoints": round(1e-6 * sum(file.stat().st_size for file in checkpoints.iterdir()), 1),
             "hairs": hairs,
             "seconds": round(seconds, 1),
             "frame_ms": {"median": round(median(wall), 1), "max": round(max(wall), 1)},

@@ -45,20 +45,20 @@ def run(
     """
     clock = Clock()
     with clock("both"):
-        _, rest, ours, theirs = warped(locks, points, frames, nearest, bend_scale)
+        _, rest, simulated, warped_hairs = warped(locks, points, frames, nearest, bend_scale)
     before = measure(rest, points)
     result = {}
     # Change of the curl by the motion itself: the first hair of a lock is the simulated guide.
     guide_change = np.repeat(
-        np.stack(measure(ours, points))[:, ::PER_LOCK] / np.stack(before)[:, ::PER_LOCK], PER_LOCK, axis=1
+        np.stack(measure(simulated, points))[:, ::PER_LOCK] / np.stack(before)[:, ::PER_LOCK], PER_LOCK, axis=1
     )
-    hair_change = np.stack(measure(ours, points)) / np.stack(before)
+    hair_change = np.stack(measure(simulated, points)) / np.stack(before)
     relative_change = np.delete(hair_change / guide_change, np.s_[::PER_LOCK], axis=1)
     result["carried_beside_its_guide"] = {
         f"{name}_change_90_percent": float(np.percentile(np.abs(kept - 1.0), 90))
         for name, kept in zip(("radius", "bend", "length"), relative_change, strict=True)
     }
-    for name, hairs in (("carried", ours), ("conventional", theirs)):
+    for name, hairs in (("carried", simulated), ("conventional", warped_hairs)):
         after = measure(hairs, points)
         moved = np.linalg.norm(hairs - rest, axis=1).reshape(-1, points)[:, -1]
         result[name] = {
@@ -110,9 +110,9 @@ def warped(
     bends = [head_at_rest(guides.points, now, each) for now in lines.points]
     hardest = int(np.argmax([np.linalg.norm(bent - guides.points, axis=1).mean() for bent in bends]))
     bent = bends[hardest]
-    ours = hairs.at(head_at_rest(groom.locks.points, curls.points[hardest], points), groom.scalp.points)
-    theirs = conventional(rest, hairs.curves.roots, guides.points, bent, len(guides), points, nearest)
-    return groom, rest, ours.astype(float), theirs
+    simulated = hairs.at(head_at_rest(groom.locks.points, curls.points[hardest], points), groom.scalp.points)
+    warped_hairs = conventional(rest, hairs.curves.roots, guides.points, bent, len(guides), points, nearest)
+    return groom, rest, simulated.astype(float), warped_hairs
 
 
 def head_at_rest(before: NDArray, now: NDArray, points: int) -> NDArray[np.floating]:
@@ -151,9 +151,9 @@ def measure(hairs: NDArray, points: int) -> tuple[NDArray, NDArray, NDArray]:
     axis = 0.5 * (axis[:, 1:] + axis[:, :-1])
     along = np.gradient(axis, axis=1)
     along /= np.maximum(np.linalg.norm(along, axis=2, keepdims=True), 1e-12)
-    off = curves[:, 6 : 6 + axis.shape[1]] - axis
-    off -= np.sum(off * along, axis=2, keepdims=True) * along
-    radius = np.sqrt(np.mean(np.sum(off**2, axis=2), axis=1))
+    radial = curves[:, 6 : 6 + axis.shape[1]] - axis
+    radial -= np.sum(radial * along, axis=2, keepdims=True) * along
+    radius = np.sqrt(np.mean(np.sum(radial**2, axis=2), axis=1))
     edges = np.diff(curves, axis=1)
     lengths = np.linalg.norm(edges, axis=2)
     cosine = np.sum(edges[:, 1:] * edges[:, :-1], axis=2) / np.maximum(lengths[:, 1:] * lengths[:, :-1], 1e-12)

@@ -33,10 +33,10 @@ START_DISTANCE = 3.0  # initial distance from the final position [cm]
 
 COLOR = np.array([0.30, 0.012, 0.020])
 
-Part = tuple[Array, NDArray[np.int32], NDArray[np.bool_]]  # points, triangles, and mask of prescribed vertices
+Piece = tuple[Array, NDArray[np.int32], NDArray[np.bool_]]  # points, triangles, and mask of prescribed vertices
 
 
-def loop(side: float) -> Part:
+def loop(side: float) -> Piece:
     """Builds a loop from the knot and back: flat behind, full in front, pleated in the knot."""
     columns, rows = round(2.3 * LOOP / SPACING), round(2 * HALF_WIDTH / SPACING) + 1
     u, v = np.linspace(1.0, -1.0, columns)[:, None], np.linspace(-1.0, 1.0, rows)
@@ -51,7 +51,7 @@ def loop(side: float) -> Part:
     return grid(side * x, y, z), strip(columns, rows), np.repeat(x[:, rows // 2] < KNOT[0], rows)
 
 
-def tail(side: float) -> Part:
+def tail(side: float) -> Piece:
     """Builds an end of the ribbon, which hangs behind the loops to one side and has a swallowtail cut."""
     columns, rows = round(TAIL / SPACING) + 1, round(2 * TAIL_HALF_WIDTH / SPACING) + 1
     s, v = np.linspace(0.0, 1.0, columns)[:, None], np.linspace(-1.0, 1.0, rows)
@@ -64,7 +64,7 @@ def tail(side: float) -> Part:
     return grid(side * x, y, z), strip(columns, rows), np.repeat(s[:, 0] * TAIL < 0.9, rows)
 
 
-def knot() -> Part:
+def knot() -> Piece:
     """Builds the band of the knot."""
     around, across = 20, 5
     a, v = np.linspace(0.0, 2 * np.pi, around, endpoint=False)[:, None], np.linspace(-1.0, 1.0, across)
@@ -86,11 +86,15 @@ def grid(*xyz: Array) -> Array:
 
 def make() -> tuple[Array, NDArray[np.int32], NDArray[np.int64]]:
     """Builds points [cm], triangles, and the indices of the prescribed triangles."""
-    parts = [loop(1.0), loop(-1.0), tail(1.0), tail(-1.0), knot()]
-    first = np.cumsum([0] + [len(points) for points, _, _ in parts])
-    triangles = np.concatenate([first[k] + part[1] for k, part in enumerate(parts)]).astype(np.int32)
-    tied = np.concatenate([part[2] for part in parts])
-    return on_head(np.concatenate([part[0] for part in parts])), triangles, np.flatnonzero(tied[triangles].all(axis=1))
+    pieces = [loop(1.0), loop(-1.0), tail(1.0), tail(-1.0), knot()]
+    first = np.cumsum([0] + [len(points) for points, _, _ in pieces])
+    triangles = np.concatenate([first[k] + piece[1] for k, piece in enumerate(pieces)]).astype(np.int32)
+    tied = np.concatenate([piece[2] for piece in pieces])
+    return (
+        on_head(np.concatenate([piece[0] for piece in pieces])),
+        triangles,
+        np.flatnonzero(tied[triangles].all(axis=1)),
+    )
 
 
 def on_head(points: Array) -> Array:

@@ -149,7 +149,7 @@ def _simulate(task: Task, wanted: Wanted, log: Log, progress: Progress) -> Resul
     with replacing(shot_file) as aside:
         aside.write_text(task.shot, encoding="utf-8")
     shot = api.read_shot(shot_file)
-    groom, under = _groom(shot, task.folder, log)
+    groom, groom_file = _groom(shot, task.folder, log)
     made_from = f"{api.made_from(shot, groom, frames=wanted.frames)} {wanted.frames} {wanted.frame} {wanted.picture}"
     previous = read_result(task.folder)
     if previous and previous.state == "done" and previous.made_from == made_from and cache.exists():
@@ -169,14 +169,14 @@ def _simulate(task: Task, wanted: Wanted, log: Log, progress: Progress) -> Resul
         progress(done, last - first + 1)
 
     simulated = api.write_simulation(
-        shot, groom, under, cache, checkpoints=part, frames=wanted.frames, resume=resume, on_frame=frame_done
+        shot, groom, groom_file, cache, checkpoints=part, frames=wanted.frames, resume=resume, on_frame=frame_done
     )
     seconds = time.perf_counter() - begin
     frame = last if wanted.frame is None else wanted.frame
     numbers = {**_numbers_of_statistics(simulated.statistics), **_numbers_of_motion(task.folder, groom, cache, frame)}
     if wanted.picture:
         log(f"draws frame {frame}")
-        _draw(task.folder, groom, under, cache, frame)
+        _draw(task.folder, groom, groom_file, cache, frame)
     shutil.rmtree(part, ignore_errors=True)
     series = {name: [float(frame[name]) for frame in simulated.statistics] for name in SERIES}
     return Result(task.settings, "done", "", made_from, round(seconds, 3), numbers, series, task.order)
@@ -184,15 +184,15 @@ def _simulate(task: Task, wanted: Wanted, log: Log, progress: Progress) -> Resul
 
 def _groom(shot: Shot, folder: Path, log: Log) -> tuple[Groom, Path]:
     """The groom of a shot and its USD file; writes the rest shape when the shot has one."""
-    groom, under = api.load_groom(shot.groom), shot.groom
+    groom, groom_file = api.load_groom(shot.groom), shot.groom
     if shot.groom.suffix == ".toml":
-        under = folder / "groom.usdc"
-        api.write_groom(groom, under)
+        groom_file = folder / "groom.usdc"
+        api.write_groom(groom, groom_file)
     if shot.rest.mode != "none":
         assert shot.rest_file is not None
         log(f"lofts, for the rest shape '{shot.rest.mode}'")
         api.write_loft(api.loft(shot, groom, known=shot.rest_file), shot, shot.rest_file)
-    return groom, under
+    return groom, groom_file
 
 
 def _one_line(statistics: dict[str, Any]) -> str:
@@ -222,26 +222,26 @@ def _numbers_of_motion(folder: Path, groom: Groom, cache: Path, frame: int) -> d
     Raises UserError for a frame that was not simulated.
     """
     offsets = groom.locks.offsets
-    reach: list[np.ndarray] = []  # distance from root to tip of each lock, by frame
+    extents: list[np.ndarray] = []  # distance from root to tip of each lock, by frame
     with api.open_cache(cache) as simulated:
         if frame not in simulated.frames:
             span = f"{simulated.frames[0]:g} to {simulated.frames[-1]:g}"
             raise UserError(f"wedge: frame {frame} is not among those simulated, {span}; choose another with --frame")
         for at in simulated.frames:
             points = simulated.points(at)
-            reach.append(np.linalg.norm(points[offsets[1:] - 1] - points[offsets[:-1]], axis=1))
+            extents.append(np.linalg.norm(points[offsets[1:] - 1] - points[offsets[:-1]], axis=1))
             if at == frame:
                 with replacing(folder / "places.npy") as aside, aside.open("wb") as file:
                     np.save(file, points)
     return {
-        "bounce, mm": float(1e3 * np.ptp(reach, axis=0).mean()),
-        "root to tip, mm": float(1e3 * reach[-1].mean()),
+        "bounce, mm": float(1e3 * np.ptp(extents, axis=0).mean()),
+        "root to tip, mm": float(1e3 * extents[-1].mean()),
     }
 
 
-def _draw(folder: Path, groom: Groom, under: Path, cache: Path, frame: int) -> None:
+def _draw(folder: Path, groom: Groom, groom_file: Path, cache: Path, frame: int) -> None:
     hairs = folder / "hair.usdc"
     fraction = min(1.0, HAIRS / hair_count(groom))
-    api.write_hairs(under, hairs, cache=cache, frames=(frame, frame), fraction=fraction, wider=True)
+    api.write_hairs(groom_file, hairs, cache=cache, frames=(frame, frame), fraction=fraction, wider=True)
     api.write_still(hairs, folder / "still.png", frame=frame, width=420, height=470, samples=16)
     hairs.unlink()

@@ -109,6 +109,6 @@ def shape_frames(shapes: Curves, row: int, root: NDArray, u: NDArray) -> NDArray
 def offsets_to(before: Curves, shapes: Curves, row: int, root: NDArray, points: NDArray) -> list[list[float]]:
     """Offsets of ``points`` (k, 3) from the recipe's lock, in the frame of the lock's shape [m]."""
     u = np.linspace(0.0, 1.0, len(points))
-    made = resampled(np.asarray(before[row], np.float64), len(points), even=False)
+    procedural = resampled(np.asarray(before[row], np.float64), len(points), even=False)
     frames = shape_frames(shapes, row, root, u)
-    return np.round(np.einsum("nij,ni->nj", frames, points - made), 9).tolist()
+    return np.round(np.einsum("nij,ni->nj", frames, points - procedural), 9).tolist()

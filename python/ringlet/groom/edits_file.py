@@ -85,15 +85,15 @@ def add_points(recipe: Recipe, groom: Groom, lock: int, points: NDArray, stage: 
     Raises UserError for an unknown lock and for points that are not finite or not of shape (k, 3), k ≥ 2.
     """
     path, points = edits_path(recipe), np.asarray(points, np.float64)
-    made = groom.shapes if stage == "shape" else groom.locks
+    current = groom.shapes if stage == "shape" else groom.locks
     row = row_of(groom, lock)
-    assert made is not None and groom.shapes is not None
+    assert current is not None and groom.shapes is not None
     if points.ndim != 2 or points.shape[1:] != (3,) or len(points) < 2 or not np.isfinite(points).all():
         raise UserError(f"edit of lock {lock}: points have shape {points.shape}; must be finite, of shape (k, 3)")
     root = Scalp(groom.scalp, groom.region).frames(groom.locks)[row]
     edit: dict[str, Any] = {"lock": lock, "stage": stage}
     if relative:
-        edit["offsets"] = _with_unit(offsets_to(made, groom.shapes, row, root, points))
+        edit["offsets"] = _with_unit(offsets_to(current, groom.shapes, row, root, points))
     else:
         edit["curve"] = _with_unit(np.round((points - points[0]) @ root, 9).tolist())
     edits = read_edits(path)["edit"]
@@ -108,15 +108,15 @@ def release(recipe: Recipe, locks: Collection[int] | None) -> list[int]:
     """
     path = edits_path(recipe)
     edits = read_edits(path)["edit"]
-    gone = [edit for edit in edits if locks is None or edit.get("lock") in locks]
+    removed = [edit for edit in edits if locks is None or edit.get("lock") in locks]
     for lock in locks or ():
-        if not any(edit.get("lock") == lock for edit in gone):
+        if not any(edit.get("lock") == lock for edit in removed):
             edited = [str(edit.get("lock")) for edit in edits]
             hint = did_you_mean(str(lock), edited) if edited else "; nothing is edited there"
             raise UserError(f"{path}: lock {lock} is not edited{hint}")
-    if gone:
-        write_edits([edit for edit in edits if edit not in gone], path)
-    return sorted({int(edit["lock"]) for edit in gone})
+    if removed:
+        write_edits([edit for edit in edits if edit not in removed], path)
+    return sorted({int(edit["lock"]) for edit in removed})
 
 
 def row_of(groom: Groom, lock: int) -> int:

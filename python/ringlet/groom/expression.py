@@ -90,10 +90,10 @@ def _value(node: ast.expr, values: Mapping[str, NDArray]) -> Any:
         case ast.BinOp():
             return _OPERATORS[type(node.op)](_value(node.left, values), _value(node.right, values))
         case ast.BoolOp():
-            parts = [_value(part, values) for part in node.values]
-            for part in parts[1:]:
-                parts[0] = _OPERATORS[type(node.op)](parts[0], part)
-            return parts[0]
+            operands = [_value(operand, values) for operand in node.values]
+            for operand in operands[1:]:
+                operands[0] = _OPERATORS[type(node.op)](operands[0], operand)
+            return operands[0]
         case ast.Compare():
             sides = [_value(side, values) for side in (node.left, *node.comparators)]
             result: Any = True

@@ -66,13 +66,13 @@ def fix_groom(
     repair = _core.Repair(*packed(locks), bodies.solids, allowed.root_depth, allowed.root_length, allowed.thickness)
     fewest, patience = len(left), PATIENCE
     while rounds < MAX_ITERATIONS and patience > 0:
-        rounds, wrong = rounds + 1, repair.round()
+        rounds, conflicts = rounds + 1, repair.round()
         if progress:
-            progress("fix", rounds, MAX_ITERATIONS if wrong else rounds)
-        if wrong == 0:
+            progress("fix", rounds, MAX_ITERATIONS if conflicts else rounds)
+        if conflicts == 0:
             break
-        patience = PATIENCE if wrong < fewest else patience - 1
-        fewest = min(fewest, wrong)
+        patience = PATIENCE if conflicts < fewest else patience - 1
+        fewest = min(fewest, conflicts)
     best = locks.with_points(repair.points())
     moved = np.linalg.norm(best.points - locks.points, axis=1)
     return Repair(replace(groom, locks=best), find(best, bodies, allowed), rounds, moved)

@@ -261,15 +261,15 @@ def _place(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -
     locks, scalp = groom.locks, groom.scalp
     roots, frames = _root_frames(groom)
     per_lock = _Values(settings, locks, scalp)
-    whole = np.maximum(1, np.round(per_lock("per_lock"))).astype(np.int64)
-    each = np.maximum(1, np.round(whole * fraction)).astype(np.int64)
-    lock = np.repeat(np.arange(len(locks), dtype=np.int32), each)
-    first = offsets_from_counts(each)
+    full_count = np.maximum(1, np.round(per_lock("per_lock"))).astype(np.int64)
+    counts = np.maximum(1, np.round(full_count * fraction)).astype(np.int64)
+    lock = np.repeat(np.arange(len(locks), dtype=np.int32), counts)
+    first = offsets_from_counts(counts)
     number = np.arange(len(lock)) - first[lock]
     ids = locks.ids[lock] * IDS_PER_LOCK + number
     points = settings.points or int(locks.counts.max())
 
-    disk = _disk(settings, ids, number, whole[lock])
+    disk = _disk(settings, ids, number, full_count[lock])
     scattered = roots[lock] + per_lock("spread")[lock, None] * np.einsum("hxk,hk->hx", frames[lock][:, :, :2], disk)
     try:
         region = np.ascontiguousarray(scalp.region(groom.region), np.int32)
@@ -293,7 +293,7 @@ def _place(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -
     thickness = for_each_lock(uniform, Random(settings.seed, "hairs/width"), locks, scalp, "hairs.width")[lock]
     thickness *= Varied(value=1.0, vary=settings.width.vary).factors(Random(settings.seed, "hairs/width"), ids, ids)
     if wider:
-        thickness *= (whole / each)[lock]
+        thickness *= (full_count / counts)[lock]
     widths = (thickness.astype(np.float32)[:, None] * settings.width.along(u).astype(np.float32)).reshape(-1)
 
     curves = Curves(
@@ -341,11 +341,11 @@ def _root_frames(groom: Groom) -> tuple[NDArray[np.float64], NDArray[np.float64]
     )
 
 
-def _disk(settings: HairSettings, ids: NDArray, number: NDArray, whole: NDArray) -> NDArray[np.float64]:
+def _disk(settings: HairSettings, ids: NDArray, number: NDArray, full_count: NDArray) -> NDArray[np.float64]:
     """Samples of the unit disk, uniform within a lock (a jittered Vogel spiral), shape (hairs, 2); 0 for the first."""
     random = Random(settings.seed, "hairs/place")
     radius = np.sqrt(
-        (number - random.uniform(ids, 0)) / np.maximum(whole - 1, 1), where=number > 0, out=np.zeros(len(ids))
+        (number - random.uniform(ids, 0)) / np.maximum(full_count - 1, 1), where=number > 0, out=np.zeros(len(ids))
     )
     angle = number * np.pi * (3.0 - np.sqrt(5.0)) + 2.0 * np.pi * random.uniform(ids // IDS_PER_LOCK, 1)
     return radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
@@ -366,7 +366,7 @@ def _layout(
         * np.linspace(0.0, 1.0, FRIZZ_KNOTS).repeat(2)
         * (2.0 * Random(settings.seed, "hairs/frizz").uniforms(ids, 2 * FRIZZ_KNOTS) - 1.0)
     )
-    near = np.clip(1.0 - u / settings.gather, 0.0, 1.0)
+    t = np.clip(1.0 - u / settings.gather, 0.0, 1.0)
     section = _section(per_lock, lock, disk)
     return {
         "offset": (per_lock("radius")[lock, None] * section).astype(np.float32),
@@ -374,7 +374,7 @@ def _layout(
         "taper": per_lock("taper")[lock].astype(np.float32),
         "frizz": knots.astype(np.float32),
         "profile": settings.radius.along(u).astype(np.float32),
-        "hold": (near * near * (3.0 - 2.0 * near)).astype(np.float32),
+        "hold": (t * t * (3.0 - 2.0 * t)).astype(np.float32),
     }
 
 
@@ -409,8 +409,8 @@ def _neighbours(
     at = np.einsum(
         "hc,hcx->hx", bound["root_barycentric"], groom.scalp.points[groom.scalp.triangles[bound["root_triangle"]]]
     )
-    near = np.asarray(KDTree(roots).query(at, k=2)[1])
-    other = np.where(near[:, 0] == lock, near[:, 1], near[:, 0]).astype(np.int32)
+    nearest = np.asarray(KDTree(roots).query(at, k=2)[1])
+    other = np.where(nearest[:, 0] == lock, nearest[:, 1], nearest[:, 0]).astype(np.int32)
     own_distance, other_distance = (np.linalg.norm(at - roots[index], axis=1) for index in (lock, other))
     middle = np.add.reduceat(locks.points, locks.offsets[:-1], axis=0) / locks.counts[:, None] - locks.roots
     lean = middle / np.maximum(np.linalg.norm(middle, axis=1, keepdims=True), 1e-12)

@@ -34,16 +34,16 @@ def load_text(text: str, path: Path | None, edits: str | None = None) -> tuple[s
 
 
 def resolve(
-    text: str, data: dict[str, Any], path: Path, below: tuple[Path, ...], edits: str | None = None
+    text: str, data: dict[str, Any], path: Path, extending: tuple[Path, ...], edits: str | None = None
 ) -> tuple[str, dict[str, Any]]:
     """Resolves the base and the edits of a recipe.
 
-    below: the files that extend this one, to detect cycles
+    extending: the files that extend this one, to detect cycles
     """
     resolved = data
     if "extends" in data:
-        resolved = _extended(data, path, (*below, path.resolve()))
-    if "edits" in resolved and not below:
+        resolved = _extended(data, path, (*extending, path.resolve()))
+    if "edits" in resolved and not extending:
         resolved = _with_edits(resolved, path, edits)
     resolved = _with_settings_of_locks(resolved, path)
     if {"extends", "edits"} & data.keys():
@@ -70,15 +70,15 @@ def parse_edits(text: str, path: Path) -> dict[str, list[dict[str, Any]]]:
     return edits
 
 
-def _extended(data: dict[str, Any], path: Path, below: tuple[Path, ...]) -> dict[str, Any]:
+def _extended(data: dict[str, Any], path: Path, extending: tuple[Path, ...]) -> dict[str, Any]:
     """Merges the changes of a variant into the tables of its base."""
     if not isinstance(name := data["extends"], str):
         raise UserError(f"{path.name}: extends is {name!r}; must be the name of a recipe file")
     base_path = path.parent / name
-    if base_path.resolve() in below:
+    if base_path.resolve() in extending:
         raise UserError(f"{path.name}: extends {name}, which extends it in turn; take one of the two away")
     text, base = read_toml(base_path, "recipe")
-    _, base = resolve(text, base, base_path, below)
+    _, base = resolve(text, base, base_path, extending)
     unit = base.get("unit", "cm")
     if data.get("unit", unit) != unit:
         raise UserError(f"{path.name}: unit is {data['unit']!r}, that of {name} is {unit!r}; must be the same")

@@ -70,10 +70,10 @@ class Scalp:
         """
         if density is None:
             ids, triangle, barycentric = self._candidates(count, seed)
-            kept = _core.thin_out(self.positions(triangle, barycentric), self.area, count)
+            selected = _core.thin_out(self.positions(triangle, barycentric), self.area, count)
         else:
-            ids, triangle, barycentric, kept = self._by_density(count, seed, density, what)
-        return ids[kept], triangle[kept], barycentric[kept]
+            ids, triangle, barycentric, selected = self._by_density(count, seed, density, what)
+        return ids[selected], triangle[selected], barycentric[selected]
 
     def _candidates(self, count: int, seed: int) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.float64]]:
         """Random candidates, several times ``count``: ids, triangles and barycentrics.
@@ -110,17 +110,17 @@ class Scalp:
         most = int(THINNING_FACTOR ** -np.ceil(np.log(needed) / -np.log(THINNING_FACTOR)))
         ids, triangle, barycentric = self._candidates(most, seed)
         places = self.positions(triangle, barycentric)
-        kept = _core.thin_out(places, self.area, most)
-        rank, left = np.ones(len(ids)), kept
+        selected = _core.thin_out(places, self.area, most)
+        rank, left = np.ones(len(ids)), selected
         for step in range(1, THINNING_STEPS + 1):
             left = left[_core.thin_out(places[left], self.area, max(1, round(most * THINNING_FACTOR**step)))]
             rank[left] = THINNING_FACTOR**step
         rank *= THINNING_FACTOR ** Random(seed, "rank").uniform(ids)  # random within a step
-        density = self._painted(name, triangle, barycentric, what)[kept]
+        density = self._painted(name, triangle, barycentric, what)[selected]
         with np.errstate(divide="ignore"):
-            order = np.argsort(rank[kept] / density, kind="stable")
+            order = np.argsort(rank[selected] / density, kind="stable")
         chosen = order[:count][density[order[:count]] > 0.0]
-        return ids, triangle, barycentric, np.sort(kept[chosen])
+        return ids, triangle, barycentric, np.sort(selected[chosen])
 
     def _painted(self, name: str, triangle: NDArray, barycentric: NDArray, what: str) -> NDArray[np.float64]:
         """Values of a painted map at samples, shape (n,)."""

@@ -33,14 +33,14 @@ def line_chart(title: str, unit: str, frames: Sequence[float], lines: Mapping[st
     def y(value: float) -> float:
         return HEIGHT - BOTTOM - (HEIGHT - TOP - BOTTOM) * (value - low) / (high - low)
 
-    parts = []
+    elements = []
     for tick in ticks:
         at = f"{y(tick):.1f}"
-        parts.append(f'<line class="grid" x1="{LEFT}" x2="{WIDTH - RIGHT}" y1="{at}" y2="{at}"/>')
-        parts.append(f'<text class="tick" x="{LEFT - 8}" y="{at}" text-anchor="end" dy="0.32em">{tick:.4g}</text>')
+        elements.append(f'<line class="grid" x1="{LEFT}" x2="{WIDTH - RIGHT}" y1="{at}" y2="{at}"/>')
+        elements.append(f'<text class="tick" x="{LEFT - 8}" y="{at}" text-anchor="end" dy="0.32em">{tick:.4g}</text>')
     for tick in nice_ticks(first, last, 8):
         if first <= tick <= last:
-            parts.append(
+            elements.append(
                 f'<text class="tick" x="{x(tick):.1f}" y="{HEIGHT - BOTTOM + 17}" text-anchor="middle">{tick:g}</text>'
             )
     for index, values in enumerate(lines.values()):
@@ -48,9 +48,9 @@ def line_chart(title: str, unit: str, frames: Sequence[float], lines: Mapping[st
             points = [f"{x(frame):.1f},{y(value / factor):.1f}" for frame, value in run]
             if len(points) == 1:
                 cx, cy = points[0].split(",")
-                parts.append(f'<circle class="s{index}" cx="{cx}" cy="{cy}" r="3"/>')
+                elements.append(f'<circle class="s{index}" cx="{cx}" cy="{cy}" r="3"/>')
             else:
-                parts.append(f'<polyline class="s{index}" points="{" ".join(points)}"/>')
+                elements.append(f'<polyline class="s{index}" points="{" ".join(points)}"/>')
     keys = "".join(f'<li class="s{index}">{escape(name)}</li>' for index, name in enumerate(lines))
     legend = f'<ul class="legend">{keys}</ul>' if len(lines) > 1 else ""
     summary = "; ".join(f"{name} up to {_highest(values) / factor:.3g} {unit}" for name, values in lines.items())
@@ -58,7 +58,7 @@ def line_chart(title: str, unit: str, frames: Sequence[float], lines: Mapping[st
     return (
         f"<figure><figcaption>{heading}</figcaption>{legend}"
         f'<svg viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-label="{escape(f"{title} by frame: {summary}")}">'
-        f"{''.join(parts)}</svg></figure>"
+        f"{''.join(elements)}</svg></figure>"
     )
 
 

@@ -62,9 +62,9 @@ def verdict(statistics: Statistics) -> list[str]:
     sentences = []
     if broken := total(statistics, "nan"):
         sentences.append(f"{_strands(broken)} ended in numbers that are not finite: do not use this result.")
-    touching = any("contact" in frame for frame in statistics)
+    has_contact = any("contact" in frame for frame in statistics)
     unconverged = total(statistics, "unconverged")
-    if unconverged and touching:
+    if unconverged and has_contact:
         sentences.append(
             f"{_times(unconverged)} the scene ran out of Newton iterations before all of it was at rest in its step."
         )
@@ -83,7 +83,7 @@ def verdict(statistics: Statistics) -> list[str]:
     for name in cloths:
         highest = max(v for v in series(statistics, f"cloth.{name}.max_stretch") or [0.0] if math.isfinite(v))
         sentences.append(f"Cloth '{name}' was stretched or squeezed by at most {100 * highest:.2g} %.")
-    if touching:
+    if has_contact:
         violations = total(statistics, "contact.violations") or 0
         sentences.append(
             f"Nothing passed through anything: {violations:,} times a pair was kept from meeting.".replace(
@@ -97,8 +97,8 @@ def verdict(statistics: Statistics) -> list[str]:
     curl = {key: total(statistics, key) for key in ("flips", "winding_changes", "too_straight")}
     if any(curl.values()):
         meaning = {"flips": "curls flipped", "winding_changes": "lost or won a turn", "too_straight": "pulled straight"}
-        parts = [f"{meaning[key]}: {count}" for key, count in curl.items() if count]
-        sentences.append(f"The curl did not always hold its shape ({', '.join(parts)}).")
+        changes = [f"{meaning[key]}: {count}" for key, count in curl.items() if count]
+        sentences.append(f"The curl did not always hold its shape ({', '.join(changes)}).")
     elif curl["flips"] == 0:
         sentences.append("No curl flipped over or changed its number of turns.")
     return sentences

@@ -43,8 +43,8 @@ def sag(edges: int) -> float:
     opening = root_scalar(lambda half: np.sin(half) / (edges * np.sin(half / edges)) - SPAN, bracket=(0.1, 3.1)).root
     turn = np.linspace(-opening, opening, edges + 1)
     points = 0.5 * SPAN / np.sin(opening) * np.c_[np.sin(turn), np.cos(opening) - np.cos(turn), 0 * turn]
-    held = np.isin(np.arange(edges + 1), (0, edges))
-    chain = strand(points, material, held)
+    prescribed = np.isin(np.arange(edges + 1), (0, edges))
+    chain = strand(points, material, prescribed)
     chain.settle(gravity=(0.0, -GRAVITY, 0.0), dt=0.5, tolerance=1e-10)
     return float(-chain.positions[:, 1].min())
 

@@ -134,32 +134,32 @@ class Document:
 
         Raises UserError for a row out of range, and for tables in another notation.
         """
-        parts = blocks.split(self.text)
-        places = [k for k, block in enumerate(parts) if block.name == name and block.many]  # rows in ``parts``
+        tables = blocks.split(self.text)
+        places = [k for k, block in enumerate(tables) if block.name == name and block.many]  # rows in ``tables``
         if len(places) != len(self.said().get(name, [])):
             raise UserError(f"{self.path.name}: {name} is not written as tables [[{name}]]; edit it in the file")
         if not 0 <= at < len(places) + (action == "add") or not 0 <= to < max(len(places), 1):
             raise UserError(f"{self.path.name}: {name} has {len(places)} operators; there is none at {max(at, to)}")
         if action == "add":
             lines = [f"[[{name}]]", *(f"{toml_key(part)} = {written(value)}" for part, value in (entry or {}).items())]
-            parts.insert(self._new_place(parts, places, at), blocks.Block(name, True, lines))
+            tables.insert(self._new_place(tables, places, at), blocks.Block(name, True, lines))
         else:
-            chosen = [parts[k] for k in places]
+            chosen = [tables[k] for k in places]
             moved = chosen.pop(at)
             if action == "move":
                 chosen.insert(to, moved)
                 for k, block in zip(places, chosen, strict=True):
-                    parts[k] = block
+                    tables[k] = block
             else:
-                del parts[places[at]]
-        self.become(blocks.join(parts))
+                del tables[places[at]]
+        self.become(blocks.join(tables))
 
     @staticmethod
-    def _new_place(parts: list[blocks.Block], places: list[int], at: int) -> int:
+    def _new_place(tables: list[blocks.Block], places: list[int], at: int) -> int:
         """Position of a new table: among its array of tables, or else before the curl."""
         if places:
             return places[at] if at < len(places) else places[-1] + 1
-        return next((k for k, block in enumerate(parts) if block.name == "curl"), len(parts))
+        return next((k for k, block in enumerate(tables) if block.name == "curl"), len(tables))
 
     def become(
         self, text: str, *, muted: frozenset[str] | None = None, edits: str | None = None, gesture: int | None = None
@@ -241,22 +241,22 @@ def _nested(place: Place, value: Any) -> Any:
 
 def _add(text: str, place: Place, value: Any) -> str:
     """Adds a setting: as a line of a table with a header, else inside its inline table."""
-    parts = blocks.split(text)
+    tables = blocks.split(text)
     name, index = str(place[0]), place[1] if len(place) > 1 and isinstance(place[1], int) else None
     rest = place[1:] if index is None else place[2:]
-    own = [block for block in parts if block.name == name]
+    own = [block for block in tables if block.name == name]
     data = tomllib.loads(text)
     table = data.get(name, {}) if index is None else data[name][index]
     if not isinstance(table, dict) or (rest and rest[0] in table) or (name in data and not own):
         return _add_inside(text, place, value)
     if len(place) == 1:
-        blocks.insert_line(parts[0], f"{name} = {written(value)}")
+        blocks.insert_line(tables[0], f"{name} = {written(value)}")
     else:
         if not own:
             own = [blocks.Block(name, False, [f"[{name}]"])]
-            parts += own
+            tables += own
         blocks.insert_line(own[index or 0], f"{toml_key(str(rest[0]))} = {written(_nested(rest[1:], value))}")
-    return blocks.join(parts)
+    return blocks.join(tables)
 
 
 def _add_inside(text: str, place: Place, value: Any) -> str:
@@ -271,9 +271,9 @@ def _add_inside(text: str, place: Place, value: Any) -> str:
 
 def _replace(text: str, place: Place, value: Any) -> str:
     """Replaces or removes a value. Parses only the lines of its table, so that dragging a slider is fast."""
-    parts = blocks.split(text)
+    tables = blocks.split(text)
     index = place[1] if len(place) > 2 and isinstance(place[1], int) else None
-    own = [block for block in parts if block.name == place[0]]
+    own = [block for block in tables if block.name == place[0]]
     if len(place) > 1 and len(own) > (index or 0):
         block = own[index or 0]
         inside = [place[0], *([] if index is None else [0]), *place[1 if index is None else 2 :]]
@@ -281,7 +281,7 @@ def _replace(text: str, place: Place, value: Any) -> str:
             block.lines = _replaced("\n".join(block.lines), inside, value).split("\n")
         except KeyError:  # the value is in a table with its own header
             return _replaced(text, place, value)
-        return "\n".join(line for part in parts for line in part.lines) + ("\n" if text.endswith("\n") else "")
+        return "\n".join(line for table in tables for line in table.lines) + ("\n" if text.endswith("\n") else "")
     return _replaced(text, place, value)
 
 

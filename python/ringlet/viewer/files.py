@@ -135,8 +135,8 @@ class Files:
             else:
                 moved = order.pop(at)
                 order[to:to] = [moved] if action == "move" else []
-            kept = {f"shape/{k}" for k, old in enumerate(order) if old in muted}
-            document.become(document.text, muted=frozenset(kept | {one for one in muted if "/" not in one}))
+            muted_shapes = {f"shape/{k}" for k, old in enumerate(order) if old in muted}
+            document.become(document.text, muted=frozenset(muted_shapes | {one for one in muted if "/" not in one}))
 
     def write_edits(self, kind: str, tables: list[dict[str, Any]], gesture: int | None = None) -> None:
         """Replaces the tables of a kind in the recipe's file of edits; names a new file when there is none."""
@@ -200,9 +200,9 @@ class Files:
     def message(self, file: str) -> bytes:
         """Message with the state of a file."""
         document = self.documents[file]
-        said, model = document.said(), document.model
+        contents, model = document.said(), document.model
         if file == "recipe" and (names := self._inherited(document)) is not None:
-            said = {**said, "shape": [said.get("shape", {}).get(name, {}) for name in names]}
+            contents = {**contents, "shape": [contents.get("shape", {}).get(name, {}) for name in names]}
         return pack(
             protocol.Document.model_validate(
                 {
@@ -211,7 +211,7 @@ class Files:
                     "revision": document.revision,
                     "text": document.text,
                     "edits": document.state.edits if document.state.edits != document.saved_edits else "",
-                    "said": said,
+                    "said": contents,
                     "values": model.model_dump(mode="json", exclude={"sculpt"}),
                     "stages": stages(model, document.state.muted) if file == "recipe" else [],
                     "dirty": document.dirty,

@@ -138,8 +138,8 @@ class Playing:
 
     def read(self, look: Look) -> None:
         """Opens the frames of a USD file; does nothing for a file without frames."""
-        still = Clip(np.zeros(1), look.groom.scalp.points[None], 24.0)
-        clip = api.scalp_clip(look.groom) if look.groom.scalp_file else still
+        static_clip = Clip(np.zeros(1), look.groom.scalp.points[None], 24.0)
+        clip = api.scalp_clip(look.groom) if look.groom.scalp_file else static_clip
         self._stage = Stage(look.groom, look.hairs, clip, self._showing.bodies)
         try:
             self._shown.open(self._files.file, look, partial(self._stage.frame, "shot"))

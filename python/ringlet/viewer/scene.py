@@ -89,8 +89,8 @@ def dressed(head: list[Seen], shot: Shot, groom: Groom) -> list[Seen]:
     cloths, colliders = api.brought_along(shot, groom)
     named = {cloth.mesh.name: cloth.name for cloth in cloths if cloth.file == groom.scalp_file}
     bodies = [Seen(seen.mesh, seen.clip, named.get(seen.mesh.name, "")) for seen in head]
-    there = {seen.cloth for seen in bodies}
-    bodies += [Seen(cloth.mesh, cloth.clip, cloth.name) for cloth in cloths if cloth.name not in there]
+    shown = {seen.cloth for seen in bodies}
+    bodies += [Seen(cloth.mesh, cloth.clip, cloth.name) for cloth in cloths if cloth.name not in shown]
     return bodies + [Seen(collider.mesh, collider.clip) for collider in colliders]
 
 

@@ -207,7 +207,7 @@ class Simulation:
                 self._store_checkpoint(first + k, motion)
                 if self.state == "rolling":
                     self.state = "running"
-                cloths = {worn.name: worn.cloth.positions for worn in motion.worn}
+                cloths = {garment.name: garment.cloth.positions for garment in motion.worn}
                 moved = Moved(np.asarray(motion.strands.positions, np.float32), statistics, cloths)
                 self._frames.add(first + k, stage.frame("shot", first + k, moved, motion))
             self._changed()

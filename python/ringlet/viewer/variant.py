@@ -80,18 +80,18 @@ def _differing(before: Tables, now: Tables, model: Any) -> Tables:
 
 def _operators(before: list[Tables], now: list[Tables], models: list[Any]) -> Any:
     """Changes of operators by name; the whole list when an operator was added or moved."""
-    kept: dict[int, int] = {}
+    matches: dict[int, int] = {}
     for k, operator in enumerate(now):
-        after = max(kept, default=-1) + 1
-        fits = [i for i in range(after, len(before)) if before[i].get("op") == operator.get("op")]
-        if not fits:
+        after = max(matches, default=-1) + 1
+        candidates = [i for i in range(after, len(before)) if before[i].get("op") == operator.get("op")]
+        if not candidates:
             return now
-        kept[next((i for i in fits if before[i] == operator), fits[0])] = k
+        matches[next((i for i in candidates if before[i] == operator), candidates[0])] = k
     changes: Tables = {}
     for i, name in enumerate(stage_names(before)):
-        if i not in kept:
+        if i not in matches:
             changes[name] = False
-        elif more := _differing(before[i], now[kept[i]], models[kept[i]]):
+        elif more := _differing(before[i], now[matches[i]], models[matches[i]]):
             changes[name] = more
     return changes
 

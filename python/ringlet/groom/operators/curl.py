@@ -206,12 +206,12 @@ class Curl(Operator):
 
     def _phase(self, curves: Curves, context: Context) -> NDArray[np.float64]:
         """Initial phase of each curl [degrees], shape (count,): random per lock plus a field that neighbours share."""
-        spread, alike, phase = (
+        spread, shared_fraction, phase = (
             context.values(name, getattr(self, name), curves) for name in ("phase_spread", "phase_alike", "phase")
         )
         own = context.random("phase").uniform(curves.ids)
         shared = context.random("phase_field").field(curves.roots, self.phase_size)
-        return phase + 360.0 * spread * ((1.0 - alike) * own + alike * shared)
+        return phase + 360.0 * spread * ((1.0 - shared_fraction) * own + shared_fraction * shared)
 
 
 def _events(rate: NDArray, chance: NDArray) -> NDArray[np.float64]:

@@ -117,8 +117,8 @@ class CacheFile:
             return self.frames
         chosen = self.frames[(self.frames >= frames[0]) & (self.frames <= frames[1])]
         if not len(chosen):
-            held = f"{self.frames[0]:g} to {self.frames[-1]:g}"
-            raise UserError(f"{self._source.path}: has no frame from {frames[0]:g} to {frames[1]:g}; it holds {held}")
+            span = f"{self.frames[0]:g} to {self.frames[-1]:g}"
+            raise UserError(f"{self._source.path}: has no frame from {frames[0]:g} to {frames[1]:g}; it holds {span}")
         return chosen
 
     @property

@@ -224,7 +224,7 @@ def _assign_ids(curves: Curves) -> None:
     if "id" not in curves.curve and all(half is not None and half.dtype == np.int32 for half in halves):
         high, low = (np.asarray(half, np.int64) for half in halves)
         curves.curve["id"] = (high << 32) | (low & 0xFFFFFFFF)
-    for name in (known.removeprefix(OWN) for known in ID_NAMES):
+    for name in (full_name.removeprefix(OWN) for full_name in ID_NAMES):
         ids = curves.curve.get(name)
         if ids is not None and ids.dtype.kind in "iu" and ids.ndim == 1 and len(np.unique(ids)) == len(ids):
             curves.ids = curves.curve.pop(name).astype(np.int64)
@@ -239,5 +239,5 @@ def _face_places(faces: NDArray) -> NDArray[np.float64]:
     whole = np.array([[0, 0], [1, 0], [0, 1]], float)
     halves = np.array([[[0, 0], [0, 1], [1, 1]], [[0, 0], [1, 1], [1, 0]]], float)
     first = np.concatenate([[True], faces[1:] != faces[:-1]])
-    alone = first & np.concatenate([first[1:], [True]])
-    return np.where(alone[:, None, None], whole, np.where(first[:, None, None], halves[0], halves[1]))
+    is_triangle = first & np.concatenate([first[1:], [True]])
+    return np.where(is_triangle[:, None, None], whole, np.where(first[:, None, None], halves[0], halves[1]))

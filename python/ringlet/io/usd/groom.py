@@ -130,8 +130,8 @@ def _define(stage: Usd.Stage, groom: Groom, space: StageSpace) -> None:
 def _check_variant(name: str, variant: Groom, groom: Groom) -> None:
     if not Tf.IsValidIdentifier(name):
         raise UserError(f"variant '{name}': is no name for USD; use letters, digits and _ only, and no digit first")
-    mine, theirs = ((g.scalp_file and g.scalp_file.resolve(), g.scalp_prim, g.region) for g in (groom, variant))
-    if mine != theirs or not np.array_equal(groom.scalp.points, variant.scalp.points):
+    scalp, variant_scalp = ((g.scalp_file and g.scalp_file.resolve(), g.scalp_prim, g.region) for g in (groom, variant))
+    if scalp != variant_scalp or not np.array_equal(groom.scalp.points, variant.scalp.points):
         raise UserError(f"variant '{name}': grows on another scalp ({variant.scalp.name}); must be {groom.scalp.name}")
 
 

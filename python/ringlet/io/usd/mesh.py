@@ -129,8 +129,8 @@ def mesh_at(source: Source, prim: Usd.Prim) -> Mesh:
     mirrored = np.linalg.det(local_to_world(prim, time)[:3, :3]) < 0
     left_handed = mesh.GetOrientationAttr().Get(time) == UsdGeom.Tokens.leftHanded
     corners, faces = fans(counts, clockwise=bool(mirrored) != left_handed)
-    kept = ~np.isin(faces, read_integers(mesh.GetHoleIndicesAttr(), time, where))
-    corners, faces = corners[kept], faces[kept]
+    visible = ~np.isin(faces, read_integers(mesh.GetHoleIndicesAttr(), time, where))
+    corners, faces = corners[visible], faces[visible]
     if len(faces) == 0:
         raise UserError(f"{where}: has no faces; export it again or choose another mesh")
 
@@ -156,8 +156,8 @@ def clip_at(source: Source, prim: Usd.Prim, frames: tuple[float, float] | None =
     where, times = source.where(prim), _frames(source, prim, frames)
     if len(times) == 0:
         start, always = source.stage.GetStartTimeCode(), Usd.TimeCode.EarliestTime()  # one sample for all times
-        still = to_metres(transformed(read_points(prim, always, where), prim, always), source.space)
-        return Clip(np.array([start]), still[None], source.space.fps)
+        points = to_metres(transformed(read_points(prim, always, where), prim, always), source.space)
+        return Clip(np.array([start]), points[None], source.space.fps)
     samples = []
     for frame in times:
         time = Usd.TimeCode(frame)
@@ -236,9 +236,9 @@ def _uv(prim: Usd.Prim, corners: NDArray, triangles: NDArray, points: int, indic
         if not faceted and primvar.GetInterpolation() not in (UsdGeom.Tokens.vertex, UsdGeom.Tokens.varying):
             continue
         if values.shape != (indices if faceted else points, 2):
-            wanted = f"{indices} corners" if faceted else f"{points} points"
+            expected = f"{indices} corners" if faceted else f"{points} points"
             raise UserError(
-                f"{where}: {primvar.GetName()} has {len(values)} values for {wanted}; must have one for each"
+                f"{where}: {primvar.GetName()} has {len(values)} values for {expected}; must have one for each"
             )
         if not np.isfinite(values).all():
             raise UserError(f"{where}: {primvar.GetName()} has a value that is no number; must be finite")

@@ -162,8 +162,8 @@ def find_prim(source: Source, name: str) -> Usd.Prim:
     if prim:
         return prim
     paths = [str(prim.GetPath()) for prim in prims(stage.GetPseudoRoot())]
-    near = difflib.get_close_matches(name, paths, n=1, cutoff=0.4)
-    hint = f"did you mean {near[0]}?" if near else f"there are: {', '.join(paths[:8]) or 'none'}"
+    similar = difflib.get_close_matches(name, paths, n=1, cutoff=0.4)
+    hint = f"did you mean {similar[0]}?" if similar else f"there are: {', '.join(paths[:8]) or 'none'}"
     raise UserError(f"{source.path}: has no prim {name}; {hint}")
 
 
