@@ -223,7 +223,7 @@ def make_hairs(groom: Groom, *, fraction: float = 1.0, wider: bool = False, memo
 
 
 def lay_hairs(groom: Groom, *, fraction: float = 1.0, wider: bool = False, memory: HairMemory | None = None) -> Hairs:
-    """The same hairs with unset points, for callers that deform them by themselves."""
+    """Makes the hairs as ``make_hairs``, with unset points, for callers that deform them by themselves."""
     settings = _settings(groom.hairs)
     if not 0.0 < fraction <= 1.0:
         raise UserError(f"hairs: fraction is {fraction}; must be more than 0 and at most 1")
