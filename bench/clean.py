@@ -1,4 +1,4 @@
-"""Clean-up: tight curls on a head, how much of them is in the skin and in one another, and what the repair leaves."""
+"""Benchmark of the repair: intersections of tight curls with the skin and each other, before and after."""
 
 from __future__ import annotations
 
@@ -52,12 +52,11 @@ def run(
 ) -> dict[str, Any]:
     """Grooms a head, checks the groom, repairs it and checks it again.
 
-    length:  of the guides [cm]; ``lift`` and ``droop`` as in a recipe
-    margin:  that the recipe's own clean-up keeps [mm]
-    head:    a USD or OBJ file in place of the example's, whose ``region`` carries the hair
-    crown:   of an OBJ file without regions, how far down from the top hair grows [m]; none does on the face below half
-             of that
-    picture: where to put pictures of the places, without ``-found.png`` and ``-left.png``
+    length:  length of the guides [cm]; ``lift`` and ``droop`` as in a recipe
+    margin:  margin of the recipe's clean stage [mm]
+    head:    USD or OBJ file instead of the example's; hair grows on its ``region``
+    crown:   height of the hair region below the top, for an OBJ file without regions [m]; on the face half of it
+    picture: path of pictures of the places, without ``-found.png`` and ``-left.png``
     """
     clock = Clock()
     with tempfile.TemporaryDirectory() as folder:
@@ -74,7 +73,7 @@ def run(
         with clock("check"):
             before = check_groom(groom, picture=f"{picture}-found.png" if picture else None)
         with clock("repair"):
-            told = check_groom(groom, fixed=fixed, picture=f"{picture}-left.png" if picture else None)
+            after = check_groom(groom, fixed=fixed, picture=f"{picture}-left.png" if picture else None)
         lengths = read_groom(fixed).locks.lengths() / groom.locks.lengths()
     return clock.result(
         "clean",
@@ -84,15 +83,15 @@ def run(
         check_wall_ms=clock.wall["check"][0],
         **{
             when: {k: {n: of[n] for n in ("places", "locks", "depth")} for k, of in found.items()}
-            for when, found in (("found", before["found"]), ("left", told["left"]))
+            for when, found in (("found", before["found"]), ("left", after["left"]))
         },
-        repair=told["repair"],
+        repair=after["repair"],
         length_kept=[float(np.min(lengths)), float(np.max(lengths))],
     )
 
 
 def with_crown(source: Path, height: float, folder: Path) -> Path:
-    """A copy of an OBJ file in which the faces of the upper part of the head are the group ``crown``."""
+    """Writes a copy of an OBJ file in which the faces of the upper head are the group ``crown``; returns its path."""
     lines = source.read_text().splitlines()
     points = np.array([line.split()[1:4] for line in lines if line.startswith("v ")], float)
     top, front, half = points[:, 1].max(), points[:, 2].max() - 0.5 * np.ptp(points[:, 2]), height / 2.0
@@ -103,8 +102,8 @@ def with_crown(source: Path, height: float, folder: Path) -> Path:
                 plain.append(line)
             continue
         middle = points[[int(word.split("/")[0]) - 1 for word in line.split()[1:]]].mean(axis=0)
-        face = middle[2] > front and middle[1] < top - half
-        (crown if middle[1] > top - height and not face else plain).append(line)
+        on_face = middle[2] > front and middle[1] < top - half
+        (crown if middle[1] > top - height and not on_face else plain).append(line)
     result = folder / "head.obj"
     result.write_text("\n".join([*plain, "g crown", *crown]) + "\n")
     return result

@@ -1,4 +1,4 @@
-"""Speed of cloth: a square sheet that hangs from two corners in a wind or, with contact, falls onto a sphere."""
+"""Benchmark of cloth: a square sheet that hangs from two corners in wind or, with contact, falls onto a sphere."""
 
 from __future__ import annotations
 
@@ -17,11 +17,12 @@ PHASES = ("pairs", "assemble", "solve", "search", "filter")
 def run(
     side: int = 100, newton: int = 2, steps: int = 24, bend: float = 1e-5, fps: float = 24.0, contacts: str = "off"
 ) -> dict[str, Any]:
-    """Lets a sheet of ``side`` × ``side`` vertices, one metre wide, swing from two corners, all iterations spent.
+    """Simulates a sheet of ``side`` × ``side`` vertices, one metre wide, with a fixed number of iterations.
 
-    bend:     resistance to bend [N m]
+    newton:   iterations of every step
+    bend:     bending stiffness [N m]
     fps:      steps per second, one per frame
-    contacts: ``on``: level and free, it falls onto a sphere, and touches that and itself
+    contacts: ``off``: it swings from two corners; ``on``: it falls onto a sphere, with self-contact
     """
     params = {"side": side, "newton": newton, "steps": steps, "bend": bend, "fps": fps, "contacts": contacts}
     if contacts not in ("on", "off"):
@@ -30,11 +31,11 @@ def run(
 
 
 def in_the_wind(params: dict[str, Any]) -> dict[str, Any]:
-    """The sheet alone, as ``run`` says."""
+    """Runs the sheet in wind; params: arguments of ``run``."""
     side, newton, steps, bend, fps = (params[name] for name in ("side", "newton", "steps", "bend", "fps"))
     mesh = sheet(side)
     moving = Cloth(mesh, ClothMaterial(bend=bend), np.array([side * (side - 1), side * side - 1]))
-    solver = ClothSolver(newton=newton, tolerance=1e-12)  # never reached: what is timed is the work that was asked for
+    solver = ClothSolver(newton=newton, tolerance=1e-12)  # never reached, so that all iterations are run
     clock = Clock()
     reports = []
     for _ in range(steps):
@@ -57,7 +58,7 @@ def in_the_wind(params: dict[str, Any]) -> dict[str, Any]:
 
 
 def onto_a_sphere(params: dict[str, Any]) -> dict[str, Any]:
-    """The sheet in contact, as ``run`` says."""
+    """Runs the sheet in contact; params: arguments of ``run``."""
     mesh, (ball, triangles) = sheet(params["side"]), sphere()
     mesh.points = (mesh.points - [0.5, 0.5, 0.0])[:, [0, 2, 1]] + [0.0, BALL + 5e-3, 0.0]
     moving = Cloth(mesh, ClothMaterial(bend=params["bend"], thickness=4e-3))
@@ -84,7 +85,7 @@ def onto_a_sphere(params: dict[str, Any]) -> dict[str, Any]:
 
 
 def sheet(side: int) -> Mesh:
-    """A square metre in the plane of x and y, cut into squares and each of these into two triangles."""
+    """A unit square in the plane of x and y [m], cut into squares of two triangles."""
     x, y = np.meshgrid(np.linspace(0, 1, side), np.linspace(0, 1, side))
     corner = (np.arange(side - 1)[:, None] * side + np.arange(side - 1)).ravel()
     triangles: NDArray[np.int32] = np.concatenate(

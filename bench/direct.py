@@ -1,4 +1,4 @@
-"""Direct solution of the system of strands that touch: what a factorisation of the whole costs, and how that grows."""
+"""Benchmark of direct solvers: factorisation of the Newton system of strands in contact."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from scipy.spatial import cKDTree
 
 from ringlet import Clock, Curves, DirectSolver, Material, Strands
 
-FREEDOMS = 3  # unknowns a vertex: positions alone
+DOFS = 3  # degrees of freedom per vertex: positions only
 FPS = 24.0
-APART = 4e-3  # of the roots [m]: coils of a radius of 2.5 mm lie in one another
+SPACING = 4e-3  # distance of the roots [m]; coils of radius 2.5 mm interpenetrate
 
 
 def run(
@@ -24,9 +24,9 @@ def run(
 ) -> dict[str, Any]:
     """Factors and solves the Newton system of coils in mid-swing: 3 · strands · vertices unknowns.
 
-    contacts: per vertex, between the nearest edges of different strands, of 0.1 to 100 N/m
+    contacts: contacts per vertex, between the nearest edges of different strands, of stiffness 0.1 to 100 N/m
     method:   builtin, pardiso or automatic
-    repeat:   evaluations that the times are taken over, after one that warms up
+    repeat:   timed evaluations, after one to warm up
     """
     points, hessians, masses = swinging(strands, vertices)
     i, j, blocks = strand_triplets(hessians, vertices)
@@ -40,7 +40,7 @@ def run(
     for _ in range(repeat + 1):
         with clock("whole"):
             with clock("analyse"):
-                solver = DirectSolver(i, j, len(points), FREEDOMS, method)
+                solver = DirectSolver(i, j, len(points), DOFS, method)
             with clock("factor"):
                 definite = solver.factor(triplets)
             with clock("solve"):
@@ -58,14 +58,14 @@ def run(
         positive_definite=definite,
         residual=residual,
         factor_megabytes=8e-6 * solver.entries,
-        fill=solver.entries / (0.5 * FREEDOMS**2 * len(np.unique(i.astype(np.int64) * len(points) + j))),
+        fill=solver.entries / (0.5 * DOFS**2 * len(np.unique(i.astype(np.int64) * len(points) + j))),
     )
 
 
 def swinging(strands: int, vertices: int) -> tuple[NDArray[np.float64], list[NDArray[np.float64]], NDArray[np.float64]]:
-    """Positions [m] of coils a few steps into a swing, each strand's Newton matrix [N/m] there, and masses [kg]."""
+    """Positions of swinging coils [m], the Newton matrix of each strand there [N/m], and masses [kg]."""
     side = int(np.ceil(np.sqrt(strands)))
-    rest = np.concatenate([coil(k, vertices) + APART * np.array([k % side, 0, k // side]) for k in range(strands)])
+    rest = np.concatenate([coil(k, vertices) + SPACING * np.array([k % side, 0, k // side]) for k in range(strands)])
     offsets = np.arange(strands + 1, dtype=np.int32) * vertices
     material = Material()
     moving = Strands(Curves(rest, offsets, np.arange(strands)), material)
@@ -77,18 +77,20 @@ def swinging(strands: int, vertices: int) -> tuple[NDArray[np.float64], list[NDA
     masses = np.zeros(len(points))
     for k in range(strands):
         own = slice(vertices * k, vertices * (k + 1))
-        alone = Strands(Curves(rest[own], offsets[:2], np.arange(1)), material)
-        _, _, hessian = alone.energy(points[own], continuation="least_energy", hessian=True)
+        single = Strands(Curves(rest[own], offsets[:2], np.arange(1)), material)
+        _, _, hessian = single.energy(points[own], continuation="least_energy", hessian=True)
         half = 0.5 * material.density * np.pi * material.radius**2 * np.linalg.norm(np.diff(rest[own], axis=0), axis=1)
         masses[own] = np.r_[half, 0] + np.r_[0, half]
-        free = np.repeat(np.arange(vertices) >= 3, FREEDOMS)
-        inertia = np.repeat(masses[own], FREEDOMS) * FPS**2
-        hessians.append(hessian + np.diag(np.where(free, inertia, 0.0)))  # a held vertex has a row of one
+        free = np.repeat(np.arange(vertices) >= 3, DOFS)
+        inertia = np.repeat(masses[own], DOFS) * FPS**2
+        hessians.append(
+            hessian + np.diag(np.where(free, inertia, 0.0))
+        )  # the row of a prescribed vertex is the identity
     return points, hessians, masses
 
 
 def coil(index: int, vertices: int) -> NDArray[np.float64]:
-    """A 4A curl that hangs down, each turned differently [m]."""
+    """A hanging 4A curl with its own phase [m], shape (vertices, 3)."""
     turn = 2 * np.pi * np.arange(vertices) / 12 + index
     return np.c_[2.5e-3 * np.cos(turn), -3e-3 * (turn - index) / (2 * np.pi), 2.5e-3 * np.sin(turn)]
 
@@ -96,9 +98,9 @@ def coil(index: int, vertices: int) -> NDArray[np.float64]:
 def strand_triplets(
     hessians: list[NDArray[np.float64]], vertices: int
 ) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.float64]]:
-    """The blocks of the upper band of every strand's matrix: rows, columns, values of shape (k, 3, 3)."""
+    """Blocks of the upper band of every strand's matrix: rows, columns and values of shape (k, 3, 3)."""
     i, j = np.nonzero(np.triu(np.ones((vertices, vertices))) - np.triu(np.ones((vertices, vertices)), 4))
-    blocks = [hessian.reshape(vertices, FREEDOMS, vertices, FREEDOMS).swapaxes(1, 2)[i, j] for hessian in hessians]
+    blocks = [hessian.reshape(vertices, DOFS, vertices, DOFS).swapaxes(1, 2)[i, j] for hessian in hessians]
     first = np.repeat(vertices * np.arange(len(hessians)), len(i))
     return first + np.tile(i, len(hessians)), first + np.tile(j, len(hessians)), np.concatenate(blocks)
 
@@ -108,18 +110,18 @@ def contact_triplets(
 ) -> tuple[NDArray[np.float64], NDArray[np.intp], NDArray[np.intp], NDArray[np.float64]]:
     """Contacts of the ``count`` nearest pairs of edges of different strands: forces [N], shape (n, 3), and triplets.
 
-    A contact couples the four vertices of its edges by n nᵀ ⊗ w wᵀ, with a stiffness from 0.1 to 100 N/m.
+    A contact couples the four vertices of its edges by n nᵀ ⊗ w wᵀ, with a random stiffness from 0.1 to 100 N/m.
     """
     random = np.random.default_rng(1)
     forces = np.zeros_like(points)
     edge = np.setdiff1d(np.arange(len(points) - 1), np.arange(vertices - 1, len(points), vertices))
-    edge = edge[edge % vertices >= 3]  # those that are free
+    edge = edge[edge % vertices >= 3]  # free edges
     middle = 0.5 * (points[edge] + points[edge + 1])
-    reach = min(24, len(edge))
-    distance, near = cKDTree(middle).query(middle, reach)
-    a, b = np.repeat(np.arange(len(edge)), reach), near.ravel()
-    apart = (a < b) & (edge[a] // vertices != edge[b] // vertices)
-    a, b, distance = a[apart], b[apart], distance.ravel()[apart]
+    neighbours = min(24, len(edge))
+    distance, near = cKDTree(middle).query(middle, neighbours)
+    a, b = np.repeat(np.arange(len(edge)), neighbours), near.ravel()
+    valid = (a < b) & (edge[a] // vertices != edge[b] // vertices)
+    a, b, distance = a[valid], b[valid], distance.ravel()[valid]
     chosen = np.argsort(distance, kind="stable")[:count]
     a, b = a[chosen], b[chosen]
 
@@ -133,4 +135,4 @@ def contact_triplets(
     p, q = np.triu_indices(4)
     scale = stiffness[:, None] * weights[:, p] * weights[:, q]
     blocks = scale[:, :, None, None] * (normal[:, :, None] * normal[:, None, :])[:, None]
-    return forces, corners[:, p].ravel(), corners[:, q].ravel(), blocks.reshape(-1, FREEDOMS, FREEDOMS)
+    return forces, corners[:, p].ravel(), corners[:, q].ravel(), blocks.reshape(-1, DOFS, DOFS)

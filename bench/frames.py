@@ -1,4 +1,4 @@
-"""Memory and disk of a shot: what the process holds, frame by frame, and at most; then of its hairs."""
+"""Benchmark of memory and disk: resident memory during a shot and during the output of its hairs."""
 
 from __future__ import annotations
 
@@ -26,21 +26,21 @@ def run(
     every: int = 50,
     folder: str = "",
 ) -> dict[str, Any]:
-    """Runs a shot of the example with contact in wind, whose clip ends at frame 48, and writes its cache and its hairs.
+    """Runs a shot of the example with contact and wind, whose clip ends at frame 48; writes its cache and hairs.
 
-    radius: of a lock, to others [m]; many locks have room if they are thin
-    every:  frames from one look at the memory to the next
-    folder: where its files go for the while; a temporary one by default
+    radius: contact radius of a lock [m]; many locks need a small one
+    every:  frames between two measurements of the memory
+    folder: parent of the temporary folder; by default that of the system
     """
     text = (EXAMPLE / "light.recipe.toml").read_text()
     text = text.replace("count = 300", f"count = {locks}").replace("points = 60", f"points = {points}")
     text = text.replace("curls = { value = 5,", f"curls = {{ value = {points / 12},")
     text = text.replace('"head.usdc"', f'"{(EXAMPLE / "head.usdc").as_posix()}"')
     megabytes: list[float] = []
-    of_hairs: list[float] = []
+    hairs_megabytes: list[float] = []
     wall: list[float] = []
 
-    def look(frame: float, statistics: dict[str, Any]) -> None:
+    def measure_frame(frame: float, statistics: dict[str, Any]) -> None:
         wall.append(statistics["wall_ms"])
         if len(wall) % every == 1 or every == 1:
             megabytes.append(round(resident(), 1))
@@ -52,19 +52,19 @@ def run(
         shot.write_text(settings + "[forces]\nwind = [2.0, 0.0, 1.0]\n")
         groom = build_groom(read_recipe(recipe))
         write_groom(groom, groom_file)
-        begin, cache, part = time.perf_counter(), Path(place) / "cache.usdc", Path(place) / "part"
-        write_simulation(read_shot(shot), groom, groom_file, cache, checkpoints=part, on_frame=look)
-        after, most, seconds = (
+        begin, cache, checkpoints = time.perf_counter(), Path(place) / "cache.usdc", Path(place) / "part"
+        write_simulation(read_shot(shot), groom, groom_file, cache, checkpoints=checkpoints, on_frame=measure_frame)
+        after, peak, seconds = (
             resident(),
             resource.getrusage(resource.RUSAGE_SELF).ru_maxrss,
             time.perf_counter() - begin,
         )
 
-        def look_at_hairs(_: str, done: int, total: int) -> None:
+        def measure_hairs(_: str, done: int, total: int) -> None:
             if done % every == 1 or every == 1:
-                of_hairs.append(round(resident(), 1))
+                hairs_megabytes.append(round(resident(), 1))
 
-        hairs = write_hairs(groom_file, Path(place) / "hair.usdc", cache=cache, fraction=0.1, progress=look_at_hairs)[
+        hairs = write_hairs(groom_file, Path(place) / "hair.usdc", cache=cache, fraction=0.1, progress=measure_hairs)[
             "hairs"
         ]
         return {
@@ -79,10 +79,10 @@ def run(
             },
             "megabytes": megabytes,
             "megabytes_after": round(after, 1),
-            "megabytes_hairs": of_hairs,
-            "megabytes_most": round(1.024e-3 * most, 1),
+            "megabytes_hairs": hairs_megabytes,
+            "megabytes_most": round(1.024e-3 * peak, 1),
             "megabytes_of_cache": round(1e-6 * cache.stat().st_size, 1),
-            "megabytes_of_checkpoints": round(1e-6 * sum(file.stat().st_size for file in part.iterdir()), 1),
+            "megabytes_of_checkpoints": round(1e-6 * sum(file.stat().st_size for file in checkpoints.iterdir()), 1),
             "hairs": hairs,
             "seconds": round(seconds, 1),
             "frame_ms": {"median": round(median(wall), 1), "max": round(max(wall), 1)},
@@ -90,5 +90,5 @@ def run(
 
 
 def resident() -> float:
-    """Memory that the process holds now [MB]."""
+    """Resident memory of the process [MB]."""
     return 1e-6 * int(SELF.read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")

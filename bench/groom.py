@@ -1,4 +1,4 @@
-"""Speed of grooming: from a recipe to groom guides to hairs, and hairs carried by guides that moved."""
+"""Benchmark of grooming: recipe to groom guides to hairs, and deformation of hairs by moved guides."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ per_lock = {per_lock}
 
 
 def recipe_text(guides: int, locks: int, points: int, hairs: int, width: float = 9.0) -> str:
-    """A recipe of the example head, with curls of that width [mm] and 12 points a curl."""
+    """Recipe of the example head, with curls of ``width`` [mm] and 12 points a curl."""
     return RECIPE.format(
         head=HEAD.as_posix(),
         guides=guides,
@@ -55,8 +55,8 @@ def run(locks: int = 2000, points: int = 60, hairs: int = 50_000, repeat: int = 
 
     locks:  groom guides
     points: points of a guide and of a hair
-    hairs:  render hairs in all
-    repeat: evaluations that the times are taken over, after one that warms up
+    hairs:  total number of render hairs
+    repeat: timed evaluations, after one to warm up
     """
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "bench.recipe.toml"

@@ -1,4 +1,4 @@
-"""How the time of a step in contact grows with the number of strands: the twirl scene in several sizes."""
+"""Benchmark of scaling: time of a step in contact by the number of strands, for the twirl scene in several sizes."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from twirl import RADIUS
 from ringlet import UserError, run_bench
 
 Kept = Literal["sphere", "density", "heads"]
-CROWD = 256  # wisps on it, whose density is kept
+CROWD = 256  # wisps on the published sphere
 COUNTS = ("contacts", "candidates", "linear_iterations")
 
 
@@ -27,21 +27,20 @@ def run(
 ) -> dict[str, Any]:
     """Runs ``ringlet bench twirl --contacts on`` with ``least`` strands, twice as many, and so on up to ``most``.
 
-    ``exponent`` is the slope of the line that fits the logarithms: CPU time of a step grows as strands to that power,
-    and ``contacts_exponent`` says the same of contacts. On one sphere more strands stand denser, and each touches more;
-    on spheres that grow with them roots stand as they do among 256 on the published one, but tips part less; on more
-    and more spheres each touches as much as before.
+    ``exponent`` is the slope in log-log scale: the CPU time of a step grows as strands to that power.
+    ``contacts_exponent`` is the same for contacts. On one sphere, more strands are denser and have more contacts each.
+    On a sphere that grows with the strands, roots keep the density of the published scene, but tips spread less. On
+    more spheres, the contacts of a strand stay the same.
 
     least:    strands of the smallest scene
-    most:     strands of the largest scene, at most
-    kept:     what is the same for all sizes: ``sphere``, ``density``, the strands on its area, or ``heads``, spheres of
-              ``least`` strands each, all in one scene
-    friction: of what touches; the published scene has none
+    most:     upper bound of the strands of the largest scene
+    kept:     constant of all sizes: the ``sphere``, the ``density`` of roots, or ``heads``: spheres of ``least``
+              strands each, all in one scene
+    friction: coefficient of friction; 0 in the published scene
     newton:   iterations of every step
-    extra:    iterations more for what was held back and is stretched; the published code has none
-    steps:    how many of the scene's 340 frames are run
-    turns:    how often each size is run, by turns with the others; the quickest of its runs counts, since a machine
-              that is shared is slow for minutes at a time
+    extra:    further iterations for stretched strands whose motion was limited; none in the published code
+    steps:    number of frames, of the scene's 340
+    turns:    runs of each size, interleaved; the fastest counts, since a shared machine is slow for minutes at a time
     """
     if not 0 < least <= most / 2:
         raise UserError(f"bench growth: least is {least} and most {most}; most must be at least twice least")
@@ -83,12 +82,12 @@ def run(
 
 
 def cpu_time(run: dict[str, Any]) -> float:
-    """The CPU time of a step in a run, in the median and milliseconds."""
+    """Median CPU time of a step in a run [ms]."""
     return run["cpu_ms"]["median"]
 
 
 def power(sizes: list[int], values: list[float]) -> float | None:
-    """The power of the sizes that values grow as, by least squares of the logarithms; None where one is zero."""
+    """Exponent of the growth of values with sizes, by least squares of the logarithms; None when a value is 0."""
     if min(values) <= 0:
         return None
     return float(np.polyfit(np.log(sizes), np.log(values), 1)[0])

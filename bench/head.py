@@ -1,4 +1,4 @@
-"""Speed of a shot in contact: locks on the example head while it nods, turns and hops."""
+"""Benchmark of a shot with contact: locks on the example head, which nods, turns and hops."""
 
 from __future__ import annotations
 
@@ -34,12 +34,12 @@ def run(
 ) -> dict[str, Any]:
     """Simulates the example with contact; each frame is one step.
 
-    locks:   groom guides, made by the example's recipe with fewer curls: 12 points for each
+    locks:   groom guides of the example's recipe, with 12 points a curl
     points:  points of a guide
-    newton:  iterations of every step, at most
-    frames:  how many of the clip's 48 are run; the head turns quickly from 19 to 33
-    preroll: steps with the head still, which are not counted
-    radius:  half the distance that two locks keep [m]
+    newton:  iteration limit of every step
+    frames:  number of frames, of the clip's 48; the head turns quickly from 19 to 33
+    preroll: untimed steps with the head at rest
+    radius:  contact radius of a lock [m]
     """
     text = (EXAMPLE / "curls.recipe.toml").read_text()
     text = text.replace("count = 1050", f"count = {locks}").replace("points = 96", f"points = {points}")
@@ -57,7 +57,7 @@ def run(
     clock = Clock()
     clock.cpu["step"] = [step["cpu_ms"] for step in steps]
     clock.wall["step"] = [step["wall_ms"] for step in steps]
-    touched = [step["contact"] for step in steps]
+    contacts = [step["contact"] for step in steps]
     return clock.result(
         "head",
         {"locks": locks, "points": points, "newton": newton, "frames": frames, "preroll": preroll, "radius": radius},
@@ -69,7 +69,7 @@ def run(
         line_search_cuts=sum(step["line_search_cuts"] for step in steps),
         max_stretch=max(step["max_stretch"] for step in steps),
         nan=sum(step["nan"] for step in steps),
-        closest=min((step["closest"] for step in touched if step["closest"] is not None), default=None),
-        **{name: statistics.mean(step[name] for step in touched) for name in MEANS},
-        phases_wall_ms={name: statistics.mean(step[f"{name}_ms"] for step in touched) for name in PHASES},
+        closest=min((step["closest"] for step in contacts if step["closest"] is not None), default=None),
+        **{name: statistics.mean(step[name] for step in contacts) for name in MEANS},
+        phases_wall_ms={name: statistics.mean(step[f"{name}_ms"] for step in contacts) for name in PHASES},
     )

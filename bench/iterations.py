@@ -1,4 +1,4 @@
-"""How far a motion is from the converged one, by the Newton iterations of a step: curls on the moving head."""
+"""Benchmark of accuracy: deviation of a motion from the converged one by Newton iterations, for curls on a head."""
 
 from __future__ import annotations
 
@@ -38,11 +38,11 @@ def run(
 ) -> dict[str, Any]:
     """Simulates the shot of the tutorial with few and with many iterations.
 
-    frames:    of the clip, which begins with a nod
-    converged: iterations of the motion that the others are compared with; strands that touch nothing need no more
+    frames:    number of frames of the clip, which starts with a nod
+    converged: iterations of the reference motion; enough for strands without contact
     contacts:  ``on`` or ``off``
-    substeps:  steps of a frame, of all of them
-    linear_tolerance: ``solver.linear_tolerance`` of all but the converged motion
+    substeps:  steps of a frame, for all motions
+    linear_tolerance: ``solver.linear_tolerance`` of all motions but the reference
     """
     if contacts not in ("on", "off"):
         raise UserError(f"bench iterations: contacts is '{contacts}'; must be on or off")
@@ -50,7 +50,7 @@ def run(
     groom = build_groom(EXAMPLE / "light.recipe.toml")
     tips = groom.locks.offsets[1:] - 1
 
-    def moved(newton: int, **solver: float) -> tuple[NDArray[np.floating], dict[str, float]]:
+    def simulated(newton: int, **solver: float) -> tuple[NDArray[np.floating], dict[str, float]]:
         settings = {"newton": newton, "substeps": substeps, "contact": str(contacts == "on").lower(), **solver}
         with tempfile.TemporaryDirectory() as folder:
             shot = Path(folder) / "iterations.shot.toml"
@@ -61,17 +61,17 @@ def run(
         spent = float(np.mean([frame["newton"] for frame in cache.statistics]))
         return cache.points.astype(np.float64), {"iterations": spent}
 
-    right, told = moved(converged, linear_tolerance=0.1)
-    off = {f"newton {converged}": told}
+    reference, numbers = simulated(converged, linear_tolerance=0.1)
+    deviations = {f"newton {converged}": numbers}
     for newton in ITERATIONS:
-        points, told = moved(newton, linear_tolerance=linear_tolerance)
-        away = 1e3 * np.linalg.norm(points - right, axis=2)
-        together = 1e3 * np.linalg.norm((points - right)[:, tips].mean(axis=1), axis=1)
-        off[f"newton {newton}"] = told | {
-            "mean_mm": float(away.mean()),
-            "percentile_95_mm": float(np.percentile(away, 95)),
-            "most_mm": float(away.max()),
-            "tips_together_mm": float(together.max()),  # what does not cancel out: the whole of the hair comes late
+        points, numbers = simulated(newton, linear_tolerance=linear_tolerance)
+        distance = 1e3 * np.linalg.norm(points - reference, axis=2)
+        mean_shift = 1e3 * np.linalg.norm((points - reference)[:, tips].mean(axis=1), axis=1)
+        deviations[f"newton {newton}"] = numbers | {
+            "mean_mm": float(distance.mean()),
+            "percentile_95_mm": float(np.percentile(distance, 95)),
+            "most_mm": float(distance.max()),
+            "tips_together_mm": float(mean_shift.max()),  # a lag of the whole hair, which does not average out
         }
     return clock.result(
         "iterations",
@@ -84,5 +84,5 @@ def run(
         },
         per=f"newton {ITERATIONS[0]}",
         warm_up=0,
-        off=off,
+        off=deviations,
     )

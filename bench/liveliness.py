@@ -1,4 +1,4 @@
-"""How much hair moves relative to its head, by how hard contacts push: the demo's locks, with a ribbon or without."""
+"""Benchmark of liveliness: motion of hair relative to the head by contact stiffness, with a ribbon or without."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ringlet import Clock, build_groom, loft, read_recipe, read_shot, simulate, write_loft
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "child"
-STILL = 0.1  # of a frame in which hair hardly moves [mm]
+STILL = 0.1  # motion of a frame below which hair counts as still [mm]
 
 
 def run(
@@ -26,13 +26,13 @@ def run(
     rest: str = "none",
     linear_tolerance: float = 0.1,
 ) -> dict[str, Any]:
-    """Plays the beginning of a shot of the example without contact, and with contacts of each stiffness.
+    """Simulates the first frames of an example shot without contact, and with contacts of each stiffness.
 
-    shot:      ``nod`` or ``ribbon``, whose cloth is left out without contact
+    shot:      ``nod`` or ``ribbon``; its cloth is omitted without contact
     locks:     groom guides of 96 points
-    frames:    of the clip, the last of them, after 12 for the hair to hang
+    frames:    last frame of the clip, after 12 frames to settle
     newton:    iterations of every step
-    stiffness: ``contact.stiffness``, several by commas
+    stiffness: values of ``contact.stiffness``, separated by commas
     rest:      ``rest.mode``
     linear_tolerance: ``solver.linear_tolerance``
     """
@@ -41,29 +41,29 @@ def run(
     recipe = read_recipe(played.groom)
     groom = build_groom(recipe.model_copy(update={"locks": recipe.locks.model_copy(update={"count": locks})}))
     contact, first = played.contact, played.frames[0]
-    assert contact is not None  # the example's has it
-    off = {}
+    assert contact is not None  # set in the example
+    results = {}
     with tempfile.TemporaryDirectory() as folder:
-        remembered = Path(folder) / "nod.rest.usdc"
+        rest_file = Path(folder) / "nod.rest.usdc"
         played = played.model_copy(
             update={
                 "frames": (first, frames),
                 "solver": played.solver.model_copy(update={"newton": newton, "linear_tolerance": linear_tolerance}),
-                "rest": played.rest.model_copy(update={"mode": rest, "file": remembered}),
+                "rest": played.rest.model_copy(update={"mode": rest, "file": rest_file}),
             }
         )
         if rest != "none":
             with clock("rest shapes"):
-                write_loft(loft(played, groom), played, remembered)
+                write_loft(loft(played, groom), played, rest_file)
         for name in ("without", *str(stiffness).split(",")):
             changes = {"on": False} if name == "without" else {"stiffness": float(name)}
             update = {"contact": contact.model_copy(update=changes), "cloth": () if name == "without" else played.cloth}
             with clock(f"stiffness {name}"):
                 cache = simulate(played.model_copy(update=update), groom, allow_stale=True)
             each = moves(cache.points[1 - first :].astype(np.float64), groom.locks.offsets)
-            off[name] = {
+            results[name] = {
                 "moves_mm": statistics.mean(each),
-                "still": sum(far < STILL for far in each),
+                "still": sum(distance < STILL for distance in each),
                 "cpu_ms": statistics.median(frame["cpu_ms"] for frame in cache.statistics),
                 "max_stretch": max(frame["max_stretch"] for frame in cache.statistics),
             }
@@ -80,23 +80,22 @@ def run(
         },
         per="stiffness without",
         warm_up=0,
-        off=off,
+        off=results,
     )
 
 
 def moves(points: NDArray[np.float64], offsets: NDArray[np.integer]) -> list[float]:
-    """How far the vertex of a lock that moves most goes beside all roots, which move as one, frame by frame [mm].
+    """Largest motion of a lock's vertices relative to the rigid motion of all roots, by frame, median over locks [mm].
 
-    points:  shape (frames, n, 3) [m]
-    offsets: shape (locks + 1,)
-    The medians over locks.
+    points:  positions [m], shape (frames, n, 3)
+    offsets: offsets of the locks, shape (locks + 1,)
     """
     roots = offsets[:-1]
     medians = []
     for before, after in itertools.pairwise(points):
         a, b = before[roots].mean(axis=0), after[roots].mean(axis=0)
         u, _, v = np.linalg.svd((before[roots] - a).T @ (after[roots] - b))
-        turn = u @ np.diag([1.0, 1.0, np.sign(np.linalg.det(u @ v))]) @ v
-        away = np.linalg.norm((before - a) @ turn + b - after, axis=1)
-        medians.append(1e3 * float(np.median(np.maximum.reduceat(away, roots))))
+        rotation = u @ np.diag([1.0, 1.0, np.sign(np.linalg.det(u @ v))]) @ v
+        distance = np.linalg.norm((before - a) @ rotation + b - after, axis=1)
+        medians.append(1e3 * float(np.median(np.maximum.reduceat(distance, roots))))
     return medians

@@ -1,4 +1,4 @@
-"""Memory of the strand solver: how much the process grows with the strands that it steps."""
+"""Benchmark of the strand solver's memory: growth of the process by the number of strands."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ SELF = Path("/proc/self/statm")
 
 
 def run(strands: int = 4000, vertices: int = 60, steps: int = 4) -> dict[str, Any]:
-    """Builds and steps ``strands`` coils; the curves they are made from were there before and are not counted."""
-    once = Strands(curves(8, vertices), Material())
-    once.step(once.positions, 1 / 24)  # what is there whatever the number of strands
+    """Builds and steps ``strands`` coils; the memory of their input curves is not counted."""
+    small = Strands(curves(8, vertices), Material())
+    small.step(small.positions, 1 / 24)  # allocates memory that does not depend on the number of strands
     hair = curves(strands, vertices)
     before = resident()
     clock = Clock()
@@ -39,7 +39,7 @@ def run(strands: int = 4000, vertices: int = 60, steps: int = 4) -> dict[str, An
 
 
 def curves(strands: int, vertices: int) -> Curves:
-    """Coils that hang down [m], one beside the other."""
+    """Hanging coils [m], side by side."""
     turn = 2 * np.pi * np.arange(vertices) / 12
     coil = np.c_[2.5e-3 * np.cos(turn), -5e-4 * turn, 2.5e-3 * np.sin(turn)]
     points = (coil + np.arange(strands)[:, None, None] * (0.01, 0.0, 0.0)).reshape(-1, 3)
@@ -47,5 +47,5 @@ def curves(strands: int, vertices: int) -> Curves:
 
 
 def resident() -> int:
-    """Memory that the process holds now [bytes]."""
+    """Resident memory of the process [bytes]."""
     return int(SELF.read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")

@@ -1,4 +1,4 @@
-"""Speed of a scene of everything: curls on a ball, and a sheet of cloth that falls onto them, all in contact."""
+"""Benchmark of strands with cloth: a sheet of cloth falls onto curls on a ball, all in contact."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from twirl import RADIUS, sphere
 
 from ringlet import Body, Clock, Cloth, ClothMaterial, Contact, Curves, Material, Scene, Solver, Strands, solver_counts
 
-WIDTH = 0.4  # of the sheet [m]
+WIDTH = 0.4  # width of the sheet [m]
 
 
 def run(
     strands: int = 200, points: int = 40, side: int = 40, newton: int = 5, steps: int = 24, fps: float = 24.0
 ) -> dict[str, Any]:
-    """Lets a sheet of ``side`` × ``side`` vertices fall onto ``strands`` curls that stand on a ball.
+    """Simulates a sheet of ``side`` × ``side`` vertices that falls onto ``strands`` curls on a ball.
 
-    points: of each curl
-    newton: iterations of every step, at most
+    points: points of each curl
+    newton: iteration limit of every step
     fps:    steps per second, one per frame
     """
     curls, (ball, triangles) = grown(strands, points), sphere()
@@ -30,35 +30,35 @@ def run(
     body = Body(ball, triangles)
     scene = Scene(moving, [body], Contact(radius=4e-4), np.zeros(strands, int), [cloth])
     solver = Solver(newton=newton)
-    clock, reports, touched = Clock(), [], []
+    clock, reports, contacts = Clock(), [], []
     for _ in range(steps):
         with clock("step"):
             contact, report = scene.step(None, 1 / fps, gravity=(0.0, -9.81, 0.0), solver=solver)
         reports.append(report)
-        touched.append(contact)
+        contacts.append(contact)
     return clock.result(
         "mixed",
         {"strands": strands, "points": points, "side": side, "newton": newton, "steps": steps, "fps": fps},
         per="step",
         warm_up=2,
         vertices=len(scene.positions),
-        **solver_counts(reports, touched),
-        fraction=min(contact["fraction"] for contact in touched),
+        **solver_counts(reports, contacts),
+        fraction=min(contact["fraction"] for contact in contacts),
         cloth_stretch=scene.cloth_reports[0]["max_stretch"],
     )
 
 
 def grown(count: int, points: int) -> Curves:
-    """Curls of 6 cm on the upper half of the ball, evenly spread by the golden angle."""
+    """Curls of 6 cm on the upper half of the ball, on a golden-angle spiral."""
     k = np.arange(count)
-    up, around = 1.0 - k / count, k * np.pi * (3.0 - np.sqrt(5.0))
-    out = np.stack([np.sqrt(1 - up**2) * np.cos(around), up, np.sqrt(1 - up**2) * np.sin(around)], axis=1)
-    side = np.cross(out, [0.6, 0.0, 0.8])
+    up, azimuth = 1.0 - k / count, k * np.pi * (3.0 - np.sqrt(5.0))
+    normal = np.stack([np.sqrt(1 - up**2) * np.cos(azimuth), up, np.sqrt(1 - up**2) * np.sin(azimuth)], axis=1)
+    side = np.cross(normal, [0.6, 0.0, 0.8])
     side /= np.linalg.norm(side, axis=1, keepdims=True)
     t = np.linspace(0.0, 1.0, points)
     width = 0.004 * np.clip(4 * t, 0.0, 1.0)
     curls = []
-    for direction, across, turn in zip(out, side, k, strict=True):
+    for direction, across, turn in zip(normal, side, k, strict=True):
         other, angle = np.cross(direction, across), 2 * np.pi * points / 12 * t + turn
         curl = width[:, None] * (np.cos(angle)[:, None] * across + np.sin(angle)[:, None] * other)
         curls.append((RADIUS + 0.06 * t)[:, None] * direction + curl)

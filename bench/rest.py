@@ -1,4 +1,4 @@
-"""Rest shapes in equilibrium: of a whole groom, after a change of its material, and after edits of some locks."""
+"""Benchmark of equilibrium rest shapes: of a whole groom, after a change of material, and after edits of some locks."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import numpy as np
 from ringlet import Clock, Groom, build_groom, loft, read_shot, write_loft
 
 HEAD = Path(__file__).parents[1] / "examples" / "child" / "head.usdc"
-LEAN = 0.01  # how far the tip of a lock that is edited is moved [m]
+LEAN = 0.01  # displacement of the tip of an edited lock [m]
 
 RECIPE = """
 ringlet = 1
@@ -61,16 +61,16 @@ thickness = 2e-3
 def run(
     locks: int = 2000, points: int = 60, few: int = 20, many: int = 200, bend_scale: float = 6.0, repeats: int = 3
 ) -> dict[str, Any]:
-    """Finds what curls like the demo's must remember, in contact with one another and the head, and finds it again.
+    """Solves for the rest shapes of curls like the demo's, in contact with each other and the head, and again.
 
-    few, many:  of the locks, so many are leant over by hand
-    bend_scale: of the shot; half as much again where it is changed
-    repeats:    how often everything is measured
+    few, many:  numbers of edited locks
+    bend_scale: bend scale of the shot, 1.5 times that after the change of material
+    repeats:    number of measurements
     """
     clock = Clock()
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
-        recipe, known = folder / "rest.recipe.toml", folder / "rest.usdc"
+        recipe, previous = folder / "rest.recipe.toml", folder / "rest.usdc"
         recipe.write_text(RECIPE.format(head=HEAD.as_posix(), locks=locks, points=points))
         shots = []
         for name, value in (("rest", bend_scale), ("stiffer", 1.5 * bend_scale)):
@@ -83,14 +83,14 @@ def run(
         for _ in range(repeats):
             with clock("whole"):
                 found["whole"] = loft(shot, groom)
-            write_loft(found["whole"], shot, known)
-            for what, wanted, changed in (
+            write_loft(found["whole"], shot, previous)
+            for what, changed_shot, changed_groom in (
                 ("bend_scale", stiffer, groom),
                 ("few", shot, leant(groom, few)),
                 ("many", shot, leant(groom, many)),
             ):
                 with clock(what):
-                    found[what] = loft(wanted, changed, known=known)
+                    found[what] = loft(changed_shot, changed_groom, known=previous)
     return clock.result(
         "rest",
         {"locks": len(groom.locks), "points": points, "few": few, "many": many, "bend_scale": bend_scale},
@@ -103,7 +103,7 @@ def run(
 
 
 def leant(groom: Groom, count: int) -> Groom:
-    """The groom with some of its locks, spread over the head, leant over to the side, more and more toward the tip."""
+    """Displaces some locks, spread over the head, to the side, quadratically towards the tip."""
     points, offsets = np.array(groom.locks.points), groom.locks.offsets
     for lock in np.linspace(0, len(groom.locks) - 1, count).astype(int):
         rows = slice(offsets[lock], offsets[lock + 1])

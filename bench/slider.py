@@ -1,4 +1,4 @@
-"""Speed of a slider: the width of the curl is moved, and every hair is there again; after a cold start of the whole."""
+"""Benchmark of a slider: time from a change of the curl width to new hairs, and time of a cold start."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from ringlet import Clock, Memory, build_groom, build_hairs, read_recipe
 def run(guides: int = 500, locks: int = 2000, points: int = 60, hairs: int = 50_000, moves: int = 10) -> dict[str, Any]:
     """Grooms the example head once, then moves the slider ``moves`` times.
 
-    guides: curves that the locks take their shape from
+    guides: guides that the locks are interpolated from
     locks:  groom guides
     points: points of a guide and of a hair
-    hairs:  render hairs in all
-    moves:  how often the slider is moved, after two moves that warm up
+    hairs:  total number of render hairs
+    moves:  timed moves of the slider, after two to warm up
     """
     clock, cold = Clock(), Clock()
     with tempfile.TemporaryDirectory() as folder:
@@ -39,7 +39,7 @@ def run(guides: int = 500, locks: int = 2000, points: int = 60, hairs: int = 50_
                     hair = build_hairs(groom, memory=memory)
             return groom, hair
 
-        evaluate(9.0, Memory(), Clock(), "cold")  # libraries are loaded, pages are there
+        evaluate(9.0, Memory(), Clock(), "cold")  # loads libraries and memory pages
         for _ in range(3):
             memory = Memory()
             evaluate(9.0, memory, cold, "cold")
@@ -50,8 +50,8 @@ def run(guides: int = 500, locks: int = 2000, points: int = 60, hairs: int = 50_
                 hair.at(groom.locks.points, groom.scalp.points, out=before)
 
     count = len(hair.curves)
-    moved = 12.0 * len(hair.curves.points) + 12.0 * len(groom.locks.points) + 4.0 * count * (2 + 1 + 1 + 16 + 3)
-    reached = moved / (1e-3 * statistics.median(clock.cpu["warp"][2:]))
+    traffic = 12.0 * len(hair.curves.points) + 12.0 * len(groom.locks.points) + 4.0 * count * (2 + 1 + 1 + 16 + 3)
+    warp_rate = traffic / (1e-3 * statistics.median(clock.cpu["warp"][2:]))
     memory_rate = copy_rate()
     return clock.result(
         "slider",
@@ -64,22 +64,22 @@ def run(guides: int = 500, locks: int = 2000, points: int = 60, hairs: int = 50_
         locks=len(groom.locks),
         hairs=count,
         hair_vertices=len(hair.curves.points),
-        warp_gb_per_cpu_s=1e-9 * reached,
+        warp_gb_per_cpu_s=1e-9 * warp_rate,
         copy_gb_per_cpu_s=1e-9 * memory_rate,
-        bandwidth_share=reached / memory_rate,
+        bandwidth_share=warp_rate / memory_rate,
         nan=int(np.count_nonzero(~np.isfinite(hair.curves.points))),
     )
 
 
 class Stages:
-    """Clocks the stages of a groom by its progress."""
+    """Progress callback that times the stages of a groom."""
 
     def __init__(self, clock: Clock) -> None:
         self.clock = clock
         self.running: Any = None
 
     def __call__(self, stage: str, done: int, total: int) -> None:
-        """Called by ``build_groom`` before and after each stage."""
+        """Starts the clock before a stage and stops it after."""
         if done == 0:
             self.running = self.clock(stage)
             self.running.__enter__()
@@ -89,7 +89,7 @@ class Stages:
 
 
 def copy_rate(megabytes: int = 256) -> float:
-    """Bytes read and written a second of one thread that copies memory: the best of five."""
+    """Memory bandwidth of one thread that copies, read plus write [bytes/s]; the best of five."""
     source = np.ones(megabytes * 2**17)
     target = np.empty_like(source)
     target[:] = source

@@ -1,4 +1,4 @@
-"""How long the review takes until a page has what it shows: a slider is dragged and let go, and a cache is played."""
+"""Benchmark of the review's latency: dragging and releasing a slider, and playing a cache."""
 
 from __future__ import annotations
 
@@ -21,32 +21,34 @@ from websockets.asyncio.client import ClientConnection, connect
 
 import ringlet
 
-PROTOCOL = 6  # that of python/ringlet/viewer/protocol.py
+PROTOCOL = 6  # version of python/ringlet/viewer/protocol.py
 EXAMPLE = Path(__file__).parents[1] / "examples/child"
 
 
 def run(locks: int = 1389, per_lock: int = 36, points: int = 60, steps: int = 12, warm_up: int = 2) -> dict[str, Any]:
-    """Drags the width of the curls of the example in ``steps`` steps, letting go after each; plays ``steps`` frames.
+    """Drags the curl width of the example in ``steps`` steps, with a release after each; plays ``steps`` frames.
 
-    The stage ``drag`` is from saying a value to having heard the draft's locks, ``rest`` from letting go to having
-    heard the whole, ``frame`` from asking for a frame of a cache to having heard it. What the browser then does with
-    them, it does on the graphics card: it is not measured here.
+    drag:  time from a new value to the locks of the draft
+    rest:  time from the release to the final locks
+    frame: time from a request to the frame of a cache
+
+    The drawing on the graphics card is not included.
     """
     clock = ringlet.Clock()
     with tempfile.TemporaryDirectory() as folder:
         recipe = _recipe(Path(folder), locks, per_lock, points)
         with _serving(recipe) as port:
-            heard = asyncio.run(_drag(port, clock, steps))
+            counts = asyncio.run(_drag(port, clock, steps))
         with _serving(_cache(recipe, steps)) as port:
-            heard |= asyncio.run(_play(port, clock, steps))
-    asked = {"locks": locks, "per_lock": per_lock, "points": points, "steps": steps}
-    middle = {f"{stage}_wall_ms": sorted(clock.wall[stage])[steps // 2] for stage in ("rest", "frame")}
-    return clock.result("view", asked, per="drag", warm_up=warm_up, **heard, **middle)
+            counts |= asyncio.run(_play(port, clock, steps))
+    params = {"locks": locks, "per_lock": per_lock, "points": points, "steps": steps}
+    medians = {f"{stage}_wall_ms": sorted(clock.wall[stage])[steps // 2] for stage in ("rest", "frame")}
+    return clock.result("view", params, per="drag", warm_up=warm_up, **counts, **medians)
 
 
 @contextmanager
 def _serving(file: Path) -> Iterator[int]:
-    """The review of a file, and its port."""
+    """Serves the review of a file in a thread; yields the port."""
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
@@ -66,7 +68,7 @@ def _serving(file: Path) -> Iterator[int]:
 
 
 def _recipe(folder: Path, locks: int, per_lock: int, points: int) -> Path:
-    """The example with so many locks and hairs."""
+    """Writes the example's recipe with given numbers of locks and hairs."""
     shutil.copy(EXAMPLE / "head.usdc", folder)
     text = (EXAMPLE / "curls.recipe.toml").read_text()
     text = re.sub(r"(\[locks\]\ncount = )\d+(\npoints = )\d+", rf"\g<1>{locks}\g<2>{max(points, 96)}", text)
@@ -77,13 +79,13 @@ def _recipe(folder: Path, locks: int, per_lock: int, points: int) -> Path:
 
 
 def _cache(recipe: Path, steps: int) -> Path:
-    """A cache of as many frames, in which the locks sway by centimetres, of the groom of a recipe."""
+    """Writes a cache of ``steps`` frames in which the locks of a recipe sway by centimetres."""
     groom, folder = ringlet.load_groom(recipe), recipe.parent
     ringlet.write_groom(groom, folder / "groom.usdc")
     points = groom.locks.points
-    away = points - np.repeat(points[groom.locks.offsets[:-1]], groom.locks.counts, axis=0)
+    from_roots = points - np.repeat(points[groom.locks.offsets[:-1]], groom.locks.counts, axis=0)
     frames = np.arange(1.0, steps + 1)
-    swayed = points + 0.2 * np.sin(frames)[:, None, None] * away[:, [1, 2, 0]]
+    swayed = points + 0.2 * np.sin(frames)[:, None, None] * from_roots[:, [1, 2, 0]]
     ringlet.write_cache(ringlet.Cache(frames, swayed.astype(np.float32)), folder / "groom.usdc", folder / "cache.usdc")
     return folder / "cache.usdc"
 
@@ -101,48 +103,48 @@ async def _page(port: int) -> AsyncIterator[ClientConnection]:
                 raise
             await asyncio.sleep(0.1)
     async with page:
-        await _say(page, kind="hello", version=PROTOCOL, client="bench")
+        await _send(page, kind="hello", version=PROTOCOL, client="bench")
         yield page
 
 
 async def _drag(port: int, clock: ringlet.Clock, steps: int) -> dict[str, Any]:
     async with _page(port) as page:
-        hairs, _ = await _hear(page, "hairs")
-        _, size = await _hear(page, "locks")
-        await _hear(page, "numbers")
+        hairs, _ = await _receive(page, "hairs")
+        _, size = await _receive(page, "locks")
+        await _receive(page, "numbers")
         for step in range(steps):
             change = [[["curl", "width", "value"], round(1.0 + 0.02 * step, 3)]]
             with clock("drag"):
-                await _say(page, kind="set", changes=change, gesture=step, resting=False)
-                while not (await _hear(page, "locks"))[0]["draft"]:
+                await _send(page, kind="set", changes=change, gesture=step, resting=False)
+                while not (await _receive(page, "locks"))[0]["draft"]:
                     pass
             change[0][1] = round(1.01 + 0.02 * step, 3)
             with clock("rest"):
-                await _say(page, kind="set", changes=change, gesture=step)
-                while (await _hear(page, "locks"))[0]["draft"]:
+                await _send(page, kind="set", changes=change, gesture=step)
+                while (await _receive(page, "locks"))[0]["draft"]:
                     pass
-            await _hear(page, "measured")  # what waits for a hand that rests
+            await _receive(page, "measured")  # sent after the final locks
     return {"hairs": hairs["count"], "locks_bytes": size}
 
 
 async def _play(port: int, clock: ringlet.Clock, steps: int) -> dict[str, Any]:
     async with _page(port) as page:
-        await _hear(page, "timeline")
+        await _receive(page, "timeline")
         size = 0
         for frame in range(1, steps + 1):
             with clock("frame"):
-                await _say(page, kind="watch", shot=[frame])
-                _, size = await _hear(page, "frame")
+                await _send(page, kind="watch", shot=[frame])
+                _, size = await _receive(page, "frame")
     return {"frame_bytes": size}
 
 
-async def _say(page: ClientConnection, **message: Any) -> None:
+async def _send(page: ClientConnection, **message: Any) -> None:
     text = json.dumps(message).encode()
     await page.send(struct.pack("<I", len(text)) + text)
 
 
-async def _hear(page: ClientConnection, kind: str) -> tuple[dict[str, Any], int]:
-    """The next message of a kind, and how many bytes it has."""
+async def _receive(page: ClientConnection, kind: str) -> tuple[dict[str, Any], int]:
+    """Waits for the next message of a kind; returns its header and its size [bytes]."""
     while True:
         data = await asyncio.wait_for(page.recv(), 60.0)
         assert isinstance(data, bytes)

@@ -1,5 +1,7 @@
-"""What is left of the curl after a hard motion: hairs carried by simulated curls, beside the conventional warp, which
-simulates straight guides and moves curls by the displacements of the nearest of them."""
+"""Benchmark of curl preservation under a strong motion: hairs on simulated curls, and the conventional warp.
+
+The conventional warp simulates straight guides and displaces curls by the nearest of them.
+"""
 
 from __future__ import annotations
 
@@ -33,27 +35,30 @@ newton = 10
 def run(
     locks: int = 300, points: int = 72, frames: int = 30, nearest: int = 3, bend_scale: float = 0.5
 ) -> dict[str, Any]:
-    """Simulates the example head's clip twice: curls, and the same locks before they are curled.
+    """Simulates the example head's clip twice: curls, and the same locks without curl.
 
     locks:      groom guides
     points:     points of a guide and of a hair
-    frames:     how many of the clip's 48 are run; the head turns quickly from 19 to 33
-    nearest:    straight guides that the conventional warp mixes for each hair; one lock in four has one
-    bend_scale: factor on the stiffness of both
+    frames:     number of frames, of the clip's 48; the head turns quickly from 19 to 33
+    nearest:    straight guides that the conventional warp blends for each hair; one lock in four has one
+    bend_scale: bend scale of both
     """
     clock = Clock()
     with clock("both"):
-        _, rest, ours, theirs = warped(locks, points, frames, nearest, bend_scale)
+        _, rest, simulated, warped_hairs = warped(locks, points, frames, nearest, bend_scale)
     before = measure(rest, points)
     result = {}
-    # What the motion itself did to the curl, as the first hair of a lock is the simulated guide.
-    own = np.repeat(np.stack(measure(ours, points))[:, ::PER_LOCK] / np.stack(before)[:, ::PER_LOCK], PER_LOCK, axis=1)
-    beside = np.delete(np.stack(measure(ours, points)) / np.stack(before) / own, np.s_[::PER_LOCK], axis=1)
+    # Change of the curl by the motion itself: the first hair of a lock is the simulated guide.
+    guide_change = np.repeat(
+        np.stack(measure(simulated, points))[:, ::PER_LOCK] / np.stack(before)[:, ::PER_LOCK], PER_LOCK, axis=1
+    )
+    hair_change = np.stack(measure(simulated, points)) / np.stack(before)
+    relative_change = np.delete(hair_change / guide_change, np.s_[::PER_LOCK], axis=1)
     result["carried_beside_its_guide"] = {
         f"{name}_change_90_percent": float(np.percentile(np.abs(kept - 1.0), 90))
-        for name, kept in zip(("radius", "bend", "length"), beside, strict=True)
+        for name, kept in zip(("radius", "bend", "length"), relative_change, strict=True)
     }
-    for name, hairs in (("carried", ours), ("conventional", theirs)):
+    for name, hairs in (("carried", simulated), ("conventional", warped_hairs)):
         after = measure(hairs, points)
         moved = np.linalg.norm(hairs - rest, axis=1).reshape(-1, points)[:, -1]
         result[name] = {
@@ -79,8 +84,10 @@ def run(
 def warped(
     locks: int, points: int, frames: int, nearest: int, bend_scale: float
 ) -> tuple[Groom, NDArray[np.floating], NDArray[np.floating], NDArray[np.floating]]:
-    """The groom, and its hairs at rest, carried, and warped in the conventional way, at the frame in which the
-    straight guides are bent the most."""
+    """The groom, and its hairs at rest, on simulated curls, and after the conventional warp [m], shape (n, 3).
+
+    The frame is the one with the largest displacement of the straight guides.
+    """
     text = (EXAMPLE / "curls.recipe.toml").read_text()
     text = text.replace("count = 1050", f"count = {locks}").replace("points = 96", f"points = {points}")
     text = text.replace("pitch = { value = 1.2, vary = 0.2 }", f"curls = {{ value = {points / 12}, vary = 0.1 }}")
@@ -103,23 +110,23 @@ def warped(
     bends = [head_at_rest(guides.points, now, each) for now in lines.points]
     hardest = int(np.argmax([np.linalg.norm(bent - guides.points, axis=1).mean() for bent in bends]))
     bent = bends[hardest]
-    ours = hairs.at(head_at_rest(groom.locks.points, curls.points[hardest], points), groom.scalp.points)
-    theirs = conventional(rest, hairs.curves.roots, guides.points, bent, len(guides), points, nearest)
-    return groom, rest, ours.astype(float), theirs
+    simulated = hairs.at(head_at_rest(groom.locks.points, curls.points[hardest], points), groom.scalp.points)
+    warped_hairs = conventional(rest, hairs.curves.roots, guides.points, bent, len(guides), points, nearest)
+    return groom, rest, simulated.astype(float), warped_hairs
 
 
 def head_at_rest(before: NDArray, now: NDArray, points: int) -> NDArray[np.floating]:
-    """Where guides are as seen from the head, which moves as a whole: by the rigid motion of their roots (Kabsch)."""
-    here, there = now[::points].astype(float), before[::points]
-    left, _, right = np.linalg.svd((here - here.mean(axis=0)).T @ (there - there.mean(axis=0)))
-    turn = left @ np.diag([1.0, 1.0, np.linalg.det(left @ right)]) @ right
-    return (now - here.mean(axis=0)) @ turn + there.mean(axis=0)
+    """Removes the rigid motion of the head from guides, by the motion of their roots (Kabsch)."""
+    roots, rest_roots = now[::points].astype(float), before[::points]
+    left, _, right = np.linalg.svd((roots - roots.mean(axis=0)).T @ (rest_roots - rest_roots.mean(axis=0)))
+    rotation = left @ np.diag([1.0, 1.0, np.linalg.det(left @ right)]) @ right
+    return (now - roots.mean(axis=0)) @ rotation + rest_roots.mean(axis=0)
 
 
 def conventional(
     rest: NDArray, roots: NDArray, before: NDArray, now: NDArray, guides: int, points: int, nearest: int
 ) -> NDArray[np.floating]:
-    """Hairs moved by the displacements that the nearest straight guides have at the same part of their length."""
+    """Displaces hairs by the nearest straight guides, at the same relative arc length."""
     moved = (now - before).reshape(guides, -1, 3)
     u = np.linspace(0.0, 1.0, points) * (moved.shape[1] - 1)
     i = np.minimum(u.astype(int), moved.shape[1] - 2)
@@ -133,10 +140,10 @@ def conventional(
 
 
 def measure(hairs: NDArray, points: int) -> tuple[NDArray, NDArray, NDArray]:
-    """For each hair the radius of its curl [m], by how much it bends in all [turns], and its length [m].
+    """Radius of the curl [m], total bend [turns] and length [m] of each hair.
 
-    The radius is the distance from the mean over a turn, which is 12 points, across the line of these means and leaving
-    out half a turn at each end: a curl that is sheared along that line loses it.
+    The radius is the RMS distance from the axis, the mean over a turn of 12 points, without half a turn at each end.
+    It is measured across the axis, so that a curl sheared along the axis loses radius.
     """
     curves = hairs.reshape(-1, points, 3)
     sums = np.cumsum(np.concatenate([np.zeros((len(curves), 1, 3)), curves], axis=1), axis=1)
@@ -144,9 +151,9 @@ def measure(hairs: NDArray, points: int) -> tuple[NDArray, NDArray, NDArray]:
     axis = 0.5 * (axis[:, 1:] + axis[:, :-1])
     along = np.gradient(axis, axis=1)
     along /= np.maximum(np.linalg.norm(along, axis=2, keepdims=True), 1e-12)
-    off = curves[:, 6 : 6 + axis.shape[1]] - axis
-    off -= np.sum(off * along, axis=2, keepdims=True) * along
-    radius = np.sqrt(np.mean(np.sum(off**2, axis=2), axis=1))
+    radial = curves[:, 6 : 6 + axis.shape[1]] - axis
+    radial -= np.sum(radial * along, axis=2, keepdims=True) * along
+    radius = np.sqrt(np.mean(np.sum(radial**2, axis=2), axis=1))
     edges = np.diff(curves, axis=1)
     lengths = np.linalg.norm(edges, axis=2)
     cosine = np.sum(edges[:, 1:] * edges[:, :-1], axis=2) / np.maximum(lengths[:, 1:] * lengths[:, :-1], 1e-12)

@@ -1,6 +1,7 @@
-"""Checks who may use whom, in C++ and in Python: the tables below are those of docs/architecture.md.
+"""Checks the dependencies of modules in C++ and Python against the tables of docs/architecture.md.
 
-Usage: python tools/check_architecture.py [ROOT]. Prints one line per forbidden arrow and exits with 1 if there is one.
+Usage: python tools/check_architecture.py [ROOT]. Prints one line per forbidden dependency and exits with 1 if there is
+any.
 """
 
 from __future__ import annotations
@@ -47,14 +48,14 @@ PYTHON = {
     API: {"data", "api", "groom", "shot", "sim", "rest", "viewer", "farm"},
     "cli": {API},
 }
-OUTSIDE = ("bench", "examples")  # these use the public API only
+OUTSIDE = ("bench", "examples")  # folders that may use the public API only
 
 INCLUDE = re.compile(r'^\s*#\s*include\s+"ringlet/([^/"]+)/', re.MULTILINE)
 FOREIGN = re.compile(r'^\s*#\s*include\s+[<"](nanobind/|Python\.h|iostream|fstream|cstdio|filesystem)', re.MULTILINE)
 
 
 def core_problems(root: Path) -> Iterator[str]:
-    """Arrows between the folders of the core, and from the core to the outside."""
+    """Forbidden dependencies between folders of the core, and of the core on other libraries."""
     for file in sorted([*(root / "src/ringlet").rglob("*.h"), *(root / "src/ringlet").rglob("*.cpp")]):
         where, text = file.relative_to(root), file.read_text()
         folder = where.parts[2]
@@ -68,7 +69,7 @@ def core_problems(root: Path) -> Iterator[str]:
 
 
 class Package:
-    """The modules of python/ringlet, and the rows of the table that they belong to."""
+    """The modules of python/ringlet and their rows in the table."""
 
     def __init__(self, root: Path) -> None:
         self.folder = root / "python/ringlet"
@@ -80,17 +81,17 @@ class Package:
         return ".".join(file.relative_to(self.folder).with_suffix("").parts).removesuffix("__init__").removesuffix(".")
 
     def row(self, module: str) -> str:
-        """The row of the table for a module."""
+        """Row of the table for a module."""
         return module.split(".")[0] or API
 
     def used(self, file: Path) -> set[str]:
-        """Rows that a file imports, wherever in it the import stands."""
+        """Rows that a file imports, at any place in it."""
         rows = set()
         for node in ast.walk(ast.parse(file.read_text(), str(file))):
             if isinstance(node, ast.Import):
                 names = [alias.name for alias in node.names]
             elif isinstance(node, ast.ImportFrom) and not node.level:
-                # What is imported may itself be a module: `from ringlet import _core`.
+                # An imported name may itself be a module: `from ringlet import _core`.
                 names = [f"{node.module}.{alias.name}" for alias in node.names]
             elif isinstance(node, ast.ImportFrom):
                 raise SyntaxError(f"{file}:{node.lineno}: relative import; write the full name")
@@ -102,14 +103,14 @@ class Package:
         return rows
 
     def module(self, name: str) -> str:
-        """The module that a dotted name lies in."""
+        """Module that contains a dotted name."""
         while name and name not in self.modules and name != "_core":
             name = name.rpartition(".")[0]
         return name
 
 
 def python_problems(root: Path) -> Iterator[str]:
-    """Arrows between the Python modules, and from examples and benchmarks into them."""
+    """Forbidden dependencies between Python modules, and of examples and benchmarks on them."""
     package = Package(root)
     for module, file in package.modules.items():
         where, row = file.relative_to(root), package.row(module)
@@ -125,12 +126,12 @@ def python_problems(root: Path) -> Iterator[str]:
 
 
 def problems(root: Path) -> list[str]:
-    """One line per forbidden arrow in the tree below ``root``."""
+    """One line per forbidden dependency in the tree below ``root``."""
     return [*core_problems(root), *python_problems(root)]
 
 
 def main() -> int:
-    """Prints the problems of a tree, this one by default."""
+    """Prints the problems of a tree, by default this one; returns the exit code."""
     found = problems(Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).parents[1])
     print("\n".join(found), end="\n" if found else "")
     return 1 if found else 0

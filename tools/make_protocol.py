@@ -1,6 +1,6 @@
-"""Writes web/src/protocol.ts from python/ringlet/viewer/protocol.py: the messages, as TypeScript has them.
+"""Generates web/src/protocol.ts, the messages in TypeScript, from python/ringlet/viewer/protocol.py.
 
-Usage: python tools/make_protocol.py [--check]. With --check nothing is written, and a file that is stale exits with 1.
+Usage: python tools/make_protocol.py [--check]. With --check it writes nothing, and exits with 1 if the file is stale.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ PLAIN: dict[Any, str] = {
 
 
 def kind(annotation: Any) -> str:
-    """A Python type as TypeScript."""
+    """TypeScript notation of a Python type."""
     if annotation in PLAIN:
         return PLAIN[annotation]
     origin, arguments = get_origin(annotation), get_args(annotation)
@@ -45,18 +45,18 @@ def kind(annotation: Any) -> str:
     return annotation.__name__
 
 
-def field(name: str, info: FieldInfo, *, said: bool) -> str:
-    """A line of an interface. What a page may leave out is optional in what it says."""
-    optional = "?" if said and not info.is_required() and name != "kind" else ""
+def field(name: str, info: FieldInfo, *, from_page: bool) -> str:
+    """A line of an interface; fields with a default are optional in messages from the page."""
+    optional = "?" if from_page and not info.is_required() and name != "kind" else ""
     return f"  {name}{optional}: {kind(info.annotation)};"
 
 
-def interface(message: type[protocol.Message], *, said: bool) -> Iterator[str]:
-    """The lines of a message's interface."""
+def interface(message: type[protocol.Message], *, from_page: bool) -> Iterator[str]:
+    """Lines of a message's interface."""
     yield f"/** {(message.__doc__ or '').splitlines()[0]} */"
     yield f"export interface {message.__name__} {{"
     for name, info in message.model_fields.items():
-        yield field(name, info, said=said)
+        yield field(name, info, from_page=from_page)
     for name, array in message.arrays.items():
         yield f"  {name}: {ARRAYS[array]};"
     yield "}"
@@ -64,7 +64,7 @@ def interface(message: type[protocol.Message], *, said: bool) -> Iterator[str]:
 
 
 def lines() -> Iterator[str]:
-    """The whole file."""
+    """Lines of the file."""
     union = get_args(get_args(protocol.FromPage)[0])
     yield "// Made by tools/make_protocol.py from python/ringlet/viewer/protocol.py; change it there."
     yield ""
@@ -72,11 +72,11 @@ def lines() -> Iterator[str]:
     yield "export type Json = string | number | boolean | null | Json[] | { [key: string]: Json };"
     yield ""
     for message in (protocol.Stage, protocol.Change):
-        yield from interface(message, said=False)
+        yield from interface(message, from_page=False)
     for message in union:
-        yield from interface(message, said=True)
+        yield from interface(message, from_page=True)
     for message in protocol.FROM_SERVER:
-        yield from interface(message, said=False)
+        yield from interface(message, from_page=False)
     for name, messages in (("FromPage", union), ("FromServer", protocol.FROM_SERVER)):
         yield f"export type {name} ="
         yield "\n".join(f"  | {message.__name__}" for message in messages) + ";"
@@ -84,7 +84,7 @@ def lines() -> Iterator[str]:
 
 
 def main() -> int:
-    """Writes the file, or compares it."""
+    """Writes the file, or compares it; returns the exit code."""
     text = "\n".join(lines()).rstrip() + "\n"
     if "--check" in sys.argv:
         if FILE.read_text() != text:

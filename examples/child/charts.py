@@ -1,8 +1,8 @@
-"""Texture coordinates: each region of the skin has a disc of its own in the unit square, without overlaps.
+"""Texture coordinates: each region of the skin is mapped to its own disc in the unit square, without overlaps.
 
-The scalp, which carries the hair, is unrolled from its middle with areas kept (Lambert's azimuthal projection), so
-that a density painted in the texture is the density on the head. The other regions are mapped harmonically onto their
-disc, which is one-to-one for any disc-shaped patch (Tutte, "How to draw a graph", 1963).
+The scalp is mapped by Lambert's azimuthal equal-area projection, so that a density painted in the texture is the
+density on the head. The other regions are mapped harmonically, which is one-to-one for any disc-shaped patch (Tutte,
+"How to draw a graph", 1963).
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from remesh import adjacency
 from scipy.sparse.csgraph import laplacian
 from scipy.sparse.linalg import spsolve
 
-# Middle and radius of each region's disc.
+# Centre and radius of each region's disc.
 DISCS = {
     "scalp": ((0.28, 0.72), 0.26),
     "face": ((0.77, 0.77), 0.21),
@@ -40,21 +40,21 @@ def unwrap(points: Array, triangles: NDArray, labels: NDArray) -> Array:
 
 
 def azimuthal(points: Array) -> Array:
-    """Directions from the middle of the skull, unrolled from the scalp's axis into the unit disc; areas are kept.
+    """Equal-area projection of directions from the skull's centre around the scalp's axis to the unit disc.
 
-    Lambert's radius is √2 sin(θ/2); here it is scaled so that the disc reaches a little past the lowest hair.
+    Lambert's radius is √2 sin(θ/2), here scaled so that the disc extends slightly beyond the lowest hair.
     """
-    out = points - SKULL_CENTRE
-    out /= np.linalg.norm(out, axis=1, keepdims=True)
+    direction = points - SKULL_CENTRE
+    direction /= np.linalg.norm(direction, axis=1, keepdims=True)
     right = np.array([1.0, 0.0, 0.0])
     up = np.cross(SCALP_AXIS, right)
-    across = np.stack([out @ right, out @ up], axis=1)
-    # `across` has length sin θ = 2 sin(θ/2) cos(θ/2), and 1 + cos θ = 2 cos²(θ/2).
-    return across / np.sqrt(1.6 * (1.0 + out @ SCALP_AXIS))[:, None]
+    planar = np.stack([direction @ right, direction @ up], axis=1)
+    # `planar` has length sin θ = 2 sin(θ/2) cos(θ/2), and 1 + cos θ = 2 cos²(θ/2).
+    return planar / np.sqrt(1.6 * (1.0 + direction @ SCALP_AXIS))[:, None]
 
 
 def harmonic(points: Array, triangles: NDArray) -> Array:
-    """A patch with one border laid into the unit disc, every inner vertex at the mean of its neighbours."""
+    """Harmonic map of a patch with one border to the unit disc: each inner vertex is the mean of its neighbours."""
     loop = border(triangles)
     steps = np.linalg.norm(points[np.roll(loop, -1)] - points[loop], axis=1)
     turn = 2.0 * np.pi * (np.cumsum(steps) - steps) / steps.sum()
@@ -63,18 +63,18 @@ def harmonic(points: Array, triangles: NDArray) -> Array:
     halves = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=-1).reshape(-1, 2)
     link = adjacency(np.unique(np.sort(halves, axis=1), axis=0), len(points)).astype(float)
     inner = np.setdiff1d(np.arange(len(points)), loop)
-    pull = laplacian(link).tocsr()[inner]
-    flat[inner] = spsolve(pull[:, inner].tocsc(), -(pull[:, loop] @ flat[loop]))
+    rows = laplacian(link).tocsr()[inner]
+    flat[inner] = spsolve(rows[:, inner].tocsc(), -(rows[:, loop] @ flat[loop]))
     return flat
 
 
 def border(triangles: NDArray) -> NDArray:
-    """The one closed border of a patch, counter-clockwise around it."""
+    """The closed border of a patch, counter-clockwise; raises ValueError for more than one."""
     halves = {(int(a), int(b)) for a, b in zip(triangles.ravel(), np.roll(triangles, -1, axis=1).ravel(), strict=True)}
-    follow = {a: b for a, b in halves if (b, a) not in halves}
-    loop = [min(follow)]
-    while (after := follow[loop[-1]]) != loop[0]:
+    successor = {a: b for a, b in halves if (b, a) not in halves}
+    loop = [min(successor)]
+    while (after := successor[loop[-1]]) != loop[0]:
         loop.append(after)
-    if len(loop) != len(follow):
+    if len(loop) != len(successor):
         raise ValueError(f"a patch of {len(triangles)} triangles has more than one border; change the regions")
     return np.array(loop)

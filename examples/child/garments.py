@@ -1,4 +1,4 @@
-"""What the garments of the example share: places along the body, strips of triangles, and the file they go into."""
+"""Functions that the example's garments share: distance to the body, strips of triangles, and the USD writer."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from distances import Array
 from numpy.typing import NDArray
 from pxr import Gf, Kind, Usd, UsdGeom, Vt
 
-GROUND = np.array([0.0, 38.0, 0.0])  # as of the head
+GROUND = np.array([0.0, 38.0, 0.0])  # height above the ground, as of the head
 FPS = 24.0
 
 
 def body(points: Array) -> Array:
-    """Distance to the child in its shirt [cm]."""
+    """Distance to the child with its shirt [cm]."""
     return np.minimum(head_shape.skin(points), head_shape.shirt(points))
 
 
 def strip(columns: int, rows: int, closed: bool = False) -> NDArray[np.int32]:
-    """Triangles of a grid whose vertices are numbered column by column; diagonals alternate."""
+    """Triangles of a grid with vertices numbered by column and alternating diagonals, shape (m, 3)."""
     triangles = []
     for i in range(columns if closed else columns - 1):
         for j in range(rows - 1):
@@ -31,13 +31,13 @@ def strip(columns: int, rows: int, closed: bool = False) -> NDArray[np.int32]:
 
 
 def without(points: Array, triangles: NDArray[np.int32], kept: NDArray[np.bool_]) -> tuple[Array, NDArray[np.int32]]:
-    """A mesh with only some of its vertices."""
+    """Removes the vertices of a mesh that are not in ``kept``."""
     number = np.cumsum(kept) - 1
     return points[kept], number[triangles[kept[triangles].all(axis=1)]].astype(np.int32)
 
 
 def shifted(by: Array) -> Array:
-    """The matrix that moves points by so much."""
+    """Translation matrix, shape (4, 4)."""
     matrix = np.eye(4)
     matrix[:3, 3] = by
     return matrix
@@ -53,7 +53,13 @@ def write_garment(
     subsets: Mapping[str, NDArray[np.int64]] | None = None,
     motion: Mapping[int, Array] | None = None,
 ) -> None:
-    """Writes a mesh [cm] at ``/NAME`` with subsets of its faces; ``motion``: 4 × 4 matrices by frame, for columns."""
+    """Writes a mesh at ``/NAME``.
+
+    points:  positions [cm], shape (n, 3)
+    color:   linear colour, of the mesh or of each point
+    subsets: faces by name of the subset
+    motion:  4 × 4 matrices for column vectors, by frame
+    """
     stage = Usd.Stage.CreateNew(str(path))
     UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.y)
     UsdGeom.SetStageMetersPerUnit(stage, UsdGeom.LinearUnits.centimeters)

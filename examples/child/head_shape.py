@@ -1,8 +1,7 @@
 """The child as signed distances, in centimetres: Y up, the face towards +Z, the origin between the eyes.
 
-A face is symmetric, so every feature is modelled once, on the child's left (+X), and seen through ``mirrored``.
-Blend radii carry the softness: large where forms flow into one another (skull, cheeks, jaw), small where a form has an
-edge (lids, lips, wings of the nose).
+Every feature is modelled once, on the child's left (+X), and mirrored by ``mirrored``. Blend radii are large between
+soft forms (skull, cheeks, jaw), and small at edges (lids, lips, wings of the nose).
 """
 
 from __future__ import annotations
@@ -12,27 +11,27 @@ from distances import Array, capsule, ellipsoid, engrave, intersect, smooth, sph
 
 EYE_CENTRE = np.array([3.15, -0.5, 4.5])
 EYE_RADIUS = 2.25
-EYE_WIDTH, UPPER_LID, LOWER_LID = np.radians([45.0, 28.5, 25.0])  # half the opening, seen from the eyeball's middle
-EYE_SLANT = 0.06  # the outer corner is a little higher
+EYE_WIDTH, UPPER_LID, LOWER_LID = np.radians([45.0, 28.5, 25.0])  # half angles of the opening at the eyeball's centre
+EYE_SLANT = 0.06  # raises the outer corner
 LID = 0.2  # thickness of the lids
 
-WAIST, STRETCH = -17.0, 13.0  # the shirt is as wide as at the waist for so long, to be cut by any picture's edge
+WAIST, STRETCH = -17.0, 13.0  # height of the waist, and length of the constant width below, past any picture's edge
 
 EAR_CENTRE = np.array([6.95, -1.5, -1.3])
-EAR_FLARE = np.radians(33.0)  # how far the rim stands off the skull
-EAR_TILT = np.radians(12.0)  # the top leans back
+EAR_FLARE = np.radians(33.0)  # angle of the rim from the skull
+EAR_TILT = np.radians(12.0)  # tilts the top backwards
 
 
 def mirrored(p: Array) -> Array:
-    """Points folded onto the left side, rounded at the middle so that no crease runs down the face."""
+    """Mirrors points to the left side, smoothly at the middle, so that the face has no crease."""
     return np.column_stack([np.sqrt(p[:, 0] ** 2 + 0.03**2), p[:, 1], p[:, 2]])
 
 
 def skin(points: Array) -> Array:
-    """Head, ears, neck and the part of the chest that a neckline can show."""
+    """Head, ears, neck, and the chest inside a neckline."""
     p = mirrored(points)
-    shown = intersect(body(p), sphere(p, (0, -10.0, -2.5), 7.4), 0.6)
-    d = union(head(p), shown, 1.4)
+    visible = intersect(body(p), sphere(p, (0, -10.0, -2.5), 7.4), 0.6)
+    d = union(head(p), visible, 1.4)
     for feature, centre, reach in FEATURES:
         near = np.flatnonzero(sphere(p, centre, reach) < 0.0)
         d[near] = feature(d[near], p[near])
@@ -40,7 +39,7 @@ def skin(points: Array) -> Array:
 
 
 def shirt(points: Array) -> Array:
-    """A T-shirt: the body with an offset, open around the neck, with a rib along the neckline, rounded off below."""
+    """A T-shirt: an offset of the body with an opening around the neck, a rib along the neckline and a rounded end."""
     p = mirrored(points)
     p[:, 1] += np.clip(WAIST - p[:, 1], 0.0, STRETCH)
     cloth = intersect(torso(p) - 0.45, ellipsoid(p, (0, -14.5, -3.0), (11.4, 10.6, 9.0)), 1.5)
@@ -50,7 +49,7 @@ def shirt(points: Array) -> Array:
 
 
 def neckline(p: Array) -> Array:
-    """The space around the neck that the shirt leaves open."""
+    """The opening of the shirt around the neck."""
     return capsule(p, (0, -10.7, -2.5), (0, -2.0, -4.0), 5.2, 7.5)
 
 
@@ -69,7 +68,7 @@ def body(p: Array) -> Array:
 
 
 def torso(p: Array) -> Array:
-    """The body as cloth feels it, without the fine forms of neck and collar bones."""
+    """The body under cloth, without the fine forms of neck and collar bones."""
     d = capsule(p, (0, -4.0, -2.4), (0, -14.0, -3.2), 2.9, 3.1)  # neck
     d = union(d, capsule(p, (0.8, -10.8, -3.7), (6.5, -14.0, -3.5), 1.7, 2.1), 2.2)  # trapezius
     d = union(d, ellipsoid(p, (0, -21.5, -3.0), (7.3, 7.6, 4.5)), 2.2)  # chest
@@ -79,7 +78,7 @@ def torso(p: Array) -> Array:
 
 
 def eyes(d: Array, p: Array) -> Array:
-    """Sockets, then lids as shells around the eyeballs, then the opening between the lids."""
+    """Adds sockets, lids as shells around the eyeballs, and the opening between the lids."""
     d = subtract(d, ellipsoid(p, (3.15, -0.15, 7.6), (2.7, 2.0, 1.75)), 1.2)
     d = union(d, sphere(p, EYE_CENTRE, EYE_RADIUS + LID), 0.4)
     upper, lower = lid_edges(p)
@@ -88,20 +87,20 @@ def eyes(d: Array, p: Array) -> Array:
 
 
 def lid_edges(p: Array) -> tuple[Array, Array]:
-    """Distances along the eyeball past the edge of the upper and of the lower lid; both negative in the opening."""
-    out = p - EYE_CENTRE
-    across = np.arctan2(out[:, 0], np.maximum(out[:, 2], 1e-3)) / EYE_WIDTH
-    along = np.arctan2(out[:, 1], np.hypot(out[:, 0], out[:, 2])) - EYE_SLANT * across
+    """Distances along the eyeball beyond the edges of the upper and the lower lid; both negative in the opening."""
+    direction = p - EYE_CENTRE
+    across = np.arctan2(direction[:, 0], np.maximum(direction[:, 2], 1e-3)) / EYE_WIDTH
+    along = np.arctan2(direction[:, 1], np.hypot(direction[:, 0], direction[:, 2])) - EYE_SLANT * across
     return EYE_RADIUS * (along - UPPER_LID * lid_arch(across)), EYE_RADIUS * (-along - LOWER_LID * lid_arch(across))
 
 
 def lid_arch(across: Array) -> Array:
-    """Opening of the lids over the position from the inner corner (-1) to the outer one (1), highest at 1."""
+    """Relative opening of the lids, at most 1, by the position from the inner corner (-1) to the outer one (1)."""
     return 1.0 - np.minimum(np.abs(across + 0.08), 1.6) ** 2.2
 
 
 def lid_direction(across: Array) -> Array:
-    """Directions from the middle of the eyeball to the edge of the upper lid, shape (n, 3)."""
+    """Directions from the eyeball's centre to the edge of the upper lid, shape (n, 3)."""
     along = UPPER_LID * lid_arch(across) + EYE_SLANT * across
     turn = EYE_WIDTH * across
     return np.column_stack([np.cos(along) * np.sin(turn), np.sin(along), np.cos(along) * np.cos(turn)])
@@ -130,7 +129,7 @@ def lips(p: Array) -> Array:
 
 
 def mouth_line(x: Array) -> Array:
-    """Height of the line where the lips meet: a bow that ends in a slight smile."""
+    """Height of the line between the lips: a bow with a slight smile."""
     return -5.38 + 0.07 * np.cos(2.4 * x) + 0.11 * x**2
 
 
@@ -142,7 +141,7 @@ def ear(d: Array, p: Array) -> Array:
 
 
 def ear_leaf(q: Array) -> Array:
-    """The ear without its bowl: a leaf with a rolled rim, a lobe and an inner fold."""
+    """The ear without its bowl: a flat ellipsoid with a rolled rim, a lobe and an inner fold."""
     leaf = ellipsoid(q, (0.7, 0.1, 0.0), (1.75, 2.6, 0.5))
     rim = [(-0.2, 0.0, 0.15), (-0.5, 1.0, 0.2), (-0.15, 2.0, 0.3), (0.75, 2.6, 0.35), (1.7, 2.2, 0.4)]
     rim += [(2.25, 0.9, 0.4), (2.05, -0.7, 0.35), (1.4, -1.9, 0.2), (0.6, -2.5, 0.1)]
@@ -153,7 +152,7 @@ def ear_leaf(q: Array) -> Array:
 
 
 def ear_frame(p: Array) -> Array:
-    """Points in the ear's own frame: backwards along its leaf, up, and out of the leaf."""
+    """Transforms points to the frame of the ear: backwards in its plane, up, and along its normal."""
     back = np.array([np.sin(EAR_FLARE), 0.0, -np.cos(EAR_FLARE)])
     up = np.array([0.0, np.cos(EAR_TILT), -np.sin(EAR_TILT)])
     up -= (up @ back) * back
@@ -161,7 +160,7 @@ def ear_frame(p: Array) -> Array:
     return (p - EAR_CENTRE) @ np.column_stack([back, up, np.cross(back, up)])
 
 
-# What is modelled onto the head, in this order, and the ball outside which it changes nothing.
+# Features of the head, in the order of modelling, each with the ball that bounds its effect.
 FEATURES = (
     (eyes, EYE_CENTRE + [0, 0, 1.5], 5.0),
     (nose, (0, -2.0, 7.2), 4.5),

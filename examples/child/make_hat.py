@@ -2,7 +2,7 @@
 
     python examples/child/make_hat.py [-o hat.usdc]
 
-The result is kept beside this file; nobody has to run it.
+The result is in the repository; there is no need to run the script.
 """
 
 from __future__ import annotations
@@ -16,23 +16,23 @@ from garments import shifted, strip, write_garment
 from motion import FRAMES, head_matrix
 from numpy.typing import NDArray
 
-CENTRE = np.array([0.0, 4.2, -1.6])  # of the rim, where it sits in the end
-RIM = np.array([11.6, 12.4])  # its half-widths, across and along the head
-HEIGHT = 11.0  # of the crown over the rim
+CENTRE = np.array([0.0, 4.2, -1.6])  # final position of the rim's centre
+RIM = np.array([11.6, 12.4])  # half-widths of the rim, across and along the head
+HEIGHT = 11.0  # height of the crown above the rim
 BRIM = 2.6  # width of the brim
-TILT = np.radians(-14.0)  # the back is lower than the front
-LIFT = 20.0  # how far above it begins
-AROUND, UP = 72, 20  # vertices
-BAND = 3  # rows at the rim that go where they are told
-ARRIVES = 22.0  # frame
+TILT = np.radians(-14.0)  # lowers the back
+LIFT = 20.0  # initial height above the final position
+AROUND, UP = 72, 20  # number of vertices
+BAND = 3  # prescribed rows at the rim
+IN_PLACE = 22.0  # frame at which the hat is in place
 
 FELT, RIBBON = np.array([0.10, 0.16, 0.24]), np.array([0.45, 0.05, 0.04])
 
 
 def make() -> tuple[Array, NDArray[np.int32], Array, NDArray[np.int64]]:
-    """Points [cm], triangles, colours, and the triangles of the band around the head."""
+    """Builds points [cm], triangles, colours, and the indices of the triangles in the prescribed band."""
     angles = np.linspace(0.0, 2 * np.pi, AROUND, endpoint=False)
-    brim = np.array([[1.0 + out / RIM.mean(), -0.25 * out] for out in np.linspace(BRIM, 0.0, 5)[:-1]])
+    brim = np.array([[1.0 + width / RIM.mean(), -0.25 * width] for width in np.linspace(BRIM, 0.0, 5)[:-1]])
     t = np.linspace(0.0, 1.0, UP) * 0.97 * np.pi / 2
     crown = np.stack([np.cos(t) ** 0.55, HEIGHT * np.sin(t)], axis=1)  # steep sides, a flat top
     rows = np.concatenate([brim, crown])
@@ -59,9 +59,9 @@ def make() -> tuple[Array, NDArray[np.int32], Array, NDArray[np.int64]]:
 
 
 def place(frame: int) -> Array:
-    """Where the hat is: a 4 × 4 matrix. Seen from the head it comes down, slower in the end, and stays."""
-    left = np.clip((ARRIVES - frame) / (ARRIVES - FRAMES[0]), 0.0, 1.0)
-    return head_matrix(frame) @ shifted(np.array([0.0, LIFT * left**2 * (3.0 - 2.0 * left), 0.0]))
+    """Transform of the hat at a frame, shape (4, 4): lowered onto the head with an ease-out, then fixed to it."""
+    remaining = np.clip((IN_PLACE - frame) / (IN_PLACE - FRAMES[0]), 0.0, 1.0)
+    return head_matrix(frame) @ shifted(np.array([0.0, LIFT * remaining**2 * (3.0 - 2.0 * remaining), 0.0]))
 
 
 def main() -> None:

@@ -2,7 +2,8 @@
 
     python examples/child/make_head.py [-o head.usdc]
 
-Needs scikit-image beside Ringlet's own requirements. The result is kept beside this file; nobody has to run it.
+Needs scikit-image in addition to Ringlet's requirements. The result is in the repository; there is no need to run the
+script.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from pxr import Gf, Kind, Sdf, Usd, UsdGeom, UsdShade, Vt
 from regions import NAMES, label
 from remesh import mesh_shape
 
-GROUND = np.array([0.0, 38.0, 0.0])  # the bust stands on the ground, y = 0
+GROUND = np.array([0.0, 38.0, 0.0])  # translation that puts the bust on the ground, y = 0
 
 # Linear red, green, blue.
 SKIN = np.array([0.34, 0.165, 0.095])
@@ -36,12 +37,20 @@ PUPIL = np.array([0.004, 0.004, 0.004])
 BROW = np.array([0.030, 0.017, 0.012])
 LASH = np.array([0.012, 0.008, 0.007])
 
-TIMES = [Usd.TimeCode.Default(), *map(Usd.TimeCode, map(float, FRAMES))]  # the default holds the rest pose
+TIMES = [Usd.TimeCode.Default(), *map(Usd.TimeCode, map(float, FRAMES))]  # the default time has the rest pose
 
 
 @dataclass
 class Piece:
-    """A mesh with its colour and gloss; points are in the rest pose of the head or of their own frame."""
+    """A mesh with its material.
+
+    points:    positions in the rest pose, in the frame of the head or of the piece [cm], shape (n, 3)
+    triangles: shape (m, 3)
+    color:     linear colour, of the piece (3,) or of each point (n, 3)
+    roughness: roughness of the surface, 0 to 1
+    uv:        texture coordinates of triangle corners, shape (m, 3, 2)
+    regions:   triangles of named regions
+    """
 
     points: Array
     triangles: NDArray[np.int32]
@@ -52,7 +61,7 @@ class Piece:
 
 
 def skin_size(points: Array) -> Array:
-    """Edge lengths [cm]: fine around eyes, lips, nose and ears, growing slowly away from them."""
+    """Target edge lengths [cm], shape (n,): short around eyes, lips, nose and ears, and longer with distance."""
     p = head_shape.mirrored(points)
     fine = [
         (sphere(p, head_shape.EYE_CENTRE + [0, 0, 1.4], 1.9), 0.155),
@@ -66,7 +75,7 @@ def skin_size(points: Array) -> Array:
 
 
 def skin_color(points: Array) -> Array:
-    """Colours per point: pink lips, warm cheeks, nose and ears."""
+    """Colours of points, shape (n, 3): pink lips, warm cheeks, nose and ears."""
     p = head_shape.mirrored(points)
     glow = [(3.9, -3.4, 6.0), 1.7], [(0.0, -3.2, 8.6), 1.0], [head_shape.EAR_CENTRE + [1.2, 0.5, -1.0], 2.0]
     blush = np.max([np.exp(-((sphere(p, centre, 0.0) / reach) ** 2)) for centre, reach in glow], axis=0)[:, None]
@@ -76,20 +85,20 @@ def skin_color(points: Array) -> Array:
 
 
 def iris_color(points: Array) -> Array:
-    """Colours per point: a dark rim, and light that gathers in the lower half."""
-    out = np.degrees(np.arctan2(np.hypot(points[:, 0], points[:, 1]), points[:, 2]))
-    rim = np.clip((out - 20.0) / 9.0, 0.0, 1.0)[:, None] ** 2
+    """Colours of points, shape (n, 3): a dark rim, and a brighter lower half."""
+    polar = np.degrees(np.arctan2(np.hypot(points[:, 0], points[:, 1]), points[:, 2]))
+    rim = np.clip((polar - 20.0) / 9.0, 0.0, 1.0)[:, None] ** 2
     glow = 1.0 - 0.7 * points[:, 1:2] / np.abs(points[:, 1]).max()
     return glow * IRIS + rim * (RIM - glow * IRIS)
 
 
 def shirt_size(points: Array) -> Array:
-    """Edge lengths [cm]: fine along the neckline."""
+    """Target edge lengths [cm], shape (n,): short along the neckline."""
     return np.minimum(0.3 + 0.3 * np.maximum(np.abs(head_shape.neckline(points)) - 0.5, 0.0), 1.3)
 
 
 def build() -> dict[str, Piece]:
-    """Every mesh by name."""
+    """Builds all meshes, by name."""
     low, high = np.array([-9.6, -20.0, -11.2]), np.array([9.6, 11.2, 9.8])
     points, triangles = mesh_shape(head_shape.skin, low, high, 0.3, skin_size)
     labels = label(points, triangles)
@@ -127,7 +136,7 @@ def write(pieces: dict[str, Piece], path: Path) -> None:
 
 
 def define_mesh(stage: Usd.Stage, name: str, piece: Piece) -> UsdGeom.Mesh:
-    """What does not change over time: topology, colour, material, texture coordinates, regions."""
+    """Defines the static attributes of a mesh: topology, colour, material, texture coordinates and regions."""
     mesh = UsdGeom.Mesh.Define(stage, f"/child/{name}")
     mesh.CreateSubdivisionSchemeAttr(UsdGeom.Tokens.none)
     mesh.CreateFaceVertexCountsAttr(Vt.IntArray.FromNumpy(np.full(len(piece.triangles), 3, np.int32)))
@@ -170,7 +179,7 @@ def define_material(stage: Usd.Stage, name: str, piece: Piece) -> UsdShade.Mater
 
 
 def define_soft(stage: Usd.Stage, name: str, piece: Piece) -> None:
-    """Skin and cloth bend: their points are sampled at every frame."""
+    """Writes a deforming piece, skin or cloth, with points at every frame."""
     mesh = define_mesh(stage, name, piece)
     for time in TIMES:
         points = piece.points if time.IsDefault() else pose(piece.points, time.GetValue())
@@ -178,7 +187,7 @@ def define_soft(stage: Usd.Stage, name: str, piece: Piece) -> None:
 
 
 def define_rigid(stage: Usd.Stage, name: str, piece: Piece) -> None:
-    """Eyes, lashes and brows follow the head as they are: only their place is sampled."""
+    """Writes a rigid piece, eye, lash or brow, with a transform at every frame."""
     mesh = define_mesh(stage, name, piece)
     set_points(mesh, piece.points, Usd.TimeCode.Default())
     owner = UsdGeom.Xform.Define(stage, f"/child/{name.split('/')[0]}") if "/" in name else mesh

@@ -2,7 +2,7 @@
 
     python examples/child/make_scarf.py [-o scarf.usdc]
 
-The result is kept beside this file; nobody has to run it.
+The result is in the repository; there is no need to run the script.
 """
 
 from __future__ import annotations
@@ -15,21 +15,21 @@ from distances import Array
 from garments import body, strip, without, write_garment
 from numpy.typing import NDArray
 
-TURN = 440.0  # from end to end, over the left of the chest, the nape and once around to the right of it [degrees]
-START = 42.0  # where the inner end hangs: to the child's left of the front [degrees]
-END = 34.0  # how much of either end hangs down [degrees]
-AXIS = np.array([0.0, 0.0, -2.7])  # of the neck
+TURN = 440.0  # total angle, from the left of the chest over the nape and around to its right [degrees]
+START = 42.0  # angle of the inner end, from the front to the child's left [degrees]
+END = 34.0  # angle of each hanging end [degrees]
+AXIS = np.array([0.0, 0.0, -2.7])  # axis of the neck
 FRONT, NAPE = -12.0, -10.4  # heights of the upper edge: under the chin, and at the back, below the hair
-WIDTH, LENGTH = 7.5, 17.0  # down the body, around the neck and at the ends [cm]
-OFF, LAYER = 0.55, 1.0  # off the body, and of a turn off the one below [cm]
-FOLDS, DEPTH = 3.0, 0.22  # folds along the scarf in its width, and how deep they are [cm]
+WIDTH, LENGTH = 7.5, 17.0  # widths down the body: around the neck and at the ends [cm]
+OFF, LAYER = 0.55, 1.0  # distance from the body, and between turns [cm]
+FOLDS, DEPTH = 3.0, 0.22  # number of folds across the width, and their depth [cm]
 SPACING = 0.52
 
 RED, CREAM = np.array([0.42, 0.035, 0.03]), np.array([0.62, 0.52, 0.40])
 
 
 def make() -> tuple[Array, NDArray[np.int32], Array]:
-    """Points [cm], triangles and colours."""
+    """Builds points [cm], triangles and colours."""
     turns = np.linspace(0.0, TURN, round(TURN / 360.0 * 2 * np.pi * 5.6 / SPACING))
     down = np.arange(0.0, LENGTH, SPACING)
     points = laid_on_body(START - turns, heights_off(turns[:, None], down))
@@ -42,21 +42,24 @@ def make() -> tuple[Array, NDArray[np.int32], Array]:
 
 
 def heights_off(turns: Array, down: Array) -> Array:
-    """How far off the body the scarf is [cm]: each turn over the one before, in soft folds, shape (turns, down)."""
+    """Distances of the scarf from the body [cm], shape (turns, down): each turn over the previous one, with folds."""
     wave = np.sin(2 * np.pi * FOLDS * down / WIDTH + 2.0 * np.sin(np.radians(1.5 * turns)) + 0.011 * turns)
-    hanging = np.clip((down - WIDTH) / 2.0, 0.0, 1.0)  # ends hang smooth
+    hanging = np.clip((down - WIDTH) / 2.0, 0.0, 1.0)  # no folds at the ends
     return OFF + LAYER * turns / 360.0 + DEPTH * (1.0 + wave * (1.0 - hanging))
 
 
 def laid_on_body(angles: Array, off: Array) -> Array:
-    """Points down the body at angles from the front [degrees], at heights off it; shape (angles, down, 3).
+    """Points of the scarf on the body [cm], shape (angles, down, 3).
 
-    Every column is drawn in a half-plane through the neck's axis, from the upper edge down along the surface.
+    Each column runs in a half-plane through the neck's axis, from the upper edge down along the surface.
+
+    angles: angles from the front [degrees], shape (angles,)
+    off:    distances from the body [cm], shape (angles, down)
     """
-    out = np.stack([np.sin(np.radians(angles)), 0.0 * angles, np.cos(np.radians(angles))], axis=1)
+    radial = np.stack([np.sin(np.radians(angles)), 0.0 * angles, np.cos(np.radians(angles))], axis=1)
 
     def place(q: Array) -> Array:
-        return AXIS + q[:, :1] * out + q[:, 1:] * [0.0, 1.0, 0.0]
+        return AXIS + q[:, :1] * radial + q[:, 1:] * [0.0, 1.0, 0.0]
 
     def distance(q: Array) -> Array:
         return body(place(q))
@@ -74,8 +77,8 @@ def laid_on_body(angles: Array, off: Array) -> Array:
     columns = [place(q)]
     for before, now in zip(off.T[:-1], off.T[1:], strict=True):
         n = normal(q)
-        way = np.sqrt(np.maximum(SPACING**2 - (now - before) ** 2, (0.5 * SPACING) ** 2))
-        q = q + way[:, None] * np.stack([n[:, 1], -n[:, 0]], axis=1)  # outwards where the body is level, else down
+        step = np.sqrt(np.maximum(SPACING**2 - (now - before) ** 2, (0.5 * SPACING) ** 2))
+        q = q + step[:, None] * np.stack([n[:, 1], -n[:, 0]], axis=1)  # outwards on a level surface, else down
         for _ in range(3):
             q = q - (distance(q) - now)[:, None] * normal(q)
         columns.append(place(q))

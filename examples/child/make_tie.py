@@ -2,7 +2,7 @@
 
     python examples/child/make_tie.py [-o tie.usdc]
 
-The result is kept beside this file; nobody has to run it.
+The result is in the repository; there is no need to run the script.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from numpy.typing import NDArray
 CENTRE = np.array([0.0, 12.3, -2.5])
 RADIUS = 14.0  # [cm]
 HEIGHT = 1.2
-AROUND, UP = 144, 4  # vertices
+AROUND, UP = 144, 4  # number of vertices
 COLOR = np.array([0.75, 0.16, 0.35])
 
 
 def make() -> tuple[Array, NDArray[np.int32]]:
-    """Points [cm] and triangles of an upright band around the vertical."""
+    """Builds points [cm] and triangles of a cylindrical band around the vertical axis."""
     angles = np.linspace(0.0, 2 * np.pi, AROUND, endpoint=False)
     heights = np.linspace(-HEIGHT / 2, HEIGHT / 2, UP)
     a, y = np.meshgrid(angles, heights, indexing="ij")

@@ -1,4 +1,4 @@
-"""Eyes, lashes and brows: small meshes of their own, in the head's rest pose."""
+"""Meshes of eyes, lashes and brows, in the head's rest pose."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from scipy.interpolate import CubicSpline
 
 Part = tuple[Array, NDArray[np.int32]]
 
-IRIS = np.radians(30.0)  # half-angle seen from the middle of the eyeball
+IRIS = np.radians(30.0)  # half-angle at the eyeball's centre
 PUPIL = np.radians(14.0)
 
 
 def dome(last: float, rings: int, lift: float, segments: int = 28) -> Part:
-    """The front of an eyeball up to an angle from its axis (+Z); a bulging cornea catches the light."""
+    """The front of an eyeball up to an angle from its axis (+Z), with a bulging cornea for highlights."""
     theta = last * np.arange(1, rings + 1) / rings
     around = 2.0 * np.pi * np.arange(segments) / segments
     bulge = np.maximum(1.0 - (np.append(0.0, theta) / np.radians(34.0)) ** 2, 0.0) ** 2
@@ -39,7 +39,7 @@ def pupil() -> Part:
 
 
 def brow(side: float) -> Part:
-    """A soft strip over the eye, laid on the skin; ``side`` is 1 for the child's left and -1 for the right."""
+    """A strip on the skin above the eye; ``side`` is 1 for the child's left and -1 for the right."""
     bow = CubicSpline([0.0, 0.5, 1.0], [(1.45, 2.1, 8.0), (3.35, 2.8, 7.3), (5.35, 1.8, 5.6)])
     t = np.linspace(0.0, 1.0, 12)
     points = project(skin, bow(t) * [side, 1.0, 1.0], steps=8)
@@ -57,7 +57,7 @@ def lash(side: float) -> Part:
 
 
 def strip(points: Array, normals: Array, widths: Array, thickness: float, segments: int = 8) -> Part:
-    """A closed lens-shaped tube along points, flat on the surface with those normals."""
+    """A closed tube of elliptic cross-section along points, flattened along the normals."""
     normals = normals / np.linalg.norm(normals, axis=1, keepdims=True)
     along = np.gradient(points, axis=0)
     across = np.cross(normals, along)
@@ -77,7 +77,7 @@ def strip(points: Array, normals: Array, widths: Array, thickness: float, segmen
 
 
 def fan(tip: int, first: int, segments: int) -> NDArray[np.int32]:
-    """Triangles between a tip and the ring that starts at a vertex."""
+    """Triangles between a tip and the ring that starts at the vertex ``first``."""
     k = np.arange(segments)
     return np.stack([np.full(segments, tip), first + k, first + (k + 1) % segments], axis=1).astype(np.int32)
 
@@ -85,15 +85,15 @@ def fan(tip: int, first: int, segments: int) -> NDArray[np.int32]:
 def tube(first: int, rings: int, segments: int) -> NDArray[np.int32]:
     """Triangles between consecutive rings."""
     k = np.arange(segments)
-    here = first + segments * np.arange(rings - 1)[:, None]
-    a, b = here + k, here + (k + 1) % segments
+    ring = first + segments * np.arange(rings - 1)[:, None]
+    a, b = ring + k, ring + (k + 1) % segments
     lower = np.stack([a, a + segments, b], axis=-1)
     upper = np.stack([b, a + segments, b + segments], axis=-1)
     return np.concatenate([lower, upper], axis=1).reshape(-1, 3).astype(np.int32)
 
 
 def outward(points: Array, triangles: NDArray) -> NDArray[np.int32]:
-    """The triangles of a closed mesh, turned over if its volume is negative."""
+    """Triangles of a closed mesh, with reversed winding if its volume is negative."""
     a, b, c = (points[triangles[:, k]] - points.mean(axis=0) for k in range(3))
     volume = np.einsum("ij,ij->", a, np.cross(b, c))
     return np.ascontiguousarray(triangles if volume > 0 else triangles[:, ::-1], dtype=np.int32)

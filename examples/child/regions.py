@@ -1,4 +1,4 @@
-"""Which part of the skin is what: scalp, ears, face and neck, one of them for every triangle."""
+"""Segmentation of the skin into scalp, ears, face and neck, by triangle."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from scipy.sparse.csgraph import connected_components
 NAMES = ("scalp", "face", "ear_left", "ear_right", "neck")
 SKULL_CENTRE = np.array([0.0, 0.5, -1.2])
 
-# Heights over the angle around the vertical axis: 0° looks forward, 90° to the ear, 180° back.
+# Heights by the angle around the vertical axis: 0° is the front, 90° the ear, 180° the back.
 _HAIRLINE = PchipInterpolator(  # forehead, corner, temple, sideburn, over the ear, behind it, nape
     np.radians([0, 15, 30, 42, 55, 66, 78, 85, 90, 97, 104, 110, 118, 130, 150, 165, 180]),
     [6.0, 6.05, 6.0, 5.3, 3.9, 2.6, 0.6, -0.3, 0.3, 1.2, 0.9, -0.8, -2.6, -4.0, -5.1, -5.4, -5.2],
@@ -22,13 +22,13 @@ _JAWLINE = PchipInterpolator(np.radians([0, 30, 60, 90, 110, 180]), [-8.7, -8.3,
 
 
 def above_hairline(points: Array) -> Array:
-    """Height over the hairline [cm], positive where hair grows; ears are not asked about."""
+    """Height above the hairline [cm], positive where hair grows, shape (n,); not valid on ears."""
     p = mirrored(points) - SKULL_CENTRE
     return points[:, 1] - _HAIRLINE(np.arctan2(p[:, 0], p[:, 2]))
 
 
 def label(points: Array, triangles: NDArray) -> NDArray:
-    """Index into ``NAMES`` of each triangle, every region in one piece."""
+    """Index into ``NAMES`` of each triangle, shape (m,); every region is connected."""
     p = mirrored(points[triangles].mean(axis=1))
     around = np.arctan2(p[:, 0], p[:, 2] - SKULL_CENTRE[2])
     is_ear = (ear_leaf(ear_frame(p)) < 0.2) & (p[:, 0] > EAR_CENTRE[0] - 0.7)
@@ -39,7 +39,7 @@ def label(points: Array, triangles: NDArray) -> NDArray:
 
 
 def without_islands(labels: NDArray, triangles: NDArray) -> NDArray:
-    """Gives scattered triangles to the region around them, so that every region is its largest piece."""
+    """Reassigns isolated triangles to the surrounding region, so that every region is its largest component."""
     neighbours = facing(triangles)
     labels = labels.copy()
     for _ in range(100):
@@ -53,7 +53,7 @@ def without_islands(labels: NDArray, triangles: NDArray) -> NDArray:
         votes = np.zeros((len(triangles), len(NAMES)), int)
         for a, b in (neighbours.T, neighbours.T[::-1]):
             np.add.at(votes, (a[~stray[b]], labels[b[~stray[b]]]), 1)
-        # A triangle mostly surrounded by another region is a tooth in the border: it changes sides too.
+        # A triangle with two neighbours in another region makes the border jagged, and is reassigned too.
         own = votes[np.arange(len(labels)), labels]
         change = (stray & (votes.max(axis=1) > 0)) | (~stray & (own <= 1) & (votes.max(axis=1) >= 2))
         if not change.any():

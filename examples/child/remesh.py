@@ -1,9 +1,8 @@
-"""A triangle mesh of a shape with even triangles whose size follows a wish.
+"""Isotropic remeshing of an implicit surface with a target edge length that varies in space.
 
-Marching cubes finds the surface; then, as in Botsch and Kobbelt, "A Remeshing Approach to Multiresolution Modeling"
-(SGP 2004), long edges are split, short ones collapsed, edges flipped and vertices relaxed, over and over. Here the
-surface is at hand as a function, so relaxed vertices go back onto it exactly, and all edits that do not touch one
-another happen at once, on whole arrays.
+Marching cubes extracts the surface. Then edges are split, collapsed and flipped and vertices relaxed repeatedly, after
+Botsch and Kobbelt, "A Remeshing Approach to Multiresolution Modeling" (SGP 2004). Relaxed vertices are projected to the
+implicit surface. Independent edits are applied at once, on whole arrays.
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ SizeField = Callable[[Array], Array]
 
 
 def mesh_shape(shape: Shape, low: Array, high: Array, cell: float, size: SizeField) -> tuple[Array, Triangles]:
-    """Points and outward triangles of the surface within a box, edges about ``size(points)`` long."""
+    """Meshes the surface inside a box: points and outward triangles with edges of about the length ``size(points)``."""
     points, triangles = polygonise(shape, low, high, cell)
     points = project(shape, points)
     for _ in range(6):
@@ -37,7 +36,7 @@ def mesh_shape(shape: Shape, low: Array, high: Array, cell: float, size: SizeFie
 
 
 def polygonise(shape: Shape, low: Array, high: Array, cell: float) -> tuple[Array, Triangles]:
-    """Marching cubes; the shape is evaluated on a coarse grid first and on the fine one only near the surface."""
+    """Marching cubes on a grid that is evaluated coarsely first, and finely near the surface."""
     coarse, ratio = 4.0 * cell, 4
     counts = np.ceil((high - low) / coarse).astype(int) + 1
     corners = low + coarse * np.argwhere(np.ones(counts, bool))
@@ -60,8 +59,8 @@ def edges_of(triangles: Triangles) -> tuple[NDArray, NDArray]:
     return np.sort(halves[order[:, 0]], axis=1), order
 
 
-def first_come(claims: list[NDArray], count: int) -> NDArray:
-    """Which rows may act when each claims some items for itself and earlier rows win; shape (rows,), bool."""
+def claimed(claims: list[NDArray], count: int) -> NDArray:
+    """Rows that own all items that they claim, with priority of earlier rows; shape (rows,), bool."""
     rows = np.arange(len(claims[0]))
     owner = np.full(count, len(rows))
     for claim in claims:
@@ -70,13 +69,13 @@ def first_come(claims: list[NDArray], count: int) -> NDArray:
 
 
 def relative_length(points: Array, edges: NDArray, size: SizeField) -> Array:
-    """Length of each edge over the length wished for at its middle."""
+    """Length of each edge relative to the target length at its midpoint, shape (e,)."""
     a, b = points[edges[:, 0]], points[edges[:, 1]]
     return np.linalg.norm(b - a, axis=1) / size(0.5 * (a + b))
 
 
 def split_long(points: Array, triangles: Triangles, size: SizeField) -> tuple[Array, Triangles]:
-    """Halves edges longer than 4/3 of the wish, the longest first, until none is left."""
+    """Splits edges longer than 4/3 of the target length, the longest first, until none is left."""
     while True:
         edges, halves = edges_of(triangles)
         length = relative_length(points, edges, size)
@@ -84,7 +83,7 @@ def split_long(points: Array, triangles: Triangles, size: SizeField) -> tuple[Ar
         long = long[np.argsort(-length[long], kind="stable")]
         if len(long) == 0:
             return points, triangles
-        long = long[first_come([halves[long, 0] // 3, halves[long, 1] // 3], len(triangles))]
+        long = long[claimed([halves[long, 0] // 3, halves[long, 1] // 3], len(triangles))]
         middle = len(points) + np.arange(len(long), dtype=np.int32)
         points = np.concatenate([points, points[edges[long]].mean(axis=1)])
         added = []
@@ -98,8 +97,8 @@ def split_long(points: Array, triangles: Triangles, size: SizeField) -> tuple[Ar
 
 
 def collapse_short(points: Array, triangles: Triangles, size: SizeField) -> tuple[Array, Triangles]:
-    """Merges the ends of edges shorter than 4/5 of the wish where the surface stays a surface, until none is left."""
-    shuffle = np.random.default_rng(0).permutation  # a mixed order lets many edges act at once
+    """Collapses edges shorter than 4/5 of the target length, unless the mesh would degenerate, until none is left."""
+    shuffle = np.random.default_rng(0).permutation  # a random order allows many collapses at once
     while True:
         edges, _ = edges_of(triangles)
         length = relative_length(points, edges, size)
@@ -107,18 +106,18 @@ def collapse_short(points: Array, triangles: Triangles, size: SizeField) -> tupl
         link = adjacency(edges, len(points))
         shared = link[edges[short, 0]].multiply(link[edges[short, 1]]).sum(axis=1)
         short = short[np.asarray(shared).ravel() == 2]
-        short = short[alone(link, edges[short])]
+        short = short[independent(link, edges[short])]
         middle = points[edges[short]].mean(axis=1)
         moved = points.copy()
         moved[edges[short, 0]] = moved[edges[short, 1]] = middle
-        spoilt = spoilt_vertices(points, moved, triangles)
-        short = short[~spoilt[edges[short]].any(axis=1)]
+        inverted = inverted_vertices(points, moved, triangles)
+        short = short[~inverted[edges[short]].any(axis=1)]
         if len(short) == 0:
             return points, triangles
-        keep, gone = edges[short].T
+        keep, removed = edges[short].T
         points[keep] = points[edges[short]].mean(axis=1)
         target = np.arange(len(points), dtype=np.int32)
-        target[gone] = keep
+        target[removed] = keep
         triangles = target[triangles]
         triangles = triangles[(triangles != np.roll(triangles, 1, axis=1)).all(axis=1)]
         used, inverse = np.unique(triangles, return_inverse=True)
@@ -130,8 +129,8 @@ def adjacency(edges: NDArray, count: int) -> csr_matrix:
     return csr_matrix((ones, (edges.ravel(), edges[:, ::-1].ravel())), shape=(count, count))
 
 
-def alone(link: csr_matrix, edges: NDArray) -> NDArray:
-    """Which edges, earlier ones first, share no vertex of their neighbourhoods with one another."""
+def independent(link: csr_matrix, edges: NDArray) -> NDArray:
+    """Edges whose neighbourhoods share no vertex with those of earlier chosen edges; shape (e,), bool."""
     rank = np.full(link.shape[0], len(edges))
     np.minimum.at(rank, edges, np.arange(len(edges))[:, None])
     for _ in range(2):
@@ -145,40 +144,40 @@ def face_normals(points: Array, triangles: Triangles) -> Array:
     return np.cross(b - a, c - a)
 
 
-def spoilt_vertices(points: Array, moved: Array, triangles: Triangles) -> NDArray:
-    """Vertices of triangles that a move would turn over."""
+def inverted_vertices(points: Array, moved: Array, triangles: Triangles) -> NDArray:
+    """Vertices of triangles that a displacement would invert; shape (n,), bool."""
     before, after = face_normals(points, triangles), face_normals(moved, triangles)
     lengths = np.linalg.norm(before, axis=1) * np.linalg.norm(after, axis=1)
-    turned = ((before * after).sum(1) < 0.5 * lengths) & (np.linalg.norm(after, axis=1) > 1e-12)
-    spoilt = np.zeros(len(points), bool)
-    spoilt[triangles[turned]] = True
-    return spoilt
+    new_normals = ((before * after).sum(1) < 0.5 * lengths) & (np.linalg.norm(after, axis=1) > 1e-12)
+    inverted = np.zeros(len(points), bool)
+    inverted[triangles[new_normals]] = True
+    return inverted
 
 
 def flip(points: Array, triangles: Triangles) -> Triangles:
-    """Turns edges whose two facing angles sum to more than π (Delaunay), where this does not fold the surface."""
+    """Flips edges whose opposite angles sum to more than π (Delaunay), unless this would fold the surface."""
     for _ in range(10):
         edges, halves = edges_of(triangles)
         (f0, k0), (f1, k1) = (divmod(halves[:, s], 3) for s in (0, 1))
         a, b = triangles[f0, k0], triangles[f0, (k0 + 1) % 3]
         c, d = triangles[f0, (k0 + 2) % 3], triangles[f1, (k1 + 2) % 3]
-        facing = angle(points, a, c, b) + angle(points, a, d, b)
+        opposite_angles = angle(points, a, c, b) + angle(points, a, d, b)
         new = np.stack([np.stack([c, a, d], 1), np.stack([d, b, c], 1)], axis=1)  # (edges, 2, 3)
         old = face_normals(points, triangles)
-        together = old[f0] + old[f1]
-        turned = np.stack([face_normals(points, new[:, s]) for s in (0, 1)], axis=1)
-        level = np.einsum("esx,ex->es", turned, together)
-        level /= np.linalg.norm(turned, axis=-1) * np.linalg.norm(together, axis=-1, keepdims=True) + 1e-300
+        normal_sum = old[f0] + old[f1]
+        new_normals = np.stack([face_normals(points, new[:, s]) for s in (0, 1)], axis=1)
+        alignment = np.einsum("esx,ex->es", new_normals, normal_sum)
+        alignment /= np.linalg.norm(new_normals, axis=-1) * np.linalg.norm(normal_sum, axis=-1, keepdims=True) + 1e-300
         flat = (old[f0] * old[f1]).sum(1) > 0.5 * np.linalg.norm(old[f0], axis=1) * np.linalg.norm(old[f1], axis=1)
         link = adjacency(edges, len(points))
-        fresh = np.asarray(link[c, d]).ravel() == 0
-        wanted = np.flatnonzero((facing > np.pi + 1e-3) & (level > 0.5).all(axis=1) & flat & fresh)
-        wanted = wanted[np.argsort(-facing[wanted], kind="stable")]
-        wanted = wanted[first_come([a[wanted], b[wanted], c[wanted], d[wanted]], len(points))]
-        if len(wanted) == 0:
+        is_new_edge = np.asarray(link[c, d]).ravel() == 0
+        flipped = np.flatnonzero((opposite_angles > np.pi + 1e-3) & (alignment > 0.5).all(axis=1) & flat & is_new_edge)
+        flipped = flipped[np.argsort(-opposite_angles[flipped], kind="stable")]
+        flipped = flipped[claimed([a[flipped], b[flipped], c[flipped], d[flipped]], len(points))]
+        if len(flipped) == 0:
             break
         triangles = triangles.copy()
-        triangles[f0[wanted]], triangles[f1[wanted]] = new[wanted, 0], new[wanted, 1]
+        triangles[f0[flipped]], triangles[f1[flipped]] = new[flipped, 0], new[flipped, 1]
     return triangles
 
 
@@ -188,7 +187,7 @@ def angle(points: Array, a: NDArray, at: NDArray, b: NDArray) -> Array:
 
 
 def relax(points: Array, triangles: Triangles, size: SizeField) -> Array:
-    """Moves vertices along the surface to the middle of their triangles, weighted so that the wished sizes hold."""
+    """Relaxes vertices tangentially to the mean of their triangles, weighted by the target size."""
     doubled = face_normals(points, triangles)
     centres = points[triangles].mean(axis=1)
     weight = np.linalg.norm(doubled, axis=1) / size(centres) ** 2
@@ -200,4 +199,4 @@ def relax(points: Array, triangles: Triangles, size: SizeField) -> Array:
     normal /= np.linalg.norm(normal, axis=1, keepdims=True)
     move = middle / total[:, None] - points
     moved = points + 0.7 * (move - (move * normal).sum(1, keepdims=True) * normal)
-    return np.where(spoilt_vertices(points, moved, triangles)[:, None], points, moved)
+    return np.where(inverted_vertices(points, moved, triangles)[:, None], points, moved)

@@ -3,7 +3,7 @@
 export const VERSION = 6;
 export type Json = string | number | boolean | null | Json[] | { [key: string]: Json };
 
-/** A stage of the groom. place: where its settings are in the recipe. */
+/** A stage of the groom. place: path of its settings in the recipe. */
 export interface Stage {
   name: string;
   op: string;
@@ -11,25 +11,25 @@ export interface Stage {
   muted: boolean;
 }
 
-/** A line of the file that is not as it was saved. */
+/** A line of the diff against the saved file. */
 export interface Change {
   sign: "+" | "-" | " ";
   line: string;
 }
 
-/** The first message: who is there. ``client`` is a name that a page keeps when it comes back. */
+/** First message of a page. ``client`` is a name that the page keeps when it reconnects. */
 export interface Hello {
   kind: "hello";
   version: number;
   client: string;
 }
 
-/** Asks to be the one who edits. */
+/** Requests the edit lock. */
 export interface Lead {
   kind: "lead";
 }
 
-/** Gives settings new values, as TOML would say them; None takes a setting out, so that its default holds. */
+/** Sets values of settings, in TOML notation; None removes a setting, so that its default applies. */
 export interface Set {
   kind: "set";
   file?: "recipe" | "shot";
@@ -38,7 +38,7 @@ export interface Set {
   resting?: boolean;
 }
 
-/** Adds, removes or moves an operator of the recipe's shape. */
+/** Adds, removes or moves a shape operator of the recipe. */
 export interface Arrange {
   kind: "arrange";
   action: "add" | "remove" | "move";
@@ -47,18 +47,18 @@ export interface Arrange {
   op?: string;
 }
 
-/** Says which stages have no effect for now: ``shape/0``, ``curl`` …; not kept in the file. */
+/** Mutes stages such as ``shape/0`` or ``curl``; not stored in the file. */
 export interface Mute {
   kind: "mute";
   stages: string[];
 }
 
-/** Goes back or forth in what was done. */
+/** Undoes, redoes or reverts changes. */
 export interface Step {
   kind: "undo" | "redo" | "revert";
 }
 
-/** Writes a file. With a name it is a new one beside the old: a copy, or a variant that extends it. */
+/** Saves a file; with a name, a copy beside it, or a variant that extends it. */
 export interface Save {
   kind: "save";
   file?: "recipe" | "shot";
@@ -66,7 +66,7 @@ export interface Save {
   variant?: boolean;
 }
 
-/** Gives back a text that a page still had when the server was started anew, and that of its file of edits. */
+/** Restores unsaved text of a page, and of its file of edits, after a restart of the server. */
 export interface Restore {
   kind: "restore";
   file?: "recipe" | "shot";
@@ -74,14 +74,14 @@ export interface Restore {
   edits?: string;
 }
 
-/** Shows another look beside this one: as it is now, as saved, or another recipe of the project, or none. */
+/** Shows a second groom for comparison: a snapshot, the saved one, another recipe of the project, or none. */
 export interface Compare {
   kind: "compare";
   to: "now" | "saved" | "file" | "none";
   name?: string;
 }
 
-/** Moves points of an isolated lock by hand [m]. Its shape becomes the lock's own. */
+/** Drags a point of an isolated lock to a position [m]. */
 export interface Drag {
   kind: "drag";
   lock: number;
@@ -92,14 +92,14 @@ export interface Drag {
   resting?: boolean;
 }
 
-/** Takes locks out of the procedural to be edited by hand, or returns them. */
+/** Isolates locks from the procedural groom for manual edits, or returns them. */
 export interface Isolate {
   kind: "isolate";
   locks: number[];
   out?: boolean;
 }
 
-/** Moves a brush over the guides, or gives them back to the recipe. */
+/** Moves a brush over the guides, or returns guides to the recipe. */
 export interface Sculpt {
   kind: "sculpt";
   tool: "grab" | "comb" | "smooth" | "cut" | "lengthen" | "return";
@@ -111,32 +111,32 @@ export interface Sculpt {
   resting?: boolean;
 }
 
-/** Gives all guides back to the recipe. */
+/** Removes the sculpts of all guides. */
 export interface Unsculpt {
   kind: "unsculpt";
 }
 
-/** Runs the shot: from its start, on from where it was held, or again from a frame that is there already. */
+/** Starts, pauses or resumes the simulation, or restarts it from an existing frame. */
 export interface Play {
   kind: "play";
   action: "start" | "pause" | "go_on" | "again_from";
   frame?: number;
 }
 
-/** Lays the frames of another cache of the project under the shot, to compare; no name takes it away. */
+/** Shows the frames of another cache of the project for comparison; an empty name removes them. */
 export interface Against {
   kind: "against";
   name?: string;
 }
 
-/** Asks for frames, the one that is looked at first, in place of those that were asked for and have not come yet. */
+/** Requests frames, the current one first; replaces earlier requests that are still pending. */
 export interface Watch {
   kind: "watch";
   shot?: number[];
   against?: number[];
 }
 
-/** What a page needs to know before anything else. */
+/** First message of the server. */
 export interface Welcome {
   kind: "welcome";
   version: number;
@@ -149,20 +149,20 @@ export interface Welcome {
   pigments: Record<string, [number, number, number]>;
 }
 
-/** Who edits. ``others`` is the number of other pages that look at the session. */
+/** Holder of the edit lock. ``others`` is the number of other connected pages. */
 export interface Role {
   kind: "role";
   leads: boolean;
   others: number;
 }
 
-/** What there is in the project to compare with, by name: recipes and caches. Told again when others are there. */
+/** Names of the recipes and caches of the project; sent again when they change. */
 export interface Files {
   kind: "files";
   names: string[];
 }
 
-/** A file as it stands. */
+/** Current state of a file. */
 export interface Document {
   kind: "document";
   file: "recipe" | "shot";
@@ -179,7 +179,7 @@ export interface Document {
   changes: Change[];
 }
 
-/** A mesh of the scene, as the eye sees it. made_of: skin, eye, cloth or matte. */
+/** A mesh of the scene. made_of: its material: skin, eye, cloth or matte. */
 export interface Body {
   kind: "body";
   index: number;
@@ -191,7 +191,7 @@ export interface Body {
   colors: Float32Array;
 }
 
-/** Where the locks are. side: a, or b for the look beside it. */
+/** Positions of the locks. side: a, or b for the groom to compare with. */
 export interface Locks {
   kind: "locks";
   side: "a" | "b";
@@ -203,7 +203,7 @@ export interface Locks {
   marked: Uint8Array;
 }
 
-/** Where the guides are; ``changed`` is 1 for those that were sculpted by hand. */
+/** Positions of the guides; ``changed`` is 1 for sculpted ones. */
 export interface Guides {
   kind: "guides";
   middle: [number, number, number];
@@ -212,7 +212,7 @@ export interface Guides {
   changed: Uint8Array;
 }
 
-/** What settings may name: regions, maps and directions of the scalp, and helper curves. */
+/** Valid names in settings: regions, maps and directions of the scalp, and helper curves. */
 export interface Names {
   kind: "names";
   regions: string[];
@@ -221,7 +221,7 @@ export interface Names {
   curves: string[];
 }
 
-/** How hairs sit in their locks; see ``src/ringlet/groom/hairs.h`` for the formula. */
+/** Hairs relative to their locks; see ``src/ringlet/groom/hairs.h`` for the formula. */
 export interface Hairs {
   kind: "hairs";
   side: "a" | "b";
@@ -243,7 +243,7 @@ export interface Hairs {
   thinning: Float32Array;
 }
 
-/** What to keep in sight. revision: of the recipe that is shown; times: of the stages that were computed [ms]. */
+/** Statistics of the groom. revision: of the displayed recipe; times: times of the computed stages [ms]. */
 export interface Numbers {
   kind: "numbers";
   revision: number;
@@ -254,7 +254,7 @@ export interface Numbers {
   draft: boolean;
 }
 
-/** What is only measured at rest. inside: points of locks that are in the head. */
+/** Measurements of a groom that is not a draft. inside: number of lock points in the head. */
 export interface Measured {
   kind: "measured";
   inside: number;
@@ -262,7 +262,7 @@ export interface Measured {
   nail: Uint8Array;
 }
 
-/** A frame of the shot or of a cache. layer: ``shot``, or ``against`` for the cache that it is compared with. */
+/** A frame of the shot or of a cache. layer: ``shot``, or ``against`` for the cache to compare with. */
 export interface Frame {
   kind: "frame";
   layer: "shot" | "against";
@@ -280,7 +280,7 @@ export interface Frame {
   curl: Uint8Array;
 }
 
-/** What the simulation does, and which frames there are to see: of the shot, and of the cache beside it. */
+/** State of the simulation, and the existing frames of the shot and of the cache to compare with. */
 export interface Timeline {
   kind: "timeline";
   first: number;
@@ -295,13 +295,13 @@ export interface Timeline {
   beside: Float64Array;
 }
 
-/** What is shown beside the look that is edited; nothing for no name. */
+/** Name of the groom or cache to compare with; empty for none. */
 export interface Compared {
   kind: "compared";
   name: string;
 }
 
-/** How many messages of a page of this name were heard: what they asked for was done, begun or refused. */
+/** Number of messages that the server has handled for pages of this name. */
 export interface Heard {
   kind: "heard";
   count: number;
@@ -313,7 +313,7 @@ export interface Saved {
   name: string;
 }
 
-/** Something that cannot be, in one line. */
+/** An error message of one line. */
 export interface Trouble {
   kind: "trouble";
   message: string;

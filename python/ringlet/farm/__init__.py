@@ -1,4 +1,4 @@
-"""Many runs of one shot: wedges on this machine, on a cluster of dask.distributed, or on a render farm."""
+"""Wedges of a shot: on this machine, on a dask.distributed cluster, or on a render farm."""
 
 from ringlet.farm.wedge import compare_wedge, wedge, write_wedge_template
 

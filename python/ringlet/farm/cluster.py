@@ -1,4 +1,4 @@
-"""Tasks on the workers of dask.distributed: processes of this machine, or a cluster."""
+"""Runs tasks on workers of dask.distributed: local processes, or a cluster."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     from distributed import Client
 
 TOPIC = "ringlet-wedge"
-PATIENCE = "20s"  # with a scheduler that does not answer
+PATIENCE = "20s"  # timeout of the connection to a scheduler
 
-Told = Callable[[str, int, int], None]
+Progress = Callable[[str, int, int], None]
 
 
 def run_on_workers(
@@ -28,22 +28,22 @@ def run_on_workers(
     scheduler: str | None,
     workers: int | None,
     retries: int,
-    told: Told,
+    progress: Progress,
 ) -> list[Result]:
-    """Runs tasks, each by one worker at a time, and returns their results in the same order.
+    """Runs tasks, each on one worker at a time, and returns their results in the same order.
 
-    A task whose worker dies is given to another, where it goes on from its checkpoints; one that breaks off is tried
-    again. Neither costs the others anything.
+    The task of a worker that dies moves to another worker and resumes from its checkpoints. A task that fails is
+    retried. Other tasks are unaffected.
 
-    scheduler: the address of one, such as ``tcp://farm:8786``, whose workers see the same folders; else workers here
-    workers:   how many processes here
-    retries:   how often a task may break off, or lose its worker, before it is given up
-    told:      called as told(name of a task, frames that are done, their number)
+    scheduler: address such as ``tcp://farm:8786``, with workers that see the same folders; None for local workers
+    workers:   number of local worker processes
+    retries:   number of times that a task may fail, or lose its worker
+    progress:  called with (name of a task, frames done, their number)
     """
     with _client(scheduler, workers, retries) as client:
         from distributed import as_completed
 
-        client.subscribe_topic(TOPIC, lambda event: told(*event[1]))
+        client.subscribe_topic(TOPIC, lambda event: progress(*event[1]))
         run = uuid.uuid4().hex[:8]
         futures = {
             client.submit(_in_worker, task, wanted, key=f"{task.name}-{run}", retries=retries, pure=False): k
@@ -57,7 +57,7 @@ def run_on_workers(
 
 
 def _in_worker(task: Task, wanted: Wanted) -> Result:
-    """Runs a task and tells the client how far it is."""
+    """Runs a task on a worker and reports its progress to the client."""
     from distributed import get_worker
 
     worker = get_worker()
@@ -65,9 +65,9 @@ def _in_worker(task: Task, wanted: Wanted) -> Result:
 
 
 def _failed(task: Task, error: Any) -> Result:
-    """What to say of a task that was given up."""
-    told = " ".join(str(error).split())
-    message = f"{type(error).__name__}: {told}; {task.folder / 'log.txt'} tells more"
+    """Writes and returns the result of a task that failed for good."""
+    reason = " ".join(str(error).split())
+    message = f"{type(error).__name__}: {reason}; {task.folder / 'log.txt'} tells more"
     result = Result(task.settings, "failed", message, order=task.order)
     task.folder.mkdir(parents=True, exist_ok=True)
     write_result(task.folder, result)
@@ -76,7 +76,10 @@ def _failed(task: Task, error: Any) -> Result:
 
 @contextmanager
 def _client(scheduler: str | None, workers: int | None, retries: int) -> Iterator[Client]:
-    """A connection to a scheduler, or to one with workers of its own that go when the block ends."""
+    """Connects to a scheduler, or starts a local cluster that ends with the block.
+
+    Raises UserError without dask.distributed, and for a scheduler that does not answer.
+    """
     try:
         from dask import config
         from distributed import Client, LocalCluster
@@ -95,14 +98,14 @@ def _client(scheduler: str | None, workers: int | None, retries: int) -> Iterato
                 "dask scheduler"
             ) from None
         return
-    quiet = {"distributed.logging.distributed": "critical", "distributed.scheduler.allowed-failures": retries}
+    settings = {"distributed.logging.distributed": "critical", "distributed.scheduler.allowed-failures": retries}
     with (
-        config.set(quiet),
+        config.set(settings),
         LocalCluster(
             n_workers=workers,
             threads_per_worker=1,
             processes=True,
-            dashboard_address="127.0.0.1:0",  # for the numbers it must have some port: one that is free, seen from here
+            dashboard_address="127.0.0.1:0",  # metrics need a port: any free one on loopback
             scheduler_kwargs={"dashboard": False},
             silence_logs=logging.CRITICAL,
         ) as cluster,

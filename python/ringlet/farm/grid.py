@@ -1,4 +1,4 @@
-"""A grid of settings: a shot with every combination of a few values, each as a task with a folder of its own."""
+"""A grid of settings: one task for each combination of values, each in its own folder."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from ringlet.data.settings import Location, Section, did_you_mean, read_toml, se
 from ringlet.data.toml import to_toml
 from ringlet.shot import Shot, parse_shot
 
-MOST_TASKS = 10_000
-LONGEST_NAME = 100  # of a folder
+MAX_TASKS = 10_000
+MAX_NAME = 100  # characters of a folder's name
 
 
 @dataclass(frozen=True)
 class Choice:
-    """A setting of a shot, and the values that it is to have one after the other.
+    """A setting of a shot, and its values in the wedge.
 
-    name:  as it stands in the file: ``strands.bend_scale``, ``collider[0].friction``
-    place: the same as a path in the file's tables
+    name:  name in the file: ``strands.bend_scale``, ``collider[0].friction``
+    place: path in the file's tables
     """
 
     name: str
@@ -36,12 +36,12 @@ class Choice:
 
 @dataclass(frozen=True)
 class Task:
-    """One combination.
+    """One combination of values.
 
-    folder:   where all of it is written
-    settings: its values by their names
-    order:    which of its values each setting has, counted from 0
-    shot:     the text of its shot, whose relative names count from the folder
+    folder:   output folder
+    settings: values by the name of the setting
+    order:    index of each setting's value, from 0
+    shot:     text of the shot, with file names relative to the folder
     """
 
     folder: Path
@@ -51,17 +51,19 @@ class Task:
 
     @property
     def name(self) -> str:
-        """The name of its folder, which no other task has."""
+        """Name of the folder, unique among the tasks."""
         return self.folder.name
 
 
 def choose(name: str, values: Sequence[Any] | str) -> Choice:
-    """A choice among values of a setting; each part of its name may be cut short where it can be no other.
+    """Parses a setting and its values; components of the name may be abbreviated to a unique prefix.
 
-    values: a list, or text such as ``1,2,4``, in which what is no value of TOML is text itself
+    values: a list, or text such as ``1,2,4``; an item that is no TOML value is a string
+
+    Raises UserError for an unknown or ambiguous name, and for a setting without values.
     """
     if isinstance(values, str):
-        values = [_value(part) for part in _parts(values) if part.strip()]
+        values = [_value(item) for item in _split_items(values) if item.strip()]
     place: list[str | int] = []
     table: type[Section] | None = Shot
     for part in re.findall(r"[^.\[\]\s]+", name):
@@ -71,26 +73,29 @@ def choose(name: str, values: Sequence[Any] | str) -> Choice:
             place.append(part)
         else:
             names = list(table.model_fields)
-            found = [part] if part in names else [other for other in names if other.startswith(part)]
-            if len(found) != 1:
-                raise UserError(f"wedge: {name}: {part} is not a setting{did_you_mean(part, found or names)}")
-            place.append(found[0])
-            table = _table_in(table.model_fields[found[0]].annotation)
+            matches = [part] if part in names else [other for other in names if other.startswith(part)]
+            if len(matches) != 1:
+                raise UserError(f"wedge: {name}: {part} is not a setting{did_you_mean(part, matches or names)}")
+            place.append(matches[0])
+            table = _section_of(table.model_fields[matches[0]].annotation)
     if not place or not values:
         raise UserError(f"wedge: '{name}': names no setting, or no value for it; give SETTING=VALUE,VALUE…")
     return Choice(setting_name(tuple(place)), tuple(place), tuple(values))
 
 
 def make_tasks(shot: Path, choices: Sequence[Choice], folder: Path) -> list[Task]:
-    """All combinations, the last setting changing fastest; each is checked before any of them runs."""
+    """Tasks of all combinations, the last setting varying fastest; validates each shot.
+
+    Raises UserError for a setting given twice, too many combinations, and values that are not valid.
+    """
     for choice in choices:
         if sum(other.place == choice.place for other in choices) > 1:
             raise UserError(f"wedge: {choice.name} is given twice; name all its values in one --set")
     count = 1
     for choice in choices:
         count *= len(choice.values)
-    if count > MOST_TASKS:
-        raise UserError(f"wedge: these are {count:,} combinations; must be at most {MOST_TASKS:,}")
+    if count > MAX_TASKS:
+        raise UserError(f"wedge: these are {count:,} combinations; must be at most {MAX_TASKS:,}")
     _, tables = read_toml(shot, "shot")
     tasks: dict[str, Task] = {}
     for order in itertools.product(*(range(len(choice.values)) for choice in choices)):
@@ -103,35 +108,35 @@ def _task(shot: Path, tables: dict[str, Any], choices: Sequence[Choice], order: 
     settings = {choice.name: choice.values[k] for choice, k in zip(choices, order, strict=True)}
     for choice in choices:
         tables = _with(tables, choice.place, settings[choice.name], choice.name)
-    parse_shot(to_toml(tables), shot)  # tells what is wrong with a value by the name of the shot
-    own = folder / folder_name(settings)
-    text = to_toml(_moved(tables, shot.parent, own))
-    parse_shot(text, own / "shot.toml")
-    return Task(own, settings, order, text)
+    parse_shot(to_toml(tables), shot)  # reports an invalid value with the name of the given shot
+    task_folder = folder / folder_name(settings)
+    text = to_toml(_rebased(tables, shot.parent, task_folder))
+    parse_shot(text, task_folder / "shot.toml")
+    return Task(task_folder, settings, order, text)
 
 
 def folder_name(settings: dict[str, Any]) -> str:
-    """A name that says the settings; it cannot lead out of the folder that it is in."""
-    text = ",".join(f"{name}={_told(value)}" for name, value in settings.items()) or "as-it-is"
+    """Folder name with the settings and their values; contains no path separators."""
+    text = ",".join(f"{name}={_plain_text(value)}" for name, value in settings.items()) or "as-it-is"
     plain = re.sub(r"[^A-Za-z0-9._=,+-]", "_", text)
-    if plain == text and len(plain) <= LONGEST_NAME:
+    if plain == text and len(plain) <= MAX_NAME:
         return plain
-    return f"{plain[: LONGEST_NAME - 10]}-{hashlib.sha256(text.encode()).hexdigest()[:8]}"
+    return f"{plain[: MAX_NAME - 10]}-{hashlib.sha256(text.encode()).hexdigest()[:8]}"
 
 
-def _told(value: Any) -> str:
+def _plain_text(value: Any) -> str:
     return value if isinstance(value, str) else "".join(to_toml({"v": value})[4:].split())
 
 
-def _table_in(annotation: Any) -> type[Section] | None:
-    """The table that a setting is, or is a list of; None for a plain value."""
+def _section_of(annotation: Any) -> type[Section] | None:
+    """Section class of a setting that is a table or a list of tables; None for a plain value."""
     if isinstance(annotation, type) and issubclass(annotation, Section):
         return annotation
-    return next((found for part in get_args(annotation) if (found := _table_in(part))), None)
+    return next((found for part in get_args(annotation) if (found := _section_of(part))), None)
 
 
 def _with(tables: Any, place: Location, value: Any, name: str) -> Any:
-    """The tables with one value changed."""
+    """Sets one value in tables; raises UserError for a list without index and an index out of range."""
     if not place:
         return value
     key, *rest = place
@@ -144,16 +149,16 @@ def _with(tables: Any, place: Location, value: Any, name: str) -> Any:
     return {**tables, key: _with(tables.get(key, {}), tuple(rest), value, name)}
 
 
-def _moved(tables: dict[str, Any], before: Path, after: Path) -> dict[str, Any]:
-    """The tables of a shot with the names of files as they count from another folder; a loft is made anew there."""
+def _rebased(tables: dict[str, Any], before: Path, after: Path) -> dict[str, Any]:
+    """Rebases the file names of a shot from one folder to another; its rest file is made in the new folder."""
 
-    def named(table: dict[str, Any]) -> dict[str, Any]:
+    def rebase(table: dict[str, Any]) -> dict[str, Any]:
         return {**table, "file": _relative(before / table["file"], after)} if "file" in table else table
 
     tables = {**tables, "groom": _relative(before / tables["groom"], after)}
     for key in ("collider", "cloth"):
         if key in tables:
-            tables[key] = [named(table) for table in tables[key]]
+            tables[key] = [rebase(table) for table in tables[key]]
     if tables.get("rest", {}).get("mode", "none") != "none":
         tables["rest"] = {**tables["rest"], "file": "rest.usdc"}
     return tables
@@ -166,19 +171,19 @@ def _relative(file: Path, folder: Path) -> str:
         return file.absolute().as_posix()
 
 
-def _parts(text: str) -> Iterator[str]:
-    """The parts between commas, but for those in brackets or quotes."""
+def _split_items(text: str) -> Iterator[str]:
+    """Splits text at commas outside brackets and quotes."""
     depth, quote, start = 0, "", 0
-    for at, letter in enumerate(text):
+    for at, character in enumerate(text):
         if quote:
-            quote = "" if letter == quote else quote
-        elif letter in "\"'":
-            quote = letter
-        elif letter in "[{":
+            quote = "" if character == quote else quote
+        elif character in "\"'":
+            quote = character
+        elif character in "[{":
             depth += 1
-        elif letter in "]}":
+        elif character in "]}":
             depth -= 1
-        elif letter == "," and depth == 0:
+        elif character == "," and depth == 0:
             yield text[start:at]
             start = at + 1
     yield text[start:]

@@ -1,7 +1,7 @@
 """A wedge as a job of Open Job Description, for render farms.
 
-Specification: https://github.com/OpenJobDescription/openjd-specifications/wiki. A step has a task for every combination
-of settings; when all are done, another writes the page that compares them.
+Specification: https://github.com/OpenJobDescription/openjd-specifications/wiki. The first step has one task for each
+combination of settings; the second writes the page that compares them.
 """
 
 from __future__ import annotations
@@ -20,11 +20,14 @@ from ringlet.farm.grid import Choice
 from ringlet.farm.task import Wanted
 
 VERSION = "jobtemplate-2023-09"
-LONGEST_NAME = 64  # of a parameter, a job or a step
+MAX_NAME = 64  # characters of the name of a parameter, a job or a step
 
 
 def write_template(path: Path, shot: Path, choices: Sequence[Choice], wanted: Wanted) -> None:
-    """Writes the template, as JSON; it asks for the shot and for the folder of the results."""
+    """Writes the job template as JSON; its parameters are the shot and the output folder.
+
+    Raises UserError for a path that does not end in .json.
+    """
     if path.suffix != ".json":
         raise UserError(f"{path}: ends in '{path.suffix}'; must end in .json, such as wedge.template.json")
     with replacing(path) as aside:
@@ -32,7 +35,7 @@ def write_template(path: Path, shot: Path, choices: Sequence[Choice], wanted: Wa
 
 
 def template(shot: Path, choices: Sequence[Choice], wanted: Wanted) -> dict[str, Any]:
-    """The job."""
+    """The job template as plain values."""
     names = _names(choices)
     shot_and_folder = ["{{Param.Shot}}", "--output", "{{Param.Folder}}"]
     sets = [f"--set={choice.name}={{{{Task.Param.{name}}}}}" for name, choice in zip(names, choices, strict=True)]
@@ -49,7 +52,7 @@ def template(shot: Path, choices: Sequence[Choice], wanted: Wanted) -> dict[str,
         }
     return {
         "specificationVersion": VERSION,
-        "name": f"Ringlet: {shot.name}"[:LONGEST_NAME],
+        "name": f"Ringlet: {shot.name}"[:MAX_NAME],
         "parameterDefinitions": [
             _path("Shot", "FILE", "INOUT", "The shot; what it names must be where it says"),
             _path("Folder", "DIRECTORY", "OUT", "Where the results go"),
@@ -75,7 +78,7 @@ def _path(name: str, kind: str, flow: str, about: str) -> dict[str, str]:
 
 
 def _options(wanted: Wanted) -> list[str]:
-    """The options of the command that ask for the same."""
+    """Command-line options that are equivalent to ``wanted``."""
     frames = ["--frames", f"{wanted.frames[0]}:{wanted.frames[1]}"] if wanted.frames else []
     frame = [] if wanted.frame is None else ["--frame", str(wanted.frame)]
     threads = [] if wanted.threads is None else ["--threads", str(wanted.threads)]
@@ -83,14 +86,14 @@ def _options(wanted: Wanted) -> list[str]:
 
 
 def _names(choices: Sequence[Choice]) -> list[str]:
-    """Names that parameters of a task may have, all different."""
+    """Valid and unique parameter names of the settings."""
     names: list[str] = []
     for choice in choices:
-        name = re.sub(r"[^A-Za-z0-9_]+", "_", choice.name).strip("_")[: LONGEST_NAME - 4]
+        name = re.sub(r"[^A-Za-z0-9_]+", "_", choice.name).strip("_")[: MAX_NAME - 4]
         names.append(next(n for k in itertools.count(1) if (n := name if k == 1 else f"{name}_{k}") not in names))
     return names
 
 
 def _text(value: Any) -> str:
-    """A value as ``--set`` takes it: text in quotes, since it may hold a comma."""
+    """A value for ``--set``: strings in quotes, since they may contain commas."""
     return "".join(to_toml({"value": value}).partition(" = ")[2].rstrip("\n"))

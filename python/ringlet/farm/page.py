@@ -1,4 +1,4 @@
-"""The page that compares the tasks of a wedge: a picture of each, its numbers, and how it went frame by frame."""
+"""The page that compares the tasks of a wedge: pictures, numbers, and charts over the frames."""
 
 from __future__ import annotations
 
@@ -15,30 +15,30 @@ from ringlet.farm.task import RESULT, Result, read_result
 from ringlet.report import Picture, Table, document, figure, line_chart, table
 
 PAGE = "wedge.html"
-MOST_LINES = 6  # that a chart tells apart
-MOST_COLUMNS = 6
+MAX_LINES = 6  # largest number of lines in a chart
+MAX_COLUMNS = 6
 
 
 def read_results(folder: Path) -> dict[Path, Result]:
-    """What all tasks in a folder gave, by their folders, in the order of their settings."""
+    """Results of all tasks in a folder, by task folder, in the order of their settings."""
     found = {file.parent: result for file in folder.glob(f"*/{RESULT}") if (result := read_result(file.parent))}
     return dict(sorted(found.items(), key=lambda item: _order(item[1])))
 
 
 def write_page(folder: Path, title: str) -> dict[Path, Result]:
-    """Writes ``wedge.html`` and ``wedge.json`` from all that is in a folder; returns it."""
+    """Writes ``wedge.html`` and ``wedge.json`` from the results in a folder; returns the results."""
     results = read_results(folder)
     away = distances(results)
     with replacing(folder / PAGE) as aside:
         aside.write_text(page(results, away, title), encoding="utf-8")
-    told = [{"folder": at.name, **vars(result), "away": away.get(at)} for at, result in results.items()]
+    tasks = [{"folder": at.name, **vars(result), "away": away.get(at)} for at, result in results.items()]
     with replacing(folder / "wedge.json") as aside:
-        aside.write_text(json.dumps({"ringlet": 1, "tasks": told}, indent=1), encoding="utf-8")
+        aside.write_text(json.dumps({"ringlet": 1, "tasks": tasks}, indent=1), encoding="utf-8")
     return results
 
 
 def page(results: dict[Path, Result], away: dict[Path, float], title: str) -> str:
-    """The whole page. ``away``: see ``distances``."""
+    """HTML of the page. away: result of ``distances``."""
     done = sum(result.state == "done" for result in results.values())
     lead = f"<p>{done} of {len(results)} tasks are done.</p>"
     troubles = "".join(
@@ -51,8 +51,10 @@ def page(results: dict[Path, Result], away: dict[Path, float], title: str) -> st
 
 
 def distances(results: dict[Path, Result]) -> dict[Path, float]:
-    """How far the locks of each task are from those of the first, at the frame that is compared: the root mean square
-    over all vertices [m], for those with the same locks."""
+    """Root-mean-square distance of each task's vertices from those of the first task at the compared frame [m].
+
+    Tasks with other locks have no entry.
+    """
     places = {at: np.load(at / "places.npy") for at, result in results.items() if result.state == "done"}
     first = next(iter(places.values()), None)
     return {
@@ -89,19 +91,19 @@ def _numbers(results: dict[Path, Result], away: dict[Path, float]) -> str:
 
 
 def _charts(results: dict[Path, Result]) -> str:
-    told = [result for result in results.values() if result.series][:MOST_LINES]
+    charted = [result for result in results.values() if result.series][:MAX_LINES]
 
     def chart(title: str, unit: str, name: str, factor: float) -> str:
-        lines = {_name(result): [factor * value for value in (result.series or {})[name]] for result in told}
+        lines = {_name(result): [factor * value for value in (result.series or {})[name]] for result in charted}
         longest = max(map(len, lines.values()), default=0)
-        even = {name: values + [float("nan")] * (longest - len(values)) for name, values in lines.items()}
-        return line_chart(title, unit, range(1, longest + 1), even)
+        padded = {name: values + [float("nan")] * (longest - len(values)) for name, values in lines.items()}
+        return line_chart(title, unit, range(1, longest + 1), padded)
 
-    if not told:
+    if not charted:
         return ""
     charts = chart("Time for a frame", "s", "wall_ms", 1e-3) + chart("Longest edge", "%", "max_stretch", 100.0)
-    some = f" (the first {len(told)} tasks)" if len(told) < len(results) else ""
-    return f"<section><h2>Frame by frame{some}</h2><div class='charts'>{charts}</div></section>"
+    note = f" (the first {len(charted)} tasks)" if len(charted) < len(results) else ""
+    return f"<section><h2>Frame by frame{note}</h2><div class='charts'>{charts}</div></section>"
 
 
 def _name(result: Result) -> str:
@@ -109,17 +111,17 @@ def _name(result: Result) -> str:
 
 
 def _columns(results: Sequence[Result]) -> int:
-    """How many pictures stand side by side: the values of the last setting, where the grid is whole."""
+    """Number of pictures in a row: the number of values of the last setting, if the grid is complete."""
     names = list(results[0].settings)
     if names and all(list(result.settings) == names for result in results):
         values = {str(result.settings[names[-1]]) for result in results}
-        if len(results) % len(values) == 0 and 1 < len(values) <= MOST_COLUMNS:
+        if len(results) % len(values) == 0 and 1 < len(values) <= MAX_COLUMNS:
             return len(values)
     return min(len(results), 4)
 
 
 def _order(result: Result) -> list[tuple[int, float, str]]:
-    """Numbers by size; before all else in the order in which they were given, where that is known."""
+    """Sort key of a result: numbers by size, other values in the order in which they were given."""
     return [
         (0, float(value), "") if isinstance(value, int | float) else (1, float(k), str(value))
         for k, value in zip_longest(result.order, result.settings.values(), fillvalue=0)

@@ -1,4 +1,4 @@
-"""A wedge: one shot with several values of some settings, each simulated, drawn and compared with the others."""
+"""A wedge: one shot with several values of some settings, simulated, drawn and compared."""
 
 from __future__ import annotations
 
@@ -35,42 +35,48 @@ def wedge(
 ) -> list[dict[str, Any]]:
     """Simulates a shot with every combination of settings, and writes a page that compares them to ``folder``.
 
-    What is there already is kept, and what was broken off goes on. Returns ``folder``, ``settings``, ``state``
-    (``done``, ``refused`` or ``failed``), ``message`` and ``numbers`` of each task.
+    Finished tasks are kept, and interrupted ones resume. Returns ``folder``, ``settings``, ``state`` (``done``,
+    ``refused`` or ``failed``), ``message``, ``seconds`` and ``numbers`` of each task.
 
     settings:  values by the name of the setting: ``{"strands.bend_scale": [1, 2, 4], "contact.friction": "0.1,0.3"}``
-    frame:     that is drawn and compared; the last by default
-    scheduler: address of a dask.distributed scheduler whose workers see the same folders; workers here by default
-    here:      in this process, one after the other, without dask
-    workers:   how many processes here
-    threads:   of each task; by default the processors are shared out among the workers
-    retries:   how often a task may break off or lose its worker
+    frames:    first and last frame, instead of the shot's
+    frame:     frame to draw and compare; by default the last
+    picture:   whether to draw a still of each task
+    scheduler: address of a dask.distributed scheduler with workers that see the same folders; by default local workers
+    here:      runs the tasks one after the other in this process, without dask
+    workers:   number of local worker processes
+    threads:   threads of each task; by default the processors divided by the workers
+    retries:   number of times that a task may fail or lose its worker
+    progress:  called with (name of a task, frames done, their number)
     """
     folder = Path(folder).absolute()
     tasks = make_tasks(Path(shot).absolute(), _choices(settings), folder)
     check_place(folder / PAGE)
     wanted = Wanted(frames, frame, picture, threads)
     if here:
-        results = [run_task(task, wanted, _frames_of(task, progress)) for task in tasks]
+        results = [run_task(task, wanted, _task_progress(task, progress)) for task in tasks]
     else:
         if scheduler is None:
             processors = os.cpu_count() or 1
             workers = workers or min(len(tasks), processors)
             wanted = replace(wanted, threads=threads or max(1, processors // workers))
         results = run_on_workers(
-            tasks, wanted, scheduler=scheduler, workers=workers, retries=retries, told=progress or _say_nothing
+            tasks, wanted, scheduler=scheduler, workers=workers, retries=retries, progress=progress or _no_progress
         )
-    if read_results(folder):  # there are none where another run is at all of them
+    if read_results(folder):  # empty when other processes run all tasks
         write_page(folder, f"Wedge of {Path(shot).name}")
-    return [_told(task.folder, result) for task, result in zip(tasks, results, strict=True)]
+    return [_summary(task.folder, result) for task, result in zip(tasks, results, strict=True)]
 
 
 def compare_wedge(shot: Path | str, folder: Path | str) -> list[dict[str, Any]]:
-    """Writes the page again from all that is in the folder of a wedge; returns what ``wedge`` does."""
+    """Writes the page again from the results in the folder of a wedge; returns them like ``wedge``.
+
+    Raises UserError for a folder without results.
+    """
     folder = Path(folder)
     if not read_results(folder):
         raise UserError(f"{folder}: holds no results of a wedge; make them with: ringlet wedge SHOT --set …")
-    return [_told(at, result) for at, result in write_page(folder, f"Wedge of {Path(shot).name}").items()]
+    return [_summary(at, result) for at, result in write_page(folder, f"Wedge of {Path(shot).name}").items()]
 
 
 def write_wedge_template(
@@ -85,7 +91,7 @@ def write_wedge_template(
 ) -> int:
     """Writes a wedge as a template of Open Job Description, for a render farm; returns the number of its tasks."""
     choices = _choices(settings)
-    tasks = make_tasks(Path(shot).absolute(), choices, Path(path).absolute().parent)  # checked before it is sent
+    tasks = make_tasks(Path(shot).absolute(), choices, Path(path).absolute().parent)  # validated before submission
     write_template(Path(path), Path(shot), choices, Wanted(frames, frame, picture, threads))
     return len(tasks)
 
@@ -94,15 +100,15 @@ def _choices(settings: Mapping[str, Sequence[Any] | str]) -> list[Choice]:
     return [choose(name, values) for name, values in settings.items()]
 
 
-def _say_nothing(name: str, done: int, total: int) -> None:
-    """Progress that nobody wants."""
+def _no_progress(name: str, done: int, total: int) -> None:
+    """Ignores progress."""
 
 
-def _frames_of(task: Task, progress: api.Progress | None) -> Any:
+def _task_progress(task: Task, progress: api.Progress | None) -> Any:
     return (lambda done, total: progress(task.name, done, total)) if progress else None
 
 
-def _told(folder: Path, result: Result) -> dict[str, Any]:
+def _summary(folder: Path, result: Result) -> dict[str, Any]:
     return {
         "folder": str(folder),
         "settings": result.settings,

@@ -1,4 +1,4 @@
-"""The groom: from a recipe and a scalp to every hair."""
+"""The groom: builds guides, locks and render hairs from a recipe and a scalp mesh."""
 
 from ringlet.data.groom import Groom
 from ringlet.groom.check import Allowed, check_groom

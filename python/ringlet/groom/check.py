@@ -1,4 +1,4 @@
-"""Checks a groom: what goes through the scalp, the body, and other locks."""
+"""Finds the intersections of a groom with the scalp, with other bodies and between locks."""
 
 from __future__ import annotations
 
@@ -19,16 +19,18 @@ from ringlet.groom.operators.operator import packed
 Array = NDArray[np.float64]
 
 KINDS = ("scalp", "body", "hair")
-WORST = 10  # places that are told
+MAX_WORST = 10  # deepest places that a summary lists
 
 
 @dataclass(frozen=True)
 class Allowed:
-    """What a groom may do.
+    """Tolerances of a check.
 
-    root_depth:  how deep a lock may be in the skin near its root [m]
-    root_length: how far from the root that goes, along the lock [m]
-    thickness:   of a lock: nearer than this, two of them are in one another [m]
+    root_depth:  largest depth of a lock below the skin near its root [m]
+    root_length: arc length from the root to which ``root_depth`` applies [m]
+    thickness:   smallest distance between two locks that do not intersect [m]
+
+    Raises UserError for a value that is negative or at least 1 m.
     """
 
     root_depth: float = 5e-4
@@ -43,13 +45,13 @@ class Allowed:
 
 @dataclass
 class Findings:
-    """What a check found, place by place.
+    """The intersections that a check found.
 
     kind:     0 scalp, 1 body, 2 hair (``KINDS``), shape (k,)
-    point:    the point of the lock that the place is at or just behind, index into the points of the locks, shape (k,)
-    place:    where it is [m], shape (k, 3)
-    depth:    how deep, beyond what is allowed; for hair, how much nearer than a thickness [m], shape (k,)
-    other:    the point of the other lock, -1 where there is none, shape (k,)
+    point:    index of the lock's point at the place or just before it, shape (k,)
+    place:    position [m], shape (k, 3)
+    depth:    depth beyond the tolerance; for hair, the thickness less the distance [m], shape (k,)
+    other:    index of the other lock's point, -1 for scalp and body, shape (k,)
     """
 
     locks: Curves
@@ -71,37 +73,42 @@ class Findings:
         self.other = np.concatenate([self.other, np.full(len(point), -1) if other is None else other])
 
     def told(self) -> dict[str, Any]:
-        """Counts, the greatest depth and the worst places of every kind, as plain values; lengths in metres."""
-        return {name: self._told(np.flatnonzero(self.kind == k)) for k, name in enumerate(KINDS)}
+        """Summary of each kind as plain values: counts, greatest depth and deepest places; lengths in metres."""
+        return {name: self._summary(np.flatnonzero(self.kind == k)) for k, name in enumerate(KINDS)}
 
     def by_kind(self) -> dict[str, Array]:
         """The places of every kind [m], shape (k, 3) each."""
         return {name: self.place[self.kind == k] for k, name in enumerate(KINDS)}
 
-    def _told(self, rows: NDArray[np.int64]) -> dict[str, Any]:
-        worst = rows[np.argsort(-self.depth[rows], kind="stable")[:WORST]]
+    def _summary(self, rows: NDArray[np.int64]) -> dict[str, Any]:
+        worst = rows[np.argsort(-self.depth[rows], kind="stable")[:MAX_WORST]]
         lock = lock_of(self.locks, np.concatenate([self.point[rows], self.other[rows][self.other[rows] >= 0]]))
         return {
             "places": len(rows),
             "locks": len(np.unique(lock)),
             "depth": float(self.depth[rows].max(initial=0.0)),
-            "worst": [self._one(row) for row in worst],
+            "worst": [self._entry(row) for row in worst],
         }
 
-    def _one(self, row: int) -> dict[str, Any]:
-        """A place as an artist finds it: the id of the lock, the number of the point from its root, where it is."""
+    def _entry(self, row: int) -> dict[str, Any]:
+        """One intersection as plain values: lock id, number of the point from the root, position [m] and depth [m]."""
         lock, other = lock_of(self.locks, self.point[[row]])[0], int(self.other[row])
-        told = {
+        entry = {
             "lock": int(self.locks.ids[lock]),
             "point": int(self.point[row] - self.locks.offsets[lock]),
             "place": [round(float(x), 6) for x in self.place[row]],
             "depth": float(self.depth[row]),
         }
-        return told if other < 0 else {**told, "other": int(self.locks.ids[lock_of(self.locks, np.array([other]))[0]])}
+        return (
+            entry if other < 0 else {**entry, "other": int(self.locks.ids[lock_of(self.locks, np.array([other]))[0]])}
+        )
 
 
 class Bodies:
-    """What locks may not go through: the mesh they grow on, and others beside it."""
+    """The solids that locks must stay out of: the mesh of the scalp, and other meshes.
+
+    Raises UserError when the groom's region is not in its mesh.
+    """
 
     def __init__(self, groom: Groom, others: Sequence[Mesh]) -> None:
         try:
@@ -118,15 +125,15 @@ class Bodies:
 
 
 def check_groom(groom: Groom, others: Sequence[Mesh] = (), allowed: Allowed | None = None) -> Findings:
-    """Finds where locks are in the mesh they grow on, in others, and in one another.
+    """Finds the intersections of locks with the scalp's mesh, with other meshes and with each other.
 
-    others: meshes beside the one of the scalp, in metres
+    others: further meshes, points in metres
     """
     return find(groom.locks.check("check: locks"), Bodies(groom, others), allowed or Allowed())
 
 
 def find(locks: Curves, bodies: Bodies, allowed: Allowed) -> Findings:
-    """Everything that is not allowed."""
+    """Returns every intersection beyond the tolerances."""
     findings = Findings(locks)
     sunk = _core.sunk_places(*packed(locks), bodies.solids, allowed.root_depth, allowed.root_length)
     body, point, triangle, place, depth = sunk
@@ -140,5 +147,5 @@ def find(locks: Curves, bodies: Bodies, allowed: Allowed) -> Findings:
 
 
 def lock_of(locks: Curves, points: NDArray) -> NDArray[np.int64]:
-    """The place in the list of the lock that each point belongs to."""
+    """Row of the lock that each point belongs to, shape of ``points``."""
     return np.searchsorted(locks.offsets, points, side="right") - 1

@@ -1,4 +1,4 @@
-"""Edits of single locks by hand: they outlive every change of what comes before them."""
+"""Manual edits of single locks; they stay valid when earlier stages change."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Value = float | int | str
 
 
 class Move(Section):
-    """A place on a lock that was pulled, and how much of the lock came with it."""
+    """A point of a lock that was pulled, with its falloff along the lock."""
 
     at: Annotated[float, Quantity("", 0.0, 1.0)] = Field(description="place on the lock, from root (0) to tip (1)")
     by: Place = Field(description="how far: along the two axes across the shape of the lock, and along it")
@@ -28,11 +28,10 @@ class Move(Section):
 
 
 class Edit(Section):
-    """What was done to one lock by hand.
+    """A manual edit of one lock.
 
-    Moves and offsets are kept in the frame of the lock's shape before it is curled, relative to what the recipe makes:
-    when that changes, they go with it. A curve is kept in the frame of its root: it goes with the scalp and nothing
-    else.
+    Moves and offsets are stored in the frame of the lock's shape before it is curled, relative to the recipe's result.
+    They follow every change of the recipe. A curve is stored in the frame of its root and follows the scalp alone.
     """
 
     lock: int = Field(description="id of the lock")
@@ -49,7 +48,7 @@ class Edit(Section):
     move: list[Move] = Field(default=[], description="places that were pulled")
 
     @model_validator(mode="after")
-    def _says_something(self) -> Edit:
+    def _not_empty(self) -> Edit:
         if self.curve is not None and len(self.curve) < 2:
             raise refuse(f"has a curve of {len(self.curve)} point(s); give at least 2")
         if not (self.set or self.curve or self.offsets or self.move):
@@ -58,12 +57,12 @@ class Edit(Section):
 
 
 class Edits(Operator):
-    """Edits single locks, one after the other; those that are not there are left to be told of."""
+    """Applies manual edits in order; skips an edit whose lock does not exist."""
 
     edits: list[Edit]
 
     def apply(self, curves: Curves, context: Context) -> Curves:
-        """The same locks, the edited ones changed; roots stay."""
+        """Returns the locks with their edits; roots stay."""
         points = grid(curves).copy()
         rows = {int(name): row for row, name in enumerate(curves.ids)}
         frames = context.scalp.frames(curves)
@@ -86,7 +85,7 @@ class Edits(Operator):
 
 
 def resampled(points: NDArray, count: int, *, even: bool = True) -> NDArray[np.float64]:
-    """As many points along a curve that begins at 0: evenly spaced, or at even places of its list; shape (count, 3)."""
+    """Resamples a curve that starts at 0: even in arc length, or else even in point index; shape (count, 3)."""
     if even:
         return _core.resample_curves(*packed(Curves.from_list([points - points[0]])), count)
     at = np.linspace(0.0, len(points) - 1.0, count)
@@ -94,8 +93,10 @@ def resampled(points: NDArray, count: int, *, even: bool = True) -> NDArray[np.f
 
 
 def shape_frames(shapes: Curves, row: int, root: NDArray, u: NDArray) -> NDArray[np.float64]:
-    """The rotation-minimising frames of one lock's shape at places u, shape (len(u), 3, 3); they begin at the tangent
-    of the root's frame."""
+    """Rotation-minimising frames of one lock's shape at parameters u, shape (len(u), 3, 3).
+
+    root: frame of the scalp at the root, shape (3, 3); its tangent is the first axis at the root
+    """
     one = Curves.from_list([np.asarray(shapes[row], np.float64)])
     frames = _core.curve_frames(*packed(one), np.ascontiguousarray(root[None, :, 0]))
     at = u * (len(frames) - 1)
@@ -106,8 +107,8 @@ def shape_frames(shapes: Curves, row: int, root: NDArray, u: NDArray) -> NDArray
 
 
 def offsets_to(before: Curves, shapes: Curves, row: int, root: NDArray, points: NDArray) -> list[list[float]]:
-    """The offsets that lead from what the recipe makes of a lock to ``points`` (k, 3), in the frame of its shape."""
+    """Offsets of ``points`` (k, 3) from the recipe's lock, in the frame of the lock's shape [m]."""
     u = np.linspace(0.0, 1.0, len(points))
-    made = resampled(np.asarray(before[row], np.float64), len(points), even=False)
+    procedural = resampled(np.asarray(before[row], np.float64), len(points), even=False)
     frames = shape_frames(shapes, row, root, u)
-    return np.round(np.einsum("nij,ni->nj", frames, points - made), 9).tolist()
+    return np.round(np.einsum("nij,ni->nj", frames, points - procedural), 9).tolist()

@@ -1,4 +1,4 @@
-"""The file of edits by hand: written by programs, readable by people."""
+"""Reads and writes the file of manual edits."""
 
 from __future__ import annotations
 
@@ -22,7 +22,10 @@ from ringlet.groom.scalp import Scalp
 
 
 def edits_path(recipe: Recipe) -> Path:
-    """Where the edits of a recipe are kept: beside it or below, whatever it says."""
+    """Path of a recipe's file of edits, in the recipe's folder or below.
+
+    Raises UserError when the recipe names no such file, or one elsewhere.
+    """
     if recipe.edits_file is None:
         stem = (recipe.path.name if recipe.path else "recipe").removesuffix(".toml").removesuffix(".recipe")
         raise UserError(
@@ -32,7 +35,7 @@ def edits_path(recipe: Recipe) -> Path:
 
 
 def write_edits(edits: list[dict[str, Any]], path: Path) -> None:
-    """Writes edits of locks, each as a table ``[[edit]]``; what the file says of guides stays."""
+    """Writes edits of locks as ``[[edit]]`` tables; keeps the file's edits of guides."""
     with replacing(path) as aside:
         aside.write_text(edits_text({**read_edits(path), "edit": edits}), encoding="utf-8")
 
@@ -44,7 +47,7 @@ def edits_text(edits: dict[str, list[dict[str, Any]]]) -> str:
 
 @contextmanager
 def taken_back(recipe: Recipe) -> Iterator[None]:
-    """Leaves the edits as they were when the block fails."""
+    """Restores the file of edits when the block raises UserError."""
     path = edits_path(recipe)
     before = path.read_bytes() if path.exists() else None
     try:
@@ -59,7 +62,7 @@ def taken_back(recipe: Recipe) -> Iterator[None]:
 
 
 def add_settings(recipe: Recipe, lock: int, settings: dict[str, Any]) -> None:
-    """Gives one lock settings of its own, such as ``{"curl.width": "8 mm"}``."""
+    """Overrides settings of one lock, such as ``{"curl.width": "8 mm"}``."""
     path = edits_path(recipe)
     edits = read_edits(path)["edit"]
     for edit in edits:
@@ -72,47 +75,52 @@ def add_settings(recipe: Recipe, lock: int, settings: dict[str, Any]) -> None:
 
 
 def add_points(recipe: Recipe, groom: Groom, lock: int, points: NDArray, stage: str, relative: bool) -> None:
-    """Puts the points of one lock where they are to be.
+    """Moves one lock to given points.
 
-    groom:    what the recipe makes without this edit, just made
-    points:   where the points go [m], shape (k, 3), in the rest pose
+    groom:    the recipe's groom without this edit
+    points:   new positions [m], shape (k, 3), in the rest pose
     stage:    ``shape`` before the lock is curled, ``groom`` after
-    relative: keep the difference from what the recipe makes, so that the lock goes with every change; else the curve
+    relative: stores offsets that follow later changes of the recipe, instead of a fixed curve
+
+    Raises UserError for an unknown lock and for points that are not finite or not of shape (k, 3), k ≥ 2.
     """
     path, points = edits_path(recipe), np.asarray(points, np.float64)
-    made = groom.shapes if stage == "shape" else groom.locks
+    current = groom.shapes if stage == "shape" else groom.locks
     row = row_of(groom, lock)
-    assert made is not None and groom.shapes is not None
+    assert current is not None and groom.shapes is not None
     if points.ndim != 2 or points.shape[1:] != (3,) or len(points) < 2 or not np.isfinite(points).all():
         raise UserError(f"edit of lock {lock}: points have shape {points.shape}; must be finite, of shape (k, 3)")
     root = Scalp(groom.scalp, groom.region).frames(groom.locks)[row]
     edit: dict[str, Any] = {"lock": lock, "stage": stage}
     if relative:
-        edit["offsets"] = _in_metres(offsets_to(made, groom.shapes, row, root, points))
+        edit["offsets"] = _with_unit(offsets_to(current, groom.shapes, row, root, points))
     else:
-        edit["curve"] = _in_metres(np.round((points - points[0]) @ root, 9).tolist())
+        edit["curve"] = _with_unit(np.round((points - points[0]) @ root, 9).tolist())
     edits = read_edits(path)["edit"]
     kept = [e for e in edits if e.get("lock") != lock or e.get("stage", "groom") != stage or e.get("set")]
     write_edits([*kept, edit], path)
 
 
 def release(recipe: Recipe, locks: Collection[int] | None) -> list[int]:
-    """Returns locks to what the recipe makes of them, all or those named; gives the ids that had been edited."""
+    """Removes the edits of the named locks, or of all; returns the ids of the locks that were edited.
+
+    Raises UserError for a named lock that has no edit.
+    """
     path = edits_path(recipe)
     edits = read_edits(path)["edit"]
-    gone = [edit for edit in edits if locks is None or edit.get("lock") in locks]
+    removed = [edit for edit in edits if locks is None or edit.get("lock") in locks]
     for lock in locks or ():
-        if not any(edit.get("lock") == lock for edit in gone):
+        if not any(edit.get("lock") == lock for edit in removed):
             edited = [str(edit.get("lock")) for edit in edits]
             hint = did_you_mean(str(lock), edited) if edited else "; nothing is edited there"
             raise UserError(f"{path}: lock {lock} is not edited{hint}")
-    if gone:
-        write_edits([edit for edit in edits if edit not in gone], path)
-    return sorted({int(edit["lock"]) for edit in gone})
+    if removed:
+        write_edits([edit for edit in edits if edit not in removed], path)
+    return sorted({int(edit["lock"]) for edit in removed})
 
 
 def row_of(groom: Groom, lock: int) -> int:
-    """The place of a lock in the list of locks."""
+    """Row of the lock with an id; raises UserError when there is none."""
     found = np.flatnonzero(groom.locks.ids == lock)
     if not found.size:
         nearest = groom.locks.ids[np.abs(groom.locks.ids - lock).argmin()]
@@ -120,6 +128,6 @@ def row_of(groom: Groom, lock: int) -> int:
     return int(found[0])
 
 
-def _in_metres(points: list[list[float]]) -> list[list[str]]:
-    """Lengths that say their unit, whatever that of the recipe is."""
+def _with_unit(points: list[list[float]]) -> list[list[str]]:
+    """Lengths [m] as text with their unit, which holds in a recipe of any unit."""
     return [[f"{x:.9g} m" for x in point] for point in points]

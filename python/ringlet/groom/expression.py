@@ -1,4 +1,4 @@
-"""Expressions over locks, as an artist writes them: ``id % 3 == 0 and length > 0.05``."""
+"""Expressions over the attributes of locks, such as ``id % 3 == 0 and length > 0.05``."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ringlet.data.settings import did_you_mean, refuse
 
-NAMES = ("id", "random", "length", "x", "y", "z")  # [m] where it is a length; x, y, z: the root
+NAMES = ("id", "random", "length", "x", "y", "z")  # lengths in metres; x, y, z are of the root
 FUNCTIONS: dict[str, Callable[..., Any]] = {
     "abs": np.abs,
     "min": np.minimum,
@@ -43,7 +43,7 @@ _OPERATORS: dict[type, Callable[..., Any]] = {
 
 
 def check(text: str) -> str:
-    """The text, when it is an expression that ``evaluate`` can do; else an error of the setting."""
+    """Returns the text of an expression that ``evaluate`` supports; else raises a validation error."""
     try:
         tree = ast.parse(text, mode="eval")
     except (SyntaxError, ValueError, RecursionError, MemoryError):
@@ -57,11 +57,11 @@ def check(text: str) -> str:
 
 
 def evaluate(text: str, values: Mapping[str, NDArray]) -> NDArray[np.float64]:
-    """The value of a checked expression for each lock, shape (count,); what is true is 1.
+    """Evaluates a checked expression for each lock, shape (count,); true is 1.
 
     values: an array of shape (count,) for each of NAMES
     """
-    with np.errstate(all="ignore"):  # who divides by zero is told by the result
+    with np.errstate(all="ignore"):  # the caller reports results that are not finite
         result = _value(ast.parse(text, mode="eval").body, values)
     return np.broadcast_to(np.asarray(result, np.float64), values["id"].shape)
 
@@ -90,10 +90,10 @@ def _value(node: ast.expr, values: Mapping[str, NDArray]) -> Any:
         case ast.BinOp():
             return _OPERATORS[type(node.op)](_value(node.left, values), _value(node.right, values))
         case ast.BoolOp():
-            parts = [_value(part, values) for part in node.values]
-            for part in parts[1:]:
-                parts[0] = _OPERATORS[type(node.op)](parts[0], part)
-            return parts[0]
+            operands = [_value(operand, values) for operand in node.values]
+            for operand in operands[1:]:
+                operands[0] = _OPERATORS[type(node.op)](operands[0], operand)
+            return operands[0]
         case ast.Compare():
             sides = [_value(side, values) for side in (node.left, *node.comparators)]
             result: Any = True

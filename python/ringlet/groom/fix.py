@@ -1,4 +1,4 @@
-"""Repairs a groom: what goes through skin or hair is moved aside, with the least change of shape."""
+"""Repairs a groom: removes intersections with the least change of shape."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ from ringlet.groom.operators.operator import packed
 
 Array = NDArray[np.float64]
 
-ROUNDS = 100
-PATIENCE = 20  # rounds that may pass without one that leaves less
+MAX_ITERATIONS = 100
+PATIENCE = 20  # iterations without progress after which the repair stops
 
 
 @dataclass
 class Repair:
     """A repaired groom.
 
-    groom:  with other points
-    left:   what could not be repaired
-    rounds: how often everything was looked at
-    moved:  how far each point went [m], shape (n,)
+    groom:  the groom with its repaired locks
+    left:   intersections that remain
+    rounds: iterations
+    moved:  displacement of each point [m], shape (n,)
     """
 
     groom: Groom
@@ -37,7 +37,7 @@ class Repair:
     moved: Array
 
     def told(self) -> dict[str, Any]:
-        """What was done, as plain values."""
+        """Summary of the repair as plain values; lengths in metres."""
         moved = self.moved > 1e-9
         return {
             "rounds": self.rounds,
@@ -54,8 +54,10 @@ def fix_groom(
     allowed: Allowed | None = None,
     progress: Callable[[str, int, int], None] | None = None,
 ) -> Repair:
-    """Moves what is inside a body out of it and locks apart, round by round, until nothing is left or no round helps
-    (src/ringlet/groom/repair.h)."""
+    """Moves locks out of bodies and apart from each other (src/ringlet/groom/repair.h).
+
+    Iterates until no intersection remains, or until ``PATIENCE`` iterations bring no progress.
+    """
     allowed, locks = allowed or Allowed(), groom.locks.check("check: locks")
     bodies = Bodies(groom, others)
     left, rounds, moved = find(locks, bodies, allowed), 0, np.zeros(len(locks.points))
@@ -63,14 +65,14 @@ def fix_groom(
         return Repair(groom, left, rounds, moved)
     repair = _core.Repair(*packed(locks), bodies.solids, allowed.root_depth, allowed.root_length, allowed.thickness)
     fewest, patience = len(left), PATIENCE
-    while rounds < ROUNDS and patience > 0:
-        rounds, wrong = rounds + 1, repair.round()
+    while rounds < MAX_ITERATIONS and patience > 0:
+        rounds, conflicts = rounds + 1, repair.round()
         if progress:
-            progress("fix", rounds, ROUNDS if wrong else rounds)
-        if wrong == 0:
+            progress("fix", rounds, MAX_ITERATIONS if conflicts else rounds)
+        if conflicts == 0:
             break
-        patience = PATIENCE if wrong < fewest else patience - 1
-        fewest = min(fewest, wrong)
+        patience = PATIENCE if conflicts < fewest else patience - 1
+        fewest = min(fewest, conflicts)
     best = locks.with_points(repair.points())
     moved = np.linalg.norm(best.points - locks.points, axis=1)
     return Repair(replace(groom, locks=best), find(best, bodies, allowed), rounds, moved)

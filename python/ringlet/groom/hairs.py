@@ -1,4 +1,4 @@
-"""Render hairs: many around every lock, carried by it."""
+"""Render hairs: interpolated around every lock, and deformed with it."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ from ringlet.data.quantities import Quantity, Ramped, Section, Varied, explain
 from ringlet.data.random import Random, soft_threshold
 from ringlet.groom.scalp import axes
 
-IDS_PER_LOCK = 10_000  # the id of a hair: id of its lock · 10 000 + number in it
+IDS_PER_LOCK = 10_000  # id of a hair: id of its lock · 10 000 + number in the lock
 FRIZZ_KNOTS = 8
-MARGIN = 1e-4  # [m] by which hairs stay off surfaces; their own radius is half of that
+MARGIN = 1e-4  # [m] distance of hairs from surfaces, twice the radius of a hair
 
 
 class HairSettings(Section):
-    """The hairs of each lock."""
+    """Render hairs of each lock."""
 
     per_lock: Annotated[Varied, Quantity("", 1, IDS_PER_LOCK)] = Field(
         default=Varied(value=20), description="hairs of a lock; the first of them is the groom guide itself"
@@ -82,18 +82,18 @@ class HairSettings(Section):
 
 @dataclass
 class Hairs:
-    """Hairs of a groom at rest, and how to carry them.
+    """Render hairs of a groom at rest, with the data that deforms them with the locks.
 
-    curves: points at rest [m], float32. Curve attributes: ``lock`` (index of the lock, int32), ``guide_id`` (its id,
-            int64), ``root_triangle``, ``root_barycentric``, and, where the scalp has them, ``st`` (texture coordinates
-            of the root, float32). Point attribute: ``width``, the diameter [m], float32.
+    curves: points at rest [m], float32. Curve attributes: ``lock`` (row of the lock, int32), ``guide_id`` (id of the
+            lock, int64), ``root_triangle``, ``root_barycentric``. On a scalp with texture coordinates also ``st`` of
+            the root, float32. Point attribute: ``width``, the diameter [m], float32.
     """
 
     curves: Curves
     _groom: Groom
-    _axis: NDArray[np.float64]  # where each lock's frame starts, in the frame of the scalp at its root
+    _axis: NDArray[np.float64]  # reference direction of each lock, in the frame of the scalp at its root
     _layout: dict[str, NDArray]
-    _root: NDArray[np.float32] | None = None  # from the roots of locks to those of hairs while the scalp is at rest
+    _root: NDArray[np.float32] | None = None  # offsets of hair roots from lock roots on the scalp at rest
 
     def at(
         self,
@@ -103,16 +103,16 @@ class Hairs:
         beside: Sequence[tuple[NDArray, NDArray]] = (),
         out: NDArray[np.float32] | None = None,
     ) -> NDArray[np.float32]:
-        """Where the hairs are when locks and scalp have moved; shape (n, 3) [m], float32.
+        """Positions of the hairs on deformed locks and scalp [m], shape (n, 3), float32.
 
-        lock_points:  positions of ``groom.locks`` now [m], shape (locks' points, 3)
-        scalp_points: positions of ``groom.scalp`` now [m], shape (scalp points, 3)
-        beside:       surfaces that hairs stay on their lock's side of: points [m], shape (k, 3), and triangles (m, 3)
-        out:          written to and returned, if given: fresh memory costs more than what is computed
+        lock_points:  current positions of ``groom.locks`` [m], shape (locks' points, 3)
+        scalp_points: current positions of ``groom.scalp`` [m], shape (scalp points, 3)
+        beside:       surfaces that a hair crosses only with its lock: points [m], shape (k, 3), triangles (m, 3)
+        out:          output buffer, also returned; allocating a new one takes longer than the deformation
         """
         if out is None:
             out = self.room()
-        self._carry(lock_points, self.carriage(scalp_points), beside, out)
+        self._deform(lock_points, self.carriage(scalp_points), beside, out)
         return out
 
     def left_beside(
@@ -123,23 +123,23 @@ class Hairs:
         *,
         room: NDArray[np.float32] | None = None,
     ) -> NDArray[np.uint8]:
-        """What part of their way from their lock ``at`` leaves to hairs that stay beside surfaces.
+        """Fractions of the offsets from the locks that remain when hairs stay on their lock's side of surfaces.
 
-        255 is all of it; shape (hairs, points of a hair).
+        Shape (hairs, points of a hair), uint8; 255 is the whole offset.
 
-        carriage: that of the scalp as it is now
-        room:     memory for the points of all hairs, shape (n, 3); to take fresh one every time is slower
+        carriage: result of ``carriage`` for the current scalp
+        room:     buffer for the points of all hairs, shape (n, 3); saves an allocation
         """
         shares = np.full((len(self.curves), len(self._layout["hold"])), 255, np.uint8)
         if beside:
-            self._carry(lock_points, carriage, beside, self.room() if room is None else room, shares)
+            self._deform(lock_points, carriage, beside, self.room() if room is None else room, shares)
         return shares
 
     def room(self) -> NDArray[np.float32]:
-        """Memory for the points of all hairs, shape (n, 3)."""
+        """Allocates a buffer for the points of all hairs, shape (n, 3), float32."""
         return np.empty((int(self.curves.offsets[-1]), 3), np.float32)
 
-    def _carry(
+    def _deform(
         self,
         lock_points: NDArray,
         carriage: dict[str, NDArray],
@@ -154,29 +154,31 @@ class Hairs:
             _core.keep_beside(points, offsets, out, *_as_one(beside), MARGIN, **parts, shares=shares)
 
     def carriage(self, scalp_points: NDArray) -> dict[str, NDArray]:
-        """How the hairs sit in their locks when the scalp has moved: what src/ringlet/groom/hairs.h takes besides the
-        locks. ``axis`` (locks, 3) and ``root`` (hairs, 3) [m] follow the scalp; the rest is the same all the time."""
+        """Inputs of the deformation (src/ringlet/groom/hairs.h) besides the locks, for a deformed scalp.
+
+        ``axis`` (locks, 3) and ``root`` (hairs, 3) [m] follow the scalp; the other arrays are constant.
+        """
         at = np.ascontiguousarray(scalp_points, np.float64)
         lock_roots, axis = self._frames(at)
         root = self._root if scalp_points is self._groom.scalp.points else None
         if root is None:
-            root = self._from_locks(at, lock_roots)
+            root = self._root_offsets(at, lock_roots)
         return {"axis": axis, "root": root, **self._layout}
 
     def axes(self, scalp_points: NDArray) -> NDArray[np.float64]:
-        """The ``axis`` of ``carriage`` alone, which is quick."""
+        """The ``axis`` of ``carriage`` alone, which costs less."""
         return self._frames(np.ascontiguousarray(scalp_points, np.float64))[1]
 
     def _frames(self, at: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Roots of the locks and where their frames start, each of shape (locks, 3)."""
+        """Roots [m] and reference directions of the locks, each of shape (locks, 3)."""
         bound = self._groom.locks.curve
         roots, frames = _core.root_frames(
             at, self._groom.scalp.triangles, bound["root_triangle"], bound["root_barycentric"]
         )
         return roots, np.einsum("lxk,lk->lx", frames, self._axis)
 
-    def _from_locks(self, scalp_points: NDArray, lock_roots: NDArray) -> NDArray[np.float32]:
-        """From the root of its lock to that of each hair [m], shape (hairs, 3)."""
+    def _root_offsets(self, scalp_points: NDArray, lock_roots: NDArray) -> NDArray[np.float32]:
+        """Offset of each hair's root from its lock's root [m], shape (hairs, 3)."""
         bound = self.curves.curve
         corners = scalp_points[self._groom.scalp.triangles[bound["root_triangle"]]]
         root = np.einsum("hc,hcx->hx", bound["root_barycentric"], corners) - lock_roots[bound["lock"]]
@@ -185,7 +187,7 @@ class Hairs:
 
 
 def _as_one(surfaces: Sequence[tuple[NDArray, NDArray]]) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-    """Points and triangles of several meshes as those of one."""
+    """Merges points and triangles of several meshes into one."""
     before = np.cumsum([0] + [len(points) for points, _ in surfaces])
     return (
         np.concatenate([points for points, _ in surfaces], dtype=np.float64),
@@ -195,24 +197,25 @@ def _as_one(surfaces: Sequence[tuple[NDArray, NDArray]]) -> tuple[NDArray[np.flo
 
 @dataclass
 class HairMemory:
-    """The hairs of the last call, kept to be carried along while the locks change their shape but not their roots."""
+    """Cache of the last hairs, valid while the locks keep their roots."""
 
     key: bytes = b""
     hairs: Hairs | None = None
 
 
 def hair_count(groom: Groom) -> int:
-    """About how many hairs the groom has in all."""
+    """Approximate number of hairs of the whole groom."""
     return max(1, round(len(groom.locks) * _settings(groom.hairs).per_lock.value))
 
 
 def make_hairs(groom: Groom, *, fraction: float = 1.0, wider: bool = False, memory: HairMemory | None = None) -> Hairs:
-    """Hairs around every lock of the groom, placed by (seed, lock, number).
+    """Makes the hairs of every lock, with positions keyed by (seed, lock, number).
 
-    fraction: the part of each lock's hairs to make, in (0, 1]; always the first ones of the same hairs
-    wider:    makes up for hairs that are left out by the width of the others, so that a lock covers as much
-    memory:   keeps what depends on neither the shape nor the curl of locks, so that such an edit only carries the
-              hairs; the points of the result are then written over by the next call
+    fraction: fraction of each lock's hairs to make, in (0, 1]; a smaller fraction gives a subset of the same hairs
+    wider:    scales widths by the inverse fraction, so that a lock covers the same area
+    memory:   cache of all data independent of the locks' shape; the next call overwrites the points of this result
+
+    Raises UserError for a fraction out of range.
     """
     hairs = lay_hairs(groom, fraction=fraction, wider=wider, memory=memory)
     hairs.curves.points = hairs.at(groom.locks.points, groom.scalp.points, out=hairs.curves.points)
@@ -220,7 +223,7 @@ def make_hairs(groom: Groom, *, fraction: float = 1.0, wider: bool = False, memo
 
 
 def lay_hairs(groom: Groom, *, fraction: float = 1.0, wider: bool = False, memory: HairMemory | None = None) -> Hairs:
-    """The same hairs before they are put in their places, for those who do that on their own."""
+    """Makes the hairs as ``make_hairs``, with unset points, for callers that deform them by themselves."""
     settings = _settings(groom.hairs)
     if not 0.0 < fraction <= 1.0:
         raise UserError(f"hairs: fraction is {fraction}; must be more than 0 and at most 1")
@@ -228,13 +231,13 @@ def lay_hairs(groom: Groom, *, fraction: float = 1.0, wider: bool = False, memor
     key = _key(groom, settings, fraction, wider)
     if memory.hairs is None or memory.key != key:
         memory.key, memory.hairs = key, _place(groom, settings, fraction, wider)
-    known, frames = memory.hairs, _root_frames(groom)[1]
+    cached, frames = memory.hairs, _root_frames(groom)[1]
     axis = np.einsum("lxk,lx->lk", frames, axes(groom.locks, frames))
-    return Hairs(known.curves, groom, axis, known._layout, known._root)
+    return Hairs(cached.curves, groom, axis, cached._layout, cached._root)
 
 
 def _key(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -> bytes:
-    """What the places of hairs in their locks hang on."""
+    """Digest of the inputs that determine the positions of hairs in their locks."""
     locks, scalp = groom.locks, groom.scalp
     digest = blake2b(f"{settings.model_dump_json()} {groom.region} {fraction} {wider}".encode(), digest_size=16)
     for array in (
@@ -251,25 +254,28 @@ def _key(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -> 
 
 
 def _place(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -> Hairs:
-    """Hairs with everything but their points."""
+    """Hairs with all attributes and unset points.
+
+    Raises UserError when the groom's region is not in its mesh.
+    """
     locks, scalp = groom.locks, groom.scalp
     roots, frames = _root_frames(groom)
     per_lock = _Values(settings, locks, scalp)
-    whole = np.maximum(1, np.round(per_lock("per_lock"))).astype(np.int64)
-    each = np.maximum(1, np.round(whole * fraction)).astype(np.int64)
-    lock = np.repeat(np.arange(len(locks), dtype=np.int32), each)
-    first = offsets_from_counts(each)
+    full_count = np.maximum(1, np.round(per_lock("per_lock"))).astype(np.int64)
+    counts = np.maximum(1, np.round(full_count * fraction)).astype(np.int64)
+    lock = np.repeat(np.arange(len(locks), dtype=np.int32), counts)
+    first = offsets_from_counts(counts)
     number = np.arange(len(lock)) - first[lock]
     ids = locks.ids[lock] * IDS_PER_LOCK + number
     points = settings.points or int(locks.counts.max())
 
-    disk = _disk(settings, ids, number, whole[lock])
-    around = roots[lock] + per_lock("spread")[lock, None] * np.einsum("hxk,hk->hx", frames[lock][:, :, :2], disk)
+    disk = _disk(settings, ids, number, full_count[lock])
+    scattered = roots[lock] + per_lock("spread")[lock, None] * np.einsum("hxk,hk->hx", frames[lock][:, :, :2], disk)
     try:
         region = np.ascontiguousarray(scalp.region(groom.region), np.int32)
     except KeyError as error:
         raise UserError(f"hairs: {error.args[0]}") from None
-    root_triangle, root_barycentric, _ = _core.bind_roots(scalp.points, scalp.triangles, around, region)
+    root_triangle, root_barycentric, _ = _core.bind_roots(scalp.points, scalp.triangles, scattered, region)
     is_lock = number == 0
     root_triangle[is_lock] = locks.curve["root_triangle"]
     root_barycentric[is_lock] = locks.curve["root_barycentric"]
@@ -283,11 +289,11 @@ def _place(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -
     }
     if scalp.uv is not None:
         attributes["st"] = np.einsum("hc,hcx->hx", root_barycentric, scalp.uv[root_triangle]).astype(np.float32)
-    alike = settings.width.model_copy(update={"vary": 0.0})
-    thickness = for_each_lock(alike, Random(settings.seed, "hairs/width"), locks, scalp, "hairs.width")[lock]
+    uniform = settings.width.model_copy(update={"vary": 0.0})
+    thickness = for_each_lock(uniform, Random(settings.seed, "hairs/width"), locks, scalp, "hairs.width")[lock]
     thickness *= Varied(value=1.0, vary=settings.width.vary).factors(Random(settings.seed, "hairs/width"), ids, ids)
     if wider:
-        thickness *= (whole / each)[lock]
+        thickness *= (full_count / counts)[lock]
     widths = (thickness.astype(np.float32)[:, None] * settings.width.along(u).astype(np.float32)).reshape(-1)
 
     curves = Curves(
@@ -300,20 +306,20 @@ def _place(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -
     layout = _layout(settings, per_lock, ids, number, lock, disk, u)
     layout |= _neighbours(settings, per_lock, groom, curves, is_lock, roots, u)
     hairs = Hairs(curves, groom, np.empty(0), {"first": first, **layout})
-    hairs._root = hairs._from_locks(scalp.points, roots)
+    hairs._root = hairs._root_offsets(scalp.points, roots)
     return hairs
 
 
 @dataclass
 class _Values:
-    """Settings of the hairs, lock by lock."""
+    """Hair settings evaluated per lock."""
 
     settings: HairSettings
     locks: Curves
     scalp: Mesh
 
     def __call__(self, name: str) -> NDArray[np.float64]:
-        """The setting of that name for each lock, shape (locks,)."""
+        """Values of a setting, shape (locks,)."""
         setting: Varied = getattr(self.settings, name)
         return for_each_lock(
             setting, Random(self.settings.seed, f"hairs/{name}"), self.locks, self.scalp, f"hairs.{name}"
@@ -328,18 +334,18 @@ def _settings(values: dict[str, Any]) -> HairSettings:
 
 
 def _root_frames(groom: Groom) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Roots of the locks [m], shape (locks, 3), and the frames of the scalp there, shape (locks, 3, 3)."""
+    """Roots of the locks [m], shape (locks, 3), and frames of the scalp there, shape (locks, 3, 3)."""
     bound = groom.locks.curve
     return _core.root_frames(
         groom.scalp.points, groom.scalp.triangles, bound["root_triangle"], bound["root_barycentric"]
     )
 
 
-def _disk(settings: HairSettings, ids: NDArray, number: NDArray, whole: NDArray) -> NDArray[np.float64]:
-    """Places in the unit disk (hairs, 2), evenly spread within a lock (a shaken Vogel spiral); 0 for the first hair."""
+def _disk(settings: HairSettings, ids: NDArray, number: NDArray, full_count: NDArray) -> NDArray[np.float64]:
+    """Samples of the unit disk, uniform within a lock (a jittered Vogel spiral), shape (hairs, 2); 0 for the first."""
     random = Random(settings.seed, "hairs/place")
     radius = np.sqrt(
-        (number - random.uniform(ids, 0)) / np.maximum(whole - 1, 1), where=number > 0, out=np.zeros(len(ids))
+        (number - random.uniform(ids, 0)) / np.maximum(full_count - 1, 1), where=number > 0, out=np.zeros(len(ids))
     )
     angle = number * np.pi * (3.0 - np.sqrt(5.0)) + 2.0 * np.pi * random.uniform(ids // IDS_PER_LOCK, 1)
     return radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
@@ -348,19 +354,19 @@ def _disk(settings: HairSettings, ids: NDArray, number: NDArray, whole: NDArray)
 def _layout(
     settings: HairSettings, per_lock: _Values, ids: NDArray, number: NDArray, lock: NDArray, disk: NDArray, u: NDArray
 ) -> dict[str, NDArray]:
-    """What the kernel needs (src/ringlet/groom/hairs.h); all zero for the first hair of each lock."""
+    """Inputs of the kernel (src/ringlet/groom/hairs.h); offsets are zero for the first hair of each lock."""
     random = Random(settings.seed, "hairs")
     free = number > 0
     tip = 1.0 - per_lock("shorter")[lock] * free * random.uniform(ids, 0) ** 2
     strays = soft_threshold(per_lock("stray")[lock], random.uniform(ids, 1))
     frizz, stray = per_lock("frizz")[lock], per_lock("stray_radius")[lock]
-    reach = (frizz + strays * (stray - frizz)) * free
+    amplitude = (frizz + strays * (stray - frizz)) * free
     knots = (
-        reach[:, None]
+        amplitude[:, None]
         * np.linspace(0.0, 1.0, FRIZZ_KNOTS).repeat(2)
         * (2.0 * Random(settings.seed, "hairs/frizz").uniforms(ids, 2 * FRIZZ_KNOTS) - 1.0)
     )
-    near = np.clip(1.0 - u / settings.gather, 0.0, 1.0)
+    t = np.clip(1.0 - u / settings.gather, 0.0, 1.0)
     section = _section(per_lock, lock, disk)
     return {
         "offset": (per_lock("radius")[lock, None] * section).astype(np.float32),
@@ -368,13 +374,15 @@ def _layout(
         "taper": per_lock("taper")[lock].astype(np.float32),
         "frizz": knots.astype(np.float32),
         "profile": settings.radius.along(u).astype(np.float32),
-        "hold": (near * near * (3.0 - 2.0 * near)).astype(np.float32),
+        "hold": (t * t * (3.0 - 2.0 * t)).astype(np.float32),
     }
 
 
 def _section(per_lock: _Values, lock: NDArray, disk: NDArray) -> NDArray[np.float64]:
-    """Places in the cross-section of the locks, as parts of its radius, shape (hairs, 2): the disk drawn to its rim and
-    pressed flat along a direction that is each lock's own."""
+    """Positions in the cross-section of the locks, relative to its radius, shape (hairs, 2).
+
+    ``hollow`` moves the disk's samples to the rim; ``flatness`` flattens the disk along a random direction per lock.
+    """
     radius = np.linalg.norm(disk, axis=1)
     disk = disk * (np.maximum(radius, 1e-9) ** -np.minimum(per_lock("hollow"), 1.0)[lock])[:, None]
     angle = np.pi * Random(per_lock.settings.seed, "hairs/ribbon").uniform(per_lock.locks.ids)[lock]
@@ -392,8 +400,7 @@ def _neighbours(
     roots: NDArray,
     u: NDArray,
 ) -> dict[str, NDArray]:
-    """The neighbouring lock that each hair is drawn to, and how far: by half where it stands between the two, not at
-    all across a parting."""
+    """Neighbouring lock that each hair blends with, and the blend weight: one half midway, 0 across a parting."""
     blend = settings.blend.along(u).astype(np.float32)
     locks, lock, amount = groom.locks, curves.curve["lock"], per_lock("blend")
     if not amount.any() or len(locks) < 2:
@@ -402,14 +409,14 @@ def _neighbours(
     at = np.einsum(
         "hc,hcx->hx", bound["root_barycentric"], groom.scalp.points[groom.scalp.triangles[bound["root_triangle"]]]
     )
-    near = np.asarray(KDTree(roots).query(at, k=2)[1])
-    other = np.where(near[:, 0] == lock, near[:, 1], near[:, 0]).astype(np.int32)
-    own_way, other_way = (np.linalg.norm(at - roots[index], axis=1) for index in (lock, other))
+    nearest = np.asarray(KDTree(roots).query(at, k=2)[1])
+    other = np.where(nearest[:, 0] == lock, nearest[:, 1], nearest[:, 0]).astype(np.int32)
+    own_distance, other_distance = (np.linalg.norm(at - roots[index], axis=1) for index in (lock, other))
     middle = np.add.reduceat(locks.points, locks.offsets[:-1], axis=0) / locks.counts[:, None] - locks.roots
     lean = middle / np.maximum(np.linalg.norm(middle, axis=1, keepdims=True), 1e-12)
     angle = np.degrees(np.arccos(np.clip(np.sum(lean[lock] * lean[other], axis=1), -1.0, 1.0)))
-    together = np.clip(4.0 * (1.0 - angle / settings.apart), 0.0, 1.0)
-    share = amount[lock] * together * own_way / np.maximum(own_way + other_way, 1e-12)
+    alignment = np.clip(4.0 * (1.0 - angle / settings.apart), 0.0, 1.0)
+    share = amount[lock] * alignment * own_distance / np.maximum(own_distance + other_distance, 1e-12)
     return {
         "other": other,
         "share": np.where(is_lock, 0.0, np.minimum(share, 1.0)).astype(np.float32),

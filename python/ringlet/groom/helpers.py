@@ -1,4 +1,4 @@
-"""Helper curves: what operators go by without being hair, such as partings and ties."""
+"""Helper curves: curves that guide operators without being hair, such as part lines and ties."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from ringlet.data.quantities import Quantity, refuse
 from ringlet.groom.source import Source
 
 
-def _lengths(place: object, info: ValidationInfo) -> object:
-    """Three lengths in the unit of the recipe, or with units of their own, as metres."""
+def _to_metres(place: object, info: ValidationInfo) -> object:
+    """Converts three lengths to metres; a plain number is in the unit of the recipe."""
     unit = (info.context or {}).get("unit", 1.0)
     return [Quantity("m").number(x, unit) for x in place] if isinstance(place, list | tuple) else place
 
 
-Place = Annotated[tuple[float, float, float], BeforeValidator(_lengths)]
+Place = Annotated[tuple[float, float, float], BeforeValidator(_to_metres)]
 
 
 class HelperCurves(Source):
-    """Curves that operators go by: points given here, or curves drawn in a file."""
+    """Curves that guide operators: points given here, or curves of a file."""
 
     points: list[Place] | None = Field(default=None, description="[x, y, z] of the points of a curve, Y up")
     file: str | None = Field(
@@ -39,5 +39,5 @@ class HelperCurves(Source):
         return self
 
     def given(self) -> Curves | None:
-        """The curve of the points; None where a file is to be read."""
+        """The curve of the inline points; None when the curves are in a file."""
         return None if self.points is None else Curves.from_list([np.array(self.points)])

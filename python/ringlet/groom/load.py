@@ -1,4 +1,4 @@
-"""From files to the tables of one recipe: what it extends, and what was done by hand."""
+"""Loads the tables of a recipe: resolves the recipe that it extends and its file of manual edits."""
 
 from __future__ import annotations
 
@@ -11,73 +11,84 @@ from ringlet.data.settings import did_you_mean, parse_toml, read_toml
 from ringlet.data.toml import to_toml
 
 FILES = (("scalp", "file"), ("guides", "file"))
-EDITS = ("edit", "sculpt")  # tables of a file of edits: of locks, of guides
+EDITS = ("edit", "sculpt")  # tables of a file of edits: edits of locks, edits of guides
 
 
 def load(path: Path) -> tuple[str, dict[str, Any]]:
-    """The text and the tables of a recipe file with all that it refers to; the text of one that refers to others is
-    that of the whole."""
+    """Text and tables of a recipe file with its base and its edits resolved.
+
+    The text of a recipe that refers to other files is that of the resolved recipe.
+    """
     text, data = read_toml(path, "recipe")
     return resolve(text, data, path, ())
 
 
 def load_text(text: str, path: Path | None, edits: str | None = None) -> tuple[str, dict[str, Any]]:
-    """The same for a recipe from its text; names in it count from ``path``. ``edits`` stands for its file of edits."""
+    """Text and tables of a recipe from its text.
+
+    path:  path that relative file names are resolved against
+    edits: text that replaces the contents of the file of edits
+    """
     data = parse_toml(text, path.name if path else "recipe", "recipe")
     return resolve(text, data, path or Path("recipe"), (), edits)
 
 
 def resolve(
-    text: str, data: dict[str, Any], path: Path, below: tuple[Path, ...], edits: str | None = None
+    text: str, data: dict[str, Any], path: Path, extending: tuple[Path, ...], edits: str | None = None
 ) -> tuple[str, dict[str, Any]]:
-    """The recipe with its base and its edits in it; ``below``: the files that extend it."""
-    told = data
+    """Resolves the base and the edits of a recipe.
+
+    extending: the files that extend this one, to detect cycles
+    """
+    resolved = data
     if "extends" in data:
-        told = _extended(data, path, (*below, path.resolve()))
-    if "edits" in told and not below:
-        told = _with_edits(told, path, edits)
-    told = _with_settings_of_locks(told, path)
+        resolved = _extended(data, path, (*extending, path.resolve()))
+    if "edits" in resolved and not extending:
+        resolved = _with_edits(resolved, path, edits)
+    resolved = _with_settings_of_locks(resolved, path)
     if {"extends", "edits"} & data.keys():
-        text = to_toml({key: value for key, value in told.items() if key != "edits"})
-    return text, told
+        text = to_toml({key: value for key, value in resolved.items() if key != "edits"})
+    return text, resolved
 
 
 def read_edits(path: Path) -> dict[str, list[dict[str, Any]]]:
-    """What a file of edits says of locks (``edit``) and of guides (``sculpt``); nothing where it is not there yet."""
+    """Edits of locks (``edit``) and of guides (``sculpt``) of a file; empty when the file does not exist."""
     return parse_edits(read_toml(path, "file of edits")[0] if path.exists() else "ringlet = 1", path)
 
 
 def parse_edits(text: str, path: Path) -> dict[str, list[dict[str, Any]]]:
-    """The same for the text of such a file."""
+    """Parses the text of a file of edits; raises UserError for any other table."""
     data = parse_toml(text, path.name, "file of edits")
     edits = {kind: data.get(kind, []) for kind in EDITS}
-    wrong = sorted(data.keys() - {"ringlet", *EDITS}) + [kind for kind in EDITS if not isinstance(edits[kind], list)]
-    if wrong:
+    unexpected = sorted(data.keys() - {"ringlet", *EDITS}) + [
+        kind for kind in EDITS if not isinstance(edits[kind], list)
+    ]
+    if unexpected:
         raise UserError(
-            f"{path.name}: {', '.join(wrong)} does not belong there; it holds [[edit]] and [[sculpt]] tables only"
+            f"{path.name}: {', '.join(unexpected)} does not belong there; it holds [[edit]] and [[sculpt]] tables only"
         )
     return edits
 
 
-def _extended(data: dict[str, Any], path: Path, below: tuple[Path, ...]) -> dict[str, Any]:
-    """The tables of the base with the changes of a variant."""
+def _extended(data: dict[str, Any], path: Path, extending: tuple[Path, ...]) -> dict[str, Any]:
+    """Merges the changes of a variant into the tables of its base."""
     if not isinstance(name := data["extends"], str):
         raise UserError(f"{path.name}: extends is {name!r}; must be the name of a recipe file")
     base_path = path.parent / name
-    if base_path.resolve() in below:
+    if base_path.resolve() in extending:
         raise UserError(f"{path.name}: extends {name}, which extends it in turn; take one of the two away")
     text, base = read_toml(base_path, "recipe")
-    _, base = resolve(text, base, base_path, below)
+    _, base = resolve(text, base, base_path, extending)
     unit = base.get("unit", "cm")
     if data.get("unit", unit) != unit:
         raise UserError(f"{path.name}: unit is {data['unit']!r}, that of {name} is {unit!r}; must be the same")
     if base_path.parent.resolve() != path.parent.resolve():
-        base = _from(base, base_path.parent.resolve())
+        base = _with_absolute_paths(base, base_path.parent.resolve())
     return _merged(base, {key: value for key, value in data.items() if key != "extends"}, path.name, "")
 
 
 def _merged(base: dict[str, Any], changes: dict[str, Any], where: str, place: str) -> dict[str, Any]:
-    """A table with changes: tables are merged, ``false`` takes away what was said, everything else is replaced."""
+    """Merges changes into a table: tables merge, ``false`` removes an entry, any other value replaces it."""
     result = dict(base)
     for key, value in changes.items():
         old = base.get(key)
@@ -91,14 +102,14 @@ def _merged(base: dict[str, Any], changes: dict[str, Any], where: str, place: st
         elif isinstance(value, dict) and isinstance(old, dict) and not ("file" in value) > ("file" in old):
             result[key] = _merged(old, value, where, name)
         elif isinstance(value, dict) and key in base and not isinstance(old, dict | list) and "value" not in value:
-            result[key] = {"value": old, **value}  # a plain value is changed into a table
+            result[key] = {"value": old, **value}  # promotes a plain value to a table
         else:
             result[key] = value
     return result
 
 
 def _merged_shape(base: list[Any], changes: dict[str, Any], where: str) -> list[Any]:
-    """The operators of a base with changes by their names: ``[shape.clump]``, ``[shape."scraggle 2"]``."""
+    """Merges changes into the operators of a base by name: ``[shape.clump]``, ``[shape."scraggle 2"]``."""
     names = stage_names(base)
     result = list(base)
     for name, change in changes.items():
@@ -115,9 +126,9 @@ def _merged_shape(base: list[Any], changes: dict[str, Any], where: str) -> list[
 
 
 def inherited(data: dict[str, Any], path: Path) -> list[str] | None:
-    """The names of the operators that a recipe has from the one that it extends; None where all are its own.
+    """Names of the operators that a recipe inherits; None when the recipe lists its operators itself.
 
-    data: its own tables
+    data: the recipe's own tables
     """
     own = data.get("shape", {})
     if not isinstance(data.get("extends"), str) or isinstance(own, list):
@@ -127,7 +138,7 @@ def inherited(data: dict[str, Any], path: Path) -> list[str] | None:
 
 
 def stage_names(shape: list[Any]) -> list[str]:
-    """The names of operators: that of their kind, ``scraggle 2`` for the second of a kind."""
+    """Unique names of operators: their kind, and ``scraggle 2`` for the second of a kind."""
     used = Counter[str]()
     names = []
     for operator in shape:
@@ -138,7 +149,7 @@ def stage_names(shape: list[Any]) -> list[str]:
 
 
 def _with_edits(data: dict[str, Any], path: Path, text: str | None) -> dict[str, Any]:
-    """The tables with the edits of the file that ``edits`` names, after those in the recipe."""
+    """Appends the edits of the file that ``edits`` names to those of the recipe."""
     if not isinstance(name := data["edits"], str):
         raise UserError(f"{path.name}: edits is {name!r}; must be the name of a file")
     file = path.parent / name
@@ -151,7 +162,7 @@ def _with_edits(data: dict[str, Any], path: Path, text: str | None) -> dict[str,
 
 
 def _with_settings_of_locks(data: dict[str, Any], path: Path) -> dict[str, Any]:
-    """The tables with the settings of single locks, which edits make, as ``lock`` tables of the settings."""
+    """Moves the settings of manual edits into the ``lock`` tables of their settings."""
     edits = data.get("edit", [])
     for edit in edits if isinstance(edits, list) else []:
         settings = edit.get("set", {}) if isinstance(edit, dict) else {}
@@ -161,7 +172,7 @@ def _with_settings_of_locks(data: dict[str, Any], path: Path) -> dict[str, Any]:
 
 
 def _with_lock(data: dict[str, Any], name: str, lock: str, value: Any, path: Path) -> dict[str, Any]:
-    """The tables with one setting of one lock."""
+    """Adds the override of one setting for one lock."""
     stage, _, setting = name.rpartition(".")
     shape = data.get("shape", [])
     names = stage_names(shape) if isinstance(shape, list) else []
@@ -177,8 +188,8 @@ def _with_lock(data: dict[str, Any], name: str, lock: str, value: Any, path: Pat
     return {**data, stage: changed}
 
 
-def _from(data: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """The tables of a base in another folder, with the names of files as full paths."""
+def _with_absolute_paths(data: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """Makes the file names of a base in another folder absolute."""
     data = {**data}
     for table, key in FILES:
         if isinstance(data.get(table), dict) and isinstance(name := data[table].get(key), str):

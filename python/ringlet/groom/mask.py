@@ -1,4 +1,4 @@
-"""Where an operator acts: on which locks, and where along them."""
+"""Masks of operators: weights per lock and along each lock."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from ringlet.groom import expression
 
 
 class Mask(Section):
-    """Where an operator acts: 0 nowhere, 1 fully. In a recipe a number, or a table
-    ``{ value = …, ramp = …, map = …, region = …, where = … }``: the product of all that is given."""
+    """Weight of an operator: 0 no effect, 1 full effect. In a recipe a number, or a table
+    ``{ value = …, ramp = …, map = …, region = …, where = … }``: the product of its entries."""
 
     value: float = Field(default=1.0, ge=0.0, le=1.0, description="the same everywhere")
     ramp: Ramp = Field(default=[(0.0, 1.0), (1.0, 1.0)], description="[place, factor] from root (0) to tip (1)")
@@ -38,13 +38,13 @@ class Mask(Section):
 
     @property
     def everywhere(self) -> bool:
-        """Whether it is 1 all over."""
+        """Whether the mask is 1 everywhere."""
         return self == Mask()
 
     def weights(self, curves: Curves, scalp: Mesh, random: Random, what: str) -> NDArray[np.float64]:
-        """The mask at the points of curves that all have the same count, shape (count, points).
+        """Weights at the points of curves with equal point counts, shape (count, points).
 
-        what: the name of the setting, for messages
+        what: name of the setting, for messages
         """
         points = len(curves.points) // len(curves)
         weight = self.per_lock(curves, scalp, random, what)[:, None] * along(self.ramp, np.linspace(0.0, 1.0, points))
@@ -52,24 +52,27 @@ class Mask(Section):
         return 1.0 - weight if self.invert else weight
 
     def per_lock(self, curves: Curves, scalp: Mesh, random: Random, what: str) -> NDArray[np.float64]:
-        """The part of the mask that does not change along a lock, before it is inverted; shape (count,)."""
+        """Factor of the mask that is constant along a lock, before inversion; shape (count,).
+
+        Raises UserError when ``where`` is not finite on a lock.
+        """
         weight = np.full(len(curves), self.value)
         if self.map is not None:
             weight *= painted(self.map, curves, scalp, f"{what}.map")
         if self.region is not None:
-            weight *= self._near(region(self.region, scalp, f"{what}.region"), curves, scalp)
+            weight *= self._region_falloff(region(self.region, scalp, f"{what}.region"), curves, scalp)
         if self.where is not None:
             x, y, z = curves.roots.T
             values = {"id": curves.ids, "random": random.uniform(curves.ids), "length": curves.lengths()}
-            told = expression.evaluate(self.where, {**values, "x": x, "y": y, "z": z})
-            if not (finite := np.isfinite(told)).all():
+            factor = expression.evaluate(self.where, {**values, "x": x, "y": y, "z": z})
+            if not (finite := np.isfinite(factor)).all():
                 lock = curves.ids[np.flatnonzero(~finite)[0]]
                 raise UserError(f"{what}.where is '{self.where}', not a finite number on lock {lock}; rewrite it")
-            weight *= np.clip(told, 0.0, 1.0)
+            weight *= np.clip(factor, 0.0, 1.0)
         return weight
 
-    def _near(self, triangles: NDArray[np.int32], curves: Curves, scalp: Mesh) -> NDArray[np.float64]:
-        """1 in the region, 0 farther than ``soft`` from it, smooth in between; shape (count,)."""
+    def _region_falloff(self, triangles: NDArray[np.int32], curves: Curves, scalp: Mesh) -> NDArray[np.float64]:
+        """Falloff of a region: 1 inside, 0 farther than ``soft`` from it, smooth between; shape (count,)."""
         inside = np.isin(curves.curve["root_triangle"], triangles)
         if self.soft == 0.0 or inside.all() or not len(triangles):
             return inside.astype(np.float64)

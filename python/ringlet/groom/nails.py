@@ -1,4 +1,4 @@
-"""Nails: hair that is held to the skin, such as a hairline or a bun."""
+"""Nails: constraints that attach hair to the skin, as at a hairline or in a bun."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from ringlet.data.random import Random
 from ringlet.groom.mask import Mask
 from ringlet.groom.operators.operator import arc_lengths, grid
 
-NAIL = "nail"  # point attribute of locks: 0 free … 1 moves rigidly with the place on the skin where the lock is rooted
+NAIL = "nail"  # point attribute of locks: 0 free … 1 moves rigidly with the skin at the root
 
 
 class Nail(Section):
-    """Holds locks where they were groomed: from the root up to ``reach``, less and less over ``fade``. In a simulation,
-    what is held with 1 moves rigidly with the skin, what is held with less is drawn back to where that would be."""
+    """Attaches locks to their groomed position: from the root up to ``reach``, with a falloff over ``fade``. In a
+    simulation, points of weight 1 move rigidly with the skin; springs pull points of lower weight to that position."""
 
     mask: Annotated[Mask, Quantity("", 0.0, 1.0)] = Field(
         default=Mask(), description="which locks, and where along them"
@@ -35,7 +35,7 @@ class Nail(Section):
     )
 
     def weights(self, locks: Curves, scalp: Mesh, random: Random, what: str) -> NDArray[np.float64]:
-        """How firmly each point is held, shape (count, points)."""
+        """Attachment weight of each point, shape (count, points)."""
         weight = self.firm * self.mask.weights(locks, scalp, random, f"{what}.mask")
         if self.reach is None:
             return weight
@@ -45,9 +45,11 @@ class Nail(Section):
 
 
 def nailed(locks: Curves, nails: Sequence[Nail], scalp: Mesh, seed: int) -> Curves:
-    """The locks with the point attribute ``nail``: the firmest of all nails."""
+    """Adds the point attribute ``nail``: the largest weight of all nails."""
     if not nails:
         return locks
-    held = [nail.weights(locks, scalp, Random(seed, f"nail[{k}]/mask"), f"nail[{k}]") for k, nail in enumerate(nails)]
-    weight = np.max(held, axis=0).ravel().astype(np.float32)
+    weights = [
+        nail.weights(locks, scalp, Random(seed, f"nail[{k}]/mask"), f"nail[{k}]") for k, nail in enumerate(nails)
+    ]
+    weight = np.max(weights, axis=0).ravel().astype(np.float32)
     return Curves(locks.points, locks.offsets, locks.ids, locks.curve, {**locks.point, NAIL: weight})

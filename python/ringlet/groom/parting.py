@@ -1,4 +1,4 @@
-"""Partings: where hair turns away to both sides of a plane or of a drawn line."""
+"""Partings: hair turns away to both sides of a plane or of a drawn part line."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Vector = tuple[FiniteFloat, FiniteFloat, FiniteFloat]
 
 
 class Parting(Section):
-    """A parting: hair on each side of a plane, or of drawn lines, turns away from it."""
+    """A parting: hair on each side of a plane, or of a drawn part line, turns away from it."""
 
     line: str | None = Field(
         default=None, description="name of helper curves along the parting, from `[curves]`; a plane when absent"
@@ -32,10 +32,11 @@ class Parting(Section):
     def away(
         self, places: NDArray, normals: NDArray, middle: NDArray, helper: Callable[[str, str], Curves]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Unit directions away from the parting, shape (n, 3), and how much it is felt, from 1 beside it to 0 far away.
+        """Unit directions away from the parting, shape (n, 3), and its falloff with distance from 1 to 0, shape (n,).
 
-        places, normals: of the roots, shape (n, 3); middle: of the scalp
-        helper:          gives the helper curves of a name for a setting
+        places, normals: positions [m] and normals of the roots, shape (n, 3)
+        middle:          centre of the scalp [m]
+        helper:          returns the helper curves of a name for a setting
         """
         if self.line is None:
             across = np.array(self.across) / max(float(np.linalg.norm(self.across)), 1e-12)
@@ -49,7 +50,7 @@ class Parting(Section):
 
 
 def _nearest(places: NDArray, lines: Curves) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The nearest point of polylines to each place, and the direction of the line there; shape (n, 3) each."""
+    """Closest point on polylines to each place [m], and the unit tangent there; shape (n, 3) each."""
     within = np.ones(len(lines.points), bool)
     within[lines.offsets[1:] - 1] = False
     start = np.flatnonzero(within)

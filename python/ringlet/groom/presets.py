@@ -1,4 +1,4 @@
-"""Named curl types. A preset fills what the recipe's ``[curl]`` does not say; it is written as a recipe would."""
+"""Named curl types. A preset gives the defaults of a recipe's ``[curl]``, in the notation of a recipe."""
 
 from __future__ import annotations
 
@@ -6,10 +6,9 @@ from typing import Any, Literal
 
 Preset = Literal["1", "2A", "2B", "2C", "3A", "3B", "3C", "4A", "4B", "4C"]
 
-# Diameters after the hair typing in common use (3A: a thick marker, 3B: a marker pen, 3C: a pencil, 4A: a crochet
-# needle, 4B: zigzags, 4C: coils hardly seen); type 2 is waves, which lie flat. Pitch, the rise from turn to turn, is
-# that of hair that carries little weight: tighter hair stands closer. Neighbouring waves run side by side; neighbouring
-# coils do not.
+# Diameters follow the common hair typing: 3A a thick marker, 3B a marker pen, 3C a pencil, 4A a crochet needle. Type 4B
+# has zigzags, and the coils of 4C are barely visible. Type 2 is flat waves. Pitch, the rise per turn, is that of
+# unloaded hair: tighter curls have a smaller pitch. Neighbouring waves are in phase; neighbouring coils are not.
 PRESETS: dict[str, dict[str, Any]] = {
     "1": {
         "width": {"value": "3 mm", "vary": 0.5, "ramp": [(0, 0.5), (0.5, 1), (1, 1)]},

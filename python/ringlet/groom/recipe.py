@@ -1,4 +1,4 @@
-"""The recipe: what a groom is made of, as a TOML file that an artist can read."""
+"""The recipe: the settings of a groom, as a TOML file."""
 
 from __future__ import annotations
 
@@ -73,39 +73,39 @@ class Recipe(Section):
 
     @property
     def path(self) -> Path | None:
-        """The file it was read from."""
+        """File of the recipe; None for a recipe from text alone."""
         return self._path
 
     @property
     def text(self) -> str | None:
-        """The text it was read from."""
+        """Text of the recipe."""
         return self._text
 
     @property
     def scalp_file(self) -> Path | None:
-        """The scalp's file; a relative name counts from the recipe."""
+        """File of the scalp; a relative name is resolved against the recipe's folder."""
         return self._beside(self.scalp.file)
 
     @property
     def edits_file(self) -> Path | None:
-        """The file of edits by hand."""
+        """File of manual edits."""
         return self._beside(self.edits)
 
     @property
     def guides_file(self) -> Path | None:
-        """The file of drawn guides, or None where they are grown."""
+        """File of drawn guides; None when guides are grown."""
         return self._beside(self.guides.file) if isinstance(self.guides, Drawn) else None
 
     def helper_files(self) -> dict[str, Path]:
-        """Files of helper curves by their name."""
+        """Files of helper curves, by name of the curves."""
         return {name: file for name, curves in self.curves.items() if (file := self._beside(curves.file)) is not None}
 
     def map_files(self) -> dict[str, Path]:
-        """Pictures of maps by their name."""
+        """Texture files of maps, by name of the map."""
         return {name: file for name, text in self.maps.items() if (file := self._beside(text)) is not None}
 
     def named_files(self) -> dict[str, Path]:
-        """The files that it names, by their setting."""
+        """Files that the recipe names, by setting."""
         files = {"scalp.file": self.scalp_file, "guides.file": self.guides_file, "edits": self.edits_file}
         files |= {f"maps.{name}": file for name, file in self.map_files().items()}
         files |= {f"curves.{name}": file for name, file in self.helper_files().items()}
@@ -116,15 +116,16 @@ class Recipe(Section):
 
 
 def read_recipe(path: Path | str) -> Recipe:
-    """Reads a recipe file. Raises UserError with file, setting, value and remedy."""
+    """Reads a recipe file; raises UserError with file, setting, value and remedy."""
     path = Path(path)
     return _recipe(*load(path), path)
 
 
 def parse_recipe(text: str, path: Path | None = None, edits: str | None = None) -> Recipe:
-    """A recipe from its text; ``path`` names it in messages and is where relative file names count from.
+    """Parses the text of a recipe.
 
-    edits: what the file of edits holds, in place of what it does
+    path:  file of the recipe, for messages and for relative file names
+    edits: text that replaces the contents of the file of edits
     """
     return _recipe(*load_text(text, path, edits), path)
 

@@ -1,4 +1,4 @@
-"""The surface that hair grows on: checks, places on it, and frames there."""
+"""The scalp: checks of the mesh, sampling of roots, and frames at the roots."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from ringlet.data.mesh import Mesh
 from ringlet.data.painted import painted
 from ringlet.data.random import Random
 
-IDS_PER_TRIANGLE = 1_000_000  # the id of a grown curve says where it stands: triangle · 1 000 000 + number in it
+IDS_PER_TRIANGLE = 1_000_000  # id of a grown curve: triangle · 1 000 000 + number in the triangle
 
-MOST_DENSER = 20  # a density may be so many times its mean
-THINNER, THINNING_STEPS = 0.8, 24
+MAX_DENSITY_RATIO = 20  # largest ratio of the peak to the mean of a painted density
+THINNING_FACTOR, THINNING_STEPS = 0.8, 24
 
 
 class Scalp:
@@ -38,7 +38,7 @@ class Scalp:
 
     @cached_property
     def solid(self) -> _core.Solid:
-        """The mesh as what hair may not go into."""
+        """The mesh as a solid for distance queries."""
         return _core.Solid(self.points, self.triangles)
 
     @cached_property
@@ -53,30 +53,33 @@ class Scalp:
 
     @cached_property
     def middle(self) -> NDArray[np.float64]:
-        """The middle of the box around the region [m]: about the middle of the skull for the scalp of a head."""
+        """Centre of the region's bounding box [m]; near the centre of the skull for the scalp of a head."""
         places = self.points[np.unique(self.triangles[self.region])]
         return 0.5 * (places.min(axis=0) + places.max(axis=0))
 
     def sample(
         self, count: int, seed: int, density: str | None = None, what: str = "density"
     ) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.float64]]:
-        """``count`` places spread over the region without a pattern, evenly or as a painted density says: ids,
-        triangles (count,) and barycentrics (count, 3).
+        """Blue-noise samples of the region, uniform or after a painted density.
 
-        The places are chosen among candidates that belong to their triangle, so their ids and most of the places stay
-        when the count or the region changes.
+        Returns ids (count,), triangles (count,) and barycentrics (count, 3). Samples are chosen from candidates that
+        are fixed per triangle. Ids and most samples therefore stay when the count or the region changes.
 
-        density: name of what is painted; ``what`` is the setting that names it
+        density: name of the painted map
+        what:    name of the setting that names the map, for messages
         """
         if density is None:
             ids, triangle, barycentric = self._candidates(count, seed)
-            kept = _core.thin_out(self.positions(triangle, barycentric), self.area, count)
+            selected = _core.thin_out(self.positions(triangle, barycentric), self.area, count)
         else:
-            ids, triangle, barycentric, kept = self._by_density(count, seed, density, what)
-        return ids[kept], triangle[kept], barycentric[kept]
+            ids, triangle, barycentric, selected = self._by_density(count, seed, density, what)
+        return ids[selected], triangle[selected], barycentric[selected]
 
     def _candidates(self, count: int, seed: int) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.float64]]:
-        """Many more places than ``count``, thrown at random; ids, triangles and barycentrics."""
+        """Random candidates, several times ``count``: ids, triangles and barycentrics.
+
+        Raises UserError when a triangle is too large for the count.
+        """
         random = Random(seed, "candidates")
         density = 2.0 ** np.ceil(
             np.log2((5 * count + 30) / self.area)
@@ -93,44 +96,45 @@ class Scalp:
     def _by_density(
         self, count: int, seed: int, name: str, what: str
     ) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.float64], NDArray[np.int32]]:
-        """Candidates, and the indices of ``count`` of them as dense as is painted.
+        """Candidates, and the indices of ``count`` of them after the painted density.
 
-        Even samples are thinned step by step, and stay even; each place has a rank, the part of the samples that are
-        left when it goes. Where the density is a half, the places of the first half of the ranks are taken.
+        Uniform samples are thinned in steps and stay uniform. The rank of a sample is the fraction of samples left when
+        it is removed. A density of one half selects the samples whose rank is below one half.
         """
         _, triangle, barycentric = self._candidates(count, seed)
         share = self._painted(name, triangle, barycentric, what)
         if not share.any():
             raise UserError(f"{what} '{name}' is 0 all over {self.where}; paint where hair is to grow")
-        wanted = 1.1 * count * min(share.max() / share.mean(), MOST_DENSER)
-        most = int(THINNER ** -np.ceil(np.log(wanted) / -np.log(THINNER)))  # a few curves more use the same ranks
+        needed = 1.1 * count * min(share.max() / share.mean(), MAX_DENSITY_RATIO)
+        # Rounded to a power of the factor, so that similar counts share their ranks.
+        most = int(THINNING_FACTOR ** -np.ceil(np.log(needed) / -np.log(THINNING_FACTOR)))
         ids, triangle, barycentric = self._candidates(most, seed)
         places = self.positions(triangle, barycentric)
-        kept = _core.thin_out(places, self.area, most)
-        rank, left = np.ones(len(ids)), kept
+        selected = _core.thin_out(places, self.area, most)
+        rank, left = np.ones(len(ids)), selected
         for step in range(1, THINNING_STEPS + 1):
-            left = left[_core.thin_out(places[left], self.area, max(1, round(most * THINNER**step)))]
-            rank[left] = THINNER**step
-        rank *= THINNER ** Random(seed, "rank").uniform(ids)  # within a step by chance
-        density = self._painted(name, triangle, barycentric, what)[kept]
+            left = left[_core.thin_out(places[left], self.area, max(1, round(most * THINNING_FACTOR**step)))]
+            rank[left] = THINNING_FACTOR**step
+        rank *= THINNING_FACTOR ** Random(seed, "rank").uniform(ids)  # random within a step
+        density = self._painted(name, triangle, barycentric, what)[selected]
         with np.errstate(divide="ignore"):
-            order = np.argsort(rank[kept] / density, kind="stable")
+            order = np.argsort(rank[selected] / density, kind="stable")
         chosen = order[:count][density[order[:count]] > 0.0]
-        return ids, triangle, barycentric, np.sort(kept[chosen])
+        return ids, triangle, barycentric, np.sort(selected[chosen])
 
     def _painted(self, name: str, triangle: NDArray, barycentric: NDArray, what: str) -> NDArray[np.float64]:
-        """What is painted at places, shape (n,)."""
+        """Values of a painted map at samples, shape (n,)."""
         count = len(triangle)
         bound = {"root_triangle": triangle, "root_barycentric": barycentric}
         places = Curves(np.zeros((count, 3)), np.arange(count + 1, dtype=np.int32), np.arange(count), bound)
         return painted(name, places, self.mesh, what)
 
     def count_for_spacing(self, spacing: float) -> int:
-        """How many places evenly spread at about that distance [m] the region holds."""
+        """Number of uniform samples of the region at a mean spacing [m]."""
         return max(1, round(0.75 * self.area / (0.5 * np.sqrt(3.0) * spacing**2)))  # 0.75 of the densest packing
 
     def positions(self, triangle: NDArray, barycentric: NDArray, points: NDArray | None = None) -> NDArray[np.float64]:
-        """Places on the mesh [m], shape (k, 3), in the rest pose or with other mesh points."""
+        """Positions of barycentric coordinates [m], shape (k, 3), in the rest pose or on given mesh points."""
         corners = (self.points if points is None else points)[self.triangles[triangle]]
         return np.einsum("kc,kcx->kx", barycentric, corners)
 
@@ -141,7 +145,10 @@ class Scalp:
         )[1]
 
     def bind(self, curves: Curves, tolerance: float, what: str) -> Curves:
-        """The curves with ``root_triangle`` and ``root_barycentric``; refuses roots more than ``tolerance`` [m] off."""
+        """Binds curves to the region: adds ``root_triangle`` and ``root_barycentric``.
+
+        Raises UserError for roots farther than ``tolerance`` [m] from the scalp.
+        """
         triangle, barycentric, distance = _core.bind_roots(
             self.points, self.triangles, np.ascontiguousarray(curves.roots, np.float64), self.region
         )
@@ -156,7 +163,7 @@ class Scalp:
         return Curves(curves.points, curves.offsets, curves.ids, {**curves.curve, **bound}, curves.point)
 
     def _remedy(self, curves: Curves) -> str:
-        """What is probably wrong: the unit, when the sizes differ by a factor that units differ by."""
+        """Remedy for roots off the scalp: the unit, when the size ratio is a power of ten."""
         body = np.ptp(self.points, axis=0).max()
         ratio = np.ptp(curves.points, axis=0).max() / body
         for factor in (1000.0, 100.0, 10.0, 0.1, 0.01, 0.001):
@@ -166,20 +173,22 @@ class Scalp:
 
 
 def axes(curves: Curves, frames: NDArray) -> NDArray[np.float64]:
-    """For each curve, a unit direction across its first edge, shape (count, 3): the x axis, turned as the y axis is on
-    its way to the normal of the root and then to that edge. Neighbours have much the same, whatever the triangles are,
-    and it does not jump while an edge moves."""
+    """Reference directions of curves: unit vectors orthogonal to the first edge, shape (count, 3).
+
+    The x axis is parallel-transported from y to the root's normal, and from there to the first edge. The result varies
+    smoothly between neighbours, is independent of the triangulation, and is continuous while an edge moves.
+    """
     normal = frames[:, :, 2]
     edge = curves.points[curves.offsets[:-1] + 1] - curves.roots
     edge = edge / np.maximum(np.linalg.norm(edge, axis=1, keepdims=True), 1e-12)
-    across = _turned(np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]), normal)
-    return np.ascontiguousarray(_turned(across, normal, edge))
+    across = _transported(np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]), normal)
+    return np.ascontiguousarray(_transported(across, normal, edge))
 
 
-def _turned(vectors: NDArray, start: NDArray, end: NDArray) -> NDArray[np.float64]:
-    """Vectors orthogonal to the unit vectors ``start``, turned by the shortest way that these take to ``end``."""
-    share = np.sum(vectors * end, axis=1) / np.maximum(1.0 + np.sum(start * end, axis=1), 1e-9)
-    return vectors - share[:, None] * (start + end)
+def _transported(vectors: NDArray, start: NDArray, end: NDArray) -> NDArray[np.float64]:
+    """Rotates vectors orthogonal to the unit vectors ``start`` by the smallest rotation from ``start`` to ``end``."""
+    factor = np.sum(vectors * end, axis=1) / np.maximum(1.0 + np.sum(start * end, axis=1), 1e-9)
+    return vectors - factor[:, None] * (start + end)
 
 
 def _areas(points: NDArray, triangles: NDArray) -> NDArray[np.float64]:

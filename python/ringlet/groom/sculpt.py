@@ -1,4 +1,4 @@
-"""Guides that were sculpted by hand: what was done to each outlives every change of what comes before it."""
+"""Manual sculpts of single guides; they stay valid when earlier stages change."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from ringlet.groom.helpers import Place
 from ringlet.groom.operators.operator import Context, Operator, arc_lengths, at_lengths, packed
 from ringlet.groom.scalp import Scalp
 
-MOVED = 2e-5  # [m] a point that is nearer than this to where it was has not been sculpted
+MIN_MOVE = 2e-5  # [m] smallest displacement that counts as sculpted
 
 
 class Sculpt(Section):
-    """What was done to one guide by hand, relative to what the recipe makes of it: it is made longer or shorter, and
-    then its points are moved, each in the frame that is carried along the guide from its root."""
+    """A manual sculpt of one guide, relative to the recipe's result. The guide's length is scaled first. Its points are
+    then moved, each in the rotation-minimising frame along the guide."""
 
     guide: int = Field(description="id of the guide")
     length: Annotated[float, Quantity("", 0.01, 100.0)] = Field(default=1.0, description="times its length")
@@ -33,44 +33,44 @@ class Sculpt(Section):
     )
 
     @model_validator(mode="after")
-    def _says_something(self) -> Sculpt:
+    def _not_empty(self) -> Sculpt:
         if self.length == 1.0 and not self.offsets:
             raise refuse("changes nothing; give it 'length' or 'offsets', or take it away")
         return self
 
 
 class Sculpted(Operator):
-    """Guides as they were sculpted; those that are not there are left to be told of."""
+    """Applies manual sculpts to guides; skips a sculpt whose guide does not exist."""
 
     sculpts: list[Sculpt]
 
     def apply(self, curves: Curves, context: Context) -> Curves:
-        """The same guides, the sculpted ones changed; roots stay."""
+        """Returns the guides with their sculpts; roots stay."""
         return sculpted(curves, self.sculpts, context.scalp)
 
 
 def sculpted(guides: Curves, sculpts: Sequence[Sculpt], scalp: Scalp) -> Curves:
-    """Bound guides with what was done to them by hand."""
+    """Applies manual sculpts to guides that are bound to the scalp."""
     rows = {int(name): row for row, name in enumerate(guides.ids)}
-    there = [(rows[sculpt.guide], sculpt) for sculpt in sculpts if sculpt.guide in rows]
-    if not there:
+    found = [(rows[sculpt.guide], sculpt) for sculpt in sculpts if sculpt.guide in rows]
+    if not found:
         return guides
     points = np.array(guides.points, np.float64)
-    for row, sculpt in there:
+    for row, sculpt in found:
         points[guides.offsets[row] : guides.offsets[row + 1]] = lengthened(guides[row], sculpt.length)
     frames = frames_along(guides.with_points(points), scalp)
-    for row, sculpt in there:
+    for row, sculpt in found:
         if sculpt.offsets:
-            here = slice(guides.offsets[row], guides.offsets[row + 1])
-            moved = [(0.0, 0.0, 0.0), *sculpt.offsets[1:]]
-            by = resampled(np.array(moved), int(guides.counts[row]), even=False)
-            points[here] += np.einsum("nij,nj->ni", frames[here], by)
+            own = slice(guides.offsets[row], guides.offsets[row + 1])
+            offsets = [(0.0, 0.0, 0.0), *sculpt.offsets[1:]]
+            by = resampled(np.array(offsets), int(guides.counts[row]), even=False)
+            points[own] += np.einsum("nij,nj->ni", frames[own], by)
     return guides.with_points(points)
 
 
 def sculpts_to(before: Curves, after: Curves, scalp: Scalp) -> list[dict[str, Any]]:
-    """What must be done to the guides ``before`` so that they are those ``after``, as a recipe says it."""
-    changed = np.linalg.norm(after.points - before.points, axis=1) > MOVED
+    """Sculpts that turn the guides ``before`` into ``after``, as tables of a recipe."""
+    changed = np.linalg.norm(after.points - before.points, axis=1) > MIN_MOVE
     chosen = np.flatnonzero(np.logical_or.reduceat(changed, before.offsets[:-1])).tolist() if len(before) else []
     factors = np.round(after.lengths() / np.maximum(before.lengths(), 1e-9), 4)
     points = np.array(before.points, np.float64)
@@ -84,7 +84,7 @@ def sculpts_to(before: Curves, after: Curves, scalp: Scalp) -> list[dict[str, An
         if factors[row] != 1.0:
             sculpt["length"] = float(factors[row])
         own = offsets[before.offsets[row] : before.offsets[row + 1]]
-        if np.abs(own).max() > MOVED:
+        if np.abs(own).max() > MIN_MOVE:
             sculpt["offsets"] = [[f"{1e3 * x:.2f} mm" for x in point] for point in own]
         if len(sculpt) > 1:
             sculpts.append(sculpt)
@@ -92,12 +92,12 @@ def sculpts_to(before: Curves, after: Curves, scalp: Scalp) -> list[dict[str, An
 
 
 def lengthened(points: NDArray, factor: float) -> NDArray[np.floating]:
-    """A guide (n, 3) made so many times as long, with as many points: cut, or going on straight from its tip."""
+    """Scales the length of a guide (n, 3) at its tip, with the same number of points; growth continues straight."""
     if factor == 1.0:
         return points
     return at_lengths(points[None], factor * arc_lengths(points[None]))[0]
 
 
 def frames_along(guides: Curves, scalp: Scalp) -> NDArray[np.float64]:
-    """The rotation-minimising frames of guides, shape (n, 3, 3); they begin at the tangent of the root's frame."""
+    """Rotation-minimising frames of guides, shape (n, 3, 3); the root's tangent is the first axis at the root."""
     return _core.curve_frames(*packed(guides), np.ascontiguousarray(scalp.frames(guides)[:, :, 0]))

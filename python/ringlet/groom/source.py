@@ -1,4 +1,4 @@
-"""The space of files that do not say it themselves."""
+"""Unit and up axis of files that do not store them."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from ringlet.data.stage import StageSpace
 
 
 class Source(Section):
-    """Unit and axis of an OBJ or .hair file. A USD file says its own."""
+    """Unit and up axis of an OBJ or .hair file. A USD file stores its own."""
 
     unit: Literal["m", "cm", "mm", "in"] = Field(default="m", description="unit of an OBJ or .hair file")
     up: Literal["Y", "Z"] = Field(default="Y", description="axis that is up in an OBJ or .hair file")
 
     @property
     def space(self) -> StageSpace:
-        """The space that such a file is in."""
+        """The coordinate space of such a file."""
         return StageSpace(UNITS[self.unit], self.up)

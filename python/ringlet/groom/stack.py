@@ -1,4 +1,4 @@
-"""The stack: guides → locks → shape → curl → clean, each stage a pure function of the one before."""
+"""The operator stack: guides → locks → shape → curl → clean, each stage a pure function of the one before."""
 
 from __future__ import annotations
 
@@ -29,15 +29,16 @@ from ringlet.groom.sculpt import Sculpted
 
 Progress = Callable[[str, int, int], None]
 
-SIZES = (0.03, 2.0)  # of a scalp, at its widest [m]; ten times less or more than a head is another unit
+PLAUSIBLE_SIZES = (0.03, 2.0)  # [m] width of a scalp; a size ten times off suggests a wrong unit
 
 
 @dataclass
 class Memory:
-    """Results of the last run, stage by stage: changing one operator recomputes from there.
+    """Cache of the last run: an edit recomputes the stages from the edited one on.
 
-    files: what was read, by file, as long as it does not change
-    hairs: the hairs, which are only carried along while the locks stay where they are
+    results: key and curves of each stage
+    files:   contents of files that have not changed, by name
+    hairs:   cache of the render hairs
     """
 
     results: dict[str, tuple[str, Curves]] = field(default_factory=dict)
@@ -58,14 +59,16 @@ def make_groom(
     progress: Progress | None = None,
     memory: Memory | None = None,
 ) -> Groom:
-    """Grooms a head: guides, then one curled groom guide per lock.
+    """Evaluates the operator stack of a recipe: guides, then one curled groom guide per lock.
 
-    scalp:        the mesh, in metres, in its rest pose
-    drawn_guides: the curves that ``[guides] file`` names, in metres
-    helpers:      the curves that files of ``[curves]`` hold, in metres
-    scalp_file, scalp_prim, space: where the mesh came from, kept with the groom
+    scalp:        the mesh in its rest pose [m]
+    drawn_guides: the curves of ``[guides] file`` [m]
+    helpers:      the curves of the files of ``[curves]``, by name [m]
+    scalp_file, scalp_prim, space: source of the mesh, stored in the groom
     progress:     called with (stage, 0, 1) before and (stage, 1, 1) after every stage
-    memory:       keeps results between calls, so that an edit recomputes only what follows it
+    memory:       cache between calls, so that an edit recomputes only the stages from there on
+
+    Raises UserError, with the name of the recipe, for settings that do not fit the mesh.
     """
     memory = memory or Memory()
     where = recipe.path.name if recipe.path else "recipe"
@@ -117,15 +120,17 @@ def make_groom(
 
 
 def _with_textures_of_hairs(locks: Curves, hairs: HairSettings, scalp: Mesh) -> Curves:
-    """The locks with what the pictures of ``[maps]`` that hairs ask for are at their roots, as attributes: a groom file
-    holds no pictures, and hairs are made from it."""
-    asked = {value.map for _, value in hairs if isinstance(value, Varied) and value.map in scalp.textures}
-    told = {name: painted(name, locks, scalp, "hairs").astype(np.float32) for name in sorted(asked - {None})}
-    return Curves(locks.points, locks.offsets, locks.ids, {**locks.curve, **told}, locks.point) if told else locks
+    """Adds the textures that hair settings name, sampled at the roots, as curve attributes of the locks.
+
+    A groom file holds no textures, and hairs are made from that file alone.
+    """
+    used = {value.map for _, value in hairs if isinstance(value, Varied) and value.map in scalp.textures}
+    sampled = {name: painted(name, locks, scalp, "hairs").astype(np.float32) for name in sorted(used - {None})}
+    return Curves(locks.points, locks.offsets, locks.ids, {**locks.curve, **sampled}, locks.point) if sampled else locks
 
 
 def _stages(recipe: Recipe) -> list[tuple[str, Operator]]:
-    """Every stage with a name that stays its own when others are added: ``scraggle``, a second one ``scraggle 2``."""
+    """Stages with their unique names: ``scraggle``, a second one ``scraggle 2``. Later stages change no name."""
     stages: list[tuple[str, Operator]] = [("guides", recipe.guides)]
     if recipe.sculpt:
         stages.append(("sculpt", Sculpted(sculpts=recipe.sculpt)))
@@ -142,12 +147,12 @@ def _stages(recipe: Recipe) -> list[tuple[str, Operator]]:
 
 
 def _moves(edit: Edit) -> bool:
-    """Whether an edit is more than settings, which are in the operators already."""
+    """Whether an edit moves points; settings alone are in the operators already."""
     return bool(edit.curve or edit.offsets or edit.move)
 
 
 def _conflicts(recipe: Recipe, guides: Curves, locks: Curves) -> list[str]:
-    """A sentence for every edit of a guide or a lock that is not there."""
+    """One message for each edit of a guide or a lock that does not exist."""
     sculpted = sorted({sculpt.guide for sculpt in recipe.sculpt} - set(guides.ids.tolist()))
     edited = sorted({edit.lock for edit in recipe.edit} - set(locks.ids.tolist()))
     return [
@@ -160,9 +165,9 @@ def _conflicts(recipe: Recipe, guides: Curves, locks: Curves) -> list[str]:
 
 
 def _odd_size(mesh: Mesh, region: str | None) -> Iterator[str]:
-    """A sentence for a scalp that is larger or smaller than any head: its file may name a wrong unit."""
+    """A message for a scalp of implausible size: its file may name a wrong unit."""
     size = float(np.ptp(mesh.points[mesh.triangles[mesh.region(region)]].reshape(-1, 3), axis=0).max())
-    if not SIZES[0] <= size <= SIZES[1]:
+    if not PLAUSIBLE_SIZES[0] <= size <= PLAUSIBLE_SIZES[1]:
         yield (
             f"the scalp is {size:.2g} m across; see whether its file names the unit in which it was made "
             "(metersPerUnit, or `unit` under [scalp] for an OBJ)"
@@ -170,13 +175,13 @@ def _odd_size(mesh: Mesh, region: str | None) -> Iterator[str]:
 
 
 def _run(operator: Operator, curves: Curves, key: str, context: Context, memory: Memory) -> tuple[Curves, str]:
-    """The operator's result, remembered if nothing that it depends on has changed."""
+    """Returns the operator's result and its key; takes the result from the cache when the key is unchanged."""
     key = _key(key, context.purpose.encode(), operator.model_dump_json().encode())
-    known = memory.results.get(context.purpose)
-    if known is None or known[0] != key:
-        known = (key, operator.apply(curves, context))
-        memory.results[context.purpose] = known
-    return known[1], key
+    cached = memory.results.get(context.purpose)
+    if cached is None or cached[0] != key:
+        cached = (key, operator.apply(curves, context))
+        memory.results[context.purpose] = cached
+    return cached[1], key
 
 
 def _scalp(recipe: Recipe, mesh: Mesh, memory: Memory) -> tuple[str, Scalp]:
@@ -184,7 +189,7 @@ def _scalp(recipe: Recipe, mesh: Mesh, memory: Memory) -> tuple[str, Scalp]:
         str((recipe.seed, recipe.scalp.region)),
         mesh.points.tobytes(),
         mesh.triangles.tobytes(),
-        *(part for kind in (mesh.regions, mesh.maps, mesh.vectors, mesh.textures) for part in _contents(kind)),
+        *(chunk for kind in (mesh.regions, mesh.maps, mesh.vectors, mesh.textures) for chunk in _contents(kind)),
         b"" if mesh.uv is None else mesh.uv.tobytes(),
     )
     if memory.scalp is None or memory.scalp[0] != key:
@@ -199,6 +204,6 @@ def _contents(named: dict[str, NDArray]) -> Iterator[bytes]:
 
 def _key(before: str, *content: bytes) -> str:
     digest = blake2b(before.encode(), digest_size=16)
-    for part in content:
-        digest.update(part)
+    for chunk in content:
+        digest.update(chunk)
     return digest.hexdigest()

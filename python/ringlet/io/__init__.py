@@ -1,4 +1,4 @@
-"""Files in and out: USD; meshes and polylines from OBJ, hairs from .hair."""
+"""Reads and writes USD; reads meshes and polylines from OBJ, and hairs from .hair."""
 
 from ringlet.io.read import read_clip, read_curves, read_mesh, read_space
 from ringlet.io.texture import read_texture

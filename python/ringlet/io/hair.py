@@ -1,6 +1,6 @@
 """Cem Yuksel's .hair files: hair models as plain arrays.
 
-Format: http://www.cemyuksel.com/research/hairmodels/. A file says neither its unit nor its up-axis.
+Format: http://www.cemyuksel.com/research/hairmodels/. A file stores neither its unit nor its up-axis.
 """
 
 from __future__ import annotations
@@ -23,7 +23,10 @@ SEGMENTS, POINTS, THICKNESS, TRANSPARENCY, COLOR = (1 << bit for bit in range(5)
 
 
 def read_hair(path: Path, space: StageSpace) -> Curves:
-    """Reads all hairs, root first; point attributes ``width``, a diameter [m], and, where there, ``color``."""
+    """Reads all hairs, root first, with the point attributes ``width``, a diameter [m], and ``color`` if present.
+
+    Raises UserError for a file that is not readable, truncated or inconsistent.
+    """
     try:
         data = path.read_bytes()
     except OSError as error:
@@ -33,11 +36,11 @@ def read_hair(path: Path, space: StageSpace) -> Curves:
     _, hairs, points, arrays, segments, thickness, *_ = HEADER.unpack_from(data)
     if not arrays & POINTS:
         raise UserError(f"{path}: holds no points; export it again")
-    if len(data) < HEADER.size + 12 * points:  # before room is made for what is not there
+    if len(data) < HEADER.size + 12 * points:  # checked before memory is allocated
         raise UserError(f"{path}: has {len(data)} bytes, too few for {points} points; export it again")
 
     def take(flag: int, dtype: str, count: int) -> NDArray | None:
-        """The next array of the file, if it is there."""
+        """Reads the next array of the file; None when its flag is not set."""
         nonlocal place
         if not arrays & flag:
             return None
@@ -69,7 +72,7 @@ def read_hair(path: Path, space: StageSpace) -> Curves:
     }
     if colors is not None:
         attributes["color"] = colors.reshape(-1, 3)
-    with np.errstate(invalid="ignore"):  # what is no number is refused below
+    with np.errstate(invalid="ignore"):  # the check below rejects NaN
         points_of_hairs = to_metres(places.reshape(-1, 3).astype(np.float64), space)
     curves = Curves(
         points_of_hairs,

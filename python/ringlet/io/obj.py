@@ -1,6 +1,6 @@
 """Wavefront OBJ: meshes and polylines.
 
-Format: http://paulbourke.net/dataformats/obj/. A file says neither its unit nor its up-axis.
+Format: http://paulbourke.net/dataformats/obj/. A file stores neither its unit nor its up-axis.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from ringlet.data.stage import StageSpace
 from ringlet.io.polygons import check_polygons, fans
 from ringlet.io.space import check_points, to_metres
 
-MOST_POINTS = 2**31 - 1
-MOST_GROUPS = 100  # that a face can be in
+MAX_POINTS = 2**31 - 1
+MAX_GROUPS = 100  # largest number of groups of a face
 
 
 @dataclass
 class _Content:
-    """What the lines of a file say; indices count from 0."""
+    """Parsed contents of a file; indices count from 0."""
 
     points: list[list[float]] = field(default_factory=list)
     uv: list[list[float]] = field(default_factory=list)
@@ -61,7 +61,11 @@ def read_obj_mesh(path: Path, space: StageSpace) -> Mesh:
 
 
 def _triangles_of(chosen: NDArray[np.integer], faces: NDArray[np.integer]) -> NDArray[np.int32]:
-    """The triangles of polygons, both in order. ``faces``: the polygon of each triangle."""
+    """Triangles of chosen polygons, in order.
+
+    chosen: ascending indices of polygons
+    faces:  polygon of each triangle, ascending
+    """
     begin, end = np.searchsorted(faces, chosen), np.searchsorted(faces, chosen, side="right")
     before = np.cumsum(end - begin) - (end - begin)
     return (np.repeat(begin - before, end - begin) + np.arange((end - begin).sum())).astype(np.int32)
@@ -102,16 +106,16 @@ def _parse(path: Path) -> _Content:
                 content.lines.append([_index(word.split("/")[0], len(content.points)) for word in words])
             elif key in ("g", "o"):
                 named = list(dict.fromkeys(words))
-                if len(named) > MOST_GROUPS:
-                    raise UserError(f"{path}: line {number} names {len(named)} groups; must be at most {MOST_GROUPS}")
+                if len(named) > MAX_GROUPS:
+                    raise UserError(f"{path}: line {number} names {len(named)} groups; must be at most {MAX_GROUPS}")
         except ValueError:
             raise UserError(f"{path}: line {number} is '{line.strip()[:60]}'; must be numbers after '{key}'") from None
     return content
 
 
 def _index(word: str, count: int) -> int:
-    """An index that counts from 1, or back from the last one there is so far, as one that counts from 0."""
+    """Converts an OBJ index, which counts from 1 or backwards from the last element, to one that counts from 0."""
     index = int(word)
-    if abs(index) > MOST_POINTS:
+    if abs(index) > MAX_POINTS:
         raise ValueError
     return index - 1 if index > 0 else count + index if index < 0 else -1

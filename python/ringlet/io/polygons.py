@@ -1,4 +1,4 @@
-"""Polygons of a file as triangles."""
+"""Triangulation of polygons."""
 
 from __future__ import annotations
 
@@ -9,10 +9,12 @@ from ringlet.data.errors import UserError
 
 
 def check_polygons(counts: NDArray, indices: NDArray, points: int, where: str) -> None:
-    """Refuses polygons that are none, too small, or use points that are not there.
+    """Raises UserError for an empty list of polygons, fewer than 3 corners, or indices out of range.
 
     counts:  corners per polygon, shape (f,)
-    indices: the point of each corner, polygon after polygon
+    indices: point of each corner, polygon by polygon
+    points:  number of points
+    where:   name of the mesh, for messages
     """
     if len(counts) == 0:
         raise UserError(f"{where}: has no faces; export it again or choose another mesh")
@@ -25,11 +27,11 @@ def check_polygons(counts: NDArray, indices: NDArray, points: int, where: str) -
 
 
 def fans(counts: NDArray, *, clockwise: bool = False) -> tuple[NDArray, NDArray]:
-    """Cuts polygons into fans: the corners of each triangle, shape (m, 3), and its polygon, shape (m,)."""
+    """Triangulates polygons as fans: corners of each triangle, shape (m, 3), and its polygon, shape (m,)."""
     faces = np.repeat(np.arange(len(counts)), counts - 2)
     starts, cuts = np.cumsum(counts) - counts, np.cumsum(counts - 2) - (counts - 2)
     step = np.arange(len(faces)) - cuts[faces]
-    around = np.stack([np.zeros_like(step), step + 1, step + 2], axis=1)
-    if clockwise:  # walk round the other way, from the same first corner
-        around[:, 1:] = counts[faces][:, None] - around[:, 1:]
-    return starts[faces][:, None] + around, faces
+    local = np.stack([np.zeros_like(step), step + 1, step + 2], axis=1)
+    if clockwise:  # reverses the winding, from the same first corner
+        local[:, 1:] = counts[faces][:, None] - local[:, 1:]
+    return starts[faces][:, None] + local, faces

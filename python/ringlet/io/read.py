@@ -1,4 +1,4 @@
-"""Meshes and curves from a file of any known format, chosen by its suffix."""
+"""Reads meshes and curves of any supported format, chosen by the file's suffix."""
 
 from __future__ import annotations
 
@@ -22,15 +22,17 @@ METRES = StageSpace()
 def read_mesh(path: Path | str, prim: str | None = None, *, space: StageSpace = METRES) -> Mesh:
     """Reads a mesh in its rest pose, in metres and Y-up, from USD or OBJ.
 
-    Polygons are cut into fans (subdivision surfaces by their cage). Face ``GeomSubset``s, or the groups of an OBJ,
-    become regions. The rest pose is the default value of the points, or the first time sample where there is none. A
-    USD file without ``metersPerUnit`` is in centimetres, as USD has it.
+    Polygons are triangulated as fans; a subdivision surface is read as its cage. Face ``GeomSubset``s, or the groups
+    of an OBJ, become regions. The rest pose is the default value of the points, or else the first time sample. A USD
+    file without ``metersPerUnit`` is in centimetres, the fallback of USD.
 
-    prim:  its path in USD; by default the only mesh, or the only one with a region called ``scalp``
-    space: unit and up-axis of an OBJ, which does not say
+    prim:  prim path in USD; by default the only mesh, or the only one with a region called ``scalp``
+    space: unit and up-axis of an OBJ, which stores neither
+
+    Raises UserError for a file that is not readable, or has no such mesh.
     """
     path = Path(path)
-    return read_obj_mesh(_whole(path, prim), space) if _is(path, ".obj") else read_usd_mesh(path, prim)
+    return read_obj_mesh(_without_prim(path, prim), space) if _has_suffix(path, ".obj") else read_usd_mesh(path, prim)
 
 
 def read_clip(
@@ -40,47 +42,49 @@ def read_clip(
     *,
     space: StageSpace = METRES,
 ) -> Clip:
-    """Reads the positions of a mesh at all whole frames, with every transform above it applied.
+    """Reads the positions of a mesh at all whole frames, in world space.
 
     prim, space: as for ``read_mesh``
-    frames:      first and last frame, instead of the range of the stage; a mesh that does not move gives one sample
+    frames:      first and last frame, instead of the range of the stage; a static mesh gives one sample
     """
     path = Path(path)
-    if _is(path, ".obj"):
-        return Clip(np.zeros(1), read_obj_mesh(_whole(path, prim), space).points[None], space.fps)
+    if _has_suffix(path, ".obj"):
+        return Clip(np.zeros(1), read_obj_mesh(_without_prim(path, prim), space).points[None], space.fps)
     return read_usd_clip(path, prim, frames)
 
 
 def read_curves(path: Path | str, prim: str | None = None, *, space: StageSpace = METRES) -> Curves:
     """Reads curves in their rest pose as polylines, in metres and Y-up, from USD, OBJ or .hair.
 
-    Cubic curves of USD are evaluated at 6 points per segment, but for pinned Catmull-Rom curves, which keep their
-    vertices. Names come from a primvar like ``groom_id``, or are 0, 1, 2 …; primvars become attributes, ``widths`` the
-    attribute ``width`` [m].
+    Cubic curves of USD are evaluated at 6 points per segment; pinned Catmull-Rom curves keep their vertices. Ids come
+    from a primvar like ``groom_id``, or are 0, 1, 2 …. Primvars become attributes, and ``widths`` the attribute
+    ``width`` [m].
 
-    prim:  the path of a ``BasisCurves`` prim in USD; by default the only one there is
-    space: unit and up-axis of an OBJ or .hair file, which do not say
+    prim:  path of a ``BasisCurves`` prim in USD; by default the only one
+    space: unit and up-axis of an OBJ or .hair file, which store neither
+
+    Raises UserError for a file that is not readable, or has no such curves.
     """
     path = Path(path)
-    if _is(path, ".obj"):
-        return read_obj_curves(_whole(path, prim), space)
-    return read_hair(_whole(path, prim), space) if _is(path, ".hair") else read_usd_curves(path, prim)
+    if _has_suffix(path, ".obj"):
+        return read_obj_curves(_without_prim(path, prim), space)
+    return read_hair(_without_prim(path, prim), space) if _has_suffix(path, ".hair") else read_usd_curves(path, prim)
 
 
 def read_space(path: Path | str, *, space: StageSpace = METRES) -> StageSpace:
-    """Unit, up-axis and rate of a file; ``space`` for an OBJ or .hair file.
+    """Unit, up-axis and frame rate of a file; ``space`` for an OBJ or .hair file.
 
-    Where a USD file does not say: 0.01 m (USD's own fallback), Y and 24.
+    Fallbacks of a USD file: 0.01 m, Y and 24 frames per second.
     """
-    return space if _is(Path(path), ".obj", ".hair") else read_usd_space(path)
+    return space if _has_suffix(Path(path), ".obj", ".hair") else read_usd_space(path)
 
 
-def _is(path: Path, *suffixes: str) -> bool:
+def _has_suffix(path: Path, *suffixes: str) -> bool:
     return path.suffix.lower() in suffixes
 
 
-def _whole(path: Path, prim: str | None) -> Path:
-    """The path of a file that is read whole; refuses a prim in it."""
+def _without_prim(path: Path, prim: str | None) -> Path:
+    """Returns the path of a format without prims; raises UserError when one is named."""
     if prim is not None:
         raise UserError(f"{path}: has no prims such as {prim}; leave it out")
     return path

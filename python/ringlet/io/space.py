@@ -1,4 +1,4 @@
-"""Points between the space of a file and ours: metres, Y-up."""
+"""Conversion of points between the space of a file and metres, Y-up."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ringlet.data.stage import StageSpace
 
 
 def to_metres(points: NDArray, space: StageSpace) -> NDArray:
-    """Points of a file, shape (n, 3) → [m], Y-up, same type."""
+    """Converts points of a file, shape (n, 3), to metres, Y-up; keeps their type."""
     scaled = points * points.dtype.type(space.meters_per_unit)
     if space.up_axis == "Z":  # a quarter turn about x
         scaled = np.stack([scaled[:, 0], scaled[:, 2], -scaled[:, 1]], axis=1)
@@ -18,7 +18,7 @@ def to_metres(points: NDArray, space: StageSpace) -> NDArray:
 
 
 def from_metres(points: NDArray, space: StageSpace) -> NDArray[np.float32]:
-    """Points [m], Y-up, shape (n, 3) → points of a file."""
+    """Converts points [m], Y-up, shape (n, 3), to the space of a file, float32."""
     scaled = points * points.dtype.type(1.0 / space.meters_per_unit)
     if space.up_axis == "Z":
         scaled = np.stack([scaled[:, 0], -scaled[:, 2], scaled[:, 1]], axis=1)
@@ -26,7 +26,7 @@ def from_metres(points: NDArray, space: StageSpace) -> NDArray[np.float32]:
 
 
 def check_points(points: NDArray, where: str) -> None:
-    """Refuses points of a file, shape (n, 3), that are none or not finite."""
+    """Raises UserError for an empty list of points, shape (n, 3), or points that are not finite."""
     if len(points) == 0:
         raise UserError(f"{where}: has no points; export it again or choose another")
     if not (finite := np.isfinite(points).all(axis=1)).all():

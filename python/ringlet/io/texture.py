@@ -1,4 +1,4 @@
-"""Painted values from pictures."""
+"""Reads maps from image files."""
 
 from __future__ import annotations
 
@@ -14,9 +14,11 @@ WHITE = {"1": 1.0, "L": 255.0, "I;16": 65535.0, "I;16B": 65535.0, "I": 65535.0, 
 
 
 def read_texture(path: Path | str) -> NDArray[np.float64]:
-    """A picture of one channel as numbers, black 0 and white 1, shape (rows, columns); colours by their luma.
+    """Reads an image as one channel, black 0 and white 1, shape (rows, columns); colours by their luma.
 
-    The numbers are those of the file: no gamma is taken out. Pictures of floating-point numbers keep theirs.
+    Values are those of the file, without gamma decoding. Floating-point images keep their values.
+
+    Raises UserError for a file that is not a readable image.
     """
     path = Path(path)
     try:

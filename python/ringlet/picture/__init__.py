@@ -1,4 +1,4 @@
-"""Pictures: a path-traced still, and a contact sheet of a clip."""
+"""Pictures: path-traced stills, contact sheets of clips, and comparisons of shapes."""
 
 from ringlet.picture.beads import beads
 from ringlet.picture.bodies import PosedBody, made_of

@@ -1,4 +1,4 @@
-"""Bodies in a picture: a mesh as it stands at one frame, and what it is made of."""
+"""Bodies in a picture: a mesh posed at one frame, and its material."""
 
 from __future__ import annotations
 
@@ -19,7 +19,9 @@ class PosedBody:
 
     mesh:    triangles, name and colour
     points:  positions at that frame [m], shape (n, 3)
-    opacity: from 0 to 1; below 1, what is behind it is seen through it
+    opacity: from 0 to 1
+
+    Raises UserError for points of another shape than the mesh's, or not finite.
     """
 
     mesh: Mesh
@@ -35,10 +37,10 @@ class PosedBody:
             raise UserError(f"{self.mesh.name}: point {broken[0]} is {self.points[broken[0]]}; must be finite")
 
 
-# Where Mitsuba finds the colours of vertices.
+# Name of the vertex colours in Mitsuba.
 COLORS = "vertex_color"
 
-# What a mesh is made of is guessed from the last part of its name; the first pattern that matches wins.
+# The material is guessed from the last component of the mesh's name; the first matching pattern decides.
 _MADE_OF = (
     ("matte", r"brow|lash|mouth|nostril"),
     ("eye", r"eye|white|iris|pupil|cornea|sclera|teeth"),
@@ -48,22 +50,22 @@ _MADE_OF = (
 
 
 def made_of(mesh: Mesh) -> str:
-    """What a mesh is made of, guessed from its name: skin, eye, cloth or matte."""
+    """Material of a mesh, guessed from its name: skin, eye, cloth or matte."""
     name = re.split(r"[/\s]", mesh.name.lower())[-1]
     return next((kind for kind, pattern in _MADE_OF if re.search(pattern, name)), "matte")
 
 
 def material(mesh: Mesh, opacity: float = 1.0) -> dict[str, Any]:
-    """The Mitsuba material of a mesh, coloured by its display colour and guessed from its name."""
+    """Mitsuba material of a mesh: kind guessed from its name, base colour from its display colour."""
     color: dict[str, Any] = {"type": "rgb", "value": [float(np.clip(c, 0.0, 1.0)) for c in mesh.color]}
     if mesh.colors is not None:
         color = {"type": "mesh_attribute", "name": COLORS}
-    look: dict[str, dict[str, Any]] = {
-        # `flatness` and `sheen` stand in for light that wanders under the skin: softer shading, a warm edge
+    parameters: dict[str, dict[str, Any]] = {
+        # `flatness` and `sheen` approximate subsurface scattering: softer shading, a warm edge
         "skin": {"roughness": 0.48, "specular": 0.4, "flatness": 0.5, "sheen": 0.1, "sheen_tint": 0.8},
         "eye": {"roughness": 0.06, "specular": 0.35},
         "cloth": {"roughness": 0.9, "specular": 0.15, "sheen": 0.5, "sheen_tint": 0.5},
         "matte": {"roughness": 0.8, "specular": 0.2},
     }
-    made = {"type": "twosided", "bsdf": {"type": "principled", "base_color": color, **look[made_of(mesh)]}}
-    return made if opacity == 1.0 else {"type": "mask", "opacity": opacity, "bsdf": made}
+    bsdf = {"type": "twosided", "bsdf": {"type": "principled", "base_color": color, **parameters[made_of(mesh)]}}
+    return bsdf if opacity == 1.0 else {"type": "mask", "opacity": opacity, "bsdf": bsdf}

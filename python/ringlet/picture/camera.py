@@ -1,4 +1,4 @@
-"""Framing: where a portrait lens must stand so that the subject just fills the picture."""
+"""Framing: the nearest position of a portrait lens from which the subject fits the picture."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ringlet.data.errors import UserError
 
-# Where the camera stands, seen from the subject: turn from the front (+Z) to its left (+X), and height [degrees].
+# Azimuth from the front (+Z) to the subject's left (+X), and elevation of the camera [degrees].
 VIEWS: dict[str, tuple[float, float]] = {
     "three_quarter": (34.0, 7.0),
     "front": (0.0, 4.0),
@@ -19,7 +19,7 @@ VIEWS: dict[str, tuple[float, float]] = {
     "back": (180.0, 8.0),
 }
 
-# Half the long side of a 36 mm × 24 mm picture behind an 85 mm lens, as a slope.
+# Tangent of half the field of view on the long side: an 85 mm lens on a 36 mm × 24 mm sensor.
 LENS = 18.0 / 85.0
 
 UP = np.array([0.0, 1.0, 0.0])
@@ -29,9 +29,9 @@ UP = np.array([0.0, 1.0, 0.0])
 class Camera:
     """A pinhole camera.
 
-    origin:   where it stands [m], shape (3,)
-    axes:     its right, up and backward directions, the rows of a (3, 3) array
-    distance: from the camera to the middle of the subject [m]
+    origin:   position [m], shape (3,)
+    axes:     right, up and backward directions, the rows of a (3, 3) array
+    distance: from the camera to the centre of the subject [m]
     slopes:   half the width and half the height of the picture, at unit distance
     """
 
@@ -42,23 +42,23 @@ class Camera:
 
     @property
     def target(self) -> NDArray[np.float64]:
-        """The point in the middle of the picture, at the subject's distance [m], shape (3,)."""
+        """Point at the centre of the picture, at the subject's distance [m], shape (3,)."""
         return self.origin - self.distance * self.axes[2]
 
     @property
     def fov(self) -> float:
-        """Horizontal opening angle [degrees]."""
+        """Horizontal field of view [degrees]."""
         return 2.0 * degrees(atan(self.slopes[0]))
 
     def project(self, points: NDArray[np.floating]) -> NDArray[np.float64]:
-        """Where points (n, 3) appear: from (0, 0), top left, to (1, 1), bottom right; shape (n, 2)."""
+        """Projects points (n, 3) to the picture: (0, 0) top left to (1, 1) bottom right; shape (n, 2)."""
         local = (points - self.origin) @ self.axes.T
-        seen = local[:, :2] / (-local[:, 2:] * np.array(self.slopes))
-        return 0.5 + 0.5 * seen * (1.0, -1.0)
+        projected = local[:, :2] / (-local[:, 2:] * np.array(self.slopes))
+        return 0.5 + 0.5 * projected * (1.0, -1.0)
 
 
 def angles(view: str | tuple[float, float]) -> tuple[float, float]:
-    """Azimuth and elevation [degrees] of a named view; a pair of them passes through."""
+    """Azimuth and elevation [degrees] of a view name; returns a pair unchanged. Raises UserError for another name."""
     if not isinstance(view, str):
         return view
     if view not in VIEWS:
@@ -74,33 +74,33 @@ def frame(
     margin: float = 0.06,
     headroom: float = 0.4,
 ) -> Camera:
-    """The nearest camera of a view that sees every point of the subject.
+    """Nearest camera of a view that sees every point of the subject.
 
     subject:  arrays of positions [m], each of shape (n, 3)
     view:     a name of ``VIEWS``, or azimuth and elevation [degrees]
     aspect:   width over height of the picture
-    margin:   part of the width and height kept free at each edge
-    headroom: part of the free height that goes above the subject
+    margin:   fraction of the width and height that stays free at each edge
+    headroom: fraction of the free height above the subject
     """
     azimuth, elevation = (radians(a) for a in angles(view))
     backward = np.array([sin(azimuth) * cos(elevation), sin(elevation), cos(azimuth) * cos(elevation)])
     right = np.array([cos(azimuth), 0.0, -sin(azimuth)])
     axes = np.stack([right, np.cross(backward, right), backward])
     slopes = (LENS * min(aspect, 1.0), LENS / max(aspect, 1.0))
-    room = np.array(slopes) * (1.0 - 2.0 * margin)
+    slope = np.array(slopes) * (1.0 - 2.0 * margin)
 
-    # A point (x, y, z) in camera axes is inside when |x - cx| ≤ room (d - z): four planes, so only the farthest point
-    # along each plane's normal counts, and the smallest distance d and the centre c follow directly.
-    reach_right = reach_up = reach_left = reach_down = nearest = deepest = -np.inf
+    # A point (x, y, z) in camera axes is visible for |x - cx| ≤ slope (d - z), and likewise in y. These are four
+    # half-spaces, so the extreme point along each normal determines the smallest distance d and the centre c.
+    extent_right = extent_up = extent_left = extent_down = nearest = deepest = -np.inf
     for points in subject:
         x, y, z = axes @ np.asarray(points, np.float64).T
-        reach_right = max(reach_right, (x + room[0] * z).max())
-        reach_left = max(reach_left, (-x + room[0] * z).max())
-        reach_up = max(reach_up, (y + room[1] * z).max())
-        reach_down = max(reach_down, (-y + room[1] * z).max())
+        extent_right = max(extent_right, (x + slope[0] * z).max())
+        extent_left = max(extent_left, (-x + slope[0] * z).max())
+        extent_up = max(extent_up, (y + slope[1] * z).max())
+        extent_down = max(extent_down, (-y + slope[1] * z).max())
         nearest, deepest = max(nearest, z.max()), max(deepest, -z.min())
-    stand = max((reach_right + reach_left) / (2.0 * room[0]), (reach_up + reach_down) / (2.0 * room[1]))
-    lowest, highest = reach_up - room[1] * stand, room[1] * stand - reach_down
-    centre_x = 0.5 * (reach_right - reach_left)
+    distance = max((extent_right + extent_left) / (2.0 * slope[0]), (extent_up + extent_down) / (2.0 * slope[1]))
+    lowest, highest = extent_up - slope[1] * distance, slope[1] * distance - extent_down
+    centre_x = 0.5 * (extent_right - extent_left)
     centre_y = lowest + headroom * (highest - lowest)
-    return Camera(np.array([centre_x, centre_y, stand]) @ axes, axes, stand - 0.5 * (nearest - deepest), slopes)
+    return Camera(np.array([centre_x, centre_y, distance]) @ axes, axes, distance - 0.5 * (nearest - deepest), slopes)

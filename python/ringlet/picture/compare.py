@@ -1,4 +1,4 @@
-"""The same hair in several shapes side by side, seen by one camera; the outline of the first over the others."""
+"""Comparison of several shapes of the same hair: side by side, one camera, outline of the first over the others."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ringlet.picture.render import Progress, hair_color
 from ringlet.picture.sheet import draw_tile, lay_out, see_all, thin_out
 
 OUTLINE = (255, 176, 59)
-CLOSE = 7  # gaps between curls up to so many pixels are no part of an outline
+CLOSE = 7  # largest gap between curls that an outline ignores [pixels]
 
 
 def compare(
@@ -59,7 +59,7 @@ def compare(
 
 
 def _outline(hairs: Curves, bodies: Sequence[PosedBody], camera: Camera, size: tuple[int, int]) -> NDArray[np.bool_]:
-    """The pixels along the edge of hair and bodies together, shape (height, width)."""
+    """Pixels on the silhouette of hair and bodies together, shape (height, width)."""
     mask = Image.new("L", size, 0)
     draw = ImageDraw.Draw(mask)
     for body in bodies:
@@ -68,5 +68,5 @@ def _outline(hairs: Curves, bodies: Sequence[PosedBody], camera: Camera, size: t
     places = camera.project(hairs.points) * size
     for begin, end in zip(hairs.offsets[:-1], hairs.offsets[1:], strict=True):
         draw.line([(float(x), float(y)) for x, y in places[begin:end]], fill=255, width=2)
-    whole = mask.filter(ImageFilter.MaxFilter(CLOSE)).filter(ImageFilter.MinFilter(CLOSE))
-    return np.asarray(ImageChops.difference(whole, whole.filter(ImageFilter.MinFilter(3)))) > 0
+    closed = mask.filter(ImageFilter.MaxFilter(CLOSE)).filter(ImageFilter.MinFilter(CLOSE))
+    return np.asarray(ImageChops.difference(closed, closed.filter(ImageFilter.MinFilter(3)))) > 0

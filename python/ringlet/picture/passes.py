@@ -1,4 +1,4 @@
-"""Passes of one picture with different random numbers: from what they differ in, specks and noise are known."""
+"""Accumulation of independent render passes; their differences reveal fireflies and noise."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from ringlet.picture.denoise import denoise
 
 
 class Passes:
-    """Light and coverage of passes, each of shape (height, width, 4), in two halves: passes 0, 2, 4 … and 1, 3, 5 ….
+    """Sums of passes in two halves, the even and the odd passes. A pass has light and coverage, (height, width, 4).
 
-    count: how many there are
+    count: number of passes
     """
 
     def __init__(self) -> None:
@@ -36,35 +36,35 @@ class Passes:
 
     @property
     def counts(self) -> tuple[int, int]:
-        """How many are in each half."""
+        """Number of passes in each half."""
         return (self.count + 1) // 2, self.count // 2
 
     def mean(self) -> NDArray[np.float64]:
-        """The picture as it is."""
+        """Mean of all passes."""
         return (self._sums[0] + self._sums[1]) / self.count
 
     def without_specks(self) -> list[NDArray[np.float64]]:
-        """The sums of both halves, with specks spread over their neighbourhood; at least two passes.
+        """Sums of both halves with fireflies removed and their energy spread over the neighbourhood.
 
-        A speck is a pixel with one pass much brighter than the mean of the others: a rare path met a light through
-        many hairs. It is taken down to what the others say, and the light that is lost so goes to the pixels around
-        it, so that hair, which is lit by many such paths, stays as bright as it is.
+        A firefly is a pixel in which one pass is much brighter than the mean of the others: a rare path reached a
+        light through many hairs. The pixel is reduced to that mean. Its surplus light is distributed to the pixels
+        around it, since hair is lit by many such paths and would darken. Needs at least two passes.
         """
         total = self._sums[0] + self._sums[1]
         others = (total - self._brightest) / (self.count - 1)
-        speck = np.maximum(self._brightest - (1.5 * others + 0.05), 0.0)
-        speck[:, :, 3] = 0.0  # coverage has none
-        before, after = (gaussian_filter(light, (2.5, 2.5, 0.0)) for light in (total, total - speck))
+        firefly = np.maximum(self._brightest - (1.5 * others + 0.05), 0.0)
+        firefly[:, :, 3] = 0.0  # coverage has no fireflies
+        before, after = (gaussian_filter(light, (2.5, 2.5, 0.0)) for light in (total, total - firefly))
         spread = np.clip(before / np.maximum(after, 1e-9), 1.0, 2.0)
-        return [spread * (self._sums[half] - speck * (self._half_of_brightest == half)) for half in (0, 1)]
+        return [spread * (self._sums[half] - firefly * (self._half_of_brightest == half)) for half in (0, 1)]
 
     def without_noise(self, sums: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:
-        """The mean of all passes without much of its noise, from the sums of both halves; at least three passes.
+        """Denoised mean of all passes, from the sums of both halves; needs at least three passes.
 
-        Each half is cleaned as the other one looks, specks and all: they are as noisy as they look.
+        The other half, with its fireflies, is the guide of each half, since the variance includes them.
         """
         variance = np.maximum(self._squares / self.count - self.mean() ** 2, 0.0) * self.count / (self.count - 1)
         (many, few), (a, b) = self.counts, sums
-        calm = denoise(a / many, self._sums[1] / few, variance / few) * many
-        calm += denoise(b / few, self._sums[0] / many, variance / many) * few
-        return calm / self.count
+        denoised = denoise(a / many, self._sums[1] / few, variance / few) * many
+        denoised += denoise(b / few, self._sums[0] / many, variance / many) * few
+        return denoised / self.count

@@ -1,4 +1,4 @@
-"""Where something is on a head: three views with marks."""
+"""A plot of places on a head: three views with marks."""
 
 from __future__ import annotations
 
@@ -13,15 +13,16 @@ from numpy.typing import NDArray
 from ringlet.data.files import replacing
 
 COLORS = ("#d62728", "#ff7f0e", "#1f77b4", "#2ca02c")
-VIEWS = {"front": (0, 1, 1.0), "side": (2, 1, 1.0), "top": (0, 2, -1.0)}  # axes across and up, and the sign of that
+VIEWS = {"front": (0, 1, 1.0), "side": (2, 1, 1.0), "top": (0, 2, -1.0)}  # horizontal axis, vertical axis and its sign
 
 
 def write_places(
     body: NDArray, locks: NDArray, places: Mapping[str, NDArray], path: Path | str, title: str = ""
 ) -> None:
-    """Writes a PNG: the points of a body and of locks in grey, and marked places on them, from three sides.
+    """Writes a PNG with the points of a body and of locks in grey and marked places, in three views.
 
-    body, locks, places: positions [m], shape (n, 3)
+    body, locks: positions [m], shape (n, 3)
+    places:      positions of marks by name [m], shape (n, 3) each
     """
     matplotlib.rcParams["svg.hashsalt"] = "ringlet"
     figure = Figure(figsize=(13, 5), layout="constrained")

@@ -1,4 +1,4 @@
-"""Path tracing in passes: bodies and hairs in the studio, seen by a camera, as linear light."""
+"""Path tracing of bodies and hairs in the studio, in passes, to linear light."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from ringlet.picture.passes import Passes
 from ringlet.picture.strands import fibres, load_fibres
 from ringlet.picture.studio import backdrop, lights
 
-# Told what is being done, how many steps of it are done, and of how many.
+# Arguments: name of the stage, steps done, total steps.
 Progress = Callable[[str, int, int], None]
 
 
 @dataclass(frozen=True)
 class HairColor:
-    """Pigments in a hair (the two kinds of melanin, Chiang et al. 2016) and how rough its cuticle is."""
+    """Melanin concentrations of a hair (Chiang et al. 2016) and the roughness of its cuticle."""
 
     eumelanin: float
     pheomelanin: float
@@ -42,29 +42,29 @@ HAIR_COLORS: dict[str, HairColor] = {
     "gray": HairColor(0.12, 0.0, 0.36),
 }
 
-# What the hairs are called in a scene.
+# Name of the hairs in a scene.
 HAIRS = "hairs"
 
-# The least diameter at which a hair is drawn in a still [pixels].
+# Smallest drawn diameter of a hair in a still [pixels].
 THINNEST = 0.3
 
-# Samples per pixel of one pass: enough for them to be spread evenly over a pixel and over the lights, few enough for
-# some passes to compare. What the time may cut short has smaller ones, since noise is known from three passes on.
-MOST_PER_PASS, MOST_AGAINST_TIME, FEWEST_PASSES = 8, 4, 4
+# Samples per pixel of one pass: enough to stratify a pixel and the lights, few enough for several passes to compare.
+# A time limit makes passes smaller, since denoising needs three of them.
+MAX_PASS_SAMPLES, MAX_TIMED_PASS_SAMPLES, MIN_PASSES = 8, 4, 4
 
-# How much of its noise hair keeps: single hairs are as small as noise, and would go with it.
+# Fraction of the noise that stays on hair: the denoiser would remove single hairs with it.
 GRAIN = 0.68
 
 
 def hair_color(name: str) -> HairColor:
-    """A colour by name."""
+    """Hair colour of a name; raises UserError for an unknown one."""
     if name not in HAIR_COLORS:
         raise UserError(f"picture: there is no hair colour '{name}'; choose one of {', '.join(HAIR_COLORS)}")
     return HAIR_COLORS[name]
 
 
 def mitsuba() -> Any:
-    """Mitsuba, in the variant that runs on any computer; loaded when first needed, since that takes a moment."""
+    """Loads Mitsuba in the variant ``scalar_rgb``, which runs on any machine; lazily, since loading is slow."""
     import mitsuba as mi
 
     mi.set_variant("scalar_rgb")
@@ -81,9 +81,10 @@ def build_scene(
     max_depth: int,
     thinnest: float = THINNEST,
 ) -> Any:
-    """The Mitsuba scene, moved to the origin and scaled so that single precision resolves a hair's width.
+    """Builds the Mitsuba scene, centred and scaled so that single precision resolves a hair's width.
 
-    thinnest: the least diameter at which a hair is drawn [pixels]
+    size:     width and height of the picture [pixels]
+    thinnest: smallest drawn diameter of a hair [pixels]
     """
     mi = mitsuba()
     scale = 100.0 / camera.distance
@@ -119,18 +120,18 @@ def build_scene(
     if hairs is not None and len(hairs):
         controls, offsets = fibres(hairs)
         controls[:, :3] -= target.astype(np.float32)
-        # A hair far thinner than a pixel is mostly missed: it costs many samples and looks like noise. Drawn a little
-        # wider it also stands in for the many hairs that a groom leaves out.
+        # Rays mostly miss a hair far thinner than a pixel, which costs many samples and looks like noise. A wider hair
+        # also represents the hairs that a groom leaves out.
         pixel = 2.0 * camera.slopes[0] * camera.distance / size[0]
         controls[:, 3] = np.maximum(controls[:, 3], 0.5 * thinnest * pixel)
-        look = {
+        bsdf = {
             "type": "hair",
             "eumelanin": color.eumelanin,
             "pheomelanin": color.pheomelanin,
             "longitudinal_roughness": color.roughness,
             "azimuthal_roughness": color.roughness,
         }
-        scene[HAIRS] = load_fibres(mi, controls * np.float32(scale), offsets, look)
+        scene[HAIRS] = load_fibres(mi, controls * np.float32(scale), offsets, bsdf)
     return mi.load_dict(scene)
 
 
@@ -141,23 +142,23 @@ def trace(
     seconds: float | None = None,
     progress: Progress | None = None,
 ) -> NDArray[np.float32]:
-    """Light and coverage (r, g, b, a), shape (height, width, 4): the mean of passes with different random numbers,
-    cleaned of specks and noise by what the passes differ in.
+    """Renders light and coverage (r, g, b, a), shape (height, width, 4): the mean of independent passes, denoised.
 
-    seconds:  no further pass begins when it would end after this time
-    progress: called with "picture", the passes done and to do
+    samples:  light paths per pixel
+    seconds:  time limit; a pass that would exceed it is not started
+    progress: called with "picture", the passes done and their number
     """
     mi = mitsuba()
-    most = MOST_PER_PASS if seconds is None else MOST_AGAINST_TIME
-    per_pass = min(max(samples // FEWEST_PASSES, 1), most)
+    most = MAX_PASS_SAMPLES if seconds is None else MAX_TIMED_PASS_SAMPLES
+    per_pass = min(max(samples // MIN_PASSES, 1), most)
     passes = -(-samples // per_pass)
     began = time.monotonic()
-    seen, done = Passes(), 0
+    accumulated, done = Passes(), 0
     if progress:
         progress("picture", 0, passes)
     while done < passes:
-        seen.add(np.nan_to_num(np.array(mi.render(scene, spp=per_pass, seed=done), np.float64)))
-        done = seen.count
+        accumulated.add(np.nan_to_num(np.array(mi.render(scene, spp=per_pass, seed=done), np.float64)))
+        done = accumulated.count
         if progress:
             progress("picture", done, passes)
         elapsed = time.monotonic() - began
@@ -166,26 +167,26 @@ def trace(
     if progress and done < passes:
         progress("picture", passes, passes)
     if done < 3:
-        return seen.mean().astype(np.float32)
-    halves = seen.without_specks()
-    light, smooth = (halves[0] + halves[1]) / done, seen.without_noise(halves)
-    kept: NDArray = GRAIN * hair_share(scene) * (light - smooth)
-    return np.asarray(smooth + kept, np.float32)
+        return accumulated.mean().astype(np.float32)
+    halves = accumulated.without_specks()
+    light, denoised = (halves[0] + halves[1]) / done, accumulated.without_noise(halves)
+    grain: NDArray = GRAIN * hair_share(scene) * (light - denoised)
+    return np.asarray(denoised + grain, np.float32)
 
 
 def hair_share(scene: Any) -> NDArray[np.float32]:
-    """Where hair is what the camera sees, from 0 to 1, soft at its edges; shape (height, width, 1)."""
+    """Coverage of visible hair, from 0 to 1, blurred at its edges; shape (height, width, 1)."""
     mi = mitsuba()
     names = [shape.id() for shape in scene.shapes()]
     if HAIRS not in names:
         return np.zeros((1, 1, 1), np.float32)
-    seen = mi.render(scene, integrator=mi.load_dict({"type": "aov", "aovs": "seen:shape_index"}), spp=1)
-    is_hair = np.abs(np.array(seen)[:, :, 0] - (names.index(HAIRS) + 1)) < 0.5  # 0 is where nothing is seen
+    shapes = mi.render(scene, integrator=mi.load_dict({"type": "aov", "aovs": "seen:shape_index"}), spp=1)
+    is_hair = np.abs(np.array(shapes)[:, :, 0] - (names.index(HAIRS) + 1)) < 0.5  # 0 is the background
     return np.asarray(gaussian_filter(is_hair.astype(np.float32), 1.2), np.float32)[:, :, None]
 
 
 def over_backdrop(image: NDArray[np.float32]) -> NDArray[np.floating]:
-    """Puts light with coverage, shape (h, w, 4), before the studio's wall; shape (h, w, 3)."""
+    """Composites light with coverage, shape (h, w, 4), over the studio's backdrop; shape (h, w, 3)."""
     wall = backdrop(image.shape[1], image.shape[0])
     return image[:, :, :3] + (1.0 - np.clip(image[:, :, 3:], 0.0, 1.0)) * wall
 

@@ -1,4 +1,4 @@
-"""A contact sheet: frames of a clip in a grid, drawn quickly, with one camera that sees the whole motion."""
+"""A contact sheet: frames of a clip in a grid, at low quality, with one camera that sees the whole motion."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ Frame = tuple[float, Sequence[PosedBody], Curves]
 PAPER, INK, FADED = (22, 25, 28), (236, 234, 230), (150, 154, 158)
 GAP, CAPTION = 10, 34
 
-# A sheet shows few of the hairs, so each is drawn thick enough to stand in for those beside it [pixels].
+# Smallest drawn diameter of a hair [pixels]: a sheet shows few hairs, so each represents its neighbours.
 THINNEST = 0.7
 
 
@@ -49,10 +49,12 @@ def sheet(
     tile:     width and height of a tile [pixels]
     title:    printed above the tiles
     fps:      frames per second, for the times in the labels
-    hairs:    how many of the hairs to draw
+    hairs:    largest number of hairs to draw
     samples:  light paths per pixel
     view, color: as in ``still``
-    progress: called with "sheet", the frames done and to do
+    progress: called with "sheet", the frames done and their number
+
+    Raises UserError without frames and for sizes below 1.
     """
     shots = [(number, bodies, thin_out(curves, hairs)) for number, bodies, curves in frames]
     if not shots:
@@ -77,19 +79,19 @@ def sheet(
     return Path(path)
 
 
-def thin_out(hairs: Curves, wanted: int) -> Curves:
-    """Evenly chosen hairs, the same ones in every frame."""
-    if len(hairs) <= wanted:
+def thin_out(hairs: Curves, count: int) -> Curves:
+    """At most ``count`` hairs, evenly chosen, the same ones in every frame."""
+    if len(hairs) <= count:
         return hairs
-    return hairs.take(np.linspace(0, len(hairs) - 1, wanted).round().astype(np.int64))
+    return hairs.take(np.linspace(0, len(hairs) - 1, count).round().astype(np.int64))
 
 
 def see_all(
     scenes: Iterable[tuple[Sequence[PosedBody], Curves]], tile: tuple[int, int], view: str | tuple[float, float]
 ) -> Camera:
-    """A camera that sees bodies and hairs of all tiles."""
-    seen = (points for bodies, curves in scenes for points in subject(bodies, curves))
-    return frame_camera(seen, view=view, aspect=tile[0] / tile[1], margin=0.04)
+    """Camera that sees bodies and hairs of all tiles."""
+    subjects = (points for bodies, curves in scenes for points in subject(bodies, curves))
+    return frame_camera(subjects, view=view, aspect=tile[0] / tile[1], margin=0.04)
 
 
 def draw_tile(
@@ -100,7 +102,7 @@ def draw_tile(
     pigments: HairColor,
     samples: int,
 ) -> NDArray[np.uint8]:
-    """The pixels of a tile, shape (height, width, 3)."""
+    """Renders a tile, shape (height, width, 3)."""
     scene = build_scene(bodies, hairs, camera, size=tile, color=pigments, max_depth=4, thinnest=THINNEST)
     return develop(over_backdrop(trace(scene, samples=samples)))
 
@@ -108,7 +110,11 @@ def draw_tile(
 def lay_out(
     tiles: Sequence[tuple[str, str, np.ndarray]], columns: int, tile: tuple[int, int], title: str, about: str
 ) -> Image.Image:
-    """Tiles in reading order on dark paper, each over what it is (left, right), under a strip with title and more."""
+    """Lays out tiles in reading order: each with a left and a right label below it, under a strip with the title.
+
+    tiles: left label, right label and pixels of each tile
+    about: text at the right of the title
+    """
     rows = -(-len(tiles) // columns)
     strip = 64 if title else GAP
     cell = (tile[0] + GAP, tile[1] + CAPTION)
@@ -121,10 +127,10 @@ def lay_out(
     if title:
         write(2 * GAP, strip // 2, title, 26, INK, "lm")
         write(page.width - 2 * GAP, strip // 2, about, 16, FADED, "rm")
-    for index, (name, more, pixels) in enumerate(tiles):
+    for index, (label, detail, pixels) in enumerate(tiles):
         left, top = GAP + (index % columns) * cell[0], strip + (index // columns) * cell[1]
         page.paste(Image.fromarray(pixels), (left, top))
         middle = top + tile[1] + CAPTION // 2 - 2
-        write(left + 4, middle, name, 16, INK, "lm")
-        write(left + tile[0] - 4, middle, more, 15, FADED, "rm")
+        write(left + 4, middle, label, 16, INK, "lm")
+        write(left + tile[0] - 4, middle, detail, 15, FADED, "rm")
     return page

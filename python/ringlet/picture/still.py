@@ -1,4 +1,4 @@
-"""One path-traced picture of a head of hair."""
+"""A path-traced still of a head of hair."""
 
 from __future__ import annotations
 
@@ -34,14 +34,16 @@ def still(
 ) -> Path:
     """Writes a PNG of the hairs and bodies in a small photo studio, framed on the hair and the head.
 
-    bodies:    meshes as they stand
+    bodies:    posed meshes
     hairs:     curves [m]; the point attribute ``width`` is the diameter [m]
     samples:   light paths per pixel
     view:      a name of ``VIEWS``, or azimuth and elevation of the camera [degrees]
     color:     a name of ``HAIR_COLORS``
-    max_depth: bounces of light
-    seconds:   stop adding samples when this much time is over
-    progress:  called with "picture", the passes done and to do
+    max_depth: largest number of bounces of a light path
+    seconds:   time limit of the rendering
+    progress:  called with "picture", the passes done and their number
+
+    Raises UserError for sizes below 1, an unknown view or colour, and without hairs and bodies.
     """
     if width < 1 or height < 1 or samples < 1:
         raise UserError(f"picture: size {width} × {height} with {samples} samples; each must be at least 1")
@@ -57,14 +59,14 @@ def still(
 
 
 def subject(bodies: Sequence[PosedBody], hairs: Curves) -> list[NDArray[np.floating]]:
-    """What a portrait must show, as arrays of positions: all hair, and of the bodies the head, not the shoulders."""
+    """Points that a portrait frames: all hair, and the points of bodies near it, the head without the shoulders."""
     if not len(hairs):
         if not bodies:
             raise UserError("picture: there are neither hairs nor bodies; give at least one of them")
         return [body.points for body in bodies]
     low, high = hairs.points.min(axis=0), hairs.points.max(axis=0)
-    reach = high - low
-    low = low - (0.05, 0.1, 0.05) * reach
-    high = high + 0.05 * reach
+    extent = high - low
+    low = low - (0.05, 0.1, 0.05) * extent
+    high = high + 0.05 * extent
     head = [body.points[((body.points >= low) & (body.points <= high)).all(axis=1)] for body in bodies]
     return [hairs.points, *(points for points in head if len(points))]

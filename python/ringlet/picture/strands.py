@@ -1,4 +1,4 @@
-"""Hairs for the path tracer: round fibres along smooth curves through the given points."""
+"""Hairs for the path tracer: round fibres along B-splines through the given points."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from scipy.linalg import solve_banded
 
 from ringlet.data.curves import Curves, offsets_from_counts
 
-# A hair without a width: the diameter of a curly human hair [m].
+# Diameter of hairs without a width: that of a curly human hair [m].
 DEFAULT_WIDTH = 70e-6
 
 
 def spline_controls(points: NDArray[np.floating]) -> NDArray[np.float64]:
-    """Control points of the uniform cubic B-splines that pass through the given points.
+    """Control points of uniform cubic B-splines that interpolate the given points.
 
-    A B-spline runs inside its control polygon, so using the points themselves would shrink a curl of 12 points a turn
-    by (1 - cos 30°)/3 = 4.5 %. With c the control points, the curve passes (cᵢ₋₁ + 4cᵢ + cᵢ₊₁)/6 at knot i, which makes
-    a tridiagonal system; straight ends close it (c₋₁ = 2c₀ - c₁).
+    A B-spline runs inside its control polygon: with the points as controls, a curl of 12 points a turn would shrink by
+    (1 - cos 30°)/3 = 4.5 %. At knot i the curve passes (cᵢ₋₁ + 4cᵢ + cᵢ₊₁)/6, with control points c. This is a
+    tridiagonal system, closed by straight ends (c₋₁ = 2c₀ - c₁).
 
     points: shape (curves, n, 3), n ≥ 2; returns shape (curves, n + 2, 3)
     """
@@ -40,25 +40,28 @@ def spline_controls(points: NDArray[np.floating]) -> NDArray[np.float64]:
 
 
 def fibres(hairs: Curves) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
-    """Control points and radii (x, y, z, r) [m], shape (n, 4), and where each curve begins, shape (count + 1,)."""
+    """Control points with radii (x, y, z, r) [m], shape (n, 4), and offsets of the curves, shape (count + 1,)."""
     offsets = offsets_from_counts(hairs.counts + 2)
     controls = np.empty((offsets[-1], 4), np.float32)
     widths = hairs.point.get("width", np.full(len(hairs.points), DEFAULT_WIDTH))
-    for n in np.unique(hairs.counts):  # nearly always one
+    for n in np.unique(hairs.counts):  # usually a single value
         chosen = np.flatnonzero(hairs.counts == n)
         rows = hairs.offsets[chosen, None] + np.arange(n)
-        into = offsets[chosen, None] + np.arange(n + 2)
-        controls[into, :3] = spline_controls(hairs.points[rows])
-        controls[into, 3] = 0.5 * np.pad(widths[rows], ((0, 0), (1, 1)), mode="edge")
+        targets = offsets[chosen, None] + np.arange(n + 2)
+        controls[targets, :3] = spline_controls(hairs.points[rows])
+        controls[targets, 3] = 0.5 * np.pad(widths[rows], ((0, 0), (1, 1)), mode="edge")
     return controls, offsets
 
 
 def load_fibres(mi: Any, controls: NDArray[np.float32], offsets: NDArray[np.int32], bsdf: dict[str, Any]) -> Any:
-    """The Mitsuba shape. Mitsuba reads curves from a text file only; numbers as text are slow and lose precision, so
-    the file merely lays out how many points each curve has, and the points go in as one array afterwards.
+    """Loads fibres as a Mitsuba shape.
 
-    One more curve, too thin to be hit, ends the list: Mitsuba finds a segment by one single-precision number over all
-    of them, which at the tip of the last of a million rounds up to a segment that is not there."""
+    Mitsuba reads curves from text files only, and text is slow and loses precision. The file therefore defines only
+    the number of points of each curve; the points are set as an array afterwards.
+
+    A guard curve, too thin to be hit, ends the list. Mitsuba finds a segment by a single-precision number over all
+    segments. At the tip of the last of a million curves that number would round up to a segment that does not exist.
+    """
     guard = np.repeat(controls[-1:], 4, axis=0)
     guard[:, 1] += np.arange(4) * controls[-1, 3]
     guard[:, 3] *= 1e-5

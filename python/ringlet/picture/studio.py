@@ -1,4 +1,4 @@
-"""A small photo studio around the subject: lights that turn with the camera, and a painted backdrop."""
+"""A photo studio around the subject: lights fixed to the camera, and a backdrop."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True)
 class Light:
-    """A round soft box, for round lights in the eyes, that looks at the subject.
+    """A round soft box that faces the subject and gives round highlights in the eyes.
 
     azimuth:   from the camera to its right [degrees]
     elevation: above the camera's height [degrees]
     size:      diameter, in units of the subject's distance from the light
-    strength:  light that arrives at the subject (linear r, g, b), if it faced the box
-    attention: how often shadow rays go to it, among the others; its light is the same, its noise less
+    strength:  irradiance of a surface that faces the box (linear r, g, b)
+    attention: sampling weight of the light; a larger one lowers its noise
     """
 
     azimuth: float
@@ -29,19 +29,19 @@ class Light:
 
 
 LIGHTS = {
-    "key": Light(-36.0, 25.0, 0.62, (10.5, 9.0, 7.3), 3.0),  # warm, large, under the fringe: it draws the face
+    "key": Light(-36.0, 25.0, 0.62, (10.5, 9.0, 7.3), 3.0),  # warm and large, below the fringe: models the face
     "fill": Light(64.0, 4.0, 1.0, (1.2, 1.4, 1.7)),  # cool and dim, from the other side
-    "rim_right": Light(142.0, 34.0, 0.7, (9.5, 9.2, 8.8)),  # from behind: it draws every curl of the silhouette
+    "rim_right": Light(142.0, 34.0, 0.7, (9.5, 9.2, 8.8)),  # from behind: outlines every curl of the silhouette
     "rim_left": Light(-128.0, 52.0, 0.7, (9.5, 9.2, 9.2)),
 }
 AMBIENT = (0.22, 0.23, 0.25)
 
-# Linear colours of the backdrop: around the subject's shoulders, and at the picture's edge.
+# Linear colours of the backdrop: behind the subject's shoulders, and at the picture's edge.
 BACKDROP_NEAR, BACKDROP_FAR = np.array([0.33, 0.38, 0.40]), np.array([0.05, 0.062, 0.072])
 
 
 def lights(mi: Any, axes: NDArray[np.float64], distance: float) -> dict[str, Any]:
-    """The soft boxes as Mitsuba shapes, ``distance`` away from a subject at the origin; ``axes`` as in Camera."""
+    """Soft boxes as Mitsuba shapes, at ``distance`` from a subject at the origin; ``axes`` as in Camera."""
     shapes: dict[str, Any] = {"ambient": {"type": "constant", "radiance": _rgb(AMBIENT), "sampling_weight": 1.0}}
     for name, light in LIGHTS.items():
         azimuth, elevation = radians(light.azimuth), radians(light.elevation)
@@ -58,11 +58,11 @@ def lights(mi: Any, axes: NDArray[np.float64], distance: float) -> dict[str, Any
 
 
 def backdrop(width: int, height: int) -> NDArray[np.float32]:
-    """A seamless studio wall with a pool of light behind the subject, linear colours of shape (height, width, 3)."""
+    """Backdrop with a pool of light behind the subject, linear colours of shape (height, width, 3)."""
     x = (np.arange(width) + 0.5) / width - 0.5
     y = (np.arange(height) + 0.5) / height - 0.55
-    away = np.hypot(x[None, :], 0.85 * y[:, None] * height / width) / 0.78
-    pool = np.exp(-2.2 * away**2)[:, :, None]
+    radius = np.hypot(x[None, :], 0.85 * y[:, None] * height / width) / 0.78
+    pool = np.exp(-2.2 * radius**2)[:, :, None]
     return (BACKDROP_FAR + (BACKDROP_NEAR - BACKDROP_FAR) * pool).astype(np.float32)
 
 

@@ -1,4 +1,4 @@
-"""From light to a picture file: a film's response curve, sRGB, and a little noise against banding."""
+"""Tone mapping: a filmic response curve, sRGB encoding, and dithering against banding."""
 
 from __future__ import annotations
 
@@ -7,17 +7,17 @@ from numpy.typing import NDArray
 
 
 def develop(light: NDArray[np.floating], *, exposure: float = 1.0) -> NDArray[np.uint8]:
-    """Linear light (height, width, 3) as 8-bit sRGB of the same shape; bright parts roll off instead of clipping."""
+    """Tone-maps linear light (height, width, 3) to 8-bit sRGB of the same shape; highlights roll off."""
     exposed = np.maximum(np.asarray(light, np.float64) * exposure, 0.0)
-    # x (1 + x/w²)/(1 + x), Reinhard's curve reaching white at w = 5; half on luminance, half per channel, so that
-    # highlights keep some of their colour and still bleach towards white
+    # Reinhard's curve x (1 + x/w²)/(1 + x), which reaches white at w = 5. The mean of luminance and per-channel mapping
+    # keeps some colour in highlights that bleach towards white.
     white = 5.0
     luminance = exposed @ np.array([0.2126, 0.7152, 0.0722])
     scale = ((1.0 + luminance / white**2) / (1.0 + luminance))[:, :, None]
     per_channel = exposed * (1.0 + exposed / white**2) / (1.0 + exposed)
     film = np.clip(0.5 * (exposed * scale + per_channel), 0.0, 1.0)
     encoded = np.where(film <= 0.0031308, 12.92 * film, 1.055 * film ** (1 / 2.4) - 0.055)
-    # a gentle S-curve restores the contrast that the roll-off takes away
+    # A gentle S-curve restores the contrast that the roll-off removes.
     contrasted = encoded + 0.4 * (encoded**2 * (3.0 - 2.0 * encoded) - encoded)
     dither = np.random.default_rng(0).uniform(-0.5, 0.5, encoded.shape[:2])[:, :, None]
     return np.clip(np.rint(255.0 * contrasted + dither), 0, 255).astype(np.uint8)

@@ -1,4 +1,4 @@
-"""The report of a run: what was asked, what was made, how long it took, and how the simulation behaved."""
+"""The report of a run: settings, output files, timings and statistics of the simulation."""
 
 from ringlet.report.charts import line_chart
 from ringlet.report.findings import explain_slowest

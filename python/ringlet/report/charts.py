@@ -1,4 +1,4 @@
-"""Small charts as inline SVG, coloured by the page's style sheet, so that they follow its light and dark themes."""
+"""Line charts as inline SVG, coloured by the page's style sheet for light and dark themes."""
 
 from __future__ import annotations
 
@@ -13,9 +13,11 @@ _PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, 
 
 
 def line_chart(title: str, unit: str, frames: Sequence[float], lines: Mapping[str, Sequence[float]]) -> str:
-    """A ``<figure>`` with one line per entry of ``lines`` over the frames; a gap where a value is not finite.
+    """HTML of a ``<figure>`` with one line per entry of ``lines`` over the frames; gaps at values that are not finite.
 
-    unit: of the values; ``J``, ``s``, ``m`` and the like get a prefix that suits their size
+    unit: unit of the values; ``J``, ``s``, ``m`` and the like get a metric prefix
+
+    Returns an empty string without finite values.
     """
     finite = [v for values in lines.values() for v in values if math.isfinite(v)]
     if not finite:
@@ -31,14 +33,14 @@ def line_chart(title: str, unit: str, frames: Sequence[float], lines: Mapping[st
     def y(value: float) -> float:
         return HEIGHT - BOTTOM - (HEIGHT - TOP - BOTTOM) * (value - low) / (high - low)
 
-    parts = []
+    elements = []
     for tick in ticks:
         at = f"{y(tick):.1f}"
-        parts.append(f'<line class="grid" x1="{LEFT}" x2="{WIDTH - RIGHT}" y1="{at}" y2="{at}"/>')
-        parts.append(f'<text class="tick" x="{LEFT - 8}" y="{at}" text-anchor="end" dy="0.32em">{tick:.4g}</text>')
+        elements.append(f'<line class="grid" x1="{LEFT}" x2="{WIDTH - RIGHT}" y1="{at}" y2="{at}"/>')
+        elements.append(f'<text class="tick" x="{LEFT - 8}" y="{at}" text-anchor="end" dy="0.32em">{tick:.4g}</text>')
     for tick in nice_ticks(first, last, 8):
         if first <= tick <= last:
-            parts.append(
+            elements.append(
                 f'<text class="tick" x="{x(tick):.1f}" y="{HEIGHT - BOTTOM + 17}" text-anchor="middle">{tick:g}</text>'
             )
     for index, values in enumerate(lines.values()):
@@ -46,22 +48,22 @@ def line_chart(title: str, unit: str, frames: Sequence[float], lines: Mapping[st
             points = [f"{x(frame):.1f},{y(value / factor):.1f}" for frame, value in run]
             if len(points) == 1:
                 cx, cy = points[0].split(",")
-                parts.append(f'<circle class="s{index}" cx="{cx}" cy="{cy}" r="3"/>')
+                elements.append(f'<circle class="s{index}" cx="{cx}" cy="{cy}" r="3"/>')
             else:
-                parts.append(f'<polyline class="s{index}" points="{" ".join(points)}"/>')
+                elements.append(f'<polyline class="s{index}" points="{" ".join(points)}"/>')
     keys = "".join(f'<li class="s{index}">{escape(name)}</li>' for index, name in enumerate(lines))
     legend = f'<ul class="legend">{keys}</ul>' if len(lines) > 1 else ""
-    told = "; ".join(f"{name} up to {_highest(values) / factor:.3g} {unit}" for name, values in lines.items())
+    summary = "; ".join(f"{name} up to {_highest(values) / factor:.3g} {unit}" for name, values in lines.items())
     heading = f"{escape(title)} <span>{escape(unit)}</span>" if unit else escape(title)
     return (
         f"<figure><figcaption>{heading}</figcaption>{legend}"
-        f'<svg viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-label="{escape(f"{title} by frame: {told}")}">'
-        f"{''.join(parts)}</svg></figure>"
+        f'<svg viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-label="{escape(f"{title} by frame: {summary}")}">'
+        f"{''.join(elements)}</svg></figure>"
     )
 
 
 def nice_ticks(low: float, high: float, count: int = 4) -> list[float]:
-    """Round numbers (1, 2 or 5 times a power of ten apart) from at or below ``low`` to at or above ``high``."""
+    """Round tick values with a step of 1, 2 or 5 times a power of ten that enclose ``low`` and ``high``."""
     span = high - low if high > low else max(abs(high), 1.0)
     rough = span / count
     power = 10.0 ** math.floor(math.log10(rough))
@@ -78,7 +80,7 @@ def _prefixed(largest: float, unit: str) -> tuple[float, str]:
 
 
 def _runs(frames: Sequence[float], values: Sequence[float]) -> list[list[tuple[float, float]]]:
-    """The stretches of a line between values that are not finite."""
+    """Splits a line at values that are not finite."""
     runs: list[list[tuple[float, float]]] = [[]]
     for frame, value in zip(frames, values, strict=True):
         if math.isfinite(value):

@@ -1,4 +1,4 @@
-"""What the numbers of a simulation say, in sentences."""
+"""Summaries of simulation statistics in sentences."""
 
 from __future__ import annotations
 
@@ -8,18 +8,21 @@ from statistics import median
 from typing import Any
 
 Statistics = Sequence[dict[str, Any]]
-PHASES = ("pairs", "assemble", "solve", "search", "filter")  # of a step with contact
+PHASES = ("pairs", "assemble", "solve", "search", "filter")  # phases of a step with contact
 
 
 def series(statistics: Statistics, key: str) -> list[float] | None:
-    """One number per frame, NaN where a frame lacks it; None when all do. ``energy.bend`` looks inside a dict."""
-    found = [value(frame, key) for frame in statistics]
-    values = [float(v) if isinstance(v, int | float) else math.nan for v in found]
+    """One number per frame, NaN for a frame without it; None when all frames lack it.
+
+    key: name, or a path into nested dicts such as ``energy.bend``
+    """
+    entries = [value(frame, key) for frame in statistics]
+    values = [float(v) if isinstance(v, int | float) else math.nan for v in entries]
     return values if any(math.isfinite(v) for v in values) else None
 
 
 def value(frame: dict[str, Any], key: str) -> Any:
-    """What a frame's statistics say, None where they do not; ``energy.bend`` looks inside a dict."""
+    """Entry of a frame's statistics, None when missing; ``key`` as in ``series``."""
     found: Any = frame
     for part in key.split("."):
         found = found.get(part) if isinstance(found, dict) else None
@@ -27,20 +30,20 @@ def value(frame: dict[str, Any], key: str) -> Any:
 
 
 def total(statistics: Statistics, key: str) -> int | None:
-    """A count summed over all frames; None when no frame has it."""
+    """Sum of a count over all frames; None when no frame has it."""
     values = series(statistics, key)
     return None if values is None else int(sum(v for v in values if math.isfinite(v)))
 
 
 def frame_number(statistics: Statistics, index: int) -> str:
-    """The number of a frame as text."""
+    """Number of a frame as text."""
     return f"{statistics[index].get('frame', index + 1):g}"
 
 
 def worst_frame(statistics: Statistics) -> int | None:
-    """The frame to look at first: one with broken numbers, else unsolved strands, else the most stretch.
+    """Index of the frame to inspect first: with NaN, else with unsolved strands, else with the largest stretch.
 
-    What is the same in all frames, as where contact never converges, tells none of them from the others.
+    A value that is equal in all frames does not select one, as when contact never converges.
     """
     first = None
     for key in ("nan", "unconverged", "max_stretch", "newton_max", "newton"):
@@ -53,50 +56,56 @@ def worst_frame(statistics: Statistics) -> int | None:
 
 
 def verdict(statistics: Statistics) -> list[str]:
-    """The outcome in a few sentences, the gravest first."""
+    """Result of a simulation in a few sentences, the most severe first."""
     if not statistics:
         return []
-    said = []
+    sentences = []
     if broken := total(statistics, "nan"):
-        said.append(f"{_strands(broken)} ended in numbers that are not finite: do not use this result.")
-    touching = any("contact" in frame for frame in statistics)
-    late = total(statistics, "unconverged")
-    if late and touching:
-        said.append(f"{_times(late)} the scene ran out of Newton iterations before all of it was at rest in its step.")
-    elif late:
-        said.append(f"{_times(late)} a strand ran out of Newton iterations before it was at rest in its step.")
-    elif late == 0:
-        said.append(f"Every strand was solved in each of the {len(statistics)} frames.")
+        sentences.append(f"{_strands(broken)} ended in numbers that are not finite: do not use this result.")
+    has_contact = any("contact" in frame for frame in statistics)
+    unconverged = total(statistics, "unconverged")
+    if unconverged and has_contact:
+        sentences.append(
+            f"{_times(unconverged)} the scene ran out of Newton iterations before all of it was at rest in its step."
+        )
+    elif unconverged:
+        sentences.append(
+            f"{_times(unconverged)} a strand ran out of Newton iterations before it was at rest in its step."
+        )
+    elif unconverged == 0:
+        sentences.append(f"Every strand was solved in each of the {len(statistics)} frames.")
     stretch = series(statistics, "max_stretch")
     if stretch:
         highest = max(v for v in stretch if math.isfinite(v))
         at = frame_number(statistics, stretch.index(highest))
-        said.append(f"No edge was ever longer than {100 * highest:.2g} % over its rest length (frame {at}).")
+        sentences.append(f"No edge was ever longer than {100 * highest:.2g} % over its rest length (frame {at}).")
     cloths = dict.fromkeys(name for frame in statistics for name in frame.get("cloth") or {})
     for name in cloths:
         highest = max(v for v in series(statistics, f"cloth.{name}.max_stretch") or [0.0] if math.isfinite(v))
-        said.append(f"Cloth '{name}' was stretched or squeezed by at most {100 * highest:.2g} %.")
-    if touching:
-        kept = total(statistics, "contact.violations") or 0
-        said.append(
-            f"Nothing passed through anything: {kept:,} times a pair was kept from meeting.".replace(",", "\u202f")
+        sentences.append(f"Cloth '{name}' was stretched or squeezed by at most {100 * highest:.2g} %.")
+    if has_contact:
+        violations = total(statistics, "contact.violations") or 0
+        sentences.append(
+            f"Nothing passed through anything: {violations:,} times a pair was kept from meeting.".replace(
+                ",", "\u202f"
+            )
         )
     if any(part < 1.0 for part in series(statistics, "contact.fraction") or []):
-        said.append(
+        sentences.append(
             "In some frames bodies left no way out between them: there everything stopped before the frame's end."
         )
     curl = {key: total(statistics, key) for key in ("flips", "winding_changes", "too_straight")}
     if any(curl.values()):
         meaning = {"flips": "curls flipped", "winding_changes": "lost or won a turn", "too_straight": "pulled straight"}
-        parts = [f"{meaning[key]}: {count}" for key, count in curl.items() if count]
-        said.append(f"The curl did not always hold its shape ({', '.join(parts)}).")
+        changes = [f"{meaning[key]}: {count}" for key, count in curl.items() if count]
+        sentences.append(f"The curl did not always hold its shape ({', '.join(changes)}).")
     elif curl["flips"] == 0:
-        said.append("No curl flipped over or changed its number of turns.")
-    return said
+        sentences.append("No curl flipped over or changed its number of turns.")
+    return sentences
 
 
 def explain_worst(statistics: Statistics) -> str | None:
-    """Why the worst frame is the worst, in one sentence."""
+    """One sentence about the frame of ``worst_frame``; None without one."""
     index = worst_frame(statistics)
     if index is None:
         return None
@@ -111,13 +120,13 @@ def explain_worst(statistics: Statistics) -> str | None:
         "flips": lambda v: f"{v:g} flips" if v else None,
         "winding_changes": lambda v: f"{v:g} changes of winding" if v else None,
     }
-    known = [phrases[key](frame[key]) for key in phrases if isinstance(frame.get(key), int | float)]
-    told = [phrase for phrase in known if phrase]
-    return f"Frame {frame_number(statistics, index)} is the hardest: {', '.join(told)}." if told else None
+    candidates = [phrases[key](frame[key]) for key in phrases if isinstance(frame.get(key), int | float)]
+    reasons = [phrase for phrase in candidates if phrase]
+    return f"Frame {frame_number(statistics, index)} is the hardest: {', '.join(reasons)}." if reasons else None
 
 
 def explain_slowest(statistics: Statistics) -> str | None:
-    """Which frame took longest, how long next to the others, and what there was more of; None without times."""
+    """One sentence about the slowest frame, with its time and its unusual costs; None for fewer than 3 times."""
     times = series(statistics, "wall_ms")
     if times is None or len(times) < 3:
         return None
@@ -126,18 +135,18 @@ def explain_slowest(statistics: Statistics) -> str | None:
     more = []
     for key, (name, factor, digits) in _COSTS.items():
         values = [v for v in series(statistics, key) or [] if math.isfinite(v)]
-        here = value(statistics[index], key)
-        if values and isinstance(here, int | float) and here > 1.2 * median(values):
-            told, usually = (f"{factor * number:.{digits}f}" for number in (here, median(values)))
-            more += [f"{name} {told} instead of {usually}"] if told != usually else []
-    said = (
+        cost = value(statistics[index], key)
+        if values and isinstance(cost, int | float) and cost > 1.2 * median(values):
+            actual, usually = (f"{factor * number:.{digits}f}" for number in (cost, median(values)))
+            more += [f"{name} {actual} instead of {usually}"] if actual != usually else []
+    sentence = (
         f"Frame {frame_number(statistics, index)} took longest, {1e-3 * times[index]:.2f} s; "
         f"half of the frames took {1e-3 * usual:.2f} s or less"
     )
-    return f"{said}: {', '.join(more)}." if more else f"{said}."
+    return f"{sentence}: {', '.join(more)}." if more else f"{sentence}."
 
 
-# What a frame's time goes into, as it is told, its factor and its digits.
+# Costs of a frame: label, factor and digits.
 _COSTS = {
     "newton": ("Newton iterations", 1.0, 1),
     "line_search_cuts": ("steps cut short", 1.0, 0),

@@ -1,4 +1,4 @@
-"""What a report holds. ``report.json`` is this model as it stands; its ``format`` number grows when a field changes."""
+"""The model of a report, stored as ``report.json``; a change of a field increments ``FORMAT``."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ FORMAT = 1
 
 
 def plain(value: Any) -> Any:
-    """Numpy numbers and arrays, also within dicts and lists, as plain Python values."""
+    """Converts numpy numbers and arrays, also within dicts and lists, to plain Python values."""
     if isinstance(value, dict):
         return {str(key): plain(entry) for key, entry in value.items()}
     if isinstance(value, list | tuple):
@@ -28,7 +28,7 @@ Plain = BeforeValidator(plain)
 
 
 class Machine(BaseModel):
-    """Where it ran. ``simd`` is the instruction set that the core chose, e.g. ``avx2``."""
+    """The machine of a run. ``simd`` is the instruction set of the core, e.g. ``avx2``."""
 
     threads: int | None = None
     simd: str | None = None
@@ -37,7 +37,7 @@ class Machine(BaseModel):
 
 
 class Stage(BaseModel):
-    """Time spent in one stage [ms]; the processor time is that of all threads together."""
+    """Times of one stage [ms]; processor time is the sum over all threads."""
 
     name: str
     wall_ms: float
@@ -45,7 +45,7 @@ class Stage(BaseModel):
 
 
 class MadeFile(BaseModel):
-    """A file that the run wrote, and its size."""
+    """An output file, its contents in words, and its size [bytes]."""
 
     path: str
     what: str = ""
@@ -53,19 +53,19 @@ class MadeFile(BaseModel):
 
     @classmethod
     def of(cls, path: Path | str, what: str = "") -> MadeFile:
-        """Describes a file that is there."""
+        """Describes an existing file."""
         return cls(path=str(path), what=what, bytes=Path(path).stat().st_size)
 
 
 class Picture(BaseModel):
-    """A picture to show: where it lies, and what is to be seen, in words for those who cannot see it."""
+    """A picture to show: its file, and a caption that also serves as alternative text."""
 
     path: str
     caption: str
 
 
 class Table(BaseModel):
-    """Numbers to show as they are, under a title."""
+    """A table with a title."""
 
     title: str
     columns: list[str]
@@ -73,20 +73,20 @@ class Table(BaseModel):
 
 
 class RunReport(BaseModel):
-    """Everything about one run.
+    """Report of one run.
 
-    name:       what was run, e.g. ``demo``
-    version:    of Ringlet
-    command:    the command line
-    counts:     how many of what was made, e.g. ``{"locks": 1200, "hairs": 15000}``
-    settings:   what the simulation was asked to do
-    stages:     in the order they ran
-    statistics: one dict per simulated frame, as in ``Cache.statistics``; missing entries leave a chart out
+    name:       name of the run, e.g. ``demo``
+    version:    version of Ringlet
+    command:    command line
+    counts:     numbers of created items, e.g. ``{"locks": 1200, "hairs": 15000}``
+    settings:   settings of the simulation
+    stages:     times of the stages, in the order of execution
+    statistics: one dict per simulated frame, as in ``Cache.statistics``; a chart without entries is omitted
     fps:        frames per second of the clip
-    pictures:   shown in this order
-    tables:     numbers of one kind of run, e.g. of a loft
-    warnings:   what happened that the reader should know
-    limits:     what this version does not do
+    pictures:   pictures, in the order of display
+    tables:     tables of a particular kind of run, e.g. of a loft
+    warnings:   warnings for the reader
+    limits:     limitations of this version
     """
 
     model_config = ConfigDict(ser_json_inf_nan="null")

@@ -1,4 +1,4 @@
-"""The report as one HTML page that needs no other file, no script and no network."""
+"""The report as one self-contained HTML page, without scripts."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ringlet.report.model import MadeFile, Picture, RunReport, Stage, Table
 
 STYLE = Path(__file__).with_name("style.css")
 
-# Names of the columns that a frame's statistics may have, in the order of the table.
+# Column titles of a frame's statistics, in the order of the table.
 _COLUMNS = {
     "frame": "Frame",
     "wall_ms": "Time, ms",
@@ -43,7 +43,7 @@ _COLUMNS = {
 
 
 def page(report: RunReport) -> str:
-    """The whole page."""
+    """HTML of the report."""
     body = "\n".join(
         section
         for section in (
@@ -62,7 +62,7 @@ def page(report: RunReport) -> str:
 
 
 def document(title: str, body: str) -> str:
-    """A page in the style of our reports."""
+    """HTML document in the style of the reports."""
     return (
         '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8"/>\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1"/>\n'
@@ -95,30 +95,30 @@ def _header(report: RunReport) -> str:
 
 
 def _outcome(report: RunReport) -> str:
-    """The first picture beside what was made and how it went."""
+    """Section with the first picture, counts, warnings and the verdict."""
     numbers = "".join(
         f"<div><dd>{count:,}</dd><dt>{escape(what.replace('_', ' '))}</dt></div>".replace(",", "\u202f")
         for what, count in report.counts.items()
     )
-    said = "".join(f"<p>{escape(sentence)}</p>" for sentence in verdict(report.statistics))
-    warned = "".join(f'<p class="warning">{escape(warning)}</p>' for warning in report.warnings)
-    text = (f'<dl class="counts">{numbers}</dl>' if numbers else "") + warned + said
+    sentences = "".join(f"<p>{escape(sentence)}</p>" for sentence in verdict(report.statistics))
+    warnings = "".join(f'<p class="warning">{escape(warning)}</p>' for warning in report.warnings)
+    text = (f'<dl class="counts">{numbers}</dl>' if numbers else "") + warnings + sentences
     hero = figure(report.pictures[0]) if report.pictures else ""
     beside = f"<div><h2>What was made</h2>{text}</div>" if text else ""
     return f'<section class="outcome">{hero}{beside}</section>' if hero or beside else ""
 
 
 def figure(picture: Picture) -> str:
-    """A picture with its caption, all of it in the page."""
+    """HTML of a picture with its caption, embedded as JPEG; raises UserError for an unreadable file."""
     path = Path(picture.path)
     try:
         with Image.open(path) as image:
-            packed = io.BytesIO()
-            image.convert("RGB").save(packed, "JPEG", quality=88, optimize=True, progressive=True)
+            jpeg = io.BytesIO()
+            image.convert("RGB").save(jpeg, "JPEG", quality=88, optimize=True, progressive=True)
             size = image.size
     except OSError as error:
         raise UserError(f"{path}: cannot be read as a picture ({error}); make it again or leave it out") from error
-    data = base64.b64encode(packed.getvalue()).decode("ascii")
+    data = base64.b64encode(jpeg.getvalue()).decode("ascii")
     caption = escape(picture.caption)
     return (
         f'<figure class="picture"><img src="data:image/jpeg;base64,{data}" width="{size[0]}" height="{size[1]}"'
@@ -126,15 +126,15 @@ def figure(picture: Picture) -> str:
     )
 
 
-def table(told: Table) -> str:
-    """A table under its title."""
-    head = "".join(f"<th scope='col'>{escape(name)}</th>" for name in told.columns)
+def table(content: Table) -> str:
+    """HTML of a table under its title."""
+    head = "".join(f"<th scope='col'>{escape(name)}</th>" for name in content.columns)
     rows = "".join(
         f"<tr><th scope='row'>{escape(row[0])}</th>{''.join(f'<td>{escape(cell)}</td>' for cell in row[1:])}</tr>"
-        for row in told.rows
+        for row in content.rows
     )
     return (
-        f"<section><h2>{escape(told.title)}</h2><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
+        f"<section><h2>{escape(content.title)}</h2><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
         "</section>"
     )
 
@@ -169,7 +169,7 @@ def _simulation(report: RunReport) -> str:
     frames = series(statistics, "frame") or [float(k + 1) for k in range(len(statistics))]
 
     def chart(title: str, unit: str, keys: dict[str, str], change: Iterable[str] = (), factor: float = 1.0) -> str:
-        """A line per key that the statistics have; keys in ``change`` count from their first value."""
+        """Chart with one line per available key; values of keys in ``change`` are relative to the first frame."""
         lines = {}
         for key, name in keys.items():
             values = series(statistics, key)
@@ -182,7 +182,7 @@ def _simulation(report: RunReport) -> str:
     elastic = {f"energy.{term}": term for term in terms if term not in ("gravity", "kinetic")}
     moving = {"energy.kinetic": "kinetic", "energy.gravity": "gravity, since the first frame"}
     curl = {"flips": "flips", "winding_changes": "winding changes", "too_straight": "too straight"}
-    care = {"line_search_cuts": "steps cut short", "unconverged": "strands unsolved"}
+    difficulties = {"line_search_cuts": "steps cut short", "unconverged": "strands unsolved"}
     charts = "".join(
         (
             chart("Energy in the strands", "J", elastic),
@@ -190,7 +190,9 @@ def _simulation(report: RunReport) -> str:
             chart("Longest edge, over its rest length", "%", {"max_stretch": "stretch"}, factor=100.0),
             chart("Newton iterations for a strand", "", {"newton": "mean", "newton_max": "most"}),
             chart("Time for a frame", "s", {"wall_ms": "time", "cpu_ms": "CPU, all threads"}, factor=1e-3),
-            chart("Steps that needed care", "", care) if any(total(statistics, key) for key in care) else "",
+            chart("Steps that needed care", "", difficulties)
+            if any(total(statistics, key) for key in difficulties)
+            else "",
             chart("Curls that changed", "", curl) if any(total(statistics, key) for key in curl) else "",
         )
     )
@@ -210,7 +212,8 @@ def _simulation(report: RunReport) -> str:
             chart("Where a frame's time goes", "s", {f"contact.{p}_ms": p for p in PHASES}, factor=1e-3),
         )
     )
-    lead = "".join(f"<p>{escape(said)}</p>" for tell in (explain_worst, explain_slowest) if (said := tell(statistics)))
+    sentences = [sentence for explain in (explain_worst, explain_slowest) if (sentence := explain(statistics))]
+    lead = "".join(f"<p>{escape(sentence)}</p>" for sentence in sentences)
     settings = _facts({key.replace("_", " "): f"{value}" for key, value in report.settings.items()})
     return (
         f"<section><h2>The simulation</h2>{lead}{settings}<div class='charts'>{charts}</div>"
@@ -234,16 +237,16 @@ def _frame_table(report: RunReport) -> str:
 def _files(report: RunReport) -> str:
     if not report.files:
         return ""
-    told = any(file.what for file in report.files)
+    described = any(file.what for file in report.files)
 
     def row(file: MadeFile) -> str:
-        holds = f"<td class='text'>{escape(file.what)}</td>" if told else ""
-        return f"<tr><th scope='row'><code>{escape(file.path)}</code></th>{holds}<td>{_size(file.bytes)}</td></tr>"
+        contents = f"<td class='text'>{escape(file.what)}</td>" if described else ""
+        return f"<tr><th scope='row'><code>{escape(file.path)}</code></th>{contents}<td>{_size(file.bytes)}</td></tr>"
 
     rows = "".join(row(file) for file in report.files)
-    holds = "<th scope='col' class='text'>Holds</th>" if told else ""
+    contents = "<th scope='col' class='text'>Holds</th>" if described else ""
     return (
-        f"<section><h2>Files</h2><table><thead><tr><th scope='col'>File</th>{holds}<th scope='col'>Size</th></tr>"
+        f"<section><h2>Files</h2><table><thead><tr><th scope='col'>File</th>{contents}<th scope='col'>Size</th></tr>"
         f"</thead><tbody>{rows}</tbody></table></section>"
     )
 

@@ -1,4 +1,4 @@
-"""Writing a report: ``report.json`` for machines, ``report.html`` for people."""
+"""Writes a report: ``report.json`` for machines, ``report.html`` for people."""
 
 from __future__ import annotations
 
@@ -10,9 +10,11 @@ from ringlet.report.page import page
 
 
 def write_report(report: RunReport, folder: Path | str) -> tuple[Path, Path]:
-    """Writes both files into the folder and returns their paths. The page holds its pictures and needs nothing else."""
+    """Writes both files to a folder and returns their paths; the page embeds its pictures."""
     folder = Path(folder)
-    report = RunReport.model_validate(report.model_dump())  # it was filled bit by bit: check it, make numbers plain
+    report = RunReport.model_validate(
+        report.model_dump()
+    )  # validates fields that were assigned later, and converts numpy values
     json_path, html_path = folder / "report.json", folder / "report.html"
     html = page(report)
     with replacing(json_path) as aside_json, replacing(html_path) as aside_html:

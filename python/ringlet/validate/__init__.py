@@ -1,4 +1,4 @@
-"""Known answers that the simulator is held to: each with its error at several resolutions."""
+"""Validation of the simulator against known answers, each with its error at several resolutions."""
 
 from ringlet.data.errors import UserError
 from ringlet.data.settings import did_you_mean
@@ -36,7 +36,7 @@ CASES: dict[str, Case] = {module.CASE.name: module.CASE for module in _MODULES}
 
 
 def run_case(name: str) -> list[Row]:
-    """Computes a case's rows. Raises UserError where there is no such case."""
+    """Computes the rows of a case; raises UserError for an unknown name."""
     if name not in CASES:
         raise UserError(f"validate: there is no case '{name}'{did_you_mean(name, CASES)}")
     return list(CASES[name].run())

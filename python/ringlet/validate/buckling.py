@@ -1,4 +1,4 @@
-"""When a straight column gives way: the load at which the exact stiffness across it has its first zero eigenvalue.
+"""Buckling load of a straight column: the load at which its lateral stiffness has the first zero eigenvalue.
 
 Clamped–free π²EI/4L² and clamped–clamped 4π²EI/L² (Euler); under its own weight Γ = w L³ / EI = 7.83735 (Greenhill).
 """
@@ -20,21 +20,24 @@ SELF_BUCKLING = 7.83735
 
 
 def critical(rod: Strands, free: NDArray[np.int64], thrust: NDArray[np.float64]) -> float:
-    """The factor on ``thrust`` (compression of each edge [N], shape (n − 1,)) at which the column buckles.
+    """Factor on ``thrust`` at which the column buckles.
 
-    The stiffness across is linear in the thrust while the column is hard to compress, so two of them tell.
+    free:   vertices that are not prescribed
+    thrust: compression of each edge [N], shape (n − 1,)
+
+    The lateral stiffness is linear in the thrust of a nearly incompressible column, so two evaluations suffice.
     """
     rest = rod.curves.points
     lengths = np.linalg.norm(np.diff(rest, axis=0), axis=1)
     area = np.pi * rod.material.radius**2
     small = 1e-3
-    pressed = rest.copy()
-    shorter = lengths * (1 - small * thrust / (rod.material.youngs_modulus * area))
-    pressed[1:, 0] = rest[0, 0] + np.cumsum(shorter)
+    compressed = rest.copy()
+    compressed_lengths = lengths * (1 - small * thrust / (rod.material.youngs_modulus * area))
+    compressed[1:, 0] = rest[0, 0] + np.cumsum(compressed_lengths)
     unloaded = stiffness(rod, rest, free, axis=1)
-    by_thrust = (stiffness(rod, pressed, free, axis=1) - unloaded) / small
-    # unloaded v = −factor by_thrust v; the largest 1/factor belongs to the first load.
-    return float(1.0 / eigh(-by_thrust, unloaded, eigvals_only=True)[-1])
+    geometric = (stiffness(rod, compressed, free, axis=1) - unloaded) / small
+    # unloaded v = −factor geometric v; the largest 1/factor is the first buckling load.
+    return float(1.0 / eigh(-geometric, unloaded, eigvals_only=True)[-1])
 
 
 def clamped_free(edges: int) -> float:
@@ -45,7 +48,7 @@ def clamped_free(edges: int) -> float:
 
 
 def clamped_clamped(edges: int) -> float:
-    """Critical end load, in EI/L²: both clamps stand in the middle of an end edge."""
+    """Critical end load, in EI/L²; each clamp is at the midpoint of an end edge."""
     material = rod_material()
     x = LENGTH * (np.arange(edges + 1) - 0.5) / (edges - 1)
     rod = strand(np.c_[x, 0 * x, 0 * x], material, 2)
@@ -56,8 +59,8 @@ def own_weight(edges: int) -> float:
     """Critical Γ."""
     rod = straight_rod(LENGTH, edges, rod_material())
     weight = gravity_for(1.0, LENGTH, rod.material) * masses(rod)
-    above = np.cumsum(weight[::-1])[::-1][1:]  # what each edge carries
-    return critical(rod, np.arange(2, edges + 1), above)
+    thrust = np.cumsum(weight[::-1])[::-1][1:]  # weight above each edge
+    return critical(rod, np.arange(2, edges + 1), thrust)
 
 
 def run() -> Iterator[Row]:

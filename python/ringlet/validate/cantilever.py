@@ -1,4 +1,4 @@
-"""A clamped rod that bends under its own weight: Γ = w L³ / EI, drop H and reach W of its tip.
+"""A clamped rod that bends under its own weight: Γ = w L³ / EI, with drop H and reach W of the tip.
 
 Expected values: the planar elastica solved as a boundary value problem.
 """

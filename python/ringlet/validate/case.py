@@ -1,4 +1,4 @@
-"""What a known answer is: a case that can be run, and the rows that it yields."""
+"""Cases of the validation, and their rows."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Row:
-    """One number that the simulator is held to.
+    """One number of the validation.
 
-    error: relative, |got / expected − 1|
+    error: relative error, |got / expected − 1|
     """
 
     case: str
@@ -30,7 +30,7 @@ class Row:
         return bool(self.error <= self.tolerance)  # False for NaN
 
     def json(self) -> dict[str, Any]:
-        """As ``ringlet validate --json`` prints it."""
+        """Plain values for ``ringlet validate --json``."""
         return {
             "case": self.case,
             "expected": self.expected,
@@ -43,7 +43,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Case:
-    """A known answer: ``title`` says it in a sentence, ``run`` computes its rows."""
+    """A known answer: ``title`` states it, ``run`` computes its rows."""
 
     name: str
     title: str
@@ -59,10 +59,10 @@ def convergence(
     *,
     unit: str = "edges",
 ) -> list[Row]:
-    """Rows of a quantity at rising resolutions, and one for the order at which its error falls.
+    """Rows of a quantity at increasing resolutions, and a row for its order of convergence.
 
-    The scheme is second order: the tolerance of the finest resolution is given, the coarser ones follow from it. No
-    order can be seen where the finest error is below the six digits that the expected values have.
+    The scheme is second order: ``tolerance`` is that of the finest resolution, and coarser ones follow from it. There
+    is no row for the order when the finest error is below the six digits of the expected values.
     """
     finest = resolutions[-1]
     rows = [Row(f"{case}, {n} {unit}", expected, measure(n), tolerance * (finest / n) ** 2) for n in resolutions]

@@ -1,8 +1,9 @@
-"""Coulomb friction: where a strand begins to slide, how it slides or gives way, and how a drum that turns pulls at one.
+"""Coulomb friction: sticking and sliding on a slope, creep of a sticking strand, and the tension ratio on a drum.
 
-On a slope of angle α it sticks where tan α < μ and else slides at g (sin α − μ cos α). What sticks gives way a little,
-since friction is smoothed: it is μ N (1 − (1 − s)⁴) at a part s of the creep speed times a step; there it stays. Round
-a drum that turns under a strand the tension grows as e^{μφ} over an angle φ of contact (Euler, Eytelwein).
+On a slope of angle α a strand sticks for tan α < μ, and else slides at g (sin α − μ cos α). Smoothed friction lets a
+sticking strand creep to a fixed displacement: at a fraction s of creep speed times step, friction is
+μ N (1 − (1 − s)⁴). On a drum that turns under a strand, the tension grows as e^{μφ} over the contact angle φ (Euler,
+Eytelwein).
 """
 
 from __future__ import annotations
@@ -21,17 +22,20 @@ from ringlet.sim.strands import Strands
 from ringlet.validate.case import Case, Row
 
 GRAVITY, STEP = 9.81, 1 / 240  # [m/s²], [s]
-DISTANCE = 1e-3  # [m] where contact begins
-CREEP = 1e-3  # [m/s] times a step: what is sheared less than that sticks
+DISTANCE = 1e-3  # activation distance of contact [m]
+CREEP = 1e-3  # creep speed [m/s]; a tangential displacement below CREEP · STEP is static friction
 CONTACT = Contact(radius=DISTANCE / 2, creep_speed=CREEP)
 SOLVER = Solver(tolerance=1e-12)
 
 
 def on_a_slope(friction: float, slope: float, seconds: tuple[float, ...]) -> list[tuple[float, float]]:
-    """How far a strand has gone down [m] and how fast [m/s], some times after the ground was tilted.
+    """Displacement [m] and velocity [m/s] of a strand down a slope, at times after the ground tilts.
 
-    slope: of the ground, tan α
-    Its root is held, but by an edge so soft that the rest of it is free.
+    friction: coefficient μ
+    slope:    slope of the ground, tan α
+    seconds:  times [s]
+
+    The root is prescribed, and joined by an edge so soft that the other vertices are free.
     """
     x = 5e-3 * np.arange(12)
     points = np.c_[x, np.full_like(x, 0.9 * DISTANCE), 0 * x]
@@ -42,15 +46,15 @@ def on_a_slope(friction: float, slope: float, seconds: tuple[float, ...]) -> lis
     along, down = GRAVITY * np.sin(np.arctan(slope)), -GRAVITY * np.cos(np.arctan(slope))
     for _ in range(60):
         scene.step(points, STEP, gravity=(0.0, down, 0.0), solver=SOLVER)
-    begin, gone = float(strands.positions[2:, 0].mean()), []
+    begin, motion = float(strands.positions[2:, 0].mean()), []
     for _ in range(round(max(seconds) / STEP)):
         scene.step(points, STEP, gravity=(along, down, 0.0), solver=SOLVER)
-        gone.append((float(strands.positions[2:, 0].mean()) - begin, float(strands.velocities[2:, 0].mean())))
-    return [gone[round(t / STEP) - 1] for t in seconds]
+        motion.append((float(strands.positions[2:, 0].mean()) - begin, float(strands.velocities[2:, 0].mean())))
+    return [motion[round(t / STEP) - 1] for t in seconds]
 
 
 def threshold(friction: float) -> float:
-    """The least slope, tan α, on which the strand goes faster and faster; found by halving."""
+    """Smallest slope, tan α, on which the strand accelerates, by bisection."""
     sticks, slides = 0.9 * friction, 1.1 * friction
     while slides - sticks > 1e-3 * friction:
         middle = 0.5 * (sticks + slides)
@@ -60,32 +64,32 @@ def threshold(friction: float) -> float:
 
 
 def acceleration(friction: float, slope: float) -> float:
-    """Of a strand that slides [m/s²]."""
+    """Acceleration of a sliding strand [m/s²]."""
     (_, before), (_, after) = on_a_slope(friction, slope, (0.15, 0.3))
     return (after - before) / 0.15
 
 
 def tension_ratio(friction: float) -> tuple[float, float]:
-    """Tension of a strand before a drum by that behind it, and the angle on which it touches.
+    """Ratio of the tensions of a strand on both sides of a drum, and the contact angle [rad].
 
-    The drum turns under a strand that is held at one end and pulled at the other.
+    The drum turns under a strand that is fixed at one end and pulled at the other.
     """
-    # Corners are 0.6 µm high. Those of 96 facets are 5 µm, and change what contacts bear by about as much as it is.
+    # With 288 facets the corners are 0.6 µm high. With 96 facets they are 5 µm, which changes contact forces by 100 %.
     radius, facets, width, speed, dt, steps = 10e-3, 288, 5e-3, 0.05, STEP / 4, 120
-    way = radius + 0.95 * DISTANCE
-    over = np.pi - np.linspace(0.0, np.pi, 36)
-    leg = -way * np.pi / 35 * np.arange(1, 12)
-    held_side = np.c_[np.full(11, -way), leg[::-1], 0 * leg]
-    arc = way * np.c_[np.cos(over), np.sin(over), 0 * over]
-    points = np.concatenate([held_side, arc, held_side[::-1] * [-1, 1, 1]])
+    strand_radius = radius + 0.95 * DISTANCE
+    polar = np.pi - np.linspace(0.0, np.pi, 36)
+    leg = -strand_radius * np.pi / 35 * np.arange(1, 12)
+    fixed_side = np.c_[np.full(11, -strand_radius), leg[::-1], 0 * leg]
+    arc = strand_radius * np.c_[np.cos(polar), np.sin(polar), 0 * polar]
+    points = np.concatenate([fixed_side, arc, fixed_side[::-1] * [-1, 1, 1]])
     strands = Strands(Curves.from_list([points]), Material(stretch_scale=1.0, bend_scale=0.0, drag=0.0), 1)
 
     k = np.arange(facets)
     turn = 2 * np.pi * k / facets
-    ring, beside = radius * np.c_[np.cos(turn), np.sin(turn), 0 * turn], np.array([0, 0, width])
-    drum = np.concatenate([ring - beside, ring + beside])
-    after = np.roll(k, -1)
-    triangles = np.concatenate([np.c_[k, after, after + facets], np.c_[k, after + facets, k + facets]])
+    ring, axis = radius * np.c_[np.cos(turn), np.sin(turn), 0 * turn], np.array([0, 0, width])
+    drum = np.concatenate([ring - axis, ring + axis])
+    following = np.roll(k, -1)
+    triangles = np.concatenate([np.c_[k, following, following + facets], np.c_[k, following + facets, k + facets]])
     scene = Scene(strands, [Body(drum, triangles, DISTANCE / 2, friction)], CONTACT)
 
     pull = np.zeros_like(points)
@@ -110,8 +114,8 @@ def run() -> Iterator[Row]:
         got = acceleration(friction, slope)
         yield Row(f"sliding, μ = {friction}, tan α = {slope}: acceleration", float(expected), got, 0.02)
     for load in (0.1, 0.5, 0.9):  # W / μN; less than CREEP · load / 2 as long as load < 0.91
-        gives = CREEP * STEP * (1 - (1 - load) ** 0.25)
-        yield Row(f"gives way under {load:.0%} of μN", gives, on_a_slope(0.4, 0.4 * load, (0.25,))[0][0], 0.01)
+        creep = CREEP * STEP * (1 - (1 - load) ** 0.25)
+        yield Row(f"gives way under {load:.0%} of μN", creep, on_a_slope(0.4, 0.4 * load, (0.25,))[0][0], 0.01)
     for friction in (0.1, 0.3, 0.5):
         got, angle = tension_ratio(friction)
         yield Row(f"round a drum, μ = {friction}: tension ratio", float(np.exp(friction * angle)), got, 0.03)

@@ -1,4 +1,4 @@
-"""A chain without bending stiffness: its shape between two supports, and how it swings from one.
+"""A chain without bending stiffness: its catenary between two supports, and its vibrations when it hangs from one.
 
 Frequencies ω = (j₀ₙ / 2) √(g / L), with the zeros j₀ₙ of the Bessel function J₀; catenary with L = 1 and span 0.6: sag
 0.362782.
@@ -22,7 +22,7 @@ SPAN, SAG = 0.6, 0.362782
 
 
 def frequency(mode: int, edges: int) -> float:
-    """ω of a mode [1/s] of the chain that hangs straight down."""
+    """Angular frequency ω of a mode of the vertically hanging chain [1/s]."""
     material = rod_material().model_copy(update={"bend_scale": 0.0})
     s = LENGTH * np.arange(edges + 1) / edges
     chain = strand(np.c_[0 * s, -s, 0 * s], material, 1)
@@ -37,14 +37,14 @@ def frequency(mode: int, edges: int) -> float:
 
 
 def sag(edges: int) -> float:
-    """How far a chain of length 1 m hangs down between supports 0.6 m apart [m]."""
+    """Sag of a chain of length 1 m between supports 0.6 m apart [m]."""
     material = rod_material().model_copy(update={"bend_scale": 0.0})
-    # It begins as an arc of a circle whose chords add up to its length.
+    # The initial shape is a circular arc whose chords sum to the chain's length.
     opening = root_scalar(lambda half: np.sin(half) / (edges * np.sin(half / edges)) - SPAN, bracket=(0.1, 3.1)).root
     turn = np.linspace(-opening, opening, edges + 1)
     points = 0.5 * SPAN / np.sin(opening) * np.c_[np.sin(turn), np.cos(opening) - np.cos(turn), 0 * turn]
-    held = np.isin(np.arange(edges + 1), (0, edges))
-    chain = strand(points, material, held)
+    prescribed = np.isin(np.arange(edges + 1), (0, edges))
+    chain = strand(points, material, prescribed)
     chain.settle(gravity=(0.0, -GRAVITY, 0.0), dt=0.5, tolerance=1e-10)
     return float(-chain.positions[:, 1].min())
 

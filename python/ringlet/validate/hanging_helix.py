@@ -1,4 +1,4 @@
-"""A coil that hangs from its clamped top frame and lengthens under its own weight: the spring that a curl is.
+"""A coil that hangs from its clamped top and lengthens under its own weight, like a curl.
 
 R 5 mm, pitch 4 mm, 6 turns, GJ/EI = 1/1.38. Expected values: Kirchhoff's rod solved as a boundary value problem.
 """
@@ -13,14 +13,14 @@ from ringlet.validate.case import Case, Row, convergence
 from ringlet.validate.rods import gravity_for, rod_material, strand
 
 RADIUS, PITCH, TURNS, RATIO = 5e-3, 4e-3, 6, 1 / 1.38
-EXTENSION = {1: 0.000475, 5: 0.002372, 20: 0.009429, 50: 0.02336, 100: 0.046094}  # by the arc length L
+EXTENSION = {1: 0.000475, 5: 0.002372, 20: 0.009429, 50: 0.02336, 100: 0.046094}  # relative to the arc length L
 
 
 def extension(gamma: float, per_turn: int, *, correct_resolution: bool) -> float:
-    """How far the tip sinks, in arc lengths, at so many vertices a turn."""
+    """Displacement of the tip relative to the arc length, at ``per_turn`` vertices a turn."""
     edges = per_turn * TURNS
-    # Three held vertices clamp position and frame; a bend acts half an edge beyond its vertex, so the clamp stands in
-    # the middle of edge 1.
+    # Three prescribed vertices clamp position and frame. A bend acts half an edge beyond its vertex, so the clamp is at
+    # the midpoint of edge 1.
     turn = 2 * np.pi * (np.arange(edges + 3) - 1.5) / per_turn
     turn[-1] = 2 * np.pi * TURNS
     points = np.c_[RADIUS * np.cos(turn), -PITCH * turn / (2 * np.pi), RADIUS * np.sin(turn)]

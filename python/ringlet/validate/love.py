@@ -1,4 +1,4 @@
-"""A coil pulled along its axis by a force on it, both ends free to turn: it stays a helix (Love).
+"""A coil pulled along its axis, with both ends free to rotate: it stays a helix (Love).
 
 GJ(τ−τ₀) sinα + EI(κ−κ₀) cosα = 0,  FR = GJ(τ−τ₀) cosα − EI(κ−κ₀) sinα,  κ = cos²α/R,  τ = sinα cosα/R.
 The coil has R = 5 mm and a pitch of 4 mm.
@@ -36,20 +36,20 @@ def theory(load: float) -> float:
 
     alpha = alpha0
     radius = 1.0
-    for part in np.linspace(0, 1, 21)[1:]:  # along the branch that begins unloaded
+    for fraction in np.linspace(0, 1, 21)[1:]:  # continuation from the unloaded state
 
-        def at(unknown: np.ndarray, part: float = part) -> list[float]:
+        def at(unknown: np.ndarray, fraction: float = fraction) -> list[float]:
             first, second = residual(unknown)
-            return [first, second + (1 - part) * load * unknown[1]]
+            return [first, second + (1 - fraction) * load * unknown[1]]
 
         alpha, radius = root(at, (alpha, radius), tol=1e-13).x
     return float(np.sin(alpha))
 
 
 def rise(load: float, per_turn: int, *, correct_resolution: bool) -> float:
-    """Rise per arc length of the coil's middle part.
+    """Rise per arc length of the coil's central turns.
 
-    Stiff radial arms lead from both ends to the axis; the upper one is held at its tip alone, the lower one is pulled.
+    Stiff radial arms lead from both ends to the axis; the tip of the upper one is fixed, the lower one is pulled.
     """
     turn = 2 * np.pi * np.arange(per_turn * TURNS + 1) / per_turn
     coil = np.c_[RADIUS * np.cos(turn), -PITCH * turn / (2 * np.pi), RADIUS * np.sin(turn)]
@@ -62,7 +62,7 @@ def rise(load: float, per_turn: int, *, correct_resolution: bool) -> float:
     spring = strand(points, material, 1, {"bend": stiff})
     forces = np.zeros_like(points)
     forces[-1, 1] = -load * bending_stiffness(material) / RADIUS**2
-    spring.settle(forces=forces, dt=0.05, tolerance=1e-8)  # turning about the axis costs nothing: not too fast
+    spring.settle(forces=forces, dt=0.05, tolerance=1e-8)  # a small step: rotation about the axis has no stiffness
     middle = slice(2 + per_turn, -2 - per_turn, per_turn)
     ends = spring.positions[middle][[0, -1]]
     axis = spring.positions[-1] - spring.positions[0]

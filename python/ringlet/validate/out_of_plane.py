@@ -1,7 +1,7 @@
-"""When a naturally curved rod that hangs from its clamp, pointing down, leaves its plane: the bend–twist test.
+"""Out-of-plane instability of a naturally curved rod that hangs from a vertical clamp: the bend–twist test.
 
-GJ/EI = 2/3. The planar equilibrium is stable for small Γ = w L³ / EI; at the threshold the exact stiffness out of the
-plane has its first zero eigenvalue.
+GJ/EI = 2/3. The planar equilibrium is stable for small Γ = w L³ / EI. At the threshold the exact out-of-plane stiffness
+has its first zero eigenvalue.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ THRESHOLDS = {"2π": (2 * np.pi, 12.2), "8": (8.0, 19.3), "10": (10.0, 28.8)}  #
 
 @cache
 def lowest(curvature: float, gamma: float, edges: int) -> float:
-    """Lowest eigenvalue [N/m] of the stiffness out of the plane, at the planar equilibrium."""
-    # Three held vertices clamp the frame too; the clamp, pointing down, stands in the middle of the second edge.
+    """Lowest eigenvalue of the out-of-plane stiffness at the planar equilibrium [N/m]."""
+    # Three prescribed vertices clamp the frame too; the vertical clamp is at the midpoint of the second edge.
     chord, turn = LENGTH / (edges - 0.5), curvature / (edges - 0.5)
     heading = -np.pi / 2 + turn * np.arange(-1, edges)
     tangents = np.c_[np.cos(heading), np.sin(heading), 0 * heading]
@@ -35,14 +35,14 @@ def lowest(curvature: float, gamma: float, edges: int) -> float:
 
 
 def threshold(curvature: float, expected: float, edges: int) -> float:
-    """Γ at which the planar state becomes unstable, sought from 0.4 to 2 times the expected one."""
+    """Γ at which the planar state becomes unstable, searched between 0.4 and 2 times the expected value."""
     return float(
         root_scalar(lambda g: lowest(curvature, g, edges), bracket=(0.4 * expected, 2 * expected), rtol=1e-4).root
     )
 
 
 def run() -> Iterator[Row]:
-    for name, (curvature, expected) in THRESHOLDS.items():  # known to three digits
+    for name, (curvature, expected) in THRESHOLDS.items():  # expected values have three digits
         for edges, tolerance in ((25, 4e-2), (50, 1e-2), (100, 5e-3)):
             got = threshold(curvature, expected, edges)
             yield Row(f"planar to 3-D, κ₀L={name} Γ, {edges} edges", expected, got, tolerance)

@@ -1,8 +1,8 @@
-"""How contacts push: the gap at which a strand that lies on the ground bears what presses it down.
+"""Normal contact forces: the equilibrium gap of a strand that is pressed onto the ground.
 
-A contact that is active below r and k hard pushes at a gap g with k (r − g) down to r/2 and with k r²/4g from there.
-A vertex is as hard as it has to be, a hundredth or a tenth of ``k`` or all of it: the least that bears the press within
-r. What it bore it forgets by half in a quarter of a second, so that it becomes soft again.
+A contact of activation distance r and stiffness k has the force k (r − g) at gaps g from r to r/2, and k r²/4g below.
+The stiffness of a vertex is 0.01, 0.1 or 1 times ``k``: the lowest level whose force at gap 0.25 r or more suffices.
+The remembered load halves in a quarter of a second, so that the vertex softens again.
 """
 
 from __future__ import annotations
@@ -21,16 +21,16 @@ from ringlet.sim.scene import Scene
 from ringlet.sim.strands import Strands
 from ringlet.validate.case import Case, Row
 
-DISTANCE, STEP = 1e-3, 1 / 240  # r [m] where contact begins, [s]
-PRESSES = (0.002, 0.004, 0.02, 0.05, 0.2, 0.5, 1.0, 3.0, 10.0)  # k r
-LEVELS = (0.01, 0.1, 1.0)  # of k
+DISTANCE, STEP = 1e-3, 1 / 240  # activation distance r [m], time step [s]
+PRESSES = (0.002, 0.004, 0.02, 0.05, 0.2, 0.5, 1.0, 3.0, 10.0)  # loads [k r]
+LEVELS = (0.01, 0.1, 1.0)  # stiffness levels [k]
 
 
 def pressed(*presses: float, steps: int = 100) -> list[float]:
-    """The gap by r after so many steps under each press in turn [k r]; the strand rests before every step."""
+    """Gaps relative to r after ``steps`` steps under each load in turn [k r]; velocities are reset after each step."""
     x = 5e-3 * np.arange(24)
     points = np.c_[x, np.full_like(x, 0.99 * DISTANCE), 0 * x]
-    soft = np.where(x < 7e-3, 1e-14, 1.0)  # it is held by edges so soft that the rest of it is free
+    soft = np.where(x < 7e-3, 1e-14, 1.0)  # edges so soft that the vertices behind them are free
     strands = Strands(Curves.from_list([points]), Material(drag=0.0), 2, {"stretch": soft, "bend": soft})
     ground = Body(np.array([[-2.0, 0, 4], [-2, 0, -4], [8, 0, 0]]), np.array([[0, 1, 2]]), DISTANCE / 2, 0.0)
     scene = Scene(strands, [ground], Contact(radius=DISTANCE / 2))
@@ -48,7 +48,7 @@ def pressed(*presses: float, steps: int = 100) -> list[float]:
 
 
 def gap_under(press: NDArray[np.floating], levels: tuple[float, ...] = LEVELS) -> NDArray[np.floating]:
-    """The gap by r that bears a press [k r], shape (n,), with the least of the levels that does, or the last."""
+    """Equilibrium gap relative to r under loads [k r], shape (n,), at the lowest sufficient level, or the last."""
     press = np.asarray(press, float)
     by_level = press / np.select([press <= level for level in levels], levels, levels[-1])
     return np.where(by_level < 0.5, 1 - by_level, 0.25 / by_level)

@@ -1,4 +1,4 @@
-"""A clamped rod without weight, bent by a force across its tip: P L² / EI, drop H and reach W.
+"""A weightless clamped rod, bent by a transverse force at its tip: P L² / EI, with drop H and reach W of the tip.
 
 Expected values: the elastica in elliptic integrals.
 """
@@ -19,7 +19,7 @@ TIP = {1: (0.301721, 0.943567), 2: (0.493457, 0.839358), 5: (0.713792, 0.612372)
 
 @cache
 def tip(load: float, edges: int) -> tuple[float, float]:
-    """Drop and reach of the tip, in lengths."""
+    """Drop and reach of the tip, relative to the length."""
     material = rod_material()
     rod = straight_rod(LENGTH, edges, material)
     forces = np.zeros_like(rod.curves.points)

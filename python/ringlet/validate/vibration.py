@@ -1,8 +1,8 @@
-"""A clamped–free rod vibrates at ω = (βL)² √(EI/λ) / L², without gravity.
+"""Vibration of a clamped–free rod at ω = (βL)² √(EI/λ) / L², without gravity.
 
-Two measurements: the eigenvalues of stiffness and masses at rest, and a rod that is let go and swings.
-Backward Euler with damping β follows z² (1 + βω²h + ω²h²) − z (2 + βω²h) + 1 = 0 from step to step: a mode must be seen
-to shrink by 1/√(1 + βω²h + ω²h²) a step and, undamped, to swing at atan(ωh)/h.
+Two measurements: the eigenvalues of stiffness and masses at rest, and the motion of a released rod.
+A step of backward Euler with damping β multiplies a mode by z with z² (1 + βω²h + ω²h²) − z (2 + βω²h) + 1 = 0.
+A mode therefore decays by 1/√(1 + βω²h + ω²h²) a step. Without damping it oscillates at atan(ωh)/h.
 """
 
 from __future__ import annotations
@@ -24,25 +24,25 @@ BETA = (1.875104, 4.694091, 7.854757)  # βL, from cos βL cosh βL = −1
 
 
 def theory(mode: int) -> float:
-    """ω of a mode [1/s]."""
+    """Theoretical angular frequency of a mode [1/s]."""
     material = rod_material()
     return BETA[mode] ** 2 * np.sqrt(bending_stiffness(material) / line_density(material)) / LENGTH**2
 
 
 def modes(rod: Strands) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """ω² [1/s²] and shapes (columns; rows are the free vertices) of motion along y about the rest shape."""
+    """Squared frequencies ω² [1/s²] and mode shapes (columns; rows are free vertices) along y about the rest shape."""
     free = np.arange(2, len(rod.curves.points))
     return eigh(stiffness(rod, rod.curves.points, free, axis=1), np.diag(masses(rod)[free]))
 
 
 def eigenfrequency(mode: int, edges: int) -> float:
-    """ω of a mode [1/s]."""
+    """Angular frequency of a mode of the discrete rod [1/s]."""
     squares, _ = modes(straight_rod(LENGTH, edges, rod_material()))
     return float(np.sqrt(squares[mode]))
 
 
 def swing(edges: int, steps_per_period: int, damping: float = 0.0) -> tuple[float, float]:
-    """Frequency [1/s] and amplitude ratio per step of the first mode of a rod that is let go; damping β [s]."""
+    """Angular frequency [1/s] and amplitude ratio per step of a rod released in its first mode; damping β [s]."""
     rod = straight_rod(LENGTH, edges, rod_material().model_copy(update={"damping": damping}))
     rest = rod.curves.points
     shape = modes(rod)[1][:, 0]
@@ -78,10 +78,10 @@ def run() -> Iterator[Row]:
     angle = 2 * np.pi / steps  # ωh
     omega, _ = swing(edges, steps)
     yield Row("released rod ω, 50 edges, 200 steps a period", theory(0) * np.arctan(angle) / angle, omega, 2e-3)
-    for part in (0.0, 0.02, 0.1):  # of critical damping: β = 2 part / ω
-        _, ratio = swing(edges, steps, 2 * part / theory(0))
-        decay = 0.5 * np.log(1 + 2 * part * angle + angle**2)
-        yield Row(f"released rod, decay a step at {part:g} of critical damping", decay, -np.log(ratio), 2e-3)
+    for damping_ratio in (0.0, 0.02, 0.1):  # β = 2 damping_ratio / ω
+        _, ratio = swing(edges, steps, 2 * damping_ratio / theory(0))
+        decay = 0.5 * np.log(1 + 2 * damping_ratio * angle + angle**2)
+        yield Row(f"released rod, decay a step at {damping_ratio:g} of critical damping", decay, -np.log(ratio), 2e-3)
 
 
 CASE = Case("clamped-free", "A clamped rod vibrates at the frequencies of beam theory", run)

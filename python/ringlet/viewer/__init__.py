@@ -1,4 +1,4 @@
-"""The review: a page in the browser on which a look is found, and the server behind it."""
+"""The review: a page in the browser for grooming and playback, and its server."""
 
 from ringlet.viewer.run import view
 

@@ -1,4 +1,4 @@
-"""The tables of a TOML text as blocks of lines: a table with the comment above it moves and goes as one."""
+"""Splits a TOML text into blocks of lines: one table with the comment above it."""
 
 from __future__ import annotations
 
@@ -10,7 +10,12 @@ HEADER = re.compile(r"^\s*(\[\[?)\s*([A-Za-z0-9_.\-]+)\s*\]\]?\s*(#.*)?$")
 
 @dataclass
 class Block:
-    """A table: its name, whether it is one of an array of tables, and its lines, the comment above it included."""
+    """A table of a TOML text.
+
+    name:  name in the header; empty for the block before the first header
+    many:  whether it belongs to an array of tables
+    lines: its lines, with the comment above the header
+    """
 
     name: str
     many: bool
@@ -18,51 +23,51 @@ class Block:
 
     @property
     def text(self) -> str:
-        """Its lines, one blank line after them."""
+        """The lines of the block, without blank lines around them."""
         return "\n".join(self.lines).strip("\n") + "\n"
 
 
 def split(text: str) -> list[Block]:
-    """The blocks of a text; the first has no name and holds what comes before any table."""
+    """Splits a text into blocks; the first has no name and holds the lines before any table."""
     blocks = [Block("", False, [])]
     depth = 0
     for line in text.splitlines():
         header = HEADER.match(line) if depth == 0 else None
         if header:
-            above = _comment_above(blocks[-1].lines)
+            above = _take_trailing_comment(blocks[-1].lines)
             blocks.append(Block(header[2], header[1] == "[[", [*above, line]))
         else:
-            depth += _opened(line)
+            depth += _bracket_depth(line)
             blocks[-1].lines.append(line)
     return blocks
 
 
 def join(blocks: list[Block]) -> str:
-    """The text of blocks, with a blank line between them."""
+    """Joins blocks to a text, with a blank line between them."""
     return "\n".join(block.text for block in blocks if block.lines)
 
 
 def insert_line(block: Block, line: str) -> None:
-    """Adds a line after the last setting of a block, before comments and blank lines that end it."""
+    """Inserts a line after the last setting of a block, before its trailing comments and blank lines."""
     at = len(block.lines)
     while at > 0 and (not block.lines[at - 1].strip() or block.lines[at - 1].lstrip().startswith("#")):
         at -= 1
     block.lines.insert(at, line)
 
 
-def _comment_above(lines: list[str]) -> list[str]:
-    """Takes the comment that ends some lines away from them: it belongs to what comes next."""
+def _take_trailing_comment(lines: list[str]) -> list[str]:
+    """Removes and returns the comment at the end of some lines: it belongs to the next table."""
     at = len(lines)
     while at > 0 and lines[at - 1].lstrip().startswith("#"):
         at -= 1
-    if at == 0:  # the comment that opens the file stays
+    if at == 0:  # keeps the comment at the start of the file
         return []
     above = lines[at:]
     del lines[at:]
     return above
 
 
-def _opened(line: str) -> int:
-    """By how much brackets are deeper after a line; strings and comments do not count."""
+def _bracket_depth(line: str) -> int:
+    """Change of the bracket depth by a line, without strings and comments."""
     bare = re.sub(r'"(\\.|[^"\\])*"|\'[^\']*\'', "", line).split("#")[0]
     return sum(bare.count(c) for c in "[{") - sum(bare.count(c) for c in "]}")

@@ -1,7 +1,6 @@
-"""The latest message of each subject, and who has not seen it yet.
+"""Retained messages: the latest of each subject, delivered to every page.
 
-What is shown is a state, not a story: a page that is slow, or comes back, gets the latest of everything and misses
-nothing but what is no longer true.
+Pages show a state, so a slow or returning page gets the latest message of each subject and skips outdated ones.
 """
 
 from __future__ import annotations
@@ -11,55 +10,52 @@ from collections.abc import Callable
 
 
 class Mailbox:
-    """What one page has yet to be sent, oldest subject first, and then what it asked for, made when it is its turn."""
+    """Send queue of one page: waiting messages, oldest subject first, then requested messages, made on demand."""
 
     def __init__(self) -> None:
         self._waiting: dict[str, bytes] = {}
-        self._wanted: dict[str, Callable[[], bytes | None]] = {}
-        self._some = asyncio.Event()
+        self._requested: dict[str, Callable[[], bytes | None]] = {}
+        self._available = asyncio.Event()
 
     def put(self, subject: str, message: bytes) -> None:
-        """Sends a message after all others, in place of one of the same subject that is still waiting."""
+        """Queues a message at the end; replaces a waiting one of the same subject."""
         self._waiting.pop(subject, None)
         self._waiting[subject] = message
-        self._some.set()
+        self._available.set()
 
-    def want(self, wanted: dict[str, Callable[[], bytes | None]]) -> None:
-        """Sends messages that are made by what is given, in place of those that were wanted before.
+    def request(self, sources: dict[str, Callable[[], bytes | None]]) -> None:
+        """Replaces the requested messages by those of ``sources``; a source that returns None sends nothing."""
+        self._requested = sources
+        self._available.set()
 
-        Nothing is sent where there is nothing to say any more.
-        """
-        self._wanted = wanted
-        self._some.set()
-
-    def drop(self, beginning: str) -> None:
-        """Sends nothing more of subjects that begin so."""
-        for subject in [name for name in self._waiting if name.startswith(beginning)]:
+    def discard(self, prefix: str) -> None:
+        """Removes waiting messages whose subject starts with a prefix."""
+        for subject in [name for name in self._waiting if name.startswith(prefix)]:
             del self._waiting[subject]
 
     async def next(self) -> bytes:
-        """The next message to send."""
+        """Waits for the next message and returns it."""
         while True:
             if self._waiting:
                 return self._waiting.pop(next(iter(self._waiting)))
-            if self._wanted:
-                message = await asyncio.to_thread(self._wanted.pop(next(iter(self._wanted))))
+            if self._requested:
+                message = await asyncio.to_thread(self._requested.pop(next(iter(self._requested))))
                 if message is not None:
                     return message
             else:
-                self._some.clear()
-                await self._some.wait()
+                self._available.clear()
+                await self._available.wait()
 
 
 class Board:
-    """Keeps the latest message of each subject and hands it to every mailbox."""
+    """Stores the latest message of each subject and delivers it to every mailbox."""
 
     def __init__(self) -> None:
         self._latest: dict[str, bytes] = {}
         self._boxes: list[Mailbox] = []
 
     def join(self, first: bytes) -> Mailbox:
-        """A mailbox that begins with a welcome, and all there is."""
+        """Returns a new mailbox with the welcome message and all retained messages."""
         box = Mailbox()
         box.put("welcome", first)
         for subject, message in self._latest.items():
@@ -68,22 +64,22 @@ class Board:
         return box
 
     def leave(self, box: Mailbox) -> None:
-        """Forgets a mailbox."""
+        """Removes a mailbox."""
         self._boxes.remove(box)
 
     def post(self, subject: str, message: bytes) -> None:
-        """Tells everybody."""
+        """Retains a message and queues it in every mailbox."""
         self._latest[subject] = message
         for box in self._boxes:
             box.put(subject, message)
 
-    def subjects(self, beginning: str) -> list[str]:
-        """What there is that begins so."""
-        return [subject for subject in self._latest if subject.startswith(beginning)]
+    def subjects(self, prefix: str) -> list[str]:
+        """Retained subjects that start with a prefix."""
+        return [subject for subject in self._latest if subject.startswith(prefix)]
 
-    def wipe(self, beginning: str) -> None:
-        """Takes down what begins so."""
-        for subject in self.subjects(beginning):
+    def clear(self, prefix: str) -> None:
+        """Removes the messages whose subject starts with a prefix."""
+        for subject in self.subjects(prefix):
             del self._latest[subject]
         for box in self._boxes:
-            box.drop(beginning)
+            box.discard(prefix)

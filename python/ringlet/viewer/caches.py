@@ -1,4 +1,4 @@
-"""Which files of a project are caches: what can be played beside a shot."""
+"""The simulation caches of a project, for playback beside a shot."""
 
 from __future__ import annotations
 
@@ -12,23 +12,23 @@ Stamp = tuple[int, int, int]
 
 
 class Caches:
-    """The caches of a project. A file is looked into once, and again when it has changed."""
+    """The caches of a project. A file is inspected once, and again after it changes."""
 
     def __init__(self, project: Project) -> None:
         self._project = project
-        self._known: dict[str, tuple[Stamp, bool]] = {}
+        self._inspected: dict[str, tuple[Stamp, bool]] = {}
 
     def names(self) -> list[str]:
-        """Their names. The first time this opens every USD file of the project."""
-        return [name for name in self._project.files(*PATTERNS) if self._is(name)]
+        """Names of the caches; the first call opens every USD file of the project."""
+        return [name for name in self._project.files(*PATTERNS) if self._is_cache(name)]
 
-    def _is(self, name: str) -> bool:
+    def _is_cache(self, name: str) -> bool:
         try:
             path = self._project.inside(name, "compare")
-            found = path.stat()
-        except (UserError, OSError):  # a link to elsewhere, or just gone
+            status = path.stat()
+        except (UserError, OSError):  # a link out of the project, or a deleted file
             return False
-        stamp = found.st_ino, found.st_size, found.st_mtime_ns
-        if self._known.get(name, (None, False))[0] != stamp:
-            self._known[name] = stamp, io.is_cache(path)
-        return self._known[name][1]
+        stamp = status.st_ino, status.st_size, status.st_mtime_ns
+        if self._inspected.get(name, (None, False))[0] != stamp:
+            self._inspected[name] = stamp, io.is_cache(path)
+        return self._inspected[name][1]

@@ -1,4 +1,4 @@
-"""A TOML file that is edited setting by setting, and keeps its comments and its order."""
+"""A TOML file edited by setting, which keeps its comments and its order, with undo and redo."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from ringlet.data.toml import toml_key
 from ringlet.viewer import blocks
 from ringlet.viewer.protocol import Change, Place
 
-MOST_STEPS = 500  # that can be undone
+MAX_UNDO_STEPS = 500
 
 
 @dataclass(frozen=True)
 class State:
-    """What undo goes back to: the text, the stages that have no effect for now, and the text of the file of edits."""
+    """A state for undo: text, muted stages, and text of the file of edits."""
 
     text: str
     muted: frozenset[str] = frozenset()
@@ -32,49 +32,49 @@ class State:
 
 
 class History:
-    """What was done to files that are edited together, in the order in which it was done."""
+    """Undo and redo stacks of files that are edited together."""
 
     def __init__(self) -> None:
         self.before: list[tuple[Document, State]] = []
         self.after: list[tuple[Document, State]] = []
         self._gesture: tuple[Document, int] | None = None
 
-    def note(self, document: Document, gesture: int | None) -> None:
-        """Keeps what a document is before it changes; one gesture is one step."""
-        this = None if gesture is None else (document, gesture)
-        if this is None or this != self._gesture:
-            self.before = [*self.before, (document, document.state)][-MOST_STEPS:]
-        self._gesture = this
+    def record(self, document: Document, gesture: int | None) -> None:
+        """Pushes a document's state before a change; all changes of one gesture are one step."""
+        current = None if gesture is None else (document, gesture)
+        if current is None or current != self._gesture:
+            self.before = [*self.before, (document, document.state)][-MAX_UNDO_STEPS:]
+        self._gesture = current
         self.after.clear()
 
     def undo(self) -> Document | None:
-        """Goes back a step; tells which document has changed."""
-        return self._go(self.before, self.after)
+        """Undoes a step; returns the changed document, None when there is no step."""
+        return self._step(self.before, self.after)
 
     def redo(self) -> Document | None:
-        """Goes forth again."""
-        return self._go(self.after, self.before)
+        """Redoes a step; returns the changed document, None when there is no step."""
+        return self._step(self.after, self.before)
 
-    def _go(self, there: list[tuple[Document, State]], back: list[tuple[Document, State]]) -> Document | None:
-        if not there:
+    def _step(self, source: list[tuple[Document, State]], target: list[tuple[Document, State]]) -> Document | None:
+        if not source:
             return None
-        document, state = there[-1]
-        now = document.state
-        document.take(state)
-        there.pop()
-        back.append((document, now))
+        document, state = source[-1]
+        current = document.state
+        document.restore(state)
+        source.pop()
+        target.append((document, current))
         self._gesture = None
         return document
 
 
 class Document:
-    """A file as it stands, with what it was before. Nothing gets in that ``check`` does not accept.
+    """A file in its current state, with its history. Every state passes ``check``.
 
-    check:   makes of a text and that of its file of edits what they mean; raises UserError where they are not valid
-    edits:   what the file of edits holds
-    history: that of the files that are undone together
-    model:   what ``check`` made of it
-    revision: grows with each change
+    check:    parses a text and the text of its file of edits; raises UserError for invalid ones
+    edits:    text of the file of edits
+    history:  undo history shared with other files
+    model:    result of ``check``
+    revision: counter of changes
     """
 
     def __init__(
@@ -83,36 +83,39 @@ class Document:
         self.path, self.history = path, history or History()
         self.saved, self.saved_edits = path.read_text(encoding="utf-8"), edits
         self._check, self.revision = check, 0
-        self.take(State(self.saved, edits=edits))
+        self.restore(State(self.saved, edits=edits))
 
-    def take(self, state: State) -> None:
-        """Is as it says, if that is valid."""
+    def restore(self, state: State) -> None:
+        """Sets a state; raises UserError and keeps the current one when the state is invalid."""
         self.model = self._check(state.text, state.edits)
         self.state = state
         self.revision += 1
 
     @property
     def text(self) -> str:
-        """The text as it stands."""
+        """Current text."""
         return self.state.text
 
     @property
     def dirty(self) -> bool:
-        """Whether there is something to save."""
+        """Whether there are unsaved changes."""
         return self.text != self.saved or self.state.edits != self.saved_edits
 
     @property
     def can_undo(self) -> bool:
-        """Whether there is something to go back to."""
+        """Whether the undo stack has a step."""
         return bool(self.history.before)
 
     @property
     def can_redo(self) -> bool:
-        """Whether something was undone."""
+        """Whether the redo stack has a step."""
         return bool(self.history.after)
 
     def set(self, changes: Sequence[tuple[Place, Any]], gesture: int | None = None) -> None:
-        """Gives settings new values; None takes a setting out. One gesture is one step of undo."""
+        """Sets values of settings; None removes a setting. One gesture is one undo step.
+
+        Raises UserError when a setting cannot be set or the result is invalid.
+        """
         text = self.text
         for place, value in changes:
             try:
@@ -123,49 +126,56 @@ class Document:
         self.become(text, gesture=gesture)
 
     def arrange(self, action: str, name: str, at: int, to: int = 0, entry: dict[str, Any] | None = None) -> None:
-        """Adds, removes or moves a table of the array of tables ``name``, with the comment above it."""
-        parts = blocks.split(self.text)
-        places = [k for k, block in enumerate(parts) if block.name == name and block.many]
+        """Adds, removes or moves a table of the array of tables ``name``, with the comment above it.
+
+        action: ``add``, ``remove`` or ``move``
+        at, to: row of the table, and its new row
+        entry:  keys of a new table
+
+        Raises UserError for a row out of range, and for tables in another notation.
+        """
+        tables = blocks.split(self.text)
+        places = [k for k, block in enumerate(tables) if block.name == name and block.many]  # rows in ``tables``
         if len(places) != len(self.said().get(name, [])):
             raise UserError(f"{self.path.name}: {name} is not written as tables [[{name}]]; edit it in the file")
         if not 0 <= at < len(places) + (action == "add") or not 0 <= to < max(len(places), 1):
             raise UserError(f"{self.path.name}: {name} has {len(places)} operators; there is none at {max(at, to)}")
         if action == "add":
             lines = [f"[[{name}]]", *(f"{toml_key(part)} = {written(value)}" for part, value in (entry or {}).items())]
-            parts.insert(self._new_place(parts, places, at), blocks.Block(name, True, lines))
+            tables.insert(self._new_place(tables, places, at), blocks.Block(name, True, lines))
         else:
-            chosen = [parts[k] for k in places]
+            chosen = [tables[k] for k in places]
             moved = chosen.pop(at)
             if action == "move":
                 chosen.insert(to, moved)
                 for k, block in zip(places, chosen, strict=True):
-                    parts[k] = block
+                    tables[k] = block
             else:
-                del parts[places[at]]
-        self.become(blocks.join(parts))
+                del tables[places[at]]
+        self.become(blocks.join(tables))
 
     @staticmethod
-    def _new_place(parts: list[blocks.Block], places: list[int], at: int) -> int:
-        """Where a new table comes: among its like, or else before the curl, as recipes are read."""
+    def _new_place(tables: list[blocks.Block], places: list[int], at: int) -> int:
+        """Position of a new table: among its array of tables, or else before the curl."""
         if places:
             return places[at] if at < len(places) else places[-1] + 1
-        return next((k for k, block in enumerate(parts) if block.name == "curl"), len(parts))
+        return next((k for k, block in enumerate(tables) if block.name == "curl"), len(tables))
 
     def become(
         self, text: str, *, muted: frozenset[str] | None = None, edits: str | None = None, gesture: int | None = None
     ) -> None:
-        """Takes another text, other muted stages or other edits, if they are valid."""
-        now = self.state
-        state = State(text, now.muted if muted is None else muted, now.edits if edits is None else edits)
-        if state == now:
+        """Sets another text, muted stages or edits as one undo step; raises UserError when they are invalid."""
+        current = self.state
+        state = State(text, current.muted if muted is None else muted, current.edits if edits is None else edits)
+        if state == current:
             return
         model = self._check(state.text, state.edits)
-        self.history.note(self, gesture)
+        self.history.record(self, gesture)
         self.model, self.state = model, state
         self.revision += 1
 
     def save(self, path: Path | None = None, text: str | None = None) -> Path:
-        """Writes it to its file, or a text to another one."""
+        """Writes the text to the document's file, or a text to another file; returns the path."""
         with replacing(path or self.path) as aside:
             aside.write_text(self.text if text is None else text, encoding="utf-8")
         if path is None:
@@ -173,22 +183,22 @@ class Document:
         return path or self.path
 
     def said(self) -> dict[str, Any]:
-        """What the file says, as plain values."""
+        """Contents of the text as plain values."""
         return tomllib.loads(self.text)
 
     def changes(self) -> list[Change]:
-        """The lines that are not as they were saved, with a line of context."""
-        told = [*_differing(self.saved, self.text), *_differing(self.saved_edits, self.state.edits)]
-        return [Change.model_validate({"sign": line[0], "line": line[1:120]}) for line in told[:400]]
+        """Diff of the current text against the saved one, with one line of context."""
+        lines = [*_diff(self.saved, self.text), *_diff(self.saved_edits, self.state.edits)]
+        return [Change.model_validate({"sign": line[0], "line": line[1:120]}) for line in lines[:400]]
 
 
-def _differing(before: str, now: str) -> list[str]:
+def _diff(before: str, now: str) -> list[str]:
     lines = difflib.unified_diff(before.splitlines(), now.splitlines(), lineterm="", n=1)
     return [line for line in lines if not line.startswith(("---", "+++", "@@"))]
 
 
 def written(value: Any) -> str:
-    """A value as TOML says it inside a line."""
+    """Formats a value as inline TOML."""
     if isinstance(value, dict):
         return "{ " + ", ".join(f"{toml_key(name)} = {written(entry)}" for name, entry in value.items()) + " }"
     if isinstance(value, list | tuple):
@@ -197,7 +207,7 @@ def written(value: Any) -> str:
 
 
 def put(text: str, place: Place, value: Any) -> str:
-    """The text with a value at a place, and the tables on the way to it."""
+    """Sets a value in a text and creates missing tables; None removes the value."""
     if not place or not isinstance(place[0], str):
         raise KeyError("it is nowhere")
     data: Any = tomllib.loads(text)
@@ -208,15 +218,15 @@ def put(text: str, place: Place, value: Any) -> str:
         return text if value is None else _add(text, place, value)
     if depth == len(place) - 1:
         return _replace(text, place, value)
-    there, missing = data[place[depth]], place[depth + 1]
+    present, missing = data[place[depth]], place[depth + 1]
     if value is None:
         return text
     if not isinstance(missing, str):
         raise IndexError(f"there is no entry {missing}")
-    if isinstance(there, dict):
+    if isinstance(present, dict):
         return _add(text, place, value)
-    # `width = 1.2` becomes `width = { value = 1.2, … }`, so that there is a place for more
-    return _replace(text, place[: depth + 1], {"value": there, missing: _nested(place[depth + 2 :], value)})
+    # Promotes a plain value to a table: `width = 1.2` becomes `width = { value = 1.2, … }`.
+    return _replace(text, place[: depth + 1], {"value": present, missing: _nested(place[depth + 2 :], value)})
 
 
 def _has(data: Any, part: str | int) -> bool:
@@ -230,23 +240,23 @@ def _nested(place: Place, value: Any) -> Any:
 
 
 def _add(text: str, place: Place, value: Any) -> str:
-    """Adds a setting to a table with a header of its own, as a line; elsewhere inside the line of its table."""
-    parts = blocks.split(text)
+    """Adds a setting: as a line of a table with a header, else inside its inline table."""
+    tables = blocks.split(text)
     name, index = str(place[0]), place[1] if len(place) > 1 and isinstance(place[1], int) else None
     rest = place[1:] if index is None else place[2:]
-    there = [block for block in parts if block.name == name]
+    own = [block for block in tables if block.name == name]
     data = tomllib.loads(text)
-    known = data.get(name, {}) if index is None else data[name][index]
-    if not isinstance(known, dict) or (rest and rest[0] in known) or (name in data and not there):
+    table = data.get(name, {}) if index is None else data[name][index]
+    if not isinstance(table, dict) or (rest and rest[0] in table) or (name in data and not own):
         return _add_inside(text, place, value)
     if len(place) == 1:
-        blocks.insert_line(parts[0], f"{name} = {written(value)}")
+        blocks.insert_line(tables[0], f"{name} = {written(value)}")
     else:
-        if not there:
-            there = [blocks.Block(name, False, [f"[{name}]"])]
-            parts += there
-        blocks.insert_line(there[index or 0], f"{toml_key(str(rest[0]))} = {written(_nested(rest[1:], value))}")
-    return blocks.join(parts)
+        if not own:
+            own = [blocks.Block(name, False, [f"[{name}]"])]
+            tables += own
+        blocks.insert_line(own[index or 0], f"{toml_key(str(rest[0]))} = {written(_nested(rest[1:], value))}")
+    return blocks.join(tables)
 
 
 def _add_inside(text: str, place: Place, value: Any) -> str:
@@ -260,19 +270,18 @@ def _add_inside(text: str, place: Place, value: Any) -> str:
 
 
 def _replace(text: str, place: Place, value: Any) -> str:
-    """Replaces what is there, or takes it out. Only the lines of its table are read: the rest need not be understood
-    anew for every step of a slider."""
-    parts = blocks.split(text)
+    """Replaces or removes a value. Parses only the lines of its table, so that dragging a slider is fast."""
+    tables = blocks.split(text)
     index = place[1] if len(place) > 2 and isinstance(place[1], int) else None
-    own = [block for block in parts if block.name == place[0]]
+    own = [block for block in tables if block.name == place[0]]
     if len(place) > 1 and len(own) > (index or 0):
         block = own[index or 0]
         inside = [place[0], *([] if index is None else [0]), *place[1 if index is None else 2 :]]
         try:
             block.lines = _replaced("\n".join(block.lines), inside, value).split("\n")
-        except KeyError:  # it is in a table of its own, elsewhere
+        except KeyError:  # the value is in a table with its own header
             return _replaced(text, place, value)
-        return "\n".join(line for part in parts for line in part.lines) + ("\n" if text.endswith("\n") else "")
+        return "\n".join(line for table in tables for line in table.lines) + ("\n" if text.endswith("\n") else "")
     return _replaced(text, place, value)
 
 

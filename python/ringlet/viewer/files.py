@@ -1,4 +1,4 @@
-"""The files that are edited: a recipe with its file of edits, or a shot and the recipe that it names."""
+"""The open files of a session: a recipe with its file of edits, or a shot and its recipe."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ from ringlet.viewer.wire import pack
 
 
 class Files:
-    """What is edited, and undone together. Nothing outside of the project is read or written.
+    """The open files, with one undo history. Reads and writes inside the project only.
 
-    mode: what was opened: a ``recipe``, a ``shot``, or a ``stage`` that is only looked at
+    mode: kind of the opened file: ``recipe``, ``shot``, or ``stage`` for a USD file without editing
     """
 
     def __init__(self, file: Path, project: Project) -> None:
@@ -35,7 +35,7 @@ class Files:
             self._open()
 
     def _open(self) -> None:
-        """Opens the recipe, or a shot and the recipe that it names."""
+        """Opens the recipe, or the shot and its recipe."""
         _, data = read_toml(self.file, "recipe or shot")
         self.mode, recipe = "recipe", self.file
         if "groom" in data and "frames" in data:
@@ -48,10 +48,15 @@ class Files:
                 recipe, lambda text, edits: self.parse(text, recipe, edits), edits, self._history
             )
 
-    # What they say
+    # Parsing
 
     def parse(self, text: str, path: Path, edits: str = "") -> Recipe:
-        """The recipe of a text, which may name files of the project only; ``edits`` stands for its file of edits."""
+        """Parses a recipe whose files are all inside the project.
+
+        edits: text of its file of edits
+
+        Raises UserError for a file outside the project.
+        """
         self._confine(parse_toml(text, path.name, "recipe"), path)
         recipe = parse_recipe(text, path, edits or None)
         for what, file in recipe.named_files().items():
@@ -59,7 +64,7 @@ class Files:
         return recipe
 
     def _confine(self, data: dict[str, Any], path: Path) -> None:
-        """Refuses what a recipe would read of itself outside of the project: what it extends, and edits."""
+        """Raises UserError when a base or a file of edits is outside the project."""
         for setting in ("extends", "edits"):
             if not isinstance(name := data.get(setting), str):
                 continue
@@ -68,34 +73,34 @@ class Files:
                 self._confine(read_toml(file, "recipe")[1], file)
 
     def parse_shot(self, text: str) -> Shot:
-        """The shot of a text, which may name files of the project only."""
+        """Parses a shot whose files are all inside the project; raises UserError for others."""
         shot = parse_shot(text, self.file)
         for what, file in shot.named_files().items():
             self.project.inside(file, f"{self.file.name}: {what}")
         return shot
 
     def document(self, file: str) -> Document:
-        """An open file by its kind."""
+        """The open file of a kind, ``recipe`` or ``shot``; raises UserError when none is open."""
         if file not in self.documents:
             raise UserError(f"{self.file.name}: no {file} is open; open one with: ringlet view")
         return self.documents[file]
 
     @property
     def recipe(self) -> Document:
-        """The recipe that is edited."""
+        """The open recipe; raises UserError when none is open."""
         if "recipe" not in self.documents:
             raise UserError(f"{self.file.name}: holds no recipe to edit; open a recipe or a shot that names one")
         return self.documents["recipe"]
 
     @property
     def shot(self) -> Shot:
-        """The shot as it stands."""
+        """The shot in its current state."""
         return self.document("shot").model
 
     # Changes
 
     def set(self, file: str, changes: list[tuple[Place, Any]], gesture: int) -> None:
-        """Gives settings new values; None takes a setting out."""
+        """Sets values of settings; None removes a setting."""
         document = self.document(file)
         before = document.model
         names = self._inherited(document) if file == "recipe" else None
@@ -106,7 +111,10 @@ class Files:
             document.become(document.text, edits=_text_of(document.model.edits_file), gesture=gesture)
 
     def arrange(self, action: str, at: int, to: int, op: str) -> None:
-        """Adds, removes or moves an operator of the recipe's shape; muted ones stay muted."""
+        """Adds, removes or moves a shape operator of the recipe; muted operators stay muted.
+
+        Raises UserError when a variant would move or add an operator of its base.
+        """
         document = self.recipe
         names = self._inherited(document)
         order = [f"shape/{k}" for k in range(len(document.model.shape))]
@@ -127,20 +135,20 @@ class Files:
             else:
                 moved = order.pop(at)
                 order[to:to] = [moved] if action == "move" else []
-            kept = {f"shape/{k}" for k, was in enumerate(order) if was in muted}
-            document.become(document.text, muted=frozenset(kept | {one for one in muted if "/" not in one}))
+            muted_shapes = {f"shape/{k}" for k, old in enumerate(order) if old in muted}
+            document.become(document.text, muted=frozenset(muted_shapes | {one for one in muted if "/" not in one}))
 
     def write_edits(self, kind: str, tables: list[dict[str, Any]], gesture: int | None = None) -> None:
-        """Puts tables into the recipe's file of edits; it gets one where it has none of its own."""
+        """Replaces the tables of a kind in the recipe's file of edits; names a new file when there is none."""
         document = self.recipe
         edits = parse_edits(document.state.edits or "ringlet = 1", document.path)
         text = edits_text({**edits, kind: tables})
         if not document.said().get("edits"):
-            document.set([(["edits"], self._free(document.path, ".edits.toml"))], gesture)
+            document.set([(["edits"], self._unused_name(document.path, ".edits.toml"))], gesture)
         document.become(document.text, edits=text, gesture=gesture)
 
-    def go(self, kind: str) -> list[str]:
-        """Undoes, does again, or goes back to what was saved; tells which files have changed."""
+    def step(self, kind: str) -> list[str]:
+        """Undoes, redoes or reverts to the saved state; returns the kinds of the changed files."""
         if kind == "revert":
             before = {name: document.state for name, document in self.documents.items()}
             for document in self.documents.values():
@@ -155,7 +163,13 @@ class Files:
     # Saving
 
     def save(self, file: str, name: str = "", as_variant: bool = False) -> Path:
-        """Writes a file and what was done by hand; with a name a new one beside it, which may extend the old."""
+        """Writes a file and its manual edits.
+
+        name:       file name of a copy beside it; empty for the file itself
+        as_variant: whether the copy extends the file
+
+        Raises UserError when the copy exists already.
+        """
         document = self.document(file)
         if not name:
             if document.state.edits != document.saved_edits:
@@ -168,27 +182,27 @@ class Files:
         if file == "recipe":
             edits = None
             if document.state.edits != document.saved_edits:
-                edits = path.with_name(self._free(path, ".edits.toml"))
+                edits = path.with_name(self._unused_name(path, ".edits.toml"))
             text = variant(document, self.parse, path, edits) if as_variant else copied(document, edits)
             self.parse(text, path, document.state.edits)
             if edits is not None:
                 _write(edits, document.state.edits)
         return document.save(path, text)
 
-    def _free(self, path: Path, suffix: str) -> str:
-        """The name of a file that is not there yet, after that of a recipe."""
+    def _unused_name(self, path: Path, suffix: str) -> str:
+        """File name after a recipe's name that does not exist yet."""
         stem = path.name.removesuffix(".toml").removesuffix(".recipe")
         names = [f"{stem}{suffix}", *(f"{stem}-{k}{suffix}" for k in range(2, 100))]
         return next(name for name in names if not path.with_name(name).exists())
 
-    # Telling
+    # Messages
 
-    def told(self, file: str) -> bytes:
-        """The message that says how a file stands."""
+    def message(self, file: str) -> bytes:
+        """Message with the state of a file."""
         document = self.documents[file]
-        said, model = document.said(), document.model
+        contents, model = document.said(), document.model
         if file == "recipe" and (names := self._inherited(document)) is not None:
-            said = {**said, "shape": [said.get("shape", {}).get(name, {}) for name in names]}
+            contents = {**contents, "shape": [contents.get("shape", {}).get(name, {}) for name in names]}
         return pack(
             protocol.Document.model_validate(
                 {
@@ -197,7 +211,7 @@ class Files:
                     "revision": document.revision,
                     "text": document.text,
                     "edits": document.state.edits if document.state.edits != document.saved_edits else "",
-                    "said": said,
+                    "said": contents,
                     "values": model.model_dump(mode="json", exclude={"sculpt"}),
                     "stages": stages(model, document.state.muted) if file == "recipe" else [],
                     "dirty": document.dirty,
@@ -210,7 +224,7 @@ class Files:
 
 
 def stages(recipe: Recipe, muted: frozenset[str]) -> list[protocol.Stage]:
-    """The stages of a recipe in their order."""
+    """Stages of a recipe in their order."""
     found: list[tuple[str, str, Place]] = [("guides", "guides", ["guides"]), ("locks", "locks", ["locks"])]
     found += [(operator.op, operator.op, ["shape", k]) for k, operator in enumerate(recipe.shape)]
     for name in ("curl", "clean", "hairs"):
@@ -222,17 +236,17 @@ def stages(recipe: Recipe, muted: frozenset[str]) -> list[protocol.Stage]:
 
 
 def operator_names(schema: dict[str, Any]) -> list[str]:
-    """The operators that a recipe's shape may hold."""
+    """Names of the shape operators."""
     return list(schema["properties"]["shape"]["items"]["discriminator"]["mapping"])
 
 
 def copied(document: Document, edits: Path | None) -> str:
-    """The text of a document, with another file of edits where there is one."""
+    """Text of a copy of a document, with the name of its own file of edits if it has one."""
     return document.text if edits is None else put(document.text, ["edits"], edits.name)
 
 
 def _by_name(place: Place, names: list[str]) -> Place:
-    """A place in the operators of the whole as one in those that a recipe changes."""
+    """Converts an index of a shape operator to the name that a variant uses."""
     if len(place) > 1 and place[0] == "shape" and isinstance(place[1], int) and place[1] < len(names):
         return ["shape", names[place[1]], *place[2:]]
     return place

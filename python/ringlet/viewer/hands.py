@@ -1,4 +1,4 @@
-"""A hand on single locks: taken out of the procedural, dragged, returned."""
+"""Manual edits of single locks: isolate, drag and return to the procedural groom."""
 
 from __future__ import annotations
 
@@ -15,25 +15,28 @@ from ringlet.viewer.pull import pulled
 
 
 class Hand:
-    """Keeps what is held while a gesture lasts."""
+    """State of a gesture that drags a lock."""
 
     def __init__(self, files: Files) -> None:
         self._files = files
-        self._held: tuple[int, int, np.ndarray] | None = None
+        self._grabbed: tuple[int, int, np.ndarray] | None = None
         self._moves: tuple[int, list[dict[str, Any]]] | None = None
 
     def isolate(self, message: protocol.Isolate) -> None:
-        """Takes locks out of the procedural, or returns them. What is taken out begins where it is."""
+        """Isolates locks from the procedural groom in their current position, or returns them.
+
+        Raises UserError for a lock that is edited in another file.
+        """
         document = self._files.recipe
         edits = document.said().get("edit", [])
-        known = {edit.get("lock") for edit in edits}
+        edited = {edit.get("lock") for edit in edits}
         if message.out:
             for lock in message.locks:
-                if lock not in known:
-                    still = {"lock": lock, "move": [{"at": 1.0, "by": [0.0, 0.0, 0.0]}]}
-                    document.arrange("add", "edit", len(document.said().get("edit", [])), entry=still)
+                if lock not in edited:
+                    unmoved = {"lock": lock, "move": [{"at": 1.0, "by": [0.0, 0.0, 0.0]}]}
+                    document.arrange("add", "edit", len(document.said().get("edit", [])), entry=unmoved)
             return
-        if elsewhere := {edit.lock for edit in document.model.edit} & set(message.locks) - known:
+        if elsewhere := {edit.lock for edit in document.model.edit} & set(message.locks) - edited:
             raise UserError(
                 f"{document.path.name}: lock {min(elsewhere)} is edited in another file; return it there, or with: "
                 f"ringlet edit {document.path.name} --release {min(elsewhere)}"
@@ -43,7 +46,10 @@ class Hand:
                 document.arrange("remove", "edit", k)
 
     def drag(self, message: protocol.Drag, look: Look | None) -> None:
-        """Pulls a place of an isolated lock to where the hand is: in the frame of the lock's shape."""
+        """Moves a point of an isolated lock to a position, stored in the frame of the lock's shape.
+
+        Raises UserError for a lock that is not isolated and for a point that does not exist.
+        """
         document = self._files.recipe
         edits = document.said().get("edit", [])
         index = next((k for k, edit in enumerate(edits) if edit.get("lock") == message.lock), None)
@@ -56,16 +62,16 @@ class Hand:
                 f"lock {message.lock} has points 1 to {count - 1} to drag; there is none at {message.point}"
             )
         at = round(message.point / (count - 1), 4)
-        if self._held is None or self._held[:2] != (message.gesture, message.point):
-            self._held = (message.gesture, message.point, np.array(look.groom.locks[row][message.point]))
-        shift = pulled(look.groom, row, at, np.array(message.to) - self._held[2])
-        moves = [move for move in self._before(message.gesture, edits[index]) if any(move["by"])]
+        if self._grabbed is None or self._grabbed[:2] != (message.gesture, message.point):
+            self._grabbed = (message.gesture, message.point, np.array(look.groom.locks[row][message.point]))
+        shift = pulled(look.groom, row, at, np.array(message.to) - self._grabbed[2])
+        moves = [move for move in self._moves_before(message.gesture, edits[index]) if any(move["by"])]
         by = [f"{1e3 * x:.2f} mm" for x in shift]
         moves = [*moves, {"at": at, "by": by, "reach": max(round(message.reach, 3), 0.001)}]
         document.set([(["edit", index, "move"], moves)], message.gesture)
 
-    def _before(self, gesture: int, edit: dict[str, Any]) -> list[dict[str, Any]]:
-        """The moves of a lock as they were before a gesture began."""
+    def _moves_before(self, gesture: int, edit: dict[str, Any]) -> list[dict[str, Any]]:
+        """Moves of a lock before a gesture."""
         if self._moves is None or self._moves[0] != gesture:
             self._moves = (gesture, edit.get("move", []))
         return self._moves[1]

@@ -1,4 +1,4 @@
-"""From a recipe to what can be drawn, as little of it anew as possible."""
+"""Evaluates recipes for display, incrementally."""
 
 from __future__ import annotations
 
@@ -22,22 +22,24 @@ from ringlet.viewer.project import Project
 from ringlet.viewer.wire import pack
 
 
-class Unclean(Clean):
-    """Leaves locks where they are. Its margin is one that no recipe has, so that its results are told apart."""
+class NoClean(Clean):
+    """Does nothing. Its margin is invalid in a recipe, so that the cache distinguishes its results."""
 
     def apply(self, curves: Curves, context: Context) -> Curves:
-        """The same curves."""
+        """Returns the curves unchanged."""
         return curves
 
 
 @dataclass
 class Look:
-    """A groom as it is looked at.
+    """A groom for display.
 
-    hairs: how they sit in the locks; None for curves that are hairs themselves
-    isolated: ids of locks that were edited by hand
-    curves: names of helper curves
-    times: of the stages that were computed [ms]
+    hairs:    render hairs; None for curves that are hairs themselves
+    draft:    whether the clean stage was skipped
+    isolated: ids of locks with manual edits
+    curves:   names of helper curves
+    times:    times of the stages that were computed [ms]
+    took:     total time [ms]
     """
 
     groom: Groom
@@ -49,7 +51,7 @@ class Look:
     took: float = 0.0
 
     def locks(self, side: str) -> bytes:
-        """The message with the locks."""
+        """Message with the locks."""
         locks = self.groom.locks
         axis = np.tile([1.0, 0.0, 0.0], (len(locks), 1))
         if self.hairs is not None:
@@ -64,17 +66,19 @@ class Look:
         )
 
     def layout(self, side: str) -> bytes:
-        """The message that says how hairs sit in the locks."""
-        return hairs_message(side, self.hairs, self.groom.scalp) if self.hairs else bare(side, self.groom.locks)
+        """Message with the hairs relative to the locks."""
+        return (
+            hairs_message(side, self.hairs, self.groom.scalp) if self.hairs else curves_message(side, self.groom.locks)
+        )
 
     @property
     def count(self) -> int:
-        """Hairs that are drawn."""
+        """Number of drawn hairs."""
         return len(self.hairs.curves) if self.hairs else len(self.groom.locks)
 
 
 class Groomer:
-    """Grooms recipe after recipe of one project; what an edit does not touch is kept from before."""
+    """Evaluates recipes of one project; caches the results of unchanged stages."""
 
     def __init__(self, project: Project) -> None:
         self._project = project
@@ -85,9 +89,11 @@ class Groomer:
     def groom(
         self, recipe: Recipe, muted: frozenset[str] = frozenset(), *, draft: bool, fresh: Callable[[], None]
     ) -> Look:
-        """The look of a recipe. As a draft, locks are not pushed out of the head.
+        """Evaluates a recipe.
 
-        fresh: called between the stages; what it raises ends the work
+        muted: stages without effect
+        draft: skips the clean stage
+        fresh: called between stages; may raise an exception to abort
         """
         began = time.perf_counter()
         times: dict[str, float] = {}
@@ -100,7 +106,7 @@ class Groomer:
             elif (took := 1e3 * (time.perf_counter() - clock[0])) > 0.5:
                 times[stage] = round(took, 1)
 
-        recipe = effective(recipe, muted | ({"clean"} if draft else frozenset()))
+        recipe = without_muted(recipe, muted | ({"clean"} if draft else frozenset()))
         groom = make_groom(recipe, progress=progress, memory=self._memory, **self._read(recipe))
         groom.hairs = recipe.hairs.model_dump(mode="json")
         fresh()
@@ -119,20 +125,20 @@ class Groomer:
         )
 
     def _read(self, recipe: Recipe) -> dict[str, Any]:
-        """What the recipe's files hold, read again only when one of them has changed."""
+        """Inputs from the recipe's files, read again only after one of them changes."""
         files = recipe.named_files()
         for what, file in files.items():
             self._project.inside(file, f"{recipe.path.name if recipe.path else 'recipe'}: {what}")
-        told = [(what, str(file), _stamp(file)) for what, file in sorted(files.items()) if what != "edits"]
+        stamps = [(what, str(file), _stamp(file)) for what, file in sorted(files.items()) if what != "edits"]
         drawn = recipe.guides if isinstance(recipe.guides, Drawn) else None
-        key = repr((told, recipe.scalp, drawn, recipe.curves))
+        key = repr((stamps, recipe.scalp, drawn, recipe.curves))
         if self._inputs is None or self._inputs[0] != key:
             self._inputs = key, api.groom_inputs(recipe)
         return self._inputs[1]
 
 
-def effective(recipe: Recipe, muted: frozenset[str]) -> Recipe:
-    """The recipe with muted stages that do nothing, but keep their place, so that the chance of others stays."""
+def without_muted(recipe: Recipe, muted: frozenset[str]) -> Recipe:
+    """Disables muted stages. They keep their position, so that the random numbers of other stages stay."""
     changed: dict[str, Any] = {
         "shape": [
             operator.model_copy(update={"blend": 0.0}) if f"shape/{k}" in muted else operator
@@ -142,33 +148,33 @@ def effective(recipe: Recipe, muted: frozenset[str]) -> Recipe:
     if "curl" in muted:
         changed["curl"] = None
     if "clean" in muted:
-        changed["clean"] = Unclean.model_construct(margin=-1.0)
+        changed["clean"] = NoClean.model_construct(margin=-1.0)
     return recipe.model_copy(update=changed)
 
 
 def hairs_message(side: str, hairs: Hairs, scalp: Mesh) -> bytes:
-    """Hairs in an order of which every beginning is spread over all locks."""
+    """Message with hairs, ordered so that any prefix covers all locks evenly."""
     layout = hairs.carriage(scalp.points)
     count, points = len(hairs.curves), len(layout["profile"])
     order = spread_order(layout["first"])
     widths = hairs.curves.point["width"].reshape(count, points)
-    alone = {"other": np.zeros(count), "share": np.zeros(count)}
-    mixed = {name: layout[name] if len(layout[name]) else none for name, none in alone.items()}
+    unblended = {"other": np.zeros(count), "share": np.zeros(count)}
+    blends = {name: layout[name] if len(layout[name]) else zeros for name, zeros in unblended.items()}
     return pack(
         protocol.Hairs.model_validate(
             {"side": side, "count": count, "points": points, "knots": layout["frizz"].shape[1] // 2}
         ),
         lock=hairs.curves.curve["lock"][order],
         **{name: layout[name][order] for name in ("offset", "tip", "taper", "frizz", "root")},
-        **{name: values[order] for name, values in mixed.items()},
+        **{name: values[order] for name, values in blends.items()},
         **{name: layout[name] for name in ("profile", "hold", "blend")},
         width=widths.max(axis=1)[order],
         thinning=widths[0] / widths[0].max(),
     )
 
 
-def bare(side: str, curves: Curves) -> bytes:
-    """Curves that are hairs themselves: one in the middle of each lock."""
+def curves_message(side: str, curves: Curves) -> bytes:
+    """Message with curves that are hairs themselves: one hair at the centre of each lock."""
     count, points = len(curves), int(curves.counts.max())
     order = np.random.default_rng(0).permutation(count)
     widths = curves.point.get("width")
@@ -192,9 +198,9 @@ def bare(side: str, curves: Curves) -> bytes:
 
 
 def spread_order(first: NDArray[np.integer]) -> NDArray[np.intp]:
-    """Indices of hairs: the first of every lock, then the second of every lock, and so on.
+    """Order of hairs: the first of every lock, then the second of every lock, and so on; shape (hairs,).
 
-    first: the hairs of lock i are first[i] up to first[i + 1]
+    first: offsets of the locks in the list of hairs, shape (locks + 1,)
     """
     number = np.arange(first[-1]) - np.repeat(first[:-1], np.diff(first))
     return np.argsort(number, kind="stable")
@@ -202,7 +208,7 @@ def spread_order(first: NDArray[np.integer]) -> NDArray[np.intp]:
 
 def _stamp(file: Path) -> tuple[int, int]:
     try:
-        found = file.stat()
+        status = file.stat()
     except OSError as error:
         raise UserError(f"{file}: cannot be read ({error.strerror}); name a file that is there") from error
-    return found.st_mtime_ns, found.st_size
+    return status.st_mtime_ns, status.st_size

@@ -1,4 +1,4 @@
-"""The frames of a shot or a cache: run, held, run again from one that is there, and compared with others."""
+"""Playback of a shot or a cache: simulate, pause, restart from a frame, and compare with another cache."""
 
 from __future__ import annotations
 
@@ -23,13 +23,17 @@ from ringlet.viewer.showing import Showing
 from ringlet.viewer.simulation import Simulation, Stage
 from ringlet.viewer.wire import pack, trouble
 
-PackFrame = Callable[[float, Moved], bytes]  # makes the message of a frame of its number and what it holds
+PackFrame = Callable[[float, Moved], bytes]  # packs the number and contents of a frame into a message
 
-TRIES = 20  # to open a file that is replaced again and again
+MAX_OPEN_TRIES = 20  # attempts to open a file that is being replaced
 
 
 class Playing:
-    """What moves. ``call`` brings a function to the thread that owns the board; ``failed`` tells what went wrong."""
+    """The timeline of a session: simulated frames, frames of a cache, and frames to compare with.
+
+    call:   runs a function on the thread that owns the board
+    failed: reports an error message
+    """
 
     def __init__(
         self,
@@ -41,107 +45,113 @@ class Playing:
     ) -> None:
         self._files, self._board, self._showing = files, board, showing
         self._call, self._failed = call, failed
-        self._run, self._shown, self._beside = Run(), Opened(), Opened()
+        self._run, self._shown, self._beside = Run(), OpenFrames(), OpenFrames()
         self._stage: Stage | None = None
         self._against = ""
         self._replaced = 0
         self._span: tuple[float, float] | None = None
         self._simulation = Simulation(
             self._run,
-            lambda: call(self.tell),
+            lambda: call(self.post_timeline),
             lambda message: call(failed, message),
         )
 
     def stop(self) -> None:
-        """Ends what runs, and closes what is open."""
+        """Stops the simulation and closes the open files."""
         self._simulation.stop()
         self._shown.close()
         self._beside.close()
 
-    def wanted(self, message: protocol.Watch) -> dict[str, Callable[[], bytes | None]]:
-        """What makes the messages of the frames that a page wants and that are there, by their subjects."""
-        wanted: dict[str, Callable[[], bytes | None]] = {}
+    def frame_sources(self, message: protocol.Watch) -> dict[str, Callable[[], bytes | None]]:
+        """Functions that make the messages of the requested frames that exist, by subject."""
+        sources: dict[str, Callable[[], bytes | None]] = {}
         for layer, reel, frames in (
             ("shot", self._shot, message.shot),
             ("against", self._beside.reel, message.against),
         ):
             if reel is not None:
-                there = set(reel.frames.tolist())
-                wanted |= {
-                    f"{layer}/{frame:g}": partial(self._frame, reel, frame) for frame in frames if frame in there
+                existing = set(reel.frames.tolist())
+                sources |= {
+                    f"{layer}/{frame:g}": partial(self._frame, reel, frame) for frame in frames if frame in existing
                 }
-        return wanted
+        return sources
 
     def _frame(self, reel: Reel, frame: float) -> bytes | None:
-        """The message of a frame, or what is wrong with it; nothing of a file that has been replaced."""
+        """Message of a frame, or an error message; None for a frame of a replaced file."""
         try:
             return reel.message(frame)
         except ReplacedError:
-            self._call(self._open_again, reel)
+            self._call(self._reopen, reel)
             return None
         except UserError as error:
             return trouble(str(error))
 
-    def _open_again(self, reel: Reel) -> None:
-        """Frames of a file that has been replaced are void: those that it has now are told of, unless they were."""
+    def _reopen(self, reel: Reel) -> None:
+        """Reopens a replaced file and announces its frames; ignores a reel that is no longer open."""
         for opened in (self._shown, self._beside):
             if opened.reel is not reel:
                 continue
             self._replaced += 1
             try:
-                opened.again()
+                opened.reopen()
             except UserError as error:
                 self._failed(str(error))
                 if opened is self._beside:
-                    self.lay_against("")
-            self.tell()
+                    self.set_comparison("")
+            self.post_timeline()
 
     @property
     def _shot(self) -> Reel | None:
         return self._run if self._files.mode == "shot" else self._shown.reel
 
     def play(self, message: protocol.Play) -> None:
-        """Runs the shot, holds it, or goes on with it."""
+        """Starts, pauses, resumes or restarts the simulation of the shot.
+
+        Raises UserError before the groom of the shot is made.
+        """
         if message.action == "pause":
             self._simulation.pause()
         elif message.action == "go_on":
-            self._simulation.go_on()
+            self._simulation.resume()
         else:
             shot = self._files.shot
             if self._stage is None:
                 raise UserError("shot: its groom is not made yet; wait until it is seen")
-            again = message.frame if message.action == "again_from" else None
-            self._showing.dress(shot, self._stage.groom)
+            restart_frame = message.frame if message.action == "again_from" else None
+            self._showing.show_bodies(shot, self._stage.groom)
             self._stage.bodies = self._showing.bodies
-            self._simulation.start(shot, self._stage, again)
+            self._simulation.start(shot, self._stage, restart_frame)
 
     def set_groom(self, look: Look) -> None:
-        """The groom of the shot has changed: frames of the one before are void."""
+        """Sets the groom of the shot; another groom discards all frames."""
         if self._stage is None or self._stage.groom.locks.points is not look.groom.locks.points:
             self._simulation.stop()
             self._simulation.reset()
             self._beside.close()
             self._against = ""
             try:
-                self._showing.dress(self._files.shot, look.groom)
-            except UserError as error:  # it is told again when the shot is to run
+                self._showing.show_bodies(self._files.shot, look.groom)
+            except UserError as error:  # starting the shot raises it again
                 self._failed(str(error))
             self._stage = Stage(look.groom, look.hairs, api.scalp_clip(look.groom), self._showing.bodies)
-        self.tell()
+        self.post_timeline()
 
     def read(self, look: Look) -> None:
-        """Opens the frames of a USD file, if it has some."""
-        still = Clip(np.zeros(1), look.groom.scalp.points[None], 24.0)
-        clip = api.scalp_clip(look.groom) if look.groom.scalp_file else still
+        """Opens the frames of a USD file; does nothing for a file without frames."""
+        static_clip = Clip(np.zeros(1), look.groom.scalp.points[None], 24.0)
+        clip = api.scalp_clip(look.groom) if look.groom.scalp_file else static_clip
         self._stage = Stage(look.groom, look.hairs, clip, self._showing.bodies)
         try:
             self._shown.open(self._files.file, look, partial(self._stage.frame, "shot"))
-        except UserError:  # a groom that does not move
+        except UserError:  # a static groom
             return
-        self.tell()
+        self.post_timeline()
 
-    def lay_against(self, name: str) -> None:
-        """Shows the frames of a cache beside the shot."""
+    def set_comparison(self, name: str) -> None:
+        """Shows the frames of a cache beside the shot; an empty name removes them.
+
+        Raises UserError before the groom is made, and for a file that is no cache of that groom.
+        """
         self._beside.close()
         self._showing.clear_beside()
         self._against = ""
@@ -153,17 +163,17 @@ class Playing:
             self._against = name
             self._showing.show(look, "b")
         self._board.post("b/none", pack(protocol.Compared(name=name)))
-        self.tell()
+        self.post_timeline()
 
-    def tell(self) -> None:
-        """Tells everybody which frames there are, and what the simulation does."""
+    def post_timeline(self) -> None:
+        """Posts the list of frames and the state of the simulation."""
         if self._files.mode == "shot":
             shot = self._files.shot
             first, last, preroll = float(shot.frames[0]), float(shot.frames[1]), shot.preroll
         else:
             if self._shown.reel is not None:
                 self._span = float(self._shown.reel.frames[0]), float(self._shown.reel.frames[-1])
-            if self._span is None:  # it does not move
+            if self._span is None:  # static
                 return
             (first, last), preroll = self._span, 0
         simulation, runs = self._simulation, self._files.mode == "shot"
@@ -183,40 +193,46 @@ class Playing:
         self._board.post("timeline", pack(timeline, frames=frames, beside=beside))
 
 
-class Opened:
-    """The frames of a file, open as long as they may be looked at."""
+class OpenFrames:
+    """The frames of a file that stays open during playback."""
 
     def __init__(self) -> None:
         self._files = ExitStack()
-        self._one = threading.Lock()
-        self._what: tuple[Path, Look, PackFrame] | None = None
+        self._lock = threading.Lock()
+        self._arguments: tuple[Path, Look, PackFrame] | None = None
         self.reel: Reel | None = None
 
     def open(self, file: Path, look: Look, pack: PackFrame) -> None:
-        """Opens a file with the frames of a look, in place of the one before."""
+        """Opens a file with frames of a look; closes the previous one.
+
+        Raises UserError for a file without frames of that look.
+        """
         self.close()
-        self._what = file, look, pack
-        with self._one:
-            watched, frames, read = self._whole(file, look)
+        self._arguments = file, look, pack
+        with self._lock:
+            watched, frames, read = self._open_unchanged(file, look)
         if len(frames):
-            self.reel = Read(watched, frames, read, pack, self._one)
+            self.reel = Read(watched, frames, read, pack, self._lock)
 
-    def again(self) -> None:
-        """Opens what is there now in the place of what was opened."""
-        if self._what is not None:
-            self.open(*self._what)
+    def reopen(self) -> None:
+        """Opens the current file at the path that was opened."""
+        if self._arguments is not None:
+            self.open(*self._arguments)
 
-    def _whole(self, file: Path, look: Look) -> tuple[Watched, np.ndarray, ReadFrame]:
-        """Opens a file, and not a part of it before and a part after it was replaced."""
-        for _ in range(TRIES):
+    def _open_unchanged(self, file: Path, look: Look) -> tuple[Watched, np.ndarray, ReadFrame]:
+        """Opens a file; tries again when it is replaced meanwhile.
+
+        Raises UserError after ``MAX_OPEN_TRIES`` replacements.
+        """
+        for _ in range(MAX_OPEN_TRIES):
             watched = Watched(file)
             try:
                 frames, read = self._files.enter_context(open_frames(file, look))
             except UserError:
-                if watched.same():
+                if watched.unchanged():
                     raise
                 continue
-            if watched.same():
+            if watched.unchanged():
                 return watched, frames, read
             self._files.close()
         raise UserError(f"{file.name}: is replaced again and again; open it when it is done")

@@ -1,7 +1,7 @@
-"""What the page and the server say to each other: defined here, and only here.
+"""The messages between page and server, in one place.
 
-A message is a JSON header followed by arrays (see ``wire``); ``tools/make_protocol.py`` writes the same as TypeScript.
-``arrays`` names those that a message carries, with their types; all lengths are in metres.
+A message is a JSON header followed by arrays (see ``wire``). ``tools/make_protocol.py`` generates the TypeScript.
+``arrays`` lists the arrays of a message with their types; all lengths are in metres.
 """
 
 from __future__ import annotations
@@ -11,13 +11,13 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
 VERSION = 6
-Place = list[str | int]  # where a setting is in its file: ["shape", 0, "amount"]
+Place = list[str | int]  # path of a setting in its file: ["shape", 0, "amount"]
 File = Literal["recipe", "shot"]
 Point = tuple[float, float, float]
 
 
 class Message(BaseModel):
-    """One message; ``kind`` says which."""
+    """Base of all messages; ``kind`` is the type."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
     arrays: ClassVar[dict[str, str]] = {}
@@ -27,7 +27,7 @@ class Message(BaseModel):
 
 
 class Hello(Message):
-    """The first message: who is there. ``client`` is a name that a page keeps when it comes back."""
+    """First message of a page. ``client`` is a name that the page keeps when it reconnects."""
 
     kind: Literal["hello"] = "hello"
     version: int
@@ -35,16 +35,16 @@ class Hello(Message):
 
 
 class Lead(Message):
-    """Asks to be the one who edits."""
+    """Requests the edit lock."""
 
     kind: Literal["lead"] = "lead"
 
 
 class Set(Message):
-    """Gives settings new values, as TOML would say them; None takes a setting out, so that its default holds.
+    """Sets values of settings, in TOML notation; None removes a setting, so that its default applies.
 
-    gesture: changes of one gesture are undone together
-    resting: whether the gesture has ended, so that quality counts more than speed
+    gesture: number of the gesture; its changes are one undo step
+    resting: whether the gesture has ended; a moving one gets a draft
     """
 
     kind: Literal["set"] = "set"
@@ -55,7 +55,7 @@ class Set(Message):
 
 
 class Arrange(Message):
-    """Adds, removes or moves an operator of the recipe's shape."""
+    """Adds, removes or moves a shape operator of the recipe."""
 
     kind: Literal["arrange"] = "arrange"
     action: Literal["add", "remove", "move"]
@@ -65,20 +65,20 @@ class Arrange(Message):
 
 
 class Mute(Message):
-    """Says which stages have no effect for now: ``shape/0``, ``curl`` …; not kept in the file."""
+    """Mutes stages such as ``shape/0`` or ``curl``; not stored in the file."""
 
     kind: Literal["mute"] = "mute"
     stages: list[str] = Field(max_length=256)
 
 
 class Step(Message):
-    """Goes back or forth in what was done."""
+    """Undoes, redoes or reverts changes."""
 
     kind: Literal["undo", "redo", "revert"]
 
 
 class Save(Message):
-    """Writes a file. With a name it is a new one beside the old: a copy, or a variant that extends it."""
+    """Saves a file; with a name, a copy beside it, or a variant that extends it."""
 
     kind: Literal["save"] = "save"
     file: File = "recipe"
@@ -87,7 +87,7 @@ class Save(Message):
 
 
 class Restore(Message):
-    """Gives back a text that a page still had when the server was started anew, and that of its file of edits."""
+    """Restores unsaved text of a page, and of its file of edits, after a restart of the server."""
 
     kind: Literal["restore"] = "restore"
     file: File = "recipe"
@@ -96,7 +96,7 @@ class Restore(Message):
 
 
 class Compare(Message):
-    """Shows another look beside this one: as it is now, as saved, or another recipe of the project, or none."""
+    """Shows a second groom for comparison: a snapshot, the saved one, another recipe of the project, or none."""
 
     kind: Literal["compare"] = "compare"
     to: Literal["now", "saved", "file", "none"]
@@ -104,7 +104,7 @@ class Compare(Message):
 
 
 class Drag(Message):
-    """Moves points of an isolated lock by hand [m]. Its shape becomes the lock's own."""
+    """Drags a point of an isolated lock to a position [m]."""
 
     kind: Literal["drag"] = "drag"
     lock: int
@@ -116,7 +116,7 @@ class Drag(Message):
 
 
 class Isolate(Message):
-    """Takes locks out of the procedural to be edited by hand, or returns them."""
+    """Isolates locks from the procedural groom for manual edits, or returns them."""
 
     kind: Literal["isolate"] = "isolate"
     locks: list[int] = Field(max_length=10_000)
@@ -124,11 +124,11 @@ class Isolate(Message):
 
 
 class Sculpt(Message):
-    """Moves a brush over the guides, or gives them back to the recipe.
+    """Moves a brush over the guides, or returns guides to the recipe.
 
-    at, by:   where the brush is and how far it came since the last message of this gesture [m]
-    radius:   of the ball that it acts in [m]
-    mirrored: does the same on the other side of the head
+    at, by:   position of the brush, and its displacement since the last message of this gesture [m]
+    radius:   radius of the brush [m]
+    mirrored: whether a mirror image of the brush acts on the other side of the head
     """
 
     kind: Literal["sculpt"] = "sculpt"
@@ -142,13 +142,13 @@ class Sculpt(Message):
 
 
 class Unsculpt(Message):
-    """Gives all guides back to the recipe."""
+    """Removes the sculpts of all guides."""
 
     kind: Literal["unsculpt"] = "unsculpt"
 
 
 class Play(Message):
-    """Runs the shot: from its start, on from where it was held, or again from a frame that is there already."""
+    """Starts, pauses or resumes the simulation, or restarts it from an existing frame."""
 
     kind: Literal["play"] = "play"
     action: Literal["start", "pause", "go_on", "again_from"]
@@ -156,14 +156,14 @@ class Play(Message):
 
 
 class Against(Message):
-    """Lays the frames of another cache of the project under the shot, to compare; no name takes it away."""
+    """Shows the frames of another cache of the project for comparison; an empty name removes them."""
 
     kind: Literal["against"] = "against"
     name: str = Field(default="", max_length=240)
 
 
 class Watch(Message):
-    """Asks for frames, the one that is looked at first, in place of those that were asked for and have not come yet."""
+    """Requests frames, the current one first; replaces earlier requests that are still pending."""
 
     kind: Literal["watch"] = "watch"
     shot: list[float] = Field(default_factory=list, max_length=64)
@@ -196,12 +196,12 @@ FROM_PAGE: TypeAdapter[FromPage] = TypeAdapter(FromPage)
 
 
 class Welcome(Message):
-    """What a page needs to know before anything else.
+    """First message of the server.
 
-    session: another one after every start of the server
-    heard:   how many messages of a page of this name it has heard before
-    schema:  JSON schemas of ``recipe`` and ``shot``
-    pigments: hair colours by name: eumelanin, pheomelanin, roughness
+    session:  id of the server's run
+    heard:    number of messages that the server has handled for pages of this name
+    schemas:  JSON schemas of ``recipe`` and ``shot``
+    pigments: eumelanin, pheomelanin and roughness of each hair colour
     """
 
     kind: Literal["welcome"] = "welcome"
@@ -216,7 +216,7 @@ class Welcome(Message):
 
 
 class Role(Message):
-    """Who edits. ``others`` is the number of other pages that look at the session."""
+    """Holder of the edit lock. ``others`` is the number of other connected pages."""
 
     kind: Literal["role"] = "role"
     leads: bool
@@ -224,14 +224,14 @@ class Role(Message):
 
 
 class Files(Message):
-    """What there is in the project to compare with, by name: recipes and caches. Told again when others are there."""
+    """Names of the recipes and caches of the project; sent again when they change."""
 
     kind: Literal["files"] = "files"
     names: list[str]
 
 
 class Stage(Message):
-    """A stage of the groom. place: where its settings are in the recipe."""
+    """A stage of the groom. place: path of its settings in the recipe."""
 
     name: str
     op: str
@@ -240,19 +240,19 @@ class Stage(Message):
 
 
 class Change(Message):
-    """A line of the file that is not as it was saved."""
+    """A line of the diff against the saved file."""
 
     sign: Literal["+", "-", " "]
     line: str
 
 
 class Document(Message):
-    """A file as it stands.
+    """Current state of a file.
 
-    revision: grows with each change
-    said:     what the file says; operators of a recipe that is extended have the places that they have in the whole
-    values:   what holds, with all defaults, in SI units
-    edits:    what its file of edits holds, where that is not saved
+    revision: counter of changes
+    said:     contents of the file; operators inherited from a base have their index in the resolved recipe
+    values:   values of all settings, defaults included, in SI units
+    edits:    unsaved text of its file of edits
     """
 
     kind: Literal["document"] = "document"
@@ -271,7 +271,7 @@ class Document(Message):
 
 
 class Body(Message):
-    """A mesh of the scene, as the eye sees it. made_of: skin, eye, cloth or matte."""
+    """A mesh of the scene. made_of: its material: skin, eye, cloth or matte."""
 
     kind: Literal["body"] = "body"
     index: int
@@ -282,9 +282,9 @@ class Body(Message):
 
 
 class Locks(Message):
-    """Where the locks are. side: a, or b for the look beside it.
+    """Positions of the locks. side: a, or b for the groom to compare with.
 
-    ``axis`` (locks, 3) is where the frame of each begins; ``marked`` is 1 for isolated ones.
+    ``axis`` (locks, 3) is the reference direction of each lock; ``marked`` is 1 for isolated locks.
     """
 
     kind: Literal["locks"] = "locks"
@@ -300,7 +300,7 @@ class Locks(Message):
 
 
 class Guides(Message):
-    """Where the guides are; ``changed`` is 1 for those that were sculpted by hand."""
+    """Positions of the guides; ``changed`` is 1 for sculpted ones."""
 
     kind: Literal["guides"] = "guides"
     middle: Point
@@ -308,7 +308,7 @@ class Guides(Message):
 
 
 class Names(Message):
-    """What settings may name: regions, maps and directions of the scalp, and helper curves."""
+    """Valid names in settings: regions, maps and directions of the scalp, and helper curves."""
 
     kind: Literal["names"] = "names"
     regions: list[str]
@@ -318,11 +318,11 @@ class Names(Message):
 
 
 class Hairs(Message):
-    """How hairs sit in their locks; see ``src/ringlet/groom/hairs.h`` for the formula.
+    """Hairs relative to their locks; see ``src/ringlet/groom/hairs.h`` for the formula.
 
-    Hairs come in an order of which every beginning is spread over all locks. ``profile``, ``hold``, ``blend`` and
-    ``thinning`` run along all hairs; ``frizz`` has ``knots`` × 2 numbers a hair; ``root`` is from the lock's root to
-    the hair's; ``width`` is the diameter of each, which ``thinning`` goes with.
+    Any prefix of the hairs covers all locks evenly. ``profile``, ``hold``, ``blend`` and ``thinning`` are functions
+    along the hair, the same for all. ``frizz`` has ``knots`` × 2 numbers a hair; ``root`` is the offset from the lock's
+    root to the hair's. The diameter is ``width`` of the hair times ``thinning``.
     """
 
     kind: Literal["hairs"] = "hairs"
@@ -348,7 +348,7 @@ class Hairs(Message):
 
 
 class Numbers(Message):
-    """What to keep in sight. revision: of the recipe that is shown; times: of the stages that were computed [ms]."""
+    """Statistics of the groom. revision: of the displayed recipe; times: times of the computed stages [ms]."""
 
     kind: Literal["numbers"] = "numbers"
     revision: int
@@ -360,9 +360,10 @@ class Numbers(Message):
 
 
 class Measured(Message):
-    """What is only measured at rest. inside: points of locks that are in the head.
+    """Measurements of a groom that is not a draft. inside: number of lock points in the head.
 
-    ``depth`` and ``nail`` are overlays: a byte for each point of the locks, 255 for all that is shown; empty for none.
+    ``depth`` and ``nail`` are overlays: a byte for each point of the locks, 255 for the end of the scale; empty for
+    none.
     """
 
     kind: Literal["measured"] = "measured"
@@ -371,11 +372,11 @@ class Measured(Message):
 
 
 class Frame(Message):
-    """A frame of the shot or of a cache. layer: ``shot``, or ``against`` for the cache that it is compared with.
+    """A frame of the shot or of a cache. layer: ``shot``, or ``against`` for the cache to compare with.
 
-    ``drawn`` are hairs, in the order of ``Hairs``, that are drawn towards their lock, so as not to go through what it
-    lies on, and ``left`` tells how much of their way from it is left at each of their points, 255 for all.
-    ``stretch``, ``contact``, ``depth`` and ``curl`` are overlays (see ``Measured``); what is not known is empty.
+    ``drawn`` lists hairs, in the order of ``Hairs``, that are pulled towards their lock to stay out of bodies. ``left``
+    is the fraction of their offset that remains at each of their points, 255 for all of it. ``stretch``, ``contact``,
+    ``depth`` and ``curl`` are overlays (see ``Measured``); an unknown one is empty.
     """
 
     kind: Literal["frame"] = "frame"
@@ -397,9 +398,9 @@ class Frame(Message):
 
 
 class Timeline(Message):
-    """What the simulation does, and which frames there are to see: of the shot, and of the cache beside it.
+    """State of the simulation, and the existing frames of the shot and of the cache to compare with.
 
-    key: another one when frames have become void
+    key: changes when existing frames become invalid
     """
 
     kind: Literal["timeline"] = "timeline"
@@ -415,14 +416,14 @@ class Timeline(Message):
 
 
 class Compared(Message):
-    """What is shown beside the look that is edited; nothing for no name."""
+    """Name of the groom or cache to compare with; empty for none."""
 
     kind: Literal["compared"] = "compared"
     name: str
 
 
 class Heard(Message):
-    """How many messages of a page of this name were heard: what they asked for was done, begun or refused."""
+    """Number of messages that the server has handled for pages of this name."""
 
     kind: Literal["heard"] = "heard"
     count: int
@@ -436,7 +437,7 @@ class Saved(Message):
 
 
 class Trouble(Message):
-    """Something that cannot be, in one line."""
+    """An error message of one line."""
 
     kind: Literal["trouble"] = "trouble"
     message: str

@@ -1,4 +1,4 @@
-"""From where a hand pulls a lock to what an edit of the recipe says."""
+"""Converts a pull of a lock in world space to an edit of the recipe."""
 
 from __future__ import annotations
 
@@ -11,10 +11,11 @@ from ringlet.groom.scalp import Scalp
 
 
 def pulled(groom: Groom, row: int, at: float, by: NDArray[np.float64]) -> NDArray[np.float64]:
-    """A way in space [m] in the frame of a lock's shape: what ``move.by`` of an edit is in.
+    """Displacement [m], shape (3,), in the frame of a lock's shape, as in ``move.by`` of an edit.
 
-    row: the place of the lock in the list of locks
-    at:  where on the lock, from root (0) to tip (1)
+    row: row of the lock
+    at:  parameter on the lock, from root (0) to tip (1)
+    by:  displacement in world space [m], shape (3,)
     """
     root = Scalp(groom.scalp, groom.region).frames(groom.locks)[row]
     frame = shape_frames(groom.shapes or groom.locks, row, root, np.array([at]))[0]

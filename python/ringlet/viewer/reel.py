@@ -1,4 +1,4 @@
-"""Frames that can be seen. They are in files, and in memory only while somebody is shown one."""
+"""Frames for playback. They are stored in files and read one at a time."""
 
 from __future__ import annotations
 
@@ -22,48 +22,48 @@ class Reel(Protocol):
 
     @property
     def frames(self) -> NDArray[np.float64]:
-        """Their numbers, shape (k,)."""
+        """Frame numbers, shape (k,)."""
         ...
 
     def message(self, frame: float) -> bytes:
-        """What a page is sent of a frame. Raises UserError where it cannot be read."""
+        """Message of a frame; raises UserError when it cannot be read."""
         ...
 
 
 class ReplacedError(UserError):
-    """The file that frames were read from is another one now."""
+    """The file of the frames was replaced."""
 
 
 class Watched:
     """A file that may be replaced while it is read.
 
-    What USD holds of a file is held together by all who have it open: who opens the new one changes what others read,
-    in the midst of it. So one reads at a time, and what was read counts only if the file is still the same.
+    USD shares the layers of a file between all stages that have it open. Opening a replaced file therefore changes the
+    data under other readers. Reads take turns, and a result is valid only if the file is unchanged.
     """
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self._known = self._now()
+        self._opened_stamp = self._stamp()
 
-    def same(self) -> bool:
-        """Whether it is the file that it was. One that is gone can be read on, since it is held open."""
-        return self._now() in (self._known, None)
+    def unchanged(self) -> bool:
+        """Whether the file was not replaced. A deleted file stays readable while it is open."""
+        return self._stamp() in (self._opened_stamp, None)
 
-    def _now(self) -> tuple[int, int, int] | None:
+    def _stamp(self) -> tuple[int, int, int] | None:
         try:
-            found = self.path.stat()
+            status = self.path.stat()
         except OSError:
             return None
-        return found.st_ino, found.st_size, found.st_mtime_ns
+        return status.st_ino, status.st_size, status.st_mtime_ns
 
 
 class Read:
-    """Frames that a file holds. One is read at a time, whoever asks.
+    """Frames of a file, read one at a time.
 
-    file: where they are
-    read: gives what a frame holds
-    pack: makes the message of a frame of that
-    one:  held while the file is read, and by who opens another in its place
+    file: the file
+    read: reads the contents of a frame
+    pack: packs a frame number and its contents into a message
+    lock: held while the file is read or reopened
     """
 
     def __init__(
@@ -72,44 +72,44 @@ class Read:
         frames: NDArray[np.float64],
         read: Callable[[float], Moved],
         pack: Callable[[float, Moved], bytes],
-        one: threading.Lock,
+        lock: threading.Lock,
     ) -> None:
         self.frames = frames
-        self._file, self._read, self._pack, self._one = file, read, pack, one
+        self._file, self._read, self._pack, self._lock = file, read, pack, lock
 
     def message(self, frame: float) -> bytes:
-        """Reads a frame. Raises ReplacedError where the file is another one by now."""
-        with self._one:
+        """Message of a frame; raises ReplacedError when the file was replaced."""
+        with self._lock:
             try:
                 moved = self._read(frame)
             except UserError:
-                self._check()  # of half of the one and half of the other nothing can be said
+                self._check()  # an error is meaningless when the file was replaced during the read
                 raise
             self._check()
         return self._pack(frame, moved)
 
     def _check(self) -> None:
-        if not self._file.same():
+        if not self._file.unchanged():
             raise ReplacedError(f"{self._file.path.name}: was replaced; its frames are void")
 
 
 class Run:
-    """Frames that are simulated here, kept in a file without a name that ends with the program."""
+    """Simulated frames, stored in an anonymous temporary file."""
 
     def __init__(self) -> None:
         self._file = tempfile.TemporaryFile(prefix="ringlet-", buffering=0)  # noqa: SIM115
         self._places: dict[float, tuple[int, int]] = {}
         self._end = 0
-        self._one = threading.Lock()
+        self._lock = threading.Lock()
 
     @property
     def frames(self) -> NDArray[np.float64]:
-        """Their numbers, shape (k,)."""
+        """Frame numbers, shape (k,)."""
         return np.array(sorted(self._places), np.float64)
 
     def add(self, frame: float, message: bytes) -> None:
-        """Adds the next frame."""
-        with self._one:
+        """Appends a frame; raises UserError when the disk is full."""
+        with self._lock:
             try:
                 self._file.seek(self._end)
                 if self._file.write(message) < len(message):
@@ -123,15 +123,15 @@ class Run:
             self._end += len(message)
 
     def cut(self, after: float | None = None) -> None:
-        """Forgets all frames, or those after one."""
-        with self._one:
+        """Removes all frames, or those after a frame."""
+        with self._lock:
             self._places = {frame: at for frame, at in self._places.items() if after is not None and frame <= after}
             self._end = max((start + size for start, size in self._places.values()), default=0)
             self._file.truncate(self._end)
 
     def message(self, frame: float) -> bytes:
-        """Reads a frame."""
-        with self._one:
+        """Message of a frame; raises UserError when the frame does not exist."""
+        with self._lock:
             if frame not in self._places:
                 raise UserError(f"frame {frame:g} is there no more; run the shot again")
             start, size = self._places[frame]

@@ -1,4 +1,4 @@
-"""Starting the server, and opening a browser on it."""
+"""Starts the server and opens a browser on it."""
 
 from __future__ import annotations
 
@@ -32,12 +32,14 @@ def view(
 ) -> None:
     """Serves the review page of a recipe, a shot or a USD file with hair, until it is interrupted.
 
-    port:    8642 or, where that is taken, any free one
-    host:    where to listen; elsewhere than on this computer a token is needed, which is part of the address told
-    browser: open one
-    project: the folder that the page may read and write; that of the file by default
-    told:    called with the address
-    until:   ends it too, when it is set, where it runs in a thread of its own
+    port:    port to listen on; by default 8642, or any free one when that is taken
+    host:    address to listen on; any other than loopback needs a token, which is part of the announced address
+    browser: opens a browser
+    project: folder that the page may read and write; by default the folder of the file
+    told:    called with a line that has the address
+    until:   stops the server when set, for a server in a thread
+
+    Raises UserError for a missing file, an unusable port or host, and a page that was not built.
     """
     file = Path(file)
     if not file.is_file():
@@ -49,7 +51,7 @@ def view(
     session = Session(file.resolve(), Project(Path(project) if project else file.resolve().parent))
     app = make_app(session, Door(host, token))
     listening = _listen(host, port)
-    address = f"http://{_named(host)}:{listening.getsockname()[1]}/" + (f"#{token}" if token else "")
+    address = f"http://{_url_host(host)}:{listening.getsockname()[1]}/" + (f"#{token}" if token else "")
     config = uvicorn.Config(
         app, log_level="error", ws_max_size=MOST, ws_per_message_deflate=False, timeout_graceful_shutdown=1
     )
@@ -58,17 +60,20 @@ def view(
         threading.Timer(0.5, webbrowser.open, [address]).start()
     server = uvicorn.Server(config)
     if until is not None:
-        threading.Thread(target=_end, args=(server, until), daemon=True).start()
+        threading.Thread(target=_stop_when_set, args=(server, until), daemon=True).start()
     server.run(sockets=[listening])
 
 
-def _end(server: uvicorn.Server, until: threading.Event) -> None:
+def _stop_when_set(server: uvicorn.Server, until: threading.Event) -> None:
     until.wait()
     server.should_exit = True
 
 
 def _listen(host: str, port: int | None) -> socket.socket:
-    """A socket on the port, or near the usual one on any that is free."""
+    """Opens a listening socket on the port; without one on the default port, or any free one.
+
+    Raises UserError when the port or the host cannot be used.
+    """
     for candidate in [DEFAULT_PORT, 0] if port is None else [port]:
         listening = socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET)
         listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -85,7 +90,7 @@ def _listen(host: str, port: int | None) -> socket.socket:
     raise UserError(f"--host {host}: cannot be listened on; choose an address of this computer")
 
 
-def _named(host: str) -> str:
+def _url_host(host: str) -> str:
     if host in ("0.0.0.0", "::"):
         return socket.gethostname()
     return f"[{host}]" if ":" in host else host

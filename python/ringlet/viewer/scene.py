@@ -1,4 +1,4 @@
-"""What else is in the picture: the bodies of a file, and the hair of a file that is no recipe."""
+"""The scene around the hair: bodies of a file, and the hair of a USD file."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ USD = (".usd", ".usda", ".usdc", ".usdz")
 
 @dataclass(frozen=True)
 class Seen:
-    """A mesh in the picture.
+    """A visible mesh.
 
-    clip:  how it moves on its own; None for one that stands
-    cloth: what it is called if it is cloth, which frames move
+    clip:  animation of the mesh; None for a static one
+    cloth: name of the cloth that frames move; empty for other meshes
     """
 
     mesh: Mesh
@@ -37,7 +37,7 @@ class Seen:
     cloth: str = ""
 
     def message(self, index: int) -> bytes:
-        """The message that shows it where it rests, as a groom does."""
+        """Message with the mesh in its rest pose."""
         mesh = self.mesh
         colors = mesh.colors if mesh.colors is not None else np.empty((0, 3))
         material = "cloth" if self.cloth else made_of(mesh)
@@ -49,7 +49,10 @@ class Seen:
         )
 
     def at(self, frame: float, cloths: Mapping[str, NDArray]) -> NDArray:
-        """Where its points are at a frame [m], shape (n, 3). cloths: where those of cloths are, by their names."""
+        """Positions of the points at a frame [m], shape (n, 3).
+
+        cloths: positions of the cloths at that frame [m], by name
+        """
         moved = cloths.get(self.cloth)
         if moved is not None and moved.shape == self.mesh.points.shape:
             return moved
@@ -57,7 +60,7 @@ class Seen:
 
 
 class Moved(NamedTuple):
-    """What a frame holds: where the points of locks are [m], its statistics, and where those of cloths are."""
+    """Contents of a frame: positions of the locks [m], statistics, and positions of the cloths [m] by name."""
 
     points: NDArray
     statistics: dict[str, Any]
@@ -68,9 +71,9 @@ ReadFrame = Callable[[float], Moved]
 
 
 def read_bodies(scalp: Mesh, file: Path | None, cloths: Mapping[str, str] | None = None) -> list[Seen]:
-    """All that is visible in a file, with how it moves; the scalp alone where the file says no more.
+    """Visible meshes of a file with their animation; the scalp alone when the file has none.
 
-    cloths: what those that are cloth are called, by the paths of their prims
+    cloths: names of cloths, by prim path
     """
     if file is None or file.suffix not in USD:
         return [Seen(scalp)]
@@ -79,20 +82,23 @@ def read_bodies(scalp: Mesh, file: Path | None, cloths: Mapping[str, str] | None
 
 
 def dressed(head: list[Seen], shot: Shot, groom: Groom) -> list[Seen]:
-    """What is seen of a shot: what is visible with the head, which may be cloth, and what the shot brings along.
+    """Visible meshes of a shot: those of the head's file, then cloths and colliders of the shot.
 
-    Raises UserError where a file that it names cannot be read.
+    Raises UserError when a file of the shot cannot be read.
     """
     cloths, colliders = api.brought_along(shot, groom)
     named = {cloth.mesh.name: cloth.name for cloth in cloths if cloth.file == groom.scalp_file}
     bodies = [Seen(seen.mesh, seen.clip, named.get(seen.mesh.name, "")) for seen in head]
-    there = {seen.cloth for seen in bodies}
-    bodies += [Seen(cloth.mesh, cloth.clip, cloth.name) for cloth in cloths if cloth.name not in there]
+    shown = {seen.cloth for seen in bodies}
+    bodies += [Seen(cloth.mesh, cloth.clip, cloth.name) for cloth in cloths if cloth.name not in shown]
     return bodies + [Seen(collider.mesh, collider.clip) for collider in colliders]
 
 
 def read_scene(file: Path) -> tuple[list[Seen], Look]:
-    """Bodies and hair of a USD file: a groom with all its hairs, or any curves as they are."""
+    """Bodies and hair of a USD file: a groom with its render hairs, or plain curves.
+
+    Raises UserError for another file type and for a file without hair.
+    """
     if file.suffix not in USD:
         raise UserError(f"{file.name}: is no recipe, shot or USD file; give one of them")
     try:
@@ -113,7 +119,10 @@ def read_scene(file: Path) -> tuple[list[Seen], Look]:
 
 @contextmanager
 def open_frames(file: Path, look: Look) -> Iterator[tuple[np.ndarray, ReadFrame]]:
-    """The frames of a file whose locks move: their numbers, and what reads one of them while the file is open."""
+    """Opens the frames of a file: their numbers, and a function that reads one while the file is open.
+
+    Raises UserError for a cache of another groom.
+    """
     if look.hairs is None:
         frames = io.read_hair_frames(file)
         yield frames if len(frames) > 1 else frames[:0], lambda frame: Moved(_hairs_at(file, frame, look), {}, {})
@@ -121,8 +130,8 @@ def open_frames(file: Path, look: Look) -> Iterator[tuple[np.ndarray, ReadFrame]
     with io.open_cache(file) as cache:
         if cache.size != len(look.groom.locks.points):
             raise UserError(f"{file.name}: is of another groom than that of the shot; choose a cache of the same groom")
-        told = dict(zip(cache.frames.tolist(), cache.statistics, strict=False))
-        yield cache.frames, lambda frame: Moved(cache.points(frame), told.get(frame, {}), cache.cloths_at(frame))
+        statistics = dict(zip(cache.frames.tolist(), cache.statistics, strict=False))
+        yield cache.frames, lambda frame: Moved(cache.points(frame), statistics.get(frame, {}), cache.cloths_at(frame))
 
 
 def _hairs_at(file: Path, frame: float, look: Look) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""A hand that sculpts guides: strokes of a brush become what the file of edits says of them."""
+"""Sculpting of guides: converts strokes of a brush to sculpts of the file of edits."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from ringlet.viewer.wire import pack
 
 @dataclass
 class Stroke:
-    """What a hand does from putting the brush down to lifting it.
+    """A stroke of the brush, from press to release.
 
-    before:  the guides as the recipe makes them
-    guides:  as they are now
-    weights: how much of the way the points of each side go along with a grab
+    before:  guides of the recipe without sculpts
+    guides:  current guides
+    weights: weights of the points in a grab, for each side of the head, shape (n,)
     """
 
     gesture: int
@@ -36,7 +36,7 @@ class Stroke:
 
 
 class Sculptor:
-    """Keeps the stroke that is being made."""
+    """State of the current stroke."""
 
     def __init__(self, files: Files) -> None:
         self._files = files
@@ -45,14 +45,14 @@ class Sculptor:
 
     @property
     def busy(self) -> bool:
-        """Whether the brush is down: then guides are where the hand has them, not where the last groom had them."""
+        """Whether a stroke is in progress; its guides are newer than those of the last groom."""
         return self._stroke is not None
 
     def move(self, message: protocol.Sculpt, groom: Groom) -> Curves:
-        """The guides after the brush has moved; what it has done is written when it is lifted."""
+        """Moves the brush and returns the guides; the end of the stroke writes its sculpts."""
         stroke = self._stroke
         if stroke is None or stroke.gesture != message.gesture:
-            stroke = self._stroke = self._put_down(message.gesture, groom)
+            stroke = self._stroke = self._begin(message.gesture, groom)
         ball = Ball(np.array(message.at), np.array(message.by), message.radius)
         balls = [ball, ball.mirrored(stroke.scalp.middle[0])] if message.mirrored else [ball]
         if message.tool == "grab" and not stroke.weights:
@@ -66,24 +66,24 @@ class Sculptor:
             else:
                 stroke.guides = brush.TOOLS[message.tool](stroke.guides, one)
         if message.resting:
-            self._lift(stroke)
+            self._finish(stroke)
         return stroke.guides
 
     def preview(self, recipe: Recipe) -> Recipe:
-        """The recipe with the stroke as far as it has come."""
+        """The recipe with the current stroke."""
         if self._stroke is None:
             return recipe
         stroke = self._stroke
-        told = sculpts_to(stroke.before, stroke.guides, stroke.scalp)
-        made = [Sculpt.model_validate(one, context={"unit": 1.0}) for one in told]
-        return recipe.model_copy(update={"sculpt": made})
+        tables = sculpts_to(stroke.before, stroke.guides, stroke.scalp)
+        sculpts = [Sculpt.model_validate(table, context={"unit": 1.0}) for table in tables]
+        return recipe.model_copy(update={"sculpt": sculpts})
 
-    def give_all_back(self) -> None:
-        """Lets all guides be what the recipe makes of them."""
+    def remove_all(self) -> None:
+        """Removes the sculpts of all guides."""
         self._stroke = None
         self._files.write_edits("sculpt", [])
 
-    def _put_down(self, gesture: int, groom: Groom) -> Stroke:
+    def _begin(self, gesture: int, groom: Groom) -> Stroke:
         if groom.unsculpted is None:
             raise UserError("sculpt: there is no recipe whose guides could be sculpted; open one with: ringlet view")
         document = self._files.recipe
@@ -95,29 +95,29 @@ class Sculptor:
         guides = sculpted(groom.unsculpted, document.model.sculpt, scalp)
         return Stroke(gesture, scalp, groom.unsculpted, guides, [])
 
-    def _lift(self, stroke: Stroke) -> None:
-        """Writes what is now different from the recipe; guides that are not there now keep what was done to them."""
+    def _finish(self, stroke: Stroke) -> None:
+        """Writes the sculpts of a stroke; keeps those of guides that do not exist now."""
         self._stroke = None
-        there = set(stroke.before.ids.tolist())
-        known = parse_edits(self._files.recipe.state.edits or "ringlet = 1", self._files.recipe.path)["sculpt"]
-        gone = [one for one in known if one.get("guide") not in there]
-        made = [*gone, *sculpts_to(stroke.before, stroke.guides, stroke.scalp)]
-        self._files.write_edits("sculpt", made, stroke.gesture)
+        existing = set(stroke.before.ids.tolist())
+        tables = parse_edits(self._files.recipe.state.edits or "ringlet = 1", self._files.recipe.path)["sculpt"]
+        kept = [table for table in tables if table.get("guide") not in existing]
+        sculpts = [*kept, *sculpts_to(stroke.before, stroke.guides, stroke.scalp)]
+        self._files.write_edits("sculpt", sculpts, stroke.gesture)
 
     def scalp(self, groom: Groom) -> Scalp:
-        """The surface that the guides grow on."""
+        """The scalp of a groom, cached."""
         if self._scalp is None or self._scalp.mesh is not groom.scalp:
             self._scalp = Scalp(groom.scalp, groom.region)
         return self._scalp
 
-    def told(self, guides: Curves, groom: Groom) -> bytes:
-        """The message with guides, and which of them are not as the recipe makes them."""
+    def message(self, guides: Curves, groom: Groom) -> bytes:
+        """Message with guides, and a mark on those that differ from the recipe's."""
         before = guides if groom.unsculpted is None else groom.unsculpted
-        off = np.abs(guides.points - before.points).max(axis=1) > 1e-6
+        moved = np.abs(guides.points - before.points).max(axis=1) > 1e-6
         x, y, z = self.scalp(groom).middle.tolist()
         return pack(
             protocol.Guides(middle=(x, y, z)),
             points=guides.points,
             offsets=guides.offsets,
-            changed=np.logical_or.reduceat(off, guides.offsets[:-1]),
+            changed=np.logical_or.reduceat(moved, guides.offsets[:-1]),
         )

@@ -1,4 +1,4 @@
-"""The server: the page, and one websocket for everything else."""
+"""The server: static files of the page, and one websocket for messages."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ from ringlet.viewer.wire import trouble, unpack
 
 STATIC = Path(__file__).with_name("static")
 LOOPBACK = ("localhost", "127.0.0.1", "[::1]")
-MOST_PAGES = 32
-HELLO_WITHIN = 10.0  # seconds
-MOST_TROUBLES = 20  # messages of a page that may be wrong, before it is sent away
+MAX_PAGES = 32
+HELLO_TIMEOUT = 10.0  # seconds
+MAX_INVALID_MESSAGES = 20  # invalid messages of a page before the server closes its socket
 
-REFUSED, WRONG = 4403, 4400  # close codes that the page knows
+REFUSED, WRONG = 4403, 4400  # close codes of the protocol
 
-# Nothing is loaded from elsewhere, nothing of ours is shown elsewhere.
+# Content policy: the page loads from this server only, and no other page may embed it.
 POLICY = (
     "default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; connect-src 'self' ws: wss:; "
     "frame-ancestors 'none'; base-uri 'none'; form-action 'none'; object-src 'none'"
@@ -37,10 +37,10 @@ log = logging.getLogger("ringlet.viewer")
 
 
 class Door:
-    """Who may come in: those who call the server by a name that it has, from a page of its own, with the token.
+    """Access control: checks the host name, the origin and the token of a request.
 
-    host:  the name that the server was told to listen on; others than loopback need the token
-    token: what a page must bring along; nothing is asked for where it is empty
+    host:  address that the server listens on; any other than loopback needs a token
+    token: token that a page must send; empty for none
     """
 
     def __init__(self, host: str, token: str) -> None:
@@ -48,30 +48,30 @@ class Door:
         self.anywhere = host in ("0.0.0.0", "::")
         self.token = token
 
-    def knows(self, host: str) -> bool:
-        """Whether a Host header names this server. It keeps out pages that point a name of theirs at us."""
+    def accepts_host(self, host: str) -> bool:
+        """Whether a Host header names this server; prevents DNS rebinding."""
         return self.anywhere or _without_port(host) in self.names
 
-    def lets_in(self, host: str, origin: str | None, token: str) -> bool:
-        """Whether a websocket may open: only for a page from the same place, which has the token."""
-        same = origin is None or urlsplit(origin).netloc == host
-        return self.knows(host) and same and hmac.compare_digest(token.encode(), self.token.encode())
+    def accepts(self, host: str, origin: str | None, token: str) -> bool:
+        """Whether a websocket may open: for a page of the same origin that sends the token."""
+        same_origin = origin is None or urlsplit(origin).netloc == host
+        return self.accepts_host(host) and same_origin and hmac.compare_digest(token.encode(), self.token.encode())
 
 
 def make_app(session: Session, door: Door, static: Path = STATIC) -> FastAPI:
     """The application of one session."""
 
     @asynccontextmanager
-    async def life(_: FastAPI) -> AsyncIterator[None]:
+    async def lifespan(_: FastAPI) -> AsyncIterator[None]:
         session.start(asyncio.get_running_loop())
         yield
         session.stop()
 
-    app = FastAPI(lifespan=life, openapi_url=None, docs_url=None, redoc_url=None)
+    app = FastAPI(lifespan=lifespan, openapi_url=None, docs_url=None, redoc_url=None)
 
     @app.middleware("http")
     async def guard(request: Request, proceed: RequestResponseEndpoint) -> Response:
-        if not door.knows(request.headers.get("host", "")):
+        if not door.accepts_host(request.headers.get("host", "")):
             return Response("this server does not go by that name\n", status_code=421)
         response = await proceed(request)
         response.headers["Content-Security-Policy"] = POLICY
@@ -84,10 +84,10 @@ def make_app(session: Session, door: Door, static: Path = STATIC) -> FastAPI:
     async def talk(socket: WebSocket) -> None:
         headers, token = socket.headers, socket.query_params.get("token", "")
         await socket.accept()
-        if not door.lets_in(headers.get("host", ""), headers.get("origin"), token):
+        if not door.accepts(headers.get("host", ""), headers.get("origin"), token):
             await socket.close(REFUSED, "the token or the origin is wrong")
             return
-        if len(session.pages) >= MOST_PAGES:
+        if len(session.pages) >= MAX_PAGES:
             await socket.close(REFUSED, "too many pages look at this session")
             return
         with suppress(WebSocketDisconnect, RuntimeError):
@@ -99,9 +99,9 @@ def make_app(session: Session, door: Door, static: Path = STATIC) -> FastAPI:
 
 
 async def _serve(socket: WebSocket, session: Session) -> None:
-    """Talks with one page until it goes."""
+    """Serves one page until it disconnects."""
     try:
-        hello = unpack(await asyncio.wait_for(socket.receive_bytes(), HELLO_WITHIN))
+        hello = unpack(await asyncio.wait_for(socket.receive_bytes(), HELLO_TIMEOUT))
     except (UserError, KeyError, TimeoutError):
         hello = None
     if not isinstance(hello, protocol.Hello) or hello.version != protocol.VERSION:
@@ -123,17 +123,17 @@ async def _send(socket: WebSocket, page: Page) -> None:
 
 
 async def _receive(socket: WebSocket, session: Session, page: Page) -> None:
-    troubles = 0
+    invalid_messages = 0
     while True:
         try:
             session.hear(page, unpack(await socket.receive_bytes()))
-        except KeyError:  # text, which nobody of ours sends
+        except KeyError:  # a text message; the page sends binary ones only
             await socket.close(WRONG, "messages are binary")
             return
         except UserError as error:
-            troubles += 1
+            invalid_messages += 1
             page.box.put("trouble", trouble(str(error)))
-            if troubles > MOST_TROUBLES and not isinstance(error.__cause__, UserError):
+            if invalid_messages > MAX_INVALID_MESSAGES and not isinstance(error.__cause__, UserError):
                 await socket.close(WRONG, "too many messages were wrong")
                 return
         except (WebSocketDisconnect, RuntimeError):

@@ -1,4 +1,4 @@
-"""What the pages look at together: who leads, and what happens when a page asks for something."""
+"""Shared review session: connected pages, edit lock, message dispatch."""
 
 from __future__ import annotations
 
@@ -31,15 +31,15 @@ from ringlet.viewer.showing import Showing, measured
 from ringlet.viewer.wire import pack, trouble
 from ringlet.viewer.worker import Latest, Stale
 
-LOOK_EVERY = 2.0  # whether other files are there [s]
-NO_GROOM = "groom/trouble"  # the subject of why no groom is made
+LOOK_EVERY = 2.0  # interval at which the list of files is refreshed [s]
+NO_GROOM = "groom/trouble"  # subject of the error that prevents a groom
 
 log = logging.getLogger("ringlet.viewer")
 
 
 @dataclass(frozen=True)
 class Work:
-    """A groom that is wanted: a recipe, its revision, what is muted in it, and whether only a draft is needed."""
+    """A request for a groom: a recipe, its revision, its muted stages, and whether a draft suffices."""
 
     recipe: Recipe
     revision: int
@@ -48,14 +48,14 @@ class Work:
 
 
 class Page:
-    """A browser that looks at the session."""
+    """A connected page."""
 
     def __init__(self, name: str, box: Mailbox) -> None:
         self.name, self.box = name, box
 
 
 class Session:
-    """One file and all pages that look at it. Its methods are called on the event loop; grooming is done beside it."""
+    """One file and its connected pages. Methods run on the event loop; grooming runs in worker threads."""
 
     def __init__(self, file: Path, project: Project) -> None:
         self.project, self.files = project, Files(file, project)
@@ -65,12 +65,12 @@ class Session:
         self.leader = ""
         self._heard = Counter[str]()
         self._loop: asyncio.AbstractEventLoop | None = None
-        self._looking: asyncio.Task[None] | None = None
+        self._file_watcher: asyncio.Task[None] | None = None
         self._groomer, self._beside = Groomer(project), Groomer(project)
         self._showing, self._caches = Showing(self.board), Caches(project)
         self._playing = Playing(self.files, self.board, self._showing, self._call, self.trouble)
         self._hand, self._sculptor = Hand(self.files), Sculptor(self.files)
-        if "recipe" not in self.files.documents:  # what cannot be read is told before there is a server
+        if "recipe" not in self.files.documents:  # raises a read error before the server starts
             bodies, look = read_scene(file)
             self._showing.stage(look, bodies)
             self._playing.read(look)
@@ -80,47 +80,47 @@ class Session:
     # Pages
 
     def start(self, loop: asyncio.AbstractEventLoop) -> None:
-        """Begins to work, for pages that will come."""
+        """Posts the documents, starts grooming and watches the project's files."""
         self._loop = loop
         for file in self.files.documents:
-            self.board.post(f"document/{file}", self.files.told(file))
+            self.board.post(f"document/{file}", self.files.message(file))
         if "recipe" in self.files.documents:
             self.regroom()
-        self._looking = loop.create_task(self._look_for_files())
+        self._file_watcher = loop.create_task(self._watch_files())
 
-    async def _look_for_files(self) -> None:
-        """Tells what there is to compare with, and again when that changes: caches are written by others, meanwhile."""
-        told = None
+    async def _watch_files(self) -> None:
+        """Posts the recipes and caches of the project whenever they change; other programs write them."""
+        posted = None
         while True:
             names = await asyncio.to_thread(lambda: [*self.project.files("*.recipe.toml"), *self._caches.names()])
-            if names != told:
+            if names != posted:
                 self.board.post("files", pack(protocol.Files(names=names)))
-            told = names
+            posted = names
             await asyncio.sleep(LOOK_EVERY)
 
     def stop(self) -> None:
-        """Ends what works in the background."""
+        """Stops the background work."""
         self._loop = None
-        if self._looking is not None:
-            self._looking.cancel()
+        if self._file_watcher is not None:
+            self._file_watcher.cancel()
         self._playing.stop()
         self._worker.stop()
         self._measurer.stop()
 
     def join(self, name: str) -> Page:
-        """A page comes in. The first one leads; whoever led before leads again."""
+        """Adds a page. It gets the edit lock when it held it before, or when no connected page holds it."""
         page = Page(name, self.board.join(self._welcome(self._heard[name])))
         self.pages.append(page)
         if not self.leader or not any(other.name == self.leader for other in self.pages):
             self.leader = name
-        self._tell_roles()
+        self._send_roles()
         return page
 
     def leave(self, page: Page) -> None:
-        """A page has gone; the lead stays free for it until another one asks."""
+        """Removes a page; the edit lock stays reserved for it until another page requests it."""
         self.pages.remove(page)
         self.board.leave(page.box)
-        self._tell_roles()
+        self._send_roles()
 
     def _welcome(self, heard: int) -> bytes:
         schemas = api.schema()
@@ -142,7 +142,7 @@ class Session:
             )
         )
 
-    def _tell_roles(self) -> None:
+    def _send_roles(self) -> None:
         others = len({page.name for page in self.pages}) - 1
         for page in self.pages:
             page.box.put("role", pack(protocol.Role(leads=page.name == self.leader, others=others)))
@@ -150,20 +150,20 @@ class Session:
     # Messages
 
     def hear(self, page: Page, message: protocol.FromPage) -> None:
-        """Does what a page asks for, and tells it how much was heard. Raises UserError for what cannot be."""
+        """Handles a message of a page and acknowledges it; raises UserError for a request that fails."""
         try:
-            self._do(page, message)
+            self._dispatch(page, message)
         finally:
             self._heard[page.name] += 1
             page.box.put("heard", pack(protocol.Heard(count=self._heard[page.name])))
 
-    def _do(self, page: Page, message: protocol.FromPage) -> None:
+    def _dispatch(self, page: Page, message: protocol.FromPage) -> None:
         if isinstance(message, protocol.Lead):
             self.leader = page.name
-            self._tell_roles()
+            self._send_roles()
             return
         if isinstance(message, protocol.Watch):
-            page.box.want(self._playing.wanted(message))
+            page.box.request(self._playing.frame_sources(message))
             return
         if page.name != self.leader:
             raise UserError("another page leads this session; take the lead to edit")
@@ -178,11 +178,11 @@ class Session:
             files.recipe.become(files.recipe.text, muted=frozenset(message.stages))
             self._edited("recipe")
         elif isinstance(message, protocol.Step):
-            for file in files.go(message.kind):
+            for file in files.step(message.kind):
                 self._edited(file)
         elif isinstance(message, protocol.Save):
             path = files.save(message.file, message.name, message.variant)
-            self.board.post(f"document/{message.file}", files.told(message.file))
+            self.board.post(f"document/{message.file}", files.message(message.file))
             for each in self.pages:
                 each.box.put("saved", pack(protocol.Saved(name=path.name)))
         elif isinstance(message, protocol.Restore):
@@ -199,28 +199,31 @@ class Session:
         elif isinstance(message, protocol.Sculpt):
             self._sculpt(message)
         elif isinstance(message, protocol.Unsculpt):
-            self._sculptor.give_all_back()
+            self._sculptor.remove_all()
             self._edited("recipe")
         elif isinstance(message, protocol.Play):
             self._playing.play(message)
         elif isinstance(message, protocol.Against):
-            self._playing.lay_against(message.name)
+            self._playing.set_comparison(message.name)
         else:
             raise UserError(f"message: {message.kind} is not for this file")
 
     def _sculpt(self, message: protocol.Sculpt) -> None:
-        """The guides follow the hand at once, and locks as soon as they can."""
+        """Posts the sculpted guides at once and requests a draft of the locks.
+
+        Raises UserError before the groom is made.
+        """
         look = self._showing.look
         if look is None:
             raise UserError("sculpt: the groom is not made yet; wait until it is seen")
         guides = self._sculptor.move(message, look.groom)
-        self.board.post("guides", self._sculptor.told(guides, look.groom))
+        self.board.post("guides", self._sculptor.message(guides, look.groom))
         if message.resting:
             self._edited("recipe")
         else:
             document = self.files.recipe
             sculpted = self._sculptor.preview(document.model)
-            self._worker.ask(Work(sculpted, document.revision, document.state.muted, True))
+            self._worker.submit(Work(sculpted, document.revision, document.state.muted, True))
 
     def _compare(self, message: protocol.Compare) -> None:
         self._showing.clear_beside()
@@ -243,28 +246,28 @@ class Session:
     # Grooming
 
     def _edited(self, file: str, *, resting: bool = True) -> None:
-        self.board.post(f"document/{file}", self.files.told(file))
+        self.board.post(f"document/{file}", self.files.message(file))
         if file == "recipe":
             self.regroom(draft=not resting)
         else:
-            self._playing.tell()
+            self._playing.post_timeline()
 
     def regroom(self, *, draft: bool = False) -> None:
-        """Makes the groom of the recipe as it stands; while a hand moves, a draft of it."""
+        """Requests the groom of the current recipe; a draft while a gesture is in progress."""
         document = self.files.recipe
-        self._worker.ask(Work(document.model, document.revision, document.state.muted, draft))
+        self._worker.submit(Work(document.model, document.revision, document.state.muted, draft))
 
     def _groom(self, work: Work) -> None:
-        """In the background: a draft is finished whatever comes, so that something is seen while a hand moves."""
-        fresh: Callable[[], None] = (lambda: None) if work.draft else self._worker.fresh
-        self._measurer.drop()
+        """Grooms on the worker thread. A draft is never aborted, so that the page updates during a gesture."""
+        fresh: Callable[[], None] = (lambda: None) if work.draft else self._worker.raise_if_stale
+        self._measurer.cancel()
         try:
             look = self._groomer.groom(work.recipe, work.muted, draft=work.draft, fresh=fresh)
-            self._call(self.board.wipe, NO_GROOM)
+            self._call(self.board.clear, NO_GROOM)
             self._call(self._show, look, work.revision)
             if not work.draft:
-                self._measurer.ask(look)
-        except UserError as error:  # told to pages that come later, too: it is why they see no hair
+                self._measurer.submit(look)
+        except UserError as error:  # retained for pages that join later and see no hair
             self._call(self.board.post, NO_GROOM, trouble(str(error)))
         except Stale:
             raise
@@ -273,19 +276,19 @@ class Session:
             self._call(self.trouble, f"this is a mistake in Ringlet ({error}); see the terminal")
 
     def _measure(self, look: Look) -> None:
-        """In the background, while nobody grooms: what can wait."""
-        groom, parts = look.groom, []
-        for part in overlays.depths(groom.scalp, groom.scalp.points, groom.locks, groom.locks.points):
-            self._measurer.fresh()
-            parts.append(part)
-        self._call(self.board.post, "measured", measured(groom, np.concatenate([np.empty(0), *parts])))
+        """Measures a groom on a worker thread; a new groom cancels it."""
+        groom, chunks = look.groom, []
+        for chunk in overlays.depths(groom.scalp, groom.scalp.points, groom.locks, groom.locks.points):
+            self._measurer.raise_if_stale()
+            chunks.append(chunk)
+        self._call(self.board.post, "measured", measured(groom, np.concatenate([np.empty(0), *chunks])))
 
     def _show(self, look: Look, revision: int) -> None:
         before = self._showing.look
         self._showing.show(look, "a", revision)
         guides_changed = before is None or before.groom.guides is not look.groom.guides
         if guides_changed and look.groom.unsculpted is not None and not self._sculptor.busy:
-            self.board.post("guides", self._sculptor.told(look.groom.guides, look.groom))
+            self.board.post("guides", self._sculptor.message(look.groom.guides, look.groom))
         if self.files.mode == "shot" and not look.draft:
             self._playing.set_groom(look)
 
@@ -294,6 +297,6 @@ class Session:
             self._loop.call_soon_threadsafe(do, *arguments)
 
     def trouble(self, message: str) -> None:
-        """Tells everybody what went wrong."""
+        """Sends an error message to all pages."""
         for page in self.pages:
             page.box.put("trouble", trouble(message))

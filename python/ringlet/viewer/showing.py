@@ -1,4 +1,4 @@
-"""From looks to messages: the board is told what has changed since the look before."""
+"""Posts grooms to the board, limited to the data that changed."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ from ringlet.viewer.wire import pack
 
 
 class Showing:
-    """What pages see of the looks a and b.
+    """The displayed grooms on sides a and b.
 
-    look:   the one on side a
-    bodies: what else is seen, with how it moves
+    look:   groom on side a
+    bodies: visible meshes with their animation
     """
 
     def __init__(self, board: Board) -> None:
@@ -30,56 +30,56 @@ class Showing:
         self.bodies: list[Seen] = []
         self._scalp: Mesh | None = None
         self._head: list[Seen] = []
-        self._dressed: object = None
+        self._shot_inputs: object = None
         self._layouts: dict[str, Curves] = {}
         self._names: protocol.Names | None = None
 
     def show(self, look: Look, side: str, revision: int = 0) -> None:
-        """Shows a look on one side. revision: of the recipe that it comes from."""
+        """Shows a groom on one side. revision: of its recipe."""
         if side == "a":
             self.look = look
             self._show_scalp(look)
-            self._tell_names(look.groom, look.curves)
+            self._post_names(look.groom, look.curves)
         layout = look.hairs.curves if look.hairs else look.groom.locks
         if self._layouts.get(side) is not layout:
             self._layouts[side] = layout
             self._board.post(f"{side}/hairs", look.layout(side))
         self._board.post(f"{side}/locks", look.locks(side))
         if side == "a":
-            self._tell_numbers(look, revision)
+            self._post_numbers(look, revision)
 
     def stage(self, look: Look, bodies: list[Seen]) -> None:
-        """Shows what a USD file holds."""
+        """Shows the contents of a USD file."""
         self._scalp = look.groom.scalp
         self._post_bodies(bodies)
         self.show(look, "a")
 
-    def dress(self, shot: Shot, groom: Groom) -> None:
-        """Shows what a shot brings along besides the head. Raises UserError where one of its files cannot be read."""
-        brings = shot.cloth, shot.collider, shot.touching is None
-        if brings != self._dressed:
+    def show_bodies(self, shot: Shot, groom: Groom) -> None:
+        """Shows cloths and colliders of a shot; raises UserError when one of its files cannot be read."""
+        inputs = shot.cloth, shot.collider, shot.touching is None
+        if inputs != self._shot_inputs:
             self._post_bodies(dressed(self._head, shot, groom))
-            self._dressed = brings
+            self._shot_inputs = inputs
 
     def clear_beside(self) -> None:
-        """Takes the look on side b away."""
-        self._board.wipe("b/")
+        """Removes the groom on side b."""
+        self._board.clear("b/")
         self._layouts.pop("b", None)
 
     def _show_scalp(self, look: Look) -> None:
         if self._scalp is not look.groom.scalp:
             self._scalp = look.groom.scalp
             self._head = read_bodies(look.groom.scalp, look.groom.scalp_file)
-            self._dressed = None
+            self._shot_inputs = None
             self._post_bodies(self._head)
 
     def _post_bodies(self, bodies: list[Seen]) -> None:
-        self._board.wipe("body/")
+        self._board.clear("body/")
         self.bodies = bodies
         for index, seen in enumerate(bodies):
             self._board.post(f"body/{index}", seen.message(index))
 
-    def _tell_names(self, groom: Groom, curves: Collection[str]) -> None:
+    def _post_names(self, groom: Groom, curves: Collection[str]) -> None:
         scalp = groom.scalp
         names = protocol.Names(
             regions=sorted(scalp.regions),
@@ -91,7 +91,7 @@ class Showing:
             self._names = names
             self._board.post("names", pack(names))
 
-    def _tell_numbers(self, look: Look, revision: int) -> None:
+    def _post_numbers(self, look: Look, revision: int) -> None:
         numbers = protocol.Numbers(
             revision=revision,
             locks=len(look.groom.locks),
@@ -104,7 +104,7 @@ class Showing:
 
 
 def measured(groom: Groom, depth: np.ndarray) -> bytes:
-    """The message with what is only measured at rest. depth: of the points of the locks in the head [m]."""
+    """Message with measurements of a groom. depth: depths of lock points in the head [m], shape (n,)."""
     return pack(
         protocol.Measured(inside=int(np.count_nonzero(depth))),
         depth=overlays.as_bytes(depth / overlays.DEPTH_SHOWN),

@@ -1,4 +1,4 @@
-"""A shot that runs beside the page: frame by frame, held and gone on with, or run again from a frame that is there."""
+"""Simulation of a shot in a thread: start, pause, resume, and restart from an existing frame."""
 
 from __future__ import annotations
 
@@ -24,28 +24,28 @@ from ringlet.viewer.reel import Run
 from ringlet.viewer.scene import Moved, Seen
 from ringlet.viewer.wire import pack
 
-MOST_KEPT = 1_500_000_000  # bytes of what frames can be gone on from
+MAX_CHECKPOINT_BYTES = 1_500_000_000  # memory for the checkpoints of frames
 
 log = logging.getLogger("ringlet.viewer")
 
 
 @dataclass
 class Stage:
-    """What is seen with the locks while they move: hairs, bodies and how those move."""
+    """The scene of a simulation: groom, hairs, animated scalp and bodies."""
 
     groom: Groom
     hairs: Hairs | None
     clip: Clip
     bodies: list[Seen]
-    _one: threading.Lock = field(default_factory=threading.Lock, init=False)  # who works in the room for all hairs
+    _lock: threading.Lock = field(default_factory=threading.Lock, init=False)  # guards the buffer of hairs
 
     @cached_property
-    def _room(self) -> NDArray[np.float32] | None:
+    def _buffer(self) -> NDArray[np.float32] | None:
         return self.hairs.room() if self.hairs is not None else None
 
     @cached_property
     def turning(self) -> NDArray[np.float64]:
-        """How the groomed locks turn."""
+        """Turning of the groomed locks [rad], shape (n,)."""
         return overlays.turning(self.groom.locks, self.groom.locks.points)
 
     def frame(
@@ -55,7 +55,7 @@ class Stage:
         moved: Moved,
         motion: Motion | None = None,
     ) -> bytes:
-        """The message of a frame; what touches is known while ``motion`` is there."""
+        """Message of a frame; contact and depth need ``motion``."""
         points, statistics, cloths = moved
         axis, root, left = np.empty(0), np.empty(0), np.empty((0, 0), np.uint8)
         corners, locks = self.clip.at(frame), self.groom.locks
@@ -65,16 +65,16 @@ class Stage:
             order = spread_order(carriage["first"])
             axis, root = carriage["axis"], carriage["root"][order]
             beside = [(at, seen.mesh.triangles) for at, seen in zip(bodies, self.bodies, strict=True)]
-            with self._one:
-                left = self.hairs.left_beside(points, carriage, beside, room=self._room)[order]
+            with self._lock:
+                left = self.hairs.left_beside(points, carriage, beside, room=self._buffer)[order]
         drawn = np.flatnonzero((left < 255).any(axis=1))
-        kept, contact, depth = told(statistics), np.empty(0), np.empty(0)
+        shown, contact, depth = shown_statistics(statistics), np.empty(0), np.empty(0)
         if motion is not None:
             contact = overlays.contact(motion)
             depth = np.concatenate(list(overlays.depths(self.groom.scalp, corners, locks, points)))
-            kept["inside"] = int(np.count_nonzero(depth))
+            shown["inside"] = int(np.count_nonzero(depth))
         return pack(
-            protocol.Frame.model_validate({"layer": layer, "frame": frame, "statistics": kept}),
+            protocol.Frame.model_validate({"layer": layer, "frame": frame, "statistics": shown}),
             points=points,
             axis=axis,
             root=root,
@@ -88,8 +88,8 @@ class Stage:
         )
 
 
-def told(statistics: dict[str, Any]) -> dict[str, Any]:
-    """The numbers of a frame that are kept in sight."""
+def shown_statistics(statistics: dict[str, Any]) -> dict[str, Any]:
+    """Statistics of a frame that the page displays."""
     contact = statistics.get("contact", {})
     return {
         "wall_ms": statistics.get("wall_ms"),
@@ -102,75 +102,82 @@ def told(statistics: dict[str, Any]) -> dict[str, Any]:
 
 
 class Simulation:
-    """Runs in a thread of its own.
+    """A simulation thread.
 
-    run:     keeps the frames
-    changed: called when the state has changed
-    failed:  called with what went wrong
+    run:     stores the frames
+    changed: called after a change of the state
+    failed:  called with an error message
     """
 
     def __init__(self, run: Run, changed: Callable[[], None], failed: Callable[[str], None]) -> None:
-        self._kept, self._changed, self._failed = run, changed, failed
+        self._frames, self._changed, self._failed = run, changed, failed
         self.state = "still"
         self.rolled = 0
         self.key = 0
-        self._go = threading.Event()
-        self._end = threading.Event()
+        self._running = threading.Event()
+        self._stopping = threading.Event()
         self._thread: threading.Thread | None = None
-        self._memories: dict[int, dict[str, NDArray[Any]]] = {}
+        self._checkpoints: dict[int, dict[str, NDArray[Any]]] = {}
 
-    def start(self, shot: Shot, stage: Stage, again_from: int | None = None) -> None:
-        """Runs a shot from its start, or from a frame that was reached before, with what it says now."""
+    def start(self, shot: Shot, stage: Stage, restart_frame: int | None = None) -> None:
+        """Simulates a shot with its current settings, from the start or from a checkpoint.
+
+        restart_frame: restarts from the last checkpoint up to this frame
+
+        Raises UserError when there is no such checkpoint.
+        """
         self.stop()
-        memory = None
-        if again_from is not None:
-            there = [frame for frame in self._memories if frame <= again_from]
-            if not there:
-                raise UserError(f"shot: frame {again_from} cannot be gone on from; run it from its start")
-            again_from = max(there)
-            memory = self._memories[again_from]
-            self._memories = {frame: kept for frame, kept in self._memories.items() if frame <= again_from}
+        checkpoint = None
+        if restart_frame is not None:
+            earlier = [frame for frame in self._checkpoints if frame <= restart_frame]
+            if not earlier:
+                raise UserError(f"shot: frame {restart_frame} cannot be gone on from; run it from its start")
+            restart_frame = max(earlier)
+            checkpoint = self._checkpoints[restart_frame]
+            self._checkpoints = {frame: kept for frame, kept in self._checkpoints.items() if frame <= restart_frame}
         else:
-            self._memories = {}
-        self._kept.cut(again_from)
+            self._checkpoints = {}
+        self._frames.cut(restart_frame)
         self.rolled, self.key, self.state = 0, self.key + 1, "rolling"
-        self._end.clear()
-        self._go.set()
-        self._thread = threading.Thread(target=self._run, args=(shot, stage, again_from, memory), daemon=True)
+        self._stopping.clear()
+        self._running.set()
+        self._thread = threading.Thread(target=self._run, args=(shot, stage, restart_frame, checkpoint), daemon=True)
         self._thread.start()
         self._changed()
 
     def pause(self) -> None:
-        """Holds after the frame that is being computed."""
+        """Pauses after the current frame."""
         if self.state in ("rolling", "running"):
-            self._go.clear()
+            self._running.clear()
             self.state = "paused"
             self._changed()
 
-    def go_on(self) -> None:
-        """Goes on from where it was held."""
+    def resume(self) -> None:
+        """Resumes a paused simulation."""
         if self.state == "paused":
             self.state = "running"
-            self._go.set()
+            self._running.set()
             self._changed()
 
     def stop(self) -> None:
-        """Ends it; frames that are there stay."""
-        self._end.set()
-        self._go.set()
+        """Stops the thread; existing frames stay."""
+        self._stopping.set()
+        self._running.set()
         if self._thread is not None:
             self._thread.join(timeout=60.0)
         self._thread = None
 
     def reset(self) -> None:
-        """Forgets all frames."""
-        self._memories.clear()
-        self._kept.cut()
+        """Removes all frames and checkpoints."""
+        self._checkpoints.clear()
+        self._frames.cut()
         self.state, self.rolled, self.key = "still", 0, self.key + 1
 
-    def _run(self, shot: Shot, stage: Stage, again_from: int | None, memory: dict[str, NDArray[Any]] | None) -> None:
+    def _run(
+        self, shot: Shot, stage: Stage, restart_frame: int | None, checkpoint: dict[str, NDArray[Any]] | None
+    ) -> None:
         try:
-            self._simulate(shot, stage, again_from, memory)
+            self._simulate(shot, stage, restart_frame, checkpoint)
         except UserError as error:
             self.state = "still"
             self._failed(str(error))
@@ -181,34 +188,35 @@ class Simulation:
         self._changed()
 
     def _simulate(
-        self, shot: Shot, stage: Stage, again_from: int | None, memory: dict[str, NDArray[Any]] | None
+        self, shot: Shot, stage: Stage, restart_frame: int | None, checkpoint: dict[str, NDArray[Any]] | None
     ) -> None:
         first, last = shot.frames
         motion = api.start_motion(shot, stage.groom)
-        if memory is not None:
-            motion.recall(memory)
-        begin = 0 if again_from is None else shot.preroll + again_from - first + 1
+        if checkpoint is not None:
+            motion.recall(checkpoint)
+        begin = 0 if restart_frame is None else shot.preroll + restart_frame - first + 1
         for step in range(begin, shot.preroll + last - first + 1):
-            self._go.wait()
-            if self._end.is_set():
+            self._running.wait()
+            if self._stopping.is_set():
                 return
             k = step - shot.preroll
             statistics = motion.advance(first + max(k - 1, 0), first + max(k, 0))
             if k < 0:
                 self.rolled = step + 1
             else:
-                self._keep(first + k, motion)
+                self._store_checkpoint(first + k, motion)
                 if self.state == "rolling":
                     self.state = "running"
-                cloths = {worn.name: worn.cloth.positions for worn in motion.worn}
+                cloths = {garment.name: garment.cloth.positions for garment in motion.worn}
                 moved = Moved(np.asarray(motion.strands.positions, np.float32), statistics, cloths)
-                self._kept.add(first + k, stage.frame("shot", first + k, moved, motion))
+                self._frames.add(first + k, stage.frame("shot", first + k, moved, motion))
             self._changed()
         self.state = "done"
 
-    def _keep(self, frame: int, motion: Motion) -> None:
-        memory = {name: np.array(values) for name, values in motion.memory.items()}
-        self._memories[frame] = memory
-        size = sum(values.nbytes for values in memory.values())
-        while len(self._memories) > 1 and size * len(self._memories) > MOST_KEPT:
-            del self._memories[min(self._memories)]
+    def _store_checkpoint(self, frame: int, motion: Motion) -> None:
+        """Stores a checkpoint; removes the oldest ones beyond the memory limit."""
+        checkpoint = {name: np.array(values) for name, values in motion.memory.items()}
+        self._checkpoints[frame] = checkpoint
+        size = sum(values.nbytes for values in checkpoint.values())
+        while len(self._checkpoints) > 1 and size * len(self._checkpoints) > MAX_CHECKPOINT_BYTES:
+            del self._checkpoints[min(self._checkpoints)]

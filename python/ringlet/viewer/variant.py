@@ -1,4 +1,4 @@
-"""The text of a recipe that extends another one and says only what differs."""
+"""Writes variants: recipes that extend another one and contain only the differences."""
 
 from __future__ import annotations
 
@@ -16,29 +16,32 @@ from ringlet.groom import Recipe
 from ringlet.groom.load import stage_names
 from ringlet.viewer.document import Document, written
 
-OWN = ("ringlet", "extends", "edits")  # what every recipe says for itself
+OWN = ("ringlet", "extends", "edits")  # keys that a variant does not inherit
 Tables = dict[str, Any]
 
 
 def variant(document: Document, parse: Callable[[str, Path, str], Recipe], path: Path, edits: Path | None) -> str:
-    """The text of a variant, at ``path``, of a recipe as it was saved, that makes what the recipe makes now.
+    """Text of a variant of the saved recipe that equals the recipe's current state.
 
-    edits: the file of edits that the variant gets, if it gets one of its own
+    path:  path of the variant
+    edits: the variant's own file of edits, if it has one
+
+    Raises UserError when the notation of variants cannot express the difference.
     """
     text = ""
     try:
         text = _text(document, edits)
-        same = _plain(parse(text, path, document.state.edits)) == _plain(document.model)
+        equal = _settings(parse(text, path, document.state.edits)) == _settings(document.model)
     except UserError:
-        same = False
-    if not same:
+        equal = False
+    if not equal:
         raise UserError(f"save: a variant of {document.path.name} cannot say all that was changed; save a copy instead")
     return text
 
 
 def _text(document: Document, edits: Path | None) -> str:
     before, now = tomllib.loads(document.saved), document.said()
-    changes = _differing(_without(before), _without(now), document.model)
+    changes = _differing(_inheritable(before), _inheritable(now), document.model)
     lines = [f"# {now.get('name') or document.path.stem}, with other values.", "ringlet = 1"]
     lines.append(f'extends = "{document.path.name}"')
     if edits is not None:
@@ -51,10 +54,10 @@ def _text(document: Document, edits: Path | None) -> str:
 
 
 def _differing(before: Tables, now: Tables, model: Any) -> Tables:
-    """What must be said on top of ``before`` to have ``now``. What is said no more gets what holds in its place, since
-    a variant takes away tables and nothing else.
+    """Tables that turn ``before`` into ``now`` when they are merged. A variant can remove tables alone, so a removed
+    setting gets its current value.
 
-    model: what holds now, with all defaults
+    model: current model, with all defaults
     """
     changes: Tables = {}
     for name, value in now.items():
@@ -71,37 +74,37 @@ def _differing(before: Tables, now: Tables, model: Any) -> Tables:
         elif value != old:
             changes[name] = value
     for name in before.keys() - now.keys():
-        changes[name] = False if isinstance(before[name], dict) else _held(model, name)
+        changes[name] = False if isinstance(before[name], dict) else _current_value(model, name)
     return changes
 
 
 def _operators(before: list[Tables], now: list[Tables], models: list[Any]) -> Any:
-    """Changes of operators by their names, where none was added or moved; else all of them."""
-    kept: dict[int, int] = {}
+    """Changes of operators by name; the whole list when an operator was added or moved."""
+    matches: dict[int, int] = {}
     for k, operator in enumerate(now):
-        after = max(kept, default=-1) + 1
-        fits = [i for i in range(after, len(before)) if before[i].get("op") == operator.get("op")]
-        if not fits:
+        after = max(matches, default=-1) + 1
+        candidates = [i for i in range(after, len(before)) if before[i].get("op") == operator.get("op")]
+        if not candidates:
             return now
-        kept[next((i for i in fits if before[i] == operator), fits[0])] = k
+        matches[next((i for i in candidates if before[i] == operator), candidates[0])] = k
     changes: Tables = {}
     for i, name in enumerate(stage_names(before)):
-        if i not in kept:
+        if i not in matches:
             changes[name] = False
-        elif more := _differing(before[i], now[kept[i]], models[kept[i]]):
+        elif more := _differing(before[i], now[matches[i]], models[matches[i]]):
             changes[name] = more
     return changes
 
 
-def _held(model: Any, name: str) -> Any:
-    """The value that a setting has, as a recipe says it."""
+def _current_value(model: Any, name: str) -> Any:
+    """Current value of a setting in the notation of a recipe; raises UserError for one without a value."""
     value, field = getattr(model, name, None), type(model).model_fields.get(name)
     length = field is not None and any(isinstance(part, Quantity) and part.unit == "m" for part in field.metadata)
     if isinstance(value, BaseModel):
-        said = value.model_dump(mode="json", exclude_defaults=True)
-        return {**said, "value": f"{said['value']!r} m"} if length and "value" in said else said
+        table = value.model_dump(mode="json", exclude_defaults=True)
+        return {**table, "value": f"{table['value']!r} m"} if length and "value" in table else table
     if value is None:
-        raise UserError(f"{name} cannot be taken out")  # TOML says no nothing
+        raise UserError(f"{name} cannot be taken out")  # TOML has no null
     return f"{value!r} m" if length and isinstance(value, float) else value
 
 
@@ -112,14 +115,14 @@ def _is_table(name: str, value: Any) -> bool:
 
 
 def _table(name: str, value: Any) -> list[str]:
-    """The lines of a table, of a list of tables, or of changes of operators."""
+    """Lines of a table, of a list of tables, or of changes of operators."""
     if isinstance(value, list):
         return [line for one in value for line in ("", f"[[{name}]]", *_entries(one))]
     if name != "shape":
         return ["", f"[{toml_key(name)}]", *_entries(value)]
-    gone = [f"{toml_key(one)} = false" for one, change in value.items() if change is False]
+    removed = [f"{toml_key(one)} = false" for one, change in value.items() if change is False]
     changed = [(one, change) for one, change in value.items() if change is not False]
-    lines = ["", "[shape]", *gone] if gone else []
+    lines = ["", "[shape]", *removed] if removed else []
     return lines + [line for one, change in changed for line in ("", f"[shape.{toml_key(one)}]", *_entries(change))]
 
 
@@ -127,10 +130,10 @@ def _entries(table: Tables) -> list[str]:
     return [f"{toml_key(name)} = {written(value)}" for name, value in table.items()]
 
 
-def _without(data: Tables) -> Tables:
+def _inheritable(data: Tables) -> Tables:
     return {name: value for name, value in data.items() if name not in OWN}
 
 
-def _plain(recipe: BaseModel) -> Tables:
-    """What a recipe makes, whatever it is called and wherever it says so."""
+def _settings(recipe: BaseModel) -> Tables:
+    """Settings of a recipe, without the keys that a variant does not inherit."""
     return recipe.model_dump(mode="json", exclude=set(OWN))

@@ -1,7 +1,8 @@
-"""Messages as bytes.
+"""Messages as bytes, little-endian.
 
-``u4`` length of the header · header, a JSON object, filled with spaces to a multiple of 8 · the arrays, in the order of
-the header's ``arrays`` (name, type, length), each filled with zeros to a multiple of 8. All little-endian.
+``u4``  length of the header
+header  a JSON object, padded with spaces to a multiple of 8 bytes
+arrays  in the order of the header's ``arrays`` (name, type, length), each padded with zeros to a multiple of 8 bytes
 """
 
 from __future__ import annotations
@@ -18,29 +19,29 @@ from pydantic import ValidationError
 from ringlet.data.errors import UserError
 from ringlet.viewer.protocol import FROM_PAGE, FromPage, Message, Trouble
 
-MOST = 1_000_000  # bytes of a message from a page
+MOST = 1_000_000  # largest size of a message from a page [bytes]
 
 
 def pack(message: Message, **arrays: NDArray) -> bytes:
-    """A message with the arrays that its class names."""
+    """Encodes a message with the arrays of its class; raises ValueError for other arrays."""
     if set(arrays) != set(message.arrays):
         raise ValueError(f"{message.__class__.__name__}: arrays {sorted(arrays)}; must be {sorted(message.arrays)}")
     header = message.model_dump(mode="json")
-    told: list[tuple[str, str, int]] = []
+    entries: list[tuple[str, str, int]] = []
     blocks: list[bytes] = []
     for name, kind in message.arrays.items():
         block = np.ascontiguousarray(arrays[name], np.dtype(kind).newbyteorder("<"))
-        told.append((name, kind, block.size))
+        entries.append((name, kind, block.size))
         blocks += [block.tobytes(), b"\0" * (-block.nbytes % 8)]
     text = json.dumps(
-        {**_plain(header), "arrays": told}, separators=(",", ":"), ensure_ascii=False, allow_nan=False
+        {**_finite(header), "arrays": entries}, separators=(",", ":"), ensure_ascii=False, allow_nan=False
     ).encode()
     text += b" " * ((-len(text) - 4) % 8)
     return b"".join([struct.pack("<I", len(text)), text, *blocks])
 
 
 def unpack(data: bytes) -> FromPage:
-    """What a page said: a header without arrays. Raises UserError for anything else."""
+    """Decodes a message of a page, a header without arrays; raises UserError for anything else."""
     if len(data) > MOST:
         raise UserError(f"message: has {len(data)} bytes; must be at most {MOST}")
     if len(data) < 4 or len(data) != 4 + struct.unpack_from("<I", data)[0]:
@@ -54,14 +55,14 @@ def unpack(data: bytes) -> FromPage:
 
 
 def trouble(message: str) -> bytes:
-    """What a page is sent of something that cannot be."""
+    """Encodes an error message."""
     return pack(Trouble(message=" ".join(message.split())))
 
 
-def _plain(value: Any) -> Any:
-    """The same with null for numbers that JSON does not have."""
+def _finite(value: Any) -> Any:
+    """Replaces infinities and NaN, which JSON lacks, by None."""
     if isinstance(value, dict):
-        return {str(key): _plain(entry) for key, entry in value.items()}
+        return {str(key): _finite(entry) for key, entry in value.items()}
     if isinstance(value, list | tuple):
-        return [_plain(entry) for entry in value]
+        return [_finite(entry) for entry in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value

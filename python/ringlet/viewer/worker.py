@@ -1,4 +1,4 @@
-"""Work in the background of which only the latest counts."""
+"""Background work in which only the latest task counts."""
 
 from __future__ import annotations
 
@@ -10,41 +10,41 @@ Task = TypeVar("Task")
 
 
 class Stale(Exception):
-    """Raised inside work that nobody waits for any more."""
+    """Raised inside a task that is outdated."""
 
 
 class Latest(Generic[Task]):
-    """A thread that does one task at a time; of those that come meanwhile, only the last.
+    """A thread that runs one task at a time and queues only the latest.
 
-    do: does a task; it may call ``fresh()`` now and then, which raises Stale when a newer task is there
+    do: runs a task; may call ``raise_if_stale()`` to abort when a newer task is queued
     """
 
     def __init__(self, do: Callable[[Task], None], name: str) -> None:
         self._do = do
         self._next: Task | None = None
-        self._stop = self._dropped = False
+        self._stop = self._cancelled = False
         self._changed = threading.Condition()
         self._thread = threading.Thread(target=self._run, name=name, daemon=True)
         self._thread.start()
 
-    def ask(self, task: Task) -> None:
-        """Wants a task done, in place of what was wanted before."""
+    def submit(self, task: Task) -> None:
+        """Queues a task; replaces a queued one."""
         with self._changed:
             self._next = task
             self._changed.notify()
 
-    def drop(self) -> None:
-        """Wants nothing of it for now."""
+    def cancel(self) -> None:
+        """Removes the queued task and marks the running one as outdated."""
         with self._changed:
-            self._next, self._dropped = None, True
+            self._next, self._cancelled = None, True
 
-    def fresh(self) -> None:
-        """Raises Stale when what is done now is wanted no more."""
-        if self._next is not None or self._dropped or self._stop:
+    def raise_if_stale(self) -> None:
+        """Raises Stale when the running task is outdated."""
+        if self._next is not None or self._cancelled or self._stop:
             raise Stale
 
     def stop(self) -> None:
-        """Ends after what is done now."""
+        """Stops the thread after the running task."""
         with self._changed:
             self._stop = True
             self._changed.notify()
@@ -56,7 +56,7 @@ class Latest(Generic[Task]):
                 self._changed.wait_for(lambda: self._stop or self._next is not None)
                 if self._stop:
                     return
-                task, self._next, self._dropped = self._next, None, False
+                task, self._next, self._cancelled = self._next, None, False
             try:
                 assert task is not None
                 self._do(task)

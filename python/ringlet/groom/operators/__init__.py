@@ -1,4 +1,4 @@
-"""The operators of the groom, one per file. A new shape operator needs its file and a place in ``ShapeOperator``."""
+"""The operators of the groom, one per file; ``ShapeOperator`` is the registry of shape operators."""
 
 from typing import Annotated
 

@@ -1,4 +1,4 @@
-"""Locks drawn to helper curves."""
+"""Attraction of locks to helper curves."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from ringlet.groom.operators.shape import Shape
 
 
 class Attract(Shape):
-    """Draws locks to a helper curve, each to the one whose root is nearest:
-    ``p' = p + amount · ramp(u) · near · (curve(u) - p)``, with near falling from 1 to 0 over ``reach``."""
+    """Attracts each lock to the helper curve with the nearest root:
+    ``p' = p + amount · ramp(u) · falloff · (curve(u) - p)``, with a falloff from 1 to 0 over ``reach``."""
 
     op: Literal["attract"] = "attract"
     curve: str = Field(min_length=1, description="name of the helper curves, from `[curves]`")
@@ -30,7 +30,7 @@ class Attract(Shape):
     )
 
     def shape(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
-        """The same locks, nearer to the curves; roots stay."""
+        """Returns the locks moved towards the curves; roots stay."""
         count = points.shape[1]
         helper = context.helper(self.curve, "curve")
         lines = _core.resample_curves(*packed(helper), count).reshape(len(helper), count, 3)

@@ -1,4 +1,4 @@
-"""Locks bent evenly, as over a roller."""
+"""Even bending of locks, as over a roller."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from ringlet.groom.parting import Vector
 
 
 class Bend(Shape):
-    """Turns each piece of a lock a little further than the one before: the tip by the whole angle, towards a direction.
-    The ramp says where along the lock it bends."""
+    """Bends a lock towards a direction: the rotation grows from edge to edge up to the whole angle at the tip. The ramp
+    distributes the bend along the lock."""
 
     op: Literal["bend"] = "bend"
     angle: Annotated[Ramped, Quantity("deg", -1000.0, 1000.0)] = Field(
@@ -31,13 +31,13 @@ class Bend(Shape):
     turns: ClassVar[bool] = True
 
     def shape(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
-        """The same shapes, bent; lengths stay."""
+        """Returns the bent shapes; edge lengths stay."""
         edges = np.diff(points, axis=1)
         toward = np.broadcast_to(unit(np.array(self.toward)), (len(points), 3))
         if self.of == "scalp":
             toward = np.einsum("kij,kj->ki", context.scalp.frames(curves), toward)
         axis = unit(np.cross(points[:, -1] - points[:, 0], toward))
-        share = self.angle.along(between_edges(edges))
-        turn = np.cumsum(share) / max(share.sum(), 1e-12)
-        angle = np.radians(context.values("angle", self.angle, curves))[:, None] * turn
+        density = self.angle.along(between_edges(edges))
+        cumulative = np.cumsum(density) / max(density.sum(), 1e-12)
+        angle = np.radians(context.values("angle", self.angle, curves))[:, None] * cumulative
         return along_edges(points[:, 0], turned(edges, axis[:, None, :], angle))

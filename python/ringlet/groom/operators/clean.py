@@ -1,4 +1,4 @@
-"""Locks outside the head."""
+"""Removal of locks from the head."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from ringlet.groom.operators.operator import Context, Operator, packed
 
 
 class Clean(Operator):
-    """Moves what dips under the skin, or comes nearer than ``margin``, out along the surface's normal; at the root the
-    margin begins at 0."""
+    """Moves points below the skin, or closer to it than ``margin``, out along the surface normal. The margin grows from
+    0 at the root."""
 
     margin: Annotated[float, Quantity("m", 0.0, 0.1)] = Field(
         default=0.002, description="distance that locks keep from the skin"
     )
 
     def apply(self, curves: Curves, context: Context) -> Curves:
-        """The same curves, outside of the mesh."""
+        """Returns the curves outside the mesh."""
         return curves.with_points(_core.push_out(*packed(curves), context.scalp.solid, self.margin))

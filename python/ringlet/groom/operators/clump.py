@@ -1,4 +1,4 @@
-"""Locks that lie together."""
+"""Clumping of neighbouring locks."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from ringlet.groom.operators.shape import Shape
 
 
 class Clump(Shape):
-    """Draws neighbouring locks towards one of them: ``p' = p + amount · ramp(u) · (centre(u) - p)``. The centres are
-    the locks nearest to places spread over the scalp at distance ``size``. Further levels draw smaller clumps together
-    within the larger ones: each ``finer`` times as far apart as those before, and all by the same amount."""
+    """Pulls neighbouring locks towards a clump centre: ``p' = p + amount · ramp(u) · (centre(u) - p)``. The centres are
+    the locks nearest to samples of the scalp at spacing ``size``. Further levels make smaller clumps within the larger
+    ones: the spacing shrinks by ``finer`` a level, and the amount is the same."""
 
     op: Literal["clump"] = "clump"
     size: Annotated[float, Quantity("m", 1e-3, 1.0)] = Field(default=0.02, description="distance of the clumps")
@@ -31,7 +31,7 @@ class Clump(Shape):
     )
 
     def shape(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
-        """The same shapes, drawn together, large clumps first; roots stay."""
+        """Returns the clumped shapes, large clumps first; roots stay."""
         amount = context.values("amount", self.amount, curves)[:, None]
         amount = np.minimum(amount * self.amount.along(np.linspace(0.0, 1.0, points.shape[1])), 1.0)[:, :, None]
         for level in range(self.levels):
@@ -40,7 +40,7 @@ class Clump(Shape):
         return points
 
     def _centres(self, roots: NDArray, size: float, context: Context) -> NDArray[np.integer]:
-        """The lock that each lock is drawn to, shape (count,)."""
+        """Row of each lock's clump centre, shape (count,)."""
         scalp = context.scalp
         _, triangle, barycentric = scalp.sample(scalp.count_for_spacing(size), context.seed + 1)
         _, leaders = KDTree(roots).query(scalp.positions(triangle, barycentric))

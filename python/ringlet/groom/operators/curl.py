@@ -1,4 +1,4 @@
-"""Curls: the operator that makes groom guides out of shapes."""
+"""The curl operator: winds groom guides about the shapes of locks."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ from ringlet.groom.scalp import axes
 
 RAMP_SAMPLES = 128
 NOISE_VALUES = 24
-EVENTS = 12  # switchbacks, and skips, of a lock, at most
+MAX_EVENTS = 12  # largest number of switchbacks, and of skips, of a lock
 NEVER = 1e9
-LEAST_START = 1e-3  # [m] a curl that opened at once would tear its root off the scalp
+MIN_START = 1e-3  # [m] an opening length of 0 would move the root off the scalp
 
 
 class Curl(Operator):
     """Winds each lock about its shape: ``p(v) = c(v) + r(v) (a cos φ + b sin φ)``, with (a, b) the rotation-minimising
-    frame of the shape c, the radius ``r = width/2 · ramp`` opening smoothly from the root, and φ growing by one turn a
-    pitch, or falling where the curl is left-handed. All ramps go from the root (0) to the tip (1).
+    frame of the shape c. The radius ``r = width/2 · ramp`` opens smoothly from the root. The phase φ grows by one turn
+    a pitch, and falls where the curl is left-handed. All ramps run from the root (0) to the tip (1).
 
-    ``keep = "silhouette"``: the curl fills the shape's length L, and the hair is longer, by √(1 + (2πr/pitch)²).
-    ``keep = "length"``: the hair has the shape's length, to a thousandth, and the silhouette is shorter instead.
+    ``keep = "silhouette"``: the curl fills the shape's length, and the hair is longer by √(1 + (2πr/pitch)²).
+    ``keep = "length"``: the hair has the shape's length, to a thousandth, and the silhouette is shorter.
     """
 
     removed: ClassVar[dict[str, str]] = {"rate": "give curls, curls_per_cm or pitch a ramp"}
@@ -107,11 +107,11 @@ class Curl(Operator):
 
     @classmethod
     def defaults(cls, data: dict[str, Any]) -> dict[str, Any]:
-        """The preset's settings, then those of the class."""
-        said = dict(PRESETS.get(str(data.get("preset")), {}))
+        """Defaults of the class, overridden by those of the preset."""
+        preset = dict(PRESETS.get(str(data.get("preset")), {}))
         if any(data.get(name) is not None for name in ("curls", "curls_per_cm", "pitch")) and "pitch" not in data:
-            said.pop("pitch", None)
-        return {**super().defaults(data), **said}
+            preset.pop("pitch", None)
+        return {**super().defaults(data), **preset}
 
     @model_validator(mode="after")
     def _one_count(self) -> Curl:
@@ -125,7 +125,7 @@ class Curl(Operator):
         return self
 
     def turns(self, curves: Curves, context: Context, u: NDArray) -> tuple[NDArray[np.floating], NDArray[np.floating]]:
-        """Curls of each lock, shape (count,), and a factor on them at the places ``u`` along it, whose mean is 1."""
+        """Curl count of each lock, shape (count,), and its relative density at parameters ``u``, with mean 1."""
         lengths = curves.lengths()
         if self.curls is not None:
             turns, rate = context.values("curls", self.curls, curves), self.curls.along(u)
@@ -145,7 +145,7 @@ class Curl(Operator):
         return turns * mean, rate / mean
 
     def apply(self, curves: Curves, context: Context) -> Curves:
-        """Groom guides, their points evenly spaced along the curl."""
+        """Returns the groom guides, with points evenly spaced along the curl."""
 
         def values(name: str) -> NDArray[np.float64]:
             return context.values(name, getattr(self, name), curves)
@@ -154,10 +154,10 @@ class Curl(Operator):
         turns, rate = self.turns(curves, context, u)
         width = values("width")
         self._check_points(turns, width, curves, points)
-        # How strongly each lock wanders is its own affair too: some are neat, some are not.
-        wander = (values("irregularity") * (0.5 + context.random("neatness").uniform(ids)))[:, None]
+        # The irregularity itself varies per lock: some locks are neat, others are not.
+        irregularity = (values("irregularity") * (0.5 + context.random("neatness").uniform(ids)))[:, None]
         noise = {
-            name: np.clip(wander * (2.0 * context.random(name).uniforms(ids, NOISE_VALUES) - 1.0), -0.9, 0.9)
+            name: np.clip(irregularity * (2.0 * context.random(name).uniforms(ids, NOISE_VALUES) - 1.0), -0.9, 0.9)
             for name in ("width", "rate", "sway")
         }
         kink = values("kink")
@@ -167,9 +167,9 @@ class Curl(Operator):
             radius=0.5 * width,
             turns=turns,
             phase=np.radians(self._phase(curves, context)),
-            # The few that are about to change their hand do so somewhere on their way.
+            # A lock between the two hands changes its hand at a point along its length.
             flip=2.0 - 3.0 * soft_threshold(values("right_handed"), context.random("hand").uniform(ids)),
-            start=np.hypot(values("start"), LEAST_START),
+            start=np.hypot(values("start"), MIN_START),
             end=values("end"),
             taper=np.minimum(values("taper"), 1.0),
             flatness=np.clip(values("flatness"), 0.0, 1.0),
@@ -185,9 +185,9 @@ class Curl(Operator):
             width_noise=noise["width"],
             rate_noise=noise["rate"],
             sway=np.pi * np.clip(kink, 0.0, 1.0)[:, None] * noise["sway"],
-            switchbacks=_events(values("switchbacks"), context.random("switchbacks").uniforms(ids, EVENTS)),
-            skips=_events(values("skips"), context.random("skips").uniforms(ids, EVENTS)),
-            **(self.phase_lock.values(curves, context) if self.phase_lock else _alone(len(ids))),
+            switchbacks=_events(values("switchbacks"), context.random("switchbacks").uniforms(ids, MAX_EVENTS)),
+            skips=_events(values("skips"), context.random("skips").uniforms(ids, MAX_EVENTS)),
+            **(self.phase_lock.values(curves, context) if self.phase_lock else _no_phase_lock(len(ids))),
             counted=self.curls is not None,
             keep_length=self.keep == "length",
             count=points,
@@ -195,7 +195,7 @@ class Curl(Operator):
         return Curves(curled, offsets_from_counts(np.full(len(ids), points)), ids, curves.curve)
 
     def _check_points(self, turns: NDArray, width: NDArray, curves: Curves, points: int) -> None:
-        """Refuses curls that so few points could not draw."""
+        """Raises UserError for fewer than 6 points a curl."""
         if self.keep == "length" and self.curls is None:  # the curled part of the shape is shorter
             turns = turns / np.hypot(1.0, np.pi * width * turns / curves.lengths())
         if (most := float(turns.max())) > points / 6.0:
@@ -205,25 +205,25 @@ class Curl(Operator):
             )
 
     def _phase(self, curves: Curves, context: Context) -> NDArray[np.float64]:
-        """Where each curl starts [degrees], shape (count,): by its own chance and one that neighbours share."""
-        spread, alike, phase = (
+        """Initial phase of each curl [degrees], shape (count,): random per lock plus a field that neighbours share."""
+        spread, shared_fraction, phase = (
             context.values(name, getattr(self, name), curves) for name in ("phase_spread", "phase_alike", "phase")
         )
         own = context.random("phase").uniform(curves.ids)
         shared = context.random("phase_field").field(curves.roots, self.phase_size)
-        return phase + 360.0 * spread * ((1.0 - alike) * own + alike * shared)
+        return phase + 360.0 * spread * ((1.0 - shared_fraction) * own + shared_fraction * shared)
 
 
 def _events(rate: NDArray, chance: NDArray) -> NDArray[np.float64]:
-    """Places along each lock, ascending, ``rate`` of them between 0 and 1 on average, shape (count, EVENTS).
+    """Ascending event parameters of each lock, shape (count, MAX_EVENTS): on average ``rate`` events in [0, 1].
 
-    The gaps are exponentially distributed; with a higher rate all move towards the root, and new ones enter at the tip.
+    The gaps are exponentially distributed. A higher rate moves all events towards the root; new ones enter at the tip.
     """
     gaps = -np.log1p(-np.minimum(chance, 1.0 - 1e-12))
     return np.minimum(np.cumsum(gaps, axis=1) / np.maximum(rate, 1e-9)[:, None], NEVER)
 
 
-def _alone(count: int) -> dict[str, NDArray]:
-    """Locks that fall in with none."""
-    nothing = np.zeros(count)
-    return {"leader": np.arange(count, dtype=np.int32), "join": nothing, "join_over": nothing, "cohesion": nothing}
+def _no_phase_lock(count: int) -> dict[str, NDArray]:
+    """Arguments of the core for locks without phase locking; each of shape (count,)."""
+    zeros = np.zeros(count)
+    return {"leader": np.arange(count, dtype=np.int32), "join": zeros, "join_over": zeros, "cohesion": zeros}

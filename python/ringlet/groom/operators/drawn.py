@@ -14,7 +14,7 @@ from ringlet.groom.source import Source
 
 
 class Drawn(Source, Guides):
-    """Takes guides from a USD, OBJ or .hair file and binds them to the scalp."""
+    """Reads guides from a USD, OBJ or .hair file and binds them to the scalp."""
 
     file: str = Field(
         min_length=1, description="USD, OBJ or .hair file with the curves, beside the recipe or with a full path"
@@ -25,6 +25,6 @@ class Drawn(Source, Guides):
     )
 
     def make(self, curves: Curves, context: Context) -> Curves:
-        """The drawn curves, bound by the nearest point of the scalp region."""
+        """Returns the drawn curves, each bound to the nearest point of the scalp region."""
         curves.check("guides")
         return context.scalp.bind(curves, self.tolerance, "guides")

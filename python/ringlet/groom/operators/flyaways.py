@@ -1,4 +1,4 @@
-"""Single locks that stand off from the rest."""
+"""Flyaways: single locks that stand off from the rest."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from ringlet.groom.operators.shape import Shape
 
 
 class Flyaways(Shape):
-    """Turns some locks, chosen by chance, away from where they were going: by an angle that grows along the ramp, about
-    an axis across the lock that is a lock's own."""
+    """Rotates randomly chosen locks away from their direction: by an angle that follows the ramp, about a random axis
+    across each lock."""
 
     op: Literal["flyaways"] = "flyaways"
     share: Annotated[float, Quantity("", 0.0, 1.0)] = Field(default=0.05, description="part of the locks that fly away")
@@ -27,13 +27,13 @@ class Flyaways(Shape):
     turns: ClassVar[bool] = True
 
     def shape(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
-        """The same shapes, some of them elsewhere; lengths stay."""
+        """Returns the shapes with the flyaways rotated; edge lengths stay."""
         edges = np.diff(points, axis=1)
-        flies = context.random("share").uniform(curves.ids) < self.share
+        is_flyaway = context.random("share").uniform(curves.ids) < self.share
         along = unit(points[:, -1] - points[:, 0])
-        anywhere = unit(context.random("axis").normals(curves.ids, 3))
-        axis = unit(np.cross(along, anywhere))
-        angle = np.radians(context.values("angle", self.angle, curves)) * flies
+        random_direction = unit(context.random("axis").normals(curves.ids, 3))
+        axis = unit(np.cross(along, random_direction))
+        angle = np.radians(context.values("angle", self.angle, curves)) * is_flyaway
         ramp = self.angle.along(between_edges(edges))
-        away = along_edges(points[:, 0], turned(edges, axis[:, None, :], angle[:, None] * ramp))
-        return np.where(flies[:, None, None], away, points)
+        rotated = along_edges(points[:, 0], turned(edges, axis[:, None, :], angle[:, None] * ramp))
+        return np.where(is_flyaway[:, None, None], rotated, points)

@@ -1,4 +1,4 @@
-"""Small, quick waves across the hair."""
+"""Frizz: noise of short wavelength across each lock."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from ringlet.groom.operators.wander import wander
 
 
 class Frizz(Shape):
-    """A quick random wander across the lock: ``p' = p + amount · ramp(u) · (noise - (noise · t) t)``, with t the
-    direction of the lock and a noise of its own for each."""
+    """Noise of short wavelength across the lock: ``p' = p + amount · ramp(u) · (noise - (noise · t) t)``, with t the
+    tangent of the lock and independent noise per lock."""
 
     op: Literal["frizz"] = "frizz"
     amount: Annotated[Ramped, Quantity("m", 0.0, 0.1)] = Field(
@@ -27,7 +27,10 @@ class Frizz(Shape):
     size: Annotated[float, Quantity("m", 5e-4, 1.0)] = Field(default=0.008, description="length over which it changes")
 
     def shape(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
-        """The same shapes with small waves; roots stay."""
+        """Returns the shapes with frizz; roots stay.
+
+        Raises UserError when ``size`` is shorter than the spacing of the points.
+        """
         along, count = arc_lengths(points), points.shape[1]
         if (longest := float(along[:, -1].max())) / (count - 1) > self.size:
             raise UserError(
@@ -35,7 +38,9 @@ class Frizz(Shape):
                 f"points of a shape; set locks.shape_points to {int(np.ceil(2.0 * longest / self.size)) + 1}"
             )
         noise = wander(context.random("wander"), curves.ids, along, self.size)
-        direction = unit(np.gradient(points, axis=1))
-        across = noise - np.sum(noise * direction, axis=2, keepdims=True) * direction
-        reach = context.values("amount", self.amount, curves)[:, None] * self.amount.along(np.linspace(0.0, 1.0, count))
-        return points + reach[:, :, None] * across
+        tangent = unit(np.gradient(points, axis=1))
+        across = noise - np.sum(noise * tangent, axis=2, keepdims=True) * tangent
+        magnitude = context.values("amount", self.amount, curves)[:, None] * self.amount.along(
+            np.linspace(0.0, 1.0, count)
+        )
+        return points + magnitude[:, :, None] * across

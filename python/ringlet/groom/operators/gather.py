@@ -1,4 +1,4 @@
-"""Hair gathered at a tie: a pony tail, a bunch."""
+"""Gathering of hair at a tie: a pony tail, a bunch."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from ringlet.data.quantities import Quantity
 from ringlet.groom.operators.operator import Context, arc_lengths, at_lengths, unit
 from ringlet.groom.operators.shape import Shape
 
-HEAD_POINTS = 24  # of the way over the head
+HEAD_POINTS = 24  # points of the path over the head
 
 
 class Gather(Shape):
-    """Leads each lock over the head to a tie and on along the tail: the lock keeps its length and lies on that way as
-    far as it reaches. The helper curve ``tie`` begins at the tie and is the middle of the tail.
+    """Leads each lock along a path over the head to a tie and on along the tail; the lock keeps its length. The helper
+    curve ``tie`` starts at the tie and is the centre line of the tail.
 
-    Over the head the way turns about the middle of the scalp from root to tie while its distance from that middle goes
-    from the one's to the other's, higher by ``rise`` half-way. In the tail each lock keeps a place of its own.
+    Over the head the path is a spherical interpolation from root to tie about the centre of the scalp. Its distance
+    from that centre is interpolated too, and raised by ``rise`` midway. In the tail each lock has its own offset.
     """
 
     op: Literal["gather"] = "gather"
@@ -37,7 +37,7 @@ class Gather(Shape):
     turns: ClassVar[bool] = True
 
     def shape(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
-        """The same locks on their way to the tie; lengths stay."""
+        """Returns the locks on their paths to the tie; lengths stay."""
         tail = np.asarray(context.helper(self.tie, "tie")[0], np.float64)
         disk = self._disk(curves, context)
         beside = unit(np.cross(tail[-1] - tail[0], unit(context.scalp.middle - tail[0]) + 1e-3))
@@ -45,18 +45,18 @@ class Gather(Shape):
         offset = disk @ np.stack([beside, above])
         width = np.linspace(1.0, self.spread, len(tail))
         in_tail = tail[None] + width[None, :, None] * offset[:, None, :]
-        over = self._over_head(points[:, 0], in_tail[:, 0], context.scalp.middle)
-        return at_lengths(np.concatenate([over, in_tail[:, 1:]], axis=1), arc_lengths(points))
+        over_head = self._over_head(points[:, 0], in_tail[:, 0], context.scalp.middle)
+        return at_lengths(np.concatenate([over_head, in_tail[:, 1:]], axis=1), arc_lengths(points))
 
     def _disk(self, curves: Curves, context: Context) -> NDArray[np.float64]:
-        """A place for each lock in the cross-section of the tie [m], shape (count, 2)."""
+        """Random position of each lock in the cross-section of the tie [m], shape (count, 2)."""
         random = context.random("place")
         angle = 2.0 * np.pi * random.uniform(curves.ids, 0)
         radius = self.radius * np.sqrt(random.uniform(curves.ids, 1))
         return radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
 
     def _over_head(self, roots: NDArray, ties: NDArray, middle: NDArray) -> NDArray[np.float64]:
-        """Ways from roots to ties (count, 3), around the middle; shape (count, HEAD_POINTS, 3)."""
+        """Paths around the centre from roots to ties (count, 3); shape (count, HEAD_POINTS, 3)."""
         t = np.linspace(0.0, 1.0, HEAD_POINTS)
         from_middle, to_middle = roots - middle, ties - middle
         a, b = unit(from_middle), unit(to_middle)

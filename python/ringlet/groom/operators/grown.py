@@ -18,8 +18,8 @@ from ringlet.groom.parting import Parting, Vector
 
 
 class Zone(Section):
-    """A part of the head where hair is longer, shorter or stands differently: around a direction, where it fades out
-    towards its edge, or by a mask, or where both are."""
+    """A zone of the head with its own length, lift and droop: a cone around a direction with a falloff, a mask, or the
+    intersection of both."""
 
     toward: Vector | None = Field(
         default=None, description="direction from the middle of the scalp, Y up: [0, 0.5, 1] is the forehead"
@@ -33,13 +33,16 @@ class Zone(Section):
     droop: Annotated[float, Quantity("", 0.0, 10.0)] = Field(default=1.0, description="factor on the droop")
 
     @model_validator(mode="after")
-    def _somewhere(self) -> Zone:
+    def _has_extent(self) -> Zone:
         if self.toward is None and self.mask is None:
             raise refuse("does not say where it is; give it 'toward' or a 'mask'")
         return self
 
     def weight(self, seeds: Curves, context: Context, what: str) -> NDArray[np.float64]:
-        """1 in the middle of the zone, 0 outside; shape (count,). ``seeds``: curves of a point, the root."""
+        """Weights of the zone, 1 at its centre and 0 outside, shape (count,).
+
+        seeds: curves of one point, the root
+        """
         weight = np.ones(len(seeds))
         if self.toward is not None:
             outward = unit(seeds.points - context.scalp.middle)
@@ -54,9 +57,9 @@ class Zone(Section):
 class Grown(Guides):
     """Grows guides on the scalp.
 
-    A guide leaves its root along ``lift · normal + (1 - lift) · flow`` and bends down on its way:
-    ``direction(u) = that + droop · u · down``, with u from 0 (root) to 1 (tip). The flow runs along the surface, away
-    from the whorl.
+    A guide starts in the direction ``d₀ = lift · normal + (1 - lift) · flow`` and bends down towards its tip:
+    ``d(u) = d₀ + droop · u · down``, with u from 0 (root) to 1 (tip). The flow is tangent to the surface and points
+    away from the whorl.
     """
 
     count: int | None = Field(default=None, ge=1, le=1_000_000, description="number of guides (this or spacing)")
@@ -96,7 +99,7 @@ class Grown(Guides):
         return self
 
     def make(self, curves: Curves, context: Context) -> Curves:
-        """Guides with ids that belong to their places; what comes in is not used."""
+        """Returns the grown guides, with ids fixed to their roots; ignores ``curves``."""
         scalp = context.scalp
         count = self.count or scalp.count_for_spacing(self.spacing or 0.025)
         ids, triangle, barycentric = scalp.sample(count, context.seed, self.density, "guides.density")
@@ -122,19 +125,19 @@ class Grown(Guides):
         return Curves(np.ascontiguousarray(points.reshape(-1, 3)), offsets, ids, bound)
 
     def _flow(self, seeds: Curves, normal: NDArray, context: Context) -> NDArray[np.float64]:
-        """Unit directions along the surface, shape (n, 3)."""
+        """Unit tangents of the surface in the direction of growth, shape (n, 3)."""
         roots, scalp = seeds.points, context.scalp
         from_middle = roots - scalp.middle
         if self.whorl is None:
-            wanted = np.broadcast_to(np.array(self.flow), normal.shape)
+            flow = np.broadcast_to(np.array(self.flow), normal.shape)
         else:
             away = unit(unit(from_middle) - unit(np.array(self.whorl)))
             turn = np.radians(self.whorl_turn)
-            wanted = np.cos(turn) * away + np.sin(turn) * np.cross(normal, away)
+            flow = np.cos(turn) * away + np.sin(turn) * np.cross(normal, away)
         if self.direction is not None:
             painted = painted_directions(self.direction, seeds, scalp.mesh, "guides.direction")
-            wanted = np.where(painted.any(axis=1, keepdims=True), unit(painted), wanted)
+            flow = np.where(painted.any(axis=1, keepdims=True), unit(painted), flow)
         if self.part is not None:
-            away, felt = self.part.away(roots, normal, scalp.middle, context.helper)
-            wanted = (1.0 - felt)[:, None] * wanted + felt[:, None] * away
-        return unit(wanted - np.sum(wanted * normal, axis=1, keepdims=True) * normal)
+            away, falloff = self.part.away(roots, normal, scalp.middle, context.helper)
+            flow = (1.0 - falloff)[:, None] * flow + falloff[:, None] * away
+        return unit(flow - np.sum(flow * normal, axis=1, keepdims=True) * normal)

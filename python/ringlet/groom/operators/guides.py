@@ -1,4 +1,4 @@
-"""What grown and drawn guides have in common: they can be mirrored, and resampled by their length."""
+"""The base of guide operators: mirroring, and resampling by length."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ class Guides(Operator):
     )
 
     def make(self, curves: Curves, context: Context) -> Curves:
-        """Guides that are bound to the scalp."""
+        """Returns guides that are bound to the scalp."""
         raise NotImplementedError
 
     def apply(self, curves: Curves, context: Context) -> Curves:
-        """The guides, with those on the other side, in pieces of ``segment``."""
+        """Returns the guides with their mirror images, resampled to edges of length ``segment``."""
         guides = self.make(curves, context)
         if self.mirror is not None:
             guides = self.mirror.both_sides(guides, context)
@@ -35,7 +35,7 @@ class Guides(Operator):
 
 
 def by_length(curves: Curves, segment: float) -> Curves:
-    """The same curves in even pieces of about that length [m], on their Catmull-Rom splines."""
+    """Resamples curves on their Catmull-Rom splines to equal edges of about the length ``segment`` [m]."""
     counts = np.maximum(2, np.round(curves.lengths() / segment).astype(int) + 1)
     offsets = offsets_from_counts(counts)
     points = np.empty((offsets[-1], 3))

@@ -1,4 +1,4 @@
-"""Longer or shorter locks."""
+"""Length of locks."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from ringlet.groom.operators.shape import Shape
 
 
 class Length(Shape):
-    """Multiplies the length, or sets it: ``p' = root + factor · (p - root)``; with ``cut``, what is too long is cut off
-    instead of shrunk, and nothing grows."""
+    """Multiplies the length, or sets it: ``p' = root + factor · (p - root)``. With ``cut``, locks are cut at the new
+    length instead of scaled, and shorter ones stay."""
 
     op: Literal["length"] = "length"
     factor: Annotated[Varied, Quantity("", 0.01, 100.0)] = Field(
@@ -28,9 +28,9 @@ class Length(Shape):
     cut: bool = Field(default=False, description="cut what is too long; the rest keeps its place")
 
     def shape(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
-        """The same shapes, longer or shorter."""
+        """Returns the scaled or cut shapes; roots stay."""
         along = arc_lengths(points)
-        factor = np.maximum(context.values("factor", self.factor, curves), 1e-3)  # a map may say 0
+        factor = np.maximum(context.values("factor", self.factor, curves), 1e-3)  # a map may contain 0
         if self.to is not None:
             factor *= np.maximum(context.values("to", self.to, curves), 1e-6) / np.maximum(along[:, -1], 1e-9)
         if not self.cut:

@@ -1,4 +1,4 @@
-"""Locks stood up, or laid down, at their roots."""
+"""Lift of locks at their roots."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from ringlet.groom.operators.shape import Shape
 
 
 class Lift(Shape):
-    """Turns a lock about its root towards the normal of the scalp by an angle, and keeps its shape: with a ramp that
-    falls to 0, only its base is lifted. It never goes beyond the normal; a negative angle lays it down."""
+    """Rotates a lock about its root towards the normal of the scalp, and keeps its shape. A ramp that falls to 0 lifts
+    the base alone. The rotation ends at the normal; a negative angle lays the lock down."""
 
     op: Literal["lift"] = "lift"
     angle: Annotated[Ramped, Quantity("deg", -180.0, 180.0)] = Field(
@@ -26,12 +26,12 @@ class Lift(Shape):
     turns: ClassVar[bool] = True
 
     def shape(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
-        """The same shapes, turned up; lengths stay."""
+        """Returns the lifted shapes; edge lengths stay."""
         edges = np.diff(points, axis=1)
         normal = context.scalp.frames(curves)[:, :, 2]
         lean = unit(points[:, points.shape[1] // 3] - points[:, 0])
-        below = np.arccos(np.clip(np.sum(lean * normal, axis=1), -1.0, 1.0))
-        angle = np.minimum(np.radians(context.values("angle", self.angle, curves)), below)
+        angle_to_normal = np.arccos(np.clip(np.sum(lean * normal, axis=1), -1.0, 1.0))
+        angle = np.minimum(np.radians(context.values("angle", self.angle, curves)), angle_to_normal)
         axis = unit(np.cross(lean, normal))
         ramp = self.angle.along(between_edges(edges))
         return along_edges(points[:, 0], turned(edges, axis[:, None, :], angle[:, None] * ramp))

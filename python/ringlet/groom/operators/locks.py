@@ -1,4 +1,4 @@
-"""Locks between the guides."""
+"""Interpolation of locks between the guides."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from ringlet.groom.operators.operator import Context, Operator, arc_lengths, pac
 
 
 class Locks(Operator):
-    """Spreads locks over the scalp and gives each the shape of the guides around it; without ``count`` and ``spacing``
-    every guide becomes a lock.
+    """Samples locks on the scalp and interpolates their shapes from the nearest guides. Without ``count`` and
+    ``spacing`` every guide becomes a lock.
 
-    ``shape = Σ wᵢ Rᵢ (guideᵢ - rootᵢ)``: the nearest guides, turned with the surface (Rᵢ is the smallest turn from the
-    guide's normal to the lock's), weighted by 1/d², and given the weighted length. Guides that leave the scalp in
-    another direction than the nearest one, as on the other side of a parting, have no say.
+    ``shape = Σ wᵢ Rᵢ (guideᵢ - rootᵢ)``, scaled to the weighted length. Rᵢ is the smallest rotation from the guide's
+    normal to the lock's normal, and the weight wᵢ is 1/d². Guides that lean away from the nearest one by more than
+    ``apart``, as across a parting, have weight 0.
     """
 
     count: int | None = Field(default=None, ge=1, le=1_000_000, description="number of locks (this or spacing)")
@@ -47,7 +47,7 @@ class Locks(Operator):
         return self
 
     def apply(self, curves: Curves, context: Context) -> Curves:
-        """Shape curves, one per lock, with ``shape_points`` each."""
+        """Returns one shape curve per lock, with ``shape_points`` points each."""
         guides = _core.resample_curves(*packed(curves), self.shape_points)
         shapes = guides.reshape(len(curves), self.shape_points, 3)
         if self.count is None and self.spacing is None:
@@ -66,26 +66,26 @@ class Locks(Operator):
         near = min(self.neighbours, len(curves))
         distance, index = KDTree(curves.roots).query(roots, k=near)
         distance, index = distance.reshape(count, near), index.reshape(count, near)
-        turned = np.empty((near, count, self.shape_points, 3))
+        rotated = np.empty((near, count, self.shape_points, 3))
         for k in range(near):
-            turned[k] = local[index[:, k]] @ _turn(guide_normal[index[:, k]], normal).transpose(0, 2, 1)
-        lean = unit(turned[:, :, self.shape_points // 3])
-        together = np.einsum("klx,lx->lk", lean, lean[0]) >= np.cos(np.radians(self.apart))
-        weight = together / np.maximum(distance, 1e-6) ** 2
+            rotated[k] = local[index[:, k]] @ _smallest_rotation(guide_normal[index[:, k]], normal).transpose(0, 2, 1)
+        lean = unit(rotated[:, :, self.shape_points // 3])
+        aligned = np.einsum("klx,lx->lk", lean, lean[0]) >= np.cos(np.radians(self.apart))
+        weight = aligned / np.maximum(distance, 1e-6) ** 2
         weight /= weight.sum(axis=1, keepdims=True)
-        blended = np.einsum("lk,klpx->lpx", weight, turned)
-        wanted = np.sum(weight * lengths[index], axis=1)
-        blended *= (wanted / np.maximum(arc_lengths(blended)[:, -1], 1e-9))[:, None, None]
+        blended = np.einsum("lk,klpx->lpx", weight, rotated)
+        length = np.sum(weight * lengths[index], axis=1)
+        blended *= (length / np.maximum(arc_lengths(blended)[:, -1], 1e-9))[:, None, None]
         return _pack(roots[:, None] + blended, ids, triangle, barycentric)
 
 
-def _turn(a: NDArray, b: NDArray) -> NDArray[np.float64]:
-    """The smallest rotations from unit vectors a to b, shape (n, 3, 3): two mirrors, H(a + b) H(a) up to sign."""
+def _smallest_rotation(a: NDArray, b: NDArray) -> NDArray[np.float64]:
+    """The smallest rotations from unit vectors a to b, shape (n, 3, 3): two reflections, H(a + b) H(a) up to sign."""
     half = unit(a + b)
     eye = np.eye(3)
-    mirror = eye - 2.0 * half[:, :, None] * half[:, None, :]
+    reflection = eye - 2.0 * half[:, :, None] * half[:, None, :]
     first = eye - 2.0 * a[:, :, None] * a[:, None, :]
-    return mirror @ first
+    return reflection @ first
 
 
 def _pack(points: NDArray, ids: NDArray, triangle: NDArray, barycentric: NDArray) -> Curves:

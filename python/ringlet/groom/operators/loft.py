@@ -1,4 +1,4 @@
-"""Volume: hair raised off the scalp and against gravity."""
+"""Volume: lifts hair off the scalp and against gravity."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ringlet.groom.operators.shape import Shape
 
 
 class Loft(Shape):
-    """Turns every piece of a lock towards a lifting direction and keeps its length:
+    """Rotates every edge of a lock towards a lifting direction and keeps its length:
     ``edge' = |edge| · unit(edge + amount · |edge| · (up · world up + (1 - up) · normal))``."""
 
     op: Literal["loft"] = "loft"
@@ -29,7 +29,7 @@ class Loft(Shape):
     turns: ClassVar[bool] = True
 
     def shape(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
-        """The same shapes, raised; lengths stay."""
+        """Returns the raised shapes; edge lengths stay."""
         edges = np.diff(points, axis=1)
         amount = context.values("amount", self.amount, curves)[:, None] * self.amount.along(between_edges(edges))
         target = unit(self.up * UP + (1.0 - self.up) * context.scalp.frames(curves)[:, :, 2])

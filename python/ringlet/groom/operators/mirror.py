@@ -1,4 +1,4 @@
-"""Guides on both sides of the head from those on one."""
+"""Mirroring of guides."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from ringlet.groom.parting import Vector
 
 
 class Mirror(Section):
-    """Takes the guides on one side of a plane, and their mirror images on the other. What was on that other side is
-    left out; guides on the plane stay as they are. The image of a guide has the id ``-1 - id``."""
+    """Mirrors the guides of one side of a plane to the other side. Guides of that other side are removed; guides on the
+    plane stay. The image of a guide has the id ``-1 - id``."""
 
     across: Vector = Field(default=(1.0, 0.0, 0.0), description="direction from the plane to the side that is kept")
     offset: Annotated[float, Quantity("m", -1.0, 1.0)] = Field(
@@ -30,16 +30,19 @@ class Mirror(Section):
     )
 
     def both_sides(self, guides: Curves, context: Context) -> Curves:
-        """The kept guides and their images, bound to the scalp."""
+        """Returns the kept guides and their images, bound to the scalp.
+
+        Raises UserError when no guide is on the side that is kept.
+        """
         across, scalp = unit(np.array(self.across)), context.scalp
         side = (guides.roots - scalp.middle) @ across - self.offset
         if not (side > -self.seam).any():
             raise UserError("guides.mirror: there is no guide on the side that is kept; turn 'across' round")
-        kept, away = guides.take(side > -self.seam), guides.take(side >= self.seam)
-        if len(away) == 0:
+        kept, off_plane = guides.take(side > -self.seam), guides.take(side >= self.seam)
+        if len(off_plane) == 0:
             return kept
-        height = (away.points - scalp.middle) @ across - self.offset
-        image = Curves(away.points - 2.0 * height[:, None] * across, away.offsets, -1 - away.ids)
+        height = (off_plane.points - scalp.middle) @ across - self.offset
+        image = Curves(off_plane.points - 2.0 * height[:, None] * across, off_plane.offsets, -1 - off_plane.ids)
         image = scalp.bind(image, self.tolerance, "guides.mirror")
         on_scalp = scalp.positions(image.curve["root_triangle"], image.curve["root_barycentric"])
         image.points += np.repeat(on_scalp - image.roots, image.counts, axis=0)

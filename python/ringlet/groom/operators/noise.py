@@ -1,4 +1,4 @@
-"""Neighbouring locks led astray together."""
+"""Coherent noise: neighbouring locks move together."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ringlet.groom.operators.shape import Shape
 
 
 class Noise(Shape):
-    """Moves points by a smooth field in space, the same for all locks that pass a place:
+    """Displaces points by a smooth noise field in space, the same for all locks at a place:
     ``p' = p + amount · ramp(u) · (field(p) - field(root))``."""
 
     op: Literal["noise"] = "noise"
@@ -27,10 +27,10 @@ class Noise(Shape):
     )
 
     def shape(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
-        """The same shapes, moved with their neighbours; roots stay."""
+        """Returns the displaced shapes; roots stay."""
         places = points.reshape(-1, 3)
         field = np.stack([context.random(axis).field(places, self.size) for axis in "xyz"], axis=1)
         field = field.reshape(points.shape)
         ramp = self.amount.along(np.linspace(0.0, 1.0, points.shape[1]))
-        reach = context.values("amount", self.amount, curves)[:, None] * ramp
-        return points + reach[:, :, None] * (field - field[:, :1])
+        magnitude = context.values("amount", self.amount, curves)[:, None] * ramp
+        return points + magnitude[:, :, None] * (field - field[:, :1])

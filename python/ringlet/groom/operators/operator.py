@@ -1,4 +1,4 @@
-"""What every operator of the stack is: settings with a formula."""
+"""The base class of operators, their context, and functions on polylines that they share."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ UP = np.array([0.0, 1.0, 0.0])
 
 @dataclass(frozen=True)
 class Context:
-    """What an operator may use besides the curves and its own settings.
+    """Inputs of an operator besides the curves and its settings.
 
-    seed:        of the recipe
-    scalp:       the surface that the curves grow on
-    purpose:     a name of the operator that is its own in the stack; random numbers hang on it
+    seed:        seed of the recipe
+    scalp:       surface that the curves grow on
+    purpose:     unique name of the operator in the stack, which keys its random numbers
     lock_points: points of a groom guide
-    curves:      helper curves by name: partings, ties, what attracts
-    shapes:      the locks before they were curled, once they are
+    curves:      helper curves by name
+    shapes:      the locks before the curl operator; None up to it
     """
 
     seed: int
@@ -39,49 +39,49 @@ class Context:
     shapes: Curves | None = None
 
     def random(self, setting: str = "") -> Random:
-        """Random numbers for one setting of this operator."""
+        """Random numbers of one setting of this operator."""
         return Random(self.seed, f"{self.purpose}/{setting}")
 
     def helper(self, name: str, setting: str) -> Curves:
-        """The helper curves that a setting names."""
+        """Helper curves that a setting names; raises UserError for an unknown name."""
         if name not in self.curves:
             remedy = did_you_mean(name, self.curves) if self.curves else f"; add a table [curves.{name}]"
             raise UserError(f"{self.purpose}.{setting} is '{name}', which is no helper curve{remedy}")
         return self.curves[name]
 
     def values(self, name: str, setting: Varied, curves: Curves) -> NDArray[np.float64]:
-        """A varied setting for each curve, shape (count,)."""
+        """Values of a varied setting per curve, shape (count,)."""
         return per_lock(setting, self.random(name), curves, self.scalp.mesh, f"{self.purpose}.{name}")
 
 
 class Operator(Section):
-    """Takes curves, returns new ones; a pure function of curves, settings and context."""
+    """A pure function from curves to curves, given its settings and a context."""
 
     def apply(self, curves: Curves, context: Context) -> Curves:
-        """The curves after this operator."""
+        """Returns the curves after this operator."""
         raise NotImplementedError
 
 
 def grid(curves: Curves) -> NDArray[np.floating]:
-    """Points of curves that all have the same count, shape (count, points, 3): what the shape operators work on."""
+    """Points of curves with equal point counts as an array of shape (count, points, 3)."""
     return curves.points.reshape(len(curves), -1, 3)
 
 
 def packed(curves: Curves) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-    """Points and offsets as the core takes them."""
+    """Points (n, 3) and offsets (count + 1,) as contiguous arrays of the core's types."""
     return np.ascontiguousarray(curves.points, np.float64), np.ascontiguousarray(curves.offsets, np.int32)
 
 
 def arc_lengths(points: NDArray) -> NDArray[np.floating]:
-    """Length from the root to every point [m], shape (count, points), for points (count, points, 3)."""
+    """Arc length from the root to every point [m], shape (count, points), for points (count, points, 3)."""
     edges = np.linalg.norm(np.diff(points, axis=1), axis=2)
     return np.concatenate([np.zeros((len(points), 1)), np.cumsum(edges, axis=1)], axis=1)
 
 
 def at_lengths(points: NDArray, along: NDArray) -> NDArray[np.floating]:
-    """Places on polylines (count, points, 3) at lengths from their roots (count, k) [m]; shape (count, k, 3).
+    """Positions on polylines (count, points, 3) at arc lengths (count, k) [m]; shape (count, k, 3).
 
-    Beyond its tip a line goes on straight.
+    Extrapolates the last edge beyond the tip.
     """
     run = arc_lengths(points)
     i = np.clip((run[:, None, :] <= along[:, :, None]).sum(axis=2) - 1, 0, points.shape[1] - 2)
@@ -92,33 +92,33 @@ def at_lengths(points: NDArray, along: NDArray) -> NDArray[np.floating]:
 
 
 def along_edges(roots: NDArray, edges: NDArray) -> NDArray[np.floating]:
-    """Polylines from roots (count, 3) along edges (count, points - 1, 3); shape (count, points, 3)."""
+    """Polylines from roots (count, 3) and edge vectors (count, points - 1, 3); shape (count, points, 3)."""
     return np.concatenate([roots[:, None], roots[:, None] + np.cumsum(edges, axis=1)], axis=1)
 
 
 def between_edges(edges: NDArray) -> NDArray[np.float64]:
-    """The middles of the edges of a lock as places from root (0) to tip (1), shape (points - 1,)."""
+    """Parameters of edge midpoints, from root (0) to tip (1), shape (points - 1,)."""
     return (np.arange(edges.shape[1]) + 0.5) / edges.shape[1]
 
 
 def turned(vectors: NDArray, axis: NDArray, angle: NDArray) -> NDArray[np.float64]:
-    """Vectors (…, 3) turned about unit axes (…, 3) by angles (…) [rad]; an axis of length 0 turns nothing."""
+    """Rotates vectors (…, 3) about unit axes (…, 3) by angles (…) [rad]; a zero axis rotates nothing."""
     angle = np.where(np.linalg.norm(axis, axis=-1) > 0.5, angle, 0.0)[..., None]
     along = np.sum(axis * vectors, axis=-1, keepdims=True) * axis
     return np.cos(angle) * (vectors - along) + np.sin(angle) * np.cross(axis, vectors) + along
 
 
 def pulled(edges: NDArray, amount: NDArray, target: NDArray) -> NDArray[np.float64]:
-    """Edges (count, k, 3) of the same length, turned towards unit directions (count, 3) by amounts (count, k)."""
+    """Rotates edges (count, k, 3) towards unit directions (count, 3) by amounts (count, k); keeps their lengths."""
     length = np.linalg.norm(edges, axis=2, keepdims=True)
     return length * unit(edges + amount[:, :, None] * length * target[:, None, :])
 
 
 def unit(vectors: NDArray) -> NDArray[np.float64]:
-    """Vectors of length 1 along the last axis; zero stays zero."""
+    """Normalises vectors along the last axis; zero stays zero."""
     return vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-12)
 
 
 def with_grid(curves: Curves, points: NDArray) -> Curves:
-    """The same curves with other points, shape (count, points, 3)."""
+    """Curves with new points of shape (count, points, 3)."""
     return curves.with_points(np.ascontiguousarray(points.reshape(-1, 3)))

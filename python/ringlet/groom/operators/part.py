@@ -1,4 +1,4 @@
-"""Locks combed away from a parting."""
+"""Combing of locks away from a parting."""
 
 from __future__ import annotations
 
@@ -16,9 +16,8 @@ from ringlet.groom.parting import Parting
 
 
 class Part(Shape):
-    """Turns every piece of a lock away from a parting and keeps its length:
-    ``edge' = |edge| · unit(edge + amount · ramp(u) · felt · |edge| · away)``, where what is felt of the parting halves
-    every ``reach``."""
+    """Rotates every edge of a lock away from a parting and keeps its length:
+    ``edge' = |edge| · unit(edge + amount · ramp(u) · falloff · |edge| · away)``. The falloff halves every ``reach``."""
 
     op: Literal["part"] = "part"
     parting: Parting = Field(default=Parting(), description="where it is")
@@ -29,10 +28,10 @@ class Part(Shape):
     turns: ClassVar[bool] = True
 
     def shape(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
-        """The same shapes, combed to their sides; lengths stay."""
+        """Returns the shapes combed to their sides; edge lengths stay."""
         edges = np.diff(points, axis=1)
         normal = context.scalp.frames(curves)[:, :, 2]
-        away, felt = self.parting.away(points[:, 0], normal, context.scalp.middle, context.helper)
-        amount = felt * context.values("amount", self.amount, curves)
+        away, falloff = self.parting.away(points[:, 0], normal, context.scalp.middle, context.helper)
+        amount = falloff * context.values("amount", self.amount, curves)
         ramp = self.amount.along(between_edges(edges))
         return along_edges(points[:, 0], pulled(edges, amount[:, None] * ramp, away))

@@ -1,4 +1,4 @@
-"""Curls of neighbours that fall in with one another."""
+"""Phase locking of neighbouring curls."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from ringlet.groom.operators.operator import Context
 
 
 class PhaseLock(Section):
-    """Neighbouring curls that lie in one another become one: from the root on, phase and width of a lock go over into
-    those of the lock in the middle of its group."""
+    """Locks the phase of neighbouring curls: from the root on, phase and width of a lock blend into those of the
+    central lock of its group."""
 
     size: Annotated[float, Quantity("m", 1e-3, 1.0)] = Field(default=0.01, description="distance of the groups")
     amount: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
@@ -30,7 +30,7 @@ class PhaseLock(Section):
     )
 
     def values(self, curves: Curves, context: Context) -> dict[str, NDArray]:
-        """The leader of each lock, and how it is followed, as the core takes them."""
+        """Leader and blend settings of each lock, as arguments of the core; each of shape (count,)."""
         scalp = context.scalp
         _, triangle, barycentric = scalp.sample(scalp.count_for_spacing(self.size), context.seed + 2)
         _, leaders = KDTree(curves.roots).query(scalp.positions(triangle, barycentric))

@@ -1,4 +1,4 @@
-"""More or fewer points on the shape."""
+"""Resampling of shapes."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from ringlet.groom.operators.operator import Context, Operator, packed
 
 
 class Resample(Operator):
-    """Evenly spaced points along the Catmull-Rom spline through the old ones."""
+    """Resamples shapes evenly along the Catmull-Rom spline through their points."""
 
     op: Literal["resample"] = "resample"
     points: int = Field(default=32, ge=3, le=10_000, description="points of a shape")
 
     def apply(self, curves: Curves, context: Context) -> Curves:
-        """The same shapes with ``points`` points each."""
+        """Returns the shapes with ``points`` points each."""
         points = _core.resample_curves(*packed(curves), self.points)
         offsets = offsets_from_counts(np.full(len(curves), self.points))
         return Curves(points, offsets, curves.ids, curves.curve)

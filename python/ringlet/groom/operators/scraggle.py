@@ -1,4 +1,4 @@
-"""Hair that does not know quite where to go."""
+"""Scraggle: noise of long wavelength, independent per lock."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from ringlet.groom.operators.wander import wander
 
 
 class Scraggle(Shape):
-    """A slow random wander that grows towards the tip: ``p' = p + amount · ramp(u) · noise(s / size)``, with s the
-    length from the root; the noise is a B-spline of normally distributed knots, of its own for each lock."""
+    """Noise of long wavelength that grows towards the tip: ``p' = p + amount · ramp(u) · noise(s / size)``, with s the
+    arc length from the root. The noise is a B-spline with normally distributed knots, independent per lock."""
 
     op: Literal["scraggle"] = "scraggle"
     amount: Annotated[Ramped, Quantity("m", 0.0, 1.0)] = Field(
@@ -28,7 +28,9 @@ class Scraggle(Shape):
     )
 
     def shape(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
-        """The same shapes, less orderly; roots stay."""
+        """Returns the displaced shapes; roots stay."""
         ramp = self.amount.along(np.linspace(0.0, 1.0, points.shape[1]))
-        reach = context.values("amount", self.amount, curves)[:, None] * ramp
-        return points + reach[:, :, None] * wander(context.random("wander"), curves.ids, arc_lengths(points), self.size)
+        magnitude = context.values("amount", self.amount, curves)[:, None] * ramp
+        return points + magnitude[:, :, None] * wander(
+            context.random("wander"), curves.ids, arc_lengths(points), self.size
+        )

@@ -1,4 +1,4 @@
-"""What shape operators have in common: a mask that says where they act, and a blend that says how much."""
+"""The base class of shape operators: a mask and a blend weight."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ringlet.groom.operators.operator import Context, Operator, along_edges, gri
 class Shape(Operator):
     """Changes the points of locks where its mask is not 0: ``p' = (1 - w) p + w shaped(p)`` with w = blend · mask.
 
-    Operators that turn locks (``turns``) are mixed edge by edge instead, so that lengths are mixed as well.
+    Operators that rotate locks (``turns``) are blended edge by edge, so that lengths are interpolated too.
     """
 
     mask: Annotated[Mask, Quantity("", 0.0, 1.0)] = Field(default=Mask(), description="where it acts")
@@ -26,31 +26,31 @@ class Shape(Operator):
     turns: ClassVar[bool] = False
 
     def shape(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
-        """Where the points (count, points, 3) [m] go when it acts fully; roots stay."""
+        """Returns the points at full weight, for points of shape (count, points, 3) [m]; roots stay."""
         raise NotImplementedError
 
     def apply(self, curves: Curves, context: Context) -> Curves:
-        """The same curves in their new shape, as far as mask and blend say."""
+        """Returns the curves with the new shape, weighted by mask and blend."""
         where = f"{context.purpose}.mask"
         weight = self.blend * self.mask.weights(curves, context.scalp.mesh, context.random("mask"), where)
-        touched: NDArray[np.bool_] = np.any(weight > 0.0, axis=1)
-        if not touched.any():
+        affected: NDArray[np.bool_] = np.any(weight > 0.0, axis=1)
+        if not affected.any():
             return curves
         points = grid(curves)
         shaped = self.shape(points, curves, context)
         if weight.min() < 1.0:
             mixed = (mix_edges if self.turns else mix_places)(points, shaped, weight)
-            shaped = np.where(touched[:, None, None], mixed, points)
+            shaped = np.where(affected[:, None, None], mixed, points)
         return with_grid(curves, shaped)
 
 
 def mix_places(a: NDArray, b: NDArray, weight: NDArray) -> NDArray[np.floating]:
-    """Between points a and b, shape (count, points, 3), by weights (count, points)."""
+    """Interpolates points a and b, shape (count, points, 3), with weights (count, points)."""
     return a + weight[:, :, None] * (b - a)
 
 
 def mix_edges(a: NDArray, b: NDArray, weight: NDArray) -> NDArray[np.floating]:
-    """Curves from the roots of a, whose edges have directions and lengths between those of a and of b."""
+    """Interpolates the directions and lengths of edges of a and b, from the roots of a; shape (count, points, 3)."""
     from_edges, to_edges = np.diff(a, axis=1), np.diff(b, axis=1)
     w = 0.5 * (weight[:, 1:] + weight[:, :-1])[:, :, None]
     from_length, to_length = (np.linalg.norm(edges, axis=2, keepdims=True) for edges in (from_edges, to_edges))

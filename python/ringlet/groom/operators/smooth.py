@@ -1,4 +1,4 @@
-"""Locks without their small waves."""
+"""Smoothing of locks."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from ringlet.groom.operators.shape import Shape
 
 
 class Smooth(Shape):
-    """Takes waves shorter than ``size`` out of a lock: the points that minimise ``|p' - p|² + λ |Δ²p'|²`` with the root
-    held, where λ halves waves of just that length. Straight locks stay as they are."""
+    """Removes waves shorter than ``size`` from a lock: minimises ``|p' - p|² + λ |Δ²p'|²`` with a fixed root, where λ
+    halves waves of that length. Straight locks stay unchanged."""
 
     op: Literal["smooth"] = "smooth"
     size: Annotated[Varied, Quantity("m", 0.0, 10.0)] = Field(
@@ -24,13 +24,13 @@ class Smooth(Shape):
     )
 
     def shape(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
-        """The same shapes, smoother; roots stay."""
+        """Returns the smoothed shapes; roots stay."""
         count = points.shape[1]
         spacing = np.maximum(arc_lengths(points)[:, -1], 1e-9) / (count - 1)
         weight = (np.maximum(context.values("size", self.size, curves), 0.0) / (2.0 * np.pi * spacing)) ** 4
         second = np.diff(np.eye(count), n=2, axis=0)[:, 1:]  # Δ² of all points but the root, which is the origin
         stiffness, modes = np.linalg.eigh(second.T @ second)
-        kept = 1.0 / (1.0 + weight[:, None] * np.maximum(stiffness, 0.0))
-        away = points[:, 1:] - points[:, :1]
-        smoothed = np.einsum("ij,kj,lj,klx->kix", modes, kept, modes, away, optimize=True)
+        filtered = 1.0 / (1.0 + weight[:, None] * np.maximum(stiffness, 0.0))
+        from_root = points[:, 1:] - points[:, :1]
+        smoothed = np.einsum("ij,kj,lj,klx->kix", modes, filtered, modes, from_root, optimize=True)
         return np.concatenate([points[:, :1], points[:, :1] + smoothed], axis=1)

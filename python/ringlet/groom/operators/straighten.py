@@ -1,4 +1,4 @@
-"""Locks pulled straight."""
+"""Straightening of locks."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ringlet.groom.operators.shape import Shape
 
 
 class Straighten(Shape):
-    """Turns each piece of a lock into the direction from its root to its tip:
+    """Rotates each edge of a lock towards the direction from its root to its tip:
     ``edge' = |edge| · unit((1 - amount · ramp) · unit(edge) + amount · ramp · unit(tip - root))``."""
 
     op: Literal["straighten"] = "straighten"
@@ -26,7 +26,7 @@ class Straighten(Shape):
     turns: ClassVar[bool] = True
 
     def shape(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
-        """Straighter shapes; lengths stay."""
+        """Returns the straightened shapes; edge lengths stay."""
         edges = np.diff(points, axis=1)
         amount = context.values("amount", self.amount, curves)[:, None] * self.amount.along(between_edges(edges))
         amount = np.clip(amount, 0.0, 1.0)[:, :, None]

@@ -1,4 +1,4 @@
-"""A random wander along each lock, as smooth as a cubic B-spline."""
+"""Smooth noise along each lock, a cubic B-spline."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from ringlet.data.random import Random
 
 
 def wander(random: Random, ids: NDArray, along: NDArray, size: float) -> NDArray[np.float64]:
-    """A wander of deviation 1, from 0 at the root, that changes over ``size`` [m]; shape (count, points, 3).
+    """Noise of deviation 1 and wavelength ``size`` [m] that is 0 at the root, shape (count, points, 3).
 
-    The knots are normally distributed, with numbers of their own for each lock.
+    The knots are normally distributed and independent per lock.
 
-    along: length from the root [m], shape (count, points)
+    along: arc length from the root [m], shape (count, points)
     """
     at = along / size
     knot_count = int(at.max()) + 4

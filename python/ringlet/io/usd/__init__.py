@@ -1,1 +1,1 @@
-"""USD, one concept a file."""
+"""USD files: grooms, caches, hairs, meshes and curves."""

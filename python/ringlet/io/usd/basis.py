@@ -1,4 +1,4 @@
-"""Cubic curves of USD as polylines: Bézier, B-spline and Catmull-Rom, with their ends pinned or not."""
+"""Evaluation of cubic USD curves as polylines: Bézier, B-spline and Catmull-Rom, nonperiodic or pinned."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ringlet.data.errors import UserError
 
 STEPS = 6  # points per segment of a cubic curve
 
-# One row per power of t, one column per control point, as the reference of UsdGeomBasisCurves gives them.
+# One row per power of t, one column per control point, after the reference of UsdGeomBasisCurves.
 _BASES = {
     UsdGeom.Tokens.bezier: np.array([[1, 0, 0, 0], [-3, 3, 0, 0], [3, -6, 3, 0], [-1, 3, -3, 1]], float),
     UsdGeom.Tokens.bspline: np.array([[1, 4, 1, 0], [-3, 0, 3, 0], [3, -6, 3, 0], [-1, 3, -3, 1]]) / 6.0,
@@ -20,7 +20,10 @@ _BASES = {
 
 
 class Sampling:
-    """How values on the control points of curves become values on the points of polylines."""
+    """Interpolation from the control points of curves to the points of polylines.
+
+    Raises UserError for periodic curves, an unknown basis, and point counts that do not fit the basis.
+    """
 
     def __init__(self, curves: UsdGeom.BasisCurves, time: Usd.TimeCode, counts: NDArray, where: str) -> None:
         kind, basis, wrap = (
@@ -32,9 +35,9 @@ class Sampling:
             )
         self.offsets_in = offsets_from_counts(counts)
         pinned = wrap == UsdGeom.Tokens.pinned and basis != UsdGeom.Tokens.bezier
-        self.as_is = kind == UsdGeom.Tokens.linear or (pinned and basis == UsdGeom.Tokens.catmullRom)
-        self.pinned = pinned and not self.as_is
-        if self.as_is:
+        self.identity = kind == UsdGeom.Tokens.linear or (pinned and basis == UsdGeom.Tokens.catmullRom)
+        self.pinned = pinned and not self.identity
+        if self.identity:
             self.segments, self.offsets = counts - 1, self.offsets_in
             return
 
@@ -50,7 +53,7 @@ class Sampling:
         self.segments = (controls - 4) // stride + 1
         self.offsets = offsets_from_counts(self.segments * STEPS + 1)
 
-        # Every sample: its segment, where that begins among the control points, and t in it (1 at the end of a curve).
+        # For each sample: its segment, the first control point of the segment, and t within it (1 at a curve's end).
         curve = np.repeat(np.arange(len(counts)), np.diff(self.offsets))
         along = np.arange(self.offsets[-1]) - self.offsets[curve]
         segment = np.minimum(along // STEPS, self.segments[curve] - 1)
@@ -61,23 +64,23 @@ class Sampling:
         self.weights = powers @ _BASES[basis]
 
     def vertex(self, values: NDArray) -> NDArray:
-        """Values on vertices, shape (n, …), at the points."""
-        if self.as_is:
+        """Interpolates values on vertices, shape (n, …), to the points."""
+        if self.identity:
             return values
         controls = self._with_phantoms(values) if self.pinned else values
         rows = controls[self.first[:, None] + np.arange(4)].astype(np.float64)
         return np.einsum("sk,sk...->s...", self.weights, rows)
 
     def varying(self, values: NDArray) -> NDArray:
-        """Values on the ends of segments, at the points; linear in between."""
-        if self.as_is:
+        """Interpolates values on the ends of segments linearly to the points."""
+        if self.identity:
             return values
         start = offsets_from_counts(self.segments + 1)[self.curve] + self.segment
         t = self.t.reshape(-1, *[1] * (values.ndim - 1))
         return (1.0 - t) * values[start] + t * values[start + 1]
 
     def _with_phantoms(self, values: NDArray) -> NDArray:
-        """Adds a point before the first and after the last of every curve, so that pinned curves reach their ends."""
+        """Adds a phantom point at both ends of every curve, so that pinned curves reach their ends."""
         first, last = self.offsets_in[:-1], self.offsets_in[1:] - 1
         before = 2.0 * values[first] - values[first + 1]
         after = 2.0 * values[last] - values[last - 1]

@@ -1,4 +1,4 @@
-"""A simulation as USD: a layer over the groom that moves the points of ``/groom/locks``, and those of cloths."""
+"""A simulation as USD: a layer over the groom that animates the points of ``/groom/locks`` and of cloths."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def write_cache(
     """Writes a simulation as a layer over the groom file.
 
     space:   unit, up-axis and rate of the groom file
-    variant: of the groom, where it has some
+    variant: selected variant of the groom, if it has variants
     """
     with CacheWriter(path, groom_path, space, cache.cloths, variant) as writer:
         writer.start = cache.start
@@ -39,7 +39,7 @@ def write_cache(
 
 
 def read_cache(path: Path | str) -> Cache:
-    """Reads a simulation, or the one under hairs, with all of its frames."""
+    """Reads all frames of a simulation, or of the simulation under a layer of hairs."""
     with open_cache(path) as cache:
         points = np.empty((len(cache.frames), cache.size, 3), np.float32)
         for index, frame in enumerate(cache.frames):
@@ -49,18 +49,20 @@ def read_cache(path: Path | str) -> Cache:
 
 @contextmanager
 def open_cache(path: Path | str) -> Iterator[CacheFile]:
-    """Opens a simulation, or the one under hairs, to read one frame at a time."""
+    """Opens a simulation, or the simulation under a layer of hairs, to read one frame at a time."""
     with reading(path) as source:
         yield CacheFile(source)
 
 
 class CacheFile:
-    """A simulation in a file, of which no more is in memory than the frame that is asked for.
+    """A simulation in a file, read one frame at a time.
 
     frames:     frame numbers (time codes), shape (k,)
-    size:       how many points the locks have together
-    statistics: what the solver reported, one dict per frame
-    start:      what was in the way when the shot began
+    size:       number of points of all locks
+    statistics: report of the solver, one dict per frame
+    start:      initial penetrations
+
+    Raises UserError for a file without simulated frames.
     """
 
     def __init__(self, source: Source) -> None:
@@ -73,31 +75,34 @@ class CacheFile:
                 f"{source.path}: holds no simulated frames; make a cache with: ringlet sim SHOT.toml -o cache.usdc"
             )
         self.size = len(self._points.Get(Usd.TimeCode.Default()))
-        kept = [layer.customLayerData.get("ringlet") or {} for layer in source.stage.GetLayerStack()]
-        for data in kept:
+        metadata = [layer.customLayerData.get("ringlet") or {} for layer in source.stage.GetLayerStack()]
+        for data in metadata:
             check_version(source, data.get("version", VERSION))
 
-        def told(name: str, empty: str) -> Any:
-            return parse_json(source, next((data[name] for data in kept if name in data), empty), f"ringlet:{name}")
+        def entry(name: str, empty: str) -> Any:
+            return parse_json(source, next((data[name] for data in metadata if name in data), empty), f"ringlet:{name}")
 
-        self.statistics: list[dict[str, Any]] = told("statistics", "[]")
-        self.start: dict[str, Any] = told("start", "{}")
-        self._cloths: list[dict[str, Any]] = told("cloths", "[]")
+        self.statistics: list[dict[str, Any]] = entry("statistics", "[]")
+        self.start: dict[str, Any] = entry("start", "{}")
+        self._cloths: list[dict[str, Any]] = entry("cloths", "[]")
         self._meshes: list[tuple[Usd.Prim, NDArray[np.int32]]] | None = None
 
     def points(self, frame: float) -> NDArray[np.float32]:
-        """Where the locks are at a frame [m], shape (n, 3), in the order of the groom's locks."""
+        """Positions of the locks at a frame [m], shape (n, 3), in the order of the groom's locks.
+
+        Raises UserError when the number of points differs from the groom's.
+        """
         with reading_more(self._source.path):
-            moved = np.array(self._points.Get(Usd.TimeCode(float(frame))), np.float32).reshape(-1, 3)
-        if len(moved) != self.size:
+            points = np.array(self._points.Get(Usd.TimeCode(float(frame))), np.float32).reshape(-1, 3)
+        if len(points) != self.size:
             raise UserError(
-                f"{self._source.path}: has {len(moved)} points at frame {frame:g}, its groom {self.size}; "
+                f"{self._source.path}: has {len(points)} points at frame {frame:g}, its groom {self.size}; "
                 "simulate again"
             )
-        return to_metres(moved, self._source.space)
+        return to_metres(points, self._source.space)
 
     def surfaces(self, frame: float) -> list[tuple[NDArray[np.float64], NDArray[np.int32]]]:
-        """All that is visible beside hair at a frame, the head and cloths: points [m], shape (n, 3), and triangles."""
+        """Visible meshes at a frame, the head and cloths: points [m], shape (n, 3), and triangles (m, 3)."""
         with reading_more(self._source.path):
             if self._meshes is None:
                 prims = visible_meshes(self._source)
@@ -107,43 +112,43 @@ class CacheFile:
             ]
 
     def within(self, frames: tuple[int, int] | None) -> NDArray[np.float64]:
-        """Its frames from the first to the last of ``frames``, all for None."""
+        """Frames in a closed range, all for None; raises UserError when the range has none."""
         if frames is None:
             return self.frames
         chosen = self.frames[(self.frames >= frames[0]) & (self.frames <= frames[1])]
         if not len(chosen):
-            held = f"{self.frames[0]:g} to {self.frames[-1]:g}"
-            raise UserError(f"{self._source.path}: has no frame from {frames[0]:g} to {frames[1]:g}; it holds {held}")
+            span = f"{self.frames[0]:g} to {self.frames[-1]:g}"
+            raise UserError(f"{self._source.path}: has no frame from {frames[0]:g} to {frames[1]:g}; it holds {span}")
         return chosen
 
     @property
     def cloth_prims(self) -> dict[str, str]:
-        """What the cloths that moved with the locks are called, by their paths in the stage."""
+        """Names of the simulated cloths, by prim path in the stage."""
         return {cloth["at"]: cloth["name"] for cloth in self._cloths}
 
     def cloths_at(self, frame: float) -> dict[str, NDArray[np.float32]]:
-        """Where the vertices of cloths are at a frame [m], shape (n, 3), by what the cloths are called."""
+        """Positions of the cloths' vertices at a frame [m], shape (n, 3) each, by name."""
         with reading_more(self._source.path):
-            return {told["name"]: read_cloth(self._source, told, [frame]).points[0] for told in self._cloths}
+            return {entry["name"]: read_cloth(self._source, entry, [frame]).points[0] for entry in self._cloths}
 
     def cloths(self) -> list[CachedCloth]:
-        """The cloths that moved with the locks, at all frames."""
+        """The simulated cloths at all frames."""
         return [read_cloth(self._source, cloth, self.frames.tolist()) for cloth in self._cloths]
 
 
 def is_cache(path: Path | str) -> bool:
-    """Whether a file is a layer that moves locks, by what it says of itself: its points are not read."""
+    """Whether a file is a simulation cache; reads only its metadata."""
     try:
         with reading_more(path):
-            layer = Sdf.Layer.OpenAsAnonymous(str(path), True)  # only its metadata
-            told = layer.customLayerData.get("ringlet") if layer else None
-            return isinstance(told, dict) and "statistics" in told
+            layer = Sdf.Layer.OpenAsAnonymous(str(path), True)  # metadata only
+            data = layer.customLayerData.get("ringlet") if layer else None
+            return isinstance(data, dict) and "statistics" in data
     except UserError:
         return False
 
 
 def cache_groom_path(path: Path | str) -> Path:
-    """The groom file that a cache lies over."""
+    """Path of the groom file under a cache."""
     with reading(path) as source:
         groom_prim(source)
         layers = source.stage.GetPrimAtPath(LOCKS).GetPrimStack()
@@ -153,12 +158,12 @@ def cache_groom_path(path: Path | str) -> Path:
 class CacheWriter(StreamWriter):
     """Writes a simulation while it runs: ``with CacheWriter(…) as writer: writer.add(frame, points, statistics)``.
 
-    Nothing is at ``path`` until the block ends, and nothing new if it fails.
+    The file appears at ``path`` when the block ends; an error leaves ``path`` unchanged.
 
-    space:  unit, up-axis and rate of the groom file
-    cloths: what moves besides; only what they are called and where they come from counts
-    variant: of the groom, where it has some
-    start:  what was in the way when the simulation began
+    space:   unit, up-axis and rate of the groom file
+    cloths:  names and sources of simulated cloths; their points are not used
+    variant: selected variant of the groom, if it has variants
+    start:   initial penetrations
     """
 
     def __init__(
@@ -192,9 +197,11 @@ class CacheWriter(StreamWriter):
     ) -> None:
         """Adds a frame.
 
-        points:     where the locks are [m], shape (n, 3), in the order of the groom's locks
-        statistics: what the solver reports
-        cloths:     where the vertices of each cloth are [m]
+        points:     positions of the locks [m], shape (n, 3), in the order of the groom's locks
+        statistics: report of the solver
+        cloths:     positions of each cloth's vertices [m], shape (k, 3) each
+
+        Raises ValueError for points of another shape than the groom's.
         """
         if points.shape != self._shape:
             raise ValueError(f"cache: points have shape {points.shape}; must be {self._shape}")
@@ -204,11 +211,11 @@ class CacheWriter(StreamWriter):
         self._statistics.append(statistics or {})
 
     def finish(self) -> None:
-        """Adds the statistics to the layer."""
+        """Writes the metadata of the layer."""
         folder = self.path.absolute().parent
         cloths = [told_of(*of, folder) for of in zip(self._cloths, self._meshes, strict=True)]
-        told = {
-            name: json.dumps(what, separators=(",", ":"), default=lambda value: value.tolist())
-            for name, what in (("statistics", self._statistics), ("start", self.start), ("cloths", cloths))
+        metadata = {
+            name: json.dumps(values, separators=(",", ":"), default=lambda value: value.tolist())
+            for name, values in (("statistics", self._statistics), ("start", self.start), ("cloths", cloths))
         }
-        self.layer.customLayerData = {"ringlet": {"version": VERSION, **told}}
+        self.layer.customLayerData = {"ringlet": {"version": VERSION, **metadata}}

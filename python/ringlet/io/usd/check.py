@@ -1,4 +1,4 @@
-"""Whether a stage keeps the rules of USD."""
+"""Validation of a stage by the validators of USD."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ringlet.io.usd.stage import reading
 
 
 def problems(path: Path | str) -> list[str]:
-    """What the validators that come with USD find wrong in a stage, with all that it refers to; one line each."""
+    """Errors that the validators of USD report for a stage and its references, one line each."""
     with reading(path) as source:
         validators = UsdValidation.ValidationRegistry().GetOrLoadAllValidators()
         found = UsdValidation.ValidationContext(validators).Validate(source.stage)

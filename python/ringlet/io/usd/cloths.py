@@ -1,6 +1,6 @@
-"""Simulated cloth in a cache: an over on the prim of its mesh, in the head's file or in one of its own.
+"""Simulated cloth in a cache: an over on the prim of its mesh.
 
-What comes from another file than the head is brought in under ``/groom/cloths``, by reference.
+A mesh from another file than the head's is referenced under ``/groom/cloths``.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ CLOTHS = f"{GROOM}/cloths"
 class ClothPrims:
     """Prims of cloths in a stage over a groom.
 
-    groom: the stage of that groom, which tells where the head is
+    groom: stage of the groom, to find the file of the head
     """
 
     def __init__(self, stage: Usd.Stage, groom: Source) -> None:
@@ -36,12 +36,12 @@ class ClothPrims:
         self._tops: dict[tuple[Path, Sdf.Path], Sdf.Path] = {}
 
     def over(self, cloth: CachedCloth) -> UsdGeom.Mesh:
-        """The prim of a cloth, which stands in the space of the stage from now on."""
+        """Overrides the prim of a cloth; its points are in the space of the stage."""
         mesh = UsdGeom.Mesh(self._stage.OverridePrim(self._place(cloth)))
         mesh.ClearXformOpOrder()
         mesh.SetResetXformStack(True)
         if mesh.GetNormalsAttr().HasAuthoredValue():
-            mesh.GetNormalsAttr().Block()  # they are those of the rest shape
+            mesh.GetNormalsAttr().Block()  # normals of the rest shape
         return mesh
 
     def _place(self, cloth: CachedCloth) -> Sdf.Path:
@@ -53,10 +53,10 @@ class ClothPrims:
             return prim.ReplacePrefix(top, Sdf.Path(BODY))
         key = cloth.file.resolve(), top
         if key not in self._tops:
-            self._tops[key] = self._bring_in(cloth.file, top)
+            self._tops[key] = self._reference(cloth.file, top)
         return prim.ReplacePrefix(top, self._tops[key])
 
-    def _bring_in(self, file: Path, top: Sdf.Path) -> Sdf.Path:
+    def _reference(self, file: Path, top: Sdf.Path) -> Sdf.Path:
         UsdGeom.Scope.Define(self._stage, CLOTHS)
         place = Sdf.Path(CLOTHS).AppendChild(Tf.MakeValidIdentifier(file.stem))
         if place in self._tops.values():
@@ -74,7 +74,7 @@ def set_cloth(mesh: UsdGeom.Mesh, frame: float, points: NDArray[np.floating], sp
 
 
 def told_of(cloth: CachedCloth, mesh: UsdGeom.Mesh, folder: Path) -> dict[str, str]:
-    """What the file keeps of a cloth besides its points."""
+    """Metadata of a cloth: its name, source file and prim, and its prim in the cache."""
     assert cloth.file is not None
     return {
         "name": cloth.name,
@@ -84,13 +84,18 @@ def told_of(cloth: CachedCloth, mesh: UsdGeom.Mesh, folder: Path) -> dict[str, s
     }
 
 
-def read_cloth(source: Source, told: dict[str, Any], frames: list[float]) -> CachedCloth:
-    """A cloth of a cache, at its frames."""
-    prim = source.stage.GetPrimAtPath(told["at"])
+def read_cloth(source: Source, entry: dict[str, Any], frames: list[float]) -> CachedCloth:
+    """Reads a cloth of a cache at some frames.
+
+    entry: metadata of the cloth (``told_of``)
+
+    Raises UserError when the prim of the cloth is missing.
+    """
+    prim = source.stage.GetPrimAtPath(entry["at"])
     if not prim:
         raise UserError(
-            f"{source.path}: its cloth {told['at']} is not there; put {told['file']} back, or simulate again"
+            f"{source.path}: its cloth {entry['at']} is not there; put {entry['file']} back, or simulate again"
         )
     attribute = UsdGeom.PointBased(prim).GetPointsAttr()
     points = np.stack([to_metres(np.array(attribute.Get(frame)), source.space) for frame in frames])
-    return CachedCloth(told["name"], source.path.parent / told["file"], told["prim"], points.astype(np.float32))
+    return CachedCloth(entry["name"], source.path.parent / entry["file"], entry["prim"], points.astype(np.float32))

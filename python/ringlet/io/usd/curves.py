@@ -1,8 +1,7 @@
-"""Curves from USD, of every type, basis and wrap; and Ringlet's own curves into USD and back.
+"""Reads USD curves of every type, basis and wrap; writes Ringlet's own curves and reads them back.
 
-Ringlet writes Catmull-Rom curves that are pinned, so that their vertices are the points of the polyline. What only
-Ringlet knows goes into primvars called ``ringlet:…``, as it is inside: SI units, Y-up. Attributes that came with drawn
-guides keep their names.
+Ringlet writes pinned Catmull-Rom curves, whose vertices are the points of the polyline. Attributes of Ringlet are
+primvars ``ringlet:…`` in SI units, Y-up. Attributes of drawn guides keep their names.
 """
 
 from __future__ import annotations
@@ -33,17 +32,17 @@ from ringlet.io.usd.values import (
 
 OWN = "ringlet:"
 ID_NAMES = ("ringlet:id", "groom_id", "id", "hair_id", "hairid", "curve_id")
-ID_HALVES = ("id_high", "id_low")  # of ids of 64 bits, for programs that know none, such as Blender
-# What the schema and other programs know by these names is written by them, and our attributes of the same name apart.
+ID_HALVES = ("id_high", "id_low")  # halves of 64-bit ids, for programs without such integers, such as Blender
+# Names with a meaning in the schema or in other programs; attributes of Ringlet with these names get a prefix.
 COMMON = {"rest", "skinprim", "skinprimuv", "st", "surface_uv_coordinate", "guide_curve_index", "clumpid", *ID_HALVES}
 COMMON |= {"groom_id", "groom_group_id", "groom_guide", "groom_root_uv", "groom_color"}
 COMMON |= {"displayColor", "displayOpacity"}
 INNER = {"root_triangle", "root_barycentric", "lock", "guide_id", "nail", "groomed", "stiffened", "off", "moving"}
-HAIR_WIDTH = 70e-6  # diameter of a hair that says nothing else [m]
+HAIR_WIDTH = 70e-6  # default diameter of a hair [m]
 
 
 def read_usd_curves(path: Path | str, prim: str | None = None) -> Curves:
-    """Reads a ``BasisCurves`` prim in its rest pose as polylines [m]; by default the only one there is."""
+    """Reads a ``BasisCurves`` prim in its rest pose as polylines [m]; by default the only one."""
     with reading(path) as source:
         root = source.stage.GetPseudoRoot() if prim is None else find_prim(source, prim)
         found = [p for p in prims(root) if UsdGeom.BasisCurves(p)]
@@ -52,15 +51,15 @@ def read_usd_curves(path: Path | str, prim: str | None = None) -> Curves:
 
 
 def curves_at(source: Source, prim: Usd.Prim, time: Usd.TimeCode) -> Curves:
-    """The polylines of a curves prim at a time [m], with its primvars as attributes."""
+    """Polylines of a curves prim at a time [m], with its primvars as attributes."""
     where = source.where(prim)
     points = read_points(prim, time, where)
     counts = _counts(prim, time, len(points), where)
-    moved = to_metres(transformed(points, prim, time), source.space)
+    vertices = to_metres(transformed(points, prim, time), source.space)
     ids = np.arange(len(counts), dtype=np.int64)
-    Curves(moved, offsets_from_counts(counts), ids).check(where)
+    Curves(vertices, offsets_from_counts(counts), ids).check(where)
     sampling = Sampling(UsdGeom.BasisCurves(prim), time, counts, where)
-    curves = Curves(sampling.vertex(moved), sampling.offsets, ids)
+    curves = Curves(sampling.vertex(vertices), sampling.offsets, ids)
 
     for primvar in UsdGeom.PrimvarsAPI(prim).GetPrimvarsWithAuthoredValues():
         name = primvar.GetPrimvarName().removeprefix(OWN)
@@ -74,12 +73,15 @@ def curves_at(source: Source, prim: Usd.Prim, time: Usd.TimeCode) -> Curves:
     if (widths := schema.GetWidthsAttr().Get(time)) is not None and len(widths):
         diameters = np.array(widths, np.float64) * source.space.meters_per_unit
         _add(curves, sampling, "width", diameters, schema.GetWidthsInterpolation(), f"{where}: widths")
-    _name(curves)
+    _assign_ids(curves)
     return curves
 
 
 def own_curves(source: Source, prim: Usd.Prim, time: Usd.TimeCode | None = None, dtype: type = np.float64) -> Curves:
-    """Curves that Ringlet wrote, as they were in memory; at rest, or at a time."""
+    """Reads curves that Ringlet wrote, at rest or at a time.
+
+    Raises UserError when ids or widths are missing.
+    """
     where, time = source.where(prim), time or Usd.TimeCode.Default()
     value = UsdGeom.PointBased(prim).GetPointsAttr().Get(time)
     points = to_metres(np.array(value if value is not None else [], dtype).reshape(-1, 3), source.space)
@@ -103,23 +105,23 @@ def own_curves(source: Source, prim: Usd.Prim, time: Usd.TimeCode | None = None,
 def define_curves(
     stage: Usd.Stage, path: str, curves: Curves, space: StageSpace, *, guide: bool
 ) -> UsdGeom.BasisCurves:
-    """Writes everything about curves at a prim path but their points: type, counts, widths, names and attributes."""
+    """Defines curves at a prim path without their points: type, counts, widths, ids and attributes."""
     defined = UsdGeom.BasisCurves.Define(stage, path)
     defined.CreateTypeAttr(UsdGeom.Tokens.cubic)
     defined.CreateBasisAttr(UsdGeom.Tokens.catmullRom)
     defined.CreateWrapAttr(UsdGeom.Tokens.pinned)
     defined.CreatePurposeAttr(UsdGeom.Tokens.guide if guide else UsdGeom.Tokens.default_)
     defined.CreateCurveVertexCountsAttr(Vt.IntArray.FromNumpy(curves.counts))
-    known = {"width"} & (curves.point.keys() | curves.curve.keys())
-    widths = (curve_widths(curves) if known else np.array([HAIR_WIDTH])) / space.meters_per_unit
+    has_width = {"width"} & (curves.point.keys() | curves.curve.keys())
+    widths = (curve_widths(curves) if has_width else np.array([HAIR_WIDTH])) / space.meters_per_unit
     defined.CreateWidthsAttr(Vt.FloatArray.FromNumpy(np.ascontiguousarray(widths, np.float32)))
-    defined.SetWidthsInterpolation(UsdGeom.Tokens.vertex if known else UsdGeom.Tokens.constant)
+    defined.SetWidthsInterpolation(UsdGeom.Tokens.vertex if has_width else UsdGeom.Tokens.constant)
 
     prim = defined.GetPrim()
     set_primvar(prim, f"{OWN}id", "uniform", curves.ids)
     for interpolation, attributes in (("uniform", curves.curve), ("vertex", curves.point)):
         for name, values in attributes.items():
-            if interpolation == "uniform" or name != "width":  # that of points is in ``widths``
+            if interpolation == "uniform" or name != "width":  # the width of points is in ``widths``
                 own = name in COMMON | INNER | {"width"}
                 set_primvar(prim, OWN + name if own else name, interpolation, values)
     fits = np.abs(curves.ids).max(initial=0) < 2**31
@@ -132,16 +134,16 @@ def define_curves(
 
 
 def set_points(curves: UsdGeom.BasisCurves, points: NDArray, space: StageSpace, time: Usd.TimeCode) -> None:
-    """Writes points [m] and their extent at a time; both stream to the file as they are."""
+    """Writes points [m] and their extent at a time."""
     value = float3(from_metres(points, space))
     curves.CreatePointsAttr().Set(value, time)
     curves.CreateExtentAttr().Set(UsdGeom.Curves.ComputeExtent(value, curves.GetWidthsAttr().Get()), time)
 
 
 def set_roots(prim: Usd.Prim, curves: Curves, scalp: Mesh) -> None:
-    """Says where on the scalp the roots are, in the words of Houdini, Blender, Unreal and renderers.
+    """Writes the positions of roots on the scalp as primvars of Houdini, Blender, Unreal and renderers.
 
-    Needs the curve attributes ``root_triangle`` and ``root_barycentric``; without them nothing is written.
+    Needs the curve attributes ``root_triangle`` and ``root_barycentric``; writes nothing without them.
     """
     if not {"root_triangle", "root_barycentric"} <= curves.curve.keys():
         return
@@ -158,14 +160,14 @@ def set_roots(prim: Usd.Prim, curves: Curves, scalp: Mesh) -> None:
 
 
 def curve_widths(curves: Curves) -> NDArray:
-    """Diameters [m], one per point."""
+    """Diameters [m], shape (points,)."""
     if "width" in curves.point:
         return curves.point["width"]
     return np.repeat(curves.curve.get("width", np.full(len(curves), HAIR_WIDTH)), curves.counts).astype(np.float32)
 
 
 def _counts(prim: Usd.Prim, time: Usd.TimeCode, points: int, where: str) -> NDArray[np.int64]:
-    """Vertices per curve, checked."""
+    """Vertices per curve, shape (count,); raises UserError for counts that do not fit the points."""
     counts = read_integers(UsdGeom.Curves(prim).GetCurveVertexCountsAttr(), time, where)
     if len(counts) == 0:
         raise UserError(f"{where}: there are no curves; give at least one")
@@ -177,7 +179,7 @@ def _counts(prim: Usd.Prim, time: Usd.TimeCode, points: int, where: str) -> NDAr
 
 
 def _add(curves: Curves, sampling: Sampling, name: str, values: NDArray, interpolation: str, what: str) -> None:
-    """Keeps the values of a primvar as an attribute of curves or of points."""
+    """Stores a primvar as an attribute of curves or of points; raises UserError for a wrong number of values."""
     expected = {
         UsdGeom.Tokens.constant: 1,
         UsdGeom.Tokens.uniform: len(curves),
@@ -185,7 +187,7 @@ def _add(curves: Curves, sampling: Sampling, name: str, values: NDArray, interpo
     }.get(interpolation, int(sampling.offsets_in[-1]))
     if len(values) != expected:
         if interpolation == UsdGeom.Tokens.constant:
-            return  # a list that belongs to the whole prim
+            return  # an array on the whole prim
         raise UserError(f"{what} has {len(values)} values; must have {expected}, being {interpolation}")
     if interpolation == UsdGeom.Tokens.constant:
         curves.curve[name] = np.repeat(values, len(curves), axis=0)
@@ -198,7 +200,7 @@ def _add(curves: Curves, sampling: Sampling, name: str, values: NDArray, interpo
 
 
 def _add_own(curves: Curves, primvar: UsdGeom.Primvar, name: str, where: str) -> None:
-    """Keeps a primvar of our own curves, whoever wrote it, as an attribute of curves or of points."""
+    """Stores a primvar of Ringlet's curves as an attribute; raises UserError for a wrong number of values."""
     values, interpolation = np.atleast_1d(from_usd(primvar.ComputeFlattened())), primvar.GetInterpolation()
     if values.dtype.kind not in "bifuSU":
         return
@@ -206,7 +208,7 @@ def _add_own(curves: Curves, primvar: UsdGeom.Primvar, name: str, where: str) ->
     expected = len(curves) if per_curve else len(curves.points)
     if interpolation == UsdGeom.Tokens.constant:
         if len(values) != 1:
-            return  # a list that belongs to the whole prim
+            return  # an array on the whole prim
         values = np.repeat(values, expected, axis=0)
     if len(values) != expected:
         raise UserError(
@@ -216,13 +218,13 @@ def _add_own(curves: Curves, primvar: UsdGeom.Primvar, name: str, where: str) ->
     (curves.curve if per_curve else curves.point)[name] = values
 
 
-def _name(curves: Curves) -> None:
-    """Takes the names of curves from the first attribute that can be one."""
+def _assign_ids(curves: Curves) -> None:
+    """Sets the ids of curves from the first attribute of ``ID_NAMES`` with unique integers."""
     halves = [curves.curve.pop(name, None) for name in ID_HALVES]
     if "id" not in curves.curve and all(half is not None and half.dtype == np.int32 for half in halves):
         high, low = (np.asarray(half, np.int64) for half in halves)
         curves.curve["id"] = (high << 32) | (low & 0xFFFFFFFF)
-    for name in (known.removeprefix(OWN) for known in ID_NAMES):
+    for name in (full_name.removeprefix(OWN) for full_name in ID_NAMES):
         ids = curves.curve.get(name)
         if ids is not None and ids.dtype.kind in "iu" and ids.ndim == 1 and len(np.unique(ids)) == len(ids):
             curves.ids = curves.curve.pop(name).astype(np.int64)
@@ -230,10 +232,12 @@ def _name(curves: Curves) -> None:
 
 
 def _face_places(faces: NDArray) -> NDArray[np.float64]:
-    """Parametric coordinates (u, v) of the triangle corners in their polygons, shape (m, 3, 2), as Houdini counts them:
-    triangles (0,0) (1,0) (0,1); quads (0,0) (0,1) (1,1) (1,0), taken as linear in either half."""
+    """Parametric coordinates (u, v) of triangle corners in their polygons, shape (m, 3, 2), as in Houdini.
+
+    Triangles have (0,0) (1,0) (0,1); quads have (0,0) (0,1) (1,1) (1,0), and are linear in either half.
+    """
     whole = np.array([[0, 0], [1, 0], [0, 1]], float)
     halves = np.array([[[0, 0], [0, 1], [1, 1]], [[0, 0], [1, 1], [1, 0]]], float)
     first = np.concatenate([[True], faces[1:] != faces[:-1]])
-    alone = first & np.concatenate([first[1:], [True]])
-    return np.where(alone[:, None, None], whole, np.where(first[:, None, None], halves[0], halves[1]))
+    is_triangle = first & np.concatenate([first[1:], [True]])
+    return np.where(is_triangle[:, None, None], whole, np.where(first[:, None, None], halves[0], halves[1]))

@@ -1,10 +1,11 @@
-"""A groom as USD: its guides and locks beside the head they grow on, which is referenced and not copied.
+"""A groom as USD: its guides and locks, and a reference to the head.
 
-/groom          Xform, with the recipe
-/groom/locks    BasisCurves, one per lock, in the rest pose
-/groom/guides   BasisCurves, the artist's
-                locks and guides are in the variants of the set ``groom`` where there are some
-/groom/body     the head: a reference to its file, or the mesh itself if it came from none
+/groom         : Xform, with the recipe
+/groom/locks   : BasisCurves, one per lock, in the rest pose
+/groom/guides  : BasisCurves, the guides
+/groom/body    : the head, a reference to its file, or the mesh itself without a file
+
+With variants, locks and guides are in the variants of the set ``groom``.
 """
 
 from __future__ import annotations
@@ -44,14 +45,16 @@ from ringlet.io.usd.values import Types, float3
 
 GROOM, LOCKS, GUIDES, BODY = "/groom", "/groom/locks", "/groom/guides", "/groom/body"
 VARIANTS, BASE = "groom", "base"
-VERSION = 1  # of this layout
-BESIDE = 1e-3  # how far weights of a root may be from those of a place in its triangle
+VERSION = 1  # version of this layout
+WEIGHT_TOLERANCE = 1e-3  # largest error of a root's barycentric coordinates
 
 
 def write_groom(groom: Groom, path: Path | str, variants: Mapping[str, Groom] | None = None) -> None:
-    """Writes a groom in the unit, up-axis and rate of its head, which it references by a path relative to ``path``.
+    """Writes a groom in the unit, up-axis and rate of its head, with a relative reference to the head.
 
     variants: grooms on the same head by name, as a variant set of ``/groom``; ``groom`` is the selection ``base``
+
+    Raises UserError for a variant on another head, and for a path that is the head's file.
     """
     head = _head_file(groom)
     if head:
@@ -74,7 +77,7 @@ def write_groom(groom: Groom, path: Path | str, variants: Mapping[str, Groom] | 
         else:
             choice = root.GetVariantSets().AddVariantSet(VARIANTS)
             for name, variant in {BASE: groom, **variants}.items():
-                _refuse_other_head(name, variant, groom)
+                _check_variant(name, variant, groom)
                 choice.AddVariant(name)
                 choice.SetVariantSelection(name)
                 with choice.GetVariantEditContext():
@@ -84,9 +87,10 @@ def write_groom(groom: Groom, path: Path | str, variants: Mapping[str, Groom] | 
 
 
 def as_written(groom: Groom) -> Groom:
-    """The groom with the numbers that it has when it is read from its file: to the same bits, and so are its motions.
+    """The groom after a round trip through its file, bit for bit, so that its simulations are the same.
 
-    Points and widths are in single precision there, in the unit of the head; a head that is not USD goes with it.
+    The file stores points and widths in single precision, in the unit of the head. A head that is not USD is stored
+    with the groom.
     """
     head, scalp = _head_file(groom), groom.scalp
     space = read_usd_space(head) if head else groom.space
@@ -109,12 +113,12 @@ def _points_written(points: NDArray[np.floating], space: StageSpace) -> NDArray[
 
 
 def _head_file(groom: Groom) -> Path | None:
-    """The USD file of the head, which a file of the groom refers to; None where it has the head in itself."""
+    """USD file of the head that a groom file references; None when the groom file contains the head."""
     return groom.scalp_file if groom.scalp_file and groom.scalp_file.suffix in SUFFIXES else None
 
 
 def _define(stage: Usd.Stage, groom: Groom, space: StageSpace) -> None:
-    """Writes what differs from variant to variant."""
+    """Writes the prims and attributes that differ between variants."""
     root = stage.GetPrimAtPath(GROOM)
     _set(root, "hairs", Types.String, json.dumps(groom.hairs))
     if groom.recipe is not None:
@@ -123,18 +127,20 @@ def _define(stage: Usd.Stage, groom: Groom, space: StageSpace) -> None:
     _define_guides(stage, GUIDES, groom.guides, groom, space)
 
 
-def _refuse_other_head(name: str, variant: Groom, groom: Groom) -> None:
+def _check_variant(name: str, variant: Groom, groom: Groom) -> None:
     if not Tf.IsValidIdentifier(name):
         raise UserError(f"variant '{name}': is no name for USD; use letters, digits and _ only, and no digit first")
-    mine, theirs = ((g.scalp_file and g.scalp_file.resolve(), g.scalp_prim, g.region) for g in (groom, variant))
-    if mine != theirs or not np.array_equal(groom.scalp.points, variant.scalp.points):
+    scalp, variant_scalp = ((g.scalp_file and g.scalp_file.resolve(), g.scalp_prim, g.region) for g in (groom, variant))
+    if scalp != variant_scalp or not np.array_equal(groom.scalp.points, variant.scalp.points):
         raise UserError(f"variant '{name}': grows on another scalp ({variant.scalp.name}); must be {groom.scalp.name}")
 
 
 def read_groom(path: Path | str, variant: str | None = None) -> Groom:
-    """Reads a groom, or the groom under a cache or hairs: all that was written, with the scalp from its file.
+    """Reads a groom, or the groom under a cache or hairs, with the scalp from its file.
 
-    variant: one of those that the file has, instead of the one that is selected in it
+    variant: variant to read, instead of the selected one
+
+    Raises UserError for a file that is no groom, an unknown variant, and a head that is missing or has changed.
     """
     path = Path(path)
     with reading(path) as source:
@@ -160,7 +166,7 @@ def read_groom(path: Path | str, variant: str | None = None) -> Groom:
 
 
 def groom_prim(source: Source) -> Usd.Prim:
-    """The prim ``/groom``; refuses a stage that is no groom, or one of a later layout."""
+    """The prim ``/groom``; raises UserError for a stage that is no groom or has a later layout."""
     require_layers(source)
     root = source.stage.GetPrimAtPath(GROOM)
     version = _get(root, "version") if root else None
@@ -176,13 +182,13 @@ def groom_prim(source: Source) -> Usd.Prim:
 
 
 def check_version(source: Source, version: Any) -> None:
-    """Refuses a file of a later layout than we know."""
+    """Raises UserError for a layout later than ``VERSION``."""
     if not isinstance(version, int) or version > VERSION:
         raise UserError(f"{source.path}: has layout {version}; this Ringlet reads up to {VERSION}: update it")
 
 
 def _select(source: Source, variant: str) -> None:
-    """Selects a variant, in the session only."""
+    """Selects a variant in the session layer; raises UserError for an unknown one."""
     choice = source.stage.GetPrimAtPath(GROOM).GetVariantSets().GetVariantSet(VARIANTS)
     names = choice.GetVariantNames()
     if variant not in names:
@@ -193,12 +199,15 @@ def _select(source: Source, variant: str) -> None:
 
 
 def choose_variant(stage: Usd.Stage, variant: str) -> None:
-    """Selects a variant of the groom in the layer that is edited."""
+    """Selects a variant of the groom in the edit target."""
     stage.GetPrimAtPath(GROOM).GetVariantSets().GetVariantSet(VARIANTS).SetVariantSelection(variant)
 
 
 def scalp_source(source: Source) -> tuple[Path, str]:
-    """The file of the scalp and its prim path there: behind the reference on ``/groom/body``, or the groom itself."""
+    """File of the scalp and its prim path there: the target of the reference on ``/groom/body``, or the groom itself.
+
+    Raises UserError for a groom without a scalp.
+    """
     targets = source.stage.GetRelationshipAtPath(f"{GROOM}.ringlet:scalp").GetTargets()
     if not targets:
         raise UserError(f"{source.path}: does not name its scalp (ringlet:scalp); make the groom again")
@@ -211,7 +220,7 @@ def scalp_source(source: Source) -> tuple[Path, str]:
 
 
 def _reference(stage: Usd.Stage, head: Path, scalp: str | None) -> Sdf.Path:
-    """Brings the head in under ``/groom/body``, with its motion; returns where its scalp now is."""
+    """References the head under ``/groom/body`` with its animation; returns the path of the scalp."""
     with reading(head) as source:
         prim = select_mesh(source, scalp).GetPath()
         top = prim.GetPrefixes()[0]
@@ -227,7 +236,7 @@ def _reference(stage: Usd.Stage, head: Path, scalp: str | None) -> Sdf.Path:
 
 
 def _define_guides(stage: Usd.Stage, path: str, curves: Curves, groom: Groom, space: StageSpace) -> None:
-    """Writes locks or guides with everything that other programs ask of guides."""
+    """Writes locks or guides with the primvars that other programs need."""
     defined = define_curves(stage, path, curves, space, guide=True)
     set_points(defined, curves.points, space, Usd.TimeCode.Default())
     prim = defined.GetPrim()
@@ -238,7 +247,7 @@ def _define_guides(stage: Usd.Stage, path: str, curves: Curves, groom: Groom, sp
 
 
 def _bound(source: Source, path: str, scalp: Mesh) -> Curves:
-    """Locks or guides as they were written, whose roots are still on the scalp."""
+    """Reads locks or guides; raises UserError when a root is not on the scalp."""
     curves = own_curves(source, source.stage.GetPrimAtPath(path)).check(f"{source.path} {path}")
     triangles = curves.curve.get("root_triangle", np.zeros(1))
     if (bad := np.flatnonzero((triangles < 0) | (triangles >= len(scalp.triangles)))).size:
@@ -247,8 +256,8 @@ def _bound(source: Source, path: str, scalp: Mesh) -> Curves:
             f"{len(scalp.triangles)}; the head has changed: make the groom again"
         )
     weights = np.asarray(curves.curve.get("root_barycentric", np.full((1, 3), 1 / 3)))
-    off = np.abs(weights - weights.clip(0.0, 1.0)).max(axis=1) + np.abs(weights.sum(axis=1) - 1.0)
-    if (bad := np.flatnonzero(~(off <= BESIDE))).size:  # nor where one is no number
+    error = np.abs(weights - weights.clip(0.0, 1.0)).max(axis=1) + np.abs(weights.sum(axis=1) - 1.0)
+    if (bad := np.flatnonzero(~(error <= WEIGHT_TOLERANCE))).size:  # also true for NaN
         raise UserError(
             f"{source.path}: {path} has the root of lock {curves.ids[bad[0]]} beside its triangle of {scalp.name} "
             f"(weights {', '.join(f'{w:g}' for w in weights[bad[0]])}): it is not on the scalp; make the groom again"

@@ -1,6 +1,6 @@
-"""Dense hairs as USD: ``/groom/hairs`` over the groom or the cache, so that the head is there too.
+"""Render hairs as USD: ``/groom/hairs`` in a layer over the groom or the cache, which includes the head.
 
-And a stage as pictures need it: bodies and hairs.
+Also reads the bodies and hairs of a stage for pictures.
 """
 
 from __future__ import annotations
@@ -25,16 +25,16 @@ from ringlet.io.usd.values import Types, rest_time, set_primvar
 
 HAIRS = f"{GROOM}/hairs"
 COLOR = (0.06, 0.035, 0.02)  # dark brown, for viewports
-LOCK_INDEX = "lock"  # curve attribute: the lock that carries a hair
+LOCK_INDEX = "lock"  # curve attribute: row of a hair's lock
 
 
 class HairWriter(StreamWriter):
     """Writes hairs: ``with HairWriter(…) as writer: writer.add(frame, points)``.
 
-    Nothing is at ``path`` until the block ends, and nothing new if it fails.
+    The file appears at ``path`` when the block ends; an error leaves ``path`` unchanged.
 
-    curves:     the hairs with their attributes; ``width`` is the diameter [m], ``lock`` the index of a hair's lock
-    groom_path: the groom or the cache to lie over
+    curves:     hairs with their attributes; ``width`` is the diameter [m], ``lock`` the row of a hair's lock
+    groom_path: groom or cache under the layer
     """
 
     def __init__(self, path: Path | str, groom: Groom, curves: Curves, groom_path: Path | str) -> None:
@@ -55,14 +55,22 @@ class HairWriter(StreamWriter):
         return self
 
     def add(self, frame: float | None, points: NDArray) -> None:
-        """Adds a frame, or the rest pose for None; ``points`` are positions [m], shape (n, 3), best as float32."""
+        """Adds a frame, or the rest pose for None.
+
+        points: positions [m], shape (n, 3), preferably float32
+
+        Raises ValueError for another shape.
+        """
         if points.shape != self._hairs.points.shape:
             raise ValueError(f"hairs: points have shape {points.shape}; must be {self._hairs.points.shape}")
         self.put(self._curves, frame, points)
 
 
 def read_hairs(path: Path | str, frame: float | None = None) -> Curves:
-    """Reads the hairs of a stage at a frame; without one at the first, or at rest if they do not move. float32 [m]."""
+    """Reads the hairs of a stage at a frame [m], float32; by default at the first frame, or at rest if static.
+
+    Raises UserError for a stage without hairs.
+    """
     with reading(path) as source:
         hairs = _hairs(source, frame)
         if hairs is None:
@@ -71,9 +79,9 @@ def read_hairs(path: Path | str, frame: float | None = None) -> Curves:
 
 
 def read_stage(path: Path | str, frame: float | None = None) -> tuple[list[Body], Curves | None, NDArray[np.float64]]:
-    """Reads what a picture shows: visible bodies, hairs (None if there are none) and the whole frames there are.
+    """Reads visible bodies, hairs (None if there are none) and the whole frames of a stage, for a picture.
 
-    frame: hairs and clips at this frame only; without one, whole clips and the hairs of the first frame
+    frame: reads hairs and clips at this frame only; by default whole clips and the hairs of the first frame
     """
     with reading(path) as source:
         hairs, frames = _hairs(source, frame), _frames(source)
@@ -82,7 +90,7 @@ def read_stage(path: Path | str, frame: float | None = None) -> tuple[list[Body]
             mesh = mesh_at(source, prim)
             if frame is not None:
                 clip = clip_at(source, prim, (frame, frame))
-            elif hairs is not None and not len(frames):  # hairs at rest are on a head at rest
+            elif hairs is not None and not len(frames):  # static hairs need the head at rest
                 clip = Clip(np.zeros(1), mesh.points[None], source.space.fps)
             else:
                 clip = clip_at(source, prim)
@@ -91,7 +99,7 @@ def read_stage(path: Path | str, frame: float | None = None) -> tuple[list[Body]
 
 
 def read_hair_frames(path: Path | str) -> NDArray[np.float64]:
-    """The whole frames of a stage in which hairs move, none where they are at rest."""
+    """Whole frames of a stage with animated hairs; empty for static hairs."""
     with reading(path) as source:
         return _frames(source)
 
@@ -103,7 +111,7 @@ def _frames(source: Source) -> NDArray[np.float64]:
 
 
 def _hair_prims(source: Source) -> list[Usd.Prim]:
-    """Curves that a render shows."""
+    """Curves that are visible in a render."""
     if own := source.stage.GetPrimAtPath(HAIRS):
         return [own]
     shown = (UsdGeom.Tokens.default_, UsdGeom.Tokens.render)
@@ -112,7 +120,7 @@ def _hair_prims(source: Source) -> list[Usd.Prim]:
 
 
 def _hairs(source: Source, frame: float | None) -> Curves | None:
-    """The hairs of a stage at a frame, packed as one."""
+    """Hairs of a stage at a frame, merged into one list of curves."""
     found = [_hairs_at(source, prim, frame) for prim in _hair_prims(source)]
     if len(found) < 2:
         return found[0] if found else None
@@ -126,7 +134,7 @@ def _hairs(source: Source, frame: float | None) -> Curves | None:
 
 
 def _hairs_at(source: Source, prim: Usd.Prim, frame: float | None) -> Curves:
-    """The hairs of one prim at a frame, float32, with the point attribute ``width``."""
+    """Hairs of one prim at a frame, float32, with the point attribute ``width``."""
     samples = UsdGeom.PointBased(prim).GetPointsAttr().GetTimeSamples()
     if frame is None and samples:
         frame = samples[0]

@@ -1,4 +1,4 @@
-"""Meshes from USD: the scalp, bodies, and how they move; and a mesh into USD."""
+"""Reads meshes and their animation from USD; writes meshes."""
 
 from __future__ import annotations
 
@@ -33,13 +33,13 @@ from ringlet.io.usd.values import (
 )
 
 SCALP = "scalp"
-MOST_FRAMES = 100_000
-MOST_PLACES = 2**28  # of the points of a mesh at all its frames: 6 GiB
+MAX_FRAMES = 100_000
+MAX_POSITIONS = 2**28  # points of a mesh times frames: 6 GiB
 
 
 @dataclass
 class Body:
-    """Something beside the hair: a mesh in its rest pose, where it goes, and its prim's path."""
+    """A mesh in its rest pose, its animation, and the path of its prim."""
 
     mesh: Mesh
     clip: Clip
@@ -59,8 +59,10 @@ def read_usd_clip(path: Path | str, prim: str | None = None, frames: tuple[float
 
 
 def read_bodies(path: Path | str, prim: str | None = None) -> list[Body]:
-    """Reads meshes with their clips: all at and below ``prim``; by default every visible one under the default prim
-    (under the root where there is none)."""
+    """Reads meshes with their clips.
+
+    prim: reads the meshes at and below this prim; by default the visible ones under the default prim, or else the root
+    """
     with reading(path) as source:
         meshes = visible_meshes(source) if prim is None else meshes_below(source, prim)
         return [_body_at(source, mesh) for mesh in meshes]
@@ -74,7 +76,7 @@ def read_surfaces(path: Path | str) -> list[tuple[NDArray[np.float64], NDArray[n
 
 
 def read_body(path: Path | str, prim: str | None = None) -> Body:
-    """Reads a mesh with its clip: that at ``prim``, or the only one there is at or below it."""
+    """Reads a mesh with its clip: the mesh at ``prim``, or the only one at or below it."""
     with reading(path) as source:
         return _body_at(source, select_mesh(source, prim))
 
@@ -84,7 +86,7 @@ def _body_at(source: Source, prim: Usd.Prim) -> Body:
 
 
 def select_mesh(source: Source, name: str | None) -> Usd.Prim:
-    """The mesh prim at a path, or the only one there is at or below it."""
+    """The mesh prim at a path, or the only one at or below it; raises UserError for none or several."""
     _bake_skinning(source.stage)
     root = source.stage.GetPseudoRoot() if name is None else find_prim(source, name)
     meshes = [prim for prim in prims(root) if UsdGeom.Mesh(prim)]
@@ -93,7 +95,7 @@ def select_mesh(source: Source, name: str | None) -> Usd.Prim:
 
 
 def meshes_below(source: Source, name: str) -> list[Usd.Prim]:
-    """The mesh prims at and below a path; refuses a path without any."""
+    """Mesh prims at and below a path; raises UserError when there is none."""
     _bake_skinning(source.stage)
     meshes = [prim for prim in prims(find_prim(source, name)) if UsdGeom.Mesh(prim)]
     if not meshes:
@@ -102,7 +104,7 @@ def meshes_below(source: Source, name: str) -> list[Usd.Prim]:
 
 
 def visible_meshes(source: Source) -> list[Usd.Prim]:
-    """Meshes that a render shows, under the default prim."""
+    """Meshes that are visible in a render, under the default prim."""
     _bake_skinning(source.stage)
     root = source.stage.GetDefaultPrim() or source.stage.GetPseudoRoot()
     shown = (UsdGeom.Tokens.default_, UsdGeom.Tokens.render)
@@ -116,19 +118,19 @@ def visible_meshes(source: Source) -> list[Usd.Prim]:
 
 
 def mesh_at(source: Source, prim: Usd.Prim) -> Mesh:
-    """The mesh of a prim in its rest pose [m]."""
+    """Mesh of a prim in its rest pose [m]; raises UserError for a mesh without faces or with invalid indices."""
     where, time, mesh = source.where(prim), rest_time(prim), UsdGeom.Mesh(prim)
     points = read_points(prim, time, where)
     counts = read_integers(mesh.GetFaceVertexCountsAttr(), time, where)
     indices = read_integers(mesh.GetFaceVertexIndicesAttr(), time, where)
     check_polygons(counts, indices, len(points), where)
 
-    # A mirroring transform turns the winding round, as leftHanded does.
+    # A mirroring transform reverses the winding, like leftHanded.
     mirrored = np.linalg.det(local_to_world(prim, time)[:3, :3]) < 0
     left_handed = mesh.GetOrientationAttr().Get(time) == UsdGeom.Tokens.leftHanded
     corners, faces = fans(counts, clockwise=bool(mirrored) != left_handed)
-    kept = ~np.isin(faces, read_integers(mesh.GetHoleIndicesAttr(), time, where))
-    corners, faces = corners[kept], faces[kept]
+    visible = ~np.isin(faces, read_integers(mesh.GetHoleIndicesAttr(), time, where))
+    corners, faces = corners[visible], faces[visible]
     if len(faces) == 0:
         raise UserError(f"{where}: has no faces; export it again or choose another mesh")
 
@@ -147,21 +149,24 @@ def mesh_at(source: Source, prim: Usd.Prim) -> Mesh:
 
 
 def clip_at(source: Source, prim: Usd.Prim, frames: tuple[float, float] | None = None) -> Clip:
-    """Positions of a mesh prim at all whole frames of the stage, or from the first to the last of ``frames``."""
+    """Positions of a mesh prim at all whole frames of the stage, or of the closed range ``frames``.
+
+    Raises UserError for too much data and for a number of points that changes.
+    """
     where, times = source.where(prim), _frames(source, prim, frames)
     if len(times) == 0:
-        start, always = source.stage.GetStartTimeCode(), Usd.TimeCode.EarliestTime()  # one sample holds at all times
-        still = to_metres(transformed(read_points(prim, always, where), prim, always), source.space)
-        return Clip(np.array([start]), still[None], source.space.fps)
+        start, always = source.stage.GetStartTimeCode(), Usd.TimeCode.EarliestTime()  # one sample for all times
+        points = to_metres(transformed(read_points(prim, always, where), prim, always), source.space)
+        return Clip(np.array([start]), points[None], source.space.fps)
     samples = []
     for frame in times:
         time = Usd.TimeCode(frame)
         at = f"{where} at frame {frame:g}"
         points = to_metres(transformed(read_points(prim, time, at), prim, time), source.space)
-        check_points(points, at)  # a transform may be no number either
-        if len(points) * len(times) > MOST_PLACES:
+        check_points(points, at)  # a transform may be NaN, too
+        if len(points) * len(times) > MAX_POSITIONS:
             raise UserError(
-                f"{where}: has {len(points):,} points at {len(times):,} frames, more than {MOST_PLACES:,} places; "
+                f"{where}: has {len(points):,} points at {len(times):,} frames, more than {MAX_POSITIONS:,} places; "
                 "shorten its range, or leave it out"
             )
         if samples and len(points) != len(samples[0]):
@@ -173,9 +178,9 @@ def clip_at(source: Source, prim: Usd.Prim, frames: tuple[float, float] | None =
 
 
 def whole_frames(first: float, last: float, where: str) -> NDArray[np.float64]:
-    """The frames from the first to the last, shape (k,)."""
-    if not abs(last - first) < MOST_FRAMES:  # nor where one of them is no number
-        raise UserError(f"{where}: moves from {first:g} to {last:g}; must be fewer than {MOST_FRAMES:,} frames")
+    """Whole frames of a closed range, shape (k,); raises UserError for none or too many."""
+    if not abs(last - first) < MAX_FRAMES:  # also true for NaN
+        raise UserError(f"{where}: moves from {first:g} to {last:g}; must be fewer than {MAX_FRAMES:,} frames")
     frames = np.arange(math.ceil(first), math.floor(last) + 1, dtype=np.float64)
     if len(frames) == 0:
         raise UserError(f"{where}: there is no whole frame from {first:g} to {last:g}; give a longer range")
@@ -204,14 +209,17 @@ def define_mesh(stage: Usd.Stage, path: str, mesh: Mesh, space: StageSpace) -> U
 
 
 def _bake_skinning(stage: Usd.Stage) -> None:
-    """Turns the motion of skeletons into points and transforms, in the session layer, which is never saved."""
+    """Bakes skinning to points and transforms in the session layer, which is never saved."""
     if any(UsdSkel.Root(prim) for prim in stage.Traverse()):
         stage.SetEditTarget(stage.GetSessionLayer())
         UsdSkel.BakeSkinning(Usd.PrimRange(stage.GetPseudoRoot()))
 
 
 def _uv(prim: Usd.Prim, corners: NDArray, triangles: NDArray, points: int, indices: int, where: str) -> NDArray | None:
-    """Texture coordinates per triangle corner: of ``st``, or of the first primvar that holds some."""
+    """Texture coordinates per triangle corner, shape (m, 3, 2): of ``st``, or of the first suitable primvar.
+
+    Raises UserError for values that do not fit the mesh.
+    """
     api = UsdGeom.PrimvarsAPI(prim)
     named = [api.FindPrimvarWithInheritance(name) for name in ("st", "uv", "UVMap", "map1")]
     typed = [
@@ -228,9 +236,9 @@ def _uv(prim: Usd.Prim, corners: NDArray, triangles: NDArray, points: int, indic
         if not faceted and primvar.GetInterpolation() not in (UsdGeom.Tokens.vertex, UsdGeom.Tokens.varying):
             continue
         if values.shape != (indices if faceted else points, 2):
-            wanted = f"{indices} corners" if faceted else f"{points} points"
+            expected = f"{indices} corners" if faceted else f"{points} points"
             raise UserError(
-                f"{where}: {primvar.GetName()} has {len(values)} values for {wanted}; must have one for each"
+                f"{where}: {primvar.GetName()} has {len(values)} values for {expected}; must have one for each"
             )
         if not np.isfinite(values).all():
             raise UserError(f"{where}: {primvar.GetName()} has a value that is no number; must be finite")
@@ -246,7 +254,7 @@ def _maps(
     polygons: int,
     where: str,
 ) -> dict[str, NDArray[np.float64]]:
-    """Primvars, at the corners of each triangle."""
+    """Primvars at the corners of each triangle, by name; raises UserError for too few values."""
     maps = {}
     for name, interpolation, values in primvars:
         rows = {
@@ -272,14 +280,14 @@ def _vectors(
     polygons: int,
     where: str,
 ) -> dict[str, NDArray[np.float64]]:
-    """Primvars of directions, at the corners of each triangle, turned as the points are."""
+    """Primvars of directions at the corners of each triangle, transformed with the points, by name."""
     upright = StageSpace(1.0, source.space.up_axis)
     origin = transformed(np.zeros((1, 3)), prim, time)
-    turned = (
+    rotated = (
         (name, interpolation, to_metres(transformed(values, prim, time) - origin, upright))
         for name, interpolation, values in vector_primvars(prim)
     )
-    return _maps(turned, corners, triangles, faces, polygons, where)
+    return _maps(rotated, corners, triangles, faces, polygons, where)
 
 
 def _subsets(prim: Usd.Prim) -> dict[str, UsdGeom.Subset]:
@@ -288,7 +296,7 @@ def _subsets(prim: Usd.Prim) -> dict[str, UsdGeom.Subset]:
 
 
 def _regions(prim: Usd.Prim, faces: NDArray, count: int, where: str) -> dict[str, NDArray[np.int32]]:
-    """Face subsets as sets of triangles."""
+    """Face subsets as sets of triangles, by name; raises UserError for a face out of range."""
     regions = {}
     for name, subset in _subsets(prim).items():
         chosen = read_integers(subset.GetIndicesAttr(), Usd.TimeCode.EarliestTime(), f"{where}/{name}")
@@ -301,7 +309,7 @@ def _regions(prim: Usd.Prim, faces: NDArray, count: int, where: str) -> dict[str
 
 
 def _color(prim: Usd.Prim, counts: NDArray, indices: NDArray, points: int) -> dict[str, Any]:
-    """The display colour and, where it varies, that of each vertex: the mean of the corners that meet there."""
+    """Display colour of the mesh and, if it varies, of each vertex: the mean of the vertex's corners."""
     primvar = UsdGeom.PrimvarsAPI(prim).FindPrimvarWithInheritance("displayColor")
     values = primvar.ComputeFlattened(Usd.TimeCode.EarliestTime()) if primvar else None
     colors = np.array(values if values is not None else [], np.float64).reshape(-1, 3)
@@ -322,7 +330,7 @@ def _color(prim: Usd.Prim, counts: NDArray, indices: NDArray, points: int) -> di
 
 
 def _frames(source: Source, prim: Usd.Prim, frames: tuple[float, float] | None) -> NDArray[np.float64]:
-    """The whole frames to read; none for a mesh that does not move."""
+    """Whole frames to read; empty for a static mesh."""
     samples = [
         time for attribute in motion(prim) if attribute.GetNumTimeSamples() > 1 for time in attribute.GetTimeSamples()
     ]

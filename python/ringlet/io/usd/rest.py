@@ -1,4 +1,4 @@
-"""A rest shape as USD: ``/groom/locks`` as strands remember it, with what it was made from."""
+"""A rest shape as USD: the rest positions of ``/groom/locks``, with the settings that produced them."""
 
 from __future__ import annotations
 
@@ -17,22 +17,22 @@ from ringlet.io.usd.stage import new_stage, parse_json, reading, writing
 
 
 def write_rest(rest: Curves, made_from: dict[str, Any], path: Path | str, space: StageSpace) -> None:
-    """Writes a rest shape and the settings that it was made from, as plain values."""
+    """Writes a rest shape and the settings that produced it, as plain values."""
     with writing(path) as aside:
         stage = new_stage(aside, space)
         UsdGeom.Xform.Define(stage, GROOM)
         set_points(define_curves(stage, LOCKS, rest, space, guide=True), rest.points, space, Usd.TimeCode.Default())
-        kept = {"version": VERSION, "made_from": json.dumps(made_from, sort_keys=True)}
-        stage.GetRootLayer().customLayerData = {"ringlet": kept}
+        metadata = {"version": VERSION, "made_from": json.dumps(made_from, sort_keys=True)}
+        stage.GetRootLayer().customLayerData = {"ringlet": metadata}
         stage.Save()
 
 
 def read_rest(path: Path | str) -> tuple[Curves, dict[str, Any]]:
-    """Reads a rest shape and the settings that it was made from."""
+    """Reads a rest shape and the settings that produced it; raises UserError for another file."""
     with reading(path) as source:
-        told = source.stage.GetRootLayer().customLayerData.get("ringlet") or {}
-        check_version(source, told.get("version", VERSION))
-        made_from = told.get("made_from")
+        metadata = source.stage.GetRootLayer().customLayerData.get("ringlet") or {}
+        check_version(source, metadata.get("version", VERSION))
+        made_from = metadata.get("made_from")
         prim = source.stage.GetPrimAtPath(LOCKS)
         if made_from is None or not prim:
             raise UserError(f"{path}: is no lofted shape; make one with: ringlet loft SHOT.toml")

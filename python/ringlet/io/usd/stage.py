@@ -1,7 +1,7 @@
-"""Opening, finding and writing in USD, with every mistake told in one line.
+"""Opens, searches and writes USD stages, with errors of one line.
 
-``reading`` and ``writing`` wrap all work on stages: USD's errors become ``UserError`` there, and its warnings stay off
-the screen.
+``reading`` and ``writing`` wrap all work on stages: they convert USD's errors to ``UserError`` and silence its
+warnings.
 """
 
 from __future__ import annotations
@@ -29,10 +29,10 @@ SUFFIXES = (".usd", ".usda", ".usdc", ".usdz")
 
 @dataclass(frozen=True)
 class Source:
-    """A stage that is being read.
+    """An open stage.
 
-    path:  the file, as the user named it
-    space: its unit, up-axis and rate
+    path:  file name as the user gave it
+    space: unit, up-axis and frame rate of the stage
     """
 
     path: Path
@@ -46,7 +46,10 @@ class Source:
 
 @contextmanager
 def reading(path: Path | str) -> Iterator[Source]:
-    """Opens a stage; what USD raises inside the block becomes a UserError."""
+    """Opens a stage; converts USD's errors inside the block to UserError.
+
+    Raises UserError for a missing or empty file and for a folder.
+    """
     path = Path(path)
     if not path.exists():
         raise UserError(f"{path}: there is no such file; check the name")
@@ -61,22 +64,21 @@ def reading(path: Path | str) -> Iterator[Source]:
 
 
 def _reload(stage: Usd.Stage) -> None:
-    """Reads its layers anew: what something else holds open may be older than the file.
+    """Reloads the layers of a stage, since another open stage may share outdated ones.
 
-    A layer that is read anew may name others than before, and those that it names no more are gone: they are asked for
-    after each.
+    Reloading a layer may change the set of used layers, so the set is queried again after each.
     """
-    seen = set[str]()
-    while fresh := [layer for layer in stage.GetUsedLayers() if layer.identifier not in seen]:
-        seen.add(fresh[0].identifier)
-        if not fresh[0].anonymous and Path(fresh[0].realPath).exists():
-            fresh[0].Reload()
+    reloaded = set[str]()
+    while pending := [layer for layer in stage.GetUsedLayers() if layer.identifier not in reloaded]:
+        reloaded.add(pending[0].identifier)
+        if not pending[0].anonymous and Path(pending[0].realPath).exists():
+            pending[0].Reload()
 
 
 @contextmanager
 def reading_more(path: Path | str) -> Iterator[None]:
-    """Reading from a stage that is open, where the block around it writes another: whose error it is must be told."""
-    warnings = UsdUtils.CoalescingDiagnosticDelegate()  # takes what USD would print
+    """Converts USD's errors inside the block to UserError with ``path``, also while another file is written."""
+    warnings = UsdUtils.CoalescingDiagnosticDelegate()  # collects the warnings of USD
     try:
         yield
     except Tf.ErrorException as error:
@@ -88,20 +90,20 @@ def reading_more(path: Path | str) -> Iterator[None]:
 
 
 def check_name(path: Path | str) -> None:
-    """Refuses a file to be written whose name is not one of USD's."""
+    """Raises UserError for an output file without a suffix of USD."""
     if Path(path).suffix not in SUFFIXES[:3]:
         raise UserError(f"{path}: ends in '{Path(path).suffix}'; must end in .usdc, .usd or .usda")
 
 
 def check_target(path: Path | str, under: Path | str) -> None:
-    """Refuses what a layer over another file cannot be called, before there is anything to write."""
+    """Raises UserError for an invalid name of a layer over the file ``under``, before any work is done."""
     check_name(path)
     refuse_itself(path, under, "file")
 
 
 @contextmanager
 def writing(path: Path | str) -> Iterator[Path]:
-    """``replacing`` for stages: yields the path beside ``path`` to write to; USD's errors become a UserError."""
+    """``replacing`` for stages: yields a temporary path beside ``path``; converts USD's errors to UserError."""
     path = Path(path)
     check_name(path)
     warnings = UsdUtils.CoalescingDiagnosticDelegate()
@@ -115,7 +117,12 @@ def writing(path: Path | str) -> Iterator[Path]:
 
 
 def new_stage(aside: Path, space: StageSpace, over: Path | str | None = None) -> Usd.Stage:
-    """An empty stage in a new file, laid over another file if one is given; its default prim is to be ``/groom``."""
+    """Creates an empty stage with the default prim ``/groom``.
+
+    aside: path of the new file
+    space: unit, up-axis and frame rate
+    over:  file to add as a sublayer
+    """
     layer = Sdf.Layer.CreateNew(str(aside))
     layer.defaultPrim = "groom"
     layer.timeCodesPerSecond = layer.framesPerSecond = space.fps
@@ -128,7 +135,7 @@ def new_stage(aside: Path, space: StageSpace, over: Path | str | None = None) ->
 
 
 def relative(target: Path | str, file: Path | str) -> str:
-    """The path of ``target`` as ``file`` should name it, so that both can move together."""
+    """Path of ``target`` relative to the folder of ``file``, so that both can move together."""
     try:
         path = os.path.relpath(Path(target).absolute(), Path(file).absolute().parent)
     except ValueError:  # another drive
@@ -137,31 +144,31 @@ def relative(target: Path | str, file: Path | str) -> str:
 
 
 def refuse_itself(path: Path | str, target: Path | str, what: str) -> None:
-    """Refuses to write a file over the one it refers to."""
+    """Raises UserError when an output file would overwrite a file that it refers to."""
     if same_place(path, target):
         raise UserError(f"{path}: is the {what} that it would refer to; choose another name")
 
 
 def read_usd_space(path: Path | str) -> StageSpace:
-    """Unit, up-axis and rate of a USD file."""
+    """Unit, up-axis and frame rate of a USD file."""
     with reading(path) as source:
         return source.space
 
 
 def find_prim(source: Source, name: str) -> Usd.Prim:
-    """The prim at a path; refuses one that is not there, with the nearest one that is."""
+    """The prim at a path; raises UserError, with the most similar path, when there is none."""
     stage = source.stage
     prim = stage.GetPrimAtPath(name) if Sdf.Path.IsValidPathString(name) and name.startswith("/") else None
     if prim:
         return prim
     paths = [str(prim.GetPath()) for prim in prims(stage.GetPseudoRoot())]
-    near = difflib.get_close_matches(name, paths, n=1, cutoff=0.4)
-    hint = f"did you mean {near[0]}?" if near else f"there are: {', '.join(paths[:8]) or 'none'}"
+    similar = difflib.get_close_matches(name, paths, n=1, cutoff=0.4)
+    hint = f"did you mean {similar[0]}?" if similar else f"there are: {', '.join(paths[:8]) or 'none'}"
     raise UserError(f"{source.path}: has no prim {name}; {hint}")
 
 
 def prims(root: Usd.Prim) -> Iterator[Usd.Prim]:
-    """All prims from ``root`` down, through instances, but not the prototypes of point instancers."""
+    """All prims at and below ``root``, including instance proxies, excluding prototypes of point instancers."""
     walk = iter(Usd.PrimRange(root, Usd.TraverseInstanceProxies()))
     for prim in walk:
         if prim.IsPseudoRoot():
@@ -172,12 +179,14 @@ def prims(root: Usd.Prim) -> Iterator[Usd.Prim]:
 
 
 def choose(source: Source, candidates: list[Usd.Prim], what: str) -> Usd.Prim:
-    """The only candidate of a type, e.g. ``Mesh``; refuses none and many."""
+    """The only candidate of a type such as ``Mesh``; raises UserError for none and for several."""
     if not candidates:
-        gone = [
+        missing = [
             Path(path).name for path in source.stage.GetRootLayer().GetExternalReferences() if _missing(source, path)
         ]
-        remedy = f"{', '.join(gone)}, which it refers to, is not there" if gone else "export one or choose another file"
+        remedy = "export one or choose another file"
+        if missing:
+            remedy = f"{', '.join(missing)}, which it refers to, is not there"
         raise UserError(f"{source.path}: has no {what} prim; {remedy}")
     if len(candidates) > 1:
         names = ", ".join(str(prim.GetPath()) for prim in candidates[:8])
@@ -186,7 +195,7 @@ def choose(source: Source, candidates: list[Usd.Prim], what: str) -> Usd.Prim:
 
 
 def parse_json(source: Source, text: Any, name: str) -> Any:
-    """Plain values that Ringlet keeps as text under a name."""
+    """Parses metadata that is stored as JSON; raises UserError for other text."""
     try:
         return json.loads(text)
     except (TypeError, ValueError):
@@ -194,7 +203,7 @@ def parse_json(source: Source, text: Any, name: str) -> Any:
 
 
 def require_layers(source: Source) -> None:
-    """Refuses a file that lies over another which is not there."""
+    """Raises UserError for a file with a missing sublayer."""
     for layer in source.stage.GetLayerStack(includeSessionLayers=False):
         for path in layer.subLayerPaths:
             if not Path(layer.ComputeAbsolutePath(path)).exists():
@@ -215,13 +224,13 @@ def _space(stage: Usd.Stage, path: Path) -> StageSpace:
 
 
 def _reason(error: Tf.ErrorException) -> str:
-    """The telling part of what USD says."""
+    """Essential part of a USD error message."""
     try:
-        said = [str(part.commentary).strip() for part in error.args]
+        messages = [str(part.commentary).strip() for part in error.args]
     except UnicodeDecodeError:
         return NOT_TEXT
-    if syntax := re.search(r"\.usda?:(\d+):\d+: ", said[0]):
+    if syntax := re.search(r"\.usda?:(\d+):\d+: ", messages[0]):
         return f"syntax error in line {syntax[1]}"
-    if said[0].startswith("Failed to open layer"):
+    if messages[0].startswith("Failed to open layer"):
         return "not a USD file"
-    return said[0].splitlines()[0]
+    return messages[0].splitlines()[0]

@@ -1,4 +1,4 @@
-"""Writing points frame by frame, without holding the frames in memory."""
+"""Writes points frame by frame, without all frames in memory."""
 
 from __future__ import annotations
 
@@ -14,20 +14,23 @@ from ringlet.io.usd.curves import set_points
 from ringlet.io.usd.groom import choose_variant, groom_prim
 from ringlet.io.usd.stage import check_target, new_stage, reading, refuse_itself, writing
 
-FLUSH = 64e6  # bytes of points held in memory before they go to the file
+FLUSH = 64e6  # bytes of points in memory before they are saved
 
 
 class StreamWriter:
-    """A layer over another file that grows frame by frame, and is put in its place when the block ends well."""
+    """Base of writers that add frames to a layer over another file; the file appears when the block succeeds."""
 
     def __init__(self, path: Path | str, under: Path | str, space: StageSpace, variant: str | None = None) -> None:
         check_target(path, under)
         self.path, self.under, self.space, self.variant = Path(path), Path(under), space, variant
         self._frames: list[float] = []
-        self._held = 0
+        self._unsaved = 0
 
     def begin(self) -> Usd.Stage:
-        """Opens the file beside ``path`` and gives its stage, over a groom that is fit for it."""
+        """Opens a temporary file beside ``path`` and returns its stage over the groom.
+
+        Raises UserError when the output is a file under it, and ValueError for another space.
+        """
         with reading(self.under) as source:
             groom_prim(source)
             if source.space != self.space:
@@ -43,26 +46,26 @@ class StreamWriter:
 
     @property
     def layer(self) -> Sdf.Layer:
-        """The layer that is written."""
+        """The layer in progress."""
         return self._stage.GetRootLayer()
 
     def put(self, curves: UsdGeom.BasisCurves, frame: float | None, points: NDArray) -> None:
         """Sets the points [m] of curves at a frame; at rest for None."""
         set_points(curves, points, self.space, Usd.TimeCode.Default() if frame is None else Usd.TimeCode(float(frame)))
-        self.grown(frame, points.size * 4)
+        self.record(frame, points.size * 4)
 
-    def grown(self, frame: float | None, size: int) -> None:
-        """Notes that something was set at a frame, of so many bytes."""
+    def record(self, frame: float | None, size: int) -> None:
+        """Records ``size`` bytes that were set at a frame; saves the layer when much is unsaved."""
         if frame is not None:
             self._frames.append(float(frame))
-        self._held += size
-        # A binary layer lets go of what it has saved; a text layer would be written anew each time.
-        if self._held > FLUSH and self.path.suffix != ".usda":
+        self._unsaved += size
+        # Saving a binary layer frees its memory; a text layer would be written as a whole each time.
+        if self._unsaved > FLUSH and self.path.suffix != ".usda":
             self.layer.Save()
-            self._held = 0
+            self._unsaved = 0
 
     def finish(self) -> None:
-        """What is to be written last."""
+        """Writes final data before the last save; for subclasses."""
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None

@@ -1,8 +1,8 @@
-"""What touches in a simulation, as points over its cache: the contacts of every frame, and how it started.
+"""Contacts of a simulation as points in a layer over its cache, and its initial penetrations.
 
-/groom/touches   Points, coloured by their force: from blue to red, a thousand times as much, which no more than one
-                 contact in a hundred exceeds in any frame
-/groom/start     Points where locks began inside something, through it or too near, coloured by their depth
+/groom/touches  : Points, coloured by force on a logarithmic scale from blue to red, three decades. Red is the largest
+                  99 % quantile of any frame.
+/groom/start    : Points of initial penetrations and overlaps of locks, coloured by depth
 """
 
 from __future__ import annotations
@@ -25,25 +25,25 @@ from ringlet.io.usd.values import Types, float3, to_usd
 
 TOUCHES, START = f"{GROOM}/touches", f"{GROOM}/start"
 SIZE = 1e-3  # diameter of a point [m]
-DECADES = 3.0  # of forces that colours tell apart
-STRONG = 0.99  # of the contacts of a frame are weaker than what is red: else the few strongest leave all others blue
+DECADES = 3.0  # range of the colour scale
+STRONG = 0.99  # quantile of the forces that is red; with the maximum, few outliers would make all others blue
 RAMP = np.array([[0.05, 0.15, 0.9], [0.1, 0.8, 0.5], [1.0, 0.85, 0.1], [0.9, 0.05, 0.02]])  # from weak to strong
 
 
 def heat(strength: NDArray[np.floating]) -> NDArray[np.float32]:
-    """Colours from blue to red of strengths from 0 to 1, shape (k, 3)."""
+    """Colours from blue (0) to red (1) of strengths, shape (k, 3)."""
     at = np.linspace(0.0, 1.0, len(RAMP))
     return np.stack([np.interp(strength, at, channel) for channel in RAMP.T], axis=-1).astype(np.float32)
 
 
 def strengths(force: NDArray[np.floating], strong: float) -> NDArray[np.float64]:
-    """Forces on a logarithmic scale from 0 to 1, which is for a strong one and all above."""
-    part = np.maximum(np.asarray(force, np.float64), 0.0) / max(strong, 1e-300)
-    return np.clip(1.0 + np.log10(np.maximum(part, 1e-30)) / DECADES, 0.0, 1.0)
+    """Forces on a logarithmic scale from 0 to 1, clamped to 1 above the force ``strong``."""
+    relative = np.maximum(np.asarray(force, np.float64), 0.0) / max(strong, 1e-300)
+    return np.clip(1.0 + np.log10(np.maximum(relative, 1e-30)) / DECADES, 0.0, 1.0)
 
 
 def write_touches(cache: Cache | SimulationRecord, cache_path: Path | str, path: Path | str, space: StageSpace) -> None:
-    """Writes what touches as a layer over the cache."""
+    """Writes contacts as a layer over the cache."""
     strong = max((float(np.quantile(t.force, STRONG)) for t in cache.touches if len(t.force)), default=0.0)
     with TouchesWriter(path, cache_path, space) as writer:
         writer.mark(*start_marks(cache.start))
@@ -52,7 +52,7 @@ def write_touches(cache: Cache | SimulationRecord, cache_path: Path | str, path:
 
 
 class TouchesWriter(StreamWriter):
-    """Writes what touches, frame by frame, as a layer over the cache."""
+    """Writes contacts frame by frame as a layer over the cache."""
 
     def __enter__(self) -> Self:
         stage = self.begin()
@@ -60,7 +60,7 @@ class TouchesWriter(StreamWriter):
         return self
 
     def mark(self, places: NDArray, depth: NDArray) -> None:
-        """Adds what was in the way at the start: places [m], shape (k, 3), and how bad each is, from 0 to 1."""
+        """Adds initial penetrations: places [m], shape (k, 3), and relative depths from 0 to 1, shape (k,)."""
         _put(self._start, places, heat(depth), self.space, Usd.TimeCode.Default())
 
     def add(self, frame: float, touches: Touches, colors: NDArray) -> None:
@@ -70,11 +70,14 @@ class TouchesWriter(StreamWriter):
         for name in ("force", "gap"):
             kind, value = to_usd(getattr(touches, name))
             UsdGeom.PrimvarsAPI(self._touches).CreatePrimvar(f"ringlet:{name}", kind, "vertex").Set(value, time)
-        self.grown(frame, 36 * len(colors))
+        self.record(frame, 36 * len(colors))
 
 
 def read_touches(path: Path | str, frame: float | None = None) -> tuple[Touches, NDArray[np.float32]]:
-    """Reads what touches at a frame, by default the first, with colours that tell the force, shape (k, 3)."""
+    """Reads the contacts of a frame, by default the first, and their colours by force, shape (k, 3).
+
+    Raises UserError for a file or a frame without contacts.
+    """
     with reading(path) as source:
         prim = source.stage.GetPrimAtPath(TOUCHES)
         points = UsdGeom.Points(prim) if prim else None
@@ -92,7 +95,7 @@ def read_touches(path: Path | str, frame: float | None = None) -> tuple[Touches,
 
 
 def start_marks(start: dict[str, Any]) -> tuple[NDArray[np.float32], NDArray[np.float64]]:
-    """Where anything was in the way [m], shape (k, 3), and how bad by the worst of its kind, from 0 to 1."""
+    """Places of initial penetrations [m], shape (k, 3), and depths relative to the deepest of their kind (k,)."""
     marks = np.array(start.get("marks", []), np.float64).reshape(-1, 4)
     return marks[:, :3].astype(np.float32), marks[:, 3]
 

@@ -1,4 +1,4 @@
-"""Numpy arrays as USD values, and where and when the points of a prim are."""
+"""Conversion between numpy arrays and USD values; points, transforms and times of prims."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ringlet.io.space import check_points
 
 Types = Sdf.ValueTypeNames
 
-# What an array of a dtype and row shape is called in USD, and the class that takes it without a loop in Python.
+# USD type of an array, by dtype and row shape, and the class that converts it without a loop in Python.
 _TYPES: dict[tuple[str, tuple[int, ...]], tuple[Sdf.ValueTypeName, Any]] = {
     ("bool", ()): (Types.BoolArray, Vt.BoolArray),
     ("uint8", ()): (Types.UCharArray, Vt.UCharArray),
@@ -41,7 +41,7 @@ _DIRECTIONS = (Types.Vector3f, Types.Vector3d, Types.Normal3f, Types.Normal3d, T
 
 
 def to_usd(values: NDArray) -> tuple[Sdf.ValueTypeName, Any]:
-    """An array, one row per element, as a USD type and value."""
+    """USD type and value of an array, one row per element; raises TypeError when there is none."""
     if values.dtype.kind in "USO":
         return Types.StringArray, Vt.StringArray([str(value) for value in values])
     key = (values.dtype.name, values.shape[1:])
@@ -52,20 +52,20 @@ def to_usd(values: NDArray) -> tuple[Sdf.ValueTypeName, Any]:
 
 
 def from_usd(value: Any) -> NDArray:
-    """A USD array as numpy."""
+    """Converts a USD array to numpy."""
     return np.array(list(value)) if isinstance(value, Vt.StringArray | Vt.TokenArray) else np.array(value)
 
 
 def set_primvar(
     prim: Usd.Prim, name: str, interpolation: str, values: NDArray, kind: Sdf.ValueTypeName | None = None
 ) -> None:
-    """Writes ``primvars:name``; ``kind`` gives it a role, such as a colour."""
+    """Writes ``primvars:name``; ``kind`` sets a type with a role, such as a colour."""
     own, value = to_usd(values)
     UsdGeom.PrimvarsAPI(prim).CreatePrimvar(name, kind or own, interpolation).Set(value)
 
 
 def float_primvars(prim: Usd.Prim) -> Iterator[tuple[str, str, NDArray[np.float64]]]:
-    """Name, interpolation and values, shape (k,), of every primvar of plain floats, at rest."""
+    """Name, interpolation and values, shape (k,), of every float primvar, at rest."""
     for primvar in UsdGeom.PrimvarsAPI(prim).GetPrimvarsWithAuthoredValues():
         kind = primvar.GetTypeName().scalarType
         if kind in (Types.Float, Types.Double, Types.Half):
@@ -73,15 +73,14 @@ def float_primvars(prim: Usd.Prim) -> Iterator[tuple[str, str, NDArray[np.float6
 
 
 def vector_primvars(prim: Usd.Prim) -> Iterator[tuple[str, str, NDArray[np.float64]]]:
-    """Name, interpolation and values, shape (k, 3), of every primvar of directions (vectors, normals, or three plain
-    floats), at rest."""
+    """Name, interpolation and values, shape (k, 3), of every vector, normal or float3 primvar, at rest."""
     for primvar in UsdGeom.PrimvarsAPI(prim).GetPrimvarsWithAuthoredValues():
         if primvar.GetTypeName().scalarType in _DIRECTIONS:
             yield primvar.GetPrimvarName(), primvar.GetInterpolation(), _flattened(primvar).reshape(-1, 3)
 
 
 def _flattened(primvar: UsdGeom.Primvar) -> NDArray[np.float64]:
-    """The values of a primvar at rest, also of one with indices."""
+    """Values of a primvar at rest, indices resolved; raises UserError for an index out of range."""
     value = primvar.ComputeFlattened(Usd.TimeCode.EarliestTime())
     if value is None:
         raise UserError(f"{primvar.GetAttr().GetPath()}: has indices that are not among its values; write it again")
@@ -89,12 +88,12 @@ def _flattened(primvar: UsdGeom.Primvar) -> NDArray[np.float64]:
 
 
 def float3(values: NDArray) -> Vt.Vec3fArray:
-    """Rows of three as a USD value, shape (n, 3)."""
+    """Converts an array of shape (n, 3) to a USD value."""
     return Vt.Vec3fArray.FromNumpy(np.ascontiguousarray(values, np.float32))
 
 
 def read_points(prim: Usd.Prim, time: Usd.TimeCode, where: str) -> NDArray[np.float64]:
-    """The points of a mesh or of curves as the file has them, checked; shape (n, 3)."""
+    """Points of a mesh or of curves in local space, shape (n, 3); raises UserError for none or not finite ones."""
     value = UsdGeom.PointBased(prim).GetPointsAttr().Get(time)
     points = np.array(value if value is not None else [], np.float64).reshape(-1, 3)
     check_points(points, where)
@@ -102,7 +101,10 @@ def read_points(prim: Usd.Prim, time: Usd.TimeCode, where: str) -> NDArray[np.fl
 
 
 def read_integers(attribute: Usd.Attribute, time: Usd.TimeCode, where: str) -> NDArray[np.int64]:
-    """A list of whole numbers at a time, shape (n,); none where nothing is said."""
+    """Integers of an attribute at a time, shape (n,); empty for an attribute without value.
+
+    Raises UserError for another type.
+    """
     value = attribute.Get(time)
     numbers = np.array(value if value is not None else [], np.int64 if value is None else None)
     if numbers.ndim != 1 or (len(numbers) and numbers.dtype.kind not in "iu"):
@@ -111,18 +113,18 @@ def read_integers(attribute: Usd.Attribute, time: Usd.TimeCode, where: str) -> N
 
 
 def transformed(points: NDArray[np.float64], prim: Usd.Prim, time: Usd.TimeCode) -> NDArray[np.float64]:
-    """Points of a prim in the space of the stage, shape (n, 3)."""
+    """Transforms points of a prim to world space, shape (n, 3)."""
     matrix = local_to_world(prim, time)
     return points @ matrix[:3, :3] + matrix[3, :3]
 
 
 def local_to_world(prim: Usd.Prim, time: Usd.TimeCode) -> NDArray[np.float64]:
-    """The transform of a prim, for row vectors, shape (4, 4)."""
+    """Local-to-world transform of a prim, for row vectors, shape (4, 4)."""
     return np.array(UsdGeom.XformCache(time).GetLocalToWorldTransform(prim))
 
 
 def motion(prim: Usd.Prim) -> list[Usd.Attribute]:
-    """The attributes that place the points of a prim: the points and every transform above them."""
+    """Attributes that determine the world positions of a prim's points: points and all transforms above."""
     found = [UsdGeom.PointBased(prim).GetPointsAttr()]
     while prim and not prim.IsPseudoRoot():
         if xformable := UsdGeom.Xformable(prim):
@@ -132,7 +134,7 @@ def motion(prim: Usd.Prim) -> list[Usd.Attribute]:
 
 
 def rest_time(prim: Usd.Prim) -> Usd.TimeCode:
-    """When a prim stands in its rest pose: at the default values, or at the first sample if there are only samples."""
+    """Time code of a prim's rest pose: the default values, or the first sample when there are only samples."""
     moving = [attribute for attribute in motion(prim) if attribute.GetNumTimeSamples()]
     default = all(attribute.Get(Usd.TimeCode.Default()) is not None for attribute in moving)
     return Usd.TimeCode.Default() if default else Usd.TimeCode.EarliestTime()
