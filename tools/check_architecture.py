@@ -24,9 +24,9 @@ CORE = {
     "collision": {"geometry", "math"},
     "ccd": {"collision", "geometry", "math"},
     "contact": {"collision", "geometry", "math"},
-    "solver": {"contact", "ccd", "collision", "linear", "geometry", "math"},
+    "solver": {"contact", "ccd", "dynamics", "collision", "linear", "geometry", "math"},
     "strand": {"solver", "contact", "rest", "energy", "dynamics", "linear", "geometry", "math"},
-    "cloth": {"solver", "contact", "energy", "linear", "geometry", "math"},
+    "cloth": {"solver", "contact", "energy", "dynamics", "linear", "geometry", "math"},
     "scene": {"solver", "strand", "cloth", "contact", "ccd", "collision", "linear", "geometry", "math"},
 }
 

@@ -1,6 +1,6 @@
 // Block matrix, incomplete Cholesky and conjugate gradients, against dense solvers.
+#include "conjugate_gradient.h"
 #include "ringlet/linear/block_matrix.h"
-#include "ringlet/linear/conjugate_gradient.h"
 #include "ringlet/linear/incomplete_cholesky.h"
 
 #include <Eigen/Dense>

@@ -1,5 +1,6 @@
 #include "ringlet/cloth/cloth_objective.h"
 
+#include "ringlet/dynamics/time_integrator.h"
 #include "ringlet/energy/cloth/hinge.h"
 
 #include <algorithm>
@@ -93,17 +94,17 @@ double ClothObjective::angle(int hinge, View<Vec3> positions) const {
 
 void ClothObjective::begin(const ClothState &state, const ClothForces &forces) {
     const ClothModel &m = *model_;
-    const double h = forces.dt, b = m.damping / h;
+    const auto integrator = RINGLET_SIMD::TimeIntegrator<double>::of_step(forces.dt, RINGLET_SIMD::backward_euler_lag);
     for (int i = 0; i < m.vertex_count(); ++i) {
-        const double moving = m.mass[i] / (h * h), slowed = m.mass_damping * m.mass[i] / h, drag = m.drag[i] / h;
-        const Vec3 &start = state.positions[i];
-        const Vec3 free_flight = start + h * state.velocities[i] + h * h * forces.gravity;
-        Vec3 weighted = moving * free_flight + slowed * start + drag * (start + h * forces.wind);
-        if (!forces.forces.empty()) weighted += forces.forces[i];
-        if (m.attachment[i] > 0) weighted += m.attachment[i] * forces.targets[i];
-        inertia_[i] = moving + slowed + drag + m.attachment[i];
-        inertial_[i] = inertia_[i] > 0 ? Vec3(weighted / inertia_[i]) : start;
+        const auto inertia = integrator.inertia(m.mass[i], m.mass_damping, m.drag[i]);
+        for (int k = 0; k < 3; ++k)
+            inertial_[i][k] = inertia.target(state.positions[i][k], state.velocities[i][k], forces.gravity[k], forces.wind[k],
+                                             forces.forces.empty() ? 0.0 : forces.forces[i][k]);
+        inertia_[i] = inertia.stiffness + m.attachment[i];
+        if (m.attachment[i] > 0)
+            inertial_[i] = (inertia.stiffness * inertial_[i] + m.attachment[i] * forces.targets[i]) / inertia_[i];
     }
+    const double b = m.damping / integrator.h;
     stiffer_ = 1 + b;
     const auto damped = [&](double rest, double now) { return (rest + b * now) / stiffer_; };
     for (int t = 0; t < int(m.triangles.size()); ++t) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ringlet/contact/friction.h"
+#include "ringlet/contact/settings.h"
 #include "ringlet/math/types.h"
 
 #include <array>
@@ -81,7 +82,7 @@ inline ContactValue contact_value(const Contact &c, const Vec3 &separation) {
     const Potential rub = friction_potential(length, c.stick_length);
     value.energy += limit * rub.value;
     const Mat3 plane = Mat3::Identity() - c.normal * c.normal.transpose();
-    if (length < 1e-9 * c.stick_length) {
+    if (length < contact_settings::zero_slip * c.stick_length) {
         value.hessian += (4.0 * limit / c.stick_length) * plane; // f'/y → 4 / stick length
         return value;
     }

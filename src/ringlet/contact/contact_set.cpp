@@ -1,5 +1,6 @@
 #include "ringlet/contact/contact_set.h"
 
+#include "ringlet/contact/settings.h"
 #include "ringlet/math/collect.h"
 
 #include <Eigen/Geometry>
@@ -9,8 +10,6 @@
 
 namespace ringlet {
 namespace {
-
-constexpr double least_loaded_fraction = 0.01;
 
 // Calls work(known, found) for each of `found` whose name `before` has; both are sorted by name.
 template <class Known, class Found, class Work>
@@ -55,17 +54,17 @@ void resume_slip(const FrictionState &before, Contact &contact) {
 
 } // namespace
 
-void ContactSet::begin(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<ContactPair> &touching,
+void ContactSet::begin(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<ContactPair> &pairs,
                        View<InitialForce> initial, View<Vec3> positions) {
     std::map<std::array<int, 4>, Vec3> forces;
     for (const InitialForce &of : initial) forces[of.vertex] = of.force;
     overlaps.clear(), lagged_.clear(), friction_.clear();
-    for (const ContactPair &pair : touching) {
+    for (const ContactPair &pair : pairs) {
         const double gap = std::sqrt(pair.closest.distance2);
         const auto force = forces.find(stencil(mesh, pair, pair.closest).vertex);
-        const bool bears = force != forces.end() && gap > 0.0 && force->second[0] > 0.0;
-        overlaps.add(contact_name(pair), gap, bears ? force->second[0] : 0.0);
-        if (!bears) continue;
+        const bool loaded = force != forces.end() && gap > 0.0 && force->second[0] > 0.0;
+        overlaps.add(contact_name(pair), gap, loaded ? force->second[0] : 0.0);
+        if (!loaded) continue;
         for_contact_points(mesh, pair, positions, [&](const ContactPoint &point) {
             const Contact contact = contact_at(mesh, material, pair, point, positions);
             lagged_.push_back({contact.pair, point.share * force->second[0]});
@@ -87,10 +86,11 @@ void ContactSet::commit_friction(View<Vec3> positions) {
 template <class Work>
 void ContactSet::for_active_points(const CollisionMesh &mesh, const ContactPair &pair, View<Vec3> positions,
                                    const Work &work) const {
-    double d_hat = pair.d_hat, loaded = 1.0;
+    double d_hat = pair.d_hat, loaded_fraction = 1.0;
     if (const InitialOverlap *overlap = overlaps.find(pair)) {
         d_hat = std::min(d_hat, overlap->activation);
-        if (overlap->force > 0.0) loaded = std::max(1.0 - overlap->gap / pair.d_hat, least_loaded_fraction);
+        if (overlap->force > 0.0)
+            loaded_fraction = std::max(1.0 - overlap->gap / pair.d_hat, contact_settings::least_loaded_fraction);
     }
     const bool by_planes = with_vertices(mesh, pair, [&](const auto &a, const auto &b) {
         return uses_planes(mesh.object[a[0]]) || uses_planes(mesh.object[b[0]]);
@@ -98,19 +98,22 @@ void ContactSet::for_active_points(const CollisionMesh &mesh, const ContactPair 
     for_contact_points(mesh, pair, positions, [&](const ContactPoint &point) {
         const double gap = std::sqrt(point.closest.distance2);
         if (!(gap > 0.0 && gap < d_hat)) return;
-        double barrier_end = d_hat / 100;
-        if (by_planes) barrier_end = std::min(std::clamp(0.25 * gap, barrier_end, pair.d_hat / 64), d_hat / 64);
-        work(point, gap, d_hat, barrier_end, loaded);
+        double barrier_end = d_hat / contact_settings::d_hat_per_barrier_end;
+        if (by_planes)
+            barrier_end = std::min(std::clamp(contact_settings::plane_barrier_gap * gap, barrier_end,
+                                              contact_settings::plane_barrier_end * pair.d_hat),
+                                   contact_settings::plane_barrier_end * d_hat);
+        work(point, gap, d_hat, barrier_end, loaded_fraction);
     });
 }
 
 std::vector<Contact> ContactSet::linearise(const CollisionMesh &mesh, const ContactMaterial &material,
-                                           const std::vector<ContactPair> &touching, View<Vec3> start,
+                                           const std::vector<ContactPair> &pairs, View<Vec3> start,
                                            View<Vec3> positions) const {
-    std::vector<Contact> found = collect<Contact>(int(touching.size()), [&](int k, std::vector<Contact> &contacts) {
-        for_active_points(mesh, touching[k], positions,
+    std::vector<Contact> found = collect<Contact>(int(pairs.size()), [&](int k, std::vector<Contact> &contacts) {
+        for_active_points(mesh, pairs[k], positions,
                           [&](const ContactPoint &point, double gap, double d_hat, double barrier_end, double loaded) {
-                              Contact contact = contact_at(mesh, material, touching[k], point, positions);
+                              Contact contact = contact_at(mesh, material, pairs[k], point, positions);
                               contact.d_hat = d_hat;
                               contact.barrier_end = barrier_end;
                               contact.loaded_fraction = loaded;
@@ -125,9 +128,9 @@ std::vector<Contact> ContactSet::linearise(const CollisionMesh &mesh, const Cont
 }
 
 std::vector<PairEnergy> ContactSet::energies(const CollisionMesh &mesh, const ContactMaterial &material,
-                                             const std::vector<ContactPair> &touching, View<Vec3> positions) const {
-    std::vector<PairEnergy> found = collect<PairEnergy>(int(touching.size()), [&](int k, std::vector<PairEnergy> &energies) {
-        const ContactPair &pair = touching[k];
+                                             const std::vector<ContactPair> &pairs, View<Vec3> positions) const {
+    std::vector<PairEnergy> found = collect<PairEnergy>(int(pairs.size()), [&](int k, std::vector<PairEnergy> &energies) {
+        const ContactPair &pair = pairs[k];
         for_active_points(mesh, pair, positions,
                           [&](const ContactPoint &point, double gap, double d_hat, double barrier_end, double) {
                               const Stencil at = stencil(mesh, pair, point.closest);
@@ -141,10 +144,10 @@ std::vector<PairEnergy> ContactSet::energies(const CollisionMesh &mesh, const Co
     return found;
 }
 
-void ContactSet::find(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<ContactPair> &touching,
+void ContactSet::find(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<ContactPair> &pairs,
                       View<Vec3> start, View<Vec3> positions) {
-    overlaps.activate(mesh, material, touching); // the same until contacts are found again, whatever the stiffness is then
-    std::vector<Contact> found = linearise(mesh, material, touching, start, positions);
+    overlaps.activate(mesh, material, pairs); // the same until contacts are found again, whatever the stiffness is then
+    std::vector<Contact> found = linearise(mesh, material, pairs, start, positions);
     for_known(lagged_, found, [](const LaggedForce &before, Contact &now) { now.lagged_force = before.force; });
     contacts_ = std::move(found);
     lagged_.clear();

@@ -14,13 +14,13 @@ struct FrictionState {
     Vec3 slip, normal; // [m], 1
 };
 
-// The normal force that friction uses next: what the contact is expected to bear.
+// The normal force that friction uses next: that which the contact is expected to have.
 struct LaggedForce {
     uint64_t pair;
     double force; // [N]
 };
 
-// The force that a pair bears as a scene begins.
+// The force of a pair as a scene begins.
 struct InitialForce {
     std::array<int, 4> vertex; // of the pair, as contacts have them
     Vec3 force;                // on the first primitive [N]: along the normal; towards the last vertex from the one before, as
@@ -40,24 +40,24 @@ class ContactSet {
 public:
     InitialOverlaps overlaps;
 
-    // Pairs that touch before the first step are initial overlaps; some bear a force.
-    void begin(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<ContactPair> &touching,
+    // The contact pairs before the first step are initial overlaps; some have a force.
+    void begin(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<ContactPair> &pairs,
                View<InitialForce> forces, View<Vec3> positions);
 
-    // Replaces the contacts by those of the pairs that touch at `positions`; `start` says where the step began, for the slip.
+    // Replaces the contacts by those of the contact pairs at `positions`; `start` says where the step began, for the slip.
     // The normal force of friction is lagged; it is 0 for a new contact: the force at an iterate says little of the solution.
-    void find(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<ContactPair> &touching,
+    void find(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<ContactPair> &pairs,
               View<Vec3> start, View<Vec3> positions);
 
     // Keeps the slip of the contacts as a step ends, up to the stick length: what has slipped farther has slid.
     void commit_friction(View<Vec3> positions);
 
-    // Barrier energies at other positions, of the pairs that touch there. A pair that is a contact keeps its stiffness, so that
+    // Barrier energies at other positions, of the contact pairs there. A pair that is a contact keeps its stiffness, so that
     // energies can be compared.
     std::vector<PairEnergy> energies(const CollisionMesh &mesh, const ContactMaterial &material,
-                                     const std::vector<ContactPair> &touching, View<Vec3> positions) const;
+                                     const std::vector<ContactPair> &pairs, View<Vec3> positions) const;
 
-    // Objects whose line search knows contacts by their planes (see solver/plane_search.h). Iterates cross these planes, so
+    // Objects whose line search knows contacts by their planes (see solver/line_search.h). Iterates cross these planes, so
     // that the barriers end early.
     void set_plane_objects(View<unsigned char> objects) { plane_objects_.assign(objects.begin(), objects.end()); }
 
@@ -81,7 +81,7 @@ private:
     template <class Work>
     void for_active_points(const CollisionMesh &mesh, const ContactPair &pair, View<Vec3> positions, const Work &work) const;
     std::vector<Contact> linearise(const CollisionMesh &mesh, const ContactMaterial &material,
-                                   const std::vector<ContactPair> &touching, View<Vec3> start, View<Vec3> positions) const;
+                                   const std::vector<ContactPair> &pairs, View<Vec3> start, View<Vec3> positions) const;
     void index(const CollisionMesh &mesh);
     bool uses_planes(int object) const { return size_t(object) < plane_objects_.size() && plane_objects_[object]; }
 

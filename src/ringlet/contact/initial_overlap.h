@@ -11,12 +11,12 @@ namespace ringlet {
 
 struct InitialOverlap {
     double gap;        // how close the pair began [m]; grows as it parts
-    double force;      // that it bears there [N]
+    double force;      // normal force there [N]
     double activation; // distance at which it pushes from now on [m]
 };
 
-// An overlapping pair activates at its initial gap, so that nothing pops apart. Its activation distance then grows by a length
-// a step, or stays, with the force that the pair bears there whatever the stiffness is.
+// An overlapping pair activates at its initial gap, so that nothing pops. Its activation distance then grows by a length a
+// step. Or it stays, and the pair keeps the normal force that it has there, whatever the stiffness is.
 class InitialOverlaps {
 public:
     using Pairs = std::unordered_map<uint64_t, InitialOverlap>; // by the name of the pair
@@ -28,11 +28,11 @@ public:
 
     // Forgets the pairs that have parted, and notes the force of the others. What is closer than a hundredth of its activation
     // distance can hardly move: it parts by a length a step until it is no longer.
-    void settle(const std::vector<ContactPair> &touching, const std::vector<Contact> &contacts, View<Vec3> positions,
+    void settle(const std::vector<ContactPair> &pairs, const std::vector<Contact> &contacts, View<Vec3> positions,
                 double length);
 
-    // Activates each pair where it bears its force at the present stiffness.
-    void activate(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<ContactPair> &touching);
+    // Activates each pair where its normal force balances at the present stiffness.
+    void activate(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<ContactPair> &pairs);
 
     const InitialOverlap *find(const ContactPair &pair) const; // null where it did not overlap, or has parted
 

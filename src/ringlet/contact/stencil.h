@@ -3,6 +3,7 @@
 
 #include "ringlet/collision/narrow_phase.h"
 #include "ringlet/contact/material.h"
+#include "ringlet/contact/settings.h"
 
 #include <cstdint>
 
@@ -41,14 +42,14 @@ struct ContactPoint {
 // work(ContactPoint) in order.
 template <class Work>
 void for_contact_points(const CollisionMesh &mesh, const ContactPair &pair, View<Vec3> positions, const Work &work) {
-    constexpr double almost_parallel = 0.01; // sin² of the angle
     if (!pair.edge_edge || std::max(pair.primitive[0], pair.primitive[1]) >= mesh.strand_edges)
         return work(ContactPoint{pair.closest, 1.0, 0});
     const auto [a0, a1] = mesh.edges[pair.primitive[0]];
     const auto [b0, b1] = mesh.edges[pair.primitive[1]];
     const Vec3 a = positions[a1] - positions[a0], b = positions[b1] - positions[b0];
     const double aa = a.squaredNorm(), bb = b.squaredNorm(), sine2 = a.cross(b).squaredNorm();
-    const double s = std::min(sine2 / (almost_parallel * aa * bb + 1e-300), 1.0), crossing = s * s * (3.0 - 2.0 * s);
+    const double s = std::min(sine2 / (contact_settings::parallel_sine2 * aa * bb + 1e-300), 1.0),
+                 crossing = s * s * (3.0 - 2.0 * s);
     if (crossing > 0.0) work(ContactPoint{pair.closest, crossing, 0});
     if (crossing == 1.0) return;
     const double share = 0.5 * (1.0 - crossing); // two of the four ends lie beside the other edge, as a rule

@@ -6,8 +6,7 @@
 namespace ringlet {
 
 void ContactStiffness::begin_step(std::vector<double> largest, double dt) {
-    constexpr double half_life = 0.25; // of loads [s]
-    for (double &load : load_) load *= std::exp2(-dt / half_life);
+    for (double &load : load_) load *= std::exp2(-dt / contact_settings::load_half_life);
     largest_ = std::move(largest);
 }
 
@@ -23,7 +22,6 @@ bool ContactStiffness::raise_loads(const ContactSet &contacts) {
 }
 
 std::vector<double> ContactStiffness::levels(const CollisionMesh &mesh, double d_hat) const {
-    constexpr double softest = 0.01, level = 10.0;
     std::vector<double> stiffness = largest_;
     const int strand_vertices = int(mesh.along_strand.size());
     for (int v = 0; v < strand_vertices; ++v) {
@@ -31,8 +29,8 @@ std::vector<double> ContactStiffness::levels(const CollisionMesh &mesh, double d
         double load = load_[v]; // a contact that slides passes on to the next vertex
         for (const int next : {v - 1, v + 1})
             if (next >= 0 && next < strand_vertices && mesh.object[next] == mesh.object[v]) load = std::max(load, load_[next]);
-        double enough = softest * largest_[v];
-        while (enough < load / d_hat && enough < largest_[v]) enough *= level;
+        double enough = contact_settings::softest_level * largest_[v];
+        while (enough < load / d_hat && enough < largest_[v]) enough *= contact_settings::level_factor;
         stiffness[v] = std::min(enough, largest_[v]);
     }
     return stiffness;

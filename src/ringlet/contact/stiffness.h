@@ -1,4 +1,4 @@
-// Contact stiffness, in levels: each vertex is as stiff as the load that it has to bear asks for.
+// Contact stiffness, in levels: each vertex is as stiff as its load asks for.
 #pragma once
 
 #include "ringlet/contact/contact_set.h"
@@ -9,8 +9,8 @@ namespace ringlet {
 
 // Were contacts always as stiff as the largest load needs, dense hair would stand still: nearly every search direction leads
 // into a new contact whose energy is thousands of times that of the motion. A strand's vertex is a hundredth as stiff as it may
-// have to be, a tenth where it bears more than that can, and all of it where it must. With so few levels a step has one
-// solution, whatever iterates lead to it.
+// have to be, a tenth where its load is more than that can carry, and all of it where it must. With so few levels a step has
+// one solution, whatever iterates lead to it.
 class ContactStiffness {
 public:
     explicit ContactStiffness(int vertices) : load_(vertices, 0.0) {}
@@ -19,7 +19,7 @@ public:
     // slowly: hair that rests on hair must not become soft, sink in and become stiff again.
     void begin_step(std::vector<double> largest, double dt);
 
-    // Raises loads to what the contacts are expected to bear; returns whether one has risen. None falls within a step.
+    // Raises loads to the lagged normal forces of the contacts; returns whether one has risen. None falls within a step.
     bool raise_loads(const ContactSet &contacts);
 
     const std::vector<double> &largest() const { return largest_; }

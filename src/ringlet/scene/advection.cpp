@@ -2,6 +2,7 @@
 
 #include "ringlet/ccd/impact_zones.h"
 #include "ringlet/geometry/rigid_motion.h"
+#include "ringlet/scene/settings.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -41,14 +42,13 @@ struct Patch {
 // Patches of all bodies: the farthest vertex from the patches of its body begins the next, while they keep vertices enough to
 // determine a rotation.
 std::vector<Patch> patches(const PrescribedMotion &motion) {
-    constexpr size_t max_patches = 96, vertices_of_patch = 16;
     const std::vector<int> &bodies = motion.vertices.bodies;
     const int first = bodies.front(), count = motion.vertices.count() - first;
     std::vector<double> distance2(count, std::numeric_limits<double>::infinity());
     std::vector<int> nearest(count, -1);
     std::vector<size_t> begun(bodies.size() - 1, 0);
     std::vector<Patch> all;
-    while (count > 0 && all.size() < max_patches) {
+    while (count > 0 && all.size() < size_t(scene_settings::max_patches)) {
         const int seed = first + int(std::max_element(distance2.begin(), distance2.end()) - distance2.begin());
         if (distance2[seed - first] == 0.0) break;
         const int body = int(std::upper_bound(bodies.begin(), bodies.end(), seed) - bodies.begin()) - 1;
@@ -57,7 +57,7 @@ std::vector<Patch> patches(const PrescribedMotion &motion) {
             const double away2 = (motion.start[v] - motion.start[seed]).squaredNorm();
             if (away2 < distance2[v - first]) distance2[v - first] = away2, nearest[v - first] = int(all.size());
         }
-        if (++begun[body] * vertices_of_patch >= size_t(end - begin)) // it has enough
+        if (++begun[body] * scene_settings::vertices_of_patch >= size_t(end - begin)) // it has enough
             std::fill(distance2.begin() + (begin - first), distance2.begin() + (end - first), 0.0);
         all.emplace_back();
     }
@@ -70,20 +70,18 @@ std::vector<Patch> patches(const PrescribedMotion &motion) {
 
 // Whether the prescribed vertices of a range move along with another prescribed vertex.
 bool follow(const PrescribedMotion &motion, int begin, int end, int leader) {
-    constexpr double rounding2 = 1e-20; // [m²]
     for (int v = begin; v < end; ++v)
         if (!motion.vertices.mesh.moves[v] &&
-            !((motion.carry(leader, motion.start[v]) - motion.target[v]).squaredNorm() < rounding2))
+            !((motion.carry(leader, motion.start[v]) - motion.target[v]).squaredNorm() < scene_settings::same_place2))
             return false;
     return true;
 }
 
 // The motion that most dynamic vertices have in common.
 RigidMotion motion_of_most(const SceneVertices &vertices, View<Vec3> from, View<Vec3> to) {
-    constexpr int samples = 1000;
     const int end = vertices.strand_vertices() > 0 ? vertices.strand_vertices() : vertices.dynamic_vertices;
     std::vector<int> sample;
-    for (int v = 0; v < end; v += 1 + end / samples) sample.push_back(v);
+    for (int v = 0; v < end; v += 1 + end / scene_settings::motion_samples) sample.push_back(v);
     return common_motion(sample, from, to);
 }
 
@@ -190,8 +188,8 @@ double limit_advection(const PrescribedMotion &motion, View<int> rigid, const Ri
 Advected advect(const SceneVertices &vertices, View<Vec3> target, View<int> offsets, const Carriers &carriers,
                 Configuration &configuration, SceneReport &report) {
     const bool bodies = vertices.bodies.front() < vertices.bodies.back();
-    const int hopeful_rounds = bodies ? 6 : ccd::max_zone_rounds;
-    const int attempts = bodies ? 5 : 0; // through space, each half as far as the one before
+    const int hopeful_rounds = bodies ? scene_settings::hopeful_rounds : ccd::max_zone_rounds;
+    const int attempts = bodies ? scene_settings::space_attempts : 0;
     const std::vector<Vec3> &now = configuration.positions;
     std::vector<Vec3> end(target.begin(), target.end());
     const PrescribedMotion whole{vertices, now, target};

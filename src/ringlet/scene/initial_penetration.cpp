@@ -1,6 +1,7 @@
 #include "ringlet/scene/initial_penetration.h"
 
 #include "ringlet/geometry/triangle_tree.h"
+#include "ringlet/scene/settings.h"
 
 #include <algorithm>
 #include <limits>
@@ -25,10 +26,10 @@ struct Surface {
     }
 
     double least_height(const Vec3 &from, const Vec3 &to) const { // on the segment, by samples
-        constexpr int samples = 8;
         double least = std::numeric_limits<double>::infinity();
         Vec3 unused;
-        for (int k = 0; k <= samples; ++k) least = std::min(least, height(from + (to - from) * (double(k) / samples), unused));
+        for (int k = 0; k <= scene_settings::height_samples; ++k)
+            least = std::min(least, height(from + (to - from) * (double(k) / scene_settings::height_samples), unused));
         return least;
     }
 };
@@ -46,7 +47,6 @@ void InitialPenetration::add(int vertex, const Body &body, CollisionMesh &mesh) 
 
 std::vector<RecoverySpring> InitialPenetration::recover(CollisionMesh &mesh, View<Vec3> positions, View<int> offsets,
                                                         View<double> stiffness, double length) {
-    constexpr double nearly = 0.9; // of the contact distance: what resists keeps vertices a little below
     if (vertices_.empty()) return {};
     std::vector<std::unique_ptr<Surface>> surfaces(bodies_.size());
     for (size_t b = 0; b < bodies_.size(); ++b)
@@ -62,13 +62,13 @@ std::vector<RecoverySpring> InitialPenetration::recover(CollisionMesh &mesh, Vie
         const double touching = mesh.radius[v] + mesh.radius[body.first];
         Vec3 outward = Vec3::Zero();
         const double height = surface.height(positions[v], outward);
-        if (height >= nearly * touching) {
+        if (height >= scene_settings::recovered_height * touching) {
             const int strand = mesh.object[v];
             double least = height;
             for (const int next : {v - 1, v + 1})
                 if (next >= offsets[strand] && next < offsets[strand + 1])
                     least = std::min(least, surface.least_height(positions[v], positions[next]));
-            outside[k] = least >= 0.5 * touching;
+            outside[k] = least >= scene_settings::separate_height * touching;
         }
         double &height_wanted = vertices_[k].height;
         height_wanted = std::min(std::max(height_wanted, height) + length, touching);

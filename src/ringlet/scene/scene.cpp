@@ -1,6 +1,6 @@
 #include "ringlet/scene/scene.h"
 
-#include "ringlet/scene/parts.h"
+#include "ringlet/scene/data.h"
 
 #include <algorithm>
 #include <cstring>
@@ -40,8 +40,8 @@ std::vector<Vec3> all_positions(const StrandState &strands, const std::vector<Sc
 
 } // namespace
 
-SceneParts::SceneParts(const StrandModel &model_, StrandState &state_, const std::vector<SceneCloth> &cloths_,
-                       const std::vector<BodyModel> &bodies_, const std::vector<int> &rooted_in_, const SceneContact &contact_)
+SceneData::SceneData(const StrandModel &model_, StrandState &state_, const std::vector<SceneCloth> &cloths_,
+                     const std::vector<BodyModel> &bodies_, const std::vector<int> &rooted_in_, const SceneContact &contact_)
     : model(model_), state(state_), contact(contact_), rooted_in(rooted_in_), pinned_to(pins(cloths_)),
       touched(cloths_.size(), -1), vertices(number_vertices(model_, state_, cloths_, bodies_, rooted_in_, contact_)),
       configuration(vertices, model_.offsets, vertices.cloths, all_positions(state_, cloths_, bodies_), contact_.strand_radius),
@@ -52,7 +52,7 @@ SceneParts::SceneParts(const StrandModel &model_, StrandState &state_, const std
         bodies.push_back({vertices.bodies[b], int(bodies_[b].rest.size()), vertices.objects + b, bodies_[b].triangles});
 }
 
-bool SceneParts::is_placed() const {
+bool SceneData::is_placed() const {
     const auto same = [&](const std::vector<Vec3> &of, int first) {
         return std::memcmp(of.data(), configuration.positions.data() + first, of.size() * sizeof(Vec3)) == 0;
     };
@@ -61,7 +61,7 @@ bool SceneParts::is_placed() const {
     return placed;
 }
 
-void SceneParts::take_placed() {
+void SceneData::take_placed() {
     const auto take = [&](const std::vector<Vec3> &of, int first) {
         std::copy(of.begin(), of.end(), configuration.positions.begin() + first);
     };
@@ -72,26 +72,26 @@ void SceneParts::take_placed() {
 
 Scene::Scene(const StrandModel &model, StrandState &state, const std::vector<SceneCloth> &cloths,
              const std::vector<BodyModel> &bodies, const std::vector<int> &rooted_in, const SceneContact &contact)
-    : parts_(std::make_unique<SceneParts>(model, state, cloths, bodies, rooted_in, contact)) {}
+    : data_(std::make_unique<SceneData>(model, state, cloths, bodies, rooted_in, contact)) {}
 
 Scene::~Scene() = default;
 Scene::Scene(Scene &&) noexcept = default;
 
 SceneReport Scene::step(const SceneInput &input, const SceneStep &step, std::vector<StrandReport> &of_strands,
                         std::vector<ClothReport> &of_cloths) {
-    if (input.targets.size() != size_t(parts_->vertices.count()))
+    if (input.targets.size() != size_t(data_->vertices.count()))
         throw std::invalid_argument("scene: targets do not fit the vertices");
-    if (input.forces.size() != size_t(parts_->vertices.dynamic_vertices))
+    if (input.forces.size() != size_t(data_->vertices.dynamic_vertices))
         throw std::invalid_argument("scene: forces do not fit the vertices of strands and cloths");
-    if (!parts_->is_placed())
+    if (!data_->is_placed())
         throw std::invalid_argument("scene: strands or cloths were placed since the last step; call place() first");
-    const SceneReport report = take_step(*parts_, input, step);
-    of_strands.assign(parts_->model.strand_count(), StrandReport{});
-    for (const auto &block : parts_->strands)
+    const SceneReport report = take_step(*data_, input, step);
+    of_strands.assign(data_->model.strand_count(), StrandReport{});
+    for (const auto &block : data_->strands)
         for (size_t lane = 0; lane < block->objects().size(); ++lane)
             of_strands[block->objects()[lane].number] = block->reports()[lane];
     of_cloths.clear();
-    for (const auto &block : parts_->cloths) {
+    for (const auto &block : data_->cloths) {
         ClothReport of = block->report;
         of.linear = report.linear_iterations, of.linear_residual = report.linear_residual, of.cuts = report.cuts;
         of_cloths.push_back(of);
@@ -99,12 +99,12 @@ SceneReport Scene::step(const SceneInput &input, const SceneStep &step, std::vec
     return report;
 }
 
-void Scene::place() { parts_->take_placed(); }
+void Scene::place() { data_->take_placed(); }
 
 std::vector<Contact> Scene::touching() {
-    const SceneVertices &vertices = parts_->vertices;
-    PairCache &pairs = parts_->configuration.pairs;
-    const std::vector<Vec3> &now = parts_->configuration.positions;
+    const SceneVertices &vertices = data_->vertices;
+    PairCache &pairs = data_->configuration.pairs;
+    const std::vector<Vec3> &now = data_->configuration.positions;
     pairs.clear();
     pairs.update_bounds({now, now}, {.margin = 0.0, .max_path = 0.0});
     ContactMaterial material = vertices.material;
@@ -116,56 +116,56 @@ std::vector<Contact> Scene::touching() {
 }
 
 void Scene::set_initial_forces(std::vector<InitialForce> forces) {
-    if (parts_->begun) throw std::invalid_argument("scene: initial forces are set before the first step");
-    parts_->initial_forces = std::move(forces);
+    if (data_->begun) throw std::invalid_argument("scene: initial forces are set before the first step");
+    data_->initial_forces = std::move(forces);
 }
 
 void Scene::allow_penetration(int vertex, int body) {
-    if (vertex < 0 || vertex >= parts_->vertices.strand_vertices())
+    if (vertex < 0 || vertex >= data_->vertices.strand_vertices())
         throw std::invalid_argument("scene: only vertices of strands may penetrate a body");
-    if (body < 0 || body >= int(parts_->bodies.size())) throw std::invalid_argument("scene: there is no such body");
-    parts_->configuration.pairs.clear();
-    parts_->penetration.add(vertex, parts_->bodies[body], parts_->vertices.mesh);
+    if (body < 0 || body >= int(data_->bodies.size())) throw std::invalid_argument("scene: there is no such body");
+    data_->configuration.pairs.clear();
+    data_->penetration.add(vertex, data_->bodies[body], data_->vertices.mesh);
 }
 
-int Scene::penetrating() const { return parts_->penetration.count(); }
+int Scene::penetrating() const { return data_->penetration.count(); }
 
-void Scene::record(bool on) { parts_->configuration.record(on); }
-const std::vector<std::vector<Vec3>> &Scene::path() const { return parts_->configuration.recorded(); }
+void Scene::record(bool on) { data_->configuration.record(on); }
+const std::vector<std::vector<Vec3>> &Scene::path() const { return data_->configuration.recorded(); }
 
 SceneMemory Scene::memory() const {
-    parts_->configuration.pairs.clear(); // as in a scene that recalls it: then even what is counted is the same
+    data_->configuration.pairs.clear(); // as in a scene that recalls it: then even what is counted is the same
     const View<Vec3> all = positions();
-    const ContactSet &contacts = parts_->objective.contacts;
-    return {parts_->begun,
+    const ContactSet &contacts = data_->objective.contacts;
+    return {data_->begun,
             {all.begin() + dynamic_vertices(), all.end()},
             contacts.overlaps.pairs(),
             contacts.lagged_forces(),
-            parts_->stiffness.loads(),
+            data_->stiffness.loads(),
             contacts.friction(),
-            parts_->penetration.heights(),
-            parts_->touched};
+            data_->penetration.heights(),
+            data_->touched};
 }
 
 void Scene::recall(const SceneMemory &memory) {
-    SceneParts &parts = *parts_;
-    if (memory.bodies.size() != size_t(parts.vertices.count() - dynamic_vertices()) ||
-        memory.touched.size() != parts.touched.size() || memory.loads.size() != size_t(parts.vertices.count()))
+    SceneData &data = *data_;
+    if (memory.bodies.size() != size_t(data.vertices.count() - dynamic_vertices()) ||
+        memory.touched.size() != data.touched.size() || memory.loads.size() != size_t(data.vertices.count()))
         throw std::invalid_argument("scene: what is to be recalled is of another scene");
-    parts.begun = memory.begun;
-    std::copy(memory.bodies.begin(), memory.bodies.end(), parts.configuration.positions.begin() + dynamic_vertices());
-    ContactSet &contacts = parts.objective.contacts;
+    data.begun = memory.begun;
+    std::copy(memory.bodies.begin(), memory.bodies.end(), data.configuration.positions.begin() + dynamic_vertices());
+    ContactSet &contacts = data.objective.contacts;
     contacts.overlaps.recall(memory.overlaps);
     contacts.recall(memory.lagged_forces);
-    parts.stiffness.recall(memory.loads);
+    data.stiffness.recall(memory.loads);
     contacts.recall(memory.friction);
-    parts.penetration.recall(memory.penetrations, parts.vertices.mesh);
-    parts.touched = memory.touched;
-    parts.take_placed();
+    data.penetration.recall(memory.penetrations, data.vertices.mesh);
+    data.touched = memory.touched;
+    data.take_placed();
 }
 
-View<Vec3> Scene::positions() const { return parts_->configuration.positions; }
-int Scene::dynamic_vertices() const { return parts_->vertices.dynamic_vertices; }
-const std::vector<Contact> &Scene::contacts() const { return parts_->objective.contacts.contacts(); }
+View<Vec3> Scene::positions() const { return data_->configuration.positions; }
+int Scene::dynamic_vertices() const { return data_->vertices.dynamic_vertices; }
+const std::vector<Contact> &Scene::contacts() const { return data_->objective.contacts.contacts(); }
 
 } // namespace ringlet

@@ -17,7 +17,7 @@ struct SceneStep {
     StrandStep strands; // time, forces and Newton's method of all blocks; model and integrator of the strands
     LinearSettings linear;
     int extra = 60;       // Newton iterations more, at most, for strands that were limited and are stretched
-    int max_substeps = 8; // where bodies leave no way out a step is taken in parts
+    int max_substeps = 8; // where bodies leave no way out a step is split into substeps
 };
 
 struct SceneInput {
@@ -58,7 +58,7 @@ public:
     // included. Their forces are known in a step alone; no step depends on this.
     std::vector<Contact> touching();
 
-    // Before the first step: the forces that touching pairs bear.
+    // Before the first step: the forces of contact pairs.
     void set_initial_forces(std::vector<InitialForce> forces);
 
     // Exempts a strand's vertex that begins inside a body, or too close to it, until it has come out: see
@@ -80,7 +80,7 @@ public:
     const std::vector<Contact> &contacts() const; // of the last step
 
 private:
-    std::unique_ptr<struct SceneParts> parts_;
+    std::unique_ptr<struct SceneData> data_;
 };
 
 } // namespace ringlet

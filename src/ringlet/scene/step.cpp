@@ -1,7 +1,8 @@
 // How a step of a scene goes: advect with bodies → limit → { contacts → assemble → solve → limit → line search → accept } →
 // commit. The braces are Newton's method, in solver/newton.cpp.
 #include "ringlet/scene/advection.h"
-#include "ringlet/scene/parts.h"
+#include "ringlet/scene/data.h"
+#include "ringlet/scene/settings.h"
 
 #include <algorithm>
 #include <limits>
@@ -9,17 +10,14 @@
 namespace ringlet {
 namespace {
 
-constexpr double recovery_speed = 0.02; // of vertices that began inside a body [m/s]
-constexpr double parting_speed = 1e-4;  // of initial overlaps that stay, out of a hundredth of their distance [m/s]
-
-void begin_contact(SceneParts &scene, double dt) {
+void begin_contact(SceneData &scene, double dt) {
     scene.vertices.material.stick_length = scene.contact.creep_speed * dt;
     scene.stiffness.begin_step(scene.objective.contact_stiffness(scene.contact.stiffness, dt), dt);
     scene.vertices.material.stiffness = scene.stiffness.levels(scene.vertices.mesh, scene.activation_distance());
 }
 
-// Before the first step: what overlaps, and what it bears.
-void find_initial_contacts(SceneParts &scene, double dt) {
+// Before the first step: the initial overlaps and their forces.
+void find_initial_contacts(SceneData &scene, double dt) {
     const std::vector<Vec3> &now = scene.configuration.positions;
     ContactSet &contacts = scene.objective.contacts;
     scene.configuration.pairs.update_bounds({now, now}, {.margin = 0.0, .max_path = 0.0});
@@ -33,14 +31,14 @@ void find_initial_contacts(SceneParts &scene, double dt) {
 }
 
 // A cloth that is not pinned moves along with the body that it had most contacts with.
-std::vector<int> bodies_of_cloths(const SceneParts &scene) {
+std::vector<int> bodies_of_cloths(const SceneData &scene) {
     std::vector<int> bodies = scene.pinned_to;
     for (size_t c = 0; c < bodies.size(); ++c)
         if (bodies[c] < 0) bodies[c] = scene.touched[c];
     return bodies;
 }
 
-std::vector<int> most_touched_bodies(const SceneParts &scene) {
+std::vector<int> most_touched_bodies(const SceneData &scene) {
     const SceneVertices &vertices = scene.vertices;
     const int bodies = int(scene.bodies.size()), cloths = int(scene.cloths.size());
     std::vector<int> contacts(size_t(bodies) * cloths, 0), touched(cloths, -1);
@@ -56,7 +54,7 @@ std::vector<int> most_touched_bodies(const SceneParts &scene) {
     return touched;
 }
 
-Vec3 mean_velocity_of_cloths(const SceneParts &scene) {
+Vec3 mean_velocity_of_cloths(const SceneData &scene) {
     double mass = 0.0;
     Vec3 momentum = Vec3::Zero();
     for (const auto &cloth : scene.cloths)
@@ -68,7 +66,7 @@ Vec3 mean_velocity_of_cloths(const SceneParts &scene) {
 }
 
 // Moves everything along with prescribed vertices; those of `targets` become where they have arrived.
-Advected advect_with_bodies(SceneParts &scene, double dt, std::vector<Vec3> &targets, SceneReport &report) {
+Advected advect_with_bodies(SceneData &scene, double dt, std::vector<Vec3> &targets, SceneReport &report) {
     const SceneVertices &vertices = scene.vertices;
     std::vector<Vec3> end = scene.configuration.positions;
     for (int v = 0; v < vertices.count(); ++v)
@@ -83,9 +81,8 @@ Advected advect_with_bodies(SceneParts &scene, double dt, std::vector<Vec3> &tar
 }
 
 // Moves to where Newton's method begins: the blocks' initial guess, limited.
-void move_to_initial_guess(SceneParts &scene, bool rigidly, double tolerance, AlignedVector &x, Refinement &refinement,
+void move_to_initial_guess(SceneData &scene, bool rigidly, double tolerance, AlignedVector &x, Refinement &refinement,
                            SceneReport &report) {
-    constexpr double rounding = 1e-12; // [m]
     const SceneVertices &vertices = scene.vertices;
     const std::vector<Vec3> now = scene.configuration.positions;
     scene.blocks.scatter(now, x);
@@ -93,7 +90,9 @@ void move_to_initial_guess(SceneParts &scene, bool rigidly, double tolerance, Al
     PlannedMove move{now, {}};
     if (rigidly) scene.blocks.gather(x, move.to);
     for (int v = 0; v < vertices.dynamic_vertices; ++v)
-        if (!vertices.mesh.moves[v] || (move.to[v] - now[v]).squaredNorm() < rounding * rounding) move.to[v] = now[v];
+        if (!vertices.mesh.moves[v] ||
+            (move.to[v] - now[v]).squaredNorm() < scene_settings::guess_rounding * scene_settings::guess_rounding)
+            move.to[v] = now[v];
     const std::vector<Vec3> guess = move.to;
     scene.configuration.limit(move, {.whole = false, .few = true}, report);
     refinement.add_move(now, guess, move.to);
@@ -103,14 +102,15 @@ void move_to_initial_guess(SceneParts &scene, bool rigidly, double tolerance, Al
 }
 
 // Keeps what the next step begins with.
-void commit(SceneParts &scene, View<Vec3> start, double dt, const SolverEffort &effort, const AlignedVector &x,
+void commit(SceneData &scene, View<Vec3> start, double dt, const SolverEffort &effort, const AlignedVector &x,
             SceneReport &report) {
     const std::vector<Vec3> &now = scene.configuration.positions;
     const std::vector<ContactPair> touching = scene.configuration.pairs.contact_pairs(now);
     ContactSet &contacts = scene.objective.contacts;
     scene.objective.find_contacts(touching, start, now);
     contacts.commit_friction(now);
-    if (scene.contact.parting_speed == 0.0) contacts.overlaps.settle(touching, contacts.contacts(), now, parting_speed * dt);
+    if (scene.contact.parting_speed == 0.0)
+        contacts.overlaps.settle(touching, contacts.contacts(), now, scene_settings::parting_speed * dt);
     scene.blocks.active.assign(scene.blocks.count(), 1);
     std::vector<unsigned char> finite(scene.blocks.count());
     scene.blocks.for_active([&](int b) { finite[b] = scene.blocks[b].commit(scene.blocks.of(b, x), dt, effort); });
@@ -123,7 +123,7 @@ void commit(SceneParts &scene, View<Vec3> start, double dt, const SolverEffort &
 }
 
 // Takes a step of at most dt; returns the fraction of it that bodies leave room for.
-double take_substep(SceneParts &scene, const SceneInput &input, const SceneStep &settings, double dt, SceneReport &report) {
+double take_substep(SceneData &scene, const SceneInput &input, const SceneStep &settings, double dt, SceneReport &report) {
     const std::vector<Vec3> start = scene.configuration.positions;
     std::vector<Vec3> targets(input.targets.begin(), input.targets.end());
     begin_contact(scene, dt);
@@ -133,7 +133,7 @@ double take_substep(SceneParts &scene, const SceneInput &input, const SceneStep 
     const int inside = scene.penetration.count();
     scene.objective.springs =
         scene.penetration.recover(scene.vertices.mesh, scene.configuration.positions, View<int>(scene.model.offsets),
-                                  scene.stiffness.largest(), recovery_speed * dt);
+                                  scene.stiffness.largest(), scene_settings::recovery_speed * dt);
     if (scene.penetration.count() < inside) scene.configuration.pairs.clear(); // of pairs that were exempt
 
     const StrandStep &step = settings.strands;
@@ -155,14 +155,14 @@ double take_substep(SceneParts &scene, const SceneInput &input, const SceneStep 
 
 } // namespace
 
-SceneReport take_step(SceneParts &scene, const SceneInput &input, const SceneStep &settings) {
+SceneReport take_step(SceneData &scene, const SceneInput &input, const SceneStep &settings) {
     SceneReport report;
     const double dt = settings.strands.dt;
     if (!scene.begun) find_initial_contacts(scene, dt);
     if (scene.contact.parting_speed > 0.0) scene.objective.contacts.overlaps.grow(scene.contact.parting_speed * dt);
     scene.configuration.begin_record();
     double left = 1.0; // of the step
-    for (int part = 0; part < settings.max_substeps && left > 1e-9; ++part) {
+    for (int part = 0; part < settings.max_substeps && left > scene_settings::no_step_left; ++part) {
         const double fraction = take_substep(scene, input, settings, dt * left, report);
         left = fraction < 1.0 ? left * (1.0 - fraction) : 0.0;
         ++report.substeps;

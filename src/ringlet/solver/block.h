@@ -37,8 +37,8 @@ public:
     virtual double *add_block(int row, int column) = 0; // of zeros; of the lower triangle only
 };
 
-// Unknown r of the object in lane l stands at [r · lanes + l] of the block's vectors; the unknowns of a vertex, `dofs` of them,
-// follow one another, and the first three are its position.
+// Unknown r of the object in lane l stands at [r · lanes + l] of the block's vectors. The degrees of freedom of a vertex follow
+// one another; the first three are its position.
 class Block {
 public:
     virtual ~Block() = default;
@@ -92,7 +92,7 @@ public:
     virtual double settled_distance(int lane) const;
 
     virtual bool is_parallel() const { return false; }           // in itself: large, one at a time
-    virtual bool is_searched_by_planes() const { return false; } // see plane_search.h
+    virtual bool is_searched_by_planes() const { return false; } // see PlaneModel in line_search.h
 
     // Accepts x as the end of a step of dt. Where an object's x is not finite it keeps its last state, at rest; then returns
     // false.

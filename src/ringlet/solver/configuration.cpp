@@ -1,15 +1,10 @@
 #include "ringlet/solver/configuration.h"
 
+#include "ringlet/solver/settings.h"
+
 #include <algorithm>
 
 namespace ringlet {
-namespace {
-
-constexpr double max_bound_length = 0.3; // [m]: motion bounds as long as that hold too many pairs
-constexpr double bound_margin = 0.2;     // of the radius of strands, for moves to come
-
-} // namespace
-
 Configuration::Configuration(const VertexTable &table, View<int> strands, View<int> cloths, std::vector<Vec3> positions_,
                              double strand_radius)
     : positions(std::move(positions_)), pairs(table.mesh), table_(table), strands_(strands), cloths_(cloths),
@@ -20,9 +15,9 @@ void Configuration::limit(PlannedMove &move, const LimitSettings &settings, Scen
                        std::equal(move.apex.begin(), move.apex.end(), positions.begin());
     if (!(pairs.is_complete() && (stays || settings.few))) {
         const Stopwatch watch(report.time_filter);
-        const double margin = stays ? 0.0 : bound_margin * strand_radius_; // what stays rarely does so for long
+        const double margin = stays ? 0.0 : solver_settings::bound_margin * strand_radius_; // rest rarely lasts
         pairs.update_bounds({positions, move.to, move.apex},
-                            {.margin = margin, .max_path = max_bound_length, .lasting = settings.lasts});
+                            {.margin = margin, .max_path = solver_settings::max_bound_length, .lasting = settings.lasts});
     }
     if (!stays) limit(move, settings.whole, {}, report);
 }

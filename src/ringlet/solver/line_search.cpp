@@ -1,13 +1,13 @@
 #include "ringlet/solver/line_search.h"
 
+#include "ringlet/solver/settings.h"
+
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace ringlet {
 namespace {
-
-constexpr double least_decrease = 1e-4; // Armijo's constant
-constexpr double rounding = 1e-13;      // of an energy: a smaller decrease cannot be seen
 
 std::vector<double> slopes(const BlockSet &blocks, const AlignedVector &direction) { // of the objects' energies [J]
     std::vector<double> slope(blocks.objects(), 0.0);
@@ -27,7 +27,7 @@ std::vector<unsigned char> leads_uphill(const std::vector<int> &cluster, const s
     for (size_t o = 0; o < objects; ++o)
         if (!accepted[o]) slopes[cluster[o]] += slope[o], sizes[cluster[o]] += std::abs(energy[o]);
     std::vector<unsigned char> uphill(objects);
-    for (size_t c = 0; c < objects; ++c) uphill[c] = slopes[c] > rounding * sizes[c];
+    for (size_t c = 0; c < objects; ++c) uphill[c] = slopes[c] > solver_settings::armijo.rounding * sizes[c];
     return uphill;
 }
 
@@ -53,8 +53,6 @@ void ExactModel::at(const AlignedVector &x, const std::vector<double> &step, con
 
 LineSearchResult line_search(Objective &objective, SearchModel &model, const SearchPath &path,
                              const std::vector<unsigned char> &accepted, AlignedVector &x) {
-    constexpr int halvings = 4, max_shorter = 8; // then steps are quartered, and after these they are 0
-    constexpr int max_apart = 12;                // then all of a cluster is shortened
     const BlockSet &blocks = objective.blocks;
     const int objects = objective.table.objects;
     const std::vector<int> &cluster = objective.couplings.clusters();
@@ -67,7 +65,7 @@ LineSearchResult line_search(Objective &objective, SearchModel &model, const Sea
     for (int o = 0; o < objects; ++o)
         if (!accepted[o] && uphill[cluster[o]]) step[o] = 0.0, ++result.cuts;
     const auto bound = [&](int o) { // of the energy of an object, were it alone
-        return start[o] + least_decrease * step[o] * slope[o] + rounding * std::abs(start[o]);
+        return RINGLET_SIMD::armijo_bound(start[o], slope[o], step[o], solver_settings::armijo);
     };
 
     std::vector<unsigned char> changed(objects, 1), rises(objects), any_rises(objects);
@@ -87,13 +85,14 @@ LineSearchResult line_search(Objective &objective, SearchModel &model, const Sea
         }
         rises = with_touched(objective, rises);
         for (int o = 0; o < objects; ++o)
-            if ((!any_rises[cluster[o]] || cut >= max_apart) && !(excess[cluster[o]] <= 0.0)) rises[o] = 1;
+            if ((!any_rises[cluster[o]] || cut >= solver_settings::max_object_cuts) && !(excess[cluster[o]] <= 0.0))
+                rises[o] = 1;
 
         std::fill(changed.begin(), changed.end(), 0);
         bool any_changed = false;
         for (int o = 0; o < objects; ++o)
             if (rises[o] && !accepted[o] && step[o] > 0.0) {
-                step[o] *= cut < halvings ? 0.5 : cut < max_shorter ? 0.25 : 0.0;
+                step[o] *= cut < solver_settings::halvings ? 0.5 : cut < solver_settings::max_cuts ? 0.25 : 0.0;
                 changed[o] = any_changed = true;
                 ++result.cuts;
             }
@@ -102,6 +101,21 @@ LineSearchResult line_search(Objective &objective, SearchModel &model, const Sea
         for (int o = 0; o < objects; ++o) result.moved |= blocks.is_active(o) && step[o] > 0.0;
         return result;
     }
+}
+
+bool search_by_planes(Objective &objective, const AlignedVector &x, bool converged, SearchPath &path) {
+    std::vector<unsigned char> accepted(objective.table.objects, 1);
+    if (!converged) {
+        const std::vector<unsigned char> searched = with_touched(objective, objective.by_planes());
+        std::transform(searched.begin(), searched.end(), accepted.begin(), std::logical_not<>());
+    }
+    PlaneModel model(objective, accepted);
+    AlignedVector end = x.copy();
+    const LineSearchResult result = line_search(objective, model, path, accepted, end);
+    if (!result.moved) return false;
+    shorten(objective.blocks, result.step, path);
+    objective.return_to(x);
+    return true;
 }
 
 } // namespace ringlet

@@ -70,9 +70,9 @@ std::vector<double> LinearSystem::of_clusters(const std::vector<double> &of_obje
     return sums;
 }
 
-// Clusters are independent systems, each with step lengths of its own. A cluster goes on until its residual, or that of all, is
-// small. An inexact block starts at 0, and beside stiff strands its residual hardly counts: it goes on until its own is small,
-// one iteration at least, since what pushed it may have been solved in the first iterate.
+// Clusters are independent systems, each with step lengths of its own. A cluster iterates until its residual, or that of all,
+// is small. An inexact block starts at 0, and beside stiff strands its residual hardly counts: it iterates until its own is
+// small. It does so once at least, since what pushed it may have been solved in the first iterate.
 LinearSystem::Result LinearSystem::conjugate_gradient(const LinearSettings &settings, AlignedVector &direction) {
     const BlockSet &blocks = objective_.blocks;
     const int objects = objective_.table.objects;

@@ -5,6 +5,7 @@
 #include "ringlet/linear/direct.h"
 #include "ringlet/solver/assembled_matrix.h"
 #include "ringlet/solver/block_iteration.h"
+#include "ringlet/solver/settings.h"
 
 #include <optional>
 #include <stdexcept>
@@ -22,8 +23,8 @@ struct CoupledError : std::invalid_argument {
 
 struct LinearSettings {
     System system = System::automatic;
-    double tolerance = 0.1;    // of the residual, relative, in the norm of the preconditioner
-    int max_iterations = 2000; // of conjugate gradients
+    double tolerance = 0.1;                                      // of the residual, relative, in the norm of the preconditioner
+    int max_iterations = solver_settings::max_linear_iterations; // of conjugate gradients
 };
 
 class LinearSystem {

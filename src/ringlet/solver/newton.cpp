@@ -1,7 +1,6 @@
 #include "ringlet/solver/newton.h"
 
 #include "ringlet/solver/path_limiter.h"
-#include "ringlet/solver/plane_search.h"
 
 #include <algorithm>
 
@@ -64,9 +63,8 @@ void Newton::solve(const NewtonSettings &settings, const AlignedVector &x, Scene
 }
 
 // How far objects may go, and how their paths bend. Where something is searched by planes, all paths stay straight: contacts
-// know nothing of a bend, and would stop nearly all hair that hangs together with it.
+// know nothing of a bend, and would stop nearly all hair in the same cluster.
 bool Newton::choose_path(const NewtonSettings &settings, const AlignedVector &x, SceneReport &report, Iteration &iteration) {
-    constexpr double growth = 4.0; // of the fraction that was taken last, but where a direction is short
     const BlockSet &blocks = objective_.blocks;
     SearchPath &path = iteration.path;
     path.bend.fill(0.0);
@@ -79,7 +77,7 @@ bool Newton::choose_path(const NewtonSettings &settings, const AlignedVector &x,
         return search_by_planes(objective_, x, iteration.converged, path);
     }
     for (size_t o = 0; o < step.size() && iteration.number < settings.iterations; ++o)
-        step[o] = std::min(step[o], std::max(growth * taken_[o], settings.strand_radius / largest_[o]));
+        step[o] = std::min(step[o], std::max(solver_settings::step_growth * taken_[o], settings.strand_radius / largest_[o]));
     shorten(blocks, step, path);
     bend(blocks, x, path);
     iteration.step = std::move(step);

@@ -1,5 +1,6 @@
 #include "ringlet/solver/objective.h"
 
+#include "ringlet/solver/settings.h"
 #include <algorithm>
 #include <limits>
 
@@ -21,9 +22,9 @@ std::vector<double> Objective::contact_stiffness(double scale, double dt) const 
     return stiffness;
 }
 
-void Objective::find_contacts(const std::vector<ContactPair> &touching, View<Vec3> start, View<Vec3> positions) {
-    find_planes(touching);
-    contacts.find(table.mesh, table.material, touching, start, positions);
+void Objective::find_contacts(const std::vector<ContactPair> &pairs, View<Vec3> start, View<Vec3> positions) {
+    find_planes(pairs);
+    contacts.find(table.mesh, table.material, pairs, start, positions);
     values_.resize(contacts.contacts().size());
     couplings.find(contacts, table, blocks);
     touched_ = {size_t(blocks.count()), [&](const auto &work) {
@@ -31,13 +32,13 @@ void Objective::find_contacts(const std::vector<ContactPair> &touching, View<Vec
                 }};
 }
 
-void Objective::find_planes(const std::vector<ContactPair> &touching) {
+void Objective::find_planes(const std::vector<ContactPair> &pairs) {
     by_planes_.assign(table.objects, 0);
     for (int object = 0; object < table.objects; ++object)
         by_planes_[object] = blocks.of_object(object).is_searched_by_planes();
     const std::vector<unsigned char> itself = by_planes_;
     if (std::count(itself.begin(), itself.end(), 1) == 0) return;
-    for (const ContactPair &pair : touching)
+    for (const ContactPair &pair : pairs)
         with_vertices(table.mesh, pair, [&](const auto &a, const auto &b) {
             const int one = table.object_of(a[0]), other = table.object_of(b[0]);
             if (one < 0 || other < 0) return;
@@ -119,7 +120,6 @@ void Objective::assemble(int block, const AlignedVector &x) {
 }
 
 void Objective::lag_normal_forces(const AlignedVector &direction) {
-    constexpr double closest = 0.05; // of the activation distance
     const std::vector<Contact> &all = contacts.contacts();
     for (int k = 0; k < int(all.size()); ++k) {
         const Contact &c = all[k];
@@ -127,7 +127,8 @@ void Objective::lag_normal_forces(const AlignedVector &direction) {
         for (int i = 0; i < 4; ++i)
             if (table.mesh.moves[c.vertex[i]] && c.weight[i] != 0.0)
                 change += c.weight[i] * blocks.position(direction, c.vertex[i]);
-        const double most = std::max(c.force, -c.stiffness * barrier(closest * c.d_hat, c.d_hat, 0.0).first);
+        const double most =
+            std::max(c.force, -c.stiffness * barrier(solver_settings::closest_gap * c.d_hat, c.d_hat, 0.0).first);
         contacts.set_lagged_force(k, std::min(std::max(0.0, c.force - c.normal.dot(values_[k].hessian * change)), most));
     }
 }

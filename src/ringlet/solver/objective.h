@@ -27,14 +27,14 @@ public:
     // The largest stiffness of each vertex against contacts, `scale` times that of its block [N/m]; infinite where prescribed.
     std::vector<double> contact_stiffness(double scale, double dt) const;
 
-    // Replaces the contacts by those of the pairs that touch at `positions`; the step began at `start`.
-    void find_contacts(const std::vector<ContactPair> &touching, View<Vec3> start, View<Vec3> positions);
+    // Replaces the contacts by those of the contact pairs at `positions`; the step began at `start`.
+    void find_contacts(const std::vector<ContactPair> &pairs, View<Vec3> start, View<Vec3> positions);
 
     // Objects that a factor of their own solves: exact blocks that nothing couples.
     bool is_alone(int object) const { return blocks.of_object(object).is_exact() && !couplings.couples(object); }
     bool is_coupled() const { return !blocks.all_exact() || couplings.count() > 0; }
 
-    // Objects whose line search knows contacts by their planes: see plane_search.h.
+    // Objects whose line search knows contacts by their planes: see PlaneModel in line_search.h.
     const std::vector<unsigned char> &by_planes() const { return by_planes_; }
 
     // Energies [J] of the objects, in one of the models of contact_energy.h. Those at the linearisation come first after
@@ -55,12 +55,12 @@ public:
     void assemble(int block, const AlignedVector &x);
     const std::vector<ContactValue> &contact_values() const { return values_; }
 
-    // Expects the contacts to bear what their matrix gives at the end of the search direction, where all forces balance; but no
-    // more than they could at a twentieth of their activation distance, since little of the direction may be taken.
+    // Lags the normal forces: those that the contacts' matrix gives at the end of the search direction, where all forces
+    // balance. They are limited to what a small gap would give, since little of the direction may be taken.
     void lag_normal_forces(const AlignedVector &direction);
 
 private:
-    void find_planes(const std::vector<ContactPair> &touching);
+    void find_planes(const std::vector<ContactPair> &pairs);
     void evaluate(const AlignedVector &x, const std::vector<unsigned char> &changed);
     void sum_energies(View<unsigned char> ignored, std::vector<double> &of_objects) const;
 

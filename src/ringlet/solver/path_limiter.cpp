@@ -1,11 +1,11 @@
 #include "ringlet/solver/path_limiter.h"
 
+#include "ringlet/solver/settings.h"
+
 #include <algorithm>
 
 namespace ringlet {
 namespace {
-
-constexpr double early = 0.05, half = 0.5; // of the path
 
 double fraction_of(const Vec3 &now, const Vec3 &wanted, const Vec3 &to) {
     const Vec3 move = wanted - now;
@@ -32,7 +32,7 @@ PlannedMove end_of_path(const BlockSet &blocks, const VertexTable &table, View<V
     for (int v = 0; v < table.dynamic_vertices; ++v) {
         if (!table.mesh.moves[v]) continue;
         move.to[v] = blocks.position(end, v);
-        move.apex[v] = now[v] + half * blocks.position(path.straight, v); // of a parabola, the tangents' intersection
+        move.apex[v] = now[v] + 0.5 * blocks.position(path.straight, v); // of a parabola, the tangents' intersection
     }
     return move;
 }
@@ -69,11 +69,11 @@ PlannedMove limit_path(const Objective &objective, Configuration &configuration,
     std::vector<unsigned char> straight(table.objects, 0), limited(table.objects, 0), changed(table.count(), 0);
     for (int object = 0; object < table.objects; ++object) {
         limited[object] = left[object] < 1.0;
-        straight[object] = left[object] < early;
+        straight[object] = left[object] < solver_settings::near_impact;
         if (blocks.of_object(object).is_searched_by_planes()) // limited near the pair, not as a whole
             left[object] = 1.0;
         else if (straight[object])
-            left[object] = half;
+            left[object] = solver_settings::straight_part;
     }
     straighten(blocks, straight, path);
     shorten(blocks, left, path);

@@ -1,5 +1,7 @@
 #include "ringlet/solver/refinement.h"
 
+#include "ringlet/solver/settings.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -24,19 +26,18 @@ void Refinement::add_steps(const std::vector<double> &t) {
 }
 
 void Refinement::end_iteration(double tolerance) {
-    constexpr double nearly_all = 0.9; // of a move: less was limited
     const BlockSet &blocks = objective_.blocks;
     for (int object = 0; object < objective_.table.objects; ++object) {
         if (!blocks.is_active(object)) continue;
         const double settled = blocks.of_object(object).settled_distance(blocks.lane_of(object));
-        limited_[object] =
-            length_[object] > tolerance && (fraction_[object] < nearly_all || (limited_[object] && length_[object] > settled));
+        limited_[object] = length_[object] > tolerance &&
+                           (fraction_[object] < solver_settings::full_move || (limited_[object] && length_[object] > settled));
     }
 }
 
 bool Refinement::all_moved_fully() const {
-    constexpr double rounding = 1e-9;
-    return std::all_of(fraction_.begin(), fraction_.end(), [](double fraction) { return fraction > 1.0 - rounding; });
+    return std::all_of(fraction_.begin(), fraction_.end(),
+                       [](double fraction) { return fraction > 1.0 - solver_settings::move_rounding; });
 }
 
 bool Refinement::activate_stretched(BlockSet &blocks, View<Vec3> now) {

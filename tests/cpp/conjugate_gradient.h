@@ -1,4 +1,4 @@
-// Preconditioned conjugate gradients for A x = b, A symmetric positive definite.
+// Preconditioned conjugate gradients for A x = b, A symmetric positive definite: what tests judge preconditioners by.
 //   apply(x, y)         y = A x
 //   precondition(r, z)  z ≈ A⁻¹ r, symmetric positive definite
 #pragma once

@@ -9,7 +9,7 @@
 
 namespace ringlet {
 
-struct SceneParts {
+struct SceneData {
     const StrandModel &model;
     StrandState &state;
     const SceneContact contact;
@@ -32,8 +32,8 @@ struct SceneParts {
     std::vector<InitialForce> initial_forces;
     bool begun = false; // whether the initial overlaps are known
 
-    SceneParts(const StrandModel &model, StrandState &state, const std::vector<SceneCloth> &cloths,
-               const std::vector<BodyModel> &bodies, const std::vector<int> &rooted_in, const SceneContact &contact);
+    SceneData(const StrandModel &model, StrandState &state, const std::vector<SceneCloth> &cloths,
+              const std::vector<BodyModel> &bodies, const std::vector<int> &rooted_in, const SceneContact &contact);
 
     bool is_placed() const; // strands and cloths are where the positions have them
     void take_placed();     // positions become those of strands and cloths
@@ -42,6 +42,6 @@ struct SceneParts {
 };
 
 // One step, in scene/step.cpp.
-SceneReport take_step(SceneParts &scene, const SceneInput &input, const SceneStep &settings);
+SceneReport take_step(SceneData &scene, const SceneInput &input, const SceneStep &settings);
 
 } // namespace ringlet
