@@ -1,7 +1,7 @@
 // A cloth as a block of a scene's system.
 #pragma once
 
-#include "ringlet/cloth/cloth_objective.h"
+#include "ringlet/cloth/objective.h"
 #include "ringlet/linear/incomplete_cholesky.h"
 #include "ringlet/solver/block.h"
 

@@ -1,7 +1,7 @@
 // The vertices of a scene: those of strands, of cloths and of bodies, in this order.
 #pragma once
 
-#include "ringlet/cloth/cloth.h"
+#include "ringlet/cloth/model.h"
 #include "ringlet/solver/vertex_table.h"
 #include "ringlet/strand/step.h"
 

@@ -1,4 +1,4 @@
-#include "ringlet/cloth/cloth.h"
+#include "ringlet/cloth/model.h"
 
 #include "ringlet/energy/cloth/hinge.h"
 

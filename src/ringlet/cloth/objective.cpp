@@ -1,4 +1,4 @@
-#include "ringlet/cloth/cloth_objective.h"
+#include "ringlet/cloth/objective.h"
 
 #include "ringlet/dynamics/time_integrator.h"
 #include "ringlet/energy/cloth/hinge.h"

@@ -3,7 +3,7 @@
 // ½ b k (s − sₙ)² = ½ k (1 + b) (s − (s̄ + b sₙ)/(1 + b))² + constant.
 #pragma once
 
-#include "ringlet/cloth/cloth.h"
+#include "ringlet/cloth/model.h"
 #include "ringlet/linear/block_matrix.h"
 
 namespace ringlet {
