@@ -34,15 +34,18 @@ def test_the_source_tree_satisfies_the_table(problems):
         ("python/ringlet/io/usd.py", "from ringlet import _core", "io may not use _core"),
         ("python/ringlet/io/usd.py", "def f():\n    import ringlet.groom.curl", "io may not use groom"),
         ("python/ringlet/cli/groom.py", "from ringlet.groom import make_groom", "cli may not use groom"),
-        ("python/ringlet/groom/groom.py", "from ringlet.groom.curl import curl", "groom.groom may not use groom"),
-        ("python/ringlet/hats.py", "", "'hats' is not a module"),
+        ("python/ringlet/data/groom.py", "from ringlet.groom.curl import curl", "data may not use groom"),
+        ("python/ringlet/sim/run.py", "from ringlet.rest import loft", "sim may not use rest"),
+        ("python/ringlet/shot/shot.py", "from ringlet.sim.motion import Motion", "shot may not use sim"),
+        ("python/ringlet/hats/hat.py", "", "'hats' is not a folder"),
         ("bench/groom.py", "import ringlet._core", "bench may use the public API only"),
     ],
 )
 def test_a_forbidden_import_is_reported(problems, tmp_path, file, text, complaint):
-    for place in ("src/ringlet", "python/ringlet/groom", "python/ringlet/picture", "bench", "examples"):
+    folders = [f"python/ringlet/{name}" for name in ("groom", "picture", "rest", "sim")]
+    for place in ("src/ringlet", "bench", "examples", *folders):
         (tmp_path / place).mkdir(parents=True)
-    for module in ("__init__", "groom/__init__", "groom/curl", "picture/__init__"):
+    for module in ("__init__", "groom/__init__", "groom/curl", "picture/__init__", "rest/__init__", "sim/motion"):
         (tmp_path / f"python/ringlet/{module}.py").touch()
     (tmp_path / file).parent.mkdir(parents=True, exist_ok=True)
     (tmp_path / file).write_text(text)
@@ -57,11 +60,11 @@ def test_a_forbidden_import_is_reported(problems, tmp_path, file, text, complain
 def test_allowed_imports_are_not_reported(problems, tmp_path):
     for file, text in {
         "src/ringlet/energy/bend.h": '#include "ringlet/geometry/curves.h"\n#include "ringlet/energy/common.h"',
-        "python/ringlet/groom/groom.py": "from ringlet.curves import Curves",
-        "python/ringlet/curves.py": "from ringlet.errors import UserError",
-        "python/ringlet/errors.py": "",
-        "python/ringlet/io/usd.py": "from ringlet.groom.groom import Groom",
-        "python/ringlet/__init__.py": "from ringlet.curves import Curves",
+        "python/ringlet/data/curves.py": "from ringlet.data.errors import UserError",
+        "python/ringlet/data/errors.py": "",
+        "python/ringlet/groom/stack.py": "from ringlet.data.curves import Curves",
+        "python/ringlet/io/usd.py": "from ringlet.data.curves import Curves",
+        "python/ringlet/__init__.py": "from ringlet.data.curves import Curves",
         "examples/try.py": "import ringlet",
     }.items():
         (tmp_path / file).parent.mkdir(parents=True, exist_ok=True)

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from ringlet.data.errors import UserError
 from ringlet.data.files import replacing
 
-VERSION = b"ringlet checkpoint 2\n"
+VERSION = b"ringlet checkpoint 3\n"
 EVERY = 10  # frames from one state to the next, at most
 VERTICES = 1_000_000  # simulated between states: a frame of that many may take minutes
 HELD = "held"  # the file that a program locks while it runs

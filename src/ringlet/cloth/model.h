@@ -1,4 +1,4 @@
-// Cloth: what is fixed (model) and what moves (state). Steps are in scene/cloth_step.h.
+// Model and state of a cloth: all that is fixed, and all that moves. Alone it is stepped by scene/cloth_alone.h.
 #pragma once
 
 #include "ringlet/energy/cloth/membrane.h"

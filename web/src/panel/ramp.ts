@@ -155,7 +155,7 @@ export class RampEditor {
 
 const round = (x: number) => Math.round(x * 1000) / 1000;
 
-/** The ramp's factor at x: smooth, no overshoot (Fritsch and Carlson 1980), as in python/ringlet/groom/settings.py. */
+/** The ramp's factor at x: smooth, no overshoot (Fritsch and Carlson 1980), as in python/ringlet/data/quantities.py. */
 export function evaluate(points: Ramp, x: number): number {
   const n = points.length;
   if (n === 1 || x <= points[0][0]) return points[0][1];
