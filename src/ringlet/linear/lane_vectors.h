@@ -16,6 +16,7 @@ void lane_points(const double *x, const double *t, const double *straight, const
 
 // clang-format off
 RINGLET_DECLARE(
+    int lane_width();
     void lane_dots(const double *a, const double *b, int rows, double *dots);
     void lane_points(const double *x, const double *t, const double *straight, const double *bend, int rows, double *to);
 )

@@ -10,6 +10,8 @@ Pack *packs(double *values) { return reinterpret_cast<Pack *>(values); }
 
 } // namespace
 
+int lane_width() { return lanes; }
+
 void lane_dots(const double *a, const double *b, int rows, double *dots) {
     Pack sum{};
     for (int i = 0; i < rows; ++i) sum += packs(a)[i] * packs(b)[i];

@@ -31,6 +31,28 @@ std::vector<unsigned char> leads_uphill(const std::vector<int> &cluster, const s
     return uphill;
 }
 
+// Objects that must take a shorter step: those whose own energy is above its bound, with those that they touch, in clusters
+// whose sum of energies is above that of the bounds. Where no object of such a cluster is, or `whole_clusters`, all of it must.
+std::vector<unsigned char> too_far(const Objective &objective, const std::vector<unsigned char> &accepted,
+                                   const std::vector<double> &step, const std::vector<double> &energy,
+                                   const std::vector<double> &bound, bool whole_clusters) {
+    const size_t objects = step.size();
+    const std::vector<int> &cluster = objective.couplings.clusters();
+    std::vector<double> excess(objects, 0.0); // of clusters
+    std::vector<unsigned char> rises(objects), any_rises(objects, 0);
+    for (size_t o = 0; o < objects; ++o)
+        if (!accepted[o]) excess[cluster[o]] += energy[o] - bound[o];
+    for (size_t o = 0; o < objects; ++o) {
+        const bool may_rise = accepted[o] || step[o] == 0.0 || excess[cluster[o]] <= 0.0;
+        rises[o] = !may_rise && !(energy[o] <= bound[o]);
+        any_rises[cluster[o]] |= rises[o];
+    }
+    rises = with_touched(objective, rises);
+    for (size_t o = 0; o < objects; ++o)
+        if ((!any_rises[cluster[o]] || whole_clusters) && !(excess[cluster[o]] <= 0.0)) rises[o] = 1;
+    return rises;
+}
+
 } // namespace
 
 std::vector<unsigned char> with_touched(const Objective &objective, const std::vector<unsigned char> &objects) {
@@ -55,48 +77,33 @@ LineSearchResult line_search(Objective &objective, SearchModel &model, const Sea
                              const std::vector<unsigned char> &accepted, AlignedVector &x) {
     const BlockSet &blocks = objective.blocks;
     const int objects = objective.table.objects;
-    const std::vector<int> &cluster = objective.couplings.clusters();
     LineSearchResult result{false, 0, std::vector<double>(objects, 1.0)};
     std::vector<double> &step = result.step;
-    std::vector<double> start, energy;
+    std::vector<double> start, energy, bound(objects);
     model.at_start(start);
     const std::vector<double> slope = slopes(blocks, path.straight);
+    const std::vector<int> &cluster = objective.couplings.clusters();
     const std::vector<unsigned char> uphill = leads_uphill(cluster, slope, start, accepted);
     for (int o = 0; o < objects; ++o)
         if (!accepted[o] && uphill[cluster[o]]) step[o] = 0.0, ++result.cuts;
-    const auto bound = [&](int o) { // of the energy of an object, were it alone
-        return RINGLET_SIMD::armijo_bound(start[o], slope[o], step[o], solver_settings::armijo);
-    };
 
-    std::vector<unsigned char> changed(objects, 1), rises(objects), any_rises(objects);
-    std::vector<double> excess(objects); // of clusters
+    std::vector<unsigned char> changed(objects, 1);
     AlignedVector trial = x.copy();
     for (int cut = 0;; ++cut) {
         move_along(blocks, x, step, path, changed, trial);
         model.at(trial, step, changed, energy);
-        std::fill(excess.begin(), excess.end(), 0.0);
-        std::fill(any_rises.begin(), any_rises.end(), 0);
         for (int o = 0; o < objects; ++o)
-            if (!accepted[o]) excess[cluster[o]] += energy[o] - bound(o);
+            bound[o] = RINGLET_SIMD::armijo_bound(start[o], slope[o], step[o], solver_settings::armijo);
+        changed = too_far(objective, accepted, step, energy, bound, cut >= solver_settings::max_object_cuts);
+        bool any = false;
         for (int o = 0; o < objects; ++o) {
-            const bool may_rise = accepted[o] || step[o] == 0.0 || excess[cluster[o]] <= 0.0;
-            rises[o] = !may_rise && !(energy[o] <= bound(o));
-            any_rises[cluster[o]] |= rises[o];
+            changed[o] &= !accepted[o] && step[o] > 0.0;
+            if (!changed[o]) continue;
+            step[o] *= cut < solver_settings::halvings ? 0.5 : cut < solver_settings::max_cuts ? 0.25 : 0.0;
+            any = true;
+            ++result.cuts;
         }
-        rises = with_touched(objective, rises);
-        for (int o = 0; o < objects; ++o)
-            if ((!any_rises[cluster[o]] || cut >= solver_settings::max_object_cuts) && !(excess[cluster[o]] <= 0.0))
-                rises[o] = 1;
-
-        std::fill(changed.begin(), changed.end(), 0);
-        bool any_changed = false;
-        for (int o = 0; o < objects; ++o)
-            if (rises[o] && !accepted[o] && step[o] > 0.0) {
-                step[o] *= cut < solver_settings::halvings ? 0.5 : cut < solver_settings::max_cuts ? 0.25 : 0.0;
-                changed[o] = any_changed = true;
-                ++result.cuts;
-            }
-        if (any_changed) continue;
+        if (any) continue;
         std::swap(x, trial);
         for (int o = 0; o < objects; ++o) result.moved |= blocks.is_active(o) && step[o] > 0.0;
         return result;
