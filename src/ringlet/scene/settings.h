@@ -10,7 +10,7 @@ inline constexpr double same_place2 = 1e-20;    // [m²]: vertices that follow a
 inline constexpr int motion_samples = 1000;     // vertices that determine the motion of most
 inline constexpr int hopeful_rounds = 6;        // of impact zones, where there are bodies
 inline constexpr int space_attempts = 5;        // through space, each half as far as the one before
-inline constexpr double no_step_left = 1e-9;    // of a step
+inline constexpr double no_step_left = 1e-9;    // of a step: shorter substeps are not taken
 inline constexpr double guess_rounding = 1e-12; // [m]: a guess that moves a vertex less leaves it where it is
 
 // Initial penetration and overlaps

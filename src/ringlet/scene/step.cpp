@@ -130,6 +130,11 @@ double take_substep(SceneData &scene, const SceneInput &input, const SceneStep &
 
     const Advected advected = advect_with_bodies(scene, dt, targets, report);
     dt *= advected.fraction;
+    if (!(dt > scene_settings::no_step_left * settings.strands.dt)) { // no time for velocities: as if bodies had not moved
+        scene.configuration.positions = start;
+        scene.configuration.pairs.clear();
+        return 0.0;
+    }
     const int inside = scene.penetration.count();
     scene.objective.springs =
         scene.penetration.recover(scene.vertices.mesh, scene.configuration.positions, View<int>(scene.model.offsets),
