@@ -21,7 +21,7 @@ Vec3 carry_with_triangle(const Vec3 from[3], const Vec3 to[3], const Vec3 &point
         return axes;
     };
     const Mat3 before = frame(from);
-    const Vec3 translated = point + to[0] - from[0];
+    Vec3 translated = point + to[0] - from[0];
     if (std::abs(before.determinant()) < 1e-30) return translated;
     const Vec3 moved = to[0] + frame(to) * before.inverse() * (point - from[0]);
     return moved.allFinite() ? moved : translated;

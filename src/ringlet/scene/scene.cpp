@@ -11,12 +11,14 @@ namespace {
 
 std::vector<int> pins(const std::vector<SceneCloth> &cloths) {
     std::vector<int> pinned;
+    pinned.reserve(cloths.size());
     for (const SceneCloth &cloth : cloths) pinned.push_back(cloth.pinned_to);
     return pinned;
 }
 
 std::vector<std::unique_ptr<ClothBlock>> make_cloth_blocks(const std::vector<SceneCloth> &cloths, const SceneVertices &all) {
     std::vector<std::unique_ptr<ClothBlock>> blocks;
+    blocks.reserve(cloths.size());
     for (int c = 0; c < int(cloths.size()); ++c)
         blocks.push_back(std::make_unique<ClothBlock>(*cloths[c].model, *cloths[c].state, all.strands + c, all.cloths[c]));
     return blocks;
@@ -25,6 +27,7 @@ std::vector<std::unique_ptr<ClothBlock>> make_cloth_blocks(const std::vector<Sce
 std::vector<Block *> all_blocks(const std::vector<std::unique_ptr<StrandBlock>> &strands,
                                 const std::vector<std::unique_ptr<ClothBlock>> &cloths) {
     std::vector<Block *> blocks;
+    blocks.reserve(strands.size() + cloths.size());
     for (const auto &block : strands) blocks.push_back(block.get());
     for (const auto &block : cloths) blocks.push_back(block.get());
     return blocks;

@@ -48,17 +48,17 @@ void LinearSystem::assemble(const AlignedVector &x, const LinearSettings &settin
 LinearSystem::Result LinearSystem::solve(const LinearSettings &settings, AlignedVector &direction) {
     Result result;
     direction.fill(0.0); // of blocks that are not active
-    if (whole_ && whole_->size() > 0 && solve_whole(direction, result)) return result;
+    if (whole_ && whole_->size() > 0 && solve_whole(*whole_, direction, result)) return result;
     return conjugate_gradient(settings, direction);
 }
 
-bool LinearSystem::solve_whole(AlignedVector &direction, Result &result) const {
+bool LinearSystem::solve_whole(const AssembledMatrix &whole, AlignedVector &direction, Result &result) {
     DirectSolver solver;
-    solver.analyse(whole_->pattern());
-    if (!solver.factor(whole_->triplets())) return false;
-    std::vector<double> solution(whole_->size());
-    result.residual = solver.solve(whole_->right_hand_side(), solution);
-    whole_->set(solution, direction);
+    solver.analyse(whole.pattern());
+    if (!solver.factor(whole.triplets())) return false;
+    std::vector<double> solution(whole.size());
+    result.residual = solver.solve(whole.right_hand_side(), solution);
+    whole.set(solution, direction);
     return true;
 }
 

@@ -42,7 +42,7 @@ public:
 
 private:
     System method(System wanted) const;
-    bool solve_whole(AlignedVector &direction, Result &result) const;
+    static bool solve_whole(const AssembledMatrix &whole, AlignedVector &direction, Result &result);
     Result conjugate_gradient(const LinearSettings &settings, AlignedVector &direction);
     void first_iterate(AlignedVector &direction);
     std::vector<double> of_clusters(const std::vector<double> &of_objects) const;
