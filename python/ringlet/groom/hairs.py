@@ -151,7 +151,7 @@ class Hairs:
         _core.warp_hairs(points, offsets, out, **carriage)
         if beside:
             parts = {name: self._layout[name] for name in ("first", "tip", "hold")}
-            _core.keep_beside(points, offsets, out, *_as_one(beside), MARGIN, **parts, shares=shares)
+            _core.keep_beside(points, offsets, out, *_merged(beside), MARGIN, **parts, shares=shares)
 
     def carriage(self, scalp_points: NDArray) -> dict[str, NDArray]:
         """Inputs of the deformation (src/ringlet/groom/hairs.h) besides the locks, for a deformed scalp.
@@ -186,7 +186,7 @@ class Hairs:
         return root.astype(np.float32)
 
 
-def _as_one(surfaces: Sequence[tuple[NDArray, NDArray]]) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+def _merged(surfaces: Sequence[tuple[NDArray, NDArray]]) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
     """Merges points and triangles of several meshes into one."""
     before = np.cumsum([0] + [len(points) for points, _ in surfaces])
     return (
