@@ -1,11 +1,11 @@
 """One task of a wedge: simulates its shot, draws a frame and writes the results to its folder.
 
-shot.toml   : the shot with the settings of the task
-cache.usdc  : the simulation; while it runs, cache.usdc.part has the checkpoints to resume from
-still.png   : a still of one frame
-places.npy  : positions of the locks at that frame [m], shape (n, 3)
-result.json : results in numbers
-log.txt     : log with times and machines
+- shot.toml: the shot with the settings of the task
+- cache.usdc: the simulation; while it runs, cache.usdc.part has the checkpoints to resume from
+- still.png: a still of one frame
+- places.npy: positions of the locks at that frame [m], shape (n, 3)
+- result.json: results in numbers
+- log.txt: log with times and machines
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ Scale = Annotated[float, Field(gt=0.01, le=100)]
 
 
 class ClothMaterial(Section):
-    """What cloth is made of."""
+    """Material of cloth."""
 
     density: float = Field(default=0.15, gt=0, le=1e4, description="mass per area [kg/m²]; shirts 0.1, denim 0.4")
     stretch_warp: float = Field(
@@ -41,7 +41,7 @@ class ClothMaterial(Section):
 
 
 class Pin(Section):
-    """Vertices of a cloth that go where they are told: all of it, or those that fulfil every condition here."""
+    """Prescribed vertices of a cloth: all of it, or those that fulfil every condition here."""
 
     to: str | None = Field(
         default=None,

@@ -8,7 +8,7 @@ from ringlet.data.settings import Section, refuse
 
 
 class Material(Section):
-    """What a lock is made of: a hair's values, since hairs that do not stick together move like one of them."""
+    """Material of a lock: the values of one hair, since hairs that do not stick together move like one of them."""
 
     youngs_modulus: float = Field(default=4e9, gt=0, le=1e13, description="E [Pa]; hair: 2e9 to 6e9")
     radius: float = Field(default=35e-6, gt=1e-7, le=0.1, description="r of one hair [m]")

@@ -21,7 +21,7 @@ STAYS = {"parting_speed": 0.0, "creep_speed": 1e-5}  # defaults of contact in eq
 
 
 class Forces(Section):
-    """What acts on the strands from outside, in metres and Y-up whatever the files use."""
+    """External forces on the strands, in metres and Y-up whatever the files use."""
 
     gravity: tuple[float, float, float] = Field(default=(0.0, -9.81, 0.0), description="[m/s²]")
     wind: tuple[float, float, float] = Field(default=(0.0, 0.0, 0.0), description="velocity of the air [m/s]")

@@ -15,7 +15,7 @@ MOST_ITERATIONS = 1000
 
 
 class Solver(Section):
-    """How a time step is solved."""
+    """Solver of a time step."""
 
     newton: int = Field(
         default=5,
@@ -78,7 +78,7 @@ class Solver(Section):
 
 
 class ClothSolver(Section):
-    """How a time step of cloth is solved."""
+    """Solver of a time step of cloth."""
 
     newton: int = Field(default=5, ge=1, le=1000, description="Newton iterations per step, at most")
     tolerance: float = Field(
