@@ -135,7 +135,7 @@ def edit_lock(
     from ringlet import groom
 
     before = read_recipe(recipe)
-    with groom.taken_back(before):
+    with groom.restored_on_error(before):
         if settings is not None:
             groom.add_settings(before, lock, settings)
         else:

@@ -151,7 +151,7 @@ def hold_checkpoints(folder: Path | str) -> AbstractContextManager[int]:
     return sim.holding(Path(folder))
 
 
-def made_from(shot: Shot, groom: Groom, *, frames: tuple[int, int] | None = None) -> str:
+def run_digest(shot: Shot, groom: Groom, *, frames: tuple[int, int] | None = None) -> str:
     """A digest of all that a simulation depends on: two runs with the same digest give the same bits."""
     from ringlet import sim
 
@@ -192,8 +192,8 @@ def _checkpoints(
     """The checkpoints of a run."""
     from ringlet import sim
 
-    made_from = sim.digest_of_run(shot, groom, frames=frames, **inputs)
-    return sim.Checkpoints(Path(folder), made_from, every=sim.frames_between(len(groom.locks.points)))
+    digest = sim.digest_of_run(shot, groom, frames=frames, **inputs)
+    return sim.Checkpoints(Path(folder), digest, every=sim.frames_between(len(groom.locks.points)))
 
 
 def loft(
@@ -216,7 +216,7 @@ def loft(
     if not isinstance(shot, shots.Shot):
         shot = read_shot(shot)
     groom = _taken(groom or shot.groom, progress)
-    obstacles = _lain_on(shot, groom)
+    obstacles = _supporting_bodies(shot, groom)
     if known is None or not Path(known).exists():
         made = rest.solve_rest_shape(shot, groom, obstacles=obstacles, progress=progress)
     else:
@@ -234,11 +234,11 @@ def write_loft(loft: Loft, shot: Shot, path: Path | str) -> None:
     """Writes a rest shape, with all that it depends on, for ``simulate``."""
     from ringlet import io, rest
 
-    made_from = rest.dependencies(shot, _lain_on(shot, loft.groom))
+    made_from = rest.dependencies(shot, _supporting_bodies(shot, loft.groom))
     io.write_rest(rest.to_curves(loft, shot), made_from, Path(path), loft.groom.space)
 
 
-def _lain_on(shot: Shot, groom: Groom) -> list[Obstacle]:
+def _supporting_bodies(shot: Shot, groom: Groom) -> list[Obstacle]:
     """The bodies that may support a groom, where its rest shape depends on them."""
     if shot.rest.mode != "equilibrium" or groom.scalp_file is None:
         return []
@@ -303,7 +303,7 @@ def _obstacles(shot: Shot, groom: Groom, garments: Sequence[Garment]) -> list[Ob
     return list(found.values())
 
 
-def brought_along(shot: Shot, groom: Groom) -> tuple[list[Garment], list[Obstacle]]:
+def cloths_and_colliders(shot: Shot, groom: Groom) -> tuple[list[Garment], list[Obstacle]]:
     """The visible meshes of a shot besides those of the head's file: its cloths, and colliders of other files."""
     garments = _garments(shot, groom)
     apart = tuple(collider for collider in shot.collider if collider.file not in (None, groom.scalp_file))

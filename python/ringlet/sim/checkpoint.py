@@ -43,12 +43,12 @@ class Checkpoints:
     """The folder of a run.
 
     folder:    where its files are
-    made_from: the digest of the run; files of another run are refused
+    run_digest: the digest of the run; files of another run are refused
     every:     frames from one state to the next
     """
 
     folder: Path
-    made_from: str
+    run_digest: str
     every: int = EVERY
     _held: BinaryIO | None = field(default=None, repr=False)
 
@@ -63,13 +63,13 @@ class Checkpoints:
                 if path.name != HELD:
                     path.unlink()
         key = self.folder / "made_from"
-        if key.exists() and key.read_text() != self.made_from:
+        if key.exists() and key.read_text() != self.run_digest:
             raise UserError(
                 f"{self.folder}: was left by a run with other settings, another groom, first frame or Ringlet; "
                 "run without --resume to start over"
             )
         with replacing(key) as aside:
-            aside.write_text(self.made_from)
+            aside.write_text(self.run_digest)
         for path in sorted(self.folder.glob("memory.*"), reverse=True):
             try:
                 memory = read(path)
