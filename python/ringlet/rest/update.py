@@ -20,7 +20,7 @@ from ringlet.shot.shot import Shot
 from ringlet.sim.motion import make_strands
 from ringlet.sim.obstacle import Obstacle
 
-OPTIONAL = ("sagged", "borne")  # values at vertices that a loft may lack
+OPTIONAL = {"sagged": "sagged", "borne": "support"}  # values at vertices that a loft may lack, by their stored names
 SAME_SUPPORT = 1e-4  # change of the support of a lock, relative to its weight, below which it counts as the same
 
 
@@ -43,7 +43,7 @@ def to_curves(loft: Loft, shot: Shot) -> Curves:
     """A loft for storage: its rest shape, with all that it depends on and how it hangs as attributes."""
     rest = loft.rest
     point = {"groomed": loft.groom.locks.points, "lofted": loft.lofted, **values_at_vertices(shot, loft.groom)}
-    point |= {name: values for name in OPTIONAL if (values := getattr(loft, name)) is not None}
+    point |= {stored: values for stored, name in OPTIONAL.items() if (values := getattr(loft, name)) is not None}
     curve = {"off": loft.off, "moving": loft.moving}
     if loft.stiffened is not None:
         curve["stiffened"] = loft.stiffened
