@@ -58,7 +58,7 @@ def groom_inputs(recipe: Recipe, memory: Memory | None = None) -> dict[str, Any]
 
     if recipe.scalp_file is None:
         raise UserError(f"{recipe.path or 'recipe'}: scalp.file is missing; name the file of the head")
-    scalp = _kept(
+    scalp = _cached(
         memory, recipe.scalp_file, lambda file: io.read_mesh(file, recipe.scalp.mesh, space=recipe.scalp.space)
     )
     scalp.textures = {name: io.read_texture(file) for name, file in recipe.map_files().items()}
@@ -79,7 +79,7 @@ def groom_inputs(recipe: Recipe, memory: Memory | None = None) -> dict[str, Any]
     }
 
 
-def _kept(memory: Memory | None, file: Path, read: Callable[[Path], Any]) -> Any:
+def _cached(memory: Memory | None, file: Path, read: Callable[[Path], Any]) -> Any:
     """Contents of a file, from memory while the file is unchanged."""
     changed = file.stat().st_mtime_ns if file.exists() else 0
     if memory is None:

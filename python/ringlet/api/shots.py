@@ -71,7 +71,7 @@ def simulate(
 
     if not isinstance(shot, shots.Shot):
         shot = read_shot(shot)
-    groom = _taken(groom or shot.groom, progress)
+    groom = _rounded(groom or shot.groom, progress)
     inputs = _inputs(shot, groom, allow_stale)
     return sim.simulate(
         shot,
@@ -110,7 +110,7 @@ def write_simulation(
     from ringlet.data.cache import SimulationRecord
 
     io.check_target(path, under)
-    groom = _taken(groom)
+    groom = _rounded(groom)
     inputs = _inputs(shot, groom, allow_stale)
     kept = _checkpoints(checkpoints, shot, groom, inputs, frames)
     first, last = frames or shot.frames
@@ -121,7 +121,7 @@ def write_simulation(
     steps = shot.preroll + last - first + 1
     record = SimulationRecord(
         start=motion.start,
-        cloths={worn.name: len(worn.cloth.positions) for worn in motion.worn},
+        cloths={garment.name: len(garment.cloth.positions) for garment in motion.garments},
         touches=sim.StoredTouches(motion, kept, steps) if touches else (),
     )
     with io.CacheWriter(path, under, io.read_space(Path(under)), motion.cloths(0), groom.variant) as writer:
@@ -148,14 +148,14 @@ def hold_checkpoints(folder: Path | str) -> AbstractContextManager[int]:
     """
     from ringlet import sim
 
-    return sim.holding(Path(folder))
+    return sim.locked_folder(Path(folder))
 
 
 def run_digest(shot: Shot, groom: Groom, *, frames: tuple[int, int] | None = None) -> str:
     """A digest of all that a simulation depends on: two runs with the same digest give the same bits."""
     from ringlet import sim
 
-    groom = _taken(groom)
+    groom = _rounded(groom)
     return sim.digest_of_run(shot, groom, frames=frames, **_inputs(shot, groom, False))
 
 
@@ -163,11 +163,11 @@ def start_motion(shot: Shot, groom: Groom, *, allow_stale: bool = False) -> Moti
     """The locks of a groom at the start of a shot, for callers that advance it frame by frame."""
     from ringlet import sim
 
-    groom = _taken(groom)
+    groom = _rounded(groom)
     return sim.Motion(shot, groom, first=shot.frames[0], **_inputs(shot, groom, allow_stale))
 
 
-def _taken(groom: Groom | Path | str, progress: Progress | None = None) -> Groom:
+def _rounded(groom: Groom | Path | str, progress: Progress | None = None) -> Groom:
     """The groom of a shot, rounded as in its file, also where it comes from a recipe.
 
     Steps end before they converge to the last digit, and differences there grow.
@@ -215,7 +215,7 @@ def loft(
 
     if not isinstance(shot, shots.Shot):
         shot = read_shot(shot)
-    groom = _taken(groom or shot.groom, progress)
+    groom = _rounded(groom or shot.groom, progress)
     obstacles = _supporting_bodies(shot, groom)
     if known is None or not Path(known).exists():
         made = rest.solve_rest_shape(shot, groom, obstacles=obstacles, progress=progress)

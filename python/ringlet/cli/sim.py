@@ -63,7 +63,7 @@ def sim(
         source = groom or settings.groom
         layer = source if source.suffix != ".toml" else output.with_suffix(f".groom{output.suffix}")
         _check_places(settings.named_files() | {"groom": source}, layer, output, contacts)
-        with _kept(output, resume) as folder:  # from here on everything beside the cache is this run's
+        with _checkpoint_folder(output, resume) as folder:  # from here on everything beside the cache is this run's
             with run.stage("groom", None if layer == source else layer):
                 locks = ringlet.load_groom(source, variant=variant, progress=progress)
                 for path in filter(None, (output, contacts)):
@@ -111,7 +111,7 @@ def _check_places(read: dict[str, Path], layer: Path, output: Path, contacts: Pa
 
 
 @contextmanager
-def _kept(output: Path, resume: bool) -> Iterator[Path]:
+def _checkpoint_folder(output: Path, resume: bool) -> Iterator[Path]:
     """The folder that keeps what is done, until all is; says so where a run is broken off, or was and is forgotten."""
     folder = output.with_name(f"{output.name}.part")
     with ringlet.hold_checkpoints(folder) as left:

@@ -63,7 +63,7 @@ class Pin(Section):
 
     @field_validator("within")
     @classmethod
-    def _of_something(cls, within: float | None, info: ValidationInfo) -> float | None:
+    def _has_target(cls, within: float | None, info: ValidationInfo) -> float | None:
         if within is not None and info.data.get("to") is None:
             raise refuse(f"is {within}, but there is no `to`; name the collider that this is the distance from")
         return within
@@ -94,7 +94,9 @@ class ShotCloth(Section):
 
     @field_validator("shrink")
     @classmethod
-    def _in_order(cls, shrink: float | tuple[tuple[float, float], ...]) -> float | tuple[tuple[float, float], ...]:
+    def _ascending_frames(
+        cls, shrink: float | tuple[tuple[float, float], ...]
+    ) -> float | tuple[tuple[float, float], ...]:
         if isinstance(shrink, tuple):
             frames = [frame for frame, _ in shrink]
             if not frames or frames != sorted(set(frames)):
@@ -102,7 +104,7 @@ class ShotCloth(Section):
         return shrink
 
     @model_validator(mode="after")
-    def _somewhere(self) -> Self:
+    def _has_mesh(self) -> Self:
         if self.file is None and self.mesh is None:
             raise refuse("names no mesh; give `mesh`, a prim in the file of the head, or `file`")
         return self

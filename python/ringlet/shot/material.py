@@ -40,7 +40,7 @@ class Material(Section):
 
     @field_validator("twist_ratio")
     @classmethod
-    def _within_bend(cls, ratio: float, info: ValidationInfo) -> float:
+    def _limited_twist(cls, ratio: float, info: ValidationInfo) -> float:
         if ratio > 1 and info.data.get("limit_twist"):
             raise refuse(f"is {ratio}; must be at most 1 (or limit_twist = false, to study what the limit is for)")
         return ratio

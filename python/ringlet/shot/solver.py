@@ -65,7 +65,7 @@ class Solver(Section):
 
     @field_validator("safeguards")
     @classmethod
-    def _of_history(cls, safeguards: tuple[Safeguard, ...], info: ValidationInfo) -> tuple[Safeguard, ...]:
+    def _safeguards_have_history(cls, safeguards: tuple[Safeguard, ...], info: ValidationInfo) -> tuple[Safeguard, ...]:
         continuation = info.data.get("continuation")
         if continuation != "history" and set(safeguards) != set(SAFEGUARDS):
             raise refuse(f"is {list(safeguards)}; continuation is '{continuation}', only 'history' can be without one")

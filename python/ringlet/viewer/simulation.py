@@ -207,7 +207,7 @@ class Simulation:
                 self._store_checkpoint(first + k, motion)
                 if self.state == "rolling":
                     self.state = "running"
-                cloths = {garment.name: garment.cloth.positions for garment in motion.worn}
+                cloths = {garment.name: garment.cloth.positions for garment in motion.garments}
                 state = FrameState(np.asarray(motion.strands.positions, np.float32), statistics, cloths)
                 self._frames.add(first + k, stage.frame("shot", first + k, state, motion))
             self._changed()
