@@ -72,7 +72,7 @@ def run(locks: int = 2000, points: int = 60, hairs: int = 50_000, repeat: int = 
                 hair = build_hairs(groom)
         guides = groom.locks.points.astype(np.float32)
         with clock("warp"):
-            hair.at(guides, groom.scalp.points)
+            hair.deformed(guides, groom.scalp.points)
     return clock.result(
         "groom",
         {"locks": locks, "points": points, "hairs": hairs, "repeat": repeat},

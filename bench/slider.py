@@ -47,7 +47,7 @@ def run(guides: int = 500, locks: int = 2000, points: int = 60, hairs: int = 50_
             groom, hair = evaluate(float(width), memory, clock, "slider")
             before = hair.curves.points
             with clock("warp"):
-                hair.at(groom.locks.points, groom.scalp.points, out=before)
+                hair.deformed(groom.locks.points, groom.scalp.points, out=before)
 
     count = len(hair.curves)
     traffic = 12.0 * len(hair.curves.points) + 12.0 * len(groom.locks.points) + 4.0 * count * (2 + 1 + 1 + 16 + 3)

@@ -110,7 +110,7 @@ def warped(
     bends = [head_at_rest(guides.points, now, each) for now in lines.points]
     hardest = int(np.argmax([np.linalg.norm(bent - guides.points, axis=1).mean() for bent in bends]))
     bent = bends[hardest]
-    simulated = hairs.at(head_at_rest(groom.locks.points, curls.points[hardest], points), groom.scalp.points)
+    simulated = hairs.deformed(head_at_rest(groom.locks.points, curls.points[hardest], points), groom.scalp.points)
     warped_hairs = conventional(rest, hairs.curves.roots, guides.points, bent, len(guides), points, nearest)
     return groom, rest, simulated.astype(float), warped_hairs
 

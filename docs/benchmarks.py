@@ -40,7 +40,7 @@ def comparisons(peers: dict[str, Any], runs: dict[str, Any]) -> Iterator[str]:
 
 
 def published(peers: dict[str, Any]) -> Iterator[str]:
-    """What others say of themselves."""
+    """Published timings of other systems."""
     yield "## Published, on other hardware\n\nAs their authors say; not measured again, and of other scenes.\n"
     yield "| who | what |\n|---|---|"
     yield from (f"| {one['who']} | {one['what']} |" for one in peers["published"])

@@ -1,4 +1,4 @@
-"""How the documents are built; the references are made from the program itself, so that they cannot lag behind it."""
+"""Configuration of the documents; references are generated from the program, so that they cannot lag behind it."""
 
 import importlib.metadata
 import sys

@@ -107,7 +107,7 @@ def cell(text: str) -> str:
 
 
 def commands() -> Iterator[str]:
-    """What ``--help`` says of every command."""
+    """The ``--help`` text of every command."""
     group: Any = typer.main.get_command(app)
     for name, command in group.commands.items():
         arguments = [p.metavar for p in command.params if p.param_type_name == "argument"]

@@ -1,4 +1,4 @@
-"""What is to come out and what came out, as a drawing and as a table."""
+"""Expected and computed results, as a drawing and as a table."""
 
 from __future__ import annotations
 

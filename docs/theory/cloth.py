@@ -115,7 +115,7 @@ def hinge() -> Answer:
 
 
 def on_cylinder(flat: Mesh, bend: float, curvature: float, turn: float) -> float:
-    """What a sheet holds [J] that is rolled onto a cylinder, whose axis is turned in it; its rim is not counted."""
+    """Energy [J] of a sheet rolled onto a cylinder whose axis is turned in the sheet, without the rim."""
     c, s = np.cos(turn), np.sin(turn)
     along, across = flat.points[:, :2] @ [c, s], flat.points[:, :2] @ [-s, c]
     rolled = np.c_[np.sin(curvature * along) / curvature, across, (1 - np.cos(curvature * along)) / curvature]

@@ -1,4 +1,4 @@
-"""What keeps things apart, and what keeps them from sliding."""
+"""The contact barrier and friction."""
 
 from __future__ import annotations
 

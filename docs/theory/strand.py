@@ -48,7 +48,7 @@ def stretch() -> Answer:
 
 
 def elastica(gamma: float) -> tuple[Array, Array]:
-    """Where a clamped rod lies under its weight, by its length: θ'' = −Γ (1 − s) cos θ, θ the angle below level."""
+    """Shape of a clamped rod under its weight, by its length: θ'' = −Γ (1 − s) cos θ, θ the angle below level."""
     s = np.linspace(0.0, 1.0, 401)
     angle = np.zeros((2, len(s)))
     for part in np.geomspace(1.0, max(gamma, 1.0), 10):  # along the branch that begins level

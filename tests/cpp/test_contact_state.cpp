@@ -22,7 +22,7 @@ BOOST_AUTO_TEST_CASE(a_vertex_is_as_stiff_as_its_load_asks_for) {
     stiffness.recall({0.0, 0.0, 0.0, 0.0, 0.05});
     const std::vector<double> levels = stiffness.levels(mesh, d_hat);
     BOOST_TEST(std::isinf(levels[0]));
-    BOOST_TEST(levels[1] == 0.01 * largest);                                     // bears nothing
+    BOOST_TEST(levels[1] == 0.01 * largest);                                     // carries nothing
     BOOST_TEST(levels[3] == 0.1 * largest, boost::test_tools::tolerance(1e-12)); // as its neighbour
     BOOST_TEST(levels[4] == 0.1 * largest, boost::test_tools::tolerance(1e-12)); // 10 < 0.05 / d̂ ≤ 100
     stiffness.recall({0.0, 0.0, 0.0, 0.0, 10.0});
@@ -42,7 +42,7 @@ BOOST_AUTO_TEST_CASE(an_initial_overlap_pushes_only_as_far_as_its_activation_dis
     BOOST_TEST(overlaps.find(pair) == nullptr); // an ordinary pair now
 }
 
-BOOST_AUTO_TEST_CASE(an_overlap_that_stays_bears_its_force_at_any_stiffness) {
+BOOST_AUTO_TEST_CASE(an_overlap_that_stays_keeps_its_force_at_any_stiffness) {
     CollisionMesh mesh;
     mesh.edges = {{0, 1}, {2, 3}};
     const ContactPair pair{{{0, 1}, true, 1e-3}, {{0.5, 0.5, -0.5, -0.5}, 1e-8}};

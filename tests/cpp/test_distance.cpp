@@ -61,7 +61,7 @@ BOOST_AUTO_TEST_CASE(no_point_of_two_segments_is_nearer_than_their_closest_point
     }
 }
 
-BOOST_AUTO_TEST_CASE(many_edges_at_once_are_as_close_as_one_by_one) {
+BOOST_AUTO_TEST_CASE(edge_batches_have_the_distances_of_single_edges) {
     std::mt19937 random(7);
     std::array<int, kinds> of_kind{}, exact_of_kind{};
     for (int i = 0; i < 40; ++i) {

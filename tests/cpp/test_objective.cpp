@@ -178,11 +178,11 @@ BOOST_AUTO_TEST_CASE(a_shortened_path_is_the_beginning_of_the_path) {
     for (size_t i = 0; i < x.size(); ++i) path.straight[i] = some(engine), path.bend[i] = some(engine);
     const std::vector<double> t = {0.3, 0.5, 1.0, 0.0}, whole(4, 1.0);
     const std::vector<unsigned char> all(4, 1);
-    AlignedVector on_the_way(x.size()), at_the_end(x.size());
-    move_along(*scene.blocks, x, t, path, all, on_the_way);
+    AlignedVector partway(x.size()), at_the_end(x.size());
+    move_along(*scene.blocks, x, t, path, all, partway);
     shorten(*scene.blocks, t, path);
     move_along(*scene.blocks, x, whole, path, all, at_the_end);
-    for (size_t i = 0; i < x.size(); ++i) BOOST_TEST(std::abs(on_the_way[i] - at_the_end[i]) < 1e-14);
+    for (size_t i = 0; i < x.size(); ++i) BOOST_TEST(std::abs(partway[i] - at_the_end[i]) < 1e-14);
     straighten(*scene.blocks, {1, 0, 0, 0}, path);
     for (size_t i = 0; i < x.size(); ++i) BOOST_TEST((path.bend[i] == 0.0) == (i < 6 || i >= 18));
 }

@@ -88,7 +88,7 @@ BOOST_AUTO_TEST_CASE(a_point_that_nothing_acts_on_has_no_stiffness) {
     BOOST_TEST(inertia.target(1.0, 2.0, 3.0, 4.0, 0.0) == 0.0);
 }
 
-BOOST_AUTO_TEST_CASE(angles_are_extrapolated_the_short_way_round) {
+BOOST_AUTO_TEST_CASE(angles_are_extrapolated_by_the_smaller_turn) {
     const auto integrator = TimeIntegrator<double>::of_step(0.1, bdf2_lag);
     BOOST_TEST(std::abs(integrator.extrapolate_angle(-3.1, 3.1) - (-3.1 + (2 * pi - 6.2) / 3)) < 1e-15);
 }

@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 import pytest
 from judged_shots import SHOTS, judged, start
-from ringlet.sim.garment import carried
+from ringlet.sim.garment import moved_rigidly
 
 
 @pytest.mark.parametrize("shot", SHOTS)
@@ -40,12 +40,12 @@ def test_long_hair_between_a_turning_head_and_a_shirt_stops_neither():
 def test_cloth_put_into_hair_crosses_nothing_and_keeps_moving(locks):
     """A ribbon pushes locks aside on a resting head; it never moves rigidly for two frames in a row."""
     motion = start("ribbon", locks=locks)
-    (ribbon,), moved = motion.worn, []
+    (ribbon,), moved = motion.garments, []
     before = ribbon.cloth.positions.copy()
     for frame in judged(motion, 24):
         assert frame.crossings == 0
         after = ribbon.cloth.positions.copy()
-        moved.append(np.abs(after - carried(before, before, after)).max())
+        moved.append(np.abs(after - moved_rigidly(before, before, after)).max())
         before = after
     assert all(max(pair) > 1e-6 for pair in itertools.pairwise(moved))
 

@@ -132,7 +132,7 @@ def drift(shot, groom, made, obstacles=(), steps=48, known=True):
     touching = Scene(strands, [one.body(1.0) for one in obstacles], shot.touching)
     if known:
         touching.set_initial_forces(
-            *initial_contact_forces(shot.touching, groom.locks, make_strands(shot, groom), obstacles, made.borne)
+            *initial_contact_forces(shot.touching, groom.locks, make_strands(shot, groom), obstacles, made.support)
         )
     for _ in range(steps):
         touching.step(groom.locks.points, 1 / 24, gravity=GRAVITY)
@@ -142,10 +142,10 @@ def drift(shot, groom, made, obstacles=(), steps=48, known=True):
 def test_a_lock_on_another_is_supported_by_it():
     """Support forces are equal and opposite, reduce the correction of the upper lock, and both locks stay."""
     shot, groom = scene(*crossed(), more=SOFT)
-    borne, upper = support_forces(shot, groom, []), slice(30, 60)
-    assert np.abs(borne.sum(axis=0)).max() < 1e-12
+    support, upper = support_forces(shot, groom, []), slice(30, 60)
+    assert np.abs(support.sum(axis=0)).max() < 1e-12
     strands = make_strands(shot, groom)
-    assert 0.1 < borne[upper, 1].sum() / (9.81 * strands.masses[upper].sum()) < 1
+    assert 0.1 < support[upper, 1].sum() / (9.81 * strands.masses[upper].sum()) < 1
     together = equilibrium(shot, groom)
     alone = equilibrium(*scene(*crossed(), more=SOFT.replace("radius = 5e-4", "on = false")))
     assert sag(together.rest.points[upper], crossed()[1]) < 0.5 * sag(alone.rest.points[upper], crossed()[1])
@@ -159,10 +159,10 @@ def test_contact_forces_support_a_lock_on_a_body_from_the_first_step(friction):
     lying, slope = on_slope(friction)
     shot, groom = scene(lying, lying + [0, 0, 0.2], more=SOFT)
     made, groomed = equilibrium(shot, groom, obstacles=[slope]), make_strands(shot, groom)
-    _, forces = initial_contact_forces(shot.touching, groom.locks, groomed, [slope], made.borne)
+    _, forces = initial_contact_forces(shot.touching, groom.locks, groomed, [slope], made.support)
     assert len(forces) > 0 and (forces[:, 0] > 0).all()
     total = np.linalg.norm(forces, axis=1).sum()
-    assert total == pytest.approx(np.linalg.norm(made.borne[~groomed.held], axis=1).sum(), rel=1e-9)
+    assert total == pytest.approx(np.linalg.norm(made.support[~groomed.held], axis=1).sum(), rel=1e-9)
     at_once, later = (drift(shot, groom, made, [slope], 1, known) for known in (True, False))
     assert at_once < 1e-9 and at_once < 1e-3 * later
 
@@ -184,7 +184,7 @@ def test_sixty_locks_in_contact_stay_as_groomed():
     style = make_style("down", 60, HEAD, "scalp")
     shot, head = style.shot("equilibrium"), style.head(np.zeros(1), FPS)
     made = equilibrium(shot, style.groom, obstacles=[head])
-    assert np.linalg.norm(made.borne, axis=1).max() > 1e-6  # some locks are supported
+    assert np.linalg.norm(made.support, axis=1).max() > 1e-6  # some locks are supported
     *_, last = style.at_rest(shot, to_curves(made, shot), 2.0)
     assert sag(last, style.groom.locks.points) < shot.strands.radius
 
@@ -192,11 +192,11 @@ def test_sixty_locks_in_contact_stay_as_groomed():
 def test_a_tip_supports_nothing():
     """A lock on a tip would slide off."""
     below, above = crossed()
-    borne, ends_there = (
+    carried, ends_there = (
         np.abs(support_forces(*scene(below, upper, more=SOFT), [])).max()
         for upper in (above, above * [1, 1, 0] + np.linspace(-0.06, 0, 30)[:, None] * [0, 0, 1])
     )
-    assert ends_there == 0 < borne
+    assert ends_there == 0 < carried
 
 
 RIDGE = 0.02 * np.array([[0, 0, -1], [0, 0, 1], [1, -1, -1], [1, -1, 1], [-1, -1, -1], [-1, -1, 1.0]])
@@ -209,8 +209,8 @@ def test_a_ridge_pushes_a_lock_from_its_closest_point(aside):
     mesh = Mesh("/ridge", RIDGE, np.array([[0, 1, 2], [1, 3, 2], [0, 4, 1], [1, 4, 5]], np.int32))
     obstacle = Obstacle(mesh, Clip(np.array([1.0]), RIDGE[None], 24.0))
     obstacle.settings = obstacle.settings.model_copy(update={"friction": 0.0})
-    borne = support_forces(*scene(lock, more=SOFT), [obstacle]).sum(axis=0)
-    assert borne[1] > 0 and np.abs(borne[0]) < 1e-3 * borne[1]
+    support = support_forces(*scene(lock, more=SOFT), [obstacle]).sum(axis=0)
+    assert support[1] > 0 and np.abs(support[0]) < 1e-3 * support[1]
 
 
 def on_slope(friction):

@@ -13,7 +13,7 @@ import numpy as np
 from fastapi.testclient import TestClient
 from ringlet.viewer.project import Project
 from ringlet.viewer.protocol import VERSION
-from ringlet.viewer.server import Door, make_app
+from ringlet.viewer.server import AccessControl, make_app
 from ringlet.viewer.session import Session
 from starlette.testclient import WebSocketTestSession
 
@@ -68,9 +68,9 @@ def read(data: bytes) -> dict[str, Any]:
 
 
 @contextmanager
-def serving(folder: Path, file: str = "small.recipe.toml", door: Door | None = None) -> Iterator[TestClient]:
+def serving(folder: Path, file: str = "small.recipe.toml", access: AccessControl | None = None) -> Iterator[TestClient]:
     session = Session(folder / file, Project(folder))
-    with TestClient(make_app(session, door or Door("127.0.0.1", "")), base_url="http://localhost") as client:
+    with TestClient(make_app(session, access or AccessControl("127.0.0.1", "")), base_url="http://localhost") as client:
         yield client
 
 

@@ -66,7 +66,7 @@ def test_a_recipe_and_its_written_groom_simulate_bit_identically(tmp_path, unit,
     lofts = [ringlet.loft(shot, groom).rest.points for groom in (recipe, groom)]
     assert not np.array_equal(recipe.locks.points, groom.locks.points) and np.array_equal(*lofts)
     settings = ringlet.read_shot(shot)
-    assert api.made_from(settings, recipe) == api.made_from(settings, groom)
+    assert api.run_digest(settings, recipe) == api.run_digest(settings, groom)
 
 
 def write_obj(example, unit, up):

@@ -95,15 +95,15 @@ def test_larger_scenes_are_saved_more_often(folder, monkeypatch):
 
 def interrupted(folder, monkeypatch, after, *more):
     """Runs the shot until the disk is full."""
-    keep = checkpoint.Checkpoints.keep
+    write_step = checkpoint.Checkpoints.write_step
 
     def full(self, step, *rest):
         if step >= after:
             raise OSError(28, "No space left on device")
-        keep(self, step, *rest)
+        write_step(self, step, *rest)
 
     with monkeypatch.context() as patch:
-        patch.setattr(checkpoint.Checkpoints, "keep", full)
+        patch.setattr(checkpoint.Checkpoints, "write_step", full)
         return sim(folder, *more)
 
 

@@ -54,7 +54,7 @@ def test_inside_and_outside_are_correct_at_sharp_edges():
 
 
 def test_a_lock_below_the_skin_is_reported_with_depth_and_position():
-    found = check_groom(groom_of([up(x=0.03), dipping()])).told()
+    found = check_groom(groom_of([up(x=0.03), dipping()])).summary()
     assert found["scalp"]["locks"] == 1 and found["body"]["places"] == 0
     assert found["scalp"]["depth"] == pytest.approx(0.002, abs=2e-4)
     worst = found["scalp"]["worst"][0]
@@ -66,33 +66,33 @@ def test_an_edge_that_intersects_between_its_points_is_found():
     chord = np.array([[0, RADIUS, 0], [0, RADIUS + 0.01, 0], [0.0505, 0.0805, 0], [0.09, 0.03, 0], [0.1, 0.02, 0]])
     height = _core.Solid(ball(RADIUS, 32).points, ball(RADIUS, 32).triangles).above(chord[1:])[0]
     assert (height > 0).all()  # all points are outside
-    assert check_groom(groom_of([chord])).told()["scalp"]["places"] > 0
+    assert check_groom(groom_of([chord])).summary()["scalp"]["places"] > 0
 
 
 def test_roots_may_be_below_the_skin_to_the_allowed_depth():
     sunk = up(401) - np.array([0, 4e-4, 0])
     assert len(check_groom(groom_of([sunk]))) == 0
-    found = check_groom(groom_of([sunk]), allowed=Allowed(root_depth=1e-4)).told()
+    found = check_groom(groom_of([sunk]), allowed=Allowed(root_depth=1e-4)).summary()
     assert found["scalp"]["depth"] == pytest.approx(2e-4, abs=1e-4)  # next to the root, which is excluded
 
 
 def test_locks_nearer_than_their_thickness_are_found():
     crossing = up() + np.linspace(-0.01, 0.01, 41)[:, None] * [0, 0, 1] + [3e-5, 0, 0]
     findings = check_groom(groom_of([up(), crossing, up(x=0.03)]))
-    found = findings.told()["hair"]
+    found = findings.summary()["hair"]
     assert found["places"] >= 1 and found["locks"] == 2
     assert found["depth"] == pytest.approx(1e-4 - 3e-5, abs=1e-6)
     assert {found["worst"][0]["lock"], found["worst"][0]["other"]} == {0, 1}
     assert len(check_groom(groom_of([up(), up(x=0.03)]))) == 0
     loop = np.linspace(0, 4 * np.pi, 200)[:, None]
     own = up()[0] + np.concatenate([0.004 * (np.cos(loop) - 1), 2e-6 * loop, 0.004 * np.sin(loop)], axis=1)
-    assert check_groom(groom_of([own])).told()["hair"]["places"] > 0  # a lock that intersects itself
+    assert check_groom(groom_of([own])).summary()["hair"]["places"] > 0  # a lock that intersects itself
 
 
 def test_meshes_other_than_the_scalp_are_bodies():
     box = ball(0.01, 8)
     box = Mesh("box", box.points + [0.0, RADIUS + 0.03, 0.0], box.triangles)
-    found = check_groom(groom_of([up()]), [box]).told()
+    found = check_groom(groom_of([up()]), [box]).summary()
     assert found["scalp"]["places"] == 0 and found["body"]["depth"] == pytest.approx(0.01, rel=0.05)
 
 
@@ -134,8 +134,8 @@ def test_locks_guided_around_the_head_change_continuously(setting):
 def test_intersections_beyond_repair_are_reported():
     one = up()
     repair = fix_groom(groom_of([one, one.copy(), one.copy()]), allowed=Allowed(thickness=0.02))
-    assert len(repair.left) > 0 and repair.told()["rounds"] > 1
-    assert sum(of["places"] for of in repair.left.told().values()) == len(repair.left)
+    assert len(repair.left) > 0 and repair.summary()["rounds"] > 1
+    assert sum(of["places"] for of in repair.left.summary().values()) == len(repair.left)
 
 
 def test_the_command_checks_repairs_and_draws(tmp_path):

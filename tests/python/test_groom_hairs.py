@@ -44,7 +44,7 @@ def test_the_first_hair_of_a_lock_is_bit_identical_to_the_lock():
 def test_the_first_hair_is_the_simulated_guide_when_locks_move():
     made = groom()
     moved = (made.locks.points + 0.01 * np.sin(40.0 * made.locks.points[:, [1, 2, 0]])).astype(np.float32)
-    hairs = make_hairs(made).at(moved, made.scalp.points).reshape(40, 12, 60, 3)
+    hairs = make_hairs(made).deformed(moved, made.scalp.points).reshape(40, 12, 60, 3)
     assert np.array_equal(hairs[:, 0], moved.reshape(40, 60, 3))
 
 
@@ -52,7 +52,7 @@ def test_hairs_move_rigidly_with_locks_and_scalp():
     made = groom()
     hairs = make_hairs(made)
     turn, shift = rotation((1.0, 0.3, -0.5), 100.0), np.array([0.2, 0.1, -0.3])
-    now = hairs.at(made.locks.points @ turn.T + shift, made.scalp.points @ turn.T + shift)
+    now = hairs.deformed(made.locks.points @ turn.T + shift, made.scalp.points @ turn.T + shift)
     assert np.allclose(now, hairs.curves.points @ turn.T + shift, atol=2e-6)
 
 
@@ -221,7 +221,7 @@ def test_hairs_keep_their_curl_when_locks_swing():
     bent = made.locks.points.copy()
     for i, lock in enumerate(made.locks.points.reshape(40, 60, 3)):  # rotates every lock about its root by 140°
         bent[60 * i : 60 * i + 60] = lock[0] + (lock - lock[0]) @ rotation((1.0, 0.2, 0.3), 140.0).T
-    now = hairs.at(bent, made.scalp.points).reshape(40, 12, 60, 3).astype(float)
+    now = hairs.deformed(bent, made.scalp.points).reshape(40, 12, 60, 3).astype(float)
     rest = hairs.curves.points.reshape(40, 12, 60, 3).astype(float)
     assert np.linalg.norm(now - rest, axis=3).max() > 0.03
 
@@ -256,18 +256,22 @@ def test_hairs_stay_on_their_locks_side_of_surfaces():
     locks = np.stack([x, 0 * x + 0.2, z], axis=-1)
     roof = sheet(20, 0.5)
     roof.points[:, 1] = 0.2005
-    free = hairs.at(locks.reshape(-1, 3), made.scalp.points).reshape(40, 12, 60, 3)
+    free = hairs.deformed(locks.reshape(-1, 3), made.scalp.points).reshape(40, 12, 60, 3)
     beside = [(made.scalp.points, made.scalp.triangles), (roof.points, roof.triangles)]
-    kept = hairs.at(locks.reshape(-1, 3), made.scalp.points, beside=beside).reshape(40, 12, 60, 3)
+    kept = hairs.deformed(locks.reshape(-1, 3), made.scalp.points, surfaces=beside).reshape(40, 12, 60, 3)
     after_roots = np.s_[:, :, 10:]
     assert free[after_roots][..., 1].max() > 0.2015
     assert kept[after_roots][..., 1].max() < 0.2005 - 0.9e-4
     assert np.array_equal(kept[:, 0], free[:, 0])  # the first hairs keep the shape of their locks
     assert np.array_equal(kept[:, :, 0], free[:, :, 0])  # roots stay
     assert 0.2 < (kept == free).all(axis=(2, 3)).mean() < 0.8
-    left = hairs.left_beside(locks.reshape(-1, 3), hairs.carriage(made.scalp.points), beside).reshape(40, 12, 60)
+    left = hairs.offset_fractions(locks.reshape(-1, 3), hairs.deformation(made.scalp.points), beside).reshape(
+        40, 12, 60
+    )
     assert np.array_equal((left < 255).any(axis=2), (kept != free).any(axis=(2, 3)))
     above, was = kept[..., 1] - 0.2, free[..., 1] - 0.2
     assert np.abs(above - left / 255.0 * was)[left < 255].max() < 0.004 * np.abs(was).max()
     far = (roof.points + [0.0, 0.1, 0.0], roof.triangles)
-    assert np.array_equal(hairs.at(locks.reshape(-1, 3), made.scalp.points, beside=[far]).reshape(free.shape), free)
+    assert np.array_equal(
+        hairs.deformed(locks.reshape(-1, 3), made.scalp.points, surfaces=[far]).reshape(free.shape), free
+    )

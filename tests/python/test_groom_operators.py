@@ -52,7 +52,7 @@ def locks(shape="", count=40, top="", scalp=None):
 def uncleaned(recipe, scalp):
     """Curves after the shape stack of a recipe."""
     surface, curves = Scalp(scalp, recipe.scalp.region), Curves.from_list([])
-    helpers = {name: helper.given() for name, helper in recipe.curves.items()}
+    helpers = {name: helper.inline_curve() for name, helper in recipe.curves.items()}
     for name, operator in [
         ("guides", recipe.guides),
         ("locks", recipe.locks),
@@ -75,7 +75,7 @@ def on_sheet(operator, lines, ids=None):
     recipe = parse_recipe(f"ringlet = 1\n{TAIL}[[shape]]\n{operator}")
     surface = Scalp(sheet(), None)
     curves = surface.bind(Curves.from_list([np.asarray(line, float) for line in lines], ids), 1e-3, "test")
-    helpers = {name: helper.given() for name, helper in recipe.curves.items()}
+    helpers = {name: helper.inline_curve() for name, helper in recipe.curves.items()}
     return recipe.shape[0].apply(curves, Context(1, surface, recipe.shape[0].op, 64, helpers))
 
 

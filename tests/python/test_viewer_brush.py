@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from ringlet.viewer.brush import TOOLS, Ball, given_back, grab, held
+from ringlet.viewer.brush import TOOLS, Ball, grab, grab_weights, restore
 
 from ringlet import Curves
 
@@ -22,7 +22,7 @@ def ball(x: float = 0.0, y: float = 0.08, by: tuple[float, float, float] = (0.0,
 
 def test_grab_moves_points_inside_the_brush_only(guides: Curves):
     brush = ball()
-    after = grab(guides, brush, held(guides, brush))
+    after = grab(guides, brush, grab_weights(guides, brush))
     assert after[1][8] == pytest.approx([0.0, 0.08, 0.01])
     assert np.array_equal(after[1][:6], guides[1][:6])
     assert np.array_equal(after[0], guides[0]) and np.array_equal(after[2], guides[2])
@@ -79,4 +79,4 @@ def test_a_mirrored_brush_gives_the_mirror_image(guides: Curves):
 
 def test_the_revert_brush_restores_guides(guides: Curves):
     changed = TOOLS["comb"](guides, ball())
-    assert np.array_equal(given_back(changed, ball(), guides).points, guides.points)
+    assert np.array_equal(restore(changed, ball(), guides).points, guides.points)

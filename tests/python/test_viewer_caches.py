@@ -11,7 +11,7 @@ import pytest
 from pages import page, read, serving
 from pxr import Usd
 from ringlet.data.errors import UserError
-from ringlet.viewer.reel import Run
+from ringlet.viewer.frame_cache import FrameCache
 
 import ringlet
 from ringlet import io
@@ -152,19 +152,19 @@ def write_long_cache(folder: Path, frames: int) -> None:
 
 
 def test_simulated_frames_are_stored_in_a_file_and_a_full_disk_is_reported(monkeypatch: pytest.MonkeyPatch):
-    run = Run()
+    cache = FrameCache()
     for frame in (1.0, 2.0, 3.0):
-        run.add(frame, bytes([int(frame)]) * 1000)
-    run.cut(after=2.0)
-    run.add(3.0, b"again")
-    assert run.frames.tolist() == [1, 2, 3]
-    assert (run.message(2.0), run.message(3.0)) == (b"\2" * 1000, b"again")
-    run.cut()
-    assert not len(run.frames)
+        cache.add(frame, bytes([int(frame)]) * 1000)
+    cache.truncate(after=2.0)
+    cache.add(3.0, b"again")
+    assert cache.frames.tolist() == [1, 2, 3]
+    assert (cache.message(2.0), cache.message(3.0)) == (b"\2" * 1000, b"again")
+    cache.truncate()
+    assert not len(cache.frames)
     with pytest.raises(UserError, match="no more"):
-        run.message(2.0)
+        cache.message(2.0)
     with Path("/dev/full").open("wb", buffering=0) as full:
-        monkeypatch.setattr(run, "_file", full)
+        monkeypatch.setattr(cache, "_file", full)
         with pytest.raises(UserError, match="frame 1 cannot be kept there"):
-            run.add(1.0, b"much")
-    assert not len(run.frames)
+            cache.add(1.0, b"much")
+    assert not len(cache.frames)

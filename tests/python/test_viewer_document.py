@@ -57,7 +57,7 @@ def test_a_value_is_replaced_in_place(document: Document):
 
 def test_a_value_becomes_a_table_when_it_gains_fields(document: Document):
     document.set([(["guides", "length", "vary"], 0.1)])
-    assert document.said()["guides"]["length"] == {"value": 8, "vary": 0.1}
+    assert document.contents()["guides"]["length"] == {"value": 8, "vary": 0.1}
     assert comments(document.text) == comments(TEXT)
 
 
@@ -66,7 +66,7 @@ def test_a_new_setting_is_inserted_before_the_comment_of_the_next_table(document
     lines = document.text.splitlines()
     assert lines.index("whorl_turn = 10.0") < lines.index("[[shape]]")
     assert lines.index("seed = 4") < lines.index("# Where it starts.")
-    assert document.said()["curl"]["start"] == "12 mm"
+    assert document.contents()["curl"]["start"] == "12 mm"
 
 
 def test_a_missing_table_is_created(document: Document):
@@ -77,14 +77,14 @@ def test_a_missing_table_is_created(document: Document):
 
 def test_settings_in_lists_and_operators_are_set_and_removed(document: Document):
     document.set([(["guides", "zone", 0, "spread"], 30), (["shape", 1, "size"], 2.5), (["shape", 0, "size"], None)])
-    settings = document.said()
+    settings = document.contents()
     assert settings["guides"]["zone"][0]["spread"] == 30
     assert settings["shape"] == [{"op": "clump"}, {"op": "scraggle", "amount": 0.5, "size": 2.5}]
 
 
 def test_operators_move_with_their_comments(document: Document):
-    document.arrange("move", "shape", 1, 0)
-    assert [operator["op"] for operator in document.said()["shape"]] == ["scraggle", "clump"]
+    document.edit_tables("move", "shape", 1, 0)
+    assert [operator["op"] for operator in document.contents()["shape"]] == ["scraggle", "clump"]
     text = document.text
     assert text.index("# None knows") < text.index('op = "scraggle"') < text.index("# neighbours")
     assert text.index("# The look.") < text.index("[curl]")
@@ -92,10 +92,10 @@ def test_operators_move_with_their_comments(document: Document):
 
 def test_an_operator_is_added_before_the_curl_and_removed_again(document: Document):
     for _ in range(2):
-        document.arrange("remove", "shape", 0)
-    assert "shape" not in document.said() and "# The look." in document.text
-    document.arrange("add", "shape", 0, entry={"op": "loft"})
-    assert document.said()["shape"] == [{"op": "loft"}]
+        document.edit_tables("remove", "shape", 0)
+    assert "shape" not in document.contents() and "# The look." in document.text
+    document.edit_tables("add", "shape", 0, entry={"op": "loft"})
+    assert document.contents()["shape"] == [{"op": "loft"}]
     assert document.text.index("[[shape]]") < document.text.index("[curl]")
 
 
@@ -103,7 +103,7 @@ def test_an_invalid_change_is_refused_and_changes_nothing(document: Document):
     with pytest.raises(UserError, match="at least 0"):
         document.set([(["curl", "width", "value"], -1)])
     with pytest.raises(UserError, match="none at 7"):
-        document.arrange("remove", "shape", 7)
+        document.edit_tables("remove", "shape", 7)
     with pytest.raises(UserError, match="cannot be set"):
         document.set([(["guides", "zone", 9, "spread"], 30)])
     assert document.text == TEXT and not document.can_undo
@@ -114,16 +114,16 @@ def test_a_gesture_is_one_step_of_undo_and_redo(document: Document):
         document.set([(["curl", "width", "value"], width)], gesture=1)
     document.set([(["guides", "count"], 20)], gesture=2)
     document.history.undo()
-    assert document.said()["curl"]["width"]["value"] == "5 mm" and document.said()["guides"]["count"] == 12
+    assert document.contents()["curl"]["width"]["value"] == "5 mm" and document.contents()["guides"]["count"] == 12
     document.history.undo()
     assert document.text == TEXT and not document.dirty
     document.history.redo()
-    assert document.said()["curl"]["width"]["value"] == "5 mm" and document.dirty
+    assert document.contents()["curl"]["width"]["value"] == "5 mm" and document.dirty
 
 
 def test_changes_are_listed_against_the_saved_file_until_saved(document: Document):
     document.set([(["guides", "count"], 20)])
-    changed = {(change.sign, change.line) for change in document.changes() if change.sign != " "}
+    changed = {(change.sign, change.line) for change in document.diff() if change.sign != " "}
     assert changed == {("-", "count = 12"), ("+", "count = 20")}
     document.save()
-    assert document.path.read_text() == document.text and not document.dirty and not document.changes()
+    assert document.path.read_text() == document.text and not document.dirty and not document.diff()

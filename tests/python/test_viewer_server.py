@@ -11,7 +11,7 @@ from pages import HOST, Page, page, serving
 from ringlet.data.errors import UserError
 from ringlet.viewer.project import Project
 from ringlet.viewer.protocol import VERSION
-from ringlet.viewer.server import REFUSED, WRONG, Door
+from ringlet.viewer.server import REFUSED, WRONG, AccessControl
 from ringlet.viewer.session import Session
 from ringlet.viewer.wire import MOST
 from starlette.websockets import WebSocketDisconnect
@@ -38,8 +38,8 @@ def test_a_new_page_receives_document_locks_and_counts(folder: Path):
 
 
 def test_a_wrong_token_and_a_foreign_origin_are_refused(folder: Path):
-    door = Door("127.0.0.1", "secret")
-    with serving(folder, door=door) as client:
+    access = AccessControl("127.0.0.1", "secret")
+    with serving(folder, access=access) as client:
         assert closed_with(client) == REFUSED
         assert closed_with(client, "/session?token=wrong") == REFUSED
         assert closed_with(client, "/session?token=secret", origin="http://elsewhere.example") == REFUSED

@@ -24,7 +24,7 @@ from ringlet.farm.cluster import _client
 from ringlet.farm.grid import choose, folder_name, make_tasks
 from ringlet.farm.openjd import template
 from ringlet.farm.page import distances, read_results
-from ringlet.farm.task import Result, Wanted, run_task, write_result
+from ringlet.farm.task import Result, TaskOptions, run_task, write_result
 from small_example import write_example
 
 import ringlet
@@ -218,7 +218,7 @@ def test_a_killed_worker_repeats_only_its_task(shot, tmp_path):
     assert log_of(other).count("begins") == 1
     expected = tmp_path / "expected"
     alone = make_tasks(shot, [choose("strands.bend", [1])], expected)[0]
-    run_task(alone, Wanted(picture=False))
+    run_task(alone, TaskOptions(picture=False))
     assert (np.load(victim / "places.npy") == np.load(alone.folder / "places.npy")).all()
     assert (
         ringlet.read_cache(victim / "cache.usdc").points == ringlet.read_cache(alone.folder / "cache.usdc").points
@@ -273,7 +273,7 @@ def test_open_job_description_runs_every_combination(shot, tmp_path):
 
 
 def test_the_template_has_the_options_of_the_command():
-    job = template(Path("a.shot.toml"), [choose("strands.bend", "1,2")], Wanted((2, 9), 5, False, 4))
+    job = template(Path("a.shot.toml"), [choose("strands.bend", "1,2")], TaskOptions((2, 9), 5, False, 4))
     words = job["steps"][0]["script"]["actions"]["onRun"]["args"]
     assert words[-7:] == ["--frames", "2:9", "--frame", "5", "--threads", "4", "--no-picture"]
     assert "--set=strands.bend_scale={{Task.Param.strands_bend_scale}}" in words

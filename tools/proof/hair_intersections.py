@@ -51,20 +51,20 @@ def run(shot: str = "hat", frame: int = 20, repeats: int = 9) -> dict[str, Any]:
         with ringlet.open_cache(cache) as moved:
             for number in (frame - 1, frame):
                 points, scalp, beside = moved.points(number), clip.at(number), moved.surfaces(number)
-                corrections.append(hairs.at(points, scalp, beside=beside) - hairs.at(points, scalp))
-    out = hairs.room()
+                corrections.append(hairs.deformed(points, scalp, surfaces=beside) - hairs.deformed(points, scalp))
+    out = hairs.new_buffer()
     for _ in range(repeats):
         with clock("carry"):
-            hairs.at(points, scalp, out=out)
+            hairs.deformed(points, scalp, out=out)
         with clock("keep"):
-            hairs.at(points, scalp, beside=beside, out=out)
-    hold = hairs.carriage(scalp)["hold"]
+            hairs.deformed(points, scalp, surfaces=beside, out=out)
+    hold = hairs.deformation(scalp)["hold"]
     corrected = np.linalg.norm(corrections[1], axis=1) > 1e-5
     jumps = 1e3 * np.linalg.norm(corrections[1] - corrections[0], axis=1)[corrected]
     counts = {
         "hairs": len(hairs.curves),
         "corrected": int(corrected.sum()),
-        "before": intersections(hold, hairs.at(points, scalp), beside),
+        "before": intersections(hold, hairs.deformed(points, scalp), beside),
         "after": intersections(hold, out, beside),
         "jump_mm": float(np.quantile(jumps, 0.99)) if len(jumps) else 0.0,
     }

@@ -47,13 +47,13 @@ def judged(motion, frames: int | None = None, every: int = 1) -> Iterator[Judged
     A vertex that starts inside a body may leave through its surface; its tests against bodies begin one frame later.
     """
     judge, (first, last) = Judge(motion.scene), motion.shot.frames
-    embedded = motion.scene.memory["embedded_vertices"]
+    penetrating = motion.scene.memory["penetrating_vertices"]
     for k in range(last - first if frames is None else frames):
         motion.scene.record(is_judged := k % every == 0)
         begin = first + k % (last - first)
-        before, embedded = embedded, motion.scene.memory["embedded_vertices"]
-        assert np.isin(embedded, before).all(), f"frame {k}: a vertex entered a body"
-        judge.exclude(embedded)
+        before, penetrating = penetrating, motion.scene.memory["penetrating_vertices"]
+        assert np.isin(penetrating, before).all(), f"frame {k}: a vertex entered a body"
+        judge.exclude(penetrating)
         statistics = motion.advance(begin, begin + 1)
         assert np.isfinite(motion.scene.positions).all(), f"frame {k}: a position is not finite"
         moves = itertools.pairwise(motion.scene.path) if is_judged else ()

@@ -90,7 +90,9 @@ def draw(name: str, groom: Groom, shapes: dict[str, Array], folder: Path) -> Non
     from ringlet import picture
 
     hairs = ringlet.build_hairs(groom)
-    drawn = {label: hairs.curves.with_points(hairs.at(points, groom.scalp.points)) for label, points in shapes.items()}
+    drawn = {
+        label: hairs.curves.with_points(hairs.deformed(points, groom.scalp.points)) for label, points in shapes.items()
+    }
     head = [picture.PosedBody(groom.scalp, groom.scalp.points)]
     folder.mkdir(parents=True, exist_ok=True)
     picture.compare(drawn, head, folder / f"rest_{name.replace(' ', '_')}.png", title="")

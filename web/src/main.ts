@@ -37,8 +37,8 @@ class App {
     this.brush.changed.push((on) => on && this.lock.choose(-1));
     this.lock.busy = () => this.brush.on;
     picture.append(this.lock.handles, this.brush.ring);
-    this.viewer.onDraw = (told) => {
-      this.status.drew(told);
+    this.viewer.onDraw = (statistics) => {
+      this.status.drew(statistics);
       this.lock.place();
     };
     const name = () => (this.model.welcome?.name ?? "ringlet").split(".")[0];

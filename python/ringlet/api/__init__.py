@@ -20,8 +20,8 @@ from ringlet.api.progress import OnFrame as OnFrame
 from ringlet.api.progress import Progress as Progress
 from ringlet.api.run import *
 from ringlet.api.shots import *
-from ringlet.api.shots import brought_along as brought_along
-from ringlet.api.shots import made_from as made_from
+from ringlet.api.shots import cloths_and_colliders as cloths_and_colliders
+from ringlet.api.shots import run_digest as run_digest
 from ringlet.api.shots import scalp_clip as scalp_clip
 from ringlet.api.shots import start_motion as start_motion
 

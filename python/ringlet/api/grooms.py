@@ -52,13 +52,13 @@ def build_groom(
 
 
 def groom_inputs(recipe: Recipe, memory: Memory | None = None) -> dict[str, Any]:
-    """What the files hold that a recipe names: what ``make_groom`` takes besides the recipe."""
+    """Contents of the files of a recipe: the arguments of ``make_groom`` besides the recipe."""
     from ringlet import io
     from ringlet.groom.operators import Drawn
 
     if recipe.scalp_file is None:
         raise UserError(f"{recipe.path or 'recipe'}: scalp.file is missing; name the file of the head")
-    scalp = _kept(
+    scalp = _cached(
         memory, recipe.scalp_file, lambda file: io.read_mesh(file, recipe.scalp.mesh, space=recipe.scalp.space)
     )
     scalp.textures = {name: io.read_texture(file) for name, file in recipe.map_files().items()}
@@ -79,8 +79,8 @@ def groom_inputs(recipe: Recipe, memory: Memory | None = None) -> dict[str, Any]
     }
 
 
-def _kept(memory: Memory | None, file: Path, read: Callable[[Path], Any]) -> Any:
-    """What is in a file, from memory while it has not changed."""
+def _cached(memory: Memory | None, file: Path, read: Callable[[Path], Any]) -> Any:
+    """Contents of a file, from memory while the file is unchanged."""
     changed = file.stat().st_mtime_ns if file.exists() else 0
     if memory is None:
         return read(file)
@@ -135,7 +135,7 @@ def edit_lock(
     from ringlet import groom
 
     before = read_recipe(recipe)
-    with groom.taken_back(before):
+    with groom.restored_on_error(before):
         if settings is not None:
             groom.add_settings(before, lock, settings)
         else:
@@ -181,9 +181,9 @@ def check_groom(
     variant: str | None = None,
     progress: Progress | None = None,
 ) -> dict[str, Any]:
-    """What of a groom is in the scalp, in the body and in other locks: places, locks, greatest depth [m], worst places.
+    """Intersections of a groom with the scalp, the body and itself: places, locks, greatest depth [m], worst places.
 
-    Returns ``found``; with ``fixed`` also ``left``, what could not be repaired, and ``repair``, what was moved.
+    Returns ``found``; with ``fixed`` also ``left``, the remaining intersections, and ``repair``, the displacements.
 
     root_depth:  how deep a lock may be in the skin up to ``root_length`` from its root [m]
     thickness:   two locks nearer than this are in one another [m]
@@ -199,12 +199,16 @@ def check_groom(
     allowed = grooms.Allowed(root_depth, root_length, thickness)
     others = _beside_scalp(groom)
     findings = grooms.check_groom(groom, others, allowed)
-    summary: dict[str, Any] = {"locks": len(groom.locks), "points": len(groom.locks.points), "found": findings.told()}
+    summary: dict[str, Any] = {
+        "locks": len(groom.locks),
+        "points": len(groom.locks.points),
+        "found": findings.summary(),
+    }
     if fixed is not None:
         repair = grooms.fix_groom(groom, others, allowed, progress)
         write_groom(repair.groom, fixed)
         findings = repair.left
-        summary |= {"left": findings.told(), "repair": repair.told()}
+        summary |= {"left": findings.summary(), "repair": repair.summary()}
     if picture is not None:
         from ringlet.picture import write_places
 

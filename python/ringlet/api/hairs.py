@@ -65,7 +65,7 @@ def write_hairs(
     if cache is None:
         scalp = locks.scalp
         beside = io.read_surfaces(groom) or [(scalp.points, scalp.triangles)]  # a head of an OBJ is in no stage
-        points = hairs.at(locks.locks.points, scalp.points, beside=beside)
+        points = hairs.deformed(locks.locks.points, scalp.points, surfaces=beside)
         with io.HairWriter(Path(path), locks, hairs.curves, Path(groom)) as writer:
             writer.add(None, points)
     else:
@@ -75,7 +75,7 @@ def write_hairs(
             for frame in chosen:
                 scalp = clip.at(frame)
                 beside = moved.surfaces(frame) or [(scalp, locks.scalp.triangles)]
-                writer.add(frame, hairs.at(moved.points(frame), scalp, beside=beside))
+                writer.add(frame, hairs.deformed(moved.points(frame), scalp, surfaces=beside))
                 written += 1
                 if progress:
                     progress("hairs", written, len(chosen))

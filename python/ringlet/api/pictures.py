@@ -159,7 +159,7 @@ def write_loft_picture(
     shapes = {"groomed": groom.locks.points, "hanging, not lofted": loft.sagged, "hanging, lofted": loft.lofted}
     shapes = {name: points for name, points in shapes.items() if points is not None}
     picture.compare(
-        {name: hairs.curves.with_points(hairs.at(points, groom.scalp.points)) for name, points in shapes.items()},
+        {name: hairs.curves.with_points(hairs.deformed(points, groom.scalp.points)) for name, points in shapes.items()},
         [picture.PosedBody(groom.scalp, groom.scalp.points)],
         Path(path),
         title=title,

@@ -71,7 +71,7 @@ def simulate(
 
     if not isinstance(shot, shots.Shot):
         shot = read_shot(shot)
-    groom = _taken(groom or shot.groom, progress)
+    groom = _rounded(groom or shot.groom, progress)
     inputs = _inputs(shot, groom, allow_stale)
     return sim.simulate(
         shot,
@@ -110,7 +110,7 @@ def write_simulation(
     from ringlet.data.cache import SimulationRecord
 
     io.check_target(path, under)
-    groom = _taken(groom)
+    groom = _rounded(groom)
     inputs = _inputs(shot, groom, allow_stale)
     kept = _checkpoints(checkpoints, shot, groom, inputs, frames)
     first, last = frames or shot.frames
@@ -121,7 +121,7 @@ def write_simulation(
     steps = shot.preroll + last - first + 1
     record = SimulationRecord(
         start=motion.start,
-        cloths={worn.name: len(worn.cloth.positions) for worn in motion.worn},
+        cloths={garment.name: len(garment.cloth.positions) for garment in motion.garments},
         touches=sim.StoredTouches(motion, kept, steps) if touches else (),
     )
     with io.CacheWriter(path, under, io.read_space(Path(under)), motion.cloths(0), groom.variant) as writer:
@@ -148,14 +148,14 @@ def hold_checkpoints(folder: Path | str) -> AbstractContextManager[int]:
     """
     from ringlet import sim
 
-    return sim.holding(Path(folder))
+    return sim.locked_folder(Path(folder))
 
 
-def made_from(shot: Shot, groom: Groom, *, frames: tuple[int, int] | None = None) -> str:
+def run_digest(shot: Shot, groom: Groom, *, frames: tuple[int, int] | None = None) -> str:
     """A digest of all that a simulation depends on: two runs with the same digest give the same bits."""
     from ringlet import sim
 
-    groom = _taken(groom)
+    groom = _rounded(groom)
     return sim.digest_of_run(shot, groom, frames=frames, **_inputs(shot, groom, False))
 
 
@@ -163,11 +163,11 @@ def start_motion(shot: Shot, groom: Groom, *, allow_stale: bool = False) -> Moti
     """The locks of a groom at the start of a shot, for callers that advance it frame by frame."""
     from ringlet import sim
 
-    groom = _taken(groom)
+    groom = _rounded(groom)
     return sim.Motion(shot, groom, first=shot.frames[0], **_inputs(shot, groom, allow_stale))
 
 
-def _taken(groom: Groom | Path | str, progress: Progress | None = None) -> Groom:
+def _rounded(groom: Groom | Path | str, progress: Progress | None = None) -> Groom:
     """The groom of a shot, rounded as in its file, also where it comes from a recipe.
 
     Steps end before they converge to the last digit, and differences there grow.
@@ -192,8 +192,8 @@ def _checkpoints(
     """The checkpoints of a run."""
     from ringlet import sim
 
-    made_from = sim.digest_of_run(shot, groom, frames=frames, **inputs)
-    return sim.Checkpoints(Path(folder), made_from, every=sim.frames_between(len(groom.locks.points)))
+    digest = sim.digest_of_run(shot, groom, frames=frames, **inputs)
+    return sim.Checkpoints(Path(folder), digest, every=sim.frames_between(len(groom.locks.points)))
 
 
 def loft(
@@ -215,8 +215,8 @@ def loft(
 
     if not isinstance(shot, shots.Shot):
         shot = read_shot(shot)
-    groom = _taken(groom or shot.groom, progress)
-    obstacles = _lain_on(shot, groom)
+    groom = _rounded(groom or shot.groom, progress)
+    obstacles = _supporting_bodies(shot, groom)
     if known is None or not Path(known).exists():
         made = rest.solve_rest_shape(shot, groom, obstacles=obstacles, progress=progress)
     else:
@@ -234,11 +234,11 @@ def write_loft(loft: Loft, shot: Shot, path: Path | str) -> None:
     """Writes a rest shape, with all that it depends on, for ``simulate``."""
     from ringlet import io, rest
 
-    made_from = rest.dependencies(shot, _lain_on(shot, loft.groom))
+    made_from = rest.dependencies(shot, _supporting_bodies(shot, loft.groom))
     io.write_rest(rest.to_curves(loft, shot), made_from, Path(path), loft.groom.space)
 
 
-def _lain_on(shot: Shot, groom: Groom) -> list[Obstacle]:
+def _supporting_bodies(shot: Shot, groom: Groom) -> list[Obstacle]:
     """The bodies that may support a groom, where its rest shape depends on them."""
     if shot.rest.mode != "equilibrium" or groom.scalp_file is None:
         return []
@@ -303,7 +303,7 @@ def _obstacles(shot: Shot, groom: Groom, garments: Sequence[Garment]) -> list[Ob
     return list(found.values())
 
 
-def brought_along(shot: Shot, groom: Groom) -> tuple[list[Garment], list[Obstacle]]:
+def cloths_and_colliders(shot: Shot, groom: Groom) -> tuple[list[Garment], list[Obstacle]]:
     """The visible meshes of a shot besides those of the head's file: its cloths, and colliders of other files."""
     garments = _garments(shot, groom)
     apart = tuple(collider for collider in shot.collider if collider.file not in (None, groom.scalp_file))

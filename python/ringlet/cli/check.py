@@ -58,17 +58,17 @@ def check(
         "thickness": 1e-3 * thickness,
     }
     with shown_progress() as progress:
-        told = ringlet.check_groom(
+        summary = ringlet.check_groom(
             groom, fixed=output if fix else None, picture=picture, variant=variant, progress=progress, **allowed
         )
     if as_json:
-        print_json(told)
+        print_json(summary)
     else:
         for name in ("found", "left") if fix else ("found",):
             rows = [
                 [kind, f"{of['places']:,}", f"{of['locks']:,}", f"{1e3 * of['depth']:.3g} mm"]
-                for kind, of in told[name].items()
+                for kind, of in summary[name].items()
             ]
             print_table([name, "places", "locks", "depth"], rows, right=(1, 2, 3))
-    if any(of["places"] for of in told["left" if fix else "found"].values()):
+    if any(of["places"] for of in summary["left" if fix else "found"].values()):
         raise typer.Exit(1)

@@ -88,8 +88,8 @@ def loft(
                 ringlet.write_loft_picture(made, picture, title=f"{shot.name}: the loft", progress=progress)
             run.pictured(picture, "The groom; how it hangs without the loft; how it hangs with it.")
     if as_json:
-        told = {"path": str(path), "bytes": path.stat().st_size, **run.counts}
-        print_json({**told, "tolerance": NEAR, "most_moving": float(made.moving.max()), "lost": lost})
+        summary = {"path": str(path), "bytes": path.stat().st_size, **run.counts}
+        print_json({**summary, "tolerance": NEAR, "most_moving": float(made.moving.max()), "lost": lost})
         return
     print_table(columns, rows, right=(1, 2, 3))
     for sentence in run.warnings:

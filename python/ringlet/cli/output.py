@@ -1,4 +1,4 @@
-"""What a command says when it is done: a few lines for people, or one JSON value for machines."""
+"""Output of a finished command: a few lines for people, or one JSON value for machines."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ def finite(value: Any) -> Any:
 
 
 def wrote(path: Path, counts: dict[str, int], as_json: bool, **more: Any) -> None:
-    """Tells that a file was written, with counts of what is in it; programs are told ``more``."""
+    """Reports a written file with counts of its contents; JSON output has the entries of ``more`` too."""
     if as_json:
         print_json({"path": str(path), "bytes": path.stat().st_size, **counts, **more})
     else:
-        told = [f"{value:,} {name}" for name, value in counts.items() if value]
-        print(f"{path}: {', '.join([*told, size(path.stat().st_size)])}")
+        parts = [f"{value:,} {name}" for name, value in counts.items() if value]
+        print(f"{path}: {', '.join([*parts, size(path.stat().st_size)])}")
 
 
 def size(count: int) -> str:

@@ -50,8 +50,8 @@ def picture(
 ) -> None:
     """Pictures a STAGE: one frame, path-traced, or with --sheet a page of small ones.
 
-    With --contacts, beads show where things touch: blue to red by force, over three decades up to the strongest in a
-    hundred; by gap, red where hardly any is left; or all places that were in the way at the start, red where worst.
+    With --contacts, beads show contacts. By force: blue to red, over three decades up to the strongest in a hundred.
+    By gap: red where hardly any gap is left. By start: all places that overlapped at the start, red where worst.
 
     Examples: ringlet picture hair.usdc -o still.png --frame 24 --view side · ringlet picture hair.usdc --sheet
     """

@@ -22,7 +22,7 @@ SECONDS_BETWEEN_LINES = 5.0
 
 
 class Rate(ProgressColumn):
-    """How many steps a second, or how many seconds a step."""
+    """Steps per second, or seconds per step."""
 
     def render(self, task: Task) -> Text:
         """The speed of a task, empty while it is unknown."""
@@ -35,7 +35,7 @@ class Rate(ProgressColumn):
 
 
 class Clock(ProgressColumn):
-    """How long a stage will still take, and how long it took in the end."""
+    """Remaining time of a stage, and its duration once it ends."""
 
     def render(self, task: Task) -> Text:
         """Seconds left, or the seconds that it took."""
@@ -77,16 +77,16 @@ def on_terminal() -> Iterator[Callable[[str, int, int], None]]:
 def in_lines() -> Iterator[Callable[[str, int, int], None]]:
     """A line when a stage ends, and every few seconds while it runs."""
     began: dict[str, float] = {}
-    told: dict[str, float] = {}
+    printed: dict[str, float] = {}
     ended: set[str] = set()
 
     def report(stage: str, done: int, total: int) -> None:
         now = time.monotonic()
         start = began.setdefault(stage, now)
-        since = now - told.setdefault(stage, now)
+        since = now - printed.setdefault(stage, now)
         if stage in ended or (done < total and since < SECONDS_BETWEEN_LINES):
             return
-        told[stage] = now
+        printed[stage] = now
         if done >= total:
             ended.add(stage)
         left = f", {(now - start) / done * (total - done):.0f} s left" if 0 < done < total else ""

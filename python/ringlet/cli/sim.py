@@ -63,7 +63,7 @@ def sim(
         source = groom or settings.groom
         layer = source if source.suffix != ".toml" else output.with_suffix(f".groom{output.suffix}")
         _check_places(settings.named_files() | {"groom": source}, layer, output, contacts)
-        with _kept(output, resume) as folder:  # from here on everything beside the cache is this run's
+        with _checkpoint_folder(output, resume) as folder:  # from here on everything beside the cache is this run's
             with run.stage("groom", None if layer == source else layer):
                 locks = ringlet.load_groom(source, variant=variant, progress=progress)
                 for path in filter(None, (output, contacts)):
@@ -71,7 +71,7 @@ def sim(
                 if layer != source:
                     ringlet.write_groom(locks, layer)
             with run.stage("simulate", output):
-                told = ringlet.write_simulation(
+                record = ringlet.write_simulation(
                     settings,
                     locks,
                     layer,
@@ -85,14 +85,14 @@ def sim(
                 )
             if contacts is not None:
                 with run.stage("contacts", contacts, "what touches, frame by frame"):
-                    ringlet.write_touches(told, output, contacts)
-        run.simulated(told)
-        run.count(locks=len(locks.locks), points=len(locks.locks.points), frames=len(told.frames))
-        if told.cloths:
-            run.count(cloths=len(told.cloths), cloth_points=sum(told.cloths.values()))
+                    ringlet.write_touches(record, output, contacts)
+        run.simulated(record)
+        run.count(locks=len(locks.locks), points=len(locks.locks.points), frames=len(record.frames))
+        if record.cloths:
+            run.count(cloths=len(record.cloths), cloth_points=sum(record.cloths.values()))
     for sentence in [] if as_json else filter(None, [*run.warnings, run.slowest]):
         print(sentence)
-    start = {name: found for name, found in told.start.items() if name != "marks"}  # these are for pictures
+    start = {name: found for name, found in record.start.items() if name != "marks"}  # these are for pictures
     wrote(output, run.counts, as_json, slowest=run.slowest, **({"start": start} if start else {}))
 
 
@@ -111,7 +111,7 @@ def _check_places(read: dict[str, Path], layer: Path, output: Path, contacts: Pa
 
 
 @contextmanager
-def _kept(output: Path, resume: bool) -> Iterator[Path]:
+def _checkpoint_folder(output: Path, resume: bool) -> Iterator[Path]:
     """The folder that keeps what is done, until all is; says so where a run is broken off, or was and is forgotten."""
     folder = output.with_name(f"{output.name}.part")
     with ringlet.hold_checkpoints(folder) as left:

@@ -82,9 +82,9 @@ def wedge(
     what: dict[str, Any] = {"frames": frames, "frame": frame, "picture": picture}
     if openjd is not None:
         count = ringlet.write_wedge_template(openjd, shot, choices, threads=threads, **what)
-        told = {"path": str(openjd), "tasks": count}
+        summary = {"path": str(openjd), "tasks": count}
         run = f"openjd run {openjd} -p Shot={shot.absolute()} -p Folder={output.absolute()}"
-        print_json(told) if as_json else print(f"{openjd}: {count} tasks. Try it here: {run}")
+        print_json(summary) if as_json else print(f"{openjd}: {count} tasks. Try it here: {run}")
         return
     with shown_progress() as progress:
         results = ringlet.wedge(

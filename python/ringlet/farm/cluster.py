@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from ringlet.data.errors import UserError
 from ringlet.farm.grid import Task
-from ringlet.farm.task import Result, Wanted, run_task, write_result
+from ringlet.farm.task import Result, TaskOptions, run_task, write_result
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -23,7 +23,7 @@ Progress = Callable[[str, int, int], None]
 
 def run_on_workers(
     tasks: Sequence[Task],
-    wanted: Wanted,
+    options: TaskOptions,
     *,
     scheduler: str | None,
     workers: int | None,
@@ -46,7 +46,7 @@ def run_on_workers(
         client.subscribe_topic(TOPIC, lambda event: progress(*event[1]))
         run = uuid.uuid4().hex[:8]
         futures = {
-            client.submit(_in_worker, task, wanted, key=f"{task.name}-{run}", retries=retries, pure=False): k
+            client.submit(_in_worker, task, options, key=f"{task.name}-{run}", retries=retries, pure=False): k
             for k, task in enumerate(tasks)
         }
         results: dict[int, Result] = {}
@@ -56,12 +56,12 @@ def run_on_workers(
     return [results[k] for k in range(len(tasks))]
 
 
-def _in_worker(task: Task, wanted: Wanted) -> Result:
+def _in_worker(task: Task, options: TaskOptions) -> Result:
     """Runs a task on a worker and reports its progress to the client."""
     from distributed import get_worker
 
     worker = get_worker()
-    return run_task(task, wanted, lambda done, total: worker.log_event(TOPIC, (task.name, done, total)))
+    return run_task(task, options, lambda done, total: worker.log_event(TOPIC, (task.name, done, total)))
 
 
 def _failed(task: Task, error: Any) -> Result:

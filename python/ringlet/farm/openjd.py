@@ -17,13 +17,13 @@ from ringlet.data.errors import UserError
 from ringlet.data.files import replacing
 from ringlet.data.toml import to_toml
 from ringlet.farm.grid import Choice
-from ringlet.farm.task import Wanted
+from ringlet.farm.task import TaskOptions
 
 VERSION = "jobtemplate-2023-09"
 MAX_NAME = 64  # characters of the name of a parameter, a job or a step
 
 
-def write_template(path: Path, shot: Path, choices: Sequence[Choice], wanted: Wanted) -> None:
+def write_template(path: Path, shot: Path, choices: Sequence[Choice], options: TaskOptions) -> None:
     """Writes the job template as JSON; its parameters are the shot and the output folder.
 
     Raises UserError for a path that does not end in .json.
@@ -31,17 +31,17 @@ def write_template(path: Path, shot: Path, choices: Sequence[Choice], wanted: Wa
     if path.suffix != ".json":
         raise UserError(f"{path}: ends in '{path.suffix}'; must end in .json, such as wedge.template.json")
     with replacing(path) as aside:
-        aside.write_text(json.dumps(template(shot, choices, wanted), indent=2) + "\n", encoding="utf-8")
+        aside.write_text(json.dumps(template(shot, choices, options), indent=2) + "\n", encoding="utf-8")
 
 
-def template(shot: Path, choices: Sequence[Choice], wanted: Wanted) -> dict[str, Any]:
+def template(shot: Path, choices: Sequence[Choice], options: TaskOptions) -> dict[str, Any]:
     """The job template as plain values."""
     names = _names(choices)
     shot_and_folder = ["{{Param.Shot}}", "--output", "{{Param.Folder}}"]
     sets = [f"--set={choice.name}={{{{Task.Param.{name}}}}}" for name, choice in zip(names, choices, strict=True)]
     simulate: dict[str, Any] = {
         "name": "Simulate",
-        "script": _script(["wedge", *shot_and_folder, *sets, "--here", *_options(wanted)]),
+        "script": _script(["wedge", *shot_and_folder, *sets, "--here", *_arguments(options)]),
     }
     if choices:
         simulate["parameterSpace"] = {
@@ -77,12 +77,12 @@ def _path(name: str, kind: str, flow: str, about: str) -> dict[str, str]:
     return {"name": name, "type": "PATH", "objectType": kind, "dataFlow": flow, "description": about}
 
 
-def _options(wanted: Wanted) -> list[str]:
-    """Command-line options that are equivalent to ``wanted``."""
-    frames = ["--frames", f"{wanted.frames[0]}:{wanted.frames[1]}"] if wanted.frames else []
-    frame = [] if wanted.frame is None else ["--frame", str(wanted.frame)]
-    threads = [] if wanted.threads is None else ["--threads", str(wanted.threads)]
-    return [*frames, *frame, *threads, *([] if wanted.picture else ["--no-picture"])]
+def _arguments(options: TaskOptions) -> list[str]:
+    """Command-line options that are equivalent to ``options``."""
+    frames = ["--frames", f"{options.frames[0]}:{options.frames[1]}"] if options.frames else []
+    frame = [] if options.frame is None else ["--frame", str(options.frame)]
+    threads = [] if options.threads is None else ["--threads", str(options.threads)]
+    return [*frames, *frame, *threads, *([] if options.picture else ["--no-picture"])]
 
 
 def _names(choices: Sequence[Choice]) -> list[str]:

@@ -1,11 +1,11 @@
 """One task of a wedge: simulates its shot, draws a frame and writes the results to its folder.
 
-shot.toml   : the shot with the settings of the task
-cache.usdc  : the simulation; while it runs, cache.usdc.part has the checkpoints to resume from
-still.png   : a still of one frame
-places.npy  : positions of the locks at that frame [m], shape (n, 3)
-result.json : results in numbers
-log.txt     : log with times and machines
+- shot.toml: the shot with the settings of the task
+- cache.usdc: the simulation; while it runs, cache.usdc.part has the checkpoints to resume from
+- still.png: a still of one frame
+- places.npy: positions of the locks at that frame [m], shape (n, 3)
+- result.json: results in numbers
+- log.txt: log with times and machines
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ Progress = Callable[[int, int], None]
 
 
 @dataclass(frozen=True)
-class Wanted:
+class TaskOptions:
     """Options of all tasks of a wedge.
 
     frames:  first and last frame, instead of the shot's
@@ -80,7 +80,7 @@ class Result:
     order: Sequence[int] = ()
 
 
-def run_task(task: Task, wanted: Wanted, progress: Progress | None = None) -> Result:
+def run_task(task: Task, options: TaskOptions, progress: Progress | None = None) -> Result:
     """Runs a task, or resumes it from its checkpoints.
 
     progress: called with (frames done, their number)
@@ -88,24 +88,24 @@ def run_task(task: Task, wanted: Wanted, progress: Progress | None = None) -> Re
     A UserError gives a result in the state ``refused``. Other exceptions propagate, so that the task can be retried.
     A task that is in progress in another process is refused, and its folder stays unchanged.
     """
-    if wanted.threads:
-        api.use_threads(wanted.threads)
+    if options.threads:
+        api.use_threads(options.threads)
     task.folder.mkdir(parents=True, exist_ok=True)
     with ExitStack() as lock:
         try:
             lock.enter_context(api.hold_checkpoints(task.folder / PART))
         except UserError as error:
             return Result(task.settings, "refused", str(error), order=task.order)
-        return _run(task, wanted, progress)
+        return _run(task, options, progress)
 
 
-def _run(task: Task, wanted: Wanted, progress: Progress | None) -> Result:
+def _run(task: Task, options: TaskOptions, progress: Progress | None) -> Result:
     """Runs a task in a locked folder."""
     log = Log(task.folder / "log.txt")
     log(f"begins: {task.name}")
     begin = time.perf_counter()
     try:
-        result = _simulate(task, wanted, log, progress or (lambda done, total: None))
+        result = _simulate(task, options, log, progress or (lambda done, total: None))
     except UserError as error:
         log(f"refused: {error}")
         result = Result(task.settings, "refused", str(error), order=task.order)
@@ -144,19 +144,21 @@ def read_result(folder: Path) -> Result | None:
         return None
 
 
-def _simulate(task: Task, wanted: Wanted, log: Log, progress: Progress) -> Result:
+def _simulate(task: Task, options: TaskOptions, log: Log, progress: Progress) -> Result:
     shot_file, cache, part = (task.folder / name for name in ("shot.toml", CACHE, PART))
     with replacing(shot_file) as aside:
         aside.write_text(task.shot, encoding="utf-8")
     shot = api.read_shot(shot_file)
     groom, groom_file = _groom(shot, task.folder, log)
-    made_from = f"{api.made_from(shot, groom, frames=wanted.frames)} {wanted.frames} {wanted.frame} {wanted.picture}"
+    made_from = (
+        f"{api.run_digest(shot, groom, frames=options.frames)} {options.frames} {options.frame} {options.picture}"
+    )
     previous = read_result(task.folder)
     if previous and previous.state == "done" and previous.made_from == made_from and cache.exists():
         log("is done already")
         return previous
 
-    first, last = wanted.frames or shot.frames
+    first, last = options.frames or shot.frames
     key = part / "made_from"
     resume = key.exists() and made_from.startswith(key.read_text())
     log(f"{'goes on with' if resume else 'simulates'} frames {first}:{last}, {len(groom.locks)} locks")
@@ -169,12 +171,12 @@ def _simulate(task: Task, wanted: Wanted, log: Log, progress: Progress) -> Resul
         progress(done, last - first + 1)
 
     simulated = api.write_simulation(
-        shot, groom, groom_file, cache, checkpoints=part, frames=wanted.frames, resume=resume, on_frame=frame_done
+        shot, groom, groom_file, cache, checkpoints=part, frames=options.frames, resume=resume, on_frame=frame_done
     )
     seconds = time.perf_counter() - begin
-    frame = last if wanted.frame is None else wanted.frame
+    frame = last if options.frame is None else options.frame
     numbers = {**_numbers_of_statistics(simulated.statistics), **_numbers_of_motion(task.folder, groom, cache, frame)}
-    if wanted.picture:
+    if options.picture:
         log(f"draws frame {frame}")
         _draw(task.folder, groom, groom_file, cache, frame)
     shutil.rmtree(part, ignore_errors=True)

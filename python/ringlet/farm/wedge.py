@@ -15,7 +15,7 @@ from ringlet.farm.cluster import run_on_workers
 from ringlet.farm.grid import Choice, Task, choose, make_tasks
 from ringlet.farm.openjd import write_template
 from ringlet.farm.page import PAGE, read_results, write_page
-from ringlet.farm.task import Result, Wanted, run_task
+from ringlet.farm.task import Result, TaskOptions, run_task
 
 
 def wedge(
@@ -52,16 +52,16 @@ def wedge(
     folder = Path(folder).absolute()
     tasks = make_tasks(Path(shot).absolute(), _choices(settings), folder)
     check_place(folder / PAGE)
-    wanted = Wanted(frames, frame, picture, threads)
+    options = TaskOptions(frames, frame, picture, threads)
     if here:
-        results = [run_task(task, wanted, _task_progress(task, progress)) for task in tasks]
+        results = [run_task(task, options, _task_progress(task, progress)) for task in tasks]
     else:
         if scheduler is None:
             processors = os.cpu_count() or 1
             workers = workers or min(len(tasks), processors)
-            wanted = replace(wanted, threads=threads or max(1, processors // workers))
+            options = replace(options, threads=threads or max(1, processors // workers))
         results = run_on_workers(
-            tasks, wanted, scheduler=scheduler, workers=workers, retries=retries, progress=progress or _no_progress
+            tasks, options, scheduler=scheduler, workers=workers, retries=retries, progress=progress or _no_progress
         )
     if read_results(folder):  # empty when other processes run all tasks
         write_page(folder, f"Wedge of {Path(shot).name}")
@@ -92,7 +92,7 @@ def write_wedge_template(
     """Writes a wedge as a template of Open Job Description, for a render farm; returns the number of its tasks."""
     choices = _choices(settings)
     tasks = make_tasks(Path(shot).absolute(), choices, Path(path).absolute().parent)  # validated before submission
-    write_template(Path(path), Path(shot), choices, Wanted(frames, frame, picture, threads))
+    write_template(Path(path), Path(shot), choices, TaskOptions(frames, frame, picture, threads))
     return len(tasks)
 
 

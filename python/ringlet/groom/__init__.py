@@ -2,7 +2,7 @@
 
 from ringlet.data.groom import Groom
 from ringlet.groom.check import Allowed, check_groom
-from ringlet.groom.edits_file import add_points, add_settings, release, row_of, taken_back
+from ringlet.groom.edits_file import add_points, add_settings, release, restored_on_error, row_of
 from ringlet.groom.fix import fix_groom
 from ringlet.groom.hairs import HairMemory, Hairs, HairSettings, hair_count, lay_hairs, make_hairs
 from ringlet.groom.presets import PRESETS
@@ -29,7 +29,7 @@ __all__ = [
     "parse_recipe",
     "read_recipe",
     "release",
+    "restored_on_error",
     "row_of",
     "schema",
-    "taken_back",
 ]

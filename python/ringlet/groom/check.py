@@ -72,7 +72,7 @@ class Findings:
         self.depth = np.concatenate([self.depth, depth])
         self.other = np.concatenate([self.other, np.full(len(point), -1) if other is None else other])
 
-    def told(self) -> dict[str, Any]:
+    def summary(self) -> dict[str, Any]:
         """Summary of each kind as plain values: counts, greatest depth and deepest places; lengths in metres."""
         return {name: self._summary(np.flatnonzero(self.kind == k)) for k, name in enumerate(KINDS)}
 

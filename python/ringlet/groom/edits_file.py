@@ -46,7 +46,7 @@ def edits_text(edits: dict[str, list[dict[str, Any]]]) -> str:
 
 
 @contextmanager
-def taken_back(recipe: Recipe) -> Iterator[None]:
+def restored_on_error(recipe: Recipe) -> Iterator[None]:
     """Restores the file of edits when the block raises UserError."""
     path = edits_path(recipe)
     before = path.read_bytes() if path.exists() else None

@@ -36,7 +36,7 @@ class Repair:
     rounds: int
     moved: Array
 
-    def told(self) -> dict[str, Any]:
+    def summary(self) -> dict[str, Any]:
         """Summary of the repair as plain values; lengths in metres."""
         moved = self.moved > 1e-9
         return {

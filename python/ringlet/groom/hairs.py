@@ -95,65 +95,65 @@ class Hairs:
     _layout: dict[str, NDArray]
     _root: NDArray[np.float32] | None = None  # offsets of hair roots from lock roots on the scalp at rest
 
-    def at(
+    def deformed(
         self,
         lock_points: NDArray,
         scalp_points: NDArray,
         *,
-        beside: Sequence[tuple[NDArray, NDArray]] = (),
+        surfaces: Sequence[tuple[NDArray, NDArray]] = (),
         out: NDArray[np.float32] | None = None,
     ) -> NDArray[np.float32]:
         """Positions of the hairs on deformed locks and scalp [m], shape (n, 3), float32.
 
         lock_points:  current positions of ``groom.locks`` [m], shape (locks' points, 3)
         scalp_points: current positions of ``groom.scalp`` [m], shape (scalp points, 3)
-        beside:       surfaces that a hair crosses only with its lock: points [m], shape (k, 3), triangles (m, 3)
+        surfaces:     surfaces that a hair crosses only with its lock: points [m], shape (k, 3), triangles (m, 3)
         out:          output buffer, also returned; allocating a new one takes longer than the deformation
         """
         if out is None:
-            out = self.room()
-        self._deform(lock_points, self.carriage(scalp_points), beside, out)
+            out = self.new_buffer()
+        self._deform(lock_points, self.deformation(scalp_points), surfaces, out)
         return out
 
-    def left_beside(
+    def offset_fractions(
         self,
         lock_points: NDArray,
-        carriage: dict[str, NDArray],
-        beside: Sequence[tuple[NDArray, NDArray]],
+        deformation: dict[str, NDArray],
+        surfaces: Sequence[tuple[NDArray, NDArray]],
         *,
-        room: NDArray[np.float32] | None = None,
+        buffer: NDArray[np.float32] | None = None,
     ) -> NDArray[np.uint8]:
         """Fractions of the offsets from the locks that remain when hairs stay on their lock's side of surfaces.
 
         Shape (hairs, points of a hair), uint8; 255 is the whole offset.
 
-        carriage: result of ``carriage`` for the current scalp
-        room:     buffer for the points of all hairs, shape (n, 3); saves an allocation
+        deformation: result of ``deformation`` for the current scalp
+        buffer:      buffer for the points of all hairs, shape (n, 3); saves an allocation
         """
-        shares = np.full((len(self.curves), len(self._layout["hold"])), 255, np.uint8)
-        if beside:
-            self._deform(lock_points, carriage, beside, self.room() if room is None else room, shares)
-        return shares
+        fractions = np.full((len(self.curves), len(self._layout["hold"])), 255, np.uint8)
+        if surfaces:
+            self._deform(lock_points, deformation, surfaces, self.new_buffer() if buffer is None else buffer, fractions)
+        return fractions
 
-    def room(self) -> NDArray[np.float32]:
+    def new_buffer(self) -> NDArray[np.float32]:
         """Allocates a buffer for the points of all hairs, shape (n, 3), float32."""
         return np.empty((int(self.curves.offsets[-1]), 3), np.float32)
 
     def _deform(
         self,
         lock_points: NDArray,
-        carriage: dict[str, NDArray],
-        beside: Sequence[tuple[NDArray, NDArray]],
+        deformation: dict[str, NDArray],
+        surfaces: Sequence[tuple[NDArray, NDArray]],
         out: NDArray[np.float32],
-        shares: NDArray[np.uint8] | None = None,
+        fractions: NDArray[np.uint8] | None = None,
     ) -> None:
         points, offsets = np.ascontiguousarray(lock_points, np.float32), self._groom.locks.offsets
-        _core.warp_hairs(points, offsets, out, **carriage)
-        if beside:
-            parts = {name: self._layout[name] for name in ("first", "tip", "hold")}
-            _core.keep_beside(points, offsets, out, *_as_one(beside), MARGIN, **parts, shares=shares)
+        _core.warp_hairs(points, offsets, out, **deformation)
+        if surfaces:
+            layout = {name: self._layout[name] for name in ("first", "tip", "hold")}
+            _core.keep_beside(points, offsets, out, *_merged(surfaces), MARGIN, **layout, shares=fractions)
 
-    def carriage(self, scalp_points: NDArray) -> dict[str, NDArray]:
+    def deformation(self, scalp_points: NDArray) -> dict[str, NDArray]:
         """Inputs of the deformation (src/ringlet/groom/hairs.h) besides the locks, for a deformed scalp.
 
         ``axis`` (locks, 3) and ``root`` (hairs, 3) [m] follow the scalp; the other arrays are constant.
@@ -166,7 +166,7 @@ class Hairs:
         return {"axis": axis, "root": root, **self._layout}
 
     def axes(self, scalp_points: NDArray) -> NDArray[np.float64]:
-        """The ``axis`` of ``carriage`` alone, which costs less."""
+        """The ``axis`` of ``deformation`` alone, which costs less."""
         return self._frames(np.ascontiguousarray(scalp_points, np.float64))[1]
 
     def _frames(self, at: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -186,7 +186,7 @@ class Hairs:
         return root.astype(np.float32)
 
 
-def _as_one(surfaces: Sequence[tuple[NDArray, NDArray]]) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+def _merged(surfaces: Sequence[tuple[NDArray, NDArray]]) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
     """Merges points and triangles of several meshes into one."""
     before = np.cumsum([0] + [len(points) for points, _ in surfaces])
     return (
@@ -218,7 +218,7 @@ def make_hairs(groom: Groom, *, fraction: float = 1.0, wider: bool = False, memo
     Raises UserError for a fraction out of range.
     """
     hairs = lay_hairs(groom, fraction=fraction, wider=wider, memory=memory)
-    hairs.curves.points = hairs.at(groom.locks.points, groom.scalp.points, out=hairs.curves.points)
+    hairs.curves.points = hairs.deformed(groom.locks.points, groom.scalp.points, out=hairs.curves.points)
     return hairs
 
 

@@ -38,6 +38,6 @@ class HelperCurves(Source):
             raise refuse(f"has {len(self.points)} point(s); give at least 2")
         return self
 
-    def given(self) -> Curves | None:
+    def inline_curve(self) -> Curves | None:
         """The curve of the inline points; None when the curves are in a file."""
         return None if self.points is None else Curves.from_list([np.array(self.points)])

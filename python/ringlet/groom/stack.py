@@ -80,7 +80,7 @@ def make_groom(
             )
         if drawn_guides is not None:
             key = _key(key, drawn_guides.points.tobytes(), drawn_guides.offsets.tobytes(), drawn_guides.ids.tobytes())
-        helpers = {**{name: c for name, h in recipe.curves.items() if (c := h.given())}, **(helpers or {})}
+        helpers = {**{name: c for name, h in recipe.curves.items() if (c := h.inline_curve())}, **(helpers or {})}
         for name, helper in helpers.items():
             helper.check(f"curves.{name}")
             key = _key(key, name.encode(), helper.points.tobytes(), helper.offsets.tobytes())

@@ -49,7 +49,7 @@ _MADE_OF = (
 )
 
 
-def made_of(mesh: Mesh) -> str:
+def material_of(mesh: Mesh) -> str:
     """Material of a mesh, guessed from its name: skin, eye, cloth or matte."""
     name = re.split(r"[/\s]", mesh.name.lower())[-1]
     return next((kind for kind, pattern in _MADE_OF if re.search(pattern, name)), "matte")
@@ -67,5 +67,5 @@ def material(mesh: Mesh, opacity: float = 1.0) -> dict[str, Any]:
         "cloth": {"roughness": 0.9, "specular": 0.15, "sheen": 0.5, "sheen_tint": 0.5},
         "matte": {"roughness": 0.8, "specular": 0.2},
     }
-    bsdf = {"type": "twosided", "bsdf": {"type": "principled", "base_color": color, **parameters[made_of(mesh)]}}
+    bsdf = {"type": "twosided", "bsdf": {"type": "principled", "base_color": color, **parameters[material_of(mesh)]}}
     return bsdf if opacity == 1.0 else {"type": "mask", "opacity": opacity, "bsdf": bsdf}

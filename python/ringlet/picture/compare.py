@@ -14,7 +14,7 @@ from ringlet.data.files import replacing
 from ringlet.picture.bodies import PosedBody
 from ringlet.picture.camera import Camera
 from ringlet.picture.render import Progress, hair_color
-from ringlet.picture.sheet import draw_tile, lay_out, see_all, thin_out
+from ringlet.picture.sheet import arrange_tiles, draw_tile, frame_all, subsample
 
 OUTLINE = (255, 176, 59)
 CLOSE = 7  # largest gap between curls that an outline ignores [pixels]
@@ -38,8 +38,8 @@ def compare(
     shapes: hairs [m] by name; the outline of the first is drawn over all others
     bodies, tile, title, hairs, samples, view, color, progress: as in ``sheet``
     """
-    thinned = {name: thin_out(curves, hairs) for name, curves in shapes.items()}
-    camera, pigments = see_all([(bodies, curves) for curves in thinned.values()], tile, view), hair_color(color)
+    thinned = {name: subsample(curves, hairs) for name, curves in shapes.items()}
+    camera, pigments = frame_all([(bodies, curves) for curves in thinned.values()], tile, view), hair_color(color)
     tiles: list[tuple[str, str, NDArray[np.uint8]]] = []
     outline = None
     for name, curves in thinned.items():
@@ -52,7 +52,7 @@ def compare(
         tiles.append((name, "outline: " + next(iter(thinned)) if len(tiles) else "", pixels))
         if progress:
             progress("picture", len(tiles), len(shapes))
-    page = lay_out(tiles, len(tiles), tile, title, "")
+    page = arrange_tiles(tiles, len(tiles), tile, title, "")
     with replacing(path) as aside:
         page.save(aside)
     return Path(path)

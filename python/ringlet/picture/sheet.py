@@ -56,7 +56,7 @@ def sheet(
 
     Raises UserError without frames and for sizes below 1.
     """
-    shots = [(number, bodies, thin_out(curves, hairs)) for number, bodies, curves in frames]
+    shots = [(number, bodies, subsample(curves, hairs)) for number, bodies, curves in frames]
     if not shots:
         raise UserError("sheet: there are no frames; give at least one")
     if columns < 1 or min(tile) < 1 or samples < 1:
@@ -64,7 +64,7 @@ def sheet(
     for number, _, curves in shots:
         if len(curves):
             curves.check(f"frame {number:g}: hairs")
-    pigments, camera = hair_color(color), see_all([shot[1:] for shot in shots], tile, view)
+    pigments, camera = hair_color(color), frame_all([shot[1:] for shot in shots], tile, view)
     tiles = []
     for number, bodies, curves in shots:
         tiles.append((number, draw_tile(bodies, curves, camera, tile, pigments, samples)))
@@ -73,20 +73,20 @@ def sheet(
     first, last = tiles[0][0], tiles[-1][0]
     labelled = [(f"frame {number:g}", f"{(number - first) / fps:.2f} s", pixels) for number, pixels in tiles]
     about = f"frames {first:g} to {last:g}, {fps:g} per second"
-    page = lay_out(labelled, min(columns, len(tiles)), tile, title, about)
+    page = arrange_tiles(labelled, min(columns, len(tiles)), tile, title, about)
     with replacing(path) as aside:
         page.save(aside)
     return Path(path)
 
 
-def thin_out(hairs: Curves, count: int) -> Curves:
+def subsample(hairs: Curves, count: int) -> Curves:
     """At most ``count`` hairs, evenly chosen, the same ones in every frame."""
     if len(hairs) <= count:
         return hairs
     return hairs.take(np.linspace(0, len(hairs) - 1, count).round().astype(np.int64))
 
 
-def see_all(
+def frame_all(
     scenes: Iterable[tuple[Sequence[PosedBody], Curves]], tile: tuple[int, int], view: str | tuple[float, float]
 ) -> Camera:
     """Camera that sees bodies and hairs of all tiles."""
@@ -107,7 +107,7 @@ def draw_tile(
     return develop(over_backdrop(trace(scene, samples=samples)))
 
 
-def lay_out(
+def arrange_tiles(
     tiles: Sequence[tuple[str, str, np.ndarray]], columns: int, tile: tuple[int, int], title: str, about: str
 ) -> Image.Image:
     """Lays out tiles in reading order: each with a left and a right label below it, under a strip with the title.

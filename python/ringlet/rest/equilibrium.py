@@ -51,7 +51,7 @@ class _Trial:
     points: Array
     moving: Array
     off: Array
-    good: Locks
+    stable: Locks
     needed: Array
 
 
@@ -80,30 +80,30 @@ def equilibrium(
     frames = strands.directors.copy() if frames is None else frames
     support = support_forces(shot, groom, obstacles, strands) if support is None else support
     carried = support + _nail_springs(shot, groom, strands)
-    going, soft, factor = np.ones(len(locks), bool), np.zeros(len(locks), bool), np.ones(len(locks))
-    made = _nothing_found(groom, support)
+    pending, soft, factor = np.ones(len(locks), bool), np.zeros(len(locks), bool), np.ones(len(locks))
+    made = _empty_loft(groom, support)
 
-    def tried(which: Locks, fall: bool = False) -> _Trial:
+    def solve(which: Locks, fall: bool = False) -> _Trial:
         part, rows = replace(groom, locks=locks.take(which)), np.repeat(which, locks.counts)
-        return _try(shot, part, frames[rows], carried[rows], factor[which], fall)
+        return _solve(shot, part, frames[rows], carried[rows], factor[which], fall)
 
     for _ in range(TRIES):
         if progress:
-            progress("loft", int((~going).sum()), len(locks))
-        found = tried(going)
-        _put(made, going, found, found.good)
-        factor[going] *= found.needed
-        going[going] = ~found.good
-        soft |= going & (factor > most)
-        going &= ~soft
-        if not going.any():
+            progress("loft", int((~pending).sum()), len(locks))
+        found = solve(pending)
+        _accept(made, pending, found, found.stable)
+        factor[pending] *= found.needed
+        pending[pending] = ~found.stable
+        soft |= pending & (factor > most)
+        pending &= ~soft
+        if not pending.any():
             break
-    soft |= going
+    soft |= pending
     if soft.any():
         factor[soft] = most
-        _put(made, soft, tried(soft, fall=True), np.ones(soft.sum(), bool))
-        plain = _as_groomed(shot, replace(groom, locks=locks.take(soft)))
-        _put(made, soft, plain, made.off[soft] >= MUCH_NEARER * plain.off)
+        _accept(made, soft, solve(soft, fall=True), np.ones(soft.sum(), bool))
+        plain = _unlofted(shot, replace(groom, locks=locks.take(soft)))
+        _accept(made, soft, plain, made.off[soft] >= MUCH_NEARER * plain.off)
     if progress:
         progress("loft", len(locks), len(locks))
     return made
@@ -144,7 +144,7 @@ def _check(shot: Shot, locks: Curves) -> None:
         raise UserError(f"loft: held is {shot.held}, but a lock has {locks.counts.min()} points; hold fewer")
 
 
-def _nothing_found(groom: Groom, support: Array) -> Loft:
+def _empty_loft(groom: Groom, support: Array) -> Loft:
     """A loft to be filled, lock by lock."""
     count, points = len(groom.locks), np.array(groom.locks.points, np.float64)
     nowhere = np.full(count, np.inf)
@@ -153,25 +153,25 @@ def _nothing_found(groom: Groom, support: Array) -> Loft:
     )
 
 
-def _put(made: Loft, going: Locks, trial: _Trial, better: Locks) -> None:
-    """Takes over those of the ``going`` locks whose trial is better."""
+def _accept(made: Loft, pending: Locks, trial: _Trial, better: Locks) -> None:
+    """Takes over those of the ``pending`` locks whose trial is better."""
     assert made.stiffened is not None
-    found, counts = going.copy(), made.rest.counts
-    found[going] = better
-    rows, among = np.repeat(found, counts), np.repeat(better, counts[going])
+    found, counts = pending.copy(), made.rest.counts
+    found[pending] = better
+    rows, among = np.repeat(found, counts), np.repeat(better, counts[pending])
     made.rest.points[rows], made.lofted[rows] = trial.rest[among], trial.points[among]
     made.off[found], made.moving[found] = trial.off[better], trial.moving[better]
     made.stiffened[found] = trial.factor[better]
 
 
-def _as_groomed(shot: Shot, groom: Groom) -> _Trial:
+def _unlofted(shot: Shot, groom: Groom) -> _Trial:
     """Locks whose rest shape is the groom."""
     plain, ones = hang_groom(shot, groom), np.ones(len(groom.locks))
     rest = np.array(groom.locks.points, np.float64)
     return _Trial(ones, rest, plain.points, plain.moving, plain.off, plain.off < STANDS, ones)
 
 
-def _try(shot: Shot, groom: Groom, frames: Array, support: Array, factor: Array, fall: bool) -> _Trial:
+def _solve(shot: Shot, groom: Groom, frames: Array, support: Array, factor: Array, fall: bool) -> _Trial:
     """Finds the rest shape of locks that are some times as stiff against bend, and whether they stand with it.
 
     frames: the directors of the locks where they were groomed, shape (n, 3)
@@ -187,9 +187,9 @@ def _try(shot: Shot, groom: Groom, frames: Array, support: Array, factor: Array,
     moving = _release(strands, shot, support, FALL if fall else 1)
     off = largest_per_lock(locks, np.linalg.norm(strands.positions - groomed, axis=1))
     still = balanced & (off < STANDS)
-    good = still & (needed == 1.0)
+    stable = still & (needed == 1.0)
     needed = np.where(still, needed, np.maximum(needed, STIFFER))
-    return _Trial(factor, np.asarray(rest.points, np.float64), strands.positions.copy(), moving, off, good, needed)
+    return _Trial(factor, np.asarray(rest.points, np.float64), strands.positions.copy(), moving, off, stable, needed)
 
 
 def _perturbation(loads: Array, locks: Curves) -> Array:

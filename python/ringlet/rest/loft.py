@@ -26,7 +26,7 @@ class Loft:
     off:    largest distance of a vertex of each lock from where it should hang, shape (count,)
     moving: how far each still moved in its last step, of 1 s, shape (count,)
     stiffened: times that each is stiffer against bend than the shot says, shape (count,); None: none is
-    borne:  the forces that support them besides their roots [N], shape (n, 3); None: there are none
+    support: forces on the locks besides those at their roots [N], shape (n, 3); None: there are none
     """
 
     groom: Groom
@@ -36,7 +36,7 @@ class Loft:
     off: Array
     moving: Array
     stiffened: Array | None = None
-    borne: Array | None = None
+    support: Array | None = None
 
     def lost(self) -> dict[str, dict[str, float]]:
         """The deviation from the groom, with the loft and, if known, without [m]: ``with max`` … of each measure.

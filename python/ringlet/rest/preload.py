@@ -72,31 +72,31 @@ def loft(shot: Shot, groom: Groom, *, progress: Progress | None = None) -> Loft:
     locks.check("loft: locks")
     if (locks.counts <= shot.held).any():
         raise UserError(f"loft: held is {shot.held}, but a lock has {locks.counts.min()} points; hold fewer")
-    hanger = _Hanger(shot, groom)
-    best, going = hanger.sagged, hanger.sagged.off >= shot.rest.tolerance
+    solver = _HangingSolver(shot, groom)
+    best, pending = solver.sagged, solver.sagged.off >= shot.rest.tolerance
     sagged = best.points.copy()
-    rest, damping = hanger.first_guess(), np.ones(len(locks))
+    rest, damping = solver.first_guess(), np.ones(len(locks))
     for done in range(shot.rest.iterations):
         if progress:
             progress("loft", done, shot.rest.iterations)
-        if not going.any():
+        if not pending.any():
             break
-        hung = hanger.hang(rest, going)
-        better = going.copy()
-        better[going] = (hung.off < best.off[going]) & (hung.moving <= STILL)
-        rows = hanger.vertices(better)
-        best.put(better, rows, hung.take(better[going], rows[hanger.vertices(going)]))
-        damping[going & ~better] *= 0.5
-        going &= (best.off >= shot.rest.tolerance) & (damping >= LEAST_DAMPING)
-        rest = hanger.next_guess(best, damping)
+        hanging = solver.hang(rest, pending)
+        better = pending.copy()
+        better[pending] = (hanging.off < best.off[pending]) & (hanging.moving <= STILL)
+        rows = solver.vertices(better)
+        best.put(better, rows, hanging.take(better[pending], rows[solver.vertices(pending)]))
+        damping[pending & ~better] *= 0.5
+        pending &= (best.off >= shot.rest.tolerance) & (damping >= LEAST_DAMPING)
+        rest = solver.next_guess(best, damping)
     if progress:
         progress("loft", shot.rest.iterations, shot.rest.iterations)
-    return Loft(groom, hanger.rest_shape(best.rest), sagged, best.points, best.off, best.moving)
+    return Loft(groom, solver.rest_shape(best.rest), sagged, best.points, best.off, best.moving)
 
 
 def hang_groom(shot: Shot, groom: Groom) -> Hanging:
     """Locks that hang with the groom as their rest shape."""
-    return _Hanger(shot, groom).sagged
+    return _HangingSolver(shot, groom).sagged
 
 
 def with_sag(loft: Loft, shot: Shot) -> Loft:
@@ -104,7 +104,7 @@ def with_sag(loft: Loft, shot: Shot) -> Loft:
     return loft if loft.sagged is not None else replace(loft, sagged=hang_groom(shot, loft.groom).points)
 
 
-class _Hanger:
+class _HangingSolver:
     """Lets the locks of a groom hang from one rest shape after the other."""
 
     def __init__(self, shot: Shot, groom: Groom) -> None:
@@ -130,8 +130,8 @@ class _Hanger:
 
     def next_guess(self, now: Hanging, damping: Array) -> RodStrains:
         """A damped step to the groomed strains less those that carry the load now."""
-        wanted = self._groomed.plus(now.strain, -self._gain)
-        return now.rest.plus(wanted.minus(now.rest), np.repeat(damping, self._groom.locks.counts))
+        target = self._groomed.plus(now.strain, -self._gain)
+        return now.rest.plus(target.minus(now.rest), np.repeat(damping, self._groom.locks.counts))
 
     def hang(self, rest: RodStrains, chosen: Locks, load: float = 1.0) -> Hanging:
         """Lets the chosen locks come to rest from the groom, with rest strains, under a fraction of the load."""
@@ -145,11 +145,11 @@ class _Hanger:
         moving = _settle(strands, self._shot, load)
         if self._shot.solver.continuation != "material_frame":
             strands.place(strands.positions)  # which finds the directors
-        hung = strands.positions.copy()
-        _, tangents = edges(locks, hung)
-        strain = measure_strains(locks, hung, rotate(strands.directors, -turn[:, None] * tangents)).minus(rest)
+        hanging = strands.positions.copy()
+        _, tangents = edges(locks, hanging)
+        strain = measure_strains(locks, hanging, rotate(strands.directors, -turn[:, None] * tangents)).minus(rest)
         goal, _ = shape_of_strains(locks, self._groomed.take(rows).plus(strain, 1.0 - self._gain[rows]), frames)
-        return Hanging(rest, hung, strain, largest_per_lock(locks, np.linalg.norm(hung - goal, axis=1)), moving)
+        return Hanging(rest, hanging, strain, largest_per_lock(locks, np.linalg.norm(hanging - goal, axis=1)), moving)
 
 
 def _angle(locks: Curves, points: Array, ours: Array, theirs: Array) -> Array:

@@ -74,7 +74,7 @@ def same_locks(stored: Curves, groom: Groom) -> bool:
 
 
 def changed_locks(stored: Curves, shot: Shot, groom: Groom) -> NDArray[np.bool_]:
-    """Which locks of a groom differ from those that a stored rest shape was made from, shape (count,)."""
+    """Locks of a groom that differ from those of a stored rest shape, shape (count,)."""
     changed = np.linalg.norm(stored.point["groomed"] - groom.locks.points, axis=1) > SAME_PLACE
     values = values_at_vertices(shot, groom)
     for name, default in {"gain": 1.0, **dict.fromkeys(VARIATIONS, 1.0), **dict.fromkeys(NAILED, 0.0)}.items():

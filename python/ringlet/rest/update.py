@@ -20,7 +20,7 @@ from ringlet.shot.shot import Shot
 from ringlet.sim.motion import make_strands
 from ringlet.sim.obstacle import Obstacle
 
-OPTIONAL = ("sagged", "borne")  # values at vertices that a loft may lack
+OPTIONAL = {"sagged": "sagged", "borne": "support"}  # values at vertices that a loft may lack, by their stored names
 SAME_SUPPORT = 1e-4  # change of the support of a lock, relative to its weight, below which it counts as the same
 
 
@@ -43,7 +43,7 @@ def to_curves(loft: Loft, shot: Shot) -> Curves:
     """A loft for storage: its rest shape, with all that it depends on and how it hangs as attributes."""
     rest = loft.rest
     point = {"groomed": loft.groom.locks.points, "lofted": loft.lofted, **values_at_vertices(shot, loft.groom)}
-    point |= {name: values for name in OPTIONAL if (values := getattr(loft, name)) is not None}
+    point |= {stored: values for stored, name in OPTIONAL.items() if (values := getattr(loft, name)) is not None}
     curve = {"off": loft.off, "moving": loft.moving}
     if loft.stiffened is not None:
         curve["stiffened"] = loft.stiffened
@@ -80,16 +80,16 @@ def update_rest_shape(
     if made != (now := dependencies(shot, obstacles)):
         same = not changed.any() and _of_support(made) == _of_support(now)
         return solve_rest_shape(
-            shot, groom, obstacles=obstacles, support=whole.borne if same else None, progress=progress
+            shot, groom, obstacles=obstacles, support=whole.support if same else None, progress=progress
         )
     if not changed.any():
         return whole
     support, known = None, {}
-    if whole.borne is not None:
+    if whole.support is not None:
         strands = make_strands(shot, groom)
         frames = strands.directors.copy()
         support = support_forces(shot, groom, obstacles, strands)
-        changed |= _support_changed(external_loads(shot, strands), groom.locks, whole.borne, support)
+        changed |= _support_changed(external_loads(shot, strands), groom.locks, whole.support, support)
         known = {"support": support, "frames": frames}
     rows = np.repeat(changed, groom.locks.counts)
     part = replace(groom, locks=groom.locks.take(changed))
@@ -101,7 +101,7 @@ def update_rest_shape(
         whole.stiffened[changed] = part.stiffened
     if whole.sagged is not None and part.sagged is not None:
         whole.sagged[rows] = part.sagged
-    return replace(whole, borne=support, sagged=None if part.sagged is None else whole.sagged)
+    return replace(whole, support=support, sagged=None if part.sagged is None else whole.sagged)
 
 
 def _of_support(made: dict[str, Any]) -> dict[str, Any]:
@@ -113,6 +113,6 @@ def _of_support(made: dict[str, Any]) -> dict[str, Any]:
 def _support_changed(
     loads: NDArray[np.float64], locks: Curves, before: NDArray[np.float64], now: NDArray[np.float64]
 ) -> NDArray[np.bool_]:
-    """Which locks are supported by other forces than before, as their neighbours have changed, shape (count,)."""
+    """Locks whose support forces differ from before, as their neighbours have changed, shape (count,)."""
     weight = np.add.reduceat(np.linalg.norm(loads, axis=1), locks.offsets[:-1])
     return largest_per_lock(locks, np.linalg.norm(now - before, axis=1)) > SAME_SUPPORT * weight

@@ -14,7 +14,7 @@ Scale = Annotated[float, Field(gt=0.01, le=100)]
 
 
 class ClothMaterial(Section):
-    """What cloth is made of."""
+    """Material of cloth."""
 
     density: float = Field(default=0.15, gt=0, le=1e4, description="mass per area [kg/m²]; shirts 0.1, denim 0.4")
     stretch_warp: float = Field(
@@ -41,7 +41,7 @@ class ClothMaterial(Section):
 
 
 class Pin(Section):
-    """Vertices of a cloth that go where they are told: all of it, or those that fulfil every condition here."""
+    """Prescribed vertices of a cloth: all of it, or those that fulfil every condition here."""
 
     to: str | None = Field(
         default=None,
@@ -63,7 +63,7 @@ class Pin(Section):
 
     @field_validator("within")
     @classmethod
-    def _of_something(cls, within: float | None, info: ValidationInfo) -> float | None:
+    def _has_target(cls, within: float | None, info: ValidationInfo) -> float | None:
         if within is not None and info.data.get("to") is None:
             raise refuse(f"is {within}, but there is no `to`; name the collider that this is the distance from")
         return within
@@ -94,7 +94,9 @@ class ShotCloth(Section):
 
     @field_validator("shrink")
     @classmethod
-    def _in_order(cls, shrink: float | tuple[tuple[float, float], ...]) -> float | tuple[tuple[float, float], ...]:
+    def _ascending_frames(
+        cls, shrink: float | tuple[tuple[float, float], ...]
+    ) -> float | tuple[tuple[float, float], ...]:
         if isinstance(shrink, tuple):
             frames = [frame for frame, _ in shrink]
             if not frames or frames != sorted(set(frames)):
@@ -102,7 +104,7 @@ class ShotCloth(Section):
         return shrink
 
     @model_validator(mode="after")
-    def _somewhere(self) -> Self:
+    def _has_mesh(self) -> Self:
         if self.file is None and self.mesh is None:
             raise refuse("names no mesh; give `mesh`, a prim in the file of the head, or `file`")
         return self

@@ -10,7 +10,7 @@ from ringlet.data.settings import Section
 
 
 class Contact(Section):
-    """How strands touch one another and bodies."""
+    """Contact of strands with one another and with bodies."""
 
     radius: float = Field(
         default=5e-4, gt=0, le=0.1, description="[m] half the distance at which two locks begin to push each other away"
@@ -48,7 +48,7 @@ class Pair(Section):
 
 
 class ShotContact(Contact):
-    """How locks touch one another, the colliders and cloth."""
+    """Contact of locks with one another, with colliders and with cloth."""
 
     on: bool = Field(default=True, description="false: everything passes through everything, as without this table")
     pair: tuple[Pair, ...] = Field(

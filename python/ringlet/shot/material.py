@@ -8,7 +8,7 @@ from ringlet.data.settings import Section, refuse
 
 
 class Material(Section):
-    """What a lock is made of: a hair's values, since hairs that do not stick together move like one of them."""
+    """Material of a lock: the values of one hair, since hairs that do not stick together move like one of them."""
 
     youngs_modulus: float = Field(default=4e9, gt=0, le=1e13, description="E [Pa]; hair: 2e9 to 6e9")
     radius: float = Field(default=35e-6, gt=1e-7, le=0.1, description="r of one hair [m]")
@@ -40,7 +40,7 @@ class Material(Section):
 
     @field_validator("twist_ratio")
     @classmethod
-    def _within_bend(cls, ratio: float, info: ValidationInfo) -> float:
+    def _limited_twist(cls, ratio: float, info: ValidationInfo) -> float:
         if ratio > 1 and info.data.get("limit_twist"):
             raise refuse(f"is {ratio}; must be at most 1 (or limit_twist = false, to study what the limit is for)")
         return ratio

@@ -21,7 +21,7 @@ STAYS = {"parting_speed": 0.0, "creep_speed": 1e-5}  # defaults of contact in eq
 
 
 class Forces(Section):
-    """What acts on the strands from outside, in metres and Y-up whatever the files use."""
+    """External forces on the strands, in metres and Y-up whatever the files use."""
 
     gravity: tuple[float, float, float] = Field(default=(0.0, -9.81, 0.0), description="[m/s²]")
     wind: tuple[float, float, float] = Field(default=(0.0, 0.0, 0.0), description="velocity of the air [m/s]")
@@ -63,21 +63,21 @@ class Shot(Section):
 
     @field_validator("frames")
     @classmethod
-    def _in_order(cls, frames: tuple[int, int]) -> tuple[int, int]:
+    def _valid_frames(cls, frames: tuple[int, int]) -> tuple[int, int]:
         if wrong := wrong_frames(*frames):
             raise refuse(f"is {list(frames)}; {wrong}")
         return frames
 
     @field_validator("collider")
     @classmethod
-    def _touched(cls, colliders: tuple[Collider, ...], info: ValidationInfo) -> tuple[Collider, ...]:
+    def _colliders_have_contact(cls, colliders: tuple[Collider, ...], info: ValidationInfo) -> tuple[Collider, ...]:
         if colliders and info.data.get("contact", True) is None:
             raise refuse("is there, but locks touch nothing; add a table [contact]")
         return colliders
 
     @field_validator("cloth")
     @classmethod
-    def _worn(cls, cloths: tuple[ShotCloth, ...], info: ValidationInfo) -> tuple[ShotCloth, ...]:
+    def _cloths_have_contact(cls, cloths: tuple[ShotCloth, ...], info: ValidationInfo) -> tuple[ShotCloth, ...]:
         contact = info.data.get("contact")
         if cloths and "contact" in info.data and not (contact and contact.on):
             raise refuse(

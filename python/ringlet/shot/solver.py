@@ -15,7 +15,7 @@ MOST_ITERATIONS = 1000
 
 
 class Solver(Section):
-    """How a time step is solved."""
+    """Solver of a time step."""
 
     newton: int = Field(
         default=5,
@@ -65,7 +65,7 @@ class Solver(Section):
 
     @field_validator("safeguards")
     @classmethod
-    def _of_history(cls, safeguards: tuple[Safeguard, ...], info: ValidationInfo) -> tuple[Safeguard, ...]:
+    def _safeguards_have_history(cls, safeguards: tuple[Safeguard, ...], info: ValidationInfo) -> tuple[Safeguard, ...]:
         continuation = info.data.get("continuation")
         if continuation != "history" and set(safeguards) != set(SAFEGUARDS):
             raise refuse(f"is {list(safeguards)}; continuation is '{continuation}', only 'history' can be without one")
@@ -78,7 +78,7 @@ class Solver(Section):
 
 
 class ClothSolver(Section):
-    """How a time step of cloth is solved."""
+    """Solver of a time step of cloth."""
 
     newton: int = Field(default=5, ge=1, le=1000, description="Newton iterations per step, at most")
     tolerance: float = Field(

@@ -1,6 +1,6 @@
 """The simulation of a shot: strands, cloth and bodies in motion and in contact, frame by frame."""
 
-from ringlet.sim.checkpoint import Checkpoints, frames_between, holding
+from ringlet.sim.checkpoint import Checkpoints, frames_between, locked_folder
 from ringlet.sim.cloth import Cloth
 from ringlet.sim.garment import Garment
 from ringlet.sim.motion import Motion
@@ -22,7 +22,7 @@ __all__ = [
     "Strands",
     "digest_of_run",
     "frames_between",
-    "holding",
+    "locked_folder",
     "play",
     "replay",
     "simulate",

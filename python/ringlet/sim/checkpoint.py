@@ -26,12 +26,12 @@ from ringlet.data.files import replacing
 VERSION = b"ringlet checkpoint 3\n"
 EVERY = 10  # frames from one state to the next, at most
 VERTICES = 1_000_000  # simulated between states: a frame of that many may take minutes
-HELD = "held"  # the file that a program locks while it runs
-KEPT = 2  # states: where the last is damaged, the one before is used
+LOCK_FILE = "held"  # the file that a program locks while it runs
+STATES_KEPT = 2  # where the last is damaged, the one before is used
 
 Arrays = Mapping[str, NDArray[Any]]
 
-_held_here: dict[Path, BinaryIO] = {}  # by folder, the files that ``holding`` locks in this program
+_locks: dict[Path, BinaryIO] = {}  # by folder, the files that ``locked_folder`` locks in this program
 
 
 class DamagedError(ValueError):
@@ -42,34 +42,34 @@ class DamagedError(ValueError):
 class Checkpoints:
     """The folder of a run.
 
-    folder:    where its files are
-    made_from: the digest of the run; files of another run are refused
-    every:     frames from one state to the next
+    folder:     folder of its files
+    run_digest: the digest of the run; files of another run are refused
+    every:      frames from one state to the next
     """
 
     folder: Path
-    made_from: str
+    run_digest: str
     every: int = EVERY
-    _held: BinaryIO | None = field(default=None, repr=False)
+    _lock_file: BinaryIO | None = field(default=None, repr=False)
 
     def begin(self, resume: bool) -> tuple[int, dict[str, NDArray[Any]]] | None:
         """The number of steps that are done and the state after them; None for a new run.
 
         Without ``resume`` the folder is emptied. Raises UserError where it is of another run.
         """
-        self._hold()
+        self._lock()
         if not resume:
             for path in self.folder.iterdir():
-                if path.name != HELD:
+                if path.name != LOCK_FILE:
                     path.unlink()
         key = self.folder / "made_from"
-        if key.exists() and key.read_text() != self.made_from:
+        if key.exists() and key.read_text() != self.run_digest:
             raise UserError(
                 f"{self.folder}: was left by a run with other settings, another groom, first frame or Ringlet; "
                 "run without --resume to start over"
             )
         with replacing(key) as aside:
-            aside.write_text(self.made_from)
+            aside.write_text(self.run_digest)
         for path in sorted(self.folder.glob("memory.*"), reverse=True):
             try:
                 memory = read(path)
@@ -81,21 +81,21 @@ class Checkpoints:
                 return done, memory
         return None
 
-    def _hold(self) -> None:
+    def _lock(self) -> None:
         """Locks the folder for this program."""
-        self._held = _held_here.get(self.folder.resolve()) or _held(self.folder)
+        self._lock_file = _locks.get(self.folder.resolve()) or _open_lock(self.folder)
 
-    def keep(self, step: int, arrays: Arrays, statistics: dict[str, Any]) -> None:
+    def write_step(self, step: int, arrays: Arrays, statistics: dict[str, Any]) -> None:
         """Writes the results of a step."""
         write(self._frame(step), {**arrays, "statistics": np.array(json.dumps(statistics))})
 
-    def remember(self, done: int, memory: Arrays) -> None:
+    def write_state(self, done: int, memory: Arrays) -> None:
         """Writes the state after so many steps, and removes all but the last two."""
         write(self.folder / f"memory.{done:06d}", memory)
-        for path in sorted(self.folder.glob("memory.*"))[:-KEPT]:
+        for path in sorted(self.folder.glob("memory.*"))[:-STATES_KEPT]:
             path.unlink()
 
-    def kept(self, done: int) -> Iterator[tuple[dict[str, NDArray[Any]], dict[str, Any]]]:
+    def read_steps(self, done: int) -> Iterator[tuple[dict[str, NDArray[Any]], dict[str, Any]]]:
         """The results of the first steps: their arrays and statistics."""
         for step in range(done):
             arrays = read(self._frame(step))
@@ -113,41 +113,41 @@ class Checkpoints:
 
 
 @contextmanager
-def holding(folder: Path) -> Iterator[int]:
+def locked_folder(folder: Path) -> Iterator[int]:
     """Locks a folder of checkpoints while the block runs; see ``ringlet.hold_checkpoints``."""
     at = folder.resolve()
-    if at in _held_here:
-        raise _goes_on(folder)
+    if at in _locks:
+        raise _in_use(folder)
     # Closing a file releases the locks of its whole program, so checkpoints in this folder use this one.
-    _held_here[at] = _held(folder)
+    _locks[at] = _open_lock(folder)
     try:
         yield max((int(path.suffix[1:]) for path in at.glob("memory.*")), default=0)
     finally:
-        if [path.name for path in at.glob("*")] == [HELD]:
-            (at / HELD).unlink()
-        _held_here.pop(at).close()
+        if [path.name for path in at.glob("*")] == [LOCK_FILE]:
+            (at / LOCK_FILE).unlink()
+        _locks.pop(at).close()
         with suppress(OSError):  # a folder with checkpoints stays
             at.rmdir()
 
 
-def _held(folder: Path) -> BinaryIO:
+def _open_lock(folder: Path) -> BinaryIO:
     """The file that locks a folder as long as it is open."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        file = (folder / HELD).open("ab")
+        file = (folder / LOCK_FILE).open("ab")
     except OSError as error:
         raise UserError(f"{folder}: cannot be written ({error.strerror}); choose another place") from error
     try:
         fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except (BlockingIOError, PermissionError):
         file.close()
-        raise _goes_on(folder) from None
+        raise _in_use(folder) from None
     except OSError:  # a file system without locks
         pass
     return file
 
 
-def _goes_on(folder: Path) -> UserError:
+def _in_use(folder: Path) -> UserError:
     return UserError(f"{folder}: is of a run that goes on; let it end, or choose another place")
 
 

@@ -49,7 +49,7 @@ class Garment:
         return len(self.clip.frames) > 1
 
 
-class Worn:
+class SimulatedGarment:
     """A garment in simulation.
 
     cloth:     its cloth, at the start where it is at the frame ``first``
@@ -59,7 +59,7 @@ class Worn:
     def __init__(self, garment: Garment, obstacles: Sequence[Obstacle], first: float) -> None:
         self.garment = garment
         settings, mesh = garment.settings, garment.mesh
-        begin = beginning(garment, obstacles, first)
+        begin = start_positions(garment, obstacles, first)
         where = f"shot: cloth '{garment.name}', pin"
         self._pins = [
             PinnedVertices(mesh, garment.clip, pin, f"{where}[{k}]", obstacles, begin, first)
@@ -72,7 +72,7 @@ class Worn:
             attachment[pin.vertices] = 0.0 if pin.stiffness is None else pin.stiffness
         self.cloth = Cloth(mesh, settings.material, held, attachment=attachment)
         self.cloth.positions[:] = begin
-        self.pinned_to = _most(holder[held])
+        self.pinned_to = _most_frequent(holder[held])
         self.cloth.scale_rest(settings.least_scale)  # contact leaves room for the smallest scale
         self._begin = begin
 
@@ -81,7 +81,7 @@ class Worn:
         """The name of its garment."""
         return self.garment.name
 
-    def draw_together(self, frame: float) -> None:
+    def scale_rest(self, frame: float) -> None:
         """Scales the rest shape as at a frame."""
         self.cloth.scale_rest(self.garment.settings.scale(frame))
 
@@ -93,7 +93,7 @@ class Worn:
         return targets
 
 
-def beginning(garment: Garment, obstacles: Sequence[Obstacle], first: float) -> Array:
+def start_positions(garment: Garment, obstacles: Sequence[Obstacle], first: float) -> Array:
     """The positions of a cloth at the first frame [m], shape (n, 3).
 
     Without animation it has moved rigidly with the obstacles since the rest pose, as the nearest places on them have.
@@ -115,10 +115,10 @@ def beginning(garment: Garment, obstacles: Sequence[Obstacle], first: float) -> 
         corners = obstacle.mesh.triangles[bound[k][0][of]]
         for places, at in ((before, obstacle.mesh.points), (after, end)):
             places[of] = np.einsum("nk,nki->ni", bound[k][1][of], at[corners])
-    return carried(points, before, after)
+    return moved_rigidly(points, before, after)
 
 
-def carried(points: Array, before: Array, after: Array) -> Array:
+def moved_rigidly(points: Array, before: Array, after: Array) -> Array:
     """Points moved by the rigid motion that fits places before and after best, shapes (n, 3) (Kabsch 1976)."""
     from_centre, to_centre = before.mean(axis=0), after.mean(axis=0)
     left, _, right = np.linalg.svd((before - from_centre).T @ (after - to_centre))
@@ -126,7 +126,7 @@ def carried(points: Array, before: Array, after: Array) -> Array:
     return (points - from_centre) @ (left * mirror @ right) + to_centre
 
 
-def _most(holders: NDArray[Any]) -> int:
+def _most_frequent(holders: NDArray[Any]) -> int:
     """The index of the obstacle that holds most vertices; -1: none does."""
     of = holders[holders >= 0]
     return int(np.bincount(of).argmax()) if len(of) else -1

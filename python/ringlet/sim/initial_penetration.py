@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Mesh
-from ringlet.sim.garment import Worn
+from ringlet.sim.garment import SimulatedGarment
 from ringlet.sim.obstacle import Body
 from ringlet.sim.penetration import edge_triangle_intersections, mesh_edges, penetration_depths
 from ringlet.sim.scene import Scene
@@ -60,11 +60,11 @@ def report_overlaps(locks: Curves, scene: Scene) -> dict[str, Any]:
     }
 
 
-def refuse_intersecting(worn: Worn, names: Sequence[str], bodies: Sequence[Body]) -> None:
+def refuse_intersecting(garment: SimulatedGarment, names: Sequence[str], bodies: Sequence[Body]) -> None:
     """Refuses a cloth that intersects a body or begins inside it, but for vertices that this body holds."""
-    cloth, triangles = worn.cloth, worn.cloth.mesh.triangles
+    cloth, triangles = garment.cloth, garment.cloth.mesh.triangles
     for k, (name, body) in enumerate(zip(names, bodies, strict=True)):
-        free = ~cloth.held if k == worn.pinned_to else np.ones(len(cloth.held), bool)
+        free = ~cloth.held if k == garment.pinned_to else np.ones(len(cloth.held), bool)
         edges, faces = mesh_edges(triangles), triangles[free[triangles].all(axis=1)]
         edges = edges[free[edges].all(axis=1)]
         surface, sides = np.asarray(body.points, np.float64), np.asarray(body.triangles, np.int32)
@@ -75,7 +75,8 @@ def refuse_intersecting(worn: Worn, names: Sequence[str], bodies: Sequence[Body]
         if len(vertices):
             place = ", ".join(f"{x:.3g}" for x in cloth.positions[vertices[0]])
             raise UserError(
-                f"shot: cloth '{worn.name}' begins {'through' if len(through) or len(back) else 'inside'} '{name}' at "
+                f"shot: cloth '{garment.name}' begins "
+                f"{'through' if len(through) or len(back) else 'inside'} '{name}' at "
                 f"{len(vertices)} of its vertices, such as {vertices[0]} at ({place}) m; move it out, or leave that "
                 "mesh out of the colliders"
             )
@@ -86,12 +87,14 @@ def _inside(points: Array, free: NDArray[np.bool_], triangles: NDArray[np.int32]
     return np.flatnonzero(free & (penetration_depths(points, triangles, corners) > 0.0))
 
 
-def report_intersections(locks: Curves, worn: Sequence[Worn]) -> list[dict[str, Any]]:
+def report_intersections(locks: Curves, garments: Sequence[SimulatedGarment]) -> list[dict[str, Any]]:
     """Intersections of each cloth with locks, with itself and with other cloths, which stay as they are."""
-    return [found for one in worn for found in _intersections(locks, one, worn) if found["places"]]
+    return [found for one in garments for found in _intersections(locks, one, garments) if found["places"]]
 
 
-def _intersections(locks: Curves, through: Worn, all_worn: Sequence[Worn]) -> Iterator[dict[str, Any]]:
+def _intersections(
+    locks: Curves, through: SimulatedGarment, garments: Sequence[SimulatedGarment]
+) -> Iterator[dict[str, Any]]:
     triangles = through.cloth.mesh.triangles
     corners = through.cloth.positions[triangles]
     segments = np.delete(np.arange(len(locks.points) - 1), locks.offsets[1:-1] - 1)
@@ -106,7 +109,7 @@ def _intersections(locks: Curves, through: Worn, all_worn: Sequence[Worn]) -> It
         "worst": [_place(locks, int(vertex)) for vertex in vertices[:WORST]],
         "marks": _marks(locks.points[vertices], np.ones(len(vertices))),
     }
-    for other in all_worn:
+    for other in garments:
         edges = mesh_edges(other.cloth.mesh.triangles)
         pairs = edge_triangle_intersections(other.cloth.positions[edges], corners)
         if other is through:

@@ -15,7 +15,7 @@ from ringlet.data.errors import UserError
 from ringlet.data.groom import Groom
 from ringlet.data.mesh import Clip
 from ringlet.shot.shot import Shot
-from ringlet.sim.garment import Garment, Worn
+from ringlet.sim.garment import Garment, SimulatedGarment
 from ringlet.sim.nails import held_vertices, spring_forces
 from ringlet.sim.obstacle import Obstacle
 from ringlet.sim.resting_contacts import initial_contact_forces
@@ -43,10 +43,10 @@ def make_strands(
 class Motion:
     """Locks on their moving scalp, in contact where the shot has it; see ``simulate`` for what it is made of.
 
-    first: the frame at which everything starts
-    scene: all that is in contact; None without contact
-    start: the report of initial penetration (see ``initial_penetration.py``)
-    worn:  the cloths that move with the locks
+    first:    the frame at which everything starts
+    scene:    all that is in contact; None without contact
+    start:    the report of initial penetration (see ``initial_penetration.py``)
+    garments: the cloths that move with the locks
     """
 
     def __init__(
@@ -65,12 +65,12 @@ class Motion:
         self.strands = make_strands(shot, groom, rest, None if rest is None else rest.curve.get("stiffened"))
         self.strands.place(self.roots.carry(clip.at(first), first))
         self.obstacles = [obstacle.starting_at(first) for obstacle in obstacles]
-        self.worn = [Worn(garment, self.obstacles, first) for garment in garments]
+        self.garments = [SimulatedGarment(garment, self.obstacles, first) for garment in garments]
         self.scene: Scene | None = None
         self.start: dict[str, Any] = {}
         if shot.touching:
             self.scene, self.start = scene_at_start(
-                shot.touching, groom, self.strands, self.obstacles, self.worn, first
+                shot.touching, groom, self.strands, self.obstacles, self.garments, first
             )
             if rest is not None and "borne" in rest.point:
                 self._support(groom, np.asarray(rest.point["borne"], np.float64))
@@ -80,19 +80,20 @@ class Motion:
         assert self.scene is not None and self.shot.touching is not None
         groomed, of_locks = make_strands(self.shot, groom), len(groom.locks.points)
         vertices, shares = initial_contact_forces(self.shot.touching, groom.locks, groomed, self.obstacles, forces)
-        of_cloths = sum(len(worn.cloth.positions) for worn in self.worn)  # between those of locks and of bodies
+        # Vertices of cloths are between those of locks and of bodies.
+        of_cloths = sum(len(garment.cloth.positions) for garment in self.garments)
         self.scene.set_initial_forces(np.where(vertices < of_locks, vertices, vertices + of_cloths), shares)
 
     def cloths(self, frames: int) -> list[CachedCloth]:
         """The cloths of a cache with room for so many frames."""
         return [
             CachedCloth(
-                worn.name,
-                worn.garment.file,
-                worn.garment.prim,
-                np.empty((frames, len(worn.cloth.positions), 3), np.float32),
+                simulated.name,
+                simulated.garment.file,
+                simulated.garment.prim,
+                np.empty((frames, len(simulated.cloth.positions), 3), np.float32),
             )
-            for worn in self.worn
+            for simulated in self.garments
         ]
 
     @property
@@ -127,7 +128,7 @@ class Motion:
             **frame_statistics(
                 reports,
                 self.strands.curves.ids,
-                [worn.name for worn in self.worn],
+                [garment.name for garment in self.garments],
                 self.scene.penetrating if self.scene else 0,
             ),
         }
@@ -145,12 +146,12 @@ class Motion:
             )
             return
         bodies = [obstacle.at(frame) for obstacle in self.obstacles]
-        for worn in self.worn:
-            worn.draw_together(frame)
+        for garment in self.garments:
+            garment.scale_rest(frame)
         scene, strands = self.scene.step(
             targets,
             dt,
-            cloths=[worn.targets(frame) for worn in self.worn],
+            cloths=[garment.targets(frame) for garment in self.garments],
             bodies=bodies,
             gravity=forces.gravity,
             wind=forces.wind,

@@ -92,7 +92,9 @@ def resting_contacts(
 def initial_contact_forces(
     contact: ShotContact, locks: Curves, strands: Strands, obstacles: Sequence[Obstacle], support: Array
 ) -> tuple[NDArray[np.int32], Array]:
-    """Contact forces that add up to the support of locks, as ``Scene.bear`` takes them: vertices (k, 4), [N] (k, 3).
+    """Contact forces that add up to the support of locks: vertices (k, 4), forces [N] (k, 3).
+
+    ``Scene.set_initial_forces`` takes them.
 
     support: the forces that carry the locks at their vertices [N], shape (n, 3)
 

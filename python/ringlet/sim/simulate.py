@@ -97,7 +97,7 @@ class Frame:
     @classmethod
     def now(cls, number: float, motion: Motion, statistics: dict[str, Any], touches: bool) -> Frame:
         """The frame at which a motion is."""
-        cloths = [np.asarray(worn.cloth.positions, np.float32) for worn in motion.worn]
+        cloths = [np.asarray(garment.cloth.positions, np.float32) for garment in motion.garments]
         contacts = motion.scene.touches if touches and motion.scene else None
         return cls(number, np.asarray(motion.strands.positions, np.float32), cloths, statistics, contacts)
 
@@ -138,9 +138,9 @@ def play(
         statistics = motion.advance(motion.first + max(k - 1, 0), motion.first + max(k, 0))
         frame = Frame.now(motion.first + k, motion, statistics, touches) if k >= 0 else None
         if checkpoints:
-            checkpoints.keep(step, frame.arrays() if frame else {}, statistics)
+            checkpoints.write_step(step, frame.arrays() if frame else {}, statistics)
             if (step + 1) % checkpoints.every == 0 and step + 1 < total:
-                checkpoints.remember(step + 1, motion.memory)
+                checkpoints.write_state(step + 1, motion.memory)
         if progress:
             progress("sim", step + 1, total)
         if frame:
@@ -160,7 +160,7 @@ def _resumed(motion: Motion, checkpoints: Checkpoints, done: int, touches: bool)
 
 def replay(motion: Motion, checkpoints: Checkpoints, steps: int) -> Iterator[Frame]:
     """The frames among the first steps of a motion, from its checkpoints."""
-    for k, (arrays, statistics) in enumerate(checkpoints.kept(steps), -motion.shot.preroll):
+    for k, (arrays, statistics) in enumerate(checkpoints.read_steps(steps), -motion.shot.preroll):
         if k >= 0:
             yield Frame.stored(motion.first + k, arrays, statistics)
 

@@ -10,7 +10,7 @@ import numpy as np
 from ringlet.data.groom import Groom
 from ringlet.shot.contact import ShotContact
 from ringlet.sim.friction import LOCKS, friction_matrix, override_pairs
-from ringlet.sim.garment import Worn
+from ringlet.sim.garment import SimulatedGarment
 from ringlet.sim.initial_penetration import (
     refuse_intersecting,
     report_inside,
@@ -29,7 +29,7 @@ def scene_at_start(
     groom: Groom,
     strands: Strands,
     obstacles: Sequence[Obstacle],
-    worn: Sequence[Worn],
+    garments: Sequence[SimulatedGarment],
     first: float,
 ) -> tuple[Scene, dict[str, Any]]:
     """The locks and cloths of a shot in a scene with its obstacles, and the report of initial penetration.
@@ -37,11 +37,11 @@ def scene_at_start(
     Vertices of locks that begin inside an obstacle are tolerated until they are out; such a cloth is refused.
     """
     locks = groom.locks.with_points(strands.positions.copy())
-    bodies, cloths = [obstacle.body(first) for obstacle in obstacles], [one.cloth for one in worn]
+    bodies, cloths = [obstacle.body(first) for obstacle in obstacles], [one.cloth for one in garments]
     of_bodies = [obstacle.name for obstacle in obstacles]
-    for one in worn:
+    for one in garments:
         refuse_intersecting(one, of_bodies, bodies)
-    names = [LOCKS, *(one.name for one in worn), *of_bodies]
+    names = [LOCKS, *(one.name for one in garments), *of_bodies]
     scalps = [k for k, obstacle in enumerate(obstacles) if obstacle.is_surface_of(groom.scalp)]
     scene = Scene(
         strands,
@@ -49,7 +49,7 @@ def scene_at_start(
         contact,
         rooted_in=np.full(len(locks), scalps[0] if scalps else -1),
         cloths=cloths,
-        pinned_to=np.array([one.pinned_to for one in worn]),
+        pinned_to=np.array([one.pinned_to for one in garments]),
         friction=override_pairs(friction_matrix(contact, cloths, bodies), contact.pair, names),
     )
     inside = []
@@ -59,4 +59,4 @@ def scene_at_start(
         if depth.any():
             inside.append(report_inside(locks, obstacle.mesh, depth))
             scene.allow_penetration(np.flatnonzero(depth), k)
-    return scene, start_report(inside, report_intersections(locks, worn), report_overlaps(locks, scene))
+    return scene, start_report(inside, report_intersections(locks, garments), report_overlaps(locks, scene))

@@ -43,7 +43,7 @@ class Ball:
         return min(1.0, float(np.linalg.norm(self.by)) / self.radius)
 
 
-def held(guides: Curves, ball: Ball) -> Array:
+def grab_weights(guides: Curves, ball: Ball) -> Array:
     """Weights with which the points of guides follow a ball that grabs them, shape (n,); 0 at roots."""
     weights = ball.falloff(guides.points)
     weights[guides.offsets[:-1]] = 0.0
@@ -103,7 +103,7 @@ def cut(guides: Curves, ball: Ball) -> Curves:
     return _each(guides, ball, shortened)
 
 
-def given_back(guides: Curves, ball: Ball, before: Curves) -> Curves:
+def restore(guides: Curves, ball: Ball, before: Curves) -> Curves:
     """Resets guides in the ball to their shape before sculpting."""
     inside = np.repeat(_in_ball(guides, ball), guides.counts)
     return guides.with_points(np.where(inside[:, None], before.points, guides.points))
@@ -120,7 +120,7 @@ TOOLS: dict[str, Callable[[Curves, Ball], Curves]] = {
 def _each(guides: Curves, ball: Ball, change: Callable[[Array, Array], Array]) -> Curves:
     """Applies a change to each guide in the ball; roots stay."""
     points = np.array(guides.points, np.float64)
-    weights = held(guides, ball)
+    weights = grab_weights(guides, ball)
     for row in np.flatnonzero(_in_ball(guides, ball)).tolist():
         own = slice(guides.offsets[row], guides.offsets[row + 1])
         root = points[own][0].copy()

@@ -35,25 +35,25 @@ class History:
     """Undo and redo stacks of files that are edited together."""
 
     def __init__(self) -> None:
-        self.before: list[tuple[Document, State]] = []
-        self.after: list[tuple[Document, State]] = []
+        self.undo_stack: list[tuple[Document, State]] = []
+        self.redo_stack: list[tuple[Document, State]] = []
         self._gesture: tuple[Document, int] | None = None
 
     def record(self, document: Document, gesture: int | None) -> None:
         """Pushes a document's state before a change; all changes of one gesture are one step."""
         current = None if gesture is None else (document, gesture)
         if current is None or current != self._gesture:
-            self.before = [*self.before, (document, document.state)][-MAX_UNDO_STEPS:]
+            self.undo_stack = [*self.undo_stack, (document, document.state)][-MAX_UNDO_STEPS:]
         self._gesture = current
-        self.after.clear()
+        self.redo_stack.clear()
 
     def undo(self) -> Document | None:
         """Undoes a step; returns the changed document, None when there is no step."""
-        return self._step(self.before, self.after)
+        return self._step(self.undo_stack, self.redo_stack)
 
     def redo(self) -> Document | None:
         """Redoes a step; returns the changed document, None when there is no step."""
-        return self._step(self.after, self.before)
+        return self._step(self.redo_stack, self.undo_stack)
 
     def _step(self, source: list[tuple[Document, State]], target: list[tuple[Document, State]]) -> Document | None:
         if not source:
@@ -104,12 +104,12 @@ class Document:
     @property
     def can_undo(self) -> bool:
         """Whether the undo stack has a step."""
-        return bool(self.history.before)
+        return bool(self.history.undo_stack)
 
     @property
     def can_redo(self) -> bool:
         """Whether the redo stack has a step."""
-        return bool(self.history.after)
+        return bool(self.history.redo_stack)
 
     def set(self, changes: Sequence[tuple[Place, Any]], gesture: int | None = None) -> None:
         """Sets values of settings; None removes a setting. One gesture is one undo step.
@@ -119,13 +119,13 @@ class Document:
         text = self.text
         for place, value in changes:
             try:
-                text = put(text, place, value)
+                text = set_value(text, place, value)
             except (TOMLKitError, KeyError, IndexError, TypeError, ValueError) as error:
                 where = ".".join(str(part) for part in place)
                 raise UserError(f"{self.path.name}: {where} cannot be set ({error}); undo, or edit the file") from None
-        self.become(text, gesture=gesture)
+        self.apply(text, gesture=gesture)
 
-    def arrange(self, action: str, name: str, at: int, to: int = 0, entry: dict[str, Any] | None = None) -> None:
+    def edit_tables(self, action: str, name: str, at: int, to: int = 0, entry: dict[str, Any] | None = None) -> None:
         """Adds, removes or moves a table of the array of tables ``name``, with the comment above it.
 
         action: ``add``, ``remove`` or ``move``
@@ -136,12 +136,15 @@ class Document:
         """
         tables = blocks.split(self.text)
         places = [k for k, block in enumerate(tables) if block.name == name and block.many]  # rows in ``tables``
-        if len(places) != len(self.said().get(name, [])):
+        if len(places) != len(self.contents().get(name, [])):
             raise UserError(f"{self.path.name}: {name} is not written as tables [[{name}]]; edit it in the file")
         if not 0 <= at < len(places) + (action == "add") or not 0 <= to < max(len(places), 1):
             raise UserError(f"{self.path.name}: {name} has {len(places)} operators; there is none at {max(at, to)}")
         if action == "add":
-            lines = [f"[[{name}]]", *(f"{toml_key(part)} = {written(value)}" for part, value in (entry or {}).items())]
+            lines = [
+                f"[[{name}]]",
+                *(f"{toml_key(part)} = {toml_value(value)}" for part, value in (entry or {}).items()),
+            ]
             tables.insert(self._new_place(tables, places, at), blocks.Block(name, True, lines))
         else:
             chosen = [tables[k] for k in places]
@@ -152,7 +155,7 @@ class Document:
                     tables[k] = block
             else:
                 del tables[places[at]]
-        self.become(blocks.join(tables))
+        self.apply(blocks.join(tables))
 
     @staticmethod
     def _new_place(tables: list[blocks.Block], places: list[int], at: int) -> int:
@@ -161,7 +164,7 @@ class Document:
             return places[at] if at < len(places) else places[-1] + 1
         return next((k for k, block in enumerate(tables) if block.name == "curl"), len(tables))
 
-    def become(
+    def apply(
         self, text: str, *, muted: frozenset[str] | None = None, edits: str | None = None, gesture: int | None = None
     ) -> None:
         """Sets another text, muted stages or edits as one undo step; raises UserError when they are invalid."""
@@ -182,11 +185,11 @@ class Document:
             self.saved, self.saved_edits = self.text, self.state.edits
         return path or self.path
 
-    def said(self) -> dict[str, Any]:
+    def contents(self) -> dict[str, Any]:
         """Contents of the text as plain values."""
         return tomllib.loads(self.text)
 
-    def changes(self) -> list[Change]:
+    def diff(self) -> list[Change]:
         """Diff of the current text against the saved one, with one line of context."""
         lines = [*_diff(self.saved, self.text), *_diff(self.saved_edits, self.state.edits)]
         return [Change.model_validate({"sign": line[0], "line": line[1:120]}) for line in lines[:400]]
@@ -197,16 +200,16 @@ def _diff(before: str, now: str) -> list[str]:
     return [line for line in lines if not line.startswith(("---", "+++", "@@"))]
 
 
-def written(value: Any) -> str:
+def toml_value(value: Any) -> str:
     """Formats a value as inline TOML."""
     if isinstance(value, dict):
-        return "{ " + ", ".join(f"{toml_key(name)} = {written(entry)}" for name, entry in value.items()) + " }"
+        return "{ " + ", ".join(f"{toml_key(name)} = {toml_value(entry)}" for name, entry in value.items()) + " }"
     if isinstance(value, list | tuple):
-        return "[" + ", ".join(written(entry) for entry in value) + "]"
+        return "[" + ", ".join(toml_value(entry) for entry in value) + "]"
     return tomlkit.item(value).as_string()
 
 
-def put(text: str, place: Place, value: Any) -> str:
+def set_value(text: str, place: Place, value: Any) -> str:
     """Sets a value in a text and creates missing tables; None removes the value."""
     if not place or not isinstance(place[0], str):
         raise KeyError("it is nowhere")
@@ -250,12 +253,12 @@ def _add(text: str, place: Place, value: Any) -> str:
     if not isinstance(table, dict) or (rest and rest[0] in table) or (name in data and not own):
         return _add_inside(text, place, value)
     if len(place) == 1:
-        blocks.insert_line(tables[0], f"{name} = {written(value)}")
+        blocks.insert_line(tables[0], f"{name} = {toml_value(value)}")
     else:
         if not own:
             own = [blocks.Block(name, False, [f"[{name}]"])]
             tables += own
-        blocks.insert_line(own[index or 0], f"{toml_key(str(rest[0]))} = {written(_nested(rest[1:], value))}")
+        blocks.insert_line(own[index or 0], f"{toml_key(str(rest[0]))} = {toml_value(_nested(rest[1:], value))}")
     return blocks.join(tables)
 
 
@@ -300,4 +303,4 @@ def _replaced(text: str, place: Place, value: Any) -> str:
 
 
 def _item(value: Any) -> Any:
-    return tomlkit.value(written(value))
+    return tomlkit.value(toml_value(value))

@@ -13,7 +13,7 @@ from ringlet.groom.edits_file import edits_text
 from ringlet.groom.load import inherited, parse_edits
 from ringlet.shot import Shot, parse_shot
 from ringlet.viewer import protocol
-from ringlet.viewer.document import Document, History, put
+from ringlet.viewer.document import Document, History, set_value
 from ringlet.viewer.project import Project
 from ringlet.viewer.protocol import Place
 from ringlet.viewer.variant import variant
@@ -108,9 +108,9 @@ class Files:
             changes = [(_by_name(place, names), value) for place, value in changes]
         document.set(changes, gesture)
         if file == "recipe" and document.model.edits_file != before.edits_file:
-            document.become(document.text, edits=_text_of(document.model.edits_file), gesture=gesture)
+            document.apply(document.text, edits=_text_of(document.model.edits_file), gesture=gesture)
 
-    def arrange(self, action: str, at: int, to: int, op: str) -> None:
+    def edit_operators(self, action: str, at: int, to: int, op: str) -> None:
         """Adds, removes or moves a shape operator of the recipe; muted operators stay muted.
 
         Raises UserError when a variant would move or add an operator of its base.
@@ -119,11 +119,11 @@ class Files:
         names = self._inherited(document)
         order = [f"shape/{k}" for k in range(len(document.model.shape))]
         if names is None:
-            document.arrange(action, "shape", at, to, {"op": op} if op else None)
+            document.edit_tables(action, "shape", at, to, {"op": op} if op else None)
         elif action == "remove" and at < len(names):
             document.set([(["shape", names[at]], None), (["shape", names[at]], False)])
         else:
-            base = document.said()["extends"]
+            base = document.contents()["extends"]
             raise UserError(
                 f"{document.path.name}: changes and removes operators of {base}, and does neither move nor add any; "
                 f"do that in {base}, or give it [[shape]] tables of its own"
@@ -136,29 +136,29 @@ class Files:
                 moved = order.pop(at)
                 order[to:to] = [moved] if action == "move" else []
             muted_shapes = {f"shape/{k}" for k, old in enumerate(order) if old in muted}
-            document.become(document.text, muted=frozenset(muted_shapes | {one for one in muted if "/" not in one}))
+            document.apply(document.text, muted=frozenset(muted_shapes | {one for one in muted if "/" not in one}))
 
     def write_edits(self, kind: str, tables: list[dict[str, Any]], gesture: int | None = None) -> None:
         """Replaces the tables of a kind in the recipe's file of edits; names a new file when there is none."""
         document = self.recipe
         edits = parse_edits(document.state.edits or "ringlet = 1", document.path)
         text = edits_text({**edits, kind: tables})
-        if not document.said().get("edits"):
+        if not document.contents().get("edits"):
             document.set([(["edits"], self._unused_name(document.path, ".edits.toml"))], gesture)
-        document.become(document.text, edits=text, gesture=gesture)
+        document.apply(document.text, edits=text, gesture=gesture)
 
     def step(self, kind: str) -> list[str]:
         """Undoes, redoes or reverts to the saved state; returns the kinds of the changed files."""
         if kind == "revert":
             before = {name: document.state for name, document in self.documents.items()}
             for document in self.documents.values():
-                document.become(document.saved, edits=document.saved_edits)
+                document.apply(document.saved, edits=document.saved_edits)
             return [name for name, document in self.documents.items() if document.state != before[name]]
         changed = self._history.undo() if kind == "undo" else self._history.redo()
         return [name for name, document in self.documents.items() if document is changed]
 
     def _inherited(self, document: Document) -> list[str] | None:
-        return inherited(document.said(), document.path)
+        return inherited(document.contents(), document.path)
 
     # Saving
 
@@ -200,7 +200,7 @@ class Files:
     def message(self, file: str) -> bytes:
         """Message with the state of a file."""
         document = self.documents[file]
-        contents, model = document.said(), document.model
+        contents, model = document.contents(), document.model
         if file == "recipe" and (names := self._inherited(document)) is not None:
             contents = {**contents, "shape": [contents.get("shape", {}).get(name, {}) for name in names]}
         return pack(
@@ -217,7 +217,7 @@ class Files:
                     "dirty": document.dirty,
                     "undo": document.can_undo,
                     "redo": document.can_redo,
-                    "changes": document.changes(),
+                    "changes": document.diff(),
                 }
             )
         )
@@ -242,7 +242,7 @@ def operator_names(schema: dict[str, Any]) -> list[str]:
 
 def copied(document: Document, edits: Path | None) -> str:
     """Text of a copy of a document, with the name of its own file of edits if it has one."""
-    return document.text if edits is None else put(document.text, ["edits"], edits.name)
+    return document.text if edits is None else set_value(document.text, ["edits"], edits.name)
 
 
 def _by_name(place: Place, names: list[str]) -> Place:

@@ -13,7 +13,7 @@ import uvicorn
 
 from ringlet.data.errors import UserError
 from ringlet.viewer.project import Project
-from ringlet.viewer.server import LOOPBACK, STATIC, Door, make_app
+from ringlet.viewer.server import LOOPBACK, STATIC, AccessControl, make_app
 from ringlet.viewer.session import Session
 from ringlet.viewer.wire import MOST
 
@@ -49,7 +49,7 @@ def view(
         raise UserError(f"{STATIC}: the page was not built; build it with: make build")
     token = "" if host in LOOPBACK else secrets.token_urlsafe(18)
     session = Session(file.resolve(), Project(Path(project) if project else file.resolve().parent))
-    app = make_app(session, Door(host, token))
+    app = make_app(session, AccessControl(host, token))
     listening = _listen(host, port)
     address = f"http://{_url_host(host)}:{listening.getsockname()[1]}/" + (f"#{token}" if token else "")
     config = uvicorn.Config(

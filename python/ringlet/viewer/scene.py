@@ -15,17 +15,17 @@ from ringlet import api, io
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Clip, Mesh
 from ringlet.groom import Groom, lay_hairs
-from ringlet.picture import made_of
+from ringlet.picture import material_of
 from ringlet.shot import Shot
 from ringlet.viewer import protocol
-from ringlet.viewer.looks import Look
+from ringlet.viewer.display_groom import DisplayGroom
 from ringlet.viewer.wire import pack
 
 USD = (".usd", ".usda", ".usdc", ".usdz")
 
 
 @dataclass(frozen=True)
-class Seen:
+class VisibleMesh:
     """A visible mesh.
 
     clip:  animation of the mesh; None for a static one
@@ -40,7 +40,7 @@ class Seen:
         """Message with the mesh in its rest pose."""
         mesh = self.mesh
         colors = mesh.colors if mesh.colors is not None else np.empty((0, 3))
-        material = "cloth" if self.cloth else made_of(mesh)
+        material = "cloth" if self.cloth else material_of(mesh)
         return pack(
             protocol.Body(index=index, name=mesh.name.split("/")[-1], made_of=material, color=mesh.color),
             points=mesh.points,
@@ -59,7 +59,7 @@ class Seen:
         return self.clip.at(frame) if self.clip else self.mesh.points
 
 
-class Moved(NamedTuple):
+class FrameState(NamedTuple):
     """Contents of a frame: positions of the locks [m], statistics, and positions of the cloths [m] by name."""
 
     points: NDArray
@@ -67,34 +67,36 @@ class Moved(NamedTuple):
     cloths: Mapping[str, NDArray]
 
 
-ReadFrame = Callable[[float], Moved]
+ReadFrame = Callable[[float], FrameState]
 
 
-def read_bodies(scalp: Mesh, file: Path | None, cloths: Mapping[str, str] | None = None) -> list[Seen]:
+def read_bodies(scalp: Mesh, file: Path | None, cloths: Mapping[str, str] | None = None) -> list[VisibleMesh]:
     """Visible meshes of a file with their animation; the scalp alone when the file has none.
 
     cloths: names of cloths, by prim path
     """
     if file is None or file.suffix not in USD:
-        return [Seen(scalp)]
+        return [VisibleMesh(scalp)]
     names = cloths or {}
-    return [Seen(body.mesh, body.clip, names.get(body.prim, "")) for body in io.read_bodies(file)] or [Seen(scalp)]
+    return [VisibleMesh(body.mesh, body.clip, names.get(body.prim, "")) for body in io.read_bodies(file)] or [
+        VisibleMesh(scalp)
+    ]
 
 
-def dressed(head: list[Seen], shot: Shot, groom: Groom) -> list[Seen]:
+def shot_meshes(head: list[VisibleMesh], shot: Shot, groom: Groom) -> list[VisibleMesh]:
     """Visible meshes of a shot: those of the head's file, then cloths and colliders of the shot.
 
     Raises UserError when a file of the shot cannot be read.
     """
-    cloths, colliders = api.brought_along(shot, groom)
+    cloths, colliders = api.cloths_and_colliders(shot, groom)
     named = {cloth.mesh.name: cloth.name for cloth in cloths if cloth.file == groom.scalp_file}
-    bodies = [Seen(seen.mesh, seen.clip, named.get(seen.mesh.name, "")) for seen in head]
-    shown = {seen.cloth for seen in bodies}
-    bodies += [Seen(cloth.mesh, cloth.clip, cloth.name) for cloth in cloths if cloth.name not in shown]
-    return bodies + [Seen(collider.mesh, collider.clip) for collider in colliders]
+    bodies = [VisibleMesh(body.mesh, body.clip, named.get(body.mesh.name, "")) for body in head]
+    shown = {body.cloth for body in bodies}
+    bodies += [VisibleMesh(cloth.mesh, cloth.clip, cloth.name) for cloth in cloths if cloth.name not in shown]
+    return bodies + [VisibleMesh(collider.mesh, collider.clip) for collider in colliders]
 
 
-def read_scene(file: Path) -> tuple[list[Seen], Look]:
+def read_scene(file: Path) -> tuple[list[VisibleMesh], DisplayGroom]:
     """Bodies and hair of a USD file: a groom with its render hairs, or plain curves.
 
     Raises UserError for another file type and for a file without hair.
@@ -107,35 +109,41 @@ def read_scene(file: Path) -> tuple[list[Seen], Look]:
         bodies, curves, _ = io.read_stage(file)
         if curves is None:
             raise UserError(f"{file.name}: has no hair; give a recipe, a shot or a USD file with curves") from None
-        seen = [Seen(replace(body.mesh, points=body.clip.points[0]), body.clip) for body in bodies]
+        visible = [VisibleMesh(replace(body.mesh, points=body.clip.points[0]), body.clip) for body in bodies]
         mesh = bodies[0].mesh if bodies else Mesh("none", np.zeros((0, 3)), np.zeros((0, 3), np.int32))
-        return seen, Look(Groom(curves, curves, mesh), None, False)
+        return visible, DisplayGroom(Groom(curves, curves, mesh), None, False)
     cloths: dict[str, str] = {}
     if io.is_cache(file):
         with io.open_cache(file) as cache:
             cloths = cache.cloth_prims
-    return read_bodies(groom.scalp, file, cloths), Look(groom, lay_hairs(groom), False)
+    return read_bodies(groom.scalp, file, cloths), DisplayGroom(groom, lay_hairs(groom), False)
 
 
 @contextmanager
-def open_frames(file: Path, look: Look) -> Iterator[tuple[np.ndarray, ReadFrame]]:
+def open_frames(file: Path, display: DisplayGroom) -> Iterator[tuple[np.ndarray, ReadFrame]]:
     """Opens the frames of a file: their numbers, and a function that reads one while the file is open.
 
     Raises UserError for a cache of another groom.
     """
-    if look.hairs is None:
+    if display.hairs is None:
         frames = io.read_hair_frames(file)
-        yield frames if len(frames) > 1 else frames[:0], lambda frame: Moved(_hairs_at(file, frame, look), {}, {})
+        yield (
+            frames if len(frames) > 1 else frames[:0],
+            lambda frame: FrameState(_hairs_at(file, frame, display), {}, {}),
+        )
         return
     with io.open_cache(file) as cache:
-        if cache.size != len(look.groom.locks.points):
+        if cache.size != len(display.groom.locks.points):
             raise UserError(f"{file.name}: is of another groom than that of the shot; choose a cache of the same groom")
         statistics = dict(zip(cache.frames.tolist(), cache.statistics, strict=False))
-        yield cache.frames, lambda frame: Moved(cache.points(frame), statistics.get(frame, {}), cache.cloths_at(frame))
+        yield (
+            cache.frames,
+            lambda frame: FrameState(cache.points(frame), statistics.get(frame, {}), cache.cloths_at(frame)),
+        )
 
 
-def _hairs_at(file: Path, frame: float, look: Look) -> np.ndarray:
-    points, first = io.read_hairs(file, frame).points, look.groom.locks
+def _hairs_at(file: Path, frame: float, display: DisplayGroom) -> np.ndarray:
+    points, first = io.read_hairs(file, frame).points, display.groom.locks
     if len(points) != len(first.points):
         raise UserError(f"{file.name}: has {len(points)} points at frame {frame:g}, {len(first.points)} at its first")
     return points

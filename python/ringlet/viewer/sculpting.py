@@ -57,12 +57,12 @@ class Sculptor:
         balls = [ball, ball.mirrored(stroke.scalp.middle[0])] if message.mirrored else [ball]
         if message.tool == "grab" and not stroke.weights:
             starts = [Ball(one.at - one.by, one.by, one.radius) for one in balls]
-            stroke.weights = [brush.held(stroke.guides, start) for start in starts]
+            stroke.weights = [brush.grab_weights(stroke.guides, start) for start in starts]
         for k, one in enumerate(balls):
             if message.tool == "grab":
                 stroke.guides = brush.grab(stroke.guides, one, stroke.weights[min(k, len(stroke.weights) - 1)])
             elif message.tool == "return":
-                stroke.guides = brush.given_back(stroke.guides, one, stroke.before)
+                stroke.guides = brush.restore(stroke.guides, one, stroke.before)
             else:
                 stroke.guides = brush.TOOLS[message.tool](stroke.guides, one)
         if message.resting:
@@ -87,7 +87,7 @@ class Sculptor:
         if groom.unsculpted is None:
             raise UserError("sculpt: there is no recipe whose guides could be sculpted; open one with: ringlet view")
         document = self._files.recipe
-        if document.said().get("sculpt"):
+        if document.contents().get("sculpt"):
             raise UserError(
                 f"{document.path.name}: has [[sculpt]] tables of its own; move them to the file that 'edits' names"
             )

@@ -36,7 +36,7 @@ POLICY = (
 log = logging.getLogger("ringlet.viewer")
 
 
-class Door:
+class AccessControl:
     """Access control: checks the host name, the origin and the token of a request.
 
     host:  address that the server listens on; any other than loopback needs a token
@@ -58,7 +58,7 @@ class Door:
         return self.accepts_host(host) and same_origin and hmac.compare_digest(token.encode(), self.token.encode())
 
 
-def make_app(session: Session, door: Door, static: Path = STATIC) -> FastAPI:
+def make_app(session: Session, access: AccessControl, static: Path = STATIC) -> FastAPI:
     """The application of one session."""
 
     @asynccontextmanager
@@ -71,7 +71,7 @@ def make_app(session: Session, door: Door, static: Path = STATIC) -> FastAPI:
 
     @app.middleware("http")
     async def guard(request: Request, proceed: RequestResponseEndpoint) -> Response:
-        if not door.accepts_host(request.headers.get("host", "")):
+        if not access.accepts_host(request.headers.get("host", "")):
             return Response("this server does not go by that name\n", status_code=421)
         response = await proceed(request)
         response.headers["Content-Security-Policy"] = POLICY
@@ -84,7 +84,7 @@ def make_app(session: Session, door: Door, static: Path = STATIC) -> FastAPI:
     async def talk(socket: WebSocket) -> None:
         headers, token = socket.headers, socket.query_params.get("token", "")
         await socket.accept()
-        if not door.accepts(headers.get("host", ""), headers.get("origin"), token):
+        if not access.accepts(headers.get("host", ""), headers.get("origin"), token):
             await socket.close(REFUSED, "the token or the origin is wrong")
             return
         if len(session.pages) >= MAX_PAGES:
@@ -119,20 +119,20 @@ async def _serve(socket: WebSocket, session: Session) -> None:
 async def _send(socket: WebSocket, page: Page) -> None:
     with suppress(WebSocketDisconnect, RuntimeError):
         while True:
-            await socket.send_bytes(await page.box.next())
+            await socket.send_bytes(await page.queue.next())
 
 
 async def _receive(socket: WebSocket, session: Session, page: Page) -> None:
     invalid_messages = 0
     while True:
         try:
-            session.hear(page, unpack(await socket.receive_bytes()))
+            session.handle(page, unpack(await socket.receive_bytes()))
         except KeyError:  # a text message; the page sends binary ones only
             await socket.close(WRONG, "messages are binary")
             return
         except UserError as error:
             invalid_messages += 1
-            page.box.put("trouble", trouble(str(error)))
+            page.queue.put("trouble", trouble(str(error)))
             if invalid_messages > MAX_INVALID_MESSAGES and not isinstance(error.__cause__, UserError):
                 await socket.close(WRONG, "too many messages were wrong")
                 return
@@ -140,7 +140,7 @@ async def _receive(socket: WebSocket, session: Session, page: Page) -> None:
             raise
         except Exception:
             log.exception("a message of %s could not be handled", page.name)
-            page.box.put("trouble", trouble("this is a mistake in Ringlet; see the terminal"))
+            page.queue.put("trouble", trouble("this is a mistake in Ringlet; see the terminal"))
 
 
 def _without_port(host: str) -> str:

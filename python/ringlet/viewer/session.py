@@ -18,20 +18,20 @@ from ringlet.data.errors import UserError
 from ringlet.groom import Recipe
 from ringlet.picture import HAIR_COLORS
 from ringlet.viewer import overlays, protocol
-from ringlet.viewer.board import Board, Mailbox
 from ringlet.viewer.caches import Caches
+from ringlet.viewer.display_groom import DisplayGroom, GroomEvaluator
 from ringlet.viewer.files import Files, operator_names
-from ringlet.viewer.hands import Hand
-from ringlet.viewer.looks import Groomer, Look
-from ringlet.viewer.playing import Playing
+from ringlet.viewer.manipulator import LockManipulator
+from ringlet.viewer.playback import Playback
 from ringlet.viewer.project import Project
+from ringlet.viewer.publisher import Publisher, SendQueue
 from ringlet.viewer.scene import read_scene
 from ringlet.viewer.sculpting import Sculptor
-from ringlet.viewer.showing import Showing, measured
+from ringlet.viewer.viewport import Viewport, measured
 from ringlet.viewer.wire import pack, trouble
-from ringlet.viewer.worker import Latest, Stale
+from ringlet.viewer.worker import LatestTaskWorker, Stale
 
-LOOK_EVERY = 2.0  # interval at which the list of files is refreshed [s]
+FILES_INTERVAL = 2.0  # interval at which the list of files is refreshed [s]
 NO_GROOM = "groom/trouble"  # subject of the error that prevents a groom
 
 log = logging.getLogger("ringlet.viewer")
@@ -50,8 +50,8 @@ class Work:
 class Page:
     """A connected page."""
 
-    def __init__(self, name: str, box: Mailbox) -> None:
-        self.name, self.box = name, box
+    def __init__(self, name: str, queue: SendQueue) -> None:
+        self.name, self.queue = name, queue
 
 
 class Session:
@@ -60,56 +60,56 @@ class Session:
     def __init__(self, file: Path, project: Project) -> None:
         self.project, self.files = project, Files(file, project)
         self.id = secrets.token_hex(8)
-        self.board = Board()
+        self.publisher = Publisher()
         self.pages: list[Page] = []
         self.leader = ""
         self._heard = Counter[str]()
         self._loop: asyncio.AbstractEventLoop | None = None
         self._file_watcher: asyncio.Task[None] | None = None
-        self._groomer, self._beside = Groomer(project), Groomer(project)
-        self._showing, self._caches = Showing(self.board), Caches(project)
-        self._playing = Playing(self.files, self.board, self._showing, self._call, self.trouble)
-        self._hand, self._sculptor = Hand(self.files), Sculptor(self.files)
+        self._evaluator, self._beside = GroomEvaluator(project), GroomEvaluator(project)
+        self._viewport, self._caches = Viewport(self.publisher), Caches(project)
+        self._playback = Playback(self.files, self.publisher, self._viewport, self._call, self.trouble)
+        self._manipulator, self._sculptor = LockManipulator(self.files), Sculptor(self.files)
         if "recipe" not in self.files.documents:  # raises a read error before the server starts
-            bodies, look = read_scene(file)
-            self._showing.stage(look, bodies)
-            self._playing.read(look)
-        self._worker = Latest[Work](self._groom, "groom")
-        self._measurer = Latest[Look](self._measure, "measure")
+            bodies, display = read_scene(file)
+            self._viewport.stage(display, bodies)
+            self._playback.read(display)
+        self._worker = LatestTaskWorker[Work](self._groom, "groom")
+        self._measurer = LatestTaskWorker[DisplayGroom](self._measure, "measure")
 
     # Pages
 
     def start(self, loop: asyncio.AbstractEventLoop) -> None:
-        """Posts the documents, starts grooming and watches the project's files."""
+        """Publishes the documents, starts grooming and watches the project's files."""
         self._loop = loop
         for file in self.files.documents:
-            self.board.post(f"document/{file}", self.files.message(file))
+            self.publisher.publish(f"document/{file}", self.files.message(file))
         if "recipe" in self.files.documents:
             self.regroom()
         self._file_watcher = loop.create_task(self._watch_files())
 
     async def _watch_files(self) -> None:
-        """Posts the recipes and caches of the project whenever they change; other programs write them."""
+        """Publishes the recipes and caches of the project whenever they change; other programs write them."""
         posted = None
         while True:
             names = await asyncio.to_thread(lambda: [*self.project.files("*.recipe.toml"), *self._caches.names()])
             if names != posted:
-                self.board.post("files", pack(protocol.Files(names=names)))
+                self.publisher.publish("files", pack(protocol.Files(names=names)))
             posted = names
-            await asyncio.sleep(LOOK_EVERY)
+            await asyncio.sleep(FILES_INTERVAL)
 
     def stop(self) -> None:
         """Stops the background work."""
         self._loop = None
         if self._file_watcher is not None:
             self._file_watcher.cancel()
-        self._playing.stop()
+        self._playback.stop()
         self._worker.stop()
         self._measurer.stop()
 
     def join(self, name: str) -> Page:
         """Adds a page. It gets the edit lock when it held it before, or when no connected page holds it."""
-        page = Page(name, self.board.join(self._welcome(self._heard[name])))
+        page = Page(name, self.publisher.subscribe(self._welcome(self._heard[name])))
         self.pages.append(page)
         if not self.leader or not any(other.name == self.leader for other in self.pages):
             self.leader = name
@@ -119,7 +119,7 @@ class Session:
     def leave(self, page: Page) -> None:
         """Removes a page; the edit lock stays reserved for it until another page requests it."""
         self.pages.remove(page)
-        self.board.leave(page.box)
+        self.publisher.unsubscribe(page.queue)
         self._send_roles()
 
     def _welcome(self, heard: int) -> bytes:
@@ -145,17 +145,17 @@ class Session:
     def _send_roles(self) -> None:
         others = len({page.name for page in self.pages}) - 1
         for page in self.pages:
-            page.box.put("role", pack(protocol.Role(leads=page.name == self.leader, others=others)))
+            page.queue.put("role", pack(protocol.Role(leads=page.name == self.leader, others=others)))
 
     # Messages
 
-    def hear(self, page: Page, message: protocol.FromPage) -> None:
+    def handle(self, page: Page, message: protocol.FromPage) -> None:
         """Handles a message of a page and acknowledges it; raises UserError for a request that fails."""
         try:
             self._dispatch(page, message)
         finally:
             self._heard[page.name] += 1
-            page.box.put("heard", pack(protocol.Heard(count=self._heard[page.name])))
+            page.queue.put("heard", pack(protocol.Heard(count=self._heard[page.name])))
 
     def _dispatch(self, page: Page, message: protocol.FromPage) -> None:
         if isinstance(message, protocol.Lead):
@@ -163,7 +163,7 @@ class Session:
             self._send_roles()
             return
         if isinstance(message, protocol.Watch):
-            page.box.request(self._playing.frame_sources(message))
+            page.queue.request(self._playback.frame_sources(message))
             return
         if page.name != self.leader:
             raise UserError("another page leads this session; take the lead to edit")
@@ -172,29 +172,29 @@ class Session:
             files.set(message.file, message.changes, message.gesture)
             self._edited(message.file, resting=message.resting)
         elif isinstance(message, protocol.Arrange):
-            files.arrange(message.action, message.at, message.to, message.op)
+            files.edit_operators(message.action, message.at, message.to, message.op)
             self._edited("recipe")
         elif isinstance(message, protocol.Mute):
-            files.recipe.become(files.recipe.text, muted=frozenset(message.stages))
+            files.recipe.apply(files.recipe.text, muted=frozenset(message.stages))
             self._edited("recipe")
         elif isinstance(message, protocol.Step):
             for file in files.step(message.kind):
                 self._edited(file)
         elif isinstance(message, protocol.Save):
             path = files.save(message.file, message.name, message.variant)
-            self.board.post(f"document/{message.file}", files.message(message.file))
+            self.publisher.publish(f"document/{message.file}", files.message(message.file))
             for each in self.pages:
-                each.box.put("saved", pack(protocol.Saved(name=path.name)))
+                each.queue.put("saved", pack(protocol.Saved(name=path.name)))
         elif isinstance(message, protocol.Restore):
-            files.document(message.file).become(message.text, edits=message.edits or None)
+            files.document(message.file).apply(message.text, edits=message.edits or None)
             self._edited(message.file)
         elif isinstance(message, protocol.Compare):
             self._compare(message)
         elif isinstance(message, protocol.Isolate):
-            self._hand.isolate(message)
+            self._manipulator.isolate(message)
             self._edited("recipe")
         elif isinstance(message, protocol.Drag):
-            self._hand.drag(message, self._showing.look)
+            self._manipulator.drag(message, self._viewport.display)
             self._edited("recipe", resting=message.resting)
         elif isinstance(message, protocol.Sculpt):
             self._sculpt(message)
@@ -202,22 +202,22 @@ class Session:
             self._sculptor.remove_all()
             self._edited("recipe")
         elif isinstance(message, protocol.Play):
-            self._playing.play(message)
+            self._playback.play(message)
         elif isinstance(message, protocol.Against):
-            self._playing.set_comparison(message.name)
+            self._playback.set_comparison(message.name)
         else:
             raise UserError(f"message: {message.kind} is not for this file")
 
     def _sculpt(self, message: protocol.Sculpt) -> None:
-        """Posts the sculpted guides at once and requests a draft of the locks.
+        """Publishes the sculpted guides at once and requests a draft of the locks.
 
         Raises UserError before the groom is made.
         """
-        look = self._showing.look
-        if look is None:
+        display = self._viewport.display
+        if display is None:
             raise UserError("sculpt: the groom is not made yet; wait until it is seen")
-        guides = self._sculptor.move(message, look.groom)
-        self.board.post("guides", self._sculptor.message(guides, look.groom))
+        guides = self._sculptor.move(message, display.groom)
+        self.publisher.publish("guides", self._sculptor.message(guides, display.groom))
         if message.resting:
             self._edited("recipe")
         else:
@@ -226,9 +226,9 @@ class Session:
             self._worker.submit(Work(sculpted, document.revision, document.state.muted, True))
 
     def _compare(self, message: protocol.Compare) -> None:
-        self._showing.clear_beside()
+        self._viewport.clear_beside()
         if message.to == "none":
-            self.board.post("b/none", pack(protocol.Compared(name="")))
+            self.publisher.publish("b/none", pack(protocol.Compared(name="")))
             return
         document = self.files.recipe
         recipe, muted, name = document.model, document.state.muted, "as it was"
@@ -239,18 +239,18 @@ class Session:
             path = self.project.inside(message.name, "compare")
             recipe = self.files.parse(path.read_text(encoding="utf-8"), path)
             muted, name = frozenset[str](), path.name
-        look = self._beside.groom(recipe, muted, draft=False, fresh=lambda: None)
-        self.board.post("b/none", pack(protocol.Compared(name=name)))
-        self._showing.show(look, "b")
+        display = self._beside.groom(recipe, muted, draft=False, check_abort=lambda: None)
+        self.publisher.publish("b/none", pack(protocol.Compared(name=name)))
+        self._viewport.show(display, "b")
 
     # Grooming
 
     def _edited(self, file: str, *, resting: bool = True) -> None:
-        self.board.post(f"document/{file}", self.files.message(file))
+        self.publisher.publish(f"document/{file}", self.files.message(file))
         if file == "recipe":
             self.regroom(draft=not resting)
         else:
-            self._playing.post_timeline()
+            self._playback.publish_timeline()
 
     def regroom(self, *, draft: bool = False) -> None:
         """Requests the groom of the current recipe; a draft while a gesture is in progress."""
@@ -259,38 +259,38 @@ class Session:
 
     def _groom(self, work: Work) -> None:
         """Grooms on the worker thread. A draft is never aborted, so that the page updates during a gesture."""
-        fresh: Callable[[], None] = (lambda: None) if work.draft else self._worker.raise_if_stale
+        check_abort: Callable[[], None] = (lambda: None) if work.draft else self._worker.raise_if_stale
         self._measurer.cancel()
         try:
-            look = self._groomer.groom(work.recipe, work.muted, draft=work.draft, fresh=fresh)
-            self._call(self.board.clear, NO_GROOM)
-            self._call(self._show, look, work.revision)
+            display = self._evaluator.groom(work.recipe, work.muted, draft=work.draft, check_abort=check_abort)
+            self._call(self.publisher.clear, NO_GROOM)
+            self._call(self._show, display, work.revision)
             if not work.draft:
-                self._measurer.submit(look)
+                self._measurer.submit(display)
         except UserError as error:  # retained for pages that join later and see no hair
-            self._call(self.board.post, NO_GROOM, trouble(str(error)))
+            self._call(self.publisher.publish, NO_GROOM, trouble(str(error)))
         except Stale:
             raise
         except Exception as error:
             log.exception("a groom could not be made")
             self._call(self.trouble, f"this is a mistake in Ringlet ({error}); see the terminal")
 
-    def _measure(self, look: Look) -> None:
+    def _measure(self, display: DisplayGroom) -> None:
         """Measures a groom on a worker thread; a new groom cancels it."""
-        groom, chunks = look.groom, []
+        groom, chunks = display.groom, []
         for chunk in overlays.depths(groom.scalp, groom.scalp.points, groom.locks, groom.locks.points):
             self._measurer.raise_if_stale()
             chunks.append(chunk)
-        self._call(self.board.post, "measured", measured(groom, np.concatenate([np.empty(0), *chunks])))
+        self._call(self.publisher.publish, "measured", measured(groom, np.concatenate([np.empty(0), *chunks])))
 
-    def _show(self, look: Look, revision: int) -> None:
-        before = self._showing.look
-        self._showing.show(look, "a", revision)
-        guides_changed = before is None or before.groom.guides is not look.groom.guides
-        if guides_changed and look.groom.unsculpted is not None and not self._sculptor.busy:
-            self.board.post("guides", self._sculptor.message(look.groom.guides, look.groom))
-        if self.files.mode == "shot" and not look.draft:
-            self._playing.set_groom(look)
+    def _show(self, display: DisplayGroom, revision: int) -> None:
+        before = self._viewport.display
+        self._viewport.show(display, "a", revision)
+        guides_changed = before is None or before.groom.guides is not display.groom.guides
+        if guides_changed and display.groom.unsculpted is not None and not self._sculptor.busy:
+            self.publisher.publish("guides", self._sculptor.message(display.groom.guides, display.groom))
+        if self.files.mode == "shot" and not display.draft:
+            self._playback.set_groom(display)
 
     def _call(self, do: Callable[..., None], *arguments: Any) -> None:
         if self._loop is not None and not self._loop.is_closed():
@@ -299,4 +299,4 @@ class Session:
     def trouble(self, message: str) -> None:
         """Sends an error message to all pages."""
         for page in self.pages:
-            page.box.put("trouble", trouble(message))
+            page.queue.put("trouble", trouble(message))

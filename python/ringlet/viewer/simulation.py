@@ -19,9 +19,9 @@ from ringlet.groom import Groom, Hairs
 from ringlet.shot import Shot
 from ringlet.sim.motion import Motion
 from ringlet.viewer import overlays, protocol
-from ringlet.viewer.looks import spread_order
-from ringlet.viewer.reel import Run
-from ringlet.viewer.scene import Moved, Seen
+from ringlet.viewer.display_groom import spread_order
+from ringlet.viewer.frame_cache import FrameCache
+from ringlet.viewer.scene import FrameState, VisibleMesh
 from ringlet.viewer.wire import pack
 
 MAX_CHECKPOINT_BYTES = 1_500_000_000  # memory for the checkpoints of frames
@@ -36,12 +36,12 @@ class Stage:
     groom: Groom
     hairs: Hairs | None
     clip: Clip
-    bodies: list[Seen]
+    bodies: list[VisibleMesh]
     _lock: threading.Lock = field(default_factory=threading.Lock, init=False)  # guards the buffer of hairs
 
     @cached_property
     def _buffer(self) -> NDArray[np.float32] | None:
-        return self.hairs.room() if self.hairs is not None else None
+        return self.hairs.new_buffer() if self.hairs is not None else None
 
     @cached_property
     def turning(self) -> NDArray[np.float64]:
@@ -52,21 +52,21 @@ class Stage:
         self,
         layer: str,
         frame: float,
-        moved: Moved,
+        state: FrameState,
         motion: Motion | None = None,
     ) -> bytes:
         """Message of a frame; contact and depth need ``motion``."""
-        points, statistics, cloths = moved
+        points, statistics, cloths = state
         axis, root, left = np.empty(0), np.empty(0), np.empty((0, 0), np.uint8)
         corners, locks = self.clip.at(frame), self.groom.locks
-        bodies = [seen.at(frame, cloths) for seen in self.bodies]
+        bodies = [body.at(frame, cloths) for body in self.bodies]
         if self.hairs is not None:
-            carriage = self.hairs.carriage(corners)
-            order = spread_order(carriage["first"])
-            axis, root = carriage["axis"], carriage["root"][order]
-            beside = [(at, seen.mesh.triangles) for at, seen in zip(bodies, self.bodies, strict=True)]
+            deformation = self.hairs.deformation(corners)
+            order = spread_order(deformation["first"])
+            axis, root = deformation["axis"], deformation["root"][order]
+            beside = [(at, body.mesh.triangles) for at, body in zip(bodies, self.bodies, strict=True)]
             with self._lock:
-                left = self.hairs.left_beside(points, carriage, beside, room=self._buffer)[order]
+                left = self.hairs.offset_fractions(points, deformation, beside, buffer=self._buffer)[order]
         drawn = np.flatnonzero((left < 255).any(axis=1))
         shown, contact, depth = shown_statistics(statistics), np.empty(0), np.empty(0)
         if motion is not None:
@@ -104,13 +104,13 @@ def shown_statistics(statistics: dict[str, Any]) -> dict[str, Any]:
 class Simulation:
     """A simulation thread.
 
-    run:     stores the frames
+    frames:  stores the frames
     changed: called after a change of the state
     failed:  called with an error message
     """
 
-    def __init__(self, run: Run, changed: Callable[[], None], failed: Callable[[str], None]) -> None:
-        self._frames, self._changed, self._failed = run, changed, failed
+    def __init__(self, frames: FrameCache, changed: Callable[[], None], failed: Callable[[str], None]) -> None:
+        self._frames, self._changed, self._failed = frames, changed, failed
         self.state = "still"
         self.rolled = 0
         self.key = 0
@@ -137,7 +137,7 @@ class Simulation:
             self._checkpoints = {frame: kept for frame, kept in self._checkpoints.items() if frame <= restart_frame}
         else:
             self._checkpoints = {}
-        self._frames.cut(restart_frame)
+        self._frames.truncate(restart_frame)
         self.rolled, self.key, self.state = 0, self.key + 1, "rolling"
         self._stopping.clear()
         self._running.set()
@@ -170,7 +170,7 @@ class Simulation:
     def reset(self) -> None:
         """Removes all frames and checkpoints."""
         self._checkpoints.clear()
-        self._frames.cut()
+        self._frames.truncate()
         self.state, self.rolled, self.key = "still", 0, self.key + 1
 
     def _run(
@@ -207,9 +207,9 @@ class Simulation:
                 self._store_checkpoint(first + k, motion)
                 if self.state == "rolling":
                     self.state = "running"
-                cloths = {garment.name: garment.cloth.positions for garment in motion.worn}
-                moved = Moved(np.asarray(motion.strands.positions, np.float32), statistics, cloths)
-                self._frames.add(first + k, stage.frame("shot", first + k, moved, motion))
+                cloths = {garment.name: garment.cloth.positions for garment in motion.garments}
+                state = FrameState(np.asarray(motion.strands.positions, np.float32), statistics, cloths)
+                self._frames.add(first + k, stage.frame("shot", first + k, state, motion))
             self._changed()
         self.state = "done"
 

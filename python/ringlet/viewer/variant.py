@@ -14,7 +14,7 @@ from ringlet.data.quantities import Quantity
 from ringlet.data.toml import toml_key
 from ringlet.groom import Recipe
 from ringlet.groom.load import stage_names
-from ringlet.viewer.document import Document, written
+from ringlet.viewer.document import Document, toml_value
 
 OWN = ("ringlet", "extends", "edits")  # keys that a variant does not inherit
 Tables = dict[str, Any]
@@ -40,13 +40,15 @@ def variant(document: Document, parse: Callable[[str, Path, str], Recipe], path:
 
 
 def _text(document: Document, edits: Path | None) -> str:
-    before, now = tomllib.loads(document.saved), document.said()
+    before, now = tomllib.loads(document.saved), document.contents()
     changes = _differing(_inheritable(before), _inheritable(now), document.model)
     lines = [f"# {now.get('name') or document.path.stem}, with other values.", "ringlet = 1"]
     lines.append(f'extends = "{document.path.name}"')
     if edits is not None:
         lines.append(f'edits = "{edits.name}"')
-    lines += [f"{toml_key(name)} = {written(value)}" for name, value in changes.items() if not _is_table(name, value)]
+    lines += [
+        f"{toml_key(name)} = {toml_value(value)}" for name, value in changes.items() if not _is_table(name, value)
+    ]
     for name, value in changes.items():
         if _is_table(name, value):
             lines += _table(name, value)
@@ -127,7 +129,7 @@ def _table(name: str, value: Any) -> list[str]:
 
 
 def _entries(table: Tables) -> list[str]:
-    return [f"{toml_key(name)} = {written(value)}" for name, value in table.items()]
+    return [f"{toml_key(name)} = {toml_value(value)}" for name, value in table.items()]
 
 
 def _inheritable(data: Tables) -> Tables:

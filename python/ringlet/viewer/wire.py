@@ -1,8 +1,8 @@
 """Messages as bytes, little-endian.
 
-``u4``  length of the header
-header  a JSON object, padded with spaces to a multiple of 8 bytes
-arrays  in the order of the header's ``arrays`` (name, type, length), each padded with zeros to a multiple of 8 bytes
+- ``u4``: length of the header
+- header: a JSON object, padded with spaces to a multiple of 8 bytes
+- arrays: in the order of the header's ``arrays`` (name, type, length), each padded with zeros to a multiple of 8 bytes
 """
 
 from __future__ import annotations

@@ -13,7 +13,7 @@ class Stale(Exception):
     """Raised inside a task that is outdated."""
 
 
-class Latest(Generic[Task]):
+class LatestTaskWorker(Generic[Task]):
     """A thread that runs one task at a time and queues only the latest.
 
     do: runs a task; may call ``raise_if_stale()`` to abort when a newer task is queued

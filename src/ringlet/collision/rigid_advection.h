@@ -1,4 +1,4 @@
-// Rigid advection: transforms motion bounds where nearly everything moves as one rigid body, as hair does on a head.
+// Rigid advection: transforms motion bounds where nearly everything follows one rigid motion, as hair does on a head.
 #pragma once
 
 #include "ringlet/collision/motion_bounds.h"

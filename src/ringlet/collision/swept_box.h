@@ -12,7 +12,7 @@
 
 namespace ringlet {
 
-// Boxes are compared by their gaps at the start and at the end, so that a shared motion has no effect: along each axis the gap
+// Boxes are compared by their gaps at the start and at the end, so that a shared motion has no effect. Along each axis the gap
 // of two points in linear motion is never below the lesser of these. The fourth lanes are flags: whether the box is active and
 // whether it moves. A minimum of two flags is that of their union.
 struct SweptBox {

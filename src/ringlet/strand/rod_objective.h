@@ -9,7 +9,7 @@
 
 namespace ringlet::RINGLET_SIMD {
 
-// Unknowns of a vertex: its position and γ l̄ of the edge that begins there [m]. γ is 0 as a step begins.
+// Degrees of freedom of a vertex: its position and γ l̄ of the edge that begins there [m]. γ is 0 as a step begins.
 template <class T> class RodObjective : public StrandObjective<T, 4, 11> {
     using Base = StrandObjective<T, 4, 11>;
     using Base::rows_, Base::shapes_, Base::vertices_;

@@ -35,7 +35,7 @@ export class BrushTool {
     step: 1,
     value: 20,
   });
-  private readonly told = h("output", { class: "unit", for: "brush-radius" });
+  private readonly readout = h("output", { class: "unit", for: "brush-radius" });
   private readonly mirrored = h("input", { type: "checkbox", role: "switch", class: "switch", id: "brush-mirrored" });
   private readonly hair = h("input", { type: "checkbox", role: "switch", class: "switch", id: "brush-hair" });
   private readonly all = h("button", { type: "button", class: "quiet" }, "Return all guides");
@@ -60,7 +60,7 @@ export class BrushTool {
     this.element.append(
       h("h2", {}, "Sculpt guides"),
       h("div", { class: "choices", role: "radiogroup", "aria-label": "Brush" }, ...tools),
-      row("radius", this.radius, this.told),
+      row("radius", this.radius, this.readout),
       row("both sides", this.mirrored),
       row("show the hair", this.hair),
       h(
@@ -108,7 +108,7 @@ export class BrushTool {
 
   private resize(factor: number): void {
     this.radius.value = String(Math.min(LARGEST, Math.max(SMALLEST, this.metres * factor)) * 1000);
-    this.told.textContent = `${this.radius.value} mm`;
+    this.readout.textContent = `${this.radius.value} mm`;
     this.radius.style.setProperty("--part", `${(100 * (this.metres - SMALLEST)) / (LARGEST - SMALLEST)}%`);
   }
 

@@ -408,15 +408,15 @@ class TableField extends Field {
 }
 
 class OtherField extends Field {
-  private readonly told = h("code", { class: "told" });
+  private readonly readout = h("code", { class: "told" });
 
   constructor(model: Model, file: File, place: Place, setting: Setting) {
     super(model, file, place, setting);
-    this.element.append(this.head(), this.told);
+    this.element.append(this.head(), this.readout);
   }
 
   protected show(): void {
-    this.told.textContent = this.value === undefined || this.value === null ? "–" : JSON.stringify(this.value);
+    this.readout.textContent = this.value === undefined || this.value === null ? "–" : JSON.stringify(this.value);
   }
 }
 

@@ -14,7 +14,7 @@ export class RampEditor {
   private readonly svg = document.createElementNS(NS, "svg");
   private readonly curve = document.createElementNS(NS, "path");
   private readonly area = document.createElementNS(NS, "path");
-  private readonly told = h("output", { class: "ramp-told" });
+  private readonly readout = h("output", { class: "ramp-told" });
   private points: Ramp = [
     [0, 1],
     [1, 1],
@@ -36,7 +36,7 @@ export class RampEditor {
     this.element = h("div", { class: "ramp-editor" });
     this.element.append(
       this.svg,
-      h("div", { class: "ramp-ends" }, h("span", {}, "root"), this.told, h("span", {}, "tip")),
+      h("div", { class: "ramp-ends" }, h("span", {}, "root"), this.readout, h("span", {}, "tip")),
     );
     this.svg.addEventListener("pointerdown", (event) => this.press(event));
     this.svg.addEventListener("pointermove", (event) => this.move(event));
@@ -140,7 +140,7 @@ export class RampEditor {
       dot.setAttribute("aria-label", `point at ${x}, factor ${y}`);
     });
     const [x, y] = this.points[this.held] ?? [];
-    this.told.textContent = this.held >= 0 ? `${x} → ${y}` : "";
+    this.readout.textContent = this.held >= 0 ? `${x} → ${y}` : "";
   }
 
   private dot(index: number): SVGCircleElement {

@@ -3,7 +3,7 @@
 import { h } from "../dom";
 import type { Model } from "../model";
 import type { Json } from "../protocol";
-import type { Told } from "../view/viewer";
+import type { DrawStatistics } from "../view/viewer";
 
 export class Status {
   readonly element = h("footer", { class: "status" });
@@ -29,13 +29,13 @@ export class Status {
     model.on("measured", () => this.inside(model.measured?.inside ?? 0));
   }
 
-  drew({ drawMs, shown }: Told): void {
+  drew({ drawMs, shown }: DrawStatistics): void {
     this.set("draw", `${drawMs.toFixed(0)} ms`);
     const hairs = this.model.numbers?.hairs ?? 0;
     if (hairs) this.set("hairs", shown < hairs ? `${count(shown)} of ${count(hairs)}` : count(hairs));
   }
 
-  /** A frame is seen: what its simulation told. */
+  /** Statistics of the simulation of the frame that is shown. */
   simulated(statistics: Record<string, Json>): void {
     const { wall_ms: ms, inside, contacts } = statistics;
     if (typeof ms === "number") this.set("sim", `${ms.toFixed(0)} ms/frame`);

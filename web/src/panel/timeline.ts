@@ -16,7 +16,7 @@ export class TimelineBar {
   readonly element = h("section", { class: "timeline", hidden: true, "aria-label": "Frames" });
   private readonly frames: Record<Layer, Map<number, Frame>> = { shot: new Map(), against: new Map() };
   private readonly slider = h("input", { type: "range", step: 1, "aria-label": "Frame" });
-  private readonly told = h("output", { class: "frame-told" });
+  private readonly readout = h("output", { class: "frame-told" });
   private readonly run = h("button", { type: "button", class: "primary" }, "Run");
   private readonly again = iconButton("again", "Run again from this frame, with the settings as they are", () =>
     this.model.say({ kind: "play", action: "again_from", frame: this.frame }),
@@ -44,7 +44,7 @@ export class TimelineBar {
       this.show(Number(this.slider.value));
     });
     this.run.addEventListener("click", () => this.press());
-    this.element.append(this.run, this.again, this.watch, this.slider, this.told, this.against);
+    this.element.append(this.run, this.again, this.watch, this.slider, this.readout, this.against);
     for (const topic of ["timeline", "role", "files"] as const) model.on(topic, () => this.update());
     addEventListener("keydown", (event) => {
       if (event.key !== " " || (event.target as HTMLElement).closest("button, input, select, textarea, dialog")) return;
@@ -253,7 +253,7 @@ export class TimelineBar {
     if (timeline.state === "rolling") parts[0] = `before the first frame: ${timeline.rolled} of ${timeline.preroll}`;
     else if (!timeline.frames.length) parts[0] = "not run yet";
     else if (typeof stretch === "number") parts.push(`stretched ${(100 * stretch).toFixed(1)} % at most`);
-    this.told.textContent = parts.join(" · ");
+    this.readout.textContent = parts.join(" · ");
   }
 }
 

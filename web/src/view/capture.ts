@@ -15,7 +15,7 @@ export function takePicture(viewer: Viewer, name: string): void {
   viewer.renderer.domElement.toBlob((blob) => blob && keep(blob, `${name}.png`));
 }
 
-/** Records what is drawn until it is told to stop. */
+/** Records what is drawn until it is stopped. */
 export class Recorder {
   private recorder: MediaRecorder | null = null;
   private parts: Blob[] = [];

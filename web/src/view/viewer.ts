@@ -15,7 +15,7 @@ const SUBJECT = 0.8; // width of what is framed, as a part of the picture's heig
 const SLOW = 45; // a picture that takes longer is drawn with less detail while something moves [ms]
 const REST_AFTER = 180; // time without a movement after which all detail is drawn [ms]
 
-export interface Told {
+export interface DrawStatistics {
   drawMs: number;
   shown: number;
 }
@@ -29,7 +29,7 @@ export class Viewer {
   readonly guides = new GuideLines();
   compared = false;
   turntable = false;
-  onDraw: (told: Told) => void = () => {};
+  onDraw: (statistics: DrawStatistics) => void = () => {};
 
   /** How much of the picture panels cover on the left and on the right [pixels]. */
   covered: () => [number, number] = () => [0, 0];

@@ -16,7 +16,7 @@ from ringlet.data.cache import Cache, CachedCloth
 from ringlet.data.errors import UserError
 from ringlet.data.stage import StageSpace
 from ringlet.io.space import to_metres
-from ringlet.io.usd.cloths import ClothPrims, read_cloth, set_cloth, told_of
+from ringlet.io.usd.cloths import ClothPrims, cloth_metadata, read_cloth, set_cloth
 from ringlet.io.usd.groom import LOCKS, VERSION, check_version, groom_prim
 from ringlet.io.usd.mesh import clip_at, mesh_at, visible_meshes
 from ringlet.io.usd.stage import Source, parse_json, reading, reading_more
@@ -213,7 +213,7 @@ class CacheWriter(StreamWriter):
     def finish(self) -> None:
         """Writes the metadata of the layer."""
         folder = self.path.absolute().parent
-        cloths = [told_of(*of, folder) for of in zip(self._cloths, self._meshes, strict=True)]
+        cloths = [cloth_metadata(*of, folder) for of in zip(self._cloths, self._meshes, strict=True)]
         metadata = {
             name: json.dumps(values, separators=(",", ":"), default=lambda value: value.tolist())
             for name, values in (("statistics", self._statistics), ("start", self.start), ("cloths", cloths))

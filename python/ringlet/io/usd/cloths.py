@@ -73,7 +73,7 @@ def set_cloth(mesh: UsdGeom.Mesh, frame: float, points: NDArray[np.floating], sp
     mesh.CreateExtentAttr().Set(UsdGeom.PointBased.ComputeExtent(value), time)
 
 
-def told_of(cloth: CachedCloth, mesh: UsdGeom.Mesh, folder: Path) -> dict[str, str]:
+def cloth_metadata(cloth: CachedCloth, mesh: UsdGeom.Mesh, folder: Path) -> dict[str, str]:
     """Metadata of a cloth: its name, source file and prim, and its prim in the cache."""
     assert cloth.file is not None
     return {
@@ -87,7 +87,7 @@ def told_of(cloth: CachedCloth, mesh: UsdGeom.Mesh, folder: Path) -> dict[str, s
 def read_cloth(source: Source, entry: dict[str, Any], frames: list[float]) -> CachedCloth:
     """Reads a cloth of a cache at some frames.
 
-    entry: metadata of the cloth (``told_of``)
+    entry: metadata of the cloth (``cloth_metadata``)
 
     Raises UserError when the prim of the cloth is missing.
     """

@@ -1,9 +1,9 @@
 """A groom as USD: its guides and locks, and a reference to the head.
 
-/groom         : Xform, with the recipe
-/groom/locks   : BasisCurves, one per lock, in the rest pose
-/groom/guides  : BasisCurves, the guides
-/groom/body    : the head, a reference to its file, or the mesh itself without a file
+- /groom: Xform, with the recipe
+- /groom/locks: BasisCurves, one per lock, in the rest pose
+- /groom/guides: BasisCurves, the guides
+- /groom/body: the head, a reference to its file, or the mesh itself without a file
 
 With variants, locks and guides are in the variants of the set ``groom``.
 """

@@ -31,7 +31,7 @@ class NoClean(Clean):
 
 
 @dataclass
-class Look:
+class DisplayGroom:
     """A groom for display.
 
     hairs:    render hairs; None for curves that are hairs themselves
@@ -77,7 +77,7 @@ class Look:
         return len(self.hairs.curves) if self.hairs else len(self.groom.locks)
 
 
-class Groomer:
+class GroomEvaluator:
     """Evaluates recipes of one project; caches the results of unchanged stages."""
 
     def __init__(self, project: Project) -> None:
@@ -87,13 +87,13 @@ class Groomer:
         self._hairs = HairMemory()
 
     def groom(
-        self, recipe: Recipe, muted: frozenset[str] = frozenset(), *, draft: bool, fresh: Callable[[], None]
-    ) -> Look:
+        self, recipe: Recipe, muted: frozenset[str] = frozenset(), *, draft: bool, check_abort: Callable[[], None]
+    ) -> DisplayGroom:
         """Evaluates a recipe.
 
-        muted: stages without effect
-        draft: skips the clean stage
-        fresh: called between stages; may raise an exception to abort
+        muted:       stages without effect
+        draft:       skips the clean stage
+        check_abort: called between stages; may raise an exception to abort
         """
         began = time.perf_counter()
         times: dict[str, float] = {}
@@ -101,7 +101,7 @@ class Groomer:
 
         def progress(stage: str, done: int, total: int) -> None:
             if not done:
-                fresh()
+                check_abort()
                 clock[0] = time.perf_counter()
             elif (took := 1e3 * (time.perf_counter() - clock[0])) > 0.5:
                 times[stage] = round(took, 1)
@@ -109,12 +109,12 @@ class Groomer:
         recipe = without_muted(recipe, muted | ({"clean"} if draft else frozenset()))
         groom = make_groom(recipe, progress=progress, memory=self._memory, **self._read(recipe))
         groom.hairs = recipe.hairs.model_dump(mode="json")
-        fresh()
+        check_abort()
         clock[0] = time.perf_counter()
         hairs = lay_hairs(groom, memory=self._hairs)
         if (took := 1e3 * (time.perf_counter() - clock[0])) > 0.5:
             times["hairs"] = round(took, 1)
-        return Look(
+        return DisplayGroom(
             groom,
             hairs,
             draft,
@@ -154,7 +154,7 @@ def without_muted(recipe: Recipe, muted: frozenset[str]) -> Recipe:
 
 def hairs_message(side: str, hairs: Hairs, scalp: Mesh) -> bytes:
     """Message with hairs, ordered so that any prefix covers all locks evenly."""
-    layout = hairs.carriage(scalp.points)
+    layout = hairs.deformation(scalp.points)
     count, points = len(hairs.curves), len(layout["profile"])
     order = spread_order(layout["first"])
     widths = hairs.curves.point["width"].reshape(count, points)

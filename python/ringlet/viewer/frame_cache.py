@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ringlet.data.errors import UserError
-from ringlet.viewer.scene import Moved
+from ringlet.viewer.scene import FrameState
 
 
-class Reel(Protocol):
+class FrameSource(Protocol):
     """Frames in the order of their numbers."""
 
     @property
@@ -34,7 +34,7 @@ class ReplacedError(UserError):
     """The file of the frames was replaced."""
 
 
-class Watched:
+class WatchedFile:
     """A file that may be replaced while it is read.
 
     USD shares the layers of a file between all stages that have it open. Opening a replaced file therefore changes the
@@ -57,7 +57,7 @@ class Watched:
         return status.st_ino, status.st_size, status.st_mtime_ns
 
 
-class Read:
+class FileFrames:
     """Frames of a file, read one at a time.
 
     file: the file
@@ -68,10 +68,10 @@ class Read:
 
     def __init__(
         self,
-        file: Watched,
+        file: WatchedFile,
         frames: NDArray[np.float64],
-        read: Callable[[float], Moved],
-        pack: Callable[[float, Moved], bytes],
+        read: Callable[[float], FrameState],
+        pack: Callable[[float, FrameState], bytes],
         lock: threading.Lock,
     ) -> None:
         self.frames = frames
@@ -81,19 +81,19 @@ class Read:
         """Message of a frame; raises ReplacedError when the file was replaced."""
         with self._lock:
             try:
-                moved = self._read(frame)
+                state = self._read(frame)
             except UserError:
                 self._check()  # an error is meaningless when the file was replaced during the read
                 raise
             self._check()
-        return self._pack(frame, moved)
+        return self._pack(frame, state)
 
     def _check(self) -> None:
         if not self._file.unchanged():
             raise ReplacedError(f"{self._file.path.name}: was replaced; its frames are void")
 
 
-class Run:
+class FrameCache:
     """Simulated frames, stored in an anonymous temporary file."""
 
     def __init__(self) -> None:
@@ -122,7 +122,7 @@ class Run:
             self._places[frame] = self._end, len(message)
             self._end += len(message)
 
-    def cut(self, after: float | None = None) -> None:
+    def truncate(self, after: float | None = None) -> None:
         """Removes all frames, or those after a frame."""
         with self._lock:
             self._places = {frame: at for frame, at in self._places.items() if after is not None and frame <= after}

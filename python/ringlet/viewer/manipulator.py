@@ -5,16 +5,18 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ringlet.data.errors import UserError
-from ringlet.groom import row_of
+from ringlet.groom import Groom, row_of
+from ringlet.groom.edits import shape_frames
+from ringlet.groom.scalp import Scalp
 from ringlet.viewer import protocol
+from ringlet.viewer.display_groom import DisplayGroom
 from ringlet.viewer.files import Files
-from ringlet.viewer.looks import Look
-from ringlet.viewer.pull import pulled
 
 
-class Hand:
+class LockManipulator:
     """State of a gesture that drags a lock."""
 
     def __init__(self, files: Files) -> None:
@@ -28,13 +30,13 @@ class Hand:
         Raises UserError for a lock that is edited in another file.
         """
         document = self._files.recipe
-        edits = document.said().get("edit", [])
+        edits = document.contents().get("edit", [])
         edited = {edit.get("lock") for edit in edits}
         if message.out:
             for lock in message.locks:
                 if lock not in edited:
                     unmoved = {"lock": lock, "move": [{"at": 1.0, "by": [0.0, 0.0, 0.0]}]}
-                    document.arrange("add", "edit", len(document.said().get("edit", [])), entry=unmoved)
+                    document.edit_tables("add", "edit", len(document.contents().get("edit", [])), entry=unmoved)
             return
         if elsewhere := {edit.lock for edit in document.model.edit} & set(message.locks) - edited:
             raise UserError(
@@ -43,28 +45,28 @@ class Hand:
             )
         for k in reversed(range(len(edits))):
             if edits[k].get("lock") in message.locks:
-                document.arrange("remove", "edit", k)
+                document.edit_tables("remove", "edit", k)
 
-    def drag(self, message: protocol.Drag, look: Look | None) -> None:
+    def drag(self, message: protocol.Drag, display: DisplayGroom | None) -> None:
         """Moves a point of an isolated lock to a position, stored in the frame of the lock's shape.
 
         Raises UserError for a lock that is not isolated and for a point that does not exist.
         """
         document = self._files.recipe
-        edits = document.said().get("edit", [])
+        edits = document.contents().get("edit", [])
         index = next((k for k, edit in enumerate(edits) if edit.get("lock") == message.lock), None)
-        if look is None or index is None:
+        if display is None or index is None:
             raise UserError(f"lock {message.lock} is not isolated; isolate it before it is dragged")
-        row = row_of(look.groom, message.lock)
-        count = int(look.groom.locks.counts[row])
+        row = row_of(display.groom, message.lock)
+        count = int(display.groom.locks.counts[row])
         if not 0 < message.point < count:
             raise UserError(
                 f"lock {message.lock} has points 1 to {count - 1} to drag; there is none at {message.point}"
             )
         at = round(message.point / (count - 1), 4)
         if self._grabbed is None or self._grabbed[:2] != (message.gesture, message.point):
-            self._grabbed = (message.gesture, message.point, np.array(look.groom.locks[row][message.point]))
-        shift = pulled(look.groom, row, at, np.array(message.to) - self._grabbed[2])
+            self._grabbed = (message.gesture, message.point, np.array(display.groom.locks[row][message.point]))
+        shift = _in_shape_frame(display.groom, row, at, np.array(message.to) - self._grabbed[2])
         moves = [move for move in self._moves_before(message.gesture, edits[index]) if any(move["by"])]
         by = [f"{1e3 * x:.2f} mm" for x in shift]
         moves = [*moves, {"at": at, "by": by, "reach": max(round(message.reach, 3), 0.001)}]
@@ -75,3 +77,15 @@ class Hand:
         if self._moves is None or self._moves[0] != gesture:
             self._moves = (gesture, edit.get("move", []))
         return self._moves[1]
+
+
+def _in_shape_frame(groom: Groom, row: int, at: float, by: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Converts a displacement in world space to the frame of a lock's shape, as in ``move.by`` of an edit [m].
+
+    row: row of the lock
+    at:  parameter on the lock, from root (0) to tip (1)
+    by:  displacement in world space [m], shape (3,)
+    """
+    root = Scalp(groom.scalp, groom.region).frames(groom.locks)[row]
+    frame = shape_frames(groom.shapes or groom.locks, row, root, np.array([at]))[0]
+    return frame.T @ by

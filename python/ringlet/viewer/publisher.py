@@ -9,7 +9,7 @@ import asyncio
 from collections.abc import Callable
 
 
-class Mailbox:
+class SendQueue:
     """Send queue of one page: waiting messages, oldest subject first, then requested messages, made on demand."""
 
     def __init__(self) -> None:
@@ -47,31 +47,31 @@ class Mailbox:
                 await self._available.wait()
 
 
-class Board:
-    """Stores the latest message of each subject and delivers it to every mailbox."""
+class Publisher:
+    """Stores the latest message of each subject and delivers it to every page."""
 
     def __init__(self) -> None:
         self._latest: dict[str, bytes] = {}
-        self._boxes: list[Mailbox] = []
+        self._queues: list[SendQueue] = []
 
-    def join(self, first: bytes) -> Mailbox:
-        """Returns a new mailbox with the welcome message and all retained messages."""
-        box = Mailbox()
-        box.put("welcome", first)
+    def subscribe(self, first: bytes) -> SendQueue:
+        """Returns a new send queue with the welcome message and all retained messages."""
+        queue = SendQueue()
+        queue.put("welcome", first)
         for subject, message in self._latest.items():
-            box.put(subject, message)
-        self._boxes.append(box)
-        return box
+            queue.put(subject, message)
+        self._queues.append(queue)
+        return queue
 
-    def leave(self, box: Mailbox) -> None:
-        """Removes a mailbox."""
-        self._boxes.remove(box)
+    def unsubscribe(self, queue: SendQueue) -> None:
+        """Removes a send queue."""
+        self._queues.remove(queue)
 
-    def post(self, subject: str, message: bytes) -> None:
-        """Retains a message and queues it in every mailbox."""
+    def publish(self, subject: str, message: bytes) -> None:
+        """Retains a message and queues it for every page."""
         self._latest[subject] = message
-        for box in self._boxes:
-            box.put(subject, message)
+        for queue in self._queues:
+            queue.put(subject, message)
 
     def subjects(self, prefix: str) -> list[str]:
         """Retained subjects that start with a prefix."""
@@ -81,5 +81,5 @@ class Board:
         """Removes the messages whose subject starts with a prefix."""
         for subject in self.subjects(prefix):
             del self._latest[subject]
-        for box in self._boxes:
-            box.discard(prefix)
+        for queue in self._queues:
+            queue.discard(prefix)

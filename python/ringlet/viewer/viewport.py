@@ -1,0 +1,112 @@
+"""Publishes grooms, limited to the data that changed."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+import numpy as np
+
+from ringlet.data.curves import Curves
+from ringlet.data.mesh import Mesh
+from ringlet.groom import Groom
+from ringlet.shot import Shot
+from ringlet.viewer import overlays, protocol
+from ringlet.viewer.display_groom import DisplayGroom
+from ringlet.viewer.publisher import Publisher
+from ringlet.viewer.scene import VisibleMesh, read_bodies, shot_meshes
+from ringlet.viewer.wire import pack
+
+
+class Viewport:
+    """The displayed grooms on sides a and b.
+
+    display: groom on side a
+    bodies:  visible meshes with their animation
+    """
+
+    def __init__(self, publisher: Publisher) -> None:
+        self._publisher = publisher
+        self.display: DisplayGroom | None = None
+        self.bodies: list[VisibleMesh] = []
+        self._scalp: Mesh | None = None
+        self._head: list[VisibleMesh] = []
+        self._shot_inputs: object = None
+        self._layouts: dict[str, Curves] = {}
+        self._names: protocol.Names | None = None
+
+    def show(self, display: DisplayGroom, side: str, revision: int = 0) -> None:
+        """Shows a groom on one side. revision: of its recipe."""
+        if side == "a":
+            self.display = display
+            self._show_scalp(display)
+            self._publish_names(display.groom, display.curves)
+        layout = display.hairs.curves if display.hairs else display.groom.locks
+        if self._layouts.get(side) is not layout:
+            self._layouts[side] = layout
+            self._publisher.publish(f"{side}/hairs", display.layout(side))
+        self._publisher.publish(f"{side}/locks", display.locks(side))
+        if side == "a":
+            self._publish_numbers(display, revision)
+
+    def stage(self, display: DisplayGroom, bodies: list[VisibleMesh]) -> None:
+        """Shows the contents of a USD file."""
+        self._scalp = display.groom.scalp
+        self._publish_bodies(bodies)
+        self.show(display, "a")
+
+    def show_bodies(self, shot: Shot, groom: Groom) -> None:
+        """Shows cloths and colliders of a shot; raises UserError when one of its files cannot be read."""
+        inputs = shot.cloth, shot.collider, shot.touching is None
+        if inputs != self._shot_inputs:
+            self._publish_bodies(shot_meshes(self._head, shot, groom))
+            self._shot_inputs = inputs
+
+    def clear_beside(self) -> None:
+        """Removes the groom on side b."""
+        self._publisher.clear("b/")
+        self._layouts.pop("b", None)
+
+    def _show_scalp(self, display: DisplayGroom) -> None:
+        if self._scalp is not display.groom.scalp:
+            self._scalp = display.groom.scalp
+            self._head = read_bodies(display.groom.scalp, display.groom.scalp_file)
+            self._shot_inputs = None
+            self._publish_bodies(self._head)
+
+    def _publish_bodies(self, bodies: list[VisibleMesh]) -> None:
+        self._publisher.clear("body/")
+        self.bodies = bodies
+        for index, body in enumerate(bodies):
+            self._publisher.publish(f"body/{index}", body.message(index))
+
+    def _publish_names(self, groom: Groom, curves: Collection[str]) -> None:
+        scalp = groom.scalp
+        names = protocol.Names(
+            regions=sorted(scalp.regions),
+            maps=sorted({*scalp.maps, *scalp.textures}),
+            vectors=sorted(scalp.vectors),
+            curves=sorted(curves),
+        )
+        if names != self._names:
+            self._names = names
+            self._publisher.publish("names", pack(names))
+
+    def _publish_numbers(self, display: DisplayGroom, revision: int) -> None:
+        numbers = protocol.Numbers(
+            revision=revision,
+            locks=len(display.groom.locks),
+            hairs=display.count,
+            groom_ms=round(display.took, 1),
+            times=display.times,
+            draft=display.draft,
+        )
+        self._publisher.publish("numbers", pack(numbers))
+
+
+def measured(groom: Groom, depth: np.ndarray) -> bytes:
+    """Message with measurements of a groom. depth: depths of lock points in the head [m], shape (n,)."""
+    return pack(
+        protocol.Measured(inside=int(np.count_nonzero(depth))),
+        depth=overlays.as_bytes(depth / overlays.DEPTH_SHOWN),
+        nail=overlays.as_bytes(groom.locks.point.get("nail", np.empty(0))),
+    )
