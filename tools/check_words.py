@@ -1,7 +1,7 @@
 """Checks the words of identifiers, comments and docstrings: the retired ones are those of docs/glossary.md.
 
-Usage: python tools/check_words.py [--all] [--count] [FOLDER ...]. Checks the folders of CLEAN if none is named, with
---all every folder. Prints one line per hit and exits with 1 if there is one; --count prints the hits of each folder.
+Usage: python tools/check_words.py [--count] [FOLDER ...]. Checks every folder of code if none is named. Prints one line per
+hit and exits with 1 if there is one; --count prints the hits of each folder.
 """
 
 from __future__ import annotations
@@ -18,12 +18,6 @@ from pathlib import Path
 from typing import NamedTuple
 
 FOLDERS = ("src", "bindings", "python", "tests", "bench", "examples", "tools", "web/src")
-# The folders that are rewritten so far; FOLDERS in the end.
-CORE = ("math", "geometry", "groom", "energy", "linear", "rest", "dynamics", "strand", "collision", "ccd")
-CLEAN = (
-    *("bench", "bindings", "examples", "python", "tests", "tools", "web/src"),
-    *(f"src/ringlet/{name}" for name in CORE),
-)
 # Retired words that stay for the callers of a public function, by file.
 PUBLIC = {"python/ringlet/viewer/run.py": {"told"}}
 LONGEST = 35  # words of a sentence
@@ -142,11 +136,10 @@ def main() -> int:
     """Prints the hits of this tree."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folders", nargs="*")
-    parser.add_argument("--all", action="store_true")
     parser.add_argument("--count", action="store_true")
     options = parser.parse_args()
     root = Path(__file__).parents[1]
-    folders = tuple(options.folders) or (FOLDERS if options.all or options.count else CLEAN)
+    folders = tuple(options.folders) or FOLDERS
     found = list(hits(root, folders, retired_words((root / "docs/glossary.md").read_text())))
     lines = [f"{where}:{line}: {complaint}\n" for where, line, complaint in found]
     if options.count:

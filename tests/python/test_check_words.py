@@ -39,7 +39,7 @@ def found_in(words, root, file, text, glossary=GLOSSARY):
 
 def test_the_clean_folders_hold_to_the_glossary(words):
     retired = words.retired_words((ROOT / "docs/glossary.md").read_text())
-    assert list(words.hits(ROOT, words.CLEAN, retired)) == []
+    assert list(words.hits(ROOT, words.FOLDERS, retired)) == []
 
 
 def test_every_retired_word_of_the_glossary_is_refused_in_an_identifier(words, tmp_path):
