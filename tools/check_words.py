@@ -1,7 +1,7 @@
 """Checks the words of identifiers, comments and docstrings: the retired ones are those of docs/glossary.md.
 
-Usage: python tools/check_words.py [--count] [FOLDER ...]. Checks every folder of code if none is named. Prints one line per
-hit and exits with 1 if there is one; --count prints the hits of each folder.
+Usage: python tools/check_words.py [--count] [FOLDER ...]. Checks every folder of code if none is named. Prints one line
+per hit and exits with 1 if there is one; --count prints the hits of each folder.
 """
 
 from __future__ import annotations
