@@ -20,7 +20,8 @@ nb::ndarray<nb::numpy, double> state_view(nb::handle self, std::vector<Vec3> &va
     return {values.data()->data(), {values.size(), 3}, self};
 }
 
-nb::ndarray<nb::numpy, const double> model_view(nb::handle self, const std::vector<double> &values) {
+template <auto column> nb::ndarray<nb::numpy, const double> column_view(nb::object self) {
+    const std::vector<double> &values = nb::cast<Strands &>(self).model.*column;
     return {values.data(), {values.size()}, self};
 }
 
@@ -116,19 +117,10 @@ void bind_strand(nb::module_ &module) {
                      set_linear_setting<&LinearSettings::max_iterations>)
         .def_rw("extra", &SceneStep::extra);
 
-    nb::class_<StrandMaterial>(module, "StrandMaterial", "What a lock is made of (SI units); a hair's values.")
-        .def(nb::init<>())
-        .def_rw("youngs_modulus", &StrandMaterial::youngs_modulus)
-        .def_rw("radius", &StrandMaterial::radius)
-        .def_rw("density", &StrandMaterial::density)
-        .def_rw("stretch_scale", &StrandMaterial::stretch_scale)
-        .def_rw("bend_scale", &StrandMaterial::bend_scale)
-        .def_rw("twist_ratio", &StrandMaterial::twist_ratio)
-        .def_rw("limit_twist", &StrandMaterial::limit_twist)
-        .def_rw("damping", &StrandMaterial::damping)
-        .def_rw("mass_damping", &StrandMaterial::mass_damping)
-        .def_rw("drag", &StrandMaterial::drag)
-        .def_rw("correct_resolution", &StrandMaterial::correct_resolution);
+    nb::class_<StrandMaterial> material(module, "StrandMaterial", "What a lock is made of (SI units); a hair's values.");
+    material.def(nb::init<>());
+    for (const auto &[name, member] : strand_material_settings)
+        std::visit([&, name = name](auto setting) { material.def_rw(name, setting); }, member);
 
     nb::class_<Strands>(module, "Strands", "Strands at rest in their rest shape, ready to be stepped.")
         .def(
@@ -154,23 +146,13 @@ void bind_strand(nb::module_ &module) {
             "directors", [](nb::object self) { return state_view(self, nb::cast<Strands &>(self).state().directors); },
             "Directors of the material frame, one per edge from the second of each strand on, shape (n, 3): the solver's own "
             "memory.")
-        .def_prop_ro(
-            "masses", [](nb::object self) { return model_view(self, nb::cast<Strands &>(self).model.mass); },
-            "Masses [kg], shape (n,).")
-        .def_prop_ro(
-            "drag", [](nb::object self) { return model_view(self, nb::cast<Strands &>(self).model.drag); },
-            "Air drag [kg/s], shape (n,).")
-        .def_prop_ro(
-            "stretch_stiffness",
-            [](nb::object self) { return model_view(self, nb::cast<Strands &>(self).model.stretch_stiffness); },
-            "EA / l̄ of the edge that begins at each vertex [N/m], shape (n,).")
-        .def_prop_ro(
-            "bend_stiffness", [](nb::object self) { return model_view(self, nb::cast<Strands &>(self).model.bend_stiffness); },
-            "EI / l̄ at each vertex [N m], shape (n,).")
-        .def_prop_ro(
-            "twist_stiffness",
-            [](nb::object self) { return model_view(self, nb::cast<Strands &>(self).model.twist_stiffness); },
-            "c EI / l̄ of the edge that begins at each vertex [N m], shape (n,).")
+        .def_prop_ro("masses", column_view<&StrandModel::mass>, "Masses [kg], shape (n,).")
+        .def_prop_ro("drag", column_view<&StrandModel::drag>, "Air drag [kg/s], shape (n,).")
+        .def_prop_ro("stretch_stiffness", column_view<&StrandModel::stretch_stiffness>,
+                     "EA / l̄ of the edge that begins at each vertex [N/m], shape (n,).")
+        .def_prop_ro("bend_stiffness", column_view<&StrandModel::bend_stiffness>, "EI / l̄ at each vertex [N m], shape (n,).")
+        .def_prop_ro("twist_stiffness", column_view<&StrandModel::twist_stiffness>,
+                     "c EI / l̄ of the edge that begins at each vertex [N m], shape (n,).")
         .def(
             "place", [](Strands &self, Array3<double> positions) { self.place(vectors<Vec3>(positions)); }, "positions"_a,
             "Puts the strands at rest at these positions [m], shape (n, 3), and forgets their history.")
@@ -237,7 +219,7 @@ void bind_strand(nb::module_ &module) {
             "Elastic energy [J], its gradient [N] and the clamped Hessian of a single strand, with signs and turns carried "
             "from the state.");
 
-    nb::tuple names = nb::make_tuple("newton", "cuts", "residual", "unconverged", "stretch", "bend", "twist", "gravity",
-                                     "kinetic", "max_stretch", "flips", "winding_changes", "too_straight", "clamped", "nan");
-    module.attr("REPORT") = names;
+    nb::list names;
+    for (const char *name : strand_report_names) names.append(name);
+    module.attr("REPORT") = nb::tuple(names);
 }

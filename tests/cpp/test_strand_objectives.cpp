@@ -35,9 +35,9 @@ template <class Objective> struct RandomStrand {
             r.inertia_target = random_unit(random);
             r.rest_length = uniform(random);
             r.damped_length = uniform(random);
-            r.stretch = edge * uniform(random);
-            r.bend = corner * uniform(random);
-            r.twist = hinge * uniform(random);
+            r.stretch_stiffness = edge * uniform(random);
+            r.bend_stiffness = corner * uniform(random);
+            r.twist_stiffness = hinge * uniform(random);
             r.rest_angle = r.damped_angle = uniform(random);
             r.rest_dihedral = uniform(random);
             r.damped_bend = 0.1 * random_unit(random);

@@ -1,7 +1,7 @@
 #include "ringlet/strand/block.h"
 
 #include "ringlet/linear/lane_vectors.h"
-#include "ringlet/strand/lane_order.h"
+#include "ringlet/strand/lane_groups.h"
 
 #include <algorithm>
 #include <numeric>

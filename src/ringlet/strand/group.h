@@ -1,23 +1,53 @@
 // Time step of a group of strands, one per SIMD lane: predict, minimise with Newton's method, accept.
 #pragma once
 
-#include "ringlet/strand/damping.h"
-#include "ringlet/strand/energy_limit.h"
-#include "ringlet/strand/inertia.h"
-#include "ringlet/strand/predictor.h"
-#include "ringlet/strand/state_update.h"
+#include "ringlet/strand/step_end.h"
+#include "ringlet/strand/time_discretisation.h"
 
 namespace ringlet::RINGLET_SIMD {
 
-template <class Objective> class Group {
+// Initial guess of Newton's method: of rest, the root's rigid motion and free flight the one with the least energy, in every
+// lane. Held vertices are at their targets. Written to memory.x.
+template <class Objective> void predict(GatheredGroup<Objective> &group, const RootMotion<Pack> &root) {
+    GroupMemory<Objective> &memory = group.memory;
+    Pack *best = memory.x, *trial = memory.newton.trial;
+    const auto place = [&](Pack *x, const auto &predicted) {
+        for (int i = 0; i < group.vertices; ++i)
+            Objective::set_position(x, i, select<Pack>(memory.rows[i].free > 0.0, predicted(i), memory.target[i]));
+        return group.objective.energy(x);
+    };
+    Pack least = place(best, [&](int i) { return memory.start[i]; });
+    const auto improve = [&](const auto &predicted) {
+        const Pack energy = place(trial, predicted);
+        const auto better = energy < least;
+        for (int i = 0; i < group.objective.size(); ++i) best[i] = select(better, trial[i], best[i]);
+        least = select(better, energy, least);
+    };
+    improve([&](int i) { return root.apply(memory.start[i]); });
+    improve([&](int i) { return memory.start[i] + constant<Pack>(group.step.dt) * memory.velocity[i]; });
+}
+
+// A step in phases, for a solver outside that couples the group with others; kernel.h documents each.
+struct PhasedStep {
+    virtual ~PhasedStep() = default;
+    virtual StrandGroupSystem begin() = 0;
+    virtual void energy(const Pack *x, double *energies) = 0;
+    virtual void evaluate(const Pack *x, double *energies) = 0;
+    virtual void assemble(const Pack *x) = 0;
+    virtual void factor() = 0;
+    virtual void solve(Pack *b) = 0;
+    virtual void max_step(const Pack *x, const Pack *direction, double *steps) const = 0;
+    virtual void curved_end(const Pack *x, const Pack *direction, Pack *to) const = 0;
+    virtual void end(const Pack *x, const StrandEffort &effort, StrandReport *reports) = 0;
+};
+
+template <class Objective> class Group final : public PhasedStep {
 public:
     Group(const StrandArrays &arrays, const StrandStep &step, StrandGroup group, void *memory)
         : strands_(arrays, step, group, memory), integrator_(integrator_of_lanes(strands_)) {}
 
-    GatheredGroup<Objective> &strands() { return strands_; }
-
     void step(StrandReport *reports) {
-        begin();
+        prepare();
         const NewtonSettings settings{strands_.step.newton, strands_.step.tolerance};
         const NewtonResult<Pack> result = newton(strands_.objective, strands_.memory.x, settings, strands_.memory.newton);
         evaluate_end();
@@ -29,7 +59,7 @@ public:
     }
 
     // Objective of the step and its initial guess. References follow the rigid motion of the root.
-    void begin() {
+    void prepare() {
         GroupMemory<Objective> &memory = strands_.memory;
         const RootMotion<Pack> root(memory.start, memory.target, memory.rows[2].free == 0.0);
         add_damping(strands_, integrator_);
@@ -62,7 +92,41 @@ public:
         return report;
     }
 
+    // Phases (kernel.h)
+    StrandGroupSystem begin() override {
+        prepare();
+        const GroupMemory<Objective> &memory = strands_.memory;
+        const auto plain = [](Pack *values) { return reinterpret_cast<double *>(values); };
+        return {
+            plain(memory.x), plain(memory.newton.gradient), plain(memory.newton.band), Matrix::layout, lanes, strands_.vertices,
+            Matrix::padding};
+    }
+    void energy(const Pack *x, double *energies) override { scatter(strands_.objective.energy(x), energies); }
+    void evaluate(const Pack *x, double *energies) override { scatter(strands_.objective.evaluate(x), energies); }
+    void assemble(const Pack *x) override {
+        Matrix hessian = strands_.matrix();
+        strands_.objective.relocate(x);
+        strands_.objective.assemble(strands_.memory.newton.gradient, hessian);
+    }
+    void factor() override { strands_.matrix().factor(); }
+    void solve(Pack *b) override { strands_.matrix().solve(b); }
+    void max_step(const Pack *x, const Pack *direction, double *steps) const override {
+        scatter(strands_.objective.max_step(x, direction), steps);
+    }
+    void curved_end(const Pack *x, const Pack *direction, Pack *to) const override {
+        strands_.objective.curved_path(x, constant<Pack>(1.0), direction, to);
+    }
+    void end(const Pack *x, const StrandEffort &effort, StrandReport *reports) override {
+        for (int i = 0; i < strands_.objective.size(); ++i) strands_.memory.x[i] = x[i];
+        evaluate_end();
+        for (int k = 0; k < strands_.gather.strands(); ++k) reports[k] = accept(strands_.gather.lane(k), effort);
+    }
+
 private:
+    using Matrix = typename Objective::Matrix;
+
+    void scatter(Pack value, double *values) const { strands_.gather.scatter(value, values); }
+
     GatheredGroup<Objective> strands_;
     TimeIntegrator<Pack> integrator_;
 };

@@ -8,14 +8,14 @@
 
 namespace ringlet {
 
-// Model of bend and twist: hinges whose signs and turns follow one of two continuations (strand/continuation_*.h), or a
+// Model of bend and twist: hinges whose signs and turns follow one of two continuations (strand/continuation.h), or a
 // material frame, which needs neither (strand/rod_objective.h).
 enum class Continuation { history, least_energy, material_frame };
 
 // See dynamics/time_integrator.h.
 enum class Integrator { backward_euler, bdf2 };
 
-// Safeguards against degenerate virtual triangles (strand/continuation_history.h); each can be turned off to study it.
+// Safeguards against degenerate virtual triangles (strand/continuation.h); each can be turned off to study it.
 struct Safeguards {
     bool flip_history = true, winding_number = true, straight_fade = true;
 };
@@ -29,6 +29,28 @@ struct StrandStep {
     Continuation continuation = Continuation::material_frame;
     Integrator integrator = Integrator::backward_euler;
     Safeguards safeguards; // of `history`
+};
+
+// Rest shape and coefficients of strands, one value per vertex in each column. Values of an edge belong to its first vertex.
+// A column is a vector in the model, a pointer in the arrays and one number per lane in the rows of the kernels; all three
+// pass on whatever is in `columns`.
+template <class Column> struct StrandCoefficients {
+    Column rest_length;       // l̄ per edge [m]
+    Column rest_angle;        // θ̄ per vertex [rad], in [0, π]
+    Column rest_dihedral;     // φ̄ per edge [rad]
+    Column stretch_stiffness; // EA / l̄ per edge [N/m]
+    Column bend_stiffness;    // EI / l_v per vertex [N m]
+    Column twist_stiffness;   // c EI / l̄ per edge [N m]
+    Column mass;              // per vertex [kg]
+    Column drag;              // per vertex [kg/s]
+    Column damping;           // β per vertex [s]
+
+    using Self = StrandCoefficients;
+    static constexpr Column Self::*columns[] = {
+        &Self::rest_length,    &Self::rest_angle,      &Self::rest_dihedral, &Self::stretch_stiffness,
+        &Self::bend_stiffness, &Self::twist_stiffness, &Self::mass,          &Self::drag,
+        &Self::damping};
+    static constexpr int column_count = sizeof(columns) / sizeof(*columns);
 };
 
 // Report of one strand in one step.
@@ -45,7 +67,11 @@ struct StrandReport {
     double clamped;                                // negative eigenvalues of the elements' Hessians at the end
     double nan;                                    // 1 where a position is not finite (the strand then keeps its last state)
 };
+inline constexpr const char *strand_report_names[] = {
+    "newton",  "cuts",        "residual", "unconverged",     "stretch",      "bend",    "twist", "gravity",
+    "kinetic", "max_stretch", "flips",    "winding_changes", "too_straight", "clamped", "nan"};
 inline constexpr int strand_report_columns = sizeof(StrandReport) / sizeof(double);
+static_assert(sizeof(strand_report_names) / sizeof(*strand_report_names) == strand_report_columns);
 
 // Effort of finding the end of a step.
 struct StrandEffort {
@@ -53,12 +79,9 @@ struct StrandEffort {
 };
 
 // Model and state of all strands, as pointers (see strand/model.h and strand/state.h).
-struct StrandArrays {
+struct StrandArrays : StrandCoefficients<const double *> {
     const int *offsets;
     const unsigned char *held;
-    const double *rest_length, *rest_angle, *rest_dihedral;
-    const double *stretch_stiffness, *bend_stiffness, *twist_stiffness;
-    const double *mass, *drag, *damping;
     double mass_damping;
     const double *targets, *forces;
     double *positions, *velocities, *normals, *twist, *directors;

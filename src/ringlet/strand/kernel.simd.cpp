@@ -2,8 +2,8 @@
 #include "ringlet/strand/kernel.h"
 
 #include "ringlet/strand/elastic_energy.h"
+#include "ringlet/strand/group.h"
 #include "ringlet/strand/hinge_objective.h"
-#include "ringlet/strand/phased_group.h"
 #include "ringlet/strand/rod_objective.h"
 
 #include <new>
@@ -70,9 +70,9 @@ size_t strand_group_bytes(const StrandStep &step, int vertices) {
 
 StrandGroupSystem begin_strand_group(const StrandArrays &arrays, const StrandStep &step, StrandGroup group, void *memory) {
     return with_objective(step, [&]<class Objective>() {
-        static_assert(sizeof(PhasedGroup<Objective>) <= group_bytes);
+        static_assert(sizeof(Group<Objective>) <= group_bytes);
         char *workspace = static_cast<char *>(memory) + group_bytes;
-        return (new (memory) PhasedGroup<Objective>(arrays, step, group, workspace))->begin();
+        return (new (memory) Group<Objective>(arrays, step, group, workspace))->begin();
     });
 }
 
