@@ -25,22 +25,6 @@ template <auto column> nb::ndarray<nb::numpy, const double> column_view(nb::obje
     return {values.data(), {values.size()}, self};
 }
 
-template <class> struct MemberOf;
-template <class Value, class Owner> struct MemberOf<Value Owner::*> {
-    using Type = Value;
-};
-
-// The settings of a step stand in structures of their own; Python sees them side by side.
-template <auto member> using Setting = typename MemberOf<decltype(member)>::Type;
-template <auto member> Setting<member> strand_setting(const SceneStep &self) { return self.strands.*member; }
-template <auto member> void set_strand_setting(SceneStep &self, Setting<member> value) { self.strands.*member = value; }
-template <auto member> Setting<member> linear_setting(const SceneStep &self) { return self.linear.*member; }
-template <auto member> void set_linear_setting(SceneStep &self, Setting<member> value) { self.linear.*member = value; }
-template <auto member> std::array<double, 3> vector_of(const SceneStep &self) { return std::to_array(self.strands.*member); }
-template <auto member> void set_vector(SceneStep &self, std::array<double, 3> value) {
-    std::copy(value.begin(), value.end(), self.strands.*member);
-}
-
 // work(name, rows, columns) for everything that a state holds.
 template <class State, class Work> void for_memory(State &state, const Work &work) {
     work("positions", state.positions, 3);
@@ -98,24 +82,31 @@ void bind_strand(nb::module_ &module) {
         .def_rw("winding_number", &Safeguards::winding_number)
         .def_rw("straight_fade", &Safeguards::straight_fade);
 
-    nb::class_<SceneStep>(module, "StepSettings", "Length, forces and solver of a time step (SI units).")
-        .def(nb::init<>())
-        .def_prop_rw(
-            "dt", [](const SceneStep &self) { return self.strands.dt; },
-            [](SceneStep &self, double dt) { self.strands.dt = dt; })
-        .def_prop_rw("gravity", vector_of<&StrandStep::gravity>, set_vector<&StrandStep::gravity>)
-        .def_prop_rw("wind", vector_of<&StrandStep::wind>, set_vector<&StrandStep::wind>)
-        .def_prop_rw("newton", strand_setting<&StrandStep::newton>, set_strand_setting<&StrandStep::newton>)
-        .def_prop_rw("tolerance", strand_setting<&StrandStep::tolerance>, set_strand_setting<&StrandStep::tolerance>)
-        .def_prop_rw("continuation", strand_setting<&StrandStep::continuation>, set_strand_setting<&StrandStep::continuation>)
-        .def_prop_rw("integrator", strand_setting<&StrandStep::integrator>, set_strand_setting<&StrandStep::integrator>)
-        .def_prop_rw("safeguards", strand_setting<&StrandStep::safeguards>, set_strand_setting<&StrandStep::safeguards>)
-        .def_prop_rw("system", linear_setting<&LinearSettings::system>, set_linear_setting<&LinearSettings::system>)
-        .def_prop_rw("linear_tolerance", linear_setting<&LinearSettings::tolerance>,
-                     set_linear_setting<&LinearSettings::tolerance>)
-        .def_prop_rw("linear_iterations", linear_setting<&LinearSettings::max_iterations>,
-                     set_linear_setting<&LinearSettings::max_iterations>)
-        .def_rw("extra", &SceneStep::extra);
+    nb::class_<SceneStep> step(module, "StepSettings", "Length, forces and solver of a time step (SI units).");
+    step.def(nb::init<>());
+    // They stand in structures of their own; Python sees them side by side.
+    const auto setting = [&]<class Group, class Value>(const char *name, Group SceneStep::*group, Value Group::*member) {
+        step.def_prop_rw(
+            name, [=](const SceneStep &self) { return self.*group.*member; },
+            [=](SceneStep &self, Value value) { self.*group.*member = value; });
+    };
+    const auto vector = [&](const char *name, double (StrandStep::*member)[3]) {
+        step.def_prop_rw(
+            name, [=](const SceneStep &self) { return std::to_array(self.strands.*member); },
+            [=](SceneStep &self, std::array<double, 3> value) { std::copy(value.begin(), value.end(), self.strands.*member); });
+    };
+    setting("dt", &SceneStep::strands, &StrandStep::dt);
+    vector("gravity", &StrandStep::gravity);
+    vector("wind", &StrandStep::wind);
+    setting("newton", &SceneStep::strands, &StrandStep::newton);
+    setting("tolerance", &SceneStep::strands, &StrandStep::tolerance);
+    setting("continuation", &SceneStep::strands, &StrandStep::continuation);
+    setting("integrator", &SceneStep::strands, &StrandStep::integrator);
+    setting("safeguards", &SceneStep::strands, &StrandStep::safeguards);
+    setting("system", &SceneStep::linear, &LinearSettings::system);
+    setting("linear_tolerance", &SceneStep::linear, &LinearSettings::tolerance);
+    setting("linear_iterations", &SceneStep::linear, &LinearSettings::max_iterations);
+    step.def_rw("extra", &SceneStep::extra);
 
     nb::class_<StrandMaterial> material(module, "StrandMaterial", "What a lock is made of (SI units); a hair's values.");
     material.def(nb::init<>());

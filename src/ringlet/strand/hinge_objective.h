@@ -45,7 +45,7 @@ public:
             continue_least_energy(vertices_, rows_, shapes_);
 
         T energy{};
-        for (int i = 0; i < vertices_; ++i) energy += this->inertia_energy(x, i);
+        for (int i = 0; i < vertices_; ++i) energy += this->vertex_energy(x, i);
         for (int i = 0; i + 1 < vertices_; ++i) energy += this->edge_energy(i, shapes_[i]);
         for (int i = 1; i + 1 < vertices_; ++i)
             energy += bend_energy(shapes_[i].corner.angle, shapes_[i].sigma, rows_[i].damped_angle, rows_[i].bend_stiffness);

@@ -61,7 +61,8 @@ protected:
         shape.tangent = select<T>(point, x_axis, (1.0 / shape.length) * edge);
     }
 
-    T inertia_energy(const T *x, int i) const {
+    // Of terms of positions alone whose last vertex is i: inertia.
+    T vertex_energy(const T *x, int i) const {
         const Vec<T> offset = position(x, i) - rows_[i].inertia_target;
         return 0.5 * rows_[i].free * rows_[i].inertia * dot(offset, offset);
     }

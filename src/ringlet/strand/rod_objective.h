@@ -74,7 +74,7 @@ private:
         T energy{};
         StrandShape<T> before{}, s{}; // of the edge before; of the edge that begins at i
         for (int i = 0; i < vertices_; ++i, before = s) {
-            energy += this->inertia_energy(x, i);
+            energy += this->vertex_energy(x, i);
             if (i + 1 == vertices_) break;
             this->measure_edge(x, i, s);
             energy += this->edge_energy(i, s);
