@@ -27,20 +27,6 @@ template <class Objective> void predict(GatheredGroup<Objective> &group, const R
     improve([&](int i) { return memory.start[i] + constant<Pack>(group.step.dt) * memory.velocity[i]; });
 }
 
-// A step in phases, for a solver outside that couples the group with others; kernel.h documents each.
-struct PhasedStep {
-    virtual ~PhasedStep() = default;
-    virtual StrandGroupSystem begin() = 0;
-    virtual void energy(const Pack *x, double *energies) = 0;
-    virtual void evaluate(const Pack *x, double *energies) = 0;
-    virtual void assemble(const Pack *x) = 0;
-    virtual void factor() = 0;
-    virtual void solve(Pack *b) = 0;
-    virtual void max_step(const Pack *x, const Pack *direction, double *steps) const = 0;
-    virtual void curved_end(const Pack *x, const Pack *direction, Pack *to) const = 0;
-    virtual void end(const Pack *x, const StrandEffort &effort, StrandReport *reports) = 0;
-};
-
 template <class Objective> class Group final : public PhasedStep {
 public:
     Group(const StrandArrays &arrays, const StrandStep &step, StrandGroup group, void *memory)
@@ -92,32 +78,36 @@ public:
         return report;
     }
 
-    // Phases (kernel.h)
+    // Phases
     StrandGroupSystem begin() override {
         prepare();
-        const GroupMemory<Objective> &memory = strands_.memory;
         const auto plain = [](Pack *values) { return reinterpret_cast<double *>(values); };
-        return {
-            plain(memory.x), plain(memory.newton.gradient), plain(memory.newton.band), Matrix::layout, lanes, strands_.vertices,
-            Matrix::padding};
+        const GroupMemory<Objective> &memory = strands_.memory;
+        return {.x = plain(memory.x),
+                .gradient = plain(memory.newton.gradient),
+                .matrix = plain(memory.newton.band),
+                .layout = Matrix::layout,
+                .lanes = lanes,
+                .vertices = strands_.vertices,
+                .padding = Matrix::padding};
     }
-    void energy(const Pack *x, double *energies) override { scatter(strands_.objective.energy(x), energies); }
-    void evaluate(const Pack *x, double *energies) override { scatter(strands_.objective.evaluate(x), energies); }
-    void assemble(const Pack *x) override {
+    void energy(const double *x, double *energies) override { scatter(strands_.objective.energy(packs(x)), energies); }
+    void evaluate(const double *x, double *energies) override { scatter(strands_.objective.evaluate(packs(x)), energies); }
+    void assemble(const double *x) override {
         Matrix hessian = strands_.matrix();
-        strands_.objective.relocate(x);
+        strands_.objective.relocate(packs(x));
         strands_.objective.assemble(strands_.memory.newton.gradient, hessian);
     }
     void factor() override { strands_.matrix().factor(); }
-    void solve(Pack *b) override { strands_.matrix().solve(b); }
-    void max_step(const Pack *x, const Pack *direction, double *steps) const override {
-        scatter(strands_.objective.max_step(x, direction), steps);
+    void solve(double *b) override { strands_.matrix().solve(packs(b)); }
+    void max_step(const double *x, const double *direction, double *steps) const override {
+        scatter(strands_.objective.max_step(packs(x), packs(direction)), steps);
     }
-    void curved_end(const Pack *x, const Pack *direction, Pack *to) const override {
-        strands_.objective.curved_path(x, constant<Pack>(1.0), direction, to);
+    void curved_end(const double *x, const double *direction, double *to) const override {
+        strands_.objective.curved_path(packs(x), constant<Pack>(1.0), packs(direction), packs(to));
     }
-    void end(const Pack *x, const StrandEffort &effort, StrandReport *reports) override {
-        for (int i = 0; i < strands_.objective.size(); ++i) strands_.memory.x[i] = x[i];
+    void end(const double *x, const StrandEffort &effort, StrandReport *reports) override {
+        for (int i = 0; i < strands_.objective.size(); ++i) strands_.memory.x[i] = packs(x)[i];
         evaluate_end();
         for (int k = 0; k < strands_.gather.strands(); ++k) reports[k] = accept(strands_.gather.lane(k), effort);
     }
@@ -125,6 +115,8 @@ public:
 private:
     using Matrix = typename Objective::Matrix;
 
+    static const Pack *packs(const double *values) { return reinterpret_cast<const Pack *>(values); }
+    static Pack *packs(double *values) { return reinterpret_cast<Pack *>(values); }
     void scatter(Pack value, double *values) const { strands_.gather.scatter(value, values); }
 
     GatheredGroup<Objective> strands_;

@@ -108,6 +108,22 @@ struct StrandGroupSystem {
     int dofs() const { return layout.block; } // per vertex
 };
 
+// A group's step in phases, for a solver outside. It lives in the caller's memory and needs no destructor.
+struct PhasedStep {
+    virtual StrandGroupSystem begin() = 0;
+    virtual void energy(const double *x, double *energies) = 0;   // one per lane
+    virtual void evaluate(const double *x, double *energies) = 0; // likewise; precedes assembly at x
+    virtual void assemble(const double *x) = 0;                   // gradient and matrix at the x evaluated last
+    virtual void factor() = 0;
+    virtual void solve(double *b) = 0;                                                        // in place
+    virtual void max_step(const double *x, const double *direction, double *steps) const = 0; // one per lane
+    virtual void curved_end(const double *x, const double *direction, double *to) const = 0;  // of the path at step 1
+    virtual void end(const double *x, const StrandEffort &effort, StrandReport *reports) = 0;
+
+protected:
+    ~PhasedStep() = default;
+};
+
 // clang-format off
 RINGLET_DECLARE(
     int strand_lanes();
@@ -115,17 +131,9 @@ RINGLET_DECLARE(
     void step_strand_group(const StrandArrays &arrays, const StrandStep &step, StrandGroup group, void *workspace, StrandReport *reports);
     void relax_strand_frames(const StrandArrays &arrays, StrandGroup group, void *workspace, double *energies);
     double strand_elastic_energy(const StrandArrays &arrays, const StrandStep &step, int strand, const double *positions, void *workspace, double *gradient, double *hessian);
-    // A group's step in phases. `memory` holds the group from begin to end; the arguments of begin must live as long.
-    size_t strand_group_bytes(const StrandStep &step, int vertices);
-    StrandGroupSystem begin_strand_group(const StrandArrays &arrays, const StrandStep &step, StrandGroup group, void *memory);
-    void strand_group_energies(void *memory, const double *x, double *energies); // one per lane
-    void evaluate_strand_group(void *memory, const double *x, double *energies); // likewise; precedes assembly at x
-    void assemble_strand_group(void *memory, const double *x);                    // gradient and matrix at the x evaluated last
-    void factor_strand_group(void *memory);
-    void solve_strand_group(void *memory, double *b); // in place
-    void strand_group_max_step(void *memory, const double *x, const double *direction, double *steps); // one per lane
-    void strand_group_curved_end(void *memory, const double *x, const double *direction, double *to); // of the path at step 1
-    void end_strand_group(void *memory, const double *x, const StrandEffort &effort, StrandReport *reports);
+    // The arguments of a phased step must live as long as its memory.
+    size_t phased_step_bytes(const StrandStep &step, int vertices);
+    PhasedStep *make_phased_step(const StrandArrays &arrays, const StrandStep &step, StrandGroup group, void *memory);
 )
 // clang-format on
 
