@@ -46,9 +46,10 @@ template <class Objective> struct GroupMemory {
     }
 };
 
-// Row of vertex i without damping and inertia.
-inline StrandRow<Pack> gather_row(const LaneGather &gather, const StrandArrays &arrays, const double *normals, int i) {
-    StrandRow<Pack> row{};
+// Writes the row of vertex i without damping and inertia. In place: a row is large.
+inline void gather_row(const LaneGather &gather, const StrandArrays &arrays, const double *normals, int i,
+                       StrandRow<Pack> &row) {
+    row = StrandRow<Pack>{};
     for (int k = 0; k < lanes; ++k) {
         const StrandLane &strand = gather.lane(k);
         const auto is_held = [&](int v) { return !strand.has_vertex(v) || arrays.held[strand.row(v)]; };
@@ -64,7 +65,6 @@ inline StrandRow<Pack> gather_row(const LaneGather &gather, const StrandArrays &
     row.elastic_share = constant<Pack>(1.0);
     row.reference.delta = gather.scalar(arrays.twist, i, 0.0);
     row.reference.normal = gather.vector(normals, i);
-    return row;
 }
 
 template <class Objective> struct GatheredGroup {
@@ -75,7 +75,7 @@ template <class Objective> struct GatheredGroup {
           objective(vertices, memory.rows, memory.shapes, step.safeguards) {
         for (int i = 0; i < vertices; ++i) {
             memory.shapes[i] = StrandShape<Pack>{};
-            memory.rows[i] = gather_row(gather, arrays, normals(), i);
+            gather_row(gather, arrays, normals(), i, memory.rows[i]);
             memory.start[i] = gather.position(arrays.positions, i);
             memory.velocity[i] = gather.vector(arrays.velocities, i);
             memory.target[i] = gather.position(arrays.targets, i);

@@ -51,7 +51,8 @@ public:
     // Rest values with damping (time_discretisation.h), b = β/h.
     void damp(int i, T b, const Strains<T> &extrapolated) {
         const T share = b / (1.0 + b);
-        rows_[i].damped_bend = {share * extrapolated[1], share * extrapolated[2], T{}};
+        rows_[i].damped_curvature1 = share * extrapolated[1];
+        rows_[i].damped_curvature2 = share * extrapolated[2];
         if (this->is_hinge(i)) rows_[i].damped_strain = share * extrapolated.twist();
     }
 
@@ -100,7 +101,7 @@ private:
         const Vec<T> K = turning(s.corner, before.tangent, s.tangent);
         s.curvature1 = dot(K, s.director) - rows_[i].rest_angle;
         s.curvature2 = dot(K, cross(s.tangent, s.director));
-        const T strain1 = s.curvature1 - rows_[i].damped_bend.x, strain2 = s.curvature2 - rows_[i].damped_bend.y;
+        const T strain1 = s.curvature1 - rows_[i].damped_curvature1, strain2 = s.curvature2 - rows_[i].damped_curvature2;
         return 0.5 * rows_[i].bend_stiffness * (strain1 * strain1 + strain2 * strain2);
     }
 
@@ -115,7 +116,7 @@ private:
         const StrandShape<T> &before = shapes_[i - 1], &s = shapes_[i];
         const Vec<T> other = cross(s.tangent, s.director);
         const Vec<T> K = turning(s.corner, before.tangent, s.tangent), spinning = director_spin(i);
-        const T residual[2] = {s.curvature1 - rows_[i].damped_bend.x, s.curvature2 - rows_[i].damped_bend.y};
+        const T residual[2] = {s.curvature1 - rows_[i].damped_curvature1, s.curvature2 - rows_[i].damped_curvature2};
         const T by_frame[2] = {dot(K, other), -dot(K, s.director)};
         T u[2][11] = {};
         for (int k = 0; k < 2; ++k) {
