@@ -60,9 +60,9 @@ int main() {
         x[4 * i + 2] = 2.5e-3 * std::sin(turn);
         rows[i].free = rows[i].frame_free = i > 2 ? 1.0 : 0.0;
         rows[i].inertia = 1e-4;
-        rows[i].stretch = 100.0;
+        rows[i].stretch_stiffness = 100.0;
         rows[i].rest_length = rows[i].damped_length = 1.3e-3;
-        rows[i].bend = rows[i].twist = 1e-6;
+        rows[i].bend_stiffness = rows[i].twist_stiffness = 1e-6;
         rows[i].rest_angle = 0.5;
         rows[i].rest_dihedral = 0.2;
         rows[i].reference.normal = {1.0, 0.0, 0.0};

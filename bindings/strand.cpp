@@ -20,24 +20,9 @@ nb::ndarray<nb::numpy, double> state_view(nb::handle self, std::vector<Vec3> &va
     return {values.data()->data(), {values.size(), 3}, self};
 }
 
-nb::ndarray<nb::numpy, const double> model_view(nb::handle self, const std::vector<double> &values) {
+template <auto column> nb::ndarray<nb::numpy, const double> column_view(nb::object self) {
+    const std::vector<double> &values = nb::cast<Strands &>(self).model.*column;
     return {values.data(), {values.size()}, self};
-}
-
-template <class> struct MemberOf;
-template <class Value, class Owner> struct MemberOf<Value Owner::*> {
-    using Type = Value;
-};
-
-// The settings of a step stand in structures of their own; Python sees them side by side.
-template <auto member> using Setting = typename MemberOf<decltype(member)>::Type;
-template <auto member> Setting<member> strand_setting(const SceneStep &self) { return self.strands.*member; }
-template <auto member> void set_strand_setting(SceneStep &self, Setting<member> value) { self.strands.*member = value; }
-template <auto member> Setting<member> linear_setting(const SceneStep &self) { return self.linear.*member; }
-template <auto member> void set_linear_setting(SceneStep &self, Setting<member> value) { self.linear.*member = value; }
-template <auto member> std::array<double, 3> vector_of(const SceneStep &self) { return std::to_array(self.strands.*member); }
-template <auto member> void set_vector(SceneStep &self, std::array<double, 3> value) {
-    std::copy(value.begin(), value.end(), self.strands.*member);
 }
 
 // work(name, rows, columns) for everything that a state holds.
@@ -97,38 +82,36 @@ void bind_strand(nb::module_ &module) {
         .def_rw("winding_number", &Safeguards::winding_number)
         .def_rw("straight_fade", &Safeguards::straight_fade);
 
-    nb::class_<SceneStep>(module, "StepSettings", "Length, forces and solver of a time step (SI units).")
-        .def(nb::init<>())
-        .def_prop_rw(
-            "dt", [](const SceneStep &self) { return self.strands.dt; },
-            [](SceneStep &self, double dt) { self.strands.dt = dt; })
-        .def_prop_rw("gravity", vector_of<&StrandStep::gravity>, set_vector<&StrandStep::gravity>)
-        .def_prop_rw("wind", vector_of<&StrandStep::wind>, set_vector<&StrandStep::wind>)
-        .def_prop_rw("newton", strand_setting<&StrandStep::newton>, set_strand_setting<&StrandStep::newton>)
-        .def_prop_rw("tolerance", strand_setting<&StrandStep::tolerance>, set_strand_setting<&StrandStep::tolerance>)
-        .def_prop_rw("continuation", strand_setting<&StrandStep::continuation>, set_strand_setting<&StrandStep::continuation>)
-        .def_prop_rw("integrator", strand_setting<&StrandStep::integrator>, set_strand_setting<&StrandStep::integrator>)
-        .def_prop_rw("safeguards", strand_setting<&StrandStep::safeguards>, set_strand_setting<&StrandStep::safeguards>)
-        .def_prop_rw("system", linear_setting<&LinearSettings::system>, set_linear_setting<&LinearSettings::system>)
-        .def_prop_rw("linear_tolerance", linear_setting<&LinearSettings::tolerance>,
-                     set_linear_setting<&LinearSettings::tolerance>)
-        .def_prop_rw("linear_iterations", linear_setting<&LinearSettings::max_iterations>,
-                     set_linear_setting<&LinearSettings::max_iterations>)
-        .def_rw("extra", &SceneStep::extra);
+    nb::class_<SceneStep> step(module, "StepSettings", "Length, forces and solver of a time step (SI units).");
+    step.def(nb::init<>());
+    // They stand in structures of their own; Python sees them side by side.
+    const auto setting = [&]<class Group, class Value>(const char *name, Group SceneStep::*group, Value Group::*member) {
+        step.def_prop_rw(
+            name, [=](const SceneStep &self) { return self.*group.*member; },
+            [=](SceneStep &self, Value value) { self.*group.*member = value; });
+    };
+    const auto vector = [&](const char *name, double (StrandStep::*member)[3]) {
+        step.def_prop_rw(
+            name, [=](const SceneStep &self) { return std::to_array(self.strands.*member); },
+            [=](SceneStep &self, std::array<double, 3> value) { std::copy(value.begin(), value.end(), self.strands.*member); });
+    };
+    setting("dt", &SceneStep::strands, &StrandStep::dt);
+    vector("gravity", &StrandStep::gravity);
+    vector("wind", &StrandStep::wind);
+    setting("newton", &SceneStep::strands, &StrandStep::newton);
+    setting("tolerance", &SceneStep::strands, &StrandStep::tolerance);
+    setting("continuation", &SceneStep::strands, &StrandStep::continuation);
+    setting("integrator", &SceneStep::strands, &StrandStep::integrator);
+    setting("safeguards", &SceneStep::strands, &StrandStep::safeguards);
+    setting("system", &SceneStep::linear, &LinearSettings::system);
+    setting("linear_tolerance", &SceneStep::linear, &LinearSettings::tolerance);
+    setting("linear_iterations", &SceneStep::linear, &LinearSettings::max_iterations);
+    step.def_rw("extra", &SceneStep::extra);
 
-    nb::class_<StrandMaterial>(module, "StrandMaterial", "What a lock is made of (SI units); a hair's values.")
-        .def(nb::init<>())
-        .def_rw("youngs_modulus", &StrandMaterial::youngs_modulus)
-        .def_rw("radius", &StrandMaterial::radius)
-        .def_rw("density", &StrandMaterial::density)
-        .def_rw("stretch_scale", &StrandMaterial::stretch_scale)
-        .def_rw("bend_scale", &StrandMaterial::bend_scale)
-        .def_rw("twist_ratio", &StrandMaterial::twist_ratio)
-        .def_rw("limit_twist", &StrandMaterial::limit_twist)
-        .def_rw("damping", &StrandMaterial::damping)
-        .def_rw("mass_damping", &StrandMaterial::mass_damping)
-        .def_rw("drag", &StrandMaterial::drag)
-        .def_rw("correct_resolution", &StrandMaterial::correct_resolution);
+    nb::class_<StrandMaterial> material(module, "StrandMaterial", "What a lock is made of (SI units); a hair's values.");
+    material.def(nb::init<>());
+    for (const auto &[name, member] : strand_material_settings)
+        std::visit([&, name = name](auto setting) { material.def_rw(name, setting); }, member);
 
     nb::class_<Strands>(module, "Strands", "Strands at rest in their rest shape, ready to be stepped.")
         .def(
@@ -154,23 +137,13 @@ void bind_strand(nb::module_ &module) {
             "directors", [](nb::object self) { return state_view(self, nb::cast<Strands &>(self).state().directors); },
             "Directors of the material frame, one per edge from the second of each strand on, shape (n, 3): the solver's own "
             "memory.")
-        .def_prop_ro(
-            "masses", [](nb::object self) { return model_view(self, nb::cast<Strands &>(self).model.mass); },
-            "Masses [kg], shape (n,).")
-        .def_prop_ro(
-            "drag", [](nb::object self) { return model_view(self, nb::cast<Strands &>(self).model.drag); },
-            "Air drag [kg/s], shape (n,).")
-        .def_prop_ro(
-            "stretch_stiffness",
-            [](nb::object self) { return model_view(self, nb::cast<Strands &>(self).model.stretch_stiffness); },
-            "EA / l̄ of the edge that begins at each vertex [N/m], shape (n,).")
-        .def_prop_ro(
-            "bend_stiffness", [](nb::object self) { return model_view(self, nb::cast<Strands &>(self).model.bend_stiffness); },
-            "EI / l̄ at each vertex [N m], shape (n,).")
-        .def_prop_ro(
-            "twist_stiffness",
-            [](nb::object self) { return model_view(self, nb::cast<Strands &>(self).model.twist_stiffness); },
-            "c EI / l̄ of the edge that begins at each vertex [N m], shape (n,).")
+        .def_prop_ro("masses", column_view<&StrandModel::mass>, "Masses [kg], shape (n,).")
+        .def_prop_ro("drag", column_view<&StrandModel::drag>, "Air drag [kg/s], shape (n,).")
+        .def_prop_ro("stretch_stiffness", column_view<&StrandModel::stretch_stiffness>,
+                     "EA / l̄ of the edge that begins at each vertex [N/m], shape (n,).")
+        .def_prop_ro("bend_stiffness", column_view<&StrandModel::bend_stiffness>, "EI / l̄ at each vertex [N m], shape (n,).")
+        .def_prop_ro("twist_stiffness", column_view<&StrandModel::twist_stiffness>,
+                     "c EI / l̄ of the edge that begins at each vertex [N m], shape (n,).")
         .def(
             "place", [](Strands &self, Array3<double> positions) { self.place(vectors<Vec3>(positions)); }, "positions"_a,
             "Puts the strands at rest at these positions [m], shape (n, 3), and forgets their history.")
@@ -237,7 +210,7 @@ void bind_strand(nb::module_ &module) {
             "Elastic energy [J], its gradient [N] and the clamped Hessian of a single strand, with signs and turns carried "
             "from the state.");
 
-    nb::tuple names = nb::make_tuple("newton", "cuts", "residual", "unconverged", "stretch", "bend", "twist", "gravity",
-                                     "kinetic", "max_stretch", "flips", "winding_changes", "too_straight", "clamped", "nan");
-    module.attr("REPORT") = names;
+    nb::list names;
+    for (const char *name : strand_report_names) names.append(name);
+    module.attr("REPORT") = nb::tuple(names);
 }

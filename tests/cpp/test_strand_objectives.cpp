@@ -35,12 +35,14 @@ template <class Objective> struct RandomStrand {
             r.inertia_target = random_unit(random);
             r.rest_length = uniform(random);
             r.damped_length = uniform(random);
-            r.stretch = edge * uniform(random);
-            r.bend = corner * uniform(random);
-            r.twist = hinge * uniform(random);
+            r.stretch_stiffness = edge * uniform(random);
+            r.bend_stiffness = corner * uniform(random);
+            r.twist_stiffness = hinge * uniform(random);
             r.rest_angle = r.damped_angle = uniform(random);
             r.rest_dihedral = uniform(random);
-            r.damped_bend = 0.1 * random_unit(random);
+            const Vec<double> damped = 0.1 * random_unit(random);
+            r.damped_curvature1 = damped.x;
+            r.damped_curvature2 = damped.y;
             r.damped_strain = 0.1;
             r.reference.tangent = random_unit(random);
             r.reference.normal = perpendicular(r.reference.tangent);
@@ -193,7 +195,7 @@ BOOST_AUTO_TEST_CASE(a_rotation_of_a_straight_strand_about_its_own_axis_costs_no
     for (int i = 0; i < vertices; ++i) {
         StrandRow<double> &r = strand.rows[i];
         r.free = r.inertia = r.rest_angle = r.rest_dihedral = r.damped_strain = 0;
-        r.damped_bend = {};
+        r.damped_curvature1 = r.damped_curvature2 = 0;
         r.frame_free = i > 0 && i + 1 < vertices;
         r.rest_length = 1;
         r.reference.tangent = {1, 0, 0};

@@ -52,7 +52,8 @@ import sys; sys.path.insert(0, sys.argv[1])
 import numpy as np
 from coils import helix
 from ringlet.data.curves import Curves
-from ringlet.shot import Material, Solver, Strands
+from ringlet.shot import Material, Solver
+from ringlet.sim import Strands
 curves = Curves.from_list([helix(50, hand=(-1) ** k) + [0.1 * k, 0, 0] for k in range(11)])
 strands = Strands(curves, Material())
 for _ in range(5):

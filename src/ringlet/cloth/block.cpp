@@ -5,11 +5,12 @@
 namespace ringlet {
 namespace {
 
+constexpr double contact_stretch = 0.01; // of the stretch stiffness, in that against contacts
+
 // A hundredth of the stretch, and the bending over the length of an edge: what a vertex resists by before the rest of the cloth
 // does.
 std::vector<double> elastic_stiffness(const ClothModel &model) {
-    constexpr double of_stretch = 0.01;
-    std::vector<double> stiffness(model.vertex_count(), of_stretch * std::max(model.stiffness.warp, model.stiffness.weft));
+    std::vector<double> stiffness(model.vertex_count(), contact_stretch * std::max(model.stiffness.warp, model.stiffness.weft));
     std::vector<double> bend(model.vertex_count(), 0.0);
     for (size_t k = 0; k < model.hinges.size(); ++k) {
         const auto &h = model.hinges[k];

@@ -1,7 +1,8 @@
 #include "ringlet/strand/block.h"
 
 #include "ringlet/linear/lane_vectors.h"
-#include "ringlet/strand/lane_order.h"
+#include "ringlet/strand/lane_groups.h"
+#include "ringlet/strand/settings.h"
 
 #include <algorithm>
 #include <numeric>
@@ -35,10 +36,11 @@ void StrandBlock::begin_step(const BlockStep &step) {
     std::copy(step.gravity.begin(), step.gravity.end(), step_.gravity);
     std::copy(step.wind.begin(), step.wind.end(), step_.wind);
     arrays_ = arrays_of(model_, state_, step.targets, step.forces);
-    const size_t bytes = RINGLET_DISPATCH(strand_group_bytes, step_, objects_[0].end - objects_[0].first);
+    const size_t bytes = RINGLET_DISPATCH(phased_step_bytes, step_, objects_[0].end - objects_[0].first);
     if (bytes != memory_bytes_) memory_ = AlignedMemory(memory_bytes_ = bytes);
     const StrandGroup group{strands_.data(), int(strands_.size())};
-    system_ = RINGLET_DISPATCH(begin_strand_group, arrays_, step_, group, memory_.get());
+    phases_ = RINGLET_DISPATCH(make_phased_step, arrays_, step_, group, memory_.get());
+    system_ = phases_->begin();
     dofs_ = system_.dofs();
     rows_ = dofs_ * system_.vertices;
     size_ = (size_t(rows_) + system_.padding) * lanes_;
@@ -46,26 +48,18 @@ void StrandBlock::begin_step(const BlockStep &step) {
 
 void StrandBlock::initial_guess(double *x) const { std::copy_n(system_.x, unknowns(), x); }
 
-void StrandBlock::energies(const double *x, double *of_lanes) {
-    RINGLET_DISPATCH(strand_group_energies, memory_.get(), x, of_lanes);
-}
-
-void StrandBlock::evaluate(const double *x, double *of_lanes) {
-    RINGLET_DISPATCH(evaluate_strand_group, memory_.get(), x, of_lanes);
-}
-
-void StrandBlock::assemble(const double *x) { RINGLET_DISPATCH(assemble_strand_group, memory_.get(), x); }
-
-void StrandBlock::factor() { RINGLET_DISPATCH(factor_strand_group, memory_.get()); }
-
-void StrandBlock::solve(double *b) const { RINGLET_DISPATCH(solve_strand_group, memory_.get(), b); }
+void StrandBlock::energies(const double *x, double *of_lanes) { phases_->energy(x, of_lanes); }
+void StrandBlock::evaluate(const double *x, double *of_lanes) { phases_->evaluate(x, of_lanes); }
+void StrandBlock::assemble(const double *x) { phases_->assemble(x); }
+void StrandBlock::factor() { phases_->factor(); }
+void StrandBlock::solve(double *b) const { phases_->solve(b); }
 
 void StrandBlock::max_step(const double *x, const double *direction, double *of_lanes) const {
-    RINGLET_DISPATCH(strand_group_max_step, memory_.get(), x, direction, of_lanes);
+    phases_->max_step(x, direction, of_lanes);
 }
 
 void StrandBlock::bend(const double *x, const double *straight, double *bend) const {
-    RINGLET_DISPATCH(strand_group_curved_end, memory_.get(), x, straight, bend);
+    phases_->curved_end(x, straight, bend);
     for (size_t i = 0; i < unknowns(); ++i) bend[i] -= x[i] + straight[i];
 }
 
@@ -126,28 +120,24 @@ void StrandBlock::add_to(MatrixAssembly &matrix) const {
 
 // Inertia, bending about a neighbour, and a tenth of the stretch: what a vertex resists by before the rest of the strand does.
 double StrandBlock::contact_stiffness(int v, double dt) const {
-    constexpr double of_stretch = 0.1;
     const double length = std::max(model_.rest_length[v], model_.rest_length[v - 1]);
     const double bend = std::max(model_.bend_stiffness[v], model_.bend_stiffness[v - 1]) / (length * length);
-    return model_.mass[v] / (dt * dt) + bend + of_stretch * model_.stretch_stiffness[v - 1];
+    return model_.mass[v] / (dt * dt) + bend + strand_settings::contact_stretch * model_.stretch_stiffness[v - 1];
 }
 
 bool StrandBlock::is_stretched(int lane, View<Vec3> positions) const {
-    constexpr double tolerated = 0.03; // strain of an edge
     for (int v = objects_[lane].first; v + 1 < objects_[lane].end; ++v)
-        if ((positions[v + 1] - positions[v]).norm() > (1.0 + tolerated) * model_.rest_length[v]) return true;
+        if ((positions[v + 1] - positions[v]).norm() > (1.0 + strand_settings::refined_strain) * model_.rest_length[v])
+            return true;
     return false;
 }
 
-double StrandBlock::settled_distance(int lane) const {
-    constexpr double of_edge = 0.2;
-    return of_edge * mean_edge_[lane];
-}
+double StrandBlock::settled_distance(int lane) const { return strand_settings::settled_fraction * mean_edge_[lane]; }
 
 bool StrandBlock::commit(const double *x, double, const SolverEffort &effort) {
     const StrandEffort of_strands{effort.iterations, effort.cuts, effort.residual};
     StrandReport reports[max_lanes];
-    RINGLET_DISPATCH(end_strand_group, memory_.get(), x, of_strands, reports);
+    phases_->end(x, of_strands, reports);
     std::copy_n(reports, reports_.size(), reports_.begin());
     return std::none_of(reports_.begin(), reports_.end(), [](const StrandReport &report) { return report.nan > 0; });
 }

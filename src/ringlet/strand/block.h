@@ -52,6 +52,7 @@ private:
     StrandArrays arrays_;
     AlignedMemory memory_{0};
     size_t memory_bytes_ = 0;
+    PhasedStep *phases_ = nullptr; // in memory_
     StrandGroupSystem system_{};
     std::vector<StrandReport> reports_;
 };

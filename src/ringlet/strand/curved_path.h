@@ -23,7 +23,7 @@ template <int dofs, class T> inline Vec<T> position(const T *x, int i) {
 template <int dofs, class T>
 void close_path(const StrandRow<T> *rows, int held_at, const MaskOf<T> &held, T length, Vec<T> miss, T *to) {
     if (held_at == 0) return;
-    T open = select(held & (rows[held_at - 1].stretch > 0.0), length, T{}); // behind the tip nothing is missed
+    T open = select(held & (rows[held_at - 1].stretch_stiffness > 0.0), length, T{}); // behind the tip nothing is missed
     const Vec<T> correction = (1.0 / select(open > 0.0, open, constant<T>(1.0))) * miss;
     for (int i = held_at - 1; i >= 0 && any(open > 0.0); --i) {
         open = select(rows[i].free > 0.0, max(open - rows[i].rest_length, T{}), T{});

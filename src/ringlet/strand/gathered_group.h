@@ -1,36 +1,70 @@
 // A group of strands in SIMD lanes with the objective that is evaluated on them, at the start of a step.
 #pragma once
 
-#include "ringlet/strand/group_memory.h"
+#include "ringlet/dynamics/newton.h"
 #include "ringlet/strand/lane_gather.h"
 #include "ringlet/strand/root_motion.h"
+#include "ringlet/strand/vertex_data.h"
+
+#include <cstddef>
 
 namespace ringlet::RINGLET_SIMD {
 
-// Row of vertex i without damping and inertia.
-inline StrandRow<Pack> gather_row(const LaneGather &gather, const StrandArrays &arrays, const double *normals, int i) {
-    StrandRow<Pack> row{};
+// Working memory of one group's step, laid out in one block.
+template <class Objective> struct GroupMemory {
+    using Matrix = typename Objective::Matrix;
+
+    StrandRow<Pack> *rows;
+    StrandShape<Pack> *shapes;
+    Vec<Pack> *start, *velocity, *target; // positions and velocities at the start of the step; where held vertices end
+    Pack *x;                              // the unknowns
+    NewtonMemory<Pack> newton;
+
+    static size_t bytes(int vertices) {
+        const int unknowns = Objective::dofs * vertices;
+        return vertices * (sizeof(StrandRow<Pack>) + sizeof(StrandShape<Pack>) + 3 * sizeof(Vec<Pack>)) +
+               (4 * size_t(unknowns) + Matrix::padding + Matrix::entries(unknowns)) * sizeof(Pack);
+    }
+
+    GroupMemory(void *memory, int vertices) {
+        char *next = static_cast<char *>(memory);
+        const auto take = [&next]<class Type>(Type *&place, int count) {
+            place = reinterpret_cast<Type *>(next);
+            next += count * sizeof(Type);
+        };
+        const int unknowns = Objective::dofs * vertices;
+        take(rows, vertices);
+        take(shapes, vertices);
+        take(start, vertices);
+        take(velocity, vertices);
+        take(target, vertices);
+        take(x, unknowns);
+        take(newton.trial, unknowns);
+        take(newton.gradient, unknowns);
+        take(newton.direction, unknowns + Matrix::padding);
+        take(newton.band, Matrix::entries(unknowns));
+    }
+};
+
+// Writes the row of vertex i without damping and inertia. In place: a row is large.
+inline void gather_row(const LaneGather &gather, const StrandArrays &arrays, const double *normals, int i,
+                       StrandRow<Pack> &row) {
+    row = StrandRow<Pack>{};
     for (int k = 0; k < lanes; ++k) {
         const StrandLane &strand = gather.lane(k);
         const auto is_held = [&](int v) { return !strand.has_vertex(v) || arrays.held[strand.row(v)]; };
         set_lane(row.free, k, is_held(i) ? 0.0 : 1.0);
         set_lane(row.frame_free, k, strand.has_corner(i) && !(is_held(i) && is_held(i + 1)) ? 1.0 : 0.0);
     }
-    row.stretch = gather.scalar(arrays.stretch_stiffness, i, 0.0);
-    row.rest_length = gather.scalar(arrays.rest_length, i, 1.0);
+    for (int c = 0; c < StrandRow<Pack>::column_count; ++c)
+        row.*StrandRow<Pack>::columns[c] = gather.scalar(arrays.*StrandArrays::columns[c], i, 0.0);
     for (int k = 0; k < lanes; ++k) // no edge begins at the tip
         if (!gather.lane(k).has_edge(i)) set_lane(row.rest_length, k, 1.0);
-    row.bend = gather.scalar(arrays.bend_stiffness, i, 0.0);
-    row.rest_angle = gather.scalar(arrays.rest_angle, i, 0.0);
-    row.twist = gather.scalar(arrays.twist_stiffness, i, 0.0);
-    row.rest_dihedral = gather.scalar(arrays.rest_dihedral, i, 0.0);
-    row.damping = gather.scalar(arrays.damping, i, 0.0);
     row.damped_length = row.rest_length;
     row.damped_angle = row.rest_angle;
     row.elastic_share = constant<Pack>(1.0);
     row.reference.delta = gather.scalar(arrays.twist, i, 0.0);
     row.reference.normal = gather.vector(normals, i);
-    return row;
 }
 
 template <class Objective> struct GatheredGroup {
@@ -41,7 +75,7 @@ template <class Objective> struct GatheredGroup {
           objective(vertices, memory.rows, memory.shapes, step.safeguards) {
         for (int i = 0; i < vertices; ++i) {
             memory.shapes[i] = StrandShape<Pack>{};
-            memory.rows[i] = gather_row(gather, arrays, normals(), i);
+            gather_row(gather, arrays, normals(), i, memory.rows[i]);
             memory.start[i] = gather.position(arrays.positions, i);
             memory.velocity[i] = gather.vector(arrays.velocities, i);
             memory.target[i] = gather.position(arrays.targets, i);

@@ -4,8 +4,7 @@
 #pragma once
 
 #include "ringlet/energy/strand/twist.h"
-#include "ringlet/strand/continuation_history.h"
-#include "ringlet/strand/continuation_least_energy.h"
+#include "ringlet/strand/continuation.h"
 #include "ringlet/strand/objective.h"
 
 namespace ringlet::RINGLET_SIMD {
@@ -46,12 +45,12 @@ public:
             continue_least_energy(vertices_, rows_, shapes_);
 
         T energy{};
-        for (int i = 0; i < vertices_; ++i) energy += this->inertia_energy(x, i);
+        for (int i = 0; i < vertices_; ++i) energy += this->vertex_energy(x, i);
         for (int i = 0; i + 1 < vertices_; ++i) energy += this->edge_energy(i, shapes_[i]);
         for (int i = 1; i + 1 < vertices_; ++i)
-            energy += bend_energy(shapes_[i].corner.angle, shapes_[i].sigma, rows_[i].damped_angle, rows_[i].bend);
+            energy += bend_energy(shapes_[i].corner.angle, shapes_[i].sigma, rows_[i].damped_angle, rows_[i].bend_stiffness);
         for (int i = 1; i + 2 < vertices_; ++i)
-            energy += twist_energy(shapes_[i].strain - rows_[i].damped_strain, rows_[i].twist);
+            energy += twist_energy(shapes_[i].strain - rows_[i].damped_strain, rows_[i].twist_stiffness);
         return energy;
     }
 
@@ -68,7 +67,7 @@ public:
         return {{s.length, s.sigma * s.corner.angle, T{}, s.strain}};
     }
 
-    // Rest values with damping (damping.h), b = β/h.
+    // Rest values with damping (time_discretisation.h), b = β/h.
     void damp(int i, T b, const Strains<T> &extrapolated) {
         const T share = 1.0 / (1.0 + b);
         rows_[i].damped_angle = share * (rows_[i].rest_angle + b * extrapolated[1]);
@@ -77,9 +76,9 @@ public:
 
     // Without damping, with the stiffnesses in the rows.
     T bend_energy_at(int i) const {
-        return bend_energy(shapes_[i].corner.angle, shapes_[i].sigma, rows_[i].rest_angle, rows_[i].bend);
+        return bend_energy(shapes_[i].corner.angle, shapes_[i].sigma, rows_[i].rest_angle, rows_[i].bend_stiffness);
     }
-    T twist_energy_at(int i) const { return twist_energy(shapes_[i].strain, rows_[i].twist); }
+    T twist_energy_at(int i) const { return twist_energy(shapes_[i].strain, rows_[i].twist_stiffness); }
 
     // Normal that the next step compares with. A nearly straight corner has none of its own and transports its last one.
     Vec<T> reference_normal(int i) const {
@@ -94,15 +93,15 @@ public:
     T clamped_eigenvalues(int i) const {
         T count = this->clamped_stretch(i);
         if (this->is_corner(i))
-            count += clamped_bend(shapes_[i].corner, shapes_[i].sigma, rows_[i].damped_angle, rows_[i].bend);
+            count += clamped_bend(shapes_[i].corner, shapes_[i].sigma, rows_[i].damped_angle, rows_[i].bend_stiffness);
         return count;
     }
 
 private:
     void add_bend(int i, T *gradient, Matrix &hessian) const {
         const StrandShape<T> &before = shapes_[i - 1], &s = shapes_[i];
-        const Bend<T> e =
-            bend(s.corner, before.tangent, s.tangent, before.length, s.length, s.sigma, rows_[i].damped_angle, rows_[i].bend);
+        const Bend<T> e = bend(s.corner, before.tangent, s.tangent, before.length, s.length, s.sigma, rows_[i].damped_angle,
+                               rows_[i].bend_stiffness);
         this->add(gradient, i - 1, -e.gradient0);
         this->add(gradient, i, e.gradient0 - e.gradient1);
         this->add(gradient, i + 1, e.gradient1);
@@ -125,13 +124,13 @@ private:
             add_angle_gradient(slope, s.by_angle, s.corner, before, s);
             add_angle_gradient(slope + 1, s.by_next, after.corner, s, after);
         }
-        const T moment = rows_[i].twist * (s.strain - rows_[i].damped_strain);
+        const T moment = rows_[i].twist_stiffness * (s.strain - rows_[i].damped_strain);
         T u[12];
         for (int k = 0; k < 4; ++k) {
             this->add(gradient, i - 1 + k, moment * slope[k]);
             put(u + 3 * k, rows_[i - 1 + k].free * slope[k]);
         }
-        hessian.add_square(3 * (i - 1), rows_[i].twist, u);
+        hessian.add_square(3 * (i - 1), rows_[i].twist_stiffness, u);
     }
 
     // Adds weight · ∂θ/∂x of the corner between two edges, at its three vertices.

@@ -8,14 +8,14 @@
 
 namespace ringlet {
 
-// Model of bend and twist: hinges whose signs and turns follow one of two continuations (strand/continuation_*.h), or a
+// Model of bend and twist: hinges whose signs and turns follow one of two continuations (strand/continuation.h), or a
 // material frame, which needs neither (strand/rod_objective.h).
 enum class Continuation { history, least_energy, material_frame };
 
 // See dynamics/time_integrator.h.
 enum class Integrator { backward_euler, bdf2 };
 
-// Safeguards against degenerate virtual triangles (strand/continuation_history.h); each can be turned off to study it.
+// Safeguards against degenerate virtual triangles (strand/continuation.h); each can be turned off to study it.
 struct Safeguards {
     bool flip_history = true, winding_number = true, straight_fade = true;
 };
@@ -29,6 +29,28 @@ struct StrandStep {
     Continuation continuation = Continuation::material_frame;
     Integrator integrator = Integrator::backward_euler;
     Safeguards safeguards; // of `history`
+};
+
+// Rest shape and coefficients of strands, one value per vertex in each column. Values of an edge belong to its first vertex.
+// A column is a vector in the model, a pointer in the arrays and one number per lane in the rows of the kernels; all three
+// pass on whatever is in `columns`.
+template <class Column> struct StrandCoefficients {
+    Column rest_length;       // l̄ per edge [m]
+    Column rest_angle;        // θ̄ per vertex [rad], in [0, π]
+    Column rest_dihedral;     // φ̄ per edge [rad]
+    Column stretch_stiffness; // EA / l̄ per edge [N/m]
+    Column bend_stiffness;    // EI / l_v per vertex [N m]
+    Column twist_stiffness;   // c EI / l̄ per edge [N m]
+    Column mass;              // per vertex [kg]
+    Column drag;              // per vertex [kg/s]
+    Column damping;           // β per vertex [s]
+
+    using Self = StrandCoefficients;
+    static constexpr Column Self::*columns[] = {
+        &Self::rest_length,    &Self::rest_angle,      &Self::rest_dihedral, &Self::stretch_stiffness,
+        &Self::bend_stiffness, &Self::twist_stiffness, &Self::mass,          &Self::drag,
+        &Self::damping};
+    static constexpr int column_count = sizeof(columns) / sizeof(*columns);
 };
 
 // Report of one strand in one step.
@@ -45,7 +67,11 @@ struct StrandReport {
     double clamped;                                // negative eigenvalues of the elements' Hessians at the end
     double nan;                                    // 1 where a position is not finite (the strand then keeps its last state)
 };
+inline constexpr const char *strand_report_names[] = {
+    "newton",  "cuts",        "residual", "unconverged",     "stretch",      "bend",    "twist", "gravity",
+    "kinetic", "max_stretch", "flips",    "winding_changes", "too_straight", "clamped", "nan"};
 inline constexpr int strand_report_columns = sizeof(StrandReport) / sizeof(double);
+static_assert(sizeof(strand_report_names) / sizeof(*strand_report_names) == strand_report_columns);
 
 // Effort of finding the end of a step.
 struct StrandEffort {
@@ -53,12 +79,9 @@ struct StrandEffort {
 };
 
 // Model and state of all strands, as pointers (see strand/model.h and strand/state.h).
-struct StrandArrays {
+struct StrandArrays : StrandCoefficients<const double *> {
     const int *offsets;
     const unsigned char *held;
-    const double *rest_length, *rest_angle, *rest_dihedral;
-    const double *stretch_stiffness, *bend_stiffness, *twist_stiffness;
-    const double *mass, *drag, *damping;
     double mass_damping;
     const double *targets, *forces;
     double *positions, *velocities, *normals, *twist, *directors;
@@ -85,6 +108,22 @@ struct StrandGroupSystem {
     int dofs() const { return layout.block; } // per vertex
 };
 
+// A group's step in phases, for a solver outside. It lives in the caller's memory and needs no destructor.
+struct PhasedStep {
+    virtual StrandGroupSystem begin() = 0;
+    virtual void energy(const double *x, double *energies) = 0;   // one per lane
+    virtual void evaluate(const double *x, double *energies) = 0; // likewise; precedes assembly at x
+    virtual void assemble(const double *x) = 0;                   // gradient and matrix at the x evaluated last
+    virtual void factor() = 0;
+    virtual void solve(double *b) = 0;                                                        // in place
+    virtual void max_step(const double *x, const double *direction, double *steps) const = 0; // one per lane
+    virtual void curved_end(const double *x, const double *direction, double *to) const = 0;  // of the path at step 1
+    virtual void end(const double *x, const StrandEffort &effort, StrandReport *reports) = 0;
+
+protected:
+    ~PhasedStep() = default;
+};
+
 // clang-format off
 RINGLET_DECLARE(
     int strand_lanes();
@@ -92,17 +131,9 @@ RINGLET_DECLARE(
     void step_strand_group(const StrandArrays &arrays, const StrandStep &step, StrandGroup group, void *workspace, StrandReport *reports);
     void relax_strand_frames(const StrandArrays &arrays, StrandGroup group, void *workspace, double *energies);
     double strand_elastic_energy(const StrandArrays &arrays, const StrandStep &step, int strand, const double *positions, void *workspace, double *gradient, double *hessian);
-    // A group's step in phases. `memory` holds the group from begin to end; the arguments of begin must live as long.
-    size_t strand_group_bytes(const StrandStep &step, int vertices);
-    StrandGroupSystem begin_strand_group(const StrandArrays &arrays, const StrandStep &step, StrandGroup group, void *memory);
-    void strand_group_energies(void *memory, const double *x, double *energies); // one per lane
-    void evaluate_strand_group(void *memory, const double *x, double *energies); // likewise; precedes assembly at x
-    void assemble_strand_group(void *memory, const double *x);                    // gradient and matrix at the x evaluated last
-    void factor_strand_group(void *memory);
-    void solve_strand_group(void *memory, double *b); // in place
-    void strand_group_max_step(void *memory, const double *x, const double *direction, double *steps); // one per lane
-    void strand_group_curved_end(void *memory, const double *x, const double *direction, double *to); // of the path at step 1
-    void end_strand_group(void *memory, const double *x, const StrandEffort &effort, StrandReport *reports);
+    // The arguments of a phased step must live as long as its memory.
+    size_t phased_step_bytes(const StrandStep &step, int vertices);
+    PhasedStep *make_phased_step(const StrandArrays &arrays, const StrandStep &step, StrandGroup group, void *memory);
 )
 // clang-format on
 

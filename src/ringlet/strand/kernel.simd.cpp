@@ -2,11 +2,12 @@
 #include "ringlet/strand/kernel.h"
 
 #include "ringlet/strand/elastic_energy.h"
+#include "ringlet/strand/group.h"
 #include "ringlet/strand/hinge_objective.h"
-#include "ringlet/strand/phased_group.h"
 #include "ringlet/strand/rod_objective.h"
 
 #include <new>
+#include <type_traits>
 
 namespace ringlet::RINGLET_SIMD {
 namespace {
@@ -31,10 +32,6 @@ void with_gathered(const StrandArrays &arrays, const StrandStep &step, StrandGro
 
 // The group of a phased step stands at the beginning of its memory, in as many bytes; its arrays follow, aligned.
 constexpr size_t group_bytes = 1024;
-
-PhasedStep &group_in(void *memory) { return *static_cast<PhasedStep *>(memory); }
-const Pack *packs(const double *values) { return reinterpret_cast<const Pack *>(values); }
-Pack *packs(double *values) { return reinterpret_cast<Pack *>(values); }
 
 } // namespace
 
@@ -63,35 +60,16 @@ double strand_elastic_energy(const StrandArrays &arrays, const StrandStep &step,
     return energy;
 }
 
-size_t strand_group_bytes(const StrandStep &step, int vertices) {
+size_t phased_step_bytes(const StrandStep &step, int vertices) {
     return group_bytes +
            with_objective(step, [&]<class Objective>() { return GroupMemory<Objective>::bytes(max(vertices, 3)); });
 }
 
-StrandGroupSystem begin_strand_group(const StrandArrays &arrays, const StrandStep &step, StrandGroup group, void *memory) {
-    return with_objective(step, [&]<class Objective>() {
-        static_assert(sizeof(PhasedGroup<Objective>) <= group_bytes);
-        char *workspace = static_cast<char *>(memory) + group_bytes;
-        return (new (memory) PhasedGroup<Objective>(arrays, step, group, workspace))->begin();
+PhasedStep *make_phased_step(const StrandArrays &arrays, const StrandStep &step, StrandGroup group, void *memory) {
+    return with_objective(step, [&]<class Objective>() -> PhasedStep * {
+        static_assert(sizeof(Group<Objective>) <= group_bytes && std::is_trivially_destructible_v<Group<Objective>>);
+        return new (memory) Group<Objective>(arrays, step, group, static_cast<char *>(memory) + group_bytes);
     });
-}
-
-void strand_group_energies(void *memory, const double *x, double *energies) { group_in(memory).energy(packs(x), energies); }
-void evaluate_strand_group(void *memory, const double *x, double *energies) { group_in(memory).evaluate(packs(x), energies); }
-void assemble_strand_group(void *memory, const double *x) { group_in(memory).assemble(packs(x)); }
-void factor_strand_group(void *memory) { group_in(memory).factor(); }
-void solve_strand_group(void *memory, double *b) { group_in(memory).solve(packs(b)); }
-
-void strand_group_max_step(void *memory, const double *x, const double *direction, double *steps) {
-    group_in(memory).max_step(packs(x), packs(direction), steps);
-}
-void strand_group_curved_end(void *memory, const double *x, const double *direction, double *to) {
-    group_in(memory).curved_end(packs(x), packs(direction), packs(to));
-}
-
-void end_strand_group(void *memory, const double *x, const StrandEffort &effort, StrandReport *reports) {
-    group_in(memory).end(packs(x), effort, reports);
-    group_in(memory).~PhasedStep();
 }
 
 } // namespace ringlet::RINGLET_SIMD

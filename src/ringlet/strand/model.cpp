@@ -71,18 +71,13 @@ StrandModel rest_model(View<int> offsets, View<Vec3> rest, View<unsigned char> h
     StrandModel model;
     model.offsets.assign(offsets.begin(), offsets.end());
     model.held.assign(held.begin(), held.end());
+    for (const auto column : StrandModel::columns) (model.*column).assign(n, 0.0);
     RestShape shape = measure_rest_shape(offsets, rest);
     model.rest_length = std::move(shape.length);
     model.rest_angle = std::move(shape.angle);
     model.rest_dihedral = std::move(shape.dihedral);
     model.rest_normal = std::move(shape.normal);
     model.rest_tangent.assign(n, Vec3::Zero());
-    model.stretch_stiffness.assign(n, 0.0);
-    model.bend_stiffness.assign(n, 0.0);
-    model.twist_stiffness.assign(n, 0.0);
-    model.mass.assign(n, 0.0);
-    model.drag.assign(n, 0.0);
-    model.damping.assign(n, 0.0);
     return model;
 }
 

@@ -2,7 +2,9 @@
 #pragma once
 
 #include "ringlet/math/types.h"
+#include "ringlet/strand/kernel.h"
 
+#include <variant>
 #include <vector>
 
 namespace ringlet {
@@ -22,29 +24,39 @@ struct StrandMaterial {
     bool correct_resolution = true; // make coils of few vertices a turn as soft as smooth ones (rest/resolution.h)
 };
 
+// Settings of the material by name, for the bindings.
+struct StrandMaterialSetting {
+    const char *name;
+    std::variant<double StrandMaterial::*, bool StrandMaterial::*> member;
+};
+
+inline constexpr StrandMaterialSetting strand_material_settings[] = {
+    {"youngs_modulus", &StrandMaterial::youngs_modulus},
+    {"radius", &StrandMaterial::radius},
+    {"density", &StrandMaterial::density},
+    {"stretch_scale", &StrandMaterial::stretch_scale},
+    {"bend_scale", &StrandMaterial::bend_scale},
+    {"twist_ratio", &StrandMaterial::twist_ratio},
+    {"limit_twist", &StrandMaterial::limit_twist},
+    {"damping", &StrandMaterial::damping},
+    {"mass_damping", &StrandMaterial::mass_damping},
+    {"drag", &StrandMaterial::drag},
+    {"correct_resolution", &StrandMaterial::correct_resolution},
+};
+
 // Variation of the material along strands: factors per vertex on StrandMaterial, each n long or empty (1 everywhere). An edge
 // takes the mean of its two vertices.
 struct StrandVariation {
     View<double> radius, stretch, bend, twist, damping;
 };
 
-// Rest shape and coefficients of all strands, packed like Curves: one row per vertex. Row i of an edge quantity belongs to the
-// edge from i to i + 1.
-struct StrandModel {
-    std::vector<int> offsets;              // first row of each strand, and the end; strand count + 1
-    std::vector<unsigned char> held;       // per vertex: 1 where it follows its target
-    std::vector<double> rest_length;       // l̄ per edge [m]
-    std::vector<double> rest_angle;        // θ̄ per vertex [rad], in [0, π]
-    std::vector<double> rest_dihedral;     // φ̄ per edge [rad]
-    std::vector<Vec3> rest_normal;         // of the corners, in the pose of the rest shape
-    std::vector<Vec3> rest_tangent;        // of the edges, likewise
-    std::vector<double> stretch_stiffness; // EA / l̄ per edge [N/m]
-    std::vector<double> bend_stiffness;    // EI / l_v per vertex [N m]
-    std::vector<double> twist_stiffness;   // c EI / l̄ per edge [N m]
-    std::vector<double> mass;              // per vertex [kg]
-    std::vector<double> drag;              // per vertex [kg/s]
-    std::vector<double> damping;           // β per vertex [s]
-    double mass_damping = 0.0;             // α [1/s]
+// Rest shape and coefficients of all strands, packed like Curves: one row per vertex.
+struct StrandModel : StrandCoefficients<std::vector<double>> {
+    std::vector<int> offsets;        // first row of each strand, and the end; strand count + 1
+    std::vector<unsigned char> held; // per vertex: 1 where it follows its target
+    std::vector<Vec3> rest_normal;   // of the corners, in the pose of the rest shape
+    std::vector<Vec3> rest_tangent;  // of the edges, likewise
+    double mass_damping = 0.0;       // α [1/s]
 
     int strand_count() const { return int(offsets.size()) - 1; }
     int vertex_count() const { return offsets.back(); }

@@ -1,5 +1,5 @@
 // Objective of a strand's time step: Σ ½ aᵢ ‖xᵢ − yᵢ‖² (inertia, gravity, mass damping, drag) + stretch + bend + twist.
-// Held vertices are left out. Damping is part of the elastic energies (damping.h), the time integrator of a and y
+// Held vertices are left out. Damping is part of the elastic energies (time_discretisation.h), the time integrator of a and y
 // (dynamics/time_integrator.h). This base class has all but bend and twist; see rod_objective.h and hinge_objective.h.
 #pragma once
 
@@ -61,13 +61,14 @@ protected:
         shape.tangent = select<T>(point, x_axis, (1.0 / shape.length) * edge);
     }
 
-    T inertia_energy(const T *x, int i) const {
+    // Of terms of positions alone whose last vertex is i: inertia.
+    T vertex_energy(const T *x, int i) const {
         const Vec<T> offset = position(x, i) - rows_[i].inertia_target;
         return 0.5 * rows_[i].free * rows_[i].inertia * dot(offset, offset);
     }
 
     T edge_energy(int i, const StrandShape<T> &shape) const {
-        return stretch_energy(shape.length, rows_[i].damped_length, rows_[i].stretch);
+        return stretch_energy(shape.length, rows_[i].damped_length, rows_[i].stretch_stiffness);
     }
 
     // Gradient and Hessian of inertia and stretch; calls add_bend(i) and add_twist(i) for corners and hinges. A term follows
@@ -93,7 +94,7 @@ protected:
 
     void add_stretch(int i, T *gradient, Matrix &hessian) const {
         const StrandShape<T> &s = shapes_[i];
-        const Stretch<T> e = stretch(s.tangent, s.length, rows_[i].damped_length, rows_[i].stretch);
+        const Stretch<T> e = stretch(s.tangent, s.length, rows_[i].damped_length, rows_[i].stretch_stiffness);
         add(gradient, i, -e.gradient);
         add(gradient, i + 1, e.gradient);
         const T free0 = rows_[i].free, free1 = rows_[i + 1].free;

@@ -34,10 +34,10 @@ public:
             gradient, hessian, [&](int i) { add_bend(i, gradient, hessian); }, [&](int i) { add_twist(i, gradient, hessian); });
         for (int i = 0; i < vertices_; ++i) { // regularises a frame without stiffness
             const T free = rows_[i].frame_free;
-            hessian.entry(4 * i + 3)[0] +=
-                free * (strand_settings::frame_stiffness * rows_[i].bend / (rows_[i].rest_length * rows_[i].rest_length) +
-                        strand_settings::frame_stiffness_min) +
-                (1.0 - free);
+            hessian.entry(4 * i + 3)[0] += free * (strand_settings::frame_stiffness * rows_[i].bend_stiffness /
+                                                       (rows_[i].rest_length * rows_[i].rest_length) +
+                                                   strand_settings::frame_stiffness_min) +
+                                           (1.0 - free);
         }
         this->clear_held(gradient);
         for (int i = 0; i < vertices_; ++i) gradient[4 * i + 3] *= rows_[i].frame_free;
@@ -48,19 +48,20 @@ public:
         return {{s.length, s.curvature1, s.curvature2, s.strain}};
     }
 
-    // Rest values with damping (damping.h), b = β/h.
+    // Rest values with damping (time_discretisation.h), b = β/h.
     void damp(int i, T b, const Strains<T> &extrapolated) {
         const T share = b / (1.0 + b);
-        rows_[i].damped_bend = {share * extrapolated[1], share * extrapolated[2], T{}};
+        rows_[i].damped_curvature1 = share * extrapolated[1];
+        rows_[i].damped_curvature2 = share * extrapolated[2];
         if (this->is_hinge(i)) rows_[i].damped_strain = share * extrapolated.twist();
     }
 
     // Without damping, with the stiffnesses in the rows.
     T bend_energy_at(int i) const {
-        return 0.5 * rows_[i].bend *
+        return 0.5 * rows_[i].bend_stiffness *
                (shapes_[i].curvature1 * shapes_[i].curvature1 + shapes_[i].curvature2 * shapes_[i].curvature2);
     }
-    T twist_energy_at(int i) const { return 0.5 * rows_[i].twist * shapes_[i].strain * shapes_[i].strain; }
+    T twist_energy_at(int i) const { return 0.5 * rows_[i].twist_stiffness * shapes_[i].strain * shapes_[i].strain; }
 
     Vec<T> reference_normal(int i) const { return shapes_[i].director; }
     T sign_changes(int) const { return T{}; }
@@ -74,7 +75,7 @@ private:
         T energy{};
         StrandShape<T> before{}, s{}; // of the edge before; of the edge that begins at i
         for (int i = 0; i < vertices_; ++i, before = s) {
-            energy += this->inertia_energy(x, i);
+            energy += this->vertex_energy(x, i);
             if (i + 1 == vertices_) break;
             this->measure_edge(x, i, s);
             energy += this->edge_energy(i, s);
@@ -83,7 +84,7 @@ private:
                 before.strain =
                     wrap(frame_twist(before.director, before.tangent, s.director, s.tangent) - rows_[i - 1].rest_dihedral);
                 const T w = before.strain - rows_[i - 1].damped_strain;
-                energy += 0.5 * rows_[i - 1].twist * w * w;
+                energy += 0.5 * rows_[i - 1].twist_stiffness * w * w;
                 if (keeps) shapes_[i - 1].strain = before.strain;
             }
             if (keeps) keep(s, shapes_[i]);
@@ -100,8 +101,8 @@ private:
         const Vec<T> K = turning(s.corner, before.tangent, s.tangent);
         s.curvature1 = dot(K, s.director) - rows_[i].rest_angle;
         s.curvature2 = dot(K, cross(s.tangent, s.director));
-        const T strain1 = s.curvature1 - rows_[i].damped_bend.x, strain2 = s.curvature2 - rows_[i].damped_bend.y;
-        return 0.5 * rows_[i].bend * (strain1 * strain1 + strain2 * strain2);
+        const T strain1 = s.curvature1 - rows_[i].damped_curvature1, strain2 = s.curvature2 - rows_[i].damped_curvature2;
+        return 0.5 * rows_[i].bend_stiffness * (strain1 * strain1 + strain2 * strain2);
     }
 
     static void keep(const StrandShape<T> &s, StrandShape<T> &kept) { // without the values of hinges
@@ -115,14 +116,14 @@ private:
         const StrandShape<T> &before = shapes_[i - 1], &s = shapes_[i];
         const Vec<T> other = cross(s.tangent, s.director);
         const Vec<T> K = turning(s.corner, before.tangent, s.tangent), spinning = director_spin(i);
-        const T residual[2] = {s.curvature1 - rows_[i].damped_bend.x, s.curvature2 - rows_[i].damped_bend.y};
+        const T residual[2] = {s.curvature1 - rows_[i].damped_curvature1, s.curvature2 - rows_[i].damped_curvature2};
         const T by_frame[2] = {dot(K, other), -dot(K, s.director)};
         T u[2][11] = {};
         for (int k = 0; k < 2; ++k) {
             const EdgeGradient<T> g =
                 turning_gradient(s.corner, before.tangent, s.tangent, before.length, s.length, k == 0 ? s.director : other);
             const Vec<T> second = g.second + by_frame[k] * spinning;
-            const T force = rows_[i].bend * residual[k], frame = by_frame[k] / rows_[i].rest_length;
+            const T force = rows_[i].bend_stiffness * residual[k], frame = by_frame[k] / rows_[i].rest_length;
             this->add(gradient, i - 1, -(force * g.first));
             this->add(gradient, i, force * (g.first - second));
             this->add(gradient, i + 1, force * second);
@@ -132,7 +133,7 @@ private:
             u[k][7] = rows_[i].frame_free * frame;
             put(u[k] + 8, rows_[i + 1].free * second);
         }
-        hessian.add_squares(4 * (i - 1), rows_[i].bend, u);
+        hessian.add_squares(4 * (i - 1), rows_[i].bend_stiffness, u);
     }
 
     void add_twist(int i, T *gradient, Matrix &hessian) const {
@@ -140,7 +141,7 @@ private:
         const EdgeGradient<T> g = frame_twist_gradient(after.corner, s.tangent, after.tangent, s.length, after.length);
         const Vec<T> first = g.first - director_spin(i), second = g.second + director_spin(i + 1);
         const T frame0 = -1.0 / rows_[i].rest_length, frame1 = 1.0 / rows_[i + 1].rest_length;
-        const T moment = rows_[i].twist * (s.strain - rows_[i].damped_strain);
+        const T moment = rows_[i].twist_stiffness * (s.strain - rows_[i].damped_strain);
         this->add(gradient, i, -(moment * first));
         this->add(gradient, i + 1, moment * (first - second));
         this->add(gradient, i + 2, moment * second);
@@ -152,7 +153,7 @@ private:
         put(u + 4, rows_[i + 1].free * (first - second));
         u[7] = rows_[i + 1].frame_free * frame1;
         put(u + 8, rows_[i + 2].free * second);
-        hessian.add_square(4 * i, rows_[i].twist, u);
+        hessian.add_square(4 * i, rows_[i].twist_stiffness, u);
     }
 };
 

@@ -13,6 +13,11 @@ inline constexpr double shortest_edge = 1e-6;  // shorter edges count as this lo
 inline constexpr double rotation_sine = 1e-6;  // three held vertices define a rotation from this sine of their angle on
 inline constexpr double normal_sine = 2.6e-3;  // hinges: a corner has a normal of its own from this sine on
 
+// In a scene
+inline constexpr double contact_stretch = 0.1;  // of the stretch stiffness, in that against contacts
+inline constexpr double refined_strain = 0.03;  // of an edge: limited strands that are stretched further get more iterations
+inline constexpr double settled_fraction = 0.2; // of the mean edge: a move that short has settled
+
 // Material frames
 inline constexpr double frame_stiffness = 1e-9;      // regularises a free frame, by its bend stiffness over l̄²
 inline constexpr double frame_stiffness_min = 1e-15; // and by this much [N/m]

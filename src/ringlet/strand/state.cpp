@@ -1,7 +1,7 @@
 #include "ringlet/strand/state.h"
 
 #include "ringlet/rest/rest_shape.h"
-#include "ringlet/strand/for_each_group.h"
+#include "ringlet/strand/lane_groups.h"
 #include "ringlet/strand/settings.h"
 
 #include <Eigen/Geometry>
@@ -81,29 +81,24 @@ StrandState make_strand_state(const StrandModel &model, View<Vec3> positions) {
 }
 
 StrandArrays arrays_of(const StrandModel &model, StrandState &state, View<Vec3> targets, View<Vec3> forces) {
-    return {.offsets = model.offsets.data(),
-            .held = model.held.data(),
-            .rest_length = model.rest_length.data(),
-            .rest_angle = model.rest_angle.data(),
-            .rest_dihedral = model.rest_dihedral.data(),
-            .stretch_stiffness = model.stretch_stiffness.data(),
-            .bend_stiffness = model.bend_stiffness.data(),
-            .twist_stiffness = model.twist_stiffness.data(),
-            .mass = model.mass.data(),
-            .drag = model.drag.data(),
-            .damping = model.damping.data(),
-            .mass_damping = model.mass_damping,
-            .targets = targets.data()->data(),
-            .forces = forces.data()->data(),
-            .positions = state.positions.data()->data(),
-            .velocities = state.velocities.data()->data(),
-            .normals = state.normals.data()->data(),
-            .twist = state.twist.data(),
-            .directors = state.directors.data()->data(),
-            .last_positions = state.last_positions.data()->data(),
-            .last_velocities = state.last_velocities.data()->data(),
-            .last_strains = state.last_strains.data()->data(),
-            .last_dt = state.last_dt.data()};
+    StrandArrays arrays;
+    for (int c = 0; c < StrandModel::column_count; ++c)
+        arrays.*StrandArrays::columns[c] = (model.*StrandModel::columns[c]).data();
+    arrays.offsets = model.offsets.data();
+    arrays.held = model.held.data();
+    arrays.mass_damping = model.mass_damping;
+    arrays.targets = targets.data()->data();
+    arrays.forces = forces.data()->data();
+    arrays.positions = state.positions.data()->data();
+    arrays.velocities = state.velocities.data()->data();
+    arrays.normals = state.normals.data()->data();
+    arrays.twist = state.twist.data();
+    arrays.directors = state.directors.data()->data();
+    arrays.last_positions = state.last_positions.data()->data();
+    arrays.last_velocities = state.last_velocities.data()->data();
+    arrays.last_strains = state.last_strains.data()->data();
+    arrays.last_dt = state.last_dt.data();
+    return arrays;
 }
 
 } // namespace ringlet

@@ -1,7 +1,6 @@
 // State of strands: all that moves.
 #pragma once
 
-#include "ringlet/strand/kernel.h"
 #include "ringlet/strand/model.h"
 
 #include <array>

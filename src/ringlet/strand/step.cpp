@@ -1,6 +1,6 @@
 #include "ringlet/strand/step.h"
 
-#include "ringlet/strand/for_each_group.h"
+#include "ringlet/strand/lane_groups.h"
 
 #include <stdexcept>
 

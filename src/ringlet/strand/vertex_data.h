@@ -3,6 +3,7 @@
 
 #include "ringlet/energy/strand/bend.h"
 #include "ringlet/math/pack.h"
+#include "ringlet/strand/kernel.h"
 
 namespace ringlet::RINGLET_SIMD {
 
@@ -24,25 +25,23 @@ template <class T> struct Strains {
     T twist() const { return values[3]; }
 };
 
-// Constant during a step. `damped_` values are the rest values of the energies with damping (damping.h).
-template <class T> struct StrandRow {
+// Constant during a step. An odd number of values: with a power of two, those of one column share few sets of the cache.
+// `damped_` values are the rest values of the energies with damping (time_discretisation.h).
+template <class T> struct StrandRow : StrandCoefficients<T> {
     T free;                // 1, or 0 where the vertex is held
     T inertia;             // a of ½ a ‖x − y‖² [kg/s²]
     Vec<T> inertia_target; // y [m]
-    T stretch, rest_length, damped_length;
-    T bend, rest_angle, damped_angle;
-    Vec<T> damped_bend; // of both material curvatures (material frames; z unused)
-    T twist, rest_dihedral, damped_strain;
-    T damping;       // β [s]
-    T elastic_share; // 1 / (1 + β/h): of a stiffness with damping, the share without
-    T frame_free;    // 1, or 0 where both ends of the edge are held and its frame with them
+    T damped_length, damped_angle, damped_strain;
+    T damped_curvature1, damped_curvature2; // of material frames
+    T elastic_share;                        // 1 / (1 + β/h): of a stiffness with damping, the share without
+    T frame_free;                           // 1, or 0 where both ends of the edge are held and its frame with them
     Reference<T> reference;
     T start_sigma, start_turns; // at the start of the step, for the report
 
     void scale_stiffnesses(T factor) {
-        stretch *= factor;
-        bend *= factor;
-        twist *= factor;
+        this->stretch_stiffness *= factor;
+        this->bend_stiffness *= factor;
+        this->twist_stiffness *= factor;
     }
 };
 

@@ -1,4 +1,4 @@
-#include "ringlet/strand/lane_order.h"
+#include "ringlet/strand/lane_groups.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,7 +1,4 @@
-// `least_energy`: the signs of the hinge model that give the strand the least energy, as part of the energy itself.
-//   E = min over σ of Σ ½ k_b (σθ − θ̄)² + Σ ½ k_t [s(θ_a) s(θ_b) f(Δ)]²,  Δ = wrap(φ − φ̄ + π [σ_a σ_b < 0])
-// It is a continuous function of the positions alone: it has no history, and no step can add energy.
-// Dynamic programming over two states per corner finds the exact minimum. Derivatives keep the signs (envelope theorem).
+// Continuations of the hinge model: signs of its corners and turns of its edges.
 #pragma once
 
 #include "ringlet/energy/strand/bend.h"
@@ -10,6 +7,54 @@
 #include "ringlet/strand/vertex_data.h"
 
 namespace ringlet::RINGLET_SIMD {
+
+// `history`: signs and turns follow those of the last accepted step. Safeguards keep virtual triangles that degenerate or flip
+// harmless. The fade of the twist is constant within a step.
+
+// Sign of a corner's bend. A normal that reverses is its virtual triangle inverting, as where a curl passes through straight,
+// and not half a turn of twist. The last normal is first transported with the edge, so that a fast rotation of the strand is
+// no flip.
+template <class T> inline T transported_sign(const Reference<T> &reference, Vec<T> tangent, Vec<T> normal) {
+    return sign(dot(normal, transport(reference.normal, reference.tangent, tangent)));
+}
+
+// Δφ with its turns: of all values whole turns apart, the one nearest to that of the last step. Twist accumulates past ±π.
+// Where one of the two triangles is inverted (signs differ), the dihedral is half a turn off.
+template <class T> inline T unwrapped(T last, T delta, T sign_product) {
+    const T with_sign = delta + select(sign_product < 0.0, constant<T>(pi), T{});
+    return last + wrap(with_sign - last);
+}
+
+// Factor on the twist of an edge with a corner that is nearly straight or folded: 0 below `straight_angle`, then a smooth rise
+// to 1 at `straight_fade_angle`. A hard cut would remove a large stiffness at once.
+template <class T> inline T straightness_fade(T angle) {
+    const double low = strand_settings::straight_angle, high = strand_settings::straight_fade_angle;
+    const T u = (min(angle, pi - angle) - low) * (1.0 / (high - low));
+    const T y = min(max(u, T{}), constant<T>(1.0));
+    return y * y * (3.0 - 2.0 * y);
+}
+
+template <class T>
+void continue_history(int vertices, const StrandRow<T> *rows, StrandShape<T> *shapes, Safeguards safeguards) {
+    for (int i = 1; i + 1 < vertices; ++i)
+        shapes[i].sigma = safeguards.flip_history
+                              ? transported_sign(rows[i].reference, shapes[i].tangent, shapes[i].corner.normal)
+                              : constant<T>(1.0);
+    for (int i = 1; i + 2 < vertices; ++i) {
+        StrandShape<T> &s = shapes[i];
+        const T delta = s.phi - rows[i].rest_dihedral;
+        s.delta = unwrapped(safeguards.winding_number ? rows[i].reference.delta : T{}, delta, s.sigma * shapes[i + 1].sigma);
+        s.turns = round((s.delta - delta) * (0.5 / pi));
+        s.strain = rows[i].reference.fade * s.delta;
+        s.by_dihedral = rows[i].reference.fade;
+        s.by_angle = s.by_next = T{};
+    }
+}
+
+// `least_energy`: the signs that give the strand the least energy, as part of the energy itself.
+//   E = min over σ of Σ ½ k_b (σθ − θ̄)² + Σ ½ k_t [s(θ_a) s(θ_b) f(Δ)]²,  Δ = wrap(φ − φ̄ + π [σ_a σ_b < 0])
+// It is a continuous function of the positions alone: it has no history, and no step can add energy.
+// Dynamic programming over two states per corner finds the exact minimum. Derivatives keep the signs (envelope theorem).
 
 template <class T> struct WithSlope {
     T value, slope;
@@ -38,7 +83,7 @@ template <class T> void continue_least_energy(int vertices, const StrandRow<T> *
     const int last = vertices - 2; // corners are 1 … last
 
     const auto bend_of = [&](int i, double sigma) {
-        const T energy = bend_energy(shapes[i].corner.angle, constant<T>(sigma), rows[i].damped_angle, rows[i].bend);
+        const T energy = bend_energy(shapes[i].corner.angle, constant<T>(sigma), rows[i].damped_angle, rows[i].bend_stiffness);
         return sigma > 0 ? energy
                          : select(rows[i].rest_angle < strand_settings::straight_rest_angle,
                                   constant<T>(strand_settings::excluded_energy), energy);
@@ -49,8 +94,8 @@ template <class T> void continue_least_energy(int vertices, const StrandRow<T> *
         const T fade = straightness(s.corner.angle, rows[i].rest_angle).value *
                        straightness(next.corner.angle, rows[i + 1].rest_angle).value;
         const T delta = wrap(s.phi - rows[i].rest_dihedral);
-        const T same = twist_energy(fade * rounded(delta).value - rows[i].damped_strain, rows[i].twist);
-        const T differ = twist_energy(fade * rounded(wrap(delta + pi)).value - rows[i].damped_strain, rows[i].twist);
+        const T same = twist_energy(fade * rounded(delta).value - rows[i].damped_strain, rows[i].twist_stiffness);
+        const T differ = twist_energy(fade * rounded(wrap(delta + pi)).value - rows[i].damped_strain, rows[i].twist_stiffness);
         const auto keep_plus = plus + same <= minus + differ;
         const auto keep_minus = minus + same < plus + differ;
         next.choice_plus = select(keep_plus, one, -one);
