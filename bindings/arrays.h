@@ -40,4 +40,11 @@ nb::ndarray<nb::numpy, Scalar> to_numpy(std::vector<Element> &&values, std::init
     return nb::ndarray<nb::numpy, Scalar>(reinterpret_cast<Scalar *>(owned->data()), shape, owner);
 }
 
+// The columns of a report.
+template <size_t count> nb::tuple names_of(const char *const (&names)[count]) {
+    nb::list list;
+    for (const char *name : names) list.append(name);
+    return nb::tuple(list);
+}
+
 } // namespace ringlet::bindings

@@ -91,6 +91,5 @@ void bind_cloth(nb::module_ &module) {
         .def("energy", &elastic, "positions"_a, "hessian"_a = false,
              "Elastic energy [J], its gradient [N] and the clamped Hessian; held vertices have no gradient.");
 
-    module.attr("CLOTH_REPORT") = nb::make_tuple("newton", "linear", "cuts", "residual", "linear_residual", "unconverged",
-                                                 "stretch", "bend", "gravity", "kinetic", "max_stretch", "nan");
+    module.attr("CLOTH_REPORT") = names_of(cloth_report_names);
 }

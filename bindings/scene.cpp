@@ -249,8 +249,5 @@ void bind_scene(nb::module_ &module) {
             },
             "Contacts at the present positions, without a step; their forces have no meaning.");
 
-    module.attr("SCENE_REPORT") =
-        nb::make_tuple("newton", "cuts", "residual", "unconverged", "linear_iterations", "linear_residual", "candidates",
-                       "contacts", "closest", "violations", "zone_vertices", "substeps", "fraction", "time_pairs",
-                       "time_assemble", "time_solve", "time_search", "time_filter");
+    module.attr("SCENE_REPORT") = names_of(scene_report_names);
 }

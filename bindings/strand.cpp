@@ -1,7 +1,6 @@
 // ringlet._core: strands and their steps.
 #include "strand.h"
 #include "arrays.h"
-#include "ringlet/rest/standing.h"
 #include "ringlet/scene/scene.h"
 
 #include <cmath>
@@ -168,33 +167,20 @@ void bind_strand(nb::module_ &module) {
             "recall", [](Strands &self, const nb::dict &memory) { recall(self.state(), memory); }, "memory"_a,
             "Goes back to a memory of the same strands.")
         .def(
-            "stiffness_to_stand",
+            "stabilising_stiffness",
             [](Strands &self, Array1<double> left, double most) {
-                const StrandModel &m = self.model;
-                if (int(left.shape(0)) != m.strand_count()) throw std::invalid_argument("strands: left does not fit them");
-                const StrandState &state = self.state();
-                const StillStrands still{m.offsets.data(),
-                                         m.held.data(),
-                                         state.positions.data()->data(),
-                                         state.directors.data()->data(),
-                                         m.rest_length.data(),
-                                         m.rest_angle.data(),
-                                         m.rest_dihedral.data(),
-                                         m.stretch_stiffness.data(),
-                                         m.bend_stiffness.data(),
-                                         m.twist_stiffness.data()};
-                std::vector<double> factors(m.strand_count());
+                std::vector<double> factors;
                 {
                     nb::gil_scoped_release release;
-                    stiffness_to_stand(m.strand_count(), still, left.data(), most, factors.data());
+                    factors = stabilising_stiffness(self.model, self.state(), view(left), most);
                 }
                 const size_t count = factors.size();
                 return to_numpy<double>(std::move(factors), {count});
             },
             "left"_a, "most"_a,
-            "How many times stiffer against bend and twist each strand, still where it is now, must be to stand and to keep "
-            "its "
-            "part of `left`, shape (count,), of how it resists these without load; infinite where `most` times are not enough.")
+            "Least factor on the stiffness of bend and twist with which each strand is stable where it is, and keeps the "
+            "fraction "
+            "`left`, shape (count,), of its stiffness without load; infinite where `most` is not enough.")
         .def(
             "energy",
             [](Strands &self, Array3<double> positions, Continuation continuation, bool hessian) {
@@ -210,7 +196,5 @@ void bind_strand(nb::module_ &module) {
             "Elastic energy [J], its gradient [N] and the clamped Hessian of a single strand, with signs and turns carried "
             "from the state.");
 
-    nb::list names;
-    for (const char *name : strand_report_names) names.append(name);
-    module.attr("REPORT") = nb::tuple(names);
+    module.attr("REPORT") = names_of(strand_report_names);
 }

@@ -39,16 +39,16 @@ BOOST_AUTO_TEST_SUITE(rigid_motion)
 
 BOOST_AUTO_TEST_CASE(the_fit_recovers_the_motion_of_points_that_move_rigidly) {
     const Moved moved(50);
-    BOOST_TEST(moved.largest_error(mean_motion(moved.all, moved.start, moved.end)) < 1e-8);
-    const RigidMotion none = mean_motion({}, moved.start, moved.end);
+    BOOST_TEST(moved.largest_error(fit_rigid_motion(moved.all, moved.start, moved.end)) < 1e-8);
+    const RigidMotion none = fit_rigid_motion({}, moved.start, moved.end);
     BOOST_TEST((none(moved.start[0]) == moved.start[0]));
 }
 
 BOOST_AUTO_TEST_CASE(outliers_do_not_affect_the_robust_fit) {
     Moved moved(50);
     for (int v = 0; v < 50; v += 3) moved.end[v] += Vec3(0.03, 0.0, 0.05); // a third of the points are outliers
-    BOOST_TEST(moved.largest_error(mean_motion(moved.all, moved.start, moved.end)) > 1e-3);
-    BOOST_TEST(moved.largest_error(common_motion(moved.all, moved.start, moved.end)) < 1e-8);
+    BOOST_TEST(moved.largest_error(fit_rigid_motion(moved.all, moved.start, moved.end)) > 1e-3);
+    BOOST_TEST(moved.largest_error(fit_rigid_motion_robust(moved.all, moved.start, moved.end)) < 1e-8);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -134,14 +134,14 @@ def balanced_at(scale, points):
 
 
 @pytest.mark.parametrize("points", [STANDING, LEANING])
-def test_stiffness_to_stand_is_where_the_smallest_eigenvalue_changes_sign(points):
-    needed = balanced_at(1, points).stiffness_to_stand(np.zeros(1), 1e4)[0]
+def test_stabilising_stiffness_is_where_the_smallest_eigenvalue_changes_sign(points):
+    needed = balanced_at(1, points).stabilising_stiffness(np.zeros(1), 1e4)[0]
     assert needed > 1.2
     for factor, stands in ((0.96, False), (1.02, True)):
         strands = balanced_at(factor * needed, points)
         assert (np.linalg.eigvalsh(stiffness_at(strands, points))[0] > 0) == stands
-        assert (strands.stiffness_to_stand(np.zeros(1), 1e4)[0] == 1) == stands
-    assert np.isinf(balanced_at(1, points).stiffness_to_stand(np.zeros(1), 0.9 * needed)[0])
+        assert (strands.stabilising_stiffness(np.zeros(1), 1e4)[0] == 1) == stands
+    assert np.isinf(balanced_at(1, points).stabilising_stiffness(np.zeros(1), 0.9 * needed)[0])
 
 
 @pytest.mark.parametrize("spring", [0.3, 0.7])

@@ -181,7 +181,7 @@ def _solve(shot: Shot, groom: Groom, frames: Array, support: Array, factor: Arra
     rest, balanced = balanced_rest_shape(shot, groom, frames, support, factor)
     strands = make_strands(shot, groom, rest, factor)
     strands.place(groomed)
-    needed = strands.stiffness_to_stand(shot.rest.spring / factor, shot.rest.stiffen)
+    needed = strands.stabilising_stiffness(shot.rest.spring / factor, shot.rest.stiffen)
     if fall:
         _release(strands, shot, support + _perturbation(external_loads(shot, strands), locks), 1)
     moving = _release(strands, shot, support, FALL if fall else 1)

@@ -122,7 +122,7 @@ class Strands:
         points = np.ascontiguousarray(positions, np.float64)
         return self._core.energy(points, getattr(_core.Continuation, continuation), hessian)
 
-    def stiffness_to_stand(self, left: NDArray[np.float64], most: float) -> NDArray[np.float64]:
+    def stabilising_stiffness(self, left: NDArray[np.float64], most: float) -> NDArray[np.float64]:
         """The factors on bend and twist stiffness, at least 1, with which strands in equilibrium are stable.
 
         A strand is stable where the second derivative of its energy is positive in every direction.
@@ -130,7 +130,7 @@ class Strands:
               (count,)
         most: the largest factor; infinite where it does not suffice
         """
-        return self._core.stiffness_to_stand(np.ascontiguousarray(left, np.float64), most)
+        return self._core.stabilising_stiffness(np.ascontiguousarray(left, np.float64), most)
 
     def settle(
         self,

@@ -21,6 +21,11 @@ struct ClothReport {
 };
 inline constexpr int cloth_report_columns = sizeof(ClothReport) / sizeof(double);
 
+inline constexpr const char *cloth_report_names[] = {"newton",          "linear",      "cuts",        "residual",
+                                                     "linear_residual", "unconverged", "stretch",     "bend",
+                                                     "gravity",         "kinetic",     "max_stretch", "nan"};
+static_assert(sizeof(cloth_report_names) / sizeof(*cloth_report_names) == cloth_report_columns);
+
 class ClothBlock final : public Block {
 public:
     // `object` is its number in the scene, and `first` its first vertex.

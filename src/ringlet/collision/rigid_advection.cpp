@@ -13,7 +13,7 @@ RigidAdvection::RigidAdvection(const CollisionMesh &mesh)
 }
 
 double RigidAdvection::kept_distance(const RigidMotion &motion) {
-    return 0.5 * std::sqrt(std::max(0.0, 1.0 + motion.turn.trace()));
+    return 0.5 * std::sqrt(std::max(0.0, 1.0 + motion.rotation.trace()));
 }
 
 void RigidAdvection::begin(const Move &move, const RigidMotion &motion, View<int> rigid, View<unsigned char> changed,

@@ -6,7 +6,7 @@
 
 namespace ringlet {
 
-RigidMotion mean_motion(const std::vector<int> &vertices, View<Vec3> start, View<Vec3> end) {
+RigidMotion fit_rigid_motion(const std::vector<int> &vertices, View<Vec3> start, View<Vec3> end) {
     constexpr double regularisation = 1e-9; // of the spread: makes an undetermined rotation the identity
     RigidMotion motion;
     for (const int v : vertices)
@@ -22,18 +22,18 @@ RigidMotion mean_motion(const std::vector<int> &vertices, View<Vec3> start, View
     const Eigen::JacobiSVD<Mat3> svd(spread + regularisation * size * Mat3::Identity(),
                                      Eigen::ComputeFullU | Eigen::ComputeFullV);
     const double mirror = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
-    motion.turn = svd.matrixU() * Vec3(1.0, 1.0, mirror).asDiagonal() * svd.matrixV().transpose();
+    motion.rotation = svd.matrixU() * Vec3(1.0, 1.0, mirror).asDiagonal() * svd.matrixV().transpose();
     return motion;
 }
 
-RigidMotion common_motion(std::vector<int> vertices, View<Vec3> start, View<Vec3> end) {
+RigidMotion fit_rigid_motion_robust(std::vector<int> vertices, View<Vec3> start, View<Vec3> end) {
     constexpr int rounds = 4;
-    RigidMotion motion = mean_motion(vertices, start, end);
+    RigidMotion motion = fit_rigid_motion(vertices, start, end);
     for (int round = 0; round < rounds; ++round) {
         const auto residual2 = [&](int v) { return (end[v] - motion(start[v])).squaredNorm(); };
         const auto half = vertices.begin() + (vertices.size() + 1) / 2;
         std::nth_element(vertices.begin(), half, vertices.end(), [&](int v, int w) { return residual2(v) < residual2(w); });
-        motion = mean_motion({vertices.begin(), half}, start, end);
+        motion = fit_rigid_motion({vertices.begin(), half}, start, end);
     }
     return motion;
 }

@@ -64,7 +64,7 @@ std::vector<Patch> patches(const PrescribedMotion &motion) {
     for (int v = 0; v < count; ++v)
         if (nearest[v] >= 0) all[nearest[v]].vertices.push_back(first + v);
     std::erase_if(all, [](const Patch &patch) { return patch.vertices.empty(); });
-    for (Patch &patch : all) patch.motion = mean_motion(patch.vertices, motion.start, motion.target);
+    for (Patch &patch : all) patch.motion = fit_rigid_motion(patch.vertices, motion.start, motion.target);
     return all;
 }
 
@@ -82,7 +82,7 @@ RigidMotion motion_of_most(const SceneVertices &vertices, View<Vec3> from, View<
     const int end = vertices.strand_vertices() > 0 ? vertices.strand_vertices() : vertices.dynamic_vertices;
     std::vector<int> sample;
     for (int v = 0; v < end; v += 1 + end / scene_settings::motion_samples) sample.push_back(v);
-    return common_motion(sample, from, to);
+    return fit_rigid_motion_robust(sample, from, to);
 }
 
 } // namespace
@@ -133,14 +133,14 @@ std::vector<int> advect_rigidly(const PrescribedMotion &motion, View<int> offset
             continue;
         }
         if (const std::vector<int> own = prescribed(all, first, last); !own.empty()) {
-            move(first, last, -1, mean_motion(own, motion.start, motion.target));
+            move(first, last, -1, fit_rigid_motion(own, motion.start, motion.target));
             continue;
         }
         RigidMotion mean;
         mean.to = carriers.drift;
         if (const std::vector<int> any = prescribed(all, 0, all.count()); !any.empty())
-            mean = mean_motion(any, motion.start, motion.target);
-        mean.turn = Mat3::Identity(); // the rotation of others would throw it off
+            mean = fit_rigid_motion(any, motion.start, motion.target);
+        mean.rotation = Mat3::Identity(); // the rotation of others would throw it off
         move(first, last, -1, mean);
     }
     return rigid;

@@ -16,6 +16,12 @@ struct SceneReport {
 };
 inline constexpr int scene_report_columns = sizeof(SceneReport) / sizeof(double);
 
+inline constexpr const char *scene_report_names[] = {
+    "newton",     "cuts",       "residual",      "unconverged", "linear_iterations", "linear_residual",
+    "candidates", "contacts",   "closest",       "violations",  "zone_vertices",     "substeps",
+    "fraction",   "time_pairs", "time_assemble", "time_solve",  "time_search",       "time_filter"};
+static_assert(sizeof(scene_report_names) / sizeof(*scene_report_names) == scene_report_columns);
+
 class Stopwatch {
 public:
     explicit Stopwatch(double &sum) : sum_(sum), start_(std::chrono::steady_clock::now()) {}

@@ -1,6 +1,7 @@
 #include "ringlet/strand/state.h"
 
 #include "ringlet/rest/rest_shape.h"
+#include "ringlet/rest/stability.h"
 #include "ringlet/strand/lane_groups.h"
 #include "ringlet/strand/settings.h"
 
@@ -99,6 +100,23 @@ StrandArrays arrays_of(const StrandModel &model, StrandState &state, View<Vec3> 
     arrays.last_strains = state.last_strains.data()->data();
     arrays.last_dt = state.last_dt.data();
     return arrays;
+}
+
+std::vector<double> stabilising_stiffness(const StrandModel &model, const StrandState &state, View<double> left, double most) {
+    if (int(left.size()) != model.strand_count()) throw std::invalid_argument("strands: left does not fit the strands");
+    const StaticStrands strands{.offsets = model.offsets.data(),
+                                .held = model.held.data(),
+                                .positions = state.positions.data()->data(),
+                                .directors = state.directors.data()->data(),
+                                .rest_length = model.rest_length.data(),
+                                .rest_angle = model.rest_angle.data(),
+                                .rest_dihedral = model.rest_dihedral.data(),
+                                .stretch_stiffness = model.stretch_stiffness.data(),
+                                .bend_stiffness = model.bend_stiffness.data(),
+                                .twist_stiffness = model.twist_stiffness.data()};
+    std::vector<double> factors(model.strand_count());
+    stabilising_stiffness(model.strand_count(), strands, left.data(), most, factors.data());
+    return factors;
 }
 
 } // namespace ringlet

@@ -24,6 +24,10 @@ struct StrandState {
 // At rest at the given positions, with their normals and twist and with relaxed material frames.
 StrandState make_strand_state(const StrandModel &model, View<Vec3> positions);
 
+// Least factor, at most `most`, on the stiffness of bend and twist with which each strand is stable at rest in this state. The
+// fraction `left` of its stiffness remains in reserve. Infinite where `most` is not enough (rest/stability.h).
+std::vector<double> stabilising_stiffness(const StrandModel &model, const StrandState &state, View<double> left, double most);
+
 // Model and state as pointers for the kernels. All arguments must live as long as the result.
 StrandArrays arrays_of(const StrandModel &model, StrandState &state, View<Vec3> targets, View<Vec3> forces);
 

@@ -1,4 +1,4 @@
-#include "ringlet/rest/standing.h"
+#include "ringlet/rest/stability.h"
 
 #include "ringlet/energy/strand/frame.h"
 #include "ringlet/energy/strand/stretch.h"
@@ -46,7 +46,7 @@ struct Residual {
 // Two consecutive edges: the residuals of bend at the corner between them and of twist of the first.
 class Joint {
 public:
-    Joint(const StillStrands &strands, int i)
+    Joint(const StaticStrands &strands, int i)
         : strands_(strands), i_(i), e0_(edge(i), row(strands.directors, i), 0, 6),
           e1_(edge(i + 1), row(strands.directors, i + 1), 3, 7), corner_(corner(e0_.tangent, e1_.tangent)),
           turning_(turning(corner_, e0_.tangent, e1_.tangent)) {}
@@ -69,7 +69,7 @@ private:
         return {dot(turning_, axis).value - rest, g.first, g.second + by_turn * e1_.spin_of(), dual_constant(0.0), by_turn};
     }
 
-    const StillStrands &strands_;
+    const StaticStrands &strands_;
     int i_;
     Edge e0_, e1_;
     Corner<Dual> corner_;
@@ -80,7 +80,7 @@ private:
 // stiffness and the Hessian of stretch.
 class StabilityTest {
 public:
-    StabilityTest(const StillStrands &strands, int strand, double *room)
+    StabilityTest(const StaticStrands &strands, int strand, double *room)
         : strands_(strands), begin_(strands.offsets[strand]), count_(strands.offsets[strand + 1] - begin_),
           growing_(room, size()), fixed_(room + entries(), size()), sum_(room + 2 * entries(), size()) {}
 
@@ -189,16 +189,16 @@ private:
         return true;
     }
 
-    const StillStrands &strands_;
+    const StaticStrands &strands_;
     int begin_, count_;
     Matrix growing_, fixed_, sum_;
 };
 
 } // namespace
 
-size_t standing_room(int vertices) { return StabilityTest::room(vertices); }
+size_t stability_scratch(int vertices) { return StabilityTest::room(vertices); }
 
-double stiffness_to_stand(const StillStrands &strands, int strand, double left, double most, double *room) {
+double stabilising_stiffness(const StaticStrands &strands, int strand, double left, double most, double *room) {
     StabilityTest test(strands, strand, room);
     test.assemble();
     return test.least(left, most);

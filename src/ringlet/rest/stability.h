@@ -13,7 +13,7 @@
 namespace ringlet {
 
 // Strands in equilibrium, packed like Curves, one row per vertex; values of an edge are in the row of its first vertex.
-struct StillStrands {
+struct StaticStrands {
     const int *offsets;
     const unsigned char *held;
     const double *positions, *directors;
@@ -23,13 +23,13 @@ struct StillStrands {
 
 // clang-format off
 RINGLET_DECLARE(
-    size_t standing_room(int vertices); // doubles of scratch memory for the next function
-    double stiffness_to_stand(const StillStrands &strands, int strand, double left, double most, double *room);
+    size_t stability_scratch(int vertices); // doubles of scratch memory for the next function
+    double stabilising_stiffness(const StaticStrands &strands, int strand, double left, double most, double *room);
 )
 // clang-format on
 
 // Least factor on the stiffness, at least 1, with which each of `count` strands is stable with a reserve: in every direction at
 // least the fraction left[strand] (0 ≤ left < 1) of its material stiffness remains. Infinite if `most` is not enough.
-void stiffness_to_stand(int count, const StillStrands &strands, const double *left, double most, double *factors);
+void stabilising_stiffness(int count, const StaticStrands &strands, const double *left, double most, double *factors);
 
 } // namespace ringlet
