@@ -4,6 +4,9 @@
 #include "ringlet/contact/contact_set.h"
 #include "ringlet/math/types.h"
 
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
 #include <vector>
 
 namespace ringlet {
@@ -76,20 +79,25 @@ public:
     virtual void factor() = 0;
     virtual void solve(double *b) const = 0;
     virtual bool is_exact() const { return true; }
-    virtual void multiply_add(const double *p, double *q) const; // q += A p; of blocks that are not exact
+    virtual void multiply_add(const double *, double *) const { // q += A p: (p, q)
+        throw std::logic_error("block: one whose factor is not exact has to multiply");
+    }
 
-    // Largest fractions of the search direction that the linearisation is good for, a lane each.
-    virtual void max_step(const double *x, const double *direction, double *of_lanes) const;
+    // Largest fractions of the search direction from x that the linearisation is good for, a lane each: (x, direction,
+    // of_lanes).
+    virtual void max_step(const double *, const double *, double *of_lanes) const {
+        std::fill_n(of_lanes, objects_.size(), 1.0);
+    }
 
-    // Sets the bend of a path, so that x + straight + bend is the direction's end with edges that turn rather than stretch.
-    virtual void bend(const double *x, const double *straight, double *bend) const;
+    // Sets the bend of a path, so that at x + straight + bend edges have turned rather than stretched: (x, straight, bend).
+    virtual void bend(const double *, const double *, double *bend) const { std::fill_n(bend, unknowns(), 0.0); }
 
     // How hard a vertex resists a contact in a step of dt [N/m].
     virtual double contact_stiffness(int vertex, double dt) const = 0;
 
     // Whether a lane's object is stretched so far that it needs more iterations, and the distance that it settles to [m].
-    virtual bool is_stretched(int lane, View<Vec3> positions) const;
-    virtual double settled_distance(int lane) const;
+    virtual bool is_stretched(int, View<Vec3>) const { return false; }
+    virtual double settled_distance(int) const { return std::numeric_limits<double>::infinity(); }
 
     virtual bool is_parallel() const { return false; }           // in itself: large, one at a time
     virtual bool is_searched_by_planes() const { return false; } // see PlaneModel in line_search.h
