@@ -75,7 +75,9 @@ public:
         Eigen::Map<Eigen::VectorXd> all(b, rows_);
         all = factor_.solve(all).eval();
     }
-    double contact_stiffness(int, double dt) const override { return mass_ / (dt * dt) + stiffness_; }
+    void contact_stiffness(double dt, std::vector<double> &of_vertices) const override {
+        for (int v = objects_[0].first; v < objects_[0].end; ++v) of_vertices[v] = mass_ / (dt * dt) + stiffness_;
+    }
     bool commit(const double *x, double dt, const SolverEffort &) override {
         for (size_t i = 0; i < positions_.size(); ++i) {
             velocities_[i] = (at(x, i) - positions_[i]) / dt;

@@ -100,8 +100,9 @@ void ClothBlock::multiply_add(const double *p, double *q) const {
     Eigen::Map<Eigen::VectorXd>(q, Eigen::Index(size())) += product;
 }
 
-double ClothBlock::contact_stiffness(int vertex, double dt) const {
-    return model_.mass[vertex - first_] / (dt * dt) + elastic_[vertex - first_];
+void ClothBlock::contact_stiffness(double dt, std::vector<double> &of_vertices) const {
+    for (int v = 0; v < model_.vertex_count(); ++v)
+        if (!model_.held[v]) of_vertices[first_ + v] = model_.mass[v] / (dt * dt) + elastic_[v];
 }
 
 bool ClothBlock::commit(const double *x, double dt, const SolverEffort &effort) {

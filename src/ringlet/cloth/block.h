@@ -48,7 +48,7 @@ public:
     void solve(double *b) const override;
     bool is_exact() const override { return false; }
     void multiply_add(const double *p, double *q) const override;
-    double contact_stiffness(int vertex, double dt) const override;
+    void contact_stiffness(double dt, std::vector<double> &of_vertices) const override;
     bool is_parallel() const override { return true; }
     bool is_searched_by_planes() const override { return true; }
     bool commit(const double *x, double dt, const SolverEffort &effort) override;

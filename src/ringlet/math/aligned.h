@@ -26,7 +26,7 @@ private:
 
 class AlignedVector {
 public:
-    explicit AlignedVector(size_t size = 0) : memory_(size * sizeof(double) + 64), size_(size) { fill(0.0); }
+    explicit AlignedVector(size_t size = 0) : memory_(bytes(size)), size_(size) { fill(0.0); }
     double *data() { return static_cast<double *>(memory_.get()); }
     const double *data() const { return static_cast<const double *>(memory_.get()); }
     double &operator[](size_t i) { return data()[i]; }
@@ -35,12 +35,15 @@ public:
     void fill(double value) { std::fill(data(), data() + size_, value); }
 
     AlignedVector copy() const {
-        AlignedVector same(size_);
+        AlignedVector same(AlignedMemory(bytes(size_)), size_);
         std::copy_n(data(), size_, same.data());
         return same;
     }
 
 private:
+    AlignedVector(AlignedMemory memory, size_t size) : memory_(std::move(memory)), size_(size) {}
+    static size_t bytes(size_t size) { return size * sizeof(double) + 64; } // kernels may read behind the end
+
     AlignedMemory memory_;
     size_t size_;
 };

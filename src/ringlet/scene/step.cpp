@@ -65,19 +65,23 @@ Vec3 mean_velocity_of_cloths(const SceneData &scene) {
     return mass > 0.0 ? Vec3(momentum / mass) : Vec3(Vec3::Zero());
 }
 
-// Moves everything along with prescribed vertices; those of `targets` become where they have arrived.
-Advected advect_with_bodies(SceneData &scene, double dt, std::vector<Vec3> &targets, SceneReport &report) {
+// Moves everything along with prescribed vertices.
+Advected advect_with_bodies(SceneData &scene, double dt, View<Vec3> targets, SceneReport &report) {
     const SceneVertices &vertices = scene.vertices;
     std::vector<Vec3> end = scene.configuration.positions;
     for (int v = 0; v < vertices.count(); ++v)
         if (!vertices.mesh.moves[v]) end[v] = targets[v];
     const std::vector<int> bodies = bodies_of_cloths(scene);
     const Carriers carriers{scene.rooted_in, bodies, dt * mean_velocity_of_cloths(scene)};
-    const Advected advected = advect(vertices, end, View<int>(scene.model.offsets), carriers, scene.configuration, report);
-    if (advected.fraction < 1.0)
-        for (int v = 0; v < vertices.count(); ++v)
-            if (!vertices.mesh.moves[v]) targets[v] = scene.configuration.positions[v];
-    return advected;
+    return advect(vertices, end, View<int>(scene.model.offsets), carriers, scene.configuration, report);
+}
+
+// The targets with the prescribed vertices where they have arrived.
+std::vector<Vec3> targets_on_arrival(const SceneData &scene, View<Vec3> targets) {
+    std::vector<Vec3> arrived(targets.begin(), targets.end());
+    for (int v = 0; v < scene.vertices.count(); ++v)
+        if (!scene.vertices.mesh.moves[v]) arrived[v] = scene.configuration.positions[v];
+    return arrived;
 }
 
 // Moves to where Newton's method begins: the blocks' initial guess, limited.
@@ -125,10 +129,9 @@ void commit(SceneData &scene, View<Vec3> start, double dt, const SolverEffort &e
 // Takes a step of at most dt; returns the fraction of it that bodies leave room for.
 double take_substep(SceneData &scene, const SceneInput &input, const SceneStep &settings, double dt, SceneReport &report) {
     const std::vector<Vec3> start = scene.configuration.positions;
-    std::vector<Vec3> targets(input.targets.begin(), input.targets.end());
     begin_contact(scene, dt);
 
-    const Advected advected = advect_with_bodies(scene, dt, targets, report);
+    const Advected advected = advect_with_bodies(scene, dt, input.targets, report);
     dt *= advected.fraction;
     if (!(dt > scene_settings::no_step_left * settings.strands.dt)) { // no time for velocities: as if bodies had not moved
         scene.configuration.positions = start;
@@ -141,6 +144,9 @@ double take_substep(SceneData &scene, const SceneInput &input, const SceneStep &
                                   scene.stiffness.largest(), scene_settings::recovery_speed * dt);
     if (scene.penetration.count() < inside) scene.configuration.pairs.clear(); // of pairs that were exempt
 
+    std::vector<Vec3> arrived;
+    if (advected.fraction < 1.0) arrived = targets_on_arrival(scene, input.targets);
+    const View<Vec3> targets = arrived.empty() ? input.targets : View<Vec3>(arrived);
     const StrandStep &step = settings.strands;
     for (const auto &block : scene.strands) block->configure(step);
     {

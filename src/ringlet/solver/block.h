@@ -92,8 +92,8 @@ public:
     // Sets the bend of a path, so that at x + straight + bend edges have turned rather than stretched: (x, straight, bend).
     virtual void bend(const double *, const double *, double *bend) const { std::fill_n(bend, unknowns(), 0.0); }
 
-    // How hard a vertex resists a contact in a step of dt [N/m].
-    virtual double contact_stiffness(int vertex, double dt) const = 0;
+    // Sets how hard each free vertex resists a contact in a step of dt [N/m]; rows are those of the scene's vertices.
+    virtual void contact_stiffness(double dt, std::vector<double> &of_vertices) const = 0;
 
     // Whether a lane's object is stretched so far that it needs more iterations, and the distance that it settles to [m].
     virtual bool is_stretched(int, View<Vec3>) const { return false; }

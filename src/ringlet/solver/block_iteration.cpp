@@ -26,35 +26,36 @@ public:
     }
 
     void first_iterate(double *d) override {
-        for (std::vector<Vec3> *vector : {&r_, &z_, &Pp_, &load_}) vector->assign(end() - begin(), Vec3::Zero());
+        const int first = begin(), count = end() - first;
+        for (std::vector<Vec3> *vector : {&r_, &z_, &Pp_, &load_}) vector->assign(count, Vec3::Zero());
         std::copy(alone_.data(), alone_.data() + block_.size(), d);
-        for (int k = begin(); k < end(); ++k) state_.p[k] = at(d, k);
+        for (int k = 0; k < count; ++k) state_.p[first + k] = at(d, first + k);
     }
 
     void search() override {
-        for (int k = begin(); k < end(); ++k) state_.pPp[object(k)] = 0.0;
-        for (int k = begin(); k < end(); ++k) {
-            const double beta = state_.beta[object(k)];
-            Vec3 &p = state_.p[k], &Pp = Pp_[k - begin()];
-            p = z_[k - begin()] + beta * p;
-            Pp = r_[k - begin()] + beta * Pp;
-            state_.pPp[object(k)] += p.dot(Pp);
+        const int first = begin(), count = end() - first;
+        for (int k = 0; k < count; ++k) state_.pPp[object(first + k)] = 0.0;
+        for (int k = 0; k < count; ++k) {
+            const int of = object(first + k);
+            const Vec3 p = z_[k] + state_.beta[of] * state_.p[first + k], Pp = r_[k] + state_.beta[of] * Pp_[k];
+            state_.p[first + k] = p, Pp_[k] = Pp;
+            state_.pPp[of] += p.dot(Pp);
         }
     }
 
     void advance(double *) override {
-        if (begin() == end()) return;
-        for (int k = begin(); k < end(); ++k) {
-            const double alpha = state_.alpha[object(k)];
-            const Vec3 &Pp = Pp_[k - begin()];
-            load_[k - begin()] += alpha * Pp;
-            r_[k - begin()] -= alpha * (Pp + objective_.couplings.product(k));
+        const int first = begin(), count = end() - first;
+        if (count == 0) return;
+        for (int k = 0; k < count; ++k) {
+            const double alpha = state_.alpha[object(first + k)];
+            load_[k] += alpha * Pp_[k];
+            r_[k] -= alpha * (Pp_[k] + objective_.couplings.product(first + k));
         }
         const AlignedVector z = response(r_);
-        for (int k = begin(); k < end(); ++k) state_.rz[object(k)] = 0.0;
-        for (int k = begin(); k < end(); ++k) {
-            z_[k - begin()] = at(z.data(), k);
-            state_.rz[object(k)] += r_[k - begin()].dot(z_[k - begin()]);
+        for (int k = 0; k < count; ++k) state_.rz[object(first + k)] = 0.0;
+        for (int k = 0; k < count; ++k) {
+            z_[k] = at(z.data(), first + k);
+            state_.rz[object(first + k)] += r_[k].dot(z_[k]);
         }
     }
 
@@ -77,10 +78,11 @@ private:
     // P⁻¹ of a vector that is zero but at the points.
     AlignedVector response(const std::vector<Vec3> &at_points) const {
         AlignedVector b(block_.size());
-        for (int k = begin(); k < end(); ++k) {
-            const auto [first, stride] = objective_.blocks.slot(objective_.couplings.vertex(k));
-            double *to = b.data() + (first - objective_.blocks.begin(number_));
-            for (int i = 0; i < 3; ++i) to[size_t(i) * stride] = at_points[k - begin()][i];
+        double *const x = b.data() - objective_.blocks.begin(number_);
+        int point = begin();
+        for (const Vec3 &value : at_points) {
+            const auto [first, stride] = objective_.blocks.slot(objective_.couplings.vertex(point++));
+            for (int i = 0; i < 3; ++i) x[first + size_t(i) * stride] = value[i];
         }
         block_.solve(b.data());
         return b;

@@ -31,6 +31,8 @@ System LinearSystem::method(System wanted) const {
 void LinearSystem::assemble(const AlignedVector &x, const LinearSettings &settings) {
     const System how = method(settings.system);
     state_.resize(objective_.table.objects, objective_.couplings.count());
+    iterated_.resize(objective_.table.objects);
+    for (int object = 0; object < objective_.table.objects; ++object) iterated_[object] = !objective_.is_alone(object);
     objective_.linearise_contacts(x);
     whole_.reset();
     if (how == System::direct) { // before the blocks are factored in place
@@ -66,7 +68,7 @@ bool LinearSystem::solve_whole(const AssembledMatrix &whole, AlignedVector &dire
 std::vector<double> LinearSystem::of_clusters(const std::vector<double> &of_objects) const {
     std::vector<double> sums(of_objects.size(), 0.0);
     for (size_t object = 0; object < sums.size(); ++object)
-        if (!objective_.is_alone(int(object))) sums[objective_.couplings.clusters()[object]] += of_objects[object];
+        if (iterated_[object]) sums[objective_.couplings.clusters()[object]] += of_objects[object];
     return sums;
 }
 

@@ -51,6 +51,7 @@ private:
     IterationState state_;
     std::vector<std::unique_ptr<BlockIteration>> iterations_; // of the blocks
     std::vector<int> inexact_;                                // objects
+    std::vector<unsigned char> iterated_;                     // objects that their own factors do not solve alone
     std::optional<AssembledMatrix> whole_;                    // to be factored directly
 };
 

@@ -17,8 +17,8 @@ void Objective::begin_step(const BlockStep &step, View<Vec3> positions) {
 
 std::vector<double> Objective::contact_stiffness(double scale, double dt) const {
     std::vector<double> stiffness(table.count(), std::numeric_limits<double>::infinity());
-    for (int v = 0; v < table.dynamic_vertices; ++v)
-        if (table.mesh.moves[v]) stiffness[v] = scale * blocks.of_object(table.mesh.object[v]).contact_stiffness(v, dt);
+    for (int b = 0; b < blocks.count(); ++b) blocks[b].contact_stiffness(dt, stiffness);
+    for (int v = 0; v < table.dynamic_vertices; ++v) stiffness[v] *= scale;
     return stiffness;
 }
 

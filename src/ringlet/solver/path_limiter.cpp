@@ -23,18 +23,15 @@ std::vector<double> fractions_left(const VertexTable &table, View<Vec3> now, Vie
     return left;
 }
 
-// Where a path leads, with the apex of the triangles that hold it.
-PlannedMove end_of_path(const BlockSet &blocks, const VertexTable &table, View<Vec3> now, const AlignedVector &x,
-                        const SearchPath &path) {
-    PlannedMove move{{now.begin(), now.end()}, {now.begin(), now.end()}};
-    AlignedVector end = x.copy();
+// Sets where a path leads, with the apexes of the triangles that hold it; `end` is scratch memory, a copy of x.
+void set_end_of_path(const BlockSet &blocks, const VertexTable &table, View<Vec3> now, const AlignedVector &x,
+                     const SearchPath &path, AlignedVector &end, std::vector<Vec3> &to, std::vector<Vec3> &apex) {
     move_along(blocks, x, std::vector<double>(table.objects, 1.0), path, std::vector<unsigned char>(table.objects, 1), end);
     for (int v = 0; v < table.dynamic_vertices; ++v) {
         if (!table.mesh.moves[v]) continue;
-        move.to[v] = blocks.position(end, v);
-        move.apex[v] = now[v] + 0.5 * blocks.position(path.straight, v); // of a parabola, the tangents' intersection
+        to[v] = blocks.position(end, v);
+        apex[v] = now[v] + 0.5 * blocks.position(path.straight, v); // of a parabola, the tangents' intersection
     }
-    return move;
 }
 
 // The path of an object that was limited at some vertices becomes straight, each vertex with the fraction that it has left.
@@ -62,10 +59,14 @@ PlannedMove limit_path(const Objective &objective, Configuration &configuration,
     const VertexTable &table = objective.table;
     const BlockSet &blocks = objective.blocks;
     const std::vector<Vec3> &now = configuration.positions;
-    PlannedMove wanted = end_of_path(blocks, table, now, x, path), move = wanted;
+    AlignedVector end = x.copy();
+    std::vector<Vec3> wanted = now;
+    PlannedMove move{{}, now};
+    set_end_of_path(blocks, table, now, x, path, end, wanted, move.apex);
+    move.to = wanted;
     configuration.limit(move, {.whole = true, .lasts = lasts}, report);
 
-    std::vector<double> left = fractions_left(table, now, wanted.to, move.to);
+    std::vector<double> left = fractions_left(table, now, wanted, move.to);
     std::vector<unsigned char> straight(table.objects, 0), limited(table.objects, 0), changed(table.count(), 0);
     for (int object = 0; object < table.objects; ++object) {
         limited[object] = left[object] < 1.0;
@@ -78,14 +79,13 @@ PlannedMove limit_path(const Objective &objective, Configuration &configuration,
     straighten(blocks, straight, path);
     shorten(blocks, left, path);
 
-    wanted = end_of_path(blocks, table, now, x, path);
-    move.apex = wanted.apex;
+    set_end_of_path(blocks, table, now, x, path, end, wanted, move.apex);
     for (int v = 0; v < table.dynamic_vertices; ++v)
-        if (table.mesh.moves[v] && limited[table.mesh.object[v]]) changed[v] = 1, move.to[v] = wanted.to[v];
+        if (table.mesh.moves[v] && limited[table.mesh.object[v]]) changed[v] = 1, move.to[v] = wanted[v];
     configuration.limit_again(move, whole, changed, report);
-    refinement.add_move(now, wanted.to, move.to);
+    refinement.add_move(now, wanted, move.to);
     refinement.add_steps(left);
-    take_limited(blocks, table, now, wanted.to, move.to, path);
+    take_limited(blocks, table, now, wanted, move.to, path);
     return move;
 }
 

@@ -119,10 +119,15 @@ void StrandBlock::add_to(MatrixAssembly &matrix) const {
 }
 
 // Inertia, bending about a neighbour, and a tenth of the stretch: what a vertex resists by before the rest of the strand does.
-double StrandBlock::contact_stiffness(int v, double dt) const {
-    const double length = std::max(model_.rest_length[v], model_.rest_length[v - 1]);
-    const double bend = std::max(model_.bend_stiffness[v], model_.bend_stiffness[v - 1]) / (length * length);
-    return model_.mass[v] / (dt * dt) + bend + strand_settings::contact_stretch * model_.stretch_stiffness[v - 1];
+void StrandBlock::contact_stiffness(double dt, std::vector<double> &of_vertices) const {
+    for (const BlockObject &strand : objects_)
+        for (int v = strand.first; v < strand.end; ++v) {
+            if (model_.held[v]) continue;
+            const double length = std::max(model_.rest_length[v], model_.rest_length[v - 1]);
+            const double bend = std::max(model_.bend_stiffness[v], model_.bend_stiffness[v - 1]) / (length * length);
+            of_vertices[v] =
+                model_.mass[v] / (dt * dt) + bend + strand_settings::contact_stretch * model_.stretch_stiffness[v - 1];
+        }
 }
 
 bool StrandBlock::is_stretched(int lane, View<Vec3> positions) const {

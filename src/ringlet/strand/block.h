@@ -31,7 +31,7 @@ public:
     void solve(double *b) const override;
     void max_step(const double *x, const double *direction, double *of_lanes) const override;
     void bend(const double *x, const double *straight, double *bend) const override;
-    double contact_stiffness(int vertex, double dt) const override;
+    void contact_stiffness(double dt, std::vector<double> &of_vertices) const override;
     bool is_stretched(int lane, View<Vec3> positions) const override;
     double settled_distance(int lane) const override;
     bool commit(const double *x, double dt, const SolverEffort &effort) override;
