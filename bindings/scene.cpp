@@ -139,7 +139,7 @@ void bind_scene(nb::module_ &module) {
         .def_rw("creep_speed", &SceneContact::creep_speed)
         .def_rw("parting_speed", &SceneContact::parting_speed);
 
-    nb::class_<BodyModel>(module, "BodyModel", "A surface that moves as it is told.")
+    nb::class_<BodyModel>(module, "BodyModel", "A surface whose motion is prescribed.")
         .def(
             "__init__",
             [](BodyModel *self, Array3<double> rest, Array3<int> triangles, double thickness, int material) {
