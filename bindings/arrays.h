@@ -24,6 +24,11 @@ template <class Vector, class Scalar> View<Vector> vectors(const Array3<Scalar> 
     return {reinterpret_cast<const Vector *>(array.data()), array.shape(0)};
 }
 
+// Vectors of the core as a writable (n, 3) array; `owner` keeps them alive.
+inline nb::ndarray<nb::numpy, double> state_view(nb::handle owner, std::vector<Vec3> &values) {
+    return {values.data()->data(), {values.size(), 3}, owner};
+}
+
 inline TriangleMesh mesh_of(const Array3<double> &points, const Array3<int> &triangles) {
     const TriangleMesh mesh{vectors<Vec3>(points), vectors<Triangle>(triangles)};
     for (const Triangle &t : mesh.triangles)

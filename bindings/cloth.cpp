@@ -9,13 +9,10 @@ using namespace ringlet::bindings;
 
 namespace {
 
-nb::ndarray<nb::numpy, double> state_view(nb::handle self, std::vector<Vec3> &values) {
-    return {values.data()->data(), {values.size(), 3}, self};
-}
-
 // Elastic energy, gradient and dense Hessian at positions, whatever the cloth is doing.
 nb::tuple elastic(const Cloth &self, const Array3<double> &positions, bool hessian) {
     const size_t n = self.model->mass.size();
+    if (positions.shape(0) != n) throw std::invalid_argument("cloth: positions do not fit the model");
     ClothObjective objective(*self.model);
     std::vector<Vec3> gradient(n);
     BlockMatrix blocks = objective.pattern();

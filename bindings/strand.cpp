@@ -15,10 +15,6 @@ using namespace ringlet::bindings;
 
 namespace {
 
-nb::ndarray<nb::numpy, double> state_view(nb::handle self, std::vector<Vec3> &values) {
-    return {values.data()->data(), {values.size(), 3}, self};
-}
-
 template <auto column> nb::ndarray<nb::numpy, const double> column_view(nb::object self) {
     const std::vector<double> &values = nb::cast<Strands &>(self).model.*column;
     return {values.data(), {values.size()}, self};

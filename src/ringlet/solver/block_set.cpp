@@ -45,6 +45,13 @@ std::vector<unsigned char> BlockSet::active_objects() const {
     return objects;
 }
 
+std::vector<unsigned char> BlockSet::blocks_with(const std::vector<unsigned char> &objects) const {
+    std::vector<unsigned char> blocks(count(), 0);
+    for (size_t object = 0; object < objects.size(); ++object)
+        if (objects[object]) blocks[block_of(int(object))] = 1;
+    return blocks;
+}
+
 void BlockSet::gather(const AlignedVector &x, std::vector<Vec3> &positions) const {
 #pragma omp parallel for schedule(static)
     for (int v = 0; v < table_.dynamic_vertices; ++v) positions[v] = position(x, v);

@@ -31,6 +31,9 @@ public:
     bool is_active(int object) const { return active[block_of(object)] != 0; }
     std::vector<unsigned char> active_objects() const;
 
+    // The blocks that one of the marked objects is in.
+    std::vector<unsigned char> blocks_with(const std::vector<unsigned char> &objects) const;
+
     // Calls work(block) for the active ones: the small in parallel, forwards or backwards, then those that are parallel inside.
     template <class Work> void for_active(const Work &work, bool backwards = false) const {
         const int small = int(small_.size());

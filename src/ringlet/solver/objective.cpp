@@ -49,9 +49,7 @@ void Objective::find_planes(const std::vector<ContactPair> &pairs) {
 }
 
 void Objective::evaluate(const AlignedVector &x, const std::vector<unsigned char> &changed) {
-    std::vector<unsigned char> asked(blocks.count(), 0);
-    for (int object = 0; object < table.objects; ++object)
-        if (changed[object]) asked[blocks.block_of(object)] = 1;
+    const std::vector<unsigned char> asked = blocks.blocks_with(changed);
     blocks.for_active([&](int b) {
         if (!asked[b]) return;
         double energies[max_lanes] = {};
@@ -61,6 +59,12 @@ void Objective::evaluate(const AlignedVector &x, const std::vector<unsigned char
 #pragma omp parallel for schedule(static)
     for (int v = 0; v < table.dynamic_vertices; ++v)
         if (changed[table.mesh.object[v]]) positions_[v] = blocks.position(x, v);
+}
+
+std::vector<unsigned char> Objective::active_among(const std::vector<unsigned char> &objects) const {
+    std::vector<unsigned char> active = blocks.active_objects();
+    for (size_t object = 0; object < active.size(); ++object) active[object] &= objects[object] != 0;
+    return active;
 }
 
 void Objective::sum_energies(View<unsigned char> ignored, std::vector<double> &of_objects) const {
@@ -78,9 +82,7 @@ void Objective::energies_at_linearisation(std::vector<double> &of_objects) {
 void Objective::exact_energies(const AlignedVector &x, const ReachablePairs &pairs, View<double> traveled,
                                const std::vector<unsigned char> &changed, std::vector<double> &of_objects) {
     evaluate(x, changed);
-    std::vector<unsigned char> anew = blocks.active_objects();
-    for (size_t object = 0; object < anew.size(); ++object) anew[object] &= changed[object] != 0;
-    contact_energy_.exact(pairs, positions_, traveled, anew);
+    contact_energy_.exact(pairs, positions_, traveled, active_among(changed));
     sum_energies({}, of_objects);
 }
 
@@ -93,9 +95,7 @@ void Objective::linearised_energies_at_linearisation(View<unsigned char> ignored
 void Objective::linearised_energies(const AlignedVector &x, View<unsigned char> ignored,
                                     const std::vector<unsigned char> &changed, std::vector<double> &of_objects) {
     evaluate(x, changed);
-    std::vector<unsigned char> anew = blocks.active_objects();
-    for (size_t object = 0; object < anew.size(); ++object) anew[object] &= changed[object] != 0;
-    contact_energy_.linearised(positions_, by_planes_, ignored, anew);
+    contact_energy_.linearised(positions_, by_planes_, ignored, active_among(changed));
     sum_energies(ignored, of_objects);
 }
 

@@ -62,6 +62,7 @@ public:
 private:
     void find_planes(const std::vector<ContactPair> &pairs);
     void evaluate(const AlignedVector &x, const std::vector<unsigned char> &changed);
+    std::vector<unsigned char> active_among(const std::vector<unsigned char> &objects) const;
     void sum_energies(View<unsigned char> ignored, std::vector<double> &of_objects) const;
 
     std::vector<ContactValue> values_;

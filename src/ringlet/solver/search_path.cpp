@@ -56,9 +56,7 @@ void straighten(const BlockSet &blocks, const std::vector<unsigned char> &object
 
 void move_along(const BlockSet &blocks, const AlignedVector &x, const std::vector<double> &t, const SearchPath &path,
                 const std::vector<unsigned char> &changed, AlignedVector &to) {
-    std::vector<unsigned char> moves(blocks.count(), 0);
-    for (int object = 0; object < blocks.objects(); ++object)
-        if (changed[object]) moves[blocks.block_of(object)] = 1;
+    const std::vector<unsigned char> moves = blocks.blocks_with(changed);
     blocks.for_active([&](int b) {
         if (!moves[b]) return;
         double of_lanes[max_lanes] = {};
