@@ -21,10 +21,10 @@ def run(
     shot: str = "nod",
     locks: int = 1050,
     frames: int = 14,
-    newton: int = 3,
+    newton: int = 5,
     stiffness: str = "1,0.1",
     rest: str = "none",
-    linear_tolerance: float = 0.1,
+    linear_tolerance: float = 0.2,
 ) -> dict[str, Any]:
     """Simulates the first frames of an example shot without contact, and with contacts of each stiffness.
 

@@ -86,7 +86,7 @@ inline Pairs impacts(const CollisionMesh &mesh, PairCache &cache, const std::vec
             int i = 0;
             for (const int v : a) x[i] = start[v], p[i++] = end[v] - start[v];
             for (const int v : b) x[i] = start[v], p[i++] = end[v] - start[v];
-            const double kept = 0.5 * pair->d_hat;
+            const double kept = collision::impact_distance * pair->d_hat;
             const double time = pair->edge_edge ? edge_edge_toi(x, p, kept) : point_triangle_toi(x, p, kept);
             if (time <= 1.0) pairs.insert({pair->edge_edge, pair->primitive[0], pair->primitive[1]});
         });

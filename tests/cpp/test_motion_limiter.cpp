@@ -66,10 +66,35 @@ BOOST_AUTO_TEST_CASE(a_chain_of_strands_stops_in_one_round) {
     BOOST_TEST(report.rounds == 1);
     BOOST_TEST(report.fraction == 1.0);
     BOOST_TEST(crowd.least_separation(limited) > 1.0 - 1e-9);
-    const double fraction = (limited[3] - crowd.start[3]).norm() / 4.5e-3;
-    BOOST_TEST(fraction > 0.6);
-    for (int v = 3; v < 3 * strands; ++v) // each as a whole, and all by the same fraction
-        BOOST_TEST((limited[v] - crowd.start[v] - fraction * (crowd.end[v] - crowd.start[v])).norm() < 1e-12);
+    double last = 0.0;
+    for (int strand = 1; strand < strands; ++strand) { // each as a whole, up to the one before
+        const int first = 3 * strand;
+        const double fraction = (limited[first] - crowd.start[first]).norm() / (4.5e-3 * strand);
+        BOOST_TEST(fraction > 0.6);
+        BOOST_TEST(fraction > last - 1e-12);
+        for (int v = first; v < first + 3; ++v)
+            BOOST_TEST((limited[v] - crowd.start[v] - fraction * (crowd.end[v] - crowd.start[v])).norm() < 1e-12);
+        last = fraction;
+    }
+}
+
+// A strand that can hardly move stops those behind it only just before they reach it.
+BOOST_AUTO_TEST_CASE(a_strand_goes_up_to_one_that_has_stopped) {
+    constexpr int strands = 3;
+    constexpr double spacing = 6e-3;
+    Crowd crowd(strands, 0.02, 0.03, 0);
+    for (int v = 0; v < 3 * strands; ++v) {
+        const int strand = v / 3;
+        crowd.start[v] = crowd.mesh.rest[v] = {(strand == 0 ? spacing - 2.05e-3 : spacing * strand), 0.01 * (v % 3), 0.0};
+        crowd.end[v] = crowd.start[v] - Vec3(std::array{0.0, 5e-3, 9e-3}[strand], 0.0, 0.0);
+    }
+    std::vector<Vec3> limited;
+    crowd.limit(limited);
+    const auto moved = [&](int strand) { return (limited[3 * strand] - crowd.start[3 * strand]).norm(); };
+    BOOST_TEST(moved(1) < 2.05e-3);                    // stopped by the first
+    BOOST_TEST(moved(2) > 0.75 * (spacing + moved(1)));
+    BOOST_TEST(moved(2) < spacing + moved(1));
+    BOOST_TEST(crowd.least_separation(limited) > 1.0 - 1e-9);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

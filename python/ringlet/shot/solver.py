@@ -45,11 +45,11 @@ class Solver(Section):
         "them), together by conjugate gradients, or by factoring the whole; automatic: alone or together, as needed",
     )
     linear_tolerance: float = Field(
-        default=0.1,
+        default=0.2,
         gt=0,
         le=0.5,
-        description="what conjugate gradients leave of the linear system, as a part of what there was; the less, the "
-        "more hair moves that lies in hair: 0.02 for the last run",
+        description="error of the linear system's solution that conjugate gradients leave, relative, in the norm of "
+        "energy; 0.02 for the last run",
     )
     integrator: Literal["backward_euler", "bdf2"] = Field(
         default="backward_euler",

@@ -80,6 +80,11 @@ def _of_cloths(reports: list[list[dict[str, float]]], names: list[str]) -> dict[
     }
 
 
+def _kept(moved: float, left: float) -> float:
+    """The part of a frame's motion that its iterations have made, estimated from what is left of the last direction."""
+    return moved / (moved + max(left, 0.0)) if moved > 0.0 else 1.0
+
+
 def _of_contact(reports: list[dict[str, float]], penetrating: int) -> dict[str, Any]:
     """Over all substeps of a scene. It is solved as one, so its iterations replace those of the strands."""
 
@@ -103,6 +108,7 @@ def _of_contact(reports: list[dict[str, float]], penetrating: int) -> dict[str, 
             "zone_vertices": int(total("zone_vertices")),
             "excused": penetrating,
             "linear_iterations": int(total("linear_iterations")),
+            "motion_kept": _kept(total("moved"), total("left")),
             "fraction": min(report["fraction"] for report in reports),
             **{f"{name}_ms".removeprefix("time_"): 1e3 * total(name) for name in times},
         },

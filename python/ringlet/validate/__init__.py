@@ -10,6 +10,7 @@ from ringlet.validate import (
     hanging_helix,
     loose_waves,
     love,
+    nest,
     out_of_plane,
     plucked_coil,
     push,
@@ -31,6 +32,7 @@ _MODULES = (
     loose_waves,
     friction,
     push,
+    nest,
 )
 CASES: dict[str, Case] = {module.CASE.name: module.CASE for module in _MODULES}
 

@@ -109,7 +109,8 @@ void MotionLimiter::limit_strand(int strand, double fraction, std::vector<Event>
     }
 }
 
-// Of two strands with different fractions the larger one is first reduced to the smaller.
+// Of two strands with different fractions the one that goes farther stops just before it meets the other, and goes as far as
+// that one at least. With one fraction for both, the pair with the least room would stop all hair in contact with it.
 void MotionLimiter::add_event(const Impact &impact, std::vector<Event> &events) const {
     const auto [a, b] = strands_of(impact);
     if (a < 0 && b < 0) return;
@@ -117,7 +118,9 @@ void MotionLimiter::add_event(const Impact &impact, std::vector<Event> &events) 
     double fraction = 0.0;
     if (round_ < ccd::strand_rounds) {
         const bool differ = a >= 0 && b >= 0 && fraction_a != fraction_b;
-        fraction = differ ? std::min(fraction_a, fraction_b) : impact.toi * (a >= 0 ? fraction_a : fraction_b);
+        const auto [least, most] = std::minmax(fraction_a, fraction_b);
+        fraction =
+            differ ? std::max(least, ccd::before_impact * impact.toi * most) : impact.toi * (a >= 0 ? fraction_a : fraction_b);
     }
     events.push_back({fraction, a, b, fraction_a, fraction_b});
     std::push_heap(events.begin(), events.end(), std::greater<>());

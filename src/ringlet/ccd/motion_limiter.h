@@ -25,7 +25,7 @@ CcdReport limit_motion(const LimitMotionInput &input, PairCache &pairs, std::vec
                        std::vector<Vec3> *apex = nullptr);
 
 // One move of limit_motion(). The strands of an impact are scaled to its time, and one that then hits a strand with a smaller
-// fraction takes that fraction. Such chains are resolved within a round, event by event, the smallest fraction first. After
+// fraction stops before that. Such chains are resolved within a round, event by event, the smallest fraction first. After
 // some rounds strands with an impact rest, and two that rest have none.
 class MotionLimiter {
 public:

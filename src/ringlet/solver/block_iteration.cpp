@@ -9,8 +9,8 @@ namespace {
 // P p follows from P z = r by the recursion of p. The sum of α P p at the points stands for d until the end.
 class ExactIteration final : public BlockIteration {
 public:
-    ExactIteration(Objective &objective, int block, IterationState &state)
-        : objective_(objective), number_(block), block_(objective.blocks[block]), state_(state) {}
+    ExactIteration(Objective &objective, int block, IterationState &state, const CoarseSpace &coarse)
+        : objective_(objective), number_(block), block_(objective.blocks[block]), state_(state), coarse_(coarse) {}
 
     void start() override {
         block_.factor();
@@ -27,7 +27,7 @@ public:
 
     void first_iterate(double *d) override {
         const int first = begin(), count = end() - first;
-        for (std::vector<Vec3> *vector : {&r_, &z_, &Pp_, &load_}) vector->assign(count, Vec3::Zero());
+        for (std::vector<Vec3> *vector : {&r_, &Pz_, &Pp_, &load_}) vector->assign(count, Vec3::Zero());
         std::copy(alone_.data(), alone_.data() + block_.size(), d);
         for (int k = 0; k < count; ++k) state_.p[first + k] = at(d, first + k);
     }
@@ -37,7 +37,7 @@ public:
         for (int k = 0; k < count; ++k) state_.pPp[object(first + k)] = 0.0;
         for (int k = 0; k < count; ++k) {
             const int of = object(first + k);
-            const Vec3 p = z_[k] + state_.beta[of] * state_.p[first + k], Pp = r_[k] + state_.beta[of] * Pp_[k];
+            const Vec3 p = state_.z[first + k] + state_.beta[of] * state_.p[first + k], Pp = Pz_[k] + state_.beta[of] * Pp_[k];
             state_.p[first + k] = p, Pp_[k] = Pp;
             state_.pPp[of] += p.dot(Pp);
         }
@@ -52,14 +52,39 @@ public:
             r_[k] -= alpha * (Pp_[k] + objective_.couplings.product(first + k));
         }
         const AlignedVector z = response(r_);
-        for (int k = 0; k < count; ++k) state_.rz[object(first + k)] = 0.0;
         for (int k = 0; k < count; ++k) {
-            z_[k] = at(z.data(), first + k);
-            state_.rz[object(first + k)] += r_[k].dot(z_[k]);
+            state_.z[first + k] = at(z.data(), first + k);
+            Pz_[k] = r_[k];
+        }
+        sum_products();
+    }
+
+    Vec3 residual(int point) const override { return r_[point - begin()]; }
+
+    void correct() override {
+        for (int k = 0; k < end() - begin(); ++k) {
+            const bool any = coarse_.has(object(begin() + k));
+            state_.p[begin() + k] = any ? coarse_.motion(begin() + k) : Vec3::Zero();
+            Pp_[k] = any ? coarse_.force(begin() + k) : Vec3::Zero();
         }
     }
 
+    void deflate() override {
+        for (int k = 0; k < end() - begin(); ++k)
+            if (coarse_.has(object(begin() + k))) {
+                state_.z[begin() + k] += coarse_.motion(begin() + k);
+                Pz_[k] += coarse_.force(begin() + k);
+            }
+        sum_products();
+    }
+
+    void measure(const double *) override {
+        for (int k = 0; k < end() - begin(); ++k)
+            state_.bd[object(begin() + k)] += at(alone_.data(), begin() + k).dot(load_[k]);
+    }
+
     void finish(double *d) override {
+        if (load_.empty()) return;
         const AlignedVector more = response(load_);
         for (size_t i = 0; i < more.size(); ++i) d[i] += more[i];
     }
@@ -68,6 +93,11 @@ private:
     int begin() const { return objective_.couplings.begin(number_); }
     int end() const { return objective_.couplings.end(number_); }
     int object(int point) const { return objective_.couplings.object(point); }
+
+    void sum_products() {
+        for (int k = 0; k < end() - begin(); ++k) state_.rz[object(begin() + k)] = 0.0;
+        for (int k = 0; k < end() - begin(); ++k) state_.rz[object(begin() + k)] += r_[k].dot(state_.z[begin() + k]);
+    }
 
     Vec3 at(const double *x, int point) const {
         const auto [first, stride] = objective_.blocks.slot(objective_.couplings.vertex(point));
@@ -92,8 +122,9 @@ private:
     int number_;
     Block &block_;
     IterationState &state_;
-    AlignedVector alone_;                 // P⁻¹ b
-    std::vector<Vec3> r_, z_, Pp_, load_; // at the points
+    const CoarseSpace &coarse_;
+    AlignedVector alone_;                  // P⁻¹ b
+    std::vector<Vec3> r_, Pz_, Pp_, load_; // at the points
 };
 
 // Where P has only an incomplete factor, vectors are those of the whole block, and A p is formed. It has one lane.
@@ -127,6 +158,17 @@ public:
         precondition();
     }
 
+    Vec3 residual(int point) const override { return Eigen::Map<const Vec3>(&r_[entry(point)]); }
+    void correct() override {
+        for_points([&](int k, size_t) { state_.p[k].setZero(); });
+    }
+    void deflate() override {}
+
+    void measure(const double *d) override {
+        lane_dots(block_.gradient(), d, block_.rows(), 1, &state_.bd[object()]);
+        state_.bd[object()] *= -1.0;
+    }
+
     void finish(double *) override {}
 
 private:
@@ -136,12 +178,15 @@ private:
         z_ = r_;
         block_.solve(z_.data());
         lane_dots(r_.data(), z_.data(), block_.rows(), 1, &state_.rz[object()]);
+        for_points([&](int k, size_t i) { state_.z[k] = Eigen::Map<const Vec3>(&z_[i]); });
     }
 
     template <class Work> void for_points(const Work &work) const { // work(point, entry of the block's vectors)
         const Couplings &couplings = objective_.couplings;
-        for (int k = couplings.begin(number_); k < couplings.end(number_); ++k)
-            work(k, objective_.blocks.slot(couplings.vertex(k)).first - objective_.blocks.begin(number_));
+        for (int k = couplings.begin(number_); k < couplings.end(number_); ++k) work(k, entry(k));
+    }
+    size_t entry(int point) const { // of the block's vectors
+        return objective_.blocks.slot(objective_.couplings.vertex(point)).first - objective_.blocks.begin(number_);
     }
 
     Objective &objective_;
@@ -154,12 +199,13 @@ private:
 } // namespace
 
 void IterationState::resize(int objects, int points) {
-    for (std::vector<double> *numbers : {&rz, &pPp, &alpha, &beta}) numbers->assign(objects, 0.0);
-    p.assign(points, Vec3::Zero());
+    for (std::vector<double> *numbers : {&rz, &pPp, &alpha, &beta, &bd}) numbers->assign(objects, 0.0);
+    for (std::vector<Vec3> *vector : {&p, &z}) vector->assign(points, Vec3::Zero());
 }
 
-std::unique_ptr<BlockIteration> BlockIteration::make(Objective &objective, int block, IterationState &state) {
-    if (objective.blocks[block].is_exact()) return std::make_unique<ExactIteration>(objective, block, state);
+std::unique_ptr<BlockIteration> BlockIteration::make(Objective &objective, int block, IterationState &state,
+                                                     const CoarseSpace &coarse) {
+    if (objective.blocks[block].is_exact()) return std::make_unique<ExactIteration>(objective, block, state, coarse);
     return std::make_unique<InexactIteration>(objective, block, state);
 }
 

@@ -29,7 +29,6 @@ public:
     void multiply(View<Vec3> p, View<ContactValue> values, View<unsigned char> busy, std::vector<double> &of_clusters);
     Vec3 product(int point) const; // C p there
 
-private:
     struct Coupling {
         int contact, first;         // vertices of the first side
         std::array<int, 2> objects; // of the two sides
@@ -37,6 +36,9 @@ private:
         std::array<double, 4> weight;
         std::array<Vec3, 2> products; // on the two sides
     };
+    const std::vector<Coupling> &all() const { return couplings_; } // in the order of contacts
+
+private:
     void join_clusters(int objects);
     void number_points(const ContactSet &contacts, const VertexTable &table, const BlockSet &blocks);
 

@@ -89,8 +89,10 @@ LineSearchResult line_search(Objective &objective, SearchModel &model, const Sea
 
     std::vector<unsigned char> changed(objects, 1);
     AlignedVector trial = x.copy();
+    move_along(blocks, x, step, path, changed, trial);
+    std::transform(accepted.begin(), accepted.end(), changed.begin(), std::logical_not<>());
     for (int cut = 0;; ++cut) {
-        move_along(blocks, x, step, path, changed, trial);
+        if (cut > 0) move_along(blocks, x, step, path, changed, trial);
         model.at(trial, step, changed, energy);
         for (int o = 0; o < objects; ++o)
             bound[o] = RINGLET_SIMD::armijo_bound(start[o], slope[o], step[o], solver_settings::armijo);

@@ -23,7 +23,7 @@ struct CoupledError : std::invalid_argument {
 
 struct LinearSettings {
     System system = System::automatic;
-    double tolerance = 0.1;                                      // of the residual, relative, in the norm of the preconditioner
+    double tolerance = 0.2;                                      // of the error, relative, in the norm of energy
     int max_iterations = solver_settings::max_linear_iterations; // of conjugate gradients
 };
 
@@ -45,9 +45,11 @@ private:
     static bool solve_whole(const AssembledMatrix &whole, AlignedVector &direction, Result &result);
     Result conjugate_gradient(const LinearSettings &settings, AlignedVector &direction);
     void first_iterate(AlignedVector &direction);
+    void deflate(const std::vector<unsigned char> &busy);
     std::vector<double> of_clusters(const std::vector<double> &of_objects) const;
 
     Objective &objective_;
+    CoarseSpace coarse_;
     IterationState state_;
     std::vector<std::unique_ptr<BlockIteration>> iterations_; // of the blocks
     std::vector<int> inexact_;                                // objects

@@ -14,13 +14,20 @@ SolverEffort Newton::minimise(View<Vec3> start, const NewtonSettings &settings, 
                               SceneReport &report) {
     largest_.assign(table_.objects, 0.0);
     taken_.assign(table_.objects, 1.0);
-    Iteration iteration{0, false, SearchPath(objective_.blocks.size()), {}, {}};
+    Iteration iteration{0, false, false, SearchPath(objective_.blocks.size()), {}, {}, {}};
+    const std::vector<Vec3> initial = configuration_.positions;
     int &number = iteration.number;
     for (bool converged = false; !converged; ++number) {
         if (number >= settings.iterations + settings.extra) break;
         if (number >= settings.iterations && !refinement.activate_stretched(objective_.blocks, configuration_.positions)) break;
         find_contacts(start, report);
+        iteration.leads_into_contact = number == 0 && settings.iterations > 1;
         solve(settings, x, report, iteration);
+        if (number + 1 >= settings.iterations) {
+            iteration.aim = configuration_.positions;
+            for (int v = 0; v < table_.dynamic_vertices; ++v)
+                if (table_.mesh.moves[v]) iteration.aim[v] += objective_.blocks.position(iteration.path.straight, v);
+        }
         if (!choose_path(settings, x, report, iteration)) break;
         // In the first iteration a strand that could hardly move is limited near the pair alone, so that the rest of it
         // follows; later its shape counts.
@@ -34,8 +41,21 @@ SolverEffort Newton::minimise(View<Vec3> start, const NewtonSettings &settings, 
         refinement.end_iteration(settings.tolerance);
         accept(found, report, iteration, x);
     }
+    measure_left(initial, iteration, report);
     const double residual = largest_.empty() ? 0.0 : *std::max_element(largest_.begin(), largest_.end());
     return {double(number), report.cuts, residual, residual <= settings.tolerance};
+}
+
+// The part of what is left that goes on with the motion so far tells how much of that is missing; the rest is noise of contacts
+// that come and go.
+void Newton::measure_left(View<Vec3> initial, const Iteration &iteration, SceneReport &report) const {
+    if (iteration.aim.empty()) return; // converged before
+    for (int v = 0; v < table_.dynamic_vertices; ++v) {
+        if (!table_.mesh.moves[v]) continue;
+        const Vec3 moved = configuration_.positions[v] - initial[v];
+        report.moved += moved.squaredNorm();
+        report.left += moved.dot(iteration.aim[v] - configuration_.positions[v]);
+    }
 }
 
 void Newton::find_contacts(View<Vec3> start, SceneReport &report) {
@@ -74,7 +94,7 @@ bool Newton::choose_path(const NewtonSettings &settings, const AlignedVector &x,
     if (std::count(by_planes.begin(), by_planes.end(), 1) > 0) {
         const Stopwatch watch(report.time_search);
         shorten(blocks, step, path);
-        return search_by_planes(objective_, x, iteration.converged, path);
+        return iteration.leads_into_contact || search_by_planes(objective_, x, iteration.converged, path);
     }
     for (size_t o = 0; o < step.size() && iteration.number < settings.iterations; ++o)
         step[o] = std::min(step[o], std::max(solver_settings::step_growth * taken_[o], settings.strand_radius / largest_[o]));
@@ -86,10 +106,13 @@ bool Newton::choose_path(const NewtonSettings &settings, const AlignedVector &x,
 
 LineSearchResult Newton::search(const Iteration &iteration, SceneReport &report, AlignedVector &x) {
     const Stopwatch watch(report.time_search);
-    ExactModel model(objective_, configuration_.pairs.reachable_pairs(objective_.blocks.active_objects()));
-    const std::vector<unsigned char> all(table_.objects, 1);
-    const LineSearchResult found =
-        line_search(objective_, model, iteration.path, iteration.converged ? all : objective_.by_planes(), x);
+    std::vector<unsigned char> accepted = objective_.by_planes(), searched = objective_.blocks.active_objects();
+    for (int o = 0; o < table_.objects; ++o) {
+        accepted[o] |= iteration.converged || (iteration.leads_into_contact && objective_.couplings.couples(o));
+        searched[o] &= !accepted[o];
+    }
+    ExactModel model(objective_, configuration_.pairs.reachable_pairs(searched));
+    const LineSearchResult found = line_search(objective_, model, iteration.path, accepted, x);
     report.cuts += found.cuts;
     return found;
 }

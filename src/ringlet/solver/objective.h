@@ -54,6 +54,7 @@ public:
     // Gradient and P of a block at x.
     void assemble(int block, const AlignedVector &x);
     const std::vector<ContactValue> &contact_values() const { return values_; }
+    const Vec3 &position(int vertex) const { return positions_[vertex]; } // where energies or contacts were evaluated last
 
     // Lags the normal forces: those that the contacts' matrix gives at the end of the search direction, where all forces
     // balance. They are limited to what a small gap would give, since little of the direction may be taken.

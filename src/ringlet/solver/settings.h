@@ -3,6 +3,8 @@
 
 #include "ringlet/dynamics/armijo.h"
 
+#include <utility>
+
 namespace ringlet::solver_settings {
 
 // Motion bounds (collision/motion_bounds.h)
@@ -21,6 +23,18 @@ inline constexpr int max_object_cuts = 12; // then a cluster is cut as a whole
 
 // Lagged normal forces
 inline constexpr double closest_gap = 0.05; // of d̂: the largest force that is expected is that at this gap
+
+// Coarse space: smaller clusters have little joint motion and are solved as fast without; in a cluster whose objects touch more
+// than so many others on average, so many of them share their columns
+inline constexpr std::pair<double, size_t> aggregate_sizes[] = {{5.0, 4}, {12.0, 16}};
+inline constexpr size_t least_cluster = 4;       // objects
+inline constexpr double coarse_rounding = 1e-10; // of the largest diagonal entry of a block of E
+
+// Conjugate gradients
+inline constexpr int error_delay = 2; // iterations by which the estimate of the error comes late
+inline constexpr double loose = 0.05; // tolerance; from there on small clusters get so many iterations at most:
+inline constexpr int small_cluster_iterations = 8;
+inline constexpr double residual_share = 0.5; // of the tolerance: what is left of a residual, where that is what counts
 
 // Refinement
 inline constexpr double full_move = 0.9;      // a move that keeps less of its length was limited

@@ -1,0 +1,34 @@
+"""Benchmark of convergence: what coils in contact that can move together keep of their swing at few iterations."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ringlet.validate import nest
+
+from ringlet import Clock, Solver
+
+
+def run(rings: int = 3, newton: int = 5, linear_tolerance: float = 0.2, friction: float = 0.0) -> dict[str, Any]:
+    """Swings a nest of equal coils for 8 frames, at these settings and converged.
+
+    rings:            of coils about the one in the middle: 1, 3, 5 and 8 are 7, 37, 91 and 217 coils
+    newton:           iterations of every step
+    linear_tolerance: ``solver.linear_tolerance``
+    friction:         coefficient of friction of the coils
+    """
+    clock = Clock()
+    curves = nest.locks(nest.hexagon(rings), nest.WIDTH)
+    with clock("converged"):
+        expected = nest.tips(curves, nest.CONVERGED, friction)
+    with clock("few iterations"):
+        got = nest.tips(curves, Solver(newton=newton, linear_tolerance=linear_tolerance), friction)
+    return clock.result(
+        "nest",
+        {"rings": rings, "newton": newton, "linear_tolerance": linear_tolerance, "friction": friction},
+        per="few iterations",
+        warm_up=0,
+        coils=len(curves),
+        kept=nest.swing(got) / nest.swing(expected),
+        worst_tip_mm=1e3 * float(abs(got - expected).max()),
+    )

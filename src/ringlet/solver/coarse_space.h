@@ -1,0 +1,68 @@
+// The coarse space of the two-level preconditioner: the ways in which neighbouring strands move together.
+//
+// P answers for each side of a contact as if the other stood still, so P⁻¹ is wrong by most in joint motions. The
+// coarse space has what each strand would do if those that it touches moved: with Ψ a smooth motion of an object and D what
+// contacts do within its side, its columns are Z = P⁻¹ D Ψ. E = Zᵀ (P + C) Z is sparse: it couples objects that touch.
+#pragma once
+
+#include "ringlet/linear/block_cholesky.h"
+#include "ringlet/solver/objective.h"
+
+#include <vector>
+
+namespace ringlet {
+
+class CoarseSpace {
+public:
+    static constexpr int shapes = 2; // of motion along an object: t and t², t being 0 at its first vertex and 1 at its last
+    static constexpr int columns = 3 * shapes; // each in three directions
+    using Columns = Eigen::Matrix<double, 3, columns>;
+    using Coefficients = Eigen::Matrix<double, columns, 1>;
+
+    explicit CoarseSpace(const Objective &objective) : objective_(objective) {}
+
+    void clear();
+
+    // Begins anew with the contacts' Hessians: forces D Ψ at the points of exact blocks.
+    void find_forces();
+    // Z of a block that is factored.
+    void find_responses(int block);
+    // Factors E; where it is not positive definite, as rounding may have it, that cluster goes without.
+    void factor();
+
+    bool has(int object) const { return aggregate_[object] >= 0; }
+    bool has_cluster(int cluster) const { return !in_cluster_.empty() && in_cluster_[cluster]; }
+    bool empty() const { return aggregates_ == 0; }
+
+    // Sets the coefficients E⁻¹ Zᵀ r of a vector that is given at the points.
+    template <class AtPoint> void project(const AtPoint &r) {
+        coefficients_.assign(aggregates_, Coefficients::Zero());
+        for (int point = 0; point < int(forces_.size()); ++point)
+            if (const int a = aggregate_[objective_.couplings.object(point)]; a >= 0)
+                coefficients_[a].noalias() += responses_[point].transpose() * r(point);
+        solve();
+    }
+    Vec3 motion(int point) const { return responses_[point] * coefficients(point); } // Z y
+    Vec3 force(int point) const { return forces_[point] * coefficients(point); }     // P Z y
+
+private:
+    struct Cluster {
+        int first, end; // its aggregates
+        bool positive;  // definite
+        BlockCholesky<columns> factor;
+    };
+    const Coefficients &coefficients(int point) const { return coefficients_[aggregate_[objective_.couplings.object(point)]]; }
+    void aggregate();
+    void solve();
+    Columns side(const Couplings::Coupling &coupling, int side) const;
+
+    const Objective &objective_;
+    int aggregates_ = 0;
+    std::vector<int> aggregate_;            // per object; −1: it has no part
+    std::vector<unsigned char> in_cluster_; // per cluster, by its first object: whether some of it has
+    std::vector<Cluster> clusters_;
+    std::vector<Columns> forces_, responses_; // per point
+    std::vector<Coefficients> coefficients_;  // per aggregate
+};
+
+} // namespace ringlet
