@@ -68,6 +68,11 @@ def verdict(statistics: Statistics) -> list[str]:
         sentences.append(
             f"{_times(unconverged)} the scene ran out of Newton iterations before all of it was at rest in its step."
         )
+        if kept := [v for v in series(statistics, "contact.motion_kept") or [] if math.isfinite(v)]:
+            sentences.append(
+                f"Its hair keeps an estimated {100 * min(kept):.0f} % of its motion in the worst frame, "
+                f"{100 * median(kept):.0f} % in the median; more iterations (solver.newton) keep more."
+            )
     elif unconverged:
         sentences.append(
             f"{_times(unconverged)} a strand ran out of Newton iterations before it was at rest in its step."
