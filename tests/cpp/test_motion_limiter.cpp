@@ -91,7 +91,7 @@ BOOST_AUTO_TEST_CASE(a_strand_goes_up_to_one_that_has_stopped) {
     std::vector<Vec3> limited;
     crowd.limit(limited);
     const auto moved = [&](int strand) { return (limited[3 * strand] - crowd.start[3 * strand]).norm(); };
-    BOOST_TEST(moved(1) < 2.05e-3);                    // stopped by the first
+    BOOST_TEST(moved(1) < 2.05e-3); // stopped by the first
     BOOST_TEST(moved(2) > 0.75 * (spacing + moved(1)));
     BOOST_TEST(moved(2) < spacing + moved(1));
     BOOST_TEST(crowd.least_separation(limited) > 1.0 - 1e-9);

@@ -79,7 +79,7 @@ void CoarseSpace::aggregate() {
     };
     std::vector<std::pair<int, int>> pairs; // of objects
     for (const Couplings::Coupling &coupling : couplings.all())
-        pairs.push_back(std::minmax(coupling.objects[0], coupling.objects[1]));
+        pairs.emplace_back(std::minmax(coupling.objects[0], coupling.objects[1]));
     std::sort(pairs.begin(), pairs.end());
     pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
     std::vector<double> ends(objects, 0.0); // of pairs, per cluster
