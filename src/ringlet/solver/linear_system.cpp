@@ -112,7 +112,11 @@ LinearSystem::Result LinearSystem::conjugate_gradient(const LinearSettings &sett
     const double of_residual = std::pow(solver_settings::residual_share * settings.tolerance, 2);
     std::vector<double> small = of_clusters(state_.rz), small_of_inexact;
     for (double &of_cluster : small) of_cluster *= of_residual;
-    for (const int object : inexact_) small_of_inexact.push_back(of_residual * state_.rz[object]);
+    std::vector<unsigned char> has_inexact(objects, 0); // clusters
+    for (const int object : inexact_) {
+        small_of_inexact.push_back(of_residual * state_.rz[object]);
+        has_inexact[cluster[object]] = 1;
+    }
 
     // Loosely solved, a small cluster is not worth more; it would keep all others waiting.
     const int small_cluster_iterations =
@@ -136,8 +140,9 @@ LinearSystem::Result LinearSystem::conjugate_gradient(const LinearSettings &sett
         const std::vector<double> size = of_clusters(state_.bd);
         std::vector<unsigned char> goes_on(objects, 0); // clusters
         for (int c = 0; c < objects; ++c)
-            goes_on[c] = coarse_.has_cluster(c) ? rho[c] > 0.0 && !(error.squared(c) <= tolerance2 * size[c])
-                                                : rho[c] > small[c] && result.iterations < small_cluster_iterations;
+            goes_on[c] = coarse_.has_cluster(c) || has_inexact[c]
+                             ? rho[c] > 0.0 && !(error.squared(c) <= tolerance2 * size[c])
+                             : rho[c] > small[c] && result.iterations < small_cluster_iterations;
         for (size_t k = 0; k < inexact_.size(); ++k) {
             const int object = inexact_[k];
             const bool is_small = result.iterations > 0 && state_.rz[object] <= small_of_inexact[k];
