@@ -25,6 +25,7 @@ def run(
     stiffness: str = "1,0.1",
     rest: str = "none",
     linear_tolerance: float = 0.2,
+    converged: int = 0,
 ) -> dict[str, Any]:
     """Simulates the first frames of an example shot without contact, and with contacts of each stiffness.
 
@@ -35,6 +36,7 @@ def run(
     stiffness: values of ``contact.stiffness``, separated by commas
     rest:      ``rest.mode``
     linear_tolerance: ``solver.linear_tolerance``
+    converged: iterations of a run, solved to 0.02, that each run with contact is compared with; 0: of none
     """
     clock = Clock()
     played = read_shot(EXAMPLE / f"{shot}.shot.toml")
@@ -58,15 +60,26 @@ def run(
         for name in ("without", *str(stiffness).split(",")):
             changes = {"on": False} if name == "without" else {"stiffness": float(name)}
             update = {"contact": contact.model_copy(update=changes), "cloth": () if name == "without" else played.cloth}
+            shown = played.model_copy(update=update)
             with clock(f"stiffness {name}"):
-                cache = simulate(played.model_copy(update=update), groom, allow_stale=True)
-            each = moves(cache.points[1 - first :].astype(np.float64), groom.locks.offsets)
+                cache = simulate(shown, groom, allow_stale=True)
+            points = cache.points[1 - first :].astype(np.float64)
+            each = moves(points, groom.locks.offsets)
             results[name] = {
                 "moves_mm": statistics.mean(each),
                 "still": sum(distance < STILL for distance in each),
                 "cpu_ms": statistics.median(frame["cpu_ms"] for frame in cache.statistics),
                 "max_stretch": max(frame["max_stretch"] for frame in cache.statistics),
             }
+            if converged and name != "without":
+                with clock("converged"):
+                    solver = shown.solver.model_copy(update={"newton": converged, "linear_tolerance": 0.02})
+                    exact = simulate(shown.model_copy(update={"solver": solver}), groom, allow_stale=True)
+                expected = exact.points[1 - first :].astype(np.float64)
+                results[name] |= {
+                    "kept": statistics.mean(each) / statistics.mean(moves(expected, groom.locks.offsets)),
+                    "off_mm": 1e3 * float(np.linalg.norm(points - expected, axis=-1).mean()),
+                }
     return clock.result(
         "liveliness",
         {
@@ -77,6 +90,7 @@ def run(
             "stiffness": stiffness,
             "rest": rest,
             "linear_tolerance": linear_tolerance,
+            "converged": converged,
         },
         per="stiffness without",
         warm_up=0,

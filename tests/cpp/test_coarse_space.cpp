@@ -1,4 +1,4 @@
-// The two-level preconditioner: joint motion is found in few iterations, however many move together.
+// The two-level preconditioner: conjugate gradients take few iterations, however many objects share a motion.
 #include "spring_masses.h"
 
 #include <boost/test/unit_test.hpp>
@@ -9,8 +9,8 @@ namespace {
 
 constexpr int masses = 8;
 
-// Rows of masses above one another, closer than their activation distance, on springs that are soft beside the contacts. The
-// second stack, if any, is far away.
+// Stacks of rows of masses with gaps below the activation distance, on springs that are soft compared with the contacts. The
+// second stack, if any, is far from the first.
 SpringScene stacks(std::initializer_list<int> counts) {
     SpringScene scene;
     double place = 0.0;
@@ -59,8 +59,8 @@ BOOST_AUTO_TEST_CASE(iterations_do_not_grow_with_what_moves_together) {
 
 // As they have step lengths of their own, and stop by errors of their own.
 BOOST_AUTO_TEST_CASE(a_cluster_is_solved_to_the_same_bits_whatever_else_there_is) {
-    SpringScene alone = stacks({12}), beside = stacks({12, 40});
-    const AlignedVector one = solution(alone, {.tolerance = 0.01}), both = solution(beside, {.tolerance = 0.01});
+    SpringScene alone = stacks({12}), together = stacks({12, 40});
+    const AlignedVector one = solution(alone, {.tolerance = 0.01}), both = solution(together, {.tolerance = 0.01});
     BOOST_TEST(one.size() == size_t(12) * 3 * masses);
     BOOST_TEST(std::equal(one.data(), one.data() + one.size(), both.data()));
 }

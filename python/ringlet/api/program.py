@@ -13,9 +13,13 @@ from ringlet.data.settings import check_name
 from ringlet.data.share import share
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from ringlet.shot.solver import Solver
     from ringlet.validate import Row
 
-__all__ = ["run_bench", "run_validation", "schema", "use_threads"]
+__all__ = ["run_bench", "run_validation", "schema", "swing_nest", "use_threads"]
 
 
 def run_validation(cases: Sequence[str] | None = None, *, progress: Progress | None = None) -> list[Row]:
@@ -50,6 +54,17 @@ def run_bench(name: str, **params: Any) -> dict[str, Any]:
     for key in params:
         check_name(key, taken, f"bench {name}", "parameter")
     return module.run(**params)
+
+
+def swing_nest(rings: int, solver: Solver | None = None, friction: float = 0.0) -> NDArray[np.float64]:
+    """Swings a nest of coils in contact for 8 frames; returns the displacement of each tip [m], (frames, coils, 3).
+
+    rings:  of coils about the one in the middle: 1, 3, 5 and 8 are 7, 37, 91 and 217 coils
+    solver: of every step; by default one that converges, the reference for others
+    """
+    from ringlet.validate import nest
+
+    return nest.tips(nest.locks(nest.hexagon(rings), nest.WIDTH), solver or nest.CONVERGED, friction)
 
 
 def schema() -> dict[str, Any]:

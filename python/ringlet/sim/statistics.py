@@ -80,9 +80,12 @@ def _of_cloths(reports: list[list[dict[str, float]]], names: list[str]) -> dict[
     }
 
 
-def _kept(moved: float, left: float) -> float:
-    """The part of a frame's motion that its iterations have made, estimated from what is left of the last direction."""
-    return moved / (moved + max(left, 0.0)) if moved > 0.0 else 1.0
+def _kept(moved: float, left: float) -> float | None:
+    """The part of a frame's motion that its iterations have made, estimated from what is left of the last direction.
+
+    None where nothing has moved, which is no sign of having converged.
+    """
+    return moved / (moved + max(left, 0.0)) if moved > 0.0 else None
 
 
 def _of_contact(reports: list[dict[str, float]], penetrating: int) -> dict[str, Any]:

@@ -1,7 +1,7 @@
-"""A nest of equal locks in contact that can move together, beside one lock alone.
+"""A nest of equal locks in contact that can move together, compared with one lock alone.
 
-Each lock is the image of the next by a shift, so that nearly all of the motion is common. Straight locks that touch
-side by side across their motion have no reason to move apart: they swing exactly as one does. Coils of one phase lie
+Each lock is the image of the next by a shift, so that nearly all of the motion is common. Straight locks in contact,
+side by side across their motion, have no reason to move apart: they swing exactly as one does. Coils of one phase lie
 in one another and hold each other back where they hook in; their answer is the converged solution.
 """
 
@@ -24,6 +24,7 @@ RADIUS = 4e-4  # of contact [m]
 SPACING = 1.02  # of neighbours, in diameters
 FRAMES, DT = 8, 1 / 24  # [s]
 TILT = 0.6  # of the field from the locks [rad]
+GRAVITY = (9.81 * float(np.sin(TILT)), -9.81 * float(np.cos(TILT)), 0.0)  # [m/s²]
 LENGTH, POINTS = 0.1, 96  # of a lock [m]
 PITCH, WIDTH = 0.012, 0.008  # of a coil [m]
 CONVERGED = Solver(newton=100, linear_tolerance=1e-2)
@@ -48,21 +49,24 @@ def locks(places: NDArray[np.float64], width: float) -> Curves:
     return Curves.from_list([np.c_[x + w * np.cos(angle), y, z + w * np.sin(angle)] for x, z in places])
 
 
-def tips(curves: Curves, solver: Solver, friction: float = 0.0, contact: bool = True) -> NDArray[np.float64]:
+def scene(curves: Curves, friction: float = 0.0) -> Scene:
+    """The locks in contact, at rest and held by their roots."""
+    strands = Strands(curves, Material(bend_scale=6.0, damping=0.004, drag=0.0), 2)
+    return Scene(strands, contact=Contact(radius=RADIUS, friction=friction))
+
+
+def tips(curves: Curves, solver: Solver, friction: float = 0.0) -> NDArray[np.float64]:
     """Displacement of each tip by frame [m], in a field at an angle to the locks, shape (frames, n, 3)."""
-    strands = Strands(curves, Material(bend_scale=6.0, damping=0.004, drag=0.0), 2, {})
-    scene = Scene(strands, [], Contact(radius=RADIUS, friction=friction)) if contact else strands
-    gravity = (9.81 * float(np.sin(TILT)), -9.81 * float(np.cos(TILT)), 0.0)
-    ends = curves.offsets[1:] - 1
+    nest = scene(curves, friction)
     frames = []
     for _ in range(FRAMES):
-        scene.step(curves.points, DT, gravity=gravity, solver=solver)
-        frames.append((strands.positions - curves.points)[ends])
+        nest.step(curves.points, DT, gravity=GRAVITY, solver=solver)
+        frames.append((nest.strands.positions - curves.points)[curves.offsets[1:] - 1])
     return np.array(frames)
 
 
 def swing(ends: NDArray[np.float64]) -> float:
-    """How far the mean tip swings along the field's turn [m]."""
+    """Range of the mean tip's displacement across the locks [m]."""
     return float(np.ptp(ends[:, :, 0].mean(axis=1)))
 
 

@@ -1,4 +1,6 @@
-// Cholesky factor L Lᵀ of a sparse symmetric positive definite matrix of M × M blocks, ordered by minimum degree.
+// Cholesky factor L Lᵀ of a sparse symmetric positive definite matrix of M × M blocks, ordered by minimum degree. It is for
+// matrices that are analysed anew each time: DirectSolver, which works on scalars, takes a tenth of a frame of dense hair
+// longer.
 #pragma once
 
 #include "ringlet/math/types.h"

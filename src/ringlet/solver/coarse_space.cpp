@@ -1,6 +1,5 @@
 #include "ringlet/solver/coarse_space.h"
 
-#include "ringlet/math/lists.h"
 #include "ringlet/solver/settings.h"
 
 #include <Eigen/Eigenvalues>
@@ -15,6 +14,16 @@ std::array<double, CoarseSpace::shapes> shapes_at(int vertex, const BlockObject 
     const int last = object.end - 1 - object.first;
     const double t = last > 0 ? double(vertex - object.first) / last : 1.0;
     return {t, t * t};
+}
+
+// Adds a block to the entry there, or makes one.
+void add_entry(std::array<int, 2> at, const CoarseSpace::Factor::Block &block,
+               std::vector<CoarseSpace::Factor::Entry> &entries) {
+    const auto found = std::find_if(entries.begin(), entries.end(), [&](const auto &entry) { return entry.at == at; });
+    if (found == entries.end())
+        entries.push_back({at, block});
+    else
+        found->block += block;
 }
 
 // Halves a set of objects at the median along its longest axis, until no part has more than `most`.
@@ -111,6 +120,16 @@ void CoarseSpace::aggregate() {
         });
         clusters_.push_back({first, aggregates_, false, {}});
     }
+    points_ = {size_t(aggregates_), [&](const auto &add) {
+                   for (int point = 0; point < couplings.count(); ++point)
+                       if (const int a = aggregate_[couplings.object(point)]; a >= 0) add(a, point);
+               }};
+    couplings_ = {size_t(aggregates_), [&](const auto &add) {
+                      for (int k = 0; k < int(couplings.all().size()); ++k) {
+                          const auto [a, b] = couplings.all()[k].objects;
+                          if (has(a) && has(b)) add(std::max(aggregate_[a], aggregate_[b]), k);
+                      }
+                  }};
 }
 
 void CoarseSpace::find_responses(int number) {
@@ -134,63 +153,50 @@ void CoarseSpace::find_responses(int number) {
     }
 }
 
-CoarseSpace::Columns CoarseSpace::side(const Couplings::Coupling &coupling, int side) const {
+CoarseSpace::Columns CoarseSpace::response_of_side(const Couplings::Coupling &coupling, int side) const {
     Columns sum = Columns::Zero();
     for (int i = side == 0 ? 0 : coupling.first; i < (side == 0 ? coupling.first : 4); ++i)
         if (coupling.point[i] >= 0) sum += coupling.weight[i] * responses_[coupling.point[i]];
     return sum;
 }
 
-void CoarseSpace::factor() {
-    using Block = BlockCholesky<columns>::Block;
-    using Entry = BlockCholesky<columns>::Entry;
-    const Couplings &couplings = objective_.couplings;
-    const Lists<int> points(aggregates_, [&](const auto &add) {
-        for (int point = 0; point < couplings.count(); ++point)
-            if (const int a = aggregate_[couplings.object(point)]; a >= 0) add(a, point);
-    });
-    // A coupling belongs to the aggregate with the larger number.
-    const Lists<int> rows(aggregates_, [&](const auto &add) {
-        for (int k = 0; k < int(couplings.all().size()); ++k) {
-            const auto [a, b] = couplings.all()[k].objects;
-            if (has(a) && has(b)) add(std::max(aggregate_[a], aggregate_[b]), k);
-        }
-    });
-    std::vector<Block> diagonal(aggregates_, Block::Zero());
-    std::vector<std::vector<Entry>> below(aggregates_);
-#pragma omp parallel for schedule(dynamic, 16)
-    for (int a = 0; a < aggregates_; ++a) {
-        for (const int point : points.of(a)) diagonal[a].noalias() += forces_[point].transpose() * responses_[point];
-        for (const int k : rows.of(a)) {
-            const Couplings::Coupling &coupling = couplings.all()[k];
-            const int row_side = aggregate_[coupling.objects[0]] == a ? 0 : 1;
-            const int other = aggregate_[coupling.objects[1 - row_side]];
-            const Columns with = objective_.contact_values()[coupling.contact].hessian * side(coupling, 1 - row_side);
-            const Block product = side(coupling, row_side).transpose() * with;
-            if (other == a) {
-                diagonal[a] += product + product.transpose();
-                continue;
-            }
-            const auto found = std::find_if(below[a].begin(), below[a].end(), [&](const Entry &e) { return e.at[1] == other; });
-            if (found == below[a].end())
-                below[a].push_back({{a, other}, product});
-            else
-                found->block += product;
-        }
-        diagonal[a] = (0.5 * (diagonal[a] + diagonal[a].transpose())).eval();
-        const double largest = diagonal[a].diagonal().maxCoeff();
-        for (int i = 0; i < columns; ++i) // a motion that contacts do not resist has no column
-            diagonal[a](i, i) = largest > 0.0 ? diagonal[a](i, i) + solver_settings::coarse_rounding * largest : 1.0;
+// Block (a, b) of E sums what couplings do between the columns of aggregates a and b; a diagonal block has P in addition.
+CoarseSpace::Row CoarseSpace::row(int a) const {
+    Row row{Factor::Block::Zero(), {}};
+    Factor::Block &diagonal = row.diagonal;
+    for (const int point : points_.of(a)) diagonal.noalias() += forces_[point].transpose() * responses_[point];
+    for (const int k : couplings_.of(a)) {
+        const Couplings::Coupling &coupling = objective_.couplings.all()[k];
+        const int here = aggregate_[coupling.objects[0]] == a ? 0 : 1, b = aggregate_[coupling.objects[1 - here]];
+        const Columns force = objective_.contact_values()[coupling.contact].hessian * response_of_side(coupling, 1 - here);
+        const Factor::Block product = response_of_side(coupling, here).transpose() * force;
+        if (b == a)
+            diagonal += product + product.transpose();
+        else
+            add_entry({a, b}, product, row.below);
     }
+    diagonal = (0.5 * (diagonal + diagonal.transpose())).eval();
+    const double largest = diagonal.diagonal().maxCoeff();
+    for (int i = 0; i < columns; ++i) // a motion that contacts do not resist has no column
+        diagonal(i, i) = largest > 0.0 ? diagonal(i, i) + solver_settings::coarse_rounding * largest : 1.0;
+    return row;
+}
+
+void CoarseSpace::factor() {
+    std::vector<Row> rows(aggregates_);
+#pragma omp parallel for schedule(dynamic, 16)
+    for (int a = 0; a < aggregates_; ++a) rows[a] = row(a);
 #pragma omp parallel for schedule(dynamic) if (clusters_.size() > 1)
     for (int c = 0; c < int(clusters_.size()); ++c) {
         Cluster &cluster = clusters_[c];
-        const std::vector<Block> own(diagonal.begin() + cluster.first, diagonal.begin() + cluster.end);
-        std::vector<Entry> entries;
-        for (int a = cluster.first; a < cluster.end; ++a)
-            for (const Entry &entry : below[a])
-                entries.push_back({{entry.at[0] - cluster.first, entry.at[1] - cluster.first}, entry.block});
-        cluster.positive = cluster.factor.factor(own, entries);
+        std::vector<Factor::Block> diagonal;
+        std::vector<Factor::Entry> below;
+        for (int a = cluster.first; a < cluster.end; ++a) {
+            diagonal.push_back(rows[a].diagonal);
+            for (const auto &[at, block] : rows[a].below)
+                below.push_back({{at[0] - cluster.first, at[1] - cluster.first}, block});
+        }
+        cluster.is_definite = cluster.factor.factor(diagonal, below);
     }
 }
 
@@ -198,7 +204,7 @@ void CoarseSpace::solve() {
 #pragma omp parallel for schedule(dynamic) if (clusters_.size() > 1)
     for (int c = 0; c < int(clusters_.size()); ++c) {
         const Cluster &cluster = clusters_[c];
-        if (cluster.positive)
+        if (cluster.is_definite)
             cluster.factor.solve(coefficients_.data() + cluster.first);
         else
             std::fill(coefficients_.begin() + cluster.first, coefficients_.begin() + cluster.end, Coefficients::Zero());

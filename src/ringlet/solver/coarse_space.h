@@ -6,6 +6,7 @@
 #pragma once
 
 #include "ringlet/linear/block_cholesky.h"
+#include "ringlet/math/lists.h"
 #include "ringlet/solver/objective.h"
 
 #include <vector>
@@ -18,6 +19,7 @@ public:
     static constexpr int columns = 3 * shapes; // each in three directions
     using Columns = Eigen::Matrix<double, 3, columns>;
     using Coefficients = Eigen::Matrix<double, columns, 1>;
+    using Factor = BlockCholesky<columns>;
 
     explicit CoarseSpace(const Objective &objective) : objective_(objective) {}
 
@@ -27,19 +29,19 @@ public:
     void find_forces();
     // Z of a block that is factored.
     void find_responses(int block);
-    // Factors E; where it is not positive definite, as rounding may have it, that cluster goes without.
+    // Factors E, cluster by cluster.
     void factor();
 
     bool has(int object) const { return aggregate_[object] >= 0; }
-    bool has_cluster(int cluster) const { return !in_cluster_.empty() && in_cluster_[cluster]; }
+    bool covers(int cluster) const { return !in_cluster_.empty() && in_cluster_[cluster]; }
     bool empty() const { return aggregates_ == 0; }
 
     // Sets the coefficients E⁻¹ Zᵀ r of a vector that is given at the points.
     template <class AtPoint> void project(const AtPoint &r) {
         coefficients_.assign(aggregates_, Coefficients::Zero());
-        for (int point = 0; point < int(forces_.size()); ++point)
-            if (const int a = aggregate_[objective_.couplings.object(point)]; a >= 0)
-                coefficients_[a].noalias() += responses_[point].transpose() * r(point);
+#pragma omp parallel for schedule(static)
+        for (int a = 0; a < aggregates_; ++a)
+            for (const int point : points_.of(a)) coefficients_[a].noalias() += responses_[point].transpose() * r(point);
         solve();
     }
     Vec3 motion(int point) const { return responses_[point] * coefficients(point); } // Z y
@@ -47,20 +49,27 @@ public:
 
 private:
     struct Cluster {
-        int first, end; // its aggregates
-        bool positive;  // definite
-        BlockCholesky<columns> factor;
+        int first, end;   // its aggregates
+        bool is_definite; // otherwise rounding has made its part of E indefinite, and it goes without
+        Factor factor;
+    };
+    struct Row { // of E
+        Factor::Block diagonal;
+        std::vector<Factor::Entry> below; // left of the diagonal
     };
     const Coefficients &coefficients(int point) const { return coefficients_[aggregate_[objective_.couplings.object(point)]]; }
     void aggregate();
+    Row row(int aggregate) const;
     void solve();
-    Columns side(const Couplings::Coupling &coupling, int side) const;
+    Columns response_of_side(const Couplings::Coupling &coupling, int side) const;
 
     const Objective &objective_;
     int aggregates_ = 0;
     std::vector<int> aggregate_;            // per object; −1: it has no part
     std::vector<unsigned char> in_cluster_; // per cluster, by its first object: whether some of it has
     std::vector<Cluster> clusters_;
+    Lists<int> points_;                       // of each aggregate
+    Lists<int> couplings_;                    // of the aggregate with the larger number
     std::vector<Columns> forces_, responses_; // per point
     std::vector<Coefficients> coefficients_;  // per aggregate
 };

@@ -1,36 +1,13 @@
 #include "ringlet/solver/linear_system.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 namespace ringlet {
 namespace {
 
 double total(const std::vector<double> &values) { return std::accumulate(values.begin(), values.end(), 0.0); }
-
-// Per cluster, the square of the energy norm of the error some iterations ago: what the energy has fallen by since (Strakoš and
-// Tichý 2002). Infinite before that many iterations.
-class ErrorEstimate {
-public:
-    explicit ErrorEstimate(int clusters) {
-        falls_.fill(std::vector<double>(clusters, std::numeric_limits<double>::infinity()));
-    }
-    void add(int cluster, double fall) {
-        for (size_t k = falls_.size() - 1; k > 0; --k) falls_[k][cluster] = falls_[k - 1][cluster];
-        falls_[0][cluster] = fall;
-    }
-    double squared(int cluster) const {
-        double sum = 0.0;
-        for (const std::vector<double> &fall : falls_) sum += fall[cluster];
-        return sum;
-    }
-
-private:
-    std::array<std::vector<double>, solver_settings::error_delay> falls_;
-};
 
 } // namespace
 
@@ -99,33 +76,17 @@ std::vector<double> LinearSystem::of_clusters(const std::vector<double> &of_obje
     return sums;
 }
 
-// Clusters are independent systems, each with step lengths of its own, and each iterates until its own error is small, so that
-// what happens in one has no effect on another. Where few objects leave no room for joint motion, the residual tells as much.
-// An inexact block counts for little beside stiff strands: it iterates until its own residual is small too, and once at least,
-// since what pushed it may have been solved in the first iterate.
+// Clusters are independent systems, each with step lengths of its own.
 LinearSystem::Result LinearSystem::conjugate_gradient(const LinearSettings &settings, AlignedVector &direction) {
     const BlockSet &blocks = objective_.blocks;
     const int objects = objective_.table.objects;
-    const double tolerance2 = settings.tolerance * settings.tolerance;
     const std::vector<int> &cluster = objective_.couplings.clusters();
-    const std::vector<double> alone = state_.rz;
-    const double of_residual = std::pow(solver_settings::residual_share * settings.tolerance, 2);
-    std::vector<double> small = of_clusters(state_.rz), small_of_inexact;
-    for (double &of_cluster : small) of_cluster *= of_residual;
-    std::vector<unsigned char> has_inexact(objects, 0); // clusters
-    for (const int object : inexact_) {
-        small_of_inexact.push_back(of_residual * state_.rz[object]);
-        has_inexact[cluster[object]] = 1;
-    }
-
-    // Loosely solved, a small cluster is not worth more; it would keep all others waiting.
-    const int small_cluster_iterations =
-        settings.tolerance < solver_settings::loose ? settings.max_iterations : solver_settings::small_cluster_iterations;
+    const std::vector<double> alone = state_.rz, all = of_clusters(alone); // b · P⁻¹ b
+    ConvergenceTest test(settings.tolerance, objective_.couplings, coarse_, inexact_, all, alone);
 
     first_iterate(direction);
     std::vector<double> rho = of_clusters(state_.rz);
-    ErrorEstimate error(objects);
-    std::vector<unsigned char> busy(objects), busy_blocks(blocks.count(), 1);
+    std::vector<unsigned char> busy_blocks(blocks.count(), 1);
     Result result;
     const auto for_busy = [&](const auto &work, bool backwards = false) {
         blocks.for_active(
@@ -137,23 +98,10 @@ LinearSystem::Result LinearSystem::conjugate_gradient(const LinearSettings &sett
     for (;; ++result.iterations) {
         state_.bd = alone;
         for_busy([&](int b) { iterations_[b]->measure(blocks.of(b, direction)); });
-        const std::vector<double> size = of_clusters(state_.bd);
-        std::vector<unsigned char> goes_on(objects, 0); // clusters
-        for (int c = 0; c < objects; ++c)
-            goes_on[c] = coarse_.has_cluster(c) || has_inexact[c]
-                             ? rho[c] > 0.0 && !(error.squared(c) <= tolerance2 * size[c])
-                             : rho[c] > small[c] && result.iterations < small_cluster_iterations;
-        for (size_t k = 0; k < inexact_.size(); ++k) {
-            const int object = inexact_[k];
-            const bool is_small = result.iterations > 0 && state_.rz[object] <= small_of_inexact[k];
-            goes_on[cluster[object]] |= rho[cluster[object]] > 0.0 && !is_small;
-        }
-        busy_blocks.assign(blocks.count(), 0);
-        for (int object = 0; object < objects; ++object) {
-            busy[object] = goes_on[cluster[object]];
-            if (busy[object]) busy_blocks[blocks.block_of(object)] = 1;
-        }
+        const std::vector<double> decrease = of_clusters(state_.bd);
+        const std::vector<unsigned char> busy = test.unconverged({result.iterations, rho, decrease, state_.rz});
         if (std::count(busy.begin(), busy.end(), 1) == 0 || result.iterations == settings.max_iterations) break;
+        busy_blocks = blocks.blocks_with(busy);
 
         for_busy([&](int b) { iterations_[b]->search(); });
         std::vector<double> curvature = of_clusters(state_.pPp);
@@ -169,15 +117,15 @@ LinearSystem::Result LinearSystem::conjugate_gradient(const LinearSettings &sett
         const std::vector<double> next = of_clusters(state_.rz);
         for (int c = 0; c < objects; ++c)
             if (busy[c] && cluster[c] == c) {
-                error.add(c, alpha[c] * rho[c]);
+                test.add_decrease(c, alpha[c] * rho[c]);
                 beta[c] = next[c] / rho[c];
                 rho[c] = alpha[c] > 0.0 ? next[c] : 0.0;
             }
         for (int object = 0; object < objects; ++object) state_.beta[object] = busy[object] ? beta[cluster[object]] : 0.0;
     }
     blocks.for_active([&](int b) { iterations_[b]->finish(blocks.of(b, direction)); });
-    const double all = total(of_clusters(alone));
-    result.residual = all > 0.0 ? std::sqrt(std::max(total(rho), 0.0) / all) : 0.0;
+    const double before = total(all);
+    result.residual = before > 0.0 ? std::sqrt(std::max(total(rho), 0.0) / before) : 0.0;
     return result;
 }
 

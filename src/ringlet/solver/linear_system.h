@@ -5,7 +5,7 @@
 #include "ringlet/linear/direct.h"
 #include "ringlet/solver/assembled_matrix.h"
 #include "ringlet/solver/block_iteration.h"
-#include "ringlet/solver/settings.h"
+#include "ringlet/solver/convergence_test.h"
 
 #include <optional>
 #include <stdexcept>

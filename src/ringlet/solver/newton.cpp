@@ -23,11 +23,7 @@ SolverEffort Newton::minimise(View<Vec3> start, const NewtonSettings &settings, 
         find_contacts(start, report);
         iteration.leads_into_contact = number == 0 && settings.iterations > 1;
         solve(settings, x, report, iteration);
-        if (number + 1 >= settings.iterations) {
-            iteration.aim = configuration_.positions;
-            for (int v = 0; v < table_.dynamic_vertices; ++v)
-                if (table_.mesh.moves[v]) iteration.aim[v] += objective_.blocks.position(iteration.path.straight, v);
-        }
+        if (number < settings.iterations) set_full_step(iteration);
         if (!choose_path(settings, x, report, iteration)) break;
         // In the first iteration a strand that could hardly move is limited near the pair alone, so that the rest of it
         // follows; later its shape counts.
@@ -46,15 +42,22 @@ SolverEffort Newton::minimise(View<Vec3> start, const NewtonSettings &settings, 
     return {double(number), report.cuts, residual, residual <= settings.tolerance};
 }
 
+void Newton::set_full_step(Iteration &iteration) const {
+    iteration.full_step = configuration_.positions;
+#pragma omp parallel for schedule(static)
+    for (int v = 0; v < table_.dynamic_vertices; ++v)
+        if (table_.mesh.moves[v]) iteration.full_step[v] += objective_.blocks.position(iteration.path.straight, v);
+}
+
 // The part of what is left that goes on with the motion so far tells how much of that is missing; the rest is noise of contacts
 // that come and go.
 void Newton::measure_left(View<Vec3> initial, const Iteration &iteration, SceneReport &report) const {
-    if (iteration.aim.empty()) return; // converged before
+    if (iteration.full_step.empty()) return; // not a single iteration
     for (int v = 0; v < table_.dynamic_vertices; ++v) {
         if (!table_.mesh.moves[v]) continue;
         const Vec3 moved = configuration_.positions[v] - initial[v];
         report.moved += moved.squaredNorm();
-        report.left += moved.dot(iteration.aim[v] - configuration_.positions[v]);
+        report.left += moved.dot(iteration.full_step[v] - configuration_.positions[v]);
     }
 }
 

@@ -32,18 +32,19 @@ private:
         int number;
         bool converged; // no coordinate of the direction is above the tolerance
         // The first of several: most contacts on this path are new, and nothing in the direction knows their energies. Coupled
-        // objects take it unsearched; with a search, a few of these contacts would halve the motion of all hair that touches.
+        // objects take it without a search, in which a few of these contacts would halve the motion of their whole cluster.
         bool leads_into_contact;
         SearchPath path;
         std::vector<double> step; // per object: the fraction of the direction that is tried
         PlannedMove move;
-        std::vector<Vec3> aim; // of the last iteration: where the whole search direction leads
+        std::vector<Vec3> full_step; // of the last iteration of all objects: where its search direction leads
     };
 
     void find_contacts(View<Vec3> start, SceneReport &report);
     void solve(const NewtonSettings &settings, const AlignedVector &x, SceneReport &report, Iteration &iteration);
     bool choose_path(const NewtonSettings &settings, const AlignedVector &x, SceneReport &report, Iteration &iteration);
     LineSearchResult search(const Iteration &iteration, SceneReport &report, AlignedVector &x);
+    void set_full_step(Iteration &iteration) const;
     void measure_left(View<Vec3> initial, const Iteration &iteration, SceneReport &report) const;
     void accept(const LineSearchResult &found, SceneReport &report, Iteration &iteration, AlignedVector &x);
 

@@ -31,10 +31,10 @@ inline constexpr size_t least_cluster = 4;       // objects
 inline constexpr double coarse_rounding = 1e-10; // of the largest diagonal entry of a block of E
 
 // Conjugate gradients
-inline constexpr int error_delay = 2; // iterations by which the estimate of the error comes late
-inline constexpr double loose = 0.05; // tolerance; from there on small clusters get so many iterations at most:
-inline constexpr int small_cluster_iterations = 8;
-inline constexpr double residual_share = 0.5; // of the tolerance: what is left of a residual, where that is what counts
+inline constexpr int error_delay = 2;           // iterations by which the estimate of the error comes late
+inline constexpr double residual_share = 0.5;   // of the tolerance: what is left of a residual, where that decides
+inline constexpr double loose_tolerance = 0.05; // from there on, small clusters get at most
+inline constexpr int max_loose_iterations = 8;
 
 // Refinement
 inline constexpr double full_move = 0.9;      // a move that keeps less of its length was limited
