@@ -78,7 +78,7 @@ def onto_a_sphere(params: dict[str, Any]) -> dict[str, Any]:
         vertices=len(mesh.points),
         **{name: float(np.mean([report[name] for report in reports])) for name in names},
         closest=min(report["closest"] for report in reports),
-        fraction=min(report["fraction"] for report in reports),
+        lag=max(report["lag"] for report in reports),
         max_stretch=max(stretches),
         phases_wall_ms={name: 1e3 * float(np.mean([report[f"time_{name}"] for report in reports])) for name in PHASES},
     )

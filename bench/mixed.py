@@ -43,7 +43,7 @@ def run(
         warm_up=2,
         vertices=len(scene.positions),
         **solver_counts(reports, contacts),
-        fraction=min(contact["fraction"] for contact in contacts),
+        lag=max(contact["lag"] for contact in contacts),
         cloth_stretch=scene.cloth_reports[0]["max_stretch"],
     )
 

@@ -29,7 +29,8 @@ using Rows = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cp
 nb::dict memory_of(const SceneMemory &memory) {
     std::vector<uint64_t> overlapping, lagged, sticking;
     std::vector<double> overlaps, forces, friction, heights;
-    std::vector<int> penetrating;
+    std::vector<int> penetrating, lagging;
+    std::vector<Vec3> places;
     for (const auto &[pair, of] : std::map<uint64_t, InitialOverlap>(memory.overlaps.begin(), memory.overlaps.end())) {
         overlapping.push_back(pair);
         overlaps.insert(overlaps.end(), {of.gap, of.force, of.activation});
@@ -46,6 +47,10 @@ nb::dict memory_of(const SceneMemory &memory) {
     for (const auto &[vertex, height] : memory.penetrations) {
         penetrating.push_back(vertex);
         heights.push_back(height);
+    }
+    for (const auto &[vertex, place] : memory.lagging) {
+        lagging.push_back(vertex);
+        places.push_back(place);
     }
     nb::dict arrays;
     const auto add = [&]<class Scalar>(const char *name, std::vector<Scalar> values, size_t columns) {
@@ -64,6 +69,8 @@ nb::dict memory_of(const SceneMemory &memory) {
     add("friction_values", std::move(friction), values_of_friction);
     add("penetrating_vertices", std::move(penetrating), 1);
     add("penetrating_heights", std::move(heights), 1);
+    add("lagging_vertices", std::move(lagging), 1);
+    arrays["lagging_places"] = to_numpy<double>(std::move(places), {memory.lagging.size(), 3});
     add("touched", memory.touched, 1);
     return arrays;
 }
@@ -92,6 +99,10 @@ SceneMemory memory_from(const nb::dict &arrays) {
     memory.bodies = copied<Vec3, double>(nb::cast<Array3<double>>(arrays["bodies"]));
     memory.loads = list("loads", 0.0);
     memory.touched = list("touched", 0);
+    const std::vector<int> lagging = list("lagging_vertices", 0);
+    const std::vector<Vec3> places = copied<Vec3, double>(nb::cast<Array3<double>>(arrays["lagging_places"]));
+    if (lagging.size() != places.size()) throw std::invalid_argument("scene: what is to be recalled does not fit together");
+    for (size_t k = 0; k < places.size(); ++k) memory.lagging.emplace_back(lagging[k], places[k]);
     for (size_t k = 0; k < overlapping.size(); ++k) {
         const double *values = overlaps.data() + values_of_overlap * k;
         memory.overlaps[overlapping[k]] = {values[0], values[1], values[2]};
@@ -201,6 +212,14 @@ void bind_scene(nb::module_ &module) {
             "vertices"_a, "body"_a,
             "Exempts vertices of strands, shape (k,) int32, from contact with a body until they have come out of it.")
         .def_prop_ro("penetrating", &Scene::penetrating, "Number of vertices that are still exempt.")
+        .def_prop_ro(
+            "coincident",
+            [](const Scene &self) {
+                std::vector<int> vertices;
+                for (const auto &[a, b] : self.coincident()) vertices.insert(vertices.end(), {a, b});
+                return to_numpy<int>(std::move(vertices), {self.coincident().size(), 2});
+            },
+            nb::rv_policy::automatic, "A vertex of each of the two primitives of exempt coincident pairs, shape (k, 2).")
         .def("place", &Scene::place, "Takes the positions of strands and cloths that were placed since the last step.")
         .def_prop_ro(
             "memory", [](const Scene &self) { return memory_of(self.memory()); },

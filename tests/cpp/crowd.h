@@ -3,6 +3,7 @@
 
 #include "random.h"
 #include "ringlet/ccd/impact_zones.h"
+#include "ringlet/ccd/local_truncation.h"
 #include "ringlet/ccd/motion_limiter.h"
 
 namespace ringlet {
@@ -47,11 +48,10 @@ struct Crowd {
     CcdReport resolve(std::vector<Vec3> &resolved) const {
         PairCache pairs(mesh);
         resolved = end;
-        return resolve_impact_zones({.connected = connected(),
-                                     .start = start,
-                                     .mass = View<double>(mass),
-                                     .advect = [](int, const Vec3 &point) { return point; }},
-                                    pairs, resolved);
+        AdvectedMove move(connected(), pairs, start, resolved, {}, {});
+        resolve_impact_zones({View<double>(mass), [](int, const Vec3 &point) { return point; }}, move);
+        truncate_locally(move);
+        return move.report();
     }
 
     // Limits a move; then every third strand is shortened further, and the rest of the move is limited again.

@@ -1,5 +1,5 @@
 // Advection with bodies.
-#include "ringlet/scene/advection.h"
+#include "ringlet/scene/space_map.h"
 
 #include <Eigen/Geometry>
 #include <boost/test/unit_test.hpp>
@@ -41,7 +41,8 @@ BOOST_AUTO_TEST_CASE(space_moves_rigidly_with_bodies_that_share_a_motion) {
     const Eigen::Isometry3d motion = Eigen::Translation3d(0.3, -0.1, 0.2) * Eigen::AngleAxisd(0.4, Vec3(1, 2, 3).normalized());
     std::vector<Vec3> target = start, to = start;
     for (size_t v = points.size(); v < target.size(); ++v) target[v] = motion * target[v];
-    advect_with_space({all, start, target}, to);
+    const SpaceMap map({all, start, start, target});
+    for (size_t v = 0; v < points.size(); ++v) to[v] = map(start[v]);
     for (size_t v = 0; v < points.size(); ++v) BOOST_TEST((to[v] - motion * points[v]).norm() < 1e-9);
 }
 
@@ -52,7 +53,8 @@ BOOST_AUTO_TEST_CASE(space_between_parting_bodies_stretches_in_order) {
     const SceneVertices all = between_two_cubes(points, start);
     std::vector<Vec3> target = start, to = start;
     for (int v = all.bodies[1]; v < all.bodies[2]; ++v) target[v][0] += 0.04;
-    advect_with_space({all, start, target}, to);
+    const SpaceMap map({all, start, start, target});
+    for (size_t v = 0; v < points.size(); ++v) to[v] = map(start[v]);
     for (size_t k = 1; k < points.size(); ++k) BOOST_TEST(to[k][0] > to[k - 1][0]);
     BOOST_TEST(std::abs(to.front()[0] - points.front()[0]) < 1e-4);
     BOOST_TEST(std::abs(to[points.size() - 1][0] - points.back()[0] - 0.04) < 1e-4);

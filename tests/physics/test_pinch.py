@@ -1,34 +1,45 @@
-"""Pinched hair: bodies that close on it cut steps short, and the hair stays calm."""
+"""Pinched hair: what bodies close on stops alone, is stretched little and recovers; all else moves as ever."""
 
 import numpy as np
-from coils import helix
-from ringlet.data.curves import Curves
-from ringlet.shot.contact import Contact
-from ringlet.shot.material import Material
-from ringlet.shot.solver import Solver
-from ringlet.sim.obstacle import Body
-from ringlet.sim.scene import Scene
-from ringlet.sim.strands import Strands
-from surfaces import sphere
-
-FRAME = 1 / 24
-DOWN = (0.0, -9.81, 0.0)
-CLOSING = 4e-3  # of each jaw in a frame [m]
+import pytest
+from pinches import NEAR, ball, coil, jaws, shaken
 
 
 def test_coils_between_closing_jaws_are_neither_stretched_nor_thrown():
-    """A substep has one length for inertia, targets and velocities, however short the bodies make it."""
-    curves = Curves.from_list([helix(60) + [0.012 * k, 0.0, 0.0] for k in range(4)])
-    strands = Strands(curves, Material(), 4)
-    points, triangles = sphere(0.03, 10, 16)
-    jaws = [points + [0.018, -0.015, side * 0.045] for side in (1.0, -1.0)]
-    scene = Scene(strands, [Body(jaw, triangles) for jaw in jaws], Contact(radius=5e-4))
-    substeps = []
-    for frame in range(1, 25):
-        ends = [jaw - [0.0, 0.0, side * CLOSING * frame] for jaw, side in zip(jaws, (1.0, -1.0), strict=True)]
-        contact, report = scene.step(None, FRAME, bodies=ends, gravity=DOWN, solver=Solver(newton=3))
-        substeps.append(contact["substeps"])
-        assert report["nan"].sum() == 0
-        assert report["max_stretch"].max() < 0.1
-        assert np.abs(strands.velocities).max() < 3.0
-    assert max(substeps) > 1  # the jaws left no way out
+    """The jaws wait where the coils leave them no room."""
+    played = jaws()
+    assert played.crossings == 0
+    assert max(played.lag) > 1e-3
+    assert max(played.stretch) < 0.1
+    assert max(played.speed) < 3.0
+
+
+@pytest.fixture(scope="module")
+def without_ball():
+    return ball(None)
+
+
+@pytest.mark.parametrize("moves", ["with the head", "by itself"])
+def test_a_pinch_changes_no_bit_of_hair_away_from_it(moves, without_ball):
+    """A ball goes 5 cm into a head through the hair between them, and leaves."""
+    played = ball(moves)
+    pinched, free = (np.array(of.positions).reshape(len(of.positions), 2 * NEAR, -1) for of in (played, without_ball))
+    assert played.crossings == 0
+    assert max(without_ball.lag) == 0.0 and max(played.lag) > 5e-3
+    assert np.array_equal(pinched[:, NEAR:], free[:, NEAR:])
+    assert np.abs(pinched[:, :NEAR] - free[:, :NEAR]).max() > 1e-2
+    assert max(played.stretch) < 0.5
+    assert played.lag[-1] == 0.0 and played.stretch[-1] < 0.05
+
+
+def test_locks_that_coincide_move_like_one_and_change_no_bit_of_others():
+    """A pair without a distance has no direction to part in: it is exempt, and reported."""
+    others = [coil(0.05 * k, 0.05) for k in range(4)]
+    together, scene = shaken([*others, coil(0.5, 0.5), coil(0.5, 0.5)])
+    assert len(scene.coincident) > 0
+    together, alone, lone = (
+        np.array(of.positions) for of in (together, shaken(others)[0], shaken([coil(0.5, 0.5)])[0])
+    )
+    assert np.array_equal(together[:, :160], alone)
+    assert np.ptp(lone[:, :, 0], axis=0).max() > 1e-3
+    assert np.array_equal(together[:, 160:200], lone) and np.array_equal(together[:, 200:], lone)

@@ -13,7 +13,7 @@ from PIL import Image
 from ringlet.data.errors import UserError
 from ringlet.report import Machine, MadeFile, Picture, RunReport, Stage, write_report
 from ringlet.report.charts import line_chart, nice_ticks
-from ringlet.report.findings import explain_slowest, explain_worst, verdict
+from ringlet.report.findings import explain_lag, explain_slowest, explain_worst, verdict
 from ringlet.report.model import plain
 
 
@@ -165,3 +165,21 @@ def test_the_slowest_frame_is_explained_by_its_excess_iterations() -> None:
     assert sentence.startswith("Frame 3 took longest, 0.90 s; half of the frames took 0.02 s or less")
     assert "Newton iterations 7.5 instead of 2.5" in sentence and "cut short" not in sentence
     assert explain_slowest(many[:2]) is None and explain_slowest([{"frame": 1.0}] * 5) is None
+
+
+def test_a_body_that_lags_its_animation_is_the_first_thing_reported() -> None:
+    """Nor does the report then say that nothing passed through anything."""
+    statistics = frames()
+    for frame in statistics:
+        frame["contact"] = {"violations": 5, "lag": 0.0}
+    assert explain_lag(statistics) is None
+    assert any(sentence.startswith("Nothing passed through anything") for sentence in verdict(statistics))
+    statistics[2]["contact"]["lagging"] = [{"what": "hand", "distance": 2e-3, "locks": [7]}]
+    statistics[3]["contact"]["lagging"] = [{"what": "hand", "distance": 12.5e-3, "locks": [7, 8, 9, 12]}]
+    sentences = verdict(statistics)
+    assert sentences[0] == explain_lag(statistics)
+    assert sentences[0] == (
+        "hand could not arrive in 2 frames, the first of them 3: hand lagged by 12.5 mm in frame 4 by 4 locks "
+        "(7, 8, 9, …); leave it more room, or raise solver.substeps."
+    )
+    assert not any("Nothing passed through anything" in sentence for sentence in sentences)

@@ -62,9 +62,30 @@ def test_every_frame_has_contact_statistics():
     assert max(frame["contacts"] for frame in contacts) > 0
     for frame in contacts:
         assert frame["candidates"] >= frame["contacts"]
-        assert frame["fraction"] == 1.0 and frame["excused"] == 0
+        assert frame["lag"] == 0.0 and frame["excused"] == 0
         assert frame["contacts"] == 0 or 0 < frame["closest"] < 1.5e-3
         assert all(frame[f"{phase}_ms"] >= 0 for phase in ("pairs", "assemble", "solve", "search", "filter"))
+
+
+def test_a_ball_that_presses_a_lock_to_the_floor_is_reported_with_the_lock(tmp_path):
+    """In the statistics, and in the cache as a primvar of each lock; without it there is neither."""
+    press, frames = ball(0.012, (0.015, 0.04, 0.0), "press"), np.arange(1.0, 13.0)  # above lock 11
+    sink = Clip(frames, np.array([press.points + [0, -0.004 * (f - 1), 0] for f in frames]), 24.0)
+    made, obstacles = groom(apart=0.03), [Obstacle(floor(), still(floor())), Obstacle(press, sink)]
+    cache = simulated(made=made, obstacles=obstacles)
+    lagging = [frame["contact"].get("lagging", []) for frame in cache.statistics]
+    assert lagging[0] == []
+    (found,) = lagging[-1]
+    assert found["what"] == "press" and found["locks"] == [11]
+    assert found["distance"] == cache.statistics[-1]["contact"]["lag"] > 5e-3
+
+    ringlet.write_groom(made, tmp_path / "groom.usdc")
+    ringlet.write_cache(cache, tmp_path / "groom.usdc", tmp_path / "cache.usdc")
+    stage = Usd.Stage.Open(str(tmp_path / "cache.usdc"))
+    lag = UsdGeom.PrimvarsAPI(stage.GetPrimAtPath("/groom/locks")).GetPrimvar("ringlet:lag")
+    assert lag.GetInterpolation() == "uniform"
+    assert list(lag.Get(12.0)) == [np.float32(found["distance"]), 0.0, 0.0]
+    assert list(lag.Get(2.0)) == [0.0, 0.0, 0.0]
 
 
 def test_initial_penetration_is_reported_and_recovers():

@@ -52,3 +52,8 @@ class Judge:
             pair.ccd(pair.dof(before, edges, faces), pair.dof(after, edges, faces), narrow_phase_ccd=self.ccd)[0]
             for pair in (*pairs.ee_candidates, *pairs.fv_candidates)
         )
+
+
+def crossings_of(scene, judge):
+    """Number of pairs that collide on the moves of a scene's last step, which it has recorded."""
+    return sum(judge.crossings(*move) for move in zip(scene.path[:-1], scene.path[1:], strict=True))

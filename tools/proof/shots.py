@@ -43,7 +43,7 @@ def row(name: str, frames: list[Judged]) -> str:
         f"{max(statistics['max_stretch'] for statistics in of):.3g}",
         f"{sum(c['violations'] for c in contact)}",
         f"{1e3 * min(c['closest'] or np.inf for c in contact):.2g}",
-        f"{min(c['fraction'] for c in contact):.2g}",
+        f"{1e3 * max(c['lag'] for c in contact):.2g}",
     )
     return f"| {name} | {' | '.join(cells)} |"
 
@@ -61,7 +61,7 @@ def main():
     options = parser.parse_args()
     print(
         "| frames | crossings | CPU, median [ms] | most [ms] | pairs | contacts | iterations | strain | limited "
-        "| closest [mm] | fraction |"
+        "| closest [mm] | lag [mm] |"
     )
     print("|---|---|---|---|---|---|---|---|---|---|---|", flush=True)
     for shot in options.shots:

@@ -61,6 +61,7 @@ class Run:
         self.warnings: list[str] = []
         self.cache: Cache | SimulationRecord | None = None
         self.slowest: str | None = None
+        self.lag: str | None = None
         if self.folder is not None:
             check_place(self.folder / "report.html")
 
@@ -90,11 +91,12 @@ class Run:
 
     def simulated(self, cache: Cache | SimulationRecord) -> None:
         """Notes a simulation: its statistics for the charts, and its report of initial penetration."""
-        from ringlet.report import explain_slowest, start_table, start_warnings
+        from ringlet.report import explain_lag, explain_slowest, start_table, start_warnings
 
         self.cache = cache
         self.slowest = explain_slowest(cache.statistics)
         self.warnings += start_warnings(cache.start)
+        self.lag = explain_lag(cache.statistics)
         if cache.start:
             self.table("How it started", *start_table(cache.start))
 

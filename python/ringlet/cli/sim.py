@@ -90,7 +90,7 @@ def sim(
         run.count(locks=len(locks.locks), points=len(locks.locks.points), frames=len(record.frames))
         if record.cloths:
             run.count(cloths=len(record.cloths), cloth_points=sum(record.cloths.values()))
-    for sentence in [] if as_json else filter(None, [*run.warnings, run.slowest]):
+    for sentence in [] if as_json else filter(None, [run.lag, *run.warnings, run.slowest]):
         print(sentence)
     start = {name: found for name, found in record.start.items() if name != "marks"}  # these are for pictures
     wrote(output, run.counts, as_json, slowest=run.slowest, **({"start": start} if start else {}))

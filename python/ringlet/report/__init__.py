@@ -1,7 +1,7 @@
 """The report of a run: settings, output files, timings and statistics of the simulation."""
 
 from ringlet.report.charts import line_chart
-from ringlet.report.findings import explain_slowest
+from ringlet.report.findings import explain_lag, explain_slowest
 from ringlet.report.model import Machine, MadeFile, Picture, RunReport, Stage, Table
 from ringlet.report.page import document, figure, table
 from ringlet.report.start import start_table, start_warnings
@@ -15,6 +15,7 @@ __all__ = [
     "Stage",
     "Table",
     "document",
+    "explain_lag",
     "explain_slowest",
     "figure",
     "line_chart",

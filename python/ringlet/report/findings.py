@@ -60,6 +60,8 @@ def verdict(statistics: Statistics) -> list[str]:
     if not statistics:
         return []
     sentences = []
+    if missed := explain_lag(statistics):
+        sentences.append(missed)
     if broken := total(statistics, "nan"):
         sentences.append(f"{_strands(broken)} ended in numbers that are not finite: do not use this result.")
     has_contact = any("contact" in frame for frame in statistics)
@@ -89,15 +91,14 @@ def verdict(statistics: Statistics) -> list[str]:
         highest = max(v for v in series(statistics, f"cloth.{name}.max_stretch") or [0.0] if math.isfinite(v))
         sentences.append(f"Cloth '{name}' was stretched or squeezed by at most {100 * highest:.2g} %.")
     if has_contact:
-        violations = total(statistics, "contact.violations") or 0
-        sentences.append(
-            f"Nothing passed through anything: {violations:,} times a pair was kept from meeting.".replace(
-                ",", "\u202f"
-            )
+        violations = f"{total(statistics, 'contact.violations') or 0:,} times a pair was kept from meeting".replace(
+            ",", "\u202f"
         )
-    if any(part < 1.0 for part in series(statistics, "contact.fraction") or []):
         sentences.append(
-            "In some frames bodies left no way out between them: there everything stopped before the frame's end."
+            f"Nothing passed through anything: {violations}."
+            if missed is None
+            else f"{violations[0].upper()}{violations[1:]}; what lagged is elsewhere in its animation, where hair "
+            "may be inside it."
         )
     curl = {key: total(statistics, key) for key in ("flips", "winding_changes", "too_straight")}
     if any(curl.values()):
@@ -107,6 +108,32 @@ def verdict(statistics: Statistics) -> list[str]:
     elif curl["flips"] == 0:
         sentences.append("No curl flipped over or changed its number of turns.")
     return sentences
+
+
+def explain_lag(statistics: Statistics) -> str | None:
+    """One sentence about bodies, pins and roots that did not arrive; None where all did."""
+    frames = [k for k, frame in enumerate(statistics) if value(frame, "contact.lagging")]
+    if not frames:
+        return None
+    index, worst = max(
+        ((k, entry) for k in frames for entry in value(statistics[k], "contact.lagging")),
+        key=lambda found: found[1]["distance"],
+    )
+    names = sorted({entry["what"] for k in frames for entry in value(statistics[k], "contact.lagging")})
+    count = len(frames)
+    return (
+        f"{' and '.join(names)} could not arrive in {count} {'frame' if count == 1 else 'frames'}, the first of them "
+        f"{frame_number(statistics, frames[0])}: {worst['what']} lagged by {1e3 * worst['distance']:.3g} mm in frame "
+        f"{frame_number(statistics, index)}{_by_locks(worst['locks'])}; leave it more room, or raise solver.substeps."
+    )
+
+
+def _by_locks(locks: list[int]) -> str:
+    """Which locks hold something back, the first three of them."""
+    if not locks:
+        return ""
+    shown = ", ".join(str(lock) for lock in locks[:3])
+    return f" by {len(locks)} {'lock' if len(locks) == 1 else 'locks'} ({shown}{', …' if len(locks) > 3 else ''})"
 
 
 def explain_worst(statistics: Statistics) -> str | None:

@@ -21,6 +21,12 @@ def start_warnings(start: dict[str, Any]) -> list[str]:
         warnings.append(
             f"{subject} start through {obstacle}, in {found['places']} places, and stay so; begin with them apart."
         )
+    if pairs := start.get("overlapping", {}).get("coincident", []):
+        one, other = pairs[0]
+        warnings.append(
+            f"Locks {one} and {other}{f' and {len(pairs) - 1} pairs more' if len(pairs) > 1 else ''} coincide where "
+            "they start and pass through each other there; move them apart, or delete one."
+        )
     return warnings
 
 

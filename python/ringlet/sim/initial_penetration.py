@@ -36,7 +36,7 @@ def report_inside(locks: Curves, mesh: Mesh, depth: Array) -> dict[str, Any]:
 
 
 def report_overlaps(locks: Curves, scene: Scene) -> dict[str, Any]:
-    """Initial overlaps between locks: pairs nearer than the distance of contact."""
+    """Initial overlaps between locks: pairs nearer than the distance of contact, and coincident locks."""
     at = scene.strands.positions
     vertices, values = scene.touching()
     pairs = _lock_of(locks, vertices[:, [0, 3]])
@@ -44,7 +44,10 @@ def report_overlaps(locks: Curves, scene: Scene) -> dict[str, Any]:
     vertices, weights, pairs = vertices[of_two], values[of_two, :4], pairs[of_two]
     distance = np.linalg.norm(np.einsum("kv,kvi->ki", weights, at[vertices]), axis=1)
     nearest = np.argsort(distance, kind="stable")[:WORST]
+    of_coincident = scene.coincident[(scene.coincident < len(at)).all(axis=1)]
+    coincident = np.unique(np.sort(locks.ids[_lock_of(locks, of_coincident)], axis=1), axis=0)
     return {
+        "coincident": coincident[coincident[:, 0] != coincident[:, 1]].tolist(),
         "places": len(pairs),
         "locks": len(np.unique(pairs)),
         "depth": float((2.0 * scene.contact.radius - distance).max(initial=0.0)),

@@ -16,6 +16,7 @@ from ringlet.data.groom import Groom
 from ringlet.data.mesh import Clip
 from ringlet.shot.shot import Shot
 from ringlet.sim.garment import Garment, SimulatedGarment
+from ringlet.sim.lag import ROOTS, lagging
 from ringlet.sim.nails import held_vertices, spring_forces
 from ringlet.sim.obstacle import Obstacle
 from ringlet.sim.resting_contacts import initial_contact_forces
@@ -67,6 +68,7 @@ class Motion:
         self.obstacles = [obstacle.starting_at(first) for obstacle in obstacles]
         self.garments = [SimulatedGarment(garment, self.obstacles, first) for garment in garments]
         self.scene: Scene | None = None
+        self._lagging: list[dict[str, Any]] = []
         self.start: dict[str, Any] = {}
         if shot.touching:
             self.scene, self.start = scene_at_start(
@@ -130,6 +132,7 @@ class Motion:
                 self.strands.curves.ids,
                 [garment.name for garment in self.garments],
                 self.scene.penetrating if self.scene else 0,
+                self._lagging,
             ),
         }
 
@@ -148,19 +151,32 @@ class Motion:
         bodies = [obstacle.at(frame) for obstacle in self.obstacles]
         for garment in self.garments:
             garment.scale_rest(frame)
+        cloths = [garment.targets(frame) for garment in self.garments]
         scene, strands = self.scene.step(
             targets,
             dt,
-            cloths=[garment.targets(frame) for garment in self.garments],
+            cloths=cloths,
             bodies=bodies,
             gravity=forces.gravity,
             wind=forces.wind,
             forces=drawn,
             solver=self.shot.solver,
         )
+        self._lagging = self._compare(targets, cloths, bodies) if scene["lag"] > 0.0 else []
         reports.strands.append(strands)
         reports.scene.append(scene)
         reports.cloths.append(self.scene.cloth_reports)
+
+    def _compare(
+        self, targets: NDArray[np.float64], cloths: list[NDArray[np.float64]], bodies: list[NDArray[np.float64]]
+    ) -> list[dict[str, Any]]:
+        """What lags its targets after the last step."""
+        assert self.scene is not None
+        parts = [(ROOTS, np.where(np.asarray(self.strands.held)[:, None], targets, np.nan))]
+        for garment, places in zip(self.garments, cloths, strict=True):
+            parts.append((f"pins of {garment.name}", np.where(garment.cloth.held[:, None], places, np.nan)))
+        parts += [(obstacle.name, places) for obstacle, places in zip(self.obstacles, bodies, strict=True)]
+        return lagging(self.scene, parts)
 
 
 def _check(shot: Shot, locks: Curves) -> None:

@@ -115,6 +115,11 @@ class Scene:
         return self._core.penetrating
 
     @property
+    def coincident(self) -> NDArray[np.int32]:
+        """A vertex of both sides of pairs that coincided when the scene was made, shape (k, 2); they never touch."""
+        return self._core.coincident
+
+    @property
     def contacts(self) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
         """The last step's contacts: their vertices (k, 4); weights, normal, distance [m] and force [N], (k, 9)."""
         return self._core.contacts

@@ -24,17 +24,22 @@ class StepReports:
 
 
 def frame_statistics(
-    reports: StepReports, locks: NDArray[np.integer], cloths: list[str], penetrating: int
+    reports: StepReports,
+    locks: NDArray[np.integer],
+    cloths: list[str],
+    penetrating: int,
+    lagging: list[dict[str, Any]],
 ) -> dict[str, Any]:
     """Statistics of a frame, by name: of strands, of contact and of each cloth, where there are any.
 
     locks:   their ids, shape (count,)
     cloths:  their names
     penetrating: the number of vertices with initial penetration that are still inside a body
+    lagging: what did not arrive in the frame (see ``lag.py``)
     """
     return {
         **_of_strands(reports.strands, locks),
-        **(_of_contact(reports.scene, penetrating) if reports.scene else {}),
+        **(_of_contact(reports.scene, penetrating, lagging) if reports.scene else {}),
         **({"cloth": _of_cloths(reports.cloths, cloths)} if cloths else {}),
     }
 
@@ -88,7 +93,7 @@ def _kept(moved: float, left: float) -> float | None:
     return moved / (moved + max(left, 0.0)) if moved > 0.0 else None
 
 
-def _of_contact(reports: list[dict[str, float]], penetrating: int) -> dict[str, Any]:
+def _of_contact(reports: list[dict[str, float]], penetrating: int, lagging: list[dict[str, Any]]) -> dict[str, Any]:
     """Over all substeps of a scene. It is solved as one, so its iterations replace those of the strands."""
 
     def total(name: str) -> float:
@@ -112,7 +117,8 @@ def _of_contact(reports: list[dict[str, float]], penetrating: int) -> dict[str, 
             "excused": penetrating,
             "linear_iterations": int(total("linear_iterations")),
             "motion_kept": _kept(total("moved"), total("left")),
-            "fraction": min(report["fraction"] for report in reports),
+            "lag": reports[-1]["lag"],
+            **({"lagging": lagging} if lagging else {}),
             **{f"{name}_ms".removeprefix("time_"): 1e3 * total(name) for name in times},
         },
     }

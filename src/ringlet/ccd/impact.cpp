@@ -47,7 +47,7 @@ std::vector<Impact> find_impacts(const CollisionMesh &mesh, const std::vector<Ca
             if (!rigid.empty() && share_motion(rigid, a, b)) return;
             const double toi = time_of_impact(*pairs[k], a, b, start, end);
             if (toi > 1.0) return;
-            impacts.push_back({{}, toi});
+            impacts.push_back({{}, toi, pairs[k]->min_gap < ccd::separation_of_d_hat * pairs[k]->d_hat});
             std::copy(b.begin(), b.end(), std::copy(a.begin(), a.end(), impacts.back().vertices.begin()));
         });
     });

@@ -10,7 +10,8 @@ namespace ringlet {
 
 struct Impact {
     std::array<int, 4> vertices;
-    double toi; // the pair keeps its minimum separation until then, in [0, 1]
+    double toi;         // the pair keeps its minimum separation until then, in [0, 1]
+    bool close = false; // it begins nearer than the largest minimum separation
 };
 
 // The time of impact of a candidate pair whose vertices move straight from `start` to `end`; above 1 if it has none. Where the
@@ -27,13 +28,13 @@ void mark_vertices(const CollisionMesh &mesh, const std::vector<Impact> &impacts
 // Truncates a whole move before its first impact; returns the fraction of it that is left.
 double truncate_before_first(const std::vector<Impact> &impacts, View<Vec3> start, std::vector<Vec3> &end);
 
-// What limit_motion() and resolve_impact_zones() did.
+// What limit_motion() or the corrections of an AdvectedMove did.
 struct CcdReport {
     int candidates = 0;         // pairs in the cache
     int impacts = 0;            // of the move before any correction
     int corrected_vertices = 0; // moving vertices with an impact in any round
     int rounds = 0;
-    double fraction = 1.0; // of the move that everything makes; below 1 where no correction was found
+    double fraction = 1.0; // of a limited move that everything makes; below 1 where no correction was found
 };
 
 } // namespace ringlet

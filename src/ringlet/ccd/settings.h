@@ -33,8 +33,12 @@ inline constexpr double hardly_moves = 0.2;   // a strand that keeps no more of 
 
 // resolve_impact_zones
 inline constexpr int max_zone_rounds = 16;
-inline constexpr int own_motion_rounds = 3;  // in which zones keep their own motion up to the impact
-inline constexpr int hopeful_reduction = 10; // factor by which the impacts must have decreased after the hopeful rounds
+inline constexpr int own_motion_rounds = 3; // in which zones keep their own motion up to the impact
+
+// truncate_locally
+inline constexpr int partial_rounds = 4; // in which vertices go up to 0.9 of their impacts; then they stay
+inline constexpr int vertex_rounds = 24; // then whole strands and cloths stay
+inline constexpr int object_rounds = 32; // then whole bodies stay
 
 // Least distance [m] that a pair keeps on a move which it begins at a distance of `gap`.
 inline double min_separation(double d_hat, double gap) {

@@ -11,6 +11,14 @@
 
 namespace ringlet {
 
+// Two primitives of a mesh, by number: two edges, the lower first; or a vertex and a triangle.
+struct PrimitiveNames {
+    bool edge_edge;
+    std::array<int, 2> primitive;
+
+    auto operator<=>(const PrimitiveNames &) const = default;
+};
+
 struct CollisionMesh {
     std::vector<std::array<int, 2>> edges;     // of strands, cloths and bodies
     int strand_edges = 0;                      // the first edges are those of strands
@@ -23,6 +31,8 @@ struct CollisionMesh {
     std::vector<int> object;          // the strand, cloth or body that it belongs to
     std::vector<int> anchor;          // the object that it is anchored to, which it may touch; −1: none
     std::vector<Vec3> rest;           // position at rest [m]
+
+    std::vector<PrimitiveNames> exempt; // pairs that are never tested, in order
 
     // Per vertex of strands, which come first: activation distances [m] of the edge from it to the next vertex and the edges
     // that begin two or more vertices later. Cached, since every search asks for them.

@@ -31,6 +31,10 @@ std::vector<CandidatePair> PairCache::pairs_of(const Candidates &found) const {
             pair.object = {mesh_.object[a[0]], mesh_.object[b[0]]};
         });
     }
+    if (!mesh_.exempt.empty())
+        std::erase_if(pairs, [&](const CandidatePair &pair) {
+            return std::binary_search(mesh_.exempt.begin(), mesh_.exempt.end(), PrimitiveNames{pair.edge_edge, pair.primitive});
+        });
     return pairs;
 }
 

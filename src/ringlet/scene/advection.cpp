@@ -1,80 +1,22 @@
 #include "ringlet/scene/advection.h"
 
 #include "ringlet/ccd/impact_zones.h"
-#include "ringlet/geometry/rigid_motion.h"
+#include "ringlet/ccd/local_truncation.h"
 #include "ringlet/scene/settings.h"
+#include "ringlet/scene/space_map.h"
 
-#include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <algorithm>
-#include <cmath>
-#include <limits>
+#include <numeric>
+#include <optional>
 
 namespace ringlet {
 namespace {
-
-// The affine motion of a triangle with its unit normal, which is rigid where the triangle moves rigidly.
-Vec3 carry_with_triangle(const Vec3 from[3], const Vec3 to[3], const Vec3 &point) {
-    const auto frame = [](const Vec3 t[3]) {
-        Mat3 axes;
-        axes << t[1] - t[0], t[2] - t[0], (t[1] - t[0]).cross(t[2] - t[0]).normalized();
-        return axes;
-    };
-    const Mat3 before = frame(from);
-    Vec3 translated = point + to[0] - from[0];
-    if (std::abs(before.determinant()) < 1e-30) return translated;
-    const Vec3 moved = to[0] + frame(to) * before.inverse() * (point - from[0]);
-    return moved.allFinite() ? moved : translated;
-}
 
 std::vector<int> prescribed(const SceneVertices &vertices, int begin, int end) {
     std::vector<int> found;
     for (int v = begin; v < end; ++v)
         if (!vertices.mesh.moves[v]) found.push_back(v);
     return found;
-}
-
-struct Patch {
-    std::vector<int> vertices;
-    RigidMotion motion; // from their middle
-};
-
-// Patches of all bodies: the farthest vertex from the patches of its body begins the next, while they keep vertices enough to
-// determine a rotation.
-std::vector<Patch> patches(const PrescribedMotion &motion) {
-    const std::vector<int> &bodies = motion.vertices.bodies;
-    const int first = bodies.front(), count = motion.vertices.count() - first;
-    std::vector<double> distance2(count, std::numeric_limits<double>::infinity());
-    std::vector<int> nearest(count, -1);
-    std::vector<size_t> begun(bodies.size() - 1, 0);
-    std::vector<Patch> all;
-    while (count > 0 && all.size() < size_t(scene_settings::max_patches)) {
-        const int seed = first + int(std::max_element(distance2.begin(), distance2.end()) - distance2.begin());
-        if (distance2[seed - first] == 0.0) break;
-        const int body = int(std::upper_bound(bodies.begin(), bodies.end(), seed) - bodies.begin()) - 1;
-        const int begin = bodies[body], end = bodies[body + 1];
-        for (int v = begin; v < end; ++v) {
-            const double away2 = (motion.start[v] - motion.start[seed]).squaredNorm();
-            if (away2 < distance2[v - first]) distance2[v - first] = away2, nearest[v - first] = int(all.size());
-        }
-        if (++begun[body] * scene_settings::vertices_of_patch >= size_t(end - begin)) // it has enough
-            std::fill(distance2.begin() + (begin - first), distance2.begin() + (end - first), 0.0);
-        all.emplace_back();
-    }
-    for (int v = 0; v < count; ++v)
-        if (nearest[v] >= 0) all[nearest[v]].vertices.push_back(first + v);
-    std::erase_if(all, [](const Patch &patch) { return patch.vertices.empty(); });
-    for (Patch &patch : all) patch.motion = fit_rigid_motion(patch.vertices, motion.start, motion.target);
-    return all;
-}
-
-// Whether the prescribed vertices of a range move along with another prescribed vertex.
-bool follow(const PrescribedMotion &motion, int begin, int end, int leader) {
-    for (int v = begin; v < end; ++v)
-        if (!motion.vertices.mesh.moves[v] &&
-            !((motion.carry(leader, motion.start[v]) - motion.target[v]).squaredNorm() < scene_settings::same_place2))
-            return false;
-    return true;
 }
 
 // The motion that most dynamic vertices have in common.
@@ -87,35 +29,21 @@ RigidMotion motion_of_most(const SceneVertices &vertices, View<Vec3> from, View<
 
 } // namespace
 
-Vec3 PrescribedMotion::carry(int vertex, const Vec3 &point) const {
-    const Triangle &t = vertices.carriers[vertex];
-    if (t[0] == t[1]) return point + target[vertex] - start[vertex];
-    const Vec3 from[3] = {start[t[0]], start[t[1]], start[t[2]]}, to[3] = {target[t[0]], target[t[1]], target[t[2]]};
-    return carry_with_triangle(from, to, point);
-}
-
-std::vector<int> PrescribedMotion::rigid_bodies() const {
-    const std::vector<int> &bodies = vertices.bodies;
-    std::vector<int> leaders(bodies.size() - 1, -1);
-    for (int b = 0; b < int(leaders.size()); ++b)
-        if (bodies[b] < bodies[b + 1] && follow(*this, bodies[b], bodies[b + 1], bodies[b])) leaders[b] = bodies[b];
-    return leaders;
-}
-
 std::vector<int> advect_rigidly(const PrescribedMotion &motion, View<int> offsets, const Carriers &carriers,
                                 std::vector<Vec3> &end) {
     const SceneVertices &all = motion.vertices;
     const std::vector<int> leaders = motion.rigid_bodies();
     std::vector<int> rigid(all.count(), -1);
     for (int b = 0; b < int(leaders.size()); ++b)
-        if (leaders[b] >= 0) std::fill(rigid.begin() + all.bodies[b], rigid.begin() + all.bodies[b + 1], b);
+        for (int v = all.bodies[b]; v < all.bodies[b + 1]; ++v)
+            if (leaders[b] >= 0 && !motion.is_behind(v)) rigid[v] = b;
     const auto follows_body = [&](int body, int first, int last) {
-        return body >= 0 && leaders[body] >= 0 && follow(motion, first, last, leaders[body]);
+        return body >= 0 && leaders[body] >= 0 && motion.follow(first, last, leaders[body]);
     };
     const auto move = [&](int first, int last, int number, const auto &by) {
         for (int v = first; v < last; ++v) {
             if (all.mesh.moves[v]) end[v] = by(motion.start[v]);
-            rigid[v] = number;
+            if (all.mesh.moves[v] || !motion.is_behind(v)) rigid[v] = number;
         }
     };
 #pragma omp parallel for schedule(static)
@@ -123,7 +51,7 @@ std::vector<int> advect_rigidly(const PrescribedMotion &motion, View<int> offset
         const int first = offsets[s], last = offsets[s + 1];
         const int wanted = s < int(carriers.of_strands.size()) ? carriers.of_strands[s] : -1;
         const int body = follows_body(wanted, first, last) ? wanted : -1, leader = body >= 0 ? leaders[body] : first;
-        const int own = follow(motion, first, last, first) ? int(leaders.size()) + s : -1;
+        const int own = motion.follow(first, last, first) ? int(leaders.size()) + s : -1;
         move(first, last, body >= 0 ? body : own, [&](const Vec3 &point) { return motion.carry(leader, point); });
     }
     for (int c = 0; c + 1 < int(all.cloths.size()); ++c) {
@@ -146,72 +74,176 @@ std::vector<int> advect_rigidly(const PrescribedMotion &motion, View<int> offset
     return rigid;
 }
 
-void advect_with_space(const PrescribedMotion &motion, std::vector<Vec3> &end) {
-    const std::vector<Patch> all = patches(motion);
-    if (all.empty()) return;
-#pragma omp parallel for schedule(static)
-    for (int v = 0; v < motion.vertices.dynamic_vertices; ++v) {
-        if (!motion.vertices.mesh.moves[v]) continue;
-        Vec3 sum = Vec3::Zero();
-        double weights = 0.0;
-        for (const Patch &patch : all) {
-            const double away2 = (motion.start[v] - patch.motion.from).squaredNorm() + 1e-12,
-                         weight = 1.0 / (away2 * away2 * away2);
-            sum += weight * (patch.motion(motion.start[v]) - motion.start[v]);
-            weights += weight;
-        }
-        end[v] = motion.start[v] + sum / weights;
-    }
-}
-
 namespace {
 
-// The move of an advection, limited by impact zones; returns the fraction of it that is left.
-double limit_advection(const PrescribedMotion &motion, View<int> rigid, const RigidMotion &most, int hopeful_rounds,
-                       Configuration &configuration, std::vector<Vec3> &end, SceneReport &report) {
-    const Stopwatch watch(report.time_filter);
-    const CcdReport limited =
-        resolve_impact_zones({.connected = configuration.connected(),
-                              .start = configuration.positions,
-                              .mass = motion.vertices.mass,
-                              .advect = [&](int vertex, const Vec3 &point) { return motion.carry(vertex, point); },
-                              .rigid_motion = most,
-                              .rigid = rigid,
-                              .hopeful_rounds = hopeful_rounds},
-                             configuration.pairs, end);
-    Configuration::add(limited, report);
-    return limited.fraction;
+// Sets of objects and bodies that impacts connect.
+class Islands {
+public:
+    explicit Islands(int objects) : parent_(objects) { std::iota(parent_.begin(), parent_.end(), 0); }
+
+    void join(const CollisionMesh &mesh, const std::vector<Impact> &impacts) {
+        for (const Impact &impact : impacts) {
+            const int a = find(mesh.object[impact.vertices[0]]), b = find(mesh.object[impact.vertices[3]]);
+            parent_[std::max(a, b)] = std::min(a, b);
+        }
+    }
+    int find(int object) {
+        while (parent_[object] != object) object = parent_[object] = parent_[parent_[object]];
+        return object;
+    }
+
+private:
+    std::vector<int> parent_;
+};
+
+// An attempt at an advection.
+class Attempt {
+public:
+    Attempt(const PrescribedMotion &motion, View<int> offsets, const Carriers &carriers, Configuration &configuration)
+        : motion_(motion), vertices_(motion.vertices), end_(motion.target.begin(), motion.target.end()),
+          rigid_(advect_rigidly(motion, offsets, carriers, end_)), through_space_(vertices_.objects, 0),
+          islands_(vertices_.objects + body_count()), move_(configuration.connected(), configuration.pairs, motion.start, end_,
+                                                            motion_of_most(vertices_, motion.start, end_), rigid_) {
+        islands_.join(vertices_.mesh, move_.impacts());
+    }
+
+    AdvectedMove &move() { return move_; }
+    const std::vector<Vec3> &end() const { return end_; }
+    bool arrives() const { return move_.impacts().empty(); }
+    const std::vector<unsigned char> &through_space() const { return through_space_; }
+
+    void by_zones() {
+        const auto follow_body = [&](int vertex, const Vec3 &point) {
+            return motion_.is_behind(vertex) ? Vec3(point + motion_.target[vertex] - motion_.start[vertex])
+                                             : motion_.carry(vertex, point);
+        };
+        resolve_impact_zones(
+            {vertices_.mass, follow_body, body_count() > 0 ? scene_settings::zone_rounds : ccd::max_zone_rounds}, move_);
+        islands_.join(vertices_.mesh, move_.impacts());
+    }
+
+    // Objects with an impact go through space, and those that meet them there. The surface of a body follows where nothing else
+    // is left to, unless the body may wait.
+    void by_space(const std::vector<unsigned char> &may_wait) {
+        if (body_count() == 0 || arrives()) return;
+        const SpaceMap map(motion_);
+        std::vector<unsigned char> dented(vertices_.count(), 0);
+        while (!arrives()) {
+            std::vector<int> added = objects_with_impact();
+            if (added.empty()) added = surfaces_with_impact(may_wait, dented);
+            if (added.empty()) return;
+            move_.round([&](const std::vector<Impact> &) {
+#pragma omp parallel for schedule(static)
+                for (const int v : added) end_[v] = mapped(map, v);
+            });
+            islands_.join(vertices_.mesh, move_.impacts());
+        }
+    }
+
+    // Bodies of the islands that have an impact.
+    std::vector<int> stuck_bodies() {
+        std::vector<unsigned char> stuck(vertices_.objects + body_count(), 0);
+        for (const Impact &impact : move_.impacts())
+            for (const int v : impact.vertices) stuck[islands_.find(vertices_.mesh.object[v])] = 1;
+        std::vector<int> bodies;
+        for (int b = 0; b < body_count(); ++b)
+            if (stuck[islands_.find(vertices_.objects + b)]) bodies.push_back(b);
+        return bodies;
+    }
+
+private:
+    int body_count() const { return int(vertices_.bodies.size()) - 1; }
+
+    std::vector<int> objects_with_impact() { // their vertices, of those that do not go through space yet
+        std::vector<unsigned char> added(vertices_.objects, 0);
+        for (const Impact &impact : move_.impacts())
+            for (const int v : impact.vertices)
+                if (const int object = vertices_.object_of(v); object >= 0 && !through_space_[object]) added[object] = 1;
+        std::vector<int> found;
+        for (int v = 0; v < vertices_.dynamic_vertices; ++v)
+            if (vertices_.mesh.moves[v] && added[vertices_.mesh.object[v]]) found.push_back(v);
+        for (int object = 0; object < vertices_.objects; ++object) through_space_[object] |= added[object];
+        return found;
+    }
+
+    std::vector<int> surfaces_with_impact(const std::vector<unsigned char> &may_wait,
+                                          std::vector<unsigned char> &dented) const {
+        std::vector<int> found;
+        for (const Impact &impact : move_.impacts())
+            for (const int v : impact.vertices) {
+                if (vertices_.object_of(v) >= 0 || vertices_.mesh.moves[v] || v < vertices_.dynamic_vertices) continue;
+                if (dented[v] || may_wait[vertices_.mesh.object[v] - vertices_.objects]) continue;
+                dented[v] = 1;
+                found.push_back(v);
+            }
+        return found;
+    }
+
+    // A surface follows where that is near its own motion: the map bends around it, while a pinch is not to be passed on.
+    Vec3 mapped(const SpaceMap &map, int v) const {
+        const Vec3 end = map(motion_.start[v]);
+        if (v < vertices_.dynamic_vertices) return end;
+        const Vec3 own = motion_.start[v] + motion_.target[v] - motion_.led[v];
+        const double most = scene_settings::dent_deviation * (own - move_.motion(motion_.start[v])).norm();
+        return (end - own).norm() <= most ? end : motion_.target[v];
+    }
+
+    const PrescribedMotion motion_;
+    const SceneVertices &vertices_;
+    std::vector<Vec3> end_;
+    const std::vector<int> rigid_;
+    std::vector<unsigned char> through_space_; // per object
+    Islands islands_;
+    AdvectedMove move_;
+};
+
+// Per body, whether it may make a part of its motion: it moves affinely, and nothing is rooted in it or pinned to it.
+std::vector<unsigned char> bodies_that_may_wait(const PrescribedMotion &motion, const Carriers &carriers) {
+    std::vector<unsigned char> may_wait(motion.vertices.bodies.size() - 1, 1);
+    for (const View<int> carrying : {carriers.of_strands, carriers.pinned})
+        for (const int b : carrying)
+            if (b >= 0) may_wait[b] = 0;
+    for (int b = 0; b < int(may_wait.size()); ++b) may_wait[b] = may_wait[b] && motion.moves_affinely(b);
+    return may_wait;
 }
 
 } // namespace
 
-Advected advect(const SceneVertices &vertices, View<Vec3> target, View<int> offsets, const Carriers &carriers,
-                Configuration &configuration, SceneReport &report) {
-    const bool bodies = vertices.bodies.front() < vertices.bodies.back();
-    const int hopeful_rounds = bodies ? scene_settings::hopeful_rounds : ccd::max_zone_rounds;
-    const int attempts = bodies ? scene_settings::space_attempts : 0;
-    const std::vector<Vec3> &now = configuration.positions;
-    std::vector<Vec3> end(target.begin(), target.end());
-    const PrescribedMotion whole{vertices, now, target};
-    std::vector<int> rigid = advect_rigidly(whole, offsets, carriers, end);
-    double fraction =
-        limit_advection(whole, rigid, motion_of_most(vertices, now, end), hopeful_rounds, configuration, end, report);
-    bool rigidly = true;
-    for (int attempt = 0; attempt < attempts && fraction < std::ldexp(1.0, -attempt); ++attempt) {
-        const double part = std::ldexp(1.0, -attempt);
-        std::vector<Vec3> nearer(target.begin(), target.end());
-        for (int v = 0; v < vertices.count(); ++v)
-            if (!vertices.mesh.moves[v]) nearer[v] = now[v] + part * (target[v] - now[v]);
-        const PrescribedMotion partly{vertices, now, nearer};
-        end = nearer;
-        std::fill(rigid.begin(), rigid.end(), -1);
-        advect_with_space(partly, end);
-        fraction = part * limit_advection(partly, rigid, motion_of_most(vertices, now, end), hopeful_rounds, configuration, end,
-                                          report);
-        rigidly = false;
+std::vector<unsigned char> advect(const PrescribedMotion &motion, View<int> offsets, const Carriers &carriers,
+                                  Configuration &configuration, SceneReport &report) {
+    const Stopwatch watch(report.time_filter);
+    const SceneVertices &vertices = motion.vertices;
+    std::vector<unsigned char> may_wait;
+    std::vector<Vec3> target(motion.target.begin(), motion.target.end());
+    std::optional<Attempt> attempt;
+    for (double part = 1.0;; part *= 0.5) {
+        attempt.emplace(PrescribedMotion{vertices, motion.start, motion.led, target}, offsets, carriers, configuration);
+        attempt->by_zones();
+        if (attempt->arrives()) break;
+        if (may_wait.empty()) may_wait = bodies_that_may_wait(motion, carriers);
+        attempt->by_space(may_wait);
+        if (attempt->arrives() || part < scene_settings::least_part) break;
+        const double kept = part > scene_settings::least_part ? 0.5 : 0.0;
+        bool any = false;
+        for (const int b : attempt->stuck_bodies()) {
+            if (!may_wait[b]) continue;
+            any = true;
+            for (int v = vertices.bodies[b]; v < vertices.bodies[b + 1]; ++v) {
+                const Vec3 waits = attempt->move().motion(motion.start[v]);
+                target[v] = waits + kept * (target[v] - waits);
+            }
+        }
+        if (!any) break;
     }
-    configuration.commit_rigid(end);
-    return {fraction, rigidly};
+    std::vector<unsigned char> whole(vertices.objects, 0);
+    whole.insert(whole.end(), may_wait.begin(), may_wait.end());
+    truncate_locally(attempt->move(), whole);
+    Configuration::add(attempt->move().report(), report);
+    std::vector<unsigned char> astray = attempt->through_space();
+    for (int v = 0; v < vertices.dynamic_vertices; ++v)
+        if (!vertices.mesh.moves[v] && attempt->end()[v] != motion.target[v]) astray[vertices.mesh.object[v]] = 1;
+    configuration.commit_rigid(attempt->end());
+    return astray;
 }
 
 } // namespace ringlet

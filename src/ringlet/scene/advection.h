@@ -1,7 +1,7 @@
 // Advection: the first move of a step, in which prescribed vertices arrive and everything moves along with them.
 #pragma once
 
-#include "ringlet/scene/vertices.h"
+#include "ringlet/scene/prescribed_motion.h"
 #include "ringlet/solver/configuration.h"
 
 namespace ringlet {
@@ -10,19 +10,8 @@ namespace ringlet {
 struct Carriers {
     View<int> of_strands; // the body that each strand is rooted in; −1: none. May be empty
     View<int> of_cloths;  // the body that each cloth is pinned to or lies on; −1: none
+    View<int> pinned;     // the body that each cloth is pinned to; −1: none
     Vec3 drift;           // of all cloths where nothing is prescribed [m]
-};
-
-// A prescribed motion: all vertices where they are, and where those end that are prescribed.
-struct PrescribedMotion {
-    const SceneVertices &vertices;
-    View<Vec3> start, target;
-
-    // Where a point ends that moves along with a prescribed vertex.
-    Vec3 carry(int vertex, const Vec3 &point) const;
-
-    // For each body a vertex that gives its rigid motion; −1: it deforms.
-    std::vector<int> rigid_bodies() const;
 };
 
 // Advects rigidly: a strand with its root, or with the body that it is rooted in; a cloth with its body, else with the mean
@@ -31,19 +20,14 @@ struct PrescribedMotion {
 std::vector<int> advect_rigidly(const PrescribedMotion &motion, View<int> offsets, const Carriers &carriers,
                                 std::vector<Vec3> &end);
 
-// Advects through space: patches of bodies move as rigidly as they can, and the space between them by inverse-distance weights
-// (Shepard 1968). The map is continuous: as long as bodies do not come much closer to one another, nothing meets, even where
-// what follows one body rigidly would run into another.
-void advect_with_space(const PrescribedMotion &motion, std::vector<Vec3> &end);
-
-struct Advected {
-    double fraction; // of the step, below 1 where bodies leave no way out
-    bool rigidly;    // every strand with its root
-};
-
-// Moves the configuration along with the prescribed vertices of `target`, through nothing: rigidly where that leaves a way,
-// else through space, and no farther than bodies can move at once.
-Advected advect(const SceneVertices &vertices, View<Vec3> target, View<int> offsets, const Carriers &carriers,
-                Configuration &configuration, SceneReport &report);
+// Moves the configuration along with a prescribed motion that starts there, through nothing. What meets something is led around
+// it, each time that and no more:
+//   1. objects are advected rigidly, and impact zones share one motion;
+//   2. objects that still have an impact are advected through space, then the surfaces of bodies a little;
+//   3. bodies that move affinely and carry nothing make half of their motion, a quarter, …, none, and wait with the rest;
+//   4. what is left is truncated, bodies included.
+// Returns the objects that are not where a rigid advection leads them.
+std::vector<unsigned char> advect(const PrescribedMotion &motion, View<int> offsets, const Carriers &carriers,
+                                  Configuration &configuration, SceneReport &report);
 
 } // namespace ringlet

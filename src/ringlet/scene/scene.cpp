@@ -1,6 +1,7 @@
 #include "ringlet/scene/scene.h"
 
 #include "ringlet/scene/data.h"
+#include "ringlet/scene/settings.h"
 
 #include <algorithm>
 #include <cstring>
@@ -53,6 +54,19 @@ SceneData::SceneData(const StrandModel &model_, StrandState &state_, const std::
       stiffness(vertices.count()), newton(vertices, objective, system, configuration, stiffness) {
     for (int b = 0; b < int(bodies_.size()); ++b)
         bodies.push_back({vertices.bodies[b], int(bodies_[b].rest.size()), vertices.objects + b, bodies_[b].triangles});
+    exempt_coincident_pairs();
+}
+
+void SceneData::exempt_coincident_pairs() {
+    const std::vector<Vec3> &now = configuration.positions;
+    configuration.pairs.update_bounds({now, now}, {.margin = 0.0, .max_path = 0.0});
+    for (const ContactPair &pair : configuration.pairs.contact_pairs(now)) {
+        if (pair.closest.distance2 > std::pow(scene_settings::coincident * pair.d_hat, 2)) continue;
+        vertices.mesh.exempt.push_back({pair.edge_edge, pair.primitive});
+        with_vertices(vertices.mesh, pair, [&](const auto &a, const auto &b) { coincident.push_back({a[0], b[0]}); });
+    }
+    std::sort(vertices.mesh.exempt.begin(), vertices.mesh.exempt.end());
+    configuration.pairs.clear();
 }
 
 bool SceneData::is_placed() const {
@@ -131,6 +145,7 @@ void Scene::allow_penetration(int vertex, int body) {
     data_->penetration.add(vertex, data_->bodies[body], data_->vertices.mesh);
 }
 
+const std::vector<std::array<int, 2>> &Scene::coincident() const { return data_->coincident; }
 int Scene::penetrating() const { return data_->penetration.count(); }
 
 void Scene::record(bool on) { data_->configuration.record(on); }
@@ -147,6 +162,7 @@ SceneMemory Scene::memory() const {
             data_->stiffness.loads(),
             contacts.friction(),
             data_->penetration.heights(),
+            data_->lagging,
             data_->touched};
 }
 
@@ -163,6 +179,7 @@ void Scene::recall(const SceneMemory &memory) {
     data.stiffness.recall(memory.loads);
     contacts.recall(memory.friction);
     data.penetration.recall(memory.penetrations, data.vertices.mesh);
+    data.lagging = memory.lagging;
     data.touched = memory.touched;
     data.take_placed();
 }

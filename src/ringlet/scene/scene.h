@@ -16,8 +16,7 @@ namespace ringlet {
 struct SceneStep {
     StrandStep strands; // time, forces and Newton's method of all blocks; model and integrator of the strands
     LinearSettings linear;
-    int extra = 60;       // Newton iterations more, at most, for strands that were limited and are stretched
-    int max_substeps = 8; // where bodies leave no way out a step is split into substeps
+    int extra = 60; // Newton iterations more, at most, for strands that were limited and are stretched
 };
 
 struct SceneInput {
@@ -34,6 +33,7 @@ struct SceneMemory {
     std::vector<double> loads; // of vertices [N]
     std::vector<FrictionState> friction;
     std::vector<std::pair<int, double>> penetrations; // vertices inside a body, and the heights that they are to have [m]
+    std::vector<std::pair<int, Vec3>> lagging;        // prescribed vertices that did not arrive, and where they were led [m]
     std::vector<int> touched;                         // per cloth: the body that it had most contacts with; −1: none
 };
 
@@ -65,6 +65,10 @@ public:
     // initial_penetration.h.
     void allow_penetration(int vertex, int body);
     int penetrating() const; // how many still are
+
+    // Pairs that coincide where the scene is made: without a distance they have no direction to part in, and are exempt from
+    // contact. A vertex of each of the two.
+    const std::vector<std::array<int, 2>> &coincident() const;
 
     // Keeps the positions after each move of the last step, the first being its start: no pair meets while every vertex goes
     // straight from one to the next.

@@ -65,15 +65,24 @@ Vec3 mean_velocity_of_cloths(const SceneData &scene) {
     return mass > 0.0 ? Vec3(momentum / mass) : Vec3(Vec3::Zero());
 }
 
-// Moves everything along with prescribed vertices.
-Advected advect_with_bodies(SceneData &scene, double dt, View<Vec3> targets, SceneReport &report) {
+// Advects to the targets of prescribed vertices, and keeps which of them lag. Returns the objects that could not
+// follow theirs rigidly.
+std::vector<unsigned char> advect_to(SceneData &scene, View<Vec3> targets, const Vec3 &drift, SceneReport &report) {
     const SceneVertices &vertices = scene.vertices;
-    std::vector<Vec3> end = scene.configuration.positions;
+    const std::vector<Vec3> start = scene.configuration.positions;
+    std::vector<Vec3> led = start, end = start;
+    for (const auto &[vertex, place] : scene.lagging) led[vertex] = place;
     for (int v = 0; v < vertices.count(); ++v)
         if (!vertices.mesh.moves[v]) end[v] = targets[v];
     const std::vector<int> bodies = bodies_of_cloths(scene);
-    const Carriers carriers{scene.rooted_in, bodies, dt * mean_velocity_of_cloths(scene)};
-    return advect(vertices, end, View<int>(scene.model.offsets), carriers, scene.configuration, report);
+    const std::vector<unsigned char> astray =
+        advect({vertices, start, led, end}, View<int>(scene.model.offsets), {scene.rooted_in, bodies, scene.pinned_to, drift},
+               scene.configuration, report);
+    scene.lagging.clear();
+    for (int v = 0; v < vertices.count(); ++v)
+        if (!vertices.mesh.moves[v] && scene.configuration.positions[v] != targets[v])
+            scene.lagging.emplace_back(v, targets[v]);
+    return astray;
 }
 
 // The targets with the prescribed vertices where they have arrived.
@@ -84,17 +93,17 @@ std::vector<Vec3> targets_on_arrival(const SceneData &scene, View<Vec3> targets)
     return arrived;
 }
 
-// Moves to where Newton's method begins: the blocks' initial guess, limited.
-void move_to_initial_guess(SceneData &scene, bool rigidly, double tolerance, AlignedVector &x, Refinement &refinement,
-                           SceneReport &report) {
+// Moves to where Newton's method begins: the blocks' initial guess, limited. Objects that are `astray` begin where they are.
+void move_to_initial_guess(SceneData &scene, const std::vector<unsigned char> &astray, double tolerance, AlignedVector &x,
+                           Refinement &refinement, SceneReport &report) {
     const SceneVertices &vertices = scene.vertices;
     const std::vector<Vec3> now = scene.configuration.positions;
     scene.blocks.scatter(now, x);
     scene.blocks.for_active([&](int b) { scene.blocks[b].initial_guess(scene.blocks.of(b, x)); });
     PlannedMove move{now, {}};
-    if (rigidly) scene.blocks.gather(x, move.to);
+    scene.blocks.gather(x, move.to);
     for (int v = 0; v < vertices.dynamic_vertices; ++v)
-        if (!vertices.mesh.moves[v] ||
+        if (!vertices.mesh.moves[v] || astray[vertices.mesh.object[v]] ||
             (move.to[v] - now[v]).squaredNorm() < scene_settings::guess_rounding * scene_settings::guess_rounding)
             move.to[v] = now[v];
     const std::vector<Vec3> guess = move.to;
@@ -115,7 +124,7 @@ void commit(SceneData &scene, View<Vec3> start, double dt, const SolverEffort &e
     contacts.commit_friction(now);
     if (scene.contact.parting_speed == 0.0)
         contacts.overlaps.settle(touching, contacts.contacts(), now, scene_settings::parting_speed * dt);
-    scene.blocks.active.assign(scene.blocks.count(), 1);
+    scene.blocks.activate_all();
     std::vector<unsigned char> finite(scene.blocks.count());
     scene.blocks.for_active([&](int b) { finite[b] = scene.blocks[b].commit(scene.blocks.of(b, x), dt, effort); });
     if (std::count(finite.begin(), finite.end(), 0) > 0) scene.take_placed();
@@ -126,59 +135,40 @@ void commit(SceneData &scene, View<Vec3> start, double dt, const SolverEffort &e
     report.contacts = double(contacts.contacts().size());
 }
 
-// Takes a step of at most dt; returns the fraction of it that bodies leave room for.
-double take_substep(SceneData &scene, const SceneInput &input, const SceneStep &settings, double dt, SceneReport &report) {
-    const std::vector<Vec3> start = scene.configuration.positions;
-    begin_contact(scene, dt);
-
-    const Advected advected = advect_with_bodies(scene, dt, input.targets, report);
-    dt *= advected.fraction;
-    if (!(dt > scene_settings::no_step_left * settings.strands.dt)) { // no time for velocities: as if bodies had not moved
-        scene.configuration.positions = start;
-        scene.configuration.pairs.clear();
-        return 0.0;
-    }
-    const int inside = scene.penetration.count();
-    scene.objective.springs =
-        scene.penetration.recover(scene.vertices.mesh, scene.configuration.positions, View<int>(scene.model.offsets),
-                                  scene.stiffness.largest(), scene_settings::recovery_speed * dt);
-    if (scene.penetration.count() < inside) scene.configuration.pairs.clear(); // of pairs that were exempt
-
-    std::vector<Vec3> arrived;
-    if (advected.fraction < 1.0) arrived = targets_on_arrival(scene, input.targets);
-    const View<Vec3> targets = arrived.empty() ? input.targets : View<Vec3>(arrived);
-    const StrandStep &step = settings.strands;
-    for (const auto &block : scene.strands) block->configure(step);
-    {
-        const Stopwatch watch(report.time_assemble);
-        scene.objective.begin_step({dt, Vec3(step.gravity), Vec3(step.wind), targets, input.forces},
-                                   scene.configuration.positions);
-    }
-    AlignedVector x(scene.blocks.size());
-    Refinement refinement(scene.objective);
-    move_to_initial_guess(scene, advected.rigidly, step.tolerance, x, refinement, report);
-
-    const NewtonSettings newton{step.newton, settings.extra, step.tolerance, scene.contact.strand_radius, settings.linear};
-    const SolverEffort effort = scene.newton.minimise(start, newton, refinement, x, report);
-    commit(scene, start, dt, effort, x, report);
-    return advected.fraction;
-}
-
 } // namespace
 
 SceneReport take_step(SceneData &scene, const SceneInput &input, const SceneStep &settings) {
     SceneReport report;
-    const double dt = settings.strands.dt;
-    if (!scene.begun) find_initial_contacts(scene, dt);
-    if (scene.contact.parting_speed > 0.0) scene.objective.contacts.overlaps.grow(scene.contact.parting_speed * dt);
+    const StrandStep &step = settings.strands;
+    if (!scene.begun) find_initial_contacts(scene, step.dt);
+    if (scene.contact.parting_speed > 0.0) scene.objective.contacts.overlaps.grow(scene.contact.parting_speed * step.dt);
     scene.configuration.begin_record();
-    double left = 1.0; // of the step
-    for (int part = 0; part < settings.max_substeps && left > scene_settings::no_step_left; ++part) {
-        const double fraction = take_substep(scene, input, settings, dt * left, report);
-        left = fraction < 1.0 ? left * (1.0 - fraction) : 0.0;
-        ++report.substeps;
+    const std::vector<Vec3> start = scene.configuration.positions;
+    begin_contact(scene, step.dt);
+    const std::vector<unsigned char> astray = advect_to(scene, input.targets, step.dt * mean_velocity_of_cloths(scene), report);
+
+    const int inside = scene.penetration.count();
+    scene.objective.springs =
+        scene.penetration.recover(scene.vertices.mesh, scene.configuration.positions, View<int>(scene.model.offsets),
+                                  scene.stiffness.largest(), scene_settings::recovery_speed * step.dt);
+    if (scene.penetration.count() < inside) scene.configuration.pairs.clear(); // of pairs that were exempt
+
+    const std::vector<Vec3> targets = targets_on_arrival(scene, input.targets);
+    for (const auto &block : scene.strands) block->configure(step);
+    {
+        const Stopwatch watch(report.time_assemble);
+        scene.objective.begin_step({step.dt, Vec3(step.gravity), Vec3(step.wind), targets, input.forces},
+                                   scene.configuration.positions);
     }
-    report.fraction = 1.0 - left;
+    AlignedVector x(scene.blocks.size());
+    Refinement refinement(scene.objective);
+    move_to_initial_guess(scene, astray, step.tolerance, x, refinement, report);
+
+    const NewtonSettings newton{step.newton, settings.extra, step.tolerance, scene.contact.strand_radius, settings.linear};
+    const SolverEffort effort = scene.newton.minimise(start, newton, refinement, x, report);
+    commit(scene, start, step.dt, effort, x, report);
+    for (const auto &[vertex, target] : scene.lagging)
+        report.lag = std::max(report.lag, (scene.configuration.positions[vertex] - target).norm());
     report.closest = std::numeric_limits<double>::infinity();
     for (const Contact &c : scene.objective.contacts.contacts())
         report.closest = std::min(report.closest, separation(c, scene.configuration.positions).norm());

@@ -5,16 +5,17 @@
 namespace ringlet {
 
 BlockSet::BlockSet(std::vector<Block *> blocks, const VertexTable &table)
-    : active(blocks.size(), 1), table_(table), blocks_(std::move(blocks)), place_(table.objects), begin_(count() + 1, 0) {
+    : table_(table), blocks_(std::move(blocks)), place_(table.objects), begin_(count() + 1, 0) {
     for (int b = 0; b < count(); ++b) {
         (blocks_[b]->is_parallel() ? large_ : small_).push_back(b);
         for (size_t lane = 0; lane < blocks_[b]->objects().size(); ++lane)
             place_[blocks_[b]->objects()[lane].number] = {b, int(lane)};
     }
+    activate_all();
 }
 
 void BlockSet::begin_step(const BlockStep &step) {
-    active.assign(count(), 1);
+    activate_all();
     for_active([&](int b) { blocks_[b]->begin_step(step); });
     lay_out();
 }
@@ -39,11 +40,12 @@ bool BlockSet::all_exact() const {
     return std::all_of(blocks_.begin(), blocks_.end(), [](const Block *block) { return block->is_exact(); });
 }
 
-std::vector<unsigned char> BlockSet::active_objects() const {
-    std::vector<unsigned char> objects(place_.size());
-    for (size_t object = 0; object < objects.size(); ++object) objects[object] = is_active(int(object));
-    return objects;
+void BlockSet::activate(std::vector<unsigned char> objects) {
+    active_objects_ = std::move(objects);
+    active_ = blocks_with(active_objects_);
 }
+
+bool BlockSet::all_active() const { return std::count(active_objects_.begin(), active_objects_.end(), 0) == 0; }
 
 std::vector<unsigned char> BlockSet::blocks_with(const std::vector<unsigned char> &objects) const {
     std::vector<unsigned char> blocks(count(), 0);

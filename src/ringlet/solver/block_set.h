@@ -15,7 +15,7 @@ class BlockSet {
 public:
     BlockSet(std::vector<Block *> blocks, const VertexTable &table);
 
-    // Opens a step of all blocks, all of them active, and lays out their vectors.
+    // Opens a step of all blocks, all objects active, and lays out their vectors.
     void begin_step(const BlockStep &step);
 
     int count() const { return int(blocks_.size()); }
@@ -26,10 +26,12 @@ public:
     int lane_of(int object) const { return place_[object].lane; }
     bool all_exact() const;
 
-    // Blocks that are not active stay where they are.
-    std::vector<unsigned char> active; // per block
-    bool is_active(int object) const { return active[block_of(object)] != 0; }
-    std::vector<unsigned char> active_objects() const;
+    // Objects that are not active stay where they are. A block is active where one of its objects is.
+    void activate(std::vector<unsigned char> objects);
+    void activate_all() { activate(std::vector<unsigned char>(objects(), 1)); }
+    bool is_active(int object) const { return active_objects_[object] != 0; }
+    const std::vector<unsigned char> &active_objects() const { return active_objects_; }
+    bool all_active() const;
 
     // The blocks that one of the marked objects is in.
     std::vector<unsigned char> blocks_with(const std::vector<unsigned char> &objects) const;
@@ -39,9 +41,9 @@ public:
         const int small = int(small_.size());
 #pragma omp parallel for schedule(dynamic)
         for (int k = 0; k < small; ++k)
-            if (const int b = small_[backwards ? small - 1 - k : k]; active[b]) work(b);
+            if (const int b = small_[backwards ? small - 1 - k : k]; active_[b]) work(b);
         for (const int b : large_)
-            if (active[b]) work(b);
+            if (active_[b]) work(b);
     }
 
     // Vectors of all unknowns.
@@ -81,6 +83,7 @@ private:
     const VertexTable &table_;
     std::vector<Block *> blocks_;
     std::vector<int> small_, large_;
+    std::vector<unsigned char> active_, active_objects_; // per block, per object
     struct Place {
         int block, lane;
     };

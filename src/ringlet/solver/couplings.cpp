@@ -10,7 +10,8 @@ void Couplings::find(const ContactSet &contacts, const VertexTable &table, const
     for (int k = 0; k < int(all.size()); ++k) {
         const Contact &c = all[k];
         const int a = table.object_of(c.vertex[0]), b = table.object_of(c.vertex[3]);
-        if (a >= 0 && b >= 0) couplings_.push_back({k, c.first, {a, b}, {}, c.weight, {Vec3::Zero(), Vec3::Zero()}});
+        if (a >= 0 && b >= 0 && blocks.is_active(a) && blocks.is_active(b))
+            couplings_.push_back({k, c.first, {a, b}, {}, c.weight, {Vec3::Zero(), Vec3::Zero()}});
     }
     join_clusters(table.objects);
     number_points(contacts, table, blocks);

@@ -11,7 +11,7 @@ namespace ringlet {
 
 class Couplings {
 public:
-    // Takes those of the contacts that are between two objects.
+    // Takes those of the contacts that are between two active objects; the others stay.
     void find(const ContactSet &contacts, const VertexTable &table, const BlockSet &blocks);
 
     bool couples(int object) const { return coupled_[object]; }

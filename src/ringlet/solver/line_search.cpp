@@ -112,12 +112,11 @@ LineSearchResult line_search(Objective &objective, SearchModel &model, const Sea
     }
 }
 
-bool search_by_planes(Objective &objective, const AlignedVector &x, bool converged, SearchPath &path) {
-    std::vector<unsigned char> accepted(objective.table.objects, 1);
-    if (!converged) {
-        const std::vector<unsigned char> searched = with_touched(objective, objective.by_planes());
-        std::transform(searched.begin(), searched.end(), accepted.begin(), std::logical_not<>());
-    }
+bool search_by_planes(Objective &objective, const AlignedVector &x, const std::vector<unsigned char> &converged,
+                      SearchPath &path) {
+    std::vector<unsigned char> accepted = converged;
+    const std::vector<unsigned char> searched = with_touched(objective, objective.by_planes());
+    for (size_t o = 0; o < accepted.size(); ++o) accepted[o] |= searched[o] == 0;
     PlaneModel model(objective, accepted);
     AlignedVector end = x.copy();
     const LineSearchResult result = line_search(objective, model, path, accepted, end);

@@ -65,7 +65,9 @@ private:
     View<unsigned char> ignored_; // objects whose search comes later
 };
 
-// Shortens the path from x to where these energies fall; false: no object has moved. `converged` directions are not searched.
-bool search_by_planes(Objective &objective, const AlignedVector &x, bool converged, SearchPath &path);
+// Shortens the path from x to where these energies fall; false: no object has moved. Those of `converged`
+// objects are not searched.
+bool search_by_planes(Objective &objective, const AlignedVector &x, const std::vector<unsigned char> &converged,
+                      SearchPath &path);
 
 } // namespace ringlet

@@ -23,9 +23,7 @@ System LinearSystem::method(System wanted) const {
     if (wanted == System::banded && objective_.is_coupled())
         throw CoupledError("scene: the system 'banded' solves strands alone, but something couples them");
     // The matrix of blocks that are not active is not assembled.
-    const std::vector<unsigned char> &active = objective_.blocks.active;
-    const bool all = std::count(active.begin(), active.end(), 0) == 0;
-    return wanted == System::direct && all ? wanted : System::conjugate_gradient;
+    return wanted == System::direct && objective_.blocks.all_active() ? wanted : System::conjugate_gradient;
 }
 
 void LinearSystem::assemble(const AlignedVector &x, const LinearSettings &settings) {

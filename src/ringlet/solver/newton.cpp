@@ -14,10 +14,11 @@ SolverEffort Newton::minimise(View<Vec3> start, const NewtonSettings &settings, 
                               SceneReport &report) {
     largest_.assign(table_.objects, 0.0);
     taken_.assign(table_.objects, 1.0);
-    Iteration iteration{0, false, false, SearchPath(objective_.blocks.size()), {}, {}, {}};
+    Iteration iteration{0, std::vector<unsigned char>(table_.objects, 0), false, SearchPath(objective_.blocks.size()), {}, {},
+                        {}};
     const std::vector<Vec3> initial = configuration_.positions;
     int &number = iteration.number;
-    for (bool converged = false; !converged; ++number) {
+    for (bool all_converged = false; !all_converged; ++number) {
         if (number >= settings.iterations + settings.extra) break;
         if (number >= settings.iterations && !refinement.activate_stretched(objective_.blocks, configuration_.positions)) break;
         find_contacts(start, report);
@@ -30,7 +31,8 @@ SolverEffort Newton::minimise(View<Vec3> start, const NewtonSettings &settings, 
         iteration.move = limit_path(objective_, configuration_, x, number > 0, number + 1 >= settings.iterations,
                                     iteration.path, refinement, report);
         refinement.add_steps(iteration.step);
-        converged = iteration.converged && refinement.all_moved_fully();
+        all_converged =
+            std::count(iteration.converged.begin(), iteration.converged.end(), 0) == 0 && refinement.all_moved_fully();
         const LineSearchResult found = search(iteration, report, x);
         if (!found.moved) break;
         refinement.add_steps(found.step);
@@ -78,11 +80,26 @@ void Newton::solve(const NewtonSettings &settings, const AlignedVector &x, Scene
     report.linear_iterations += solved.iterations;
     report.linear_residual = solved.residual;
     measure_direction(objective_.blocks, direction, largest_);
-    iteration.converged =
-        std::all_of(largest_.begin(), largest_.end(), [&](double largest) { return largest <= settings.tolerance; });
+    stop_converged(settings.tolerance, iteration);
     objective_.lag_normal_forces(direction);
     if (stiffness_.raise_loads(objective_.contacts))
         table_.material.stiffness = stiffness_.levels(table_.mesh, 2.0 * settings.strand_radius);
+}
+
+// A cluster that has converged stays from then on, however long others take.
+void Newton::stop_converged(double tolerance, Iteration &iteration) const {
+    const std::vector<int> &cluster = objective_.couplings.clusters();
+    std::vector<unsigned char> small(table_.objects, 1), before(table_.objects, 1); // of clusters
+    for (int o = 0; o < table_.objects; ++o) {
+        small[cluster[o]] &= largest_[o] <= tolerance;
+        before[cluster[o]] &= iteration.converged[o];
+    }
+    std::vector<double> part(table_.objects, 1.0);
+    for (int o = 0; o < table_.objects; ++o) {
+        iteration.converged[o] = small[cluster[o]];
+        if (small[cluster[o]] && before[cluster[o]]) part[o] = 0.0;
+    }
+    shorten(objective_.blocks, part, iteration.path);
 }
 
 // How far objects may go, and how their paths bend. Where something is searched by planes, all paths stay straight: contacts
@@ -111,7 +128,7 @@ LineSearchResult Newton::search(const Iteration &iteration, SceneReport &report,
     const Stopwatch watch(report.time_search);
     std::vector<unsigned char> accepted = objective_.by_planes(), searched = objective_.blocks.active_objects();
     for (int o = 0; o < table_.objects; ++o) {
-        accepted[o] |= iteration.converged || (iteration.leads_into_contact && objective_.couplings.couples(o));
+        accepted[o] |= iteration.converged[o] || (iteration.leads_into_contact && objective_.couplings.couples(o));
         searched[o] &= !accepted[o];
     }
     ExactModel model(objective_, configuration_.pairs.reachable_pairs(searched));

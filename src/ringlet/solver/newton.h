@@ -30,7 +30,7 @@ public:
 private:
     struct Iteration {
         int number;
-        bool converged; // no coordinate of the direction is above the tolerance
+        std::vector<unsigned char> converged; // per object: no coordinate of its cluster's direction is above the tolerance
         // The first of several: most contacts on this path are new, and nothing in the direction knows their energies. Coupled
         // objects take it without a search, in which a few of these contacts would halve the motion of their whole cluster.
         bool leads_into_contact;
@@ -41,6 +41,7 @@ private:
     };
 
     void find_contacts(View<Vec3> start, SceneReport &report);
+    void stop_converged(double tolerance, Iteration &iteration) const;
     void solve(const NewtonSettings &settings, const AlignedVector &x, SceneReport &report, Iteration &iteration);
     bool choose_path(const NewtonSettings &settings, const AlignedVector &x, SceneReport &report, Iteration &iteration);
     LineSearchResult search(const Iteration &iteration, SceneReport &report, AlignedVector &x);

@@ -1,5 +1,6 @@
 #include "ringlet/solver/refinement.h"
 
+#include "ringlet/solver/line_search.h"
 #include "ringlet/solver/settings.h"
 
 #include <algorithm>
@@ -41,18 +42,10 @@ bool Refinement::all_moved_fully() const {
 }
 
 bool Refinement::activate_stretched(BlockSet &blocks, View<Vec3> now) {
-    std::fill(blocks.active.begin(), blocks.active.end(), 0);
-    bool any = false;
-    for (int object = 0; object < objective_.table.objects; ++object) {
+    for (int object = 0; object < objective_.table.objects; ++object)
         limited_[object] = limited_[object] && blocks.of_object(object).is_stretched(blocks.lane_of(object), now);
-        if (limited_[object]) blocks.active[blocks.block_of(object)] = any = true;
-    }
-    for (const Contact &c : objective_.contacts.contacts()) {
-        const int a = objective_.table.object_of(c.vertex[0]), b = objective_.table.object_of(c.vertex[3]);
-        if (a >= 0 && b >= 0 && (limited_[a] || limited_[b]))
-            blocks.active[blocks.block_of(a)] = blocks.active[blocks.block_of(b)] = 1;
-    }
-    return any;
+    blocks.activate(with_touched(objective_, limited_));
+    return std::count(limited_.begin(), limited_.end(), 1) > 0;
 }
 
 } // namespace ringlet

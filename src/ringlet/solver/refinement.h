@@ -18,8 +18,7 @@ public:
 
     bool all_moved_fully() const; // in the last move
 
-    // Activates the blocks of the objects that were limited and are stretched, and of those that touch them. False: there are
-    // none.
+    // Activates the objects that were limited and are stretched, and those that touch them. False: there are none.
     bool activate_stretched(BlockSet &blocks, View<Vec3> now);
 
 private:

@@ -13,16 +13,16 @@ struct SceneReport {
     double violations = 0, zone_vertices = 0; // pairs that would have met, vertices whose motion was limited for them
     double moved = 0, left = 0;               // Σ m · m and Σ m · l of the vertices' motions m and what is left of the last
                                               // search direction, l [m²]
-    double substeps = 0, fraction = 1;        // fraction < 1: bodies left no way out, the step ends early
+    double lag = 0;                           // largest distance of a prescribed vertex from where it was to be [m]
     double time_pairs = 0, time_assemble = 0, time_solve = 0, time_search = 0, time_filter = 0; // [s]
 };
 inline constexpr int scene_report_columns = sizeof(SceneReport) / sizeof(double);
 
 inline constexpr const char *scene_report_names[] = {
-    "newton",          "cuts",          "residual",   "unconverged", "linear_iterations",
-    "linear_residual", "candidates",    "contacts",   "closest",     "violations",
-    "zone_vertices",   "moved",         "left",       "substeps",    "fraction",
-    "time_pairs",      "time_assemble", "time_solve", "time_search", "time_filter"};
+    "newton",          "cuts",       "residual",    "unconverged", "linear_iterations",
+    "linear_residual", "candidates", "contacts",    "closest",     "violations",
+    "zone_vertices",   "moved",      "left",        "lag",         "time_pairs",
+    "time_assemble",   "time_solve", "time_search", "time_filter"};
 static_assert(sizeof(scene_report_names) / sizeof(*scene_report_names) == scene_report_columns);
 
 class Stopwatch {

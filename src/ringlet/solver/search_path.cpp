@@ -7,14 +7,14 @@ namespace ringlet {
 void measure_direction(const BlockSet &blocks, AlignedVector &direction, std::vector<double> &largest) {
     blocks.for_active([&](int b) {
         blocks.for_objects(b, [&](int object, size_t first, size_t stride, size_t count) {
-            largest[object] = 0.0;
-            double sum = 0.0;
+            double most = 0.0, sum = 0.0;
             for (size_t i = first; i < first + count * stride; i += stride) {
-                largest[object] = std::max(largest[object], std::abs(direction[i]));
+                most = std::max(most, std::abs(direction[i]));
                 sum += direction[i];
             }
-            if (std::isfinite(sum)) return;
-            largest[object] = 0.0;
+            const bool finite = std::isfinite(sum);
+            if (blocks.is_active(object)) largest[object] = finite ? most : 0.0;
+            if (finite && blocks.is_active(object)) return;
             for (size_t i = first; i < first + count * stride; i += stride) direction[i] = 0.0;
         });
     });

@@ -13,8 +13,8 @@ struct SearchPath {
     explicit SearchPath(size_t size = 0) : straight(size), bend(size) {}
 };
 
-// Sets the largest coordinate of each object's direction [m]; those of blocks that are not active stay. A direction that is not
-// finite, since its system is too ill-conditioned to solve, becomes 0.
+// Sets the largest coordinate of each active object's direction [m]. The direction of the others becomes 0, and one that is not
+// finite, since its system is too ill-conditioned to solve.
 void measure_direction(const BlockSet &blocks, AlignedVector &direction, std::vector<double> &largest);
 
 // Per object, the largest fraction of its direction that the linearisation at x is good for.

@@ -17,10 +17,14 @@ from ringlet.data.errors import UserError
 from ringlet.data.stage import StageSpace
 from ringlet.io.space import to_metres
 from ringlet.io.usd.cloths import ClothPrims, cloth_metadata, read_cloth, set_cloth
+from ringlet.io.usd.curves import OWN
 from ringlet.io.usd.groom import LOCKS, VERSION, check_version, groom_prim
 from ringlet.io.usd.mesh import clip_at, mesh_at, visible_meshes
 from ringlet.io.usd.stage import Source, parse_json, reading, reading_more
 from ringlet.io.usd.stream import StreamWriter
+from ringlet.io.usd.values import Types
+
+LAG = f"{OWN}lag"
 
 
 def write_cache(
@@ -178,6 +182,9 @@ class CacheWriter(StreamWriter):
         self.start: dict[str, Any] = {}
         self._cloths = cloths
         self._statistics: list[dict[str, Any]] = []
+        self._lagging: UsdGeom.Primvar | None = None
+        self._place_of: dict[int, int] = {}  # index of each lock, by id
+        self._before: float | None = None  # the last frame without
 
     def __enter__(self) -> Self:
         stage = self.begin()
@@ -206,9 +213,30 @@ class CacheWriter(StreamWriter):
         if points.shape != self._shape:
             raise ValueError(f"cache: points have shape {points.shape}; must be {self._shape}")
         self.put(self._curves, frame, points)
+        self._add_lag(frame, statistics or {})
         for mesh, places in zip(self._meshes, cloths, strict=True):
             set_cloth(mesh, frame, places, self.space)
         self._statistics.append(statistics or {})
+
+    def _add_lag(self, frame: float, statistics: dict[str, Any]) -> None:
+        """Per lock, the lag of what it touches [m]: a primvar, from the first frame that has any."""
+        entries = (statistics.get("contact") or {}).get("lagging", [])
+        if not entries and self._lagging is None:
+            self._before = frame
+            return
+        prim = self._curves.GetPrim()
+        if self._lagging is None:
+            ids = UsdGeom.PrimvarsAPI(prim).GetPrimvar(f"{OWN}id").Get()
+            self._place_of = {int(lock): k for k, lock in enumerate(ids)}
+            self._lagging = UsdGeom.PrimvarsAPI(prim).CreatePrimvar(LAG, Types.FloatArray, "uniform")
+            if self._before is not None:
+                self._lagging.Set([0.0] * len(ids), self._before)
+        distance = [0.0] * len(self._place_of)
+        for entry in entries:
+            for lock in entry["locks"]:
+                place = self._place_of[lock]
+                distance[place] = max(distance[place], entry["distance"])
+        self._lagging.Set(distance, frame)
 
     def finish(self) -> None:
         """Writes the metadata of the layer."""
