@@ -44,7 +44,9 @@ bool Refinement::all_moved_fully() const {
 bool Refinement::activate_stretched(BlockSet &blocks, View<Vec3> now) {
     for (int object = 0; object < objective_.table.objects; ++object)
         limited_[object] = limited_[object] && blocks.of_object(object).is_stretched(blocks.lane_of(object), now);
-    blocks.activate(with_touched(objective_, limited_));
+    std::vector<unsigned char> active = limited_;
+    for (int ring = 0; ring < solver_settings::refined_rings; ++ring) active = with_touched(objective_, active);
+    blocks.activate(std::move(active));
     return std::count(limited_.begin(), limited_.end(), 1) > 0;
 }
 

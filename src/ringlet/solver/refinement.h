@@ -18,7 +18,8 @@ public:
 
     bool all_moved_fully() const; // in the last move
 
-    // Activates the objects that were limited and are stretched, and those that touch them. False: there are none.
+    // Activates the objects that were limited and are stretched, those that touch them and so on for some rings, so that there
+    // is something to give way. False: there are none.
     bool activate_stretched(BlockSet &blocks, View<Vec3> now);
 
 private:

@@ -37,6 +37,7 @@ inline constexpr double loose_tolerance = 0.05; // from there on, small clusters
 inline constexpr int max_loose_iterations = 8;
 
 // Refinement
+inline constexpr int refined_rings = 3;       // of objects that touch one another, about one that is stretched
 inline constexpr double full_move = 0.9;      // a move that keeps less of its length was limited
 inline constexpr double move_rounding = 1e-9; // of a move
 inline constexpr int max_linear_iterations = 2000;
