@@ -41,7 +41,7 @@ def run(
     wall: list[float] = []
 
     def measure_frame(frame: float, statistics: dict[str, Any]) -> None:
-        wall.append(statistics["wall_ms"])
+        wall.append(statistics.get("wall_ms", 0.0))  # there is no step at the first
         if len(wall) % every == 1 or every == 1:
             megabytes.append(round(resident(), 1))
 

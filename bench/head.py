@@ -53,7 +53,7 @@ def run(
         )
         groom = build_groom(read_recipe(recipe))
         cache = simulate(read_shot(shot), groom)
-    steps = cache.statistics
+    steps = cache.statistics[1:]  # the first frame is the start
     clock = Clock()
     clock.cpu["step"] = [step["cpu_ms"] for step in steps]
     clock.wall["step"] = [step["wall_ms"] for step in steps]

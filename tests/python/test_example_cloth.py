@@ -59,6 +59,8 @@ def test_a_garment_shot_runs_without_new_intersections(name):
         assert not len(self_intersections(points, triangles))
         through = edge_triangle_intersections(cache.points[k].astype(float)[segments], points[triangles])
         assert len(through) <= initial  # initial intersections persist
+        if k == 0:
+            continue  # without a step
         assert statistics["contact"]["lag"] == 0.0 and statistics["nan"] == 0
         # A cloth that is scaled below its mesh starts with that stretch.
         initial_stretch = 1.0 / shot.cloth[0].scale(cache.frames[k]) - 1.0

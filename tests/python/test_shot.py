@@ -89,7 +89,9 @@ def test_substeps_divide_a_frame_and_its_motion():
 
 
 def test_statistics_describe_every_frame_of_the_solver():
-    for statistics in simulate(parse_shot(SHOT), groom(), moving(turned)).statistics:
+    start, *frames = simulate(parse_shot(SHOT), groom(), moving(turned)).statistics
+    assert start == {"frame": 1.0}  # without a step
+    for statistics in frames:
         assert 1 <= statistics["newton"] <= statistics["newton_max"] <= 5
         assert statistics["nan"] == 0 and statistics["max_stretch"] < 0.05
         assert statistics["worst_lock"] in (11, 12, 13)
@@ -151,3 +153,29 @@ def test_an_invalid_groom_or_clip_is_refused_in_one_line(spoil, clip, words):
 def test_more_prescribed_vertices_than_a_lock_has_are_refused():
     with pytest.raises(UserError, match="held is 40"):
         simulate(parse_shot(SHOT.replace("preroll = 0", "held = 40")), groom(), moving(turned))
+
+
+@pytest.mark.parametrize(("first", "preroll"), [(1, 0), (1, 6), (5, 6)])
+def test_a_head_in_steady_flight_does_not_move_its_hair(first, preroll):
+    """A shot starts in the motion of its clip, also in the middle of it: only accelerations move hair."""
+    made = groom()
+    clip = Clip(
+        np.arange(1.0, 13.0), np.array([made.scalp.points + [0.08 * k, 0.03 * k, 0.0] for k in range(12)]), 24.0
+    )
+    text = SHOT.replace("frames = [1, 6]", f"frames = [{first}, {first + 5}]").replace(
+        "preroll = 0", f"preroll = {preroll}"
+    )
+    shot = parse_shot(text + "[strands]\ndrag = 0.0\n[forces]\ngravity = [0, 0, 0]\n")
+    points = simulate(shot, made, clip).points.astype(float)
+    relative = points - points[:, :1]
+    assert np.abs(relative - relative[0]).max() < 1e-6
+    assert np.linalg.norm(points[-1, 0] - points[0, 0]) > 0.4
+
+
+@pytest.mark.parametrize("substeps", [1, 3])
+def test_a_shot_without_preroll_starts_with_the_groom(substeps):
+    made = groom()
+    shot = parse_shot(SHOT + f"[solver]\nsubsteps = {substeps}\n")
+    cache = simulate(shot, made, moving(turned))
+    assert np.abs(cache.points[0] - turned(1, made.locks.points)).max() < 1e-7
+    assert np.abs(cache.points[1] - turned(2, made.locks.points)).max() > 1e-5

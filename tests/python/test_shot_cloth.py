@@ -49,12 +49,12 @@ def test_cloth_falls_onto_locks_and_the_floor_without_intersections():
 def test_statistics_include_each_cloth():
     cache = simulated(garment(), garment(sheet(height=0.03, name="other")))
     assert [cloth.name for cloth in cache.cloths] == ["sheet", "other"]
-    for frame in cache.statistics:
+    for frame in cache.statistics[1:]:
         assert set(frame["cloth"]) == {"sheet", "other"}
         statistics = frame["cloth"]["sheet"]
         assert 0 <= statistics["max_stretch"] < 0.1 and statistics["nan"] == 0
         assert set(statistics["energy"]) == {"stretch", "bend", "gravity", "kinetic"}
-    assert max(frame["cloth"]["sheet"]["energy"]["kinetic"] for frame in cache.statistics) > 0
+    assert max(frame["cloth"]["sheet"]["energy"]["kinetic"] for frame in cache.statistics[1:]) > 0
 
 
 def pinned(collider, move, text=WEIGHTLESS, **pin):

@@ -79,3 +79,8 @@ class Clip:
         start, end = self.frames[after - 1], self.frames[after]
         weight = float(np.clip((frame - start) / (end - start), 0.0, 1.0))
         return (1.0 - weight) * self.points[after - 1] + weight * self.points[after]
+
+    def next_to(self, frame: float) -> float:
+        """The frame whose difference to this one is the motion there: the one before, or the one after where the clip
+        begins later."""
+        return frame - 1.0 if self.frames[0] <= frame - 1.0 else frame + 1.0

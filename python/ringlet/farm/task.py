@@ -180,7 +180,7 @@ def _simulate(task: Task, options: TaskOptions, log: Log, progress: Progress) ->
         log(f"draws frame {frame}")
         _draw(task.folder, groom, groom_file, cache, frame)
     shutil.rmtree(part, ignore_errors=True)
-    series = {name: [float(frame[name]) for frame in simulated.statistics] for name in SERIES}
+    series = {name: [float(frame.get(name, 0.0)) for frame in simulated.statistics] for name in SERIES}
     return Result(task.settings, "done", "", made_from, round(seconds, 3), numbers, series, task.order)
 
 
@@ -198,6 +198,8 @@ def _groom(shot: Shot, folder: Path, log: Log) -> tuple[Groom, Path]:
 
 
 def _one_line(statistics: dict[str, Any]) -> str:
+    if "newton" not in statistics:
+        return "the start"
     contact = statistics.get("contact")
     contacts = f", {contact['contacts']} contacts" if contact else ""
     return (
@@ -207,7 +209,10 @@ def _one_line(statistics: dict[str, Any]) -> str:
 
 
 def _numbers_of_statistics(statistics: list[dict[str, Any]]) -> dict[str, float]:
+    statistics = [frame for frame in statistics if "newton" in frame]  # there is no step at the first
     contacts = [frame["contact"] for frame in statistics if "contact" in frame]
+    if not statistics:
+        return {}
     return {
         "seconds a frame": float(np.mean([1e-3 * frame["wall_ms"] for frame in statistics])),
         "slowest frame, s": max(1e-3 * frame["wall_ms"] for frame in statistics),

@@ -40,7 +40,7 @@ class Shot(Section):
         default=24,
         ge=0,
         le=100_000,
-        description="frames simulated before the first, with the head still, so that hair hangs",
+        description="frames simulated before the first, with the head still, so that hair hangs; 0: the groom exactly",
     )
     held: int = Field(
         default=3, ge=2, le=1000, description="vertices of each lock, from its root, that the scalp holds"

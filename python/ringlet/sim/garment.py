@@ -106,14 +106,19 @@ def start_positions(garment: Garment, obstacles: Sequence[Obstacle], first: floa
         )
     if garment.is_animated or not obstacles:
         return points.copy()
-    ends = [obstacle.at(first) for obstacle in obstacles]
-    bound = [_core.bind_roots(obstacle.mesh.points, obstacle.mesh.triangles, points) for obstacle in obstacles]
+    return moved_with(points, [(one.mesh.triangles, one.mesh.points, one.at(first)) for one in obstacles])
+
+
+def moved_with(points: Array, bodies: Sequence[tuple[NDArray[np.integer], Array, Array]]) -> Array:
+    """Points moved by the rigid motion that fits the nearest places on bodies best: their triangles, and their points
+    before and after [m]."""
+    bound = [_core.bind_roots(start, triangles, points) for triangles, start, _ in bodies]
     nearest = np.argmin([distance for _, _, distance in bound], axis=0)
     before, after = np.empty_like(points), np.empty_like(points)
-    for k, (obstacle, end) in enumerate(zip(obstacles, ends, strict=True)):
+    for k, (triangles, start, end) in enumerate(bodies):
         of = nearest == k
-        corners = obstacle.mesh.triangles[bound[k][0][of]]
-        for places, at in ((before, obstacle.mesh.points), (after, end)):
+        corners = triangles[bound[k][0][of]]
+        for places, at in ((before, start), (after, end)):
             places[of] = np.einsum("nk,nki->ni", bound[k][1][of], at[corners])
     return moved_rigidly(points, before, after)
 

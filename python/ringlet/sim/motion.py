@@ -15,7 +15,7 @@ from ringlet.data.errors import UserError
 from ringlet.data.groom import Groom
 from ringlet.data.mesh import Clip
 from ringlet.shot.shot import Shot
-from ringlet.sim.garment import Garment, SimulatedGarment
+from ringlet.sim.garment import Garment, SimulatedGarment, moved_with
 from ringlet.sim.lag import ROOTS, lagging
 from ringlet.sim.nails import held_vertices, spring_forces
 from ringlet.sim.obstacle import Obstacle
@@ -115,6 +115,23 @@ class Motion:
         self.strands.recall(of("strands "))
         if self.scene:
             self.scene.recall(of("scene "))
+
+    def begin(self) -> dict[str, Any]:
+        """Locks and cloths take over the motion that the clip has at the first frame.
+
+        Returns the statistics of that frame, in which there was no step.
+        """
+        other = self.clip.next_to(self.first)
+        rate = self.clip.fps / (other - self.first)
+        memory = self.strands.memory
+        led = self.roots.move(self.strands.positions, self.clip.at(self.first), self.clip.at(other), self.first)
+        memory["velocities"] += rate * (led - self.strands.positions)
+        memory["last_dt"][:] = 0.0  # BDF-2 starts over
+        self.strands.recall(memory)
+        bodies = [(obstacle.mesh.triangles, obstacle.at(self.first), obstacle.at(other)) for obstacle in self.obstacles]
+        for cloth in (garment.cloth for garment in self.garments if bodies):
+            cloth.velocities[:] += rate * (moved_with(cloth.positions, bodies) - cloth.positions)
+        return {"frame": float(self.first)}
 
     def advance(self, begin: float, end: float) -> dict[str, Any]:
         """One frame's time passes while the scalp goes from frame ``begin`` to ``end``; returns its statistics."""

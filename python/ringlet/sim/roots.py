@@ -32,6 +32,16 @@ class Roots:
         points = np.asarray(locks.points, np.float64)
         return _core.carry_curves(points, locks.offsets, turns, rest_place, place)
 
+    def move(
+        self, points: NDArray[np.float64], start: NDArray[np.float64], end: NDArray[np.float64], frame: float
+    ) -> NDArray[np.float64]:
+        """Points of the locks at ``frame``, shape (n, 3), each moved along with its root as the scalp goes from points
+        ``start`` to ``end`` [m]."""
+        (place, axes), (to, to_axes) = (self._frames(scalp, f"frame {frame:g}") for scalp in (start, end))
+        return _core.carry_curves(
+            np.asarray(points, np.float64), self.groom.locks.offsets, to_axes @ axes.transpose(0, 2, 1), place, to
+        )
+
     def _frames(self, scalp_points: NDArray[np.float64], when: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         scalp, locks = self.groom.scalp, self.groom.locks
         if scalp_points.shape != scalp.points.shape:
