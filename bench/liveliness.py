@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import itertools
 import statistics
 import tempfile
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ringlet import Clock, build_groom, loft, read_recipe, read_shot, simulate, write_loft
+from ringlet import Clock, build_groom, lock_motion, loft, read_recipe, read_shot, simulate, write_loft
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "child"
 STILL = 0.1  # motion of a frame below which hair counts as still [mm]
@@ -64,7 +62,7 @@ def run(
             with clock(f"stiffness {name}"):
                 cache = simulate(shown, groom, allow_stale=True)
             points = cache.points[1 - first :].astype(np.float64)
-            each = moves(points, groom.locks.offsets)
+            each = [1e3 * distance for distance in lock_motion(points, groom.locks.offsets)]
             results[name] = {
                 "moves_mm": statistics.mean(each),
                 "still": sum(distance < STILL for distance in each),
@@ -77,7 +75,7 @@ def run(
                     exact = simulate(shown.model_copy(update={"solver": solver}), groom, allow_stale=True)
                 expected = exact.points[1 - first :].astype(np.float64)
                 results[name] |= {
-                    "kept": statistics.mean(each) / statistics.mean(moves(expected, groom.locks.offsets)),
+                    "kept": 1e-3 * statistics.mean(each) / statistics.mean(lock_motion(expected, groom.locks.offsets)),
                     "off_mm": 1e3 * float(np.linalg.norm(points - expected, axis=-1).mean()),
                 }
     return clock.result(
@@ -96,20 +94,3 @@ def run(
         warm_up=0,
         off=results,
     )
-
-
-def moves(points: NDArray[np.float64], offsets: NDArray[np.integer]) -> list[float]:
-    """Largest motion of a lock's vertices relative to the rigid motion of all roots, by frame, median over locks [mm].
-
-    points:  positions [m], shape (frames, n, 3)
-    offsets: offsets of the locks, shape (locks + 1,)
-    """
-    roots = offsets[:-1]
-    medians = []
-    for before, after in itertools.pairwise(points):
-        a, b = before[roots].mean(axis=0), after[roots].mean(axis=0)
-        u, _, v = np.linalg.svd((before[roots] - a).T @ (after[roots] - b))
-        rotation = u @ np.diag([1.0, 1.0, np.sign(np.linalg.det(u @ v))]) @ v
-        distance = np.linalg.norm((before - a) @ rotation + b - after, axis=1)
-        medians.append(1e3 * float(np.median(np.maximum.reduceat(distance, roots))))
-    return medians

@@ -159,7 +159,7 @@ def run_digest(shot: Shot, groom: Groom, *, frames: tuple[int, int] | None = Non
     return sim.digest_of_run(shot, groom, frames=frames, **_inputs(shot, groom, False))
 
 
-def start_motion(shot: Shot, groom: Groom, *, allow_stale: bool = False) -> Motion:
+def start_motion(shot: Shot, groom: Groom | Path | str, *, allow_stale: bool = False) -> Motion:
     """The locks of a groom at the start of a shot, for callers that advance it frame by frame."""
     from ringlet import sim
 

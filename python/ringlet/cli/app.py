@@ -26,6 +26,7 @@ COMMANDS = [
     "check",
     "loft",
     "sim",
+    "converge",
     "wedge",
     "hair",
     "picture",

@@ -109,7 +109,7 @@ def start_positions(garment: Garment, obstacles: Sequence[Obstacle], first: floa
     return moved_with(points, [(one.mesh.triangles, one.mesh.points, one.at(first)) for one in obstacles])
 
 
-def moved_with(points: Array, bodies: Sequence[tuple[NDArray[np.integer], Array, Array]]) -> Array:
+def moved_with(points: Array, bodies: Sequence[tuple[NDArray[np.int32], Array, Array]]) -> Array:
     """Points moved by the rigid motion that fits the nearest places on bodies best: their triangles, and their points
     before and after [m]."""
     bound = [_core.bind_roots(start, triangles, points) for triangles, start, _ in bodies]

@@ -181,7 +181,7 @@ private:
 
     // A surface follows where that is near its own motion: the map bends around it, while a pinch is not to be passed on.
     Vec3 mapped(const SpaceMap &map, int v) const {
-        const Vec3 end = map(motion_.start[v]);
+        Vec3 end = map(motion_.start[v]);
         if (v < vertices_.dynamic_vertices) return end;
         const Vec3 own = motion_.start[v] + motion_.target[v] - motion_.led[v];
         const double most = scene_settings::dent_deviation * (own - move_.motion(motion_.start[v])).norm();
