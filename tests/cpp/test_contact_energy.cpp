@@ -59,22 +59,6 @@ BOOST_AUTO_TEST_CASE(activation_distance_and_slip_invert_the_forces) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(the_quadratic_model_is_right_to_second_order) {
-    Random random;
-    for (int i = 0; i < 1000; ++i) {
-        Contact contact = some_contact(random);
-        const double r = contact.d_hat;
-        contact.gap = random(0.05, 0.45) * r; // within the barrier
-        const auto off = [&](double nearer) {
-            const Vec3 apart = (contact.gap - nearer * contact.gap) * contact.normal;
-            return std::abs(quadratic_barrier_energy(contact, apart) - barrier_energy(contact, contact.normal.dot(apart))) /
-                   (contact.stiffness * r * r);
-        };
-        BOOST_TEST(off(0.0) < 1e-15);
-        BOOST_TEST(std::abs(off(2e-2) / off(1e-2) - 8.0) < 0.2);
-    }
-}
-
 BOOST_AUTO_TEST_CASE(the_gradient_of_a_contact_is_the_derivative_of_its_energy_and_the_hessian_semi_definite) {
     Random random;
     const double h = 1e-9;

@@ -50,7 +50,6 @@ public:
     void multiply_add(const double *p, double *q) const override;
     void contact_stiffness(double dt, std::vector<double> &of_vertices) const override;
     bool is_parallel() const override { return true; }
-    bool is_searched_by_planes() const override { return true; }
     bool commit(const double *x, double dt, const SolverEffort &effort) override;
 
 private:

@@ -14,7 +14,7 @@ struct Potential {
 // Two-stage barrier at a gap g with activation distance d̂ (Chen et al. 2025), with an end:
 //   ½ (d̂ − g)²                         d̂/2 ≤ g < d̂
 //   −(d̂²/4) (ln(2g/d̂) − ½)             end ≤ g < d̂/2     logarithmic: its force grows as 1/g, its stiffness as 1/g²
-//   the parabola that continues it     g < end           also where g < 0: the plane of a contact may be crossed in between
+//   the parabola that continues it     g < end           bounded, for a direction that leads beyond
 inline Potential barrier(double g, double d_hat, double end) {
     if (g >= d_hat) return {0.0, 0.0, 0.0};
     if (g >= 0.5 * d_hat) return {0.5 * (d_hat - g) * (d_hat - g), g - d_hat, 1.0};

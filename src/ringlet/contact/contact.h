@@ -51,13 +51,6 @@ inline double normal_force(const Contact &c, const Vec3 &separation) {
 
 inline double barrier_energy(const Contact &c, double gap) { return c.stiffness * barrier(gap, c.d_hat, c.barrier_end).value; }
 
-// The barrier's quadratic model at the point of linearisation, as a Newton step has it.
-inline double quadratic_barrier_energy(const Contact &c, const Vec3 &separation) {
-    const Potential at = barrier(c.gap, c.d_hat, c.barrier_end);
-    const double change = c.normal.dot(separation) - c.gap;
-    return c.stiffness * (at.value + change * (at.first + 0.5 * change * at.second));
-}
-
 inline Vec3 slip(const Contact &c, const Vec3 &separation) { // [m]
     const Vec3 moved = separation - c.reference;
     return moved - c.normal.dot(moved) * c.normal;

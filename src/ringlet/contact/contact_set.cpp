@@ -92,18 +92,10 @@ void ContactSet::for_active_points(const CollisionMesh &mesh, const ContactPair 
         if (overlap->force > 0.0)
             loaded_fraction = std::max(1.0 - overlap->gap / pair.d_hat, contact_settings::least_loaded_fraction);
     }
-    const bool by_planes = with_vertices(mesh, pair, [&](const auto &a, const auto &b) {
-        return uses_planes(mesh.object[a[0]]) || uses_planes(mesh.object[b[0]]);
-    });
     for_contact_points(mesh, pair, positions, [&](const ContactPoint &point) {
         const double gap = std::sqrt(point.closest.distance2);
         if (!(gap > 0.0 && gap < d_hat)) return;
-        double barrier_end = d_hat / contact_settings::d_hat_per_barrier_end;
-        if (by_planes)
-            barrier_end = std::min(std::clamp(contact_settings::plane_barrier_gap * gap, barrier_end,
-                                              contact_settings::plane_barrier_end * pair.d_hat),
-                                   contact_settings::plane_barrier_end * d_hat);
-        work(point, gap, d_hat, barrier_end, loaded_fraction);
+        work(point, gap, d_hat, d_hat / contact_settings::d_hat_per_barrier_end, loaded_fraction);
     });
 }
 

@@ -57,10 +57,6 @@ public:
     std::vector<PairEnergy> energies(const CollisionMesh &mesh, const ContactMaterial &material,
                                      const std::vector<ContactPair> &pairs, View<Vec3> positions) const;
 
-    // Objects whose line search knows contacts by their planes (see solver/line_search.h). Iterates cross these planes, so
-    // that the barriers end early.
-    void set_plane_objects(View<unsigned char> objects) { plane_objects_.assign(objects.begin(), objects.end()); }
-
     const std::vector<Contact> &contacts() const { return contacts_; }
     void set_lagged_force(int contact, double force) { lagged_[contact].force = force; }
 
@@ -83,10 +79,8 @@ private:
     std::vector<Contact> linearise(const CollisionMesh &mesh, const ContactMaterial &material,
                                    const std::vector<ContactPair> &pairs, View<Vec3> start, View<Vec3> positions) const;
     void index(const CollisionMesh &mesh);
-    bool uses_planes(int object) const { return size_t(object) < plane_objects_.size() && plane_objects_[object]; }
 
     std::vector<FrictionState> friction_;
-    std::vector<unsigned char> plane_objects_;
     std::vector<Contact> contacts_;
     std::vector<LaggedForce> lagged_; // of each contact
     Lists<Role> roles_;               // of vertices

@@ -4,10 +4,8 @@
 namespace ringlet::contact_settings {
 
 // Contact points and barriers
-inline constexpr double parallel_sine2 = 0.01;        // sin² of the angle of edges that push at their ends below
-inline constexpr double d_hat_per_barrier_end = 100;  // divides d̂: below that gap the barrier is a parabola
-inline constexpr double plane_barrier_end = 1.0 / 64; // of d̂, at most, where iterates cross the planes of contacts
-inline constexpr double plane_barrier_gap = 0.25;     // of the gap, likewise
+inline constexpr double parallel_sine2 = 0.01;       // sin² of the angle of edges that push at their ends below
+inline constexpr double d_hat_per_barrier_end = 100; // divides d̂: below that gap the barrier is a parabola
 
 // Friction
 inline constexpr double zero_slip = 1e-9; // of the stick length: a smaller slip has no direction

@@ -99,8 +99,7 @@ public:
     virtual bool is_stretched(int, View<Vec3>) const { return false; }
     virtual double settled_distance(int) const { return std::numeric_limits<double>::infinity(); }
 
-    virtual bool is_parallel() const { return false; }           // in itself: large, one at a time
-    virtual bool is_searched_by_planes() const { return false; } // see PlaneModel in line_search.h
+    virtual bool is_parallel() const { return false; } // in itself: large, one at a time
 
     // Accepts x as the end of a step of dt. Where an object's x is not finite it keeps its last state, at rest; then returns
     // false.

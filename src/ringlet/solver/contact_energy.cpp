@@ -5,10 +5,8 @@
 namespace ringlet {
 namespace {
 
-// Whether one of two objects is marked; −1 is none, and an empty list marks none.
-bool either(View<unsigned char> marked, int a, int b) {
-    return !marked.empty() && ((a >= 0 && marked[a] != 0) || (b >= 0 && marked[b] != 0));
-}
+// Whether one of two objects is marked; −1 is none.
+bool either(View<unsigned char> marked, int a, int b) { return (a >= 0 && marked[a] != 0) || (b >= 0 && marked[b] != 0); }
 
 } // namespace
 
@@ -42,29 +40,17 @@ void ContactEnergy::exact(const ReachablePairs &pairs, View<Vec3> positions, Vie
     measure_friction(positions, changed);
 }
 
-void ContactEnergy::linearised(View<Vec3> positions, View<unsigned char> by_planes, View<unsigned char> ignored,
-                               View<unsigned char> changed) {
-    remove(changed);
-    for (const Contact &contact : contacts_.contacts()) {
-        const auto [a, b] = objects_of(contact);
-        if (!either(changed, a, b) || either(ignored, a, b)) continue;
-        const Vec3 apart = separation(contact, positions);
-        barriers_.push_back({a, b,
-                             either(by_planes, a, b) ? barrier_energy(contact, contact.normal.dot(apart))
-                                                     : quadratic_barrier_energy(contact, apart)});
-    }
-    measure_friction(positions, changed);
-}
-
-void ContactEnergy::add_to(std::vector<double> &of_objects, View<unsigned char> ignored) const {
+void ContactEnergy::add_to(std::vector<double> &of_objects) const {
     const auto share = [&](int a, int b, double energy) {
         if (a >= 0) of_objects[a] += b >= 0 ? 0.5 * energy : energy;
         if (b >= 0) of_objects[b] += a >= 0 ? 0.5 * energy : energy;
     };
     for (const Shared &barrier : barriers_) share(barrier.a, barrier.b, barrier.energy);
     const std::vector<Contact> &all = contacts_.contacts();
-    for (size_t k = 0; k < all.size(); ++k)
-        if (const auto [a, b] = objects_of(all[k]); !either(ignored, a, b)) share(a, b, friction_[k]);
+    for (size_t k = 0; k < all.size(); ++k) {
+        const auto [a, b] = objects_of(all[k]);
+        share(a, b, friction_[k]);
+    }
 }
 
 } // namespace ringlet

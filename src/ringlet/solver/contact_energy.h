@@ -9,12 +9,10 @@
 
 namespace ringlet {
 
-// Three models of the barrier energy:
+// The barrier energy is that
 //   at_linearisation  of the contacts, where they were found: their gaps are known
 //   exact             of all pairs in reach, measured at the positions, be they contacts yet or not
-//   linearised        of the contacts alone: by their planes for objects that are searched by planes, else by the quadratic
-//                     model of the Newton step
-// Friction is that of the contacts in all of them. Each model keeps what no changed object has a part in.
+// Friction is that of the contacts in both. What no changed object has a part in is kept.
 class ContactEnergy {
 public:
     ContactEnergy(const VertexTable &table, const ContactSet &contacts) : table_(table), contacts_(contacts) {}
@@ -24,12 +22,8 @@ public:
     // `traveled` says which part of its longest path each object has covered: a lower bound on gaps.
     void exact(const ReachablePairs &pairs, View<Vec3> positions, View<double> traveled, View<unsigned char> changed);
 
-    // Contacts of `ignored` objects do not count.
-    void linearised(View<Vec3> positions, View<unsigned char> by_planes, View<unsigned char> ignored,
-                    View<unsigned char> changed);
-
     // Adds the energies to those of the objects, half to each of two [J].
-    void add_to(std::vector<double> &of_objects, View<unsigned char> ignored = {}) const;
+    void add_to(std::vector<double> &of_objects) const;
 
 private:
     struct Shared {

@@ -66,21 +66,14 @@ std::vector<unsigned char> with_touched(const Objective &objective, const std::v
     return all;
 }
 
-void ExactModel::at(const AlignedVector &x, const std::vector<double> &step, const std::vector<unsigned char> &changed,
-                    std::vector<double> &of_objects) {
-    std::vector<double> traveled(step.size()); // at most, on a path that bends
-    std::transform(step.begin(), step.end(), traveled.begin(), [](double t) { return t * (2.0 - t); });
-    objective_.exact_energies(x, pairs_, traveled, changed, of_objects);
-}
-
-LineSearchResult line_search(Objective &objective, SearchModel &model, const SearchPath &path,
+LineSearchResult line_search(Objective &objective, const ReachablePairs &pairs, const SearchPath &path,
                              const std::vector<unsigned char> &accepted, AlignedVector &x) {
     const BlockSet &blocks = objective.blocks;
     const int objects = objective.table.objects;
     LineSearchResult result{false, 0, std::vector<double>(objects, 1.0)};
     std::vector<double> &step = result.step;
-    std::vector<double> start, energy, bound(objects);
-    model.at_start(start);
+    std::vector<double> start, energy, bound(objects), traveled(objects);
+    objective.energies_at_linearisation(start);
     const std::vector<double> slope = slopes(blocks, path.straight);
     const std::vector<int> &cluster = objective.couplings.clusters();
     const std::vector<unsigned char> uphill = leads_uphill(cluster, slope, start, accepted);
@@ -93,7 +86,9 @@ LineSearchResult line_search(Objective &objective, SearchModel &model, const Sea
     std::transform(accepted.begin(), accepted.end(), changed.begin(), std::logical_not<>());
     for (int cut = 0;; ++cut) {
         if (cut > 0) move_along(blocks, x, step, path, changed, trial);
-        model.at(trial, step, changed, energy);
+        // At most, on a path that bends.
+        std::transform(step.begin(), step.end(), traveled.begin(), [](double t) { return t * (2.0 - t); });
+        objective.exact_energies(trial, pairs, traveled, changed, energy);
         for (int o = 0; o < objects; ++o)
             bound[o] = RINGLET_SIMD::armijo_bound(start[o], slope[o], step[o], solver_settings::armijo);
         changed = too_far(objective, accepted, step, energy, bound, cut >= solver_settings::max_object_cuts);
@@ -110,20 +105,6 @@ LineSearchResult line_search(Objective &objective, SearchModel &model, const Sea
         for (int o = 0; o < objects; ++o) result.moved |= blocks.is_active(o) && step[o] > 0.0;
         return result;
     }
-}
-
-bool search_by_planes(Objective &objective, const AlignedVector &x, const std::vector<unsigned char> &converged,
-                      SearchPath &path) {
-    std::vector<unsigned char> accepted = converged;
-    const std::vector<unsigned char> searched = with_touched(objective, objective.by_planes());
-    for (size_t o = 0; o < accepted.size(); ++o) accepted[o] |= searched[o] == 0;
-    PlaneModel model(objective, accepted);
-    AlignedVector end = x.copy();
-    const LineSearchResult result = line_search(objective, model, path, accepted, end);
-    if (!result.moved) return false;
-    shorten(objective.blocks, result.step, path);
-    objective.return_to(x);
-    return true;
 }
 
 } // namespace ringlet

@@ -25,7 +25,7 @@ SolverEffort Newton::minimise(View<Vec3> start, const NewtonSettings &settings, 
         iteration.leads_into_contact = number == 0 && settings.iterations > 1;
         solve(settings, x, report, iteration);
         if (number < settings.iterations) set_full_step(iteration);
-        if (!choose_path(settings, x, report, iteration)) break;
+        choose_path(settings, x, iteration);
         // In the first iteration a strand that could hardly move is limited near the pair alone, so that the rest of it
         // follows; later its shape counts.
         iteration.move = limit_path(objective_, configuration_, x, number > 0, number + 1 >= settings.iterations,
@@ -102,37 +102,28 @@ void Newton::stop_converged(double tolerance, Iteration &iteration) const {
     shorten(objective_.blocks, part, iteration.path);
 }
 
-// How far objects may go, and how their paths bend. Where something is searched by planes, all paths stay straight: contacts
-// know nothing of a bend, and would stop nearly all hair in the same cluster.
-bool Newton::choose_path(const NewtonSettings &settings, const AlignedVector &x, SceneReport &report, Iteration &iteration) {
+// How far objects may go, and how their paths bend.
+void Newton::choose_path(const NewtonSettings &settings, const AlignedVector &x, Iteration &iteration) {
     const BlockSet &blocks = objective_.blocks;
     SearchPath &path = iteration.path;
     path.bend.fill(0.0);
-    std::vector<double> step = max_step(blocks, x, path.straight);
-    iteration.step.assign(table_.objects, 1.0);
-    const std::vector<unsigned char> &by_planes = objective_.by_planes();
-    if (std::count(by_planes.begin(), by_planes.end(), 1) > 0) {
-        const Stopwatch watch(report.time_search);
-        shorten(blocks, step, path);
-        return iteration.leads_into_contact || search_by_planes(objective_, x, iteration.converged, path);
-    }
-    for (size_t o = 0; o < step.size() && iteration.number < settings.iterations; ++o)
-        step[o] = std::min(step[o], std::max(solver_settings::step_growth * taken_[o], settings.strand_radius / largest_[o]));
-    shorten(blocks, step, path);
+    iteration.step = max_step(blocks, x, path.straight);
+    for (size_t o = 0; o < iteration.step.size() && iteration.number < settings.iterations; ++o)
+        iteration.step[o] = std::min(iteration.step[o],
+                                     std::max(solver_settings::step_growth * taken_[o], settings.strand_radius / largest_[o]));
+    shorten(blocks, iteration.step, path);
     bend(blocks, x, path);
-    iteration.step = std::move(step);
-    return true;
 }
 
 LineSearchResult Newton::search(const Iteration &iteration, SceneReport &report, AlignedVector &x) {
     const Stopwatch watch(report.time_search);
-    std::vector<unsigned char> accepted = objective_.by_planes(), searched = objective_.blocks.active_objects();
+    std::vector<unsigned char> accepted = iteration.converged, searched = objective_.blocks.active_objects();
     for (int o = 0; o < table_.objects; ++o) {
-        accepted[o] |= iteration.converged[o] || (iteration.leads_into_contact && objective_.couplings.couples(o));
+        accepted[o] |= iteration.leads_into_contact && objective_.couplings.couples(o);
         searched[o] &= !accepted[o];
     }
-    ExactModel model(objective_, configuration_.pairs.reachable_pairs(searched));
-    const LineSearchResult found = line_search(objective_, model, iteration.path, accepted, x);
+    const ReachablePairs pairs = configuration_.pairs.reachable_pairs(searched);
+    const LineSearchResult found = line_search(objective_, pairs, iteration.path, accepted, x);
     report.cuts += found.cuts;
     return found;
 }

@@ -43,7 +43,7 @@ private:
     void find_contacts(View<Vec3> start, SceneReport &report);
     void stop_converged(double tolerance, Iteration &iteration) const;
     void solve(const NewtonSettings &settings, const AlignedVector &x, SceneReport &report, Iteration &iteration);
-    bool choose_path(const NewtonSettings &settings, const AlignedVector &x, SceneReport &report, Iteration &iteration);
+    void choose_path(const NewtonSettings &settings, const AlignedVector &x, Iteration &iteration);
     LineSearchResult search(const Iteration &iteration, SceneReport &report, AlignedVector &x);
     void set_full_step(Iteration &iteration) const;
     void measure_left(View<Vec3> initial, const Iteration &iteration, SceneReport &report) const;

@@ -23,29 +23,12 @@ std::vector<double> Objective::contact_stiffness(double scale, double dt) const 
 }
 
 void Objective::find_contacts(const std::vector<ContactPair> &pairs, View<Vec3> start, View<Vec3> positions) {
-    find_planes(pairs);
     contacts.find(table.mesh, table.material, pairs, start, positions);
     values_.resize(contacts.contacts().size());
     couplings.find(contacts, table, blocks);
     touched_ = {size_t(blocks.count()), [&](const auto &work) {
                     for (const int v : contacts.vertices()) work(blocks.block_of(table.object_of(v)), v);
                 }};
-}
-
-void Objective::find_planes(const std::vector<ContactPair> &pairs) {
-    by_planes_.assign(table.objects, 0);
-    for (int object = 0; object < table.objects; ++object)
-        by_planes_[object] = blocks.of_object(object).is_searched_by_planes();
-    const std::vector<unsigned char> itself = by_planes_;
-    if (std::count(itself.begin(), itself.end(), 1) == 0) return;
-    for (const ContactPair &pair : pairs)
-        with_vertices(table.mesh, pair, [&](const auto &a, const auto &b) {
-            const int one = table.object_of(a[0]), other = table.object_of(b[0]);
-            if (one < 0 || other < 0) return;
-            if (itself[one]) by_planes_[other] = 1;
-            if (itself[other]) by_planes_[one] = 1;
-        });
-    contacts.set_plane_objects(by_planes_);
 }
 
 void Objective::evaluate(const AlignedVector &x, const std::vector<unsigned char> &changed) {
@@ -67,36 +50,23 @@ std::vector<unsigned char> Objective::active_among(const std::vector<unsigned ch
     return active;
 }
 
-void Objective::sum_energies(View<unsigned char> ignored, std::vector<double> &of_objects) const {
+void Objective::sum_energies(std::vector<double> &of_objects) const {
     of_objects = own_energies_;
     for (const RecoverySpring &spring : springs)
         of_objects[table.object_of(spring.vertex)] += spring.energy(positions_[spring.vertex]);
-    contact_energy_.add_to(of_objects, ignored);
+    contact_energy_.add_to(of_objects);
 }
 
 void Objective::energies_at_linearisation(std::vector<double> &of_objects) {
     contact_energy_.at_linearisation(positions_, blocks.active_objects());
-    sum_energies({}, of_objects);
+    sum_energies(of_objects);
 }
 
 void Objective::exact_energies(const AlignedVector &x, const ReachablePairs &pairs, View<double> traveled,
                                const std::vector<unsigned char> &changed, std::vector<double> &of_objects) {
     evaluate(x, changed);
     contact_energy_.exact(pairs, positions_, traveled, active_among(changed));
-    sum_energies({}, of_objects);
-}
-
-void Objective::linearised_energies_at_linearisation(View<unsigned char> ignored, std::vector<double> &of_objects) {
-    contact_energy_.at_linearisation(positions_, blocks.active_objects()); // sets the friction of all contacts
-    contact_energy_.linearised(positions_, by_planes_, ignored, blocks.active_objects());
-    sum_energies(ignored, of_objects);
-}
-
-void Objective::linearised_energies(const AlignedVector &x, View<unsigned char> ignored,
-                                    const std::vector<unsigned char> &changed, std::vector<double> &of_objects) {
-    evaluate(x, changed);
-    contact_energy_.linearised(positions_, by_planes_, ignored, active_among(changed));
-    sum_energies(ignored, of_objects);
+    sum_energies(of_objects);
 }
 
 void Objective::linearise_contacts(const AlignedVector &x) {

@@ -34,20 +34,11 @@ public:
     bool is_alone(int object) const { return blocks.of_object(object).is_exact() && !couplings.couples(object); }
     bool is_coupled() const { return !blocks.all_exact() || couplings.count() > 0; }
 
-    // Objects whose line search knows contacts by their planes: see PlaneModel in line_search.h.
-    const std::vector<unsigned char> &by_planes() const { return by_planes_; }
-
     // Energies [J] of the objects, in one of the models of contact_energy.h. Those at the linearisation come first after
     // contacts were found and the system assembled; later only objects that have `changed` since are evaluated.
     void energies_at_linearisation(std::vector<double> &of_objects);
     void exact_energies(const AlignedVector &x, const ReachablePairs &pairs, View<double> traveled,
                         const std::vector<unsigned char> &changed, std::vector<double> &of_objects);
-    void linearised_energies_at_linearisation(View<unsigned char> ignored, std::vector<double> &of_objects);
-    void linearised_energies(const AlignedVector &x, View<unsigned char> ignored, const std::vector<unsigned char> &changed,
-                             std::vector<double> &of_objects);
-
-    // Evaluates x again, from trials elsewhere.
-    void return_to(const AlignedVector &x) { evaluate(x, std::vector<unsigned char>(table.objects, 1)); }
 
     // Linearises the contacts at x, before blocks are assembled there.
     void linearise_contacts(const AlignedVector &x);
@@ -61,17 +52,15 @@ public:
     void lag_normal_forces(const AlignedVector &direction);
 
 private:
-    void find_planes(const std::vector<ContactPair> &pairs);
     void evaluate(const AlignedVector &x, const std::vector<unsigned char> &changed);
     std::vector<unsigned char> active_among(const std::vector<unsigned char> &objects) const;
-    void sum_energies(View<unsigned char> ignored, std::vector<double> &of_objects) const;
+    void sum_energies(std::vector<double> &of_objects) const;
 
     std::vector<ContactValue> values_;
     ContactEnergy contact_energy_;
-    Lists<int> touched_;                   // vertices that contacts act on, of blocks
-    std::vector<unsigned char> by_planes_; // per object
-    std::vector<double> own_energies_;     // per object, without contacts
-    std::vector<Vec3> positions_;          // of all vertices, where energies were evaluated last
+    Lists<int> touched_;               // vertices that contacts act on, of blocks
+    std::vector<double> own_energies_; // per object, without contacts
+    std::vector<Vec3> positions_;      // of all vertices, where energies were evaluated last
 };
 
 } // namespace ringlet

@@ -71,10 +71,7 @@ PlannedMove limit_path(const Objective &objective, Configuration &configuration,
     for (int object = 0; object < table.objects; ++object) {
         limited[object] = left[object] < 1.0;
         straight[object] = left[object] < solver_settings::near_impact;
-        if (blocks.of_object(object).is_searched_by_planes()) // limited near the pair, not as a whole
-            left[object] = 1.0;
-        else if (straight[object])
-            left[object] = solver_settings::straight_part;
+        if (straight[object]) left[object] = solver_settings::straight_part;
     }
     straighten(blocks, straight, path);
     shorten(blocks, left, path);
