@@ -32,6 +32,13 @@ def test_a_pinch_changes_no_bit_of_hair_away_from_it(moves, without_ball):
     assert played.lag[-1] == 0.0 and played.stretch[-1] < 0.05
 
 
+def test_a_pinch_goes_on_from_a_memory_to_the_same_bits():
+    """Also while a body lags, which is then not where the step before led it."""
+    whole, rest = ball("by itself", 18), ball("by itself", 18, broken_off=15)
+    assert whole.lag[14] > 5e-3
+    assert np.array_equal(whole.positions[15:], rest.positions)
+
+
 def test_locks_that_coincide_move_like_one_and_change_no_bit_of_others():
     """A pair without a distance has no direction to part in: it is exempt, and reported."""
     others = [coil(0.05 * k, 0.05) for k in range(4)]

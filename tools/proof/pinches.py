@@ -34,11 +34,11 @@ class Played:
     crossings: int = 0
 
 
-def play(scene: Scene, motion, frames: int, newton: int) -> Played:
-    """``motion`` gives the targets of strands and bodies at a frame."""
+def play(scene: Scene, motion, frames: int, newton: int, after: int = 0) -> Played:
+    """``motion`` gives the targets of strands and bodies at a frame; the first is that after ``after``."""
     played, judge = Played(), Judge(scene)
     scene.record()
-    for frame in range(1, frames + 1):
+    for frame in range(after + 1, frames + 1):
         targets, bodies = motion(frame)
         before = time.perf_counter()
         report, of_strands = scene.step(targets, FRAME, bodies=bodies, gravity=GRAVITY, solver=Solver(newton=newton))
@@ -60,17 +60,20 @@ def jaws(frames: int = 24) -> Played:
     return play(scene, lambda k: (None, [begin[0] - [0, 0, 4e-3 * k], begin[1] + [0, 0, 4e-3 * k]]), frames, 3)
 
 
-def ball(moves: str | None, frames: int = 30) -> Played:
+def ball(moves: str | None, frames: int = 30, broken_off: int = 0) -> Played:
     """A head with coils on both sides nods; a ball goes into it through those of one side, and leaves.
 
-    moves: ``"with the head"``, ``"by itself"``, or None without the ball
+    moves:      ``"with the head"``, ``"by itself"``, or None without the ball
+    broken_off: the frame after which another scene goes on from the memory of the first; 0: none does
     """
     head, triangles = sphere(RADIUS, 14, 22)
     points, faces = sphere(0.05, 10, 16)
     curves = _coils_on_both_sides()
     bodies = [Body(head, triangles), *([Body(points + [0.3, 0.0, 0.0], faces)] if moves else [])]
-    strands = Strands(curves, Material(bend_scale=6.0, damping=0.004), 3)
-    scene = Scene(strands, bodies, Contact(radius=4e-4), np.zeros(len(curves), np.int32))
+
+    def scene():
+        strands = Strands(curves, Material(bend_scale=6.0, damping=0.004), 3)
+        return Scene(strands, bodies, Contact(radius=4e-4), np.zeros(len(curves), np.int32))
 
     def motion(frame):
         shift, angle = np.array([0.0, 0.0, 4e-3 * frame]), 0.2 * np.sin(0.2 * frame)
@@ -78,7 +81,13 @@ def ball(moves: str | None, frames: int = 30) -> Played:
         places = [_turned(at, angle) + shift if moves == "with the head" else at + shift] if moves else []
         return _turned(curves.points, angle) + shift, [_turned(head, angle) + shift, *places]
 
-    return play(scene, motion, frames, 4)
+    if not broken_off:
+        return play(scene(), motion, frames, 4)
+    before, after = scene(), scene()
+    play(before, motion, broken_off, 4)
+    after.strands.recall(before.strands.memory)
+    after.recall(before.memory)
+    return play(after, motion, frames, 4, broken_off)
 
 
 def _coils_on_both_sides() -> Curves:
