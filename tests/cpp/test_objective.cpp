@@ -87,8 +87,7 @@ BOOST_AUTO_TEST_CASE(the_models_of_the_contact_energy_agree_where_contacts_were_
     scene.objective->energies_at_linearisation(known);
     const ReachablePairs pairs = scene.configuration->pairs.reachable_pairs(scene.blocks->active_objects());
     scene.objective->exact_energies(x, pairs, std::vector<double>(4, 0.0), all, exact);
-    for (int object = 0; object < 4; ++object)
-        BOOST_TEST(exact[object] == known[object], boost::test_tools::tolerance(1e-12));
+    for (int object = 0; object < 4; ++object) BOOST_TEST(exact[object] == known[object], boost::test_tools::tolerance(1e-12));
     BOOST_TEST(known[0] > 0.0);
 }
 
