@@ -236,6 +236,8 @@ std::vector<unsigned char> advect(const PrescribedMotion &motion, View<int> offs
         if (!any) break;
     }
     std::vector<unsigned char> whole(vertices.objects, 0);
+    for (int c = 0; c + 1 < int(vertices.cloths.size()); ++c) // pins wait with their cloth, which they would draw out
+        whole[vertices.strands + c] = !prescribed(vertices, vertices.cloths[c], vertices.cloths[c + 1]).empty();
     whole.insert(whole.end(), may_wait.begin(), may_wait.end());
     truncate_locally(attempt->move(), whole);
     Configuration::add(attempt->move().report(), report);

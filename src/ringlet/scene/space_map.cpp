@@ -7,28 +7,50 @@
 
 namespace ringlet {
 
-// The farthest vertex from the patches of its body begins the next, while they keep vertices enough to determine a rotation.
-SpaceMap::SpaceMap(const PrescribedMotion &motion) {
-    const std::vector<int> &bodies = motion.vertices.bodies;
-    const int first = bodies.front(), count = motion.vertices.count() - first;
-    std::vector<double> distance2(count, std::numeric_limits<double>::infinity());
-    std::vector<int> nearest(count, -1);
-    std::vector<size_t> begun(bodies.size() - 1, 0);
-    while (count > 0 && patches_.size() < size_t(scene_settings::max_patches)) {
-        const int seed = first + int(std::max_element(distance2.begin(), distance2.end()) - distance2.begin());
-        if (distance2[seed - first] == 0.0) break;
-        const int body = int(std::upper_bound(bodies.begin(), bodies.end(), seed) - bodies.begin()) - 1;
-        const int begin = bodies[body], end = bodies[body + 1];
-        for (int v = begin; v < end; ++v) {
-            const double away2 = (motion.start[v] - motion.start[seed]).squaredNorm();
-            if (away2 < distance2[v - first]) distance2[v - first] = away2, nearest[v - first] = int(patches_.size());
+namespace {
+
+// The vertices of each body, and the pins of each cloth.
+std::vector<std::vector<int>> prescribed_groups(const SceneVertices &vertices) {
+    std::vector<std::vector<int>> groups;
+    for (const std::vector<int> &begins : {vertices.bodies, vertices.cloths})
+        for (size_t k = 0; k + 1 < begins.size(); ++k) {
+            groups.emplace_back();
+            for (int v = begins[k]; v < begins[k + 1]; ++v)
+                if (!vertices.mesh.moves[v]) groups.back().push_back(v);
         }
-        if (++begun[body] * scene_settings::vertices_of_patch >= size_t(end - begin)) // it has enough
-            std::fill(distance2.begin() + (begin - first), distance2.begin() + (end - first), 0.0);
+    std::erase_if(groups, [](const std::vector<int> &group) { return group.empty(); });
+    return groups;
+}
+
+} // namespace
+
+// The farthest vertex from the patches of its group begins the next, while they keep vertices enough to determine a rotation.
+SpaceMap::SpaceMap(const PrescribedMotion &motion) {
+    struct Place {
+        int vertex, group, patch;
+        double distance2;
+    };
+    const std::vector<std::vector<int>> groups = prescribed_groups(motion.vertices);
+    std::vector<Place> places;
+    for (size_t g = 0; g < groups.size(); ++g)
+        for (const int v : groups[g]) places.push_back({v, int(g), -1, std::numeric_limits<double>::infinity()});
+    std::vector<size_t> begun(groups.size(), 0);
+    const auto nearer = [](const Place &a, const Place &b) { return a.distance2 < b.distance2; };
+    while (!places.empty() && patches_.size() < size_t(scene_settings::max_patches)) {
+        const Place seed = *std::max_element(places.begin(), places.end(), nearer);
+        if (seed.distance2 == 0.0) break;
+        const size_t size = groups[seed.group].size();
+        const bool enough = ++begun[seed.group] * scene_settings::vertices_of_patch >= size;
+        for (Place &place : places) {
+            if (place.group != seed.group) continue;
+            const double away2 = (motion.start[place.vertex] - motion.start[seed.vertex]).squaredNorm();
+            if (away2 < place.distance2) place.distance2 = away2, place.patch = int(patches_.size());
+            if (enough) place.distance2 = 0.0;
+        }
         patches_.emplace_back();
     }
-    for (int v = 0; v < count; ++v)
-        if (nearest[v] >= 0) patches_[nearest[v]].vertices.push_back(first + v);
+    for (const Place &place : places)
+        if (place.patch >= 0) patches_[place.patch].vertices.push_back(place.vertex);
     std::erase_if(patches_, [](const Patch &patch) { return patch.vertices.empty(); });
     for (Patch &patch : patches_) patch.motion = fit_rigid_motion(patch.vertices, motion.start, motion.target);
 }

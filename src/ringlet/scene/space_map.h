@@ -6,9 +6,9 @@
 
 namespace ringlet {
 
-// Patches of bodies move as rigidly as they can, and the space between them by inverse-distance weights (Shepard 1968). The map
-// is continuous: as long as bodies do not come much closer to one another, nothing meets on it, even where what follows one
-// body rigidly would run into another.
+// Patches of bodies, and of the pins of cloths, move as rigidly as they can, and the space between them by inverse-distance
+// weights (Shepard 1968). The map is continuous: as long as bodies do not come much closer to one another, nothing meets on it,
+// even where what follows one body rigidly would run into another.
 class SpaceMap {
 public:
     explicit SpaceMap(const PrescribedMotion &motion);
