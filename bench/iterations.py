@@ -38,7 +38,7 @@ def run(
 ) -> dict[str, Any]:
     """Simulates the shot of the tutorial with few and with many iterations.
 
-    frames:    number of frames of the clip, which starts with a nod
+    frames:    number of frames of the clip that are simulated after the first; it starts with a nod
     converged: iterations of the reference motion; enough for strands without contact
     contacts:  ``on`` or ``off``
     substeps:  steps of a frame, for all motions
@@ -55,7 +55,7 @@ def run(
         with tempfile.TemporaryDirectory() as folder:
             shot = Path(folder) / "iterations.shot.toml"
             recipe = (EXAMPLE / "light.recipe.toml").as_posix()
-            shot.write_text(SHOT.format(groom=recipe, frames=frames, **settings))
+            shot.write_text(SHOT.format(groom=recipe, frames=frames + 1, **settings))
             with clock(f"newton {newton}"):
                 cache = simulate(read_shot(shot), groom)
         spent = float(np.mean([frame["newton"] for frame in cache.statistics[1:]]))

@@ -1,4 +1,4 @@
-// Moves of which only what finds no way is cut short.
+// Moves that are truncated only where they have impacts.
 #include "crowd.h"
 
 #include <boost/test/unit_test.hpp>

@@ -9,13 +9,13 @@ from typing import Annotated
 import typer
 
 import ringlet
-from ringlet.cli.options import Frames, Json, Threads, Variant, ending_in
+from ringlet.cli.options import AllowStale, Frames, GroomOfShot, Json, ShotFile, Threads, Variant, ending_in
 from ringlet.cli.output import print_json, print_table
 from ringlet.cli.progress import shown_progress
 
 
 def converge(
-    shot: Annotated[Path, typer.Argument(metavar="SHOT", help="The shot, a TOML file.")],
+    shot: ShotFile,
     output: Annotated[
         Path | None,
         typer.Option(
@@ -27,16 +27,11 @@ def converge(
             show_default=False,
         ),
     ] = None,
-    groom: Annotated[
-        Path | None,
-        typer.Option("--groom", metavar="GROOM", help="A groom to use in place of the shot's.", show_default=False),
-    ] = None,
+    groom: GroomOfShot = None,
     variant: Variant = None,
     frames: Frames = None,
     enough: Annotated[float, typer.Option("--enough", min=0.5, max=1.0, help="Part of the motion to keep.")] = 0.95,
-    allow_stale: Annotated[
-        bool, typer.Option("--allow-stale", help="Use a lofted shape although what it was made from has changed.")
-    ] = False,
+    allow_stale: AllowStale = False,
     as_json: Json = False,
     threads: Threads = None,
 ) -> None:

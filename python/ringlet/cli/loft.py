@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 import ringlet
-from ringlet.cli.options import Json, Report, Threads, Variant, usd_file
+from ringlet.cli.options import GroomOfShot, Json, Report, ShotFile, Threads, Variant, usd_file
 from ringlet.cli.output import print_json, print_table, size
 from ringlet.cli.progress import shown_progress
 
@@ -21,7 +21,7 @@ NEAR = 1e-3  # what hangs within this of where it should counts as held [m]
 
 
 def loft(
-    shot: Annotated[Path, typer.Argument(metavar="SHOT", help="The shot, a TOML file.")],
+    shot: ShotFile,
     output: Annotated[
         Path | None,
         typer.Option(
@@ -33,10 +33,7 @@ def loft(
             show_default=False,
         ),
     ] = None,
-    groom: Annotated[
-        Path | None,
-        typer.Option("--groom", metavar="GROOM", help="A groom to use in place of the shot's.", show_default=False),
-    ] = None,
+    groom: GroomOfShot = None,
     variant: Variant = None,
     again: Annotated[bool, typer.Option("--again", help="Loft all locks, also those that have not changed.")] = False,
     report: Report = None,

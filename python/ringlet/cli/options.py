@@ -34,6 +34,14 @@ Variant = Annotated[
     str | None,
     typer.Option("--variant", metavar="NAME", help="A variant of the groom file.", show_default=False),
 ]
+ShotFile = Annotated[Path, typer.Argument(metavar="SHOT", help="The shot, a TOML file.")]
+GroomOfShot = Annotated[
+    Path | None,
+    typer.Option("--groom", metavar="GROOM", help="A groom to use in place of the shot's.", show_default=False),
+]
+AllowStale = Annotated[
+    bool, typer.Option("--allow-stale", help="Use a lofted shape although what it was made from has changed.")
+]
 Fraction = Annotated[
     float, typer.Option("--fraction", min=0.001, max=1.0, help="Share of the hairs to make, for a quick look.")
 ]

@@ -12,25 +12,20 @@ from typing import Annotated
 import typer
 
 import ringlet
-from ringlet.cli.options import Frames, Json, Report, Threads, Variant, usd_file
+from ringlet.cli.options import AllowStale, Frames, GroomOfShot, Json, Report, ShotFile, Threads, Variant, usd_file
 from ringlet.cli.output import wrote
 from ringlet.cli.progress import shown_progress
 
 
 def sim(
-    shot: Annotated[Path, typer.Argument(metavar="SHOT", help="The shot, a TOML file.")],
+    shot: ShotFile,
     output: Annotated[
         Path, typer.Option("--output", "-o", callback=usd_file, metavar="CACHE", help="The USD file to write.")
     ] = Path("cache.usdc"),
-    groom: Annotated[
-        Path | None,
-        typer.Option("--groom", metavar="GROOM", help="A groom to use in place of the shot's.", show_default=False),
-    ] = None,
+    groom: GroomOfShot = None,
     variant: Variant = None,
     frames: Frames = None,
-    allow_stale: Annotated[
-        bool, typer.Option("--allow-stale", help="Use a lofted shape although what it was made from has changed.")
-    ] = False,
+    allow_stale: AllowStale = False,
     resume: Annotated[
         bool, typer.Option("--resume", help="Go on with a run that was broken off; its result is the same to the bit.")
     ] = False,

@@ -8,13 +8,13 @@ from typing import Annotated, Any
 import typer
 
 import ringlet
-from ringlet.cli.options import Frames, Json
+from ringlet.cli.options import Frames, Json, ShotFile
 from ringlet.cli.output import print_json, print_table
 from ringlet.cli.progress import shown_progress
 
 
 def wedge(
-    shot: Annotated[Path, typer.Argument(metavar="SHOT", help="The shot, a TOML file.")],
+    shot: ShotFile,
     settings: Annotated[
         list[str] | None,
         typer.Option(

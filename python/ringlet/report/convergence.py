@@ -1,4 +1,4 @@
-"""The page of ``ringlet converge``: what each setting keeps, what it costs, and the way of the tips."""
+"""The page of ``ringlet converge``: what each setting keeps, what it costs, and the paths of the tips."""
 
 from __future__ import annotations
 

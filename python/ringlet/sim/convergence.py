@@ -36,11 +36,8 @@ def converge(
     frames: first and last; up to the first the motion goes with its own setting
     """
     shot, (first, last) = motion.shot, frames
-    for _ in range(shot.preroll):
-        motion.advance(motion.first, motion.first)
-    motion.begin()
-    for frame in range(int(motion.first), first):
-        motion.advance(frame, frame + 1)
+    for k in range(-shot.preroll, first - motion.first + 1):
+        motion.reach(k)
     state = {name: np.array(values) for name, values in motion.memory.items()}
     own = (shot.solver.newton, shot.solver.linear_tolerance)
     chosen = [*sorted({own, *settings}), CONVERGED]

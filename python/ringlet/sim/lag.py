@@ -1,4 +1,4 @@
-"""What did not arrive in a frame: bodies, pinned cloth and roots that hair or cloth is in the way of."""
+"""Lag: bodies, pins and roots that are not at their targets after a frame, since hair or cloth blocks them."""
 
 from __future__ import annotations
 

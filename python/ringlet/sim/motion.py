@@ -116,6 +116,13 @@ class Motion:
         if self.scene:
             self.scene.recall(of("scene "))
 
+    def reach(self, k: int) -> dict[str, Any]:
+        """Goes on to the k-th frame from the first, from the one before; the head is still in the preroll, where k is
+        negative. Returns the frame's statistics."""
+        if k == 0:
+            return self.begin()
+        return self.advance(self.first + max(k - 1, 0), self.first + max(k, 0))
+
     def begin(self) -> dict[str, Any]:
         """Locks and cloths take over the motion that the clip has at the first frame.
 

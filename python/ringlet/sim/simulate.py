@@ -135,8 +135,7 @@ def play(
         motion.recall(state)
     for step in range(done, total):
         k = step - preroll  # from the first frame; negative while the head is still
-        begin = motion.first + max(k - 1, 0)
-        statistics = motion.begin() if k == 0 else motion.advance(begin, motion.first + max(k, 0))
+        statistics = motion.reach(k)
         frame = Frame.now(motion.first + k, motion, statistics, touches) if k >= 0 else None
         if checkpoints:
             checkpoints.write_step(step, frame.arrays() if frame else {}, statistics)

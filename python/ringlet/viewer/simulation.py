@@ -200,7 +200,7 @@ class Simulation:
             if self._stopping.is_set():
                 return
             k = step - shot.preroll
-            statistics = motion.begin() if k == 0 else motion.advance(first + max(k - 1, 0), first + max(k, 0))
+            statistics = motion.reach(k)
             if k < 0:
                 self.rolled = step + 1
             else:

@@ -6,9 +6,8 @@
 namespace ringlet {
 
 ImpactZones::ImpactZones(const ImpactZonesInput &input, const AdvectedMove &move)
-    : input_(input), move_(move), parent_(move.start.size()), in_zone_(parent_.size(), 0), body_vertex_(parent_.size(), -1),
-      all_strands_(move.connected.strands.size() - 1) {
-    std::iota(parent_.begin(), parent_.end(), 0);
+    : input_(input), move_(move), zones_(int(move.start.size())), in_zone_(move.start.size(), 0),
+      body_vertex_(move.start.size(), -1), all_strands_(move.connected.strands.size() - 1) {
     std::iota(all_strands_.begin(), all_strands_.end(), 0);
 }
 
@@ -20,7 +19,7 @@ void ImpactZones::merge(const std::vector<Impact> &impacts) {
                 if (!moves[i]) continue;
                 in_zone_[i] = 1;
                 if (moves[j])
-                    merge(i, j);
+                    zones_.join(i, j);
                 else
                     body_vertex_[i] = j;
             }
@@ -39,10 +38,10 @@ void ImpactZones::correct(const std::vector<Impact> &impacts, bool keep_own) {
     for (const Impact &impact : impacts)
         for (const int v : impact.vertices)
             if (move_.connected.mesh.moves[v]) {
-                double &own = zones[find(v)].own;
+                double &own = zones[zones_.find(v)].own;
                 own = keep_own ? std::min(own, impact.toi) : 0.0;
             }
-    const auto zone_of = [&](int v) { return in_zone_[v] ? zones.find(find(v)) : zones.end(); };
+    const auto zone_of = [&](int v) { return in_zone_[v] ? zones.find(zones_.find(v)) : zones.end(); };
     const int vertices = int(start.size());
     for (int v = 0; v < vertices; ++v)
         if (const auto zone = zone_of(v); zone != zones.end()) {

@@ -3,8 +3,8 @@
 
 #include "ringlet/ccd/advected_move.h"
 #include "ringlet/ccd/settings.h"
+#include "ringlet/math/disjoint_sets.h"
 
-#include <algorithm>
 #include <functional>
 #include <vector>
 
@@ -21,7 +21,7 @@ struct ImpactZonesInput {
 // it touches, or by its mean motion. Zones grow while there are impacts at their border. Only relative motion counts.
 void resolve_impact_zones(const ImpactZonesInput &input, AdvectedMove &move);
 
-// The zones of a move as disjoint sets, each named by its smallest vertex, so that the order of merging has no effect.
+// The zones of a move.
 class ImpactZones {
 public:
     ImpactZones(const ImpactZonesInput &input, const AdvectedMove &move);
@@ -34,18 +34,9 @@ public:
     void correct(const std::vector<Impact> &impacts, bool keep_own);
 
 private:
-    int find(int v) {
-        while (parent_[v] != v) v = parent_[v] = parent_[parent_[v]];
-        return v;
-    }
-    void merge(int a, int b) {
-        a = find(a), b = find(b);
-        parent_[std::max(a, b)] = std::min(a, b);
-    }
-
     const ImpactZonesInput &input_;
     const AdvectedMove &move_;
-    std::vector<int> parent_;
+    DisjointSets zones_; // of vertices
     std::vector<unsigned char> in_zone_;
     std::vector<int> body_vertex_; // per vertex: a kinematic vertex that it had an impact with; −1: none
     std::vector<int> all_strands_;

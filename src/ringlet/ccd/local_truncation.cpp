@@ -20,12 +20,12 @@ void mark_objects(const CollisionMesh &mesh, const std::vector<int> &vertices, b
 
 // All vertices of a whole object make the move of that which makes the least.
 void spread_over_objects(const CollisionMesh &mesh, View<unsigned char> whole, std::vector<Correction> &corrections) {
+    if (whole.empty()) return;
     std::vector<double> weight(whole.size(), 0.0);
     for (size_t v = 0; v < corrections.size(); ++v)
-        if (!whole.empty() && whole[mesh.object[v]])
-            weight[mesh.object[v]] = std::max(weight[mesh.object[v]], corrections[v].weight);
+        weight[mesh.object[v]] = std::max(weight[mesh.object[v]], corrections[v].weight);
     for (size_t v = 0; v < corrections.size(); ++v)
-        if (!whole.empty() && whole[mesh.object[v]]) corrections[v].weight = weight[mesh.object[v]];
+        if (whole[mesh.object[v]]) corrections[v].weight = weight[mesh.object[v]];
 }
 
 } // namespace

@@ -1,4 +1,4 @@
-// Local truncation: what finds no way stays behind, and all else arrives.
+// Local truncation: vertices that cannot complete a move lag behind; all others complete it.
 #pragma once
 
 #include "ringlet/ccd/advected_move.h"

@@ -11,13 +11,17 @@
 
 namespace ringlet {
 
-// Two primitives of a mesh, by number: two edges, the lower first; or a vertex and a triangle.
-struct PrimitiveNames {
+// Two primitives of a mesh.
+struct PrimitivePair {
+    std::array<int, 2> primitive; // two edges, the lower index first; or a vertex and a triangle
     bool edge_edge;
-    std::array<int, 2> primitive;
-
-    auto operator<=>(const PrimitiveNames &) const = default;
+    double d_hat; // activation distance: the pair is in contact below it [m]
 };
+
+// The order of pairs: those of edges come first.
+template <class Pair> bool before(const Pair &a, const Pair &b) {
+    return a.edge_edge != b.edge_edge ? a.edge_edge : a.primitive < b.primitive;
+}
 
 struct CollisionMesh {
     std::vector<std::array<int, 2>> edges;     // of strands, cloths and bodies
@@ -32,25 +36,13 @@ struct CollisionMesh {
     std::vector<int> anchor;          // the object that it is anchored to, which it may touch; −1: none
     std::vector<Vec3> rest;           // position at rest [m]
 
-    std::vector<PrimitiveNames> exempt; // pairs that are never tested, in order
+    std::vector<PrimitivePair> exempt; // pairs that are never tested, in order
 
     // Per vertex of strands, which come first: activation distances [m] of the edge from it to the next vertex and the edges
     // that begin two or more vertices later. Cached, since every search asks for them.
     static constexpr int asked_often = 8;
     std::vector<std::array<double, asked_often>> along_strand;
 };
-
-// Two primitives of a mesh.
-struct PrimitivePair {
-    std::array<int, 2> primitive; // two edges, the lower index first; or a vertex and a triangle
-    bool edge_edge;
-    double d_hat; // activation distance: the pair is in contact below it [m]
-};
-
-// The order of pairs: those of edges come first.
-template <class Pair> bool before(const Pair &a, const Pair &b) {
-    return a.edge_edge != b.edge_edge ? a.edge_edge : a.primitive < b.primitive;
-}
 
 // Merges two ordered lists of pairs into `pairs`.
 template <class Pair> void merge(std::vector<Pair> &pairs, const std::vector<Pair> &more) {

@@ -33,7 +33,7 @@ std::vector<CandidatePair> PairCache::pairs_of(const Candidates &found) const {
     }
     if (!mesh_.exempt.empty())
         std::erase_if(pairs, [&](const CandidatePair &pair) {
-            return std::binary_search(mesh_.exempt.begin(), mesh_.exempt.end(), PrimitiveNames{pair.edge_edge, pair.primitive});
+            return std::binary_search(mesh_.exempt.begin(), mesh_.exempt.end(), pair, before<PrimitivePair>);
         });
     return pairs;
 }

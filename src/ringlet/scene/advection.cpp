@@ -2,11 +2,11 @@
 
 #include "ringlet/ccd/impact_zones.h"
 #include "ringlet/ccd/local_truncation.h"
+#include "ringlet/math/disjoint_sets.h"
 #include "ringlet/scene/settings.h"
 #include "ringlet/scene/space_map.h"
 
 #include <algorithm>
-#include <numeric>
 #include <optional>
 
 namespace ringlet {
@@ -76,26 +76,6 @@ std::vector<int> advect_rigidly(const PrescribedMotion &motion, View<int> offset
 
 namespace {
 
-// Sets of objects and bodies that impacts connect.
-class Islands {
-public:
-    explicit Islands(int objects) : parent_(objects) { std::iota(parent_.begin(), parent_.end(), 0); }
-
-    void join(const CollisionMesh &mesh, const std::vector<Impact> &impacts) {
-        for (const Impact &impact : impacts) {
-            const int a = find(mesh.object[impact.vertices[0]]), b = find(mesh.object[impact.vertices[3]]);
-            parent_[std::max(a, b)] = std::min(a, b);
-        }
-    }
-    int find(int object) {
-        while (parent_[object] != object) object = parent_[object] = parent_[parent_[object]];
-        return object;
-    }
-
-private:
-    std::vector<int> parent_;
-};
-
 // An attempt at an advection.
 class Attempt {
 public:
@@ -104,7 +84,7 @@ public:
           rigid_(advect_rigidly(motion, offsets, carriers, end_)), through_space_(vertices_.objects, 0),
           islands_(vertices_.objects + body_count()), move_(configuration.connected(), configuration.pairs, motion.start, end_,
                                                             motion_of_most(vertices_, motion.start, end_), rigid_) {
-        islands_.join(vertices_.mesh, move_.impacts());
+        join_islands();
     }
 
     AdvectedMove &move() { return move_; }
@@ -119,7 +99,7 @@ public:
         };
         resolve_impact_zones(
             {vertices_.mass, follow_body, body_count() > 0 ? scene_settings::zone_rounds : ccd::max_zone_rounds}, move_);
-        islands_.join(vertices_.mesh, move_.impacts());
+        join_islands();
     }
 
     // Objects with an impact go through space, and those that meet them there. The surface of a body follows where nothing else
@@ -136,7 +116,7 @@ public:
 #pragma omp parallel for schedule(static)
                 for (const int v : added) end_[v] = mapped(map, v);
             });
-            islands_.join(vertices_.mesh, move_.impacts());
+            join_islands();
         }
     }
 
@@ -153,6 +133,11 @@ public:
 
 private:
     int body_count() const { return int(vertices_.bodies.size()) - 1; }
+
+    void join_islands() {
+        for (const Impact &impact : move_.impacts())
+            islands_.join(vertices_.mesh.object[impact.vertices[0]], vertices_.mesh.object[impact.vertices[3]]);
+    }
 
     std::vector<int> objects_with_impact() { // their vertices, of those that do not go through space yet
         std::vector<unsigned char> added(vertices_.objects, 0);
@@ -171,8 +156,8 @@ private:
         std::vector<int> found;
         for (const Impact &impact : move_.impacts())
             for (const int v : impact.vertices) {
-                if (vertices_.object_of(v) >= 0 || vertices_.mesh.moves[v] || v < vertices_.dynamic_vertices) continue;
-                if (dented[v] || may_wait[vertices_.mesh.object[v] - vertices_.objects]) continue;
+                if (v < vertices_.dynamic_vertices || dented[v]) continue;
+                if (may_wait[vertices_.mesh.object[v] - vertices_.objects]) continue;
                 dented[v] = 1;
                 found.push_back(v);
             }
@@ -193,7 +178,7 @@ private:
     std::vector<Vec3> end_;
     const std::vector<int> rigid_;
     std::vector<unsigned char> through_space_; // per object
-    Islands islands_;
+    DisjointSets islands_;                     // of objects and bodies that impacts have connected
     AdvectedMove move_;
 };
 
@@ -205,6 +190,15 @@ std::vector<unsigned char> bodies_that_may_wait(const PrescribedMotion &motion, 
             if (b >= 0) may_wait[b] = 0;
     for (int b = 0; b < int(may_wait.size()); ++b) may_wait[b] = may_wait[b] && motion.moves_affinely(b);
     return may_wait;
+}
+
+// Objects and bodies of which a part cannot stay behind: pins would draw out their cloth.
+std::vector<unsigned char> whole_objects(const SceneVertices &vertices, const std::vector<unsigned char> &may_wait) {
+    std::vector<unsigned char> whole(vertices.objects, 0);
+    for (int c = 0; c + 1 < int(vertices.cloths.size()); ++c)
+        whole[vertices.strands + c] = !prescribed(vertices, vertices.cloths[c], vertices.cloths[c + 1]).empty();
+    whole.insert(whole.end(), may_wait.begin(), may_wait.end());
+    return whole;
 }
 
 } // namespace
@@ -223,23 +217,16 @@ std::vector<unsigned char> advect(const PrescribedMotion &motion, View<int> offs
         if (may_wait.empty()) may_wait = bodies_that_may_wait(motion, carriers);
         attempt->by_space(may_wait);
         if (attempt->arrives() || part < scene_settings::least_part) break;
-        const double kept = part > scene_settings::least_part ? 0.5 : 0.0;
-        bool any = false;
-        for (const int b : attempt->stuck_bodies()) {
-            if (!may_wait[b]) continue;
-            any = true;
+        std::vector<int> waiting = attempt->stuck_bodies();
+        std::erase_if(waiting, [&](int b) { return !may_wait[b]; });
+        if (waiting.empty()) break;
+        for (const int b : waiting)
             for (int v = vertices.bodies[b]; v < vertices.bodies[b + 1]; ++v) {
                 const Vec3 waits = attempt->move().motion(motion.start[v]);
-                target[v] = waits + kept * (target[v] - waits);
+                target[v] = part > scene_settings::least_part ? Vec3(0.5 * (waits + target[v])) : waits;
             }
-        }
-        if (!any) break;
     }
-    std::vector<unsigned char> whole(vertices.objects, 0);
-    for (int c = 0; c + 1 < int(vertices.cloths.size()); ++c) // pins wait with their cloth, which they would draw out
-        whole[vertices.strands + c] = !prescribed(vertices, vertices.cloths[c], vertices.cloths[c + 1]).empty();
-    whole.insert(whole.end(), may_wait.begin(), may_wait.end());
-    truncate_locally(attempt->move(), whole);
+    truncate_locally(attempt->move(), whole_objects(vertices, may_wait));
     Configuration::add(attempt->move().report(), report);
     std::vector<unsigned char> astray = attempt->through_space();
     for (int v = 0; v < vertices.dynamic_vertices; ++v)

@@ -20,8 +20,8 @@ struct Carriers {
 std::vector<int> advect_rigidly(const PrescribedMotion &motion, View<int> offsets, const Carriers &carriers,
                                 std::vector<Vec3> &end);
 
-// Moves the configuration along with a prescribed motion that starts there, through nothing. What meets something is led around
-// it, each time that and no more:
+// Advects the configuration with a prescribed motion that starts there, without intersections. Only what has an impact is
+// corrected, step by step:
 //   1. objects are advected rigidly, and impact zones share one motion;
 //   2. objects that still have an impact are advected through space, then the surfaces of bodies a little;
 //   3. bodies that move affinely and carry nothing make half of their motion, a quarter, …, none, and wait with the rest;

@@ -62,10 +62,9 @@ void SceneData::exempt_coincident_pairs() {
     configuration.pairs.update_bounds({now, now}, {.margin = 0.0, .max_path = 0.0});
     for (const ContactPair &pair : configuration.pairs.contact_pairs(now)) {
         if (pair.closest.distance2 > std::pow(scene_settings::coincident * pair.d_hat, 2)) continue;
-        vertices.mesh.exempt.push_back({pair.edge_edge, pair.primitive});
+        vertices.mesh.exempt.push_back(pair);
         with_vertices(vertices.mesh, pair, [&](const auto &a, const auto &b) { coincident.push_back({a[0], b[0]}); });
     }
-    std::sort(vertices.mesh.exempt.begin(), vertices.mesh.exempt.end());
     configuration.pairs.clear();
 }
 

@@ -65,8 +65,8 @@ Vec3 mean_velocity_of_cloths(const SceneData &scene) {
     return mass > 0.0 ? Vec3(momentum / mass) : Vec3(Vec3::Zero());
 }
 
-// Advects to the targets of prescribed vertices, and keeps which of them lag. Returns the objects that could not
-// follow theirs rigidly.
+// Advects to the targets of prescribed vertices, and keeps which of them lag. Returns the objects that could not follow theirs
+// rigidly.
 std::vector<unsigned char> advect_to(SceneData &scene, View<Vec3> targets, const Vec3 &drift, SceneReport &report) {
     const SceneVertices &vertices = scene.vertices;
     const std::vector<Vec3> start = scene.configuration.positions;
@@ -129,7 +129,7 @@ void commit(SceneData &scene, View<Vec3> start, double dt, const SolverEffort &e
     scene.blocks.for_active([&](int b) { finite[b] = scene.blocks[b].commit(scene.blocks.of(b, x), dt, effort); });
     if (std::count(finite.begin(), finite.end(), 0) > 0) scene.take_placed();
     scene.touched = most_touched_bodies(scene);
-    report.newton += effort.iterations;
+    report.newton = effort.iterations;
     report.residual = effort.residual;
     report.unconverged = !effort.converged;
     report.contacts = double(contacts.contacts().size());

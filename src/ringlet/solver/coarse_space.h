@@ -1,4 +1,4 @@
-// The coarse space of the two-level preconditioner: the ways in which neighbouring strands move together.
+// The coarse space of the two-level preconditioner: the joint motions of neighbouring strands.
 //
 // P answers for each side of a contact as if the other stood still, so P⁻¹ is wrong by most in joint motions. The
 // coarse space has what each strand would do if those that it touches moved: with Ψ a smooth motion of an object and D what

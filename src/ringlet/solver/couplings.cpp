@@ -1,6 +1,6 @@
 #include "ringlet/solver/couplings.h"
 
-#include <numeric>
+#include "ringlet/math/disjoint_sets.h"
 
 namespace ringlet {
 
@@ -19,19 +19,14 @@ void Couplings::find(const ContactSet &contacts, const VertexTable &table, const
 
 void Couplings::join_clusters(int objects) {
     coupled_.assign(objects, 0);
-    clusters_.resize(objects);
-    std::iota(clusters_.begin(), clusters_.end(), 0);
-    const auto find = [&](int object) {
-        while (clusters_[object] != object) object = clusters_[object] = clusters_[clusters_[object]];
-        return object;
-    };
+    DisjointSets joined(objects);
     for (const Coupling &c : couplings_) {
         const auto [a, b] = c.objects;
         coupled_[a] = coupled_[b] = 1;
-        const int first = find(a), other = find(b);
-        clusters_[std::max(first, other)] = std::min(first, other);
+        joined.join(a, b);
     }
-    for (int object = 0; object < objects; ++object) clusters_[object] = find(object);
+    clusters_.resize(objects);
+    for (int object = 0; object < objects; ++object) clusters_[object] = joined.find(object);
 }
 
 void Couplings::number_points(const ContactSet &contacts, const VertexTable &table, const BlockSet &blocks) {

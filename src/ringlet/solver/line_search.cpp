@@ -47,24 +47,13 @@ std::vector<unsigned char> too_far(const Objective &objective, const std::vector
         rises[o] = !may_rise && !(energy[o] <= bound[o]);
         any_rises[cluster[o]] |= rises[o];
     }
-    rises = with_touched(objective, rises);
+    rises = objective.with_touched(rises);
     for (size_t o = 0; o < objects; ++o)
         if ((!any_rises[cluster[o]] || whole_clusters) && !(excess[cluster[o]] <= 0.0)) rises[o] = 1;
     return rises;
 }
 
 } // namespace
-
-std::vector<unsigned char> with_touched(const Objective &objective, const std::vector<unsigned char> &objects) {
-    std::vector<unsigned char> all = objects;
-    for (const Contact &c : objective.contacts.contacts()) {
-        const int a = objective.table.object_of(c.vertex[0]), b = objective.table.object_of(c.vertex[3]);
-        if (a < 0 || b < 0) continue;
-        if (objects[a]) all[b] = 1;
-        if (objects[b]) all[a] = 1;
-    }
-    return all;
-}
 
 LineSearchResult line_search(Objective &objective, const ReachablePairs &pairs, const SearchPath &path,
                              const std::vector<unsigned char> &accepted, AlignedVector &x) {

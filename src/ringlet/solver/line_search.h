@@ -7,9 +7,6 @@
 
 namespace ringlet {
 
-// These objects, and those in contact with one of them.
-std::vector<unsigned char> with_touched(const Objective &objective, const std::vector<unsigned char> &objects);
-
 struct LineSearchResult {
     bool moved = false;       // false: no object found a step on which the energy falls
     int cuts = 0;             // of step lengths

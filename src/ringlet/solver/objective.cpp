@@ -31,6 +31,17 @@ void Objective::find_contacts(const std::vector<ContactPair> &pairs, View<Vec3> 
                 }};
 }
 
+std::vector<unsigned char> Objective::with_touched(const std::vector<unsigned char> &objects) const {
+    std::vector<unsigned char> all = objects;
+    for (const Contact &c : contacts.contacts()) {
+        const int a = table.object_of(c.vertex[0]), b = table.object_of(c.vertex[3]);
+        if (a < 0 || b < 0) continue;
+        if (objects[a]) all[b] = 1;
+        if (objects[b]) all[a] = 1;
+    }
+    return all;
+}
+
 void Objective::evaluate(const AlignedVector &x, const std::vector<unsigned char> &changed) {
     const std::vector<unsigned char> asked = blocks.blocks_with(changed);
     blocks.for_active([&](int b) {

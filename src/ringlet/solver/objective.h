@@ -30,6 +30,9 @@ public:
     // Replaces the contacts by those of the contact pairs at `positions`; the step began at `start`.
     void find_contacts(const std::vector<ContactPair> &pairs, View<Vec3> start, View<Vec3> positions);
 
+    // These objects, and those in contact with one of them.
+    std::vector<unsigned char> with_touched(const std::vector<unsigned char> &objects) const;
+
     // Objects that a factor of their own solves: exact blocks that nothing couples.
     bool is_alone(int object) const { return blocks.of_object(object).is_exact() && !couplings.couples(object); }
     bool is_coupled() const { return !blocks.all_exact() || couplings.count() > 0; }

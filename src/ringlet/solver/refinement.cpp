@@ -1,6 +1,5 @@
 #include "ringlet/solver/refinement.h"
 
-#include "ringlet/solver/line_search.h"
 #include "ringlet/solver/settings.h"
 
 #include <algorithm>
@@ -45,7 +44,7 @@ bool Refinement::activate_stretched(BlockSet &blocks, View<Vec3> now) {
     for (int object = 0; object < objective_.table.objects; ++object)
         limited_[object] = limited_[object] && blocks.of_object(object).is_stretched(blocks.lane_of(object), now);
     std::vector<unsigned char> active = limited_;
-    for (int ring = 0; ring < solver_settings::refined_rings; ++ring) active = with_touched(objective_, active);
+    for (int ring = 0; ring < solver_settings::refined_rings; ++ring) active = objective_.with_touched(active);
     blocks.activate(std::move(active));
     return std::count(limited_.begin(), limited_.end(), 1) > 0;
 }
