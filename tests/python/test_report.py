@@ -183,3 +183,12 @@ def test_a_body_that_lags_its_animation_is_the_first_thing_reported() -> None:
         "(7, 8, 9, …); leave it more room, or raise solver.substeps."
     )
     assert not any("Nothing passed through anything" in sentence for sentence in sentences)
+
+
+def test_the_hardest_frame_is_found_beside_a_first_frame_without_a_step() -> None:
+    statistics = [{"frame": 1.0}, *frames()]
+    for frame in statistics[1:]:
+        frame["unconverged"] = 1  # in all: that singles none out
+    with_step, without = explain_worst(statistics[1:]), explain_worst(statistics)
+    assert with_step is not None and without == with_step
+    assert (explain_worst(statistics[:2]) or "").startswith(f"Frame {statistics[1]['frame']:g} ")

@@ -47,11 +47,12 @@ def worst_frame(statistics: Statistics) -> int | None:
     """
     first = None
     for key in ("nan", "unconverged", "max_stretch", "newton_max", "newton"):
-        values = series(statistics, key)
-        if values and (highest := max(v for v in values if math.isfinite(v))) > 0:
-            if len(set(values)) > 1:
+        values = series(statistics, key) or []
+        finite = [v for v in values if math.isfinite(v)]  # there is no step at the first frame of a shot
+        if finite and (highest := max(finite)) > 0:
+            if len(set(finite)) > 1:
                 return values.index(highest)
-            first = 0
+            first = values.index(highest)
     return first
 
 
