@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from pxr import Gf, Sdf, UsdGeom, UsdSkel, Vt
+from pxr import Gf, Sdf, Ts, UsdGeom, UsdSkel, Vt
 from ringlet.io import read_bodies, read_clip, read_mesh, read_space
 from usd_scenes import CUBE, CUBE_FACES, FRAMES, add_cube, new_stage, write_head
 
@@ -156,10 +156,10 @@ def test_bodies_are_the_visible_meshes_with_their_colours_through_references(tmp
     assert bodies["left"].clip.points.shape == (4, 8, 3)
 
 
-def test_a_skinned_mesh_follows_its_skeleton(tmp_path):
-    stage = new_stage(tmp_path / "a.usda", unit=1.0)
-    stage.SetStartTimeCode(1)
-    stage.SetEndTimeCode(3)
+def skinned_cube(path, samples, *, rate=24.0, fully=False):
+    """A cube of 1 m; the joint of its upper half, or of all of it (``fully``), moves along x at time codes."""
+    stage = new_stage(path, unit=1.0)
+    stage.SetTimeCodesPerSecond(rate)
     UsdSkel.Root.Define(stage, "/head")
     mesh, bones = add_cube(stage), UsdSkel.Skeleton.Define(stage, "/head/bones")
     bones.CreateJointsAttr(["neck", "neck/crown"])
@@ -169,17 +169,114 @@ def test_a_skinned_mesh_follows_its_skeleton(tmp_path):
     motion.CreateJointsAttr(["neck", "neck/crown"])
     motion.CreateRotationsAttr([Gf.Quatf(1)] * 2)
     motion.CreateScalesAttr([Gf.Vec3h(1)] * 2)
-    for frame in (1, 2, 3):  # the crown rises, the neck stays
-        motion.CreateTranslationsAttr().Set([Gf.Vec3f(0), Gf.Vec3f(0, frame - 1, 0)], frame)
+    for time, x in samples.items():
+        motion.CreateTranslationsAttr().Set([Gf.Vec3f(0), Gf.Vec3f(x, 0, 0)], time)
     UsdSkel.BindingAPI.Apply(bones.GetPrim()).CreateAnimationSourceRel().SetTargets(["/head/motion"])
     skin = UsdSkel.BindingAPI.Apply(mesh.GetPrim())
     skin.CreateSkeletonRel().SetTargets(["/head/bones"])
-    skin.CreateJointIndicesPrimvar(False, 1).Set([int(y) for y in CUBE[:, 1]])
-    skin.CreateJointWeightsPrimvar(False, 1).Set([1.0] * 8)
+    skin.CreateJointIndicesPrimvar(fully, 1).Set([1] if fully else [int(y) for y in CUBE[:, 1]])
+    skin.CreateJointWeightsPrimvar(fully, 1).Set([1.0] if fully else [1.0] * 8)
+    stage.Save()
+    return path
+
+
+@pytest.mark.parametrize("rate", [24, 25, 30, 48, 60])
+@pytest.mark.parametrize("fully", [False, True])
+def test_a_skinned_mesh_moves_as_far_at_any_rate(tmp_path, rate, fully):
+    path = skinned_cube(tmp_path / "a.usda", {0: 0.0, rate: 1.0}, rate=rate, fully=fully)
+    clip = read_clip(path, frames=(0, rate))
+    moved = clip.points[:, 7, 0] - 1.0  # corner (1, 1, 1), which the joint carries
+    np.testing.assert_allclose(moved, clip.frames / rate, atol=1e-6)
+    np.testing.assert_allclose(clip.points[:, 5, 0] - 1.0, moved * fully, atol=1e-6)  # corner (1, 0, 1)
+    np.testing.assert_allclose(read_mesh(path).points, CUBE)
+
+
+def test_blend_shapes_of_a_mesh_are_evaluated_at_every_frame(tmp_path):
+    stage = new_stage(tmp_path / "a.usda", unit=1.0)
+    stage.SetTimeCodesPerSecond(30)
+    UsdSkel.Root.Define(stage, "/head")
+    mesh, bones = add_cube(stage), UsdSkel.Skeleton.Define(stage, "/head/bones")
+    shape = UsdSkel.BlendShape.Define(stage, "/head/skin/smile")
+    shape.CreateOffsetsAttr([Gf.Vec3f(0, 0, 2)])
+    shape.CreatePointIndicesAttr([3])
+    motion = UsdSkel.Animation.Define(stage, "/head/motion")
+    motion.CreateBlendShapesAttr(["smile"])
+    for frame, weight in ((0, 0.0), (30, 1.0)):
+        motion.CreateBlendShapeWeightsAttr().Set([weight], frame)
+    UsdSkel.BindingAPI.Apply(bones.GetPrim()).CreateAnimationSourceRel().SetTargets(["/head/motion"])
+    skin = UsdSkel.BindingAPI.Apply(mesh.GetPrim())
+    skin.CreateSkeletonRel().SetTargets(["/head/bones"])
+    skin.CreateBlendShapesAttr(["smile"])
+    skin.CreateBlendShapeTargetsRel().SetTargets(["/head/skin/smile"])
+    stage.Save()
+    clip = read_clip(tmp_path / "a.usda", frames=(0, 40))
+    np.testing.assert_allclose(clip.points[:, 3, 2] - 1.0, 2.0 * np.minimum(clip.frames / 30, 1.0), atol=1e-6)
+    np.testing.assert_allclose(clip.points[:, :3], np.broadcast_to(CUBE[:3], (41, 3, 3)))
+
+
+def test_skinned_instances_follow_their_skeleton(tmp_path):
+    skinned_cube(tmp_path / "asset.usda", {0: 0.0, 10: 1.0})
+    stage = new_stage(tmp_path / "a.usda", unit=1.0)
+    prim = stage.DefinePrim("/head/twin")
+    prim.GetReferences().AddReference("./asset.usda")
+    prim.SetInstanceable(True)
+    stage.Save()
+    assert prim.IsInstance()
+    clip = read_clip(tmp_path / "a.usda", frames=(0, 10))
+    np.testing.assert_allclose(clip.points[:, 7, 0] - 1.0, clip.frames / 10, atol=1e-6)
+
+
+@pytest.mark.parametrize("range_of_stage", [(100, 110), (1, 1), (9, 2), (-1e9, 1e9)])
+def test_the_frames_of_a_shot_are_read_whatever_the_range_of_the_stage(tmp_path, range_of_stage):
+    stage = new_stage(tmp_path / "a.usda", unit=1.0)
+    stage.SetStartTimeCode(range_of_stage[0])
+    stage.SetEndTimeCode(range_of_stage[1])
+    slide = add_cube(stage).AddTranslateOp()
+    for frame in (0, 40):
+        slide.Set(Gf.Vec3d(frame, 0, 0), frame)
+    stage.Save()
+    clip = read_clip(tmp_path / "a.usda", frames=(20, 24))
+    np.testing.assert_allclose([clip.at(frame)[0, 0] for frame in range(20, 25)], range(20, 25))
+
+
+@pytest.mark.parametrize(("first", "frames"), [(5, [4, 5, 6]), (1, [1, 2, 3]), (0, [0, 1, 2])])
+def test_a_clip_of_a_shot_has_the_frame_beside_its_first_that_gives_the_velocity(tmp_path, first, frames):
+    path = write_head(tmp_path / "head.usda")  # moves from frame 1
+    last = first + 1 if first == 5 else first + 2
+    np.testing.assert_array_equal(read_clip(path, frames=(first, last)).frames, frames)
+    assert len(read_clip(path, frames=(first, first)).frames) == 2
+
+
+def test_a_file_of_another_rate_is_read_at_the_seconds_of_the_shot(tmp_path):
+    stage = new_stage(tmp_path / "a.usda", unit=1.0)
+    stage.SetTimeCodesPerSecond(48)
+    slide = add_cube(stage).AddTranslateOp()
+    for code in (0, 48):  # 1 m/s
+        slide.Set(Gf.Vec3d(code / 48, 0, 0), code)
+    stage.Save()
+    clip = read_clip(tmp_path / "a.usda", frames=(0, 24), fps=24)
+    assert clip.fps == 24
+    np.testing.assert_allclose(clip.points[:, 0, 0], np.arange(25) / 24, atol=1e-6)
+    whole = new_stage(tmp_path / "b.usda", unit=1.0)  # USD maps the time codes of a reference in the same way
+    whole.DefinePrim("/head/ball").GetReferences().AddReference("./a.usda")
+    whole.Save()
+    np.testing.assert_allclose(read_clip(tmp_path / "b.usda", frames=(0, 24)).points, clip.points, atol=1e-6)
+
+
+def test_a_spline_moves_a_mesh(tmp_path):
+    stage = new_stage(tmp_path / "a.usda", unit=1.0)
+    spline = Ts.Spline("float")
+    for time, value in ((1.0, 0.0), (11.0, 90.0)):
+        knot = Ts.Knot(typeName="float")
+        knot.SetTime(time)
+        knot.SetValue(value)
+        knot.SetNextInterpolation(Ts.InterpLinear)
+        spline.SetKnot(knot)
+    assert add_cube(stage).AddRotateYOp().GetAttr().SetSpline(spline)
     stage.Save()
     clip = read_clip(tmp_path / "a.usda")
-    np.testing.assert_allclose(read_mesh(tmp_path / "a.usda").points, CUBE)
-    np.testing.assert_allclose(clip.points[2], CUBE * [1, 3, 1], atol=1e-6)
+    np.testing.assert_array_equal(clip.frames, np.arange(1, 12))
+    np.testing.assert_allclose(clip.points[-1, 4], [0, 0, -1], atol=1e-6)  # corner (1, 0, 0)
 
 
 def test_colours_of_every_interpolation_reach_the_vertices(tmp_path):

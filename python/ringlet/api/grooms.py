@@ -224,5 +224,4 @@ def _beside_scalp(groom: Groom) -> list[Mesh]:
 
     if groom.scalp_file is None or groom.scalp_file.suffix == ".obj":
         return []
-    meshes = [body.mesh for body in io.read_bodies(groom.scalp_file)]
-    return [mesh for mesh in meshes if mesh.name != groom.scalp.name]
+    return [mesh for mesh in io.read_meshes(groom.scalp_file) if mesh.name != groom.scalp.name]

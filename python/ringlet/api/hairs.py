@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -64,14 +65,15 @@ def write_hairs(
     written = 0
     if cache is None:
         scalp = locks.scalp
-        beside = io.read_surfaces(groom) or [(scalp.points, scalp.triangles)]  # a head of an OBJ is in no stage
+        shown = io.read_meshes(groom) or [scalp]  # a head of an OBJ is in no stage
+        beside = [(mesh.points, mesh.triangles) for mesh in shown]
         points = hairs.deformed(locks.locks.points, scalp.points, surfaces=beside)
         with io.HairWriter(Path(path), locks, hairs.curves, Path(groom)) as writer:
             writer.add(None, points)
     else:
-        clip = scalp_clip(locks)
         with io.open_cache(cache) as moved, io.HairWriter(Path(path), locks, hairs.curves, Path(cache)) as writer:
             chosen = moved.within(frames)
+            clip = scalp_clip(locks, (math.floor(chosen[0]), math.ceil(chosen[-1])))
             for frame in chosen:
                 scalp = clip.at(frame)
                 beside = moved.surfaces(frame) or [(scalp, locks.scalp.triangles)]

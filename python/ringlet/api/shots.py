@@ -72,7 +72,7 @@ def simulate(
     if not isinstance(shot, shots.Shot):
         shot = read_shot(shot)
     groom = _rounded(groom or shot.groom, progress)
-    inputs = _inputs(shot, groom, allow_stale)
+    inputs = _inputs(shot, groom, allow_stale, frames)
     return sim.simulate(
         shot,
         groom,
@@ -111,7 +111,7 @@ def write_simulation(
 
     io.check_target(path, under)
     groom = _rounded(groom)
-    inputs = _inputs(shot, groom, allow_stale)
+    inputs = _inputs(shot, groom, allow_stale, frames)
     kept = _checkpoints(checkpoints, shot, groom, inputs, frames)
     first, last = frames or shot.frames
     motion = sim.Motion(shot, groom, first=first, **inputs)
@@ -152,11 +152,11 @@ def hold_checkpoints(folder: Path | str) -> AbstractContextManager[int]:
 
 
 def run_digest(shot: Shot, groom: Groom, *, frames: tuple[int, int] | None = None) -> str:
-    """A digest of all that a simulation depends on: two runs with the same digest give the same bits."""
+    """Digests of all that a simulation depends on: two runs with the same digests give the same bits."""
     from ringlet import sim
 
     groom = _rounded(groom)
-    return sim.digest_of_run(shot, groom, frames=frames, **_inputs(shot, groom, False))
+    return sim.digest_of_run(shot, groom, frames=frames, **_inputs(shot, groom, False, frames))
 
 
 def start_motion(shot: Shot, groom: Groom | Path | str, *, allow_stale: bool = False) -> Motion:
@@ -178,10 +178,14 @@ def _rounded(groom: Groom | Path | str, progress: Progress | None = None) -> Gro
     return io.as_written(groom if isinstance(groom, Groom) else load_groom(groom, progress=progress))
 
 
-def _inputs(shot: Shot, groom: Groom, allow_stale: bool) -> dict[str, Any]:
-    """The contents of the files that a shot and its groom name: the further arguments of ``sim.simulate``."""
-    clip, garments = scalp_clip(groom), _garments(shot, groom)
-    obstacles = _obstacles(shot, groom, garments)
+def _inputs(shot: Shot, groom: Groom, allow_stale: bool, frames: tuple[int, int] | None = None) -> dict[str, Any]:
+    """The contents of the files that a shot and its groom name: the further arguments of ``sim.simulate``.
+
+    frames: in place of the shot's
+    """
+    frames = frames or shot.frames
+    clip, garments = scalp_clip(groom, frames), _garments(shot, groom, frames)
+    obstacles = _obstacles(shot, groom, garments, frames)
     rest = _rest_shape(shot, groom, obstacles, allow_stale)
     return {"clip": clip, "rest": rest, "obstacles": obstacles, "garments": garments}
 
@@ -242,7 +246,7 @@ def _supporting_bodies(shot: Shot, groom: Groom) -> list[Obstacle]:
     """The bodies that may support a groom, where its rest shape depends on them."""
     if shot.rest.mode != "equilibrium" or groom.scalp_file is None:
         return []
-    return _obstacles(shot, groom, _garments(shot, groom))
+    return _obstacles(shot, groom, _garments(shot, groom, shot.frames), shot.frames)
 
 
 def _rest_shape(shot: Shot, groom: Groom, obstacles: Sequence[Obstacle], allow_stale: bool) -> Curves | None:
@@ -263,8 +267,11 @@ def _rest_shape(shot: Shot, groom: Groom, obstacles: Sequence[Obstacle], allow_s
     )
 
 
-def scalp_clip(groom: Groom) -> Clip:
-    """The animation of the scalp of a groom; one from an OBJ file stands still."""
+def scalp_clip(groom: Groom, frames: tuple[int, int] | None = None) -> Clip:
+    """The animation of the scalp of a groom at the rate of the groom; one from an OBJ file stands still.
+
+    frames: first and last frame; by default those of the head's stage
+    """
     from ringlet import io
     from ringlet.data.mesh import Clip
 
@@ -272,7 +279,7 @@ def scalp_clip(groom: Groom) -> Clip:
         raise UserError("groom: names no file for its scalp; write the head as USD and name it in the recipe")
     if _is_still(groom):
         return Clip(np.zeros(1), groom.scalp.points[None], groom.space.fps)
-    return io.read_clip(groom.scalp_file, groom.scalp_prim)
+    return io.read_clip(groom.scalp_file, groom.scalp_prim, frames, groom.space.fps)
 
 
 def _is_still(groom: Groom) -> bool:
@@ -280,8 +287,8 @@ def _is_still(groom: Groom) -> bool:
     return groom.scalp_file is not None and groom.scalp_file.suffix.lower() == ".obj"
 
 
-def _obstacles(shot: Shot, groom: Groom, garments: Sequence[Garment]) -> list[Obstacle]:
-    """The obstacles of a shot; of several settings for one mesh the last counts."""
+def _obstacles(shot: Shot, groom: Groom, garments: Sequence[Garment], frames: tuple[int, int]) -> list[Obstacle]:
+    """The obstacles of a shot at its frames; of several settings for one mesh the last counts."""
     from ringlet import io, sim
     from ringlet import shot as shots
 
@@ -292,9 +299,9 @@ def _obstacles(shot: Shot, groom: Groom, garments: Sequence[Garment]) -> list[Ob
         file = collider.file or groom.scalp_file
         assert file is not None  # as for the scalp's clip
         if collider.file is None and _is_still(groom):
-            bodies = [io.Body(groom.scalp, scalp_clip(groom), groom.scalp.name)]
+            bodies = [io.Body(groom.scalp, scalp_clip(groom, frames), groom.scalp.name)]
         else:
-            bodies = io.read_bodies(file, collider.mesh)
+            bodies = io.read_bodies(file, collider.mesh, frames, groom.space.fps)
         for body in bodies:
             found[file.resolve(), body.prim] = sim.Obstacle(body.mesh, body.clip, collider)
     for garment in garments:  # cloth is no obstacle, even where its file is the head's
@@ -305,21 +312,22 @@ def _obstacles(shot: Shot, groom: Groom, garments: Sequence[Garment]) -> list[Ob
 
 def cloths_and_colliders(shot: Shot, groom: Groom) -> tuple[list[Garment], list[Obstacle]]:
     """The visible meshes of a shot besides those of the head's file: its cloths, and colliders of other files."""
-    garments = _garments(shot, groom)
+    garments = _garments(shot, groom, shot.frames)
     apart = tuple(collider for collider in shot.collider if collider.file not in (None, groom.scalp_file))
-    obstacles = _obstacles(shot.model_copy(update={"collider": apart}), groom, garments) if apart else []
+    of_files = shot.model_copy(update={"collider": apart})
+    obstacles = _obstacles(of_files, groom, garments, shot.frames) if apart else []
     return garments, [obstacle.starting_at(shot.frames[0]) for obstacle in obstacles]
 
 
-def _garments(shot: Shot, groom: Groom) -> list[Garment]:
-    """The meshes that become cloth in a shot."""
+def _garments(shot: Shot, groom: Groom, frames: tuple[int, int]) -> list[Garment]:
+    """The meshes that become cloth in a shot, at its frames."""
     from ringlet import io, sim
 
     garments: list[Garment] = []
     for cloth in shot.cloth:
         file = cloth.file or groom.scalp_file
         assert file is not None  # as for the scalp's clip
-        body = io.read_body(file, cloth.mesh)
+        body = io.read_body(file, cloth.mesh, frames, groom.space.fps)
         garments.append(sim.Garment(body.mesh, body.clip, cloth, file, body.prim))
         if garments[-1].name in [garment.name for garment in garments[:-1]]:
             raise UserError(f"shot: two cloths are called '{garments[-1].name}'; give one of them another `name`")

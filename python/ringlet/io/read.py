@@ -38,19 +38,22 @@ def read_mesh(path: Path | str, prim: str | None = None, *, space: StageSpace = 
 def read_clip(
     path: Path | str,
     prim: str | None = None,
-    frames: tuple[float, float] | None = None,
+    frames: tuple[int, int] | None = None,
+    fps: float | None = None,
     *,
     space: StageSpace = METRES,
 ) -> Clip:
     """Reads the positions of a mesh at all whole frames, in world space.
 
     prim, space: as for ``read_mesh``
-    frames:      first and last frame, instead of the range of the stage; a static mesh gives one sample
+    frames:      first and last frame of a shot, instead of the range of the stage; the clip also has the frame beside
+                 the first that gives the velocity there. A static mesh gives one sample
+    fps:         frames per second of the shot; by default those of the file
     """
     path = Path(path)
     if _has_suffix(path, ".obj"):
         return Clip(np.zeros(1), read_obj_mesh(_without_prim(path, prim), space).points[None], space.fps)
-    return read_usd_clip(path, prim, frames)
+    return read_usd_clip(path, prim, frames, fps)
 
 
 def read_curves(path: Path | str, prim: str | None = None, *, space: StageSpace = METRES) -> Curves:

@@ -43,7 +43,7 @@ class Checkpoints:
     """The folder of a run.
 
     folder:     folder of its files
-    run_digest: the digest of the run; files of another run are refused
+    run_digest: the digests of the run (``digest_of_run``); files of another run are refused
     every:      frames from one state to the next
     """
 
@@ -63,13 +63,15 @@ class Checkpoints:
                 if path.name != LOCK_FILE:
                     path.unlink()
         key = self.folder / "made_from"
-        if key.exists() and key.read_text() != self.run_digest:
+        stored, mine = key.read_text() if key.exists() else "", self.run_digest
+        shorter, longer = sorted((stored, mine), key=len)  # one run may go further than the other
+        if not longer.startswith(shorter):
             raise UserError(
                 f"{self.folder}: was left by a run with other settings, another groom, first frame or Ringlet; "
                 "run without --resume to start over"
             )
         with replacing(key) as aside:
-            aside.write_text(self.run_digest)
+            aside.write_text(longer)
         for path in sorted(self.folder.glob("memory.*"), reverse=True):
             try:
                 memory = read(path)

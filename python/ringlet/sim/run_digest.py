@@ -32,11 +32,17 @@ def digest_of_run(
     garments: Sequence[Garment],
     frames: tuple[int, int] | None,
 ) -> str:
-    """A digest of all that the frames of a run depend on."""
+    """A digest of all that a run depends on before its first frame, then one of the animation at each frame.
+
+    They are separated by spaces. A run that goes further has the digests of the shorter one, and more.
+    """
     curves = [groom.locks] if rest is None else [groom.locks, rest]
     arrays = [
         part for c in curves for part in (c.offsets, c.ids, c.points, *(c.curve[name] for name in sorted(c.curve)))
     ]
-    arrays += [moving.points for moving in (clip, *(o.clip for o in obstacles), *(g.clip for g in garments))]
-    first, _ = frames or shot.frames  # how far it goes changes nothing before
-    return digest(version("ringlet"), shot.model_dump(mode="json", exclude=_PLACES), first, *arrays)
+    moving = [clip, *(o.clip for o in obstacles), *(g.clip for g in garments)]
+    first, last = frames or shot.frames
+    arrays += [one.at(one.next_to(first)) for one in moving]
+    start = digest(version("ringlet"), shot.model_dump(mode="json", exclude=_PLACES), first, *arrays)
+    each = (digest(*(one.at(frame) for one in moving)) for frame in range(first, last + 1))
+    return " ".join([start, *(of_frame[:16] for of_frame in each)])

@@ -120,6 +120,7 @@ class Playback:
             restart_frame = message.frame if message.action == "again_from" else None
             self._viewport.show_bodies(shot, self._stage.groom)
             self._stage.bodies = self._viewport.bodies
+            self._stage.clip = api.scalp_clip(self._stage.groom, shot.frames)
             self._simulation.start(shot, self._stage, restart_frame)
 
     def set_groom(self, display: DisplayGroom) -> None:
@@ -133,7 +134,8 @@ class Playback:
                 self._viewport.show_bodies(self._files.shot, display.groom)
             except UserError as error:  # starting the shot raises it again
                 self._failed(str(error))
-            self._stage = Stage(display.groom, display.hairs, api.scalp_clip(display.groom), self._viewport.bodies)
+            clip = api.scalp_clip(display.groom, self._files.shot.frames)
+            self._stage = Stage(display.groom, display.hairs, clip, self._viewport.bodies)
         self.publish_timeline()
 
     def read(self, display: DisplayGroom) -> None:

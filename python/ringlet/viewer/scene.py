@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -70,24 +71,36 @@ class FrameState(NamedTuple):
 ReadFrame = Callable[[float], FrameState]
 
 
-def read_bodies(scalp: Mesh, file: Path | None, cloths: Mapping[str, str] | None = None) -> list[VisibleMesh]:
+def read_meshes(scalp: Mesh, file: Path | None) -> list[VisibleMesh]:
+    """Visible meshes of a file at rest; the scalp alone when the file has none."""
+    shown = io.read_meshes(file) if file is not None and file.suffix in USD else []
+    return [VisibleMesh(mesh) for mesh in shown or [scalp]]
+
+
+def read_bodies(
+    scalp: Mesh,
+    file: Path | None,
+    frames: tuple[int, int] | None = None,
+    fps: float | None = None,
+    cloths: Mapping[str, str] | None = None,
+) -> list[VisibleMesh]:
     """Visible meshes of a file with their animation; the scalp alone when the file has none.
 
-    cloths: names of cloths, by prim path
+    frames, fps: first and last frame, and their rate; by default those of the file
+    cloths:      names of cloths, by prim path
     """
     if file is None or file.suffix not in USD:
         return [VisibleMesh(scalp)]
-    names = cloths or {}
-    return [VisibleMesh(body.mesh, body.clip, names.get(body.prim, "")) for body in io.read_bodies(file)] or [
-        VisibleMesh(scalp)
-    ]
+    names, bodies = cloths or {}, io.read_bodies(file, frames=frames, fps=fps)
+    return [VisibleMesh(body.mesh, body.clip, names.get(body.prim, "")) for body in bodies] or [VisibleMesh(scalp)]
 
 
-def shot_meshes(head: list[VisibleMesh], shot: Shot, groom: Groom) -> list[VisibleMesh]:
-    """Visible meshes of a shot: those of the head's file, then cloths and colliders of the shot.
+def shot_meshes(shot: Shot, groom: Groom) -> list[VisibleMesh]:
+    """Visible meshes of a shot at its frames: those of the head's file, then cloths and colliders of the shot.
 
     Raises UserError when a file of the shot cannot be read.
     """
+    head = read_bodies(groom.scalp, groom.scalp_file, shot.frames, groom.space.fps)
     cloths, colliders = api.cloths_and_colliders(shot, groom)
     named = {cloth.mesh.name: cloth.name for cloth in cloths if cloth.file == groom.scalp_file}
     bodies = [VisibleMesh(body.mesh, body.clip, named.get(body.mesh.name, "")) for body in head]
@@ -113,10 +126,11 @@ def read_scene(file: Path) -> tuple[list[VisibleMesh], DisplayGroom]:
         mesh = bodies[0].mesh if bodies else Mesh("none", np.zeros((0, 3)), np.zeros((0, 3), np.int32))
         return visible, DisplayGroom(Groom(curves, curves, mesh), None, False)
     cloths: dict[str, str] = {}
+    frames: tuple[int, int] | None = None
     if io.is_cache(file):
         with io.open_cache(file) as cache:
-            cloths = cache.cloth_prims
-    return read_bodies(groom.scalp, file, cloths), DisplayGroom(groom, lay_hairs(groom), False)
+            cloths, frames = cache.cloth_prims, (math.floor(cache.frames[0]), math.ceil(cache.frames[-1]))
+    return read_bodies(groom.scalp, file, frames, cloths=cloths), DisplayGroom(groom, lay_hairs(groom), False)
 
 
 @contextmanager

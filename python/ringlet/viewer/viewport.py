@@ -13,7 +13,7 @@ from ringlet.shot import Shot
 from ringlet.viewer import overlays, protocol
 from ringlet.viewer.display_groom import DisplayGroom
 from ringlet.viewer.publisher import Publisher
-from ringlet.viewer.scene import VisibleMesh, read_bodies, shot_meshes
+from ringlet.viewer.scene import VisibleMesh, read_meshes, shot_meshes
 from ringlet.viewer.wire import pack
 
 
@@ -29,7 +29,6 @@ class Viewport:
         self.display: DisplayGroom | None = None
         self.bodies: list[VisibleMesh] = []
         self._scalp: Mesh | None = None
-        self._head: list[VisibleMesh] = []
         self._shot_inputs: object = None
         self._layouts: dict[str, Curves] = {}
         self._names: protocol.Names | None = None
@@ -56,9 +55,9 @@ class Viewport:
 
     def show_bodies(self, shot: Shot, groom: Groom) -> None:
         """Shows cloths and colliders of a shot; raises UserError when one of its files cannot be read."""
-        inputs = shot.cloth, shot.collider, shot.touching is None
+        inputs = shot.cloth, shot.collider, shot.touching is None, shot.frames
         if inputs != self._shot_inputs:
-            self._publish_bodies(shot_meshes(self._head, shot, groom))
+            self._publish_bodies(shot_meshes(shot, groom))
             self._shot_inputs = inputs
 
     def clear_beside(self) -> None:
@@ -69,9 +68,8 @@ class Viewport:
     def _show_scalp(self, display: DisplayGroom) -> None:
         if self._scalp is not display.groom.scalp:
             self._scalp = display.groom.scalp
-            self._head = read_bodies(display.groom.scalp, display.groom.scalp_file)
             self._shot_inputs = None
-            self._publish_bodies(self._head)
+            self._publish_bodies(read_meshes(display.groom.scalp, display.groom.scalp_file))
 
     def _publish_bodies(self, bodies: list[VisibleMesh]) -> None:
         self._publisher.clear("body/")

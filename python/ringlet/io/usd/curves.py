@@ -18,14 +18,13 @@ from ringlet.data.mesh import Mesh
 from ringlet.data.stage import StageSpace
 from ringlet.io.space import from_metres, to_metres
 from ringlet.io.usd.basis import Sampling
+from ringlet.io.usd.pose import posed_points, rest_time
 from ringlet.io.usd.stage import Source, choose, find_prim, prims, reading
 from ringlet.io.usd.values import (
     Types,
     float3,
     from_usd,
     read_integers,
-    read_points,
-    rest_time,
     set_primvar,
     transformed,
 )
@@ -47,15 +46,14 @@ def read_usd_curves(path: Path | str, prim: str | None = None) -> Curves:
         root = source.stage.GetPseudoRoot() if prim is None else find_prim(source, prim)
         found = [p for p in prims(root) if UsdGeom.BasisCurves(p)]
         chosen = choose(source, found, "BasisCurves")
-        return curves_at(source, chosen, rest_time(chosen))
+        return curves_at(source, chosen, rest_time(source, chosen))
 
 
 def curves_at(source: Source, prim: Usd.Prim, time: Usd.TimeCode) -> Curves:
     """Polylines of a curves prim at a time [m], with its primvars as attributes."""
     where = source.where(prim)
-    points = read_points(prim, time, where)
-    counts = _counts(prim, time, len(points), where)
-    vertices = to_metres(transformed(points, prim, time), source.space)
+    vertices = posed_points(source, prim, time, where)
+    counts = _counts(prim, time, len(vertices), where)
     ids = np.arange(len(counts), dtype=np.int64)
     Curves(vertices, offsets_from_counts(counts), ids).check(where)
     sampling = Sampling(UsdGeom.BasisCurves(prim), time, counts, where)

@@ -19,9 +19,10 @@ from ringlet.data.mesh import Clip
 from ringlet.io.usd.curves import curve_widths, curves_at, define_curves, own_curves, set_roots
 from ringlet.io.usd.groom import GROOM
 from ringlet.io.usd.mesh import Body, clip_at, mesh_at, visible_meshes, whole_frames
+from ringlet.io.usd.pose import rest_time
 from ringlet.io.usd.stage import Source, prims, reading
 from ringlet.io.usd.stream import StreamWriter
-from ringlet.io.usd.values import Types, rest_time, set_primvar
+from ringlet.io.usd.values import Types, set_primvar
 
 HAIRS = f"{GROOM}/hairs"
 COLOR = (0.06, 0.035, 0.02)  # dark brown, for viewports
@@ -138,7 +139,7 @@ def _hairs_at(source: Source, prim: Usd.Prim, frame: float | None) -> Curves:
     samples = UsdGeom.PointBased(prim).GetPointsAttr().GetTimeSamples()
     if frame is None and samples:
         frame = samples[0]
-    time = rest_time(prim) if frame is None else Usd.TimeCode(frame)
+    time = rest_time(source, prim) if frame is None else Usd.TimeCode(frame)
     if prim.GetPath() == HAIRS:
         curves = own_curves(source, prim, time, np.float32)
     else:

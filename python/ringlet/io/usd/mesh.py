@@ -10,23 +10,21 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pxr import Usd, UsdGeom, UsdSkel, Vt
+from pxr import Usd, UsdGeom, Vt
 
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Clip, Mesh
 from ringlet.data.stage import StageSpace
 from ringlet.io.polygons import check_polygons, fans
 from ringlet.io.space import check_points, from_metres, to_metres
+from ringlet.io.usd.pose import motion_samples, posed_points, rest_time
 from ringlet.io.usd.stage import Source, choose, find_prim, prims, reading
 from ringlet.io.usd.values import (
     Types,
     float3,
     float_primvars,
     local_to_world,
-    motion,
     read_integers,
-    read_points,
-    rest_time,
     set_primvar,
     transformed,
     vector_primvars,
@@ -52,42 +50,48 @@ def read_usd_mesh(path: Path | str, prim: str | None = None) -> Mesh:
         return mesh_at(source, select_mesh(source, prim))
 
 
-def read_usd_clip(path: Path | str, prim: str | None = None, frames: tuple[float, float] | None = None) -> Clip:
-    """Reads the positions of a mesh at all whole frames [m]."""
+def read_usd_clip(
+    path: Path | str, prim: str | None = None, frames: tuple[int, int] | None = None, fps: float | None = None
+) -> Clip:
+    """Reads the positions of a mesh at all whole frames [m]; ``frames`` and ``fps`` as for ``shot_clip_at``."""
     with reading(path) as source:
-        return clip_at(source, select_mesh(source, prim), frames)
+        return shot_clip_at(source, select_mesh(source, prim), frames, fps)
 
 
-def read_bodies(path: Path | str, prim: str | None = None) -> list[Body]:
+def read_bodies(
+    path: Path | str, prim: str | None = None, frames: tuple[int, int] | None = None, fps: float | None = None
+) -> list[Body]:
     """Reads meshes with their clips.
 
-    prim: reads the meshes at and below this prim; by default the visible ones under the default prim, or else the root
+    prim:        reads the meshes at and below this prim; by default the visible ones under the default prim, or else
+                 the root
+    frames, fps: as for ``shot_clip_at``
     """
     with reading(path) as source:
         meshes = visible_meshes(source) if prim is None else meshes_below(source, prim)
-        return [_body_at(source, mesh) for mesh in meshes]
+        return [_body_at(source, mesh, frames, fps) for mesh in meshes]
 
 
-def read_surfaces(path: Path | str) -> list[tuple[NDArray[np.float64], NDArray[np.int32]]]:
-    """Reads all visible meshes in their rest pose: points [m], shape (n, 3), and triangles, shape (m, 3)."""
+def read_meshes(path: Path | str) -> list[Mesh]:
+    """Reads all visible meshes in their rest pose."""
     with reading(path) as source:
-        meshes = [mesh_at(source, prim) for prim in visible_meshes(source)]
-        return [(mesh.points, mesh.triangles) for mesh in meshes]
+        return [mesh_at(source, prim) for prim in visible_meshes(source)]
 
 
-def read_body(path: Path | str, prim: str | None = None) -> Body:
-    """Reads a mesh with its clip: the mesh at ``prim``, or the only one at or below it."""
+def read_body(
+    path: Path | str, prim: str | None = None, frames: tuple[int, int] | None = None, fps: float | None = None
+) -> Body:
+    """Reads a mesh with its clip: the mesh at ``prim``, or the only one at or below it; see ``read_bodies``."""
     with reading(path) as source:
-        return _body_at(source, select_mesh(source, prim))
+        return _body_at(source, select_mesh(source, prim), frames, fps)
 
 
-def _body_at(source: Source, prim: Usd.Prim) -> Body:
-    return Body(mesh_at(source, prim), clip_at(source, prim), str(prim.GetPath()))
+def _body_at(source: Source, prim: Usd.Prim, frames: tuple[int, int] | None, fps: float | None) -> Body:
+    return Body(mesh_at(source, prim), shot_clip_at(source, prim, frames, fps), str(prim.GetPath()))
 
 
 def select_mesh(source: Source, name: str | None) -> Usd.Prim:
     """The mesh prim at a path, or the only one at or below it; raises UserError for none or several."""
-    _bake_skinning(source.stage)
     root = source.stage.GetPseudoRoot() if name is None else find_prim(source, name)
     meshes = [prim for prim in prims(root) if UsdGeom.Mesh(prim)]
     scalps = [prim for prim in meshes if SCALP in _subsets(prim)]
@@ -96,7 +100,6 @@ def select_mesh(source: Source, name: str | None) -> Usd.Prim:
 
 def meshes_below(source: Source, name: str) -> list[Usd.Prim]:
     """Mesh prims at and below a path; raises UserError when there is none."""
-    _bake_skinning(source.stage)
     meshes = [prim for prim in prims(find_prim(source, name)) if UsdGeom.Mesh(prim)]
     if not meshes:
         raise UserError(f"{source.path}: there is no Mesh at or below {name}; name one, or a prim above one")
@@ -105,7 +108,6 @@ def meshes_below(source: Source, name: str) -> list[Usd.Prim]:
 
 def visible_meshes(source: Source) -> list[Usd.Prim]:
     """Meshes that are visible in a render, under the default prim."""
-    _bake_skinning(source.stage)
     root = source.stage.GetDefaultPrim() or source.stage.GetPseudoRoot()
     shown = (UsdGeom.Tokens.default_, UsdGeom.Tokens.render)
     return [
@@ -119,8 +121,8 @@ def visible_meshes(source: Source) -> list[Usd.Prim]:
 
 def mesh_at(source: Source, prim: Usd.Prim) -> Mesh:
     """Mesh of a prim in its rest pose [m]; raises UserError for a mesh without faces or with invalid indices."""
-    where, time, mesh = source.where(prim), rest_time(prim), UsdGeom.Mesh(prim)
-    points = read_points(prim, time, where)
+    where, time, mesh = source.where(prim), rest_time(source, prim), UsdGeom.Mesh(prim)
+    points = posed_points(source, prim, time, where)
     counts = read_integers(mesh.GetFaceVertexCountsAttr(), time, where)
     indices = read_integers(mesh.GetFaceVertexIndicesAttr(), time, where)
     check_polygons(counts, indices, len(points), where)
@@ -137,7 +139,7 @@ def mesh_at(source: Source, prim: Usd.Prim) -> Mesh:
     triangles = indices[corners]
     return Mesh(
         name=f"{source.path.name} {prim.GetPath()}",
-        points=to_metres(transformed(points, prim, time), source.space),
+        points=points,
         triangles=triangles.astype(np.int32),
         uv=_uv(prim, corners, triangles, len(points), len(indices), where),
         faces=faces.astype(np.int32),
@@ -148,33 +150,55 @@ def mesh_at(source: Source, prim: Usd.Prim) -> Mesh:
     )
 
 
-def clip_at(source: Source, prim: Usd.Prim, frames: tuple[float, float] | None = None) -> Clip:
-    """Positions of a mesh prim at all whole frames of the stage, or of the closed range ``frames``.
+def shot_clip_at(source: Source, prim: Usd.Prim, frames: tuple[int, int] | None, fps: float | None) -> Clip:
+    """Positions of a mesh prim at the frames of a shot, and at the one beside the first that gives the velocity there.
+
+    That is the frame before, or the one after for a prim that begins to move at the first frame or later.
+
+    frames: first and last frame of the shot; by default the whole frames of the stage
+    fps:    frames per second of the shot; by default those of the stage
+    """
+    rate = source.space.fps if fps is None else fps
+    if frames is not None and (samples := motion_samples(source, prim)):
+        first, last = frames
+        moves_before = min(samples) * rate / source.space.fps <= first - 1
+        frames = (first - 1, last) if moves_before else (first, max(last, first + 1))
+    return clip_at(source, prim, frames, rate)
+
+
+def clip_at(
+    source: Source, prim: Usd.Prim, frames: tuple[float, float] | None = None, fps: float | None = None
+) -> Clip:
+    """Positions of a mesh prim at all whole frames of a closed range; one sample for a static prim.
+
+    USD evaluates a stage at any time, so that the range may exceed that of the stage and of its samples.
+
+    frames: first and last frame; by default the range of the stage, or else that of the prim's samples
+    fps:    frames per second; a stage of another rate is read at the same seconds, as where USD references it
 
     Raises UserError for too much data and for a number of points that changes.
     """
-    where, times = source.where(prim), _frames(source, prim, frames)
+    where, rate = source.where(prim), source.space.fps if fps is None else fps
+    times = _frames(source, prim, frames)
     if len(times) == 0:
-        start, always = source.stage.GetStartTimeCode(), Usd.TimeCode.EarliestTime()  # one sample for all times
-        points = to_metres(transformed(read_points(prim, always, where), prim, always), source.space)
-        return Clip(np.array([start]), points[None], source.space.fps)
+        points = posed_points(source, prim, Usd.TimeCode.EarliestTime(), where)  # one sample for all times
+        return Clip(np.zeros(1), points[None], rate)
     samples = []
     for frame in times:
-        time = Usd.TimeCode(frame)
         at = f"{where} at frame {frame:g}"
-        points = to_metres(transformed(read_points(prim, time, at), prim, time), source.space)
+        points = posed_points(source, prim, Usd.TimeCode(frame * source.space.fps / rate), at)
         check_points(points, at)  # a transform may be NaN, too
         if len(points) * len(times) > MAX_POSITIONS:
             raise UserError(
                 f"{where}: has {len(points):,} points at {len(times):,} frames, more than {MAX_POSITIONS:,} places; "
-                "shorten its range, or leave it out"
+                "shorten the shot, or leave it out"
             )
         if samples and len(points) != len(samples[0]):
             raise UserError(
                 f"{where}: has {len(points)} points at frame {frame:g}, {len(samples[0])} before; must not change"
             )
         samples.append(points)
-    return Clip(times, np.stack(samples), source.space.fps)
+    return Clip(times, np.stack(samples), rate)
 
 
 def whole_frames(first: float, last: float, where: str) -> NDArray[np.float64]:
@@ -206,13 +230,6 @@ def define_mesh(stage: Usd.Stage, path: str, mesh: Mesh, space: StageSpace) -> U
             defined, name, UsdGeom.Tokens.face, Vt.IntArray.FromNumpy(triangles.astype(np.int32))
         )
     return prim
-
-
-def _bake_skinning(stage: Usd.Stage) -> None:
-    """Bakes skinning to points and transforms in the session layer, which is never saved."""
-    if any(UsdSkel.Root(prim) for prim in stage.Traverse()):
-        stage.SetEditTarget(stage.GetSessionLayer())
-        UsdSkel.BakeSkinning(Usd.PrimRange(stage.GetPseudoRoot()))
 
 
 def _uv(prim: Usd.Prim, corners: NDArray, triangles: NDArray, points: int, indices: int, where: str) -> NDArray | None:
@@ -331,13 +348,11 @@ def _color(prim: Usd.Prim, counts: NDArray, indices: NDArray, points: int) -> di
 
 def _frames(source: Source, prim: Usd.Prim, frames: tuple[float, float] | None) -> NDArray[np.float64]:
     """Whole frames to read; empty for a static mesh."""
-    samples = [
-        time for attribute in motion(prim) if attribute.GetNumTimeSamples() > 1 for time in attribute.GetTimeSamples()
-    ]
+    samples = motion_samples(source, prim)
     if not samples:
         return np.empty(0)
-    stage = source.stage
-    if frames is None and stage.HasAuthoredTimeCodeRange():
-        frames = stage.GetStartTimeCode(), stage.GetEndTimeCode()
+    start, end = source.stage.GetStartTimeCode(), source.stage.GetEndTimeCode()
+    if frames is None and source.stage.HasAuthoredTimeCodeRange() and 0 <= end - start < MAX_FRAMES:
+        frames = start, end
     first, last = frames or (min(samples), max(samples))
     return whole_frames(first, last, source.where(prim))

@@ -14,6 +14,7 @@ import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +23,7 @@ from pxr import Sdf, Tf, Usd, UsdGeom, UsdUtils
 from ringlet.data.errors import UserError
 from ringlet.data.files import replacing, same_place
 from ringlet.data.stage import StageSpace
+from ringlet.io.usd.skinning import Skinning
 
 NOT_TEXT = "it holds text that is not UTF-8"
 SUFFIXES = (".usd", ".usda", ".usdc", ".usdz")
@@ -42,6 +44,11 @@ class Source:
     def where(self, prim: Usd.Prim) -> str:
         """File and prim, for messages."""
         return f"{self.path} {prim.GetPath()}"
+
+    @cached_property
+    def skinning(self) -> Skinning:
+        """Skeletons of the stage, which deform its meshes."""
+        return Skinning(self.stage)
 
 
 @contextmanager

@@ -121,20 +121,3 @@ def transformed(points: NDArray[np.float64], prim: Usd.Prim, time: Usd.TimeCode)
 def local_to_world(prim: Usd.Prim, time: Usd.TimeCode) -> NDArray[np.float64]:
     """Local-to-world transform of a prim, for row vectors, shape (4, 4)."""
     return np.array(UsdGeom.XformCache(time).GetLocalToWorldTransform(prim))
-
-
-def motion(prim: Usd.Prim) -> list[Usd.Attribute]:
-    """Attributes that determine the world positions of a prim's points: points and all transforms above."""
-    found = [UsdGeom.PointBased(prim).GetPointsAttr()]
-    while prim and not prim.IsPseudoRoot():
-        if xformable := UsdGeom.Xformable(prim):
-            found += [op.GetAttr() for op in xformable.GetOrderedXformOps()]
-        prim = prim.GetParent()
-    return found
-
-
-def rest_time(prim: Usd.Prim) -> Usd.TimeCode:
-    """Time code of a prim's rest pose: the default values, or the first sample when there are only samples."""
-    moving = [attribute for attribute in motion(prim) if attribute.GetNumTimeSamples()]
-    default = all(attribute.Get(Usd.TimeCode.Default()) is not None for attribute in moving)
-    return Usd.TimeCode.Default() if default else Usd.TimeCode.EarliestTime()
