@@ -120,6 +120,78 @@ def test_names_widths_and_primvars_are_read(tmp_path):
     np.testing.assert_allclose(read.point["along"], np.concatenate([np.linspace(0, 1, 7), np.linspace(0, 2, 7)]))
 
 
+def only_sampled(attribute, first, second):
+    """Replaces the default value of an attribute by two time samples."""
+    attribute.Clear()
+    attribute.Set(first, 1)
+    attribute.Set(second, 2)
+
+
+def test_the_first_sample_is_the_value_of_an_attribute_without_default(tmp_path):
+    """Points have a default here; each other attribute has samples alone."""
+    points = np.random.default_rng(2).random((8, 3))
+    stage, curves = write(tmp_path / "a.usda", [4, 4], points, "linear", unit=0.01)
+    curves.CreateWidthsAttr()
+    curves.SetWidthsInterpolation(UsdGeom.Tokens.vertex)
+    only_sampled(curves.GetWidthsAttr(), [0.1] * 8, [0.2] * 8)
+    only_sampled(curves.GetCurveVertexCountsAttr(), [4, 4], [5, 3])
+    only_sampled(primvar(curves, "stiff", "uniform").GetAttr(), [3.0, 4.0], [5.0, 5.0])
+    indexed = primvar(curves, "part", "uniform")
+    indexed.Set([7.0, 8.0])
+    indexed.SetIndices([1, 0])
+    only_sampled(indexed.GetIndicesAttr(), [1, 0], [0, 0])
+    stage.Save()
+    notes = []
+    read = read_curves(tmp_path / "a.usda", notes=notes)
+    np.testing.assert_allclose(read.points, 0.01 * points, atol=1e-9)
+    np.testing.assert_array_equal(read.offsets, [0, 4, 8])
+    np.testing.assert_allclose(read.point["width"], 0.001)
+    np.testing.assert_array_equal(read.curve["stiff"], [3, 4])
+    np.testing.assert_array_equal(read.curve["part"], [8, 7])
+    assert len(notes) == 1 and "curveVertexCounts change over time" in notes[0]
+
+
+def test_curves_with_samples_alone_are_those_of_the_first_sample(tmp_path):
+    points = np.random.default_rng(2).random((8, 3)).astype(np.float32)
+    stage, curves = write(tmp_path / "a.usda", [4, 4], points, "linear", unit=1.0)
+    only_sampled(curves.GetPointsAttr(), points, 2 * points)
+    curves.CreateWidthsAttr([0.1] * 8).Set([0.3] * 8, 1)
+    curves.SetWidthsInterpolation(UsdGeom.Tokens.vertex)
+    stage.Save()
+    read = read_curves(tmp_path / "a.usda")
+    np.testing.assert_allclose(read.points, points)
+    np.testing.assert_allclose(read.point["width"], 0.3)  # of the same time as the points
+
+
+@pytest.mark.parametrize("both", [False, True])
+def test_the_primvar_widths_has_precedence_and_is_scaled_with_the_points(tmp_path, both):
+    stage, curves = write(tmp_path / "a.usda", [4, 4], np.random.default_rng(2).random((8, 3)), "linear", unit=0.01)
+    curves.AddScaleOp().Set(Gf.Vec3f(10))
+    if both:
+        curves.CreateWidthsAttr([1.0])
+        curves.SetWidthsInterpolation(UsdGeom.Tokens.constant)
+    primvar(curves, "widths", "uniform").Set([0.02, 0.04])
+    stage.Save()
+    read = read_curves(tmp_path / "a.usda")
+    np.testing.assert_allclose(read.curve["width"], [0.002, 0.004])
+    assert "widths" not in read.curve
+
+
+@pytest.mark.parametrize("twin", [False, True])
+def test_normals_of_curves_are_reported_as_unused(tmp_path, twin):
+    stage, curves = write(tmp_path / "a.usda", [4, 4], np.random.default_rng(2).random((8, 3)), "linear")
+    values = [Gf.Vec3f(0, 1, 0)] * 8
+    if twin:
+        UsdGeom.PrimvarsAPI(curves).CreatePrimvar("normals", Sdf.ValueTypeNames.Normal3fArray, "vertex").Set(values)
+    else:
+        curves.CreateNormalsAttr(values)
+    stage.Save()
+    notes = []
+    assert "normals" not in read_curves(tmp_path / "a.usda", notes=notes).point
+    (note,) = notes
+    assert "a.usda /" in note and "normals are not used" in note
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [
@@ -141,6 +213,10 @@ def test_names_widths_and_primvars_are_read(tmp_path):
                 UsdGeom.PrimvarsAPI(c).CreatePrimvar("a", Sdf.ValueTypeNames.FloatArray, "vertex").Set([1.0, 2.0])
             ),
             "primvars:a has 2 values; must have 8",
+        ),
+        (
+            lambda c: (c.CreateWidthsAttr([1.0, 2.0]), c.SetWidthsInterpolation("constant")),
+            "widths has 2 values; must have 1, being constant",
         ),
     ],
 )

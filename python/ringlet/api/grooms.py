@@ -48,11 +48,17 @@ def build_groom(
 
     if not isinstance(recipe, groom.Recipe):
         recipe = read_recipe(recipe)
-    return groom.make_groom(recipe, progress=progress, memory=memory, **groom_inputs(recipe, memory))
+    notes: list[str] = []
+    made = groom.make_groom(recipe, progress=progress, memory=memory, **groom_inputs(recipe, memory, notes))
+    made.conflicts += notes
+    return made
 
 
-def groom_inputs(recipe: Recipe, memory: Memory | None = None) -> dict[str, Any]:
-    """Contents of the files of a recipe: the arguments of ``make_groom`` besides the recipe."""
+def groom_inputs(recipe: Recipe, memory: Memory | None = None, notes: list[str] | None = None) -> dict[str, Any]:
+    """Contents of the files of a recipe: the arguments of ``make_groom`` besides the recipe.
+
+    notes: receives a sentence for each thing in the files that is not used
+    """
     from ringlet import io
     from ringlet.groom.operators import Drawn
 
@@ -64,9 +70,9 @@ def groom_inputs(recipe: Recipe, memory: Memory | None = None) -> dict[str, Any]
     scalp.textures = {name: io.read_texture(file) for name, file in recipe.map_files().items()}
     drawn = None
     if isinstance(recipe.guides, Drawn) and recipe.guides_file is not None:
-        drawn = io.read_curves(recipe.guides_file, recipe.guides.prim, space=recipe.guides.space)
+        drawn = io.read_curves(recipe.guides_file, recipe.guides.prim, space=recipe.guides.space, notes=notes)
     helpers = {
-        name: io.read_curves(file, recipe.curves[name].prim, space=recipe.curves[name].space)
+        name: io.read_curves(file, recipe.curves[name].prim, space=recipe.curves[name].space, notes=notes)
         for name, file in recipe.helper_files().items()
     }
     return {

@@ -56,22 +56,29 @@ def read_clip(
     return read_usd_clip(path, prim, frames, fps)
 
 
-def read_curves(path: Path | str, prim: str | None = None, *, space: StageSpace = METRES) -> Curves:
+def read_curves(
+    path: Path | str, prim: str | None = None, *, space: StageSpace = METRES, notes: list[str] | None = None
+) -> Curves:
     """Reads curves in their rest pose as polylines, in metres and Y-up, from USD, OBJ or .hair.
 
     Cubic curves of USD are evaluated at 6 points per segment; pinned Catmull-Rom curves keep their vertices. Ids come
     from a primvar like ``groom_id``, or are 0, 1, 2 …. Primvars become attributes, and ``widths`` the attribute
-    ``width`` [m].
+    ``width`` [m]. The value of an attribute is its default, or else its first sample.
 
     prim:  path of a ``BasisCurves`` prim in USD; by default the only one
     space: unit and up-axis of an OBJ or .hair file, which store neither
+    notes: receives a sentence for each thing in the file that is not used
 
     Raises UserError for a file that is not readable, or has no such curves.
     """
     path = Path(path)
     if _has_suffix(path, ".obj"):
         return read_obj_curves(_without_prim(path, prim), space)
-    return read_hair(_without_prim(path, prim), space) if _has_suffix(path, ".hair") else read_usd_curves(path, prim)
+    return (
+        read_hair(_without_prim(path, prim), space)
+        if _has_suffix(path, ".hair")
+        else read_usd_curves(path, prim, notes)
+    )
 
 
 def read_space(path: Path | str, *, space: StageSpace = METRES) -> StageSpace:

@@ -22,9 +22,12 @@ from ringlet.io.usd.pose import posed_points, rest_time
 from ringlet.io.usd.stage import Source, choose, find_prim, prims, reading
 from ringlet.io.usd.values import (
     Types,
+    flattened,
     float3,
     from_usd,
+    local_to_world,
     read_integers,
+    read_time,
     set_primvar,
     transformed,
 )
@@ -37,15 +40,21 @@ COMMON = {"rest", "skinprim", "skinprimuv", "st", "surface_uv_coordinate", "guid
 COMMON |= {"groom_id", "groom_group_id", "groom_guide", "groom_root_uv", "groom_color"}
 COMMON |= {"displayColor", "displayOpacity"}
 INNER = {"root_triangle", "root_barycentric", "lock", "guide_id", "nail", "groomed", "stiffened", "off", "moving"}
+SCHEMA = {"widths", "normals"}  # primvars that take precedence over the attribute of the same name
 HAIR_WIDTH = 70e-6  # default diameter of a hair [m]
 
 
-def read_usd_curves(path: Path | str, prim: str | None = None) -> Curves:
-    """Reads a ``BasisCurves`` prim in its rest pose as polylines [m]; by default the only one."""
+def read_usd_curves(path: Path | str, prim: str | None = None, notes: list[str] | None = None) -> Curves:
+    """Reads a ``BasisCurves`` prim in its rest pose as polylines [m]; by default the only one.
+
+    notes: receives a sentence for each thing in the prim that is not used
+    """
     with reading(path) as source:
         root = source.stage.GetPseudoRoot() if prim is None else find_prim(source, prim)
         found = [p for p in prims(root) if UsdGeom.BasisCurves(p)]
         chosen = choose(source, found, "BasisCurves")
+        if notes is not None:
+            notes += _unused(source, chosen)
         return curves_at(source, chosen, rest_time(source, chosen))
 
 
@@ -61,16 +70,15 @@ def curves_at(source: Source, prim: Usd.Prim, time: Usd.TimeCode) -> Curves:
 
     for primvar in UsdGeom.PrimvarsAPI(prim).GetPrimvarsWithAuthoredValues():
         name = primvar.GetPrimvarName().removeprefix(OWN)
-        values = np.atleast_1d(from_usd(primvar.ComputeFlattened(time)))
+        if name in SCHEMA:
+            continue
+        values = np.atleast_1d(from_usd(flattened(primvar, time)))
         if values.dtype.kind not in "bifuSU":
             continue
         if primvar.GetTypeName().role == Sdf.ValueRoleNames.Point:
             values = to_metres(transformed(np.asarray(values, np.float64), prim, time), source.space)
         _add(curves, sampling, name, values, primvar.GetInterpolation(), f"{where}: {primvar.GetName()}")
-    schema = UsdGeom.BasisCurves(prim)
-    if (widths := schema.GetWidthsAttr().Get(time)) is not None and len(widths):
-        diameters = np.array(widths, np.float64) * source.space.meters_per_unit
-        _add(curves, sampling, "width", diameters, schema.GetWidthsInterpolation(), f"{where}: widths")
+    _add_widths(curves, sampling, source, prim, time)
     _assign_ids(curves)
     return curves
 
@@ -174,6 +182,39 @@ def _counts(prim: Usd.Prim, time: Usd.TimeCode, points: int, where: str) -> NDAr
     if counts.sum() != points:
         raise UserError(f"{where}: curveVertexCounts add up to {counts.sum()}, but there are {points} points")
     return counts
+
+
+def _add_widths(curves: Curves, sampling: Sampling, source: Source, prim: Usd.Prim, time: Usd.TimeCode) -> None:
+    """Stores the diameters of curves [m]; ``primvars:widths`` has precedence over ``widths``, as in USD.
+
+    Diameters are scaled with the points; under a transform that is not uniform, by the cube root of its volume.
+    """
+    primvar, schema = UsdGeom.PrimvarsAPI(prim).GetPrimvar("widths"), UsdGeom.BasisCurves(prim)
+    if primvar.HasAuthoredValue():
+        name, value, interpolation = primvar.GetName(), flattened(primvar, time), primvar.GetInterpolation()
+    else:
+        attribute = schema.GetWidthsAttr()
+        name, value = attribute.GetName(), attribute.Get(read_time(time, attribute))
+        interpolation = schema.GetWidthsInterpolation()
+    if value is None or not len(value):
+        return
+    where = f"{source.where(prim)}: {name}"
+    if interpolation == UsdGeom.Tokens.constant and len(value) != 1:
+        raise UserError(f"{where} has {len(value)} values; must have 1, being constant")
+    scale = np.cbrt(abs(np.linalg.det(local_to_world(prim, time)[:3, :3]))) * source.space.meters_per_unit
+    _add(curves, sampling, "width", np.array(value, np.float64) * scale, interpolation, where)
+
+
+def _unused(source: Source, prim: Usd.Prim) -> list[str]:
+    """A sentence for each thing in a prim of curves that is not used."""
+    where, schema, notes = source.where(prim), UsdGeom.BasisCurves(prim), list[str]()
+    normals = schema.GetNormalsAttr(), UsdGeom.PrimvarsAPI(prim).GetPrimvar("normals")
+    if used := next((one for one in normals if one and one.HasAuthoredValue()), None):
+        notes.append(f"{where}: its {used.GetName()} are not used, since hairs are round")
+    counts = schema.GetCurveVertexCountsAttr()
+    if len({tuple(counts.Get(time)) for time in counts.GetTimeSamples()}) > 1:
+        notes.append(f"{where}: its curveVertexCounts change over time; the curves are read in their rest pose")
+    return notes
 
 
 def _add(curves: Curves, sampling: Sampling, name: str, values: NDArray, interpolation: str, what: str) -> None:

@@ -21,10 +21,12 @@ from ringlet.io.usd.pose import motion_samples, posed_points, rest_time
 from ringlet.io.usd.stage import Source, choose, find_prim, prims, reading
 from ringlet.io.usd.values import (
     Types,
+    flattened,
     float3,
     float_primvars,
     local_to_world,
     read_integers,
+    read_time,
     set_primvar,
     transformed,
     vector_primvars,
@@ -141,28 +143,30 @@ def mesh_at(source: Source, prim: Usd.Prim) -> Mesh:
         name=f"{source.path.name} {prim.GetPath()}",
         points=points,
         triangles=triangles.astype(np.int32),
-        uv=_uv(prim, corners, triangles, len(points), len(indices), where),
+        uv=_uv(prim, time, corners, triangles, len(points), len(indices), where),
         faces=faces.astype(np.int32),
-        regions=_regions(prim, faces, len(counts), where),
-        maps=_maps(float_primvars(prim), corners, triangles, faces, len(counts), where),
+        regions=_regions(prim, time, faces, len(counts), where),
+        maps=_maps(float_primvars(prim, time), corners, triangles, faces, len(counts), where),
         vectors=_vectors(prim, time, source, corners, triangles, faces, len(counts), where),
-        **_color(prim, counts, indices, len(points)),
+        **_color(prim, time, counts, indices, len(points)),
     )
 
 
 def shot_clip_at(source: Source, prim: Usd.Prim, frames: tuple[int, int] | None, fps: float | None) -> Clip:
     """Positions of a mesh prim at the frames of a shot, and at the one beside the first that gives the velocity there.
 
-    That is the frame before, or the one after for a prim that begins to move at the first frame or later.
+    That is the frame before, or the one after for a prim that begins to move at the first frame or later. Frames
+    beyond the samples are left out, since a clip holds its ends.
 
     frames: first and last frame of the shot; by default the whole frames of the stage
     fps:    frames per second of the shot; by default those of the stage
     """
     rate = source.space.fps if fps is None else fps
     if frames is not None and (samples := motion_samples(source, prim)):
-        first, last = frames
-        moves_before = min(samples) * rate / source.space.fps <= first - 1
-        frames = (first - 1, last) if moves_before else (first, max(last, first + 1))
+        start, end = (time * rate / source.space.fps for time in (min(samples), max(samples)))
+        first = frames[0] - 1 if start <= frames[0] - 1 else frames[0]
+        last = max(frames[1], first + 1)
+        frames = (first, max(first + 1, math.ceil(end)) if end < last else last)
     return clip_at(source, prim, frames, rate)
 
 
@@ -232,7 +236,9 @@ def define_mesh(stage: Usd.Stage, path: str, mesh: Mesh, space: StageSpace) -> U
     return prim
 
 
-def _uv(prim: Usd.Prim, corners: NDArray, triangles: NDArray, points: int, indices: int, where: str) -> NDArray | None:
+def _uv(
+    prim: Usd.Prim, time: Usd.TimeCode, corners: NDArray, triangles: NDArray, points: int, indices: int, where: str
+) -> NDArray | None:
     """Texture coordinates per triangle corner, shape (m, 3, 2): of ``st``, or of the first suitable primvar.
 
     Raises UserError for values that do not fit the mesh.
@@ -243,9 +249,10 @@ def _uv(prim: Usd.Prim, corners: NDArray, triangles: NDArray, points: int, indic
         primvar for primvar in api.GetPrimvarsWithAuthoredValues() if primvar.GetTypeName() == Types.TexCoord2fArray
     ]
     for primvar in (p for p in (*named, *typed) if p and p.HasAuthoredValue()):
-        values = np.array(primvar.Get(Usd.TimeCode.EarliestTime()), np.float64)
+        at = read_time(time, primvar.GetAttr(), primvar.GetIndicesAttr())
+        values = np.array(primvar.Get(at), np.float64)
         if primvar.IsIndexed():
-            rows = np.array(primvar.GetIndices(Usd.TimeCode.EarliestTime()))
+            rows = np.array(primvar.GetIndices(at))
             if ((rows < 0) | (rows >= len(values))).any():
                 raise UserError(f"{where}: {primvar.GetName()} has an index that is not from 0 to {len(values) - 1}")
             values = values[rows]
@@ -302,7 +309,7 @@ def _vectors(
     origin = transformed(np.zeros((1, 3)), prim, time)
     rotated = (
         (name, interpolation, to_metres(transformed(values, prim, time) - origin, upright))
-        for name, interpolation, values in vector_primvars(prim)
+        for name, interpolation, values in vector_primvars(prim, time)
     )
     return _maps(rotated, corners, triangles, faces, polygons, where)
 
@@ -312,11 +319,13 @@ def _subsets(prim: Usd.Prim) -> dict[str, UsdGeom.Subset]:
     return {s.GetPrim().GetName(): s for s in found if s.GetElementTypeAttr().Get() == UsdGeom.Tokens.face}
 
 
-def _regions(prim: Usd.Prim, faces: NDArray, count: int, where: str) -> dict[str, NDArray[np.int32]]:
+def _regions(
+    prim: Usd.Prim, time: Usd.TimeCode, faces: NDArray, count: int, where: str
+) -> dict[str, NDArray[np.int32]]:
     """Face subsets as sets of triangles, by name; raises UserError for a face out of range."""
     regions = {}
     for name, subset in _subsets(prim).items():
-        chosen = read_integers(subset.GetIndicesAttr(), Usd.TimeCode.EarliestTime(), f"{where}/{name}")
+        chosen = read_integers(subset.GetIndicesAttr(), time, f"{where}/{name}")
         if (bad := np.flatnonzero((chosen < 0) | (chosen >= count))).size:
             raise UserError(f"{where}/{name}: names face {chosen[bad[0]]}; must be from 0 to {count - 1}")
         inside = np.zeros(count, bool)
@@ -325,10 +334,10 @@ def _regions(prim: Usd.Prim, faces: NDArray, count: int, where: str) -> dict[str
     return regions
 
 
-def _color(prim: Usd.Prim, counts: NDArray, indices: NDArray, points: int) -> dict[str, Any]:
+def _color(prim: Usd.Prim, time: Usd.TimeCode, counts: NDArray, indices: NDArray, points: int) -> dict[str, Any]:
     """Display colour of the mesh and, if it varies, of each vertex: the mean of the vertex's corners."""
     primvar = UsdGeom.PrimvarsAPI(prim).FindPrimvarWithInheritance("displayColor")
-    values = primvar.ComputeFlattened(Usd.TimeCode.EarliestTime()) if primvar else None
+    values = flattened(primvar, time) if primvar else None
     colors = np.array(values if values is not None else [], np.float64).reshape(-1, 3)
     if len(colors) == 0 or not np.isfinite(colors).all():
         return {}
@@ -351,6 +360,7 @@ def _frames(source: Source, prim: Usd.Prim, frames: tuple[float, float] | None) 
     samples = motion_samples(source, prim)
     if not samples:
         return np.empty(0)
+    samples = [time for time in samples if math.isfinite(time)]
     start, end = source.stage.GetStartTimeCode(), source.stage.GetEndTimeCode()
     if frames is None and source.stage.HasAuthoredTimeCodeRange() and 0 <= end - start < MAX_FRAMES:
         frames = start, end

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
-from pxr import Usd, UsdGeom
+from pxr import Ts, Usd, UsdGeom
 
 from ringlet.io.space import to_metres
 from ringlet.io.usd.stage import Source
@@ -20,7 +22,10 @@ def posed_points(source: Source, prim: Usd.Prim, time: Usd.TimeCode, where: str)
 
 
 def motion_samples(source: Source, prim: Usd.Prim) -> list[float]:
-    """Time codes of the samples and spline knots that move a prim's points; empty for a prim that does not move."""
+    """Time codes of the samples and spline knots that move a prim's points; empty for a prim that does not move.
+
+    Those of a spline that goes on beyond its knots are infinite.
+    """
     samples = [time for a in _motion(source, prim) if a.ValueMightBeTimeVarying() for time in _times(a)]
     deformer = source.skinning.deformer(prim)
     return samples + (deformer.samples if deformer and len(deformer.samples) > 1 else [])
@@ -52,6 +57,8 @@ def _transforms(prim: Usd.Prim) -> list[Usd.Attribute]:
 
 def _times(attribute: Usd.Attribute) -> list[float]:
     """Time codes of the samples of an attribute, or of the knots of its spline."""
-    if attribute.HasSpline():  # pyright: ignore[reportAttributeAccessIssue]
-        return list(attribute.GetSpline().GetKnots())  # pyright: ignore[reportAttributeAccessIssue]
-    return attribute.GetTimeSamples()
+    if not attribute.HasSpline():  # pyright: ignore[reportAttributeAccessIssue]
+        return attribute.GetTimeSamples()
+    spline = attribute.GetSpline()  # pyright: ignore[reportAttributeAccessIssue]
+    ends = (-math.inf, spline.GetPreExtrapolation()), (math.inf, spline.GetPostExtrapolation())
+    return [*spline.GetKnots(), *(time for time, beyond in ends if beyond.mode != Ts.ExtrapHeld)]

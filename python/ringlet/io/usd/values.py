@@ -64,24 +64,35 @@ def set_primvar(
     UsdGeom.PrimvarsAPI(prim).CreatePrimvar(name, kind or own, interpolation).Set(value)
 
 
-def float_primvars(prim: Usd.Prim) -> Iterator[tuple[str, str, NDArray[np.float64]]]:
-    """Name, interpolation and values, shape (k,), of every float primvar, at rest."""
+def read_time(time: Usd.TimeCode, *attributes: Usd.Attribute) -> Usd.TimeCode:
+    """Time at which attributes of one prim have values: at rest, the first sample where one has only samples."""
+    sampled = (a for a in attributes if time.IsDefault() and a and a.GetNumTimeSamples())
+    return Usd.TimeCode.EarliestTime() if any(a.Get(time) is None for a in sampled) else time
+
+
+def float_primvars(prim: Usd.Prim, time: Usd.TimeCode) -> Iterator[tuple[str, str, NDArray[np.float64]]]:
+    """Name, interpolation and values, shape (k,), of every float primvar at a time."""
     for primvar in UsdGeom.PrimvarsAPI(prim).GetPrimvarsWithAuthoredValues():
         kind = primvar.GetTypeName().scalarType
         if kind in (Types.Float, Types.Double, Types.Half):
-            yield primvar.GetPrimvarName(), primvar.GetInterpolation(), np.atleast_1d(_flattened(primvar))
+            yield primvar.GetPrimvarName(), primvar.GetInterpolation(), np.atleast_1d(_flattened(primvar, time))
 
 
-def vector_primvars(prim: Usd.Prim) -> Iterator[tuple[str, str, NDArray[np.float64]]]:
-    """Name, interpolation and values, shape (k, 3), of every vector, normal or float3 primvar, at rest."""
+def vector_primvars(prim: Usd.Prim, time: Usd.TimeCode) -> Iterator[tuple[str, str, NDArray[np.float64]]]:
+    """Name, interpolation and values, shape (k, 3), of every vector, normal or float3 primvar at a time."""
     for primvar in UsdGeom.PrimvarsAPI(prim).GetPrimvarsWithAuthoredValues():
         if primvar.GetTypeName().scalarType in _DIRECTIONS:
-            yield primvar.GetPrimvarName(), primvar.GetInterpolation(), _flattened(primvar).reshape(-1, 3)
+            yield primvar.GetPrimvarName(), primvar.GetInterpolation(), _flattened(primvar, time).reshape(-1, 3)
 
 
-def _flattened(primvar: UsdGeom.Primvar) -> NDArray[np.float64]:
-    """Values of a primvar at rest, indices resolved; raises UserError for an index out of range."""
-    value = primvar.ComputeFlattened(Usd.TimeCode.EarliestTime())
+def flattened(primvar: UsdGeom.Primvar, time: Usd.TimeCode) -> Any:
+    """USD value of a primvar at a time, indices resolved; None without value, and for an index out of range."""
+    return primvar.ComputeFlattened(read_time(time, primvar.GetAttr(), primvar.GetIndicesAttr()))
+
+
+def _flattened(primvar: UsdGeom.Primvar, time: Usd.TimeCode) -> NDArray[np.float64]:
+    """Values of a primvar; raises UserError for an index out of range."""
+    value = flattened(primvar, time)
     if value is None:
         raise UserError(f"{primvar.GetAttr().GetPath()}: has indices that are not among its values; write it again")
     return np.array(value, np.float64)
@@ -94,7 +105,8 @@ def float3(values: NDArray) -> Vt.Vec3fArray:
 
 def read_points(prim: Usd.Prim, time: Usd.TimeCode, where: str) -> NDArray[np.float64]:
     """Points of a mesh or of curves in local space, shape (n, 3); raises UserError for none or not finite ones."""
-    value = UsdGeom.PointBased(prim).GetPointsAttr().Get(time)
+    attribute = UsdGeom.PointBased(prim).GetPointsAttr()
+    value = attribute.Get(read_time(time, attribute))
     points = np.array(value if value is not None else [], np.float64).reshape(-1, 3)
     check_points(points, where)
     return points
@@ -105,7 +117,7 @@ def read_integers(attribute: Usd.Attribute, time: Usd.TimeCode, where: str) -> N
 
     Raises UserError for another type.
     """
-    value = attribute.Get(time)
+    value = attribute.Get(read_time(time, attribute))
     numbers = np.array(value if value is not None else [], np.int64 if value is None else None)
     if numbers.ndim != 1 or (len(numbers) and numbers.dtype.kind not in "iu"):
         raise UserError(f"{where}: {attribute.GetName()} is no list of whole numbers; export it again")
