@@ -237,9 +237,9 @@ def test_textures_of_hairs_are_stored_with_the_groom(tmp_path):
     write_head(tmp_path / "head.usdc")
     Image.fromarray(np.array([[255], [64]], np.uint8).repeat(2, axis=1)).save(tmp_path / "thick.png")
     (tmp_path / "a.recipe.toml").write_text(
-        "ringlet = 1\n[scalp]\nfile = 'head.usdc'\nregion = 'scalp'\n[maps]\nthick = 'thick.png'\n"
+        "ringlet = 1\n[scalp]\nfile = 'head.usdc'\nregion = 'scalp'\n[maps]\n1-thick = 'thick.png'\n"
         "[guides]\ncount = 10\n[locks]\ncount = 10\n"
-        "[hairs]\nper_lock = 2\nwidth = { value = '0.1 mm', map = 'thick' }\n"
+        "[hairs]\nper_lock = 2\nwidth = { value = '0.1 mm', map = '1-thick' }\n"
     )
     made = ringlet.build_groom(tmp_path / "a.recipe.toml")
     ringlet.write_groom(made, tmp_path / "groom.usdc")

@@ -107,6 +107,8 @@ def test_numbers_are_in_the_recipe_unit_and_strings_in_their_own():
         "[guides]\nlength = 8",
         "unit = 'mm'\n[guides]\nlength = 80",
         "unit = 'in'\n[guides]\nlength = '8 cm'",
+        "unit = 'dm'\n[guides]\nlength = 0.8",
+        "[guides]\nlength = '0.8 dm'",
     ):
         assert recipe(text).guides.length.value == pytest.approx(0.08)
 

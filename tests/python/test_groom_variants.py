@@ -144,6 +144,8 @@ def test_variants_are_written_as_usd_variants(folder):
         ringlet.read_groom(folder / "groom.usdc", variant="dwon")
     with pytest.raises(UserError, match=r"variant 'hair down': is no name for USD"):
         ringlet.write_groom(base_groom, folder / "groom.usdc", variants={"hair down": down_groom})
+    ringlet.write_groom(base_groom, folder / "groom.usdc", variants={"2-down": down_groom})
+    assert ringlet.read_groom(folder / "groom.usdc", variant="2-down").recipe == down_groom.recipe
 
 
 def test_a_variant_in_another_folder_uses_the_same_head(folder, monkeypatch):

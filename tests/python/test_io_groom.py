@@ -159,6 +159,17 @@ def test_the_written_roots_are_where_the_locks_begin(folder):
     assert UsdGeom.Imageable(locks).ComputePurpose() == UsdGeom.Tokens.guide
 
 
+def test_attributes_of_curves_keep_names_that_usd_refuses(folder):
+    groom, path = make_groom(folder / "assets/head.usdc"), folder / "out/named.usdc"
+    values = {"len-map": 1.0, "len_map": 2.0, "1map": 3.0, "a:b": 4.0, "épais": 5.0, "two words": 6.0}
+    groom.locks.curve |= {name: np.full(5, value, np.float32) for name, value in values.items()}
+    write_groom(groom, path)
+    assert problems(path) == []
+    back = read_groom(path).locks.curve
+    for name, value in values.items():
+        np.testing.assert_array_equal(back[name], value)
+
+
 def test_drawn_guides_keep_their_names_and_primvars_in_a_round_trip(tmp_path):
     write_head(tmp_path / "head.usdc")
     stage = Usd.Stage.CreateNew(str(tmp_path / "drawn.usda"))

@@ -6,7 +6,9 @@ import struct
 
 import numpy as np
 import pytest
-from ringlet.io import read_clip, read_curves, read_groom, read_mesh, write_groom
+from commands import edit
+from pxr import Usd
+from ringlet.io import problems, read_clip, read_curves, read_groom, read_mesh, write_groom
 from usd_scenes import CUBE, CUBE_FACES, make_groom
 
 from ringlet import StageSpace, UserError
@@ -49,6 +51,25 @@ def test_a_groom_on_an_obj_stores_the_head(tmp_path):
     back = read_groom(tmp_path / "groom.usdc")
     np.testing.assert_allclose(back.scalp.points, groom.scalp.points, atol=1e-8)
     np.testing.assert_array_equal(back.scalp.region("scalp"), groom.scalp.region("scalp"))
+
+
+def test_regions_of_an_obj_keep_names_that_usd_refuses(tmp_path):
+    path = write_cube(tmp_path / "head.obj")
+    names = ["head-top", "head_top", "1scalp", "char:scalp", "tête", "scalp"]
+    for name in names[:5]:
+        edit(path, "g skin", f"g {name}")
+    groom = make_groom(None, read_mesh(path, space=CM))
+    groom.scalp_file, groom.region = path, "char:scalp"
+    write_groom(groom, tmp_path / "groom.usdc")
+    assert problems(tmp_path / "groom.usdc") == []
+    back = read_groom(tmp_path / "groom.usdc")
+    assert list(back.scalp.regions) == names and back.region == "char:scalp"
+    for name in names:
+        np.testing.assert_array_equal(back.scalp.region(name), groom.scalp.region(name))
+    stage = Usd.Stage.Open(str(tmp_path / "groom.usdc"))
+    subsets = stage.GetPrimAtPath("/groom/body").GetChildren()
+    assert [prim.GetName() for prim in subsets] == ["head_top", "head_top_2", "_1scalp", "char_scalp", "tête", "scalp"]
+    assert [prim.GetDisplayName() for prim in subsets] == ["head-top", "head_top", "1scalp", "char:scalp", "", ""]
 
 
 def test_polylines_of_an_obj_are_curves(tmp_path):

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, PrivateAttr, Tag, ValidationError
 
-from ringlet.data.quantities import UNITS, Section, explain
+from ringlet.data.quantities import UNITS, LengthUnit, Section, explain
 from ringlet.groom.edits import Edit
 from ringlet.groom.hairs import HairSettings
 from ringlet.groom.helpers import HelperCurves
@@ -38,7 +38,7 @@ class Recipe(Section):
     ringlet: Literal[1] = Field(description="version of this format")
     name: str = Field(default="", description="what the groom is called")
     seed: int = Field(default=1, ge=0, le=2**31, description="another seed gives another head of hair of the same kind")
-    unit: Literal["m", "cm", "mm", "in"] = Field(default="cm", description="unit of lengths that are plain numbers")
+    unit: LengthUnit = Field(default="cm", description="unit of lengths that are plain numbers")
     extends: str | None = Field(
         default=None,
         description="another recipe, of which this one changes a few values: tables are merged, `false` takes "

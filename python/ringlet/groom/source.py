@@ -6,14 +6,14 @@ from typing import Literal
 
 from pydantic import Field
 
-from ringlet.data.quantities import UNITS, Section
+from ringlet.data.quantities import UNITS, LengthUnit, Section
 from ringlet.data.stage import StageSpace
 
 
 class Source(Section):
     """Unit and up axis of an OBJ or .hair file. A USD file stores its own."""
 
-    unit: Literal["m", "cm", "mm", "in"] = Field(default="m", description="unit of an OBJ or .hair file")
+    unit: LengthUnit = Field(default="m", description="unit of an OBJ or .hair file")
     up: Literal["Y", "Z"] = Field(default="Y", description="axis that is up in an OBJ or .hair file")
 
     @property

@@ -2,7 +2,7 @@
 
 import type { Json } from "../protocol";
 
-const METRES: Record<string, number> = { m: 1, cm: 0.01, mm: 0.001, in: 0.0254 };
+const METRES: Record<string, number> = { m: 1, dm: 0.1, cm: 0.01, mm: 0.001, in: 0.0254 };
 
 export interface Shown {
   unit: string;

@@ -10,13 +10,14 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pxr import Sdf, Tf, Usd, UsdGeom
+from pxr import Sdf, Usd, UsdGeom
 
 from ringlet.data.cache import CachedCloth
 from ringlet.data.errors import UserError
 from ringlet.data.stage import StageSpace
 from ringlet.io.space import from_metres, to_metres
 from ringlet.io.usd.groom import BODY, GROOM, scalp_source
+from ringlet.io.usd.names import identifier
 from ringlet.io.usd.stage import Source, relative
 from ringlet.io.usd.values import float3
 
@@ -58,9 +59,7 @@ class ClothPrims:
 
     def _reference(self, file: Path, top: Sdf.Path) -> Sdf.Path:
         UsdGeom.Scope.Define(self._stage, CLOTHS)
-        place = Sdf.Path(CLOTHS).AppendChild(Tf.MakeValidIdentifier(file.stem))
-        if place in self._tops.values():
-            place = place.ReplaceName(f"{place.name}_{len(self._tops)}")
+        place = Sdf.Path(CLOTHS).AppendChild(identifier(file.stem, [path.name for path in self._tops.values()]))
         name = relative(file, self._stage.GetRootLayer().realPath)
         self._stage.DefinePrim(place).GetReferences().AddReference(Sdf.Reference(name, top))
         return place

@@ -18,6 +18,7 @@ from ringlet.data.mesh import Mesh
 from ringlet.data.stage import StageSpace
 from ringlet.io.space import from_metres, to_metres
 from ringlet.io.usd.basis import Sampling
+from ringlet.io.usd.names import identifier, keep_name, original_name
 from ringlet.io.usd.pose import posed_points, rest_time
 from ringlet.io.usd.stage import Source, choose, find_prim, prims, reading
 from ringlet.io.usd.values import (
@@ -98,7 +99,7 @@ def own_curves(source: Source, prim: Usd.Prim, time: Usd.TimeCode | None = None,
     curves = Curves(points, offsets_from_counts(counts), np.array(ids, np.int64))
     for primvar in UsdGeom.PrimvarsAPI(prim).GetPrimvarsWithAuthoredValues():
         if (name := primvar.GetPrimvarName()) not in (f"{OWN}id", *COMMON):
-            _add_own(curves, primvar, name.removeprefix(OWN), where)
+            _add_own(curves, primvar, original_name(primvar.GetAttr(), name.removeprefix(OWN)), where)
     schema = UsdGeom.BasisCurves(prim)
     if schema.GetWidthsInterpolation() == UsdGeom.Tokens.vertex and "width" not in curves.curve:
         widths = np.array(schema.GetWidthsAttr().Get() or [], np.float32)
@@ -128,8 +129,7 @@ def define_curves(
     for interpolation, attributes in (("uniform", curves.curve), ("vertex", curves.point)):
         for name, values in attributes.items():
             if interpolation == "uniform" or name != "width":  # the width of points is in ``widths``
-                own = name in COMMON | INNER | {"width"}
-                set_primvar(prim, OWN + name if own else name, interpolation, values)
+                _set_attribute(prim, name, interpolation, values)
     fits = np.abs(curves.ids).max(initial=0) < 2**31
     set_primvar(prim, "groom_id", "uniform", (curves.ids if fits else np.arange(len(curves))).astype(np.int32))
     for name, half in zip(ID_HALVES, (curves.ids >> 32, curves.ids & 0xFFFFFFFF), strict=True):
@@ -137,6 +137,19 @@ def define_curves(
     set_primvar(prim, "groom_group_id", "uniform", np.zeros(len(curves), np.int32))
     set_primvar(prim, "groom_guide", "uniform", np.full(len(curves), guide, np.int32))
     return defined
+
+
+def _set_attribute(prim: Usd.Prim, name: str, interpolation: str, values: NDArray) -> None:
+    """Writes an attribute of curves as a primvar whose name USD accepts."""
+    valid = f"primvars:{name}"
+    if Sdf.Path.IsValidNamespacedIdentifier(valid) and UsdGeom.Primvar.IsValidPrimvarName(valid):
+        own = name in COMMON | INNER | SCHEMA | {"width"}
+        set_primvar(prim, OWN + name if own else name, interpolation, values)
+        return
+    taken = [primvar.GetPrimvarName().removeprefix(OWN) for primvar in UsdGeom.PrimvarsAPI(prim).GetPrimvars()]
+    stored = OWN + identifier(name, taken)
+    set_primvar(prim, stored, interpolation, values)
+    keep_name(UsdGeom.PrimvarsAPI(prim).GetPrimvar(stored).GetAttr(), name)
 
 
 def set_points(curves: UsdGeom.BasisCurves, points: NDArray, space: StageSpace, time: Usd.TimeCode) -> None:

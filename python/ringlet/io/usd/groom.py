@@ -11,6 +11,7 @@ With variants, locks and guides are in the variants of the set ``groom``.
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -18,7 +19,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pxr import Sdf, Tf, Usd, UsdGeom
+from pxr import Sdf, Usd, UsdGeom
 
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
@@ -128,8 +129,8 @@ def _define(stage: Usd.Stage, groom: Groom, space: StageSpace) -> None:
 
 
 def _check_variant(name: str, variant: Groom, groom: Groom) -> None:
-    if not Tf.IsValidIdentifier(name):
-        raise UserError(f"variant '{name}': is no name for USD; use letters, digits and _ only, and no digit first")
+    if not re.fullmatch(r"[\w-]+", name):
+        raise UserError(f"variant '{name}': is no name for USD; use letters, digits, _ and - only")
     scalp, variant_scalp = ((g.scalp_file and g.scalp_file.resolve(), g.scalp_prim, g.region) for g in (groom, variant))
     if scalp != variant_scalp or not np.array_equal(groom.scalp.points, variant.scalp.points):
         raise UserError(f"variant '{name}': grows on another scalp ({variant.scalp.name}); must be {groom.scalp.name}")

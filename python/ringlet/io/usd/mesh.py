@@ -17,6 +17,7 @@ from ringlet.data.mesh import Clip, Mesh
 from ringlet.data.stage import StageSpace
 from ringlet.io.polygons import check_polygons, fans
 from ringlet.io.space import check_points, from_metres, to_metres
+from ringlet.io.usd.names import identifier, keep_name, original_name
 from ringlet.io.usd.pose import motion_samples, posed_points, rest_time
 from ringlet.io.usd.stage import Source, choose, find_prim, prims, reading
 from ringlet.io.usd.values import (
@@ -229,10 +230,13 @@ def define_mesh(stage: Usd.Stage, path: str, mesh: Mesh, space: StageSpace) -> U
     set_primvar(prim, "displayColor", "vertex" if varies else "constant", colors, Types.Color3fArray)
     if mesh.uv is not None:
         set_primvar(prim, "st", "faceVarying", mesh.uv.reshape(-1, 2).astype(np.float32), Types.TexCoord2fArray)
+    taken: list[str] = []
     for name, triangles in mesh.regions.items():
-        UsdGeom.Subset.CreateGeomSubset(
-            defined, name, UsdGeom.Tokens.face, Vt.IntArray.FromNumpy(triangles.astype(np.int32))
-        )
+        taken.append(identifier(name, taken))
+        indices = Vt.IntArray.FromNumpy(triangles.astype(np.int32))
+        subset = UsdGeom.Subset.CreateGeomSubset(defined, taken[-1], UsdGeom.Tokens.face, indices)
+        if taken[-1] != name:
+            keep_name(subset.GetPrim(), name)
     return prim
 
 
@@ -316,7 +320,8 @@ def _vectors(
 
 def _subsets(prim: Usd.Prim) -> dict[str, UsdGeom.Subset]:
     found = UsdGeom.Subset.GetAllGeomSubsets(UsdGeom.Imageable(prim))
-    return {s.GetPrim().GetName(): s for s in found if s.GetElementTypeAttr().Get() == UsdGeom.Tokens.face}
+    faces = [s for s in found if s.GetElementTypeAttr().Get() == UsdGeom.Tokens.face]
+    return {original_name(s.GetPrim(), s.GetPrim().GetName()): s for s in faces}
 
 
 def _regions(

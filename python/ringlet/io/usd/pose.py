@@ -61,4 +61,5 @@ def _times(attribute: Usd.Attribute) -> list[float]:
         return attribute.GetTimeSamples()
     spline = attribute.GetSpline()  # pyright: ignore[reportAttributeAccessIssue]
     ends = (-math.inf, spline.GetPreExtrapolation()), (math.inf, spline.GetPostExtrapolation())
-    return [*spline.GetKnots(), *(time for time, beyond in ends if beyond.mode != Ts.ExtrapHeld)]
+    held = Ts.ExtrapHeld  # pyright: ignore[reportAttributeAccessIssue]
+    return [*spline.GetKnots(), *(time for time, beyond in ends if beyond.mode != held)]
