@@ -7,7 +7,7 @@ import sys
 
 import numpy as np
 import pytest
-from pxr import Gf, Sdf, UsdGeom
+from pxr import Gf, Sdf, Usd, UsdGeom, UsdShade
 from ringlet.io import (
     read_bodies,
     read_cache,
@@ -111,6 +111,19 @@ def test_a_mesh_with_a_varying_point_count_is_refused(tmp_path):
     assert "has 9 points at frame 2, 8 before" in refused(read_clip, tmp_path / "a.usda")
 
 
+@pytest.mark.parametrize("name", ["faceVertexIndices", "faceVertexCounts"])
+def test_a_mesh_whose_faces_change_is_refused(tmp_path, name):
+    path = write_head(tmp_path / "head.usda")
+    stage = Usd.Stage.Open(str(path))
+    faces = stage.GetPrimAtPath("/head/skin").GetAttribute(name)
+    same, other = list(faces.Get()), list(reversed(faces.Get())) if name == "faceVertexIndices" else [3, 5, 4, 4, 4, 4]
+    for frame, value in ((1, same), (2, same), (3, other)):
+        faces.Set(value, frame)
+    stage.Save()
+    assert f"at frame 3: its {name} differ from those in its rest pose" in refused(read_clip, path)
+    assert len(read_clip(path, frames=(1, 2)).frames) == 2  # the change is after the shot
+
+
 def test_a_missing_prim_is_refused_with_the_nearest_name(tmp_path):
     path = write_head(tmp_path / "head.usda")
     assert "has no prim /head/skn; did you mean /head/skin?" in refused(read_mesh, path, "/head/skn")
@@ -126,10 +139,53 @@ def test_missing_and_ambiguous_meshes_are_refused(tmp_path):
     add_cube(stage, "/head/two")
     stage.Save()
     assert "has 2 Mesh prims; name one of: /head/one, /head/two" in refused(read_mesh, tmp_path / "a.usda")
-    lonely = new_stage(tmp_path / "b.usda")
-    lonely.GetPrimAtPath("/head").GetReferences().AddReference("./gone.usda")
-    lonely.Save()
-    assert "gone.usda, which it refers to, is not there" in refused(read_mesh, tmp_path / "b.usda")
+
+
+def break_reference(stage):
+    stage.DefinePrim("/head/shirt").GetReferences().AddReference("./gone.usda")
+
+
+def break_payload(stage):
+    stage.DefinePrim("/head/shirt").GetPayloads().AddPayload("./gone.usda")
+
+
+def break_sublayer(stage):
+    stage.GetRootLayer().subLayerPaths.append("./gone.usda")
+
+
+def break_target(stage):
+    stage.DefinePrim("/head/shirt").GetReferences().AddInternalReference("/gone")
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        (break_reference, "/head/shirt refers to .*gone.usda, which is not there; put it back"),
+        (break_payload, "/head/shirt refers to .*gone.usda, which is not there; put it back"),
+        (break_sublayer, "lies over .*gone.usda, which is not there; put it back"),
+        (break_target, "/head/shirt refers to /gone of .*a.usda, which is not there"),
+    ],
+)
+def test_a_stage_that_refers_to_what_is_missing_is_refused(tmp_path, change, says):
+    stage = new_stage(tmp_path / "a.usda")
+    add_cube(stage)
+    change(stage)
+    stage.Save()
+    for call in (read_mesh, read_clip, read_bodies):
+        with pytest.raises(UserError, match=says):
+            call(tmp_path / "a.usda")
+    if prim := stage.GetPrimAtPath("/head/shirt"):
+        prim.SetActive(False)  # the remedy
+        stage.Save()
+        assert len(read_bodies(tmp_path / "a.usda")) == 1
+
+
+def test_missing_materials_are_accepted(tmp_path):
+    stage = new_stage(tmp_path / "a.usda")
+    add_cube(stage)
+    UsdShade.Material.Define(stage, "/head/skin/lacquer").GetPrim().GetReferences().AddReference("./gone.usda")
+    stage.Save()
+    assert len(read_bodies(tmp_path / "a.usda")) == 1
 
 
 @pytest.mark.parametrize(
@@ -157,9 +213,9 @@ def test_files_without_groom_or_head_are_refused(tmp_path):
     cache = Cache(np.array([1.0]), groom.locks.points[None].astype(np.float32))
     write_cache(cache, tmp_path / "groom.usdc", tmp_path / "cache.usdc", groom.space)
     head.unlink()
-    assert "its head" in refused(read_groom, tmp_path / "groom.usdc")
+    assert "head.usda, which is not there" in refused(read_groom, tmp_path / "groom.usdc")
     (tmp_path / "groom.usdc").unlink()
-    assert "lies over ./groom.usdc, which is not there" in refused(read_cache, tmp_path / "cache.usdc")
+    assert "which is not there" in refused(read_cache, tmp_path / "cache.usdc")
 
 
 def test_a_groom_of_a_later_layout_is_refused(tmp_path):

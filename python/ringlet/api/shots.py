@@ -183,7 +183,10 @@ def _inputs(shot: Shot, groom: Groom, allow_stale: bool, frames: tuple[int, int]
 
     frames: in place of the shot's
     """
+    from ringlet import sim
+
     frames = frames or shot.frames
+    sim.check_frames(*frames)
     clip, garments = scalp_clip(groom, frames), _garments(shot, groom, frames)
     obstacles = _obstacles(shot, groom, garments, frames)
     rest = _rest_shape(shot, groom, obstacles, allow_stale)

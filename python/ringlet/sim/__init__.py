@@ -7,7 +7,7 @@ from ringlet.sim.motion import Motion
 from ringlet.sim.obstacle import Body, Obstacle
 from ringlet.sim.run_digest import digest_of_run
 from ringlet.sim.scene import Scene
-from ringlet.sim.simulate import StoredTouches, play, replay, simulate
+from ringlet.sim.simulate import StoredTouches, check_frames, play, replay, simulate
 from ringlet.sim.strands import Strands
 
 __all__ = [
@@ -20,6 +20,7 @@ __all__ = [
     "Scene",
     "StoredTouches",
     "Strands",
+    "check_frames",
     "digest_of_run",
     "frames_between",
     "locked_folder",

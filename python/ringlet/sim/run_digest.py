@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from importlib.metadata import version
 
@@ -44,5 +45,7 @@ def digest_of_run(
     first, last = frames or shot.frames
     arrays += [one.at(one.next_to(first)) for one in moving]
     start = digest(version("ringlet"), shot.model_dump(mode="json", exclude=_PLACES), first, *arrays)
-    each = (digest(*(one.at(frame) for one in moving)) for frame in range(first, last + 1))
-    return " ".join([start, *(of_frame[:16] for of_frame in each)])
+    end = max(one.frames[-1] for one in moving)  # the animation holds from here on
+    each = [digest(*(one.at(frame) for one in moving))[:16] for frame in range(first, min(last, math.ceil(end)) + 1)]
+    held = digest(*(one.at(end) for one in moving))[:16]
+    return " ".join([start, *each, *[held] * (last + 1 - first - len(each))])

@@ -54,8 +54,8 @@ def simulate(
     checkpoints: the folder from which ``resume`` continues a run that was interrupted, to the same bits
     """
     first, last = frames or shot.frames
+    check_frames(first, last)
     motion = Motion(shot, groom, clip, rest, obstacles, garments, first)
-    _check_frames(first, last)
     numbers = np.arange(first, last + 1, dtype=np.float64)
     points = np.empty((len(numbers), len(groom.locks.points), 3), np.float32)
     cache = Cache(numbers, points, start=motion.start, cloths=motion.cloths(len(numbers)))
@@ -72,7 +72,8 @@ def simulate(
     return cache
 
 
-def _check_frames(first: int, last: int) -> None:
+def check_frames(first: int, last: int) -> None:
+    """Raises UserError for a range of frames that is none, or too long."""
     if wrong := wrong_frames(first, last):
         raise UserError(f"sim: frames are {first}:{last}; {wrong}")
 
@@ -125,7 +126,7 @@ def play(
     resume: bool = False,
 ) -> Iterator[Frame]:
     """Yields the frames from the first of a motion to ``last``, each as soon as it is done; see ``simulate``."""
-    _check_frames(motion.first, last)
+    check_frames(motion.first, last)
     preroll = motion.shot.preroll
     total = preroll + last - motion.first + 1
     done, state = (checkpoints.begin(resume) if checkpoints else None) or (0, {})

@@ -39,7 +39,6 @@ from ringlet.io.usd.stage import (
     reading,
     refuse_itself,
     relative,
-    require_layers,
     writing,
 )
 from ringlet.io.usd.values import Types, float3
@@ -149,8 +148,6 @@ def read_groom(path: Path | str, variant: str | None = None) -> Groom:
         if variant is not None:
             _select(source, variant)
         scalp_file, scalp_prim = scalp_source(source)
-        if not scalp_file.exists():
-            raise UserError(f"{path}: its head {scalp_file} is not there; put it back or make the groom again")
         scalp = read_usd_mesh(scalp_file, scalp_prim)
         return Groom(
             guides=_bound(source, GUIDES, scalp),
@@ -168,7 +165,6 @@ def read_groom(path: Path | str, variant: str | None = None) -> Groom:
 
 def groom_prim(source: Source) -> Usd.Prim:
     """The prim ``/groom``; raises UserError for a stage that is no groom or has a later layout."""
-    require_layers(source)
     root = source.stage.GetPrimAtPath(GROOM)
     version = _get(root, "version") if root else None
     if version is None:

@@ -181,17 +181,17 @@ def clip_at(
     frames: first and last frame; by default the range of the stage, or else that of the prim's samples
     fps:    frames per second; a stage of another rate is read at the same seconds, as where USD references it
 
-    Raises UserError for too much data and for a number of points that changes.
+    Raises UserError for too much data, and for points or faces whose number or order changes.
     """
     where, rate = source.where(prim), source.space.fps if fps is None else fps
     times = _frames(source, prim, frames)
     if len(times) == 0:
         points = posed_points(source, prim, Usd.TimeCode.EarliestTime(), where)  # one sample for all times
         return Clip(np.zeros(1), points[None], rate)
-    samples = []
+    samples, faces = [], _Faces(source, prim)
     for frame in times:
-        at = f"{where} at frame {frame:g}"
-        points = posed_points(source, prim, Usd.TimeCode(frame * source.space.fps / rate), at)
+        at, time = f"{where} at frame {frame:g}", Usd.TimeCode(frame * source.space.fps / rate)
+        points = posed_points(source, prim, time, at)
         check_points(points, at)  # a transform may be NaN, too
         if len(points) * len(times) > MAX_POSITIONS:
             raise UserError(
@@ -202,8 +202,26 @@ def clip_at(
             raise UserError(
                 f"{where}: has {len(points)} points at frame {frame:g}, {len(samples[0])} before; must not change"
             )
+        faces.check(time, at)
         samples.append(points)
     return Clip(times, np.stack(samples), rate)
+
+
+class _Faces:
+    """Faces of a mesh in its rest pose, which its animation must keep."""
+
+    def __init__(self, source: Source, prim: Usd.Prim) -> None:
+        mesh, time, where = UsdGeom.Mesh(prim), rest_time(source, prim), source.where(prim)
+        attributes = mesh.GetFaceVertexCountsAttr(), mesh.GetFaceVertexIndicesAttr()
+        self._rest = [(a, read_integers(a, time, where)) for a in attributes if a.ValueMightBeTimeVarying()]
+
+    def check(self, time: Usd.TimeCode, where: str) -> None:
+        """Raises UserError for faces that differ at a time."""
+        for attribute, rest in self._rest:
+            if not np.array_equal(read_integers(attribute, time, where), rest):
+                raise UserError(
+                    f"{where}: its {attribute.GetName()} differ from those in its rest pose; must not change over time"
+                )
 
 
 def whole_frames(first: float, last: float, where: str) -> NDArray[np.float64]:

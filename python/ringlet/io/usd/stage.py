@@ -18,7 +18,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from pxr import Sdf, Tf, Usd, UsdGeom, UsdUtils
+from pxr import Pcp, Sdf, Tf, Usd, UsdGeom, UsdShade, UsdUtils
 
 from ringlet.data.errors import UserError
 from ringlet.data.files import replacing, same_place
@@ -55,7 +55,7 @@ class Source:
 def reading(path: Path | str) -> Iterator[Source]:
     """Opens a stage; converts USD's errors inside the block to UserError.
 
-    Raises UserError for a missing or empty file and for a folder.
+    Raises UserError for a missing or empty file, for a folder, and for a stage that refers to what is not there.
     """
     path = Path(path)
     if not path.exists():
@@ -66,20 +66,45 @@ def reading(path: Path | str) -> Iterator[Source]:
         raise UserError(f"{path}: is empty; write it again or choose another")
     with reading_more(path):
         stage = Usd.Stage.Open(str(path))
-        _reload(stage)
+        _reload(stage, path)
+        _refuse_missing(stage, path)
         yield Source(path, stage, _space(stage, path))
 
 
-def _reload(stage: Usd.Stage) -> None:
+def _reload(stage: Usd.Stage, path: Path) -> None:
     """Reloads the layers of a stage, since another open stage may share outdated ones.
 
-    Reloading a layer may change the set of used layers, so the set is queried again after each.
+    Reloading a layer may change the set of used layers, so the set is queried again after each. Raises UserError for a
+    layer that another open stage holds, but whose file is gone.
     """
     reloaded = set[str]()
     while pending := [layer for layer in stage.GetUsedLayers() if layer.identifier not in reloaded]:
         reloaded.add(pending[0].identifier)
-        if not pending[0].anonymous and Path(pending[0].realPath).exists():
-            pending[0].Reload()
+        if pending[0].anonymous:
+            continue
+        if not Path(pending[0].realPath.split("[")[0]).exists():  # a layer in a package has its path in brackets
+            raise UserError(f"{path}: uses {pending[0].realPath}, which is not there; put it back")
+        pending[0].Reload()
+
+
+def _refuse_missing(stage: Usd.Stage, path: Path) -> None:
+    """Raises UserError for a sublayer, reference or payload that is missing, except of materials."""
+    for error in stage.GetCompositionErrors():  # pyright: ignore[reportAttributeAccessIssue]
+        prim = stage.GetPrimAtPath(error.rootSite.path)
+        missing = next(iter(re.findall("@(.+?)@", str(error))), "a file")
+        if isinstance(error, Pcp.ErrorInvalidSublayerPath):
+            raise UserError(f"{path}: lies over {missing}, which is not there; put it back")
+        if not (prim and prim.IsActive()) or UsdShade.NodeGraph(prim) or UsdShade.Shader(prim):
+            continue
+        if isinstance(error, Pcp.ErrorInvalidAssetPath):
+            raise UserError(
+                f"{path}: {prim.GetPath()} refers to {missing}, which is not there; put it back, or deactivate the prim"
+            )
+        if isinstance(error, Pcp.ErrorUnresolvedPrimPath):
+            raise UserError(
+                f"{path}: {prim.GetPath()} refers to {next(iter(re.findall('@<(.+?)>', str(error))), 'a prim')} of "
+                f"{missing}, which is not there; name another, or deactivate the prim"
+            )
 
 
 @contextmanager
@@ -188,13 +213,7 @@ def prims(root: Usd.Prim) -> Iterator[Usd.Prim]:
 def choose(source: Source, candidates: list[Usd.Prim], what: str) -> Usd.Prim:
     """The only candidate of a type such as ``Mesh``; raises UserError for none and for several."""
     if not candidates:
-        missing = [
-            Path(path).name for path in source.stage.GetRootLayer().GetExternalReferences() if _missing(source, path)
-        ]
-        remedy = "export one or choose another file"
-        if missing:
-            remedy = f"{', '.join(missing)}, which it refers to, is not there"
-        raise UserError(f"{source.path}: has no {what} prim; {remedy}")
+        raise UserError(f"{source.path}: has no {what} prim; export one or choose another file")
     if len(candidates) > 1:
         names = ", ".join(str(prim.GetPath()) for prim in candidates[:8])
         raise UserError(f"{source.path}: has {len(candidates)} {what} prims; name one of: {names}")
@@ -207,18 +226,6 @@ def parse_json(source: Source, text: Any, name: str) -> Any:
         return json.loads(text)
     except (TypeError, ValueError):
         raise UserError(f"{source.path}: {name} is not JSON; write the file again") from None
-
-
-def require_layers(source: Source) -> None:
-    """Raises UserError for a file with a missing sublayer."""
-    for layer in source.stage.GetLayerStack(includeSessionLayers=False):
-        for path in layer.subLayerPaths:
-            if not Path(layer.ComputeAbsolutePath(path)).exists():
-                raise UserError(f"{source.path}: lies over {path}, which is not there; put it back")
-
-
-def _missing(source: Source, path: str) -> bool:
-    return bool(path) and not Path(source.stage.GetRootLayer().ComputeAbsolutePath(path)).exists()
 
 
 def _space(stage: Usd.Stage, path: Path) -> StageSpace:
