@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from pxr import Gf, Sdf, Ts, UsdGeom, UsdSkel, Vt
-from ringlet.io import read_bodies, read_clip, read_mesh, read_space
+from ringlet.io import read_bodies, read_clip, read_mesh, read_meshes, read_space, unread_surfaces
 from usd_scenes import CUBE, CUBE_FACES, FRAMES, add_cube, new_stage, write_head
 
 from ringlet import Mesh
@@ -318,3 +318,65 @@ def test_colours_of_every_interpolation_reach_the_vertices(tmp_path):
     corner_0 = np.mean([k / 6 for k, face in enumerate(CUBE_FACES) if 0 in face])
     np.testing.assert_allclose(meshes["uniform"].colors[0], corner_0, atol=1e-6)
     assert meshes["constant"].colors is None
+
+
+def add_beads(stage, path="/head/beads"):
+    """Two instances of a cube: at x = 10, which moves 1 m a frame, and at x = 20, mirrored and twice as large."""
+    beads = UsdGeom.PointInstancer.Define(stage, path)
+    beads.AddTranslateOp().Set(Gf.Vec3d(0, 0, 100))
+    stage.OverridePrim(f"{path}/prototypes")  # undefined, so that it is drawn as instances only
+    cube = add_cube(stage, f"{path}/prototypes/bead", scalp=False)
+    cube.AddTranslateOp().Set(Gf.Vec3d(0, 5, 0))
+    stage.GetPrimAtPath(f"{path}/prototypes").SetSpecifier(Sdf.SpecifierOver)
+    beads.CreatePrototypesRel().SetTargets([cube.GetPath()])
+    beads.CreateProtoIndicesAttr([0, 0])
+    beads.CreateScalesAttr([Gf.Vec3f(1), Gf.Vec3f(-2, 2, 2)])
+    for frame in (1, 5):
+        beads.CreatePositionsAttr().Set([Gf.Vec3f(10 + frame - 1, 0, 0), Gf.Vec3f(20, 0, 0)], frame)
+    return beads
+
+
+def test_instances_of_a_point_instancer_are_one_body_that_moves(tmp_path):
+    stage = new_stage(tmp_path / "a.usda", unit=1.0)
+    add_beads(stage)
+    stage.Save()
+    (body,) = read_bodies(tmp_path / "a.usda", frames=(1, 5))
+    assert body.prim == "/head/beads" and body.mesh.triangles.shape == (24, 3)
+    first, second = body.mesh.points[:8], body.mesh.points[8:]
+    np.testing.assert_allclose(first, CUBE + [10, 5, 100], atol=1e-5)
+    np.testing.assert_allclose(second, (CUBE + [0, 5, 0]) * [-2, 2, 2] + [20, 0, 100], atol=1e-5)
+    assert volume(body.mesh) == pytest.approx(1.0 + 8.0, abs=1e-3)  # outward, also of the mirrored one
+    np.testing.assert_allclose(body.clip.points[:, 0, 0], [10, 11, 12, 13, 14], atol=1e-5)
+    (named,) = read_bodies(tmp_path / "a.usda", "/head/beads")
+    np.testing.assert_allclose(named.mesh.points, body.mesh.points)
+    (shown,) = read_meshes(tmp_path / "a.usda")
+    np.testing.assert_allclose(shown.points, body.mesh.points)
+
+
+def test_instances_of_instancers_are_read_and_hidden_ones_are_not(tmp_path):
+    stage = new_stage(tmp_path / "a.usda", unit=1.0)
+    inner = add_beads(stage, "/head/chains/prototypes/beads")
+    inner.CreateInvisibleIdsAttr([1])
+    chains = UsdGeom.PointInstancer.Define(stage, "/head/chains")
+    chains.CreatePrototypesRel().SetTargets([inner.GetPath()])
+    chains.CreateProtoIndicesAttr([0, 0])
+    chains.CreatePositionsAttr([Gf.Vec3f(0), Gf.Vec3f(0, 50, 0)])
+    stage.Save()
+    (body,) = read_bodies(tmp_path / "a.usda")
+    expected = CUBE + [10, 5, 100]
+    np.testing.assert_allclose(body.mesh.points, np.concatenate([expected, expected + [0, 50, 0]]), atol=1e-5)
+
+
+def test_visible_surfaces_that_are_no_colliders_are_reported(tmp_path):
+    stage = new_stage(tmp_path / "a.usda", unit=1.0)
+    add_cube(stage)
+    UsdGeom.Sphere.Define(stage, "/head/bead")
+    UsdGeom.Sphere.Define(stage, "/head/ghost").CreateVisibilityAttr("invisible")
+    UsdGeom.BasisCurves.Define(stage, "/head/brows")
+    add_cube(stage, "/shirt", scalp=False)
+    stage.Save()
+    notes = unread_surfaces(tmp_path / "a.usda")
+    assert len(notes) == 2
+    assert "a.usda /head/bead: is a Sphere, which hair does not touch" in notes[0]
+    assert "a.usda /shirt: is outside of the default prim /head" in notes[1]
+    assert unread_surfaces(tmp_path / "a.usda", "/head", ["/head/bead"]) == []

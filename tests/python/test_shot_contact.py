@@ -4,7 +4,7 @@ import json
 
 import numpy as np
 import pytest
-from commands import refused, run
+from commands import edit, refused, run
 from floor_scene import CONTACT, POINTS, SHOT, ball, floor, groom, still
 from pxr import Usd, UsdGeom, Vt
 from ringlet.data.errors import UserError
@@ -264,3 +264,16 @@ def test_a_smaller_linear_tolerance_takes_more_iterations():
         statistics = simulate(shot, groom(apart=1e-3), still(floor())).statistics
         iterations.append(sum(frame["contact"]["linear_iterations"] for frame in statistics[1:]))
     assert iterations[1] > 2 * iterations[0]
+
+
+def test_visible_surfaces_that_hair_does_not_touch_are_named_by_the_command(folder):
+    stage = Usd.Stage.Open(str(folder / "head.usda"))
+    UsdGeom.Sphere.Define(stage, "/ball/bead").CreateRadiusAttr(1.0)
+    stage.Save()
+    edit(folder / "small.shot.toml", "preroll = 0", "preroll = 0\n[contact]")
+    sentence = "head.usda /ball/bead: is a Sphere, which hair does not touch; convert it to a Mesh"
+    result = run("sim", folder / "small.shot.toml", "-o", folder / "cache.usdc")
+    assert result.exit_code == 0 and sentence in result.stdout
+    result = run("sim", folder / "small.shot.toml", "-o", folder / "cache.usdc", "--json")
+    (note,) = json.loads(result.stdout)["notes"]
+    assert note.endswith(sentence)

@@ -95,7 +95,7 @@ class Run:
 
         self.cache = cache
         self.slowest = explain_slowest(cache.statistics)
-        self.warnings += start_warnings(cache.start)
+        self.warnings += [*start_warnings(cache.start), *cache.notes]
         self.lag = explain_lag(cache.statistics)
         if cache.start:
             self.table("How it started", *start_table(cache.start))

@@ -73,7 +73,7 @@ def simulate(
         shot = read_shot(shot)
     groom = _rounded(groom or shot.groom, progress)
     inputs = _inputs(shot, groom, allow_stale, frames)
-    return sim.simulate(
+    cache = sim.simulate(
         shot,
         groom,
         frames=frames,
@@ -83,6 +83,8 @@ def simulate(
         progress=progress,
         **inputs,
     )
+    cache.notes = _untouched(shot, groom)
+    return cache
 
 
 def write_simulation(
@@ -123,6 +125,7 @@ def write_simulation(
         start=motion.start,
         cloths={garment.name: len(garment.cloth.positions) for garment in motion.garments},
         touches=sim.StoredTouches(motion, kept, steps) if touches else (),
+        notes=_untouched(shot, groom),
     )
     with io.CacheWriter(path, under, io.read_space(Path(under)), motion.cloths(0), groom.variant) as writer:
         writer.start = motion.start
@@ -311,6 +314,22 @@ def _obstacles(shot: Shot, groom: Groom, garments: Sequence[Garment], frames: tu
         assert garment.file is not None
         found.pop((garment.file.resolve(), garment.prim), None)
     return list(found.values())
+
+
+def _untouched(shot: Shot, groom: Groom) -> list[str]:
+    """A sentence for each visible surface in the files of a shot's colliders that hair does not touch."""
+    from ringlet import io
+    from ringlet import shot as shots
+
+    if not shot.touching:
+        return []
+    named = [one.mesh for one in (*shot.collider, *shot.cloth) if one.mesh is not None]
+    notes = list[str]()
+    for collider in shot.collider or (shots.Collider(),):
+        file = collider.file or groom.scalp_file
+        if file is not None and not (collider.file is None and _is_still(groom)):
+            notes += io.unread_surfaces(file, collider.mesh, [name for name in named if name != collider.mesh])
+    return list(dict.fromkeys(notes))
 
 
 def cloths_and_colliders(shot: Shot, groom: Groom) -> tuple[list[Garment], list[Obstacle]]:

@@ -88,7 +88,8 @@ def sim(
     for sentence in [] if as_json else filter(None, [run.lag, *run.warnings, run.slowest]):
         print(sentence)
     start = {name: found for name, found in record.start.items() if name != "marks"}  # these are for pictures
-    wrote(output, run.counts, as_json, slowest=run.slowest, **({"start": start} if start else {}))
+    more = {name: value for name, value in (("start", start), ("notes", record.notes)) if value}
+    wrote(output, run.counts, as_json, slowest=run.slowest, **more)
 
 
 def _check_places(read: dict[str, Path], layer: Path, output: Path, contacts: Path | None) -> None:

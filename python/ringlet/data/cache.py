@@ -51,6 +51,7 @@ class Cache:
     start:      the report of initial penetration (see ``sim/initial_penetration.py``); empty without contact
     cloths:     the cloths at the same frames
     touches:    the contacts at the end of each frame, where they were asked for
+    notes:      a sentence for each visible surface that hair does not touch
     """
 
     frames: NDArray[np.float64]
@@ -59,6 +60,7 @@ class Cache:
     start: dict[str, Any] = field(default_factory=dict)
     cloths: list[CachedCloth] = field(default_factory=list)
     touches: list[Touches] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
 
 
 @dataclass
@@ -67,6 +69,7 @@ class SimulationRecord:
 
     cloths:  the number of points of each, by name
     touches: read from checkpoints each time they are iterated over, since they may be many
+    notes:   a sentence for each visible surface that hair does not touch
     """
 
     frames: list[float] = field(default_factory=list)
@@ -74,3 +77,4 @@ class SimulationRecord:
     start: dict[str, Any] = field(default_factory=dict)
     cloths: dict[str, int] = field(default_factory=dict)
     touches: Iterable[Touches] = ()
+    notes: list[str] = field(default_factory=list)

@@ -19,9 +19,10 @@ from ringlet.io.space import to_metres
 from ringlet.io.usd.cloths import ClothPrims, cloth_metadata, read_cloth, set_cloth
 from ringlet.io.usd.curves import OWN
 from ringlet.io.usd.groom import LOCKS, VERSION, check_version, groom_prim
-from ringlet.io.usd.mesh import clip_at, mesh_at, visible_meshes
+from ringlet.io.usd.mesh import clip_at, mesh_at
 from ringlet.io.usd.stage import Source, parse_json, reading, reading_more
 from ringlet.io.usd.stream import StreamWriter
+from ringlet.io.usd.surfaces import shown_surfaces
 from ringlet.io.usd.values import Types
 
 LAG = f"{OWN}lag"
@@ -109,7 +110,7 @@ class CacheFile:
         """Visible meshes at a frame, the head and cloths: points [m], shape (n, 3), and triangles (m, 3)."""
         with reading_more(self._source.path):
             if self._meshes is None:
-                prims = visible_meshes(self._source)
+                prims = shown_surfaces(self._source)
                 self._meshes = [(prim, mesh_at(self._source, prim).triangles) for prim in prims]
             return [
                 (clip_at(self._source, prim, (frame, frame)).points[0], triangles) for prim, triangles in self._meshes

@@ -18,10 +18,11 @@ from ringlet.data.groom import Groom
 from ringlet.data.mesh import Clip
 from ringlet.io.usd.curves import curve_widths, curves_at, define_curves, own_curves, set_roots
 from ringlet.io.usd.groom import GROOM
-from ringlet.io.usd.mesh import Body, clip_at, mesh_at, visible_meshes, whole_frames
+from ringlet.io.usd.mesh import Body, clip_at, mesh_at, whole_frames
 from ringlet.io.usd.pose import rest_time
 from ringlet.io.usd.stage import Source, prims, reading
 from ringlet.io.usd.stream import StreamWriter
+from ringlet.io.usd.surfaces import shown_surfaces
 from ringlet.io.usd.values import Types, set_primvar
 
 HAIRS = f"{GROOM}/hairs"
@@ -87,7 +88,7 @@ def read_stage(path: Path | str, frame: float | None = None) -> tuple[list[Body]
     with reading(path) as source:
         hairs, frames = _hairs(source, frame), _frames(source)
         bodies = []
-        for prim in visible_meshes(source):
+        for prim in shown_surfaces(source):
             mesh = mesh_at(source, prim)
             if frame is not None:
                 clip = clip_at(source, prim, (frame, frame))

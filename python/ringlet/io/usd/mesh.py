@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,9 +17,11 @@ from ringlet.data.mesh import Clip, Mesh
 from ringlet.data.stage import StageSpace
 from ringlet.io.polygons import check_polygons, fans
 from ringlet.io.space import check_points, from_metres, to_metres
+from ringlet.io.usd.instancer import instance_transforms, prototype_surfaces
 from ringlet.io.usd.names import identifier, keep_name, original_name
 from ringlet.io.usd.pose import motion_samples, posed_points, rest_time
 from ringlet.io.usd.stage import Source, choose, find_prim, prims, reading
+from ringlet.io.usd.surfaces import is_surface, passed_over, shown_surfaces
 from ringlet.io.usd.values import (
     Types,
     flattened,
@@ -64,21 +66,30 @@ def read_usd_clip(
 def read_bodies(
     path: Path | str, prim: str | None = None, frames: tuple[int, int] | None = None, fps: float | None = None
 ) -> list[Body]:
-    """Reads meshes with their clips.
+    """Reads surfaces with their clips: meshes, and point instancers as one mesh of all their instances.
 
-    prim:        reads the meshes at and below this prim; by default the visible ones under the default prim, or else
-                 the root
+    prim:        reads what is at and below this prim; by default what is visible under the default prim, or else the
+                 root
     frames, fps: as for ``shot_clip_at``
     """
     with reading(path) as source:
-        meshes = visible_meshes(source) if prim is None else meshes_below(source, prim)
-        return [_body_at(source, mesh, frames, fps) for mesh in meshes]
+        surfaces = shown_surfaces(source) if prim is None else surfaces_below(source, prim)
+        return [_body_at(source, surface, frames, fps) for surface in surfaces]
+
+
+def unread_surfaces(path: Path | str, prim: str | None = None, named: Collection[str] = ()) -> list[str]:
+    """A sentence for each visible prim that has a surface, but is not among those of ``read_bodies``.
+
+    named: paths of prims that are read by name
+    """
+    with reading(path) as source:
+        return list(passed_over(source, None if prim is None else find_prim(source, prim), named))
 
 
 def read_meshes(path: Path | str) -> list[Mesh]:
-    """Reads all visible meshes in their rest pose."""
+    """Reads all visible surfaces in their rest pose."""
     with reading(path) as source:
-        return [mesh_at(source, prim) for prim in visible_meshes(source)]
+        return [mesh_at(source, prim) for prim in shown_surfaces(source)]
 
 
 def read_body(
@@ -101,29 +112,18 @@ def select_mesh(source: Source, name: str | None) -> Usd.Prim:
     return choose(source, scalps if len(scalps) == 1 else meshes, "Mesh")
 
 
-def meshes_below(source: Source, name: str) -> list[Usd.Prim]:
-    """Mesh prims at and below a path; raises UserError when there is none."""
-    meshes = [prim for prim in prims(find_prim(source, name)) if UsdGeom.Mesh(prim)]
-    if not meshes:
+def surfaces_below(source: Source, name: str) -> list[Usd.Prim]:
+    """Meshes and point instancers at and below a path; raises UserError when there is none."""
+    surfaces = [prim for prim in prims(find_prim(source, name)) if is_surface(prim)]
+    if not surfaces:
         raise UserError(f"{source.path}: there is no Mesh at or below {name}; name one, or a prim above one")
-    return meshes
-
-
-def visible_meshes(source: Source) -> list[Usd.Prim]:
-    """Meshes that are visible in a render, under the default prim."""
-    root = source.stage.GetDefaultPrim() or source.stage.GetPseudoRoot()
-    shown = (UsdGeom.Tokens.default_, UsdGeom.Tokens.render)
-    return [
-        prim
-        for prim in prims(root)
-        if UsdGeom.Mesh(prim)
-        and UsdGeom.Imageable(prim).ComputePurpose() in shown
-        and UsdGeom.Imageable(prim).ComputeVisibility(Usd.TimeCode.EarliestTime()) != UsdGeom.Tokens.invisible
-    ]
+    return surfaces
 
 
 def mesh_at(source: Source, prim: Usd.Prim) -> Mesh:
-    """Mesh of a prim in its rest pose [m]; raises UserError for a mesh without faces or with invalid indices."""
+    """Surface of a prim in its rest pose [m]; raises UserError for one without faces or with invalid indices."""
+    if UsdGeom.PointInstancer(prim):
+        return _instanced_mesh(source, prim)
     where, time, mesh = source.where(prim), rest_time(source, prim), UsdGeom.Mesh(prim)
     points = posed_points(source, prim, time, where)
     counts = read_integers(mesh.GetFaceVertexCountsAttr(), time, where)
@@ -151,6 +151,23 @@ def mesh_at(source: Source, prim: Usd.Prim) -> Mesh:
         vectors=_vectors(prim, time, source, corners, triangles, faces, len(counts), where),
         **_color(prim, time, counts, indices, len(points)),
     )
+
+
+def _instanced_mesh(source: Source, prim: Usd.Prim) -> Mesh:
+    """One mesh of all instances of a point instancer, in the order of their points."""
+    where, time = source.where(prim), rest_time(source, prim)
+    prototypes = [[mesh_at(source, surface) for surface in surfaces] for surfaces in prototype_surfaces(prim)]
+    triangles, start = list[NDArray[np.int32]](), 0
+    for k, matrix in instance_transforms(prim, time):
+        turn = 1 if np.linalg.det(matrix[:3, :3]) > 0 else -1  # a mirrored instance has its winding reversed
+        for mesh in prototypes[k]:
+            triangles.append(start + mesh.triangles[:, ::turn])
+            start += len(mesh.points)
+    if not triangles:
+        raise UserError(f"{where}: has no instances of meshes; make it invisible, or leave it out")
+    points = posed_points(source, prim, time, where)
+    color = next(mesh.color for meshes in prototypes for mesh in meshes)
+    return Mesh(f"{source.path.name} {prim.GetPath()}", points, np.concatenate(triangles).astype(np.int32), color=color)
 
 
 def shot_clip_at(source: Source, prim: Usd.Prim, frames: tuple[int, int] | None, fps: float | None) -> Clip:

@@ -1,4 +1,7 @@
-"""Poses: world positions of a prim's points at any time code, and the times at which they change."""
+"""Poses: world positions of a prim's points at any time code, and the times at which they change.
+
+The points of an instancer are those of all its instances.
+"""
 
 from __future__ import annotations
 
@@ -8,17 +11,41 @@ import numpy as np
 from numpy.typing import NDArray
 from pxr import Ts, Usd, UsdGeom
 
+from ringlet.data.errors import UserError
 from ringlet.io.space import to_metres
+from ringlet.io.usd.instancer import instance_transforms, instancer_motion, prototype_surfaces
 from ringlet.io.usd.stage import Source
 from ringlet.io.usd.values import read_points, transformed
 
+MAX_INSTANCED = 2**26  # points of all instances together
+
 
 def posed_points(source: Source, prim: Usd.Prim, time: Usd.TimeCode, where: str) -> NDArray[np.float64]:
-    """Points of a mesh or of curves in world space [m], shape (n, 3), deformed by their skeleton."""
+    """Points of a mesh, of curves or of instances in world space [m], shape (n, 3), deformed by their skeletons."""
+    return to_metres(_world_points(source, prim, time, where), source.space)
+
+
+def _world_points(source: Source, prim: Usd.Prim, time: Usd.TimeCode, where: str) -> NDArray[np.float64]:
+    """Points in the unit and up-axis of the stage."""
+    if UsdGeom.PointInstancer(prim):
+        return _instanced_points(source, prim, time, where)
     points, space = read_points(prim, time, where), prim
     if deformer := source.skinning.deformer(prim):
         points, space = deformer.deform(points, time)
-    return to_metres(transformed(points, space, time), source.space)
+    return transformed(points, space, time)
+
+
+def _instanced_points(source: Source, prim: Usd.Prim, time: Usd.TimeCode, where: str) -> NDArray[np.float64]:
+    """Points of all instances, one after the other; raises UserError for too many."""
+    prototypes = [
+        np.concatenate([np.empty((0, 3)), *(_world_points(source, one, time, where) for one in surfaces)])
+        for surfaces in prototype_surfaces(prim)
+    ]
+    instances = instance_transforms(prim, time)
+    if (count := sum(len(prototypes[k]) for k, _ in instances)) > MAX_INSTANCED:
+        raise UserError(f"{where}: its instances have {count:,} points, more than {MAX_INSTANCED:,}; leave it out")
+    placed = [prototypes[k] @ matrix[:3, :3] + matrix[3, :3] for k, matrix in instances]
+    return np.concatenate([np.empty((0, 3)), *placed])
 
 
 def motion_samples(source: Source, prim: Usd.Prim) -> list[float]:
@@ -40,6 +67,10 @@ def rest_time(source: Source, prim: Usd.Prim) -> Usd.TimeCode:
 
 def _motion(source: Source, prim: Usd.Prim) -> list[Usd.Attribute]:
     """Attributes that determine the world positions of a prim's points: points and all transforms above."""
+    if UsdGeom.PointInstancer(prim):
+        inner = [surface for surfaces in prototype_surfaces(prim) for surface in surfaces]
+        moving = [attribute for surface in inner for attribute in _motion(source, surface)]
+        return [*(a for a in instancer_motion(prim) if a), *_transforms(prim), *moving]
     found = [UsdGeom.PointBased(prim).GetPointsAttr(), *_transforms(prim)]
     deformer = source.skinning.deformer(prim)
     return found + (_transforms(deformer.skeleton.GetPrim()) if deformer else [])
