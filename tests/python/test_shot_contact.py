@@ -205,6 +205,7 @@ def with_box(example, tmp_path, change):
     stage.SetStartTimeCode(1)
     stage.SetEndTimeCode(FRAMES)
     mesh = UsdGeom.Mesh.Define(stage, "/props/box")
+    mesh.CreateSubdivisionSchemeAttr("none")
     points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], np.float32) + [0, 30, 0]
     mesh.CreatePointsAttr(Vt.Vec3fArray.FromNumpy(points.astype(np.float32)))
     mesh.CreateFaceVertexCountsAttr([3, 3, 3, 3])

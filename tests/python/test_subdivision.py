@@ -4,8 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from commands import edit, made, refused, run
+from pxr import Gf, Sdf, Usd, UsdGeom, UsdSkel
+from ringlet.io import problems, read_bodies, read_clip, read_hairs, read_mesh, read_meshes
 from ringlet.io.subdivision import Cage, levels_for, refine
-from usd_scenes import CUBE, CUBE_FACES
+from usd_scenes import CUBE, CUBE_FACES, add_cube, new_stage
+
+import ringlet
+from ringlet import _core
 
 
 def cube(**settings) -> Cage:
@@ -92,9 +98,171 @@ def test_polygons_of_any_number_of_corners_keep_planes_and_linear_values():
     assert made.corners.shape == (4 * len(made.faces), len(cage.indices))
     deeper = refine(cage, 4).points @ points  # points of a level stay where they are at the next
     np.testing.assert_allclose((made.points @ points)[:10], deeper[:10], atol=1e-12)
+    np.testing.assert_allclose(refine(cage, 0).points @ points, deeper[:10], atol=1e-12)
 
 
 def test_levels_follow_the_distance_from_the_limit_surface():
     assert levels_for(cube(), CUBE * 1e-5) == 0
-    assert levels_for(cube(), CUBE * 1e-3) < levels_for(cube(), CUBE * 1e-2) <= 3
+    assert levels_for(cube(), CUBE * 2e-3) == 1
     assert levels_for(cube(), CUBE * 100.0) == 3
+    cage, points = sheet(230)  # as many faces as a refinement may have in its first level
+    assert levels_for(cage, points * 100.0) == 0
+
+
+def smooth_head(folder):
+    """Makes the head of the example a subdivision surface."""
+    stage = Usd.Stage.Open(str(folder / "head.usda"))
+    UsdGeom.Mesh(stage.GetPrimAtPath("/ball/skin")).CreateSubdivisionSchemeAttr("catmullClark")
+    stage.Save()
+    return UsdGeom.Mesh(stage.GetPrimAtPath("/ball/skin")), stage
+
+
+def limit_of(mesh: UsdGeom.Mesh, levels: int) -> tuple[np.ndarray, np.ndarray]:
+    """Limit points [m] of a mesh in centimetres, and its triangles."""
+    points = 0.01 * np.array(mesh.GetPointsAttr().Get(), float)
+    counts, indices = (np.array(a.Get()) for a in (mesh.GetFaceVertexCountsAttr(), mesh.GetFaceVertexIndicesAttr()))
+    fine = refine(Cage(counts, indices, len(points)), levels)
+    quads = fine.indices.reshape(-1, 4)
+    return fine.points @ points, np.concatenate([quads[:, :3], quads[:, [0, 2, 3]]]).astype(np.int32)
+
+
+def distances(points: np.ndarray, surface: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
+    return _core.bind_roots(np.ascontiguousarray(surface[0]), surface[1], np.ascontiguousarray(points, np.float64))[2]
+
+
+def test_hair_is_rooted_on_the_limit_surface_in_every_frame(folder):
+    mesh, _ = smooth_head(folder)
+    surface = limit_of(mesh, 3)
+    assert distances(0.01 * np.array(mesh.GetPointsAttr().Get()), surface).max() > 1e-3  # the cage is off
+    groom = made(folder)
+    assert problems(groom) == []
+    locks = ringlet.read_groom(groom).locks
+    assert distances(locks.roots, surface).max() < 1e-4
+    edit(folder / "small.shot.toml", "preroll = 0", "preroll = 0\n[contact]")
+    result = run("sim", folder / "small.shot.toml", "--groom", groom, "-o", folder / "cache.usdc")
+    assert result.exit_code == 0, result.output
+    cache = ringlet.read_cache(folder / "cache.usdc")
+    for frame, points in zip(cache.frames, cache.points, strict=True):
+        angle = np.radians(5.0 * (frame - 1))  # the head turns about the vertical
+        c, s = np.cos(angle), np.sin(angle)
+        back = points[locks.offsets[:-1]] @ np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])
+        assert distances(back, surface).max() < 1e-4
+    ringlet.write_hairs(groom, folder / "hair.usdc", cache=folder / "cache.usdc")
+    hairs = read_hairs(folder / "hair.usdc", 1.0)
+    assert distances(hairs.points[hairs.offsets[:-1]], surface).max() < 1e-4
+
+
+def test_a_recipe_may_choose_the_cage(folder):
+    mesh, _ = smooth_head(folder)
+    edit(folder / "small.recipe.toml", "[scalp]", "[scalp]\nsurface = 'cage'")
+    groom = ringlet.read_groom(made(folder))
+    cage = 0.01 * np.array(mesh.GetPointsAttr().Get())
+    np.testing.assert_allclose(groom.scalp.points, cage, atol=1e-7)
+    assert groom.cage and ringlet.api.scalp_clip(groom).points.shape[1:] == cage.shape
+    (shown,) = read_meshes(folder / "groom.usdc")
+    assert shown.points.shape == cage.shape  # the hairs' skin is that of the groom
+    edit(folder / "small.recipe.toml", "surface = 'cage'", "surface = 'smooth'")
+    refused(run("groom", folder / "small.recipe.toml", "-o", folder / "groom.usdc"), "scalp.surface", "limit")
+
+
+def test_a_groom_without_the_setting_stays_on_the_cage(folder):
+    mesh, _ = smooth_head(folder)
+    edit(folder / "small.recipe.toml", "[scalp]", "[scalp]\nsurface = 'cage'")
+    stage = Usd.Stage.Open(str(made(folder)))
+    stage.GetPrimAtPath("/groom").RemoveProperty("ringlet:surface")
+    stage.Save()
+    groom = ringlet.read_groom(folder / "groom.usdc")
+    assert groom.cage and len(groom.scalp.points) == len(mesh.GetPointsAttr().Get())
+
+
+def test_attributes_of_a_subdivision_surface_follow_its_refinement(tmp_path):
+    """Linear values on a cube: its corners' places in the cage, whose limit is half as large about the centre."""
+    stage = new_stage(tmp_path / "a.usda", unit=1.0)
+    mesh = add_cube(stage)
+    mesh.CreateSubdivisionSchemeAttr("catmullClark")
+    api, kinds = UsdGeom.PrimvarsAPI(mesh), Sdf.ValueTypeNames
+    api.CreatePrimvar("height", kinds.FloatArray, "vertex").Set(CUBE[:, 1].tolist())
+    api.CreatePrimvar("face", kinds.FloatArray, "uniform").Set(list(range(6)))
+    api.CreatePrimvar("varied", kinds.FloatArray, "varying").Set(CUBE[:, 1].tolist())
+    corners = [(0, 0), (1, 0), (1, 1), (0, 1)]
+    uv = api.CreatePrimvar("st", kinds.TexCoord2fArray, "faceVarying")
+    uv.Set([Gf.Vec2f(*corner) for _ in range(6) for corner in corners])
+    stage.Save()
+    read = read_mesh(tmp_path / "a.usda")
+    assert len(read.triangles) == 2 * 6 * 64
+    np.testing.assert_allclose(read.points[read.triangles][..., 1], read.maps["height"], atol=1e-6)
+    np.testing.assert_array_equal(read.maps["face"], np.repeat(read.faces[:, None], 3, axis=1))
+    np.testing.assert_array_equal(np.bincount(read.faces), [128] * 6)
+    np.testing.assert_array_equal(read.faces[read.region("scalp")], [5] * 128)
+    assert read.maps["varied"].min() == 0.0 and read.maps["varied"].max() == 1.0  # linear in each face
+    np.testing.assert_allclose(np.unique(read.uv), np.linspace(0, 1, 9), atol=1e-7)
+    np.testing.assert_allclose(read.places[..., 0] + read.places[..., 1], read.uv.sum(axis=-1), atol=1e-7)
+    (body,) = read_bodies(tmp_path / "a.usda", cage=True)
+    np.testing.assert_allclose(body.mesh.points, CUBE)
+
+
+def test_creases_and_holes_of_a_file_are_kept(tmp_path):
+    stage = new_stage(tmp_path / "a.usda", unit=1.0)
+    mesh = add_cube(stage)
+    mesh.CreateSubdivisionSchemeAttr("catmullClark")
+    mesh.CreateHoleIndicesAttr([0])
+    mesh.CreateCreaseIndicesAttr(CUBE_FACES[1] + CUBE_FACES[1][:1])
+    mesh.CreateCreaseLengthsAttr([5])
+    mesh.CreateCreaseSharpnessesAttr([10.0])
+    mesh.CreateCornerIndicesAttr([0])
+    mesh.CreateCornerSharpnessesAttr([10.0])
+    stage.Save()
+    read = read_mesh(tmp_path / "a.usda")
+    assert 0 not in read.faces
+    np.testing.assert_allclose(read.points[0], CUBE[0])
+    ring = read.points[CUBE_FACES[1]]  # a cubic B-spline in the plane of its square
+    np.testing.assert_allclose(ring[0], (4 * CUBE[4] + CUBE[5] + CUBE[6]) / 6, atol=1e-7)
+    np.testing.assert_allclose(ring[:, 0], 1.0, atol=1e-7)
+
+
+def test_a_boundary_that_is_not_interpolated_is_not_drawn(tmp_path):
+    stage = new_stage(tmp_path / "a.usda", unit=1.0)
+    mesh, (cage, points) = UsdGeom.Mesh.Define(stage, "/head/skin"), sheet(5)
+    mesh.CreatePointsAttr([Gf.Vec3f(*map(float, point)) for point in points])
+    mesh.CreateFaceVertexCountsAttr(cage.counts.tolist())
+    mesh.CreateFaceVertexIndicesAttr(cage.indices.tolist())
+    for rule, drawn in (("edgeAndCorner", set(range(16))), ("none", {5, 6, 9, 10})):
+        mesh.CreateInterpolateBoundaryAttr(rule)
+        stage.Save()
+        assert set(read_mesh(tmp_path / "a.usda").faces.tolist()) == drawn
+
+
+def test_a_skinned_subdivision_surface_is_refined_after_its_skeleton(tmp_path):
+    stage = new_stage(tmp_path / "a.usda", unit=1.0)
+    UsdSkel.Root.Define(stage, "/head")
+    mesh, bones = add_cube(stage), UsdSkel.Skeleton.Define(stage, "/head/bones")
+    mesh.CreateSubdivisionSchemeAttr("catmullClark")
+    bones.CreateJointsAttr(["neck"])
+    bones.CreateBindTransformsAttr([Gf.Matrix4d(1)])
+    bones.CreateRestTransformsAttr([Gf.Matrix4d(1)])
+    motion = UsdSkel.Animation.Define(stage, "/head/motion")
+    motion.CreateJointsAttr(["neck"])
+    motion.CreateRotationsAttr([Gf.Quatf(1)])
+    motion.CreateScalesAttr([Gf.Vec3h(1)])
+    for frame in (1, 5):
+        motion.CreateTranslationsAttr().Set([Gf.Vec3f(frame - 1, 0, 0)], frame)
+    UsdSkel.BindingAPI.Apply(bones.GetPrim()).CreateAnimationSourceRel().SetTargets(["/head/motion"])
+    skin = UsdSkel.BindingAPI.Apply(mesh.GetPrim())
+    skin.CreateSkeletonRel().SetTargets(["/head/bones"])
+    skin.CreateJointIndicesPrimvar(False, 1).Set([0] * 8)
+    skin.CreateJointWeightsPrimvar(False, 1).Set([1.0] * 8)
+    stage.Save()
+    read, clip = read_mesh(tmp_path / "a.usda"), read_clip(tmp_path / "a.usda", frames=(1, 5))
+    np.testing.assert_allclose(clip.points[:, 0, 0] - read.points[0, 0], [0, 1, 2, 3, 4], atol=1e-5)
+    np.testing.assert_allclose(clip.points[4] - [4, 0, 0], read.points, atol=1e-5)
+
+
+def test_a_subdivision_surface_whose_points_change_in_number_is_refused(tmp_path):
+    stage = new_stage(tmp_path / "a.usda")
+    mesh = add_cube(stage)
+    mesh.CreateSubdivisionSchemeAttr("catmullClark")
+    for frame, count in ((1, 8), (2, 9)):
+        mesh.GetPointsAttr().Set([Gf.Vec3f(k, k * k, -k) for k in range(count)], frame)
+    stage.Save()
+    with pytest.raises(ringlet.UserError, match=r"skin at frame 2: has 9 points, 8 in its rest pose; must not change"):
+        read_clip(tmp_path / "a.usda", frames=(1, 2))

@@ -30,6 +30,7 @@ def add_cube(
 ) -> UsdGeom.Mesh:
     """A cube of quads; its last face, z = 1, is the scalp."""
     mesh = UsdGeom.Mesh.Define(stage, path)
+    mesh.CreateSubdivisionSchemeAttr("none")
     mesh.CreatePointsAttr(Vt.Vec3fArray.FromNumpy(points.astype(np.float32)))
     mesh.CreateExtentAttr(UsdGeom.PointBased.ComputeExtent(mesh.GetPointsAttr().Get()))
     mesh.CreateFaceVertexCountsAttr([4] * 6)

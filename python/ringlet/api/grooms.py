@@ -64,8 +64,12 @@ def groom_inputs(recipe: Recipe, memory: Memory | None = None, notes: list[str] 
 
     if recipe.scalp_file is None:
         raise UserError(f"{recipe.path or 'recipe'}: scalp.file is missing; name the file of the head")
+    chosen = recipe.scalp
     scalp = _cached(
-        memory, recipe.scalp_file, lambda file: io.read_mesh(file, recipe.scalp.mesh, space=recipe.scalp.space)
+        memory,
+        recipe.scalp_file,
+        f"{chosen.mesh} {chosen.surface} {chosen.space}",
+        lambda file: io.read_mesh(file, chosen.mesh, space=chosen.space, cage=chosen.surface == "cage"),
     )
     scalp.textures = {name: io.read_texture(file) for name, file in recipe.map_files().items()}
     drawn = None
@@ -85,13 +89,13 @@ def groom_inputs(recipe: Recipe, memory: Memory | None = None, notes: list[str] 
     }
 
 
-def _cached(memory: Memory | None, file: Path, read: Callable[[Path], Any]) -> Any:
-    """Contents of a file, from memory while the file is unchanged."""
-    changed = file.stat().st_mtime_ns if file.exists() else 0
+def _cached(memory: Memory | None, file: Path, settings: str, read: Callable[[Path], Any]) -> Any:
+    """Contents of a file, from memory while the file and the settings it is read with are unchanged."""
+    version = file.stat().st_mtime_ns if file.exists() else 0, settings
     if memory is None:
         return read(file)
-    if memory.files.get(str(file), (None, None))[0] != changed:
-        memory.files[str(file)] = (changed, read(file))
+    if memory.files.get(str(file), (None, None))[0] != version:
+        memory.files[str(file)] = (version, read(file))
     return memory.files[str(file)][1]
 
 
@@ -230,4 +234,4 @@ def _beside_scalp(groom: Groom) -> list[Mesh]:
 
     if groom.scalp_file is None or groom.scalp_file.suffix == ".obj":
         return []
-    return [mesh for mesh in io.read_meshes(groom.scalp_file) if mesh.name != groom.scalp.name]
+    return [mesh for mesh in io.read_meshes(groom.scalp_file, groom.cage) if mesh.name != groom.scalp.name]

@@ -285,7 +285,7 @@ def scalp_clip(groom: Groom, frames: tuple[int, int] | None = None) -> Clip:
         raise UserError("groom: names no file for its scalp; write the head as USD and name it in the recipe")
     if _is_still(groom):
         return Clip(np.zeros(1), groom.scalp.points[None], groom.space.fps)
-    return io.read_clip(groom.scalp_file, groom.scalp_prim, frames, groom.space.fps)
+    return io.read_clip(groom.scalp_file, groom.scalp_prim, frames, groom.space.fps, cage=groom.cage)
 
 
 def _is_still(groom: Groom) -> bool:
@@ -307,7 +307,8 @@ def _obstacles(shot: Shot, groom: Groom, garments: Sequence[Garment], frames: tu
         if collider.file is None and _is_still(groom):
             bodies = [io.Body(groom.scalp, scalp_clip(groom, frames), groom.scalp.name)]
         else:
-            bodies = io.read_bodies(file, collider.mesh, frames, groom.space.fps)
+            of_head = groom.scalp_file is not None and file.resolve() == groom.scalp_file.resolve()
+            bodies = io.read_bodies(file, collider.mesh, frames, groom.space.fps, groom.cage and of_head)
         for body in bodies:
             found[file.resolve(), body.prim] = sim.Obstacle(body.mesh, body.clip, collider)
     for garment in garments:  # cloth is no obstacle, even where its file is the head's
@@ -349,7 +350,7 @@ def _garments(shot: Shot, groom: Groom, frames: tuple[int, int]) -> list[Garment
     for cloth in shot.cloth:
         file = cloth.file or groom.scalp_file
         assert file is not None  # as for the scalp's clip
-        body = io.read_body(file, cloth.mesh, frames, groom.space.fps)
+        body = io.read_body(file, cloth.mesh, frames, groom.space.fps, cage=True)
         garments.append(sim.Garment(body.mesh, body.clip, cloth, file, body.prim))
         if garments[-1].name in [garment.name for garment in garments[:-1]]:
             raise UserError(f"shot: two cloths are called '{garments[-1].name}'; give one of them another `name`")

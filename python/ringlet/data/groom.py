@@ -31,6 +31,7 @@ class Groom:
     variant:    which variant of the file it was read from (None where that has none)
     conflicts:  a sentence for every edit of a guide or a lock that is not there, for a head of an odd size, and for
                 what is in the files of the recipe but not used
+    cage:       whether hair grows on the cage of a subdivision surface, instead of on its limit surface
     """
 
     guides: Curves
@@ -46,3 +47,4 @@ class Groom:
     unsculpted: Curves | None = None
     variant: str | None = None
     conflicts: list[str] = field(default_factory=list)
+    cage: bool = False

@@ -25,6 +25,11 @@ class ScalpSettings(Source):
         default=None, description="USD or OBJ file with the mesh, beside the recipe or with a full path"
     )
     mesh: str | None = Field(default=None, description="prim of the mesh; needed when the file has several")
+    surface: Literal["limit", "cage"] = Field(
+        default="limit",
+        description="where hair is rooted on a subdivision surface: on its limit surface, which renderers show, or on "
+        "its cage",
+    )
     region: str | None = Field(default=None, description="named faces (GeomSubset) that carry hair; all when absent")
 
 

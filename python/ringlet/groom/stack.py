@@ -43,7 +43,7 @@ class Memory:
 
     results: dict[str, tuple[str, Curves]] = field(default_factory=dict)
     scalp: tuple[str, Scalp] | None = None
-    files: dict[str, tuple[int, Any]] = field(default_factory=dict)
+    files: dict[str, tuple[tuple[int, str], Any]] = field(default_factory=dict)
     hairs: HairMemory = field(default_factory=HairMemory)
 
 
@@ -110,6 +110,7 @@ def make_groom(
         scalp_file=scalp_file,
         scalp_prim=scalp_prim,
         region=recipe.scalp.region,
+        cage=recipe.scalp.surface == "cage",
         space=space or StageSpace(),
         hairs=recipe.hairs.model_dump(mode="json"),
         recipe=recipe.text,

@@ -35,3 +35,14 @@ def fans(counts: NDArray, *, clockwise: bool = False) -> tuple[NDArray, NDArray]
     if clockwise:  # reverses the winding, from the same first corner
         local[:, 1:] = counts[faces][:, None] - local[:, 1:]
     return starts[faces][:, None] + local, faces
+
+
+def polygon_places(counts: NDArray) -> NDArray[np.float64]:
+    """Parametric coordinates (u, v) of the corners of polygons, as in Houdini, shape (corners, 2).
+
+    Triangles have (0,0) (1,0) (0,1); quads (0,0) (0,1) (1,1) (1,0), whose last is that of all further corners.
+    """
+    polygon = np.repeat(np.arange(len(counts)), counts)
+    local = np.arange(len(polygon)) - (np.cumsum(counts) - counts)[polygon]
+    triangle, quad = np.array([[0, 0], [1, 0], [0, 1]], float), np.array([[0, 0], [0, 1], [1, 1], [1, 0]], float)
+    return np.where((counts[polygon] == 3)[:, None], triangle[np.minimum(local, 2)], quad[np.minimum(local, 3)])

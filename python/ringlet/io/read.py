@@ -19,20 +19,28 @@ from ringlet.io.usd.stage import read_usd_space
 METRES = StageSpace()
 
 
-def read_mesh(path: Path | str, prim: str | None = None, *, space: StageSpace = METRES) -> Mesh:
+def read_mesh(
+    path: Path | str, prim: str | None = None, *, space: StageSpace = METRES, cage: bool | None = None
+) -> Mesh:
     """Reads a mesh in its rest pose, in metres and Y-up, from USD or OBJ.
 
-    Polygons are triangulated as fans; a subdivision surface is read as its cage. Face ``GeomSubset``s, or the groups
-    of an OBJ, become regions. The rest pose is the default value of the points, or else the first time sample. A USD
-    file without ``metersPerUnit`` is in centimetres, the fallback of USD.
+    Polygons are triangulated as fans. A Catmull-Clark subdivision surface is refined until most of it is nearer than
+    0.1 mm to its limit surface, by three levels or to 200 000 faces at most; its points lie on that surface. Face
+    ``GeomSubset``s, or the groups of an OBJ, become regions. The rest pose is the default value of the points, or else
+    the first time sample. A USD file without ``metersPerUnit`` is in centimetres, the fallback of USD.
 
     prim:  prim path in USD; by default the only mesh, or the only one with a region called ``scalp``
     space: unit and up-axis of an OBJ, which stores neither
+    cage:  reads the cages of subdivision surfaces; by default as the groom in the file was made, else not
 
     Raises UserError for a file that is not readable, or has no such mesh.
     """
     path = Path(path)
-    return read_obj_mesh(_without_prim(path, prim), space) if _has_suffix(path, ".obj") else read_usd_mesh(path, prim)
+    return (
+        read_obj_mesh(_without_prim(path, prim), space)
+        if _has_suffix(path, ".obj")
+        else read_usd_mesh(path, prim, cage)
+    )
 
 
 def read_clip(
@@ -42,10 +50,11 @@ def read_clip(
     fps: float | None = None,
     *,
     space: StageSpace = METRES,
+    cage: bool | None = None,
 ) -> Clip:
     """Reads the positions of a mesh at all whole frames, in world space.
 
-    prim, space: as for ``read_mesh``
+    prim, space, cage: as for ``read_mesh``
     frames:      first and last frame of a shot, instead of the range of the stage; the clip also has the frame beside
                  the first that gives the velocity there. A static mesh gives one sample
     fps:         frames per second of the shot; by default those of the file
@@ -53,7 +62,7 @@ def read_clip(
     path = Path(path)
     if _has_suffix(path, ".obj"):
         return Clip(np.zeros(1), read_obj_mesh(_without_prim(path, prim), space).points[None], space.fps)
-    return read_usd_clip(path, prim, frames, fps)
+    return read_usd_clip(path, prim, frames, fps, cage)
 
 
 def read_curves(

@@ -1,12 +1,13 @@
-"""Catmull–Clark subdivision surfaces: refined faces, and sparse matrices that give their points from those of the cage.
+"""Catmull–Clark subdivision surfaces: refined faces, and the sparse matrices that give their points from a cage.
 
-The rules are those of Catmull and Clark 1978, with creases of DeRose, Kass and Truong 1998 (sect. 3 and app. B). Refined
-points lie on the limit surface (Halstead, Kass and DeRose 1993).
+The rules are those of Catmull and Clark 1978, with creases of DeRose, Kass and Truong 1998 (sect. 3 and app. B). The
+refined points lie on the limit surface (Halstead, Kass and DeRose 1993).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,9 +15,11 @@ from scipy import sparse
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
+Matrix = Any  # a scipy.sparse.csr_matrix, which has no types
 
-SAG = 5e-5  # largest distance of most edges of the refined faces from the limit surface [m]
+SAG = 1e-4  # largest distance of most edges of the refined faces from the limit surface [m]
 MAX_LEVELS = 3
+MAX_FACES = 200_000  # of a refinement; each level has four times as many
 MOST = 0.95  # of the edges
 
 
@@ -41,6 +44,12 @@ class Cage:
     corners: Array | None = None
     round_ends: bool = False
 
+    @property
+    def boundary(self) -> Indices:
+        """Points on a boundary."""
+        level = _Level(self)
+        return np.unique(level.edges[level.uses != 2])
+
 
 @dataclass
 class Refinement:
@@ -55,8 +64,8 @@ class Refinement:
     counts: Indices
     indices: Indices
     faces: Indices
-    points: sparse.csr_matrix
-    corners: sparse.csr_matrix
+    points: Matrix
+    corners: Matrix
 
 
 def refine(cage: Cage, levels: int) -> Refinement:
@@ -67,22 +76,32 @@ def refine(cage: Cage, levels: int) -> Refinement:
     for _ in range(levels):
         points, corners, faces = step.points @ points, step.corners @ corners, np.repeat(faces, step.cage.counts)
         step = _Level(step.child)
-    # Limit positions need faces that are quads, so they are those of the next level.
-    limit = (_Level(step.child).limit @ step.points)[: step.cage.points]
-    return Refinement(step.cage.counts, step.cage.indices, faces, (limit @ points).tocsr(), corners)
+    return Refinement(step.cage.counts, step.cage.indices, faces, (_limit(step) @ points).tocsr(), corners)
+
+
+def _limit(level: _Level) -> Matrix:
+    """Matrix from the points of a level to their limits, which are known for quads; those of a child are quads."""
+    if (level.cage.counts == 4).all():
+        return level.limit
+    return (_Level(level.child).limit @ level.points)[: level.cage.points]
 
 
 def levels_for(cage: Cage, points: Array) -> int:
     """Levels at which most edges are nearer to the limit surface than ``SAG``; each level quarters their distance.
 
+    There are fewer where the refinement would have more than ``MAX_FACES``.
+
     points: of the cage [m], shape (n, 3)
     """
+    most = 1 + int(np.floor(np.log(MAX_FACES / len(cage.indices)) / np.log(4.0)))
+    if most <= 0:
+        return 0
     edges = _Level(cage).edges
     on_limit = refine(cage, 1).points @ points
     middle = on_limit[cage.points : cage.points + len(edges)]
     sag = np.linalg.norm(middle - on_limit[edges].mean(axis=1), axis=1)
     typical = max(float(np.quantile(sag, MOST)), 1e-300)
-    return int(np.clip(np.ceil(np.log(typical / SAG) / np.log(4.0)), 0, MAX_LEVELS))
+    return int(np.clip(np.ceil(np.log(typical / SAG) / np.log(4.0)), 0, min(most, MAX_LEVELS)))
 
 
 class _Level:
@@ -97,9 +116,9 @@ class _Level:
         self._next = starts[self._face] + (local + 1) % counts[self._face]
         self._previous = starts[self._face] + (local - 1) % counts[self._face]
         ends = np.sort(np.stack([indices, indices[self._next]], axis=1), axis=1)
-        keys, self._edge, uses = np.unique(ends[:, 0] * n + ends[:, 1], return_inverse=True, return_counts=True)
+        keys, self._edge, self.uses = np.unique(ends[:, 0] * n + ends[:, 1], return_inverse=True, return_counts=True)
         self.edges = np.stack([keys // n, keys % n], axis=1)
-        self._sharp = np.where(uses == 2, 0.0, np.inf)  # a boundary is a crease
+        self._sharp = np.where(self.uses == 2, 0.0, np.inf)  # a boundary is a crease
         creases = np.sort(cage.creases, axis=1)
         place = np.searchsorted(keys, creases[:, 0] * n + creases[:, 1]).clip(0, len(keys) - 1)
         there = keys[place] == creases[:, 0] * n + creases[:, 1]
@@ -122,14 +141,14 @@ class _Level:
         self._of_face = of_face
 
     @property
-    def points(self) -> sparse.csr_matrix:
+    def points(self) -> Matrix:
         """Matrix from the points of the cage to those of the child."""
         sharp = np.minimum(self._sharp, 1.0)
         smooth = 0.5 * self._middle + 0.25 * (self._at_edge @ self._centre)
         edge = _rows(sharp) @ self._middle + _rows(1.0 - sharp) @ smooth
         return sparse.vstack([self._vertex_points(), edge, self._centre], format="csr")
 
-    def _vertex_points(self) -> sparse.csr_matrix:
+    def _vertex_points(self) -> Matrix:
         """Vertex points; where sharpness ends within this level, a mean of the rules before and after."""
         before = self._vertex_rule(self._sharp, self._corner)
         decayed = self._sharp - 1.0, self._corner - 1.0
@@ -142,7 +161,7 @@ class _Level:
         weight = np.where(number > 0, total / np.maximum(number, 1.0), 1.0)
         return _rows(weight) @ before + _rows(1.0 - weight) @ self._vertex_rule(*decayed)
 
-    def _vertex_rule(self, sharp: Array, corner: Array) -> sparse.csr_matrix:
+    def _vertex_rule(self, sharp: Array, corner: Array) -> Matrix:
         valence = np.maximum(np.diff(self._at_vertex.indptr), 1)
         faces = np.maximum(np.diff(self._around.indptr), 1)
         smooth = (
@@ -153,7 +172,7 @@ class _Level:
         return self._blend(sharp, corner, smooth, 0.5, 0.5)
 
     @property
-    def limit(self) -> sparse.csr_matrix:
+    def limit(self) -> Matrix:
         """Matrix from the points of a cage of quads to their limits."""
         valence = np.maximum(np.diff(self._at_vertex.indptr), 1)
         smooth = _rows(1.0 / (valence * (valence + 5.0))) @ (
@@ -161,9 +180,7 @@ class _Level:
         )
         return self._blend(self._sharp, self._corner, smooth, 1.0 / 3.0, 2.0 / 3.0)
 
-    def _blend(
-        self, sharp: Array, corner: Array, smooth: sparse.spmatrix, own: float, mean: float
-    ) -> sparse.csr_matrix:
+    def _blend(self, sharp: Array, corner: Array, smooth: Matrix, own: float, mean: float) -> Matrix:
         """Chooses the rule of each vertex by its number of sharp edges: smooth, a crease of two, or a corner.
 
         own, mean: weights of a vertex on a crease, and of the mean of its two sharp edges' middles
@@ -177,14 +194,15 @@ class _Level:
         return (_rows(~(is_corner | is_crease)) @ smooth + _rows(is_crease) @ crease + _rows(is_corner)).tocsr()
 
     @property
-    def corners(self) -> sparse.csr_matrix:
+    def corners(self) -> Matrix:
         """Matrix from values at the corners of the cage to those of the child."""
         n, c = len(self.cage.indices), np.arange(len(self.cage.indices))
         own = sparse.identity(n, format="csr")
         after, before = (0.5 * (own + _matrix(c, other, 1.0, (n, n))) for other in (self._next, self._previous))
         middle = _matrix(c, self._face, 1.0, (n, len(self.cage.counts))) @ self._of_face
         order = np.arange(4 * n).reshape(4, n).T.ravel()  # the four corners of each child together
-        return sparse.vstack([own, after, middle, before], format="csr")[order]
+        stacked: Matrix = sparse.vstack([own, after, middle, before], format="csr")
+        return stacked[order]
 
     @property
     def child(self) -> Cage:
@@ -205,11 +223,11 @@ class _Level:
         )
 
 
-def _matrix(rows: Indices, columns: Indices, values: Array | float, shape: tuple[int, int]) -> sparse.csr_matrix:
+def _matrix(rows: Indices, columns: Indices, values: Array | float, shape: tuple[int, int]) -> Matrix:
     data = np.broadcast_to(np.asarray(values, np.float64), rows.shape)
     return sparse.csr_matrix((data, (rows, columns)), shape=shape)
 
 
-def _rows(weights: NDArray) -> sparse.csr_matrix:
+def _rows(weights: NDArray) -> Matrix:
     """Diagonal matrix that scales rows."""
     return sparse.diags(np.asarray(weights, np.float64), format="csr")

@@ -71,9 +71,10 @@ class FrameState(NamedTuple):
 ReadFrame = Callable[[float], FrameState]
 
 
-def read_meshes(scalp: Mesh, file: Path | None) -> list[VisibleMesh]:
-    """Visible meshes of a file at rest; the scalp alone when the file has none."""
-    shown = io.read_meshes(file) if file is not None and file.suffix in USD else []
+def read_meshes(groom: Groom) -> list[VisibleMesh]:
+    """Visible meshes of the head's file at rest; the scalp alone when the file has none."""
+    scalp, file = groom.scalp, groom.scalp_file
+    shown = io.read_meshes(file, groom.cage) if file is not None and file.suffix in USD else []
     return [VisibleMesh(mesh) for mesh in shown or [scalp]]
 
 
@@ -83,15 +84,17 @@ def read_bodies(
     frames: tuple[int, int] | None = None,
     fps: float | None = None,
     cloths: Mapping[str, str] | None = None,
+    cage: bool | None = None,
 ) -> list[VisibleMesh]:
     """Visible meshes of a file with their animation; the scalp alone when the file has none.
 
     frames, fps: first and last frame, and their rate; by default those of the file
     cloths:      names of cloths, by prim path
+    cage:        reads cages of subdivision surfaces; by default as the groom in the file was made
     """
     if file is None or file.suffix not in USD:
         return [VisibleMesh(scalp)]
-    names, bodies = cloths or {}, io.read_bodies(file, frames=frames, fps=fps)
+    names, bodies = cloths or {}, io.read_bodies(file, frames=frames, fps=fps, cage=cage)
     return [VisibleMesh(body.mesh, body.clip, names.get(body.prim, "")) for body in bodies] or [VisibleMesh(scalp)]
 
 
@@ -100,12 +103,11 @@ def shot_meshes(shot: Shot, groom: Groom) -> list[VisibleMesh]:
 
     Raises UserError when a file of the shot cannot be read.
     """
-    head = read_bodies(groom.scalp, groom.scalp_file, shot.frames, groom.space.fps)
+    head = read_bodies(groom.scalp, groom.scalp_file, shot.frames, groom.space.fps, cage=groom.cage)
     cloths, colliders = api.cloths_and_colliders(shot, groom)
-    named = {cloth.mesh.name: cloth.name for cloth in cloths if cloth.file == groom.scalp_file}
-    bodies = [VisibleMesh(body.mesh, body.clip, named.get(body.mesh.name, "")) for body in head]
-    shown = {body.cloth for body in bodies}
-    bodies += [VisibleMesh(cloth.mesh, cloth.clip, cloth.name) for cloth in cloths if cloth.name not in shown]
+    of_head = {cloth.mesh.name for cloth in cloths if cloth.file == groom.scalp_file}
+    bodies = [body for body in head if body.mesh.name not in of_head]
+    bodies += [VisibleMesh(cloth.mesh, cloth.clip, cloth.name) for cloth in cloths]
     return bodies + [VisibleMesh(collider.mesh, collider.clip) for collider in colliders]
 
 

@@ -69,7 +69,7 @@ class Viewport:
         if self._scalp is not display.groom.scalp:
             self._scalp = display.groom.scalp
             self._shot_inputs = None
-            self._publish_bodies(read_meshes(display.groom.scalp, display.groom.scalp_file))
+            self._publish_bodies(read_meshes(display.groom))
 
     def _publish_bodies(self, bodies: list[VisibleMesh]) -> None:
         self._publisher.clear("body/")

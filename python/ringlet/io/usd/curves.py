@@ -169,7 +169,8 @@ def set_roots(prim: Usd.Prim, curves: Curves, scalp: Mesh) -> None:
     triangle, weights = curves.curve["root_triangle"], curves.curve["root_barycentric"]
     if scalp.faces is not None:
         set_primvar(prim, "skinprim", "uniform", scalp.faces[triangle].astype(np.int32))
-        place = np.einsum("nk,nkd->nd", weights, _face_places(scalp.faces)[triangle]).astype(np.float32)
+        places = _face_places(scalp.faces) if scalp.places is None else scalp.places
+        place = np.einsum("nk,nkd->nd", weights, places[triangle]).astype(np.float32)
         set_primvar(prim, "skinprimuv", "uniform", place, Types.TexCoord2fArray)
     if scalp.uv is not None:
         uv = np.einsum("nk,nkd->nd", weights, scalp.uv[triangle]).astype(np.float32)

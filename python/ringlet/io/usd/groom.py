@@ -31,6 +31,8 @@ from ringlet.io.space import from_metres, to_metres
 from ringlet.io.usd.curves import define_curves, own_curves, set_points, set_roots
 from ringlet.io.usd.mesh import define_mesh, read_usd_mesh, select_mesh
 from ringlet.io.usd.stage import (
+    CAGE,
+    LIMIT,
     SUFFIXES,
     Source,
     new_stage,
@@ -64,6 +66,7 @@ def write_groom(groom: Groom, path: Path | str, variants: Mapping[str, Groom] | 
         stage = new_stage(aside, space)
         root = UsdGeom.Xform.Define(stage, GROOM).GetPrim()
         _set(root, "version", Types.Int, VERSION)
+        _set(root, "surface", Types.Token, CAGE if groom.cage else LIMIT)
         if groom.region is not None:
             _set(root, "region", Types.String, groom.region)
         scalp = (
@@ -148,7 +151,7 @@ def read_groom(path: Path | str, variant: str | None = None) -> Groom:
         if variant is not None:
             _select(source, variant)
         scalp_file, scalp_prim = scalp_source(source)
-        scalp = read_usd_mesh(scalp_file, scalp_prim)
+        scalp = read_usd_mesh(scalp_file, scalp_prim, source.cage)
         return Groom(
             guides=_bound(source, GUIDES, scalp),
             locks=_bound(source, LOCKS, scalp),
@@ -156,6 +159,7 @@ def read_groom(path: Path | str, variant: str | None = None) -> Groom:
             scalp_file=scalp_file,
             scalp_prim=scalp_prim,
             region=_get(root, "region"),
+            cage=source.cage,
             space=source.space,
             hairs=parse_json(source, _get(root, "hairs") or "{}", "ringlet:hairs"),
             recipe=_get(root, "recipe"),

@@ -15,11 +15,12 @@ from pxr import Usd, UsdGeom, Vt
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Clip, Mesh
 from ringlet.data.stage import StageSpace
-from ringlet.io.polygons import check_polygons, fans
+from ringlet.io.polygons import fans, polygon_places
 from ringlet.io.space import check_points, from_metres, to_metres
 from ringlet.io.usd.instancer import instance_transforms, prototype_surfaces
 from ringlet.io.usd.names import identifier, keep_name, original_name
 from ringlet.io.usd.pose import motion_samples, posed_points, rest_time
+from ringlet.io.usd.refinement import read_polygons, refinement, undrawn
 from ringlet.io.usd.stage import Source, choose, find_prim, prims, reading
 from ringlet.io.usd.surfaces import is_surface, passed_over, shown_surfaces
 from ringlet.io.usd.values import (
@@ -29,6 +30,7 @@ from ringlet.io.usd.values import (
     float_primvars,
     local_to_world,
     read_integers,
+    read_points,
     read_time,
     set_primvar,
     transformed,
@@ -49,30 +51,43 @@ class Body:
     prim: str
 
 
-def read_usd_mesh(path: Path | str, prim: str | None = None) -> Mesh:
-    """Reads a mesh in its rest pose [m]."""
-    with reading(path) as source:
+def read_usd_mesh(path: Path | str, prim: str | None = None, cage: bool | None = None) -> Mesh:
+    """Reads a mesh in its rest pose [m]; ``cage`` as for ``reading``."""
+    with reading(path, cage) as source:
         return mesh_at(source, select_mesh(source, prim))
 
 
 def read_usd_clip(
-    path: Path | str, prim: str | None = None, frames: tuple[int, int] | None = None, fps: float | None = None
+    path: Path | str,
+    prim: str | None = None,
+    frames: tuple[int, int] | None = None,
+    fps: float | None = None,
+    cage: bool | None = None,
 ) -> Clip:
-    """Reads the positions of a mesh at all whole frames [m]; ``frames`` and ``fps`` as for ``shot_clip_at``."""
-    with reading(path) as source:
+    """Reads the positions of a mesh at all whole frames [m].
+
+    frames, fps: as for ``shot_clip_at``
+    cage:        as for ``reading``
+    """
+    with reading(path, cage) as source:
         return shot_clip_at(source, select_mesh(source, prim), frames, fps)
 
 
 def read_bodies(
-    path: Path | str, prim: str | None = None, frames: tuple[int, int] | None = None, fps: float | None = None
+    path: Path | str,
+    prim: str | None = None,
+    frames: tuple[int, int] | None = None,
+    fps: float | None = None,
+    cage: bool | None = None,
 ) -> list[Body]:
     """Reads surfaces with their clips: meshes, and point instancers as one mesh of all their instances.
 
     prim:        reads what is at and below this prim; by default what is visible under the default prim, or else the
                  root
     frames, fps: as for ``shot_clip_at``
+    cage:        as for ``reading``
     """
-    with reading(path) as source:
+    with reading(path, cage) as source:
         surfaces = shown_surfaces(source) if prim is None else surfaces_below(source, prim)
         return [_body_at(source, surface, frames, fps) for surface in surfaces]
 
@@ -86,17 +101,21 @@ def unread_surfaces(path: Path | str, prim: str | None = None, named: Collection
         return list(passed_over(source, None if prim is None else find_prim(source, prim), named))
 
 
-def read_meshes(path: Path | str) -> list[Mesh]:
-    """Reads all visible surfaces in their rest pose."""
-    with reading(path) as source:
+def read_meshes(path: Path | str, cage: bool | None = None) -> list[Mesh]:
+    """Reads all visible surfaces in their rest pose; ``cage`` as for ``reading``."""
+    with reading(path, cage) as source:
         return [mesh_at(source, prim) for prim in shown_surfaces(source)]
 
 
 def read_body(
-    path: Path | str, prim: str | None = None, frames: tuple[int, int] | None = None, fps: float | None = None
+    path: Path | str,
+    prim: str | None = None,
+    frames: tuple[int, int] | None = None,
+    fps: float | None = None,
+    cage: bool | None = None,
 ) -> Body:
     """Reads a mesh with its clip: the mesh at ``prim``, or the only one at or below it; see ``read_bodies``."""
-    with reading(path) as source:
+    with reading(path, cage) as source:
         return _body_at(source, select_mesh(source, prim), frames, fps)
 
 
@@ -124,33 +143,77 @@ def mesh_at(source: Source, prim: Usd.Prim) -> Mesh:
     """Surface of a prim in its rest pose [m]; raises UserError for one without faces or with invalid indices."""
     if UsdGeom.PointInstancer(prim):
         return _instanced_mesh(source, prim)
-    where, time, mesh = source.where(prim), rest_time(source, prim), UsdGeom.Mesh(prim)
-    points = posed_points(source, prim, time, where)
-    counts = read_integers(mesh.GetFaceVertexCountsAttr(), time, where)
-    indices = read_integers(mesh.GetFaceVertexIndicesAttr(), time, where)
-    check_polygons(counts, indices, len(points), where)
-
-    # A mirroring transform reverses the winding, like leftHanded.
-    mirrored = np.linalg.det(local_to_world(prim, time)[:3, :3]) < 0
-    left_handed = mesh.GetOrientationAttr().Get(time) == UsdGeom.Tokens.leftHanded
-    corners, faces = fans(counts, clockwise=bool(mirrored) != left_handed)
-    visible = ~np.isin(faces, read_integers(mesh.GetHoleIndicesAttr(), time, where))
-    corners, faces = corners[visible], faces[visible]
-    if len(faces) == 0:
-        raise UserError(f"{where}: has no faces; export it again or choose another mesh")
-
-    triangles = indices[corners]
+    where, time = source.where(prim), rest_time(source, prim)
+    points, surface = posed_points(source, prim, time, where), _Triangles(source, prim, time)
     return Mesh(
         name=f"{source.path.name} {prim.GetPath()}",
         points=points,
-        triangles=triangles.astype(np.int32),
-        uv=_uv(prim, time, corners, triangles, len(points), len(indices), where),
-        faces=faces.astype(np.int32),
-        regions=_regions(prim, time, faces, len(counts), where),
-        maps=_maps(float_primvars(prim, time), corners, triangles, faces, len(counts), where),
-        vectors=_vectors(prim, time, source, corners, triangles, faces, len(counts), where),
-        **_color(prim, time, counts, indices, len(points)),
+        triangles=surface.triangles.astype(np.int32),
+        uv=_uv(prim, time, surface),
+        faces=surface.faces.astype(np.int32),
+        places=surface.places,
+        regions=_regions(prim, time, surface),
+        maps=_maps(float_primvars(prim, time), surface),
+        vectors=_vectors(prim, time, source, surface),
+        **_color(prim, time, surface),
     )
+
+
+class _Triangles:
+    """Triangles of a mesh, or of its refinement where it is a subdivision surface.
+
+    triangles: points of each triangle, shape (m, 3)
+    faces:     polygon of the mesh of each triangle, shape (m,)
+    places:    parametric coordinates of the corners in these polygons, shape (m, 3, 2); None without refinement
+    counts:    corners per polygon of the mesh; indices: point of each; points: number of its points
+
+    Raises UserError for polygons that do not fit the points, and for a mesh without triangles.
+    """
+
+    def __init__(self, source: Source, prim: Usd.Prim, time: Usd.TimeCode) -> None:
+        self.where, mesh = source.where(prim), UsdGeom.Mesh(prim)
+        self.points = len(read_points(prim, time, self.where))
+        self.counts, self.indices = read_polygons(prim, time, self.points, self.where)
+        self._refined = refinement(source, prim)
+        counts, indices, polygons = self.counts, self.indices, np.arange(len(self.counts))
+        if self._refined:
+            counts, indices, polygons = self._refined.counts, self._refined.indices, self._refined.faces
+
+        # A mirroring transform reverses the winding, like leftHanded.
+        mirrored = np.linalg.det(local_to_world(prim, time)[:3, :3]) < 0
+        left_handed = mesh.GetOrientationAttr().Get(time) == UsdGeom.Tokens.leftHanded
+        corners, faces = fans(counts, clockwise=bool(mirrored) != left_handed)
+        drawn = ~np.isin(polygons[faces], undrawn(source, prim, time))
+        self._corners, self.faces = corners[drawn], polygons[faces[drawn]]
+        if len(self.faces) == 0:
+            raise UserError(f"{self.where}: has no faces; export it again or choose another mesh")
+        self.triangles = indices[self._corners]
+        self.places = self.spread(polygon_places(self.counts), UsdGeom.Tokens.faceVarying) if self._refined else None
+
+    def spread(self, values: NDArray, interpolation: str) -> NDArray:
+        """Values of a primvar at the corners of each triangle, shape (m, 3, …); there must be enough of them."""
+        if interpolation == UsdGeom.Tokens.constant:
+            return values[np.zeros_like(self.triangles)]
+        if interpolation == UsdGeom.Tokens.uniform:
+            return values[np.repeat(self.faces[:, None], 3, axis=1)]
+        if interpolation == UsdGeom.Tokens.varying and self._refined:
+            values, interpolation = values[self.indices], UsdGeom.Tokens.faceVarying
+        if interpolation == UsdGeom.Tokens.faceVarying:
+            count = len(self.indices)
+            return (self._refined.corners @ values[:count] if self._refined else values)[self._corners]
+        return self.at_points(values)[self.triangles]
+
+    def at_points(self, values: NDArray) -> NDArray:
+        """Values at the points of the mesh as values at those of the triangles, shape (n, …)."""
+        return self._refined.points @ values[: self.points] if self._refined else values
+
+    def count(self, interpolation: str) -> int:
+        """Number of values that a primvar needs."""
+        return {
+            UsdGeom.Tokens.constant: 1,
+            UsdGeom.Tokens.uniform: len(self.counts),
+            UsdGeom.Tokens.faceVarying: len(self.indices),
+        }.get(interpolation, self.points)
 
 
 def _instanced_mesh(source: Source, prim: Usd.Prim) -> Mesh:
@@ -275,14 +338,12 @@ def define_mesh(stage: Usd.Stage, path: str, mesh: Mesh, space: StageSpace) -> U
     return prim
 
 
-def _uv(
-    prim: Usd.Prim, time: Usd.TimeCode, corners: NDArray, triangles: NDArray, points: int, indices: int, where: str
-) -> NDArray | None:
+def _uv(prim: Usd.Prim, time: Usd.TimeCode, surface: _Triangles) -> NDArray | None:
     """Texture coordinates per triangle corner, shape (m, 3, 2): of ``st``, or of the first suitable primvar.
 
     Raises UserError for values that do not fit the mesh.
     """
-    api = UsdGeom.PrimvarsAPI(prim)
+    api, where = UsdGeom.PrimvarsAPI(prim), surface.where
     named = [api.FindPrimvarWithInheritance(name) for name in ("st", "uv", "UVMap", "map1")]
     typed = [
         primvar for primvar in api.GetPrimvarsWithAuthoredValues() if primvar.GetTypeName() == Types.TexCoord2fArray
@@ -295,54 +356,35 @@ def _uv(
             if ((rows < 0) | (rows >= len(values))).any():
                 raise UserError(f"{where}: {primvar.GetName()} has an index that is not from 0 to {len(values) - 1}")
             values = values[rows]
-        faceted = primvar.GetInterpolation() == UsdGeom.Tokens.faceVarying
-        if not faceted and primvar.GetInterpolation() not in (UsdGeom.Tokens.vertex, UsdGeom.Tokens.varying):
+        interpolation = primvar.GetInterpolation()
+        faceted = interpolation == UsdGeom.Tokens.faceVarying
+        if not faceted and interpolation not in (UsdGeom.Tokens.vertex, UsdGeom.Tokens.varying):
             continue
-        if values.shape != (indices if faceted else points, 2):
-            expected = f"{indices} corners" if faceted else f"{points} points"
+        if values.shape != (surface.count(interpolation), 2):
+            expected = f"{surface.count(interpolation)} {'corners' if faceted else 'points'}"
             raise UserError(
                 f"{where}: {primvar.GetName()} has {len(values)} values for {expected}; must have one for each"
             )
         if not np.isfinite(values).all():
             raise UserError(f"{where}: {primvar.GetName()} has a value that is no number; must be finite")
-        return values[corners if faceted else triangles]
+        return surface.spread(values, interpolation)
     return None
 
 
-def _maps(
-    primvars: Iterable[tuple[str, str, NDArray]],
-    corners: NDArray,
-    triangles: NDArray,
-    faces: NDArray,
-    polygons: int,
-    where: str,
-) -> dict[str, NDArray[np.float64]]:
+def _maps(primvars: Iterable[tuple[str, str, NDArray]], surface: _Triangles) -> dict[str, NDArray[np.float64]]:
     """Primvars at the corners of each triangle, by name; raises UserError for too few values."""
     maps = {}
     for name, interpolation, values in primvars:
-        rows = {
-            UsdGeom.Tokens.constant: np.zeros_like(corners),
-            UsdGeom.Tokens.uniform: np.repeat(faces[:, None], 3, axis=1),
-            UsdGeom.Tokens.faceVarying: corners,
-        }.get(interpolation, triangles)
-        if len(values) <= rows.max(initial=-1) or (interpolation == UsdGeom.Tokens.uniform and len(values) != polygons):
+        needed = surface.count(interpolation)
+        if len(values) < needed or (interpolation == UsdGeom.Tokens.uniform and len(values) != needed):
             raise UserError(
-                f"{where}: {name} has {len(values)} values, too few for being {interpolation}; paint it again"
+                f"{surface.where}: {name} has {len(values)} values, too few for being {interpolation}; paint it again"
             )
-        maps[name] = values[rows]
+        maps[name] = surface.spread(values, interpolation)
     return maps
 
 
-def _vectors(
-    prim: Usd.Prim,
-    time: Usd.TimeCode,
-    source: Source,
-    corners: NDArray,
-    triangles: NDArray,
-    faces: NDArray,
-    polygons: int,
-    where: str,
-) -> dict[str, NDArray[np.float64]]:
+def _vectors(prim: Usd.Prim, time: Usd.TimeCode, source: Source, surface: _Triangles) -> dict[str, NDArray[np.float64]]:
     """Primvars of directions at the corners of each triangle, transformed with the points, by name."""
     upright = StageSpace(1.0, source.space.up_axis)
     origin = transformed(np.zeros((1, 3)), prim, time)
@@ -350,7 +392,7 @@ def _vectors(
         (name, interpolation, to_metres(transformed(values, prim, time) - origin, upright))
         for name, interpolation, values in vector_primvars(prim, time)
     )
-    return _maps(rotated, corners, triangles, faces, polygons, where)
+    return _maps(rotated, surface)
 
 
 def _subsets(prim: Usd.Prim) -> dict[str, UsdGeom.Subset]:
@@ -359,22 +401,21 @@ def _subsets(prim: Usd.Prim) -> dict[str, UsdGeom.Subset]:
     return {original_name(s.GetPrim(), s.GetPrim().GetName()): s for s in faces}
 
 
-def _regions(
-    prim: Usd.Prim, time: Usd.TimeCode, faces: NDArray, count: int, where: str
-) -> dict[str, NDArray[np.int32]]:
+def _regions(prim: Usd.Prim, time: Usd.TimeCode, surface: _Triangles) -> dict[str, NDArray[np.int32]]:
     """Face subsets as sets of triangles, by name; raises UserError for a face out of range."""
-    regions = {}
+    regions, count = {}, len(surface.counts)
     for name, subset in _subsets(prim).items():
-        chosen = read_integers(subset.GetIndicesAttr(), time, f"{where}/{name}")
+        where = f"{surface.where}/{name}"
+        chosen = read_integers(subset.GetIndicesAttr(), time, where)
         if (bad := np.flatnonzero((chosen < 0) | (chosen >= count))).size:
-            raise UserError(f"{where}/{name}: names face {chosen[bad[0]]}; must be from 0 to {count - 1}")
+            raise UserError(f"{where}: names face {chosen[bad[0]]}; must be from 0 to {count - 1}")
         inside = np.zeros(count, bool)
         inside[chosen] = True
-        regions[name] = np.flatnonzero(inside[faces]).astype(np.int32)
+        regions[name] = np.flatnonzero(inside[surface.faces]).astype(np.int32)
     return regions
 
 
-def _color(prim: Usd.Prim, time: Usd.TimeCode, counts: NDArray, indices: NDArray, points: int) -> dict[str, Any]:
+def _color(prim: Usd.Prim, time: Usd.TimeCode, surface: _Triangles) -> dict[str, Any]:
     """Display colour of the mesh and, if it varies, of each vertex: the mean of the vertex's corners."""
     primvar = UsdGeom.PrimvarsAPI(prim).FindPrimvarWithInheritance("displayColor")
     values = flattened(primvar, time) if primvar else None
@@ -383,16 +424,14 @@ def _color(prim: Usd.Prim, time: Usd.TimeCode, counts: NDArray, indices: NDArray
         return {}
     color = dict(color=tuple(map(float, colors.mean(axis=0))))
     interpolation = primvar.GetInterpolation()
-    if interpolation == UsdGeom.Tokens.uniform and len(colors) == len(counts):
-        corners = np.repeat(colors, counts, axis=0)
-    elif interpolation == UsdGeom.Tokens.faceVarying and len(colors) == len(indices):
-        corners = colors
-    elif interpolation in (UsdGeom.Tokens.vertex, UsdGeom.Tokens.varying) and len(colors) == points:
-        return {**color, "colors": colors}
-    else:
+    if interpolation == UsdGeom.Tokens.constant or len(colors) != surface.count(interpolation):
         return color
-    sums = np.stack([np.bincount(indices, channel, points) for channel in corners.T], axis=1)
-    return {**color, "colors": sums / np.maximum(np.bincount(indices, minlength=points), 1)[:, None]}
+    if interpolation in (UsdGeom.Tokens.vertex, UsdGeom.Tokens.varying):
+        return {**color, "colors": surface.at_points(colors)}
+    corners = np.repeat(colors, surface.counts, axis=0) if interpolation == UsdGeom.Tokens.uniform else colors
+    sums = np.stack([np.bincount(surface.indices, channel, surface.points) for channel in corners.T], axis=1)
+    means = sums / np.maximum(np.bincount(surface.indices, minlength=surface.points), 1)[:, None]
+    return {**color, "colors": surface.at_points(means)}
 
 
 def _frames(source: Source, prim: Usd.Prim, frames: tuple[float, float] | None) -> NDArray[np.float64]:

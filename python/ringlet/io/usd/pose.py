@@ -1,6 +1,6 @@
 """Poses: world positions of a prim's points at any time code, and the times at which they change.
 
-The points of an instancer are those of all its instances.
+The points of an instancer are those of all its instances, the points of a subdivision surface those of its refinement.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from pxr import Ts, Usd, UsdGeom
 from ringlet.data.errors import UserError
 from ringlet.io.space import to_metres
 from ringlet.io.usd.instancer import instance_transforms, instancer_motion, prototype_surfaces
+from ringlet.io.usd.refinement import refinement
 from ringlet.io.usd.stage import Source
 from ringlet.io.usd.values import read_points, transformed
 
@@ -32,7 +33,13 @@ def _world_points(source: Source, prim: Usd.Prim, time: Usd.TimeCode, where: str
     points, space = read_points(prim, time, where), prim
     if deformer := source.skinning.deformer(prim):
         points, space = deformer.deform(points, time)
-    return transformed(points, space, time)
+    points = transformed(points, space, time)
+    made = refinement(source, prim)
+    if made is None:
+        return points
+    if len(points) != (expected := made.points.shape[1]):
+        raise UserError(f"{where}: has {len(points)} points, {expected} in its rest pose; must not change")
+    return made.points @ points
 
 
 def _instanced_points(source: Source, prim: Usd.Prim, time: Usd.TimeCode, where: str) -> NDArray[np.float64]:

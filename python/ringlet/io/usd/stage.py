@@ -13,7 +13,7 @@ import os
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -23,8 +23,10 @@ from pxr import Pcp, Sdf, Tf, Usd, UsdGeom, UsdShade, UsdUtils
 from ringlet.data.errors import UserError
 from ringlet.data.files import replacing, same_place
 from ringlet.data.stage import StageSpace
+from ringlet.io.subdivision import Refinement
 from ringlet.io.usd.skinning import Skinning
 
+SURFACE, LIMIT, CAGE = "ringlet:surface", "limit", "cage"  # attribute of /groom, and its values
 NOT_TEXT = "it holds text that is not UTF-8"
 SUFFIXES = (".usd", ".usda", ".usdc", ".usdz")
 
@@ -33,13 +35,17 @@ SUFFIXES = (".usd", ".usda", ".usdc", ".usdz")
 class Source:
     """An open stage.
 
-    path:  file name as the user gave it
-    space: unit, up-axis and frame rate of the stage
+    path:        file name as the user gave it
+    space:       unit, up-axis and frame rate of the stage
+    cage:        whether subdivision surfaces are read as their cages, instead of on their limit surfaces
+    refinements: limit surfaces of meshes that were read, by path; None for other meshes
     """
 
     path: Path
     stage: Usd.Stage
     space: StageSpace
+    cage: bool = False
+    refinements: dict[Sdf.Path, Refinement | None] = field(default_factory=dict, compare=False)
 
     def where(self, prim: Usd.Prim) -> str:
         """File and prim, for messages."""
@@ -52,8 +58,10 @@ class Source:
 
 
 @contextmanager
-def reading(path: Path | str) -> Iterator[Source]:
+def reading(path: Path | str, cage: bool | None = None) -> Iterator[Source]:
     """Opens a stage; converts USD's errors inside the block to UserError.
+
+    cage: reads subdivision surfaces as their cages; by default as the groom in the stage was made
 
     Raises UserError for a missing or empty file, for a folder, and for a stage that refers to what is not there.
     """
@@ -68,7 +76,7 @@ def reading(path: Path | str) -> Iterator[Source]:
         stage = Usd.Stage.Open(str(path))
         _reload(stage, path)
         _refuse_missing(stage, path)
-        yield Source(path, stage, _space(stage, path))
+        yield Source(path, stage, _space(stage, path), _reads_cages(stage) if cage is None else cage)
 
 
 def _reload(stage: Usd.Stage, path: Path) -> None:
@@ -85,6 +93,14 @@ def _reload(stage: Usd.Stage, path: Path) -> None:
         if not Path(pending[0].realPath.split("[")[0]).exists():  # a layer in a package has its path in brackets
             raise UserError(f"{path}: uses {pending[0].realPath}, which is not there; put it back")
         pending[0].Reload()
+
+
+def _reads_cages(stage: Usd.Stage) -> bool:
+    """Whether the groom in a stage grows on the cage of its head; one without the attribute does."""
+    groom = stage.GetPrimAtPath("/groom")
+    if not groom or not groom.HasAttribute("ringlet:version"):
+        return False
+    return groom.GetAttribute(SURFACE).Get() != LIMIT if groom.HasAttribute(SURFACE) else True
 
 
 def _refuse_missing(stage: Usd.Stage, path: Path) -> None:
