@@ -74,6 +74,11 @@ def test_infinite_creases_keep_a_cube_and_finite_ones_decay():
         for s in (0.0, 0.5, 1.0, 2.0)
     ]
     assert size[0] == pytest.approx(0.5) and np.all(np.diff(size) > 0.05) and size[-1] < 1.0
+    soft = cube(creases=edges, sharpness=np.full(12, 1.5))
+    two, three, four = ((refine(soft, levels).points @ CUBE)[:26] for levels in (2, 3, 4))
+    np.testing.assert_allclose(two, three, atol=1e-12)  # nothing moves once the creases have ended
+    np.testing.assert_allclose(two, four, atol=1e-12)
+    assert levels_for(soft, CUBE * 1e-5) == 2
     # Sharp for one level: the limit of the cube once it is split without rounding.
     split = refine(cube(creases=edges, sharpness=np.full(12, np.inf)), 1)
     once = Cage(split.counts, split.indices, split.points.shape[0])

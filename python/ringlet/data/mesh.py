@@ -17,7 +17,7 @@ class Mesh:
     triangles: vertex indices, counter-clockwise from outside, shape (m, 3), int32
     uv:        texture coordinates per triangle corner, shape (m, 3, 2), or None
     faces:     the source polygon of each triangle, shape (m,), int32 (Houdini's ``skinprim``)
-    places:    parametric coordinates of the corners in their source polygons, shape (m, 3, 2), where these are refined
+    places:    parametric coordinates of the corners in their source polygons, shape (m, 3, 2) (``skinprimuv``)
     regions:   named sets of triangles, e.g. ``scalp``; index arrays, int32
     color:     display colour (linear r, g, b), the mean of it where it varies
     colors:    display colour of each vertex (linear r, g, b), shape (n, 3), or None where it does not vary

@@ -15,7 +15,7 @@ from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Mesh
 from ringlet.data.stage import StageSpace
-from ringlet.io.polygons import check_polygons, fans
+from ringlet.io.polygons import check_polygons, fans, polygon_places
 from ringlet.io.space import check_points, to_metres
 
 MAX_POINTS = 2**31 - 1
@@ -56,6 +56,7 @@ def read_obj_mesh(path: Path, space: StageSpace) -> Mesh:
         triangles=indices[corners].astype(np.int32),
         uv=uv[uv_indices][corners] if len(uv_indices) == len(indices) else None,
         faces=faces.astype(np.int32),
+        places=polygon_places(counts)[corners],
         regions={name: _triangles_of(np.unique(chosen), faces) for name, chosen in content.groups.items()},
     )
 

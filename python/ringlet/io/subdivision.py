@@ -101,7 +101,9 @@ def levels_for(cage: Cage, points: Array) -> int:
     middle = on_limit[cage.points : cage.points + len(edges)]
     sag = np.linalg.norm(middle - on_limit[edges].mean(axis=1), axis=1)
     typical = max(float(np.quantile(sag, MOST)), 1e-300)
-    return int(np.clip(np.ceil(np.log(typical / SAG) / np.log(4.0)), 0, min(most, MAX_LEVELS)))
+    rounding = np.concatenate([[0.0], cage.sharpness[np.isfinite(cage.sharpness)]]).max()  # levels until creases end
+    needed = max(np.ceil(np.log(typical / SAG) / np.log(4.0)), np.ceil(rounding))
+    return int(np.clip(needed, 0, min(most, MAX_LEVELS)))
 
 
 class _Level:

@@ -167,10 +167,9 @@ def set_roots(prim: Usd.Prim, curves: Curves, scalp: Mesh) -> None:
     if not {"root_triangle", "root_barycentric"} <= curves.curve.keys():
         return
     triangle, weights = curves.curve["root_triangle"], curves.curve["root_barycentric"]
-    if scalp.faces is not None:
+    if scalp.faces is not None and scalp.places is not None:
         set_primvar(prim, "skinprim", "uniform", scalp.faces[triangle].astype(np.int32))
-        places = _face_places(scalp.faces) if scalp.places is None else scalp.places
-        place = np.einsum("nk,nkd->nd", weights, places[triangle]).astype(np.float32)
+        place = np.einsum("nk,nkd->nd", weights, scalp.places[triangle]).astype(np.float32)
         set_primvar(prim, "skinprimuv", "uniform", place, Types.TexCoord2fArray)
     if scalp.uv is not None:
         uv = np.einsum("nk,nkd->nd", weights, scalp.uv[triangle]).astype(np.float32)
@@ -282,15 +281,3 @@ def _assign_ids(curves: Curves) -> None:
         if ids is not None and ids.dtype.kind in "iu" and ids.ndim == 1 and len(np.unique(ids)) == len(ids):
             curves.ids = curves.curve.pop(name).astype(np.int64)
             return
-
-
-def _face_places(faces: NDArray) -> NDArray[np.float64]:
-    """Parametric coordinates (u, v) of triangle corners in their polygons, shape (m, 3, 2), as in Houdini.
-
-    Triangles have (0,0) (1,0) (0,1); quads have (0,0) (0,1) (1,1) (1,0), and are linear in either half.
-    """
-    whole = np.array([[0, 0], [1, 0], [0, 1]], float)
-    halves = np.array([[[0, 0], [0, 1], [1, 1]], [[0, 0], [1, 1], [1, 0]]], float)
-    first = np.concatenate([[True], faces[1:] != faces[:-1]])
-    is_triangle = first & np.concatenate([first[1:], [True]])
-    return np.where(is_triangle[:, None, None], whole, np.where(first[:, None, None], halves[0], halves[1]))

@@ -144,7 +144,8 @@ def mesh_at(source: Source, prim: Usd.Prim) -> Mesh:
     if UsdGeom.PointInstancer(prim):
         return _instanced_mesh(source, prim)
     where, time = source.where(prim), rest_time(source, prim)
-    points, surface = posed_points(source, prim, time, where), _Triangles(source, prim, time)
+    points = posed_points(source, prim, time, where)
+    surface = _Triangles(source, prim, time)
     return Mesh(
         name=f"{source.path.name} {prim.GetPath()}",
         points=points,
@@ -164,7 +165,7 @@ class _Triangles:
 
     triangles: points of each triangle, shape (m, 3)
     faces:     polygon of the mesh of each triangle, shape (m,)
-    places:    parametric coordinates of the corners in these polygons, shape (m, 3, 2); None without refinement
+    places:    parametric coordinates of the corners in these polygons, shape (m, 3, 2)
     counts:    corners per polygon of the mesh; indices: point of each; points: number of its points
 
     Raises UserError for polygons that do not fit the points, and for a mesh without triangles.
@@ -188,7 +189,7 @@ class _Triangles:
         if len(self.faces) == 0:
             raise UserError(f"{self.where}: has no faces; export it again or choose another mesh")
         self.triangles = indices[self._corners]
-        self.places = self.spread(polygon_places(self.counts), UsdGeom.Tokens.faceVarying) if self._refined else None
+        self.places = self.spread(polygon_places(self.counts), UsdGeom.Tokens.faceVarying)
 
     def spread(self, values: NDArray, interpolation: str) -> NDArray:
         """Values of a primvar at the corners of each triangle, shape (m, 3, …); there must be enough of them."""
