@@ -380,3 +380,18 @@ def test_visible_surfaces_that_are_no_colliders_are_reported(tmp_path):
     assert "a.usda /head/bead: is a Sphere, which hair does not touch" in notes[0]
     assert "a.usda /shirt: is outside of the default prim /head" in notes[1]
     assert unread_surfaces(tmp_path / "a.usda", "/head", ["/head/bead"]) == []
+
+
+def test_surfaces_whose_visibility_changes_are_reported(tmp_path):
+    stage = new_stage(tmp_path / "a.usda", unit=1.0)
+    add_cube(stage)
+    for name, first, second in (("coming", "invisible", "inherited"), ("going", "inherited", "invisible")):
+        above = UsdGeom.Xform.Define(stage, f"/head/{name}")
+        add_cube(stage, f"/head/{name}/hat", scalp=False)
+        above.CreateVisibilityAttr().Set(first, 1)
+        above.GetVisibilityAttr().Set(second, 10)
+    stage.Save()
+    coming, going = unread_surfaces(tmp_path / "a.usda")
+    assert "/head/coming/hat: its visibility changes over time; it is never touched" in coming
+    assert "/head/going/hat: its visibility changes over time; it is touched all the time" in going
+    assert [body.prim for body in read_bodies(tmp_path / "a.usda")] == ["/head/skin", "/head/going/hat"]

@@ -26,6 +26,12 @@ def is_shown(prim: Usd.Prim) -> bool:
     )
 
 
+def _is_shown_at_times(prim: Usd.Prim) -> bool:
+    """Whether the visibility of a prim, or of one above it, changes over time."""
+    above = (UsdGeom.Imageable(prim.GetStage().GetPrimAtPath(path)) for path in prim.GetPath().GetPrefixes())
+    return any(one and one.GetVisibilityAttr().ValueMightBeTimeVarying() for one in above)
+
+
 def shown_root(source: Source) -> Usd.Prim:
     """The prim whose surfaces a render shows where a file is referenced: the default prim, or else the root."""
     return source.stage.GetDefaultPrim() or source.stage.GetPseudoRoot()
@@ -46,7 +52,12 @@ def passed_over(source: Source, root: Usd.Prim | None = None, named: Collection[
     for prim in prims(root or source.stage.GetPseudoRoot()):
         if any(prim.GetPath().HasPrefix(path) for path in named):
             continue
-        if not (UsdGeom.Gprim(prim) or is_surface(prim)) or any(kind(prim) for kind in CURVES) or not is_shown(prim):
+        if not (UsdGeom.Gprim(prim) or is_surface(prim)) or any(kind(prim) for kind in CURVES):
+            continue
+        if _is_shown_at_times(prim):
+            as_at_first = "is touched all the time" if is_shown(prim) else "is never touched"
+            yield f"{source.where(prim)}: its visibility changes over time; it {as_at_first}, as at its first sample"
+        if not is_shown(prim):
             continue
         if not is_surface(prim):
             yield f"{source.where(prim)}: is a {prim.GetTypeName()}, which hair does not touch; convert it to a Mesh"
