@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from pxr import Gf, Sdf, Ts, UsdGeom, UsdSkel, Vt
+from pxr import Gf, Sdf, Ts, Usd, UsdGeom, UsdSkel, Vt
 from ringlet.io import read_bodies, read_clip, read_mesh, read_meshes, read_space, unread_surfaces
 from usd_scenes import CUBE, CUBE_FACES, FRAMES, add_cube, new_stage, write_head
 
-from ringlet import Mesh
+from ringlet import Mesh, UserError
 
 
 def volume(mesh: Mesh, points: np.ndarray | None = None) -> float:
@@ -189,6 +189,26 @@ def test_a_skinned_mesh_moves_as_far_at_any_rate(tmp_path, rate, fully):
     np.testing.assert_allclose(moved, clip.frames / rate, atol=1e-6)
     np.testing.assert_allclose(clip.points[:, 5, 0] - 1.0, moved * fully, atol=1e-6)  # corner (1, 0, 1)
     np.testing.assert_allclose(read_mesh(path).points, CUBE)
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        (lambda skin, bones: skin.GetJointIndicesPrimvar().Set([0] * 7), "joints and weights do not fit"),
+        (lambda skin, bones: skin.GetJointIndicesPrimvar().Set([9] * 8), "joints and weights do not fit"),
+        (lambda skin, bones: skin.GetJointWeightsPrimvar().SetElementSize(2), "joints and weights do not fit"),
+        (lambda skin, bones: bones.GetBindTransformsAttr().Set([Gf.Matrix4d(1)]), "has no bind pose"),
+    ],
+)
+def test_a_skin_that_does_not_fit_its_skeleton_is_refused(tmp_path, change, says):
+    stage = Usd.Stage.Open(str(skinned_cube(tmp_path / "a.usda", {0: 0.0, 10: 1.0})))
+    change(
+        UsdSkel.BindingAPI(stage.GetPrimAtPath("/head/skin")),
+        UsdSkel.Skeleton(stage.GetPrimAtPath("/head/bones")),
+    )
+    stage.Save()
+    with pytest.raises(UserError, match=f"a.usda /head/skin.*{says}"):
+        read_clip(tmp_path / "a.usda", frames=(0, 10))
 
 
 def test_blend_shapes_of_a_mesh_are_evaluated_at_every_frame(tmp_path):

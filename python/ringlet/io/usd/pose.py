@@ -32,7 +32,7 @@ def _world_points(source: Source, prim: Usd.Prim, time: Usd.TimeCode, where: str
         return _instanced_points(source, prim, time, where)
     points, space = read_points(prim, time, where), prim
     if deformer := source.skinning.deformer(prim):
-        points, space = deformer.deform(points, time)
+        points, space = deformer.deform(points, time, where)
     points = transformed(points, space, time)
     made = refinement(source, prim)
     if made is None:

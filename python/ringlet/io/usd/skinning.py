@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pxr import Sdf, Usd, UsdSkel, Vt
 
+from ringlet.data.errors import UserError
 from ringlet.io.usd.values import float3
 
 
@@ -54,20 +55,36 @@ class Deformer:
             samples += animation.GetBlendShapeWeightTimeSamples()
         return samples
 
-    def deform(self, points: NDArray[np.float64], time: Usd.TimeCode) -> tuple[NDArray[np.float64], Usd.Prim]:
+    def deform(
+        self, points: NDArray[np.float64], time: Usd.TimeCode, where: str
+    ) -> tuple[NDArray[np.float64], Usd.Prim]:
         """Deforms points of the mesh, shape (n, 3); returns them with the prim in whose local space they are.
 
-        Points without a pose at that time stay as they are: those of an animation in samples alone, at rest.
+        Points without a pose at that time stay as they are: those of an animation in samples alone, at rest. Raises
+        UserError for joints that do not fit the mesh, and for a skeleton without pose.
         """
         if time.IsDefault() and self.samples and not self._has_default():
             return points, self.query.GetPrim()
         deformed = float3(points)
         if self.query.HasBlendShapes():
             self._apply_blend_shapes(deformed, time)
-        transforms = self.skeleton.ComputeSkinningTransforms(time) if self.query.HasJointInfluences() else None
-        if not transforms or not self.query.ComputeSkinnedPoints(transforms, deformed, time):
+        if not self._is_bound_to_joints(where):
             return np.array(deformed, np.float64), self.query.GetPrim()
+        transforms = self.skeleton.ComputeSkinningTransforms(time) if self.skeleton.HasBindPose() else None
+        if not transforms:
+            raise UserError(
+                f"{where}: its skeleton {self.skeleton.GetPrim().GetPath()} has no bind pose, which needs a transform "
+                "for each joint; export it again"
+            )
+        if not self.query.ComputeSkinnedPoints(transforms, deformed, time):
+            raise UserError(f"{where}: its joints and weights do not fit its points or its skeleton; bind it again")
         return np.array(deformed, np.float64), self.skeleton.GetPrim()
+
+    def _is_bound_to_joints(self, where: str) -> bool:
+        indices = UsdSkel.BindingAPI(self.query.GetPrim()).GetJointIndicesPrimvar()
+        if indices and indices.HasAuthoredValue() and not self.query.HasJointInfluences():
+            raise UserError(f"{where}: its joints and weights do not fit each other; bind it again")
+        return self.query.HasJointInfluences()
 
     def _has_default(self) -> bool:
         animation = UsdSkel.Animation(self.skeleton.GetAnimQuery().GetPrim())
