@@ -8,6 +8,7 @@ import time
 
 import numpy as np
 import pytest
+from commands import edit
 from ringlet.cli.app import app
 from ringlet.io import open_cache, read_cache, read_touches
 from ringlet.sim import checkpoint
@@ -214,6 +215,16 @@ def test_an_interrupted_run_provides_its_finished_frames(folder, monkeypatch):
     interrupted(folder, monkeypatch, 25)
     assert sim(folder, "--resume", "--frames", "1:18").exit_code == 0
     assert (read_cache(folder / "cache.usdc").points == expected[:18]).all()
+
+
+def test_an_interrupted_short_run_resumes_as_a_longer_one(folder, monkeypatch):
+    expected = uninterrupted(folder)
+    text = (folder / "small.shot.toml").read_text()
+    edit(folder / "small.shot.toml", "frames = [1, 40]", "frames = [1, 30]")
+    interrupted(folder, monkeypatch, 25)
+    (folder / "small.shot.toml").write_text(text)
+    assert sim(folder, "--resume").exit_code == 0
+    assert (read_cache(folder / "cache.usdc").points == expected).all()
 
 
 def test_streamed_frames_equal_those_of_a_simulation_in_memory(folder):
