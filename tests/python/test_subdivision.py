@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from commands import edit, made, refused, run
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdSkel
-from ringlet.io import problems, read_bodies, read_clip, read_hairs, read_mesh, read_meshes
+from ringlet.io import problems, read_bodies, read_clip, read_hairs, read_mesh, read_meshes, unread_surfaces
 from ringlet.io.subdivision import Cage, levels_for, refine
 from usd_scenes import CUBE, CUBE_FACES, add_cube, new_stage
 
@@ -271,3 +271,14 @@ def test_a_subdivision_surface_whose_points_change_in_number_is_refused(tmp_path
     stage.Save()
     with pytest.raises(ringlet.UserError, match=r"skin at frame 2: has 9 points, 8 in its rest pose; must not change"):
         read_clip(tmp_path / "a.usda", frames=(1, 2))
+
+
+def test_a_loop_surface_is_read_as_its_cage_and_reported(folder):
+    mesh, stage = smooth_head(folder)
+    mesh.GetSubdivisionSchemeAttr().Set("loop")
+    stage.Save()
+    made = ringlet.build_groom(folder / "small.recipe.toml")
+    np.testing.assert_allclose(made.scalp.points, 0.01 * np.array(mesh.GetPointsAttr().Get()), atol=1e-7)
+    (note,) = made.conflicts
+    assert "head.usda /ball/skin: its subdivisionScheme is loop; its cage is read" in note
+    assert unread_surfaces(folder / "head.usda") == made.conflicts

@@ -69,7 +69,7 @@ def groom_inputs(recipe: Recipe, memory: Memory | None = None, notes: list[str] 
         memory,
         recipe.scalp_file,
         f"{chosen.mesh} {chosen.surface} {chosen.space}",
-        lambda file: io.read_mesh(file, chosen.mesh, space=chosen.space, cage=chosen.surface == "cage"),
+        lambda file: io.read_mesh(file, chosen.mesh, space=chosen.space, cage=chosen.surface == "cage", notes=notes),
     )
     scalp.textures = {name: io.read_texture(file) for name, file in recipe.map_files().items()}
     drawn = None

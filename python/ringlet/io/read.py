@@ -20,7 +20,12 @@ METRES = StageSpace()
 
 
 def read_mesh(
-    path: Path | str, prim: str | None = None, *, space: StageSpace = METRES, cage: bool | None = None
+    path: Path | str,
+    prim: str | None = None,
+    *,
+    space: StageSpace = METRES,
+    cage: bool | None = None,
+    notes: list[str] | None = None,
 ) -> Mesh:
     """Reads a mesh in its rest pose, in metres and Y-up, from USD or OBJ.
 
@@ -32,6 +37,7 @@ def read_mesh(
     prim:  prim path in USD; by default the only mesh, or the only one with a region called ``scalp``
     space: unit and up-axis of an OBJ, which stores neither
     cage:  reads the cages of subdivision surfaces; by default as the groom in the file was made, else not
+    notes: receives a sentence for what is not read as a render shows it
 
     Raises UserError for a file that is not readable, or has no such mesh.
     """
@@ -39,7 +45,7 @@ def read_mesh(
     return (
         read_obj_mesh(_without_prim(path, prim), space)
         if _has_suffix(path, ".obj")
-        else read_usd_mesh(path, prim, cage)
+        else read_usd_mesh(path, prim, cage, notes)
     )
 
 

@@ -20,7 +20,7 @@ from ringlet.io.space import check_points, from_metres, to_metres
 from ringlet.io.usd.instancer import instance_transforms, prototype_surfaces
 from ringlet.io.usd.names import identifier, keep_name, original_name
 from ringlet.io.usd.pose import motion_samples, posed_points, rest_time
-from ringlet.io.usd.refinement import read_polygons, refinement, undrawn
+from ringlet.io.usd.refinement import read_polygons, refinement, undrawn, unrefined
 from ringlet.io.usd.stage import Source, choose, find_prim, prims, reading
 from ringlet.io.usd.surfaces import is_surface, passed_over, shown_surfaces
 from ringlet.io.usd.values import (
@@ -51,10 +51,19 @@ class Body:
     prim: str
 
 
-def read_usd_mesh(path: Path | str, prim: str | None = None, cage: bool | None = None) -> Mesh:
-    """Reads a mesh in its rest pose [m]; ``cage`` as for ``reading``."""
+def read_usd_mesh(
+    path: Path | str, prim: str | None = None, cage: bool | None = None, notes: list[str] | None = None
+) -> Mesh:
+    """Reads a mesh in its rest pose [m].
+
+    cage:  as for ``reading``
+    notes: receives a sentence for what is not read as a render shows it
+    """
     with reading(path, cage) as source:
-        return mesh_at(source, select_mesh(source, prim))
+        chosen = select_mesh(source, prim)
+        if notes is not None and (note := unrefined(source, chosen)):
+            notes.append(note)
+        return mesh_at(source, chosen)
 
 
 def read_usd_clip(

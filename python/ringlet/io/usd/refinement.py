@@ -25,6 +25,14 @@ def refinement(source: Source, prim: Usd.Prim) -> Refinement | None:
     return source.refinements[path]
 
 
+def unrefined(source: Source, prim: Usd.Prim) -> str | None:
+    """A sentence for a subdivision surface whose scheme is not known, so that its cage is read."""
+    scheme = UsdGeom.Mesh(prim).GetSubdivisionSchemeAttr().Get() if UsdGeom.Mesh(prim) else None
+    if source.cage or scheme != UsdGeom.Tokens.loop:
+        return None
+    return f"{source.where(prim)}: its subdivisionScheme is {scheme}; its cage is read instead of its limit surface"
+
+
 def read_polygons(
     prim: Usd.Prim, time: Usd.TimeCode, points: int, where: str
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

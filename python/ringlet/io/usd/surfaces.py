@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterator
 
 from pxr import Usd, UsdGeom
 
+from ringlet.io.usd.refinement import unrefined
 from ringlet.io.usd.stage import Source, prims
 
 SHOWN = (UsdGeom.Tokens.default_, UsdGeom.Tokens.render)
@@ -43,7 +44,7 @@ def shown_surfaces(source: Source) -> list[Usd.Prim]:
 
 
 def passed_over(source: Source, root: Usd.Prim | None = None, named: Collection[str] = ()) -> Iterator[str]:
-    """A sentence for each visible prim with a surface that is not read.
+    """A sentence for each visible prim with a surface that is not read, or not as a render shows it.
 
     root:  prim whose surfaces are read; by default the default prim, for which those outside it are reported as well
     named: paths of prims that are read by name
@@ -59,6 +60,8 @@ def passed_over(source: Source, root: Usd.Prim | None = None, named: Collection[
             yield f"{source.where(prim)}: its visibility changes over time; it {as_at_first}, as at its first sample"
         if not is_shown(prim):
             continue
+        if note := unrefined(source, prim):
+            yield note
         if not is_surface(prim):
             yield f"{source.where(prim)}: is a {prim.GetTypeName()}, which hair does not touch; convert it to a Mesh"
         elif root is None and not prim.GetPath().HasPrefix(default):
