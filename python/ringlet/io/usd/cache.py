@@ -16,10 +16,11 @@ from ringlet.data.cache import Cache, CachedCloth
 from ringlet.data.errors import UserError
 from ringlet.data.stage import StageSpace
 from ringlet.io.space import to_metres
+from ringlet.io.usd.clips import clip_at
 from ringlet.io.usd.cloths import ClothPrims, cloth_metadata, read_cloth, set_cloth
 from ringlet.io.usd.curves import OWN
 from ringlet.io.usd.groom import LOCKS, VERSION, check_version, groom_prim
-from ringlet.io.usd.mesh import clip_at, mesh_at
+from ringlet.io.usd.mesh import mesh_at
 from ringlet.io.usd.stage import Source, parse_json, reading, reading_more
 from ringlet.io.usd.stream import StreamWriter
 from ringlet.io.usd.surfaces import shown_surfaces

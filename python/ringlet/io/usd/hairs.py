@@ -16,9 +16,10 @@ from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.data.errors import UserError
 from ringlet.data.groom import Groom
 from ringlet.data.mesh import Clip
+from ringlet.io.usd.clips import clip_at, whole_frames
 from ringlet.io.usd.curves import curve_widths, curves_at, define_curves, own_curves, set_roots
 from ringlet.io.usd.groom import GROOM
-from ringlet.io.usd.mesh import Body, clip_at, mesh_at, whole_frames
+from ringlet.io.usd.mesh import Body, mesh_at
 from ringlet.io.usd.pose import rest_time
 from ringlet.io.usd.stage import Source, prims, reading
 from ringlet.io.usd.stream import StreamWriter

@@ -1,8 +1,7 @@
-"""Reads meshes and their animation from USD; writes meshes."""
+"""Reads meshes, with their animation and attributes, from USD; writes meshes."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,22 +14,21 @@ from pxr import Usd, UsdGeom, Vt
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Clip, Mesh
 from ringlet.data.stage import StageSpace
-from ringlet.io.polygons import fans, polygon_places
-from ringlet.io.space import check_points, from_metres, to_metres
+from ringlet.io.space import from_metres, to_metres
+from ringlet.io.usd.clips import shot_clip_at
 from ringlet.io.usd.instancer import instance_transforms, prototype_surfaces
 from ringlet.io.usd.names import identifier, keep_name, original_name
-from ringlet.io.usd.pose import motion_samples, posed_points, rest_time
-from ringlet.io.usd.refinement import read_polygons, refinement, undrawn, unrefined
+from ringlet.io.usd.pose import posed_points, rest_time
+from ringlet.io.usd.refinement import unrefined
 from ringlet.io.usd.stage import Source, choose, find_prim, prims, reading
 from ringlet.io.usd.surfaces import is_surface, passed_over, shown_surfaces
+from ringlet.io.usd.triangles import Triangles
 from ringlet.io.usd.values import (
     Types,
     flattened,
     float3,
     float_primvars,
-    local_to_world,
     read_integers,
-    read_points,
     read_time,
     set_primvar,
     transformed,
@@ -38,8 +36,6 @@ from ringlet.io.usd.values import (
 )
 
 SCALP = "scalp"
-MAX_FRAMES = 100_000
-MAX_POSITIONS = 2**28  # points of a mesh times frames: 6 GiB
 
 
 @dataclass
@@ -154,7 +150,7 @@ def mesh_at(source: Source, prim: Usd.Prim) -> Mesh:
         return _instanced_mesh(source, prim)
     where, time = source.where(prim), rest_time(source, prim)
     points = posed_points(source, prim, time, where)
-    surface = _Triangles(source, prim, time)
+    surface = Triangles(source, prim, time)
     return Mesh(
         name=f"{source.path.name} {prim.GetPath()}",
         points=points,
@@ -167,63 +163,6 @@ def mesh_at(source: Source, prim: Usd.Prim) -> Mesh:
         vectors=_vectors(prim, time, source, surface),
         **_color(prim, time, surface),
     )
-
-
-class _Triangles:
-    """Triangles of a mesh, or of its refinement where it is a subdivision surface.
-
-    triangles: points of each triangle, shape (m, 3)
-    faces:     polygon of the mesh of each triangle, shape (m,)
-    places:    parametric coordinates of the corners in these polygons, shape (m, 3, 2)
-    counts:    corners per polygon of the mesh; indices: point of each; points: number of its points
-
-    Raises UserError for polygons that do not fit the points, and for a mesh without triangles.
-    """
-
-    def __init__(self, source: Source, prim: Usd.Prim, time: Usd.TimeCode) -> None:
-        self.where, mesh = source.where(prim), UsdGeom.Mesh(prim)
-        self.points = len(read_points(prim, time, self.where))
-        self.counts, self.indices = read_polygons(prim, time, self.points, self.where)
-        self._refined = refinement(source, prim)
-        counts, indices, polygons = self.counts, self.indices, np.arange(len(self.counts))
-        if self._refined:
-            counts, indices, polygons = self._refined.counts, self._refined.indices, self._refined.faces
-
-        # A mirroring transform reverses the winding, like leftHanded.
-        mirrored = np.linalg.det(local_to_world(prim, time)[:3, :3]) < 0
-        left_handed = mesh.GetOrientationAttr().Get(time) == UsdGeom.Tokens.leftHanded
-        corners, faces = fans(counts, clockwise=bool(mirrored) != left_handed)
-        drawn = ~np.isin(polygons[faces], undrawn(source, prim, time))
-        self._corners, self.faces = corners[drawn], polygons[faces[drawn]]
-        if len(self.faces) == 0:
-            raise UserError(f"{self.where}: has no faces; export it again or choose another mesh")
-        self.triangles = indices[self._corners]
-        self.places = self.spread(polygon_places(self.counts), UsdGeom.Tokens.faceVarying)
-
-    def spread(self, values: NDArray, interpolation: str) -> NDArray:
-        """Values of a primvar at the corners of each triangle, shape (m, 3, …); there must be enough of them."""
-        if interpolation == UsdGeom.Tokens.constant:
-            return values[np.zeros_like(self.triangles)]
-        if interpolation == UsdGeom.Tokens.uniform:
-            return values[np.repeat(self.faces[:, None], 3, axis=1)]
-        if interpolation == UsdGeom.Tokens.varying and self._refined:
-            values, interpolation = values[self.indices], UsdGeom.Tokens.faceVarying
-        if interpolation == UsdGeom.Tokens.faceVarying:
-            count = len(self.indices)
-            return (self._refined.corners @ values[:count] if self._refined else values)[self._corners]
-        return self.at_points(values)[self.triangles]
-
-    def at_points(self, values: NDArray) -> NDArray:
-        """Values at the points of the mesh as values at those of the triangles, shape (n, …)."""
-        return self._refined.points @ values[: self.points] if self._refined else values
-
-    def count(self, interpolation: str) -> int:
-        """Number of values that a primvar needs."""
-        return {
-            UsdGeom.Tokens.constant: 1,
-            UsdGeom.Tokens.uniform: len(self.counts),
-            UsdGeom.Tokens.faceVarying: len(self.indices),
-        }.get(interpolation, self.points)
 
 
 def _instanced_mesh(source: Source, prim: Usd.Prim) -> Mesh:
@@ -241,87 +180,6 @@ def _instanced_mesh(source: Source, prim: Usd.Prim) -> Mesh:
     points = posed_points(source, prim, time, where)
     color = next(mesh.color for meshes in prototypes for mesh in meshes)
     return Mesh(f"{source.path.name} {prim.GetPath()}", points, np.concatenate(triangles).astype(np.int32), color=color)
-
-
-def shot_clip_at(source: Source, prim: Usd.Prim, frames: tuple[int, int] | None, fps: float | None) -> Clip:
-    """Positions of a mesh prim at the frames of a shot, and at the one beside the first that gives the velocity there.
-
-    That is the frame before, or the one after for a prim that begins to move at the first frame or later. Frames
-    beyond the samples are left out, since a clip holds its ends.
-
-    frames: first and last frame of the shot; by default the whole frames of the stage
-    fps:    frames per second of the shot; by default those of the stage
-    """
-    rate = source.space.fps if fps is None else fps
-    if frames is not None and (samples := motion_samples(source, prim)):
-        start, end = (time * rate / source.space.fps for time in (min(samples), max(samples)))
-        first = frames[0] - 1 if start <= frames[0] - 1 else frames[0]
-        last = max(frames[1], first + 1)
-        frames = (first, max(first + 1, math.ceil(end)) if end < last else last)
-    return clip_at(source, prim, frames, rate)
-
-
-def clip_at(
-    source: Source, prim: Usd.Prim, frames: tuple[float, float] | None = None, fps: float | None = None
-) -> Clip:
-    """Positions of a mesh prim at all whole frames of a closed range; one sample for a static prim.
-
-    USD evaluates a stage at any time, so that the range may exceed that of the stage and of its samples.
-
-    frames: first and last frame; by default the range of the stage, or else that of the prim's samples
-    fps:    frames per second; a stage of another rate is read at the same seconds, as where USD references it
-
-    Raises UserError for too much data, and for points or faces whose number or order changes.
-    """
-    where, rate = source.where(prim), source.space.fps if fps is None else fps
-    times = _frames(source, prim, frames)
-    if len(times) == 0:
-        points = posed_points(source, prim, Usd.TimeCode.EarliestTime(), where)  # one sample for all times
-        return Clip(np.zeros(1), points[None], rate)
-    samples, faces = [], _Faces(source, prim)
-    for frame in times:
-        at, time = f"{where} at frame {frame:g}", Usd.TimeCode(frame * source.space.fps / rate)
-        points = posed_points(source, prim, time, at)
-        check_points(points, at)  # a transform may be NaN, too
-        if len(points) * len(times) > MAX_POSITIONS:
-            raise UserError(
-                f"{where}: has {len(points):,} points at {len(times):,} frames, more than {MAX_POSITIONS:,} places; "
-                "shorten the shot, or leave it out"
-            )
-        if samples and len(points) != len(samples[0]):
-            raise UserError(
-                f"{where}: has {len(points)} points at frame {frame:g}, {len(samples[0])} before; must not change"
-            )
-        faces.check(time, at)
-        samples.append(points)
-    return Clip(times, np.stack(samples), rate)
-
-
-class _Faces:
-    """Faces of a mesh in its rest pose, which its animation must keep."""
-
-    def __init__(self, source: Source, prim: Usd.Prim) -> None:
-        mesh, time, where = UsdGeom.Mesh(prim), rest_time(source, prim), source.where(prim)
-        attributes = mesh.GetFaceVertexCountsAttr(), mesh.GetFaceVertexIndicesAttr()
-        self._rest = [(a, read_integers(a, time, where)) for a in attributes if a.ValueMightBeTimeVarying()]
-
-    def check(self, time: Usd.TimeCode, where: str) -> None:
-        """Raises UserError for faces that differ at a time."""
-        for attribute, rest in self._rest:
-            if not np.array_equal(read_integers(attribute, time, where), rest):
-                raise UserError(
-                    f"{where}: its {attribute.GetName()} differ from those in its rest pose; must not change over time"
-                )
-
-
-def whole_frames(first: float, last: float, where: str) -> NDArray[np.float64]:
-    """Whole frames of a closed range, shape (k,); raises UserError for none or too many."""
-    if not abs(last - first) < MAX_FRAMES:  # also true for NaN
-        raise UserError(f"{where}: moves from {first:g} to {last:g}; must be fewer than {MAX_FRAMES:,} frames")
-    frames = np.arange(math.ceil(first), math.floor(last) + 1, dtype=np.float64)
-    if len(frames) == 0:
-        raise UserError(f"{where}: there is no whole frame from {first:g} to {last:g}; give a longer range")
-    return frames
 
 
 def define_mesh(stage: Usd.Stage, path: str, mesh: Mesh, space: StageSpace) -> Usd.Prim:
@@ -348,7 +206,7 @@ def define_mesh(stage: Usd.Stage, path: str, mesh: Mesh, space: StageSpace) -> U
     return prim
 
 
-def _uv(prim: Usd.Prim, time: Usd.TimeCode, surface: _Triangles) -> NDArray | None:
+def _uv(prim: Usd.Prim, time: Usd.TimeCode, surface: Triangles) -> NDArray | None:
     """Texture coordinates per triangle corner, shape (m, 3, 2): of ``st``, or of the first suitable primvar.
 
     Raises UserError for values that do not fit the mesh.
@@ -381,7 +239,7 @@ def _uv(prim: Usd.Prim, time: Usd.TimeCode, surface: _Triangles) -> NDArray | No
     return None
 
 
-def _maps(primvars: Iterable[tuple[str, str, NDArray]], surface: _Triangles) -> dict[str, NDArray[np.float64]]:
+def _maps(primvars: Iterable[tuple[str, str, NDArray]], surface: Triangles) -> dict[str, NDArray[np.float64]]:
     """Primvars at the corners of each triangle, by name; raises UserError for too few values."""
     maps = {}
     for name, interpolation, values in primvars:
@@ -394,7 +252,7 @@ def _maps(primvars: Iterable[tuple[str, str, NDArray]], surface: _Triangles) -> 
     return maps
 
 
-def _vectors(prim: Usd.Prim, time: Usd.TimeCode, source: Source, surface: _Triangles) -> dict[str, NDArray[np.float64]]:
+def _vectors(prim: Usd.Prim, time: Usd.TimeCode, source: Source, surface: Triangles) -> dict[str, NDArray[np.float64]]:
     """Primvars of directions at the corners of each triangle, transformed with the points, by name."""
     upright = StageSpace(1.0, source.space.up_axis)
     origin = transformed(np.zeros((1, 3)), prim, time)
@@ -411,7 +269,7 @@ def _subsets(prim: Usd.Prim) -> dict[str, UsdGeom.Subset]:
     return {original_name(s.GetPrim(), s.GetPrim().GetName()): s for s in faces}
 
 
-def _regions(prim: Usd.Prim, time: Usd.TimeCode, surface: _Triangles) -> dict[str, NDArray[np.int32]]:
+def _regions(prim: Usd.Prim, time: Usd.TimeCode, surface: Triangles) -> dict[str, NDArray[np.int32]]:
     """Face subsets as sets of triangles, by name; raises UserError for a face out of range."""
     regions, count = {}, len(surface.counts)
     for name, subset in _subsets(prim).items():
@@ -425,7 +283,7 @@ def _regions(prim: Usd.Prim, time: Usd.TimeCode, surface: _Triangles) -> dict[st
     return regions
 
 
-def _color(prim: Usd.Prim, time: Usd.TimeCode, surface: _Triangles) -> dict[str, Any]:
+def _color(prim: Usd.Prim, time: Usd.TimeCode, surface: Triangles) -> dict[str, Any]:
     """Display colour of the mesh and, if it varies, of each vertex: the mean of the vertex's corners."""
     primvar = UsdGeom.PrimvarsAPI(prim).FindPrimvarWithInheritance("displayColor")
     values = flattened(primvar, time) if primvar else None
@@ -442,16 +300,3 @@ def _color(prim: Usd.Prim, time: Usd.TimeCode, surface: _Triangles) -> dict[str,
     sums = np.stack([np.bincount(surface.indices, channel, surface.points) for channel in corners.T], axis=1)
     means = sums / np.maximum(np.bincount(surface.indices, minlength=surface.points), 1)[:, None]
     return {**color, "colors": surface.at_points(means)}
-
-
-def _frames(source: Source, prim: Usd.Prim, frames: tuple[float, float] | None) -> NDArray[np.float64]:
-    """Whole frames to read; empty for a static mesh."""
-    samples = motion_samples(source, prim)
-    if not samples:
-        return np.empty(0)
-    samples = [time for time in samples if math.isfinite(time)]
-    start, end = source.stage.GetStartTimeCode(), source.stage.GetEndTimeCode()
-    if frames is None and source.stage.HasAuthoredTimeCodeRange() and 0 <= end - start < MAX_FRAMES:
-        frames = start, end
-    first, last = frames or (min(samples), max(samples))
-    return whole_frames(first, last, source.where(prim))
