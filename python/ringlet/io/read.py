@@ -22,9 +22,9 @@ METRES = StageSpace()
 def read_mesh(path: Path | str, prim: str | None = None, *, space: StageSpace = METRES) -> Mesh:
     """Reads a mesh in its rest pose, in metres and Y-up, from USD or OBJ.
 
-    Polygons are triangulated as fans; a subdivision surface is read as its cage. Face ``GeomSubset``s, or the groups
-    of an OBJ, become regions. The rest pose is the default value of the points, or else the first time sample. A USD
-    file without ``metersPerUnit`` is in centimetres, the fallback of USD.
+    Convex polygons are triangulated as fans, others by ear clipping; a subdivision surface is read as its cage. Face
+    ``GeomSubset``s, or the groups of an OBJ, become regions. The rest pose is the default value of the points, or else
+    the first time sample. A USD file without ``metersPerUnit`` is in centimetres, the fallback of USD.
 
     prim:  prim path in USD; by default the only mesh, or the only one with a region called ``scalp``
     space: unit and up-axis of an OBJ, which stores neither

@@ -150,7 +150,9 @@ def set_roots(prim: Usd.Prim, curves: Curves, scalp: Mesh) -> None:
     triangle, weights = curves.curve["root_triangle"], curves.curve["root_barycentric"]
     if scalp.faces is not None:
         set_primvar(prim, "skinprim", "uniform", scalp.faces[triangle].astype(np.int32))
-        place = np.einsum("nk,nkd->nd", weights, _face_places(scalp.faces)[triangle]).astype(np.float32)
+        place = np.einsum("nk,nkd->nd", weights, _face_places(scalp.faces, scalp.triangles)[triangle]).astype(
+            np.float32
+        )
         set_primvar(prim, "skinprimuv", "uniform", place, Types.TexCoord2fArray)
     if scalp.uv is not None:
         uv = np.einsum("nk,nkd->nd", weights, scalp.uv[triangle]).astype(np.float32)
@@ -231,13 +233,18 @@ def _assign_ids(curves: Curves) -> None:
             return
 
 
-def _face_places(faces: NDArray) -> NDArray[np.float64]:
+def _face_places(faces: NDArray, triangles: NDArray) -> NDArray[np.float64]:
     """Parametric coordinates (u, v) of triangle corners in their polygons, shape (m, 3, 2), as in Houdini.
 
     Triangles have (0,0) (1,0) (0,1); quads have (0,0) (0,1) (1,1) (1,0), and are linear in either half.
     """
     whole = np.array([[0, 0], [1, 0], [0, 1]], float)
-    halves = np.array([[[0, 0], [0, 1], [1, 1]], [[0, 0], [1, 1], [1, 0]]], float)
+    quad = np.array([[0, 0], [0, 1], [1, 1], [1, 0]], float)
     first = np.concatenate([[True], faces[1:] != faces[:-1]])
     is_triangle = first & np.concatenate([first[1:], [True]])
+    # The halves of a concave quad may meet in the diagonal of its corners 1 and 3, and then begin in different corners.
+    start = np.flatnonzero(first)[np.cumsum(first) - 1]
+    second = np.minimum(start + 1, len(faces) - 1)
+    fan = (triangles[start, 0] == triangles[second, 0])[:, None, None]
+    halves = np.where(fan, quad[[[0, 1, 2], [0, 2, 3]]][:, None], quad[[[0, 1, 3], [1, 2, 3]]][:, None])
     return np.where(is_triangle[:, None, None], whole, np.where(first[:, None, None], halves[0], halves[1]))

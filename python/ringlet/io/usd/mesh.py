@@ -15,7 +15,7 @@ from pxr import Usd, UsdGeom, UsdSkel, Vt
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Clip, Mesh
 from ringlet.data.stage import StageSpace
-from ringlet.io.polygons import check_polygons, fans
+from ringlet.io.polygons import check_polygons, triangulate
 from ringlet.io.space import check_points, from_metres, to_metres
 from ringlet.io.usd.stage import Source, choose, find_prim, prims, reading
 from ringlet.io.usd.values import (
@@ -128,7 +128,7 @@ def mesh_at(source: Source, prim: Usd.Prim) -> Mesh:
     # A mirroring transform reverses the winding, like leftHanded.
     mirrored = np.linalg.det(local_to_world(prim, time)[:3, :3]) < 0
     left_handed = mesh.GetOrientationAttr().Get(time) == UsdGeom.Tokens.leftHanded
-    corners, faces = fans(counts, clockwise=bool(mirrored) != left_handed)
+    corners, faces = triangulate(points, counts, indices, clockwise=bool(mirrored) != left_handed)
     visible = ~np.isin(faces, read_integers(mesh.GetHoleIndicesAttr(), time, where))
     corners, faces = corners[visible], faces[visible]
     if len(faces) == 0:
