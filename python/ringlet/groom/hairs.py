@@ -289,11 +289,12 @@ def _place(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -
     }
     if scalp.uv is not None:
         attributes["st"] = np.einsum("hc,hcx->hx", root_barycentric, scalp.uv[root_triangle]).astype(np.float32)
-    uniform = settings.width.model_copy(update={"vary": 0.0})
-    thickness = for_each_lock(uniform, Random(settings.seed, "hairs/width"), locks, scalp, "hairs.width")[lock]
+    uniform = settings.model_copy(update={"width": settings.width.model_copy(update={"vary": 0.0})})
+    thickness = _Values(uniform, locks, scalp)("width")[lock]
     thickness *= Varied(value=1.0, vary=settings.width.vary).factors(Random(settings.seed, "hairs/width"), ids, ids)
     if wider:
         thickness *= (full_count / counts)[lock]
+    thickness = Quantity.of(settings, "width").clipped(thickness, settings.width.peak)
     widths = (thickness.astype(np.float32)[:, None] * settings.width.along(u).astype(np.float32)).reshape(-1)
 
     curves = Curves(
@@ -320,10 +321,8 @@ class _Values:
 
     def __call__(self, name: str) -> NDArray[np.float64]:
         """Values of a setting, shape (locks,)."""
-        setting: Varied = getattr(self.settings, name)
-        return for_each_lock(
-            setting, Random(self.settings.seed, f"hairs/{name}"), self.locks, self.scalp, f"hairs.{name}"
-        )
+        random = Random(self.settings.seed, f"hairs/{name}")
+        return for_each_lock(self.settings, name, random, self.locks, self.scalp, f"hairs.{name}")
 
 
 def _settings(values: dict[str, Any]) -> HairSettings:

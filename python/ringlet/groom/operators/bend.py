@@ -20,7 +20,7 @@ class Bend(Shape):
     distributes the bend along the lock."""
 
     op: Literal["bend"] = "bend"
-    angle: Annotated[Ramped, Quantity("deg", -1000.0, 1000.0)] = Field(
+    angle: Annotated[Ramped, Quantity("deg", -1000.0, 1000.0, product=False)] = Field(
         default=Ramped(value=45.0), description="how far the tip is turned"
     )
     toward: Vector = Field(default=(0.0, -1.0, 0.0), description="direction that it bends to, Y up")
@@ -39,5 +39,5 @@ class Bend(Shape):
         axis = unit(np.cross(points[:, -1] - points[:, 0], toward))
         density = self.angle.along(between_edges(edges))
         cumulative = np.cumsum(density) / max(density.sum(), 1e-12)
-        angle = np.radians(context.values("angle", self.angle, curves))[:, None] * cumulative
+        angle = np.radians(context.values(self, "angle", curves))[:, None] * cumulative
         return along_edges(points[:, 0], turned(edges, axis[:, None, :], angle))

@@ -22,7 +22,7 @@ class Clump(Shape):
 
     op: Literal["clump"] = "clump"
     size: Annotated[float, Quantity("m", 1e-3, 1.0)] = Field(default=0.02, description="distance of the clumps")
-    amount: Annotated[Ramped, Quantity("", 0.0, 1.0)] = Field(
+    amount: Annotated[Ramped, Quantity("", 0.0, 1.0, product=False)] = Field(
         default=Ramped(value=0.4, vary=0.5, ramp=[(0, 0), (1, 1)]), description="0 apart, 1 all at the centre"
     )
     levels: int = Field(default=1, ge=1, le=8, description="clumps within clumps")
@@ -32,7 +32,7 @@ class Clump(Shape):
 
     def shape(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
         """Returns the clumped shapes, large clumps first; roots stay."""
-        amount = context.values("amount", self.amount, curves)[:, None]
+        amount = context.values(self, "amount", curves)[:, None]
         amount = np.minimum(amount * self.amount.along(np.linspace(0.0, 1.0, points.shape[1])), 1.0)[:, :, None]
         for level in range(self.levels):
             centre = self._centres(points[:, 0], self.size * self.finer**level, context)

@@ -40,7 +40,5 @@ class Frizz(Shape):
         noise = wander(context.random("wander"), curves.ids, along, self.size)
         tangent = unit(np.gradient(points, axis=1))
         across = noise - np.sum(noise * tangent, axis=2, keepdims=True) * tangent
-        magnitude = context.values("amount", self.amount, curves)[:, None] * self.amount.along(
-            np.linspace(0.0, 1.0, count)
-        )
+        magnitude = context.values(self, "amount", curves)[:, None] * self.amount.along(np.linspace(0.0, 1.0, count))
         return points + magnitude[:, :, None] * across

@@ -108,13 +108,17 @@ class Grown(Guides):
         seeds = Curves(roots, offsets_from_counts(np.ones(len(ids))), ids, bound)
 
         normal = scalp.frames(seeds)[:, :, 2]
-        length, lift, droop = (context.values(k, getattr(self, k), seeds) for k in ("length", "lift", "droop"))
+        length, lift, droop = (context.values(self, k, seeds) for k in ("length", "lift", "droop"))
         for k, zone in enumerate(self.zone):
             weight = zone.weight(seeds, context, f"guides.zone[{k}]")
             length *= 1.0 + weight * (zone.length - 1.0)
             lift *= 1.0 + weight * (zone.lift - 1.0)
             droop *= 1.0 + weight * (zone.droop - 1.0)
-        lift = np.clip(lift, 0.0, 1.0)[:, None]
+        length, lift, droop = (
+            Quantity.of(self, name).clipped(values)
+            for name, values in (("length", length), ("lift", lift), ("droop", droop))
+        )
+        lift = lift[:, None]
 
         start = unit(lift * normal + (1.0 - lift) * self._flow(seeds, normal, context))
         u = (np.arange(self.points - 1) + 0.5) / (self.points - 1)

@@ -32,5 +32,5 @@ class Noise(Shape):
         field = np.stack([context.random(axis).field(places, self.size) for axis in "xyz"], axis=1)
         field = field.reshape(points.shape)
         ramp = self.amount.along(np.linspace(0.0, 1.0, points.shape[1]))
-        magnitude = context.values("amount", self.amount, curves)[:, None] * ramp
+        magnitude = context.values(self, "amount", curves)[:, None] * ramp
         return points + magnitude[:, :, None] * (field - field[:, :1])

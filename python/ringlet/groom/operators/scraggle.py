@@ -30,7 +30,7 @@ class Scraggle(Shape):
     def shape(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
         """Returns the displaced shapes; roots stay."""
         ramp = self.amount.along(np.linspace(0.0, 1.0, points.shape[1]))
-        magnitude = context.values("amount", self.amount, curves)[:, None] * ramp
+        magnitude = context.values(self, "amount", curves)[:, None] * ramp
         return points + magnitude[:, :, None] * wander(
             context.random("wander"), curves.ids, arc_lengths(points), self.size
         )
