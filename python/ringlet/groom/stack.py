@@ -23,12 +23,14 @@ from ringlet.groom.hairs import HairMemory, HairSettings
 from ringlet.groom.load import stage_names
 from ringlet.groom.nails import nailed
 from ringlet.groom.operators import Context, Drawn, Operator, Resample
+from ringlet.groom.operators.operator import grid, unit
 from ringlet.groom.recipe import Recipe
 from ringlet.groom.scalp import Scalp
 from ringlet.groom.sculpt import Sculpted
 
 Progress = Callable[[str, int, int], None]
 
+STEEPLY_INWARD = -0.5  # cosine between a root's normal and the start of its lock
 PLAUSIBLE_SIZES = (0.03, 2.0)  # [m] width of a scalp; a size ten times off suggests a wrong unit
 
 
@@ -86,12 +88,14 @@ def make_groom(
             key = _key(key, name.encode(), helper.points.tobytes(), helper.offsets.tobytes())
         curves = drawn_guides or Curves.from_list([])
         stages = _stages(recipe)
-        guides, unsculpted, shapes = curves, curves, None
+        guides, unsculpted, shapes, uncleaned = curves, curves, None, curves
         for name, operator in stages:
             if progress:
                 progress(name, 0, 1)
             if name == "curl":
                 shapes = curves
+            if name == "clean":
+                uncleaned = curves
             context = Context(recipe.seed, surface, name, recipe.locks.points, helpers, shapes)
             curves, key = _run(operator, curves, key, context, memory)
             if name == "guides":
@@ -115,7 +119,11 @@ def make_groom(
         recipe=recipe.text,
         shapes=shapes,
         unsculpted=unsculpted,
-        conflicts=[*_conflicts(recipe, unsculpted, curves), *_odd_size(scalp, recipe.scalp.region)],
+        conflicts=[
+            *_conflicts(recipe, unsculpted, curves),
+            *_odd_size(scalp, recipe.scalp.region),
+            *_inward(uncleaned, surface),
+        ],
     )
 
 
@@ -171,6 +179,17 @@ def _odd_size(mesh: Mesh, region: str | None) -> Iterator[str]:
         yield (
             f"the scalp is {size:.2g} m across; see whether its file names the unit in which it was made "
             "(metersPerUnit, or `unit` under [scalp] for an OBJ)"
+        )
+
+
+def _inward(locks: Curves, scalp: Scalp) -> Iterator[str]:
+    """A message for locks that start into the scalp: its faces may be turned inside out."""
+    start = grid(locks)[:, 1 : max(2, locks.counts[0] // 4)].mean(axis=1) - locks.roots
+    inward = np.einsum("ki,ki->k", unit(start), scalp.frames(locks)[:, :, 2]) < STEEPLY_INWARD
+    if inward.any():
+        yield (
+            f"{inward.sum()} of {len(locks)} locks, such as {locks.ids[inward.argmax()]}, start into the scalp and are "
+            f"laid along it; if they are outside of it, reverse the orientation of {scalp.mesh.name}"
         )
 
 
