@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 from ringlet.data.errors import UserError
 
+LEAST_EDGE = 1e-8  # [m] an edge that is shorter has no direction in single precision
+
 
 @dataclass
 class Curves:
@@ -104,6 +106,26 @@ class Curves:
         if len(np.unique(self.ids)) != len(self):
             values, uses = np.unique(self.ids, return_counts=True)
             raise UserError(f"{what}: id {values[uses > 1][0]} is used by {uses.max()} curves; ids must be unique")
+        return self
+
+    def check_strands(self, what: str) -> Curves:
+        """Refuses curves that cannot move as strands; ``what`` names them in the message. Returns self.
+
+        A strand has at least 3 points, and no edge shorter than ``LEAST_EDGE``.
+        """
+        if (short := np.flatnonzero(self.counts < 3)).size:
+            raise UserError(
+                f"{what}: curve {self.ids[short[0]]} has {self.counts[short[0]]} points; must have at least 3"
+            )
+        edges = np.linalg.norm(np.diff(self.points, axis=0), axis=1)
+        edges[self.offsets[1:-1] - 1] = np.inf  # the jump from one curve to the next is no edge
+        if (flat := np.flatnonzero(~(edges >= LEAST_EDGE))).size:
+            curve = int(np.searchsorted(self.offsets, flat[0], side="right") - 1)
+            point, place = flat[0] - self.offsets[curve], ", ".join(f"{x:.4g}" for x in self.points[flat[0]])
+            raise UserError(
+                f"{what}: points {point} and {point + 1} of curve {self.ids[curve]} coincide at ({place}) m; move them "
+                "apart, or resample it"
+            )
         return self
 
 

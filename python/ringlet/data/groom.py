@@ -6,9 +6,15 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
 from ringlet.data.mesh import Mesh
 from ringlet.data.stage import StageSpace
+
+FLAT = 1e-9  # twice the area of a triangle, relative to its longest edge squared, at which it has no frame
 
 
 @dataclass
@@ -46,3 +52,29 @@ class Groom:
     unsculpted: Curves | None = None
     variant: str | None = None
     conflicts: list[str] = field(default_factory=list)
+
+    def check_roots(self, scalp_points: NDArray[np.floating], when: str, what: str) -> None:
+        """Refuses locks without roots on the scalp, and a scalp on which a root has no frame.
+
+        scalp_points: positions of the scalp [m], shape (n, 3)
+        when, what:   which positions these are, and who asks, for messages
+        """
+        scalp, bound = self.scalp, self.locks.curve
+        if "root_triangle" not in bound or "root_barycentric" not in bound:
+            raise UserError(f"{what}: the locks are not bound to a scalp; make the groom again from its recipe")
+        if scalp_points.shape != scalp.points.shape:
+            raise UserError(
+                f"{scalp.name}: has {len(scalp_points)} points at {when}, but the groom was made on one with "
+                f"{len(scalp.points)}; make the groom again on this mesh"
+            )
+        a, b, c = np.asarray(scalp_points, np.float64)[scalp.triangles[bound["root_triangle"]]].transpose(1, 0, 2)
+        with np.errstate(invalid="ignore", over="ignore"):
+            longest = np.maximum(np.sum((b - a) ** 2, axis=1), np.sum((c - a) ** 2, axis=1))
+            flat = ~(np.linalg.norm(np.cross(b - a, c - a), axis=1) > FLAT * longest)
+        flat |= ~np.isfinite(longest)
+        if flat.any():
+            lock = int(flat.argmax())
+            raise UserError(
+                f"{scalp.name}: at {when} triangle {bound['root_triangle'][lock]}, where lock {self.locks.ids[lock]} "
+                "is rooted, has no area or is not finite; mend the mesh or its animation"
+            )

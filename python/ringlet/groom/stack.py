@@ -123,6 +123,7 @@ def make_groom(
             *_conflicts(recipe, unsculpted, curves),
             *_odd_size(scalp, recipe.scalp.region),
             *_inward(uncleaned, surface),
+            *_not_strands(curves),
         ],
     )
 
@@ -191,6 +192,14 @@ def _inward(locks: Curves, scalp: Scalp) -> Iterator[str]:
             f"{inward.sum()} of {len(locks)} locks, such as {locks.ids[inward.argmax()]}, start into the scalp and are "
             f"laid along it; if they are outside of it, reverse the orientation of {scalp.mesh.name}"
         )
+
+
+def _not_strands(locks: Curves) -> Iterator[str]:
+    """A message for locks that cannot be simulated."""
+    try:
+        locks.check_strands("locks")
+    except UserError as error:
+        yield f"{error}; as it is, the groom cannot be simulated"
 
 
 def _run(operator: Operator, curves: Curves, key: str, context: Context, memory: Memory) -> tuple[Curves, str]:

@@ -15,7 +15,7 @@ from ringlet.data.errors import UserError
 from ringlet.data.mesh import Clip, Mesh
 from ringlet.shot.cloth import ShotCloth
 from ringlet.sim.cloth import Cloth
-from ringlet.sim.obstacle import Obstacle
+from ringlet.sim.obstacle import Obstacle, refuse_flat
 from ringlet.sim.pins import PinnedVertices
 
 Array = NDArray[np.float64]
@@ -60,6 +60,7 @@ class SimulatedGarment:
         self.garment = garment
         settings, mesh = garment.settings, garment.mesh
         begin = start_positions(garment, obstacles, first)
+        refuse_flat(mesh, begin, first, "begin where each has one, or mend the animation")
         where = f"shot: cloth '{garment.name}', pin"
         self._pins = [
             PinnedVertices(mesh, garment.clip, pin, f"{where}[{k}]", obstacles, begin, first)

@@ -205,7 +205,7 @@ class Motion:
 
 def _check(shot: Shot, locks: Curves) -> None:
     """Refuses locks with no vertex that is free to move."""
-    locks.check("sim: locks")
+    locks.check("sim: locks").check_strands("sim: locks")
     if (locks.counts <= shot.held).any():
         raise UserError(
             f"sim: held is {shot.held}, but a lock has {locks.counts.min()} points; hold fewer, or resample the locks"
