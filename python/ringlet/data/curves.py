@@ -106,7 +106,22 @@ class Curves:
         if len(np.unique(self.ids)) != len(self):
             values, uses = np.unique(self.ids, return_counts=True)
             raise UserError(f"{what}: id {values[uses > 1][0]} is used by {uses.max()} curves; ids must be unique")
+        self._check_values(what)
         return self
+
+    def _check_values(self, what: str) -> None:
+        """Refuses widths and nails out of range."""
+        for name, least, most in (("width", 0.0, np.inf), ("nail", 0.0, 1.0)):
+            for kind, attributes in (("curve", self.curve), ("point", self.point)):
+                values = np.asarray(attributes.get(name, ()))
+                if values.dtype.kind not in "biuf" or values.ndim != 1:
+                    raise UserError(f"{what}: {name} is not one number for each {kind}; write it again")
+                good = np.isfinite(values) & (values >= least) & (values <= most)
+                if (bad := np.flatnonzero(~good)).size:
+                    row = int(bad[0])
+                    curve = row if kind == "curve" else int(np.searchsorted(self.offsets, row, side="right") - 1)
+                    bound = f"from {least:g} to {most:g}" if np.isfinite(most) else f"at least {least:g} and finite"
+                    raise UserError(f"{what}: {name} is {values[row]:g} on curve {self.ids[curve]}; must be {bound}")
 
     def check_strands(self, what: str) -> Curves:
         """Refuses curves that cannot move as strands; ``what`` names them in the message. Returns self.
