@@ -275,6 +275,15 @@ def test_clumps_of_a_second_level_are_within_those_of_the_first():
     assert near(soft + "levels = 3\n") < 0.7 * near(soft)
 
 
+def test_a_plain_amount_clumps_every_lock_as_much():
+    one = "[[shape]]\nop = 'clump'\nsize = 4\namount = {}\n"
+    plain, table, varied = (locks(one.format(value)) for value in ("1", "{ value = 1, vary = 0 }", "{ value = 1 }"))
+    np.testing.assert_array_equal(plain.points, table.points)
+    assert np.abs(varied.points - plain.points).max() > 1e-3
+    tips = plain.points[plain.offsets[1:] - 1]
+    assert len(np.unique(tips.round(9), axis=0)) < 0.7 * len(tips)  # all of a clump end at its centre
+
+
 def test_locks_part_at_a_plane_and_at_a_drawn_line():
     beside = [upright(x=0.01), upright(x=-0.01), upright(x=0.09)]
     for parting in ("", "parting = { line = 'middle' }"):
