@@ -4,6 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from ringlet.data.random import Random
 from ringlet.groom.operators import Context
 from ringlet.groom.scalp import Scalp
 from shapes import ball, sheet
@@ -156,6 +157,23 @@ def test_a_region_mask_acts_in_its_region_with_a_falloff():
     assert near.sum() > 3 and far.sum() > 3
     assert not hard[behind].any() and not soft[far].any()
     assert soft[near].all()
+
+
+@pytest.mark.parametrize(("unit", "half"), [("cm", "4"), ("mm", "40"), ("m", "0.04")])
+def test_lengths_of_expressions_count_in_the_unit_of_the_recipe(unit, half):
+    curves = Curves.from_list([upright(x=x) for x in np.linspace(-0.08, 0.08, 9)])
+
+    def weights(unit, where):
+        text = f"ringlet = 1\nunit = '{unit}'\n[[shape]]\nop = 'bend'\nmask = {{ where = '{where}' }}\n"
+        mask = parse_recipe(text).shape[0].mask
+        assert not mask.everywhere and mask.where == where
+        return mask.weights(curves, sheet(), Random(1, "mask"), "mask")[:, 0]
+
+    right = weights("m", "x > 0.05")
+    assert 0 < right.sum() < len(right)
+    np.testing.assert_array_equal(weights(unit, f"x > 1.25 * {half}"), right)
+    np.testing.assert_array_equal(weights(unit, f"length > 2 * {half}"), np.ones(len(curves)))
+    np.testing.assert_array_equal(weights(unit, f"length > 3 * {half}"), np.zeros(len(curves)))
 
 
 def test_a_painted_mask_weights_every_lock_by_the_value_at_its_root():

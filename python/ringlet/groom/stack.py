@@ -214,7 +214,7 @@ def _run(operator: Operator, curves: Curves, key: str, context: Context, memory:
 
 def _scalp(recipe: Recipe, mesh: Mesh, memory: Memory) -> tuple[str, Scalp]:
     key = _key(
-        str((recipe.seed, recipe.scalp.region)),
+        str((recipe.seed, recipe.unit, recipe.scalp.region)),
         mesh.points.tobytes(),
         mesh.triangles.tobytes(),
         *(chunk for kind in (mesh.regions, mesh.maps, mesh.vectors, mesh.textures) for chunk in _contents(kind)),
