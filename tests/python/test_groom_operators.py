@@ -270,6 +270,21 @@ def test_noise_moves_neighbours_together_and_scraggle_does_not():
         assert np.linalg.norm(moved[0] - moved[2]) > 0.2 * np.linalg.norm(moved[0])
 
 
+@pytest.mark.parametrize("op", ["scraggle", "noise", "frizz"])
+def test_displacements_keep_lengths_or_say_how_much_longer_locks_become(op):
+    text = f"[[shape]]\nop = '{op}'\namount = 6\nsize = 1.5\n"
+    plain, longer, kept = locks(), locks(text), locks(f"{text}keep = 'length'\n")
+    assert longer.lengths().max() > 2.0 * plain.lengths().max()
+    np.testing.assert_allclose(kept.lengths(), plain.lengths(), rtol=1e-3)
+    assert np.abs(kept.points - plain.points).max() > 2e-3
+    recipe = "ringlet = 1\n[guides]\ncount = 8\n[locks]\ncount = 10\n"
+    said, silent = (
+        make_groom(parse_recipe(f"{recipe}{text}{keep}"), ball()).conflicts for keep in ("", "keep = 'length'")
+    )
+    assert any(f"{op} makes" in line and "keep = 'length'" in line for line in said)
+    assert not any("makes" in line for line in silent)
+
+
 def test_frizz_is_transverse_and_refused_on_a_coarse_shape():
     frizzed = on_sheet("op = 'frizz'\namount = 0.2\nsize = 2", [upright(61)])[0]
     np.testing.assert_allclose(frizzed[:, 1], upright(61)[:, 1], atol=1e-12)

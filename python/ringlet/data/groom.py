@@ -35,8 +35,8 @@ class Groom:
     shapes:     the locks before they were curled (None for a groom that was read from a file)
     unsculpted: the guides before they were sculpted by hand (None for a groom that was read from a file)
     variant:    which variant of the file it was read from (None where that has none)
-    conflicts:  a sentence for every edit of a guide or a lock that is not there, for a head of an odd size, and for
-                locks that start into it
+    conflicts:  a sentence for every edit of a guide or a lock that is not there, for a head of an odd size,
+                for locks that start into it, and for those that a displacement makes much longer
     """
 
     guides: Curves

@@ -24,12 +24,14 @@ from ringlet.groom.load import stage_names
 from ringlet.groom.nails import nailed
 from ringlet.groom.operators import Context, Drawn, Operator, Resample
 from ringlet.groom.operators.operator import grid, unit
+from ringlet.groom.operators.shape import Displacement
 from ringlet.groom.recipe import Recipe
 from ringlet.groom.scalp import Scalp
 from ringlet.groom.sculpt import Sculpted
 
 Progress = Callable[[str, int, int], None]
 
+MUCH_LONGER = 2.0  # factor on the length of a lock that a displacement is not expected to exceed
 STEEPLY_INWARD = -0.5  # cosine between a root's normal and the start of its lock
 PLAUSIBLE_SIZES = (0.03, 2.0)  # [m] width of a scalp; a size ten times off suggests a wrong unit
 
@@ -89,6 +91,7 @@ def make_groom(
         curves = drawn_guides or Curves.from_list([])
         stages = _stages(recipe)
         guides, unsculpted, shapes, uncleaned = curves, curves, None, curves
+        lengthened: list[str] = []
         for name, operator in stages:
             if progress:
                 progress(name, 0, 1)
@@ -97,7 +100,10 @@ def make_groom(
             if name == "clean":
                 uncleaned = curves
             context = Context(recipe.seed, surface, name, recipe.locks.points, helpers, shapes)
+            before = curves
             curves, key = _run(operator, curves, key, context, memory)
+            if isinstance(operator, Displacement):
+                lengthened += _lengthened(name, before, curves)
             if name == "guides":
                 guides = unsculpted = curves
             if name == "sculpt":
@@ -122,6 +128,7 @@ def make_groom(
         conflicts=[
             *_conflicts(recipe, unsculpted, curves),
             *_odd_size(scalp, recipe.scalp.region),
+            *lengthened,
             *_inward(uncleaned, surface),
             *_not_strands(curves),
         ],
@@ -180,6 +187,18 @@ def _odd_size(mesh: Mesh, region: str | None) -> Iterator[str]:
         yield (
             f"the scalp is {size:.2g} m across; see whether its file names the unit in which it was made "
             "(metersPerUnit, or `unit` under [scalp] for an OBJ)"
+        )
+
+
+def _lengthened(name: str, before: Curves, after: Curves) -> Iterator[str]:
+    """A message for an operator that displaces locks so far that they become much longer."""
+    was, now = before.lengths(), after.lengths()
+    if (much := now > MUCH_LONGER * was).any():
+        lock = int(np.argmax(now / was))
+        yield (
+            f"{name} makes {much.sum()} of {len(was)} locks more than {MUCH_LONGER:g} times as long, lock "
+            f"{after.ids[lock]} {now[lock]:.3g} instead of {was[lock]:.3g} m; lower its amount, raise its size, or "
+            "give it keep = 'length'"
         )
 
 
