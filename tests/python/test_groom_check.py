@@ -180,3 +180,14 @@ def test_the_command_checks_repairs_and_draws(tmp_path):
     assert run(tmp_path / "sunk.usdc", "--fix")[0] == 2
     with pytest.raises(UserError, match=r"check: thickness is -1 m; must be at least 0"):
         ringlet.check_groom(tmp_path / "groom.usdc", thickness=-1.0)
+
+
+def test_the_command_says_how_thick_locks_are_with_their_hairs(tmp_path):
+    folder = write_example(tmp_path)
+    recipe = folder / "small.recipe.toml"
+    wide = "[hairs]\nradius = { value = 0.2, ramp = [[0, 1], [1, 0.5]] }"
+    recipe.write_text(recipe.read_text().replace("[hairs]", wide))
+    assert ringlet.check_groom(recipe)["lock_thickness"] == pytest.approx(0.004)
+    said = CliRunner().invoke(app, ["check", str(recipe)]).stdout
+    assert "locks are 4 mm thick: --thickness 4 counts" in said
+    assert "thick:" not in CliRunner().invoke(app, ["check", str(recipe), "--thickness", "4"]).stdout

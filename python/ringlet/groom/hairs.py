@@ -205,6 +205,12 @@ def hair_count(groom: Groom) -> int:
     return max(1, round(len(groom.locks) * _settings(groom.hairs).per_lock.value))
 
 
+def lock_thickness(groom: Groom) -> float:
+    """Largest diameter of a lock with its hairs [m], but for chance and maps."""
+    radius = _settings(groom.hairs).radius
+    return 2.0 * max([radius.value, *radius.region.values(), *radius.lock.values()]) * radius.peak
+
+
 def make_hairs(groom: Groom, *, fraction: float = 1.0, wider: bool = False, memory: HairMemory | None = None) -> Hairs:
     """Makes the hairs of every lock, with positions keyed by (seed, lock, number).
 
