@@ -60,7 +60,6 @@ class SimulatedGarment:
         self.garment = garment
         settings, mesh = garment.settings, garment.mesh
         begin = start_positions(garment, obstacles, first)
-        refuse_flat(mesh, begin, first, "begin where each has one, or mend the animation")
         where = f"shot: cloth '{garment.name}', pin"
         self._pins = [
             PinnedVertices(mesh, garment.clip, pin, f"{where}[{k}]", obstacles, begin, first)
@@ -72,6 +71,7 @@ class SimulatedGarment:
             held[pin.vertices], holder[pin.vertices] = pin.stiffness is None, pin.obstacle
             attachment[pin.vertices] = 0.0 if pin.stiffness is None else pin.stiffness
         self.cloth = Cloth(mesh, settings.material, held, attachment=attachment)
+        refuse_flat(mesh, begin, first, "begin where each has one, or mend the animation")
         self.cloth.positions[:] = begin
         self.pinned_to = _most_frequent(holder[held])
         self.cloth.scale_rest(settings.least_scale)  # contact leaves room for the smallest scale
