@@ -72,6 +72,16 @@ def test_a_small_painted_spot_keeps_the_count(kind, source):
     assert np.linalg.norm(curves.roots - [0.03, 0.0, 0.03], axis=1).max() < 0.02
 
 
+def test_coincident_points_of_a_guide_change_nothing():
+    line = np.linspace(0, 0.05, 4)[:, None] * [0.0, 1.0, 0.0]
+    text = "[guides]\nfile = 'g.usda'\n[locks]\npoints = 12\n"
+    plain, doubled = (
+        groom(text, sheet(), drawn_guides=Curves.from_list([one, one + [0.02, 0, 0]])).locks.points
+        for one in (line, line[[0, 0, 1, 2, 2, 2, 3, 3]])
+    )
+    np.testing.assert_array_equal(doubled, plain)
+
+
 def test_zero_density_grows_nothing_and_is_refused_everywhere():
     mesh = painted()
     mesh.maps["thick"][mesh.maps["thick"] < 0.5] = 0.0

@@ -82,6 +82,19 @@ class Curves:
             raise ValueError(f"curves: points have shape {points.shape}; must be {self.points.shape}")
         return Curves(points, self.offsets, self.ids, self.curve, self.point)
 
+    def distinct(self) -> Curves:
+        """The same curves without points that coincide with the one before; each keeps at least two."""
+        edges = np.linalg.norm(np.diff(self.points, axis=0, prepend=self.points[:1]), axis=1)
+        kept = edges >= LEAST_EDGE
+        kept[self.offsets[:-1]] = True
+        counts = np.add.reduceat(kept, self.offsets[:-1]) if len(self) else np.zeros(0, np.int64)
+        kept |= np.repeat(counts < 2, self.counts)
+        if kept.all():
+            return self
+        counts = np.add.reduceat(kept, self.offsets[:-1])
+        point = {name: values[kept] for name, values in self.point.items()}
+        return Curves(self.points[kept], offsets_from_counts(counts), self.ids, self.curve, point)
+
     def check(self, what: str) -> Curves:
         """Refuses invalid curves; ``what`` names them in the message. Returns self."""
         if len(self) == 0:

@@ -85,8 +85,8 @@ def make_groom(
         if drawn_guides is not None:
             key = _key(key, drawn_guides.points.tobytes(), drawn_guides.offsets.tobytes(), drawn_guides.ids.tobytes())
         helpers = {**{name: c for name, h in recipe.curves.items() if (c := h.inline_curve())}, **(helpers or {})}
+        helpers = {name: helper.check(f"curves.{name}").distinct() for name, helper in helpers.items()}
         for name, helper in helpers.items():
-            helper.check(f"curves.{name}")
             key = _key(key, name.encode(), helper.points.tobytes(), helper.offsets.tobytes())
         curves = drawn_guides or Curves.from_list([])
         stages = _stages(recipe)
