@@ -222,7 +222,7 @@ void bind_groom(nb::module_ &module) {
         .def(
             "points",
             [](const Repair &repair) {
-                std::vector<Vec3> points(repair.points().begin(), repair.points().end());
+                std::vector<Vec3> points = repair.points();
                 const size_t count = points.size();
                 return to_numpy<double>(std::move(points), {count, 3});
             },

@@ -186,6 +186,66 @@ BOOST_AUTO_TEST_CASE(a_curl_pushed_out_of_a_body_keeps_its_length) {
     BOOST_TEST(after == before, boost::test_tools::tolerance(0.1));
 }
 
+// The largest and the least factor on the length of an edge, and the factor on the whole length.
+std::array<double, 3> stretches(View<Vec3> before, View<Vec3> after) {
+    double least = std::numeric_limits<double>::infinity(), most = 0.0, was = 0.0, is = 0.0;
+    for (size_t k = 1; k < before.size(); ++k) {
+        const double old_edge = (before[k] - before[k - 1]).norm(), edge = (after[k] - after[k - 1]).norm();
+        least = std::min(least, edge / old_edge), most = std::max(most, edge / old_edge);
+        was += old_edge, is += edge;
+    }
+    return {most, least, is / was};
+}
+
+BOOST_AUTO_TEST_CASE(a_curve_straight_into_a_body_is_led_along_it_with_its_length) {
+    OwnedMesh body = octahedron();
+    const Vec3 root(0.3, 0.4, 0.3), inward = -Vec3::Ones().normalized();
+    for (const bool reversed : {false, true}) {
+        if (reversed)
+            for (Triangle &t : body.triangles) std::swap(t[1], t[2]);
+        std::vector<Vec3> curve;
+        for (int i = 0; i <= 20; ++i) curve.emplace_back(root + (reversed ? -0.01 : 0.01) * i * inward);
+        const std::vector<int> offsets{0, static_cast<int>(curve.size())};
+        const std::vector<Vec3> result = push_out({curve, offsets}, Solid(body.view()), 1e-3);
+        const auto [most, least, whole] = stretches(curve, result);
+        BOOST_TEST(least > 0.5);
+        BOOST_TEST(most < 2.0);
+        BOOST_TEST(whole == 1.0, boost::test_tools::tolerance(0.05));
+        BOOST_TEST((result.back() - curve.back()).norm() > 0.1);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_push_out_of_triangles_that_face_against_one_another_stays_bounded) {
+    OwnedMesh body = octahedron();
+    for (size_t t = 0; t < body.triangles.size(); t += 3) std::swap(body.triangles[t][1], body.triangles[t][2]);
+    std::vector<Vec3> curve;
+    for (int i = 0; i <= 200; ++i) curve.emplace_back(0.5 + 2e-3 * std::sin(0.5 * i), 0.5 - 2e-3 * i, 2e-3 * std::cos(0.5 * i));
+    const std::vector<int> offsets{0, static_cast<int>(curve.size())};
+    const auto [most, least, whole] = stretches(curve, push_out({curve, offsets}, Solid(body.view()), 2e-3));
+    BOOST_TEST((whole > 0.5 && whole < 2.0));
+}
+
+BOOST_AUTO_TEST_CASE(repair_does_not_stretch_curves_that_are_shorter_than_their_distance) {
+    const OwnedMesh mesh = octahedron();
+    const Solid body(mesh.view());
+    std::vector<Vec3> points;
+    std::vector<int> offsets{0};
+    for (int lock = 0; lock < 6; ++lock) {
+        for (int i = 0; i <= 5; ++i) points.emplace_back(0.3 + 2e-3 * i, 0.4 + 1e-3 * lock, 0.3 + 1e-3 * lock * i);
+        offsets.push_back(static_cast<int>(points.size()));
+    }
+    const CurveView curves{points, offsets};
+    Repair repair(curves, {&body}, {.thickness = 0.05});
+    for (int round = 0; round < 40 && repair.round() > 0; ++round) {
+    }
+    const std::vector<Vec3> repaired = repair.points();
+    const CurveView after{repaired, offsets};
+    for (int i = 0; i < curves.count(); ++i) {
+        const auto [most, least, whole] = stretches(curves[i], after[i]);
+        BOOST_TEST((whole > 0.79 && whole < 1.26));
+    }
+}
+
 BOOST_AUTO_TEST_CASE(repair_frees_curves_that_pass_through_a_body_and_one_another) {
     const OwnedMesh mesh = octahedron();
     const Solid body(mesh.view());
@@ -205,7 +265,8 @@ BOOST_AUTO_TEST_CASE(repair_frees_curves_that_pass_through_a_body_and_one_anothe
     Repair repair(curves, {&body}, allowed);
     for (int round = 0; round < 100 && repair.round() > 0; ++round) {
     }
-    const CurveView after{repair.points(), offsets};
+    const std::vector<Vec3> repaired = repair.points();
+    const CurveView after{repaired, offsets};
     BOOST_TEST(find_overlaps(after, 1e-3).empty());
     for (const Penetration &place : find_penetrations(after, {&body}, allowed)) BOOST_TEST(place.point == -1);
     for (int i = 0; i < 6; ++i) BOOST_TEST(after[i][0] == curves[i][0]);

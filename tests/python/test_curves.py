@@ -12,6 +12,24 @@ def helix(radius=0.01, pitch=0.02, turns=3.0, points=400):
     return np.stack([radius * np.cos(phase), pitch * phase / (2.0 * np.pi), radius * np.sin(phase)], axis=1)
 
 
+@pytest.mark.parametrize(
+    ("curve", "point", "message"),
+    [
+        ({}, {"width": [1e-4, np.nan, 0, 0]}, "here: width is nan on curve 7; must be at least 0 and finite"),
+        ({"width": [1e-4, -1.0]}, {}, "here: width is -1 on curve 9; must be at least 0 and finite"),
+        ({}, {"nail": [0, 0, 1, 1e30]}, "here: nail is 1e\\+30 on curve 9; must be from 0 to 1"),
+        ({}, {"nail": [0, -5, 1, 0]}, "here: nail is -5 on curve 7; must be from 0 to 1"),
+        ({}, {"nail": [0, 0, np.nan, 0]}, "here: nail is nan on curve 9; must be from 0 to 1"),
+    ],
+)
+def test_widths_and_nails_out_of_range_are_refused(curve, point, message):
+    curves = Curves.from_list([np.eye(3)[:2], np.eye(3)[1:]], ids=[7, 9])
+    curves.curve |= {name: np.array(values) for name, values in curve.items()}
+    curves.point |= {name: np.array(values) for name, values in point.items()}
+    with pytest.raises(UserError, match=message):
+        curves.check("here")
+
+
 def frames_along(points, axis=(1.0, 0.0, 0.0)):
     offsets = np.array([0, len(points)], np.int32)
     return _core.curve_frames(np.ascontiguousarray(points), offsets, np.array([axis]))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from ringlet.cli.app import app
 from ringlet.data.groom import Groom
-from shapes import ball
+from shapes import ball, sheet
 from small_example import write_example
 from typer.testing import CliRunner
 
@@ -113,6 +113,21 @@ def test_repair_removes_every_intersection_with_bounded_displacements(kind):
     np.testing.assert_allclose(repair.groom.locks.lengths(), made.locks.lengths(), rtol=0.05)
 
 
+@pytest.mark.parametrize("margin", [0.0, 0.2])
+def test_locks_that_start_into_the_scalp_keep_their_lengths_and_are_reported(margin):
+    text = "ringlet = 1\n[guides]\nfile = 'g.usda'\n[locks]\ncount = 30\npoints = 20\n[clean]\nmargin = {}\n"
+    guides = Curves.from_list([[x, 0.0, 0.0] + 0.03 * np.linspace(0, 1, 9)[:, None] * [0, 1, 0] for x in (-0.02, 0.02)])
+    inside_out = sheet()
+    inside_out.triangles = inside_out.triangles[:, ::-1].copy()
+    made = make_groom(parse_recipe(text.format(margin)), inside_out, drawn_guides=guides)
+    edges = np.linalg.norm(np.diff(made.locks.points.reshape(30, 20, 3), axis=1), axis=2)
+    assert edges.min() > 0.5 * 0.03 / 19
+    np.testing.assert_allclose(made.locks.lengths(), 0.03, rtol=0.1)
+    assert any("30 of 30 locks" in line and "reverse the orientation of sheet" in line for line in made.conflicts)
+    outward = make_groom(parse_recipe(text.format(margin)), sheet(), drawn_guides=guides)
+    assert not any("start into" in line for line in outward.conflicts)
+
+
 @pytest.mark.parametrize("setting", ["width", "margin"])
 def test_locks_guided_around_the_head_change_continuously(setting):
     recipe = (
@@ -165,3 +180,14 @@ def test_the_command_checks_repairs_and_draws(tmp_path):
     assert run(tmp_path / "sunk.usdc", "--fix")[0] == 2
     with pytest.raises(UserError, match=r"check: thickness is -1 m; must be at least 0"):
         ringlet.check_groom(tmp_path / "groom.usdc", thickness=-1.0)
+
+
+def test_the_command_says_how_thick_locks_are_with_their_hairs(tmp_path):
+    folder = write_example(tmp_path)
+    recipe = folder / "small.recipe.toml"
+    wide = "[hairs]\nradius = { value = 0.2, ramp = [[0, 1], [1, 0.5]] }"
+    recipe.write_text(recipe.read_text().replace("[hairs]", wide))
+    assert ringlet.check_groom(recipe)["lock_thickness"] == pytest.approx(0.004)
+    said = CliRunner().invoke(app, ["check", str(recipe)]).stdout
+    assert "locks are 4 mm thick: --thickness 4 counts" in said
+    assert "thick:" not in CliRunner().invoke(app, ["check", str(recipe), "--thickness", "4"]).stdout

@@ -39,6 +39,49 @@ def test_a_painted_density_sets_the_spacing_and_keeps_the_count(kind):
     assert np.median(nearest[~right]) == pytest.approx(2.0 * np.median(nearest[right]), rel=0.2)
 
 
+def test_guides_follow_the_flow_where_there_is_no_whorl():
+    text = "[guides]\ncount = 40\nlift = 0\ndroop = 0\nwhorl = false\nflow = [1, 0, 0]\n"
+    guides = groom(text, sheet()).guides
+    direction = guides.points[guides.offsets[1:] - 1] - guides.roots
+    np.testing.assert_allclose(direction, [[0.08, 0.0, 0.0]] * 40, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    "text", ["whorl = false\nflow = [0, -1, 0]\nlift = 0\ndroop = 0", "lift = 1\ndroop = 2\npoints = 10"]
+)
+def test_guides_have_their_length_where_a_direction_vanishes(text):
+    guides = groom(f"[guides]\ncount = 40\nlength = 6\n{text}\n", sheet()).guides
+    np.testing.assert_allclose(guides.lengths(), 0.06)
+    assert np.linalg.norm(np.diff(guides.points.reshape(40, -1, 3), axis=1), axis=2).min() > 1e-3
+
+
+@pytest.mark.parametrize("kind", ["guides", "locks"])
+@pytest.mark.parametrize("source", ["primvar", "texture"])
+def test_a_small_painted_spot_keeps_the_count(kind, source):
+    mesh = sheet(20)
+    spot = np.linalg.norm(mesh.points[mesh.triangles] - [0.03, 0.0, 0.03], axis=2) < 0.006
+    if source == "primvar":
+        mesh.maps["spot"] = spot.astype(float)
+    else:
+        mesh.uv = (mesh.points[mesh.triangles][:, :, [0, 2]] + 0.1) / 0.2
+        mesh.textures["spot"] = np.zeros((100, 100))
+        mesh.textures["spot"][34:37, 64:67] = 1.0
+    other = "[locks]\npoints = 10" if kind == "guides" else "[guides]\ncount = 20"
+    curves = getattr(groom(f"[{kind}]\ncount = 400\ndensity = 'spot'\n{other}", mesh), kind)
+    assert len(curves) == 400 and len(np.unique(curves.roots, axis=0)) == 400
+    assert np.linalg.norm(curves.roots - [0.03, 0.0, 0.03], axis=1).max() < 0.02
+
+
+def test_coincident_points_of_a_guide_change_nothing():
+    line = np.linspace(0, 0.05, 4)[:, None] * [0.0, 1.0, 0.0]
+    text = "[guides]\nfile = 'g.usda'\n[locks]\npoints = 12\n"
+    plain, doubled = (
+        groom(text, sheet(), drawn_guides=Curves.from_list([one, one + [0.02, 0, 0]])).locks.points
+        for one in (line, line[[0, 0, 1, 2, 2, 2, 3, 3]])
+    )
+    np.testing.assert_array_equal(doubled, plain)
+
+
 def test_zero_density_grows_nothing_and_is_refused_everywhere():
     mesh = painted()
     mesh.maps["thick"][mesh.maps["thick"] < 0.5] = 0.0

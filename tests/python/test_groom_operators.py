@@ -4,6 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from ringlet.data.random import Random
 from ringlet.groom.operators import Context
 from ringlet.groom.scalp import Scalp
 from shapes import ball, sheet
@@ -158,6 +159,23 @@ def test_a_region_mask_acts_in_its_region_with_a_falloff():
     assert soft[near].all()
 
 
+@pytest.mark.parametrize(("unit", "half"), [("cm", "4"), ("mm", "40"), ("m", "0.04")])
+def test_lengths_of_expressions_count_in_the_unit_of_the_recipe(unit, half):
+    curves = Curves.from_list([upright(x=x) for x in np.linspace(-0.08, 0.08, 9)])
+
+    def weights(unit, where):
+        text = f"ringlet = 1\nunit = '{unit}'\n[[shape]]\nop = 'bend'\nmask = {{ where = '{where}' }}\n"
+        mask = parse_recipe(text).shape[0].mask
+        assert not mask.everywhere and mask.where == where
+        return mask.weights(curves, sheet(), Random(1, "mask"), "mask")[:, 0]
+
+    right = weights("m", "x > 0.05")
+    assert 0 < right.sum() < len(right)
+    np.testing.assert_array_equal(weights(unit, f"x > 1.25 * {half}"), right)
+    np.testing.assert_array_equal(weights(unit, f"length > 2 * {half}"), np.ones(len(curves)))
+    np.testing.assert_array_equal(weights(unit, f"length > 3 * {half}"), np.zeros(len(curves)))
+
+
 def test_a_painted_mask_weights_every_lock_by_the_value_at_its_root():
     scalp = ball()
     scalp.maps["right"] = (scalp.points[scalp.triangles][:, :, 0] > 0.0).astype(float)
@@ -252,6 +270,21 @@ def test_noise_moves_neighbours_together_and_scraggle_does_not():
         assert np.linalg.norm(moved[0] - moved[2]) > 0.2 * np.linalg.norm(moved[0])
 
 
+@pytest.mark.parametrize("op", ["scraggle", "noise", "frizz"])
+def test_displacements_keep_lengths_or_say_how_much_longer_locks_become(op):
+    text = f"[[shape]]\nop = '{op}'\namount = 6\nsize = 1.5\n"
+    plain, longer, kept = locks(), locks(text), locks(f"{text}keep = 'length'\n")
+    assert longer.lengths().max() > 2.0 * plain.lengths().max()
+    np.testing.assert_allclose(kept.lengths(), plain.lengths(), rtol=1e-3)
+    assert np.abs(kept.points - plain.points).max() > 2e-3
+    recipe = "ringlet = 1\n[guides]\ncount = 8\n[locks]\ncount = 10\n"
+    said, silent = (
+        make_groom(parse_recipe(f"{recipe}{text}{keep}"), ball()).conflicts for keep in ("", "keep = 'length'")
+    )
+    assert any(f"{op} makes" in line and "keep = 'length'" in line for line in said)
+    assert not any("makes" in line for line in silent)
+
+
 def test_frizz_is_transverse_and_refused_on_a_coarse_shape():
     frizzed = on_sheet("op = 'frizz'\namount = 0.2\nsize = 2", [upright(61)])[0]
     np.testing.assert_allclose(frizzed[:, 1], upright(61)[:, 1], atol=1e-12)
@@ -273,6 +306,15 @@ def test_clumps_of_a_second_level_are_within_those_of_the_first():
         np.sort(np.linalg.norm((t := grid(locks(shape, 300))[:, -1])[:, None] - t, axis=2), axis=1)[:, 1]
     )
     assert near(soft + "levels = 3\n") < 0.7 * near(soft)
+
+
+def test_a_plain_amount_clumps_every_lock_as_much():
+    one = "[[shape]]\nop = 'clump'\nsize = 4\namount = {}\n"
+    plain, table, varied = (locks(one.format(value)) for value in ("1", "{ value = 1, vary = 0 }", "{ value = 1 }"))
+    np.testing.assert_array_equal(plain.points, table.points)
+    assert np.abs(varied.points - plain.points).max() > 1e-3
+    tips = plain.points[plain.offsets[1:] - 1]
+    assert len(np.unique(tips.round(9), axis=0)) < 0.7 * len(tips)  # all of a clump end at its centre
 
 
 def test_locks_part_at_a_plane_and_at_a_drawn_line():

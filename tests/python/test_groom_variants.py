@@ -76,6 +76,19 @@ def test_operators_are_changed_by_name_and_removed_with_false(folder):
     assert read_recipe(variant(folder, 'extends = "base.toml"\nshape = []\n')).shape == []
 
 
+def test_operators_are_changed_and_appended_in_one_variant(folder):
+    text = 'extends = "base.toml"\n[shape.loft]\namount = 0.9\n[[shape.append]]\nop = "clump"\nsize = 3\n'
+    both = read_recipe(variant(folder, text))
+    assert [op.op for op in both.shape] == ["scraggle", "loft", "scraggle", "clump"]
+    assert (both.shape[1].amount.value, both.shape[3].size) == (0.9, 0.03)
+    again = read_recipe(variant(folder, 'extends = "down.toml"\n[[shape.append]]\nop = "clump"\n', "again.toml"))
+    assert [op.op for op in again.shape] == [*(op.op for op in both.shape), "clump"]
+
+
+def test_a_variant_takes_the_whorl_away(folder):
+    assert read_recipe(variant(folder, 'extends = "base.toml"\n[guides]\nwhorl = false\n')).guides.whorl is None
+
+
 def test_values_are_removed_with_false(folder):
     base = read_recipe(folder / "base.toml")
     assert base.scalp.region is not None and base.curl.preset is not None
@@ -111,6 +124,7 @@ def test_the_text_stored_with_the_groom_is_a_complete_recipe(folder):
             'extends = "base.toml"\n[shape.lofft]\namount = 1',
             "shape.lofft is no operator of what it extends; did you mean",
         ),
+        ('extends = "base.toml"\n[shape]\nappend = 3', "shape.append is 3; must be tables [[shape.append]]"),
         ('extends = "base.toml"\n[shape]\nloft = 3', "shape.loft is 3; must be a table of settings, or false"),
         ('extends = "base.toml"\n[curl]\nwidht = 3', "curl.widht is not a setting; did you mean 'width'?"),
     ],

@@ -10,6 +10,7 @@ from ringlet.data.errors import UserError
 from ringlet.data.mesh import Clip, Mesh
 from ringlet.shot import parse_shot
 from ringlet.sim import Obstacle, simulate
+from ringlet.sim.garment import SimulatedGarment
 from ringlet.sim.penetration import edge_triangle_intersections, mesh_edges
 from shapes import rotation
 
@@ -245,3 +246,12 @@ def test_friction_between_unknown_names_is_refused():
     text = SHOT + CONTACT + '[[contact.pair]]\nbetween = ["locks", "sheat"]\nfriction = 1\n'
     with pytest.raises(UserError, match=r"contact\.pair\[0\]\.between\[1\] is 'sheat'.*did you mean 'sheet'\?"):
         simulated(garment(), text=text)
+
+
+def test_a_cloth_that_begins_without_area_is_refused_at_its_first_frame():
+    mesh = sheet()
+    flat = mesh.points * [1.0, 1.0, 0.0] * [0.0, 1.0, 1.0]
+    begins_flat = garment(mesh, Clip(np.array([1.0, 2.0]), np.stack([flat, mesh.points]), 24.0))
+    with pytest.raises(UserError, match=r"at frame 1 triangle 0 has no area .*; begin where each has one"):
+        SimulatedGarment(begins_flat, [], 1.0)
+    SimulatedGarment(begins_flat, [], 2.0)

@@ -7,7 +7,9 @@ import pytest
 from commands import edit, refused, run
 from floor_scene import CONTACT, POINTS, SHOT, ball, floor, groom, still
 from pxr import Usd, UsdGeom, Vt
+from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
+from ringlet.data.groom import Groom
 from ringlet.data.mesh import Clip
 from ringlet.shot import Collider, parse_shot
 from ringlet.sim import Obstacle, simulate
@@ -15,6 +17,7 @@ from ringlet.sim.penetration import penetration_depths, winding_numbers
 from small_example import FRAMES, write_example
 
 import ringlet
+from ringlet import _core
 
 
 def simulated(text=SHOT + CONTACT, made=None, obstacles=()):
@@ -278,3 +281,17 @@ def test_visible_surfaces_that_hair_does_not_touch_are_named_by_the_command(fold
     result = run("sim", folder / "small.shot.toml", "-o", folder / "cache.usdc", "--json")
     (note,) = json.loads(result.stdout)["notes"]
     assert note.endswith(sentence)
+
+
+@pytest.mark.parametrize("incline", [0.8, 0.0, -0.3])  # −0.3: into the floor
+@pytest.mark.parametrize("length", [2e-4, 1e-3, 3e-3])
+def test_locks_shorter_than_their_contacts_are_not_stretched(length, incline):
+    along = np.linspace(0, length, 10)[:, None] * [np.cos(incline), np.sin(incline), 0]
+    locks = Curves.from_list([along + [0, 0, 3e-4 * k] for k in range(4)])
+    mesh = floor()
+    triangle, barycentric, _ = _core.bind_roots(mesh.points, mesh.triangles, locks.roots)
+    locks.curve |= {"root_triangle": triangle, "root_barycentric": barycentric}
+    cache = simulated(made=Groom(locks, locks, mesh), obstacles=[Obstacle(mesh, still(mesh))])
+    edges = np.linalg.norm(np.diff(cache.points.reshape(-1, 4, 10, 3), axis=2), axis=3)
+    assert edges.sum(axis=2).max() < 1.01 * length
+    assert edges.max() < 1.1 * length / 9

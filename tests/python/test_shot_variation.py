@@ -37,7 +37,7 @@ def groom(curve=None, point=None, maps=None):
 
 
 def factors(text, made):
-    return material_factors(parse_shot(f"{SHOT}[variation]\n{text}").variation, made)
+    return material_factors(parse_shot(f"{SHOT}[variation]\n{text}"), made)
 
 
 def settled(text, made=None):
@@ -111,9 +111,25 @@ def test_a_stiffer_material_sags_less_in_a_simulated_shot():
         ('bend = { map = "zzz" }', groom(), ["zzz", "paint"]),
         ('bend = { map = "m" }', groom(curve={"m": np.array([1.0, -2.0])}), ["bend", "-2", "lock 9", "at least 0"]),
         ('bend = { map = "m" }', groom(curve={"m": np.array([np.nan, 1.0])}), ["bend", "nan", "lock 7"]),
-        ("radius = { ramp = [[0, 1], [1, 0]] }", groom(), ["variation.radius", "0", "above 0"]),
+        ("radius = { ramp = [[0, 1], [1, 0]] }", groom(), ["variation.radius is 0", "lock 7", "more than"]),
         ("bend = -1", groom(), ["variation.bend", "-1", "at least 0"]),
         ("bend = { ramp = [[0, 1], [0, 2]] }", groom(), ["variation.bend.ramp", "ascend"]),
+        ("bend = { ramp = [[0, 1], [1, 1e30]] }", groom(), ["variation.bend.ramp", "1e+30", "at most"]),
+        (
+            "bend = { value = 2, ramp = [[0, 1], [1, 1e6]] }",
+            groom(),
+            ["variation.bend", "2 times 1e+06", "at most 1e+06"],
+        ),
+        (
+            "radius = { ramp = [[0, 1], [1, 1e-30]] }",
+            groom(),
+            ["variation.radius", "strands.radius", "more than 1e-07"],
+        ),
+        ("stretch = { ramp = [[0, 1], [1, 1e-7]] }", groom(), ["variation.stretch", "1e-07", "at least 1e-06"]),
+        ("damping = { value = 1e5 }", groom(), ["variation.damping", "strands.damping is 500", "at most 100"]),
+        ('bend = { map = "m" }', groom(curve={"m": np.array([1.0, 1e30])}), ["variation.bend", "1e+30", "lock 9"]),
+        ('radius = { map = "m" }', groom(curve={"m": np.array([1.0, 1e-30])}), ["strands.radius", "lock 9"]),
+        ('bend = { map = "m" }', groom(point={"m": np.full(2 * POINTS, 1e30)}), ["strands.bend_scale", "lock 7"]),
         ("bned = 2", groom(), ["variation.bned", "'bend'"]),
     ],
 )

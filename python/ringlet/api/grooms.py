@@ -193,7 +193,8 @@ def check_groom(
 ) -> dict[str, Any]:
     """Intersections of a groom with the scalp, the body and itself: places, locks, greatest depth [m], worst places.
 
-    Returns ``found``; with ``fixed`` also ``left``, the remaining intersections, and ``repair``, the displacements.
+    Returns ``found``, the ``thickness``, and the ``lock_thickness`` of locks with their hairs [m]; with ``fixed`` also
+    ``left``, the remaining intersections, and ``repair``, the displacements.
 
     root_depth:  how deep a lock may be in the skin up to ``root_length`` from its root [m]
     thickness:   two locks nearer than this are in one another [m]
@@ -212,6 +213,8 @@ def check_groom(
     summary: dict[str, Any] = {
         "locks": len(groom.locks),
         "points": len(groom.locks.points),
+        "thickness": thickness,
+        "lock_thickness": grooms.lock_thickness(groom),
         "found": findings.summary(),
     }
     if fixed is not None:

@@ -70,5 +70,10 @@ def check(
                 for kind, of in summary[name].items()
             ]
             print_table([name, "places", "locks", "depth"], rows, right=(1, 2, 3))
+        if (wide := summary["lock_thickness"]) > summary["thickness"]:
+            print(
+                f"Hair is checked as lines {1e3 * summary['thickness']:.3g} mm thick. With their hairs locks are "
+                f"{1e3 * wide:.3g} mm thick: --thickness {1e3 * wide:.3g} counts where these overlap."
+            )
     if any(of["places"] for of in summary["left" if fix else "found"].values()):
         raise typer.Exit(1)

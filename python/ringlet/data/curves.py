@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 from ringlet.data.errors import UserError
 
+LEAST_EDGE = 1e-8  # [m] an edge that is shorter has no direction in single precision
+
 
 @dataclass
 class Curves:
@@ -80,6 +82,19 @@ class Curves:
             raise ValueError(f"curves: points have shape {points.shape}; must be {self.points.shape}")
         return Curves(points, self.offsets, self.ids, self.curve, self.point)
 
+    def distinct(self) -> Curves:
+        """The same curves without points that coincide with the one before; each keeps at least two."""
+        edges = np.linalg.norm(np.diff(self.points, axis=0, prepend=self.points[:1]), axis=1)
+        kept = edges >= LEAST_EDGE
+        kept[self.offsets[:-1]] = True
+        counts = np.add.reduceat(kept, self.offsets[:-1]) if len(self) else np.zeros(0, np.int64)
+        kept |= np.repeat(counts < 2, self.counts)
+        if kept.all():
+            return self
+        counts = np.add.reduceat(kept, self.offsets[:-1])
+        point = {name: values[kept] for name, values in self.point.items()}
+        return Curves(self.points[kept], offsets_from_counts(counts), self.ids, self.curve, point)
+
     def check(self, what: str) -> Curves:
         """Refuses invalid curves; ``what`` names them in the message. Returns self."""
         if len(self) == 0:
@@ -104,6 +119,41 @@ class Curves:
         if len(np.unique(self.ids)) != len(self):
             values, uses = np.unique(self.ids, return_counts=True)
             raise UserError(f"{what}: id {values[uses > 1][0]} is used by {uses.max()} curves; ids must be unique")
+        self._check_values(what)
+        return self
+
+    def _check_values(self, what: str) -> None:
+        """Refuses widths and nails out of range."""
+        for name, least, most in (("width", 0.0, np.inf), ("nail", 0.0, 1.0)):
+            for kind, attributes in (("curve", self.curve), ("point", self.point)):
+                values = np.asarray(attributes.get(name, ()))
+                if values.dtype.kind not in "biuf" or values.ndim != 1:
+                    raise UserError(f"{what}: {name} is not one number for each {kind}; write it again")
+                good = np.isfinite(values) & (values >= least) & (values <= most)
+                if (bad := np.flatnonzero(~good)).size:
+                    row = int(bad[0])
+                    curve = row if kind == "curve" else int(np.searchsorted(self.offsets, row, side="right") - 1)
+                    bound = f"from {least:g} to {most:g}" if np.isfinite(most) else f"at least {least:g} and finite"
+                    raise UserError(f"{what}: {name} is {values[row]:g} on curve {self.ids[curve]}; must be {bound}")
+
+    def check_strands(self, what: str) -> Curves:
+        """Refuses curves that cannot move as strands; ``what`` names them in the message. Returns self.
+
+        A strand has at least 3 points, and no edge shorter than ``LEAST_EDGE``.
+        """
+        if (short := np.flatnonzero(self.counts < 3)).size:
+            raise UserError(
+                f"{what}: curve {self.ids[short[0]]} has {self.counts[short[0]]} points; must have at least 3"
+            )
+        edges = np.linalg.norm(np.diff(self.points, axis=0), axis=1)
+        edges[self.offsets[1:-1] - 1] = np.inf  # the jump from one curve to the next is no edge
+        if (flat := np.flatnonzero(~(edges >= LEAST_EDGE))).size:
+            curve = int(np.searchsorted(self.offsets, flat[0], side="right") - 1)
+            point, place = flat[0] - self.offsets[curve], ", ".join(f"{x:.4g}" for x in self.points[flat[0]])
+            raise UserError(
+                f"{what}: points {point} and {point + 1} of curve {self.ids[curve]} coincide at ({place}) m; move them "
+                "apart, or resample it"
+            )
         return self
 
 

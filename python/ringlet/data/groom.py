@@ -6,9 +6,15 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
 from ringlet.data.mesh import Mesh
 from ringlet.data.stage import StageSpace
+
+FLAT = 1e-9  # twice the area of a triangle, relative to its longest edge squared, at which it has no frame
 
 
 @dataclass
@@ -29,8 +35,9 @@ class Groom:
     shapes:     the locks before they were curled (None for a groom that was read from a file)
     unsculpted: the guides before they were sculpted by hand (None for a groom that was read from a file)
     variant:    which variant of the file it was read from (None where that has none)
-    conflicts:  a sentence for every edit of a guide or a lock that is not there, for a head of an odd size, and for
-                what is in the files of the recipe but not used
+    conflicts:  a sentence for every edit of a guide or a lock that is not there, for a head of an odd size, for what is
+                in the files of the recipe but not used, for locks that start into the head, and for those that a
+                displacement makes much longer
     cage:       whether hair grows on the cage of a subdivision surface, instead of on its limit surface
     """
 
@@ -48,3 +55,29 @@ class Groom:
     variant: str | None = None
     conflicts: list[str] = field(default_factory=list)
     cage: bool = False
+
+    def check_roots(self, scalp_points: NDArray[np.floating], when: str, what: str) -> None:
+        """Refuses locks without roots on the scalp, and a scalp on which a root has no frame.
+
+        scalp_points: positions of the scalp [m], shape (n, 3)
+        when, what:   which positions these are, and who asks, for messages
+        """
+        scalp, bound = self.scalp, self.locks.curve
+        if "root_triangle" not in bound or "root_barycentric" not in bound:
+            raise UserError(f"{what}: the locks are not bound to a scalp; make the groom again from its recipe")
+        if scalp_points.shape != scalp.points.shape:
+            raise UserError(
+                f"{scalp.name}: has {len(scalp_points)} points at {when}, but the groom was made on one with "
+                f"{len(scalp.points)}; make the groom again on this mesh"
+            )
+        a, b, c = np.asarray(scalp_points, np.float64)[scalp.triangles[bound["root_triangle"]]].transpose(1, 0, 2)
+        with np.errstate(invalid="ignore", over="ignore"):
+            longest = np.maximum(np.sum((b - a) ** 2, axis=1), np.sum((c - a) ** 2, axis=1))
+            flat = ~(np.linalg.norm(np.cross(b - a, c - a), axis=1) > FLAT * longest)
+        flat |= ~np.isfinite(longest)
+        if flat.any():
+            lock = int(flat.argmax())
+            raise UserError(
+                f"{scalp.name}: at {when} triangle {bound['root_triangle'][lock]}, where lock {self.locks.ids[lock]} "
+                "is rooted, has no area or is not finite; mend the mesh or its animation"
+            )

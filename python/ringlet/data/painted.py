@@ -4,27 +4,45 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import BaseModel
 
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Mesh
-from ringlet.data.quantities import Varied
+from ringlet.data.quantities import Quantity, Varied
 from ringlet.data.random import Random
 from ringlet.data.settings import did_you_mean
 
 
-def per_lock(setting: Varied, random: Random, curves: Curves, scalp: Mesh, what: str) -> NDArray[np.float64]:
+def per_lock(
+    settings: BaseModel, name: str, random: Random, curves: Curves, scalp: Mesh, what: str
+) -> NDArray[np.float64]:
     """A varied setting for each curve, shape (count,): its value in the region of the root, varied by chance and by
     noise, times its map. The values of single locks count as they are.
 
-    what: the name of the setting, for messages
+    What chance makes of the value stays within the bounds of the setting. A map may saturate a part of a whole (up to
+    1), and raises UserError where it takes another value beyond its bounds, at the peak of its ramp.
+
+    name: the setting of ``settings``
+    what: its name for messages
     """
+    setting: Varied = getattr(settings, name)
+    bounds = Quantity.of(settings, name)
+    peak = setting.peak if bounds.product else 1.0
     value = np.full(len(curves), setting.value)
     for name, there in setting.region.items():
         value[in_region(name, curves, scalp, f"{what}.region")] = there
+    painting = np.ones(len(curves)) if setting.map is None else painted(setting.map, curves, scalp, f"{what}.map")
+    with np.errstate(over="ignore"):
+        bad = np.flatnonzero(bounds.exceeded(value * painting * peak))
+    if bad.size and not bounds.is_part:
+        raise UserError(
+            f"{what} is {value[bad[0]] * painting[bad[0]] * peak:.6g}{bounds.suffix} on lock {curves.ids[bad[0]]}, by "
+            f"its map '{setting.map}'; must be at most {bounds.most:.6g}{bounds.suffix}, paint it again"
+        )
     value *= setting.factors(random, curves.ids, curves.roots)
-    if setting.map is not None:
-        value *= painted(setting.map, curves, scalp, f"{what}.map")
+    value *= painting
+    value = bounds.clipped(value, peak)
     for lock, own in setting.lock.items():
         value[curves.ids == lock] = own
     return value

@@ -27,6 +27,7 @@ from ringlet.data.errors import UserError
 from ringlet.data.random import Random
 from ringlet.data.settings import Location, refuse
 
+MAX_FACTOR = 1e6  # of a ramp
 LengthUnit = Literal["m", "dm", "cm", "mm", "in"]
 UNITS: dict[str, float] = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001, "in": 0.0254}
 
@@ -64,11 +65,30 @@ def _as_stated(value: Varied, metadata: list[Any]) -> dict[str, Any]:
 @dataclass(frozen=True)
 class Quantity:
     """The unit and bounds of a setting. Unit ``m``: a number counts in the recipe's unit, a text carries its own, as in
-    ``"5 mm"``."""
+    ``"5 mm"``.
+
+    product: whether the bounds also count for the value times its ramp; not where an operator bounds or normalises that
+    """
 
     unit: str = ""
     least: float = -np.inf
     most: float = np.inf
+    product: bool = True
+
+    @staticmethod
+    def of(owner: BaseModel, name: str) -> Quantity:
+        """The quantity of a setting of a model."""
+        return next(part for part in type(owner).model_fields[name].metadata if isinstance(part, Quantity))
+
+    @property
+    def is_part(self) -> bool:
+        """Whether values are parts of a whole, up to 1."""
+        return not self.unit and self.most <= 1.0
+
+    @property
+    def suffix(self) -> str:
+        """The unit after a number, in messages."""
+        return f" {self.unit}" if self.unit else ""
 
     def number(self, value: Any, unit: float) -> float:
         """``value`` in SI, within the bounds."""
@@ -87,14 +107,22 @@ class Quantity:
         elif self.unit == "m":
             value = value * unit
         value = float(value)
-        suffix = f" {self.unit}" if self.unit else ""
         if not np.isfinite(value):
             raise refuse(f"is {value}; must be finite")
         if value < self.least:
-            raise refuse(f"is {value:.6g}{suffix}; must be at least {self.least:.6g}{suffix}")
+            raise refuse(f"is {value:.6g}{self.suffix}; must be at least {self.least:.6g}{self.suffix}")
         if value > self.most:
-            raise refuse(f"is {value:.6g}{suffix}; must be at most {self.most:.6g}{suffix}")
+            raise refuse(f"is {value:.6g}{self.suffix}; must be at most {self.most:.6g}{self.suffix}")
         return value
+
+    def clipped(self, values: NDArray, peak: float = 1.0) -> NDArray[np.float64]:
+        """Values within the bounds, also times the peak of a ramp; same shape."""
+        return np.clip(values, self.least, self.most / max(peak, 1.0))
+
+    def exceeded(self, values: NDArray) -> NDArray[np.bool_]:
+        """Mask of values beyond the bounds on their size, but for rounding; same shape."""
+        largest = max(self.most, -self.least)
+        return ~(np.abs(values) <= (1.0 + 1e-9) * largest)
 
     def _read(self, value: Any, table: bool, info: ValidationInfo) -> Any:
         unit = (info.context or {}).get("unit", 1.0)
@@ -120,9 +148,21 @@ class Quantity:
         self, source: Any, handler: Callable[[Any], core_schema.CoreSchema]
     ) -> core_schema.CoreSchema:
         table = any(isinstance(kind, type) and issubclass(kind, Section) for kind in (source, *get_args(source)))
-        return core_schema.with_info_before_validator_function(
+        read = core_schema.with_info_before_validator_function(
             lambda value, info: self._read(value, table, info), handler(source)
         )
+        return core_schema.no_info_after_validator_function(self._check_ramp, read)
+
+    def _check_ramp(self, setting: Any) -> Any:
+        if isinstance(setting, Ramped) and self.product:
+            peak = setting.peak
+            for value in (setting.value, *setting.region.values(), *setting.lock.values()):
+                if self.exceeded(np.array(value * peak)):
+                    raise refuse(
+                        f"is {value:.6g}{self.suffix} times {peak:.6g} of its ramp; must be at most "
+                        f"{self.most:.6g}{self.suffix}"
+                    )
+        return setting
 
     def __get_pydantic_json_schema__(self, schema: core_schema.CoreSchema, handler: Callable) -> dict[str, Any]:
         bounds = {"minimum": self.least, "maximum": self.most}
@@ -155,12 +195,10 @@ class Varied(Section):
     region: dict[str, float] = Field(default={}, description="the value in named regions of the scalp")
     lock: dict[int, float] = Field(default={}, description="the value of single locks, by their id")
 
-    def per_curve(self, random: Random, ids: NDArray, places: NDArray) -> NDArray[np.float64]:
-        """The value for each curve, shape (len(ids),), as far as it needs no scalp (see ``painted.per_lock``).
-
-        places: roots [m], shape (len(ids), 3)
-        """
-        return self.value * self.factors(random, ids, places)
+    @property
+    def peak(self) -> float:
+        """The largest factor on the value along a lock."""
+        return 1.0
 
     def factors(self, random: Random, ids: NDArray, places: NDArray) -> NDArray[np.float64]:
         """The factors of chance and noise on the value, shape (len(ids),)."""
@@ -183,6 +221,8 @@ def _in_order(ramp: list[tuple[float, float]]) -> list[tuple[float, float]]:
         raise refuse(f"has places {places}; must ascend")
     if any(factor < 0.0 for _, factor in ramp):
         raise refuse(f"has a factor of {min(f for _, f in ramp)}; must be at least 0")
+    if (most := max(factor for _, factor in ramp)) > MAX_FACTOR:
+        raise refuse(f"has a factor of {most:g}; must be at most {MAX_FACTOR:g}")
     return ramp
 
 
@@ -194,7 +234,7 @@ def along(ramp: list[tuple[float, float]], u: NDArray) -> NDArray[np.float64]:
     at, factor = np.array(ramp).T
     if len(at) == 1:
         return np.full(np.shape(u), factor[0])
-    return PchipInterpolator(at, factor)(np.clip(u, at[0], at[-1]))
+    return np.clip(PchipInterpolator(at, factor)(np.clip(u, at[0], at[-1])), factor.min(), factor.max())
 
 
 class Ramped(Varied):
@@ -202,6 +242,11 @@ class Ramped(Varied):
     the root and by 0.5 at the tip, smoothly between and without overshoot."""
 
     ramp: Ramp = Field(default=[(0.0, 1.0), (1.0, 1.0)], description="[place, factor] from root (0) to tip (1)")
+
+    @property
+    def peak(self) -> float:
+        """The largest factor on the value along a lock."""
+        return max(factor for _, factor in self.ramp)
 
     def along(self, u: NDArray) -> NDArray[np.float64]:
         """The ramp's factor at places ``u`` between root (0) and tip (1)."""

@@ -4,7 +4,7 @@ from ringlet.data.groom import Groom
 from ringlet.groom.check import Allowed, check_groom
 from ringlet.groom.edits_file import add_points, add_settings, release, restored_on_error, row_of
 from ringlet.groom.fix import fix_groom
-from ringlet.groom.hairs import HairMemory, Hairs, HairSettings, hair_count, lay_hairs, make_hairs
+from ringlet.groom.hairs import HairMemory, Hairs, HairSettings, hair_count, lay_hairs, lock_thickness, make_hairs
 from ringlet.groom.presets import PRESETS
 from ringlet.groom.recipe import Recipe, parse_recipe, read_recipe, schema
 from ringlet.groom.stack import Memory, make_groom
@@ -24,6 +24,7 @@ __all__ = [
     "fix_groom",
     "hair_count",
     "lay_hairs",
+    "lock_thickness",
     "make_groom",
     "make_hairs",
     "parse_recipe",

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ringlet.data.settings import did_you_mean, refuse
 
-NAMES = ("id", "random", "length", "x", "y", "z")  # lengths in metres; x, y, z are of the root
+NAMES = ("id", "random", "length", "x", "y", "z")  # x, y, z are of the root
 FUNCTIONS: dict[str, Callable[..., Any]] = {
     "abs": np.abs,
     "min": np.minimum,

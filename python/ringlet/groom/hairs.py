@@ -171,10 +171,7 @@ class Hairs:
 
     def _frames(self, at: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Roots [m] and reference directions of the locks, each of shape (locks, 3)."""
-        bound = self._groom.locks.curve
-        roots, frames = _core.root_frames(
-            at, self._groom.scalp.triangles, bound["root_triangle"], bound["root_barycentric"]
-        )
+        roots, frames = _root_frames(self._groom, at, "this frame")
         return roots, np.einsum("lxk,lk->lx", frames, self._axis)
 
     def _root_offsets(self, scalp_points: NDArray, lock_roots: NDArray) -> NDArray[np.float32]:
@@ -208,6 +205,12 @@ def hair_count(groom: Groom) -> int:
     return max(1, round(len(groom.locks) * _settings(groom.hairs).per_lock.value))
 
 
+def lock_thickness(groom: Groom) -> float:
+    """Largest diameter of a lock with its hairs [m], but for chance and maps."""
+    radius = _settings(groom.hairs).radius
+    return 2.0 * max([radius.value, *radius.region.values(), *radius.lock.values()]) * radius.peak
+
+
 def make_hairs(groom: Groom, *, fraction: float = 1.0, wider: bool = False, memory: HairMemory | None = None) -> Hairs:
     """Makes the hairs of every lock, with positions keyed by (seed, lock, number).
 
@@ -228,10 +231,11 @@ def lay_hairs(groom: Groom, *, fraction: float = 1.0, wider: bool = False, memor
     if not 0.0 < fraction <= 1.0:
         raise UserError(f"hairs: fraction is {fraction}; must be more than 0 and at most 1")
     memory = memory or HairMemory()
+    frames = _root_frames(groom, groom.scalp.points, "rest pose")[1]
     key = _key(groom, settings, fraction, wider)
     if memory.hairs is None or memory.key != key:
         memory.key, memory.hairs = key, _place(groom, settings, fraction, wider)
-    cached, frames = memory.hairs, _root_frames(groom)[1]
+    cached = memory.hairs
     axis = np.einsum("lxk,lx->lk", frames, axes(groom.locks, frames))
     return Hairs(cached.curves, groom, axis, cached._layout, cached._root)
 
@@ -259,7 +263,7 @@ def _place(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -
     Raises UserError when the groom's region is not in its mesh.
     """
     locks, scalp = groom.locks, groom.scalp
-    roots, frames = _root_frames(groom)
+    roots, frames = _root_frames(groom, groom.scalp.points, "rest pose")
     per_lock = _Values(settings, locks, scalp)
     full_count = np.maximum(1, np.round(per_lock("per_lock"))).astype(np.int64)
     counts = np.maximum(1, np.round(full_count * fraction)).astype(np.int64)
@@ -275,6 +279,10 @@ def _place(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -
         region = np.ascontiguousarray(scalp.region(groom.region), np.int32)
     except KeyError as error:
         raise UserError(f"hairs: {error.args[0]}") from None
+    if len(region) == 0:
+        raise UserError(
+            f"hairs: region '{groom.region}' of {scalp.name} has no faces; choose the faces that carry hair"
+        )
     root_triangle, root_barycentric, _ = _core.bind_roots(scalp.points, scalp.triangles, scattered, region)
     is_lock = number == 0
     root_triangle[is_lock] = locks.curve["root_triangle"]
@@ -289,11 +297,12 @@ def _place(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -
     }
     if scalp.uv is not None:
         attributes["st"] = np.einsum("hc,hcx->hx", root_barycentric, scalp.uv[root_triangle]).astype(np.float32)
-    uniform = settings.width.model_copy(update={"vary": 0.0})
-    thickness = for_each_lock(uniform, Random(settings.seed, "hairs/width"), locks, scalp, "hairs.width")[lock]
+    uniform = settings.model_copy(update={"width": settings.width.model_copy(update={"vary": 0.0})})
+    thickness = _Values(uniform, locks, scalp)("width")[lock]
     thickness *= Varied(value=1.0, vary=settings.width.vary).factors(Random(settings.seed, "hairs/width"), ids, ids)
     if wider:
         thickness *= (full_count / counts)[lock]
+    thickness = Quantity.of(settings, "width").clipped(thickness, settings.width.peak)
     widths = (thickness.astype(np.float32)[:, None] * settings.width.along(u).astype(np.float32)).reshape(-1)
 
     curves = Curves(
@@ -320,10 +329,8 @@ class _Values:
 
     def __call__(self, name: str) -> NDArray[np.float64]:
         """Values of a setting, shape (locks,)."""
-        setting: Varied = getattr(self.settings, name)
-        return for_each_lock(
-            setting, Random(self.settings.seed, f"hairs/{name}"), self.locks, self.scalp, f"hairs.{name}"
-        )
+        random = Random(self.settings.seed, f"hairs/{name}")
+        return for_each_lock(self.settings, name, random, self.locks, self.scalp, f"hairs.{name}")
 
 
 def _settings(values: dict[str, Any]) -> HairSettings:
@@ -333,11 +340,16 @@ def _settings(values: dict[str, Any]) -> HairSettings:
         raise explain(error, "groom: hairs") from error
 
 
-def _root_frames(groom: Groom) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Roots of the locks [m], shape (locks, 3), and frames of the scalp there, shape (locks, 3, 3)."""
+def _root_frames(groom: Groom, at: NDArray[np.float64], when: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Roots of the locks [m], shape (locks, 3), and frames of the scalp there, shape (locks, 3, 3).
+
+    at:   points of the scalp [m], shape (n, 3)
+    when: which points these are, for messages
+    """
+    groom.check_roots(at, when, "hairs")
     bound = groom.locks.curve
     return _core.root_frames(
-        groom.scalp.points, groom.scalp.triangles, bound["root_triangle"], bound["root_barycentric"]
+        np.ascontiguousarray(at, np.float64), groom.scalp.triangles, bound["root_triangle"], bound["root_barycentric"]
     )
 
 

@@ -11,6 +11,8 @@ from ringlet.data.settings import did_you_mean, parse_toml, read_toml
 from ringlet.data.toml import to_toml
 
 FILES = (("scalp", "file"), ("guides", "file"))
+APPEND = "append"  # key of a variant's operators that follow those of its base
+MAY_BE_FALSE = ("guides.whorl",)  # settings whose value may be `false`, which then does not remove them
 EDITS = ("edit", "sculpt")  # tables of a file of edits: edits of locks, edits of guides
 
 
@@ -97,7 +99,7 @@ def _merged(base: dict[str, Any], changes: dict[str, Any], where: str, place: st
             result[key] = _merged_shape(old if isinstance(old, list) else [], value, where)
         elif name in EDITS and isinstance(value, list) and isinstance(old, list):
             result[key] = old + value
-        elif value is False and key in base and not isinstance(old, bool):
+        elif value is False and key in base and not isinstance(old, bool) and name not in MAY_BE_FALSE:
             del result[key]
         elif isinstance(value, dict) and isinstance(old, dict) and not ("file" in value) > ("file" in old):
             result[key] = _merged(old, value, where, name)
@@ -109,10 +111,17 @@ def _merged(base: dict[str, Any], changes: dict[str, Any], where: str, place: st
 
 
 def _merged_shape(base: list[Any], changes: dict[str, Any], where: str) -> list[Any]:
-    """Merges changes into the operators of a base by name: ``[shape.clump]``, ``[shape."scraggle 2"]``."""
+    """Merges changes into the operators of a base by name: ``[shape.clump]``, ``[shape."scraggle 2"]``.
+
+    ``[[shape.append]]`` adds operators after those of the base.
+    """
     names = stage_names(base)
     result = list(base)
     for name, change in changes.items():
+        if name == APPEND:
+            if not isinstance(change, list):
+                raise UserError(f"{where}: shape.{APPEND} is {change!r}; must be tables [[shape.{APPEND}]]")
+            continue
         if name not in names:
             raise UserError(f"{where}: shape.{name} is no operator of what it extends{did_you_mean(name, names)}")
         at = names.index(name)
@@ -122,7 +131,7 @@ def _merged_shape(base: list[Any], changes: dict[str, Any], where: str) -> list[
             result[at] = _merged(base[at], change, where, f"shape.{name}")
         else:
             raise UserError(f"{where}: shape.{name} is {change!r}; must be a table of settings, or false")
-    return [operator for operator in result if operator is not None]
+    return [operator for operator in result if operator is not None] + changes.get(APPEND, [])
 
 
 def inherited(data: dict[str, Any], path: Path) -> list[str] | None:

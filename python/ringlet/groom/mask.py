@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator, Field, PrivateAttr
 
 from ringlet import _core
 from ringlet.data.curves import Curves
@@ -31,15 +31,21 @@ class Mask(Section):
     )
     where: Annotated[str, AfterValidator(expression.check)] | None = Field(
         default=None,
-        description="an expression of `id`, `random` (0 to 1), `length`, and `x`, `y`, `z` of the root (in metres), "
-        "such as `id % 3 == 0 and y > 0.1`; what is true is 1",
+        description="an expression of `id`, `random` (0 to 1), `length`, and `x`, `y`, `z` of the root (in the unit "
+        "of the recipe), such as `id % 3 == 0 and length > 10`; what is true is 1",
     )
     invert: bool = Field(default=False, description="act where this mask is not")
+
+    _unit: float = PrivateAttr(1.0)  # of lengths in ``where`` [m]
+
+    def model_post_init(self, context: Any) -> None:
+        """Takes the unit of the recipe over."""
+        self._unit = (context or {}).get("unit", 1.0)
 
     @property
     def everywhere(self) -> bool:
         """Whether the mask is 1 everywhere."""
-        return self == Mask()
+        return self.model_dump() == Mask().model_dump()
 
     def weights(self, curves: Curves, scalp: Mesh, random: Random, what: str) -> NDArray[np.float64]:
         """Weights at the points of curves with equal point counts, shape (count, points).
@@ -62,8 +68,9 @@ class Mask(Section):
         if self.region is not None:
             weight *= self._region_falloff(region(self.region, scalp, f"{what}.region"), curves, scalp)
         if self.where is not None:
-            x, y, z = curves.roots.T
-            values = {"id": curves.ids, "random": random.uniform(curves.ids), "length": curves.lengths()}
+            x, y, z = curves.roots.T / self._unit
+            lengths = curves.lengths() / self._unit
+            values = {"id": curves.ids, "random": random.uniform(curves.ids), "length": lengths}
             factor = expression.evaluate(self.where, {**values, "x": x, "y": y, "z": z})
             if not (finite := np.isfinite(factor)).all():
                 lock = curves.ids[np.flatnonzero(~finite)[0]]

@@ -2,17 +2,31 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, FiniteFloat
+from pydantic import AfterValidator, Field, FiniteFloat
 
 from ringlet.data.curves import Curves
-from ringlet.data.quantities import Quantity, Section
+from ringlet.data.quantities import Quantity, Section, refuse
+
+LENGTHS = (1e-6, 1e6)  # of a vector that gives a direction
 
 Vector = tuple[FiniteFloat, FiniteFloat, FiniteFloat]
+
+
+def _points_somewhere(vector: tuple[float, float, float]) -> tuple[float, float, float]:
+    if not LENGTHS[0] <= math.hypot(*vector) <= LENGTHS[1]:
+        raise refuse(
+            f"is {list(vector)}, which points nowhere; must have a length from {LENGTHS[0]:g} to {LENGTHS[1]:g}"
+        )
+    return vector
+
+
+Direction = Annotated[Vector, AfterValidator(_points_somewhere)]
 
 
 class Parting(Section):
@@ -21,7 +35,7 @@ class Parting(Section):
     line: str | None = Field(
         default=None, description="name of helper curves along the parting, from `[curves]`; a plane when absent"
     )
-    across: Vector = Field(default=(1.0, 0.0, 0.0), description="direction from one side of the plane to the other")
+    across: Direction = Field(default=(1.0, 0.0, 0.0), description="direction from one side of the plane to the other")
     offset: Annotated[float, Quantity("m", -1.0, 1.0)] = Field(
         default=0.0, description="how far the plane is from the middle of the scalp, along 'across'"
     )

@@ -47,7 +47,7 @@ class Recipe(Section):
     extends: str | None = Field(
         default=None,
         description="another recipe, of which this one changes a few values: tables are merged, `false` takes "
-        "away a table or a value, `[shape.NAME]` changes an operator",
+        "away a table or a value, `[shape.NAME]` changes an operator, `[[shape.append]]` adds one",
     )
     edits: str | None = Field(
         default=None,

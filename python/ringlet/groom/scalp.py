@@ -16,6 +16,7 @@ from ringlet.data.random import Random
 
 IDS_PER_TRIANGLE = 1_000_000  # id of a grown curve: triangle · 1 000 000 + number in the triangle
 
+FEWEST_PROBES = 50_000  # samples that look for the painted triangles of a texture
 MAX_DENSITY_RATIO = 20  # largest ratio of the peak to the mean of a painted density
 THINNING_FACTOR, THINNING_STEPS = 0.8, 24
 
@@ -69,27 +70,29 @@ class Scalp:
         what:    name of the setting that names the map, for messages
         """
         if density is None:
-            ids, triangle, barycentric = self._candidates(count, seed)
+            ids, triangle, barycentric = self._candidates(count, seed, self.region)
             selected = _core.thin_out(self.positions(triangle, barycentric), self.area, count)
         else:
             ids, triangle, barycentric, selected = self._by_density(count, seed, density, what)
         return ids[selected], triangle[selected], barycentric[selected]
 
-    def _candidates(self, count: int, seed: int) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.float64]]:
-        """Random candidates, several times ``count``: ids, triangles and barycentrics.
+    def _candidates(
+        self, count: int, seed: int, region: NDArray[np.int32]
+    ) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.float64]]:
+        """Random candidates on triangles, several times ``count``: ids, triangles and barycentrics.
 
         Raises UserError when a triangle is too large for the count.
         """
-        random = Random(seed, "candidates")
+        random, areas = Random(seed, "candidates"), _areas(self.points, self.triangles[region])
         density = 2.0 ** np.ceil(
-            np.log2((5 * count + 30) / self.area)
+            np.log2((5 * count + 30) / areas.sum())
         )  # in powers of 2: a few more samples use the same candidates
-        each = np.floor(self.areas * density + random.uniform(self.region, IDS_PER_TRIANGLE)).astype(np.int64)
+        each = np.floor(areas * density + random.uniform(region, IDS_PER_TRIANGLE)).astype(np.int64)
         if each.max() >= IDS_PER_TRIANGLE:
             raise UserError(f"{self.where}: {count} curves on so few triangles; subdivide the mesh")
         first = np.repeat(np.cumsum(each) - each, each)
-        ids = np.repeat(self.region.astype(np.int64), each) * IDS_PER_TRIANGLE + (np.arange(each.sum()) - first)
-        triangle = np.repeat(self.region, each)
+        ids = np.repeat(region.astype(np.int64), each) * IDS_PER_TRIANGLE + (np.arange(each.sum()) - first)
+        triangle = np.repeat(region, each)
         root, v = np.sqrt(random.uniform(ids, 0)), random.uniform(ids, 1)
         return ids, triangle, np.stack([1.0 - root, root * (1.0 - v), root * v], axis=1)
 
@@ -98,22 +101,50 @@ class Scalp:
     ) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.float64], NDArray[np.int32]]:
         """Candidates, and the indices of ``count`` of them after the painted density.
 
+        Where little of the region is painted, candidates are on its painted triangles alone.
+        """
+        found = self._thinned(count, seed, name, what, self.region)
+        if len(found[3]) < count:
+            found = self._thinned(count, seed, name, what, self._painted_triangles(count, seed, name, what))
+        if len(found[3]) < count:
+            raise UserError(
+                f"{what} '{name}' is painted on too little of {self.where}: {len(found[3])} of {count} curves fit; "
+                "paint more of it, subdivide the mesh there, or lower the count"
+            )
+        return found
+
+    def _painted_triangles(self, count: int, seed: int, name: str, what: str) -> NDArray[np.int32]:
+        """Triangles of the region that a map is not 0 on, as far as samples tell."""
+        if (corners := self.mesh.maps.get(name)) is not None and name not in self.mesh.textures:
+            return self.region[(corners[self.region] > 0.0).any(axis=1)]
+        _, triangle, barycentric = self._candidates(max(20 * count, FEWEST_PROBES), seed, self.region)
+        return np.unique(triangle[self._painted(name, triangle, barycentric, what) > 0.0])
+
+    def _thinned(
+        self, count: int, seed: int, name: str, what: str, region: NDArray[np.int32]
+    ) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.float64], NDArray[np.int32]]:
+        """Candidates on triangles, and the indices of at most ``count`` of them after the painted density.
+
         Uniform samples are thinned in steps and stay uniform. The rank of a sample is the fraction of samples left when
         it is removed. A density of one half selects the samples whose rank is below one half.
         """
-        _, triangle, barycentric = self._candidates(count, seed)
+        none = np.empty(0, np.int64), np.empty(0, np.int32), np.empty((0, 3)), np.empty(0, np.int32)
+        if len(region) == 0:
+            raise UserError(f"{what} '{name}' is 0 all over {self.where}; paint where hair is to grow")
+        area = float(_areas(self.points, self.triangles[region]).sum())
+        _, triangle, barycentric = self._candidates(count, seed, region)
         share = self._painted(name, triangle, barycentric, what)
         if not share.any():
-            raise UserError(f"{what} '{name}' is 0 all over {self.where}; paint where hair is to grow")
+            return none
         needed = 1.1 * count * min(share.max() / share.mean(), MAX_DENSITY_RATIO)
         # Rounded to a power of the factor, so that similar counts share their ranks.
         most = int(THINNING_FACTOR ** -np.ceil(np.log(needed) / -np.log(THINNING_FACTOR)))
-        ids, triangle, barycentric = self._candidates(most, seed)
+        ids, triangle, barycentric = self._candidates(most, seed, region)
         places = self.positions(triangle, barycentric)
-        selected = _core.thin_out(places, self.area, most)
+        selected = _core.thin_out(places, area, most)
         rank, left = np.ones(len(ids)), selected
         for step in range(1, THINNING_STEPS + 1):
-            left = left[_core.thin_out(places[left], self.area, max(1, round(most * THINNING_FACTOR**step)))]
+            left = left[_core.thin_out(places[left], area, max(1, round(most * THINNING_FACTOR**step)))]
             rank[left] = THINNING_FACTOR**step
         rank *= THINNING_FACTOR ** Random(seed, "rank").uniform(ids)  # random within a step
         density = self._painted(name, triangle, barycentric, what)[selected]

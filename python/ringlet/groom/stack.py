@@ -23,12 +23,16 @@ from ringlet.groom.hairs import HairMemory, HairSettings
 from ringlet.groom.load import stage_names
 from ringlet.groom.nails import nailed
 from ringlet.groom.operators import Context, Drawn, Operator, Resample
+from ringlet.groom.operators.operator import grid, unit
+from ringlet.groom.operators.shape import Displacement
 from ringlet.groom.recipe import Recipe
 from ringlet.groom.scalp import Scalp
 from ringlet.groom.sculpt import Sculpted
 
 Progress = Callable[[str, int, int], None]
 
+MUCH_LONGER = 2.0  # factor on the length of a lock that a displacement is not expected to exceed
+STEEPLY_INWARD = -0.5  # cosine between a root's normal and the start of its lock
 PLAUSIBLE_SIZES = (0.03, 2.0)  # [m] width of a scalp; a size ten times off suggests a wrong unit
 
 
@@ -81,19 +85,25 @@ def make_groom(
         if drawn_guides is not None:
             key = _key(key, drawn_guides.points.tobytes(), drawn_guides.offsets.tobytes(), drawn_guides.ids.tobytes())
         helpers = {**{name: c for name, h in recipe.curves.items() if (c := h.inline_curve())}, **(helpers or {})}
+        helpers = {name: helper.check(f"curves.{name}").distinct() for name, helper in helpers.items()}
         for name, helper in helpers.items():
-            helper.check(f"curves.{name}")
             key = _key(key, name.encode(), helper.points.tobytes(), helper.offsets.tobytes())
         curves = drawn_guides or Curves.from_list([])
         stages = _stages(recipe)
-        guides, unsculpted, shapes = curves, curves, None
+        guides, unsculpted, shapes, uncleaned = curves, curves, None, curves
+        lengthened: list[str] = []
         for name, operator in stages:
             if progress:
                 progress(name, 0, 1)
             if name == "curl":
                 shapes = curves
+            if name == "clean":
+                uncleaned = curves
             context = Context(recipe.seed, surface, name, recipe.locks.points, helpers, shapes)
+            before = curves
             curves, key = _run(operator, curves, key, context, memory)
+            if isinstance(operator, Displacement):
+                lengthened += _lengthened(name, before, curves)
             if name == "guides":
                 guides = unsculpted = curves
             if name == "sculpt":
@@ -116,7 +126,13 @@ def make_groom(
         recipe=recipe.text,
         shapes=shapes,
         unsculpted=unsculpted,
-        conflicts=[*_conflicts(recipe, unsculpted, curves), *_odd_size(scalp, recipe.scalp.region)],
+        conflicts=[
+            *_conflicts(recipe, unsculpted, curves),
+            *_odd_size(scalp, recipe.scalp.region),
+            *lengthened,
+            *_inward(uncleaned, surface),
+            *_not_strands(curves),
+        ],
     )
 
 
@@ -175,6 +191,37 @@ def _odd_size(mesh: Mesh, region: str | None) -> Iterator[str]:
         )
 
 
+def _lengthened(name: str, before: Curves, after: Curves) -> Iterator[str]:
+    """A message for an operator that displaces locks so far that they become much longer."""
+    was, now = before.lengths(), after.lengths()
+    if (much := now > MUCH_LONGER * was).any():
+        lock = int(np.argmax(now / was))
+        yield (
+            f"{name} makes {much.sum()} of {len(was)} locks more than {MUCH_LONGER:g} times as long, lock "
+            f"{after.ids[lock]} {now[lock]:.3g} instead of {was[lock]:.3g} m; lower its amount, raise its size, or "
+            "give it keep = 'length'"
+        )
+
+
+def _inward(locks: Curves, scalp: Scalp) -> Iterator[str]:
+    """A message for locks that start into the scalp: its faces may be turned inside out."""
+    start = grid(locks)[:, 1 : max(2, locks.counts[0] // 4)].mean(axis=1) - locks.roots
+    inward = np.einsum("ki,ki->k", unit(start), scalp.frames(locks)[:, :, 2]) < STEEPLY_INWARD
+    if inward.any():
+        yield (
+            f"{inward.sum()} of {len(locks)} locks, such as {locks.ids[inward.argmax()]}, start into the scalp and are "
+            f"laid along it; if they are outside of it, reverse the orientation of {scalp.mesh.name}"
+        )
+
+
+def _not_strands(locks: Curves) -> Iterator[str]:
+    """A message for locks that cannot be simulated."""
+    try:
+        locks.check_strands("locks")
+    except UserError as error:
+        yield f"{error}; as it is, the groom cannot be simulated"
+
+
 def _run(operator: Operator, curves: Curves, key: str, context: Context, memory: Memory) -> tuple[Curves, str]:
     """Returns the operator's result and its key; takes the result from the cache when the key is unchanged."""
     key = _key(key, context.purpose.encode(), operator.model_dump_json().encode())
@@ -187,7 +234,7 @@ def _run(operator: Operator, curves: Curves, key: str, context: Context, memory:
 
 def _scalp(recipe: Recipe, mesh: Mesh, memory: Memory) -> tuple[str, Scalp]:
     key = _key(
-        str((recipe.seed, recipe.scalp.region)),
+        str((recipe.seed, recipe.unit, recipe.scalp.region)),
         mesh.points.tobytes(),
         mesh.triangles.tobytes(),
         *(chunk for kind in (mesh.regions, mesh.maps, mesh.vectors, mesh.textures) for chunk in _contents(kind)),

@@ -15,7 +15,7 @@ from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Mesh
 from ringlet.data.stage import StageSpace
-from ringlet.io.polygons import check_polygons, fans, polygon_places
+from ringlet.io.polygons import check_polygons, polygon_places, triangulate
 from ringlet.io.space import check_points, to_metres
 
 MAX_POINTS = 2**31 - 1
@@ -42,7 +42,7 @@ def read_obj_mesh(path: Path, space: StageSpace) -> Mesh:
     counts = np.array([len(face) for face in content.faces], np.int64)
     indices = np.array([index for face in content.faces for index in face], np.int64)
     check_polygons(counts, indices, len(points), str(path))
-    corners, faces = fans(counts)
+    corners, faces = triangulate(points, counts, indices)
 
     uv, uv_indices = (
         np.array(content.uv).reshape(-1, 2),

@@ -29,8 +29,9 @@ def read_mesh(
 ) -> Mesh:
     """Reads a mesh in its rest pose, in metres and Y-up, from USD or OBJ.
 
-    Polygons are triangulated as fans. A Catmull-Clark subdivision surface is refined until most of it is nearer than
-    0.1 mm to its limit surface, by three levels or to 200 000 faces at most; its points lie on that surface. Face
+    Convex polygons are triangulated as fans, others by ear clipping. A Catmull-Clark subdivision surface is refined
+    until most of it is nearer than 0.1 mm to its limit surface, by three levels or to 200 000 faces at most; its points
+    lie on that surface. Face
     ``GeomSubset``s, or the groups of an OBJ, become regions. The rest pose is the default value of the points, or else
     the first time sample. A USD file without ``metersPerUnit`` is in centimetres, the fallback of USD.
 

@@ -109,7 +109,7 @@ class _HangingSolver:
 
     def __init__(self, shot: Shot, groom: Groom) -> None:
         self._shot, self._groom = shot, groom
-        self._gain = at_vertices(shot.rest.gain, groom, "rest.gain")
+        self._gain = at_vertices(shot.rest, "gain", groom, "rest.gain")
         self._frames = make_strands(shot, groom).directors.copy()
         self._groomed = measure_strains(groom.locks, np.asarray(groom.locks.points, np.float64), self._frames)
         self._all = np.ones(len(groom.locks), bool)

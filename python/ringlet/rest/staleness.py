@@ -61,7 +61,7 @@ def _of_body(body: Obstacle) -> dict[str, Any]:
 
 def values_at_vertices(shot: Shot, groom: Groom) -> dict[str, NDArray[np.float64]]:
     """The values at vertices that a rest shape depends on besides their positions, by name, shape (n,) each."""
-    values = {"gain": at_vertices(shot.rest.gain, groom, "rest.gain"), **material_factors(shot.variation, groom)}
+    values = {"gain": at_vertices(shot.rest, "gain", groom, "rest.gain"), **material_factors(shot, groom)}
     if "nail" in groom.locks.point:
         led = spring_fraction(groom.locks, 1.0 / (groom.space.fps * shot.solver.substeps))
         values |= dict(zip(NAILED, (groom.locks.point["nail"], led), strict=True))

@@ -9,7 +9,14 @@ from pydantic import Field
 from ringlet.data.quantities import Quantity, Ramped
 from ringlet.data.settings import Section
 
-VARIATIONS = ("radius", "stretch", "bend", "twist", "damping")  # the material's quantities that may vary
+# What of the material may vary, and the setting of the material that each is a factor on.
+VARIATIONS = {
+    "radius": "radius",
+    "stretch": "stretch_scale",
+    "bend": "bend_scale",
+    "twist": "twist_ratio",
+    "damping": "damping",
+}
 
 
 class Mapped(Ramped):

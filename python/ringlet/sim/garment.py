@@ -15,7 +15,7 @@ from ringlet.data.errors import UserError
 from ringlet.data.mesh import Clip, Mesh
 from ringlet.shot.cloth import ShotCloth
 from ringlet.sim.cloth import Cloth
-from ringlet.sim.obstacle import Obstacle
+from ringlet.sim.obstacle import Obstacle, refuse_flat
 from ringlet.sim.pins import PinnedVertices
 
 Array = NDArray[np.float64]
@@ -71,6 +71,7 @@ class SimulatedGarment:
             held[pin.vertices], holder[pin.vertices] = pin.stiffness is None, pin.obstacle
             attachment[pin.vertices] = 0.0 if pin.stiffness is None else pin.stiffness
         self.cloth = Cloth(mesh, settings.material, held, attachment=attachment)
+        refuse_flat(mesh, begin, first, "begin where each has one, or mend the animation")
         self.cloth.positions[:] = begin
         self.pinned_to = _most_frequent(holder[held])
         self.cloth.scale_rest(settings.least_scale)  # contact leaves room for the smallest scale

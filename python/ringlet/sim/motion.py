@@ -35,7 +35,7 @@ def make_strands(
 
     stiffened: times that each lock is stiffer against bend than that material, shape (count,)
     """
-    factors = material_factors(shot.variation, groom)
+    factors = material_factors(shot, groom)
     if stiffened is not None:
         factors["bend"] = factors.get("bend", 1.0) * np.repeat(stiffened, groom.locks.counts)
     return Strands(rest or groom.locks, shot.strands, held_vertices(groom.locks, shot.held), factors)
@@ -205,7 +205,7 @@ class Motion:
 
 def _check(shot: Shot, locks: Curves) -> None:
     """Refuses locks with no vertex that is free to move."""
-    locks.check("sim: locks")
+    locks.check("sim: locks").check_strands("sim: locks")
     if (locks.counts <= shot.held).any():
         raise UserError(
             f"sim: held is {shot.held}, but a lock has {locks.counts.min()} points; hold fewer, or resample the locks"

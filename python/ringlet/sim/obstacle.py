@@ -61,12 +61,7 @@ class Obstacle:
                 f"{self.mesh.name}: has {len(points)} points at frame {frame:g}, "
                 f"{len(self.mesh.points)} in its rest pose; must not change"
             )
-        flat = _core.flat_triangles(np.ascontiguousarray(points, np.float64), self.mesh.triangles)
-        if flat.any():
-            raise UserError(
-                f"{self.mesh.name}: at frame {frame:g} triangle {flat.argmax()} has no area or is not finite "
-                f"({flat.sum()} of {len(flat)}); mend the mesh or leave it out of the colliders"
-            )
+        refuse_flat(self.mesh, points, frame, "mend the mesh or leave it out of the colliders")
         return points
 
     def body(self, frame: float) -> Body:
@@ -80,4 +75,14 @@ class Obstacle:
             np.array_equal(mine.triangles, theirs.triangles)
             and mine.points.shape == theirs.points.shape
             and bool(np.abs(mine.points - theirs.points).max() < 1e-6)
+        )
+
+
+def refuse_flat(mesh: Mesh, points: NDArray[np.floating], frame: float, remedy: str) -> None:
+    """Refuses a mesh with a degenerate triangle at a frame."""
+    flat = _core.flat_triangles(np.ascontiguousarray(points, np.float64), mesh.triangles)
+    if flat.any():
+        raise UserError(
+            f"{mesh.name}: at frame {frame:g} triangle {flat.argmax()} has no area or is not finite "
+            f"({flat.sum()} of {len(flat)}); {remedy}"
         )

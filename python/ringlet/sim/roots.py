@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ringlet import _core
-from ringlet.data.errors import UserError
 from ringlet.data.groom import Groom
 
 
@@ -19,9 +18,6 @@ class Roots:
     groom: Groom
 
     def __post_init__(self) -> None:
-        locks = self.groom.locks
-        if "root_triangle" not in locks.curve or "root_barycentric" not in locks.curve:
-            raise UserError("sim: the locks are not bound to a scalp; make the groom again from its recipe")
         self._rest = self._frames(self.groom.scalp.points, "rest pose")
 
     def carry(self, scalp_points: NDArray[np.float64], frame: float) -> NDArray[np.float64]:
@@ -43,21 +39,6 @@ class Roots:
         )
 
     def _frames(self, scalp_points: NDArray[np.float64], when: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        scalp, locks = self.groom.scalp, self.groom.locks
-        if scalp_points.shape != scalp.points.shape:
-            raise UserError(
-                f"{scalp.name}: has {len(scalp_points)} points at {when}, but the groom was made on one with "
-                f"{len(scalp.points)}; make the groom again on this mesh"
-            )
-        points, roots = np.ascontiguousarray(scalp_points, np.float64), locks.curve["root_triangle"]
-        place, axes = _core.root_frames(points, scalp.triangles, roots, locks.curve["root_barycentric"])
-        flat = _core.flat_triangles(points, scalp.triangles)[roots]
-        good = np.isfinite(place).all(axis=1) & np.isfinite(axes).all(axis=(1, 2)) & ~flat
-        if not good.all():
-            lock = int(np.flatnonzero(~good)[0])
-            triangle = roots[lock]
-            raise UserError(
-                f"{scalp.name}: at {when} triangle {triangle}, where lock {locks.ids[lock]} is rooted, has no area or "
-                "is not finite; mend the mesh or its animation"
-            )
-        return place, axes
+        self.groom.check_roots(scalp_points, when, "sim")
+        bound, points = self.groom.locks.curve, np.ascontiguousarray(scalp_points, np.float64)
+        return _core.root_frames(points, self.groom.scalp.triangles, bound["root_triangle"], bound["root_barycentric"])

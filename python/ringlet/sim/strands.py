@@ -39,6 +39,7 @@ class Strands:
         if isinstance(self.held, int):
             from_root = np.arange(len(self.curves.points)) - np.repeat(self.curves.offsets[:-1], self.curves.counts)
             self.held = from_root < self.held
+        self.curves.check_strands("strands")
         self._core = _core.Strands(
             self.curves.offsets,
             np.ascontiguousarray(self.curves.points, np.float64),

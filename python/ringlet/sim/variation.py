@@ -4,37 +4,66 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import BaseModel, ValidationError
 
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.groom import Groom
 from ringlet.data.painted import per_lock
 from ringlet.data.random import Random
-from ringlet.shot.variation import VARIATIONS, Mapped, Variation
+from ringlet.data.settings import explain
+from ringlet.shot.material import Material
+from ringlet.shot.shot import Shot
+from ringlet.shot.variation import VARIATIONS, Mapped
+
+LEAST_STRETCH = 1e-6  # factor on stretch; strands that hardly resist it reach as far as they fall
 
 
-def material_factors(variation: Variation, groom: Groom) -> dict[str, NDArray[np.float64]]:
-    """The factors on the material that differ from 1, at the vertices of the locks, by name; shape (n,) each."""
-    factors: dict[str, NDArray[np.float64]] = {}
+def material_factors(shot: Shot, groom: Groom) -> dict[str, NDArray[np.float64]]:
+    """The factors on the material that differ from 1, at the vertices of the locks, by name; shape (n,) each.
+
+    Raises UserError where a product with the material is beyond the bounds of the material.
+    """
+    variation, factors = shot.variation, dict[str, NDArray[np.float64]]()
     for name in VARIATIONS:
-        if (varied := getattr(variation, name)) == Mapped():
+        if getattr(variation, name) == Mapped():
             continue
-        factor = at_vertices(varied, groom, f"variation.{name}", variation.seed)
-        if name in ("radius", "stretch") and not factor.min() > 0.0:
-            raise UserError(f"shot: variation.{name} is 0 somewhere; it must be above 0, raise its ramp or map")
+        factor = at_vertices(variation, name, groom, f"variation.{name}", variation.seed)
+        _check_product(shot.strands, name, factor, groom.locks)
         if (factor != 1.0).any():
             factors[name] = factor
     return factors
 
 
-def at_vertices(varied: Mapped, groom: Groom, setting: str, seed: int = 1) -> NDArray[np.float64]:
-    """A value at each vertex of the locks, shape (n,); ``setting`` is its name in the shot, for messages."""
-    locks = groom.locks
+def at_vertices(settings: BaseModel, name: str, groom: Groom, setting: str, seed: int = 1) -> NDArray[np.float64]:
+    """A value at each vertex of the locks, shape (n,).
+
+    settings, name: the table of the value, and its name there
+    setting:        its name in the shot, for messages
+    """
+    locks, varied = groom.locks, getattr(settings, name)
     of_point = varied.map if varied.map in locks.point else None
-    plain = varied.model_copy(update={"map": None}) if of_point else varied
-    value = per_lock(plain, Random(seed, setting), locks, groom.scalp, f"shot: {setting}")
+    plain = settings.model_copy(update={name: varied.model_copy(update={"map": None})}) if of_point else settings
+    value = per_lock(plain, name, Random(seed, setting), locks, groom.scalp, f"shot: {setting}")
     values = np.repeat(value, locks.counts) * varied.along(_places(locks))
     return values if of_point is None else values * _at_points(of_point, locks, setting)
+
+
+def _check_product(material: Material, name: str, factor: NDArray[np.float64], locks: Curves) -> None:
+    """Raises UserError for a factor that takes the material beyond its own bounds."""
+    setting = VARIATIONS[name]
+    for vertex in (factor.argmin(), factor.argmax()):
+        lock = locks.ids[np.searchsorted(locks.offsets, vertex, side="right") - 1]
+        where = f"shot: variation.{name} is {factor[vertex]:.6g} on lock {lock}"
+        product = getattr(material, setting) * float(factor[vertex])
+        try:
+            # The product of twist goes up to its limit, whatever the factor.
+            Material.model_validate({**material.model_dump(), setting: product, "limit_twist": False})
+        except ValidationError as error:
+            refused = explain(error, where, lambda _: f"strands.{setting}")
+            raise UserError(f"{refused}, change its ramp or map") from None
+        if name == "stretch" and factor[vertex] < LEAST_STRETCH:
+            raise UserError(f"{where}; must be at least {LEAST_STRETCH:g}, change its ramp or map")
 
 
 def _places(locks: Curves) -> NDArray[np.float64]:

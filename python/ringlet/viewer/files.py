@@ -10,7 +10,7 @@ from ringlet.data.files import replacing
 from ringlet.data.settings import parse_toml, read_toml
 from ringlet.groom import Recipe, parse_recipe
 from ringlet.groom.edits_file import edits_text
-from ringlet.groom.load import inherited, parse_edits
+from ringlet.groom.load import APPEND, inherited, parse_edits
 from ringlet.shot import Shot, parse_shot
 from ringlet.viewer import protocol
 from ringlet.viewer.document import Document, History, set_value
@@ -202,7 +202,8 @@ class Files:
         document = self.documents[file]
         contents, model = document.contents(), document.model
         if file == "recipe" and (names := self._inherited(document)) is not None:
-            contents = {**contents, "shape": [contents.get("shape", {}).get(name, {}) for name in names]}
+            shape = contents.get("shape", {})
+            contents = {**contents, "shape": [shape.get(name, {}) for name in names] + shape.get(APPEND, [])}
         return pack(
             protocol.Document.model_validate(
                 {
@@ -246,9 +247,10 @@ def copied(document: Document, edits: Path | None) -> str:
 
 
 def _by_name(place: Place, names: list[str]) -> Place:
-    """Converts an index of a shape operator to the name that a variant uses."""
-    if len(place) > 1 and place[0] == "shape" and isinstance(place[1], int) and place[1] < len(names):
-        return ["shape", names[place[1]], *place[2:]]
+    """Converts an index of a shape operator to the name that a variant uses, or to its place among those it appends."""
+    if len(place) > 1 and place[0] == "shape" and isinstance(place[1], int):
+        at = place[1]
+        return ["shape", names[at], *place[2:]] if at < len(names) else ["shape", APPEND, at - len(names), *place[2:]]
     return place
 
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace ringlet {
@@ -35,6 +36,7 @@ struct CollisionMesh {
     std::vector<int> object;          // the strand, cloth or body that it belongs to
     std::vector<int> anchor;          // the object that it is anchored to, which it may touch; −1: none
     std::vector<Vec3> rest;           // position at rest [m]
+    std::vector<double> yield;        // length of strand between it and what is prescribed [m], 0 on bodies; empty: infinite
 
     std::vector<PrimitivePair> exempt; // pairs that are never tested, in order
 
@@ -110,8 +112,18 @@ template <size_t N> double rest_extent(const CollisionMesh &mesh, const std::arr
     return std::sqrt(most);
 }
 
+// How far a primitive yields [m]: the largest length of strand between a vertex of it and what is prescribed.
+template <size_t N> double yield(const CollisionMesh &mesh, const std::array<int, N> &primitive) {
+    if (mesh.yield.empty()) return std::numeric_limits<double>::infinity();
+    double most = 0.0;
+    for (int v : primitive) most = std::max(most, mesh.yield[v]);
+    return most;
+}
+
 // The activation distance d_hat of two primitives [m]: the sum of their radii. Within one object it is at most nine tenths of
-// their distance at rest, so that neighbours along a strand never repel each other, but at least a hundredth of the radii.
+// their distance at rest, so that neighbours along a strand never repel each other; but at least a hundredth of the radii.
+// Near what is prescribed the same holds for two objects: strands shorter than their activation distance could part only by
+// stretch. There it is at most that distance or a quarter of the lengths over which both yield, whichever is larger.
 template <size_t N, size_t M>
 double activation_distance(const CollisionMesh &mesh, const std::array<int, N> &a, const std::array<int, M> &b) {
     if constexpr (N == 2 && M == 2) {
@@ -120,12 +132,14 @@ double activation_distance(const CollisionMesh &mesh, const std::array<int, N> &
             return mesh.along_strand[first][further];
     }
     const double radii = mean_radius(mesh, a) + mean_radius(mesh, b);
-    if (mesh.object[a[0]] != mesh.object[b[0]]) return radii;
+    double least = collision::least_d_hat_fraction * radii;
+    if (mesh.object[a[0]] != mesh.object[b[0]])
+        least = std::max(least, collision::yield_fraction * (yield(mesh, a) + yield(mesh, b)));
+    if (least >= radii) return radii;
     // A lower bound on the distance at rest settles most pairs.
     const double gap = (mesh.rest[a[0]] - mesh.rest[b[0]]).norm() - rest_extent(mesh, a) - rest_extent(mesh, b);
     if (collision::rest_fraction * gap >= radii) return radii;
-    return std::clamp(collision::rest_fraction * std::sqrt(closest_points(mesh.rest, a, b).distance2),
-                      collision::least_d_hat_fraction * radii, radii);
+    return std::clamp(collision::rest_fraction * std::sqrt(closest_points(mesh.rest, a, b).distance2), least, radii);
 }
 
 // Fills `along_strand` for strands whose first vertices, and the end, are `offsets`.

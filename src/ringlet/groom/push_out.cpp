@@ -1,5 +1,7 @@
 #include "ringlet/groom/push_out.h"
 
+#include "ringlet/groom/keep_form.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -8,6 +10,36 @@ namespace {
 
 constexpr double decay_to_root = 6e-3; // [m] decay length of a move towards the root
 constexpr double decay_to_tip = 0.1;   // [m] decay length of a move towards the tip
+constexpr double largest_stretch = 2.0;
+
+// Outward direction of a push: smooth from triangle to triangle, but never against the side that the sign of the distance
+// names.
+const Vec3 &outward(const SignedDistance &above) {
+    return above.smooth_normal.dot(above.normal) > 0.0 ? above.smooth_normal : above.normal;
+}
+
+// A piece of a curve with at most its length. One that heads straight into a body has lost most of that; it gets at most twice
+// what is left, and the rest of its length along the surface.
+class LengthLimit {
+public:
+    // `normal`: of the surface out of which the piece was pushed, or null
+    Vec3 operator()(const Vec3 &piece, double length, const Vec3 &heading, const Vec3 *normal) {
+        const Vec3 longest = std::min(2.0, length / std::max(piece.norm(), 1e-12)) * piece;
+        const double missing = length * length - longest.squaredNorm();
+        if (!normal || missing <= 1e-9 * length * length) {
+            slide_.setZero();
+            return longest;
+        }
+        slide_ = orthogonal(sliding() ? slide_ : heading.stableNormalized(), *normal);
+        const double along = longest.dot(slide_);
+        return longest + (std::sqrt(along * along + missing) - along) * slide_;
+    }
+
+    bool sliding() const { return !slide_.isZero(0.0); }
+
+private:
+    Vec3 slide_ = Vec3::Zero(); // unit direction along the surface: that of the heading where the curve reaches it
+};
 
 // Computes the moves of the points of one curve. Returns whether any place is too near the body. `lengths`, if not empty, are
 // target lengths of edges; edge k ends in point k.
@@ -15,6 +47,7 @@ bool find_moves(std::span<const Vec3> points, std::span<const double> lengths, c
                 double margin, const Allowed &allowed, std::span<Vec3> moves) {
     bool near = false;
     SurfaceProbe probe(body, grid);
+    LengthLimit limited;
     Vec3 move = Vec3::Zero(), before = points[0];
     double along = 0.0;
     moves[0].setZero();
@@ -25,21 +58,18 @@ bool find_moves(std::span<const Vec3> points, std::span<const double> lengths, c
         const double step = length / steps, wanted_step = lengths.empty() ? 0.0 : lengths[k] / steps;
         for (int i = 1; i <= steps; ++i) {
             along += step;
-            if (!move.isZero(0.0)) move *= std::exp(-step / decay_to_tip);
+            if (!limited.sliding() && !move.isZero(0.0)) move *= std::exp(-step / decay_to_tip);
             const Vec3 unmoved = points[k - 1] + (static_cast<double>(i) / steps) * edge;
             Vec3 place = unmoved + move;
             const double wanted = along <= allowed.root_length ? -allowed.root_depth : std::min(margin, 0.5 * along);
             SignedDistance above;
-            if (probe.below(place, margin, above) && above.distance < wanted) {
-                place +=
-                    (wanted - above.distance) * above.smooth_normal; // only the missing distance, so that the move starts at 0
+            const bool pushed = probe.below(place, margin, above) && above.distance < wanted;
+            if (pushed) {
+                place += (wanted - above.distance) * outward(above); // only the missing distance, so that the move starts at 0
                 near = true;
             }
-            // An edge that heads straight into the body has lost most of its length, and gets at most twice of what is left.
-            if (!lengths.empty()) {
-                const Vec3 piece = place - before;
-                place = before + std::min(2.0, wanted_step / std::max(piece.norm(), 1e-12)) * piece;
-            }
+            if (!lengths.empty())
+                place = before + limited(place - before, wanted_step, edge, pushed ? &outward(above) : nullptr);
             move = place - unmoved;
             before = place;
         }
@@ -85,6 +115,7 @@ std::vector<Vec3> push_out(const CurveView &curves, const Solid &body, double ma
                 if (!last) smooth_moves(points, moves, scratch);
                 for (size_t k = 1; k < points.size(); ++k) points[k] += moves[k];
             }
+            keep_form(curves[i], largest_stretch, points);
         }
     }
     return result;

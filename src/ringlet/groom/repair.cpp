@@ -2,6 +2,7 @@
 
 #include "ringlet/geometry/distance.h"
 #include "ringlet/geometry/near_segments.h"
+#include "ringlet/groom/keep_form.h"
 #include "ringlet/groom/push_out.h"
 
 #include <algorithm>
@@ -20,6 +21,7 @@ constexpr double body_weight = 4.0;       // weight of a target outside of a bod
 constexpr double largest_weight = 4.0;    // largest sum of weights at a point
 constexpr double smoothing_length = 4e-3; // [m] length along a curve over which a move decays
 constexpr double regularisation = 0.05;   // weight of keeping form and place
+constexpr double largest_stretch = 1.25;  // of a curve
 constexpr double skin = 2.5e-4;           // [m] motion of points after which candidate pairs are searched again
 
 double allowed_depth(const Allowed &allowed, double along) { return along <= allowed.root_length ? allowed.root_depth : 0.0; }
@@ -115,8 +117,8 @@ std::vector<Overlap> find_overlaps(const CurveView &curves, double thickness) {
 
 Repair::Repair(const CurveView &curves, std::vector<const Solid *> bodies, const Allowed &allowed)
     : offsets_(curves.offsets.begin(), curves.offsets.end()), bodies_(std::move(bodies)), allowed_(allowed),
-      points_(curves.points.begin(), curves.points.end()), best_(points_), fewest_(std::numeric_limits<size_t>::max()),
-      target_(points_.size()), weight_(points_.size()) {
+      before_(curves.points.begin(), curves.points.end()), points_(before_), best_(before_),
+      fewest_(std::numeric_limits<size_t>::max()), target_(points_.size()), weight_(points_.size()) {
     for (const Solid *body : bodies_) {
         grids_.emplace_back(body->mesh(), least_probe_distance);
         points_ = push_out(this->curves(), *body, body_clearance, allowed_);
@@ -133,6 +135,14 @@ int Repair::round() {
     }
     if (violations > 0) solve_moves();
     return violations;
+}
+
+std::vector<Vec3> Repair::points() const {
+    std::vector<Vec3> result = best_;
+    const CurveView before{before_, offsets_};
+    for (int i = 0; i < before.count(); ++i)
+        keep_form(before[i], largest_stretch, std::span(result).subspan(offsets_[i], before[i].size()));
+    return result;
 }
 
 // Adds targets for overlapping segments: each moves by half of the missing distance. Returns the number of violations.

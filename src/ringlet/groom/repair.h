@@ -38,8 +38,8 @@ public:
     // Returns the number of violations, and moves the curves if there are any.
     int round();
 
-    // The points with the fewest violations so far.
-    View<Vec3> points() const { return best_; }
+    // The points with the fewest violations so far. A curve that this stretches, or shortens, by a quarter keeps its form.
+    std::vector<Vec3> points() const;
 
 private:
     CurveView curves() const { return {points_, offsets_}; }
@@ -52,7 +52,7 @@ private:
     std::vector<const Solid *> bodies_;
     std::vector<ProximityGrid> grids_; // of each body
     Allowed allowed_;
-    std::vector<Vec3> points_, best_;
+    std::vector<Vec3> before_, points_, best_;
     size_t fewest_;
     std::vector<Vec3> target_;
     std::vector<double> weight_;

@@ -59,7 +59,9 @@ std::vector<RecoverySpring> InitialPenetration::recover(CollisionMesh &mesh, Vie
         const int v = vertices_[k].vertex;
         const Body &body = bodies_[vertices_[k].body];
         const Surface &surface = *surfaces[vertices_[k].body];
-        const double touching = mesh.radius[v] + mesh.radius[body.first];
+        const double radii = mesh.radius[v] + mesh.radius[body.first];
+        const double touching =
+            std::clamp(collision::yield_fraction * yield(mesh, std::array{v}), collision::least_d_hat_fraction * radii, radii);
         Vec3 outward = Vec3::Zero();
         const double height = surface.height(positions[v], outward);
         if (height >= scene_settings::recovered_height * touching) {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <stdexcept>
 
@@ -22,6 +23,7 @@ public:
         const int first = model.offsets[strand], end = model.offsets[strand + 1];
         int held = 0;
         while (first + held < end && model.held[first + held]) ++held;
+        add_yield(model, first, end);
         for (int v = first; v < end; ++v) {
             add_vertex(object, state.positions[v], !model.held[v], model.mass[v]);
             if (held >= 3) all_.carriers[v] = Triangle(first, first + 1, first + 2);
@@ -32,6 +34,7 @@ public:
 
     void add_cloth(const SceneCloth &cloth, const Object &object) {
         const int base = all_.count();
+        all_.mesh.yield.insert(all_.mesh.yield.end(), cloth.model->vertex_count(), std::numeric_limits<double>::infinity());
         for (int i = 0; i < cloth.model->vertex_count(); ++i)
             all_.mesh.points.push_back(add_vertex(object, cloth.model->rest[i], !cloth.model->held[i], cloth.model->mass[i]));
         add_surface(cloth.model->triangles, base);
@@ -41,12 +44,24 @@ public:
         const int base = all_.count();
         for (const Vec3 &rest : body.rest) {
             const int vertex = add_vertex(object, rest, false, 0.0);
+            all_.mesh.yield.push_back(0.0);
             if (meets_triangles) all_.mesh.points.push_back(vertex);
         }
         add_surface(body.triangles, base);
     }
 
 private:
+    void add_yield(const StrandModel &model, int first, int end) {
+        std::vector<double> &yield = all_.mesh.yield;
+        double length = std::numeric_limits<double>::infinity();
+        for (int v = first; v < end; ++v) {
+            if (v > first) length += model.rest_length[v - 1];
+            if (model.held[v]) length = 0.0;
+            yield.push_back(length);
+        }
+        for (int v = end - 1; v-- > first;) yield[v] = std::min(yield[v], yield[v + 1] + model.rest_length[v]);
+    }
+
     int add_vertex(const Object &object, const Vec3 &rest, bool moves, double mass) {
         const int vertex = all_.count();
         all_.mass.push_back(mass);

@@ -12,7 +12,7 @@ from ringlet.data.curves import Curves
 from ringlet.data.quantities import Quantity, Ramped
 from ringlet.groom.operators.operator import Context, along_edges, between_edges, turned, unit
 from ringlet.groom.operators.shape import Shape
-from ringlet.groom.parting import Vector
+from ringlet.groom.parting import Direction
 
 
 class Bend(Shape):
@@ -20,10 +20,10 @@ class Bend(Shape):
     distributes the bend along the lock."""
 
     op: Literal["bend"] = "bend"
-    angle: Annotated[Ramped, Quantity("deg", -1000.0, 1000.0)] = Field(
+    angle: Annotated[Ramped, Quantity("deg", -1000.0, 1000.0, product=False)] = Field(
         default=Ramped(value=45.0), description="how far the tip is turned"
     )
-    toward: Vector = Field(default=(0.0, -1.0, 0.0), description="direction that it bends to, Y up")
+    toward: Direction = Field(default=(0.0, -1.0, 0.0), description="direction that it bends to, Y up")
     of: Literal["world", "scalp"] = Field(
         default="world", description="scalp: `toward` counts in tangent, bitangent and normal of the root"
     )
@@ -39,5 +39,5 @@ class Bend(Shape):
         axis = unit(np.cross(points[:, -1] - points[:, 0], toward))
         density = self.angle.along(between_edges(edges))
         cumulative = np.cumsum(density) / max(density.sum(), 1e-12)
-        angle = np.radians(context.values("angle", self.angle, curves))[:, None] * cumulative
+        angle = np.radians(context.values(self, "angle", curves))[:, None] * cumulative
         return along_edges(points[:, 0], turned(edges, axis[:, None, :], angle))

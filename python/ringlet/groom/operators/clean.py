@@ -14,7 +14,7 @@ from ringlet.groom.operators.operator import Context, Operator, packed
 
 class Clean(Operator):
     """Moves points below the skin, or closer to it than ``margin``, out along the surface normal. The margin grows from
-    0 at the root."""
+    0 at the root. A lock that heads straight into the skin is laid along it. Locks keep their lengths."""
 
     margin: Annotated[float, Quantity("m", 0.0, 0.1)] = Field(
         default=0.002, description="distance that locks keep from the skin"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,13 +18,23 @@ from ringlet.groom.operators.shape import Shape
 class Clump(Shape):
     """Pulls neighbouring locks towards a clump centre: ``p' = p + amount · ramp(u) · (centre(u) - p)``. The centres are
     the locks nearest to samples of the scalp at spacing ``size``. Further levels make smaller clumps within the larger
-    ones: the spacing shrinks by ``finer`` a level, and the amount is the same."""
+    ones: the spacing shrinks by ``finer`` a level, and the amount is the same. An amount that is a plain number varies
+    from root to tip, not from lock to lock."""
 
     op: Literal["clump"] = "clump"
     size: Annotated[float, Quantity("m", 1e-3, 1.0)] = Field(default=0.02, description="distance of the clumps")
-    amount: Annotated[Ramped, Quantity("", 0.0, 1.0)] = Field(
+    amount: Annotated[Ramped, Quantity("", 0.0, 1.0, product=False)] = Field(
         default=Ramped(value=0.4, vary=0.5, ramp=[(0, 0), (1, 1)]), description="0 apart, 1 all at the centre"
     )
+
+    @classmethod
+    def defaults(cls, data: dict[str, Any]) -> dict[str, Any]:
+        """Defaults of the class; an amount that is a plain number is that of every lock."""
+        defaults = super().defaults(data)
+        if isinstance(data.get("amount"), int | float):
+            del defaults["amount"]["vary"]
+        return defaults
+
     levels: int = Field(default=1, ge=1, le=8, description="clumps within clumps")
     finer: Annotated[float, Quantity("", 0.1, 0.9)] = Field(
         default=0.5, description="distance of the clumps of a level, as a part of that of the level before"
@@ -32,7 +42,7 @@ class Clump(Shape):
 
     def shape(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
         """Returns the clumped shapes, large clumps first; roots stay."""
-        amount = context.values("amount", self.amount, curves)[:, None]
+        amount = context.values(self, "amount", curves)[:, None]
         amount = np.minimum(amount * self.amount.along(np.linspace(0.0, 1.0, points.shape[1])), 1.0)[:, :, None]
         for level in range(self.levels):
             centre = self._centres(points[:, 0], self.size * self.finer**level, context)

@@ -6,7 +6,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
 
 from ringlet import _core
 from ringlet.data.curves import Curves, offsets_from_counts
@@ -22,6 +22,7 @@ RAMP_SAMPLES = 128
 NOISE_VALUES = 24
 MAX_EVENTS = 12  # largest number of switchbacks, and of skips, of a lock
 NEVER = 1e9
+MAX_OPENING = 10.0  # largest factor on the width where a curl opens or closes
 MIN_START = 1e-3  # [m] an opening length of 0 would move the root off the scalp
 
 
@@ -43,7 +44,7 @@ class Curl(Operator):
     pitch: Annotated[Ramped | None, Quantity("m", 5e-4, 1.0)] = Field(
         default=None, description="rise per curl, along the shape"
     )
-    curls: Annotated[Ramped | None, Quantity("", 0.0, 500.0)] = Field(
+    curls: Annotated[Ramped | None, Quantity("", 0.0, 500.0, product=False)] = Field(
         default=None, description="number of curls of a lock; its ramp says where they are closer"
     )
     curls_per_cm: Annotated[Ramped | None, Quantity("", 0.0, 20.0)] = Field(
@@ -105,6 +106,13 @@ class Curl(Operator):
     )
     keep: Literal["silhouette", "length"] = Field(default="silhouette", description="what the curl does not change")
 
+    @field_validator("opening", "closing")
+    @classmethod
+    def _bounded(cls, ramp: list[tuple[float, float]]) -> list[tuple[float, float]]:
+        if (most := max(factor for _, factor in ramp)) > MAX_OPENING:
+            raise refuse(f"has a factor of {most:g}; must be at most {MAX_OPENING:g}")
+        return ramp
+
     @classmethod
     def defaults(cls, data: dict[str, Any]) -> dict[str, Any]:
         """Defaults of the class, overridden by those of the preset."""
@@ -128,17 +136,17 @@ class Curl(Operator):
         """Curl count of each lock, shape (count,), and its relative density at parameters ``u``, with mean 1."""
         lengths = curves.lengths()
         if self.curls is not None:
-            turns, rate = context.values("curls", self.curls, curves), self.curls.along(u)
+            turns, rate = context.values(self, "curls", curves), self.curls.along(u)
             return turns, rate / max(float(np.mean(rate)), 1e-9)
         if self.curls_per_cm is not None:
             turns, rate = (
-                100.0 * lengths * context.values("curls_per_cm", self.curls_per_cm, curves),
+                100.0 * lengths * context.values(self, "curls_per_cm", curves),
                 self.curls_per_cm.along(u),
             )
         else:
             assert self.pitch is not None
             turns, rate = (
-                lengths / context.values("pitch", self.pitch, curves),
+                lengths / context.values(self, "pitch", curves),
                 1.0 / np.maximum(self.pitch.along(u), 0.05),
             )
         mean = max(float(np.mean(rate)), 1e-9)
@@ -148,7 +156,7 @@ class Curl(Operator):
         """Returns the groom guides, with points evenly spaced along the curl."""
 
         def values(name: str) -> NDArray[np.float64]:
-            return context.values(name, getattr(self, name), curves)
+            return context.values(self, name, curves)
 
         ids, u, points = curves.ids, np.linspace(0.0, 1.0, RAMP_SAMPLES), context.lock_points
         turns, rate = self.turns(curves, context, u)
@@ -207,7 +215,7 @@ class Curl(Operator):
     def _phase(self, curves: Curves, context: Context) -> NDArray[np.float64]:
         """Initial phase of each curl [degrees], shape (count,): random per lock plus a field that neighbours share."""
         spread, shared_fraction, phase = (
-            context.values(name, getattr(self, name), curves) for name in ("phase_spread", "phase_alike", "phase")
+            context.values(self, name, curves) for name in ("phase_spread", "phase_alike", "phase")
         )
         own = context.random("phase").uniform(curves.ids)
         shared = context.random("phase_field").field(curves.roots, self.phase_size)

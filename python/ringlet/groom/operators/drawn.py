@@ -25,6 +25,5 @@ class Drawn(Source, Guides):
     )
 
     def make(self, curves: Curves, context: Context) -> Curves:
-        """Returns the drawn curves, each bound to the nearest point of the scalp region."""
-        curves.check("guides")
-        return context.scalp.bind(curves, self.tolerance, "guides")
+        """Returns the drawn curves without coincident points, each bound to the nearest point of the scalp region."""
+        return context.scalp.bind(curves.check("guides").distinct(), self.tolerance, "guides")

@@ -33,7 +33,7 @@ class Flyaways(Shape):
         along = unit(points[:, -1] - points[:, 0])
         random_direction = unit(context.random("axis").normals(curves.ids, 3))
         axis = unit(np.cross(along, random_direction))
-        angle = np.radians(context.values("angle", self.angle, curves)) * is_flyaway
+        angle = np.radians(context.values(self, "angle", curves)) * is_flyaway
         ramp = self.angle.along(between_edges(edges))
         rotated = along_edges(points[:, 0], turned(edges, axis[:, None, :], angle[:, None] * ramp))
         return np.where(is_flyaway[:, None, None], rotated, points)

@@ -12,11 +12,11 @@ from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.quantities import Quantity, Ramped
 from ringlet.groom.operators.operator import Context, arc_lengths, unit
-from ringlet.groom.operators.shape import Shape
+from ringlet.groom.operators.shape import Displacement
 from ringlet.groom.operators.wander import wander
 
 
-class Frizz(Shape):
+class Frizz(Displacement):
     """Noise of short wavelength across the lock: ``p' = p + amount · ramp(u) · (noise - (noise · t) t)``, with t the
     tangent of the lock and independent noise per lock."""
 
@@ -26,7 +26,7 @@ class Frizz(Shape):
     )
     size: Annotated[float, Quantity("m", 5e-4, 1.0)] = Field(default=0.008, description="length over which it changes")
 
-    def shape(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
+    def displaced(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
         """Returns the shapes with frizz; roots stay.
 
         Raises UserError when ``size`` is shorter than the spacing of the points.
@@ -40,7 +40,5 @@ class Frizz(Shape):
         noise = wander(context.random("wander"), curves.ids, along, self.size)
         tangent = unit(np.gradient(points, axis=1))
         across = noise - np.sum(noise * tangent, axis=2, keepdims=True) * tangent
-        magnitude = context.values("amount", self.amount, curves)[:, None] * self.amount.along(
-            np.linspace(0.0, 1.0, count)
-        )
+        magnitude = context.values(self, "amount", curves)[:, None] * self.amount.along(np.linspace(0.0, 1.0, count))
         return points + magnitude[:, :, None] * across

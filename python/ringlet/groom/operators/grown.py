@@ -6,7 +6,7 @@ from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
 from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.data.painted import painted_directions
@@ -14,14 +14,14 @@ from ringlet.data.quantities import Quantity, Section, Varied, refuse
 from ringlet.groom.mask import Mask
 from ringlet.groom.operators.guides import Guides
 from ringlet.groom.operators.operator import UP, Context, unit
-from ringlet.groom.parting import Parting, Vector
+from ringlet.groom.parting import Direction, Parting
 
 
 class Zone(Section):
     """A zone of the head with its own length, lift and droop: a cone around a direction with a falloff, a mask, or the
     intersection of both."""
 
-    toward: Vector | None = Field(
+    toward: Direction | None = Field(
         default=None, description="direction from the middle of the scalp, Y up: [0, 0.5, 1] is the forehead"
     )
     spread: Annotated[float, Quantity("deg", 1.0, 180.0)] = Field(
@@ -74,14 +74,14 @@ class Grown(Guides):
     droop: Annotated[Varied, Quantity("", 0.0, 10.0)] = Field(
         default=Varied(value=0.4), description="how much the tip hangs down"
     )
-    whorl: Vector | None = Field(
+    whorl: Annotated[Direction | None, BeforeValidator(lambda value: None if value is False else value)] = Field(
         default=(0.0, 1.0, -0.6),
-        description="direction of the crown from the middle of the scalp; the flow runs away from it",
+        description="direction of the crown from the middle of the scalp; the flow runs away from it; false: no whorl",
     )
     whorl_turn: Annotated[float, Quantity("deg", -180.0, 180.0)] = Field(
         default=25.0, description="how much the flow spirals about the whorl"
     )
-    flow: Vector = Field(default=(0.0, -1.0, 0.0), description="direction of the flow where there is no whorl")
+    flow: Direction = Field(default=(0.0, -1.0, 0.0), description="direction of the flow where there is no whorl")
     density: str | None = Field(
         default=None,
         description="painted values: where they are higher, guides stand closer; none grow where they are 0",
@@ -107,26 +107,35 @@ class Grown(Guides):
         roots = scalp.positions(triangle, barycentric)
         seeds = Curves(roots, offsets_from_counts(np.ones(len(ids))), ids, bound)
 
-        normal = scalp.frames(seeds)[:, :, 2]
-        length, lift, droop = (context.values(k, getattr(self, k), seeds) for k in ("length", "lift", "droop"))
+        frames = scalp.frames(seeds)
+        normal = frames[:, :, 2]
+        length, lift, droop = (context.values(self, k, seeds) for k in ("length", "lift", "droop"))
         for k, zone in enumerate(self.zone):
             weight = zone.weight(seeds, context, f"guides.zone[{k}]")
             length *= 1.0 + weight * (zone.length - 1.0)
             lift *= 1.0 + weight * (zone.lift - 1.0)
             droop *= 1.0 + weight * (zone.droop - 1.0)
-        lift = np.clip(lift, 0.0, 1.0)[:, None]
+        length, lift, droop = (
+            Quantity.of(self, name).clipped(values)
+            for name, values in (("length", length), ("lift", lift), ("droop", droop))
+        )
+        lift = lift[:, None]
 
-        start = unit(lift * normal + (1.0 - lift) * self._flow(seeds, normal, context))
+        flow = self._flow(seeds, frames, context)
+        start = unit(lift * normal + (1.0 - lift) * flow)
         u = (np.arange(self.points - 1) + 0.5) / (self.points - 1)
-        direction = unit(start[:, None, :] - (droop[:, None] * u)[:, :, None] * UP)
+        direction = _unit_or(flow[:, None, :], start[:, None, :] - (droop[:, None] * u)[:, :, None] * UP)
         steps = direction * (length / (self.points - 1))[:, None, None]
         points = np.concatenate([roots[:, None], roots[:, None] + np.cumsum(steps, axis=1)], axis=1)
         offsets = offsets_from_counts(np.full(len(ids), self.points))
         return Curves(np.ascontiguousarray(points.reshape(-1, 3)), offsets, ids, bound)
 
-    def _flow(self, seeds: Curves, normal: NDArray, context: Context) -> NDArray[np.float64]:
-        """Unit tangents of the surface in the direction of growth, shape (n, 3)."""
-        roots, scalp = seeds.points, context.scalp
+    def _flow(self, seeds: Curves, frames: NDArray, context: Context) -> NDArray[np.float64]:
+        """Unit tangents of the surface in the direction of growth, shape (n, 3).
+
+        Where the flow is across the surface, as at the whorl, the tangent of the scalp's frame takes its place.
+        """
+        roots, normal, scalp = seeds.points, frames[:, :, 2], context.scalp
         from_middle = roots - scalp.middle
         if self.whorl is None:
             flow = np.broadcast_to(np.array(self.flow), normal.shape)
@@ -140,4 +149,9 @@ class Grown(Guides):
         if self.part is not None:
             away, falloff = self.part.away(roots, normal, scalp.middle, context.helper)
             flow = (1.0 - falloff)[:, None] * flow + falloff[:, None] * away
-        return unit(flow - np.sum(flow * normal, axis=1, keepdims=True) * normal)
+        return _unit_or(frames[:, :, 0], flow - np.sum(flow * normal, axis=1, keepdims=True) * normal)
+
+
+def _unit_or(otherwise: NDArray, vectors: NDArray) -> NDArray[np.float64]:
+    """Normalises vectors along the last axis; where they are almost zero, the ones of ``otherwise``."""
+    return np.where(np.linalg.norm(vectors, axis=-1, keepdims=True) > 1e-9, unit(vectors), otherwise)

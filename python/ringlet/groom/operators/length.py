@@ -30,9 +30,9 @@ class Length(Shape):
     def shape(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
         """Returns the scaled or cut shapes; roots stay."""
         along = arc_lengths(points)
-        factor = np.maximum(context.values("factor", self.factor, curves), 1e-3)  # a map may contain 0
+        factor = context.values(self, "factor", curves)
         if self.to is not None:
-            factor *= np.maximum(context.values("to", self.to, curves), 1e-6) / np.maximum(along[:, -1], 1e-9)
+            factor *= context.values(self, "to", curves) / np.maximum(along[:, -1], 1e-9)
         if not self.cut:
             return points[:, :1] + factor[:, None, None] * (points - points[:, :1])
         return at_lengths(points, np.minimum(factor, 1.0)[:, None] * along)

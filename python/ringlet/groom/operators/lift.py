@@ -31,7 +31,7 @@ class Lift(Shape):
         normal = context.scalp.frames(curves)[:, :, 2]
         lean = unit(points[:, points.shape[1] // 3] - points[:, 0])
         angle_to_normal = np.arccos(np.clip(np.sum(lean * normal, axis=1), -1.0, 1.0))
-        angle = np.minimum(np.radians(context.values("angle", self.angle, curves)), angle_to_normal)
+        angle = np.minimum(np.radians(context.values(self, "angle", curves)), angle_to_normal)
         axis = unit(np.cross(lean, normal))
         ramp = self.angle.along(between_edges(edges))
         return along_edges(points[:, 0], turned(edges, axis[:, None, :], angle[:, None] * ramp))

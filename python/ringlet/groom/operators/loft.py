@@ -31,6 +31,6 @@ class Loft(Shape):
     def shape(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
         """Returns the raised shapes; edge lengths stay."""
         edges = np.diff(points, axis=1)
-        amount = context.values("amount", self.amount, curves)[:, None] * self.amount.along(between_edges(edges))
+        amount = context.values(self, "amount", curves)[:, None] * self.amount.along(between_edges(edges))
         target = unit(self.up * UP + (1.0 - self.up) * context.scalp.frames(curves)[:, :, 2])
         return along_edges(points[:, 0], pulled(edges, amount, target))

@@ -11,14 +11,14 @@ from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.data.errors import UserError
 from ringlet.data.quantities import Quantity, Section
 from ringlet.groom.operators.operator import Context, unit
-from ringlet.groom.parting import Vector
+from ringlet.groom.parting import Direction
 
 
 class Mirror(Section):
     """Mirrors the guides of one side of a plane to the other side. Guides of that other side are removed; guides on the
     plane stay. The image of a guide has the id ``-1 - id``."""
 
-    across: Vector = Field(default=(1.0, 0.0, 0.0), description="direction from the plane to the side that is kept")
+    across: Direction = Field(default=(1.0, 0.0, 0.0), description="direction from the plane to the side that is kept")
     offset: Annotated[float, Quantity("m", -1.0, 1.0)] = Field(
         default=0.0, description="how far the plane is from the middle of the scalp, along 'across'"
     )

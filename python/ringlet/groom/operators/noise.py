@@ -11,10 +11,10 @@ from pydantic import Field
 from ringlet.data.curves import Curves
 from ringlet.data.quantities import Quantity, Ramped
 from ringlet.groom.operators.operator import Context
-from ringlet.groom.operators.shape import Shape
+from ringlet.groom.operators.shape import Displacement
 
 
-class Noise(Shape):
+class Noise(Displacement):
     """Displaces points by a smooth noise field in space, the same for all locks at a place:
     ``p' = p + amount · ramp(u) · (field(p) - field(root))``."""
 
@@ -26,11 +26,11 @@ class Noise(Shape):
         default=0.05, description="distance over which the field changes"
     )
 
-    def shape(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
+    def displaced(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
         """Returns the displaced shapes; roots stay."""
         places = points.reshape(-1, 3)
         field = np.stack([context.random(axis).field(places, self.size) for axis in "xyz"], axis=1)
         field = field.reshape(points.shape)
         ramp = self.amount.along(np.linspace(0.0, 1.0, points.shape[1]))
-        magnitude = context.values("amount", self.amount, curves)[:, None] * ramp
+        magnitude = context.values(self, "amount", curves)[:, None] * ramp
         return points + magnitude[:, :, None] * (field - field[:, :1])

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.painted import per_lock
-from ringlet.data.quantities import Section, Varied
+from ringlet.data.quantities import Section
 from ringlet.data.random import Random
 from ringlet.data.settings import did_you_mean
 from ringlet.groom.scalp import Scalp
@@ -49,9 +49,14 @@ class Context:
             raise UserError(f"{self.purpose}.{setting} is '{name}', which is no helper curve{remedy}")
         return self.curves[name]
 
-    def values(self, name: str, setting: Varied, curves: Curves) -> NDArray[np.float64]:
-        """Values of a varied setting per curve, shape (count,)."""
-        return per_lock(setting, self.random(name), curves, self.scalp.mesh, f"{self.purpose}.{name}")
+    def values(self, settings: Section, name: str, curves: Curves, table: str = "") -> NDArray[np.float64]:
+        """Values of a varied setting per curve, shape (count,).
+
+        table: name of the table of ``settings`` in that of the operator, with a dot after it
+        """
+        name_here = f"{table}{name}"
+        random = self.random(name_here)
+        return per_lock(settings, name, random, curves, self.scalp.mesh, f"{self.purpose}.{name_here}")
 
 
 class Operator(Section):

@@ -32,6 +32,6 @@ class Part(Shape):
         edges = np.diff(points, axis=1)
         normal = context.scalp.frames(curves)[:, :, 2]
         away, falloff = self.parting.away(points[:, 0], normal, context.scalp.middle, context.helper)
-        amount = falloff * context.values("amount", self.amount, curves)
+        amount = falloff * context.values(self, "amount", curves)
         ramp = self.amount.along(between_edges(edges))
         return along_edges(points[:, 0], pulled(edges, amount[:, None] * ramp, away))

@@ -38,7 +38,7 @@ class PhaseLock(Section):
         _, nearest = KDTree(curves.roots[leaders]).query(curves.roots)
         return {
             "leader": leaders[nearest].astype(np.int32),
-            "join": np.minimum(context.values("phase_lock.amount", self.amount, curves), 1.0),
-            "join_over": context.values("phase_lock.length", self.length, curves),
-            "cohesion": np.minimum(context.values("phase_lock.cohesion", self.cohesion, curves), 1.0),
+            "join": np.minimum(context.values(self, "amount", curves, "phase_lock."), 1.0),
+            "join_over": context.values(self, "length", curves, "phase_lock."),
+            "cohesion": np.minimum(context.values(self, "cohesion", curves, "phase_lock."), 1.0),
         }

@@ -11,11 +11,11 @@ from pydantic import Field
 from ringlet.data.curves import Curves
 from ringlet.data.quantities import Quantity, Ramped
 from ringlet.groom.operators.operator import Context, arc_lengths
-from ringlet.groom.operators.shape import Shape
+from ringlet.groom.operators.shape import Displacement
 from ringlet.groom.operators.wander import wander
 
 
-class Scraggle(Shape):
+class Scraggle(Displacement):
     """Noise of long wavelength that grows towards the tip: ``p' = p + amount · ramp(u) · noise(s / size)``, with s the
     arc length from the root. The noise is a B-spline with normally distributed knots, independent per lock."""
 
@@ -27,10 +27,10 @@ class Scraggle(Shape):
         default=0.03, description="length over which it changes its mind"
     )
 
-    def shape(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
+    def displaced(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
         """Returns the displaced shapes; roots stay."""
         ramp = self.amount.along(np.linspace(0.0, 1.0, points.shape[1]))
-        magnitude = context.values("amount", self.amount, curves)[:, None] * ramp
+        magnitude = context.values(self, "amount", curves)[:, None] * ramp
         return points + magnitude[:, :, None] * wander(
             context.random("wander"), curves.ids, arc_lengths(points), self.size
         )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,6 +42,26 @@ class Shape(Operator):
             mixed = (mix_edges if self.turns else mix_places)(points, shaped, weight)
             shaped = np.where(affected[:, None, None], mixed, points)
         return with_grid(curves, shaped)
+
+
+class Displacement(Shape):
+    """Displaces the points of locks: they become longer or, with ``keep = "length"``, their silhouette shorter."""
+
+    keep: Literal["silhouette", "length"] = Field(
+        default="silhouette", description="what it does not change: how far locks reach, or the length of their edges"
+    )
+
+    def displaced(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
+        """Returns the displaced points, for points of shape (count, points, 3) [m]; roots stay."""
+        raise NotImplementedError
+
+    def shape(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
+        """Returns the displaced shapes; roots stay."""
+        displaced = self.displaced(points, curves, context)
+        if self.keep == "silhouette":
+            return displaced
+        length = np.linalg.norm(np.diff(points, axis=1), axis=2, keepdims=True)
+        return along_edges(points[:, 0], length * unit(np.diff(displaced, axis=1)))
 
 
 def mix_places(a: NDArray, b: NDArray, weight: NDArray) -> NDArray[np.floating]:

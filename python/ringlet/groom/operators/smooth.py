@@ -27,7 +27,7 @@ class Smooth(Shape):
         """Returns the smoothed shapes; roots stay."""
         count = points.shape[1]
         spacing = np.maximum(arc_lengths(points)[:, -1], 1e-9) / (count - 1)
-        weight = (np.maximum(context.values("size", self.size, curves), 0.0) / (2.0 * np.pi * spacing)) ** 4
+        weight = (np.maximum(context.values(self, "size", curves), 0.0) / (2.0 * np.pi * spacing)) ** 4
         second = np.diff(np.eye(count), n=2, axis=0)[:, 1:]  # Δ² of all points but the root, which is the origin
         stiffness, modes = np.linalg.eigh(second.T @ second)
         filtered = 1.0 / (1.0 + weight[:, None] * np.maximum(stiffness, 0.0))

@@ -19,7 +19,7 @@ class Straighten(Shape):
     ``edge' = |edge| · unit((1 - amount · ramp) · unit(edge) + amount · ramp · unit(tip - root))``."""
 
     op: Literal["straighten"] = "straighten"
-    amount: Annotated[Ramped, Quantity("", 0.0, 1.0)] = Field(
+    amount: Annotated[Ramped, Quantity("", 0.0, 1.0, product=False)] = Field(
         default=Ramped(value=1.0), description="0 leaves the shape, 1 makes it straight"
     )
 
@@ -28,7 +28,7 @@ class Straighten(Shape):
     def shape(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
         """Returns the straightened shapes; edge lengths stay."""
         edges = np.diff(points, axis=1)
-        amount = context.values("amount", self.amount, curves)[:, None] * self.amount.along(between_edges(edges))
+        amount = context.values(self, "amount", curves)[:, None] * self.amount.along(between_edges(edges))
         amount = np.clip(amount, 0.0, 1.0)[:, :, None]
         straight = unit(points[:, -1] - points[:, 0])[:, None, :]
         length = np.linalg.norm(edges, axis=2, keepdims=True)

@@ -93,7 +93,8 @@ def own_curves(source: Source, prim: Usd.Prim, time: Usd.TimeCode | None = None,
     value = UsdGeom.PointBased(prim).GetPointsAttr().Get(time)
     points = to_metres(np.array(value if value is not None else [], dtype).reshape(-1, 3), source.space)
     counts = _counts(prim, time, len(points), where)
-    ids = UsdGeom.PrimvarsAPI(prim).GetPrimvar(f"{OWN}id").Get()
+    primvar = UsdGeom.PrimvarsAPI(prim).GetPrimvar(f"{OWN}id")
+    ids = primvar.Get() if primvar else None
     if ids is None or len(ids) != len(counts):
         raise UserError(f"{where}: has no ringlet:id for each of its {len(counts)} curves; write the file again")
     curves = Curves(points, offsets_from_counts(counts), np.array(ids, np.int64))

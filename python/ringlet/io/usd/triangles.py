@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from pxr import Usd, UsdGeom
 
 from ringlet.data.errors import UserError
-from ringlet.io.polygons import fans, polygon_places
+from ringlet.io.polygons import polygon_places, triangulate
 from ringlet.io.usd.refinement import read_polygons, refinement, undrawn
 from ringlet.io.usd.stage import Source
 from ringlet.io.usd.values import local_to_world, read_points
@@ -26,7 +26,8 @@ class Triangles:
 
     def __init__(self, source: Source, prim: Usd.Prim, time: Usd.TimeCode) -> None:
         self.where, mesh = source.where(prim), UsdGeom.Mesh(prim)
-        self.points = len(read_points(prim, time, self.where))
+        points = read_points(prim, time, self.where)
+        self.points = len(points)
         self.counts, self.indices = read_polygons(prim, time, self.points, self.where)
         self._refined = refinement(source, prim)
         counts, indices, polygons = self.counts, self.indices, np.arange(len(self.counts))
@@ -36,7 +37,7 @@ class Triangles:
         # A mirroring transform reverses the winding, like leftHanded.
         mirrored = np.linalg.det(local_to_world(prim, time)[:3, :3]) < 0
         left_handed = mesh.GetOrientationAttr().Get(time) == UsdGeom.Tokens.leftHanded
-        corners, faces = fans(counts, clockwise=bool(mirrored) != left_handed)
+        corners, faces = triangulate(self.at_points(points), counts, indices, clockwise=bool(mirrored) != left_handed)
         drawn = ~np.isin(polygons[faces], undrawn(source, prim, time))
         self._corners, self.faces = corners[drawn], polygons[faces[drawn]]
         if len(self.faces) == 0:
