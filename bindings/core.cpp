@@ -6,7 +6,12 @@
 #include <nanobind/stl/string.h>
 #include <omp.h>
 
+#include <algorithm>
+
 namespace nb = nanobind;
+
+// More threads than that are a mistake in the environment, and their stacks do not fit in memory.
+constexpr int max_threads = 1024;
 
 void bind_cloth(nb::module_ &module);
 void bind_geometry(nb::module_ &module);
@@ -17,12 +22,13 @@ void bind_scene(nb::module_ &module);
 void bind_strand(nb::module_ &module);
 
 NB_MODULE(_core, module) {
+    omp_set_num_threads(std::min(omp_get_max_threads(), max_threads));
     module.doc() = "Ringlet's core: arrays in, arrays out. SI units.";
     module.def(
         "simd", [] { return std::string(ringlet::simd_name(ringlet::simd())); },
         "The instruction set in use: baseline, avx2 or avx512.");
     module.def("thread_count", [] { return omp_get_max_threads(); }, "Threads that the core uses.");
-    module.def("set_thread_count", [](int count) { omp_set_num_threads(count); }, nb::arg("count"));
+    module.def("set_thread_count", [](int count) { omp_set_num_threads(std::clamp(count, 1, max_threads)); }, nb::arg("count"));
     bind_geometry(module);
     bind_groom(module);
     bind_linear(module);

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from ringlet import api
 from ringlet.api import *
+from ringlet.data import limits
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.files import check_place
@@ -55,7 +56,7 @@ _SLOW = {
 }
 
 __version__ = version("ringlet")
-__all__ = ["Clip", "Curves", "Mesh", "StageSpace", "UserError", "__version__", "check_place"]
+__all__ = ["Clip", "Curves", "Mesh", "StageSpace", "UserError", "__version__", "check_place", "limits"]
 __all__ += api.__all__
 __all__ += _SLOW  # pyright: ignore[reportUnsupportedDunderAll]
 

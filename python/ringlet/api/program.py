@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from ringlet.api.progress import Progress
+from ringlet.data import limits
 from ringlet.data.settings import check_name
 from ringlet.data.share import share
 
@@ -75,7 +76,8 @@ def schema() -> dict[str, Any]:
 
 
 def use_threads(count: int) -> None:
-    """Limits the core to so many threads."""
+    """Limits the core to so many threads; raises UserError for a count that no machine has."""
     from ringlet import _core
 
+    limits.check_count("threads", count, limits.THREADS)
     _core.set_thread_count(count)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Annotated
 
@@ -17,7 +18,12 @@ def edit(
     freeze: Annotated[
         list[int] | None,
         typer.Option(
-            "--freeze", metavar="LOCK", help="Take a lock out of the recipe as it is now.", show_default=False
+            "--freeze",
+            metavar="LOCK",
+            min=-ringlet.limits.ID,
+            max=ringlet.limits.ID,
+            help="Take a lock out of the recipe as it is now.",
+            show_default=False,
         ),
     ] = None,
     settings: Annotated[
@@ -31,7 +37,14 @@ def edit(
     ] = None,
     release: Annotated[
         list[int] | None,
-        typer.Option("--release", metavar="LOCK", help="Give a lock back to the recipe.", show_default=False),
+        typer.Option(
+            "--release",
+            metavar="LOCK",
+            min=-ringlet.limits.ID,
+            max=ringlet.limits.ID,
+            help="Give a lock back to the recipe.",
+            show_default=False,
+        ),
     ] = None,
     release_all: Annotated[bool, typer.Option("--release-all", help="Give all locks back to the recipe.")] = False,
     as_json: Json = False,
@@ -64,7 +77,7 @@ def parse_setting(text: str) -> tuple[int, str, str | float]:
     """``12:curl.width=8mm`` as lock, name and value."""
     lock, colon, rest = text.partition(":")
     name, equals, value = rest.partition("=")
-    if not (colon and equals and name.strip() and value.strip() and lock.strip().lstrip("-").isdigit()):
+    if not (colon and equals and name.strip() and value.strip() and re.fullmatch(r"\s*-?\d{1,15}\s*", lock)):
         raise ringlet.UserError(f"--set {text}: must be LOCK:NAME=VALUE, such as 12000003:curl.width=8mm")
     try:
         return int(lock), name.strip(), float(value)

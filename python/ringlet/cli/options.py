@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any
@@ -17,10 +18,22 @@ def _use_threads(count: int | None) -> int | None:
     return count
 
 
+def finite(number: float | None) -> float | None:
+    """Refuses NaN, which passes every comparison with a bound."""
+    if number is not None and math.isnan(number):
+        raise typer.BadParameter("nan is no number")
+    return number
+
+
 Threads = Annotated[
     int | None,
     typer.Option(
-        "--threads", min=1, callback=_use_threads, help="Threads to use; all processors by default.", show_default=False
+        "--threads",
+        min=1,
+        max=ringlet.limits.THREADS,
+        callback=_use_threads,
+        help="Threads to use; all processors by default.",
+        show_default=False,
     ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON value instead of text.")]
@@ -43,7 +56,10 @@ AllowStale = Annotated[
     bool, typer.Option("--allow-stale", help="Use a lofted shape although what it was made from has changed.")
 ]
 Fraction = Annotated[
-    float, typer.Option("--fraction", min=0.001, max=1.0, help="Share of the hairs to make, for a quick look.")
+    float,
+    typer.Option(
+        "--fraction", min=0.001, max=1.0, callback=finite, help="Share of the hairs to make, for a quick look."
+    ),
 ]
 
 
@@ -72,10 +88,8 @@ def parse_frames(text: str) -> tuple[int, int]:
         frames = int(first), int(last if colon else first)
     except ValueError:
         raise ringlet.UserError(f"--frames {text}: must be FIRST:LAST, such as 1:48") from None
-    if not frames[0] <= frames[1]:
-        raise ringlet.UserError(
-            f"--frames {text}: the last frame is before the first; must be FIRST:LAST, such as 1:48"
-        )
+    if wrong := ringlet.limits.wrong_frames(*frames):
+        raise ringlet.UserError(f"--frames {text}: {wrong}; give FIRST:LAST, such as 1:48")
     return frames
 
 

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 import ringlet
-from ringlet.cli.options import Frames, Json, Report, picture_file
+from ringlet.cli.options import Frames, Json, Report, finite, picture_file
 from ringlet.cli.output import wrote
 from ringlet.cli.progress import shown_progress
 
@@ -22,7 +22,15 @@ def picture(
     ] = Path("still.png"),
     frame: Annotated[
         float | None,
-        typer.Option("--frame", metavar="F", help="Frame of the still; the first by default.", show_default=False),
+        typer.Option(
+            "--frame",
+            metavar="F",
+            min=-ringlet.limits.FRAME,
+            max=ringlet.limits.FRAME,
+            callback=finite,
+            help="Frame of the still; the first by default.",
+            show_default=False,
+        ),
     ] = None,
     view: Annotated[str, typer.Option("--view", help="three_quarter, front, side or back.")] = "three_quarter",
     color: Annotated[
@@ -30,9 +38,22 @@ def picture(
     ] = "dark_brown",
     width: Annotated[int, typer.Option("--width", min=16, max=8192, help="Pixels across.")] = 900,
     height: Annotated[int, typer.Option("--height", min=16, max=8192, help="Pixels down.")] = 1000,
-    samples: Annotated[int, typer.Option("--samples", min=1, help="Paths per pixel: more is cleaner and slower.")] = 40,
+    samples: Annotated[
+        int,
+        typer.Option(
+            "--samples", min=1, max=ringlet.limits.SAMPLES, help="Paths per pixel: more is cleaner and slower."
+        ),
+    ] = 40,
     seconds: Annotated[
-        float | None, typer.Option("--seconds", min=1, help="Stop adding samples after that long.", show_default=False)
+        float | None,
+        typer.Option(
+            "--seconds",
+            min=1,
+            max=ringlet.limits.SECONDS,
+            callback=finite,
+            help="Stop adding samples after that long.",
+            show_default=False,
+        ),
     ] = None,
     sheet: Annotated[bool, typer.Option("--sheet", help="A contact sheet of the clip in place of a still.")] = False,
     contacts: Annotated[

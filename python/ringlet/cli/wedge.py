@@ -30,7 +30,13 @@ def wedge(
     frames: Frames = None,
     frame: Annotated[
         int | None,
-        typer.Option("--frame", help="The frame to draw and to compare; the last by default.", show_default=False),
+        typer.Option(
+            "--frame",
+            min=-ringlet.limits.FRAME,
+            max=ringlet.limits.FRAME,
+            help="The frame to draw and to compare; the last by default.",
+            show_default=False,
+        ),
     ] = None,
     picture: Annotated[bool, typer.Option("--picture/--no-picture", help="Draw a frame of each.")] = True,
     scheduler: Annotated[
@@ -44,14 +50,33 @@ def wedge(
     ] = None,
     workers: Annotated[
         int | None,
-        typer.Option("--workers", min=1, help="Processes here; as many as processors by default.", show_default=False),
+        typer.Option(
+            "--workers",
+            min=1,
+            max=ringlet.limits.WORKERS,
+            help="Processes here; as many as processors by default.",
+            show_default=False,
+        ),
     ] = None,
     here: Annotated[bool, typer.Option("--here", help="In this process, one after the other, without dask.")] = False,
     threads: Annotated[
-        int | None, typer.Option("--threads", min=1, help="Threads of each task; one by default.", show_default=False)
+        int | None,
+        typer.Option(
+            "--threads",
+            min=1,
+            max=ringlet.limits.THREADS,
+            help="Threads of each task; one by default.",
+            show_default=False,
+        ),
     ] = None,
     retries: Annotated[
-        int, typer.Option("--retries", min=0, help="How often a task may break off or lose its worker.")
+        int,
+        typer.Option(
+            "--retries",
+            min=0,
+            max=ringlet.limits.RETRIES,
+            help="How often a task may break off or lose its worker.",
+        ),
     ] = 2,
     compare: Annotated[bool, typer.Option("--compare", help="Only write the page again from what is there.")] = False,
     openjd: Annotated[

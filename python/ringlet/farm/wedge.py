@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ringlet import api
+from ringlet.data import limits
 from ringlet.data.errors import UserError
 from ringlet.data.files import check_place
 from ringlet.farm.cluster import run_on_workers
@@ -49,6 +50,9 @@ def wedge(
     retries:   number of times that a task may fail or lose its worker
     progress:  called with (name of a task, frames done, their number)
     """
+    for what, count, most in (("workers", workers, limits.WORKERS), ("threads", threads, limits.THREADS)):
+        if count is not None:
+            limits.check_count(f"wedge: {what}", count, most)
     folder = Path(folder).absolute()
     tasks = make_tasks(Path(shot).absolute(), _choices(settings), folder)
     check_place(folder / PAGE)

@@ -7,6 +7,7 @@ from typing import Any, Literal
 
 from pydantic import Field, PrivateAttr, ValidationError, ValidationInfo, field_validator
 
+from ringlet.data.limits import wrong_frames
 from ringlet.data.settings import Section, explain, parse_toml, read_toml, refuse
 from ringlet.shot.cloth import ShotCloth
 from ringlet.shot.contact import Collider, ShotContact
@@ -15,8 +16,6 @@ from ringlet.shot.rest import Rest
 from ringlet.shot.solver import Solver
 from ringlet.shot.variation import Variation
 
-MOST_FRAMES = 100_000  # of a shot
-FARTHEST_FRAME = 10_000_000  # largest distance of a frame number from zero
 STAYS = {"parting_speed": 0.0, "creep_speed": 1e-5}  # defaults of contact in equilibrium with the groom [m/s]
 
 
@@ -145,14 +144,3 @@ def _shot(data: dict[str, Any], path: Path | None) -> Shot:
 def schema() -> dict[str, Any]:
     """The JSON schema of a shot: types, bounds, defaults and descriptions of all settings."""
     return Shot.model_json_schema()
-
-
-def wrong_frames(first: int, last: int) -> str:
-    """The condition that a range of frames violates; empty for a valid one."""
-    if last < first:
-        return "the last must not come before the first"
-    if last - first >= MOST_FRAMES:
-        return f"must be at most {MOST_FRAMES:,} frames"
-    if max(-first, last) > FARTHEST_FRAME:
-        return f"must be from {-FARTHEST_FRAME:,} to {FARTHEST_FRAME:,}"
-    return ""

@@ -13,8 +13,9 @@ from ringlet.data.cache import Cache, Touches
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.groom import Groom
+from ringlet.data.limits import wrong_frames
 from ringlet.data.mesh import Clip
-from ringlet.shot.shot import Shot, wrong_frames
+from ringlet.shot.shot import Shot
 from ringlet.sim.checkpoint import Checkpoints
 from ringlet.sim.garment import Garment
 from ringlet.sim.motion import Motion
