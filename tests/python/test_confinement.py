@@ -97,9 +97,9 @@ def test_unbounded_nesting_and_digits_are_refused(tmp_path, command, text):
 
 def test_a_pipe_in_place_of_a_file_is_refused(project):
     os.mkfifo(project / "pipe")
-    refused(run("groom", project / "pipe", "-o", project / "groom.usdc"), "pipe", "is no file")
+    refused(run("groom", project / "pipe", "-o", project / "groom.usdc"), "pipe", "is no regular file but a pipe")
     recipe = add_line(project / "small.recipe.toml", 'extends = "pipe"')
-    refused(run("groom", recipe, "-o", project / "groom.usdc"), "pipe", "is no file")
+    refused(run("groom", recipe, "-o", project / "groom.usdc"), "pipe", "is no regular file but a pipe")
 
 
 def numbers_of(schema: dict, place: str):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from PIL import Image
 from pxr import Sdf, UsdGeom, Vt
+from ringlet.data.texture import Texture
 from shapes import ball, sheet
 from small_example import write_head
 
@@ -106,7 +107,7 @@ def test_lengths_are_painted_by_primvar_and_by_texture():
 
     flat = sheet()  # u along x, v along z; the texture is black at v = 0 and white at v = 1
     flat.uv = (flat.points[flat.triangles][:, :, [0, 2]] + 0.1) / 0.2
-    flat.textures["long"] = np.linspace(1.0, 0.0, 200)[:, None].repeat(3, axis=1)
+    flat.textures["long"] = Texture.from_values(np.linspace(1.0, 0.0, 200)[:, None].repeat(3, axis=1))
     guides = groom("[guides]\ncount = 80\nlength = { value = 6, map = 'long' }", flat).guides
     inside = np.abs(guides.roots[:, 2]) < 0.09
     expected = 0.06 * (guides.roots[:, 2] + 0.1) / 0.2
@@ -329,7 +330,7 @@ def test_textures_and_helper_curves_are_read_from_files_beside_the_recipe(tmp_pa
         "[[shape]]\nop = 'attract'\ncurve = 'line'\namount = 1\n"
     )
     made = ringlet.build_groom(tmp_path / "a.toml")
-    np.testing.assert_allclose(made.scalp.textures["short"], [[0, 1], [0.4, 0.2]])
+    np.testing.assert_allclose(made.scalp.textures["short"].at(*np.indices((2, 2))), [[0, 1], [0.4, 0.2]])
     line = lines_on_the_ball()[0]
     roots, tips = made.locks.points[made.locks.offsets[:-1]], made.locks.points[made.locks.offsets[1:] - 1]
     beside = np.linalg.norm(roots - line[0], axis=1) < 0.05  # others are guided around the ball

@@ -71,7 +71,9 @@ def groom_inputs(recipe: Recipe, memory: Memory | None = None, notes: list[str] 
         f"{chosen.mesh} {chosen.surface} {chosen.space}",
         lambda file: io.read_mesh(file, chosen.mesh, space=chosen.space, cage=chosen.surface == "cage", notes=notes),
     )
-    scalp.textures = {name: io.read_texture(file) for name, file in recipe.map_files().items()}
+    scalp.textures = {
+        name: _cached(memory, file, "texture", io.read_texture) for name, file in recipe.map_files().items()
+    }
     drawn = None
     if isinstance(recipe.guides, Drawn) and recipe.guides_file is not None:
         drawn = io.read_curves(recipe.guides_file, recipe.guides.prim, space=recipe.guides.space, notes=notes)

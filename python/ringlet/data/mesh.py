@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from ringlet.data.texture import Texture
 
 
 @dataclass
@@ -23,7 +27,7 @@ class Mesh:
     colors:    display colour of each vertex (linear r, g, b), shape (n, 3), or None where it does not vary
     maps:      painted values by name, at the corners of each triangle, shape (m, 3), float64
     vectors:   painted directions by name, at the corners of each triangle, shape (m, 3, 3), float64, as the points are
-    textures:  painted values by name, as pictures over ``uv``, shape (rows, columns), the first row at v = 1
+    textures:  painted values by name, as pictures over ``uv``
     """
 
     name: str
@@ -37,7 +41,7 @@ class Mesh:
     colors: NDArray[np.float64] | None = None
     maps: dict[str, NDArray[np.float64]] = field(default_factory=dict)
     vectors: dict[str, NDArray[np.float64]] = field(default_factory=dict)
-    textures: dict[str, NDArray[np.float64]] = field(default_factory=dict)
+    textures: dict[str, Texture] = field(default_factory=dict)
 
     def region(self, name: str | None) -> NDArray[np.int32]:
         """Triangles of a named region; all of them for None. Raises KeyError with the names there are."""

@@ -107,7 +107,5 @@ def _from_texture(name: str, curves: Curves, scalp: Mesh, what: str) -> NDArray[
     at = np.stack([(1.0 - uv[:, 1]) * rows, uv[:, 0] * columns], axis=1) - 0.5  # the first row is the upper one
     low = np.floor(at).astype(np.int64)
     (t, s), (i, j) = (at - low).T, low.T
-    over, under = (
-        (1.0 - s) * picture[k % rows, j % columns] + s * picture[k % rows, (j + 1) % columns] for k in (i, i + 1)
-    )
-    return (1.0 - t) * over + t * under
+    near = picture.at(np.stack([i, i, i + 1, i + 1]), np.stack([j, j + 1, j, j + 1]))
+    return (1.0 - t) * ((1.0 - s) * near[0] + s * near[1]) + t * ((1.0 - s) * near[2] + s * near[3])

@@ -12,9 +12,9 @@ from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
 from pydantic_core import PydanticCustomError
 
 from ringlet.data.errors import UserError
+from ringlet.data.regular import read_text
 
 FORMAT = 1  # of recipes, shots and files of edits
-MOST_TEXT = 256e6  # bytes of such a file
 OWN_KEYS = {"recipe": {"scalp", "extends"}, "shot": {"groom"}}  # keys of one kind of file alone
 
 Location = tuple[int | str, ...]  # where in a model pydantic found a mistake
@@ -59,13 +59,7 @@ def check_name(name: str, names: Iterable[str], where: str, what: str) -> None:
 
 def read_toml(path: Path, kind: str) -> tuple[str, dict[str, Any]]:
     """Text and tables of a TOML file that begins with ``ringlet = 1``; ``kind`` (recipe, shot) is for messages."""
-    if path.exists() and not path.is_dir() and not (path.is_file() and path.stat().st_size <= MOST_TEXT):
-        raise UserError(f"{path}: is no file of at most {MOST_TEXT / 1e6:.0f} MB; give a {kind} file")
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "it is not a text file"
-        raise UserError(f"{path}: cannot be read ({reason}); give a {kind} file") from error
+    text = read_text(path, f"give a {kind} file")
     return text, parse_toml(text, path.name, kind)
 
 

@@ -10,7 +10,9 @@ from pathlib import Path
 
 import numpy as np
 
+from ringlet.data.errors import UserError
 from ringlet.data.files import replacing
+from ringlet.data.regular import open_regular
 from ringlet.farm.task import RESULT, Result, read_result
 from ringlet.report import Picture, Table, document, figure, line_chart, table
 
@@ -55,13 +57,22 @@ def distances(results: dict[Path, Result]) -> dict[Path, float]:
 
     Tasks with other locks have no entry.
     """
-    places = {at: np.load(at / "places.npy") for at, result in results.items() if result.state == "done"}
+    places = {at: _places(at / "places.npy") for at, result in results.items() if result.state == "done"}
     first = next(iter(places.values()), None)
     return {
         at: float(np.sqrt(((points - first) ** 2).sum(axis=1).mean()))
         for at, points in places.items()
         if first is not None and points.shape == first.shape
     }
+
+
+def _places(path: Path) -> np.ndarray:
+    """Positions of the locks of a task [m], shape (n, 3)."""
+    with open_regular(path, "run the wedge again") as file:
+        try:
+            return np.load(file, allow_pickle=False)
+        except (ValueError, EOFError):
+            raise UserError(f"{path}: is damaged; remove it and run the wedge again") from None
 
 
 def _pictures(results: dict[Path, Result]) -> str:

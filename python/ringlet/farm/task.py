@@ -28,6 +28,7 @@ from ringlet import api
 from ringlet.data.errors import UserError
 from ringlet.data.files import replacing
 from ringlet.data.groom import Groom
+from ringlet.data.regular import read_text
 from ringlet.farm.grid import Task
 from ringlet.groom import hair_count
 from ringlet.shot import Shot
@@ -138,9 +139,9 @@ def write_result(folder: Path, result: Result) -> None:
 def read_result(folder: Path) -> Result | None:
     """Reads the result of a task; None when there is none, or one of another format."""
     try:
-        values = json.loads((folder / RESULT).read_text(encoding="utf-8"))
+        values = json.loads(read_text(folder / RESULT))
         return Result(**values) if values.pop("ringlet") == FORMAT else None
-    except (OSError, ValueError, KeyError, TypeError):
+    except (UserError, ValueError, KeyError, TypeError):
         return None
 
 
@@ -160,7 +161,7 @@ def _simulate(task: Task, options: TaskOptions, log: Log, progress: Progress) ->
 
     first, last = options.frames or shot.frames
     key = part / "made_from"
-    resume = key.exists() and made_from.startswith(key.read_text())
+    resume = key.exists() and made_from.startswith(read_text(key))
     log(f"{'goes on with' if resume else 'simulates'} frames {first}:{last}, {len(groom.locks)} locks")
     begin, done = time.perf_counter(), 0
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from ringlet.data.errors import UserError
 from ringlet.data.files import replacing, within
 from ringlet.data.groom import Groom
+from ringlet.data.regular import read_bytes
 from ringlet.data.settings import did_you_mean
 from ringlet.data.toml import to_toml
 from ringlet.groom.edits import offsets_to
@@ -49,7 +50,7 @@ def edits_text(edits: dict[str, list[dict[str, Any]]]) -> str:
 def restored_on_error(recipe: Recipe) -> Iterator[None]:
     """Restores the file of edits when the block raises UserError."""
     path = edits_path(recipe)
-    before = path.read_bytes() if path.exists() else None
+    before = read_bytes(path) if path.exists() else None
     try:
         yield
     except UserError:

@@ -237,7 +237,8 @@ def _scalp(recipe: Recipe, mesh: Mesh, memory: Memory) -> tuple[str, Scalp]:
         str((recipe.seed, recipe.unit, recipe.scalp.region)),
         mesh.points.tobytes(),
         mesh.triangles.tobytes(),
-        *(chunk for kind in (mesh.regions, mesh.maps, mesh.vectors, mesh.textures) for chunk in _contents(kind)),
+        *(chunk for kind in (mesh.regions, mesh.maps, mesh.vectors) for chunk in _contents(kind)),
+        *(part for name, texture in mesh.textures.items() for part in (name.encode(), texture.digest)),
         b"" if mesh.uv is None else mesh.uv.tobytes(),
     )
     if memory.scalp is None or memory.scalp[0] != key:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.data.errors import UserError
+from ringlet.data.regular import read_bytes
 from ringlet.data.stage import StageSpace
 from ringlet.io.space import to_metres
 
@@ -27,10 +28,7 @@ def read_hair(path: Path, space: StageSpace) -> Curves:
 
     Raises UserError for a file that is not readable, truncated or inconsistent.
     """
-    try:
-        data = path.read_bytes()
-    except OSError as error:
-        raise UserError(f"{path}: cannot be read ({error.strerror}); check the name") from None
+    data = read_bytes(path)
     if len(data) < HEADER.size or data[:4] != b"HAIR":
         raise UserError(f"{path}: is not a .hair file (it does not begin with HAIR); choose another")
     _, hairs, points, arrays, segments, thickness, *_ = HEADER.unpack_from(data)

@@ -14,10 +14,12 @@ from numpy.typing import NDArray
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Mesh
+from ringlet.data.regular import read_bytes
 from ringlet.data.stage import StageSpace
 from ringlet.io.polygons import check_polygons, polygon_places, triangulate
 from ringlet.io.space import check_points, to_metres
 
+MOST_BYTES = 1_000_000_000  # of a file, which takes about 20 times as much memory
 MAX_POINTS = 2**31 - 1
 MAX_GROUPS = 100  # largest number of groups of a face
 
@@ -84,10 +86,7 @@ def read_obj_curves(path: Path, space: StageSpace) -> Curves:
 
 def _parse(path: Path) -> _Content:
     content, named = _Content(), []
-    try:
-        text = path.read_text(encoding="utf-8", errors="replace")
-    except OSError as error:
-        raise UserError(f"{path}: cannot be read ({error.strerror}); check the name") from None
+    text = read_bytes(path, most=MOST_BYTES).decode("utf-8-sig", errors="replace")
     for number, line in enumerate(text.replace("\\\n", " ").splitlines(), 1):
         key, *words = line.split("#", 1)[0].split() or [""]
         try:

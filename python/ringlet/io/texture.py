@@ -4,29 +4,38 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
-from numpy.typing import NDArray
 from PIL import Image, UnidentifiedImageError
 
 from ringlet.data.errors import UserError
+from ringlet.data.regular import open_regular
+from ringlet.data.texture import Texture
 
-WHITE = {"1": 1.0, "L": 255.0, "I;16": 65535.0, "I;16B": 65535.0, "I": 65535.0, "F": 1.0}
+MOST_PIXELS = 16_384**2
+FORMATS = ("PNG", "TIFF", "JPEG", "WEBP", "BMP", "TGA", "PPM")
+
+Image.MAX_IMAGE_PIXELS = None  # the bound here is stated in the message, Pillow's warns on the screen
 
 
-def read_texture(path: Path | str) -> NDArray[np.float64]:
-    """Reads an image as one channel, black 0 and white 1, shape (rows, columns); colours by their luma.
+def read_texture(path: Path | str) -> Texture:
+    """Reads an image as one channel; see ``Texture``.
 
-    Values are those of the file, without gamma decoding. Floating-point images keep their values.
-
-    Raises UserError for a file that is not a readable image.
+    Raises UserError for a file that is not a readable image, or has more pixels than ``MOST_PIXELS``.
     """
-    path = Path(path)
-    try:
-        with Image.open(path) as picture:
-            if picture.mode not in WHITE:
-                picture = picture.convert("L")
-            return np.asarray(picture, np.float64) / WHITE[picture.mode]
-    except UnidentifiedImageError:
-        raise UserError(f"{path}: is not a picture that can be read; save it as PNG or TIFF") from None
-    except OSError as error:
-        raise UserError(f"{path}: cannot be read ({error.strerror or error}); check the name") from None
+    with open_regular(path) as file:
+        try:
+            with Image.open(file, formats=FORMATS) as picture:
+                columns, rows = picture.size
+                if columns * rows > MOST_PIXELS:
+                    raise UserError(
+                        f"{path}: has {columns} × {rows} pixels; must be at most {MOST_PIXELS:,}, which are 16 384 × "
+                        "16 384: save it smaller"
+                    )
+                picture.load()
+                return Texture(picture)
+        except UserError:
+            raise
+        except UnidentifiedImageError:
+            raise UserError(f"{path}: is not a picture that can be read; save it as PNG or TIFF") from None
+        except Exception as error:  # a decoder of a damaged file raises what it likes
+            reason = " ".join(str(error).split())[:120] or type(error).__name__
+            raise UserError(f"{path}: cannot be read as a picture ({reason}); save it again") from None

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from ringlet.data.errors import UserError
 from ringlet.data.files import replacing
+from ringlet.data.regular import check_regular, read_bytes, read_text
 
 VERSION = b"ringlet checkpoint 3\n"
 EVERY = 10  # frames from one state to the next, at most
@@ -63,7 +64,7 @@ class Checkpoints:
                 if path.name != LOCK_FILE:
                     path.unlink()
         key = self.folder / "made_from"
-        stored, mine = key.read_text() if key.exists() else "", self.run_digest
+        stored, mine = read_text(key) if key.exists() else "", self.run_digest
         shorter, longer = sorted((stored, mine), key=len)  # one run may go further than the other
         if not longer.startswith(shorter):
             raise UserError(
@@ -136,6 +137,7 @@ def _open_lock(folder: Path) -> BinaryIO:
     """The file that locks a folder as long as it is open."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
+        check_regular(folder / LOCK_FILE)
         file = (folder / LOCK_FILE).open("ab")
     except OSError as error:
         raise UserError(f"{folder}: cannot be written ({error.strerror}); choose another place") from error
@@ -177,7 +179,7 @@ def write(path: Path, arrays: Arrays) -> None:
 
 def read(path: Path) -> dict[str, NDArray[Any]]:
     """Reads what ``write`` wrote; raises DamagedError where it is not that."""
-    content = path.read_bytes()
+    content = read_bytes(path)
     begin = len(VERSION) + hashlib.sha256().digest_size
     if content[: len(VERSION)] != VERSION or hashlib.sha256(content[begin:]).digest() != content[len(VERSION) : begin]:
         raise DamagedError(f"{path}: is damaged")

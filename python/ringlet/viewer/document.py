@@ -15,6 +15,7 @@ from tomlkit.exceptions import TOMLKitError
 
 from ringlet.data.errors import UserError
 from ringlet.data.files import replacing
+from ringlet.data.regular import read_text
 from ringlet.data.toml import toml_key
 from ringlet.viewer import blocks
 from ringlet.viewer.protocol import Change, Place
@@ -81,7 +82,7 @@ class Document:
         self, path: Path, check: Callable[[str, str], Any], edits: str = "", history: History | None = None
     ) -> None:
         self.path, self.history = path, history or History()
-        self.saved, self.saved_edits = path.read_text(encoding="utf-8"), edits
+        self.saved, self.saved_edits = read_text(path), edits
         self._check, self.revision = check, 0
         self.restore(State(self.saved, edits=edits))
 

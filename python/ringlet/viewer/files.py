@@ -7,6 +7,7 @@ from typing import Any
 
 from ringlet.data.errors import UserError
 from ringlet.data.files import replacing
+from ringlet.data.regular import read_text
 from ringlet.data.settings import parse_toml, read_toml
 from ringlet.groom import Recipe, parse_recipe
 from ringlet.groom.edits_file import edits_text
@@ -43,7 +44,7 @@ class Files:
             self.documents["shot"] = Document(self.file, lambda text, _: self.parse_shot(text), history=self._history)
             recipe = self.project.inside(self.shot.groom, f"{self.file.name}: groom")
         if recipe.suffix == ".toml":
-            edits = _text_of(self.parse(recipe.read_text(encoding="utf-8"), recipe).edits_file)
+            edits = _text_of(self.parse(read_text(recipe, "give a recipe file"), recipe).edits_file)
             self.documents["recipe"] = Document(
                 recipe, lambda text, edits: self.parse(text, recipe, edits), edits, self._history
             )
@@ -255,7 +256,7 @@ def _by_name(place: Place, names: list[str]) -> Place:
 
 
 def _text_of(file: Path | None) -> str:
-    return file.read_text(encoding="utf-8") if file is not None and file.is_file() else ""
+    return read_text(file, "give a file of edits") if file is not None and file.exists() else ""
 
 
 def _write(file: Path | None, text: str) -> None:

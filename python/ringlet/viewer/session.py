@@ -15,6 +15,7 @@ import numpy as np
 
 from ringlet import api
 from ringlet.data.errors import UserError
+from ringlet.data.regular import read_text
 from ringlet.groom import Recipe
 from ringlet.picture import HAIR_COLORS
 from ringlet.viewer import overlays, protocol
@@ -237,7 +238,7 @@ class Session:
             muted, name = frozenset[str](), "as saved"
         elif message.to == "file":
             path = self.project.inside(message.name, "compare")
-            recipe = self.files.parse(path.read_text(encoding="utf-8"), path)
+            recipe = self.files.parse(read_text(path, "choose a recipe of the project"), path)
             muted, name = frozenset[str](), path.name
         display = self._beside.groom(recipe, muted, draft=False, check_abort=lambda: None)
         self.publisher.publish("b/none", pack(protocol.Compared(name=name)))

@@ -14,6 +14,7 @@ from pxr import Sdf, Usd, UsdGeom
 
 from ringlet.data.cache import Cache, CachedCloth
 from ringlet.data.errors import UserError
+from ringlet.data.regular import check_regular
 from ringlet.data.stage import StageSpace
 from ringlet.io.space import to_metres
 from ringlet.io.usd.clips import clip_at
@@ -146,6 +147,7 @@ def is_cache(path: Path | str) -> bool:
     """Whether a file is a simulation cache; reads only its metadata."""
     try:
         with reading_more(path):
+            check_regular(path, "give a USD file")
             layer = Sdf.Layer.OpenAsAnonymous(str(path), True)  # metadata only
             data = layer.customLayerData.get("ringlet") if layer else None
             return isinstance(data, dict) and "statistics" in data

@@ -25,6 +25,7 @@ from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.groom import Groom
 from ringlet.data.mesh import Mesh
+from ringlet.data.regular import check_regular
 from ringlet.data.settings import did_you_mean
 from ringlet.data.stage import StageSpace
 from ringlet.io.space import from_metres, to_metres
@@ -267,6 +268,7 @@ def _bound(source: Source, path: str, scalp: Mesh) -> Curves:
 
 
 def _default_prim(file: Path) -> Sdf.Path:
+    check_regular(file, "give a USD file")
     layer = Sdf.Layer.FindOrOpen(str(file)) if file.exists() else None
     return Sdf.Path(f"/{layer.defaultPrim}") if layer and layer.defaultPrim else Sdf.Path.absoluteRootPath
 

@@ -12,7 +12,7 @@ import math
 import os
 import re
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -22,6 +22,7 @@ from pxr import Pcp, Sdf, Tf, Usd, UsdGeom, UsdShade, UsdUtils
 
 from ringlet.data.errors import UserError
 from ringlet.data.files import replacing, same_place
+from ringlet.data.regular import check_regular
 from ringlet.data.stage import StageSpace
 from ringlet.io.subdivision import Refinement
 from ringlet.io.usd.skinning import Skinning
@@ -70,13 +71,29 @@ def reading(path: Path | str, cage: bool | None = None) -> Iterator[Source]:
         raise UserError(f"{path}: there is no such file; check the name")
     if path.is_dir():
         raise UserError(f"{path}: is a folder; give a USD file")
+    check_regular(path, "give a USD file")
     if path.is_file() and not path.stat().st_size:
         raise UserError(f"{path}: is empty; write it again or choose another")
     with reading_more(path):
+        layers = _check_layers(path)
         stage = Usd.Stage.Open(str(path))
+        del layers  # open until the stage has them
         _reload(stage, path)
         _refuse_missing(stage, path)
         yield Source(path, stage, _space(stage, path), _reads_cages(stage) if cage is None else cage)
+
+
+def _check_layers(path: Path) -> list[Sdf.Layer]:
+    """Opens the layers that a file is composed of; raises UserError for one that is no regular file."""
+    names, layers = [str(path)], []
+    for name in names:  # grows while it is read
+        check_regular(name, "give a USD file")
+        with suppress(Tf.ErrorException):  # reported when the stage is opened
+            if layer := Sdf.Layer.FindOrOpen(name):
+                layers.append(layer)
+                found = [layer.ComputeAbsolutePath(asset) for asset in layer.GetCompositionAssetDependencies()]
+                names += [file for file in found if file not in names]
+    return layers
 
 
 def _reload(stage: Usd.Stage, path: Path) -> None:
