@@ -127,6 +127,12 @@ def test_local_workers_use_a_free_port_of_localhost(recwarn):
     assert not [warning for warning in recwarn if "8787" in str(warning.message)]
 
 
+def test_a_worker_that_is_killed_while_it_starts_is_reported_in_one_line(shot, tmp_path, monkeypatch):
+    monkeypatch.setattr("multiprocessing.spawn._python_exe", b"/bin/false")  # a worker that ends at once
+    result = run("wedge", shot, "--set", "strands.bend_scale=1,2", "-o", tmp_path / "out", "--workers", "1")
+    refused(result, "wedge: a worker ended while it started", "--here")
+
+
 def test_missing_dask_is_refused_with_remedies(shot, tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
     refused(run("wedge", shot, "--set", "strands.bend=1", "-o", tmp_path / "out"), "ringlet[farm]", "--here")

@@ -13,7 +13,7 @@ from ringlet.farm.grid import Task
 from ringlet.farm.task import Result, TaskOptions, run_task, write_result
 
 if TYPE_CHECKING:
-    from distributed import Client
+    from distributed import Client, LocalCluster
 
 TOPIC = "ringlet-wedge"
 PATIENCE = "20s"  # timeout of the connection to a scheduler
@@ -78,7 +78,7 @@ def _failed(task: Task, error: Any) -> Result:
 def _client(scheduler: str | None, workers: int | None, retries: int) -> Iterator[Client]:
     """Connects to a scheduler, or starts a local cluster that ends with the block.
 
-    Raises UserError without dask.distributed, and for a scheduler that does not answer.
+    Raises UserError without dask.distributed, for a scheduler that does not answer and for workers that do not start.
     """
     try:
         from dask import config
@@ -101,14 +101,26 @@ def _client(scheduler: str | None, workers: int | None, retries: int) -> Iterato
     settings = {"distributed.logging.distributed": "critical", "distributed.scheduler.allowed-failures": retries}
     with (
         config.set(settings),
-        LocalCluster(
+        _local_cluster(LocalCluster, workers) as cluster,
+        Client(cluster, set_as_default=False) as client,
+    ):
+        yield client
+
+
+def _local_cluster(make: Callable[..., LocalCluster], workers: int | None) -> LocalCluster:
+    """Starts local worker processes; raises UserError when one of them ends while it starts."""
+    try:
+        return make(
             n_workers=workers,
             threads_per_worker=1,
             processes=True,
             dashboard_address="127.0.0.1:0",  # metrics need a port: any free one on loopback
             scheduler_kwargs={"dashboard": False},
             silence_logs=logging.CRITICAL,
-        ) as cluster,
-        Client(cluster, set_as_default=False) as client,
-    ):
-        yield client
+        )
+    except (OSError, RuntimeError, TimeoutError) as error:
+        count = f"one of {workers} workers" if workers and workers > 1 else "a worker"
+        raise UserError(
+            f"wedge: {count} ended while it started ({' '.join(str(error).split())[:120]}): it was killed, or memory "
+            "ran out; ask for fewer --workers, or run the tasks one after the other with --here"
+        ) from None
