@@ -9,7 +9,7 @@ import sys
 import types
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, Literal, Union, get_args, get_origin
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from pydantic.fields import FieldInfo
 from ringlet.viewer import protocol
@@ -30,6 +30,8 @@ def kind(annotation: Any) -> str:
     """TypeScript notation of a Python type."""
     if annotation in PLAIN:
         return PLAIN[annotation]
+    if get_origin(annotation) is Annotated:
+        return kind(get_args(annotation)[0])
     origin, arguments = get_origin(annotation), get_args(annotation)
     if origin is Literal:
         return " | ".join(f'"{value}"' for value in arguments)

@@ -41,6 +41,10 @@ class Page:
             assert message["kind"] != "trouble", message["message"]
         raise AssertionError(f"no {kind} among {[m['kind'] for m in self.received]}")
 
+    def receive_trouble(self) -> str:
+        """Waits for the next error message."""
+        return self.receive("trouble")["message"]
+
     def watch(self, *frames: float) -> list[dict[str, Any]]:
         """Waits until frames are simulated, requests them and returns them."""
         timeline = self.latest("timeline")

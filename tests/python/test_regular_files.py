@@ -51,6 +51,15 @@ def test_readers_refuse_what_is_no_regular_file(tmp_path, make, kind, name):
         READERS[name](make(tmp_path / name))
 
 
+@pytest.mark.parametrize("name", READERS)
+def test_readers_refuse_a_folder_and_a_missing_file(tmp_path, name):
+    with pytest.raises(ringlet.UserError, match=f"{name}: (cannot be read|there is no such file)[^\n]*; [a-z]"):
+        READERS[name](tmp_path / name)
+    (tmp_path / name).mkdir()
+    with pytest.raises(ringlet.UserError, match=f"{name}: is a folder; [a-z]"):
+        READERS[name](tmp_path / name)
+
+
 @irregular
 def test_files_that_a_file_names_are_regular_too(tmp_path, make, kind):
     for line in ('extends = "odd"', 'edits = "odd"', 'maps = { a = "odd" }', 'curves = { a = { file = "odd.hair" } }'):

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import time
 import tomllib
 from pathlib import Path
 
 import pytest
 from ringlet.data.errors import UserError
-from ringlet.viewer.document import Document
+from ringlet.viewer.document import Document, _diff
 
 from ringlet.groom import parse_recipe
 
@@ -83,7 +84,7 @@ def test_settings_in_lists_and_operators_are_set_and_removed(document: Document)
 
 
 def test_operators_move_with_their_comments(document: Document):
-    document.edit_tables("move", "shape", 1, 0)
+    document.move_table("shape", 1, 0)
     assert [operator["op"] for operator in document.contents()["shape"]] == ["scraggle", "clump"]
     text = document.text
     assert text.index("# None knows") < text.index('op = "scraggle"') < text.index("# neighbours")
@@ -92,9 +93,9 @@ def test_operators_move_with_their_comments(document: Document):
 
 def test_an_operator_is_added_before_the_curl_and_removed_again(document: Document):
     for _ in range(2):
-        document.edit_tables("remove", "shape", 0)
+        document.remove_tables("shape", [0])
     assert "shape" not in document.contents() and "# The look." in document.text
-    document.edit_tables("add", "shape", 0, entry={"op": "loft"})
+    document.add_tables("shape", 0, [{"op": "loft"}])
     assert document.contents()["shape"] == [{"op": "loft"}]
     assert document.text.index("[[shape]]") < document.text.index("[curl]")
 
@@ -103,7 +104,7 @@ def test_an_invalid_change_is_refused_and_changes_nothing(document: Document):
     with pytest.raises(UserError, match="at least 0"):
         document.set([(["curl", "width", "value"], -1)])
     with pytest.raises(UserError, match="none at 7"):
-        document.edit_tables("remove", "shape", 7)
+        document.remove_tables("shape", [7])
     with pytest.raises(UserError, match="cannot be set"):
         document.set([(["guides", "zone", 9, "spread"], 30)])
     assert document.text == TEXT and not document.can_undo
@@ -127,3 +128,20 @@ def test_changes_are_listed_against_the_saved_file_until_saved(document: Documen
     assert changed == {("-", "count = 12"), ("+", "count = 20")}
     document.save()
     assert document.path.read_text() == document.text and not document.dirty and not document.diff()
+
+
+def test_the_diff_of_long_texts_is_bounded():
+    lines = [f"a{k} = {k % 7}" for k in range(40_000)]
+    changed = [*lines[:9], "b = 1", *lines[9:-3], *lines[-2:]]
+    begin = time.monotonic()
+    assert _diff("\n".join(lines), "\n".join(lines)) == []
+    assert _diff("\n".join(lines), "\n".join([*lines, "b = 1"]))[-1] == "+b = 1"
+    assert _diff("\n".join(lines), "\n".join(changed))[0].endswith("lines")
+    assert time.monotonic() - begin < 2.0
+
+
+def test_changes_that_take_too_long_are_refused_together(document: Document, monkeypatch):
+    monkeypatch.setattr("ringlet.viewer.document.MOST_SECONDS", 0.0)
+    with pytest.raises(UserError, match="300 changes take over 0 s; make fewer at a time"):
+        document.set([(["curl", "width", "value"], 1.0)] * 300)
+    assert document.text == TEXT

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import struct
+import threading
+import time
 from pathlib import Path
 
 import pytest
 from fastapi.testclient import TestClient
 from pages import HOST, Page, page, serving
 from ringlet.data.errors import UserError
+from ringlet.viewer.manipulator import LockManipulator
 from ringlet.viewer.project import Project
 from ringlet.viewer.protocol import VERSION
 from ringlet.viewer.server import REFUSED, WRONG, AccessControl
@@ -92,6 +95,57 @@ def test_invalid_edits_are_refused_in_one_line(folder: Path):
         one.send(kind="redo")
         one.send(kind="set", changes=[[["curl", "width"], 1.5]], gesture=1)
         assert one.receive("document", dirty=True)["said"]["curl"]["width"] == 1.5
+
+
+def test_locks_that_do_not_exist_are_refused_at_once(folder: Path):
+    with serving(folder) as client, page(client) as one:
+        one.receive("numbers", draft=False)
+        begin = time.monotonic()
+        one.send(kind="isolate", locks=list(range(10**12, 10**12 + 1000)))
+        assert "there is no lock 1000000000" in one.receive_trouble()
+        assert time.monotonic() - begin < 2.0
+        for lock in (2**80, 0.5):
+            one.send(kind="isolate", locks=[lock])
+            assert one.receive_trouble().startswith("message: ")
+        assert not one.latest("document")["dirty"]
+
+
+def test_all_locks_are_isolated_and_returned_in_one_step_each(folder: Path):
+    with serving(folder) as client, page(client) as one:
+        locks = one.receive("locks")["ids"].astype(int).tolist()
+        one.receive("numbers", draft=False)
+        one.send(kind="isolate", locks=locks * 2)
+        assert len(one.receive("document", dirty=True)["said"]["edit"]) == len(locks)
+        one.send(kind="undo")
+        assert "edit" not in one.receive("document", dirty=False)["said"]
+        one.send(kind="redo")
+        one.receive("document", dirty=True)
+        one.send(kind="isolate", locks=locks, out=False)
+        assert "edit" not in one.receive("document")["said"]
+
+
+def test_a_long_message_blocks_neither_the_server_nor_its_end(folder: Path, monkeypatch):
+    release = threading.Event()
+    monkeypatch.setattr(LockManipulator, "isolate", lambda *_: release.wait())
+    monkeypatch.setattr("ringlet.viewer.server.LONG", 0.1)
+    begin = time.monotonic()
+    with serving(folder) as client, page(client) as one:
+        one.send(kind="isolate", locks=[1])
+        assert one.receive_trouble() == "message: isolate takes over 0.1 s; it is still worked on"
+        assert client.get("/none", headers=HOST).status_code == 404
+    assert time.monotonic() - begin < 10.0  # the end of the server does not wait for it
+    release.set()
+
+
+@pytest.mark.parametrize("name", ["gone.recipe.toml", "head.usda", "small.shot.toml", ""])
+def test_a_recipe_to_compare_with_that_cannot_be_read_is_refused(folder: Path, name: str):
+    with serving(folder) as client, page(client) as one:
+        one.receive("numbers", draft=False)
+        one.send(kind="compare", to="file", name=name)
+        message = one.receive_trouble()
+        assert (name or folder.name) in message and "mistake" not in message
+        one.send(kind="compare", to="saved")
+        assert one.receive("locks", side="b")
 
 
 @pytest.mark.parametrize(

@@ -45,8 +45,12 @@ def open_regular(path: Path | str, remedy: str = "check the name", most: int | N
         descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK)  # of a pipe, this does not wait for its writer
     except (OSError, ValueError) as error:
         raise UserError(f"{path}: cannot be read ({getattr(error, 'strerror', None) or error}); {remedy}") from None
-    with os.fdopen(descriptor, "rb") as file:
+    try:
         _check(path, os.fstat(descriptor), most, remedy)
+    except UserError:
+        os.close(descriptor)
+        raise
+    with os.fdopen(descriptor, "rb") as file:
         try:
             yield file
         except OSError as error:

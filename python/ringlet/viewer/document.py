@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import re
+import time
 import tomllib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -21,6 +22,8 @@ from ringlet.viewer import blocks
 from ringlet.viewer.protocol import Change, Place
 
 MAX_UNDO_STEPS = 500
+MOST_SECONDS = 10.0  # of the changes of one message
+MOST_COMPARED = 4_000_000  # pairs of lines that a diff compares
 
 
 @dataclass(frozen=True)
@@ -117,8 +120,12 @@ class Document:
 
         Raises UserError when a setting cannot be set or the result is invalid.
         """
-        text = self.text
+        text, begin = self.text, time.monotonic()
         for place, value in changes:
+            if time.monotonic() - begin > MOST_SECONDS:
+                raise UserError(
+                    f"{self.path.name}: {len(changes)} changes take over {MOST_SECONDS:g} s; make fewer at a time"
+                )
             try:
                 text = set_value(text, place, value)
             except (TOMLKitError, KeyError, IndexError, TypeError, ValueError) as error:
@@ -126,37 +133,46 @@ class Document:
                 raise UserError(f"{self.path.name}: {where} cannot be set ({error}); undo, or edit the file") from None
         self.apply(text, gesture=gesture)
 
-    def edit_tables(self, action: str, name: str, at: int, to: int = 0, entry: dict[str, Any] | None = None) -> None:
-        """Adds, removes or moves a table of the array of tables ``name``, with the comment above it.
-
-        action: ``add``, ``remove`` or ``move``
-        at, to: row of the table, and its new row
-        entry:  keys of a new table
+    def add_tables(self, name: str, at: int, entries: Sequence[dict[str, Any]]) -> None:
+        """Adds tables with the keys of ``entries`` to the array of tables ``name``, the first in row ``at``.
 
         Raises UserError for a row out of range, and for tables in another notation.
         """
+        tables, places = self._tables(name, at, new=1)
+        new = [
+            blocks.Block(
+                name, True, [f"[[{name}]]", *(f"{toml_key(key)} = {toml_value(value)}" for key, value in entry.items())]
+            )
+            for entry in entries
+        ]
+        place = self._new_place(tables, places, at)
+        self.apply(blocks.join([*tables[:place], *new, *tables[place:]]))
+
+    def remove_tables(self, name: str, rows: Sequence[int]) -> None:
+        """Removes rows of an array of tables, each with the comment above it; raises UserError as ``add_tables``."""
+        tables, places = self._tables(name, *rows)
+        removed = {places[row] for row in rows}
+        self.apply(blocks.join([block for k, block in enumerate(tables) if k not in removed]))
+
+    def move_table(self, name: str, at: int, to: int) -> None:
+        """Moves a row of an array of tables with the comment above it; raises UserError as ``add_tables``."""
+        tables, places = self._tables(name, at, to)
+        chosen = [tables[k] for k in places]
+        chosen.insert(to, chosen.pop(at))
+        for k, block in zip(places, chosen, strict=True):
+            tables[k] = block
+        self.apply(blocks.join(tables))
+
+    def _tables(self, name: str, *rows: int, new: int = 0) -> tuple[list[blocks.Block], list[int]]:
+        """Blocks of the text, and which of them are the tables ``name``; checks rows of these, and of ``new`` more."""
         tables = blocks.split(self.text)
-        places = [k for k, block in enumerate(tables) if block.name == name and block.many]  # rows in ``tables``
+        places = [k for k, block in enumerate(tables) if block.name == name and block.many]
         if len(places) != len(self.contents().get(name, [])):
             raise UserError(f"{self.path.name}: {name} is not written as tables [[{name}]]; edit it in the file")
-        if not 0 <= at < len(places) + (action == "add") or not 0 <= to < max(len(places), 1):
-            raise UserError(f"{self.path.name}: {name} has {len(places)} operators; there is none at {max(at, to)}")
-        if action == "add":
-            lines = [
-                f"[[{name}]]",
-                *(f"{toml_key(part)} = {toml_value(value)}" for part, value in (entry or {}).items()),
-            ]
-            tables.insert(self._new_place(tables, places, at), blocks.Block(name, True, lines))
-        else:
-            chosen = [tables[k] for k in places]
-            moved = chosen.pop(at)
-            if action == "move":
-                chosen.insert(to, moved)
-                for k, block in zip(places, chosen, strict=True):
-                    tables[k] = block
-            else:
-                del tables[places[at]]
-        self.apply(blocks.join(tables))
+        for row in rows:
+            if not 0 <= row < len(places) + new:
+                raise UserError(f"{self.path.name}: {name} has {len(places)} operators; there is none at {row}")
+        return tables, places
 
     @staticmethod
     def _new_place(tables: list[blocks.Block], places: list[int], at: int) -> int:
@@ -197,8 +213,22 @@ class Document:
 
 
 def _diff(before: str, now: str) -> list[str]:
-    lines = difflib.unified_diff(before.splitlines(), now.splitlines(), lineterm="", n=1)
+    """Lines of the diff of two texts, with one line of context; the number of lines alone where many differ."""
+    old, new = before.splitlines(), now.splitlines()
+    alike = _alike(old, new)
+    alike_at_end = _alike(old[alike:][::-1], new[alike:][::-1])
+    begin = max(alike - 1, 0)
+    old, new = (lines[begin : len(lines) - max(alike_at_end - 1, 0)] for lines in (old, new))
+    if len(old) * len(new) > MOST_COMPARED:
+        return [f"-{len(old):,} lines", f"+{len(new):,} lines"]
+    lines = difflib.unified_diff(old, new, lineterm="", n=1)
     return [line for line in lines if not line.startswith(("---", "+++", "@@"))]
+
+
+def _alike(one: list[str], other: list[str]) -> int:
+    """Number of equal lines at the beginning of both lists."""
+    pairs = zip(one, other, strict=False)
+    return next((k for k, (a, b) in enumerate(pairs) if a != b), min(len(one), len(other)))
 
 
 def toml_value(value: Any) -> str:

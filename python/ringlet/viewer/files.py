@@ -120,7 +120,12 @@ class Files:
         names = self._inherited(document)
         order = [f"shape/{k}" for k in range(len(document.model.shape))]
         if names is None:
-            document.edit_tables(action, "shape", at, to, {"op": op} if op else None)
+            if action == "add":
+                document.add_tables("shape", at, [{"op": op} if op else {}])
+            elif action == "remove":
+                document.remove_tables("shape", [at])
+            else:
+                document.move_table("shape", at, to)
         elif action == "remove" and at < len(names):
             document.set([(["shape", names[at]], None), (["shape", names[at]], False)])
         else:

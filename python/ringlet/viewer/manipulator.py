@@ -24,28 +24,30 @@ class LockManipulator:
         self._grabbed: tuple[int, int, np.ndarray] | None = None
         self._moves: tuple[int, list[dict[str, Any]]] | None = None
 
-    def isolate(self, message: protocol.Isolate) -> None:
+    def isolate(self, message: protocol.Isolate, display: DisplayGroom | None) -> None:
         """Isolates locks from the procedural groom in their current position, or returns them.
 
-        Raises UserError for a lock that is edited in another file.
+        Raises UserError for a lock that does not exist or is edited in another file.
         """
         document = self._files.recipe
         edits = document.contents().get("edit", [])
         edited = {edit.get("lock") for edit in edits}
         if message.out:
-            for lock in message.locks:
-                if lock not in edited:
-                    unmoved = {"lock": lock, "move": [{"at": 1.0, "by": [0.0, 0.0, 0.0]}]}
-                    document.edit_tables("add", "edit", len(document.contents().get("edit", [])), entry=unmoved)
+            if display is None:
+                raise UserError("isolate: the groom is not made yet; wait until it is seen")
+            for lock in set(message.locks) - set(display.groom.locks.ids.tolist()):
+                row_of(display.groom, lock)  # raises UserError with the nearest id
+            new = [lock for lock in dict.fromkeys(message.locks) if lock not in edited]
+            unmoved = [{"lock": lock, "move": [{"at": 1.0, "by": [0.0, 0.0, 0.0]}]} for lock in new]
+            document.add_tables("edit", len(edits), unmoved)
             return
         if elsewhere := {edit.lock for edit in document.model.edit} & set(message.locks) - edited:
             raise UserError(
                 f"{document.path.name}: lock {min(elsewhere)} is edited in another file; return it there, or with: "
                 f"ringlet edit {document.path.name} --release {min(elsewhere)}"
             )
-        for k in reversed(range(len(edits))):
-            if edits[k].get("lock") in message.locks:
-                document.edit_tables("remove", "edit", k)
+        returned = set(message.locks)
+        document.remove_tables("edit", [k for k, edit in enumerate(edits) if edit.get("lock") in returned])
 
     def drag(self, message: protocol.Drag, display: DisplayGroom | None) -> None:
         """Moves a point of an isolated lock to a position, stored in the frame of the lock's shape.

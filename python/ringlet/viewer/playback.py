@@ -58,7 +58,7 @@ class Playback:
 
     def stop(self) -> None:
         """Stops the simulation and closes the open files."""
-        self._simulation.stop()
+        self._simulation.stop(patience=1.0)
         self._shown.close()
         self._beside.close()
 

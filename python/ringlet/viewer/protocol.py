@@ -10,10 +10,18 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
+from ringlet.data import limits
+
 VERSION = 6
 Place = list[str | int]  # path of a setting in its file: ["shape", 0, "amount"]
 File = Literal["recipe", "shot"]
 Point = tuple[float, float, float]
+Id = Annotated[int, Field(ge=-limits.ID, le=limits.ID)]
+Row = Annotated[int, Field(ge=0, le=1_000_000)]
+Gesture = Annotated[int, Field(ge=-limits.ID, le=limits.ID)]
+FrameNumber = Annotated[float, Field(ge=-limits.FRAME, le=limits.FRAME)]
+Coordinate = Annotated[float, Field(ge=-1e6, le=1e6)]  # [m]
+Position = tuple[Coordinate, Coordinate, Coordinate]
 
 
 class Message(BaseModel):
@@ -30,7 +38,7 @@ class Hello(Message):
     """First message of a page. ``client`` is a name that the page keeps when it reconnects."""
 
     kind: Literal["hello"] = "hello"
-    version: int
+    version: Row
     client: str = Field(max_length=64)
 
 
@@ -50,7 +58,7 @@ class Set(Message):
     kind: Literal["set"] = "set"
     file: File = "recipe"
     changes: list[tuple[Place, Any]] = Field(max_length=256)
-    gesture: int
+    gesture: Gesture
     resting: bool = True
 
 
@@ -59,8 +67,8 @@ class Arrange(Message):
 
     kind: Literal["arrange"] = "arrange"
     action: Literal["add", "remove", "move"]
-    at: int = Field(ge=0)
-    to: int = Field(default=0, ge=0)
+    at: Row
+    to: Row = 0
     op: str = Field(default="", max_length=64)
 
 
@@ -107,11 +115,11 @@ class Drag(Message):
     """Drags a point of an isolated lock to a position [m]."""
 
     kind: Literal["drag"] = "drag"
-    lock: int
-    point: int = Field(ge=0)
-    to: Point
+    lock: Id
+    point: Row
+    to: Position
     reach: float = Field(default=0.2, ge=0.0, le=1.0)
-    gesture: int
+    gesture: Gesture
     resting: bool = True
 
 
@@ -119,7 +127,7 @@ class Isolate(Message):
     """Isolates locks from the procedural groom for manual edits, or returns them."""
 
     kind: Literal["isolate"] = "isolate"
-    locks: list[int] = Field(max_length=10_000)
+    locks: list[Id] = Field(max_length=10_000)
     out: bool = True
 
 
@@ -133,11 +141,11 @@ class Sculpt(Message):
 
     kind: Literal["sculpt"] = "sculpt"
     tool: Literal["grab", "comb", "smooth", "cut", "lengthen", "return"]
-    at: Point
-    by: Point
+    at: Position
+    by: Position
     radius: float = Field(gt=0.0, le=1.0)
     mirrored: bool = False
-    gesture: int
+    gesture: Gesture
     resting: bool = True
 
 
@@ -152,7 +160,7 @@ class Play(Message):
 
     kind: Literal["play"] = "play"
     action: Literal["start", "pause", "go_on", "again_from"]
-    frame: int = 0
+    frame: Annotated[int, Field(ge=-limits.FRAME, le=limits.FRAME)] = 0
 
 
 class Against(Message):
@@ -166,8 +174,8 @@ class Watch(Message):
     """Requests frames, the current one first; replaces earlier requests that are still pending."""
 
     kind: Literal["watch"] = "watch"
-    shot: list[float] = Field(default_factory=list, max_length=64)
-    against: list[float] = Field(default_factory=list, max_length=64)
+    shot: list[FrameNumber] = Field(default_factory=list, max_length=64)
+    against: list[FrameNumber] = Field(default_factory=list, max_length=64)
 
 
 FromPage = Annotated[

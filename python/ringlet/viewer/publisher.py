@@ -6,45 +6,60 @@ Pages show a state, so a slow or returning page gets the latest message of each 
 from __future__ import annotations
 
 import asyncio
+import threading
 from collections.abc import Callable
+from contextlib import suppress
 
 
 class SendQueue:
-    """Send queue of one page: waiting messages, oldest subject first, then requested messages, made on demand."""
+    """Send queue of one page: waiting messages, oldest subject first, then requested messages, made on demand.
+
+    Any thread may fill it; the event loop empties it.
+    """
 
     def __init__(self) -> None:
         self._waiting: dict[str, bytes] = {}
         self._requested: dict[str, Callable[[], bytes | None]] = {}
+        self._lock = threading.Lock()
         self._available = asyncio.Event()
+        self._loop: asyncio.AbstractEventLoop | None = None  # that waits for messages
 
     def put(self, subject: str, message: bytes) -> None:
         """Queues a message at the end; replaces a waiting one of the same subject."""
-        self._waiting.pop(subject, None)
-        self._waiting[subject] = message
-        self._available.set()
+        with self._lock:
+            self._waiting.pop(subject, None)
+            self._waiting[subject] = message
+        self._wake()
 
     def request(self, sources: dict[str, Callable[[], bytes | None]]) -> None:
         """Replaces the requested messages by those of ``sources``; a source that returns None sends nothing."""
-        self._requested = sources
-        self._available.set()
+        with self._lock:
+            self._requested = sources
+        self._wake()
 
     def discard(self, prefix: str) -> None:
         """Removes waiting messages whose subject starts with a prefix."""
-        for subject in [name for name in self._waiting if name.startswith(prefix)]:
-            del self._waiting[subject]
+        with self._lock:
+            self._waiting = {name: message for name, message in self._waiting.items() if not name.startswith(prefix)}
+
+    def _wake(self) -> None:
+        if self._loop is not None:
+            with suppress(RuntimeError):  # the server has ended
+                self._loop.call_soon_threadsafe(self._available.set)
 
     async def next(self) -> bytes:
         """Waits for the next message and returns it."""
+        self._loop = asyncio.get_running_loop()
         while True:
-            if self._waiting:
-                return self._waiting.pop(next(iter(self._waiting)))
-            if self._requested:
-                message = await asyncio.to_thread(self._requested.pop(next(iter(self._requested))))
-                if message is not None:
-                    return message
-            else:
-                self._available.clear()
+            self._available.clear()
+            with self._lock:
+                if self._waiting:
+                    return self._waiting.pop(next(iter(self._waiting)))
+                source = self._requested.pop(next(iter(self._requested))) if self._requested else None
+            if source is None:
                 await self._available.wait()
+            elif (message := await asyncio.to_thread(source)) is not None:
+                return message
 
 
 class Publisher:

@@ -23,6 +23,7 @@ STATIC = Path(__file__).with_name("static")
 LOOPBACK = ("localhost", "127.0.0.1", "[::1]")
 MAX_PAGES = 32
 HELLO_TIMEOUT = 10.0  # seconds
+LONG = 10.0  # seconds after which a page learns that its message is still worked on
 MAX_INVALID_MESSAGES = 20  # invalid messages of a page before the server closes its socket
 
 REFUSED, WRONG = 4403, 4400  # close codes of the protocol
@@ -107,13 +108,13 @@ async def _serve(socket: WebSocket, session: Session) -> None:
     if not isinstance(hello, protocol.Hello) or hello.version != protocol.VERSION:
         await socket.close(WRONG, f"expected hello of version {protocol.VERSION}; reload the page")
         return
-    page = session.join(hello.client)
+    page = await asyncio.wrap_future(session.submit(session.join, hello.client))
     sending = asyncio.create_task(_send(socket, page))
     try:
         await _receive(socket, session, page)
     finally:
         sending.cancel()
-        session.leave(page)
+        session.submit(session.leave, page)
 
 
 async def _send(socket: WebSocket, page: Page) -> None:
@@ -126,7 +127,12 @@ async def _receive(socket: WebSocket, session: Session, page: Page) -> None:
     invalid_messages = 0
     while True:
         try:
-            session.handle(page, unpack(await socket.receive_bytes()))
+            message = unpack(await socket.receive_bytes())
+            handled = asyncio.wrap_future(session.submit(session.handle, page, message))
+            await asyncio.wait([handled], timeout=LONG)
+            if not handled.done():
+                page.queue.put("slow", trouble(f"message: {message.kind} takes over {LONG:g} s; it is still worked on"))
+            await handled
         except KeyError:  # a text message; the page sends binary ones only
             await socket.close(WRONG, "messages are binary")
             return

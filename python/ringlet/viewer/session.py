@@ -7,6 +7,7 @@ import logging
 import secrets
 from collections import Counter
 from collections.abc import Callable
+from concurrent.futures import Future
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -30,8 +31,9 @@ from ringlet.viewer.scene import read_scene
 from ringlet.viewer.sculpting import Sculptor
 from ringlet.viewer.viewport import Viewport, measured
 from ringlet.viewer.wire import pack, trouble
-from ringlet.viewer.worker import LatestTaskWorker, Stale
+from ringlet.viewer.worker import LatestTaskWorker, SerialWorker, Stale
 
+PATIENCE = 1.0  # that the end of the server waits for work in progress [s]
 FILES_INTERVAL = 2.0  # interval at which the list of files is refreshed [s]
 NO_GROOM = "groom/trouble"  # subject of the error that prevents a groom
 
@@ -55,8 +57,22 @@ class Page:
         self.name, self.queue = name, queue
 
 
+@dataclass(frozen=True)
+class Comparison:
+    """A request for a groom to compare with: a recipe, its muted stages, its name, and the page that asks."""
+
+    recipe: Recipe
+    muted: frozenset[str]
+    name: str
+    page: Page
+
+
 class Session:
-    """One file and its connected pages. Methods run on the event loop; grooming runs in worker threads."""
+    """One file and its connected pages.
+
+    ``join``, ``leave`` and ``handle`` run on the session's own thread, in the order of ``submit``, so that no message
+    blocks the server. Grooming runs in worker threads.
+    """
 
     def __init__(self, file: Path, project: Project) -> None:
         self.project, self.files = project, Files(file, project)
@@ -65,7 +81,7 @@ class Session:
         self.pages: list[Page] = []
         self.leader = ""
         self._heard = Counter[str]()
-        self._loop: asyncio.AbstractEventLoop | None = None
+        self._thread = SerialWorker("session")
         self._file_watcher: asyncio.Task[None] | None = None
         self._evaluator, self._beside = GroomEvaluator(project), GroomEvaluator(project)
         self._viewport, self._caches = Viewport(self.publisher), Caches(project)
@@ -77,12 +93,12 @@ class Session:
             self._playback.read(display)
         self._worker = LatestTaskWorker[Work](self._groom, "groom")
         self._measurer = LatestTaskWorker[DisplayGroom](self._measure, "measure")
+        self._comparer = LatestTaskWorker[Comparison](self._groom_beside, "compare")
 
     # Pages
 
     def start(self, loop: asyncio.AbstractEventLoop) -> None:
         """Publishes the documents, starts grooming and watches the project's files."""
-        self._loop = loop
         for file in self.files.documents:
             self.publisher.publish(f"document/{file}", self.files.message(file))
         if "recipe" in self.files.documents:
@@ -95,18 +111,22 @@ class Session:
         while True:
             names = await asyncio.to_thread(lambda: [*self.project.files("*.recipe.toml"), *self._caches.names()])
             if names != posted:
-                self.publisher.publish("files", pack(protocol.Files(names=names)))
+                self._call(self.publisher.publish, "files", pack(protocol.Files(names=names)))
             posted = names
             await asyncio.sleep(FILES_INTERVAL)
 
     def stop(self) -> None:
-        """Stops the background work."""
-        self._loop = None
+        """Stops the background work; what takes longer than ``PATIENCE`` ends with the program."""
         if self._file_watcher is not None:
             self._file_watcher.cancel()
+        self._thread.stop(PATIENCE)
         self._playback.stop()
-        self._worker.stop()
-        self._measurer.stop()
+        for worker in (self._worker, self._measurer, self._comparer):
+            worker.stop(PATIENCE)
+
+    def submit(self, do: Callable[..., Any], *arguments: Any) -> Future[Any]:
+        """Runs a call on the session's thread, after those submitted before it."""
+        return self._thread.submit(do, *arguments)
 
     def join(self, name: str) -> Page:
         """Adds a page. It gets the edit lock when it held it before, or when no connected page holds it."""
@@ -190,9 +210,9 @@ class Session:
             files.document(message.file).apply(message.text, edits=message.edits or None)
             self._edited(message.file)
         elif isinstance(message, protocol.Compare):
-            self._compare(message)
+            self._compare(page, message)
         elif isinstance(message, protocol.Isolate):
-            self._manipulator.isolate(message)
+            self._manipulator.isolate(message, self._viewport.display)
             self._edited("recipe")
         elif isinstance(message, protocol.Drag):
             self._manipulator.drag(message, self._viewport.display)
@@ -226,8 +246,10 @@ class Session:
             sculpted = self._sculptor.preview(document.model)
             self._worker.submit(Work(sculpted, document.revision, document.state.muted, True))
 
-    def _compare(self, message: protocol.Compare) -> None:
+    def _compare(self, page: Page, message: protocol.Compare) -> None:
+        """Shows a groom for comparison as soon as it is made; raises UserError for a recipe that cannot be read."""
         self._viewport.clear_beside()
+        self._comparer.cancel()
         if message.to == "none":
             self.publisher.publish("b/none", pack(protocol.Compared(name="")))
             return
@@ -240,9 +262,24 @@ class Session:
             path = self.project.inside(message.name, "compare")
             recipe = self.files.parse(read_text(path, "choose a recipe of the project"), path)
             muted, name = frozenset[str](), path.name
-        display = self._beside.groom(recipe, muted, draft=False, check_abort=lambda: None)
-        self.publisher.publish("b/none", pack(protocol.Compared(name=name)))
-        self._viewport.show(display, "b")
+        self._comparer.submit(Comparison(recipe, muted, name, page))
+
+    def _groom_beside(self, asked: Comparison) -> None:
+        """Grooms on a worker thread what is shown for comparison."""
+        try:
+            display = self._beside.groom(
+                asked.recipe, asked.muted, draft=False, check_abort=self._comparer.raise_if_stale
+            )
+            self._comparer.raise_if_stale()
+            self._call(self.publisher.publish, "b/none", pack(protocol.Compared(name=asked.name)))
+            self._call(self._viewport.show, display, "b")
+        except UserError as error:
+            asked.page.queue.put("trouble", trouble(str(error)))
+        except Stale:
+            raise
+        except Exception as error:
+            log.exception("a groom to compare with could not be made")
+            asked.page.queue.put("trouble", trouble(f"this is a mistake in Ringlet ({error}); see the terminal"))
 
     # Grooming
 
@@ -294,8 +331,7 @@ class Session:
             self._playback.set_groom(display)
 
     def _call(self, do: Callable[..., None], *arguments: Any) -> None:
-        if self._loop is not None and not self._loop.is_closed():
-            self._loop.call_soon_threadsafe(do, *arguments)
+        self._thread.post(do, *arguments)
 
     def trouble(self, message: str) -> None:
         """Sends an error message to all pages."""

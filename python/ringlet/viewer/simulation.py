@@ -115,8 +115,9 @@ class Simulation:
         self.rolled = 0
         self.key = 0
         self._running = threading.Event()
-        self._stopping = threading.Event()
+        self._stopping = threading.Event()  # of the current run
         self._thread: threading.Thread | None = None
+        self._results = threading.Lock()  # guards frames and checkpoints: a run that is stopped adds no more
         self._checkpoints: dict[int, dict[str, NDArray[Any]]] = {}
 
     def start(self, shot: Shot, stage: Stage, restart_frame: int | None = None) -> None:
@@ -126,6 +127,7 @@ class Simulation:
 
         Raises UserError when there is no such checkpoint.
         """
+        previous = self._thread
         self.stop()
         checkpoint = None
         if restart_frame is not None:
@@ -139,9 +141,10 @@ class Simulation:
             self._checkpoints = {}
         self._frames.truncate(restart_frame)
         self.rolled, self.key, self.state = 0, self.key + 1, "rolling"
-        self._stopping.clear()
+        self._stopping = threading.Event()
         self._running.set()
-        self._thread = threading.Thread(target=self._run, args=(shot, stage, restart_frame, checkpoint), daemon=True)
+        run = (shot, stage, restart_frame, checkpoint, self._stopping, previous)
+        self._thread = threading.Thread(target=self._run, args=run, daemon=True)
         self._thread.start()
         self._changed()
 
@@ -159,12 +162,16 @@ class Simulation:
             self._running.set()
             self._changed()
 
-    def stop(self) -> None:
-        """Stops the thread; existing frames stay."""
-        self._stopping.set()
+    def stop(self, patience: float = 0.0) -> None:
+        """Stops the run after the frame in progress, which is dropped; existing frames stay.
+
+        patience: how long to wait for that [s]
+        """
+        with self._results:
+            self._stopping.set()
         self._running.set()
-        if self._thread is not None:
-            self._thread.join(timeout=60.0)
+        if self._thread is not None and patience > 0.0:
+            self._thread.join(patience)
         self._thread = None
 
     def reset(self) -> None:
@@ -174,21 +181,38 @@ class Simulation:
         self.state, self.rolled, self.key = "still", 0, self.key + 1
 
     def _run(
-        self, shot: Shot, stage: Stage, restart_frame: int | None, checkpoint: dict[str, NDArray[Any]] | None
+        self,
+        shot: Shot,
+        stage: Stage,
+        restart_frame: int | None,
+        checkpoint: dict[str, NDArray[Any]] | None,
+        stopping: threading.Event,
+        previous: threading.Thread | None,
     ) -> None:
+        """Runs after the run before it has ended. ``stopping``: ends this one."""
+        if previous is not None:
+            previous.join()
         try:
-            self._simulate(shot, stage, restart_frame, checkpoint)
+            self._simulate(shot, stage, restart_frame, checkpoint, stopping)
         except UserError as error:
-            self.state = "still"
-            self._failed(str(error))
+            self._fail(str(error), stopping)
         except Exception as error:
             log.exception("a shot could not be run")
-            self.state = "still"
-            self._failed(f"this is a mistake in Ringlet ({error}); see the terminal")
+            self._fail(f"this is a mistake in Ringlet ({error}); see the terminal", stopping)
         self._changed()
 
+    def _fail(self, message: str, stopping: threading.Event) -> None:
+        if not stopping.is_set():
+            self.state = "still"
+            self._failed(message)
+
     def _simulate(
-        self, shot: Shot, stage: Stage, restart_frame: int | None, checkpoint: dict[str, NDArray[Any]] | None
+        self,
+        shot: Shot,
+        stage: Stage,
+        restart_frame: int | None,
+        checkpoint: dict[str, NDArray[Any]] | None,
+        stopping: threading.Event,
     ) -> None:
         first, last = shot.frames
         motion = api.start_motion(shot, stage.groom)
@@ -197,19 +221,23 @@ class Simulation:
         begin = 0 if restart_frame is None else shot.preroll + restart_frame - first + 1
         for step in range(begin, shot.preroll + last - first + 1):
             self._running.wait()
-            if self._stopping.is_set():
+            if stopping.is_set():
                 return
             k = step - shot.preroll
             statistics = motion.reach(k)
-            if k < 0:
-                self.rolled = step + 1
-            else:
-                self._store_checkpoint(first + k, motion)
-                if self.state == "rolling":
-                    self.state = "running"
-                cloths = {garment.name: garment.cloth.positions for garment in motion.garments}
-                state = FrameState(np.asarray(motion.strands.positions, np.float32), statistics, cloths)
-                self._frames.add(first + k, stage.frame("shot", first + k, state, motion))
+            cloths = {garment.name: garment.cloth.positions for garment in motion.garments}
+            state = FrameState(np.asarray(motion.strands.positions, np.float32), statistics, cloths)
+            message = stage.frame("shot", first + k, state, motion) if k >= 0 else b""
+            with self._results:
+                if stopping.is_set():
+                    return
+                if k < 0:
+                    self.rolled = step + 1
+                else:
+                    self._store_checkpoint(first + k, motion)
+                    if self.state == "rolling":
+                        self.state = "running"
+                    self._frames.add(first + k, message)
             self._changed()
         self.state = "done"
 

@@ -1,12 +1,59 @@
-"""Background work in which only the latest task counts."""
+"""Background work: calls in order, and tasks of which only the latest counts."""
 
 from __future__ import annotations
 
+import logging
+import queue
 import threading
 from collections.abc import Callable
-from typing import Generic, TypeVar
+from concurrent.futures import Future
+from typing import Any, Generic, TypeVar
 
 Task = TypeVar("Task")
+
+
+log = logging.getLogger("ringlet.viewer")
+
+
+class SerialWorker:
+    """A thread that runs calls one after the other, in the order of their submission.
+
+    It ends with the program, even in the midst of a call.
+    """
+
+    def __init__(self, name: str) -> None:
+        self._calls: queue.SimpleQueue[tuple[Future[Any], Callable[[], Any]] | None] = queue.SimpleQueue()
+        self._thread = threading.Thread(target=self._run, name=name, daemon=True)
+        self._thread.start()
+
+    def submit(self, do: Callable[..., Any], *arguments: Any) -> Future[Any]:
+        """Queues a call; the future has its result or its exception."""
+        future: Future[Any] = Future()
+        self._calls.put((future, lambda: do(*arguments)))
+        return future
+
+    def post(self, do: Callable[..., Any], *arguments: Any) -> None:
+        """Queues a call without a result; its exception is logged."""
+        self.submit(do, *arguments).add_done_callback(_log_exception)
+
+    def stop(self, patience: float) -> None:
+        """Ends the thread after the queued calls; waits for it up to ``patience`` [s]."""
+        self._calls.put(None)
+        self._thread.join(patience)
+
+    def _run(self) -> None:
+        while (call := self._calls.get()) is not None:
+            future, do = call
+            if future.set_running_or_notify_cancel():
+                try:
+                    future.set_result(do())
+                except Exception as error:
+                    future.set_exception(error)
+
+
+def _log_exception(future: Future[Any]) -> None:
+    if not future.cancelled() and (error := future.exception()) is not None:
+        log.error("the review could not go on", exc_info=error)
 
 
 class Stale(Exception):
@@ -43,12 +90,12 @@ class LatestTaskWorker(Generic[Task]):
         if self._next is not None or self._cancelled or self._stop:
             raise Stale
 
-    def stop(self) -> None:
-        """Stops the thread after the running task."""
+    def stop(self, patience: float) -> None:
+        """Stops the thread after the running task; waits for it up to ``patience`` [s]."""
         with self._changed:
             self._stop = True
             self._changed.notify()
-        self._thread.join(timeout=5.0)
+        self._thread.join(patience)
 
     def _run(self) -> None:
         while True:
