@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from pathlib import Path
 
@@ -103,28 +104,33 @@ def test_a_pipe_in_place_of_a_file_is_refused(project):
 
 
 def numbers_of(schema: dict, place: str):
-    """Schemas of all integers among the settings, with their paths."""
+    """Schemas of all numbers among the settings, with their paths."""
     for name, inner in [*schema.get("properties", {}).items(), *schema.get("$defs", {}).items()]:
         yield from numbers_of(inner, f"{place}.{name}")
-    for option in [*schema.get("anyOf", ()), *schema.get("oneOf", ())]:
+    for option in [*schema.get("anyOf", ()), *schema.get("oneOf", ()), *schema.get("prefixItems", ())]:
         yield from numbers_of(option, place)
     for key in ("items", "additionalProperties"):
         if isinstance(schema.get(key), dict):
             yield from numbers_of(schema[key], place)
-    if schema.get("type") == "integer":
+    if schema.get("type") in ("integer", "number"):
         yield place, schema
 
 
-NAMES_ONLY = ("lock", "guide", "set", "id", "frames", "frame")  # identifiers and frame numbers, which are no counts
+# Numbers whose bounds are those of the setting that they belong to, or that they stand for.
+BOUNDED_ELSEWHERE = {f"{of}.{name}" for of in ("Varied", "Ramped", "Mapped") for name in ("value", "region", "lock")}
+BOUNDED_ELSEWHERE |= {"Edit.set"}
 
 
 @pytest.mark.parametrize("kind", ["recipe", "shot"])
-def test_every_count_in_a_recipe_and_a_shot_has_a_bound(kind):
-    unbounded = [
-        place
-        for place, about in numbers_of(ringlet.schema()[kind], kind)
-        if not {"maximum", "exclusiveMaximum", "const"} & about.keys() and place.rpartition(".")[2] not in NAMES_ONLY
-    ]
+def test_every_number_in_a_recipe_and_a_shot_has_finite_bounds(kind):
+    unbounded = []
+    for place, about in numbers_of(ringlet.schema()[kind], kind):
+        least, most = (
+            about.get(f"{end}imum", about.get(f"exclusive{end.title()}imum", math.inf)) for end in ("min", "max")
+        )
+        named = ".".join(place.split(".")[-2:])
+        if not (abs(least) < 1e16 and abs(most) < 1e16) and "const" not in about and named not in BOUNDED_ELSEWHERE:
+            unbounded.append(place)
     assert unbounded == []
 
 

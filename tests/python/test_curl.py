@@ -375,3 +375,8 @@ def test_adding_a_guide_changes_no_other_lock():
 def test_too_few_points_for_the_curls_are_refused_with_the_number_to_set():
     with pytest.raises(UserError, match=r"locks.points is 60: too few for 40.0 curls .* set it to 480"):
         curled("pitch = 0.2", points=60)
+
+
+def test_too_few_points_for_more_curls_than_points_allow_are_refused_with_the_bound():
+    with pytest.raises(UserError, match=r"too few for .* curls .*; must be at most 10000, so ask for fewer than 10 "):
+        curled("curls_per_cm = 20", Curves.from_list([10.0 * straight(1)[0]]), points=60)

@@ -190,16 +190,23 @@ def test_missing_materials_are_accepted(tmp_path):
 
 @pytest.mark.parametrize(
     ("unit", "rate", "says"),
-    [(0, 24, "metersPerUnit is 0"), (-1, 24, "metersPerUnit is -1"), (1, 0, "timeCodesPerSecond is 0")],
+    [
+        (0, 24, "metersPerUnit is 0"),
+        (-1, 24, "metersPerUnit is -1"),
+        (1e300, 24, "metersPerUnit is 1e+300"),
+        (1, 0, "timeCodesPerSecond is 0"),
+        (1, 1e300, "timeCodesPerSecond is 1e+300"),
+        (1, float("nan"), "timeCodesPerSecond is nan"),
+    ],
 )
-def test_units_and_rates_that_are_not_positive_are_refused(tmp_path, unit, rate, says):
+def test_units_and_rates_out_of_bounds_are_refused(tmp_path, unit, rate, says):
     path = write_head(tmp_path / "head.usda")
     layer = Sdf.Layer.FindOrOpen(str(path))
     layer.pseudoRoot.SetInfo("metersPerUnit", float(unit))
     layer.timeCodesPerSecond = rate
     layer.Save()
     assert says in refused(read_mesh, path)
-    assert "must be above 0" in refused(read_space, path)
+    assert "must be from" in refused(read_space, path)
 
 
 def test_files_without_groom_or_head_are_refused(tmp_path):

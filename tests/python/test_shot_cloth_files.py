@@ -143,3 +143,17 @@ def test_unusable_cloth_is_refused_and_leaves_no_file(cloth_example, tmp_path, c
     )
     refused(result, *words)
     assert not (tmp_path / "cache.usdc").exists()
+
+
+@pytest.mark.parametrize(
+    ("cloth", "words"),
+    [
+        ('[[cloth]]\nmesh = "/ball/skin"\n', "cloth[0].mesh is /ball/skin, the scalp that hair grows on"),
+        (SCARF.removeprefix("\n[contact]\n") + '[[cloth]]\nname = "two"\nfile = "wear.usda"\n', "is a cloth already"),
+    ],
+)
+def test_a_mesh_is_not_the_scalp_and_a_cloth_at_once_nor_two_cloths(tmp_path, cloth, words):
+    write_wear(write_example(tmp_path))
+    shot = tmp_path / "small.shot.toml"
+    shot.write_text(f"{shot.read_text()}[contact]\n{cloth}")
+    refused(run("sim", shot, "-o", tmp_path / "cache.usdc"), words)

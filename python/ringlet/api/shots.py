@@ -13,7 +13,7 @@ from ringlet.api.grooms import load_groom
 from ringlet.api.progress import OnFrame, Progress
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
-from ringlet.data.files import within
+from ringlet.data.files import same_place, within
 
 if TYPE_CHECKING:
     from ringlet.data.cache import Cache, SimulationRecord
@@ -351,9 +351,16 @@ def _garments(shot: Shot, groom: Groom, frames: tuple[int, int]) -> list[Garment
         file = cloth.file or groom.scalp_file
         assert file is not None  # as for the scalp's clip
         body = io.read_body(file, cloth.mesh, frames, groom.space.fps, cage=True)
-        garments.append(sim.Garment(body.mesh, body.clip, cloth, file, body.prim))
-        if garments[-1].name in [garment.name for garment in garments[:-1]]:
-            raise UserError(f"shot: two cloths are called '{garments[-1].name}'; give one of them another `name`")
+        garment = sim.Garment(body.mesh, body.clip, cloth, file, body.prim)
+        what = f"shot: cloth[{len(garments)}].mesh is {body.prim}"
+        surface = body if groom.cage else io.read_body(file, cloth.mesh, frames, groom.space.fps)
+        if sim.Obstacle(surface.mesh, surface.clip).is_surface_of(groom.scalp):
+            raise UserError(f"{what}, the scalp that hair grows on; name another mesh")
+        if garment.name in [other.name for other in garments]:
+            raise UserError(f"shot: two cloths are called '{garment.name}'; give one of them another `name`")
+        if any(other.prim == body.prim and same_place(other.file or file, file) for other in garments):
+            raise UserError(f"{what}, which is a cloth already; take one of them away")
+        garments.append(garment)
     return garments
 
 

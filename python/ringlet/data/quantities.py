@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -17,15 +18,18 @@ from pydantic import (
     FiniteFloat,
     ValidationError,
     ValidationInfo,
+    WithJsonSchema,
     model_validator,
 )
 from pydantic_core import PydanticCustomError, core_schema
 from scipy.interpolate import PchipInterpolator
 
+from ringlet.data import explain as messages
 from ringlet.data import settings
 from ringlet.data.errors import UserError
+from ringlet.data.explain import Location, shown
 from ringlet.data.random import Random
-from ringlet.data.settings import Location, refuse
+from ringlet.data.settings import refuse
 
 MAX_FACTOR = 1e6  # of a ramp
 LengthUnit = Literal["m", "dm", "cm", "mm", "in"]
@@ -70,9 +74,9 @@ class Quantity:
     product: whether the bounds also count for the value times its ramp; not where an operator bounds or normalises that
     """
 
-    unit: str = ""
-    least: float = -np.inf
-    most: float = np.inf
+    unit: str
+    least: float
+    most: float
     product: bool = True
 
     @staticmethod
@@ -92,28 +96,31 @@ class Quantity:
 
     def number(self, value: Any, unit: float) -> float:
         """``value`` in SI, within the bounds."""
-        if isinstance(value, str):
-            match = re.fullmatch(r"\s*([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*([a-z]+)\s*", value)
-            if self.unit != "m" or not match or match[2] not in UNITS:
-                raise refuse(
-                    f"is '{value}'; must be a number" + (' or a length such as "5 mm"' if self.unit == "m" else "")
-                )
-            try:
-                value = float(match[1]) * UNITS[match[2]]
-            except ValueError:
-                raise refuse(f"is '{value}'; must be a length such as \"5 mm\"") from None
-        elif isinstance(value, bool) or not isinstance(value, int | float) or abs(value) > 1e300:
-            raise refuse(f"is {value!r}; must be a number")
-        elif self.unit == "m":
-            value = value * unit
-        value = float(value)
-        if not np.isfinite(value):
-            raise refuse(f"is {value}; must be finite")
-        if value < self.least:
-            raise refuse(f"is {value:.6g}{self.suffix}; must be at least {self.least:.6g}{self.suffix}")
-        if value > self.most:
-            raise refuse(f"is {value:.6g}{self.suffix}; must be at most {self.most:.6g}{self.suffix}")
-        return value
+        number = self._length(value) if isinstance(value, str) else value
+        if isinstance(number, bool) or not isinstance(number, int | float):
+            raise refuse(f"is {shown(value)}; must be a number" + ' or a length such as "5 mm"' * (self.unit == "m"))
+        try:
+            number = float(number) * (unit if self.unit == "m" and not isinstance(value, str) else 1.0)
+        except OverflowError:  # a whole number that no float holds
+            number = math.inf if number > 0 else -math.inf
+        said = f"{number:.6g}{self.suffix}" if math.isfinite(number) else shown(value)
+        if math.isnan(number):
+            raise refuse("is nan; must be finite")
+        if number < self.least:
+            raise refuse(f"is {said}; must be at least {self.least:.6g}{self.suffix}")
+        if number > self.most:
+            raise refuse(f"is {said}; must be at most {self.most:.6g}{self.suffix}")
+        return number
+
+    def _length(self, text: str) -> float | None:
+        """A length with its unit, such as ``5 mm``, in metres; None for other text."""
+        match = re.fullmatch(r"\s*([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*([a-z]+)\s*", text)
+        if self.unit != "m" or not match or match[2] not in UNITS:
+            return None
+        try:
+            return float(match[1]) * UNITS[match[2]]
+        except ValueError:
+            return None
 
     def clipped(self, values: NDArray, peak: float = 1.0) -> NDArray[np.float64]:
         """Values within the bounds, also times the peak of a ramp; same shape."""
@@ -165,8 +172,7 @@ class Quantity:
         return setting
 
     def __get_pydantic_json_schema__(self, schema: core_schema.CoreSchema, handler: Callable) -> dict[str, Any]:
-        bounds = {"minimum": self.least, "maximum": self.most}
-        number = {"type": "number", **{name: bound for name, bound in bounds.items() if np.isfinite(bound)}}
+        number = {"type": "number", "minimum": self.least, "maximum": self.most}
         choices = [number, {"type": "string"}] if self.unit == "m" else [number]
         inner = handler(schema)
         tables = [part for part in inner.get("anyOf", [inner]) if "$ref" in part or part.get("type") == "null"]
@@ -226,7 +232,15 @@ def _in_order(ramp: list[tuple[float, float]]) -> list[tuple[float, float]]:
     return ramp
 
 
-Ramp = Annotated[list[tuple[FiniteFloat, FiniteFloat]], AfterValidator(_in_order)]
+Ramp = Annotated[
+    list[
+        tuple[
+            Annotated[FiniteFloat, WithJsonSchema({"type": "number", "minimum": 0, "maximum": 1})],
+            Annotated[FiniteFloat, WithJsonSchema({"type": "number", "minimum": 0, "maximum": MAX_FACTOR})],
+        ]
+    ],
+    AfterValidator(_in_order),
+]
 
 
 def along(ramp: list[tuple[float, float]], u: NDArray) -> NDArray[np.float64]:
@@ -253,20 +267,11 @@ class Ramped(Varied):
         return along(self.ramp, u)
 
 
-def explain(error: ValidationError, where: str) -> UserError:
-    """The first mistake in a recipe, in one line: file, setting, value, remedy."""
-    return settings.explain(error, where, _setting)
+def explain(error: ValidationError, where: str, data: Any) -> UserError:
+    """The first mistake in a recipe, in one line: file, setting, value, remedy. data: the recipe's tables"""
+    return messages.explain(error, where, data, _setting)
 
 
-def _setting(loc: Location) -> str:
+def _setting(place: Location) -> str:
     """A setting's name as it stands in the recipe: ``curl.width``, ``shape[0].amplitude``."""
-    name = ""
-    for depth, part in enumerate(loc):
-        if isinstance(part, int):
-            name += f"[{part}]"
-        elif depth != _KIND_AT.get(str(loc[0])):
-            name += f".{part}"
-    return name.removeprefix(".").removesuffix(".value")
-
-
-_KIND_AT = {"guides": 1, "shape": 2}  # where pydantic puts in the kind of a union, which no recipe says
+    return messages.setting_name(place).removesuffix(".value")

@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-import difflib
 import tomllib
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable, Iterator
+from functools import cache
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, get_args
 
-from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
+from pydantic import BaseModel, BeforeValidator, ConfigDict, model_validator
 from pydantic_core import PydanticCustomError
 
 from ringlet.data.errors import UserError
+from ringlet.data.explain import did_you_mean, explain_toml, shown
 from ringlet.data.regular import read_text
 
 FORMAT = 1  # of recipes, shots and files of edits
 OWN_KEYS = {"recipe": {"scalp", "extends"}, "shot": {"groom"}}  # keys of one kind of file alone
-
-Location = tuple[int | str, ...]  # where in a model pydantic found a mistake
 
 
 def refuse(message: str) -> PydanticCustomError:
@@ -43,12 +42,51 @@ class Section(BaseModel):
                     raise PydanticCustomError("unknown", "{key}{hint}", {"key": key, "hint": hint})
         return data
 
+    @model_validator(mode="before")
+    @classmethod
+    def _numbers_are_numbers(cls, data: Any) -> Any:
+        """Refuses true, false and text in place of numbers, which pydantic would convert."""
+        if isinstance(data, dict):
+            for name, (kinds, converts) in _numbers(cls).items():
+                for leaf in _leaves(data.get(name)):
+                    text = isinstance(leaf, str) and not converts and kinds <= {int, float, type(None)}
+                    if text or (isinstance(leaf, bool) and bool not in kinds):
+                        whole = "" if float in kinds else "whole "
+                        message = f"is {shown(leaf)}; must be a {whole}number"
+                        raise PydanticCustomError("setting", "{key}{message}", {"key": name, "message": message})
+        return data
 
-def did_you_mean(name: str, valid: Iterable[str]) -> str:
-    """``; did you mean 'width'?`` or, with nothing near, ``; there are: …``."""
-    valid = list(valid)
-    near = difflib.get_close_matches(name, valid, n=1, cutoff=0.5)
-    return f"; did you mean '{near[0]}'?" if near else f"; there are: {', '.join(valid)}"
+
+@cache
+def _numbers(section: type[BaseModel]) -> dict[str, tuple[set[type], bool]]:
+    """The settings of a table that may be numbers: types of their plain values, and whether they convert others."""
+    found = {name: _kinds(field.annotation, *field.metadata) for name, field in section.model_fields.items()}
+    return {name: (kinds, converts) for name, (kinds, converts) in found.items() if {int, float} & kinds}
+
+
+def _kinds(*annotations: Any) -> tuple[set[type], bool]:
+    """Types of the plain values that annotations allow, and whether one of them converts other values itself."""
+    kinds, converts = set[type](), False
+    for one in annotations:
+        if parts := get_args(one):
+            inner, converted = _kinds(*parts)
+            kinds, converts = kinds | inner, converts or converted
+        elif isinstance(one, type):
+            kinds.add(one)
+        elif isinstance(one, int | str):  # of a Literal
+            kinds.add(type(one))
+        else:
+            converts = converts or isinstance(one, BeforeValidator) or hasattr(one, "__get_pydantic_core_schema__")
+    return kinds, converts
+
+
+def _leaves(value: Any) -> Iterator[Any]:
+    """Plain values of a value, those of its lists and tables."""
+    if isinstance(value, dict | list | tuple):
+        for entry in value.values() if isinstance(value, dict) else value:
+            yield from _leaves(entry)
+    else:
+        yield value
 
 
 def check_name(name: str, names: Iterable[str], where: str, what: str) -> None:
@@ -67,59 +105,15 @@ def parse_toml(text: str, where: str, kind: str) -> dict[str, Any]:
     """Tables of a TOML text that begins with ``ringlet = 1``."""
     try:
         data = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise UserError(f"{where}: is not valid TOML: {str(error)[0].lower()}{str(error)[1:]}") from error
-    except (RecursionError, ValueError):  # of lists in lists without end, or of numbers with thousands of digits
-        raise UserError(f"{where}: is not valid TOML: lists too deep, or a number too long") from None
+    except (RecursionError, ValueError) as error:
+        raise explain_toml(error, where) from None
     if "ringlet" not in data:
         raise UserError(f"{where}: is not a Ringlet {kind}; its first line must be 'ringlet = 1'")
     if isinstance(version := data["ringlet"], int) and version > FORMAT:
-        raise UserError(f"{where}: ringlet is {version}; this Ringlet reads {kind} files up to {FORMAT}: update it")
+        raise UserError(
+            f"{where}: ringlet is {shown(version)}; this Ringlet reads {kind} files up to {FORMAT}: update it"
+        )
     for other, keys in OWN_KEYS.items():
         if kind in OWN_KEYS and other != kind and keys & data.keys() and not OWN_KEYS[kind] & data.keys():
             raise UserError(f"{where}: is a {other}; give a {kind} file")
     return data
-
-
-def explain(error: ValidationError, where: str, name_of: Callable[[Location], str] | None = None) -> UserError:
-    """The first mistake that a model found, in one line: file, setting, value, remedy.
-
-    name_of: how a place in the model is called in the file, where that is not simply its path
-    """
-    first = error.errors()[0]
-    name = (name_of or setting_name)(first["loc"])
-    kind, context, given = first["type"], first.get("ctx", {}), first["input"]
-    bounds = {
-        "greater_than_equal": ("at least", "ge"),
-        "greater_than": ("more than", "gt"),
-        "less_than_equal": ("at most", "le"),
-        "less_than": ("less than", "lt"),
-    }
-    if kind == "unknown":
-        message = f"{name}.{context['key']} is not a setting{context['hint']}".removeprefix(".")
-    elif kind == "ringlet":
-        message = f"{name} {context['message']}"
-    elif kind == "missing":
-        message = f"{name} is missing; it must be given"
-    elif kind in bounds:
-        word, key = bounds[kind]
-        message = f"{name} is {given!r}; must be {word} {context[key]}"
-    elif kind == "literal_error":
-        message = f"{name} is {given!r}; must be {context['expected']}"
-    elif kind == "union_tag_invalid":
-        valid = [tag.strip(" '") for tag in context["expected_tags"].split(",")]
-        message = f"{name}.op is '{context['tag']}'{did_you_mean(context['tag'], valid)}"
-    elif kind == "union_tag_not_found":
-        message = f"{name} has no 'op'; say which operator it is"
-    elif kind in ("model_type", "model_attributes_type", "dict_type"):
-        message = f"{name} is {given!r}; must be a table of settings"
-    elif kind.startswith(("int_", "float_")):
-        message = f"{name} is {given!r}; must be a {'whole ' if kind.startswith('int') else ''}number"
-    else:
-        message = f"{name} is {given!r}; {first['msg'][0].lower()}{first['msg'][1:]}"
-    return UserError(f"{where}: {message}")
-
-
-def setting_name(place: Location) -> str:
-    """A setting's name as it stands in the file: ``solver.newton``, ``shape[0].amplitude``."""
-    return "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in place).removeprefix(".")

@@ -13,7 +13,8 @@ from pathlib import Path
 from typing import Any, get_args
 
 from ringlet.data.errors import UserError
-from ringlet.data.settings import Location, Section, did_you_mean, read_toml, setting_name
+from ringlet.data.explain import Location, did_you_mean, setting_name
+from ringlet.data.settings import Section, read_toml
 from ringlet.data.toml import to_toml
 from ringlet.shot import Shot, parse_shot
 

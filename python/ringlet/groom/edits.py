@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from ringlet import _core
+from ringlet.data import limits
 from ringlet.data.curves import Curves
 from ringlet.data.quantities import Quantity, Section, refuse
 from ringlet.groom.helpers import Place
@@ -34,7 +35,7 @@ class Edit(Section):
     They follow every change of the recipe. A curve is stored in the frame of its root and follows the scalp alone.
     """
 
-    lock: int = Field(description="id of the lock")
+    lock: int = Field(ge=-limits.ID, le=limits.ID, description="id of the lock")
     stage: Literal["shape", "groom"] = Field(
         default="groom", description="shape: before the lock is curled, groom: the curled lock itself"
     )

@@ -337,7 +337,7 @@ def _settings(values: dict[str, Any]) -> HairSettings:
     try:
         return HairSettings.model_validate(values, context={"unit": 1.0})
     except ValidationError as error:
-        raise explain(error, "groom: hairs") from error
+        raise explain(error, "groom: hairs", values) from error
 
 
 def _root_frames(groom: Groom, at: NDArray[np.float64], when: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -11,14 +11,17 @@ from ringlet.data.curves import Curves
 from ringlet.data.quantities import Quantity, refuse
 from ringlet.groom.source import Source
 
+FAR = Quantity("m", -1000.0, 1000.0)  # of a coordinate
+
 
 def _to_metres(place: object, info: ValidationInfo) -> object:
     """Converts three lengths to metres; a plain number is in the unit of the recipe."""
     unit = (info.context or {}).get("unit", 1.0)
-    return [Quantity("m").number(x, unit) for x in place] if isinstance(place, list | tuple) else place
+    return [FAR.number(x, unit) for x in place] if isinstance(place, list | tuple) else place
 
 
-Place = Annotated[tuple[float, float, float], BeforeValidator(_to_metres)]
+Coordinate = Annotated[float, Field(ge=FAR.least, le=FAR.most)]
+Place = Annotated[tuple[Coordinate, Coordinate, Coordinate], BeforeValidator(_to_metres)]
 
 
 class HelperCurves(Source):

@@ -15,7 +15,8 @@ from ringlet.data.quantities import Quantity, Section, refuse
 
 LENGTHS = (1e-6, 1e6)  # of a vector that gives a direction
 
-Vector = tuple[FiniteFloat, FiniteFloat, FiniteFloat]
+Component = Annotated[FiniteFloat, Field(ge=-1000, le=1000)]
+Vector = tuple[Component, Component, Component]
 
 
 def _points_somewhere(vector: tuple[float, float, float]) -> tuple[float, float, float]:

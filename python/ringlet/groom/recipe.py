@@ -140,7 +140,7 @@ def _recipe(text: str, data: dict[str, Any], path: Path | None) -> Recipe:
     try:
         recipe = Recipe.model_validate(data, context={"unit": UNITS.get(unit, 1.0) if isinstance(unit, str) else 1.0})
     except ValidationError as error:
-        raise explain(error, path.name if path else "recipe") from error
+        raise explain(error, path.name if path else "recipe", data) from error
     recipe._path, recipe._text = path, text
     return recipe
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from ringlet import _core
+from ringlet.data import limits
 from ringlet.data.curves import Curves
 from ringlet.data.quantities import Quantity, Section, refuse
 from ringlet.groom.edits import resampled
@@ -24,7 +25,7 @@ class Sculpt(Section):
     """A manual sculpt of one guide, relative to the recipe's result. The guide's length is scaled first. Its points are
     then moved, each in the rotation-minimising frame along the guide."""
 
-    guide: int = Field(description="id of the guide")
+    guide: int = Field(ge=-limits.ID, le=limits.ID, description="id of the guide")
     length: Annotated[float, Quantity("", 0.01, 100.0)] = Field(default=1.0, description="times its length")
     offsets: list[Place] = Field(
         default=[],

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
+from ringlet.data.explain import shown
 from ringlet.data.mesh import Mesh
 from ringlet.data.regular import read_bytes
 from ringlet.data.stage import StageSpace
@@ -43,6 +44,8 @@ def read_obj_mesh(path: Path, space: StageSpace) -> Mesh:
     check_points(points, str(path))
     counts = np.array([len(face) for face in content.faces], np.int64)
     indices = np.array([index for face in content.faces for index in face], np.int64)
+    if len(indices) and indices.max() >= len(points):
+        raise UserError(f"{path}: a face uses point {indices.max() + 1}; must be from 1 to {len(points)}")
     check_polygons(counts, indices, len(points), str(path))
     corners, faces = triangulate(points, counts, indices)
 
@@ -108,14 +111,27 @@ def _parse(path: Path) -> _Content:
                 named = list(dict.fromkeys(words))
                 if len(named) > MAX_GROUPS:
                     raise UserError(f"{path}: line {number} names {len(named)} groups; must be at most {MAX_GROUPS}")
+        except _IndexOutOfRangeError as error:
+            raise UserError(f"{path}: line {number} uses point {error}") from None
         except ValueError:
             raise UserError(f"{path}: line {number} is '{line.strip()[:60]}'; must be numbers after '{key}'") from None
     return content
 
 
+class _IndexOutOfRangeError(ValueError):
+    """An index that names no element."""
+
+
 def _index(word: str, count: int) -> int:
-    """Converts an OBJ index, which counts from 1 or backwards from the last element, to one that counts from 0."""
+    """Converts an OBJ index, which counts from 1 or backwards from the last element, to one that counts from 0.
+
+    Raises _IndexOutOfRangeError for 0, and for an index that no file has.
+    """
     index = int(word)
-    if abs(index) > MAX_POINTS:
-        raise ValueError
-    return index - 1 if index > 0 else count + index if index < 0 else -1
+    if index == 0:
+        raise _IndexOutOfRangeError("0; must be from 1, or from -1 backwards")
+    if index < -count:
+        raise _IndexOutOfRangeError(f"{shown(index)}; there are {count} before it")
+    if index > MAX_POINTS:
+        raise _IndexOutOfRangeError(f"{shown(index)}; must be at most {MAX_POINTS}")
+    return index - 1 if index > 0 else count + index

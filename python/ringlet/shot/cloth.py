@@ -8,8 +8,10 @@ from typing import Annotated, Self
 import numpy as np
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
+from ringlet.data import limits
 from ringlet.data.settings import Section, refuse
 
+Frame = Annotated[float, Field(ge=-limits.FRAME, le=limits.FRAME)]
 Scale = Annotated[float, Field(gt=0.01, le=100)]
 
 
@@ -86,7 +88,7 @@ class ShotCloth(Section):
     pin: tuple[Pin, ...] = Field(
         default=(), description="vertices that go where they are told; a later entry counts more"
     )
-    shrink: Scale | tuple[tuple[float, Scale], ...] = Field(
+    shrink: Scale | tuple[tuple[Frame, Scale], ...] = Field(
         default=1.0,
         description="how large its rest shape is, by what the mesh is: below 1 it is elastic that draws together. Or "
         "a list of `[frame, scale]`, straight in between",

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, PrivateAttr, ValidationError, ValidationInfo, field_validator
 
+from ringlet.data import limits
+from ringlet.data.explain import explain
 from ringlet.data.limits import wrong_frames
-from ringlet.data.settings import Section, explain, parse_toml, read_toml, refuse
+from ringlet.data.settings import Section, parse_toml, read_toml, refuse
 from ringlet.shot.cloth import ShotCloth
 from ringlet.shot.contact import Collider, ShotContact
 from ringlet.shot.material import Material
@@ -19,11 +21,15 @@ from ringlet.shot.variation import Variation
 STAYS = {"parting_speed": 0.0, "creep_speed": 1e-5}  # defaults of contact in equilibrium with the groom [m/s]
 
 
+FrameNumber = Annotated[int, Field(ge=-limits.FRAME, le=limits.FRAME)]
+Strength = Annotated[float, Field(ge=-1000, le=1000)]
+
+
 class Forces(Section):
     """External forces on the strands, in metres and Y-up whatever the files use."""
 
-    gravity: tuple[float, float, float] = Field(default=(0.0, -9.81, 0.0), description="[m/s²]")
-    wind: tuple[float, float, float] = Field(default=(0.0, 0.0, 0.0), description="velocity of the air [m/s]")
+    gravity: tuple[Strength, Strength, Strength] = Field(default=(0.0, -9.81, 0.0), description="[m/s²]")
+    wind: tuple[Strength, Strength, Strength] = Field(default=(0.0, 0.0, 0.0), description="velocity of the air [m/s]")
 
 
 class Shot(Section):
@@ -34,7 +40,7 @@ class Shot(Section):
     groom: Path = Field(
         description="recipe (.toml) or groom (.usdc, .usda, .usd); a relative name counts from the shot"
     )
-    frames: tuple[int, int] = Field(description="first and last frame")
+    frames: tuple[FrameNumber, FrameNumber] = Field(description="first and last frame")
     preroll: int = Field(
         default=24,
         ge=0,
@@ -131,7 +137,7 @@ def _shot(data: dict[str, Any], path: Path | None) -> Shot:
     try:
         shot = Shot.model_validate(data)
     except ValidationError as error:
-        raise explain(error, path.name if path else "shot") from error
+        raise explain(error, path.name if path else "shot", data) from error
     folder = path.parent if path else Path()
     rest = shot.rest.model_copy(update={"file": shot.rest.file and folder / shot.rest.file})
     colliders = tuple(one.model_copy(update={"file": one.file and folder / one.file}) for one in shot.collider)

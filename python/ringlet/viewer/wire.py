@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from pydantic import ValidationError
 
 from ringlet.data.errors import UserError
+from ringlet.data.explain import explain
 from ringlet.viewer.protocol import FROM_PAGE, FromPage, Message, Trouble
 
 MOST = 1_000_000  # largest size of a message from a page [bytes]
@@ -47,11 +48,16 @@ def unpack(data: bytes) -> FromPage:
     if len(data) < 4 or len(data) != 4 + struct.unpack_from("<I", data)[0]:
         raise UserError("message: its length is not what it says; send it again")
     try:
-        return FROM_PAGE.validate_json(data[4:])
+        return FROM_PAGE.validate_json(data[4:], strict=True)
     except ValidationError as error:
-        first = error.errors(include_url=False, include_context=False, include_input=False)[0]
-        where = ".".join(str(part) for part in first["loc"]) or "message"
-        raise UserError(f"message: {where}: {first['msg'].lower()}"[:400]) from None
+        raise explain(error, "message", _parsed(data[4:])) from None
+
+
+def _parsed(text: bytes) -> Any:
+    try:
+        return json.loads(text)
+    except (ValueError, RecursionError):
+        return {}
 
 
 def trouble(message: str) -> bytes:

@@ -10,6 +10,7 @@ from pydantic import Field, model_validator
 from scipy.spatial import KDTree
 
 from ringlet import _core
+from ringlet.data import limits
 from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.data.quantities import Quantity, refuse
 from ringlet.groom.operators.operator import Context, Operator, arc_lengths, packed, unit
@@ -31,7 +32,10 @@ class Locks(Operator):
         description="painted values: where they are higher, locks stand closer; none grow where they are 0",
     )
     points: int = Field(
-        default=64, ge=4, le=10_000, description="points of a groom guide, curl included; 12 a curl simulate well"
+        default=64,
+        ge=4,
+        le=limits.POINTS,
+        description="points of a groom guide, curl included; 12 a curl simulate well",
     )
     shape_points: int = Field(default=20, ge=4, le=1000, description="points of a lock's shape, before it is curled")
     neighbours: int = Field(default=4, ge=1, le=16, description="guides that a lock takes its shape from")

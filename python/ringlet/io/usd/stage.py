@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import difflib
 import json
-import math
 import os
 import re
 from collections.abc import Iterator
@@ -29,6 +28,7 @@ from ringlet.io.usd.skinning import Skinning
 
 SURFACE, LIMIT, CAGE = "ringlet:surface", "limit", "cage"  # attribute of /groom, and its values
 NOT_TEXT = "it holds text that is not UTF-8"
+UNITS, RATES = (1e-9, 1e6), (1e-2, 1e5)  # bounds of metersPerUnit and of timeCodesPerSecond
 SUFFIXES = (".usd", ".usda", ".usdc", ".usdz")
 
 
@@ -263,9 +263,9 @@ def parse_json(source: Source, text: Any, name: str) -> Any:
 
 def _space(stage: Usd.Stage, path: Path) -> StageSpace:
     unit, rate = UsdGeom.GetStageMetersPerUnit(stage), stage.GetTimeCodesPerSecond()
-    for name, value in (("metersPerUnit", unit), ("timeCodesPerSecond", rate)):
-        if not (math.isfinite(value) and value > 0):
-            raise UserError(f"{path}: {name} is {value:g}; must be above 0")
+    for name, value, (least, most) in (("metersPerUnit", unit, UNITS), ("timeCodesPerSecond", rate, RATES)):
+        if not least <= value <= most:
+            raise UserError(f"{path}: {name} is {value:g}; must be from {least:g} to {most:g}")
     axis = UsdGeom.GetStageUpAxis(stage)
     return StageSpace(unit, "Z" if axis == UsdGeom.Tokens.z else "Y", rate)
 
