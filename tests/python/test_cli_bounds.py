@@ -9,6 +9,7 @@ import sys
 from importlib import import_module
 from typing import Any, get_args
 
+import numpy as np
 import pytest
 from commands import refused, run
 from ringlet.cli.app import COMMANDS
@@ -59,3 +60,21 @@ def test_the_environment_cannot_ask_for_more_threads_than_that():
     asked = {**os.environ, "OMP_NUM_THREADS": "100000"}
     command = [sys.executable, "-c", "from ringlet import _core; print(_core.thread_count())"]
     assert subprocess.run(command, env=asked, capture_output=True, text=True, check=True).stdout == "1024\n"
+
+
+def test_memory_that_runs_out_is_reported_in_one_line(copy, monkeypatch):
+    def fill(*_: object, **__: object) -> None:
+        np.empty(2**60, np.uint8)
+
+    monkeypatch.setattr(ringlet, "build_groom", fill)
+    message = refused(
+        run("groom", copy / "small.recipe.toml", "-o", copy / "out.usdc"), "memory ran out", "fewer locks"
+    )
+    assert "mistake" not in message
+
+
+def test_warnings_of_libraries_are_not_printed(copy):
+    program = "import warnings; from ringlet.cli.app import app; import ringlet.cli.schema as s; "
+    program += "import ringlet; ringlet.schema = lambda: warnings.warn('of a library') or {}; app(['schema'])"
+    result = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert result.stderr == ""

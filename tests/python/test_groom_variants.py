@@ -118,7 +118,7 @@ def test_the_text_stored_with_the_groom_is_a_complete_recipe(folder):
     [
         ('extends = "bsae.toml"', "bsae.toml: cannot be read"),
         ('extends = "down.toml"', "down.toml: extends down.toml, which extends it in turn"),
-        ("extends = 3", "extends is 3; must be the name of a recipe file"),
+        ("extends = 3", "extends is 3; must be the name of a file"),
         ('extends = "base.toml"\nunit = "m"', "unit is 'm', that of base.toml is 'cm'; must be the same"),
         (
             'extends = "base.toml"\n[shape.lofft]\namount = 1',

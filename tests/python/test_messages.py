@@ -77,6 +77,10 @@ def test_a_wrong_setting_of_a_shot_is_named_as_in_the_file(line, message):
         ("shape = [{ op = 5 }]", "shape[0].op is"),
         ("shape = [{ }]", "shape[0].op is missing; it must be given"),
         ("shape = [5]", "shape[0]"),
+        ('edits = ""', "edits is ''; must be the name of a file"),
+        (f'extends = "{"x" * 300}"', "x…; must be the name of a file"),
+        ("edits = 5", "edits is 5; must be the name of a file"),
+        ('name = "\\u0000"', "has a text with a character of code 0; take it out"),
     ],
 )
 def test_a_wrong_setting_of_a_recipe_is_named_as_in_the_file(text, message):

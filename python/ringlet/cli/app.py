@@ -9,6 +9,7 @@ import os
 import sys
 import tempfile
 import traceback
+import warnings
 from collections.abc import Sequence
 from importlib import import_module
 from typing import Annotated, Any
@@ -46,7 +47,10 @@ class Front(TyperGroup):
     def main(self, args: Sequence[str] | None = None, *rest: Any, standalone_mode: bool = True, **extra: Any) -> Any:
         """Runs a command line and exits with its code."""
         try:
-            code = super().main(args, *rest, standalone_mode=False, **extra) or 0
+            with warnings.catch_warnings():
+                if not os.environ.get("RINGLET_DEBUG"):
+                    warnings.simplefilter("ignore")  # those of libraries are for programmers
+                code = super().main(args, *rest, standalone_mode=False, **extra) or 0
             if code == INTERRUPTED:
                 fail("interrupted", code)
         except typer.TyperException as error:
@@ -61,6 +65,10 @@ class Front(TyperGroup):
         except OSError as error:
             place = f"{error.filename}: " if error.filename else ""
             code = fail(f"{place}{error.strerror or error}; check the place and its rights", 2)
+        except MemoryError as error:
+            code = fail(
+                f"memory ran out ({error or 'of this machine'}); ask for fewer locks, hairs, frames or pixels", 2
+            )
         except Exception:
             code = fail(bug(), 3)
         sys.exit(code)

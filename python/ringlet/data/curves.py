@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from ringlet.data import limits
 from ringlet.data.errors import UserError
 
 LEAST_EDGE = 1e-8  # [m] an edge that is shorter has no direction in single precision
@@ -101,18 +102,19 @@ class Curves:
             raise UserError(f"{what}: there are no curves; give at least one")
         if self.offsets[0] != 0 or self.offsets[-1] != len(self.points) or (self.counts < 0).any():
             raise UserError(
-                f"{what}: point counts add up to {self.offsets[-1]}, but there are {len(self.points)} points"
+                f"{what}: point counts add up to {self.offsets[-1]}, but there are {len(self.points)} points; "
+                "export it again"
             )
         if (short := np.flatnonzero(self.counts < 2)).size:
             raise UserError(
                 f"{what}: curve {self.ids[short[0]]} has {self.counts[short[0]]} point(s); must have at least 2"
             )
-        if not (finite := np.isfinite(self.points).all(axis=1)).all():
-            row = int(np.flatnonzero(~finite)[0])
+        if not (near := (np.abs(self.points) <= limits.FARTHEST).all(axis=1)).all():
+            row = int(np.flatnonzero(~near)[0])
             curve = int(np.searchsorted(self.offsets, row, side="right") - 1)
             raise UserError(
                 f"{what}: curve {self.ids[curve]}, point {row - self.offsets[curve]} is {self.points[row]}; "
-                "must be finite"
+                f"must be finite, and at most {limits.FARTHEST:g} from 0"
             )
         if (flat := np.flatnonzero(self.lengths() <= 0)).size:
             raise UserError(f"{what}: curve {self.ids[flat[0]]} has length 0; remove it or draw it out")

@@ -1,5 +1,7 @@
 """The one exception for everything a user can cause."""
 
+MOST = 1000  # characters of a message
+
 
 class UserError(Exception):
     """A mistake in the input, in one line: what, where, which value, and what to do about it.
@@ -7,3 +9,12 @@ class UserError(Exception):
     The command line prints it and exits with 2; it never shows a traceback.
     Example: ``UserError("curls.recipe.toml: curl.width is -0.2 m; must be at least 0")``.
     """
+
+    def __init__(self, message: str) -> None:
+        line = one_line(message)
+        super().__init__(line if len(line) <= MOST else f"{line[:MOST]}…")
+
+
+def one_line(message: str) -> str:
+    """A message without line breaks and other characters that a terminal would obey instead of showing them."""
+    return " ".join("".join(character if character.isprintable() else " " for character in message).split())

@@ -89,7 +89,7 @@ def explain(
     else:
         must = MUST_BE.get(kind, "of another kind").format(**context)
         message = f"{name} is {shown(given)}; must be {must}"
-    return UserError(one_line(f"{where}: {message.strip()}"))
+    return UserError(f"{where}: {message.strip()}")
 
 
 def _place_in(data: Any, location: Location, *, missing: bool) -> Location:
@@ -115,7 +115,7 @@ def explain_toml(error: Exception, where: str) -> UserError:
     """The mistake of a TOML text that the parser found, in one line."""
     if isinstance(error, tomllib.TOMLDecodeError):
         reason = str(error)
-        return UserError(one_line(f"{where}: is not valid TOML: {reason[:1].lower()}{reason[1:]}; correct it there"))
+        return UserError(f"{where}: is not valid TOML: {reason[:1].lower()}{reason[1:]}; correct it there")
     # Lists in lists without end, or numbers with thousands of digits.
     return UserError(f"{where}: is not valid TOML: lists too deep, or a number too long; shorten them")
 
@@ -135,9 +135,3 @@ def shown(value: Any) -> str:
         return f"{'-' * (value < 0)}10^{int(abs(value).bit_length() * 0.30103)} or more"
     text = f"{value:g}" if isinstance(value, float) else repr(value)
     return text if len(text) <= MOST_SHOWN else f"{text[:MOST_SHOWN]}…"
-
-
-def one_line(message: str) -> str:
-    """A message without line breaks and other characters that a terminal cannot show."""
-    plain = "".join(character if character.isprintable() else " " for character in message)
-    return " ".join(plain.split())[:1000]

@@ -11,6 +11,7 @@ SAMPLES = 65_536  # paths per pixel of a picture
 SECONDS = 86_400.0  # time limit of a picture
 FRAMES = 100_000  # of a shot
 FRAME = 10_000_000  # largest distance of a frame number from zero
+FARTHEST = 1e9  # coordinate of a point, in the unit of its file
 POINTS = 10_000  # of a lock
 ID = 2**53  # largest id of a curve, which the page keeps as a double
 

@@ -104,8 +104,13 @@ def _from_texture(name: str, curves: Curves, scalp: Mesh, what: str) -> NDArray[
     picture = scalp.textures[name]
     rows, columns = picture.shape
     uv = np.einsum("kcx,kc->kx", scalp.uv[curves.curve["root_triangle"]], curves.curve["root_barycentric"])
+    if (bad := np.flatnonzero(~np.isfinite(uv).all(axis=1))).size:
+        raise UserError(
+            f"{what} is '{name}', a picture, but {scalp.name} has texture coordinates that are no numbers at the root "
+            f"of lock {curves.ids[bad[0]]}; unwrap it again"
+        )
     at = np.stack([(1.0 - uv[:, 1]) * rows, uv[:, 0] * columns], axis=1) - 0.5  # the first row is the upper one
-    low = np.floor(at).astype(np.int64)
-    (t, s), (i, j) = (at - low).T, low.T
+    low = np.floor(at)
+    (t, s), (i, j) = (at - low).T, np.mod(low, (rows, columns)).astype(np.int64).T
     near = picture.at(np.stack([i, i, i + 1, i + 1]), np.stack([j, j + 1, j, j + 1]))
     return (1.0 - t) * ((1.0 - s) * near[0] + s * near[1]) + t * ((1.0 - s) * near[2] + s * near[3])

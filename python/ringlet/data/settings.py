@@ -97,7 +97,7 @@ def check_name(name: str, names: Iterable[str], where: str, what: str) -> None:
 
 def read_toml(path: Path, kind: str) -> tuple[str, dict[str, Any]]:
     """Text and tables of a TOML file that begins with ``ringlet = 1``; ``kind`` (recipe, shot) is for messages."""
-    text = read_text(path, f"give a {kind} file")
+    text = read_text(path, f"give a {kind}" if kind.startswith("file") else f"give a {kind} file")
     return text, parse_toml(text, path.name, kind)
 
 
@@ -107,6 +107,8 @@ def parse_toml(text: str, where: str, kind: str) -> dict[str, Any]:
         data = tomllib.loads(text)
     except (RecursionError, ValueError) as error:
         raise explain_toml(error, where) from None
+    if "\0" in "".join(leaf for leaf in _leaves(data) if isinstance(leaf, str)):
+        raise UserError(f"{where}: has a text with a character of code 0; take it out")
     if "ringlet" not in data:
         raise UserError(f"{where}: is not a Ringlet {kind}; its first line must be 'ringlet = 1'")
     if isinstance(version := data["ringlet"], int) and version > FORMAT:

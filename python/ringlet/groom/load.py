@@ -7,10 +7,12 @@ from pathlib import Path
 from typing import Any
 
 from ringlet.data.errors import UserError
-from ringlet.data.settings import did_you_mean, parse_toml, read_toml
+from ringlet.data.explain import did_you_mean, shown
+from ringlet.data.settings import parse_toml, read_toml
 from ringlet.data.toml import to_toml
 
 FILES = (("scalp", "file"), ("guides", "file"))
+MOST_NAME = 255  # bytes of the name of a file or a folder
 APPEND = "append"  # key of a variant's operators that follow those of its base
 MAY_BE_FALSE = ("guides.whorl",)  # settings whose value may be `false`, which then does not remove them
 EDITS = ("edit", "sculpt")  # tables of a file of edits: edits of locks, edits of guides
@@ -74,8 +76,7 @@ def parse_edits(text: str, path: Path) -> dict[str, list[dict[str, Any]]]:
 
 def _extended(data: dict[str, Any], path: Path, extending: tuple[Path, ...]) -> dict[str, Any]:
     """Merges the changes of a variant into the tables of its base."""
-    if not isinstance(name := data["extends"], str):
-        raise UserError(f"{path.name}: extends is {name!r}; must be the name of a recipe file")
+    name = _file_name(data, "extends", path)
     base_path = path.parent / name
     if base_path.resolve() in extending:
         raise UserError(f"{path.name}: extends {name}, which extends it in turn; take one of the two away")
@@ -83,10 +84,21 @@ def _extended(data: dict[str, Any], path: Path, extending: tuple[Path, ...]) -> 
     _, base = resolve(text, base, base_path, extending)
     unit = base.get("unit", "cm")
     if data.get("unit", unit) != unit:
-        raise UserError(f"{path.name}: unit is {data['unit']!r}, that of {name} is {unit!r}; must be the same")
+        raise UserError(
+            f"{path.name}: unit is {shown(data['unit'])}, that of {name} is {shown(unit)}; must be the same"
+        )
     if base_path.parent.resolve() != path.parent.resolve():
         base = _with_absolute_paths(base, base_path.parent.resolve())
     return _merged(base, {key: value for key, value in data.items() if key != "extends"}, path.name, "")
+
+
+def _file_name(data: dict[str, Any], setting: str, path: Path) -> str:
+    """The file that a setting names; raises UserError for what cannot be the name of one."""
+    name = data[setting]
+    parts = Path(name).parts if isinstance(name, str) and name.isprintable() else ()
+    if not parts or max(len(part.encode()) for part in parts) > MOST_NAME:
+        raise UserError(f"{path.name}: {setting} is {shown(name)}; must be the name of a file")
+    return name
 
 
 def _merged(base: dict[str, Any], changes: dict[str, Any], where: str, place: str) -> dict[str, Any]:
@@ -130,7 +142,7 @@ def _merged_shape(base: list[Any], changes: dict[str, Any], where: str) -> list[
         elif isinstance(change, dict):
             result[at] = _merged(base[at], change, where, f"shape.{name}")
         else:
-            raise UserError(f"{where}: shape.{name} is {change!r}; must be a table of settings, or false")
+            raise UserError(f"{where}: shape.{name} is {shown(change)}; must be a table of settings, or false")
     return [operator for operator in result if operator is not None] + changes.get(APPEND, [])
 
 
@@ -159,9 +171,7 @@ def stage_names(shape: list[Any]) -> list[str]:
 
 def _with_edits(data: dict[str, Any], path: Path, text: str | None) -> dict[str, Any]:
     """Appends the edits of the file that ``edits`` names to those of the recipe."""
-    if not isinstance(name := data["edits"], str):
-        raise UserError(f"{path.name}: edits is {name!r}; must be the name of a file")
-    file = path.parent / name
+    file = path.parent / _file_name(data, "edits", path)
     edits = read_edits(file) if text is None else parse_edits(text, file)
     own = {kind: data.get(kind, []) for kind in EDITS}
     return {

@@ -11,11 +11,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from ringlet.data import limits
 from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.data.errors import UserError
 from ringlet.data.regular import read_bytes
 from ringlet.data.stage import StageSpace
-from ringlet.io.space import to_metres
+from ringlet.io.space import check_points, to_metres
 
 HEADER = struct.Struct(
     "<4sIIIIff3f88s"
@@ -65,15 +66,16 @@ def read_hair(path: Path, space: StageSpace) -> Curves:
     colors = take(COLOR, "<f4", 3 * points)
 
     assert places is not None
-    attributes = {
-        "width": (np.full(points, thickness, np.float32) if widths is None else widths) * space.meters_per_unit
-    }
+    widths = np.full(points, thickness, np.float32) if widths is None else widths
+    if (bad := np.flatnonzero(~((widths >= 0.0) & (widths <= limits.FARTHEST)))).size:
+        raise UserError(f"{path}: point {bad[0]} is {widths[bad[0]]:g} thick; must be from 0 to {limits.FARTHEST:g}")
+    attributes = {"width": widths * space.meters_per_unit}
     if colors is not None:
         attributes["color"] = colors.reshape(-1, 3)
-    with np.errstate(invalid="ignore"):  # the check below rejects NaN
-        points_of_hairs = to_metres(places.reshape(-1, 3).astype(np.float64), space)
+    if len(places):
+        check_points(places.reshape(-1, 3), str(path))
     curves = Curves(
-        points_of_hairs,
+        to_metres(places.reshape(-1, 3).astype(np.float64), space),
         offsets_from_counts(counts),
         np.arange(hairs, dtype=np.int64),
         point=attributes,

@@ -80,7 +80,9 @@ def _triangles_of(chosen: NDArray[np.integer], faces: NDArray[np.integer]) -> ND
 def read_obj_curves(path: Path, space: StageSpace) -> Curves:
     """Reads the polylines (``l``), root first."""
     content = _parse(path)
-    points = to_metres(np.array(content.points, np.float64).reshape(-1, 3), space)
+    points = np.array(content.points, np.float64).reshape(-1, 3)
+    check_points(points, str(path))
+    points = to_metres(points, space)
     for line in content.lines:
         if min(line) < 0 or max(line) >= len(points):
             raise UserError(f"{path}: a line uses point {max(line) + 1}; must be from 1 to {len(points)}")

@@ -23,7 +23,9 @@ def check_polygons(counts: NDArray, indices: NDArray, points: int, where: str) -
     if counts.min() < 3:
         raise UserError(f"{where}: face {counts.argmin()} has {counts.min()} corners; must have at least 3")
     if counts.sum() != len(indices):
-        raise UserError(f"{where}: its faces have {counts.sum()} corners, but there are {len(indices)} indices")
+        raise UserError(
+            f"{where}: its faces have {counts.sum()} corners, but there are {len(indices)} indices; export it again"
+        )
     if (bad := np.flatnonzero((indices < 0) | (indices >= points))).size:
         raise UserError(f"{where}: a face uses point {indices[bad[0]]}; must be from 0 to {points - 1}")
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ringlet.data import limits
 from ringlet.data.errors import UserError
 from ringlet.data.stage import StageSpace
 
@@ -26,9 +27,11 @@ def from_metres(points: NDArray, space: StageSpace) -> NDArray[np.float32]:
 
 
 def check_points(points: NDArray, where: str) -> None:
-    """Raises UserError for an empty list of points, shape (n, 3), or points that are not finite."""
+    """Raises UserError for an empty list of points, shape (n, 3), or points that are not finite or too far away."""
     if len(points) == 0:
         raise UserError(f"{where}: has no points; export it again or choose another")
-    if not (finite := np.isfinite(points).all(axis=1)).all():
-        row = int(np.flatnonzero(~finite)[0])
-        raise UserError(f"{where}: point {row} is {points[row]}; must be finite")
+    if not (near := (np.abs(points) <= limits.FARTHEST).all(axis=1)).all():
+        row = int(np.flatnonzero(~near)[0])
+        raise UserError(
+            f"{where}: point {row} is {points[row]}; must be finite, and at most {limits.FARTHEST:g} from 0"
+        )

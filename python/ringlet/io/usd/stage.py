@@ -278,6 +278,8 @@ def _reason(error: Tf.ErrorException) -> str:
         return NOT_TEXT
     if syntax := re.search(r"\.usda?:(\d+):\d+: ", messages[0]):
         return f"syntax error in line {syntax[1]}"
+    if value := re.search(r" at '(.{0,60}).*' in <", messages[0], re.DOTALL):
+        return f"syntax error at '{value[1]}'"
     if messages[0].startswith("Failed to open layer"):
         return "not a USD file"
-    return messages[0].splitlines()[0]
+    return messages[0].splitlines()[0][:120]
