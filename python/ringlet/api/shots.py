@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -100,6 +100,7 @@ def write_simulation(
     touches: bool = False,
     progress: Progress | None = None,
     on_frame: OnFrame | None = None,
+    on_warning: Callable[[str], None] | None = None,
 ) -> SimulationRecord:
     """``simulate`` and ``write_cache`` in one, with one frame at a time in memory, however long the shot is.
 
@@ -107,6 +108,7 @@ def write_simulation(
     checkpoints: the folder of the frames, which are written to ``path`` when all are done
     touches:     keep the contacts of every frame there too, for ``write_touches``
     on_frame:    called with each frame's number and statistics, as soon as it is done
+    on_warning:  called before the first frame with each sentence about settings or motion that make frames take long
     """
     from ringlet import io, sim
     from ringlet.data.cache import SimulationRecord
@@ -116,6 +118,7 @@ def write_simulation(
     inputs = _inputs(shot, groom, allow_stale, frames)
     kept = _checkpoints(checkpoints, shot, groom, inputs, frames)
     first, last = frames or shot.frames
+    _warn_of_work(shot, groom, inputs, (first, last), on_warning)
     motion = sim.Motion(shot, groom, first=first, **inputs)
     for frame in sim.play(motion, last, touches=touches, progress=progress, checkpoints=kept, resume=resume):
         if on_frame:
@@ -162,12 +165,37 @@ def run_digest(shot: Shot, groom: Groom, *, frames: tuple[int, int] | None = Non
     return sim.digest_of_run(shot, groom, frames=frames, **_inputs(shot, groom, False, frames))
 
 
-def start_motion(shot: Shot, groom: Groom | Path | str, *, allow_stale: bool = False) -> Motion:
-    """The locks of a groom at the start of a shot, for callers that advance it frame by frame."""
+def start_motion(
+    shot: Shot,
+    groom: Groom | Path | str,
+    *,
+    allow_stale: bool = False,
+    on_warning: Callable[[str], None] | None = None,
+) -> Motion:
+    """The locks of a groom at the start of a shot, for callers that advance it frame by frame.
+
+    on_warning: as for ``write_simulation``
+    """
     from ringlet import sim
 
     groom = _rounded(groom)
-    return sim.Motion(shot, groom, first=shot.frames[0], **_inputs(shot, groom, allow_stale))
+    inputs = _inputs(shot, groom, allow_stale)
+    _warn_of_work(shot, groom, inputs, shot.frames, on_warning)
+    return sim.Motion(shot, groom, first=shot.frames[0], **inputs)
+
+
+def _warn_of_work(
+    shot: Shot,
+    groom: Groom,
+    inputs: dict[str, Any],
+    frames: tuple[int, int],
+    on_warning: Callable[[str], None] | None,
+) -> None:
+    from ringlet import sim
+
+    if on_warning is not None:
+        for sentence in sim.heavy_work(shot, groom, inputs["clip"], inputs["obstacles"], frames):
+            on_warning(sentence)
 
 
 def _rounded(groom: Groom | Path | str, progress: Progress | None = None) -> Groom:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -19,6 +20,7 @@ from rich.progress import (
 from rich.text import Text
 
 SECONDS_BETWEEN_LINES = 5.0
+LONG_STEP = 10.0  # seconds, after which a step is reported while it lasts
 
 
 class Rate(ProgressColumn):
@@ -45,6 +47,15 @@ class Clock(ProgressColumn):
         return Text("" if left is None else f"{left:.0f} s left", "cyan")
 
 
+class LongStep(ProgressColumn):
+    """Time since the last step ended, where that is long."""
+
+    def render(self, task: Task) -> Text:
+        """Seconds of the step in progress, empty for a short one."""
+        since = time.monotonic() - task.fields["since"]
+        return Text("" if task.finished or since < LONG_STEP else f"{since:.0f} s on this one so far", "dim")
+
+
 @contextmanager
 def shown_progress() -> Iterator[Callable[[str, int, int], None]]:
     """Yields ``progress(stage, done, total)``, which draws a bar for every stage that it hears of."""
@@ -61,35 +72,69 @@ def on_terminal() -> Iterator[Callable[[str, int, int], None]]:
         MofNCompleteColumn(),
         Rate(),
         Clock(),
+        LongStep(),
     )
     with Progress(*columns, console=Console(stderr=True)) as bars:
         tasks = {}
 
         def report(stage: str, done: int, total: int) -> None:
             if stage not in tasks:
-                tasks[stage] = bars.add_task(stage, total=total)
-            bars.update(tasks[stage], completed=done, total=total)
+                tasks[stage] = bars.add_task(stage, total=total, since=time.monotonic())
+            bars.update(tasks[stage], completed=done, total=total, since=time.monotonic())
 
         yield report
 
 
 @contextmanager
 def in_lines() -> Iterator[Callable[[str, int, int], None]]:
-    """A line when a stage ends, and every few seconds while it runs."""
-    began: dict[str, float] = {}
-    printed: dict[str, float] = {}
-    ended: set[str] = set()
+    """A line when a stage ends, and every few seconds while it or one of its steps lasts."""
+    lines = Lines()
+    ended = threading.Event()
 
-    def report(stage: str, done: int, total: int) -> None:
-        now = time.monotonic()
-        start = began.setdefault(stage, now)
-        since = now - printed.setdefault(stage, now)
-        if stage in ended or (done < total and since < SECONDS_BETWEEN_LINES):
-            return
-        printed[stage] = now
-        if done >= total:
-            ended.add(stage)
-        left = f", {(now - start) / done * (total - done):.0f} s left" if 0 < done < total else ""
-        print(f"{stage}: {done}/{total}, {now - start:.1f} s{left}", file=sys.stderr, flush=True)
+    def watch() -> None:
+        while not ended.wait(0.1 * LONG_STEP):
+            lines.report_long_step()
 
-    yield report
+    watcher = threading.Thread(target=watch, daemon=True)
+    watcher.start()
+    try:
+        yield lines.report
+    finally:
+        ended.set()
+        watcher.join()
+
+
+class Lines:
+    """Progress in lines on the error stream."""
+
+    def __init__(self) -> None:
+        self._began: dict[str, float] = {}
+        self._printed: dict[str, float] = {}
+        self._ended: set[str] = set()
+        self._step: tuple[str, int, int, float] | None = None  # stage, steps done, their number, when the last ended
+        self._lock = threading.Lock()
+
+    def report(self, stage: str, done: int, total: int) -> None:
+        """Prints a line if the stage ends, or if the last line is some seconds old."""
+        with self._lock:
+            now = time.monotonic()
+            start = self._began.setdefault(stage, now)
+            since = now - self._printed.setdefault(stage, now)
+            self._step = (stage, done, total, now) if done < total else None
+            if stage in self._ended or (done < total and since < SECONDS_BETWEEN_LINES):
+                return
+            self._printed[stage] = now
+            if done >= total:
+                self._ended.add(stage)
+            left = f", {(now - start) / done * (total - done):.0f} s left" if 0 < done < total else ""
+            print(f"{stage}: {done}/{total}, {now - start:.1f} s{left}", file=sys.stderr, flush=True)
+
+    def report_long_step(self) -> None:
+        """Prints a line if the step in progress takes long, and the last line is as old."""
+        with self._lock:
+            if self._step is None:
+                return
+            (stage, done, total, ended), now = self._step, time.monotonic()
+            if now - max(ended, self._printed[stage]) >= LONG_STEP:
+                self._printed[stage] = now
+                print(f"{stage}: {done}/{total}, {now - ended:.0f} s on the next so far", file=sys.stderr, flush=True)

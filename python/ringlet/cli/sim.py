@@ -51,6 +51,7 @@ def sim(
 
     Examples: ringlet sim nod.shot.toml -o cache.usdc --frames 1:24 · ringlet sim nod.shot.toml --groom groom.usdc
     """
+    said: list[str] = []  # warnings that were printed already
     with ringlet.Run("sim", report) as run, shown_progress() as progress:
         settings = ringlet.read_shot(shot)
         if contacts is not None and not settings.touching:
@@ -77,6 +78,7 @@ def sim(
                     resume=resume,
                     touches=contacts is not None,
                     progress=progress,
+                    on_warning=lambda sentence: _warn(run, said, sentence),
                 )
             if contacts is not None:
                 with run.stage("contacts", contacts, "what touches, frame by frame"):
@@ -85,11 +87,19 @@ def sim(
         run.count(locks=len(locks.locks), points=len(locks.locks.points), frames=len(record.frames))
         if record.cloths:
             run.count(cloths=len(record.cloths), cloth_points=sum(record.cloths.values()))
-    for sentence in [] if as_json else filter(None, [run.lag, *run.warnings, run.slowest]):
+    unsaid = [sentence for sentence in run.warnings if sentence not in said]
+    for sentence in [] if as_json else filter(None, [run.lag, *unsaid, run.slowest]):
         print(sentence)
     start = {name: found for name, found in record.start.items() if name != "marks"}  # these are for pictures
     more = {name: value for name, value in (("start", start), ("notes", record.notes)) if value}
     wrote(output, run.counts, as_json, slowest=run.slowest, **more)
+
+
+def _warn(run: ringlet.Run, said: list[str], sentence: str) -> None:
+    """Prints a warning before the work that it is about, and keeps it for the report."""
+    run.warn(sentence)
+    said.append(sentence)
+    print(f"warning: {sentence}", file=sys.stderr, flush=True)
 
 
 def _check_places(read: dict[str, Path], layer: Path, output: Path, contacts: Path | None) -> None:

@@ -172,7 +172,15 @@ def _simulate(task: Task, options: TaskOptions, log: Log, progress: Progress) ->
         progress(done, last - first + 1)
 
     simulated = api.write_simulation(
-        shot, groom, groom_file, cache, checkpoints=part, frames=options.frames, resume=resume, on_frame=frame_done
+        shot,
+        groom,
+        groom_file,
+        cache,
+        checkpoints=part,
+        frames=options.frames,
+        resume=resume,
+        on_frame=frame_done,
+        on_warning=lambda sentence: log(f"warning: {sentence}"),
     )
     seconds = time.perf_counter() - begin
     frame = last if options.frame is None else options.frame

@@ -9,6 +9,7 @@ from ringlet.sim.run_digest import digest_of_run
 from ringlet.sim.scene import Scene
 from ringlet.sim.simulate import StoredTouches, check_frames, play, replay, simulate
 from ringlet.sim.strands import Strands
+from ringlet.sim.work import heavy_work
 
 __all__ = [
     "Body",
@@ -23,6 +24,7 @@ __all__ = [
     "check_frames",
     "digest_of_run",
     "frames_between",
+    "heavy_work",
     "locked_folder",
     "play",
     "replay",

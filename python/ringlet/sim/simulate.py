@@ -135,6 +135,8 @@ def play(
     if checkpoints and done:
         yield from _resumed(motion, checkpoints, done, touches)
         motion.recall(state)
+    if progress:
+        progress("sim", done, total)
     for step in range(done, total):
         k = step - preroll  # from the first frame; negative while the head is still
         statistics = motion.reach(k)

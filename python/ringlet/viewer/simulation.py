@@ -106,7 +106,7 @@ class Simulation:
 
     frames:  stores the frames
     changed: called after a change of the state
-    failed:  called with an error message
+    failed:  called with an error message, or with a warning of long work
     """
 
     def __init__(self, frames: FrameCache, changed: Callable[[], None], failed: Callable[[str], None]) -> None:
@@ -215,7 +215,7 @@ class Simulation:
         stopping: threading.Event,
     ) -> None:
         first, last = shot.frames
-        motion = api.start_motion(shot, stage.groom)
+        motion = api.start_motion(shot, stage.groom, on_warning=self._failed)
         if checkpoint is not None:
             motion.recall(checkpoint)
         begin = 0 if restart_frame is None else shot.preroll + restart_frame - first + 1

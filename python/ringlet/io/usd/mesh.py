@@ -171,7 +171,8 @@ def _instanced_mesh(source: Source, prim: Usd.Prim) -> Mesh:
     prototypes = [[mesh_at(source, surface) for surface in surfaces] for surfaces in prototype_surfaces(prim)]
     triangles, start = list[NDArray[np.int32]](), 0
     for k, matrix in instance_transforms(prim, time):
-        turn = 1 if np.linalg.det(matrix[:3, :3]) > 0 else -1  # a mirrored instance has its winding reversed
+        with np.errstate(all="ignore"):  # points under a transform that is no number are refused
+            turn = 1 if np.linalg.det(matrix[:3, :3]) > 0 else -1  # a mirrored instance has its winding reversed
         for mesh in prototypes[k]:
             triangles.append(start + mesh.triangles[:, ::turn])
             start += len(mesh.points)

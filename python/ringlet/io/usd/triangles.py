@@ -35,7 +35,8 @@ class Triangles:
             counts, indices, polygons = self._refined.counts, self._refined.indices, self._refined.faces
 
         # A mirroring transform reverses the winding, like leftHanded.
-        mirrored = np.linalg.det(local_to_world(prim, time)[:3, :3]) < 0
+        with np.errstate(all="ignore"):  # points under a transform that is no number are refused
+            mirrored = np.linalg.det(local_to_world(prim, time)[:3, :3]) < 0
         left_handed = mesh.GetOrientationAttr().Get(time) == UsdGeom.Tokens.leftHanded
         corners, faces = triangulate(self.at_points(points), counts, indices, clockwise=bool(mirrored) != left_handed)
         drawn = ~np.isin(polygons[faces], undrawn(source, prim, time))
