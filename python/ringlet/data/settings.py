@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Iterable, Iterator
 from functools import cache
@@ -15,6 +16,8 @@ from ringlet.data.errors import UserError
 from ringlet.data.explain import did_you_mean, explain_toml, shown
 from ringlet.data.regular import read_text
 
+MOST_PARTS = 50  # of a dotted key
+LONG_KEY = re.compile(rf"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){{{MOST_PARTS}}}""")
 FORMAT = 1  # of recipes, shots and files of edits
 OWN_KEYS = {"recipe": {"scalp", "extends"}, "shot": {"groom"}}  # keys of one kind of file alone
 
@@ -82,11 +85,13 @@ def _kinds(*annotations: Any) -> tuple[set[type], bool]:
 
 def _leaves(value: Any) -> Iterator[Any]:
     """Plain values of a value, those of its lists and tables."""
-    if isinstance(value, dict | list | tuple):
-        for entry in value.values() if isinstance(value, dict) else value:
-            yield from _leaves(entry)
-    else:
-        yield value
+    left = [value]  # no recursion, which a file could nest too deep for
+    while left:
+        one = left.pop()
+        if isinstance(one, dict | list | tuple):
+            left += reversed([*(one.values() if isinstance(one, dict) else one)])
+        else:
+            yield one
 
 
 def check_name(name: str, names: Iterable[str], where: str, what: str) -> None:
@@ -103,6 +108,8 @@ def read_toml(path: Path, kind: str) -> tuple[str, dict[str, Any]]:
 
 def parse_toml(text: str, where: str, kind: str) -> dict[str, Any]:
     """Tables of a TOML text that begins with ``ringlet = 1``."""
+    if LONG_KEY.search(text):  # of quadratic time in the parser
+        raise UserError(f"{where}: is not valid TOML: a key of over {MOST_PARTS} parts; shorten it")
     try:
         data = tomllib.loads(text)
     except (RecursionError, ValueError) as error:
