@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import json
 import math
 import os
 import re
 import resource
+import struct
 import time
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 import pytest
@@ -22,6 +24,8 @@ from PIL import Image
 from ringlet.data.toml import to_toml
 from ringlet.io.hair import HEADER
 from ringlet.shot import parse_shot
+from ringlet.viewer import protocol
+from ringlet.viewer.wire import unpack
 from small_example import write_head
 
 import ringlet
@@ -31,7 +35,7 @@ from ringlet.groom import parse_recipe
 SECONDS, KILOBYTES = 10.0, 1_000_000
 EXAMPLES = int(os.environ.get("RINGLET_EXAMPLES", "0"))  # to look for more than the fixed examples of the tests
 quick = settings(
-    max_examples=EXAMPLES or 300, derandomize=not EXAMPLES, deadline=None, suppress_health_check=list(HealthCheck)
+    max_examples=EXAMPLES or 500, derandomize=not EXAMPLES, deadline=None, suppress_health_check=list(HealthCheck)
 )
 
 
@@ -182,6 +186,31 @@ def test_the_command_line_prints_the_line_and_exits_with_2(tmp_path, model, data
             refused(
                 run("groom" if model == "recipe" else "sim", tmp_path / "a.toml", "-o", tmp_path / "out.usdc"), "a.toml"
             )
+
+
+MESSAGES = get_args(get_args(protocol.FromPage)[0])
+KINDS = [message.__name__.lower() for message in MESSAGES]
+FIELDS = sorted({name for message in MESSAGES for name in message.model_fields})
+
+
+@quick
+@given(
+    message=st.one_of(
+        nonsense,
+        st.builds(
+            lambda kind, more: {"kind": kind, **more},
+            st.sampled_from([*KINDS, "undo", "none"]),
+            st.dictionaries(st.sampled_from(FIELDS), nonsense, max_size=4),
+        ),
+    )
+)
+def test_a_nonsensical_message_of_a_page_is_refused_or_within_bounds(message):
+    text = json.dumps(message).encode()
+    with bounded():
+        try:
+            unpack(struct.pack("<I", len(text)) + text)
+        except ringlet.UserError as error:
+            check_line(error, "message: ")
 
 
 # Files

@@ -66,7 +66,7 @@ def explain(
     name = (name_of or setting_name)(place)
     if kind in ("unknown", "extra_forbidden"):
         name = setting_name((name, context["key"])) if kind == "unknown" else name
-        message = f"{name} is not a setting{context.get('hint', '')}".removeprefix(".")
+        message = f"{name} is not a setting{context.get('hint', '; take it away')}".removeprefix(".")
     elif kind == "setting":
         message = f"{name}.{context['key']} {context['message']}".removeprefix(".")
     elif kind == "ringlet":
