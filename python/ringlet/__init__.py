@@ -16,6 +16,7 @@ from ringlet.data.stage import StageSpace
 if TYPE_CHECKING:
     from ringlet.api.clock import Clock, solver_counts
     from ringlet.data.cache import Cache
+    from ringlet.data.explain import explain
     from ringlet.data.groom import Groom
     from ringlet.farm import compare_wedge, wedge, write_wedge_template
     from ringlet.groom.stack import Memory
@@ -49,6 +50,7 @@ _SLOW = {
     "Solver": "ringlet.shot.solver",
     "Strands": "ringlet.sim.strands",
     "compare_wedge": "ringlet.farm",
+    "explain": "ringlet.data.explain",
     "solver_counts": "ringlet.api.clock",
     "view": "ringlet.viewer",
     "wedge": "ringlet.farm",

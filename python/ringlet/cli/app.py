@@ -54,7 +54,7 @@ class Front(TyperGroup):
             if code == INTERRUPTED:
                 fail("interrupted", code)
         except typer.TyperException as error:
-            code = fail(f"{error.format_message()}  (ringlet --help tells more)", error.exit_code)
+            code = fail(f"{reason(error)}  (ringlet --help tells more)", error.exit_code)
         except ringlet.UserError as error:
             code = fail(str(error), 2)
         except BrokenPipeError:  # the reader of our output has seen enough
@@ -72,6 +72,15 @@ class Front(TyperGroup):
         except Exception:
             code = fail(bug(), 3)
         sys.exit(code)
+
+
+def reason(error: typer.TyperException) -> str:
+    """What is wrong with a command line; of a value that a bound or a type refuses, in our own words."""
+    option = getattr(getattr(error, "param", None), "opts", None)
+    cause: Any = error.__cause__
+    if option and hasattr(cause, "errors"):
+        return str(ringlet.explain(cause, option[0]))
+    return error.format_message()
 
 
 def fail(message: str, code: int) -> int:

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 import ringlet
-from ringlet.cli.options import Json, Threads, Variant, finite, picture_file, usd_file
+from ringlet.cli.options import Json, Threads, Variant, picture_file, usd_file
 from ringlet.cli.output import print_json, print_table
 from ringlet.cli.progress import shown_progress
 
@@ -36,9 +36,7 @@ def check(
     ] = None,
     root_depth: Annotated[
         float,
-        typer.Option(
-            "--root-depth", metavar="MM", min=0, max=1000, callback=finite, help="How deep roots may be in the skin."
-        ),
+        typer.Option("--root-depth", metavar="MM", min=0, max=1000, help="How deep roots may be in the skin."),
     ] = 0.5,
     root_length: Annotated[
         float,
@@ -47,7 +45,6 @@ def check(
             metavar="MM",
             min=0,
             max=1000,
-            callback=finite,
             help="How far from the root that goes, along the lock.",
         ),
     ] = 5.0,
@@ -58,7 +55,6 @@ def check(
             metavar="MM",
             min=0,
             max=1000,
-            callback=finite,
             help="Locks nearer than this are in one another.",
         ),
     ] = 0.1,

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 import ringlet
-from ringlet.cli.options import AllowStale, Frames, GroomOfShot, Json, ShotFile, Threads, Variant, ending_in, finite
+from ringlet.cli.options import AllowStale, Frames, GroomOfShot, Json, ShotFile, Threads, Variant, ending_in
 from ringlet.cli.output import print_json, print_table
 from ringlet.cli.progress import shown_progress
 
@@ -30,9 +30,7 @@ def converge(
     groom: GroomOfShot = None,
     variant: Variant = None,
     frames: Frames = None,
-    enough: Annotated[
-        float, typer.Option("--enough", min=0.5, max=1.0, callback=finite, help="Part of the motion to keep.")
-    ] = 0.95,
+    enough: Annotated[float, typer.Option("--enough", min=0.5, max=1.0, help="Part of the motion to keep.")] = 0.95,
     allow_stale: AllowStale = False,
     as_json: Json = False,
     threads: Threads = None,

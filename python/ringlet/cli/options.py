@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any
@@ -16,13 +15,6 @@ def _use_threads(count: int | None) -> int | None:
     if count is not None:
         ringlet.use_threads(count)
     return count
-
-
-def finite(number: float | None) -> float | None:
-    """Refuses NaN, which passes every comparison with a bound."""
-    if number is not None and math.isnan(number):
-        raise typer.BadParameter("nan is no number")
-    return number
 
 
 Threads = Annotated[
@@ -57,9 +49,7 @@ AllowStale = Annotated[
 ]
 Fraction = Annotated[
     float,
-    typer.Option(
-        "--fraction", min=0.001, max=1.0, callback=finite, help="Share of the hairs to make, for a quick look."
-    ),
+    typer.Option("--fraction", min=0.001, max=1.0, help="Share of the hairs to make, for a quick look."),
 ]
 
 

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 import ringlet
-from ringlet.cli.options import Frames, Json, Report, finite, picture_file
+from ringlet.cli.options import Frames, Json, Report, picture_file
 from ringlet.cli.output import wrote
 from ringlet.cli.progress import shown_progress
 
@@ -27,7 +27,6 @@ def picture(
             metavar="F",
             min=-ringlet.limits.FRAME,
             max=ringlet.limits.FRAME,
-            callback=finite,
             help="Frame of the still; the first by default.",
             show_default=False,
         ),
@@ -50,7 +49,6 @@ def picture(
             "--seconds",
             min=1,
             max=ringlet.limits.SECONDS,
-            callback=finite,
             help="Stop adding samples after that long.",
             show_default=False,
         ),

@@ -61,7 +61,8 @@ def explain(
     name_of: how a place in the model is called in the file, where that is not simply its path
     """
     first = error.errors(include_url=False)[0]
-    kind, context, given = first["type"], first.get("ctx", {}), first["input"]
+    kind, given = first["type"], first["input"]
+    context = {key: f"{at:g}" if isinstance(at, float) else at for key, at in first.get("ctx", {}).items()}
     place = first["loc"] if data is None else _place_in(data, first["loc"], missing=kind in MISSING)
     name = (name_of or setting_name)(place)
     if kind in ("unknown", "extra_forbidden"):
