@@ -7,6 +7,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace nb = nanobind;
 
@@ -22,6 +23,8 @@ void bind_scene(nb::module_ &module);
 void bind_strand(nb::module_ &module);
 
 NB_MODULE(_core, module) {
+    // A program that ends in the midst of work in another thread leaks what that thread holds, which is no mistake.
+    nb::set_leak_warnings(std::getenv("RINGLET_DEBUG") != nullptr);
     omp_set_num_threads(std::min(omp_get_max_threads(), max_threads));
     module.doc() = "Ringlet's core: arrays in, arrays out. SI units.";
     module.def(
