@@ -10,7 +10,7 @@ import pytest
 from small_example import write_example, write_head
 
 import ringlet
-from ringlet import api, io
+from ringlet import io
 
 ROOT = Path(__file__).parents[2]
 
@@ -65,8 +65,6 @@ def test_a_recipe_and_its_written_groom_simulate_bit_identically(tmp_path, unit,
     recipe, groom = (ringlet.load_groom(example / name) for name in ("small.recipe.toml", "groom.usdc"))
     lofts = [ringlet.loft(shot, groom).rest.points for groom in (recipe, groom)]
     assert not np.array_equal(recipe.locks.points, groom.locks.points) and np.array_equal(*lofts)
-    settings = ringlet.read_shot(shot)
-    assert api.run_digest(settings, recipe) == api.run_digest(settings, groom)
 
 
 def write_obj(example, unit, up):

@@ -237,7 +237,7 @@ def test_unwritable_paths_are_refused(tmp_path):
     (tmp_path / "file").write_text("a file")
     assert "cannot be written" in refused(write_groom, groom, tmp_path / "file/groom.usdc")
     assert "ends in '.abc'" in refused(write_groom, groom, tmp_path / "groom.abc")
-    assert "is the head that it would refer to" in refused(write_groom, groom, tmp_path / "head.usda")
+    assert "is a file that is read here" in refused(write_groom, groom, tmp_path / "head.usda")
     assert names_in(tmp_path) == ["file", "head.usda"]
 
 

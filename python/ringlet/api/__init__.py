@@ -21,8 +21,9 @@ from ringlet.api.progress import OnFrame as OnFrame
 from ringlet.api.progress import Progress as Progress
 from ringlet.api.run import *
 from ringlet.api.shots import *
+from ringlet.api.shots import can_resume as can_resume
 from ringlet.api.shots import cloths_and_colliders as cloths_and_colliders
-from ringlet.api.shots import run_digest as run_digest
+from ringlet.api.shots import run_inputs as run_inputs
 from ringlet.api.shots import scalp_clip as scalp_clip
 from ringlet.api.shots import start_motion as start_motion
 

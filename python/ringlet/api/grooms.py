@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ringlet.api.progress import Progress
 from ringlet.data.errors import UserError
+from ringlet.data.reads import recorded
 
 if TYPE_CHECKING:
     from ringlet.data.groom import Groom
@@ -182,6 +183,7 @@ def list_edits(recipe: Path | str) -> list[dict[str, Any]]:
     ]
 
 
+@recorded()
 def check_groom(
     groom: Groom | Path | str,
     *,

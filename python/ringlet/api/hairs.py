@@ -10,6 +10,7 @@ from ringlet.api.grooms import read_groom
 from ringlet.api.progress import Progress
 from ringlet.api.shots import scalp_clip
 from ringlet.data.errors import UserError
+from ringlet.data.reads import recorded
 
 if TYPE_CHECKING:
     from ringlet.data.groom import Groom
@@ -30,6 +31,7 @@ def build_hairs(groom: Groom, *, fraction: float = 1.0, wider: bool = False, mem
     return grooms.make_hairs(groom, fraction=fraction, wider=wider, memory=memory.hairs if memory else None)
 
 
+@recorded()
 def write_hairs(
     groom: Path | str,
     path: Path | str,

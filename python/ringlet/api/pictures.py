@@ -12,6 +12,7 @@ from ringlet.api.hairs import build_hairs
 from ringlet.api.progress import Progress
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
+from ringlet.data.reads import recorded
 from ringlet.data.settings import check_name
 
 if TYPE_CHECKING:
@@ -24,6 +25,7 @@ LOCK_WIDTH = 8e-4  # of locks among their contacts: thinner ones are lost before
 VEIL = 0.3  # opacity of cloth in a picture of contacts: most of them are behind it
 
 
+@recorded()
 def write_still(
     stage: Path | str,
     path: Path | str,
@@ -60,6 +62,7 @@ def write_still(
     )
 
 
+@recorded()
 def write_touches_picture(
     stage: Path | str,
     path: Path | str,
@@ -115,6 +118,7 @@ def write_touches_picture(
     )
 
 
+@recorded()
 def write_sheet(
     stage: Path | str,
     path: Path | str,

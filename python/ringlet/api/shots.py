@@ -13,7 +13,8 @@ from ringlet.api.grooms import load_groom
 from ringlet.api.progress import OnFrame, Progress
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
-from ringlet.data.files import same_place, within
+from ringlet.data.files import check_place, same_place, within
+from ringlet.data.reads import recorded, unrecorded
 
 if TYPE_CHECKING:
     from ringlet.data.cache import Cache, SimulationRecord
@@ -72,16 +73,18 @@ def simulate(
     if not isinstance(shot, shots.Shot):
         shot = read_shot(shot)
     groom = _rounded(groom or shot.groom, progress)
-    inputs = _inputs(shot, groom, allow_stale, frames)
+    with recorded() as read:
+        contents = _contents(shot, groom, allow_stale, frames)
+    inputs = sim.run_inputs(shot, groom, read, frames) if checkpoints else {}
     cache = sim.simulate(
         shot,
         groom,
         frames=frames,
-        checkpoints=_checkpoints(checkpoints, shot, groom, inputs, frames) if checkpoints else None,
+        checkpoints=_checkpoints(checkpoints, groom, inputs) if checkpoints else None,
         resume=resume,
         touches=touches,
         progress=progress,
-        **inputs,
+        **contents,
     )
     cache.notes = _untouched(shot, groom)
     return cache
@@ -115,11 +118,13 @@ def write_simulation(
 
     io.check_target(path, under)
     groom = _rounded(groom)
-    inputs = _inputs(shot, groom, allow_stale, frames)
-    kept = _checkpoints(checkpoints, shot, groom, inputs, frames)
+    with recorded() as read:
+        contents = _contents(shot, groom, allow_stale, frames)
+        check_place(path)
+    kept = _checkpoints(checkpoints, groom, sim.run_inputs(shot, groom, read, frames))
     first, last = frames or shot.frames
-    _warn_of_work(shot, groom, inputs, (first, last), on_warning)
-    motion = sim.Motion(shot, groom, first=first, **inputs)
+    _warn_of_work(shot, groom, contents, (first, last), on_warning)
+    motion = sim.Motion(shot, groom, first=first, **contents)
     for frame in sim.play(motion, last, touches=touches, progress=progress, checkpoints=kept, resume=resume):
         if on_frame:
             on_frame(frame.number, frame.statistics)
@@ -157,12 +162,25 @@ def hold_checkpoints(folder: Path | str) -> AbstractContextManager[int]:
     return sim.locked_folder(Path(folder))
 
 
-def run_digest(shot: Shot, groom: Groom, *, frames: tuple[int, int] | None = None) -> str:
-    """Digests of all that a simulation depends on: two runs with the same digests give the same bits."""
+def run_inputs(shot: Shot, groom: Groom, *, frames: tuple[int, int] | None = None) -> dict[str, Any]:
+    """All that a simulation depends on, as plain values: two runs with the same inputs give the same bits.
+
+    These are the settings, the groom, and the files that are read, by their contents.
+    """
     from ringlet import sim
 
     groom = _rounded(groom)
-    return sim.digest_of_run(shot, groom, frames=frames, **_inputs(shot, groom, False, frames))
+    with recorded() as read:
+        _contents(shot, groom, False, frames)
+    return sim.run_inputs(shot, groom, read, frames)
+
+
+def can_resume(folder: Path | str, inputs: dict[str, Any]) -> bool:
+    """Whether a folder has checkpoints of a run with the same inputs."""
+    from ringlet import sim
+
+    before = sim.left_inputs(Path(folder))
+    return before is not None and sim.changed_input(before, inputs) is None
 
 
 def start_motion(
@@ -179,22 +197,22 @@ def start_motion(
     from ringlet import sim
 
     groom = _rounded(groom)
-    inputs = _inputs(shot, groom, allow_stale)
-    _warn_of_work(shot, groom, inputs, shot.frames, on_warning)
-    return sim.Motion(shot, groom, first=shot.frames[0], **inputs)
+    contents = _contents(shot, groom, allow_stale)
+    _warn_of_work(shot, groom, contents, shot.frames, on_warning)
+    return sim.Motion(shot, groom, first=shot.frames[0], **contents)
 
 
 def _warn_of_work(
     shot: Shot,
     groom: Groom,
-    inputs: dict[str, Any],
+    contents: dict[str, Any],
     frames: tuple[int, int],
     on_warning: Callable[[str], None] | None,
 ) -> None:
     from ringlet import sim
 
     if on_warning is not None:
-        for sentence in sim.heavy_work(shot, groom, inputs["clip"], inputs["obstacles"], frames):
+        for sentence in sim.heavy_work(shot, groom, contents["clip"], contents["obstacles"], frames):
             on_warning(sentence)
 
 
@@ -209,7 +227,7 @@ def _rounded(groom: Groom | Path | str, progress: Progress | None = None) -> Gro
     return io.as_written(groom if isinstance(groom, Groom) else load_groom(groom, progress=progress))
 
 
-def _inputs(shot: Shot, groom: Groom, allow_stale: bool, frames: tuple[int, int] | None = None) -> dict[str, Any]:
+def _contents(shot: Shot, groom: Groom, allow_stale: bool, frames: tuple[int, int] | None = None) -> dict[str, Any]:
     """The contents of the files that a shot and its groom name: the further arguments of ``sim.simulate``.
 
     frames: in place of the shot's
@@ -224,14 +242,11 @@ def _inputs(shot: Shot, groom: Groom, allow_stale: bool, frames: tuple[int, int]
     return {"clip": clip, "rest": rest, "obstacles": obstacles, "garments": garments}
 
 
-def _checkpoints(
-    folder: Path | str, shot: Shot, groom: Groom, inputs: dict[str, Any], frames: tuple[int, int] | None
-) -> Checkpoints:
+def _checkpoints(folder: Path | str, groom: Groom, inputs: dict[str, Any]) -> Checkpoints:
     """The checkpoints of a run."""
     from ringlet import sim
 
-    digest = sim.digest_of_run(shot, groom, frames=frames, **inputs)
-    return sim.Checkpoints(Path(folder), digest, every=sim.frames_between(len(groom.locks.points)))
+    return sim.Checkpoints(Path(folder), inputs, every=sim.frames_between(len(groom.locks.points)))
 
 
 def loft(
@@ -258,7 +273,9 @@ def loft(
     if known is None or not Path(known).exists():
         made = rest.solve_rest_shape(shot, groom, obstacles=obstacles, progress=progress)
     else:
-        made = rest.update_rest_shape(shot, groom, *io.read_rest(Path(known)), obstacles=obstacles, progress=progress)
+        with unrecorded():  # it may be written anew
+            stored = io.read_rest(Path(known))
+        made = rest.update_rest_shape(shot, groom, *stored, obstacles=obstacles, progress=progress)
     return rest.with_sag(made, shot) if sag else made
 
 
@@ -268,6 +285,7 @@ def rest_place(shot: Shot) -> Path:
     return within(shot.rest_file, shot.path.parent, f"{shot.path.name}: rest.file")
 
 
+@recorded()
 def write_loft(loft: Loft, shot: Shot, path: Path | str) -> None:
     """Writes a rest shape, with all that it depends on, for ``simulate``."""
     from ringlet import io, rest
@@ -392,6 +410,7 @@ def _garments(shot: Shot, groom: Groom, frames: tuple[int, int]) -> list[Garment
     return garments
 
 
+@recorded()
 def write_cache(cache: Cache, groom: Path | str, path: Path | str, *, variant: str | None = None) -> None:
     """Writes simulated guides as a USD layer over the file ``groom``, or over one of its variants."""
     from ringlet import io
@@ -399,6 +418,7 @@ def write_cache(cache: Cache, groom: Path | str, path: Path | str, *, variant: s
     io.write_cache(cache, Path(groom), Path(path), io.read_space(Path(groom)), variant)
 
 
+@recorded()
 def write_touches(cache: Cache | SimulationRecord, cache_path: Path | str, path: Path | str) -> None:
     """Writes the contacts of a simulation as coloured points: a USD layer over the file of its cache."""
     from ringlet import io

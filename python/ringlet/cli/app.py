@@ -47,7 +47,7 @@ class Front(TyperGroup):
     def main(self, args: Sequence[str] | None = None, *rest: Any, standalone_mode: bool = True, **extra: Any) -> Any:
         """Runs a command line and exits with its code."""
         try:
-            with warnings.catch_warnings():
+            with warnings.catch_warnings(), ringlet.recorded():  # no command replaces a file that it reads
                 if not os.environ.get("RINGLET_DEBUG"):
                     warnings.simplefilter("ignore")  # those of libraries are for programmers
                 code = super().main(args, *rest, standalone_mode=False, **extra) or 0

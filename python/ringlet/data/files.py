@@ -9,14 +9,17 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from ringlet.data.errors import UserError
+from ringlet.data.reads import record_written, refuse_inputs, same_file
 
 
 @contextmanager
-def replacing(path: Path | str) -> Iterator[Path]:
+def replacing(path: Path | str, *, update: bool = False) -> Iterator[Path]:
     """Yields a path beside ``path`` to write to, which replaces ``path`` only when the block succeeds.
 
     The suffix is kept, since writers choose their format by it. A link at ``path`` is replaced, not followed. Raises
-    UserError where the place cannot be written.
+    UserError where the place cannot be written, and where a file is that was read (see ``recorded``).
+
+    update: the file is written anew with changes, so that it may have been read
     """
     path = Path(path)
     aside = path.with_name(f".{path.stem}.{os.getpid()}{path.suffix}")
@@ -27,7 +30,10 @@ def replacing(path: Path | str) -> Iterator[Path]:
         aside.unlink(missing_ok=True)
         os.close(os.open(aside, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))  # ours, and no link to elsewhere
         yield aside
+        if not update:
+            refuse_inputs(path)
         aside.replace(path)
+        record_written(path)
     except OSError as error:
         raise UserError(f"{path}: cannot be written ({error.strerror or error}); choose another place") from error
     finally:
@@ -36,7 +42,7 @@ def replacing(path: Path | str) -> Iterator[Path]:
 
 
 def check_place(path: Path | str, taken: Mapping[str, Path | None] | None = None) -> None:
-    """Refuses a file that cannot be written, without creating it.
+    """Refuses a file that cannot be written, or was read (see ``recorded``), without creating it.
 
     taken: other files of the same run, by their role; these are refused too
     """
@@ -44,6 +50,7 @@ def check_place(path: Path | str, taken: Mapping[str, Path | None] | None = None
     for what, other in (taken or {}).items():
         if other is not None and same_place(path, other):
             raise UserError(f"{path}: is the {what} of the same run; choose another name")
+    refuse_inputs(path)
     try:
         if path.is_dir():
             raise UserError(f"{path}: is a folder; give a file name")
@@ -55,9 +62,9 @@ def check_place(path: Path | str, taken: Mapping[str, Path | None] | None = None
 
 
 def same_place(path: Path | str, other: Path | str) -> bool:
-    """Whether writing one path replaces the other; a link is replaced, not followed."""
+    """Whether two paths are one place, or lead to one file through links."""
     one, two = (Path(p).absolute() for p in (path, other))
-    return one.name == two.name and one.parent.resolve() == two.parent.resolve()
+    return same_file(one, two) or (one.name == two.name and one.parent.resolve() == two.parent.resolve())
 
 
 def within(path: Path, folder: Path, what: str) -> Path:

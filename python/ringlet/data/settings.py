@@ -14,6 +14,7 @@ from pydantic_core import PydanticCustomError
 
 from ringlet.data.errors import UserError
 from ringlet.data.explain import did_you_mean, explain_toml, shown
+from ringlet.data.reads import record
 from ringlet.data.regular import read_text
 
 MOST_PARTS = 50  # of a dotted key
@@ -103,6 +104,7 @@ def check_name(name: str, names: Iterable[str], where: str, what: str) -> None:
 def read_toml(path: Path, kind: str) -> tuple[str, dict[str, Any]]:
     """Text and tables of a TOML file that begins with ``ringlet = 1``; ``kind`` (recipe, shot) is for messages."""
     text = read_text(path, f"give a {kind}" if kind.startswith("file") else f"give a {kind} file")
+    record(path)
     return text, parse_toml(text, path.name, kind)
 
 

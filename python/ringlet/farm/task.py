@@ -25,6 +25,7 @@ from typing import Any, Literal
 import numpy as np
 
 from ringlet import api
+from ringlet.data.digest import digest
 from ringlet.data.errors import UserError
 from ringlet.data.files import replacing
 from ringlet.data.groom import Groom
@@ -151,17 +152,15 @@ def _simulate(task: Task, options: TaskOptions, log: Log, progress: Progress) ->
         aside.write_text(task.shot, encoding="utf-8")
     shot = api.read_shot(shot_file)
     groom, groom_file = _groom(shot, task.folder, log)
-    made_from = (
-        f"{api.run_digest(shot, groom, frames=options.frames)} {options.frames} {options.frame} {options.picture}"
-    )
+    inputs = api.run_inputs(shot, groom, frames=options.frames)
+    made_from = digest(inputs, options.frames, options.frame, options.picture)
     previous = read_result(task.folder)
     if previous and previous.state == "done" and previous.made_from == made_from and cache.exists():
         log("is done already")
         return previous
 
     first, last = options.frames or shot.frames
-    key = part / "made_from"
-    resume = key.exists() and made_from.startswith(read_text(key))
+    resume = api.can_resume(part, inputs)
     log(f"{'goes on with' if resume else 'simulates'} frames {first}:{last}, {len(groom.locks)} locks")
     begin, done = time.perf_counter(), 0
 

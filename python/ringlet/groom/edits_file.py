@@ -37,7 +37,7 @@ def edits_path(recipe: Recipe) -> Path:
 
 def write_edits(edits: list[dict[str, Any]], path: Path) -> None:
     """Writes edits of locks as ``[[edit]]`` tables; keeps the file's edits of guides."""
-    with replacing(path) as aside:
+    with replacing(path, update=True) as aside:
         aside.write_text(edits_text({**read_edits(path), "edit": edits}), encoding="utf-8")
 
 
@@ -57,7 +57,7 @@ def restored_on_error(recipe: Recipe) -> Iterator[None]:
         if before is None:
             path.unlink(missing_ok=True)
         else:
-            with replacing(path) as aside:
+            with replacing(path, update=True) as aside:
                 aside.write_bytes(before)
         raise
 

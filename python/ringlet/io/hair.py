@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from ringlet.data import limits
 from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.data.errors import UserError
+from ringlet.data.reads import record
 from ringlet.data.regular import read_bytes
 from ringlet.data.stage import StageSpace
 from ringlet.io.space import check_points, to_metres
@@ -30,6 +31,7 @@ def read_hair(path: Path, space: StageSpace) -> Curves:
     Raises UserError for a file that is not readable, truncated or inconsistent.
     """
     data = read_bytes(path)
+    record(path)
     if len(data) < HEADER.size or data[:4] != b"HAIR":
         raise UserError(f"{path}: is not a .hair file (it does not begin with HAIR); choose another")
     _, hairs, points, arrays, segments, thickness, *_ = HEADER.unpack_from(data)

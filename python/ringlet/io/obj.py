@@ -15,6 +15,7 @@ from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.explain import shown
 from ringlet.data.mesh import Mesh
+from ringlet.data.reads import record
 from ringlet.data.regular import read_bytes
 from ringlet.data.stage import StageSpace
 from ringlet.io.polygons import check_polygons, polygon_places, triangulate
@@ -92,6 +93,7 @@ def read_obj_curves(path: Path, space: StageSpace) -> Curves:
 def _parse(path: Path) -> _Content:
     content, named = _Content(), []
     text = read_bytes(path, most=MOST_BYTES).decode("utf-8-sig", errors="replace")
+    record(path)
     for number, line in enumerate(text.replace("\\\n", " ").splitlines(), 1):
         key, *words = line.split("#", 1)[0].split() or [""]
         try:

@@ -7,6 +7,7 @@ from pathlib import Path
 from PIL import Image, UnidentifiedImageError
 
 from ringlet.data.errors import UserError
+from ringlet.data.reads import record
 from ringlet.data.regular import open_regular
 from ringlet.data.texture import Texture
 
@@ -21,6 +22,7 @@ def read_texture(path: Path | str) -> Texture:
 
     Raises UserError for a file that is not a readable image, or has more pixels than ``MOST_PIXELS``.
     """
+    record(path)
     with open_regular(path) as file:
         try:
             with Image.open(file, formats=FORMATS) as picture:

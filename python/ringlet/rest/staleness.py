@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ringlet.data.curves import Curves
+from ringlet.data.digest import digest
 from ringlet.data.errors import UserError
 from ringlet.data.groom import Groom
 from ringlet.shot.shot import Shot
 from ringlet.shot.variation import VARIATIONS
-from ringlet.sim.checkpoint import digest
 from ringlet.sim.nails import spring_fraction
 from ringlet.sim.obstacle import Obstacle
 from ringlet.sim.variation import at_vertices, material_factors

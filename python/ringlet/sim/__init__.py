@@ -1,11 +1,11 @@
 """The simulation of a shot: strands, cloth and bodies in motion and in contact, frame by frame."""
 
-from ringlet.sim.checkpoint import Checkpoints, frames_between, locked_folder
+from ringlet.sim.checkpoint import Checkpoints, frames_between, left_inputs, locked_folder
 from ringlet.sim.cloth import Cloth
 from ringlet.sim.garment import Garment
 from ringlet.sim.motion import Motion
 from ringlet.sim.obstacle import Body, Obstacle
-from ringlet.sim.run_digest import digest_of_run
+from ringlet.sim.run_inputs import changed_input, run_inputs
 from ringlet.sim.scene import Scene
 from ringlet.sim.simulate import StoredTouches, check_frames, play, replay, simulate
 from ringlet.sim.strands import Strands
@@ -21,12 +21,14 @@ __all__ = [
     "Scene",
     "StoredTouches",
     "Strands",
+    "changed_input",
     "check_frames",
-    "digest_of_run",
     "frames_between",
     "heavy_work",
+    "left_inputs",
     "locked_folder",
     "play",
     "replay",
+    "run_inputs",
     "simulate",
 ]

@@ -23,11 +23,13 @@ from numpy.typing import NDArray
 from ringlet.data.errors import UserError
 from ringlet.data.files import replacing
 from ringlet.data.regular import check_regular, read_bytes, read_text
+from ringlet.sim.run_inputs import Inputs, changed_input
 
 VERSION = b"ringlet checkpoint 3\n"
 EVERY = 10  # frames from one state to the next, at most
 VERTICES = 1_000_000  # simulated between states: a frame of that many may take minutes
 LOCK_FILE = "held"  # the file that a program locks while it runs
+INPUTS = "made_from"  # the file of the inputs of the run
 STATES_KEPT = 2  # where the last is damaged, the one before is used
 
 Arrays = Mapping[str, NDArray[Any]]
@@ -43,13 +45,13 @@ class DamagedError(ValueError):
 class Checkpoints:
     """The folder of a run.
 
-    folder:     folder of its files
-    run_digest: the digests of the run (``digest_of_run``); files of another run are refused
-    every:      frames from one state to the next
+    folder: folder of its files
+    inputs: all that the run depends on; files of another run are refused
+    every:  frames from one state to the next
     """
 
     folder: Path
-    run_digest: str
+    inputs: Inputs
     every: int = EVERY
     _lock_file: BinaryIO | None = field(default=None, repr=False)
 
@@ -63,16 +65,13 @@ class Checkpoints:
             for path in self.folder.iterdir():
                 if path.name != LOCK_FILE:
                     path.unlink()
-        key = self.folder / "made_from"
-        stored, mine = read_text(key) if key.exists() else "", self.run_digest
-        shorter, longer = sorted((stored, mine), key=len)  # one run may go further than the other
-        if not longer.startswith(shorter):
+        before = left_inputs(self.folder)
+        if before is not None and (change := changed_input(before, self.inputs)):
             raise UserError(
-                f"{self.folder}: was left by a run with other settings, another groom, first frame or Ringlet; "
-                "run without --resume to start over"
+                f"{self.folder}: was left by another run: {change}; put it back, or run without --resume to start over"
             )
-        with replacing(key) as aside:
-            aside.write_text(longer)
+        with replacing(self.folder / INPUTS) as aside:
+            aside.write_text(json.dumps(self.inputs))
         for path in sorted(self.folder.glob("memory.*"), reverse=True):
             try:
                 memory = read(path)
@@ -113,6 +112,19 @@ class Checkpoints:
         except (DamagedError, OSError):
             return False
         return True
+
+
+def left_inputs(folder: Path) -> Inputs | None:
+    """The inputs of the run that left its checkpoints in a folder; None where there are none.
+
+    Those that cannot be read differ from any.
+    """
+    if not (folder / INPUTS).exists():
+        return None
+    try:
+        return dict(json.loads(read_text(folder / INPUTS)))
+    except (ValueError, TypeError):
+        return {}
 
 
 @contextmanager
@@ -158,15 +170,6 @@ def _in_use(folder: Path) -> UserError:
 def frames_between(vertices: int) -> int:
     """Frames from one state to the next for strands of so many vertices, of which more take longer."""
     return max(1, min(EVERY, VERTICES // max(vertices, 1)))
-
-
-def digest(*parts: Any) -> str:
-    """A digest of arrays and of plain values."""
-    found = hashlib.sha256(VERSION)
-    for part in parts:
-        array = isinstance(part, np.ndarray)
-        found.update(np.ascontiguousarray(part).tobytes() if array else json.dumps(part, sort_keys=True).encode())
-    return found.hexdigest()
 
 
 def write(path: Path, arrays: Arrays) -> None:

@@ -196,7 +196,7 @@ class Document:
 
     def save(self, path: Path | None = None, text: str | None = None) -> Path:
         """Writes the text to the document's file, or a text to another file; returns the path."""
-        with replacing(path or self.path) as aside:
+        with replacing(path or self.path, update=path is None) as aside:
             aside.write_text(self.text if text is None else text, encoding="utf-8")
         if path is None:
             self.saved, self.saved_edits = self.text, self.state.edits

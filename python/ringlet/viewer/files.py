@@ -266,5 +266,5 @@ def _text_of(file: Path | None) -> str:
 
 def _write(file: Path | None, text: str) -> None:
     if file is not None:
-        with replacing(file) as aside:
+        with replacing(file, update=True) as aside:
             aside.write_text(text or "ringlet = 1\n", encoding="utf-8")

@@ -12,6 +12,7 @@ from pathlib import Path
 import uvicorn
 
 from ringlet.data.errors import UserError
+from ringlet.data.reads import unrecorded
 from ringlet.viewer.project import Project
 from ringlet.viewer.server import LOOPBACK, STATIC, AccessControl, make_app
 from ringlet.viewer.session import Session
@@ -20,6 +21,7 @@ from ringlet.viewer.wire import MOST
 DEFAULT_PORT = 8642
 
 
+@unrecorded()
 def view(
     file: Path | str,
     *,

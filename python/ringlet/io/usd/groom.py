@@ -25,6 +25,7 @@ from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.groom import Groom
 from ringlet.data.mesh import Mesh
+from ringlet.data.reads import recorded
 from ringlet.data.regular import check_regular
 from ringlet.data.settings import did_you_mean
 from ringlet.data.stage import StageSpace
@@ -40,7 +41,6 @@ from ringlet.io.usd.stage import (
     parse_json,
     read_usd_space,
     reading,
-    refuse_itself,
     relative,
     writing,
 )
@@ -52,16 +52,15 @@ VERSION = 1  # version of this layout
 WEIGHT_TOLERANCE = 1e-3  # largest error of a root's barycentric coordinates
 
 
+@recorded()
 def write_groom(groom: Groom, path: Path | str, variants: Mapping[str, Groom] | None = None) -> None:
     """Writes a groom in the unit, up-axis and rate of its head, with a relative reference to the head.
 
     variants: grooms on the same head by name, as a variant set of ``/groom``; ``groom`` is the selection ``base``
 
-    Raises UserError for a variant on another head, and for a path that is the head's file.
+    Raises UserError for a variant on another head, and for a path that is a file of the head.
     """
     head = _head_file(groom)
-    if head:
-        refuse_itself(path, head, "head")
     space = read_usd_space(head) if head else groom.space
     with writing(path) as aside:
         stage = new_stage(aside, space)

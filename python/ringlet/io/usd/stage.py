@@ -17,10 +17,11 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from pxr import Pcp, Sdf, Tf, Usd, UsdGeom, UsdShade, UsdUtils
+from pxr import Ar, Pcp, Sdf, Tf, Usd, UsdGeom, UsdShade, UsdUtils
 
 from ringlet.data.errors import UserError
-from ringlet.data.files import replacing, same_place
+from ringlet.data.files import check_place, replacing
+from ringlet.data.reads import record
 from ringlet.data.regular import check_regular
 from ringlet.data.stage import StageSpace
 from ringlet.io.subdivision import Refinement
@@ -81,6 +82,7 @@ def reading(path: Path | str, cage: bool | None = None) -> Iterator[Source]:
         _reload(stage, path)
         _refuse_missing(stage, path)
         yield Source(path, stage, _space(stage, path), _reads_cages(stage) if cage is None else cage)
+        record(path, *_layer_files(stage))
 
 
 def _check_layers(path: Path) -> list[Sdf.Layer]:
@@ -140,6 +142,13 @@ def _refuse_missing(stage: Usd.Stage, path: Path) -> None:
             )
 
 
+def _layer_files(stage: Usd.Stage) -> Iterator[str]:
+    """Files of all layers that a stage uses: sublayers, references, payloads and value clips."""
+    for layer in stage.GetUsedLayers():
+        if layer.realPath:
+            yield Ar.SplitPackageRelativePathOuter(layer.realPath)[0]
+
+
 @contextmanager
 def reading_more(path: Path | str) -> Iterator[None]:
     """Converts USD's errors inside the block to UserError with ``path``, also while another file is written."""
@@ -163,7 +172,7 @@ def check_name(path: Path | str) -> None:
 def check_target(path: Path | str, under: Path | str) -> None:
     """Raises UserError for an invalid name of a layer over the file ``under``, before any work is done."""
     check_name(path)
-    refuse_itself(path, under, "file")
+    check_place(path, {"file under it": Path(under)})
 
 
 @contextmanager
@@ -206,12 +215,6 @@ def relative(target: Path | str, file: Path | str) -> str:
     except ValueError:  # another drive
         return Path(target).absolute().as_posix()
     return "./" + Path(path).as_posix()
-
-
-def refuse_itself(path: Path | str, target: Path | str, what: str) -> None:
-    """Raises UserError when an output file would overwrite a file that it refers to."""
-    if same_place(path, target):
-        raise UserError(f"{path}: is the {what} that it would refer to; choose another name")
 
 
 def read_usd_space(path: Path | str) -> StageSpace:

@@ -9,10 +9,11 @@ from types import TracebackType
 from numpy.typing import NDArray
 from pxr import Sdf, Usd, UsdGeom
 
+from ringlet.data.reads import recorded, refuse_inputs
 from ringlet.data.stage import StageSpace
 from ringlet.io.usd.curves import set_points
 from ringlet.io.usd.groom import choose_variant, groom_prim
-from ringlet.io.usd.stage import check_target, new_stage, reading, refuse_itself, writing
+from ringlet.io.usd.stage import check_target, new_stage, reading, writing
 
 FLUSH = 64e6  # bytes of points in memory before they are saved
 
@@ -31,12 +32,12 @@ class StreamWriter:
 
         Raises UserError when the output is a file under it, and ValueError for another space.
         """
-        with reading(self.under) as source:
-            groom_prim(source)
-            if source.space != self.space:
-                raise ValueError(f"{self.under}: has {source.space}; must be {self.space}")
-            for layer in source.stage.GetUsedLayers():  # the groom under a cache, the head, cloths
-                refuse_itself(self.path, layer.realPath, "file")
+        with recorded():  # the groom under a cache, the head, cloths
+            with reading(self.under) as source:
+                groom_prim(source)
+                if source.space != self.space:
+                    raise ValueError(f"{self.under}: has {source.space}; must be {self.space}")
+            refuse_inputs(self.path)
         with ExitStack() as opened:
             self._stage = new_stage(opened.enter_context(writing(self.path)), self.space, over=self.under)
             if self.variant is not None:
