@@ -12,9 +12,11 @@ import numpy as np
 import pytest
 from commands import edit, made, refused, run
 from pxr import Usd, UsdGeom
+from ringlet.sim.roots import Roots
 from small_example import FRAMES, write_example, write_head
 
 import ringlet
+from ringlet import api
 
 
 @pytest.mark.parametrize(("unit", "size"), [(1.0, "18 m"), (0.001, "0.018 m")])
@@ -33,9 +35,9 @@ def printed(pipeline: Path, name: str) -> dict:
 
 def test_hairs_of_a_long_cache_are_made_with_a_few_frames_in_memory(pipeline, tmp_path):
     groom, frames, hair = ringlet.read_groom(pipeline / "groom.usdc"), 1500, tmp_path / "hair.usdc"
-    points = groom.locks.points.astype(np.float32)
+    points = carried(groom, FRAMES).astype(np.float32)  # the head stands still from there on
     shapes = np.broadcast_to(points, (frames, *points.shape))
-    cache = ringlet.Cache(np.arange(1.0, frames + 1), shapes)
+    cache = ringlet.Cache(np.arange(FRAMES, FRAMES + frames, dtype=np.float64), shapes)
     ringlet.write_cache(cache, pipeline / "groom.usdc", pipeline / "long.usdc")
     tracemalloc.start()
     counts = ringlet.write_hairs(pipeline / "groom.usdc", hair, cache=pipeline / "long.usdc")
@@ -47,6 +49,11 @@ def test_hairs_of_a_long_cache_are_made_with_a_few_frames_in_memory(pipeline, tm
         assert back.points(frames).shape == points.shape
 
 
+def carried(groom, frame):
+    """The groomed locks on the head at a frame."""
+    return Roots(groom).carry(api.scalp_clip(groom).at(frame), frame)
+
+
 def hairs_at(file, frame):
     """Points of the hairs of a file at a frame, shape (n, 3)."""
     stage = Usd.Stage.Open(str(file))
@@ -55,8 +62,8 @@ def hairs_at(file, frame):
 
 def test_hairs_of_a_cache_alone_equal_those_of_groom_and_cache(pipeline, tmp_path):
     groom, cache = pipeline / "groom.usdc", tmp_path / "cache.usdc"
-    points = ringlet.read_groom(groom).locks.points.astype(np.float32)
-    ringlet.write_cache(ringlet.Cache(np.arange(1.0, 4), np.stack([points, points + 1e-3, points])), groom, cache)
+    points = [carried(ringlet.read_groom(groom), frame) for frame in (1, 2, 3)]
+    ringlet.write_cache(ringlet.Cache(np.arange(1.0, 4), np.stack(points)), groom, cache)
     alone, by_both = tmp_path / "alone.usdc", tmp_path / "both.usdc"
     assert run("hair", str(cache), "-o", str(alone), "--frames", "2:3").exit_code == 0
     assert run("hair", str(groom), "--cache", str(cache), "-o", str(by_both), "--frames", "2:3").exit_code == 0

@@ -26,6 +26,7 @@ __all__ = [
     "load_groom",
     "read_groom",
     "read_recipe",
+    "rebind_groom",
     "release_locks",
     "write_groom",
 ]
@@ -119,12 +120,30 @@ def read_groom(path: Path | str, *, variant: str | None = None) -> Groom:
     return io.read_groom(Path(path), variant)
 
 
-def load_groom(path: Path | str, *, variant: str | None = None, progress: Progress | None = None) -> Groom:
-    """The groom of a recipe (``.toml``) or of a USD file, or a variant of the latter."""
+def rebind_groom(path: Path | str, *, variant: str | None = None) -> Groom:
+    """The groom of a USD file, bound to its head as that is now.
+
+    Each lock keeps its shape, begins on its root, and is turned as the roots are together. Raises UserError for another
+    mesh whose surface is farther than 1 cm from a root.
+    """
+    from ringlet import groom, io
+
+    return groom.rebind(io.read_groom(Path(path), variant, bound=False))
+
+
+def load_groom(
+    path: Path | str, *, variant: str | None = None, rebind: bool = False, progress: Progress | None = None
+) -> Groom:
+    """The groom of a recipe (``.toml``) or of a USD file, or a variant of the latter.
+
+    rebind: bind the groom of a file to its head as that is now (see ``rebind_groom``)
+    """
     if Path(path).suffix != ".toml":
-        return read_groom(path, variant=variant)
+        return rebind_groom(path, variant=variant) if rebind else read_groom(path, variant=variant)
     if variant is not None:
         raise UserError(f"variant '{variant}': {path} is a recipe; name the recipe of the variant instead")
+    if rebind:
+        raise UserError(f"rebind: {path} is a recipe, which grooms the head as it is now; leave it out")
     return build_groom(path, progress=progress)
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from ringlet.api.grooms import read_groom
 from ringlet.api.progress import Progress
 from ringlet.api.shots import scalp_clip
+from ringlet.data.binding import check_roots, root_places
 from ringlet.data.errors import UserError
 from ringlet.data.reads import recorded
 
@@ -77,9 +78,18 @@ def write_hairs(
             chosen = moved.within(frames)
             clip = scalp_clip(locks, (math.floor(chosen[0]), math.ceil(chosen[-1])))
             for frame in chosen:
-                scalp = clip.at(frame)
+                scalp, points = clip.at(frame), moved.points(frame)
+                places = root_places(locks.locks, scalp, locks.scalp.triangles)
+                check_roots(
+                    points[locks.locks.offsets[:-1]],
+                    places,
+                    locks.locks.ids,
+                    f"{cache} at frame {frame:g}",
+                    "simulate again",
+                    moved.lag(frame),
+                )
                 beside = moved.surfaces(frame) or [(scalp, locks.scalp.triangles)]
-                writer.add(frame, hairs.deformed(moved.points(frame), scalp, surfaces=beside))
+                writer.add(frame, hairs.deformed(points, scalp, surfaces=beside))
                 written += 1
                 if progress:
                     progress("hairs", written, len(chosen))

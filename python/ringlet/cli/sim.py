@@ -26,6 +26,13 @@ def sim(
     variant: Variant = None,
     frames: Frames = None,
     allow_stale: AllowStale = False,
+    rebind: Annotated[
+        bool,
+        typer.Option(
+            "--rebind",
+            help="Bind the groom to its head as that is now; written beside the cache, as of a recipe.",
+        ),
+    ] = False,
     resume: Annotated[
         bool, typer.Option("--resume", help="Go on with a run that was broken off; its result is the same to the bit.")
     ] = False,
@@ -57,14 +64,15 @@ def sim(
         if contacts is not None and not settings.touching:
             raise ringlet.UserError(f"{shot}: nothing touches, --contacts has nothing to write; add [contact]")
         source = groom or settings.groom
-        layer = source if source.suffix != ".toml" else output.with_suffix(f".groom{output.suffix}")
-        _check_places(settings.named_files() | {"groom": source}, layer, output, contacts)
+        made = rebind or source.suffix == ".toml"
+        layer = output.with_suffix(f".groom{output.suffix}") if made else source
+        _check_places(settings.named_files() | {"groom": source}, layer if made else None, output, contacts)
         with _checkpoint_folder(output, resume) as folder:  # from here on everything beside the cache is this run's
-            with run.stage("groom", None if layer == source else layer):
-                locks = ringlet.load_groom(source, variant=variant, progress=progress)
+            with run.stage("groom", layer if made else None):
+                locks = ringlet.load_groom(source, variant=variant, rebind=rebind, progress=progress)
                 for path in filter(None, (output, contacts)):
                     ringlet.check_place(path, {"head": locks.scalp_file})
-                if layer != source:
+                if made:
                     ringlet.write_groom(locks, layer)
             with run.stage("simulate", output):
                 record = ringlet.write_simulation(
@@ -102,18 +110,19 @@ def _warn(run: ringlet.Run, said: list[str], sentence: str) -> None:
     print(f"warning: {sentence}", file=sys.stderr, flush=True)
 
 
-def _check_places(read: dict[str, Path], layer: Path, output: Path, contacts: Path | None) -> None:
+def _check_places(read: dict[str, Path], layer: Path | None, output: Path, contacts: Path | None) -> None:
     """Refuses files to be written that are one another, or what the run reads, before its first stage.
 
     read:  what the shot names, by its setting; "groom" is the one that is simulated
-    layer: the groom under the cache, which is written where that is a recipe
+    layer: the groom under the cache, where that is written too
     """
     if read["groom"].suffix == ".toml":
         read = ringlet.read_recipe(read["groom"]).named_files() | read
-        ringlet.check_place(layer, read)
-    ringlet.check_place(output, read | {"groom under the cache": layer})
-    if contacts is not None:
-        ringlet.check_place(contacts, read | {"groom under the cache": layer, "cache": output})
+    taken: dict[str, Path | None] = {**read}
+    for path, what in ((layer, "groom under the cache"), (output, "cache"), (contacts, "contacts")):
+        if path is not None:
+            ringlet.check_place(path, taken)
+            taken[what] = path
 
 
 @contextmanager

@@ -6,6 +6,7 @@ from ringlet.groom.edits_file import add_points, add_settings, release, restored
 from ringlet.groom.fix import fix_groom
 from ringlet.groom.hairs import HairMemory, Hairs, HairSettings, hair_count, lay_hairs, lock_thickness, make_hairs
 from ringlet.groom.presets import PRESETS
+from ringlet.groom.rebind import rebind
 from ringlet.groom.recipe import Recipe, parse_recipe, read_recipe, schema
 from ringlet.groom.stack import Memory, make_groom
 
@@ -29,6 +30,7 @@ __all__ = [
     "make_hairs",
     "parse_recipe",
     "read_recipe",
+    "rebind",
     "release",
     "restored_on_error",
     "row_of",

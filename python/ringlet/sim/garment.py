@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from ringlet import _core
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Clip, Mesh
+from ringlet.data.rigid import best_rotation
 from ringlet.shot.cloth import ShotCloth
 from ringlet.sim.cloth import Cloth
 from ringlet.sim.obstacle import Obstacle, refuse_flat
@@ -125,11 +126,8 @@ def moved_with(points: Array, bodies: Sequence[tuple[NDArray[np.int32], Array, A
 
 
 def moved_rigidly(points: Array, before: Array, after: Array) -> Array:
-    """Points moved by the rigid motion that fits places before and after best, shapes (n, 3) (Kabsch 1976)."""
-    from_centre, to_centre = before.mean(axis=0), after.mean(axis=0)
-    left, _, right = np.linalg.svd((before - from_centre).T @ (after - to_centre))
-    mirror = np.array([1.0, 1.0, np.sign(np.linalg.det(left @ right))])
-    return (points - from_centre) @ (left * mirror @ right) + to_centre
+    """Points moved by the rigid motion that fits places before and after best, shapes (n, 3)."""
+    return (points - before.mean(axis=0)) @ best_rotation(before, after) + after.mean(axis=0)
 
 
 def _most_frequent(holders: NDArray[Any]) -> int:

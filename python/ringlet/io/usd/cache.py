@@ -14,6 +14,7 @@ from pxr import Sdf, Usd, UsdGeom
 
 from ringlet.data.cache import Cache, CachedCloth
 from ringlet.data.errors import UserError
+from ringlet.data.mesh import Mesh
 from ringlet.data.regular import check_regular
 from ringlet.data.stage import StageSpace
 from ringlet.io.space import to_metres
@@ -92,7 +93,7 @@ class CacheFile:
         self.statistics: list[dict[str, Any]] = entry("statistics", "[]")
         self.start: dict[str, Any] = entry("start", "{}")
         self._cloths: list[dict[str, Any]] = entry("cloths", "[]")
-        self._meshes: list[tuple[Usd.Prim, NDArray[np.int32]]] | None = None
+        self._meshes: list[tuple[Usd.Prim, Mesh]] | None = None
 
     def points(self, frame: float) -> NDArray[np.float32]:
         """Positions of the locks at a frame [m], shape (n, 3), in the order of the groom's locks.
@@ -108,15 +109,31 @@ class CacheFile:
             )
         return to_metres(points, self._source.space)
 
+    def lag(self, frame: float) -> float:
+        """How far anything lagged behind its animation at a frame [m]."""
+        at = int(np.searchsorted(self.frames, frame))
+        statistics = self.statistics[at] if at < len(self.statistics) else {}
+        return float((statistics.get("contact") or {}).get("lag", 0.0))
+
     def surfaces(self, frame: float) -> list[tuple[NDArray[np.float64], NDArray[np.int32]]]:
-        """Visible meshes at a frame, the head and cloths: points [m], shape (n, 3), and triangles (m, 3)."""
+        """Visible meshes at a frame, the head and cloths: points [m], shape (n, 3), and triangles (m, 3).
+
+        Raises UserError for a mesh that has another number of points at that frame than at rest.
+        """
         with reading_more(self._source.path):
             if self._meshes is None:
                 prims = shown_surfaces(self._source)
-                self._meshes = [(prim, mesh_at(self._source, prim).triangles) for prim in prims]
-            return [
-                (clip_at(self._source, prim, (frame, frame)).points[0], triangles) for prim, triangles in self._meshes
-            ]
+                self._meshes = [(prim, mesh_at(self._source, prim)) for prim in prims]
+            found = []
+            for prim, mesh in self._meshes:
+                points = clip_at(self._source, prim, (frame, frame)).points[0]
+                if points.shape != mesh.points.shape:
+                    raise UserError(
+                        f"{self._source.where(prim)}: has {len(points)} points at frame {frame:g}, {len(mesh.points)} "
+                        "at rest; the mesh has changed since the simulation: simulate again"
+                    )
+                found.append((points, mesh.triangles))
+            return found
 
     def within(self, frames: tuple[int, int] | None) -> NDArray[np.float64]:
         """Frames in a closed range, all for None; raises UserError when the range has none."""

@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pxr import Sdf, Usd, UsdGeom
 
+from ringlet.data.binding import check_roots, root_places
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.groom import Groom
@@ -49,6 +50,7 @@ from ringlet.io.usd.values import Types, float3
 GROOM, LOCKS, GUIDES, BODY = "/groom", "/groom/locks", "/groom/guides", "/groom/body"
 VARIANTS, BASE = "groom", "base"
 VERSION = 1  # version of this layout
+REMEDY = "make the groom again, or bind it anew: ringlet sim SHOT --rebind"
 WEIGHT_TOLERANCE = 1e-3  # largest error of a root's barycentric coordinates
 
 
@@ -138,10 +140,11 @@ def _check_variant(name: str, variant: Groom, groom: Groom) -> None:
         raise UserError(f"variant '{name}': grows on another scalp ({variant.scalp.name}); must be {groom.scalp.name}")
 
 
-def read_groom(path: Path | str, variant: str | None = None) -> Groom:
+def read_groom(path: Path | str, variant: str | None = None, *, bound: bool = True) -> Groom:
     """Reads a groom, or the groom under a cache or hairs, with the scalp from its file.
 
     variant: variant to read, instead of the selected one
+    bound:   refuse roots that are not on the scalp
 
     Raises UserError for a file that is no groom, an unknown variant, and a head that is missing or has changed.
     """
@@ -153,8 +156,8 @@ def read_groom(path: Path | str, variant: str | None = None) -> Groom:
         scalp_file, scalp_prim = scalp_source(source)
         scalp = read_usd_mesh(scalp_file, scalp_prim, source.cage)
         return Groom(
-            guides=_bound(source, GUIDES, scalp),
-            locks=_bound(source, LOCKS, scalp),
+            guides=_curves(source, GUIDES, scalp if bound else None),
+            locks=_curves(source, LOCKS, scalp if bound else None),
             scalp=scalp,
             scalp_file=scalp_file,
             scalp_prim=scalp_prim,
@@ -247,14 +250,21 @@ def _define_guides(stage: Usd.Stage, path: str, curves: Curves, groom: Groom, sp
     set_roots(prim, curves, groom.scalp)
 
 
-def _bound(source: Source, path: str, scalp: Mesh) -> Curves:
-    """Reads locks or guides; raises UserError when a root is not on the scalp."""
+def _curves(source: Source, path: str, scalp: Mesh | None) -> Curves:
+    """Reads locks or guides; raises UserError when a root is not on the scalp, if one is given."""
     curves = own_curves(source, source.stage.GetPrimAtPath(path)).check(f"{source.path} {path}")
+    if scalp is not None:
+        _check_bound(source, path, curves, scalp)
+    return curves
+
+
+def _check_bound(source: Source, path: str, curves: Curves, scalp: Mesh) -> None:
+    """Raises UserError when a root is on no triangle of the scalp, beside its triangle, or off the scalp."""
     triangles = curves.curve.get("root_triangle", np.zeros(1))
     if (bad := np.flatnonzero((triangles < 0) | (triangles >= len(scalp.triangles)))).size:
         raise UserError(
             f"{source.path}: {path} has a root on triangle {triangles[bad[0]]}, but {scalp.name} has "
-            f"{len(scalp.triangles)}; the head has changed: make the groom again"
+            f"{len(scalp.triangles)}; the head has changed: {REMEDY}"
         )
     weights = np.asarray(curves.curve.get("root_barycentric", np.full((1, 3), 1 / 3)))
     error = np.abs(weights - weights.clip(0.0, 1.0)).max(axis=1) + np.abs(weights.sum(axis=1) - 1.0)
@@ -263,7 +273,9 @@ def _bound(source: Source, path: str, scalp: Mesh) -> Curves:
             f"{source.path}: {path} has the root of lock {curves.ids[bad[0]]} beside its triangle of {scalp.name} "
             f"(weights {', '.join(f'{w:g}' for w in weights[bad[0]])}): it is not on the scalp; make the groom again"
         )
-    return curves
+    if path == LOCKS and "root_triangle" in curves.curve:  # drawn guides may begin near the scalp
+        places = root_places(curves, scalp.points, scalp.triangles)
+        check_roots(curves.roots, places, curves.ids, f"{source.path} on {scalp.name}", REMEDY)
 
 
 def _default_prim(file: Path) -> Sdf.Path:

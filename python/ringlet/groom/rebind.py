@@ -1,0 +1,69 @@
+"""Binds a groom anew to a head that has changed since."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ringlet import _core
+from ringlet.data.binding import root_places
+from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
+from ringlet.data.groom import Groom
+from ringlet.data.mesh import Mesh
+from ringlet.data.rigid import best_rotation
+
+SAME_SURFACE = 0.1  # largest deviation of roots from a similar arrangement, relative to its size
+NEAR = 0.01  # farthest from a new surface that a root is bound to it [m]
+
+Array = NDArray[np.float64]
+
+
+def rebind(groom: Groom) -> Groom:
+    """The groom on its scalp as that is now: each lock begins on its root, turned as the roots are, of the same shape.
+
+    Roots keep triangle and weights where the mesh was moved, turned, scaled or sculpted. On another mesh they go to the
+    nearest place. Raises UserError where that is farther than 1 cm.
+    """
+    turn = _turn(groom.locks, groom.scalp)
+    if turn is None:
+        return replace(groom, locks=_on_nearest(groom.locks, groom), guides=_on_nearest(groom.guides, groom))
+    locks, guides = (
+        _moved(c, root_places(c, groom.scalp.points, groom.scalp.triangles), turn) for c in (groom.locks, groom.guides)
+    )
+    return replace(groom, locks=locks, guides=guides)
+
+
+def _turn(locks: Curves, scalp: Mesh) -> Array | None:
+    """The rotation of the roots to their places on the scalp; None where these are no similar arrangement."""
+    if locks.curve["root_triangle"].max() >= len(scalp.triangles):
+        return None
+    before, after = np.asarray(locks.roots, np.float64), root_places(locks, scalp.points, scalp.triangles)
+    turn = best_rotation(before, after)
+    turned, after = (before - before.mean(axis=0)) @ turn, after - after.mean(axis=0)
+    size = np.sqrt((after**2).sum())
+    scale = (turned * after).sum() / max((turned**2).sum(), 1e-300)
+    return turn if np.sqrt(((scale * turned - after) ** 2).sum()) <= SAME_SURFACE * size else None
+
+
+def _on_nearest(curves: Curves, groom: Groom) -> Curves:
+    scalp = groom.scalp
+    region = np.ascontiguousarray(scalp.region(groom.region), np.int32)
+    roots = np.ascontiguousarray(curves.roots, np.float64)
+    triangle, weights, distance = _core.bind_roots(scalp.points, scalp.triangles, roots, region)
+    if distance.max() > NEAR:
+        raise UserError(
+            f"rebind: the root of lock {curves.ids[distance.argmax()]} is {distance.max():.3g} m from {scalp.name}, "
+            f"which is another mesh; at most {NEAR:g} m is allowed: make the groom again from its recipe"
+        )
+    bound = replace(curves, curve={**curves.curve, "root_triangle": triangle, "root_barycentric": weights})
+    return _moved(bound, root_places(bound, scalp.points, scalp.triangles), np.eye(3))
+
+
+def _moved(curves: Curves, places: Array, turn: Array) -> Curves:
+    """Curves moved rigidly, each to its root's place."""
+    counts = curves.counts
+    from_root = curves.points - np.repeat(curves.roots, counts, axis=0)
+    return curves.with_points(from_root @ turn + np.repeat(places, counts, axis=0))
