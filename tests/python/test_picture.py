@@ -72,7 +72,7 @@ def test_a_curl_of_twelve_points_a_turn_keeps_its_radius() -> None:
 def test_hairs_of_different_lengths_reach_the_renderer_whole() -> None:
     hairs = Curves.from_list([helix(2, 12), helix(1, 7), np.array([[0.0, 0, 0], [0, 0.01, 0]])])
     hairs.point["width"] = np.linspace(1e-4, 5e-5, len(hairs.points))
-    controls, offsets = fibres(hairs)
+    controls, offsets = fibres(hairs, np.zeros(3))
     shape = load_fibres(mitsuba(), controls, offsets, {"type": "hair"})
     parameters = mitsuba().traverse(shape)
     loaded, guard = np.split(np.array(parameters["control_points"]).reshape(-1, 4), [len(controls)])

@@ -18,25 +18,25 @@ class CachedCloth:
     name:   its name in the shot
     file:   the USD file of its mesh, None where it has none
     prim:   the path of the mesh there
-    points: positions [m], shape (k, n, 3), float32; the same points as the mesh's
+    points: positions [m], shape (k, n, 3), as in ``Cache``; the same points as the mesh's
     """
 
     name: str
     file: Path | None
     prim: str
-    points: NDArray[np.float32]
+    points: NDArray[np.floating]
 
 
 @dataclass
 class Touches:
     """The contacts at one time.
 
-    places: midpoints of the closest points [m], shape (k, 3), float32
+    places: midpoints of the closest points [m], shape (k, 3), as in ``Cache``
     force:  normal force [N], shape (k,), float32
     gap:    relative to the activation distance, from 0 to 1, shape (k,), float32
     """
 
-    places: NDArray[np.float32]
+    places: NDArray[np.floating]
     force: NDArray[np.float32]
     gap: NDArray[np.float32]
 
@@ -46,7 +46,8 @@ class Cache:
     """Simulated groom guides over time, and the cloth that moved with them.
 
     frames:     frame numbers (time codes), shape (k,)
-    points:     positions [m], shape (k, n, 3), float32; the same points as ``groom.locks``
+    points:     positions [m], shape (k, n, 3), float32, or float64 more than 8 m from the origin of coordinates; the
+                same points as ``groom.locks``
     statistics: the reports of the solver, one dict per frame
     start:      the report of initial penetration (see ``sim/initial_penetration.py``); empty without contact
     cloths:     the cloths at the same frames
@@ -55,7 +56,7 @@ class Cache:
     """
 
     frames: NDArray[np.float64]
-    points: NDArray[np.float32]
+    points: NDArray[np.floating]
     statistics: list[dict[str, Any]] = field(default_factory=list)
     start: dict[str, Any] = field(default_factory=dict)
     cloths: list[CachedCloth] = field(default_factory=list)

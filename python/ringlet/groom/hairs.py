@@ -18,6 +18,7 @@ from ringlet.data.errors import UserError
 from ringlet.data.groom import Groom
 from ringlet.data.mesh import Mesh
 from ringlet.data.painted import per_lock as for_each_lock
+from ringlet.data.precision import origin_of
 from ringlet.data.quantities import Quantity, Ramped, Section, Varied, explain
 from ringlet.data.random import Random, soft_threshold
 from ringlet.groom.scalp import axes
@@ -84,9 +85,9 @@ class HairSettings(Section):
 class Hairs:
     """Render hairs of a groom at rest, with the data that deforms them with the locks.
 
-    curves: points at rest [m], float32. Curve attributes: ``lock`` (row of the lock, int32), ``guide_id`` (id of the
-            lock, int64), ``root_triangle``, ``root_barycentric``. On a scalp with texture coordinates also ``st`` of
-            the root, float32. Point attribute: ``width``, the diameter [m], float32.
+    curves: points at rest [m], as of ``deformed``. Curve attributes: ``lock`` (row of the lock, int32), ``guide_id``
+            (id of the lock, int64), ``root_triangle``, ``root_barycentric``. On a scalp with texture coordinates also
+            ``st`` of the root, float32. Point attribute: ``width``, the diameter [m], float32.
     """
 
     curves: Curves
@@ -102,18 +103,19 @@ class Hairs:
         *,
         surfaces: Sequence[tuple[NDArray, NDArray]] = (),
         out: NDArray[np.float32] | None = None,
-    ) -> NDArray[np.float32]:
-        """Positions of the hairs on deformed locks and scalp [m], shape (n, 3), float32.
+    ) -> NDArray[np.floating]:
+        """Positions of the hairs on deformed locks and scalp [m], shape (n, 3), float32; float64 far from the origin.
 
         lock_points:  current positions of ``groom.locks`` [m], shape (locks' points, 3)
         scalp_points: current positions of ``groom.scalp`` [m], shape (scalp points, 3)
         surfaces:     surfaces that a hair crosses only with its lock: points [m], shape (k, 3), triangles (m, 3)
-        out:          output buffer, also returned; allocating a new one takes longer than the deformation
+        out:          output buffer, also returned near the origin; allocating a new one takes longer than the
+                      deformation
         """
         if out is None:
             out = self.new_buffer()
-        self._deform(lock_points, self.deformation(scalp_points), surfaces, out)
-        return out
+        origin = self._deform(lock_points, self.deformation(scalp_points), surfaces, out)
+        return out + origin if origin.any() else out
 
     def offset_fractions(
         self,
@@ -146,12 +148,16 @@ class Hairs:
         surfaces: Sequence[tuple[NDArray, NDArray]],
         out: NDArray[np.float32],
         fractions: NDArray[np.uint8] | None = None,
-    ) -> None:
-        points, offsets = np.ascontiguousarray(lock_points, np.float32), self._groom.locks.offsets
+    ) -> NDArray[np.float64]:
+        """Fills ``out`` relative to the returned origin [m], for which single precision is exact enough."""
+        origin = origin_of(lock_points)
+        points, offsets = np.ascontiguousarray(lock_points - origin, np.float32), self._groom.locks.offsets
         _core.warp_hairs(points, offsets, out, **deformation)
         if surfaces:
             layout = {name: self._layout[name] for name in ("first", "tip", "hold")}
-            _core.keep_beside(points, offsets, out, *_merged(surfaces), MARGIN, **layout, shares=fractions)
+            corners, triangles = _merged(surfaces)
+            _core.keep_beside(points, offsets, out, corners - origin, triangles, MARGIN, **layout, shares=fractions)
+        return origin
 
     def deformation(self, scalp_points: NDArray) -> dict[str, NDArray]:
         """Inputs of the deformation (src/ringlet/groom/hairs.h) besides the locks, for a deformed scalp.

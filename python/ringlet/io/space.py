@@ -18,12 +18,17 @@ def to_metres(points: NDArray, space: StageSpace) -> NDArray:
     return scaled
 
 
-def from_metres(points: NDArray, space: StageSpace) -> NDArray[np.float32]:
-    """Converts points [m], Y-up, shape (n, 3), to the space of a file, float32."""
+def to_file(points: NDArray, space: StageSpace) -> NDArray:
+    """Converts points [m], Y-up, shape (n, 3), to the space of a file; keeps their type."""
     scaled = points * points.dtype.type(1.0 / space.meters_per_unit)
     if space.up_axis == "Z":
         scaled = np.stack([scaled[:, 0], -scaled[:, 2], scaled[:, 1]], axis=1)
-    return np.ascontiguousarray(scaled, np.float32)
+    return scaled
+
+
+def from_metres(points: NDArray, space: StageSpace) -> NDArray[np.float32]:
+    """Converts points [m], Y-up, shape (n, 3), to the space of a file, float32."""
+    return np.ascontiguousarray(to_file(points, space), np.float32)
 
 
 def check_points(points: NDArray, where: str) -> None:

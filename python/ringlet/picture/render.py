@@ -118,8 +118,7 @@ def build_scene(
     for index, body in enumerate(bodies):
         scene[f"body{index}"] = _mesh(mi, body, target, scale)
     if hairs is not None and len(hairs):
-        controls, offsets = fibres(hairs)
-        controls[:, :3] -= target.astype(np.float32)
+        controls, offsets = fibres(hairs, target)
         # Rays mostly miss a hair far thinner than a pixel, which costs many samples and looks like noise. A wider hair
         # also represents the hairs that a groom leaves out.
         pixel = 2.0 * camera.slopes[0] * camera.distance / size[0]

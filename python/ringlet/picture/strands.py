@@ -39,8 +39,8 @@ def spline_controls(points: NDArray[np.floating]) -> NDArray[np.float64]:
     return np.ascontiguousarray(controls.reshape(n + 2, count, -1).transpose(1, 0, 2))
 
 
-def fibres(hairs: Curves) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
-    """Control points with radii (x, y, z, r) [m], shape (n, 4), and offsets of the curves, shape (count + 1,)."""
+def fibres(hairs: Curves, origin: NDArray[np.float64]) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
+    """Control points relative to an origin, with radii (x, y, z, r) [m], shape (n, 4), and offsets (count + 1,)."""
     offsets = offsets_from_counts(hairs.counts + 2)
     controls = np.empty((offsets[-1], 4), np.float32)
     widths = hairs.point.get("width", np.full(len(hairs.points), DEFAULT_WIDTH))
@@ -48,7 +48,7 @@ def fibres(hairs: Curves) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
         chosen = np.flatnonzero(hairs.counts == n)
         rows = hairs.offsets[chosen, None] + np.arange(n)
         targets = offsets[chosen, None] + np.arange(n + 2)
-        controls[targets, :3] = spline_controls(hairs.points[rows])
+        controls[targets, :3] = spline_controls(hairs.points[rows] - origin)
         controls[targets, 3] = 0.5 * np.pad(widths[rows], ((0, 0), (1, 1)), mode="edge")
     return controls, offsets
 

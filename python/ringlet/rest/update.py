@@ -21,6 +21,7 @@ from ringlet.sim.motion import make_strands
 from ringlet.sim.obstacle import Obstacle
 
 OPTIONAL = {"sagged": "sagged", "borne": "support"}  # values at vertices that a loft may lack, by their stored names
+POSITIONS = ("groomed", "lofted", "sagged")  # values at vertices that are positions, wherever these are
 SAME_SUPPORT = 1e-4  # change of the support of a lock, relative to its weight, below which it counts as the same
 
 
@@ -47,7 +48,7 @@ def to_curves(loft: Loft, shot: Shot) -> Curves:
     curve = {"off": loft.off, "moving": loft.moving}
     if loft.stiffened is not None:
         curve["stiffened"] = loft.stiffened
-    floats = {name: np.asarray(values, np.float32) for name, values in point.items()}
+    floats = {name: np.asarray(v, np.float64 if name in POSITIONS else np.float32) for name, v in point.items()}
     return Curves(rest.points, rest.offsets, rest.ids, curve, floats)
 
 

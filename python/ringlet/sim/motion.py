@@ -14,6 +14,7 @@ from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.groom import Groom
 from ringlet.data.mesh import Clip
+from ringlet.data.precision import compact
 from ringlet.shot.shot import Shot
 from ringlet.sim.garment import Garment, SimulatedGarment, moved_with
 from ringlet.sim.lag import ROOTS, lagging
@@ -93,7 +94,7 @@ class Motion:
                 simulated.name,
                 simulated.garment.file,
                 simulated.garment.prim,
-                np.empty((frames, len(simulated.cloth.positions), 3), np.float32),
+                np.empty((frames, *simulated.cloth.positions.shape), compact(simulated.garment.clip.points).dtype),
             )
             for simulated in self.garments
         ]

@@ -13,6 +13,7 @@ from ringlet import _core
 from ringlet.data.cache import Touches
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
+from ringlet.data.precision import compact
 from ringlet.shot.contact import Contact
 from ringlet.shot.material import Material
 from ringlet.shot.solver import Solver
@@ -150,7 +151,8 @@ class Scene:
         at, weights = self.positions[vertices], values[:, :4]
         one, other = (np.einsum("kv,kvi->ki", np.maximum(sign * weights, 0.0), at) for sign in (1.0, -1.0))
         gap = np.linalg.norm(one - other, axis=1) / values[:, 7]
-        return Touches(*(np.asarray(part, np.float32) for part in (0.5 * (one + other), values[:, 8], gap)))
+        force, gap = np.asarray(values[:, 8], np.float32), np.asarray(gap, np.float32)
+        return Touches(compact(0.5 * (one + other)), force, gap)
 
     @property
     def cloth_reports(self) -> list[dict[str, float]]:

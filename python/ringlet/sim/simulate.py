@@ -15,6 +15,7 @@ from ringlet.data.errors import UserError
 from ringlet.data.groom import Groom
 from ringlet.data.limits import wrong_frames
 from ringlet.data.mesh import Clip
+from ringlet.data.precision import compact
 from ringlet.shot.shot import Shot
 from ringlet.sim.checkpoint import Checkpoints
 from ringlet.sim.garment import Garment
@@ -24,7 +25,7 @@ from ringlet.sim.obstacle import Obstacle
 CLOTH, TOUCHES = "cloth ", "touches "  # prefixes of the arrays of cloths and of contacts in checkpoints
 
 Progress = Callable[[str, int, int], None]
-OnFrame = Callable[[float, NDArray[np.float32], dict[str, Any]], None]
+OnFrame = Callable[[float, NDArray[np.floating], dict[str, Any]], None]
 
 
 def simulate(
@@ -58,7 +59,7 @@ def simulate(
     check_frames(first, last)
     motion = Motion(shot, groom, clip, rest, obstacles, garments, first)
     numbers = np.arange(first, last + 1, dtype=np.float64)
-    points = np.empty((len(numbers), len(groom.locks.points), 3), np.float32)
+    points = np.empty((len(numbers), len(groom.locks.points), 3), compact(clip.points).dtype)
     cache = Cache(numbers, points, start=motion.start, cloths=motion.cloths(len(numbers)))
     run = play(motion, last, touches=touches, progress=progress, checkpoints=checkpoints, resume=resume)
     for k, frame in enumerate(run):
@@ -84,24 +85,24 @@ class Frame:
     """The result of a run at one frame.
 
     number:     of the frame
-    points:     positions of the locks [m], shape (n, 3), float32
+    points:     positions of the locks [m], shape (n, 3), float32; float64 far from the origin
     cloths:     those of each cloth
     statistics: the report of the solver
     touches:    the contacts, where they were asked for
     """
 
     number: float
-    points: NDArray[np.float32]
-    cloths: list[NDArray[np.float32]]
+    points: NDArray[np.floating]
+    cloths: list[NDArray[np.floating]]
     statistics: dict[str, Any]
     touches: Touches | None = None
 
     @classmethod
     def now(cls, number: float, motion: Motion, statistics: dict[str, Any], touches: bool) -> Frame:
         """The frame at which a motion is."""
-        cloths = [np.asarray(garment.cloth.positions, np.float32) for garment in motion.garments]
+        cloths = [compact(garment.cloth.positions) for garment in motion.garments]
         contacts = motion.scene.touches if touches and motion.scene else None
-        return cls(number, np.asarray(motion.strands.positions, np.float32), cloths, statistics, contacts)
+        return cls(number, compact(motion.strands.positions), cloths, statistics, contacts)
 
     @classmethod
     def stored(cls, number: float, arrays: Mapping[str, NDArray[Any]], statistics: dict[str, Any]) -> Frame:

@@ -23,6 +23,7 @@ from ringlet.io.usd.cloths import ClothPrims, cloth_metadata, read_cloth, set_cl
 from ringlet.io.usd.curves import OWN
 from ringlet.io.usd.groom import LOCKS, VERSION, check_version, groom_prim
 from ringlet.io.usd.mesh import mesh_at
+from ringlet.io.usd.place import Place, placed
 from ringlet.io.usd.stage import Source, parse_json, reading, reading_more
 from ringlet.io.usd.stream import StreamWriter
 from ringlet.io.usd.surfaces import shown_surfaces
@@ -49,7 +50,7 @@ def write_cache(
 def read_cache(path: Path | str) -> Cache:
     """Reads all frames of a simulation, or of the simulation under a layer of hairs."""
     with open_cache(path) as cache:
-        points = np.empty((len(cache.frames), cache.size, 3), np.float32)
+        points = np.empty((len(cache.frames), cache.size, 3), np.float64 if cache.is_placed else np.float32)
         for index, frame in enumerate(cache.frames):
             points[index] = cache.points(frame)
         return Cache(cache.frames, points, cache.statistics, cache.start, cache.cloths())
@@ -95,13 +96,15 @@ class CacheFile:
         self._cloths: list[dict[str, Any]] = entry("cloths", "[]")
         self._meshes: list[tuple[Usd.Prim, Mesh]] | None = None
 
-    def points(self, frame: float) -> NDArray[np.float32]:
-        """Positions of the locks at a frame [m], shape (n, 3), in the order of the groom's locks.
+    def points(self, frame: float) -> NDArray[np.floating]:
+        """Positions of the locks at a frame [m], shape (n, 3), in the order of the groom's locks; float64 far away.
 
         Raises UserError when the number of points differs from the groom's.
         """
         with reading_more(self._source.path):
-            points = np.array(self._points.Get(Usd.TimeCode(float(frame))), np.float32).reshape(-1, 3)
+            time = Usd.TimeCode(float(frame))
+            points = np.array(self._points.Get(time), np.float32).reshape(-1, 3)
+            points = placed(points, self._points.GetPrim(), time)
         if len(points) != self.size:
             raise UserError(
                 f"{self._source.path}: has {len(points)} points at frame {frame:g}, its groom {self.size}; "
@@ -146,11 +149,16 @@ class CacheFile:
         return chosen
 
     @property
+    def is_placed(self) -> bool:
+        """Whether its locks have a transform, as far from the origin."""
+        return bool(UsdGeom.Xformable(self._points.GetPrim()).GetOrderedXformOps())
+
+    @property
     def cloth_prims(self) -> dict[str, str]:
         """Names of the simulated cloths, by prim path in the stage."""
         return {cloth["at"]: cloth["name"] for cloth in self._cloths}
 
-    def cloths_at(self, frame: float) -> dict[str, NDArray[np.float32]]:
+    def cloths_at(self, frame: float) -> dict[str, NDArray[np.floating]]:
         """Positions of the cloths' vertices at a frame [m], shape (n, 3) each, by name."""
         with reading_more(self._source.path):
             return {entry["name"]: read_cloth(self._source, entry, [frame]).points[0] for entry in self._cloths}
@@ -214,6 +222,7 @@ class CacheWriter(StreamWriter):
         with reading(self.under) as groom:
             prims = ClothPrims(stage, groom)
             self._meshes = [prims.over(cloth) for cloth in self._cloths]
+        self._places = [Place(mesh.GetPrim(), self.space) for mesh in self._meshes]
         return self
 
     def add(
@@ -235,8 +244,8 @@ class CacheWriter(StreamWriter):
             raise ValueError(f"cache: points have shape {points.shape}; must be {self._shape}")
         self.put(self._curves, frame, points)
         self._add_lag(frame, statistics or {})
-        for mesh, places in zip(self._meshes, cloths, strict=True):
-            set_cloth(mesh, frame, places, self.space)
+        for mesh, place, positions in zip(self._meshes, self._places, cloths, strict=True):
+            set_cloth(mesh, frame, positions, place)
         self._statistics.append(statistics or {})
 
     def _add_lag(self, frame: float, statistics: dict[str, Any]) -> None:

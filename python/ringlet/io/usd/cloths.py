@@ -14,12 +14,11 @@ from pxr import Sdf, Usd, UsdGeom
 
 from ringlet.data.cache import CachedCloth
 from ringlet.data.errors import UserError
-from ringlet.data.stage import StageSpace
-from ringlet.io.space import from_metres, to_metres
+from ringlet.io.space import to_metres
 from ringlet.io.usd.groom import BODY, GROOM, scalp_source
 from ringlet.io.usd.names import identifier
+from ringlet.io.usd.place import Place, placed
 from ringlet.io.usd.stage import Source, relative
-from ringlet.io.usd.values import float3
 
 CLOTHS = f"{GROOM}/cloths"
 
@@ -65,9 +64,10 @@ class ClothPrims:
         return place
 
 
-def set_cloth(mesh: UsdGeom.Mesh, frame: float, points: NDArray[np.floating], space: StageSpace) -> None:
+def set_cloth(mesh: UsdGeom.Mesh, frame: float, points: NDArray[np.floating], place: Place) -> None:
     """Writes points [m] and their extent at a frame."""
-    value, time = float3(from_metres(points, space)), Usd.TimeCode(float(frame))
+    time = Usd.TimeCode(float(frame))
+    value = place.local(points, time)
     mesh.CreatePointsAttr().Set(value, time)
     mesh.CreateExtentAttr().Set(UsdGeom.PointBased.ComputeExtent(value), time)
 
@@ -96,5 +96,6 @@ def read_cloth(source: Source, entry: dict[str, Any], frames: list[float]) -> Ca
             f"{source.path}: its cloth {entry['at']} is not there; put {entry['file']} back, or simulate again"
         )
     attribute = UsdGeom.PointBased(prim).GetPointsAttr()
-    points = np.stack([to_metres(np.array(attribute.Get(frame)), source.space) for frame in frames])
-    return CachedCloth(entry["name"], source.path.parent / entry["file"], entry["prim"], points.astype(np.float32))
+    local = [placed(np.array(attribute.Get(frame)), prim, Usd.TimeCode(frame)) for frame in frames]
+    points = np.stack([to_metres(points, source.space) for points in local])
+    return CachedCloth(entry["name"], source.path.parent / entry["file"], entry["prim"], points)

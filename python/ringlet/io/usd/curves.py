@@ -16,15 +16,15 @@ from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Mesh
 from ringlet.data.stage import StageSpace
-from ringlet.io.space import from_metres, to_metres
+from ringlet.io.space import to_metres
 from ringlet.io.usd.basis import Sampling
 from ringlet.io.usd.names import identifier, keep_name, original_name
+from ringlet.io.usd.place import Place, placed
 from ringlet.io.usd.pose import posed_points, rest_time
 from ringlet.io.usd.stage import Source, choose, find_prim, prims, reading
 from ringlet.io.usd.values import (
     Types,
     flattened,
-    float3,
     from_usd,
     local_to_world,
     read_integers,
@@ -91,7 +91,8 @@ def own_curves(source: Source, prim: Usd.Prim, time: Usd.TimeCode | None = None,
     """
     where, time = source.where(prim), time or Usd.TimeCode.Default()
     value = UsdGeom.PointBased(prim).GetPointsAttr().Get(time)
-    points = to_metres(np.array(value if value is not None else [], dtype).reshape(-1, 3), source.space)
+    local = np.array(value if value is not None else [], dtype).reshape(-1, 3)
+    points = to_metres(placed(local, prim, time), source.space)
     counts = _counts(prim, time, len(points), where)
     primvar = UsdGeom.PrimvarsAPI(prim).GetPrimvar(f"{OWN}id")
     ids = primvar.Get() if primvar else None
@@ -153,9 +154,9 @@ def _set_attribute(prim: Usd.Prim, name: str, interpolation: str, values: NDArra
     keep_name(UsdGeom.PrimvarsAPI(prim).GetPrimvar(stored).GetAttr(), name)
 
 
-def set_points(curves: UsdGeom.BasisCurves, points: NDArray, space: StageSpace, time: Usd.TimeCode) -> None:
+def set_points(curves: UsdGeom.BasisCurves, points: NDArray, place: Place, time: Usd.TimeCode) -> None:
     """Writes points [m] and their extent at a time."""
-    value = float3(from_metres(points, space))
+    value = place.local(points, time)
     curves.CreatePointsAttr().Set(value, time)
     curves.CreateExtentAttr().Set(UsdGeom.Curves.ComputeExtent(value, curves.GetWidthsAttr().Get()), time)
 

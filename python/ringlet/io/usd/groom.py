@@ -18,7 +18,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from pxr import Sdf, Usd, UsdGeom
 
 from ringlet.data.binding import check_roots, root_places
@@ -30,9 +29,9 @@ from ringlet.data.reads import recorded
 from ringlet.data.regular import check_regular
 from ringlet.data.settings import did_you_mean
 from ringlet.data.stage import StageSpace
-from ringlet.io.space import from_metres, to_metres
 from ringlet.io.usd.curves import define_curves, own_curves, set_points, set_roots
 from ringlet.io.usd.mesh import define_mesh, read_usd_mesh, select_mesh
+from ringlet.io.usd.place import Place, rounded
 from ringlet.io.usd.stage import (
     CAGE,
     LIMIT,
@@ -45,7 +44,7 @@ from ringlet.io.usd.stage import (
     relative,
     writing,
 )
-from ringlet.io.usd.values import Types, float3
+from ringlet.io.usd.values import Types
 
 GROOM, LOCKS, GUIDES, BODY = "/groom", "/groom/locks", "/groom/guides", "/groom/body"
 VARIANTS, BASE = "groom", "base"
@@ -100,21 +99,17 @@ def as_written(groom: Groom) -> Groom:
     head, scalp = _head_file(groom), groom.scalp
     space = read_usd_space(head) if head else groom.space
     if head is None:
-        scalp = replace(scalp, points=_points_written(scalp.points, space))
+        scalp = replace(scalp, points=rounded(scalp.points, space))
     guides, locks = (_curves_written(curves, space) for curves in (groom.guides, groom.locks))
     return replace(groom, guides=guides, locks=locks, scalp=scalp)
 
 
 def _curves_written(curves: Curves, space: StageSpace) -> Curves:
-    written = curves.with_points(_points_written(curves.points, space))
+    written = curves.with_points(rounded(curves.points, space))
     if "width" in curves.point:
         widths = np.asarray(curves.point["width"] / space.meters_per_unit, np.float32)
         written.point = {**curves.point, "width": widths * np.float32(space.meters_per_unit)}
     return written
-
-
-def _points_written(points: NDArray[np.floating], space: StageSpace) -> NDArray[np.float64]:
-    return to_metres(from_metres(points, space).astype(np.float64), space)
 
 
 def _head_file(groom: Groom) -> Path | None:
@@ -242,11 +237,9 @@ def _reference(stage: Usd.Stage, head: Path, scalp: str | None) -> Sdf.Path:
 def _define_guides(stage: Usd.Stage, path: str, curves: Curves, groom: Groom, space: StageSpace) -> None:
     """Writes locks or guides with the primvars that other programs need."""
     defined = define_curves(stage, path, curves, space, guide=True)
-    set_points(defined, curves.points, space, Usd.TimeCode.Default())
     prim = defined.GetPrim()
-    UsdGeom.PrimvarsAPI(prim).CreatePrimvar("rest", Types.Point3fArray, "vertex").Set(
-        float3(from_metres(curves.points, space))
-    )
+    set_points(defined, curves.points, Place(prim, space), Usd.TimeCode.Default())
+    UsdGeom.PrimvarsAPI(prim).CreatePrimvar("rest", Types.Point3fArray, "vertex").Set(defined.GetPointsAttr().Get())
     set_roots(prim, curves, groom.scalp)
 
 

@@ -16,6 +16,7 @@ from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.data.errors import UserError
 from ringlet.data.groom import Groom
 from ringlet.data.mesh import Clip
+from ringlet.data.precision import compact
 from ringlet.io.usd.clips import clip_at, whole_frames
 from ringlet.io.usd.curves import curve_widths, curves_at, define_curves, own_curves, set_roots
 from ringlet.io.usd.groom import GROOM
@@ -146,7 +147,7 @@ def _hairs_at(source: Source, prim: Usd.Prim, frame: float | None) -> Curves:
         curves = own_curves(source, prim, time, np.float32)
     else:
         curves = curves_at(source, prim, time)
-        curves.points = curves.points.astype(np.float32)
+        curves.points = compact(curves.points)
     if "width" not in curves.point:
         curves.point["width"] = curve_widths(curves)
     return curves.check(source.where(prim))

@@ -14,10 +14,11 @@ from pxr import Usd, UsdGeom, Vt
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Clip, Mesh
 from ringlet.data.stage import StageSpace
-from ringlet.io.space import from_metres, to_metres
+from ringlet.io.space import to_metres
 from ringlet.io.usd.clips import shot_clip_at
 from ringlet.io.usd.instancer import instance_transforms, prototype_surfaces
 from ringlet.io.usd.names import identifier, keep_name, original_name
+from ringlet.io.usd.place import Place
 from ringlet.io.usd.pose import posed_points, rest_time
 from ringlet.io.usd.refinement import unrefined
 from ringlet.io.usd.stage import Source, choose, find_prim, prims, reading
@@ -26,7 +27,6 @@ from ringlet.io.usd.triangles import Triangles
 from ringlet.io.usd.values import (
     Types,
     flattened,
-    float3,
     float_primvars,
     read_integers,
     read_time,
@@ -186,7 +186,8 @@ def _instanced_mesh(source: Source, prim: Usd.Prim) -> Mesh:
 def define_mesh(stage: Usd.Stage, path: str, mesh: Mesh, space: StageSpace) -> Usd.Prim:
     """Writes a mesh with its regions at a prim path."""
     defined = UsdGeom.Mesh.Define(stage, path)
-    prim, points = defined.GetPrim(), float3(from_metres(mesh.points, space))
+    prim = defined.GetPrim()
+    points = Place(prim, space).local(mesh.points, Usd.TimeCode.Default())
     defined.CreatePointsAttr(points)
     defined.CreateExtentAttr(UsdGeom.PointBased.ComputeExtent(points))
     defined.CreateFaceVertexCountsAttr(Vt.IntArray.FromNumpy(np.full(len(mesh.triangles), 3, np.int32)))

@@ -13,6 +13,7 @@ from ringlet.data.errors import UserError
 from ringlet.data.stage import StageSpace
 from ringlet.io.usd.curves import define_curves, own_curves, set_points
 from ringlet.io.usd.groom import GROOM, LOCKS, VERSION, check_version
+from ringlet.io.usd.place import Place
 from ringlet.io.usd.stage import new_stage, parse_json, reading, writing
 
 
@@ -21,7 +22,8 @@ def write_rest(rest: Curves, made_from: dict[str, Any], path: Path | str, space:
     with writing(path) as aside:
         stage = new_stage(aside, space)
         UsdGeom.Xform.Define(stage, GROOM)
-        set_points(define_curves(stage, LOCKS, rest, space, guide=True), rest.points, space, Usd.TimeCode.Default())
+        curves = define_curves(stage, LOCKS, rest, space, guide=True)
+        set_points(curves, rest.points, Place(curves.GetPrim(), space), Usd.TimeCode.Default())
         metadata = {"version": VERSION, "made_from": json.dumps(made_from, sort_keys=True)}
         stage.GetRootLayer().customLayerData = {"ringlet": metadata}
         stage.Save()

@@ -13,6 +13,7 @@ from ringlet.data.reads import recorded, refuse_inputs
 from ringlet.data.stage import StageSpace
 from ringlet.io.usd.curves import set_points
 from ringlet.io.usd.groom import choose_variant, groom_prim
+from ringlet.io.usd.place import Place
 from ringlet.io.usd.stage import check_target, new_stage, reading, writing
 
 FLUSH = 64e6  # bytes of points in memory before they are saved
@@ -26,6 +27,7 @@ class StreamWriter:
         self.path, self.under, self.space, self.variant = Path(path), Path(under), space, variant
         self._frames: list[float] = []
         self._unsaved = 0
+        self._place: Place | None = None
 
     def begin(self) -> Usd.Stage:
         """Opens a temporary file beside ``path`` and returns its stage over the groom.
@@ -51,8 +53,11 @@ class StreamWriter:
         return self._stage.GetRootLayer()
 
     def put(self, curves: UsdGeom.BasisCurves, frame: float | None, points: NDArray) -> None:
-        """Sets the points [m] of curves at a frame; at rest for None."""
-        set_points(curves, points, self.space, Usd.TimeCode.Default() if frame is None else Usd.TimeCode(float(frame)))
+        """Sets the points [m] of the curves of this writer at a frame; at rest for None."""
+        if self._place is None:
+            self._place = Place(curves.GetPrim(), self.space)
+        time = Usd.TimeCode.Default() if frame is None else Usd.TimeCode(float(frame))
+        set_points(curves, points, self._place, time)
         self.record(frame, points.size * 4)
 
     def record(self, frame: float | None, size: int) -> None:

@@ -16,9 +16,11 @@ from pxr import Usd, UsdGeom
 
 from ringlet.data.cache import Cache, SimulationRecord, Touches
 from ringlet.data.errors import UserError
+from ringlet.data.precision import compact
 from ringlet.data.stage import StageSpace
-from ringlet.io.space import from_metres, to_metres
+from ringlet.io.space import to_metres
 from ringlet.io.usd.groom import GROOM
+from ringlet.io.usd.place import Place, placed
 from ringlet.io.usd.stage import reading
 from ringlet.io.usd.stream import StreamWriter
 from ringlet.io.usd.values import Types, float3, to_usd
@@ -57,16 +59,17 @@ class TouchesWriter(StreamWriter):
     def __enter__(self) -> Self:
         stage = self.begin()
         self._touches, self._start = (UsdGeom.Points.Define(stage, name) for name in (TOUCHES, START))
+        self._at, self._at_start = (Place(of.GetPrim(), self.space) for of in (self._touches, self._start))
         return self
 
     def mark(self, places: NDArray, depth: NDArray) -> None:
         """Adds initial penetrations: places [m], shape (k, 3), and relative depths from 0 to 1, shape (k,)."""
-        _put(self._start, places, heat(depth), self.space, Usd.TimeCode.Default())
+        _put(self._start, places, heat(depth), self._at_start, self.space, Usd.TimeCode.Default())
 
     def add(self, frame: float, touches: Touches, colors: NDArray) -> None:
         """Adds a frame; colours have shape (k, 3)."""
         time = Usd.TimeCode(float(frame))
-        _put(self._touches, touches.places, colors, self.space, time)
+        _put(self._touches, touches.places, colors, self._at, self.space, time)
         for name in ("force", "gap"):
             kind, value = to_usd(getattr(touches, name))
             UsdGeom.PrimvarsAPI(self._touches).CreatePrimvar(f"ringlet:{name}", kind, "vertex").Set(value, time)
@@ -88,20 +91,23 @@ def read_touches(path: Path | str, frame: float | None = None) -> tuple[Touches,
         if chosen not in times:
             raise UserError(f"{path}: has no contacts at frame {chosen:g}; it holds {times[0]:g} to {times[-1]:g}")
         time, api = Usd.TimeCode(chosen), UsdGeom.PrimvarsAPI(prim)
-        places = to_metres(np.array(points.GetPointsAttr().Get(time), np.float32).reshape(-1, 3), source.space)
+        local = np.array(points.GetPointsAttr().Get(time), np.float32).reshape(-1, 3)
+        places = to_metres(placed(local, prim, time), source.space)
         force, gap = (np.array(api.GetPrimvar(f"ringlet:{name}").Get(time), np.float32) for name in ("force", "gap"))
         colors = np.array(points.GetDisplayColorAttr().Get(time), np.float32).reshape(-1, 3)
         return Touches(places, force, gap), colors
 
 
-def start_marks(start: dict[str, Any]) -> tuple[NDArray[np.float32], NDArray[np.float64]]:
+def start_marks(start: dict[str, Any]) -> tuple[NDArray[np.floating], NDArray[np.float64]]:
     """Places of initial penetrations [m], shape (k, 3), and depths relative to the deepest of their kind (k,)."""
     marks = np.array(start.get("marks", []), np.float64).reshape(-1, 4)
-    return marks[:, :3].astype(np.float32), marks[:, 3]
+    return compact(marks[:, :3]), marks[:, 3]
 
 
-def _put(prim: UsdGeom.Points, places: NDArray, colors: NDArray, space: StageSpace, time: Usd.TimeCode) -> None:
-    value = float3(from_metres(np.asarray(places, np.float32), space))
+def _put(
+    prim: UsdGeom.Points, places: NDArray, colors: NDArray, at: Place, space: StageSpace, time: Usd.TimeCode
+) -> None:
+    value = at.local(places, time)
     width = np.full(len(places), SIZE / space.meters_per_unit, np.float32)
     _, widths = to_usd(width)
     prim.CreatePointsAttr().Set(value, time)
