@@ -72,7 +72,7 @@ def write_hairs(
         beside = [(mesh.points, mesh.triangles) for mesh in shown]
         points = hairs.deformed(locks.locks.points, scalp.points, surfaces=beside)
         with io.HairWriter(Path(path), locks, hairs.curves, Path(groom)) as writer:
-            writer.add(None, points)
+            writer.add(None, points, around=scalp.points)
     else:
         with io.open_cache(cache) as moved, io.HairWriter(Path(path), locks, hairs.curves, Path(cache)) as writer:
             chosen = moved.within(frames)
@@ -89,7 +89,7 @@ def write_hairs(
                     moved.lag(frame),
                 )
                 beside = moved.surfaces(frame) or [(scalp, locks.scalp.triangles)]
-                writer.add(frame, hairs.deformed(points, scalp, surfaces=beside))
+                writer.add(frame, hairs.deformed(points, scalp, surfaces=beside), around=scalp)
                 written += 1
                 if progress:
                     progress("hairs", written, len(chosen))

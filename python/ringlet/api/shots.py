@@ -140,7 +140,8 @@ def write_simulation(
         for frame in sim.replay(motion, kept, steps):
             record.frames.append(frame.number)
             record.statistics.append(frame.statistics)
-            writer.add(frame.number, frame.points, frame.statistics, frame.cloths)
+            around = contents["clip"].at(frame.number)
+            writer.add(frame.number, frame.points, frame.statistics, frame.cloths, around=around)
     return record
 
 
@@ -291,7 +292,7 @@ def write_loft(loft: Loft, shot: Shot, path: Path | str) -> None:
     from ringlet import io, rest
 
     made_from = rest.dependencies(shot, _supporting_bodies(shot, loft.groom))
-    io.write_rest(rest.to_curves(loft, shot), made_from, Path(path), loft.groom.space)
+    io.write_rest(rest.to_curves(loft, shot), made_from, Path(path), loft.groom.space, around=loft.groom.scalp.points)
 
 
 def _supporting_bodies(shot: Shot, groom: Groom) -> list[Obstacle]:

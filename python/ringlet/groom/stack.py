@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ringlet.data.bounds import check_curves
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.groom import Groom
@@ -102,6 +103,7 @@ def make_groom(
             context = Context(recipe.seed, surface, name, recipe.locks.points, helpers, shapes)
             before = curves
             curves, key = _run(operator, curves, key, context, memory)
+            check_curves(curves, curves.points, scalp.points, name)
             if isinstance(operator, Displacement):
                 lengthened += _lengthened(name, before, curves)
             if name == "guides":

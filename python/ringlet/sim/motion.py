@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ringlet.data.bounds import check_curves, check_positions
 from ringlet.data.cache import CachedCloth
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
@@ -119,10 +120,22 @@ class Motion:
 
     def reach(self, k: int) -> dict[str, Any]:
         """Goes on to the k-th frame from the first, from the one before; the head is still in the preroll, where k is
-        negative. Returns the frame's statistics."""
-        if k == 0:
-            return self.begin()
-        return self.advance(self.first + max(k - 1, 0), self.first + max(k, 0))
+        negative. Returns the frame's statistics.
+
+        Raises UserError for positions that are not finite or far from the head.
+        """
+        end = self.first + max(k, 0)
+        statistics = self.begin() if k == 0 else self.advance(self.first + max(k - 1, 0), end)
+        self._check_positions(end)
+        return statistics
+
+    def _check_positions(self, frame: float) -> None:
+        """Refuses positions that are not finite or far from the head."""
+        head = self.clip.at(frame)
+        check_curves(self.locks, self.strands.positions, head, f"sim: locks at frame {frame:g}")
+        for garment in self.garments:
+            where = f"sim: cloth '{garment.name}' at frame {frame:g}"
+            check_positions(garment.cloth.positions, head, where, lambda row: f"vertex {row}")
 
     def begin(self) -> dict[str, Any]:
         """Locks and cloths take over the motion that the clip has at the first frame.

@@ -20,7 +20,7 @@ from ringlet.data.stage import StageSpace
 from ringlet.io.space import to_metres
 from ringlet.io.usd.clips import clip_at
 from ringlet.io.usd.cloths import ClothPrims, cloth_metadata, read_cloth, set_cloth
-from ringlet.io.usd.curves import OWN
+from ringlet.io.usd.curves import OWN, own_curves
 from ringlet.io.usd.groom import LOCKS, VERSION, check_version, groom_prim
 from ringlet.io.usd.mesh import mesh_at
 from ringlet.io.usd.place import Place, placed
@@ -218,11 +218,11 @@ class CacheWriter(StreamWriter):
     def __enter__(self) -> Self:
         stage = self.begin()
         self._curves = UsdGeom.BasisCurves(stage.OverridePrim(LOCKS))
-        self._shape = (len(self._curves.GetPointsAttr().Get()), 3)
+        self._locks = own_curves(Source(self.path, stage, self.space), self._curves.GetPrim())
         with reading(self.under) as groom:
             prims = ClothPrims(stage, groom)
             self._meshes = [prims.over(cloth) for cloth in self._cloths]
-        self._places = [Place(mesh.GetPrim(), self.space) for mesh in self._meshes]
+        self._places = [Place(mesh.GetPrim(), self.space, self.path) for mesh in self._meshes]
         return self
 
     def add(
@@ -231,21 +231,23 @@ class CacheWriter(StreamWriter):
         points: NDArray,
         statistics: dict[str, Any] | None = None,
         cloths: Sequence[NDArray] = (),
+        *,
+        around: NDArray | None = None,
     ) -> None:
         """Adds a frame.
 
         points:     positions of the locks [m], shape (n, 3), in the order of the groom's locks
         statistics: report of the solver
         cloths:     positions of each cloth's vertices [m], shape (k, 3) each
+        around:     points of the head [m], shape (m, 3); by default the roots
 
-        Raises ValueError for points of another shape than the groom's.
+        Raises UserError for positions that are not finite, far from the head, or not as many as the groom's.
         """
-        if points.shape != self._shape:
-            raise ValueError(f"cache: points have shape {points.shape}; must be {self._shape}")
-        self.put(self._curves, frame, points)
+        around = points[self._locks.offsets[:-1]] if around is None else around
+        self.put(self._curves, frame, points, self._locks, around)
         self._add_lag(frame, statistics or {})
         for mesh, place, positions in zip(self._meshes, self._places, cloths, strict=True):
-            set_cloth(mesh, frame, positions, place)
+            set_cloth(mesh, frame, positions, place, around)
         self._statistics.append(statistics or {})
 
     def _add_lag(self, frame: float, statistics: dict[str, Any]) -> None:

@@ -64,10 +64,12 @@ class ClothPrims:
         return place
 
 
-def set_cloth(mesh: UsdGeom.Mesh, frame: float, points: NDArray[np.floating], place: Place) -> None:
-    """Writes points [m] and their extent at a frame."""
+def set_cloth(
+    mesh: UsdGeom.Mesh, frame: float, points: NDArray[np.floating], place: Place, around: NDArray[np.floating]
+) -> None:
+    """Writes points [m] and their extent at a frame; ``around`` are points of the head [m]."""
     time = Usd.TimeCode(float(frame))
-    value = place.local(points, time)
+    value = place.local(points, time, around)
     mesh.CreatePointsAttr().Set(value, time)
     mesh.CreateExtentAttr().Set(UsdGeom.PointBased.ComputeExtent(value), time)
 

@@ -41,6 +41,7 @@ COMMON = {"rest", "skinprim", "skinprimuv", "st", "surface_uv_coordinate", "guid
 COMMON |= {"groom_id", "groom_group_id", "groom_guide", "groom_root_uv", "groom_color"}
 COMMON |= {"displayColor", "displayOpacity"}
 INNER = {"root_triangle", "root_barycentric", "lock", "guide_id", "nail", "groomed", "stiffened", "off", "moving"}
+MOST_WIDTH = 1.0  # largest diameter of a curve that is written [m]
 SCHEMA = {"widths", "normals"}  # primvars that take precedence over the attribute of the same name
 HAIR_WIDTH = 70e-6  # default diameter of a hair [m]
 
@@ -122,14 +123,23 @@ def define_curves(
     defined.CreatePurposeAttr(UsdGeom.Tokens.guide if guide else UsdGeom.Tokens.default_)
     defined.CreateCurveVertexCountsAttr(Vt.IntArray.FromNumpy(curves.counts))
     has_width = {"width"} & (curves.point.keys() | curves.curve.keys())
-    widths = (curve_widths(curves) if has_width else np.array([HAIR_WIDTH])) / space.meters_per_unit
+    diameters = curve_widths(curves) if has_width else np.array([HAIR_WIDTH])
+    if not ((diameters >= 0.0) & (diameters <= MOST_WIDTH)).all():  # also true for NaN
+        raise UserError(
+            f"{path}: widths are from {diameters.min():.4g} to {diameters.max():.4g} m; must be from 0 to "
+            f"{MOST_WIDTH:g} m"
+        )
+    widths = diameters / space.meters_per_unit
     defined.CreateWidthsAttr(Vt.FloatArray.FromNumpy(np.ascontiguousarray(widths, np.float32)))
     defined.SetWidthsInterpolation(UsdGeom.Tokens.vertex if has_width else UsdGeom.Tokens.constant)
 
     prim = defined.GetPrim()
     set_primvar(prim, f"{OWN}id", "uniform", curves.ids)
     for interpolation, attributes in (("uniform", curves.curve), ("vertex", curves.point)):
+        expected = len(curves) if interpolation == "uniform" else int(curves.offsets[-1])
         for name, values in attributes.items():
+            if len(values) != expected:
+                raise UserError(f"{path}: {name} has {len(values)} values; must have {expected}, being {interpolation}")
             if interpolation == "uniform" or name != "width":  # the width of points is in ``widths``
                 _set_attribute(prim, name, interpolation, values)
     fits = np.abs(curves.ids).max(initial=0) < 2**31
@@ -154,9 +164,11 @@ def _set_attribute(prim: Usd.Prim, name: str, interpolation: str, values: NDArra
     keep_name(UsdGeom.PrimvarsAPI(prim).GetPrimvar(stored).GetAttr(), name)
 
 
-def set_points(curves: UsdGeom.BasisCurves, points: NDArray, place: Place, time: Usd.TimeCode) -> None:
-    """Writes points [m] and their extent at a time."""
-    value = place.local(points, time)
+def set_points(
+    curves: UsdGeom.BasisCurves, points: NDArray, place: Place, time: Usd.TimeCode, around: NDArray | None = None
+) -> None:
+    """Writes points [m] and their extent at a time; ``around`` as for ``Place.local``."""
+    value = place.local(points, time, around)
     curves.CreatePointsAttr().Set(value, time)
     curves.CreateExtentAttr().Set(UsdGeom.Curves.ComputeExtent(value, curves.GetWidthsAttr().Get()), time)
 

@@ -73,11 +73,11 @@ def write_groom(groom: Groom, path: Path | str, variants: Mapping[str, Groom] | 
         scalp = (
             _reference(stage, head, groom.scalp_prim)
             if head
-            else define_mesh(stage, BODY, groom.scalp, space).GetPath()
+            else define_mesh(stage, BODY, groom.scalp, space, path).GetPath()
         )
         root.CreateRelationship("ringlet:scalp", custom=True).SetTargets([scalp])
         if not variants:
-            _define(stage, groom, space)
+            _define(stage, groom, space, path)
         else:
             choice = root.GetVariantSets().AddVariantSet(VARIANTS)
             for name, variant in {BASE: groom, **variants}.items():
@@ -85,7 +85,7 @@ def write_groom(groom: Groom, path: Path | str, variants: Mapping[str, Groom] | 
                 choice.AddVariant(name)
                 choice.SetVariantSelection(name)
                 with choice.GetVariantEditContext():
-                    _define(stage, variant, space)
+                    _define(stage, variant, space, path)
             choice.SetVariantSelection(BASE)
         stage.Save()
 
@@ -117,14 +117,14 @@ def _head_file(groom: Groom) -> Path | None:
     return groom.scalp_file if groom.scalp_file and groom.scalp_file.suffix in SUFFIXES else None
 
 
-def _define(stage: Usd.Stage, groom: Groom, space: StageSpace) -> None:
+def _define(stage: Usd.Stage, groom: Groom, space: StageSpace, file: Path | str) -> None:
     """Writes the prims and attributes that differ between variants."""
     root = stage.GetPrimAtPath(GROOM)
     _set(root, "hairs", Types.String, json.dumps(groom.hairs))
     if groom.recipe is not None:
         _set(root, "recipe", Types.String, groom.recipe)
-    _define_guides(stage, LOCKS, groom.locks, groom, space)
-    _define_guides(stage, GUIDES, groom.guides, groom, space)
+    _define_guides(stage, LOCKS, groom.locks, groom, space, file)
+    _define_guides(stage, GUIDES, groom.guides, groom, space, file)
 
 
 def _check_variant(name: str, variant: Groom, groom: Groom) -> None:
@@ -234,11 +234,14 @@ def _reference(stage: Usd.Stage, head: Path, scalp: str | None) -> Sdf.Path:
     return prim.ReplacePrefix(top, BODY)
 
 
-def _define_guides(stage: Usd.Stage, path: str, curves: Curves, groom: Groom, space: StageSpace) -> None:
+def _define_guides(
+    stage: Usd.Stage, path: str, curves: Curves, groom: Groom, space: StageSpace, file: Path | str
+) -> None:
     """Writes locks or guides with the primvars that other programs need."""
     defined = define_curves(stage, path, curves, space, guide=True)
     prim = defined.GetPrim()
-    set_points(defined, curves.points, Place(prim, space), Usd.TimeCode.Default())
+    place = Place(prim, space, file, curves)
+    set_points(defined, curves.points, place, Usd.TimeCode.Default(), groom.scalp.points)
     UsdGeom.PrimvarsAPI(prim).CreatePrimvar("rest", Types.Point3fArray, "vertex").Set(defined.GetPointsAttr().Get())
     set_roots(prim, curves, groom.scalp)
 

@@ -58,16 +58,15 @@ class HairWriter(StreamWriter):
             set_primvar(prim, "groom_color", "vertex", hairs.point["color"].astype(np.float32), Types.Color3fArray)
         return self
 
-    def add(self, frame: float | None, points: NDArray) -> None:
+    def add(self, frame: float | None, points: NDArray, *, around: NDArray | None = None) -> None:
         """Adds a frame, or the rest pose for None.
 
         points: positions [m], shape (n, 3), preferably float32
+        around: points of the head [m], shape (k, 3); by default the roots
 
-        Raises ValueError for another shape.
+        Raises UserError for positions that are not finite, far from the head, or not as many as the curves have.
         """
-        if points.shape != self._hairs.points.shape:
-            raise ValueError(f"hairs: points have shape {points.shape}; must be {self._hairs.points.shape}")
-        self.put(self._curves, frame, points)
+        self.put(self._curves, frame, points, self._hairs, around)
 
 
 def read_hairs(path: Path | str, frame: float | None = None) -> Curves:

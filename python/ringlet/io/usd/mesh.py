@@ -183,11 +183,11 @@ def _instanced_mesh(source: Source, prim: Usd.Prim) -> Mesh:
     return Mesh(f"{source.path.name} {prim.GetPath()}", points, np.concatenate(triangles).astype(np.int32), color=color)
 
 
-def define_mesh(stage: Usd.Stage, path: str, mesh: Mesh, space: StageSpace) -> Usd.Prim:
-    """Writes a mesh with its regions at a prim path."""
+def define_mesh(stage: Usd.Stage, path: str, mesh: Mesh, space: StageSpace, file: Path | str) -> Usd.Prim:
+    """Writes a mesh with its regions at a prim path; ``file`` is for messages."""
     defined = UsdGeom.Mesh.Define(stage, path)
     prim = defined.GetPrim()
-    points = Place(prim, space).local(mesh.points, Usd.TimeCode.Default())
+    points = Place(prim, space, file).local(mesh.points, Usd.TimeCode.Default())
     defined.CreatePointsAttr(points)
     defined.CreateExtentAttr(UsdGeom.PointBased.ComputeExtent(points))
     defined.CreateFaceVertexCountsAttr(Vt.IntArray.FromNumpy(np.full(len(mesh.triangles), 3, np.int32)))

@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 from typing import Any
 
+from numpy.typing import NDArray
 from pxr import Usd, UsdGeom
 
 from ringlet.data.curves import Curves
@@ -17,13 +18,15 @@ from ringlet.io.usd.place import Place
 from ringlet.io.usd.stage import new_stage, parse_json, reading, writing
 
 
-def write_rest(rest: Curves, made_from: dict[str, Any], path: Path | str, space: StageSpace) -> None:
-    """Writes a rest shape and the settings that produced it, as plain values."""
+def write_rest(
+    rest: Curves, made_from: dict[str, Any], path: Path | str, space: StageSpace, around: NDArray | None = None
+) -> None:
+    """Writes a rest shape and the settings that produced it, as plain values; ``around`` are points of the head [m]."""
     with writing(path) as aside:
         stage = new_stage(aside, space)
         UsdGeom.Xform.Define(stage, GROOM)
         curves = define_curves(stage, LOCKS, rest, space, guide=True)
-        set_points(curves, rest.points, Place(curves.GetPrim(), space), Usd.TimeCode.Default())
+        set_points(curves, rest.points, Place(curves.GetPrim(), space, path, rest), Usd.TimeCode.Default(), around)
         metadata = {"version": VERSION, "made_from": json.dumps(made_from, sort_keys=True)}
         stage.GetRootLayer().customLayerData = {"ringlet": metadata}
         stage.Save()

@@ -9,6 +9,7 @@ from types import TracebackType
 from numpy.typing import NDArray
 from pxr import Sdf, Usd, UsdGeom
 
+from ringlet.data.curves import Curves
 from ringlet.data.reads import recorded, refuse_inputs
 from ringlet.data.stage import StageSpace
 from ringlet.io.usd.curves import set_points
@@ -52,12 +53,23 @@ class StreamWriter:
         """The layer in progress."""
         return self._stage.GetRootLayer()
 
-    def put(self, curves: UsdGeom.BasisCurves, frame: float | None, points: NDArray) -> None:
-        """Sets the points [m] of the curves of this writer at a frame; at rest for None."""
+    def put(
+        self,
+        prim: UsdGeom.BasisCurves,
+        frame: float | None,
+        points: NDArray,
+        curves: Curves,
+        around: NDArray | None = None,
+    ) -> None:
+        """Sets the points [m] of the curves of this writer at a frame; at rest for None.
+
+        curves: those of the prim
+        around: points of the head [m], shape (k, 3); by default the roots
+        """
         if self._place is None:
-            self._place = Place(curves.GetPrim(), self.space)
+            self._place = Place(prim.GetPrim(), self.space, self.path, curves)
         time = Usd.TimeCode.Default() if frame is None else Usd.TimeCode(float(frame))
-        set_points(curves, points, self._place, time)
+        set_points(prim, points, self._place, time, around)
         self.record(frame, points.size * 4)
 
     def record(self, frame: float | None, size: int) -> None:

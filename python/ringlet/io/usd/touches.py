@@ -59,7 +59,7 @@ class TouchesWriter(StreamWriter):
     def __enter__(self) -> Self:
         stage = self.begin()
         self._touches, self._start = (UsdGeom.Points.Define(stage, name) for name in (TOUCHES, START))
-        self._at, self._at_start = (Place(of.GetPrim(), self.space) for of in (self._touches, self._start))
+        self._at, self._at_start = (Place(of.GetPrim(), self.space, self.path) for of in (self._touches, self._start))
         return self
 
     def mark(self, places: NDArray, depth: NDArray) -> None:
