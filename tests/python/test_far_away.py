@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from commands import run
+from pages import page, serving
 from PIL import Image
 from pxr import Gf, Usd, UsdGeom
 from small_example import FRAMES, write_example, write_head
@@ -146,3 +147,28 @@ def test_a_loft_a_kilometre_away_is_current_and_the_same(tmp_path):
         lofts.append(io.read_rest(folder / "small.rest.usdc")[0])
     assert np.abs(lofts[1].points - lofts[0].points - FAR).max() < MICRON
     assert np.abs(lofts[1].point["groomed"] - lofts[0].point["groomed"] - FAR).max() < MICRON
+
+
+def shown(folder):
+    """What the review shows of the small shot: locks, head and guides, locks after a drag of the brush, and a frame."""
+    with serving(folder, "small.shot.toml") as client, page(client) as one:
+        guides, body = one.receive("guides"), one.latest("body")
+        before = one.latest("locks", draft=False)["points"]
+        one.latest("numbers", draft=False)
+        tip = guides["points"].reshape(-1, 3)[guides["offsets"][1] - 1].tolist()
+        one.send(kind="sculpt", tool="comb", radius=0.02, gesture=7, at=tip, by=[0.01, 0, 0])
+        after = one.receive("locks", draft=False)["points"]
+        one.send(kind="play", action="start")
+        (frame,) = one.watch(2)
+        places = [guides["points"], guides["middle"], body["points"], before, after, frame["points"], frame["bodies"]]
+        return [np.array(points, np.float64).reshape(-1, 3) for points in places]
+
+
+def test_the_review_shows_a_head_a_kilometre_away_like_one_nearby(tmp_path):
+    near, far = (write_example(tmp_path / name) for name in ("near", "far"))
+    place(far / "head.usda", FAR)
+    whole = np.round(FAR)
+    both = list(zip(shown(near), shown(far), strict=True))
+    assert np.abs(both[4][0] - both[3][0]).max() > 0.002  # the brush has moved something
+    for one, other in both:
+        assert np.abs(other - one - (FAR - whole)).max() < 2 * MICRON

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Mesh
+from ringlet.data.precision import origin_of
 from ringlet.data.stage import StageSpace
 
 FLAT = 1e-9  # twice the area of a triangle, relative to its longest edge squared, at which it has no frame
@@ -81,3 +82,8 @@ class Groom:
                 f"{scalp.name}: at {when} triangle {bound['root_triangle'][lock]}, where lock {self.locks.ids[lock]} "
                 "is rooted, has no area or is not finite; mend the mesh or its animation"
             )
+
+    @property
+    def origin(self) -> NDArray[np.float64]:
+        """The origin near the head [m], relative to which single precision is exact, shape (3,); 0 up to 8 m away."""
+        return origin_of(self.scalp.points if len(self.scalp.points) else self.locks.points)

@@ -58,7 +58,7 @@ class DisplayGroom:
             axis = self.hairs.axes(self.groom.scalp.points)
         return pack(
             protocol.Locks.model_validate({"side": side, "draft": self.draft}),
-            points=locks.points,
+            points=locks.points - self.groom.origin,
             offsets=locks.offsets,
             ids=locks.ids,
             axis=axis,

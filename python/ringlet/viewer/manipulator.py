@@ -68,7 +68,7 @@ class LockManipulator:
         at = round(message.point / (count - 1), 4)
         if self._grabbed is None or self._grabbed[:2] != (message.gesture, message.point):
             self._grabbed = (message.gesture, message.point, np.array(display.groom.locks[row][message.point]))
-        shift = _in_shape_frame(display.groom, row, at, np.array(message.to) - self._grabbed[2])
+        shift = _in_shape_frame(display.groom, row, at, np.array(message.to) + display.groom.origin - self._grabbed[2])
         moves = [move for move in self._moves_before(message.gesture, edits[index]) if any(move["by"])]
         by = [f"{1e3 * x:.2f} mm" for x in shift]
         moves = [*moves, {"at": at, "by": by, "reach": max(round(message.reach, 3), 0.001)}]

@@ -1,7 +1,8 @@
 """The messages between page and server, in one place.
 
 A message is a JSON header followed by arrays (see ``wire``). ``tools/make_protocol.py`` generates the TypeScript.
-``arrays`` lists the arrays of a message with their types; all lengths are in metres.
+``arrays`` lists the arrays of a message with their types; all lengths are in metres. Positions are relative to
+``Groom.origin``, near the head, since pages have single precision.
 """
 
 from __future__ import annotations

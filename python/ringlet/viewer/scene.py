@@ -37,14 +37,14 @@ class VisibleMesh:
     clip: Clip | None = None
     cloth: str = ""
 
-    def message(self, index: int) -> bytes:
-        """Message with the mesh in its rest pose."""
+    def message(self, index: int, origin: NDArray) -> bytes:
+        """Message with the mesh in its rest pose, relative to an origin [m]."""
         mesh = self.mesh
         colors = mesh.colors if mesh.colors is not None else np.empty((0, 3))
         material = "cloth" if self.cloth else material_of(mesh)
         return pack(
             protocol.Body(index=index, name=mesh.name.split("/")[-1], made_of=material, color=mesh.color),
-            points=mesh.points,
+            points=mesh.points - origin,
             triangles=mesh.triangles,
             colors=np.clip(colors, 0.0, 1.0),
         )

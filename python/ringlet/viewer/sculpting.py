@@ -53,7 +53,7 @@ class Sculptor:
         stroke = self._stroke
         if stroke is None or stroke.gesture != message.gesture:
             stroke = self._stroke = self._begin(message.gesture, groom)
-        ball = Ball(np.array(message.at), np.array(message.by), message.radius)
+        ball = Ball(np.array(message.at) + groom.origin, np.array(message.by), message.radius)
         balls = [ball, ball.mirrored(stroke.scalp.middle[0])] if message.mirrored else [ball]
         if message.tool == "grab" and not stroke.weights:
             starts = [Ball(one.at - one.by, one.by, one.radius) for one in balls]
@@ -114,10 +114,10 @@ class Sculptor:
         """Message with guides, and a mark on those that differ from the recipe's."""
         before = guides if groom.unsculpted is None else groom.unsculpted
         moved = np.abs(guides.points - before.points).max(axis=1) > 1e-6
-        x, y, z = self.scalp(groom).middle.tolist()
+        x, y, z = (self.scalp(groom).middle - groom.origin).tolist()
         return pack(
             protocol.Guides(middle=(x, y, z)),
-            points=guides.points,
+            points=guides.points - groom.origin,
             offsets=guides.offsets,
             changed=np.logical_or.reduceat(moved, guides.offsets[:-1]),
         )

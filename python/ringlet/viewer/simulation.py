@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from ringlet import api
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Clip
+from ringlet.data.precision import compact
 from ringlet.groom import Groom, Hairs
 from ringlet.shot import Shot
 from ringlet.sim.motion import Motion
@@ -75,12 +76,12 @@ class Stage:
             shown["inside"] = int(np.count_nonzero(depth))
         return pack(
             protocol.Frame.model_validate({"layer": layer, "frame": frame, "statistics": shown}),
-            points=points,
+            points=points - self.groom.origin,
             axis=axis,
             root=root,
             drawn=drawn,
             left=left[drawn],
-            bodies=np.concatenate([np.empty((0, 3)), *bodies]),
+            bodies=np.concatenate([np.empty((0, 3)), *bodies]) - self.groom.origin,
             stretch=overlays.stretch(locks, points),
             contact=contact,
             depth=overlays.as_bytes(depth / overlays.DEPTH_SHOWN),
@@ -226,7 +227,7 @@ class Simulation:
             k = step - shot.preroll
             statistics = motion.reach(k)
             cloths = {garment.name: garment.cloth.positions for garment in motion.garments}
-            state = FrameState(np.asarray(motion.strands.positions, np.float32), statistics, cloths)
+            state = FrameState(compact(motion.strands.positions), statistics, cloths)
             message = stage.frame("shot", first + k, state, motion) if k >= 0 else b""
             with self._results:
                 if stopping.is_set():

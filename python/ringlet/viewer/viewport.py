@@ -29,6 +29,7 @@ class Viewport:
         self.display: DisplayGroom | None = None
         self.bodies: list[VisibleMesh] = []
         self._scalp: Mesh | None = None
+        self._origin = np.zeros(3)  # of positions in messages, near the head
         self._shot_inputs: object = None
         self._layouts: dict[str, Curves] = {}
         self._names: protocol.Names | None = None
@@ -49,7 +50,7 @@ class Viewport:
 
     def stage(self, display: DisplayGroom, bodies: list[VisibleMesh]) -> None:
         """Shows the contents of a USD file."""
-        self._scalp = display.groom.scalp
+        self._scalp, self._origin = display.groom.scalp, display.groom.origin
         self._publish_bodies(bodies)
         self.show(display, "a")
 
@@ -67,7 +68,7 @@ class Viewport:
 
     def _show_scalp(self, display: DisplayGroom) -> None:
         if self._scalp is not display.groom.scalp:
-            self._scalp = display.groom.scalp
+            self._scalp, self._origin = display.groom.scalp, display.groom.origin
             self._shot_inputs = None
             self._publish_bodies(read_meshes(display.groom))
 
@@ -75,7 +76,7 @@ class Viewport:
         self._publisher.clear("body/")
         self.bodies = bodies
         for index, body in enumerate(bodies):
-            self._publisher.publish(f"body/{index}", body.message(index))
+            self._publisher.publish(f"body/{index}", body.message(index, self._origin))
 
     def _publish_names(self, groom: Groom, curves: Collection[str]) -> None:
         scalp = groom.scalp
