@@ -97,3 +97,28 @@ def test_layers_of_a_stage_are_recorded_and_only_inside_of_blocks(linked):
     io.read_groom("groom.usdc")
     assert [name for name, _ in read.contents()] == ["layered.usda", "skin.usda"]
     assert read.input_at("s_skin.usda") and not read.input_at("head.usda") and not read.input_at("nothing.usda")
+
+
+def test_a_wedge_does_not_replace_the_shot_or_what_it_names(copy, monkeypatch):
+    monkeypatch.chdir(copy)
+    task = copy / "out/as-it-is"
+    task.mkdir(parents=True)
+    for link in ("shot.toml", "cache.usdc"):
+        target = "small.shot.toml" if link == "shot.toml" else "chair.usda"
+        (copy / "chair.usda").write_bytes((copy / "head.usda").read_bytes())
+        os.link(copy / target, task / link)
+        shot = copy / "small.shot.toml"
+        text = shot.read_text()
+        shot.write_text(f'{text}[contact]\n[[collider]]\nfile = "chair.usda"\n')
+        refused(run("wedge", "small.shot.toml", "-o", "out", "--here", "--no-picture"), link, "choose another name")
+        assert (task / link).samefile(copy / target)
+        (task / link).unlink()
+        shot.write_text(text)
+
+
+def test_a_folder_with_other_files_takes_no_checkpoints(copy):
+    (copy / "cache.usdc.part").mkdir()
+    note = copy / "cache.usdc.part/note.txt"
+    note.write_text("mine")
+    refused(run("sim", copy / "small.shot.toml", "-o", copy / "cache.usdc"), "note.txt, which is no checkpoint")
+    assert note.read_text() == "mine"

@@ -37,6 +37,7 @@ from ringlet.shot import Shot
 FORMAT = 1
 RESULT, CACHE = "result.json", "cache.usdc"
 PART = f"{CACHE}.part"
+WRITTEN = ("shot.toml", "groom.usdc", "rest.usdc", CACHE, "hair.usdc", "still.png", "places.npy", RESULT, "log.txt")
 HAIRS = 6000  # number of hairs in a picture
 SERIES = ("wall_ms", "max_stretch")  # statistics of each frame in the result
 

@@ -12,13 +12,15 @@ from ringlet import api
 from ringlet.data import limits
 from ringlet.data.errors import UserError
 from ringlet.data.files import check_place
+from ringlet.data.reads import record, recorded, refuse_inputs
 from ringlet.farm.cluster import run_on_workers
 from ringlet.farm.grid import Choice, Task, choose, make_tasks
 from ringlet.farm.openjd import write_template
 from ringlet.farm.page import PAGE, read_results, write_page
-from ringlet.farm.task import Result, TaskOptions, run_task
+from ringlet.farm.task import WRITTEN, Result, TaskOptions, run_task
 
 
+@recorded()
 def wedge(
     shot: Path | str,
     settings: Mapping[str, Sequence[Any] | str],
@@ -55,6 +57,10 @@ def wedge(
             limits.check_count(f"wedge: {what}", count, most)
     folder = Path(folder).absolute()
     tasks = make_tasks(Path(shot).absolute(), _choices(settings), folder)
+    record(*api.read_shot(shot).named_files().values())
+    for task in tasks:
+        for name in WRITTEN:
+            refuse_inputs(task.folder / name)
     check_place(folder / PAGE)
     options = TaskOptions(frames, frame, picture, threads)
     if here:

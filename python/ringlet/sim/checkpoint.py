@@ -11,6 +11,7 @@ import fcntl
 import hashlib
 import io
 import json
+import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
@@ -30,6 +31,7 @@ EVERY = 10  # frames from one state to the next, at most
 VERTICES = 1_000_000  # simulated between states: a frame of that many may take minutes
 LOCK_FILE = "held"  # the file that a program locks while it runs
 INPUTS = "made_from"  # the file of the inputs of the run
+OWN_FILE = re.compile(rf"\.?({LOCK_FILE}|{INPUTS}|step|memory)(\.|$)")  # also one that is being written aside
 STATES_KEPT = 2  # where the last is damaged, the one before is used
 
 Arrays = Mapping[str, NDArray[Any]]
@@ -146,9 +148,11 @@ def locked_folder(folder: Path) -> Iterator[int]:
 
 
 def _open_lock(folder: Path) -> BinaryIO:
-    """The file that locks a folder as long as it is open."""
+    """The file that locks a folder as long as it is open; refuses a folder that holds other files, which would go."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
+        if others := [path.name for path in folder.iterdir() if not OWN_FILE.match(path.name)]:
+            raise UserError(f"{folder}: holds {min(others)}, which is no checkpoint; choose another place")
         check_regular(folder / LOCK_FILE)
         file = (folder / LOCK_FILE).open("ab")
     except OSError as error:
