@@ -164,7 +164,9 @@ def test_the_command_checks_repairs_and_draws(tmp_path):
     recipe.write_text(lying + "[clean]\nmargin = 0\n")
     ringlet.write_groom(ringlet.build_groom(recipe), tmp_path / "groom.usdc")
     sunk = ringlet.read_groom(tmp_path / "groom.usdc")
+    roots = sunk.locks.roots.copy()
     sunk.locks.points = sunk.locks.points - [0.0, 0.001, 0.0]
+    sunk.locks.points[sunk.locks.offsets[:-1]] = roots
     ringlet.write_groom(sunk, tmp_path / "sunk.usdc")
 
     def run(*args):

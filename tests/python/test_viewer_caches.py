@@ -87,13 +87,14 @@ def test_no_frame_mixes_two_versions_of_a_cache(folder: Path):
         assert len(set(marks)) > 3 and marks == sorted(marks)
 
 
-def test_replacing_a_cache_by_one_of_another_groom_is_reported(folder: Path):
+@pytest.mark.parametrize(("old", "new"), [("points = 40", "points = 30"), ("ringlet = 1", "ringlet = 1\nseed = 2")])
+def test_replacing_a_cache_by_one_of_another_groom_is_reported(folder: Path, old: str, new: str):
     groom, cache = small_groom(folder), folder / "cache.usdc"
     write_marked_cache(groom, cache, 1, frames=5)
     with serving(folder, cache.name) as client, page(client) as one:
         one.watch(1)
         recipe = folder / "small.recipe.toml"
-        recipe.write_text(recipe.read_text().replace("points = 40", "points = 30"))
+        recipe.write_text(recipe.read_text().replace(old, new))
         write_marked_cache(small_groom(folder, "other.usda"), cache, 2, 5, under="other.usda")
         one.send(kind="watch", shot=[2])
         assert "is of another groom" in one.receive("trouble")["message"]

@@ -149,7 +149,8 @@ def open_frames(file: Path, display: DisplayGroom) -> Iterator[tuple[np.ndarray,
         )
         return
     with io.open_cache(file) as cache:
-        if cache.size != len(display.groom.locks.points):
+        locks = display.groom.locks
+        if cache.size != len(locks.points) or not np.array_equal(cache.ids, locks.ids):
             raise UserError(f"{file.name}: is of another groom than that of the shot; choose a cache of the same groom")
         statistics = dict(zip(cache.frames.tolist(), cache.statistics, strict=False))
         yield (

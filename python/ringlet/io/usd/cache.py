@@ -68,6 +68,7 @@ class CacheFile:
 
     frames:     frame numbers (time codes), shape (k,)
     size:       number of points of all locks
+    ids:        ids of the locks, shape (count,)
     statistics: report of the solver, one dict per frame
     start:      initial penetrations
 
@@ -84,6 +85,7 @@ class CacheFile:
                 f"{source.path}: holds no simulated frames; make a cache with: ringlet sim SHOT.toml -o cache.usdc"
             )
         self.size = len(self._points.Get(Usd.TimeCode.Default()))
+        self.ids = np.array(UsdGeom.PrimvarsAPI(self._points.GetPrim()).GetPrimvar(f"{OWN}id").Get(), np.int64)
         metadata = [layer.customLayerData.get("ringlet") or {} for layer in source.stage.GetLayerStack()]
         for data in metadata:
             check_version(source, data.get("version", VERSION))
