@@ -8,6 +8,7 @@ from commands import run
 from pages import page, serving
 from PIL import Image
 from pxr import Gf, Usd, UsdGeom
+from ringlet.data.cache import Cache, Touches
 from small_example import FRAMES, write_example, write_head
 from wear import SCARF, write_wear
 
@@ -39,7 +40,7 @@ def place(file, at, *, moving=STILL):
 
 
 def shot(folder, at=None, *, unit=0.01, up="Y", more=CONTACT, moving=STILL):
-    """Groom, cache, contacts if there are any, and hairs of the small example at a place."""
+    """Groom, cache and hairs of the small example at a place."""
     write_example(folder)
     write_head(folder / "head.usda", unit=unit, up=up)
     file = folder / "small.shot.toml"
@@ -91,15 +92,22 @@ def test_hair_is_the_same_to_a_micrometre_a_kilometre_away(near, tmp_path, unit,
     for frame in (2, FRAMES):
         hairs = [io.read_hairs(folder / "hair.usdc", frame).points for folder in (near, far)]
         assert np.abs(hairs[1] - hairs[0] - FAR).max() < 2 * MICRON
-        touches = [io.read_touches(folder / "touches.usdc", frame)[0].places for folder in (near, far)]
-        assert len(touches[0]) and np.abs(touches[1] - touches[0] - FAR).max() < MICRON
     if (unit, up) == (0.01, "Y"):
-        for file, prim in (("cache", "locks"), ("hair", "hairs"), ("touches", "touches")):
+        for file, prim in (("cache", "locks"), ("hair", "hairs")):
             points = [world_points(folder / f"{file}.usdc", f"/groom/{prim}", 2) for folder in (near, far)]
             assert np.abs(points[1] - points[0] - FAR).max() < 2 * MICRON
             assert io.problems(far / f"{file}.usdc") == io.problems(near / f"{file}.usdc")
         pictures = [drawn(folder) for folder in (near, far)]
         assert pictures[0].std() > 10 and np.abs(pictures[1] - pictures[0]).mean() < 0.5
+
+
+def test_contacts_a_kilometre_away_keep_their_places(near, tmp_path):
+    places = np.random.default_rng(1).uniform(-0.1, 0.1, (20, 3)) + FAR
+    force = np.ones(20, np.float32)
+    cache = Cache(np.array([2.0]), np.empty((1, 0, 3)), touches=[Touches(places, force, force)])
+    ringlet.write_touches(cache, near / "cache.usdc", tmp_path / "touches.usdc")
+    assert np.abs(io.read_touches(tmp_path / "touches.usdc", 2)[0].places - places).max() < MICRON
+    assert np.abs(world_points(tmp_path / "touches.usdc", "/groom/touches", 2) - places).max() < MICRON
 
 
 def test_near_the_origin_no_translation_is_authored(near):
