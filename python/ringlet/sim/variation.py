@@ -8,10 +8,10 @@ from pydantic import BaseModel, ValidationError
 
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
+from ringlet.data.explain import explain
 from ringlet.data.groom import Groom
 from ringlet.data.painted import per_lock
 from ringlet.data.random import Random
-from ringlet.data.settings import explain
 from ringlet.shot.material import Material
 from ringlet.shot.shot import Shot
 from ringlet.shot.variation import VARIATIONS, Mapped
@@ -60,7 +60,7 @@ def _check_product(material: Material, name: str, factor: NDArray[np.float64], l
             # The product of twist goes up to its limit, whatever the factor.
             Material.model_validate({**material.model_dump(), setting: product, "limit_twist": False})
         except ValidationError as error:
-            refused = explain(error, where, lambda _: f"strands.{setting}")
+            refused = explain(error, where, name_of=lambda _: f"strands.{setting}")
             raise UserError(f"{refused}, change its ramp or map") from None
         if name == "stretch" and factor[vertex] < LEAST_STRETCH:
             raise UserError(f"{where}; must be at least {LEAST_STRETCH:g}, change its ramp or map")
