@@ -132,7 +132,7 @@ def _merged_shape(base: list[Any], changes: dict[str, Any], where: str) -> list[
     for name, change in changes.items():
         if name == APPEND:
             if not isinstance(change, list):
-                raise UserError(f"{where}: shape.{APPEND} is {change!r}; must be tables [[shape.{APPEND}]]")
+                raise UserError(f"{where}: shape.{APPEND} is {shown(change)}; must be tables [[shape.{APPEND}]]")
             continue
         if name not in names:
             raise UserError(f"{where}: shape.{name} is no operator of what it extends{did_you_mean(name, names)}")
