@@ -69,6 +69,8 @@ def test_a_wrong_setting_of_a_shot_is_named_as_in_the_file(line, message):
         ),
         ("curl = { preset = '4A', width = { value = 1, ramp = [[0, true]] } }", "width.ramp is true; must be a number"),
         ("curl = { preset = '4A', width = { value = 1, lock = { a = 1 } } }", "lock.a is 'a'; must be a whole number"),
+        ("guides = { whorl = [true, 0, 0] }", "guides.whorl is true; must be a number"),
+        ("guides = { whorl = true }", "guides.whorl is true; must be a list"),
         ("guides = { whorl = [1e308, 0, 0] }", "guides.whorl[0] is 1e+308; must be at most 1000"),
         (
             "edit = [{ lock = 1, curve = [[1e308, 0, 0], [0, 0, 1]] }]",

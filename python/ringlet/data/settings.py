@@ -9,7 +9,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, ClassVar, get_args
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, model_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, model_validator
 from pydantic_core import PydanticCustomError
 
 from ringlet.data.errors import UserError
@@ -52,6 +52,8 @@ class Section(BaseModel):
         """Refuses true, false and text in place of numbers, which pydantic would convert."""
         if isinstance(data, dict):
             for name, (kinds, converts) in _numbers(cls).items():
+                if converts and isinstance(data.get(name), bool):
+                    continue  # the setting itself says what `true` and `false` mean
                 for leaf in _leaves(data.get(name)):
                     text = isinstance(leaf, str) and not converts and kinds <= {int, float, type(None)}
                     if text or (isinstance(leaf, bool) and bool not in kinds):
@@ -80,7 +82,8 @@ def _kinds(*annotations: Any) -> tuple[set[type], bool]:
         elif isinstance(one, int | str):  # of a Literal
             kinds.add(type(one))
         else:
-            converts = converts or isinstance(one, BeforeValidator) or hasattr(one, "__get_pydantic_core_schema__")
+            reads = hasattr(one, "__get_pydantic_core_schema__") and not isinstance(one, AfterValidator)
+            converts = converts or reads
     return kinds, converts
 
 
