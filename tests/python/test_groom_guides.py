@@ -65,8 +65,9 @@ def test_a_small_painted_spot_keeps_the_count(kind, source):
         mesh.maps["spot"] = spot.astype(float)
     else:
         mesh.uv = (mesh.points[mesh.triangles][:, :, [0, 2]] + 0.1) / 0.2
-        mesh.textures["spot"] = np.zeros((100, 100))
-        mesh.textures["spot"][34:37, 64:67] = 1.0
+        values = np.zeros((100, 100))
+        values[34:37, 64:67] = 1.0
+        mesh.textures["spot"] = Texture.from_values(values)
     other = "[locks]\npoints = 10" if kind == "guides" else "[guides]\ncount = 20"
     curves = getattr(groom(f"[{kind}]\ncount = 400\ndensity = 'spot'\n{other}", mesh), kind)
     assert len(curves) == 400 and len(np.unique(curves.roots, axis=0)) == 400
