@@ -33,7 +33,7 @@ def test_long_hair_between_a_turning_head_and_a_shirt_stops_neither():
     """Locks on the shirt cannot follow the rotation of the head; every step still completes its motion."""
     frames = list(judged(start("nod", "down", locks=300), 26, every=5))
     assert sum(frame.crossings or 0 for frame in frames) == 0
-    assert all(frame.statistics["contact"]["lag"] < 3e-3 for frame in frames)
+    assert all(frame.statistics["contact"]["lag"] < 4e-3 for frame in frames)
 
 
 @pytest.mark.parametrize("locks", [100, 150, 200])
