@@ -131,7 +131,7 @@ def test_a_damaged_checkpoint_is_detected_and_the_previous_one_used(folder, monk
         checkpoint.read(part / name)
     steps = []
     cache = ringlet.simulate(shot, checkpoints=part, resume=True, progress=lambda *step: steps.append(step))
-    assert next(done for name, done, _ in steps if name == "sim") == 11
+    assert next(done for name, done, _ in steps if name == "sim") == 10
     assert (cache.points == expected).all()
 
 

@@ -77,5 +77,6 @@ def test_memory_that_runs_out_is_reported_in_one_line(copy, monkeypatch):
 def test_warnings_of_libraries_are_not_printed(copy):
     program = "import warnings; from ringlet.cli.app import app; import ringlet.cli.schema as s; "
     program += "import ringlet; ringlet.schema = lambda: warnings.warn('of a library') or {}; app(['schema'])"
-    result = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    plain = {name: value for name, value in os.environ.items() if name != "RINGLET_DEBUG"}
+    result = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, env=plain)
     assert result.stderr == ""

@@ -60,7 +60,7 @@ def groomed(copy):
         (remove("root_triangle"), "hair", ["not bound", "make the groom again"]),
         (remove("root_barycentric"), "hair", ["not bound", "make the groom again"]),
         (empty_region, "hair", ["region 'scalp'", "no faces"]),
-        (flatten, "hair", ["head.usda", "triangle", "where lock", "no area"]),
+        (flatten, "hair", ["head.usda", "roots are off the scalp", "make the groom again"]),
     ],
 )
 def test_a_groom_file_without_strands_is_refused(groomed, spoil, command, words):

@@ -269,7 +269,8 @@ def _check_bound(source: Source, path: str, curves: Curves, scalp: Mesh) -> None
             f"{source.path}: {path} has the root of lock {curves.ids[bad[0]]} beside its triangle of {scalp.name} "
             f"(weights {', '.join(f'{w:g}' for w in weights[bad[0]])}): it is not on the scalp; make the groom again"
         )
-    if path == LOCKS and "root_triangle" in curves.curve:  # drawn guides may begin near the scalp
+    has_places = {"root_triangle", "root_barycentric"} <= curves.curve.keys()
+    if path == LOCKS and has_places:  # drawn guides may begin near the scalp
         places = root_places(curves, scalp.points, scalp.triangles)
         check_roots(curves.roots, places, curves.ids, f"{source.path} on {scalp.name}", REMEDY)
 
