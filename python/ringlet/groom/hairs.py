@@ -21,6 +21,7 @@ from ringlet.data.painted import per_lock as for_each_lock
 from ringlet.data.precision import origin_of
 from ringlet.data.quantities import Quantity, Ramped, Section, Varied, explain
 from ringlet.data.random import Random, soft_threshold
+from ringlet.groom.operators.woven import STRAND_RADIUS
 from ringlet.groom.scalp import axes
 
 IDS_PER_LOCK = 10_000  # id of a hair: id of its lock · 10 000 + number in the lock
@@ -336,7 +337,11 @@ class _Values:
     def __call__(self, name: str) -> NDArray[np.float64]:
         """Values of a setting, shape (locks,)."""
         random = Random(self.settings.seed, f"hairs/{name}")
-        return for_each_lock(self.settings, name, random, self.locks, self.scalp, f"hairs.{name}")
+        values = for_each_lock(self.settings, name, random, self.locks, self.scalp, f"hairs.{name}")
+        if name == "radius" and STRAND_RADIUS in self.locks.curve:  # hairs fill the strands of a braid
+            woven = self.locks.curve[STRAND_RADIUS]
+            values = np.where(woven > 0.0, woven, values)
+        return values
 
 
 def _settings(values: dict[str, Any]) -> HairSettings:

@@ -6,6 +6,7 @@ from pydantic import Field
 
 from ringlet.groom.operators.attract import Attract
 from ringlet.groom.operators.bend import Bend
+from ringlet.groom.operators.braid import Braid
 from ringlet.groom.operators.clean import Clean
 from ringlet.groom.operators.clump import Clump
 from ringlet.groom.operators.curl import Curl
@@ -26,6 +27,7 @@ from ringlet.groom.operators.scraggle import Scraggle
 from ringlet.groom.operators.shape import Shape
 from ringlet.groom.operators.smooth import Smooth
 from ringlet.groom.operators.straighten import Straighten
+from ringlet.groom.operators.twist import Twist
 
 ShapeOperator = Annotated[
     Resample
@@ -42,13 +44,16 @@ ShapeOperator = Annotated[
     | Gather
     | Flyaways
     | Straighten
-    | Attract,
+    | Attract
+    | Braid
+    | Twist,
     Field(discriminator="op"),
 ]
 
 __all__ = [
     "Attract",
     "Bend",
+    "Braid",
     "Clean",
     "Clump",
     "Context",
@@ -71,4 +76,5 @@ __all__ = [
     "ShapeOperator",
     "Smooth",
     "Straighten",
+    "Twist",
 ]

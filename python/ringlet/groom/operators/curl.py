@@ -16,6 +16,7 @@ from ringlet.data.quantities import Quantity, Ramp, Ramped, Varied, along, refus
 from ringlet.data.random import soft_threshold
 from ringlet.groom.operators.operator import Context, Operator, packed
 from ringlet.groom.operators.phase_lock import PhaseLock
+from ringlet.groom.operators.woven import STRAND_RADIUS
 from ringlet.groom.presets import PRESETS, Preset
 from ringlet.groom.scalp import axes
 
@@ -201,6 +202,9 @@ class Curl(Operator):
             keep_length=self.keep == "length",
             count=points,
         )
+        if (woven := curves.curve.get(STRAND_RADIUS, np.zeros(len(ids))) > 0.0).any():  # a braid holds its strands
+            grid = curled.reshape(len(ids), points, 3)
+            grid[woven] = _core.resample_curves(*packed(curves.take(woven)), points).reshape(-1, points, 3)
         return Curves(curled, offsets_from_counts(np.full(len(ids), points)), ids, curves.curve)
 
     def _check_points(self, turns: NDArray, width: NDArray, curves: Curves, points: int) -> None:

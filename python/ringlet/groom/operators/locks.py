@@ -12,8 +12,12 @@ from scipy.spatial import KDTree
 from ringlet import _core
 from ringlet.data import limits
 from ringlet.data.curves import Curves, offsets_from_counts
+from ringlet.data.errors import UserError
 from ringlet.data.quantities import Quantity, refuse
 from ringlet.groom.operators.operator import Context, Operator, arc_lengths, packed, unit
+from ringlet.groom.sections import SECTION, STRAND, Sections
+
+STRAND_IDS, IDS_PER_SECTION = 10**13, 100  # id of a strand: 10¹³ + section · 100 + number in the section
 
 
 class Locks(Operator):
@@ -44,6 +48,10 @@ class Locks(Operator):
         default=60.0, description="guides that lean further apart than this are not mixed"
     )
 
+    sections: Sections | None = Field(
+        default=None, description="parts of the scalp between partings, for braids and twists; none when absent"
+    )
+
     @model_validator(mode="after")
     def _one_density(self) -> Locks:
         if self.count is not None and self.spacing is not None:
@@ -54,13 +62,46 @@ class Locks(Operator):
         """Returns one shape curve per lock, with ``shape_points`` points each."""
         guides = _core.resample_curves(*packed(curves), self.shape_points)
         shapes = guides.reshape(len(curves), self.shape_points, 3)
-        if self.count is None and self.spacing is None:
+        if self.count is None and self.spacing is None and self.sections is None:
             return _pack(shapes, curves.ids, curves.curve["root_triangle"], curves.curve["root_barycentric"])
 
         scalp = context.scalp
         count = self.count or scalp.count_for_spacing(self.spacing or 0.01)
         ids, triangle, barycentric = scalp.sample(count, context.seed, self.density, "locks.density")
-        count = len(ids)
+        attributes: dict[str, NDArray] = {}
+        if self.sections is not None:
+            ids, triangle, barycentric, attributes = self._sectioned(ids, triangle, barycentric, context)
+        points = self._interpolated(shapes, curves, triangle, barycentric, context)
+        return _pack(points, ids, triangle, barycentric, attributes)
+
+    def _sectioned(
+        self, ids: NDArray, triangle: NDArray, barycentric: NDArray, context: Context
+    ) -> tuple[NDArray, NDArray, NDArray, dict[str, NDArray]]:
+        """Roots outside of partings, and the strands of sections: ids, triangles, barycentrics, attributes."""
+        assert self.sections is not None
+        scalp = context.scalp
+        division = self.sections.divide(scalp, context.seed)
+        at = division.at(scalp.positions(triangle, barycentric))
+        loose = division.grows(at)
+        if self.sections.strands is not None and self.count is None and self.spacing is None:
+            loose[:] = False
+        at = {name: values[loose] for name, values in at.items()} | {STRAND: np.full(loose.sum(), -1, np.int32)}
+        strand_triangle, strand_barycentric, strand = division.strand_roots(scalp)
+        strand_ids = STRAND_IDS + IDS_PER_SECTION * strand[SECTION].astype(np.int64) + strand[STRAND]
+        if not len(strand_ids) and not loose.any():
+            raise UserError("locks.sections leaves no hair: its gap is as wide as its size; make the gap smaller")
+        return (
+            np.concatenate([ids[loose], strand_ids]),
+            np.concatenate([triangle[loose], strand_triangle]),
+            np.concatenate([barycentric[loose], strand_barycentric]),
+            {name: np.concatenate([at[name], strand[name]]) for name in at},
+        )
+
+    def _interpolated(
+        self, shapes: NDArray, curves: Curves, triangle: NDArray, barycentric: NDArray, context: Context
+    ) -> NDArray[np.float64]:
+        """Shapes of locks from those of the guides around their roots, shape (locks, points, 3)."""
+        scalp, count = context.scalp, len(triangle)
         roots = scalp.positions(triangle, barycentric)
         lengths = arc_lengths(shapes)[:, -1]
         local = shapes - shapes[:, :1]
@@ -80,7 +121,7 @@ class Locks(Operator):
         blended = np.einsum("lk,klpx->lpx", weight, rotated)
         length = np.sum(weight * lengths[index], axis=1)
         blended *= (length / np.maximum(arc_lengths(blended)[:, -1], 1e-9))[:, None, None]
-        return _pack(roots[:, None] + blended, ids, triangle, barycentric)
+        return roots[:, None] + blended
 
 
 def _smallest_rotation(a: NDArray, b: NDArray) -> NDArray[np.float64]:
@@ -92,7 +133,9 @@ def _smallest_rotation(a: NDArray, b: NDArray) -> NDArray[np.float64]:
     return reflection @ first
 
 
-def _pack(points: NDArray, ids: NDArray, triangle: NDArray, barycentric: NDArray) -> Curves:
-    bound = {"root_triangle": triangle, "root_barycentric": barycentric}
+def _pack(
+    points: NDArray, ids: NDArray, triangle: NDArray, barycentric: NDArray, attributes: dict[str, NDArray] | None = None
+) -> Curves:
+    bound = {"root_triangle": triangle, "root_barycentric": barycentric, **(attributes or {})}
     offsets = offsets_from_counts(np.full(len(points), points.shape[1]))
     return Curves(np.ascontiguousarray(points.reshape(-1, 3)), offsets, ids, bound)

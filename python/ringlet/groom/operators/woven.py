@@ -1,0 +1,200 @@
+"""The base class of braids and twists: strands that wind about the middle of their section's locks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+from scipy.optimize import linear_sum_assignment
+
+from ringlet import _core
+from ringlet.data.curves import Curves, offsets_from_counts
+from ringlet.data.errors import UserError
+from ringlet.data.quantities import Quantity, Ramped, Varied
+from ringlet.groom import weave
+from ringlet.groom.operators.operator import Context, arc_lengths, grid, packed, unit
+from ringlet.groom.operators.shape import Shape
+from ringlet.groom.sections import SECTION, STRAND
+
+STRAND_RADIUS = "strand_radius"  # curve attribute of locks: radius of a woven strand [m], 0 for others
+EASE = 0.5  # turns over which a braid begins and ends
+LEAST_POINTS, GOOD_POINTS = 6, 10  # of a strand, per wave of its path to the front and back
+
+
+class Woven(Shape):
+    """Weaves the strands of each section about a centre line, the mean of their shapes: ``p = c + a x + b z``, with x
+    across the braid and z away from the head, in a rotation-minimising frame of c. The strands come together over
+    ``start`` and run on side by side over ``tail``. They get as many points as a groom guide has."""
+
+    width: Annotated[Ramped, Quantity("m", 5e-4, 0.2)] = Field(
+        default=Ramped(value=0.012), description="width, strands included; its ramp narrows the strands too"
+    )
+    pitch: Annotated[Ramped | None, Quantity("m", 1e-3, 1.0)] = Field(
+        default=None, description="length after which a strand is where it was; a few widths when absent"
+    )
+    tightness: Annotated[Varied, Quantity("", 0.05, 1.0)] = Field(
+        default=Varied(value=1.0), description="1: strands touch; less: they are thinner than the room they have"
+    )
+    start: Annotated[Varied, Quantity("m", 0.0, 1.0)] = Field(
+        default=Varied(value=0.01), description="length over which the strands come together"
+    )
+    tail: Annotated[Varied, Quantity("m", 0.0, 1.0)] = Field(
+        default=Varied(value=0.02), description="length at the tip that is not woven"
+    )
+
+    @property
+    def path(self) -> weave.Pattern:
+        """The pattern of the strands."""
+        raise NotImplementedError
+
+    def mirrored(self, leaders: Curves, context: Context) -> NDArray[np.bool_]:
+        """Which sections are woven as in a mirror, shape (count,), for a strand of each, named by the section."""
+        return np.zeros(len(leaders), np.bool_)
+
+    def depth_of(self, width: NDArray, strands: int) -> NDArray[np.float64]:
+        """Depth of a braid of that width [m]."""
+        raise NotImplementedError
+
+    def pitch_of(self, width: NDArray) -> NDArray[np.float64]:
+        """Pitch where none is given [m]."""
+        raise NotImplementedError
+
+    def apply(self, curves: Curves, context: Context) -> Curves:
+        """Returns the curves with the strands woven, all with ``lock_points`` points or more."""
+        if STRAND not in curves.curve or not (curves.curve[STRAND] >= 0).any():
+            raise UserError(f"{context.purpose}: no section has strands; give [locks.sections] strands = 3, say")
+        points = max(context.lock_points, int(curves.counts.max()))
+        fine = curves
+        if int(curves.counts.min()) != points:
+            resampled = _core.resample_curves(*packed(curves), points)
+            fine = Curves(resampled, offsets_from_counts([points] * len(curves)), curves.ids, curves.curve)
+        braids = self._braids(fine, context)
+        if not braids:
+            return curves
+        woven = super().apply(fine, context)
+        radius = curves.curve.get(STRAND_RADIUS, np.zeros(len(curves), np.float32)).copy()
+        for braid in braids:
+            radius[braid.rows] = braid.radius
+        return Curves(woven.points, woven.offsets, woven.ids, {**woven.curve, STRAND_RADIUS: radius}, woven.point)
+
+    def shape(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
+        """Returns the points with the strands woven; roots stay."""
+        points = points.copy()
+        for braid in self._braids(curves, context):
+            points[braid.rows] = braid.woven(points[braid.rows], context.scalp.middle, self)
+        return points
+
+    def _braids(self, curves: Curves, context: Context) -> list[Braided]:
+        """The braids of the sections of which the mask has a strand."""
+        where = f"{context.purpose}.mask"
+        weight = self.blend * self.mask.weights(curves, context.scalp.mesh, context.random("mask"), where)
+        strand = curves.curve[STRAND] >= 0
+        sections = np.unique(curves.curve[SECTION][strand & (weight > 0.0).any(axis=1)])
+        if not len(sections):
+            return []
+        rows = [np.flatnonzero(strand & (curves.curve[SECTION] == section)) for section in sections]
+        leaders = curves.take(np.array([of_section[0] for of_section in rows]))
+        leaders.ids = sections.astype(np.int64)  # chance goes by the section, not by one of its strands
+        length = np.array([_length(curves, of_section) for of_section in rows])
+        values = {k: context.values(self, k, leaders) for k in ("width", "tightness", "start", "tail")}
+        pitch = self.pitch_of(values["width"]) if self.pitch is None else context.values(self, "pitch", leaders)
+        mirrored = self.mirrored(leaders, context)
+        radius: dict[tuple, float] = {}
+        braids = []
+        for k, strands in enumerate(rows):
+            if reason := weave.refusal(self.path, len(strands)):
+                raise UserError(f"{context.purpose} {reason}")
+            width, depth = values["width"][k], float(self.depth_of(values["width"][k], len(strands)))
+            self._check_points(
+                length[k] / pitch[k], weave.waves(self.path, len(strands)), grid(curves).shape[1], context
+            )
+            key = (self.path, len(strands), width, depth, pitch[k])
+            if key not in radius:
+                radius[key] = weave.touching_radius(*key)
+            braids.append(
+                Braided(
+                    rows=strands,
+                    pattern=self.path,
+                    across=0.5 * width - radius[key],
+                    front=(0.5 * depth - radius[key]) * (-1.0 if mirrored[k] else 1.0),
+                    radius=values["tightness"][k] * radius[key],
+                    turns=length[k] / pitch[k],
+                    start=min(values["start"][k] / length[k], 0.5),
+                    tail=min(values["tail"][k] / length[k], 0.5),
+                )
+            )
+        return braids
+
+    def _check_points(self, turns: float, waves: int, points: int, context: Context) -> None:
+        """Raises UserError for fewer than LEAST_POINTS points a wave."""
+        least, good = (int(np.ceil(each * waves * turns)) for each in (LEAST_POINTS, GOOD_POINTS))
+        if points < least:
+            raise UserError(
+                f"locks.points is {points}: too few for the {turns:.1f} turns of {context.purpose}; set it to {good} "
+                f"(at least {least}), or raise its pitch"
+            )
+
+
+@dataclass(frozen=True)
+class Braided:
+    """The strands of one section, and how they are woven.
+
+    rows:          rows of its locks
+    across, front: amplitudes of the strands' path [m]
+    radius:        of a strand [m]
+    turns:         turns of the path along the whole length, at a ramp of 1
+    start, tail:   parts of the length in which strands come together and run on
+    """
+
+    rows: NDArray[np.integer]
+    pattern: weave.Pattern
+    across: float
+    front: float
+    radius: float
+    turns: float
+    start: float
+    tail: float
+
+    def woven(self, shapes: NDArray, middle: NDArray, settings: Woven) -> NDArray[np.float64]:
+        """The strands for their shapes (strands, points, 3) [m]."""
+        strands, points, _ = shapes.shape
+        line = _core.resample_curves(shapes.mean(axis=0), np.array([0, points], np.int32), points)
+        across, front = weave.frames(line, middle)
+        u = np.linspace(0.0, 1.0, points)
+        phase = self._phase(u, settings)
+        size = settings.width.along(u)
+
+        offset = shapes[:, 0] - line[0]
+        order = self._order(np.stack([offset @ across[0], offset @ front[0]], axis=1))
+        x, z = weave.path(self.pattern, strands, phase[None] + 2.0 * np.pi * order[:, None] / strands)
+        path = (size * self.across * x)[..., None] * across + (size * self.front * z)[..., None] * front
+        t = np.clip(u / max(self.start, 1e-9), 0.0, 1.0)
+        together = (t * t * (3.0 - 2.0 * t))[:, None]
+        return line + together * path + (1.0 - together) * offset[:, None]
+
+    def _phase(self, u: NDArray, settings: Woven) -> NDArray[np.float64]:
+        """Phase along the braid [rad], shape (points,): constant at both ends, where it eases in and out."""
+        rate = np.full(len(u), self.turns)
+        if settings.pitch is not None:
+            rate /= np.maximum(settings.pitch.along(u), 0.05)
+        ease = EASE / max(self.turns, 1e-9)
+        into, out = (u - self.start) / ease, (1.0 - self.tail - u) / ease
+        t = np.clip(np.minimum(into, out), 0.0, 1.0)
+        rate = rate * t * t * (3.0 - 2.0 * t)
+        return 2.0 * np.pi * np.concatenate([[0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) * np.diff(u))])
+
+    def _order(self, roots: NDArray) -> NDArray[np.int64]:
+        """Number of each strand in the pattern, so that strands come together without crossing: roots (strands, 2)."""
+        strands = len(roots)
+        x, z = weave.path(self.pattern, strands, 2.0 * np.pi * np.arange(strands) / strands)
+        places = np.stack([self.across * x, self.front * z], axis=1)
+        cost = np.linalg.norm(unit(roots)[:, None] - unit(places)[None], axis=2) ** 2
+        return linear_sum_assignment(cost)[1]
+
+
+def _length(curves: Curves, rows: NDArray) -> float:
+    """Length of the centre line of some locks [m]."""
+    return float(arc_lengths(grid(curves)[rows].mean(axis=0)[None])[0, -1])

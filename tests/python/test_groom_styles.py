@@ -1,0 +1,221 @@
+"""Sections, braids and twists: where strands grow, which path they follow, and when they are refused."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from ringlet.groom.operators import Context
+from ringlet.groom.operators.woven import STRAND_RADIUS
+from ringlet.groom.scalp import Scalp
+from ringlet.groom.sections import EDGE, SECTION, STRAND
+from shapes import ball, sheet
+
+from ringlet import Curves, UserError
+from ringlet.groom import make_groom, make_hairs, parse_recipe, weave
+
+PATTERNS = ["grid", "brick", "rows", "triangles", "radial"]
+
+
+def groom(sections="strands = 3", shape="", locks="points = 120", curl="", top="", scalp=None, length=16):
+    """A groom of straight hair that stands on the scalp."""
+    return make_groom(
+        parse_recipe(text(sections, shape, locks, curl, top, "" if scalp else "region = 'scalp'", length)),
+        scalp or ball(),
+    )
+
+
+def text(sections="strands = 3", shape="", locks="points = 120", curl="", top="", region="", length=16):
+    return f"""
+ringlet = 1
+{top}
+[scalp]
+{region}
+[guides]
+count = 30
+length = {length}
+lift = 1
+droop = 0
+[locks]
+{locks}
+[locks.sections]
+{"" if "size" in sections else "size = 3"}
+{sections}
+{shape}
+{curl}
+[clean]
+margin = 0
+"""
+
+
+def strands_of(locks):
+    """Points of the strands of each section, shape (strands, points, 3)."""
+    assert (locks.curve[STRAND] >= 0).all()
+    grid = locks.points.reshape(len(locks), -1, 3)
+    return [grid[locks.curve[SECTION] == section] for section in np.unique(locks.curve[SECTION])]
+
+
+def words(locks):
+    middle = Scalp(ball(), "scalp").middle
+    return [weave.braid_word(weave.cross_sections(strands, middle)) for strands in strands_of(locks)]
+
+
+BRAID = "[[shape]]\nop = 'braid'\nwidth = 1.2\npitch = 3\n"
+
+
+@pytest.mark.parametrize("pattern", PATTERNS)
+def test_every_section_has_its_strands_and_they_grow_in_it(pattern):
+    locks = groom(f"pattern = '{pattern}'\nstrands = 3\njitter = 0.2").locks
+    sections, count = np.unique(locks.curve[SECTION], return_counts=True)
+    assert len(sections) > 3 and (count == 3).all() and (sections >= 0).all()
+    assert len(np.unique(locks.ids)) == len(locks)
+
+
+@pytest.mark.parametrize("pattern", PATTERNS)
+def test_loose_hair_leaves_the_partings_free(pattern):
+    free = groom(f"pattern = '{pattern}'\ngap = 0.6", locks="count = 1500\npoints = 8").locks
+    everywhere = groom(f"pattern = '{pattern}'\ngap = 0", locks="count = 1500\npoints = 8").locks
+    assert free.curve[EDGE].min() >= 0.003 and everywhere.curve[EDGE].min() < 0.0005
+    assert 0.4 < len(free) / len(everywhere) < 0.95
+    assert np.isin(free.ids, everywhere.ids).all()
+
+
+def test_sections_that_a_mask_adds_change_no_other():
+    some = groom("strands = 3\nmask = { where = 'x > 0' }", locks="points = 120\ncount = 60").locks
+    every = groom(locks="points = 120\ncount = 60").locks
+    strands = some.take(some.curve[STRAND] >= 0)
+    assert 3 < len(strands) < len(every) and (some.curve[STRAND] < 0).any()
+    same = every.take(np.isin(every.ids, strands.ids))
+    assert np.array_equal(same.ids, strands.ids) and np.array_equal(same.points, strands.points)
+
+
+def test_strands_of_a_braid_follow_the_closed_form():
+    recipe = parse_recipe(
+        text("pattern = 'radial'\nsize = 30\nstrands = 3", BRAID + "start = 2\ntail = 2", "points = 400", length=20)
+    )
+    surface, locks = Scalp(sheet(), None), Curves.from_list([])
+    for operator in (recipe.guides, recipe.locks, recipe.shape[0]):
+        locks = operator.apply(locks, Context(recipe.seed, surface, "braid", 400))
+    (strands,) = strands_of(locks)
+    radius = float(locks.curve[STRAND_RADIUS][0])
+    across, front = 0.006 - radius, 0.67 * 0.006 - radius
+    along, away = weave.frames(strands.mean(axis=0), surface.middle)
+    offset = strands - strands.mean(axis=0)
+    x, z = (np.einsum("spx,px->sp", offset, axis)[:, 60:340] for axis in (along, away))
+    # z = b sin 2φ and x = a sin φ, a third of a turn apart
+    s = (x / across) ** 2
+    np.testing.assert_allclose((z / front) ** 2, 4.0 * s * (1.0 - s), atol=1e-6)
+    np.testing.assert_allclose(np.sum(x * x, axis=0), 1.5 * across**2, rtol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("strands", "shape"),
+    [
+        (3, "pattern = 'over'"),
+        (4, "pattern = 'over'"),
+        (5, "pattern = 'under'"),
+        (5, "pattern = 'fishtail'"),
+        (3, "pattern = 'rope'"),
+    ],
+)
+def test_strands_of_a_tight_braid_touch_and_do_not_overlap(strands, shape):
+    # Along a straight line, where the distance of strands is that of their closed paths.
+    locks = groom(
+        f"strands = {strands}\npattern = 'radial'\nsize = 30", BRAID + shape, "points = 400", scalp=sheet(), length=20
+    ).locks
+    (points,) = strands_of(locks)
+    middle = points[:, 100:300]
+    least = min(
+        np.linalg.norm(a[:, None] - b[None], axis=2).min() for k, a in enumerate(middle) for b in middle[k + 1 :]
+    )
+    assert least == pytest.approx(2.0 * locks.curve[STRAND_RADIUS][0], rel=0.03)
+
+
+def test_looser_strands_are_thinner_on_the_same_path():
+    tight, loose = (groom("strands = 3", BRAID + f"tightness = {t}").locks for t in (1, 0.5))
+    assert np.array_equal(tight.points, loose.points)
+    np.testing.assert_allclose(loose.curve[STRAND_RADIUS], 0.5 * tight.curve[STRAND_RADIUS], rtol=1e-6)
+
+
+def test_the_word_of_three_strands_alternates_and_that_of_a_dutch_braid_is_its_mirror():
+    over, under = (words(groom("strands = 3", BRAID + f"pattern = '{p}'").locks) for p in ("over", "under"))
+    for a, b in zip(over, under, strict=True):
+        assert len(a) > 12
+        assert all(i != j for i, j in pairwise(at for at, _ in a))  # σ₁ σ₂⁻¹ σ₁ …
+        assert set(a) == {(0, -1), (1, 1)} and set(b) == {(0, 1), (1, -1)}
+
+
+def test_a_twist_has_one_hand_or_both():
+    right = words(groom("strands = 2", "[[shape]]\nop = 'twist'").locks)
+    both = words(groom("strands = 2", "[[shape]]\nop = 'twist'\nright_handed = 0.5").locks)
+    assert {sign for word in right for _, sign in word} == {1} or {sign for word in right for _, sign in word} == {-1}
+    assert all(len({sign for _, sign in word}) == 1 for word in both)
+    assert {sign for word in both for _, sign in word} == {1, -1}
+
+
+def test_the_width_ramp_narrows_the_braid():
+    strands = strands_of(
+        groom("strands = 3", "[[shape]]\nop = 'braid'\nwidth = { value = 1.2, ramp = [[0, 1], [1, 0.4]] }").locks
+    )
+    for one in strands:
+        spread = np.linalg.norm(one - one.mean(axis=0), axis=2).max(axis=0)
+        assert spread[80:105].max() < 0.75 * spread[20:45].max()
+
+
+def test_a_curl_leaves_what_is_braided_as_it_is():
+    plain = groom("strands = 3", BRAID).locks
+    curled = groom("strands = 3", BRAID, curl="[curl]\nwidth = 1\npitch = 2").locks
+    np.testing.assert_allclose(curled.points, plain.points, atol=2e-4)
+    loose = groom("strands = 3", BRAID + "mask = { where = 'x > 0' }", curl="[curl]\nwidth = 1\npitch = 2").locks
+    braided = loose.curve[STRAND_RADIUS] > 0.0
+    assert 0 < braided.sum() < len(loose)
+    assert loose.take(~braided).lengths().mean() > 1.2 * loose.take(braided).lengths().mean()
+
+
+def test_hairs_of_a_strand_fill_it():
+    made = groom("strands = 3", BRAID)
+    made.hairs = {
+        "per_lock": 40,
+        "radius": {"value": 0.1, "ramp": [(0.0, 1.0)]},
+        "frizz": 0.0,
+        "stray": 0.0,
+        "shorter": 0.0,
+    }
+    hairs = make_hairs(made).curves
+    lock = hairs.curve["lock"]
+    points = hairs.points.reshape(len(hairs), -1, 3)
+    guide = made.locks.points.reshape(len(made.locks), -1, 3)[lock]
+    away = np.linalg.norm(points - guide, axis=2)[:, 40]
+    assert away.max() == pytest.approx(float(made.locks.curve[STRAND_RADIUS][0]), rel=0.15)
+
+
+@pytest.mark.parametrize(
+    ("sections", "shape", "locks", "message"),
+    [
+        ("gap = 0.2", BRAID, "count = 100\npoints = 120", "no section has strands; give [locks.sections] strands"),
+        ("strands = 1", BRAID, "points = 120", "weaves 1 strand; give locks.sections.strands at least 2"),
+        (
+            "strands = 3",
+            BRAID + "pattern = 'fishtail'",
+            "points = 120",
+            "weaves 3 strands; a fishtail has 5, 7, 9 or 11",
+        ),
+        ("strands = 3", BRAID, "points = 60", "locks.points is 60: too few for the 5.3 turns of braid; set it to 107"),
+        ("gap = 4", "", "count = 100\npoints = 8", "leaves no hair: its gap is as wide as its size"),
+    ],
+)
+def test_what_cannot_be_woven_is_refused_with_a_remedy(sections, shape, locks, message):
+    with pytest.raises(UserError) as refused:
+        groom(sections, shape, locks)
+    assert message in str(refused.value)
+
+
+@pytest.mark.parametrize("more", ["mask = 0", "blend = 0", "mask = { where = 'id < 0' }"])
+def test_a_braid_that_acts_nowhere_changes_nothing(more):
+    plain, masked = (groom("strands = 3", shape).locks for shape in ("", BRAID + more))
+    assert np.array_equal(plain.points, masked.points)
+
+
+def test_locks_outside_of_the_sections_grow_only_where_they_are_counted():
+    masked = "strands = 3\nmask = { where = 'x > 0' }"
+    assert (groom(masked).locks.curve[STRAND] >= 0).all()
+    assert (groom(masked, locks="points = 60\ncount = 200").locks.curve[STRAND] < 0).sum() > 50

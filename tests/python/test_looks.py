@@ -1,0 +1,23 @@
+"""The looks of the examples."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from ringlet.groom.operators.woven import STRAND_RADIUS
+from ringlet.groom.sections import SECTION
+
+import ringlet
+from ringlet.groom import make_hairs
+
+LOOKS = sorted((Path(__file__).parents[2] / "examples" / "looks").glob("*.recipe.toml"))
+
+
+@pytest.mark.parametrize("recipe", LOOKS, ids=lambda path: path.name.removesuffix(".recipe.toml"))
+def test_a_look_is_short_builds_and_has_strands_of_equal_number(recipe):
+    assert len(recipe.read_text().splitlines()) < 60
+    groom = ringlet.build_groom(recipe)
+    assert not groom.conflicts and (groom.locks.curve[STRAND_RADIUS] > 5e-4).all()
+    sections, strands = np.unique(groom.locks.curve[SECTION], return_counts=True)
+    assert len(sections) > 80 and len(set(strands.tolist())) == 1
+    assert len(make_hairs(groom, fraction=0.1).curves) > len(groom.locks)

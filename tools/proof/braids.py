@@ -1,0 +1,130 @@
+"""Braids and twists on the example's nodding head: the word of each, and how far strands leave it.
+
+Usage: python tools/proof/braids.py [FRAMES]
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from judged_shots import EXAMPLE, judged
+from numpy.typing import NDArray
+from ringlet.groom.operators.woven import STRAND_RADIUS
+from ringlet.groom.scalp import Scalp
+from ringlet.groom.sections import SECTION
+
+from ringlet import api
+from ringlet.groom import parse_recipe, weave
+
+SHAPES = {"braids": (3, 'op = "braid"\nwidth = 1.2'), "twists": (2, 'op = "twist"\nwidth = 1')}
+RECIPE = """
+ringlet = 1
+seed = 7
+[scalp]
+file = "head.usdc"
+mesh = "/child/skin"
+region = "scalp"
+[guides]
+count = 110
+length = 9
+lift = 0.35
+droop = 1.6
+[locks]
+points = 110
+[locks.sections]
+size = 4.5
+strands = {strands}
+mask = {{ where = "{where}" }}
+[[shape]]
+{shape}
+start = 1.2
+tail = 0.8
+"""
+WOVEN = slice(22, 99)  # points of a strand that are neither in its start nor in its tail
+THINNER = 0.7  # radius of contact over that of a strand: points along it cut corners off its path
+
+
+@dataclass(frozen=True)
+class Held:
+    """State of all braids after a frame.
+
+    crossings:   pairs that passed through one another, counted by ipctk
+    changed:     braids with another word
+    radius:      largest distance of a strand from the middle of each braid, over that in the groom
+    max_stretch: largest strain of an edge
+    """
+
+    crossings: int
+    changed: int
+    radius: NDArray[np.float64]
+    max_stretch: float
+
+
+def start(style: str, where: str = "1"):
+    """Motion of the nod with braids in the sections that the mask has, and their groom."""
+    strands, shape = SHAPES[style]
+    groom = api.build_groom(
+        parse_recipe(RECIPE.format(strands=strands, shape=shape, where=where), EXAMPLE / "braids.recipe.toml")
+    )
+    nod = api.read_shot(EXAMPLE / "nod.shot.toml")
+    thickness = THINNER * float(groom.locks.curve[STRAND_RADIUS].max())
+    contact = nod.contact.model_copy(update={"radius": thickness})
+    return api.start_motion(nod.model_copy(update={"contact": contact}), groom), groom
+
+
+def played(motion, groom, frames: int) -> Iterator[Held]:
+    """Plays frames of a motion, each judged."""
+    section, middle = groom.locks.curve[SECTION], Scalp(groom.scalp, groom.region).middle
+
+    def braids(points: NDArray) -> list[NDArray]:
+        strands = points.reshape(len(groom.locks), -1, 3)
+        return [weave.cross_sections(strands[section == one], middle) for one in np.unique(section)]
+
+    groomed = braids(groom.locks.points)
+    words = [weave.braid_word(places[:, WOVEN]) for places in groomed]
+    for frame in judged(motion, frames):
+        now = [turned(a, b) for a, b in zip(braids(motion.strands.positions), groomed, strict=True)]
+        yield Held(
+            crossings=frame.crossings or 0,
+            changed=sum(not same(weave.braid_word(a[:, WOVEN]), word) for a, word in zip(now, words, strict=True)),
+            radius=np.array([_radius(a) / _radius(b) for a, b in zip(now, groomed, strict=True)]),
+            max_stretch=frame.statistics["max_stretch"],
+        )
+
+
+def turned(places: NDArray, to: NDArray) -> NDArray[np.float64]:
+    """Cross-sections (strands, points, 2) turned so that they fit others best: a braid may twist as a whole."""
+    across = np.sum(places[..., 0] * to[..., 1] - places[..., 1] * to[..., 0], axis=0)
+    angle = np.arctan2(across, np.sum(places * to, axis=(0, 2)))
+    cosine, sine = np.cos(angle), np.sin(angle)
+    x, z = places[..., 0], places[..., 1]
+    return np.stack([cosine * x - sine * z, sine * x + cosine * z], axis=-1)
+
+
+def same(a: list[tuple[int, int]], b: list[tuple[int, int]]) -> bool:
+    """Whether two words agree, but for the crossing at each end, which may be on either side of the cut."""
+    shifts = [(i, j) for i in (0, 1) for j in (0, 1) if i * j == 0]
+    return any(
+        abs(len(a[i:]) - len(b[j:])) <= 1 and all(p == q for p, q in zip(a[i:][:-1], b[j:], strict=False))
+        for i, j in shifts
+    )
+
+
+def _radius(places: NDArray) -> float:
+    return float(np.linalg.norm(places[:, WOVEN], axis=2).max())
+
+
+if __name__ == "__main__":
+    frames = int(sys.argv[1]) if len(sys.argv) > 1 else 48
+    for style in SHAPES:
+        states = list(played(*start(style), frames))
+        radius = np.array([state.radius for state in states])
+        print(
+            f"{style}: {radius.shape[1]} of them, {len(states)} frames, {sum(s.crossings for s in states)} crossings, "
+            f"words changed at most {max(s.changed for s in states)}, "
+            f"radius over the groom's {np.median(radius):.3f} (median), {radius.max():.3f} (largest), "
+            f"over 1.2 in {np.mean(radius > 1.2):.1%}, strain at most {max(s.max_stretch for s in states):.3f}"
+        )
