@@ -14,6 +14,7 @@ from ringlet.data import limits
 from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.data.errors import UserError
 from ringlet.data.quantities import Quantity, refuse
+from ringlet.groom.hairline import Hairline
 from ringlet.groom.operators.operator import Context, Operator, arc_lengths, packed, unit
 from ringlet.groom.sections import SECTION, STRAND, Sections
 
@@ -52,10 +53,16 @@ class Locks(Operator):
         default=None, description="parts of the scalp between partings, for braids and twists; none when absent"
     )
 
+    hairline: Hairline | None = Field(
+        default=None, description="a soft hairline along the border of the scalp; a hard edge when absent"
+    )
+
     @model_validator(mode="after")
     def _one_density(self) -> Locks:
         if self.count is not None and self.spacing is not None:
             raise refuse("has both 'count' and 'spacing'; give one of them")
+        if self.hairline is not None and self.count is None and self.spacing is None and self.sections is None:
+            raise refuse("has a hairline, but every guide becomes a lock; give it 'count' or 'spacing'")
         return self
 
     def apply(self, curves: Curves, context: Context) -> Curves:
@@ -68,10 +75,20 @@ class Locks(Operator):
         scalp = context.scalp
         count = self.count or scalp.count_for_spacing(self.spacing or 0.01)
         ids, triangle, barycentric = scalp.sample(count, context.seed, self.density, "locks.density")
+        fade = self.hairline.of(scalp) if self.hairline is not None else None
+        if fade:
+            grows = fade.grows(scalp.positions(triangle, barycentric), ids, context.random("hairline"))
+            ids, triangle, barycentric = ids[grows], triangle[grows], barycentric[grows]
         attributes: dict[str, NDArray] = {}
         if self.sections is not None:
             ids, triangle, barycentric, attributes = self._sectioned(ids, triangle, barycentric, context)
+        if not len(ids):
+            raise UserError("locks.hairline leaves no hair: raise its density, or make it narrower")
         points = self._interpolated(shapes, curves, triangle, barycentric, context)
+        if fade:
+            loose = attributes.get(STRAND, np.full(len(ids), -1)) < 0
+            normals = _core.root_frames(scalp.points, scalp.triangles, triangle[loose], barycentric[loose])[1][:, :, 2]
+            points[loose] = fade.shaped(points[loose], normals)
         return _pack(points, ids, triangle, barycentric, attributes)
 
     def _sectioned(
