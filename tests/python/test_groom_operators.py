@@ -27,6 +27,7 @@ OPERATORS = {
     "flyaways": "share = 0.5",
     "straighten": "",
     "attract": "curve = 'tail'",
+    "cut": "at = -6\nsoft = 0.5",
 }
 KEEPING_LENGTH = ["lift", "loft", "bend", "part", "flyaways", "straighten"]
 TAIL = "[curves.tail]\npoints = [[0, 8, -8], [0, 6, -11], [0, -4, -12]]\n"
@@ -388,3 +389,22 @@ def test_a_recipe_of_all_operators_makes_a_groom():
     text = "ringlet = 1\n[scalp]\nregion = 'scalp'\n" + TAIL + GROWN.format(count=40) + "".join(map(step, OPERATORS))
     groom = make_groom(parse_recipe(text), ball())
     assert len(groom.locks) == 40 and np.isfinite(groom.locks.points).all()
+
+
+def test_cut_locks_end_on_the_plane_within_softness_and_keep_their_way_to_it():
+    plain, cut = locks(), locks("[[shape]]\nop = 'cut'\ntoward = [0, 0, 1]\nat = 5\nsoft = 0.2\nleast = 1")
+    middle = Scalp(ball(), "scalp").middle
+    roots, tips, before = (lock[:, :, 2] - middle[2] for lock in (grid(cut)[:, :1], grid(cut)[:, -1:], grid(plain)))
+    beyond, crosses = roots[:, 0] > 0.052, before.max(axis=1) > 0.052
+    inside = crosses & ~(before[:, 0] > 0.045)
+    assert inside.sum() > 3 and beyond.sum() > 3 and (~crosses).sum() > 3
+    assert np.abs(tips[inside, 0] - 0.05).max() < 0.002 + 1e-9 and np.ptp(tips[inside, 0]) > 0.001
+    np.testing.assert_allclose(cut.lengths()[beyond], 0.01, rtol=0.02)
+    kept = before.max(axis=1) < 0.048
+    assert np.array_equal(grid(cut)[kept], grid(plain)[kept])
+    # What is left lies on the old polyline.
+    a, b = grid(plain)[inside][:, :-1], grid(plain)[inside][:, 1:]
+    for lock, start, edge in zip(grid(cut)[inside], a, b - a, strict=True):
+        t = np.clip(np.einsum("pkx,kx->pk", lock[:, None] - start, edge) / np.sum(edge**2, axis=1), 0.0, 1.0)
+        off = np.linalg.norm(lock[:, None] - (start + t[:, :, None] * edge), axis=2).min(axis=1)
+        assert off.max() < 1e-9

@@ -10,6 +10,7 @@ from ringlet.groom.operators.braid import Braid
 from ringlet.groom.operators.clean import Clean
 from ringlet.groom.operators.clump import Clump
 from ringlet.groom.operators.curl import Curl
+from ringlet.groom.operators.cut import Cut
 from ringlet.groom.operators.drawn import Drawn
 from ringlet.groom.operators.flyaways import Flyaways
 from ringlet.groom.operators.frizz import Frizz
@@ -45,6 +46,7 @@ ShapeOperator = Annotated[
     | Flyaways
     | Straighten
     | Attract
+    | Cut
     | Braid
     | Twist,
     Field(discriminator="op"),
@@ -58,6 +60,7 @@ __all__ = [
     "Clump",
     "Context",
     "Curl",
+    "Cut",
     "Drawn",
     "Flyaways",
     "Frizz",
