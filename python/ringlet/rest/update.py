@@ -48,7 +48,7 @@ def to_curves(loft: Loft, shot: Shot) -> Curves:
     curve = {"off": loft.off, "moving": loft.moving}
     if loft.stiffened is not None:
         curve["stiffened"] = loft.stiffened
-    floats = {name: np.asarray(v, np.float64 if name in POSITIONS else np.float32) for name, v in point.items()}
+    floats = {name: np.array(v, np.float64 if name in POSITIONS else np.float32) for name, v in point.items()}
     return Curves(rest.points, rest.offsets, rest.ids, curve, floats)
 
 
