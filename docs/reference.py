@@ -122,7 +122,8 @@ def commands() -> Iterator[str]:
 
 def public_names() -> Iterator[str]:
     """Everything that ``import ringlet`` gives: functions in the order of the pipeline, then classes."""
-    names = [name for name in sorted(ringlet.__all__) if not name.startswith("__")]
+    public = [name for name in sorted(ringlet.__all__) if not name.startswith("__")]
+    names = [name for name in public if not inspect.ismodule(getattr(ringlet, name))]
     classes = [name for name in names if inspect.isclass(getattr(ringlet, name))]
     functions = sorted(set(names) - set(classes), key=in_pipeline)
     yield "## Functions\n\n```{eval-rst}"

@@ -24,7 +24,7 @@ class LengthLimit {
 public:
     // `normal`: of the surface out of which the piece was pushed, or null
     Vec3 operator()(const Vec3 &piece, double length, const Vec3 &heading, const Vec3 *normal) {
-        const Vec3 longest = std::min(2.0, length / std::max(piece.norm(), 1e-12)) * piece;
+        Vec3 longest = std::min(2.0, length / std::max(piece.norm(), 1e-12)) * piece;
         const double missing = length * length - longest.squaredNorm();
         if (!normal || missing <= 1e-9 * length * length) {
             slide_.setZero();
