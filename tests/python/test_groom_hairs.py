@@ -275,3 +275,15 @@ def test_hairs_stay_on_their_locks_side_of_surfaces():
     assert np.array_equal(
         hairs.deformed(locks.reshape(-1, 3), made.scalp.points, surfaces=[far]).reshape(free.shape), free
     )
+
+
+def test_cached_hairs_follow_a_map_that_was_painted_again():
+    def painted(values):
+        made = groom("radius = { value = '3 mm', map = 'thick' }\n")
+        made.scalp.maps["thick"] = np.full((len(made.scalp.triangles), 3), values)
+        return made
+
+    memory = HairMemory()
+    make_hairs(painted(0.5), memory=memory)
+    again = painted(1.0)
+    assert np.array_equal(make_hairs(again, memory=memory).curves.points, make_hairs(again).curves.points)

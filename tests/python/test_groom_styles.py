@@ -11,7 +11,7 @@ from ringlet.groom.sections import EDGE, SECTION, STRAND
 from shapes import ball, sheet
 
 from ringlet import Curves, UserError
-from ringlet.groom import make_groom, make_hairs, parse_recipe, weave
+from ringlet.groom import HairMemory, lock_thickness, make_groom, make_hairs, parse_recipe, weave
 
 PATTERNS = ["grid", "brick", "rows", "triangles", "radial"]
 
@@ -185,7 +185,20 @@ def test_hairs_of_a_strand_fill_it():
     points = hairs.points.reshape(len(hairs), -1, 3)
     guide = made.locks.points.reshape(len(made.locks), -1, 3)[lock]
     away = np.linalg.norm(points - guide, axis=2)[:, 40]
-    assert away.max() == pytest.approx(float(made.locks.curve[STRAND_RADIUS][0]), rel=0.15)
+    radius = made.locks.curve[STRAND_RADIUS]
+    assert away.max() == pytest.approx(float(radius[0]), rel=0.15)
+    assert lock_thickness(made) == pytest.approx(2.0 * float(radius.max()))
+
+
+def test_cached_hairs_of_a_strand_follow_its_width():
+    memory = HairMemory()
+    made = groom("strands = 3", BRAID)
+    make_hairs(made, memory=memory)
+    wide = groom("strands = 3", BRAID.replace("width = 1.2", "width = 1.6"))
+    assert np.array_equal(make_hairs(wide, memory=memory).curves.points, make_hairs(wide).curves.points)
+    unchanged = memory.hairs
+    make_hairs(groom("strands = 3", BRAID.replace("width = 1.2", "width = 1.6")), memory=memory)
+    assert memory.hairs is unchanged
 
 
 @pytest.mark.parametrize(

@@ -215,7 +215,8 @@ def hair_count(groom: Groom) -> int:
 def lock_thickness(groom: Groom) -> float:
     """Largest diameter of a lock with its hairs [m], but for chance and maps."""
     radius = _settings(groom.hairs).radius
-    return 2.0 * max([radius.value, *radius.region.values(), *radius.lock.values()]) * radius.peak
+    largest = max([radius.value, *radius.region.values(), *radius.lock.values()])
+    return 2.0 * float(_strand_radius(groom.locks, np.full(len(groom.locks), largest)).max(initial=0.0)) * radius.peak
 
 
 def make_hairs(groom: Groom, *, fraction: float = 1.0, wider: bool = False, memory: HairMemory | None = None) -> Hairs:
@@ -251,11 +252,13 @@ def _key(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -> 
     """Digest of the inputs that determine the positions of hairs in their locks."""
     locks, scalp = groom.locks, groom.scalp
     digest = blake2b(f"{settings.model_dump_json()} {groom.region} {fraction} {wider}".encode(), digest_size=16)
+    values = _Values(settings, locks, scalp)
     for array in (
         locks.ids,
         locks.offsets,
         locks.curve["root_triangle"],
         locks.curve["root_barycentric"],
+        *(values(name) for name in HairSettings.model_fields if isinstance(getattr(settings, name), Varied)),
         scalp.points,
         scalp.triangles,
         *((locks.points,) if settings.blend != HairSettings().blend else ()),
@@ -338,10 +341,13 @@ class _Values:
         """Values of a setting, shape (locks,)."""
         random = Random(self.settings.seed, f"hairs/{name}")
         values = for_each_lock(self.settings, name, random, self.locks, self.scalp, f"hairs.{name}")
-        if name == "radius" and STRAND_RADIUS in self.locks.curve:  # hairs fill the strands of a braid
-            woven = self.locks.curve[STRAND_RADIUS]
-            values = np.where(woven > 0.0, woven, values)
-        return values
+        return _strand_radius(self.locks, values) if name == "radius" else values
+
+
+def _strand_radius(locks: Curves, radius: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Radius of each lock [m], shape (locks,): hairs fill the strands of a braid."""
+    woven = locks.curve.get(STRAND_RADIUS, np.zeros(len(locks)))
+    return np.where(woven > 0.0, woven, radius)
 
 
 def _settings(values: dict[str, Any]) -> HairSettings:
