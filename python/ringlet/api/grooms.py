@@ -220,7 +220,7 @@ def check_groom(
     ``left``, the remaining intersections, and ``repair``, the displacements.
 
     root_depth:  how deep a lock may be in the skin up to ``root_length`` from its root [m]
-    thickness:   two locks nearer than this are in one another [m]
+    thickness:   distance below which two locks count as intersecting [m]
     fixed:       where to write the repaired groom
     picture:     where to write a picture of the places: of those that are left, if it is repaired
     variant:     of the groom file, in place of the one that is selected in it

@@ -69,8 +69,8 @@ def write_hairs(
     if cache is None:
         scalp = locks.scalp
         shown = io.read_meshes(groom) or [scalp]  # a head of an OBJ is in no stage
-        beside = [(mesh.points, mesh.triangles) for mesh in shown]
-        points = hairs.deformed(locks.locks.points, scalp.points, surfaces=beside)
+        surfaces = [(mesh.points, mesh.triangles) for mesh in shown]
+        points = hairs.deformed(locks.locks.points, scalp.points, surfaces=surfaces)
         with io.HairWriter(Path(path), locks, hairs.curves, Path(groom)) as writer:
             writer.add(None, points, around=scalp.points)
     else:
@@ -88,8 +88,8 @@ def write_hairs(
                     "simulate again",
                     moved.lag(frame),
                 )
-                beside = moved.surfaces(frame) or [(scalp, locks.scalp.triangles)]
-                writer.add(frame, hairs.deformed(points, scalp, surfaces=beside), around=scalp)
+                surfaces = moved.surfaces(frame) or [(scalp, locks.scalp.triangles)]
+                writer.add(frame, hairs.deformed(points, scalp, surfaces=surfaces), around=scalp)
                 written += 1
                 if progress:
                     progress("hairs", written, len(chosen))

@@ -55,7 +55,7 @@ def check(
             metavar="MM",
             min=0,
             max=1000,
-            help="Locks nearer than this are in one another.",
+            help="Distance below which locks count as intersecting.",
         ),
     ] = 0.1,
     as_json: Json = False,

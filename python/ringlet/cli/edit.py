@@ -9,23 +9,13 @@ from typing import Annotated
 import typer
 
 import ringlet
-from ringlet.cli.options import Json
+from ringlet.cli.options import Json, lock_option
 from ringlet.cli.output import print_json, print_table
 
 
 def edit(
     recipe: Annotated[Path, typer.Argument(metavar="RECIPE", help="The recipe, a TOML file that names `edits`.")],
-    freeze: Annotated[
-        list[int] | None,
-        typer.Option(
-            "--freeze",
-            metavar="LOCK",
-            min=-ringlet.limits.ID,
-            max=ringlet.limits.ID,
-            help="Take a lock out of the recipe as it is now.",
-            show_default=False,
-        ),
-    ] = None,
+    freeze: Annotated[list[int] | None, lock_option("--freeze", "Take a lock out of the recipe as it is now.")] = None,
     settings: Annotated[
         list[str] | None,
         typer.Option(
@@ -35,17 +25,7 @@ def edit(
             show_default=False,
         ),
     ] = None,
-    release: Annotated[
-        list[int] | None,
-        typer.Option(
-            "--release",
-            metavar="LOCK",
-            min=-ringlet.limits.ID,
-            max=ringlet.limits.ID,
-            help="Give a lock back to the recipe.",
-            show_default=False,
-        ),
-    ] = None,
+    release: Annotated[list[int] | None, lock_option("--release", "Give a lock back to the recipe.")] = None,
     release_all: Annotated[bool, typer.Option("--release-all", help="Give all locks back to the recipe.")] = False,
     as_json: Json = False,
 ) -> None:

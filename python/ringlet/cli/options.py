@@ -53,6 +53,18 @@ Fraction = Annotated[
 ]
 
 
+def frame_option(help: str) -> Any:
+    """The option ``--frame`` of one frame, none by default."""
+    most = ringlet.limits.FRAME
+    return typer.Option("--frame", metavar="F", min=-most, max=most, help=help, show_default=False)
+
+
+def lock_option(name: str, help: str) -> Any:
+    """An option of ids of locks, none by default."""
+    most = ringlet.limits.ID
+    return typer.Option(name, metavar="LOCK", min=-most, max=most, help=help, show_default=False)
+
+
 def ending_in(*suffixes: str) -> Callable[[Path | None], Path | None]:
     """Refuses a file that cannot be written, or whose name ends otherwise, before the work for it is done."""
 

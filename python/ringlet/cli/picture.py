@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 import ringlet
-from ringlet.cli.options import Frames, Json, Report, picture_file
+from ringlet.cli.options import Frames, Json, Report, frame_option, picture_file
 from ringlet.cli.output import wrote
 from ringlet.cli.progress import shown_progress
 
@@ -20,17 +20,7 @@ def picture(
     output: Annotated[
         Path, typer.Option("--output", "-o", callback=picture_file, metavar="PICTURE", help="The PNG file to write.")
     ] = Path("still.png"),
-    frame: Annotated[
-        float | None,
-        typer.Option(
-            "--frame",
-            metavar="F",
-            min=-ringlet.limits.FRAME,
-            max=ringlet.limits.FRAME,
-            help="Frame of the still; the first by default.",
-            show_default=False,
-        ),
-    ] = None,
+    frame: Annotated[float | None, frame_option("Frame of the still; the first by default.")] = None,
     view: Annotated[str, typer.Option("--view", help="three_quarter, front, side or back.")] = "three_quarter",
     color: Annotated[
         str, typer.Option("--color", help="black, dark_brown, brown, auburn, ginger, blond or gray.")

@@ -30,7 +30,7 @@ def sim(
         bool,
         typer.Option(
             "--rebind",
-            help="Bind the groom to its head as that is now; written beside the cache, as of a recipe.",
+            help="Rebind the groom to the current head; writes CACHE.groom.usdc next to the cache.",
         ),
     ] = False,
     resume: Annotated[

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 import typer
 
 import ringlet
-from ringlet.cli.options import Frames, Json, ShotFile
+from ringlet.cli.options import Frames, Json, ShotFile, frame_option
 from ringlet.cli.output import print_json, print_table
 from ringlet.cli.progress import shown_progress
 
@@ -28,16 +28,7 @@ def wedge(
         Path, typer.Option("--output", "-o", metavar="FOLDER", help="The folder to write to, a folder for each task.")
     ] = Path("out/wedge"),
     frames: Frames = None,
-    frame: Annotated[
-        int | None,
-        typer.Option(
-            "--frame",
-            min=-ringlet.limits.FRAME,
-            max=ringlet.limits.FRAME,
-            help="The frame to draw and to compare; the last by default.",
-            show_default=False,
-        ),
-    ] = None,
+    frame: Annotated[int | None, frame_option("The frame to draw and to compare; the last by default.")] = None,
     picture: Annotated[bool, typer.Option("--picture/--no-picture", help="Draw a frame of each.")] = True,
     scheduler: Annotated[
         str | None,

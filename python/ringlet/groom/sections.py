@@ -156,9 +156,9 @@ class Cells:
         turn = (np.arctan2(y, x) / (2.0 * np.pi)) % 1.0 * around
         i = np.minimum(np.floor(turn), around - 1.0)
         u, v = turn - i, radius - ring
-        beside = np.where(ring == 0, np.inf, np.minimum(u, 1.0 - u) * 2.0 * np.pi * radius / around)
-        within = np.where(ring == 0, 1.0 - v, np.minimum(v, 1.0 - v))
-        return cls(_key(i, ring), u, v, np.minimum(beside, within))
+        to_sector_border = np.where(ring == 0, np.inf, np.minimum(u, 1.0 - u) * 2.0 * np.pi * radius / around)
+        to_ring_border = np.where(ring == 0, 1.0 - v, np.minimum(v, 1.0 - v))
+        return cls(_key(i, ring), u, v, np.minimum(to_sector_border, to_ring_border))
 
 
 @dataclass(frozen=True)

@@ -31,9 +31,9 @@ def read_mesh(
 
     Convex polygons are triangulated as fans, others by ear clipping. A Catmull-Clark subdivision surface is refined
     until most of it is nearer than 0.1 mm to its limit surface, by three levels or to 200 000 faces at most; its points
-    lie on that surface. Face
-    ``GeomSubset``s, or the groups of an OBJ, become regions. The rest pose is the default value of the points, or else
-    the first time sample. A USD file without ``metersPerUnit`` is in centimetres, the fallback of USD.
+    lie on that surface. Face ``GeomSubset``s, or the groups of an OBJ, become regions. The rest pose is the default
+    value of the points, or else the first time sample. A USD file without ``metersPerUnit`` is in centimetres, the
+    fallback of USD.
 
     prim:  prim path in USD; by default the only mesh, or the only one with a region called ``scalp``
     space: unit and up-axis of an OBJ, which stores neither

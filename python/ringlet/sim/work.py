@@ -11,6 +11,7 @@ from scipy.spatial import KDTree
 from ringlet.data.curves import Curves
 from ringlet.data.groom import Groom
 from ringlet.data.mesh import Clip
+from ringlet.data.rigid import best_rotation
 from ringlet.shot import Shot
 from ringlet.sim.obstacle import Obstacle
 
@@ -99,9 +100,6 @@ def _fast_motion(name: str, clip: Clip, frames: tuple[int, int]) -> Iterator[str
 
 
 def rotations(before: NDArray[np.float64], after: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Angles of the rotations that fit points best [degrees], shape (k,), of points (k, n, 3) (Kabsch 1976)."""
-    centred = [points - points.mean(axis=1, keepdims=True) for points in (before, after)]
-    left, _, right = np.linalg.svd(np.einsum("kni,knj->kij", *centred))
-    left[:, :, 2] *= np.sign(np.linalg.det(left) * np.linalg.det(right))[:, None]  # a rotation, and no mirror image
-    cosine = 0.5 * (np.einsum("kij,kji->k", left, right) - 1.0)
+    """Angles of the rotations that fit points best [degrees], shape (k,), of points (k, n, 3)."""
+    cosine = 0.5 * (np.trace(best_rotation(before, after), axis1=1, axis2=2) - 1.0)
     return np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))

@@ -102,6 +102,22 @@ def shown_statistics(statistics: dict[str, Any]) -> dict[str, Any]:
     }
 
 
+@dataclass(frozen=True)
+class Run:
+    """One run of a shot.
+
+    restart_frame: frame of the checkpoint that it starts from; None for the start of the shot
+    checkpoint:    state of the motion there
+    stopping:      set to end it
+    """
+
+    shot: Shot
+    stage: Stage
+    restart_frame: int | None
+    checkpoint: dict[str, NDArray[Any]] | None
+    stopping: threading.Event
+
+
 class Simulation:
     """A simulation thread.
 
@@ -144,8 +160,8 @@ class Simulation:
         self.rolled, self.key, self.state = 0, self.key + 1, "rolling"
         self._stopping = threading.Event()
         self._running.set()
-        run = (shot, stage, restart_frame, checkpoint, self._stopping, previous)
-        self._thread = threading.Thread(target=self._run, args=run, daemon=True)
+        run = Run(shot, stage, restart_frame, checkpoint, self._stopping)
+        self._thread = threading.Thread(target=self._run, args=(run, previous), daemon=True)
         self._thread.start()
         self._changed()
 
@@ -181,25 +197,17 @@ class Simulation:
         self._frames.truncate()
         self.state, self.rolled, self.key = "still", 0, self.key + 1
 
-    def _run(
-        self,
-        shot: Shot,
-        stage: Stage,
-        restart_frame: int | None,
-        checkpoint: dict[str, NDArray[Any]] | None,
-        stopping: threading.Event,
-        previous: threading.Thread | None,
-    ) -> None:
-        """Runs after the run before it has ended. ``stopping``: ends this one."""
+    def _run(self, run: Run, previous: threading.Thread | None) -> None:
+        """Simulates once the thread of the previous run has ended."""
         if previous is not None:
             previous.join()
         try:
-            self._simulate(shot, stage, restart_frame, checkpoint, stopping)
+            self._simulate(run)
         except UserError as error:
-            self._fail(str(error), stopping)
+            self._fail(str(error), run.stopping)
         except Exception as error:
             log.exception("a shot could not be run")
-            self._fail(f"this is a mistake in Ringlet ({error}); see the terminal", stopping)
+            self._fail(f"this is a mistake in Ringlet ({error}); see the terminal", run.stopping)
         self._changed()
 
     def _fail(self, message: str, stopping: threading.Event) -> None:
@@ -207,19 +215,13 @@ class Simulation:
             self.state = "still"
             self._failed(message)
 
-    def _simulate(
-        self,
-        shot: Shot,
-        stage: Stage,
-        restart_frame: int | None,
-        checkpoint: dict[str, NDArray[Any]] | None,
-        stopping: threading.Event,
-    ) -> None:
+    def _simulate(self, run: Run) -> None:
+        shot, stage, stopping = run.shot, run.stage, run.stopping
         first, last = shot.frames
         motion = api.start_motion(shot, stage.groom, on_warning=self._failed)
-        if checkpoint is not None:
-            motion.recall(checkpoint)
-        begin = 0 if restart_frame is None else shot.preroll + restart_frame - first + 1
+        if run.checkpoint is not None:
+            motion.recall(run.checkpoint)
+        begin = 0 if run.restart_frame is None else shot.preroll + run.restart_frame - first + 1
         for step in range(begin, shot.preroll + last - first + 1):
             self._running.wait()
             if stopping.is_set():

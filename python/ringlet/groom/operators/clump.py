@@ -27,18 +27,18 @@ class Clump(Shape):
         default=Ramped(value=0.4, vary=0.5, ramp=[(0, 0), (1, 1)]), description="0 apart, 1 all at the centre"
     )
 
-    @classmethod
-    def defaults(cls, data: dict[str, Any]) -> dict[str, Any]:
-        """Defaults of the class; an amount that is a plain number is that of every lock."""
-        defaults = super().defaults(data)
-        if isinstance(data.get("amount"), int | float):
-            del defaults["amount"]["vary"]
-        return defaults
-
     levels: int = Field(default=1, ge=1, le=8, description="clumps within clumps")
     finer: Annotated[float, Quantity("", 0.1, 0.9)] = Field(
         default=0.5, description="distance of the clumps of a level, as a part of that of the level before"
     )
+
+    @classmethod
+    def defaults(cls, data: dict[str, Any]) -> dict[str, Any]:
+        """Defaults of the class; a plain number for ``amount`` applies to all locks, without variation."""
+        defaults = super().defaults(data)
+        if isinstance(data.get("amount"), int | float):
+            del defaults["amount"]["vary"]
+        return defaults
 
     def shape(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
         """Returns the clumped shapes, large clumps first; roots stay."""

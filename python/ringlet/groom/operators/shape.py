@@ -31,13 +31,18 @@ class Shape(Operator):
 
     def apply(self, curves: Curves, context: Context) -> Curves:
         """Returns the curves with the new shape, weighted by mask and blend."""
+        weight = self.weights(curves, context)
+        return self.blended(curves, self.shape(grid(curves), curves, context), weight) if weight.any() else curves
+
+    def weights(self, curves: Curves, context: Context) -> NDArray[np.floating]:
+        """Weight w of each point, shape (count, points)."""
         where = f"{context.purpose}.mask"
-        weight = self.blend * self.mask.weights(curves, context.scalp.mesh, context.random("mask"), where)
-        affected: NDArray[np.bool_] = np.any(weight > 0.0, axis=1)
-        if not affected.any():
-            return curves
+        return self.blend * self.mask.weights(curves, context.scalp.mesh, context.random("mask"), where)
+
+    def blended(self, curves: Curves, shaped: NDArray[np.floating], weight: NDArray[np.floating]) -> Curves:
+        """Returns the curves with the new shape (count, points, 3), interpolated by weight."""
         points = grid(curves)
-        shaped = self.shape(points, curves, context)
+        affected: NDArray[np.bool_] = np.any(weight > 0.0, axis=1)
         if weight.min() < 1.0:
             mixed = (mix_edges if self.turns else mix_places)(points, shaped, weight)
             shaped = np.where(affected[:, None, None], mixed, points)

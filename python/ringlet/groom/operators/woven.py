@@ -71,26 +71,20 @@ class Woven(Shape):
         if int(curves.counts.min()) != points:
             resampled = _core.resample_curves(*packed(curves), points)
             fine = Curves(resampled, offsets_from_counts([points] * len(curves)), curves.ids, curves.curve)
-        braids = self._braids(fine, context)
+        weight = self.weights(fine, context)
+        braids = self._braids(fine, weight, context)
         if not braids:
             return curves
-        woven = super().apply(fine, context)
+        shapes = grid(fine).copy()
         radius = curves.curve.get(STRAND_RADIUS, np.zeros(len(curves), np.float32)).copy()
         for braid in braids:
+            shapes[braid.rows] = braid.woven(shapes[braid.rows], context.scalp.middle, self)
             radius[braid.rows] = braid.radius
+        woven = self.blended(fine, shapes, weight)
         return Curves(woven.points, woven.offsets, woven.ids, {**woven.curve, STRAND_RADIUS: radius}, woven.point)
 
-    def shape(self, points: NDArray, curves: Curves, context: Context) -> NDArray[np.floating]:
-        """Returns the points with the strands woven; roots stay."""
-        points = points.copy()
-        for braid in self._braids(curves, context):
-            points[braid.rows] = braid.woven(points[braid.rows], context.scalp.middle, self)
-        return points
-
-    def _braids(self, curves: Curves, context: Context) -> list[Braided]:
-        """The braids of the sections of which the mask has a strand."""
-        where = f"{context.purpose}.mask"
-        weight = self.blend * self.mask.weights(curves, context.scalp.mesh, context.random("mask"), where)
+    def _braids(self, curves: Curves, weight: NDArray, context: Context) -> list[Braided]:
+        """The braids of the sections of which a strand has weight."""
         strand = curves.curve[STRAND] >= 0
         sections = np.unique(curves.curve[SECTION][strand & (weight > 0.0).any(axis=1)])
         if not len(sections):

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pxr import Usd, UsdGeom
 
+from ringlet.data import limits
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Clip
 from ringlet.io.space import check_points
@@ -15,7 +16,6 @@ from ringlet.io.usd.pose import motion_samples, posed_points, rest_time
 from ringlet.io.usd.stage import Source
 from ringlet.io.usd.values import read_integers
 
-MAX_FRAMES = 100_000
 MAX_POSITIONS = 2**28  # points of a mesh times frames: 6 GiB
 
 
@@ -92,8 +92,8 @@ class _Faces:
 
 def whole_frames(first: float, last: float, where: str) -> NDArray[np.float64]:
     """Whole frames of a closed range, shape (k,); raises UserError for none or too many."""
-    if not abs(last - first) < MAX_FRAMES:  # also true for NaN
-        raise UserError(f"{where}: moves from {first:g} to {last:g}; must be fewer than {MAX_FRAMES:,} frames")
+    if not abs(last - first) < limits.FRAMES:  # also true for NaN
+        raise UserError(f"{where}: moves from {first:g} to {last:g}; must be fewer than {limits.FRAMES:,} frames")
     frames = np.arange(math.ceil(first), math.floor(last) + 1, dtype=np.float64)
     if len(frames) == 0:
         raise UserError(f"{where}: there is no whole frame from {first:g} to {last:g}; give a longer range")
@@ -107,7 +107,7 @@ def _frames(source: Source, prim: Usd.Prim, frames: tuple[float, float] | None) 
         return np.empty(0)
     samples = [time for time in samples if math.isfinite(time)]
     start, end = source.stage.GetStartTimeCode(), source.stage.GetEndTimeCode()
-    if frames is None and source.stage.HasAuthoredTimeCodeRange() and 0 <= end - start < MAX_FRAMES:
+    if frames is None and source.stage.HasAuthoredTimeCodeRange() and 0 <= end - start < limits.FRAMES:
         frames = start, end
     first, last = frames or (min(samples), max(samples))
     return whole_frames(first, last, source.where(prim))
