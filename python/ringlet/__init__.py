@@ -11,6 +11,7 @@ from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.files import check_place
 from ringlet.data.mesh import Clip, Mesh
+from ringlet.data.picture import PictureSettings
 from ringlet.data.reads import recorded
 from ringlet.data.stage import StageSpace
 
@@ -59,7 +60,18 @@ _SLOW = {
 }
 
 __version__ = version("ringlet")
-__all__ = ["Clip", "Curves", "Mesh", "StageSpace", "UserError", "__version__", "check_place", "limits", "recorded"]
+__all__ = [
+    "Clip",
+    "Curves",
+    "Mesh",
+    "PictureSettings",
+    "StageSpace",
+    "UserError",
+    "__version__",
+    "check_place",
+    "limits",
+]
+__all__ += ["recorded"]
 __all__ += api.__all__
 __all__ += _SLOW  # pyright: ignore[reportUnsupportedDunderAll]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ from PIL import Image
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Mesh
+from ringlet.data.picture import PictureSettings
 from ringlet.picture import HAIR_COLORS, VIEWS, PosedBody, sheet, still
 from ringlet.picture.bodies import material
 from ringlet.picture.camera import frame
@@ -17,6 +19,9 @@ from ringlet.picture.render import build_scene, hair_share, mitsuba, trace
 from ringlet.picture.strands import fibres, load_fibres, spline_controls
 from ringlet.picture.tone import develop
 from scipy.interpolate import BSpline
+
+QUICK = PictureSettings(width=64, height=64, samples=8, view="front")
+TINY = PictureSettings(width=16, height=16, samples=16)
 
 
 def helix(turns: float, per_turn: int, radius: float = 0.004) -> np.ndarray:
@@ -129,11 +134,11 @@ def test_hair_appears_at_its_projected_position(tmp_path: Path, scale: float, at
 
 
 def test_a_still_is_neither_black_nor_overexposed_and_shows_the_hair(tmp_path: Path) -> None:
-    path = still([ball()], tuft(), tmp_path / "still.png", width=64, height=64, samples=8, view="front")
+    path = still([ball()], tuft(), tmp_path / "still.png", QUICK)
     image = pixels(path)
     assert image.shape == (64, 64, 3)
     assert 20 < image.mean() < 235
-    empty = still([ball()], tuft(2), tmp_path / "empty.png", width=64, height=64, samples=8, view="front")
+    empty = still([ball()], tuft(2), tmp_path / "empty.png", QUICK)
     assert np.abs(image - pixels(empty)).max() > 40
 
 
@@ -144,7 +149,7 @@ def test_a_body_shows_through_a_transparent_one(tmp_path: Path) -> None:
     blue = {}
     for opacity in (1.0, 0.3):
         near.opacity = opacity
-        path = still([near, far], tuft(2), tmp_path / "veil.png", width=48, height=48, samples=32, view="front")
+        path = still([near, far], tuft(2), tmp_path / "veil.png", replace(QUICK, width=48, height=48, samples=32))
         middle = pixels(path)[40:, 20:28].mean(axis=(0, 1))  # the near body covers the far one
         blue[opacity] = middle[2] / middle[0]
     assert blue[0.3] > 2 * blue[1.0]
@@ -170,17 +175,14 @@ def test_subpixel_hairs_are_visible(tmp_path: Path) -> None:
 
 def test_a_still_reports_progress_and_respects_its_time_limit(tmp_path: Path) -> None:
     steps: list[tuple[str, int, int]] = []
-    still([], tuft(4), tmp_path / "a.png", width=16, height=16, samples=16, progress=lambda *step: steps.append(step))
+    still([], tuft(4), tmp_path / "a.png", TINY, progress=lambda *step: steps.append(step))
     assert [done for _, done, _ in steps] == list(range(steps[-1][2] + 1))
     steps.clear()
     still(
         [],
         tuft(4),
         tmp_path / "b.png",
-        width=16,
-        height=16,
-        samples=10_000,
-        seconds=0.0,
+        replace(TINY, samples=10_000, seconds=0.0),
         progress=lambda *step: steps.append(step),
     )
     assert len(steps) == 3  # start, one pass, end
@@ -190,20 +192,17 @@ def test_a_still_reports_progress_and_respects_its_time_limit(tmp_path: Path) ->
 def test_a_time_limit_splits_a_still_into_smaller_passes(tmp_path: Path, samples: int) -> None:
     """With a time limit passes are smaller, since the noise estimate needs three."""
     passes = {}
-    for seconds in (None, 1e9):
+    for seconds in (None, 8e4):
         steps: list[int] = []
         still(
             [],
             tuft(4),
             tmp_path / "a.png",
-            width=16,
-            height=16,
-            samples=samples,
-            seconds=seconds,
+            replace(TINY, samples=samples, seconds=seconds),
             progress=lambda _, done, total, steps=steps: steps.append(done),
         )
         passes[seconds] = steps[-1]
-    assert passes[1e9] >= (4 if samples == 4 else 1.5 * passes[None])
+    assert passes[8e4] >= (4 if samples == 4 else 1.5 * passes[None])
 
 
 def test_hair_is_distinguished_from_skin() -> None:
@@ -250,7 +249,9 @@ def test_a_sheet_has_a_tile_for_every_frame_and_shows_the_motion(tmp_path: Path)
     hairs = tuft()
     moved = hairs.with_points(hairs.points + np.array([0.15, 0.0, 0.0]))
     frames = [(1.0, [], hairs), (2.0, [], moved), (3.0, [], hairs)]
-    path = sheet(frames, tmp_path / "sheet.png", columns=2, tile=(64, 48), samples=4, view="front")
+    path = sheet(
+        frames, tmp_path / "sheet.png", columns=2, tile=(64, 48), samples=4, settings=PictureSettings(view="front")
+    )
     image = pixels(path)
     assert image.shape[0] > 2 * 48
     assert image.shape[1] > 2 * 64
@@ -268,7 +269,7 @@ def test_a_sheet_has_a_tile_for_every_frame_and_shows_the_motion(tmp_path: Path)
 )
 def test_wrong_options_are_refused_by_name(tmp_path: Path, options: dict, named: str) -> None:
     with pytest.raises(UserError, match=named):
-        still([ball()], tuft(2), tmp_path / "still.png", **options)
+        still([ball()], tuft(2), tmp_path / "still.png", PictureSettings(**options))
     assert list(tmp_path.iterdir()) == []
 
 
@@ -282,7 +283,7 @@ def test_an_empty_picture_is_refused(tmp_path: Path) -> None:
 def test_an_unwritable_picture_leaves_no_file(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("a file")
     with pytest.raises(UserError, match="cannot be written"):
-        still([], tuft(1), tmp_path / "file" / "still.png", width=8, height=8, samples=1)
+        still([], tuft(1), tmp_path / "file" / "still.png", TINY)
     assert [entry.name for entry in tmp_path.iterdir()] == ["file"]
 
 

@@ -6,12 +6,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ringlet.api.grooms import read_groom
 from ringlet.api.hairs import build_hairs
 from ringlet.api.progress import Progress
+from ringlet.data.camera import Camera
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
+from ringlet.data.picture import PictureSettings
 from ringlet.data.reads import recorded
 from ringlet.data.settings import check_name
 
@@ -22,6 +25,7 @@ __all__ = ["write_loft_picture", "write_sheet", "write_still", "write_touches_pi
 
 
 LOCK_WIDTH = 8e-4  # of locks among their contacts: thinner ones are lost before skin in a quick picture [m]
+SHEET_SETTINGS = ("view", "color", "light", "light_turn")  # that a sheet takes
 VEIL = 0.3  # opacity of cloth in a picture of contacts: most of them are behind it
 
 
@@ -31,35 +35,21 @@ def write_still(
     path: Path | str,
     *,
     frame: float | None = None,
-    width: int = 900,
-    height: int = 1000,
-    samples: int = 40,
-    view: str = "three_quarter",
-    color: str = "dark_brown",
-    seconds: float | None = None,
     progress: Progress | None = None,
+    **settings: Any,
 ) -> None:
     """Path-traces one frame of a USD stage to a PNG: the hairs and the bodies in it, framed on their own.
 
-    frame:   the first of the stage by default
-    view:    ``three_quarter``, ``front``, ``side`` or ``back``
-    seconds: stop adding samples after that long
+    frame:    the first of the stage by default
+    settings: those of ``PictureSettings``: ``width=480, samples=16, view="side", light="window"``
     """
     from ringlet import picture
 
-    bodies, hairs = _posed(Path(stage), frame)
-    picture.still(
-        bodies,
-        hairs,
-        Path(path),
-        width=width,
-        height=height,
-        samples=samples,
-        view=view,
-        color=color,
-        seconds=seconds,
-        progress=progress,
-    )
+    stage, chosen = Path(stage), PictureSettings.of(settings)
+    frame = _frame_of(stage, frame)
+    bodies, hairs = _posed(stage, frame)
+    lock, camera = _lock_points(stage, hairs, chosen.look_at), _camera(stage, chosen.camera, frame)
+    picture.still(bodies, hairs, path, chosen, lock=lock, camera=camera, progress=progress)
 
 
 @recorded()
@@ -69,12 +59,8 @@ def write_touches_picture(
     *,
     show: str = "force",
     frame: float | None = None,
-    width: int = 900,
-    height: int = 1000,
-    samples: int = 40,
-    view: str = "three_quarter",
-    seconds: float | None = None,
     progress: Progress | None = None,
+    **settings: Any,
 ) -> None:
     """Draws what ``write_touches`` wrote, with the locks and the bodies around it, as coloured beads;
     cloth is seen through, since most of what touches it is behind it.
@@ -83,9 +69,11 @@ def write_touches_picture(
            ``gap``: red where hardly anything is left;
            ``start``: all places that were in the way when the shot began, red where worst
     frame: the first by default
+    settings: those of ``PictureSettings``; locks are black
     """
     from ringlet import io, picture
 
+    chosen = PictureSettings.of(settings | {"color": "black"})
     check_name(show, ("force", "gap", "start"), "picture", "way to show contacts")
     stage = Path(stage)
     touches, colors = io.read_touches(stage, frame)
@@ -104,18 +92,9 @@ def write_touches_picture(
     posed = [picture.PosedBody(body.mesh, body.clip.points[0], veil) for body, veil in zip(bodies, veils, strict=True)]
     if len(places):
         posed.append(picture.beads(places, colors, part * float(np.ptp(posed_locks, axis=0).max())))
-    picture.still(
-        posed,
-        Curves(posed_locks, locks.offsets, locks.ids, point={"width": np.full(len(posed_locks), LOCK_WIDTH)}),
-        Path(path),
-        width=width,
-        height=height,
-        samples=samples,
-        view=view,
-        color="black",
-        seconds=seconds,
-        progress=progress,
-    )
+    shown = Curves(posed_locks, locks.offsets, locks.ids, point={"width": np.full(len(posed_locks), LOCK_WIDTH)})
+    lock, camera = _curve_points(stage, shown, chosen.look_at), _camera(stage, chosen.camera, float(at))
+    picture.still(posed, shown, path, chosen, lock=lock, camera=camera, progress=progress)
 
 
 @recorded()
@@ -126,12 +105,17 @@ def write_sheet(
     frames: tuple[int, int] | None = None,
     count: int = 12,
     title: str = "",
-    color: str = "dark_brown",
     progress: Progress | None = None,
+    **settings: Any,
 ) -> None:
-    """Draws ``count`` frames of a USD stage, evenly spread, on one page, under a title if there is one."""
+    """Draws ``count`` frames of a USD stage, evenly spread, on one page, under a title if there is one.
+
+    settings: ``view``, ``color``, ``light`` and ``light_turn`` of ``PictureSettings``
+    """
     from ringlet import io, picture
 
+    look = PictureSettings.of(settings)
+    look.refuse_all_but(SHEET_SETTINGS, "a sheet of small pictures")
     chosen = [f for f in io.read_hair_frames(Path(stage)) if frames is None or frames[0] <= f <= frames[1]]
     if not chosen:
         raise UserError(f"{stage}: has no frames to draw a sheet of; give hairs made with --cache, or other frames")
@@ -141,7 +125,7 @@ def write_sheet(
         Path(path),
         title=title,
         fps=io.read_space(Path(stage)).fps,
-        color=color,
+        settings=look,
         progress=progress,
     )
 
@@ -172,15 +156,46 @@ def write_loft_picture(
     )
 
 
+def _frame_of(stage: Path, frame: float | None) -> float | None:
+    """The frame of a picture, by default the first of the stage; None for static hair."""
+    from ringlet import io
+
+    if not len(frames := io.read_hair_frames(stage)):
+        return frame
+    frame = float(frames[0]) if frame is None else frame
+    if not frames[0] <= frame <= frames[-1]:
+        raise UserError(f"{stage}: has no hairs at frame {frame:g}; it holds {frames[0]:g} to {frames[-1]:g}")
+    return frame
+
+
 def _posed(stage: Path, frame: float | None) -> tuple[list[Any], Any]:
     """Bodies and hairs of a stage at a frame, as the pictures take them."""
     from ringlet import io, picture
 
-    if len(frames := io.read_hair_frames(stage)):
-        frame = float(frames[0]) if frame is None else frame
-        if not frames[0] <= frame <= frames[-1]:
-            raise UserError(f"{stage}: has no hairs at frame {frame:g}; it holds {frames[0]:g} to {frames[-1]:g}")
     bodies, hairs, _ = io.read_stage(stage, frame)
     if hairs is None:
         raise UserError(f"{stage}: has no hairs; make them with: ringlet hair {stage} -o hair.usdc")
     return [picture.PosedBody(body.mesh, body.clip.points[0]) for body in bodies], hairs
+
+
+def _camera(stage: Path, prim: str | None, frame: float | None) -> Camera | None:
+    """The camera of a stage at a frame, if one is named."""
+    from ringlet import io
+
+    return None if prim is None else io.read_camera(stage, prim, frame)
+
+
+def _lock_points(stage: Path, hairs: Curves, lock: int | None) -> NDArray[np.floating] | None:
+    """Points of the hairs of a lock by its id [m]; of one curve, in a stage without locks; None for no lock."""
+    if lock is None or "lock" not in hairs.curve:
+        return _curve_points(stage, hairs, lock)
+    row = read_groom(stage).locks.row_of(lock, str(stage))
+    chosen = hairs.take(hairs.curve["lock"] == row)
+    if not len(chosen):
+        raise UserError(f"{stage}: lock {lock} has no hairs in it; choose another, or make all hairs")
+    return chosen.points
+
+
+def _curve_points(stage: Path, curves: Curves, lock: int | None) -> NDArray[np.floating] | None:
+    """Points of the curve with an id [m]."""
+    return None if lock is None else curves[curves.row_of(lock, str(stage))]

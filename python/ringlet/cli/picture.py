@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -11,38 +11,19 @@ import ringlet
 from ringlet.cli.options import Frames, Json, Report, frame_option, picture_file
 from ringlet.cli.output import wrote
 from ringlet.cli.progress import shown_progress
+from ringlet.cli.settings import with_settings
 
 
+@with_settings
 def picture(
     stage: Annotated[
         Path, typer.Argument(metavar="STAGE", help="A USD file with hairs, and with the head if it is to be seen.")
     ],
+    settings: dict[str, Any],
     output: Annotated[
         Path, typer.Option("--output", "-o", callback=picture_file, metavar="PICTURE", help="The PNG file to write.")
     ] = Path("still.png"),
     frame: Annotated[float | None, frame_option("Frame of the still; the first by default.")] = None,
-    view: Annotated[str, typer.Option("--view", help="three_quarter, front, side or back.")] = "three_quarter",
-    color: Annotated[
-        str, typer.Option("--color", help="black, dark_brown, brown, auburn, ginger, blond or gray.")
-    ] = "dark_brown",
-    width: Annotated[int, typer.Option("--width", min=16, max=8192, help="Pixels across.")] = 900,
-    height: Annotated[int, typer.Option("--height", min=16, max=8192, help="Pixels down.")] = 1000,
-    samples: Annotated[
-        int,
-        typer.Option(
-            "--samples", min=1, max=ringlet.limits.SAMPLES, help="Paths per pixel: more is cleaner and slower."
-        ),
-    ] = 40,
-    seconds: Annotated[
-        float | None,
-        typer.Option(
-            "--seconds",
-            min=1,
-            max=ringlet.limits.SECONDS,
-            help="Stop adding samples after that long.",
-            show_default=False,
-        ),
-    ] = None,
     sheet: Annotated[bool, typer.Option("--sheet", help="A contact sheet of the clip in place of a still.")] = False,
     contacts: Annotated[
         str | None,
@@ -62,37 +43,16 @@ def picture(
     With --contacts, beads show contacts. By force: blue to red, over three decades up to the strongest in a hundred.
     By gap: red where hardly any gap is left. By start: all places that overlapped at the start, red where worst.
 
-    Examples: ringlet picture hair.usdc -o still.png --frame 24 --view side · ringlet picture hair.usdc --sheet
+    Examples: ringlet picture hair.usdc -o still.png --frame 24 --view side · ringlet picture hair.usdc --sheet ·
+    ringlet picture hair.usdc --look-at 50000000 --f-stop 2.8 --light window
     """
     with ringlet.Run("picture", report) as run, shown_progress() as progress:
         with run.stage("sheet" if sheet else "still", output):
             if contacts is not None:
-                ringlet.write_touches_picture(
-                    stage,
-                    output,
-                    show=contacts,
-                    frame=frame,
-                    view=view,
-                    width=width,
-                    height=height,
-                    samples=samples,
-                    seconds=seconds,
-                    progress=progress,
-                )
+                ringlet.write_touches_picture(stage, output, show=contacts, frame=frame, progress=progress, **settings)
             elif sheet:
-                ringlet.write_sheet(stage, output, frames=frames, color=color, progress=progress)
+                ringlet.write_sheet(stage, output, frames=frames, progress=progress, **settings)
             else:
-                ringlet.write_still(
-                    stage,
-                    output,
-                    frame=frame,
-                    view=view,
-                    color=color,
-                    width=width,
-                    height=height,
-                    samples=samples,
-                    seconds=seconds,
-                    progress=progress,
-                )
-        run.pictured(output, f"{stage.name}: the clip" if sheet else f"{stage.name}, {view.replace('_', ' ')}")
+                ringlet.write_still(stage, output, frame=frame, progress=progress, **settings)
+        run.pictured(output, f"{stage.name}: the clip" if sheet else stage.name)
     wrote(output, run.counts, as_json)

@@ -77,6 +77,14 @@ class Curves:
             {name: values[rows] for name, values in self.point.items()},
         )
 
+    def row_of(self, id: int, what: str) -> int:
+        """Row of the curve with an id; raises UserError, which begins with ``what``, when there is none."""
+        found = np.flatnonzero(self.ids == id)
+        if not found.size:
+            nearest = self.ids[np.abs(self.ids - id).argmin()]
+            raise UserError(f"{what}: there is no lock {id}; the nearest id is {nearest}")
+        return int(found[0])
+
     def with_points(self, points: NDArray[np.floating]) -> Curves:
         """The same curves with other points, of the same shape."""
         if points.shape != self.points.shape:

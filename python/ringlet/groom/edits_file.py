@@ -122,11 +122,7 @@ def release(recipe: Recipe, locks: Collection[int] | None) -> list[int]:
 
 def row_of(groom: Groom, lock: int) -> int:
     """Row of the lock with an id; raises UserError when there is none."""
-    found = np.flatnonzero(groom.locks.ids == lock)
-    if not found.size:
-        nearest = groom.locks.ids[np.abs(groom.locks.ids - lock).argmin()]
-        raise UserError(f"edit: there is no lock {lock}; the nearest id is {nearest}")
-    return int(found[0])
+    return groom.locks.row_of(lock, "edit")
 
 
 def _with_unit(points: list[list[float]]) -> list[list[str]]:

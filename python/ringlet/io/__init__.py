@@ -3,6 +3,7 @@
 from ringlet.io.read import read_clip, read_curves, read_mesh, read_space
 from ringlet.io.texture import read_texture
 from ringlet.io.usd.cache import CacheFile, CacheWriter, cache_groom_path, is_cache, open_cache, read_cache, write_cache
+from ringlet.io.usd.camera import read_camera
 from ringlet.io.usd.check import problems
 from ringlet.io.usd.groom import as_written, read_groom, write_groom
 from ringlet.io.usd.hairs import HairWriter, read_hair_frames, read_hairs, read_stage
@@ -26,6 +27,7 @@ __all__ = [
     "read_bodies",
     "read_body",
     "read_cache",
+    "read_camera",
     "read_clip",
     "read_curves",
     "read_groom",

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageChops, ImageDraw, ImageFilter
 
+from ringlet.data.camera import Camera
 from ringlet.data.curves import Curves
 from ringlet.data.files import replacing
 from ringlet.picture.bodies import PosedBody
-from ringlet.picture.camera import Camera
 from ringlet.picture.render import Progress, hair_color
 from ringlet.picture.sheet import arrange_tiles, draw_tile, frame_all, subsample
 

@@ -11,13 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
 
+from ringlet.data.camera import Camera
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.picture.bodies import COLORS, PosedBody, material
-from ringlet.picture.camera import Camera
 from ringlet.picture.passes import Passes
+from ringlet.picture.rigs import STUDIO, Rig
 from ringlet.picture.strands import fibres, load_fibres
-from ringlet.picture.studio import backdrop, lights
+from ringlet.picture.studio import backdrop
 
 # Arguments: name of the stage, steps done, total steps.
 Progress = Callable[[str, int, int], None]
@@ -80,40 +81,22 @@ def build_scene(
     color: HairColor,
     max_depth: int,
     thinnest: float = THINNEST,
+    rig: Rig | None = None,
 ) -> Any:
     """Builds the Mitsuba scene, centred and scaled so that single precision resolves a hair's width.
 
     size:     width and height of the picture [pixels]
     thinnest: smallest drawn diameter of a hair [pixels]
+    rig:      light; by default the studio around what the camera looks at
     """
     mi = mitsuba()
-    scale = 100.0 / camera.distance
-    distance = 100.0
-    target = camera.target
-    near, far = 0.05 * distance, 20.0 * distance
-    local_origin = (camera.origin - target) * scale
-    place = mi.ScalarTransform4f().look_at(origin=list(local_origin), target=[0, 0, 0], up=list(camera.axes[1]))
+    target, scale = camera.target, 100.0 / camera.distance
+    rig = rig or Rig(STUDIO, 0.0, camera.axes, target, camera.distance)
     scene: dict[str, Any] = {
         "type": "scene",
         "integrator": {"type": "path", "max_depth": max_depth, "rr_depth": 2, "hide_emitters": True},
-        "sensor": {
-            "type": "perspective",
-            "fov": camera.fov,
-            "fov_axis": "x",
-            "near_clip": near,
-            "far_clip": far,
-            "to_world": place,
-            "sampler": {"type": "multijitter"},
-            "film": {
-                "type": "hdrfilm",
-                "width": size[0],
-                "height": size[1],
-                "pixel_format": "rgba",
-                "component_format": "float32",
-                "rfilter": {"type": "gaussian", "stddev": 0.45},
-            },
-        },
-        **lights(mi, camera.axes, distance),
+        "sensor": _sensor(mi, camera, size, scale),
+        **rig.emitters(mi, target, scale),
     }
     for index, body in enumerate(bodies):
         scene[f"body{index}"] = _mesh(mi, body, target, scale)
@@ -132,6 +115,36 @@ def build_scene(
         }
         scene[HAIRS] = load_fibres(mi, controls * np.float32(scale), offsets, bsdf)
     return mi.load_dict(scene)
+
+
+def _sensor(mi: Any, camera: Camera, size: tuple[int, int], scale: float) -> dict[str, Any]:
+    """The camera in the scene, whose origin is the camera's target."""
+    place = scale * camera.distance * camera.axes[2]
+    sensor: dict[str, Any] = {
+        "type": "perspective",
+        "fov": camera.fov,
+        "fov_axis": "x",
+        "near_clip": 5.0,
+        "far_clip": 1e5,
+        "to_world": mi.ScalarTransform4f().look_at(origin=list(place), target=[0, 0, 0], up=list(camera.axes[1])),
+        "sampler": {"type": "multijitter"},
+        "film": {
+            "type": "hdrfilm",
+            "width": size[0],
+            "height": size[1],
+            "pixel_format": "rgba",
+            "component_format": "float32",
+            "rfilter": {"type": "gaussian", "stddev": 0.45},
+        },
+    }
+    if camera.lens_radius:
+        if any(camera.shift):
+            raise UserError("picture: the camera has both an aperture offset and depth of field; set --f-stop to 0")
+        focus = camera.distance if camera.focus is None else camera.focus
+        lens = {"type": "thinlens", "aperture_radius": scale * camera.lens_radius, "focus_distance": scale * focus}
+        return sensor | lens
+    right, up = (0.5 * shift / slope for shift, slope in zip(camera.shift, camera.slopes, strict=True))
+    return sensor | {"principal_point_offset_x": right, "principal_point_offset_y": -up}
 
 
 def trace(

@@ -9,13 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
+from ringlet.data.camera import Camera
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.files import replacing
+from ringlet.data.picture import PictureSettings
 from ringlet.picture.bodies import PosedBody
-from ringlet.picture.camera import Camera
 from ringlet.picture.camera import frame as frame_camera
 from ringlet.picture.render import HairColor, Progress, build_scene, hair_color, over_backdrop, trace
+from ringlet.picture.rigs import Rig, check_rig
 from ringlet.picture.still import subject
 from ringlet.picture.tone import develop
 
@@ -38,8 +40,7 @@ def sheet(
     fps: float = 24.0,
     hairs: int = 6000,
     samples: int = 12,
-    view: str | tuple[float, float] = "three_quarter",
-    color: str = "dark_brown",
+    settings: PictureSettings | None = None,
     progress: Progress | None = None,
 ) -> Path:
     """Writes a PNG with one labelled tile per frame.
@@ -51,7 +52,7 @@ def sheet(
     fps:      frames per second, for the times in the labels
     hairs:    largest number of hairs to draw
     samples:  light paths per pixel
-    view, color: as in ``still``
+    settings: its view, colour and light
     progress: called with "sheet", the frames done and their number
 
     Raises UserError without frames and for sizes below 1.
@@ -64,10 +65,14 @@ def sheet(
     for number, _, curves in shots:
         if len(curves):
             curves.check(f"frame {number:g}: hairs")
-    pigments, camera = hair_color(color), frame_all([shot[1:] for shot in shots], tile, view)
+    settings = settings or PictureSettings()
+    check_rig(settings.light)
+    pigments = hair_color(settings.color)
+    camera = frame_all([shot[1:] for shot in shots], tile, settings.view or "three_quarter")
+    rig = Rig(settings.light, settings.light_turn, camera.axes, camera.target, camera.distance)
     tiles = []
     for number, bodies, curves in shots:
-        tiles.append((number, draw_tile(bodies, curves, camera, tile, pigments, samples)))
+        tiles.append((number, draw_tile(bodies, curves, camera, tile, pigments, samples, rig)))
         if progress:
             progress("sheet", len(tiles), len(shots))
     first, last = tiles[0][0], tiles[-1][0]
@@ -101,9 +106,10 @@ def draw_tile(
     tile: tuple[int, int],
     pigments: HairColor,
     samples: int,
+    rig: Rig | None = None,
 ) -> NDArray[np.uint8]:
     """Renders a tile, shape (height, width, 3)."""
-    scene = build_scene(bodies, hairs, camera, size=tile, color=pigments, max_depth=4, thinnest=THINNEST)
+    scene = build_scene(bodies, hairs, camera, size=tile, color=pigments, max_depth=4, thinnest=THINNEST, rig=rig)
     return develop(over_backdrop(trace(scene, samples=samples)))
 
 

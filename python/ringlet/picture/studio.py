@@ -40,19 +40,19 @@ AMBIENT = (0.22, 0.23, 0.25)
 BACKDROP_NEAR, BACKDROP_FAR = np.array([0.33, 0.38, 0.40]), np.array([0.05, 0.062, 0.072])
 
 
-def lights(mi: Any, axes: NDArray[np.float64], distance: float) -> dict[str, Any]:
-    """Soft boxes as Mitsuba shapes, at ``distance`` from a subject at the origin; ``axes`` as in Camera."""
-    shapes: dict[str, Any] = {"ambient": {"type": "constant", "radiance": _rgb(AMBIENT), "sampling_weight": 1.0}}
+def lights(mi: Any, axes: NDArray[np.float64], distance: float, centre: NDArray[np.float64]) -> dict[str, Any]:
+    """Soft boxes as Mitsuba shapes, at ``distance`` from the centre of the subject; ``axes`` as in Camera."""
+    shapes: dict[str, Any] = {"ambient": {"type": "constant", "radiance": rgb(AMBIENT), "sampling_weight": 1.0}}
     for name, light in LIGHTS.items():
         azimuth, elevation = radians(light.azimuth), radians(light.elevation)
         local = np.array([sin(azimuth) * cos(elevation), sin(elevation), cos(azimuth) * cos(elevation)])
         half = 0.5 * light.size * distance
         # Mitsuba's disk has radius 1; one of diameter s at distance 1 sends its radiance times π s²/4 to the subject
         place = mi.ScalarTransform4f().look_at(
-            origin=list(distance * (local @ axes)), target=[0, 0, 0], up=list(axes[1] + 1e-3 * axes[2])
+            origin=list(centre + distance * (local @ axes)), target=list(centre), up=list(axes[1] + 1e-3 * axes[2])
         ) @ mi.ScalarTransform4f().scale([half, half, 1.0])
         radiance = [s / (0.25 * pi * light.size**2) for s in light.strength]
-        emitter = {"type": "area", "radiance": _rgb(radiance), "sampling_weight": light.attention}
+        emitter = {"type": "area", "radiance": rgb(radiance), "sampling_weight": light.attention}
         shapes[name] = {"type": "disk", "to_world": place, "emitter": emitter}
     return shapes
 
@@ -66,5 +66,6 @@ def backdrop(width: int, height: int) -> NDArray[np.float32]:
     return (BACKDROP_FAR + (BACKDROP_NEAR - BACKDROP_FAR) * pool).astype(np.float32)
 
 
-def _rgb(values: Any) -> dict[str, Any]:
+def rgb(values: Any) -> dict[str, Any]:
+    """A colour as a Mitsuba spectrum."""
     return {"type": "rgb", "value": [float(v) for v in values]}
