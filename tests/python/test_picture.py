@@ -16,6 +16,7 @@ from ringlet.picture import HAIR_COLORS, VIEWS, PosedBody, sheet, still
 from ringlet.picture.bodies import material
 from ringlet.picture.camera import frame
 from ringlet.picture.render import build_scene, hair_share, mitsuba, trace
+from ringlet.picture.sheet import subsample
 from ringlet.picture.strands import fibres, load_fibres, spline_controls
 from ringlet.picture.tone import develop
 from scipy.interpolate import BSpline
@@ -165,12 +166,45 @@ def test_blond_hair_is_brighter_than_black(tmp_path: Path) -> None:
     assert light["blond"] > 1.5 * light["black"]
 
 
-def test_subpixel_hairs_are_visible(tmp_path: Path) -> None:
+def fur(count: int, width: float) -> Curves:
+    """Hairs of 8 cm in all directions over a square of 10 cm, of one diameter [m]."""
+    random = np.random.default_rng(2)
+    middles, turns = random.uniform(-0.05, 0.05, (count, 2)), random.uniform(0.0, np.pi, count)
+    along = np.linspace(-0.04, 0.04, 8)[None, :, None] * np.stack([np.cos(turns), np.sin(turns)], 1)[:, None]
+    flat = middles[:, None] + along
+    hairs = Curves.from_list(list(np.concatenate([flat, random.uniform(-0.01, 0.01, (count, 8, 1))], axis=2)))
+    hairs.point["width"] = np.full(len(hairs.points), width)
+    return hairs
+
+
+@pytest.mark.parametrize("width", [0.1e-3, 0.4e-3])
+def test_hairs_thinner_than_a_pixel_cover_as_much_as_in_a_large_picture(width: float) -> None:
+    """Pixels of 8 mm and of 0.5 mm: the hairs are from 1/80 to 4/5 of a pixel wide."""
+    hairs, coverage = fur(200, width), {}
+    camera = frame([hairs.points], view=(0.0, 0.0))
+    for size, samples in ((20, 400), (320, 16)):
+        scene = build_scene([], hairs, camera, size=(size, size), color=HAIR_COLORS["black"], max_depth=2)
+        coverage[size] = np.array(mitsuba().render(scene, spp=samples))[:, :, 3].mean()
+    assert coverage[20] == pytest.approx(coverage[320], rel=0.04)
+    lone = 200 * 0.08 * width / (4 * np.prod(camera.slopes) * camera.distance**2)  # without overlaps
+    assert 0.8 * lone < coverage[320] < 1.02 * lone
+
+
+def test_a_part_of_the_hairs_covers_as_much_as_all() -> None:
+    hairs, coverage = fur(600, 0.1e-3), []
+    camera = frame([hairs.points], view=(0.0, 0.0))
+    for shown in (hairs, subsample(hairs, 200)):
+        scene = build_scene([], shown, camera, size=(40, 40), color=HAIR_COLORS["black"], max_depth=2)
+        coverage.append(np.array(mitsuba().render(scene, spp=100))[:, :, 3].mean())
+    assert coverage[1] == pytest.approx(coverage[0], rel=0.08)
+
+
+def test_hairs_without_a_width_do_not_break_the_picture() -> None:
     hairs = tuft()
-    hairs.point["width"][:] = 1e-9
+    hairs.point["width"][:] = 0.0
     camera = frame([hairs.points], view="front")
     scene = build_scene([], hairs, camera, size=(32, 32), color=HAIR_COLORS["black"], max_depth=2)
-    assert trace(scene, samples=8)[:, :, 3].mean() > 0.05
+    assert trace(scene, samples=8)[:, :, 3].max() < 0.2
 
 
 def test_a_still_reports_progress_and_respects_its_time_limit(tmp_path: Path) -> None:

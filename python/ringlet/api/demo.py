@@ -38,9 +38,11 @@ def run_demo(folder: Path | str, *, progress: api.Progress | None = None) -> Run
             record = api.write_simulation(shot, groom, groom_file, cache_file, checkpoints=checkpoints, progress=inner)
             run.count(frames=len(record.frames))
             run.simulated(record)
-        with run.stage("hairs", hair_file, f"hairs in motion, {MOVING:.0%} of all"):
+        with run.stage("hairs", hair_file, f"hairs in motion, {MOVING:.0%} of all, each wider"):
             inner, clip = _overall("hairs", progress), (FIRST_FRAME, shot.frames[1])
-            api.write_hairs(groom_file, hair_file, cache=cache_file, frames=clip, fraction=MOVING, progress=inner)
+            api.write_hairs(
+                groom_file, hair_file, cache=cache_file, frames=clip, fraction=MOVING, wider=True, progress=inner
+            )
         with (
             run.stage("still", still_file, f"frame {STILL_FRAME} with all hairs, path-traced"),
             _aside(folder) as aside,

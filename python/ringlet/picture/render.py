@@ -46,8 +46,8 @@ HAIR_COLORS: dict[str, HairColor] = {
 # Name of the hairs in a scene.
 HAIRS = "hairs"
 
-# Smallest drawn diameter of a hair in a still [pixels].
-THINNEST = 0.3
+# Smallest drawn diameter of a hair [pixels]: a surface of no radius has no normals. Thinner hairs cover too much by this.
+THINNEST = 1e-3
 
 # Samples per pixel of one pass: enough to stratify a pixel and the lights, few enough for several passes to compare.
 # A time limit makes passes smaller, since denoising needs three of them.
@@ -80,13 +80,11 @@ def build_scene(
     size: tuple[int, int],
     color: HairColor,
     max_depth: int,
-    thinnest: float = THINNEST,
     rig: Rig | None = None,
 ) -> Any:
     """Builds the Mitsuba scene, centred and scaled so that single precision resolves a hair's width.
 
     size:     width and height of the picture [pixels]
-    thinnest: smallest drawn diameter of a hair [pixels]
     rig:      light; by default the studio around what the camera looks at
     """
     mi = mitsuba()
@@ -102,10 +100,8 @@ def build_scene(
         scene[f"body{index}"] = _mesh(mi, body, target, scale)
     if hairs is not None and len(hairs):
         controls, offsets = fibres(hairs, target)
-        # Rays mostly miss a hair far thinner than a pixel, which costs many samples and looks like noise. A wider hair
-        # also represents the hairs that a groom leaves out.
         pixel = 2.0 * camera.slopes[0] * camera.distance / size[0]
-        controls[:, 3] = np.maximum(controls[:, 3], 0.5 * thinnest * pixel)
+        controls[:, 3] = np.maximum(controls[:, 3], 0.5 * THINNEST * pixel)
         bsdf = {
             "type": "hair",
             "eumelanin": color.eumelanin,

@@ -19,15 +19,13 @@ from ringlet.picture.camera import frame as frame_camera
 from ringlet.picture.render import HairColor, Progress, build_scene, hair_color, over_backdrop, trace
 from ringlet.picture.rigs import Rig, check_rig
 from ringlet.picture.still import subject
+from ringlet.picture.strands import hair_widths
 from ringlet.picture.tone import develop
 
 Frame = tuple[float, Sequence[PosedBody], Curves]
 
 PAPER, INK, FADED = (22, 25, 28), (236, 234, 230), (150, 154, 158)
 GAP, CAPTION = 10, 34
-
-# Smallest drawn diameter of a hair [pixels]: a sheet shows few hairs, so each represents its neighbours.
-THINNEST = 0.7
 
 
 def sheet(
@@ -85,10 +83,12 @@ def sheet(
 
 
 def subsample(hairs: Curves, count: int) -> Curves:
-    """At most ``count`` hairs, evenly chosen, the same ones in every frame."""
+    """At most ``count`` hairs, evenly chosen, the same ones in every frame; wider, to cover as much as all of them."""
     if len(hairs) <= count:
         return hairs
-    return hairs.take(np.linspace(0, len(hairs) - 1, count).round().astype(np.int64))
+    chosen = hairs.take(np.linspace(0, len(hairs) - 1, count).round().astype(np.int64))
+    chosen.point["width"] = hair_widths(chosen) * (len(hairs) / count)
+    return chosen
 
 
 def frame_all(
@@ -109,7 +109,7 @@ def draw_tile(
     rig: Rig | None = None,
 ) -> NDArray[np.uint8]:
     """Renders a tile, shape (height, width, 3)."""
-    scene = build_scene(bodies, hairs, camera, size=tile, color=pigments, max_depth=4, thinnest=THINNEST, rig=rig)
+    scene = build_scene(bodies, hairs, camera, size=tile, color=pigments, max_depth=4, rig=rig)
     return develop(over_backdrop(trace(scene, samples=samples)))
 
 

@@ -39,11 +39,16 @@ def spline_controls(points: NDArray[np.floating]) -> NDArray[np.float64]:
     return np.ascontiguousarray(controls.reshape(n + 2, count, -1).transpose(1, 0, 2))
 
 
+def hair_widths(hairs: Curves) -> NDArray[np.floating]:
+    """Diameter of hairs at each point [m], shape (n,)."""
+    return hairs.point.get("width", np.full(len(hairs.points), DEFAULT_WIDTH))
+
+
 def fibres(hairs: Curves, origin: NDArray[np.float64]) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
     """Control points relative to an origin, with radii (x, y, z, r) [m], shape (n, 4), and offsets (count + 1,)."""
     offsets = offsets_from_counts(hairs.counts + 2)
     controls = np.empty((offsets[-1], 4), np.float32)
-    widths = hairs.point.get("width", np.full(len(hairs.points), DEFAULT_WIDTH))
+    widths = hair_widths(hairs)
     for n in np.unique(hairs.counts):  # usually a single value
         chosen = np.flatnonzero(hairs.counts == n)
         rows = hairs.offsets[chosen, None] + np.arange(n)
