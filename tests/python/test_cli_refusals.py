@@ -31,7 +31,7 @@ def test_files_without_hair_are_refused_before_the_review_server_starts(copy):
         (["sim", "small.shot.toml", "-o", "out.obj"], ".usdc, .usd or .usda"),
         (["sim", "small.shot.toml", "--contacts", "out.obj"], ".usdc, .usd or .usda"),
         (["hair", "groom.usdc", "-o", "out.abc"], ".usdc, .usd or .usda"),
-        (["picture", "hair.usdc", "-o", "out.gif"], "must end in .png, .jpg or .jpeg"),
+        (["picture", "hair.usdc", "-o", "out.gif"], "must end in .png, .jpg, .jpeg or .exr"),
         (["check", "small.recipe.toml", "--fix", "-o", "out.obj"], ".usdc, .usd or .usda"),
     ],
 )

@@ -12,7 +12,7 @@ from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Mesh
 from ringlet.data.picture import PictureSettings
-from ringlet.picture import HAIR_COLORS, VIEWS, PosedBody, sheet, still
+from ringlet.picture import HAIR_COLORS, VIEWS, Pose, PosedBody, sheet, still
 from ringlet.picture.bodies import material
 from ringlet.picture.camera import frame
 from ringlet.picture.render import build_scene, hair_share, mitsuba, trace
@@ -135,11 +135,11 @@ def test_hair_appears_at_its_projected_position(tmp_path: Path, scale: float, at
 
 
 def test_a_still_is_neither_black_nor_overexposed_and_shows_the_hair(tmp_path: Path) -> None:
-    path = still([ball()], tuft(), tmp_path / "still.png", QUICK)
+    path = still(Pose([ball()], tuft()), tmp_path / "still.png", QUICK)
     image = pixels(path)
     assert image.shape == (64, 64, 3)
     assert 20 < image.mean() < 235
-    empty = still([ball()], tuft(2), tmp_path / "empty.png", QUICK)
+    empty = still(Pose([ball()], tuft(2)), tmp_path / "empty.png", QUICK)
     assert np.abs(image - pixels(empty)).max() > 40
 
 
@@ -150,7 +150,7 @@ def test_a_body_shows_through_a_transparent_one(tmp_path: Path) -> None:
     blue = {}
     for opacity in (1.0, 0.3):
         near.opacity = opacity
-        path = still([near, far], tuft(2), tmp_path / "veil.png", replace(QUICK, width=48, height=48, samples=32))
+        path = still(Pose([near, far], tuft(2)), tmp_path / "veil.png", replace(QUICK, width=48, height=48, samples=32))
         middle = pixels(path)[40:, 20:28].mean(axis=(0, 1))  # the near body covers the far one
         blue[opacity] = middle[2] / middle[0]
     assert blue[0.3] > 2 * blue[1.0]
@@ -209,12 +209,11 @@ def test_hairs_without_a_width_do_not_break_the_picture() -> None:
 
 def test_a_still_reports_progress_and_respects_its_time_limit(tmp_path: Path) -> None:
     steps: list[tuple[str, int, int]] = []
-    still([], tuft(4), tmp_path / "a.png", TINY, progress=lambda *step: steps.append(step))
+    still(Pose([], tuft(4)), tmp_path / "a.png", TINY, progress=lambda *step: steps.append(step))
     assert [done for _, done, _ in steps] == list(range(steps[-1][2] + 1))
     steps.clear()
     still(
-        [],
-        tuft(4),
+        Pose([], tuft(4)),
         tmp_path / "b.png",
         replace(TINY, samples=10_000, seconds=0.0),
         progress=lambda *step: steps.append(step),
@@ -229,8 +228,7 @@ def test_a_time_limit_splits_a_still_into_smaller_passes(tmp_path: Path, samples
     for seconds in (None, 8e4):
         steps: list[int] = []
         still(
-            [],
-            tuft(4),
+            Pose([], tuft(4)),
             tmp_path / "a.png",
             replace(TINY, samples=samples, seconds=seconds),
             progress=lambda _, done, total, steps=steps: steps.append(done),
@@ -303,13 +301,13 @@ def test_a_sheet_has_a_tile_for_every_frame_and_shows_the_motion(tmp_path: Path)
 )
 def test_wrong_options_are_refused_by_name(tmp_path: Path, options: dict, named: str) -> None:
     with pytest.raises(UserError, match=named):
-        still([ball()], tuft(2), tmp_path / "still.png", PictureSettings(**options))
+        still(Pose([ball()], tuft(2)), tmp_path / "still.png", PictureSettings(**options))
     assert list(tmp_path.iterdir()) == []
 
 
 def test_an_empty_picture_is_refused(tmp_path: Path) -> None:
     with pytest.raises(UserError, match="neither hairs nor bodies"):
-        still([], tuft(1).take(np.arange(0)), tmp_path / "still.png")
+        still(Pose([], tuft(1).take(np.arange(0))), tmp_path / "still.png")
     with pytest.raises(UserError, match="no frames"):
         sheet([], tmp_path / "sheet.png")
 
@@ -317,7 +315,7 @@ def test_an_empty_picture_is_refused(tmp_path: Path) -> None:
 def test_an_unwritable_picture_leaves_no_file(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("a file")
     with pytest.raises(UserError, match="cannot be written"):
-        still([], tuft(1), tmp_path / "file" / "still.png", TINY)
+        still(Pose([], tuft(1)), tmp_path / "file" / "still.png", TINY)
     assert [entry.name for entry in tmp_path.iterdir()] == ["file"]
 
 
@@ -325,7 +323,7 @@ def test_non_finite_points_are_refused(tmp_path: Path) -> None:
     hairs, body = tuft(3), ball()
     hairs.points[70] = np.nan
     with pytest.raises(UserError, match="curve 1, point 9"):
-        still([], hairs, tmp_path / "still.png")
+        still(Pose([], hairs), tmp_path / "still.png")
     with pytest.raises(UserError, match="frame 7: hairs: curve 1"):
         sheet([(7.0, [], hairs)], tmp_path / "sheet.png")
     with pytest.raises(UserError, match="ball: point 2"):

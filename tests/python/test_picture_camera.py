@@ -15,7 +15,7 @@ from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Mesh
 from ringlet.data.picture import PictureSettings
-from ringlet.picture import PosedBody
+from ringlet.picture import Pose, PosedBody
 from ringlet.picture.camera import angles, frame, picture_size, take_position
 from ringlet.picture.still import still, take
 
@@ -87,7 +87,7 @@ def test_an_aperture_offset_moves_the_centre_of_the_picture(tmp_path):
     small = replace(QUICK, view=None, width=60, height=None, background="transparent")
     body = board(size=0.02)
     body.points = body.points + point
-    seen = take([body], NO_HAIR, small, camera=camera)[:, :, 3] > 0.5
+    seen = take(Pose([body], NO_HAIR, camera), small).image[:, :, 3] > 0.5
     rows, columns = np.nonzero(seen)
     middle = (columns.mean() + 0.5) / 60, (rows.mean() + 0.5) / seen.shape[0]
     assert middle == pytest.approx(camera.project(point[None])[0], abs=0.02)
@@ -123,7 +123,7 @@ def test_depth_of_field_blurs_what_is_out_of_focus():
         camera = replace(
             frame([near.points], view=(0.0, 0.0)), origin=np.array([0.025, 0, 0.6]), distance=0.6, slopes=(0.12, 0.12)
         )
-        alpha = take([near, far], NO_HAIR, settings, camera=camera)[20, :, 3]
+        alpha = take(Pose([near, far], NO_HAIR, camera), settings).image[20, :, 3]
         edges[focus] = np.abs(np.diff(alpha[:16])).max()  # the left edge is that of the near board
     assert edges[0.6] > 2.0 * edges[1.1]
 
@@ -139,7 +139,7 @@ def test_a_rig_lights_the_ball_from_its_side(tmp_path, light, turn, side):
         light = str(tmp_path / "room.exr")
         mitsuba.set_variant("scalar_rgb")
         mitsuba.Bitmap(pixels).write(light)
-    image = take([ball()], NO_HAIR, replace(QUICK, light=light, light_turn=turn, samples=16))
+    image = take(Pose([ball()], NO_HAIR), replace(QUICK, light=light, light_turn=turn, samples=16)).image
     left, right = image[10:30, 8:16, :3].mean(), image[10:30, 24:32, :3].mean()
     if side:
         assert side * (right - left) > 0.3 * max(left, right)
@@ -150,7 +150,7 @@ def test_a_rig_lights_the_ball_from_its_side(tmp_path, light, turn, side):
 
 
 def test_a_transparent_picture_has_the_coverage_as_alpha(tmp_path):
-    path = still([ball()], NO_HAIR, tmp_path / "a.png", replace(QUICK, background="transparent"))
+    path = still(Pose([ball()], NO_HAIR), tmp_path / "a.png", replace(QUICK, background="transparent"))
     image = np.asarray(Image.open(path))
     assert image.shape == (40, 40, 4)
     assert image[20, 20, 3] == 255 and image[1, 1, 3] == 0

@@ -19,6 +19,7 @@ from ringlet.data.reads import recorded
 from ringlet.data.settings import check_name
 
 if TYPE_CHECKING:
+    from ringlet.picture import Pose
     from ringlet.rest.loft import Loft
 
 __all__ = ["write_loft_picture", "write_sheet", "write_still", "write_touches_picture"]
@@ -38,8 +39,9 @@ def write_still(
     progress: Progress | None = None,
     **settings: Any,
 ) -> None:
-    """Path-traces one frame of a USD stage to a PNG: the hairs and the bodies in it, framed on their own.
+    """Path-traces one frame of a USD stage: the hairs and the bodies in it, framed on their own.
 
+    path:     a PNG, a JPEG, or an EXR, which has linear light and layers: depth, normal, albedo and lock
     frame:    the first of the stage by default
     settings: those of ``PictureSettings``: ``width=480, samples=16, view="side", light="window"``
     """
@@ -47,9 +49,10 @@ def write_still(
 
     stage, chosen = Path(stage), PictureSettings.of(settings)
     frame = _frame_of(stage, frame)
-    bodies, hairs = _posed(stage, frame)
-    lock, camera = _lock_points(stage, hairs, chosen.look_at), _camera(stage, chosen.camera, frame)
-    picture.still(bodies, hairs, path, chosen, lock=lock, camera=camera, progress=progress)
+    pose = _pose(stage, frame, chosen.camera)
+    opening, closing = _shutter(stage, frame, pose, chosen)
+    lock = _lock_points(stage, pose.hairs, chosen.look_at)
+    picture.still(opening, path, chosen, lock=lock, closing=closing, progress=progress)
 
 
 @recorded()
@@ -74,6 +77,8 @@ def write_touches_picture(
     from ringlet import io, picture
 
     chosen = PictureSettings.of(settings | {"color": "black"})
+    if chosen.shutter:
+        raise UserError("picture: contacts have no motion blur; leave out the shutter")
     check_name(show, ("force", "gap", "start"), "picture", "way to show contacts")
     stage = Path(stage)
     touches, colors = io.read_touches(stage, frame)
@@ -94,7 +99,7 @@ def write_touches_picture(
         posed.append(picture.beads(places, colors, part * float(np.ptp(posed_locks, axis=0).max())))
     shown = Curves(posed_locks, locks.offsets, locks.ids, point={"width": np.full(len(posed_locks), LOCK_WIDTH)})
     lock, camera = _curve_points(stage, shown, chosen.look_at), _camera(stage, chosen.camera, float(at))
-    picture.still(posed, shown, path, chosen, lock=lock, camera=camera, progress=progress)
+    picture.still(picture.Pose(posed, shown, camera), path, chosen, lock=lock, progress=progress)
 
 
 @recorded()
@@ -176,6 +181,31 @@ def _posed(stage: Path, frame: float | None) -> tuple[list[Any], Any]:
     if hairs is None:
         raise UserError(f"{stage}: has no hairs; make them with: ringlet hair {stage} -o hair.usdc")
     return [picture.PosedBody(body.mesh, body.clip.points[0]) for body in bodies], hairs
+
+
+def _pose(stage: Path, frame: float | None, camera: str | None = None) -> Pose:
+    """Bodies, hairs, and the camera if one is named, of a stage at a frame."""
+    from ringlet.picture import Pose
+
+    return Pose(*_posed(stage, frame), _camera(stage, camera, frame))
+
+
+def _shutter(stage: Path, frame: float | None, pose: Pose, settings: PictureSettings) -> tuple[Pose, Pose | None]:
+    """Poses when the shutter opens and closes: from the frame on, or up to the frame if it is the last.
+
+    Raises UserError for motion blur of hair that does not move.
+    """
+    from ringlet import io
+
+    if not settings.shutter:
+        return pose, None
+    frames = io.read_hair_frames(stage)
+    if frame is None or len(frames) < 2:
+        raise UserError(f"{stage}: has no frames, so that nothing moves; leave out the shutter")
+    fraction = settings.shutter / 360.0
+    if frame + 1 <= frames[-1]:
+        return pose, pose.towards(_pose(stage, frame + 1, settings.camera), fraction)
+    return pose.towards(_pose(stage, frame - 1, settings.camera), fraction), pose
 
 
 def _camera(stage: Path, prim: str | None, frame: float | None) -> Camera | None:

@@ -81,6 +81,7 @@ def ending_in(*suffixes: str) -> Callable[[Path | None], Path | None]:
 
 
 usd_file, picture_file = ending_in(".usdc", ".usd", ".usda"), ending_in(".png", ".jpg", ".jpeg")
+still_file = ending_in(".png", ".jpg", ".jpeg", ".exr")
 
 
 def parse_frames(text: str) -> tuple[int, int]:

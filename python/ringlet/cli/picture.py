@@ -8,7 +8,7 @@ from typing import Annotated, Any
 import typer
 
 import ringlet
-from ringlet.cli.options import Frames, Json, Report, frame_option, picture_file
+from ringlet.cli.options import Frames, Json, Report, frame_option, still_file
 from ringlet.cli.output import wrote
 from ringlet.cli.progress import shown_progress
 from ringlet.cli.settings import with_settings
@@ -21,7 +21,10 @@ def picture(
     ],
     settings: dict[str, Any],
     output: Annotated[
-        Path, typer.Option("--output", "-o", callback=picture_file, metavar="PICTURE", help="The PNG file to write.")
+        Path,
+        typer.Option(
+            "--output", "-o", callback=still_file, metavar="PICTURE", help="The PNG, JPEG or EXR file to write."
+        ),
     ] = Path("still.png"),
     frame: Annotated[float | None, frame_option("Frame of the still; the first by default.")] = None,
     sheet: Annotated[bool, typer.Option("--sheet", help="A contact sheet of the clip in place of a still.")] = False,

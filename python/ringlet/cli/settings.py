@@ -47,6 +47,8 @@ SETTINGS = [
     setting("light", str, "studio, window, sun, or an HDRI: an .exr or .hdr file.", "LIGHT"),
     setting("light_turn", float, "Turns the light about the vertical, counter-clockwise from above.", "DEGREES"),
     setting("background", str, "studio or transparent."),
+    setting("shutter", float, "Motion blur: 180 has the shutter open for half a frame.", "DEGREES"),
+    setting("denoiser", str, "auto, oidn, builtin or none."),
 ]
 UNITS = {"distance": CENTIMETRE, "focus": CENTIMETRE}
 

@@ -11,7 +11,7 @@ from ringlet.data import limits
 from ringlet.data.errors import UserError
 from ringlet.data.explain import did_you_mean
 
-BACKGROUNDS = ("studio", "transparent")
+CHOICES = {"background": ("studio", "transparent"), "denoiser": ("auto", "oidn", "builtin", "none")}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,7 +34,9 @@ class PictureSettings:
     focus:         distance of the plane in focus [m]; by default that of the camera, or of the nearest in the middle
     light:         a light rig, or an HDRI: studio, window, sun, or an .exr or .hdr file
     light_turn:    turns the light about the vertical [degrees], counter-clockwise from above
-    background:    studio or transparent
+    background:    studio or transparent; an EXR has no backdrop
+    shutter:       angle of the shutter [degrees], for motion blur: 180 is open for half a frame from the frame on
+    denoiser:      auto, oidn, builtin or none
     """
 
     # The least and the most of each number.
@@ -50,6 +52,7 @@ class PictureSettings:
         "f_stop": (0, 1000),
         "focus": (1e-3, 1e6),
         "light_turn": (-360, 360),
+        "shutter": (0, 360),
     }
 
     width: int = 900
@@ -68,6 +71,8 @@ class PictureSettings:
     light: str = "studio"
     light_turn: float = 0.0
     background: str = "studio"
+    shutter: float = 0.0
+    denoiser: str = "auto"
 
     @classmethod
     def of(cls, settings: dict[str, Any]) -> Self:
@@ -83,8 +88,9 @@ class PictureSettings:
             value = getattr(self, name)
             if value is not None and not (isfinite(value) and least <= value <= most):
                 raise UserError(f"picture: {name} is {value}; must be at least {least:g} and at most {most:g}")
-        if self.background not in BACKGROUNDS:
-            raise UserError(f"picture: background is '{self.background}'; choose one of {', '.join(BACKGROUNDS)}")
+        for name, choices in CHOICES.items():
+            if (value := getattr(self, name)) not in choices:
+                raise UserError(f"picture: {name} is '{value}'; choose one of {', '.join(choices)}")
         if self.camera is not None:
             for name in ("view", "look_at", "distance", "focal_length"):
                 if getattr(self, name) is not None:

@@ -14,7 +14,10 @@ from scipy.ndimage import gaussian_filter
 from ringlet.data.camera import Camera
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
+from ringlet.picture import oidn
 from ringlet.picture.bodies import COLORS, PosedBody, material
+from ringlet.picture.layers import Layers, trace_layers
+from ringlet.picture.motion import fraction_of_pass
 from ringlet.picture.passes import Passes
 from ringlet.picture.rigs import STUDIO, Rig
 from ringlet.picture.strands import fibres, load_fibres
@@ -43,15 +46,21 @@ HAIR_COLORS: dict[str, HairColor] = {
     "gray": HairColor(0.12, 0.0, 0.36),
 }
 
+# Absorption of one unit of each melanin (r, g, b), after d'Eon et al. 2011.
+EUMELANIN, PHEOMELANIN = np.array([0.419, 0.697, 1.37]), np.array([0.187, 0.4, 1.05])
+
 # Name of the hairs in a scene.
 HAIRS = "hairs"
 
-# Smallest drawn diameter of a hair [pixels]: a surface of no radius has no normals. Thinner hairs cover too much by this.
+# Smallest drawn diameter of a hair [pixels]: a surface of no radius has no normals.
 THINNEST = 1e-3
 
 # Samples per pixel of one pass: enough to stratify a pixel and the lights, few enough for several passes to compare.
 # A time limit makes passes smaller, since denoising needs three of them.
 MAX_PASS_SAMPLES, MAX_TIMED_PASS_SAMPLES, MIN_PASSES = 8, 4, 4
+
+# Passes of a picture with motion blur: each sees the scene at one time.
+MIN_MOVED_PASSES = 16
 
 # Fraction of the noise that stays on hair: the denoiser would remove single hairs with it.
 GRAIN = 0.68
@@ -88,12 +97,13 @@ def build_scene(
     rig:      light; by default the studio around what the camera looks at
     """
     mi = mitsuba()
-    target, scale = camera.target, 100.0 / camera.distance
+    target, scale = camera.target, scene_scale(camera)
     rig = rig or Rig(STUDIO, 0.0, camera.axes, target, camera.distance)
     scene: dict[str, Any] = {
         "type": "scene",
         "integrator": {"type": "path", "max_depth": max_depth, "rr_depth": 2, "hide_emitters": True},
-        "sensor": _sensor(mi, camera, size, scale),
+        "sensor": _sensor(mi, camera, size, scale, {"type": "gaussian", "stddev": 0.45}),
+        "layer_sensor": _sensor(mi, camera, size, scale, {"type": "box"}),
         **rig.emitters(mi, target, scale),
     }
     for index, body in enumerate(bodies):
@@ -113,7 +123,14 @@ def build_scene(
     return mi.load_dict(scene)
 
 
-def _sensor(mi: Any, camera: Camera, size: tuple[int, int], scale: float) -> dict[str, Any]:
+def scene_scale(camera: Camera) -> float:
+    """Scene units per metre: the camera is 100 units from its target, the origin of the scene."""
+    return 100.0 / camera.distance
+
+
+def _sensor(
+    mi: Any, camera: Camera, size: tuple[int, int], scale: float, pixel_filter: dict[str, Any]
+) -> dict[str, Any]:
     """The camera in the scene, whose origin is the camera's target."""
     place = scale * camera.distance * camera.axes[2]
     sensor: dict[str, Any] = {
@@ -130,7 +147,7 @@ def _sensor(mi: Any, camera: Camera, size: tuple[int, int], scale: float) -> dic
             "height": size[1],
             "pixel_format": "rgba",
             "component_format": "float32",
-            "rfilter": {"type": "gaussian", "stddev": 0.45},
+            "rfilter": pixel_filter,
         },
     }
     if camera.lens_radius:
@@ -149,23 +166,30 @@ def trace(
     samples: int,
     seconds: float | None = None,
     progress: Progress | None = None,
+    denoiser: str = "builtin",
+    layers: Layers | None = None,
+    moved: Callable[[float], Any] | None = None,
 ) -> NDArray[np.float32]:
     """Renders light and coverage (r, g, b, a), shape (height, width, 4): the mean of independent passes, denoised.
 
     samples:  light paths per pixel
     seconds:  time limit; a pass that would exceed it is not started
     progress: called with "picture", the passes done and their number
+    denoiser: builtin, oidn or none
+    layers:   what guides the denoiser oidn
+    moved:    builds the scene at a fraction of the shutter time, for motion blur
     """
     mi = mitsuba()
     most = MAX_PASS_SAMPLES if seconds is None else MAX_TIMED_PASS_SAMPLES
-    per_pass = min(max(samples // MIN_PASSES, 1), most)
+    per_pass = min(max(samples // (MIN_PASSES if moved is None else MIN_MOVED_PASSES), 1), most)
     passes = -(-samples // per_pass)
     began = time.monotonic()
     accumulated, done = Passes(), 0
     if progress:
         progress("picture", 0, passes)
     while done < passes:
-        accumulated.add(np.nan_to_num(np.array(mi.render(scene, spp=per_pass, seed=done), np.float64)))
+        at = scene if moved is None else moved(fraction_of_pass(done))
+        accumulated.add(np.nan_to_num(np.array(mi.render(at, spp=per_pass, seed=done), np.float64)))
         done = accumulated.count
         if progress:
             progress("picture", done, passes)
@@ -174,12 +198,28 @@ def trace(
             break
     if progress and done < passes:
         progress("picture", passes, passes)
-    if done < 3:
+    if denoiser == "oidn" and layers is not None:
+        return oidn.denoise(accumulated.mean(), layers)
+    if done < 3 or denoiser == "none":
         return accumulated.mean().astype(np.float32)
     halves = accumulated.without_specks()
     light, denoised = (halves[0] + halves[1]) / done, accumulated.without_noise(halves)
     grain: NDArray = GRAIN * hair_share(scene) * (light - denoised)
     return np.asarray(denoised + grain, np.float32)
+
+
+def layers_of(scene: Any, camera: Camera, hairs: Curves, color: HairColor) -> Layers:
+    """Layers of a scene beside its light: depth, normal, albedo and lock."""
+    hair = np.broadcast_to(albedo(color), (3,))
+    return trace_layers(mitsuba(), scene, camera, hairs, hair_shape=HAIRS, hair_albedo=hair, scale=scene_scale(camera))
+
+
+def albedo(color: HairColor) -> NDArray[np.float64]:
+    """Albedo of a mass of hairs of a colour (linear r, g, b), after Chiang et al. 2016, eq. 9, from its absorption."""
+    absorption = color.eumelanin * EUMELANIN + color.pheomelanin * PHEOMELANIN
+    b = color.roughness
+    slope = 5.969 - 0.215 * b + 2.532 * b**2 - 10.73 * b**3 + 5.574 * b**4 + 0.245 * b**5
+    return np.exp(-np.sqrt(absorption) * slope)
 
 
 def hair_share(scene: Any) -> NDArray[np.float32]:

@@ -16,6 +16,7 @@ from ringlet.data.files import replacing
 from ringlet.data.picture import PictureSettings
 from ringlet.picture.bodies import PosedBody
 from ringlet.picture.camera import frame as frame_camera
+from ringlet.picture.motion import Pose
 from ringlet.picture.render import HairColor, Progress, build_scene, hair_color, over_backdrop, trace
 from ringlet.picture.rigs import Rig, check_rig
 from ringlet.picture.still import subject
@@ -95,7 +96,7 @@ def frame_all(
     scenes: Iterable[tuple[Sequence[PosedBody], Curves]], tile: tuple[int, int], view: str | tuple[float, float]
 ) -> Camera:
     """Camera that sees bodies and hairs of all tiles."""
-    subjects = (points for bodies, curves in scenes for points in subject(bodies, curves))
+    subjects = (points for bodies, curves in scenes for points in subject(Pose(bodies, curves)))
     return frame_camera(subjects, view=view, aspect=tile[0] / tile[1], margin=0.04)
 
 

@@ -2,72 +2,116 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from ringlet.data.camera import Camera
-from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.files import replacing
 from ringlet.data.picture import PictureSettings
-from ringlet.picture.bodies import PosedBody
+from ringlet.picture import oidn
 from ringlet.picture.camera import angles_towards, frame, picture_size, take_position
-from ringlet.picture.render import Progress, build_scene, hair_color, over_backdrop, trace
+from ringlet.picture.exr import write_exr
+from ringlet.picture.layers import Layers
+from ringlet.picture.motion import Pose
+from ringlet.picture.render import (
+    Progress,
+    build_scene,
+    hair_color,
+    layers_of,
+    mitsuba,
+    over_backdrop,
+    trace,
+)
 from ringlet.picture.rigs import Rig, check_rig
 from ringlet.picture.tone import develop
 
 
+@dataclass(frozen=True)
+class Taken:
+    """A picture before it is developed: light and coverage, shape (height, width, 4), and its layers if there are."""
+
+    image: NDArray[np.float32]
+    layers: Layers | None = None
+
+
 def still(
-    bodies: Sequence[PosedBody],
-    hairs: Curves,
+    pose: Pose,
     path: Path | str,
     settings: PictureSettings | None = None,
     *,
     lock: NDArray[np.floating] | None = None,
-    camera: Camera | None = None,
+    closing: Pose | None = None,
     progress: Progress | None = None,
 ) -> Path:
-    """Writes a PNG of the hairs and bodies, framed on the hair and the head.
+    """Writes a picture of hairs and bodies, framed on the hair and the head: a PNG, a JPEG, or an EXR with layers.
 
-    bodies:   posed meshes
-    hairs:    curves [m]; the point attribute ``width`` is the diameter [m]
     lock:     points of the lock to look at in place of the head [m], shape (n, 3)
-    camera:   a camera of the stage, in place of the view
+    closing:  the pose when the shutter closes, for motion blur
     progress: called with "picture", the passes done and their number
 
     Raises UserError for an unknown view, colour or light, and without hairs and bodies.
     """
     settings = settings or PictureSettings()
     refuse_transparent(settings, path)
-    image = take(bodies, hairs, settings, lock=lock, camera=camera, progress=progress)
-    with replacing(path) as aside:
-        developed(image, settings.background).save(aside)
+    is_exr = Path(path).suffix.lower() == ".exr"
+    taken = take(pose, settings, lock=lock, closing=closing, layers=is_exr, progress=progress)
+    if taken.layers is not None and is_exr:
+        write_exr(mitsuba(), path, taken.image, taken.layers)
+    else:
+        with replacing(path) as aside:
+            developed(taken.image, settings.background).save(aside)
     return Path(path)
 
 
 def take(
-    bodies: Sequence[PosedBody],
-    hairs: Curves,
+    pose: Pose,
     settings: PictureSettings,
     *,
     lock: NDArray[np.floating] | None = None,
-    camera: Camera | None = None,
+    closing: Pose | None = None,
+    layers: bool = False,
     progress: Progress | None = None,
-) -> NDArray[np.float32]:
-    """Light and coverage of a picture, shape (height, width, 4), as in ``still``."""
+) -> Taken:
+    """Takes a picture as in ``still``. ``layers`` asks for depth, normal, albedo and lock, at the opening shutter."""
     check_rig(settings.light)
-    if len(hairs):
-        hairs.check("hairs")
-    pigments, size, seen = hair_color(settings.color), picture_size(settings, camera), subject(bodies, hairs)
-    camera = take_position(settings, seen, lock, camera)
+    if len(pose.hairs):
+        pose.hairs.check("hairs")
+    pigments, size, seen = hair_color(settings.color), picture_size(settings, pose.camera), subject(pose)
+    camera = take_position(settings, seen, lock, pose.camera)
     portrait = frame(seen, view=angles_towards(camera.axes[2]))
     rig = Rig(settings.light, settings.light_turn, camera.axes, portrait.target, portrait.distance)
-    scene = build_scene(bodies, hairs, camera, size=size, color=pigments, max_depth=settings.bounces + 1, rig=rig)
-    return trace(scene, samples=settings.samples, seconds=settings.seconds, progress=progress)
+    look: dict[str, Any] = {"size": size, "color": pigments, "max_depth": settings.bounces + 1, "rig": rig}
+
+    def scene_at(fraction: float) -> Any:
+        now = pose if closing is None else pose.towards(closing, fraction)
+        at = camera if now.camera is None else take_position(settings, seen, lock, now.camera)
+        return build_scene(now.bodies, now.hairs, at, **look)
+
+    scene, denoiser = scene_at(0.0), chosen_denoiser(settings.denoiser)
+    needs_layers = layers or denoiser == "oidn"
+    guides = layers_of(scene, camera, pose.hairs, pigments) if needs_layers else None
+    image = trace(
+        scene,
+        samples=settings.samples,
+        seconds=settings.seconds,
+        progress=progress,
+        denoiser=denoiser,
+        layers=guides,
+        moved=None if closing is None else scene_at,
+    )
+    return Taken(image, guides)
+
+
+def chosen_denoiser(name: str) -> str:
+    """The denoiser that is meant; raises UserError where it is not installed."""
+    if name == "oidn" and not oidn.available():
+        raise UserError("picture: the denoiser oidn needs pyoidn; install it with: pip install 'ringlet[denoise]'")
+    return "builtin" if name == "auto" else name
 
 
 def developed(image: NDArray[np.float32], background: str) -> Image.Image:
@@ -85,8 +129,9 @@ def refuse_transparent(settings: PictureSettings, path: Path | str) -> None:
         raise UserError(f"{path}: a JPEG cannot be transparent; choose .png or .exr")
 
 
-def subject(bodies: Sequence[PosedBody], hairs: Curves) -> list[NDArray[np.floating]]:
+def subject(pose: Pose) -> list[NDArray[np.floating]]:
     """Points that a portrait frames: all hair, and the points of bodies near it, the head without the shoulders."""
+    bodies, hairs = pose.bodies, pose.hairs
     if not len(hairs):
         if not bodies:
             raise UserError("picture: there are neither hairs nor bodies; give at least one of them")
