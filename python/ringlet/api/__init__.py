@@ -8,13 +8,14 @@ Each module lists its public names in ``__all__``; they are public in ``ringlet`
 
 from __future__ import annotations
 
-from ringlet.api import convergence, demo, doctor, grooms, hairs, pictures, program, run, shots
+from ringlet.api import convergence, demo, doctor, grooms, hairs, movies, pictures, program, run, shots
 from ringlet.api.convergence import *
 from ringlet.api.demo import *
 from ringlet.api.doctor import *
 from ringlet.api.grooms import *
 from ringlet.api.grooms import groom_inputs as groom_inputs
 from ringlet.api.hairs import *
+from ringlet.api.movies import *
 from ringlet.api.pictures import *
 from ringlet.api.program import *
 from ringlet.api.progress import OnFrame as OnFrame
@@ -33,6 +34,7 @@ __all__ += demo.__all__
 __all__ += doctor.__all__
 __all__ += grooms.__all__
 __all__ += hairs.__all__
+__all__ += movies.__all__
 __all__ += pictures.__all__
 __all__ += program.__all__
 __all__ += run.__all__

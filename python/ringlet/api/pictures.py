@@ -48,10 +48,10 @@ def write_still(
     from ringlet import picture
 
     stage, chosen = Path(stage), PictureSettings.of(settings)
-    frame = _frame_of(stage, frame)
-    pose = _pose(stage, frame, chosen.camera)
-    opening, closing = _shutter(stage, frame, pose, chosen)
-    lock = _lock_points(stage, pose.hairs, chosen.look_at)
+    frame = first_frame(stage, frame)
+    pose = pose_at(stage, frame, chosen.camera)
+    opening, closing = shutter_poses(stage, frame, pose, chosen)
+    lock = lock_points(stage, pose.hairs, chosen.look_at)
     picture.still(opening, path, chosen, lock=lock, closing=closing, progress=progress)
 
 
@@ -161,7 +161,7 @@ def write_loft_picture(
     )
 
 
-def _frame_of(stage: Path, frame: float | None) -> float | None:
+def first_frame(stage: Path, frame: float | None) -> float | None:
     """The frame of a picture, by default the first of the stage; None for static hair."""
     from ringlet import io
 
@@ -183,14 +183,14 @@ def _posed(stage: Path, frame: float | None) -> tuple[list[Any], Any]:
     return [picture.PosedBody(body.mesh, body.clip.points[0]) for body in bodies], hairs
 
 
-def _pose(stage: Path, frame: float | None, camera: str | None = None) -> Pose:
+def pose_at(stage: Path, frame: float | None, camera: str | None = None) -> Pose:
     """Bodies, hairs, and the camera if one is named, of a stage at a frame."""
     from ringlet.picture import Pose
 
     return Pose(*_posed(stage, frame), _camera(stage, camera, frame))
 
 
-def _shutter(stage: Path, frame: float | None, pose: Pose, settings: PictureSettings) -> tuple[Pose, Pose | None]:
+def shutter_poses(stage: Path, frame: float | None, pose: Pose, settings: PictureSettings) -> tuple[Pose, Pose | None]:
     """Poses when the shutter opens and closes: from the frame on, or up to the frame if it is the last.
 
     Raises UserError for motion blur of hair that does not move.
@@ -204,8 +204,8 @@ def _shutter(stage: Path, frame: float | None, pose: Pose, settings: PictureSett
         raise UserError(f"{stage}: has no frames, so that nothing moves; leave out the shutter")
     fraction = settings.shutter / 360.0
     if frame + 1 <= frames[-1]:
-        return pose, pose.towards(_pose(stage, frame + 1, settings.camera), fraction)
-    return pose.towards(_pose(stage, frame - 1, settings.camera), fraction), pose
+        return pose, pose.towards(pose_at(stage, frame + 1, settings.camera), fraction)
+    return pose.towards(pose_at(stage, frame - 1, settings.camera), fraction), pose
 
 
 def _camera(stage: Path, prim: str | None, frame: float | None) -> Camera | None:
@@ -215,7 +215,7 @@ def _camera(stage: Path, prim: str | None, frame: float | None) -> Camera | None
     return None if prim is None else io.read_camera(stage, prim, frame)
 
 
-def _lock_points(stage: Path, hairs: Curves, lock: int | None) -> NDArray[np.floating] | None:
+def lock_points(stage: Path, hairs: Curves, lock: int | None) -> NDArray[np.floating] | None:
     """Points of the hairs of a lock by its id [m]; of one curve, in a stage without locks; None for no lock."""
     if lock is None or "lock" not in hairs.curve:
         return _curve_points(stage, hairs, lock)

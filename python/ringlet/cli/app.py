@@ -31,6 +31,8 @@ COMMANDS = [
     "wedge",
     "hair",
     "picture",
+    "movie",
+    "turntable",
     "view",
     "validate",
     "schema",

@@ -14,7 +14,7 @@ from ringlet.cli.progress import shown_progress
 from ringlet.cli.settings import with_settings
 
 
-@with_settings
+@with_settings()
 def picture(
     stage: Annotated[
         Path, typer.Argument(metavar="STAGE", help="A USD file with hairs, and with the head if it is to be seen.")

@@ -53,19 +53,27 @@ SETTINGS = [
 UNITS = {"distance": CENTIMETRE, "focus": CENTIMETRE}
 
 
-def with_settings(command: Callable[..., None]) -> Callable[..., None]:
-    """Gives a command the options of all settings; it takes their values as the argument ``settings``."""
-    signature = inspect.signature(command, eval_str=True)
-    own = [parameter for parameter in signature.parameters.values() if parameter.name != "settings"]
+def with_settings(**defaults: Any) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Gives a command the options of all settings; it takes their values as the argument ``settings``.
 
-    @functools.wraps(command)
-    def called(**values: Any) -> None:
-        settings = {parameter.name: values.pop(parameter.name) for parameter in SETTINGS}
-        for name, unit in UNITS.items():
-            settings[name] = None if settings[name] is None else unit * settings[name]
-        command(**values, settings=settings)
+    defaults: of the command, where they are not those of a still
+    """
+    options = [p.replace(default=defaults.get(p.name, p.default)) for p in SETTINGS]
 
-    keyword = [parameter.replace(kind=inspect.Parameter.KEYWORD_ONLY) for parameter in own]
-    called.__signature__ = signature.replace(parameters=[*keyword, *SETTINGS])  # pyright: ignore
-    called.__annotations__ = {parameter.name: parameter.annotation for parameter in [*own, *SETTINGS]}
-    return called
+    def decorate(command: Callable[..., None]) -> Callable[..., None]:
+        signature = inspect.signature(command, eval_str=True)
+        own = [parameter for parameter in signature.parameters.values() if parameter.name != "settings"]
+
+        @functools.wraps(command)
+        def called(**values: Any) -> None:
+            settings = {option.name: values.pop(option.name) for option in options}
+            for name, unit in UNITS.items():
+                settings[name] = None if settings[name] is None else unit * settings[name]
+            command(**values, settings=settings)
+
+        keyword = [parameter.replace(kind=inspect.Parameter.KEYWORD_ONLY) for parameter in own]
+        called.__signature__ = signature.replace(parameters=[*keyword, *options])  # pyright: ignore
+        called.__annotations__ = {parameter.name: parameter.annotation for parameter in [*own, *options]}
+        return called
+
+    return decorate

@@ -5,6 +5,7 @@ from ringlet.picture.bodies import PosedBody, material_of
 from ringlet.picture.camera import VIEWS
 from ringlet.picture.compare import compare
 from ringlet.picture.motion import Pose
+from ringlet.picture.movie import Movie, Shot, check_output, film, still_standpoint, turned_standpoints
 from ringlet.picture.places import write_places
 from ringlet.picture.render import HAIR_COLORS
 from ringlet.picture.sheet import sheet
@@ -13,12 +14,18 @@ from ringlet.picture.still import still
 __all__ = [
     "HAIR_COLORS",
     "VIEWS",
+    "Movie",
     "Pose",
     "PosedBody",
+    "Shot",
     "beads",
+    "check_output",
     "compare",
+    "film",
     "material_of",
     "sheet",
     "still",
+    "still_standpoint",
+    "turned_standpoints",
     "write_places",
 ]

@@ -52,7 +52,7 @@ class Rig:
         """Mitsuba emitters and shapes; ``origin`` [m] and ``scale`` take positions to the scene."""
         centre, distance = (self.centre - origin) * scale, self.distance * scale
         if self.name == STUDIO:
-            return lights(mi, self.axes @ _about_the_vertical(-self.turn), distance, centre)
+            return lights(mi, self.axes @ about_the_vertical(-self.turn), distance, centre)
         if self.name == WINDOW:
             return _window(mi, centre, distance, self.turn)
         if self.name == SUN:
@@ -74,7 +74,7 @@ def check_rig(name: str) -> None:
     check_regular(path, "give an .exr or .hdr file")
 
 
-def _about_the_vertical(degrees: float) -> NDArray[np.float64]:
+def about_the_vertical(degrees: float) -> NDArray[np.float64]:
     """Rotation about +Y, counter-clockwise from above, as a matrix for columns, shape (3, 3)."""
     c, s = cos(radians(degrees)), sin(radians(degrees))
     return np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -10,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from ringlet.data.camera import Camera
 from ringlet.data.errors import UserError
 from ringlet.data.files import replacing
 from ringlet.data.picture import PictureSettings
@@ -29,6 +31,14 @@ from ringlet.picture.render import (
 )
 from ringlet.picture.rigs import Rig, check_rig
 from ringlet.picture.tone import develop
+
+
+@dataclass(frozen=True)
+class Standpoint:
+    """A camera, and the light around what it looks at."""
+
+    camera: Camera
+    rig: Rig
 
 
 @dataclass(frozen=True)
@@ -74,22 +84,31 @@ def take(
     *,
     lock: NDArray[np.floating] | None = None,
     closing: Pose | None = None,
+    standpoint: Standpoint | None = None,
     layers: bool = False,
     progress: Progress | None = None,
 ) -> Taken:
-    """Takes a picture as in ``still``. ``layers`` asks for depth, normal, albedo and lock, at the opening shutter."""
+    """Takes a picture as in ``still``.
+
+    standpoint: camera and light, in place of those that the settings give
+    layers:     asks for depth, normal, albedo and lock, at the opening shutter
+    """
     check_rig(settings.light)
     if len(pose.hairs):
         pose.hairs.check("hairs")
-    pigments, size, seen = hair_color(settings.color), picture_size(settings, pose.camera), subject(pose)
-    camera = take_position(settings, seen, lock, pose.camera)
-    portrait = frame(seen, view=angles_towards(camera.axes[2]))
-    rig = Rig(settings.light, settings.light_turn, camera.axes, portrait.target, portrait.distance)
-    look: dict[str, Any] = {"size": size, "color": pigments, "max_depth": settings.bounces + 1, "rig": rig}
+    if standpoint is None:
+        standpoint = place(settings, subject(pose), lock, pose.camera)
+    camera, pigments = standpoint.camera, hair_color(settings.color)
+    look: dict[str, Any] = {
+        "size": picture_size(settings, pose.camera),
+        "color": pigments,
+        "max_depth": settings.bounces + 1,
+        "rig": standpoint.rig,
+    }
 
     def scene_at(fraction: float) -> Any:
         now = pose if closing is None else pose.towards(closing, fraction)
-        at = camera if now.camera is None else take_position(settings, seen, lock, now.camera)
+        at = camera if now.camera is None else place(settings, subject(now), lock, now.camera).camera
         return build_scene(now.bodies, now.hairs, at, **look)
 
     scene, denoiser = scene_at(0.0), chosen_denoiser(settings.denoiser)
@@ -105,6 +124,18 @@ def take(
         moved=None if closing is None else scene_at,
     )
     return Taken(image, guides)
+
+
+def place(
+    settings: PictureSettings,
+    seen: Sequence[NDArray[np.floating]],
+    lock: NDArray[np.floating] | None = None,
+    given: Camera | None = None,
+) -> Standpoint:
+    """Camera and light of settings; the arguments are those of ``take_position``."""
+    camera = take_position(settings, seen, lock, given)
+    portrait = frame(seen, view=angles_towards(camera.axes[2]))
+    return Standpoint(camera, Rig(settings.light, settings.light_turn, camera.axes, portrait.target, portrait.distance))
 
 
 def chosen_denoiser(name: str) -> str:
