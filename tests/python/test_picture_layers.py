@@ -71,6 +71,14 @@ def test_hairs_without_locks_have_their_own_rows(tmp_path):
     assert (layers["lock"][20, 8], layers["lock"][20, 32]) == (0, 1)
 
 
+def test_lights_are_not_in_the_layers():
+    """A wide lens from the front sees the rim lights behind the head."""
+    wide = Camera(np.array([0.0, 0.0, 1.0]), np.eye(3), 1.0, (1.0, 1.0))
+    taken = take(Pose([board()], Curves.from_list([]), wide), QUICK, layers=True)
+    assert taken.layers is not None
+    assert not taken.layers.depth[taken.image[:, :, 3] < 1e-6].any()
+
+
 def test_light_hair_has_a_higher_albedo_than_dark_hair():
     albedo = {}
     for color in ("black", "dark_brown", "blond"):

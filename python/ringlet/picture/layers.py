@@ -50,7 +50,8 @@ def trace_layers(
     scale:       scene units per metre; the origin of the scene is the camera's target
     """
     names = [shape.id() for shape in scene.shapes()]
-    hair_index = names.index(hair_shape) + 1 if hair_shape in names else -1  # 0 is the background
+    shown = np.array([False] + [not shape.is_emitter() for shape in scene.shapes()])  # 0 is the background
+    hair_index = names.index(hair_shape) + 1 if hair_shape in names else -1
     hair_of_segment = np.repeat(np.arange(len(hairs)), hairs.counts - 1)
     lock_of_hair = hairs.curve.get("lock", np.arange(len(hairs)))
     aovs = "position:position,normal:sh_normal,albedo:albedo,shape:shape_index,segment:prim_index"
@@ -60,7 +61,7 @@ def trace_layers(
     for number in range(SAMPLES):
         rays = np.array(mi.render(scene, sensor=1, integrator=integrator, spp=1, seed=number), np.float64)
         position, normal, albedo, shape, segment = np.split(rays, [3, 6, 9, 10], axis=2)
-        is_hair, seen = shape == hair_index, shape > 0.5
+        is_hair, seen = shape == hair_index, shown[shape.astype(np.int64)]
         depth = camera.distance - position @ camera.axes[2][:, None] / scale
         albedo = np.where(is_hair, hair_albedo, albedo)
         sums = sums + np.concatenate([seen, seen * depth, seen * normal, seen * albedo], axis=2)
