@@ -15,6 +15,12 @@ from ringlet.data.mesh import Mesh
 from ringlet.data.precision import origin_of
 from ringlet.data.stage import StageSpace
 
+# Attributes of locks that groom operators write and a run reads.
+SECTION = "section"  # of a lock: the id of its section of the scalp; −1: none
+STRAND_RADIUS = "strand_radius"  # of a lock: the radius that it has of its own, as a strand of a braid [m]; 0: none
+CORE = "core"  # of a lock: 1 where the locks of its section move as one rod, 0 elsewhere
+TIED = "tied"  # of a point: 1 where a band ties the locks of a section, 0 elsewhere
+
 FLAT = 1e-9  # twice the area of a triangle, relative to its longest edge squared, at which it has no frame
 
 
@@ -25,7 +31,8 @@ class Groom:
     guides:     the artist's low-resolution curves
     locks:      groom guides, one per lock. Curve attributes: ``root_triangle`` (count,) int32 into ``scalp.triangles``,
                 ``root_barycentric`` (count, 3) float64. Their points are the groomed shape in the rest pose [m].
-                Point attribute, where something is nailed: ``nail`` (n,), how firmly the skin holds a point, 0 to 1.
+                Point attributes: ``nail`` (n,), where something is nailed: how firmly the skin holds a point, 0 to 1;
+                ``tied`` (n,), where something is tied. Locks with a thickness of their own have ``strand_radius`` [m].
     scalp:      the mesh they grow on, in its rest pose
     scalp_file: the USD file it came from (None for a mesh made in memory)
     scalp_prim: its prim path in that file

@@ -40,7 +40,18 @@ ID_HALVES = ("id_high", "id_low")  # halves of 64-bit ids, for programs without 
 COMMON = {"rest", "skinprim", "skinprimuv", "st", "surface_uv_coordinate", "guide_curve_index", "clumpid", *ID_HALVES}
 COMMON |= {"groom_id", "groom_group_id", "groom_guide", "groom_root_uv", "groom_color"}
 COMMON |= {"displayColor", "displayOpacity"}
-INNER = {"root_triangle", "root_barycentric", "lock", "guide_id", "nail", "groomed", "stiffened", "off", "moving"}
+INNER = {
+    "root_triangle",
+    "root_barycentric",
+    "lock",
+    "guide_id",
+    "nail",
+    "tied",
+    "groomed",
+    "stiffened",
+    "off",
+    "moving",
+}
 MOST_WIDTH = 1.0  # largest diameter of a curve that is written [m]
 SCHEMA = {"widths", "normals"}  # primvars that take precedence over the attribute of the same name
 HAIR_WIDTH = 70e-6  # default diameter of a hair [m]
