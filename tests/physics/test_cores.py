@@ -1,4 +1,4 @@
-"""Braids that move as one rod each carry their strands."""
+"""Braids that are simulated as one rod each carry their strands."""
 
 import numpy as np
 import pytest

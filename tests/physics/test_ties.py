@@ -41,7 +41,7 @@ def test_a_tie_is_drawn_out_by_the_force_that_pulls_it():
     free = settled(hanging(None), force)
     gap = np.linalg.norm(points[21] - points[10]) - APART
     assert free[21, 0] - free[10, 0] > 10 * LENGTH / 11  # nothing else holds them
-    # The strands bear next to nothing against so small an angle.
+    # The strands resist so small an angle with next to nothing.
     assert gap == pytest.approx(pull / STIFFNESS, rel=0.02)
 
 

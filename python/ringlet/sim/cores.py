@@ -1,4 +1,4 @@
-"""Cores: braids that move as one rod each, which carries their strands."""
+"""Cores: braids that are simulated as one rod each, which carries their strands."""
 
 from __future__ import annotations
 

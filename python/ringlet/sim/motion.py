@@ -55,7 +55,7 @@ class Motion:
     """Locks on their moving scalp, in contact where the shot has it; see ``simulate`` for what it is made of.
 
     first:    the frame at which everything starts
-    cores:    the braids that move as one rod each; ``locks`` are those that are simulated
+    cores:    the braids that are simulated as one rod each; ``locks`` are those that are simulated
     scene:    all that is in contact; None without contact
     start:    the report of initial penetration (see ``initial_penetration.py``)
     garments: the cloths that move with the locks
