@@ -261,6 +261,22 @@ class TextField extends Field {
   }
 }
 
+/** A colour; while it is chosen, the hair shows it. */
+class ColorField extends Field {
+  private readonly input = h("input", { type: "color", id: this.id });
+
+  constructor(model: Model, file: File, place: Place, setting: Setting) {
+    super(model, file, place, setting);
+    this.element.append(this.head(this.input));
+    this.input.addEventListener("input", () => this.send(this.input.value, false));
+    this.input.addEventListener("change", () => this.send(this.input.value, true));
+  }
+
+  protected show(): void {
+    this.input.value = String(this.value ?? this.setting.fallback ?? "#000000");
+  }
+}
+
 /** The name of something that there is: a region or a map of the scalp, or a helper curve. */
 class NameField extends Field {
   private readonly list = h("select", { id: this.id });
@@ -428,6 +444,7 @@ export function makeField(model: Model, file: File, place: Place, setting: Setti
     toggle: ToggleField,
     choice: ChoiceField,
     text: TextField,
+    color: ColorField,
     name: NameField,
     regions: RegionsField,
     vector: VectorField,
