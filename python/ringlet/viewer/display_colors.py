@@ -6,14 +6,33 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ringlet.data.curves import Curves, offsets_from_counts
+from ringlet.data.digest import digest
 from ringlet.data.groom import Groom
-from ringlet.data.pigment import ROUGHNESS, TILT, curve_reflectance, of_fiber
+from ringlet.data.pigment import (
+    DYE,
+    DYE_AMOUNT,
+    FIBER,
+    GRAY,
+    MELANIN,
+    REDNESS,
+    ROUGHNESS,
+    TILT,
+    curve_reflectance,
+    of_fiber,
+)
 from ringlet.groom import Hairs, hair_colors
 from ringlet.viewer import protocol
 from ringlet.viewer.display_groom import shuffled_order, spread_order
 from ringlet.viewer.wire import pack
 
 STATIONS = 24  # of a hair whose colour varies along it
+
+
+def inputs(groom: Groom) -> str:
+    """Digest of what the colours of hairs depend on besides their layout."""
+    locks, names = groom.locks, (MELANIN, REDNESS, GRAY, DYE, DYE_AMOUNT, *FIBER)
+    values = [kind[name] for name in names for kind in (locks.curve, locks.point) if name in kind]
+    return digest(groom.color, groom.fiber, *values)
 
 
 def message(side: str, groom: Groom, hairs: Hairs | None) -> bytes:

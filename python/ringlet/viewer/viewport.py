@@ -32,7 +32,7 @@ class Viewport:
         self._origin = np.zeros(3)  # of positions in messages, near the head
         self._shot_inputs: object = None
         self._layouts: dict[str, Curves] = {}
-        self._colors: dict[str, bytes] = {}
+        self._colors: dict[str, tuple[Curves, str]] = {}
         self._names: protocol.Names | None = None
 
     def show(self, display: DisplayGroom, side: str, revision: int = 0) -> None:
@@ -82,10 +82,11 @@ class Viewport:
             self._publisher.publish(f"body/{index}", body.message(index, self._origin))
 
     def _publish_colors(self, display: DisplayGroom, side: str) -> None:
-        message = display_colors.message(side, display.groom, display.hairs)
-        if self._colors.get(side) != message:
-            self._colors[side] = message
-            self._publisher.publish(f"{side}/colors", message)
+        inputs = self._layouts[side], display_colors.inputs(display.groom)
+        before = self._colors.get(side)
+        if before is None or before[0] is not inputs[0] or before[1] != inputs[1]:
+            self._colors[side] = inputs
+            self._publisher.publish(f"{side}/colors", display_colors.message(side, display.groom, display.hairs))
 
     def _publish_names(self, groom: Groom, curves: Collection[str]) -> None:
         scalp = groom.scalp

@@ -158,8 +158,9 @@ export class NumberField extends Field {
     if (this.held) return;
     const { factor, unit } = this.shown;
     const own = this.lock === null ? undefined : at(this.value, ["lock", this.lock]);
-    const value = own ?? (this.setting.varied ? at(this.value, ["value"]) : this.value);
     const given = this.setting.varied ? at(this.setting.fallback, ["value"]) : this.setting.fallback;
+    const absent = this.setting.optional ? undefined : given; // where the file has not even its table
+    const value = own ?? (this.setting.varied ? at(this.value, ["value"]) : this.value) ?? absent;
     const fallback = typeof given === "number" ? given * factor : 0;
     this.unit.textContent = unit;
     this.element.classList.toggle("absent", typeof value !== "number");
