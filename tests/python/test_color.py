@@ -185,9 +185,17 @@ def test_the_share_of_white_hairs_is_that_of_the_recipe():
 
 
 def test_a_single_lock_may_have_a_colour_of_its_own():
-    made = groom("[color]\nmelanin = { value = 0.9, vary = 0.2, lock = { 3 = 0.1 } }\n")
-    own = made.locks.curve["melanin"][made.locks.ids == 3]
-    assert own == pytest.approx(0.1)
+    lock = groom().locks.ids[5]
+    made = groom(f"[color]\nmelanin = {{ value = 0.9, vary = 0.2, lock = {{ {lock} = 0.1 }} }}\n")
+    assert made.locks.curve["melanin"][5] == pytest.approx(0.1)
+    assert np.delete(made.locks.curve["melanin"], 5).min() > 0.5
+
+
+def test_an_edit_of_a_lock_may_set_its_colour():
+    lock = groom().locks.ids[5]
+    made = groom(f'[[edit]]\nlock = {lock}\nset = {{ "color.melanin" = 0.1, "color.gray" = 1 }}\n')
+    assert made.locks.curve["melanin"][5] == pytest.approx(0.1)
+    assert made.locks.curve["gray"].tolist() == [float(k == 5) for k in range(60)]
 
 
 def test_dye_replaces_the_natural_colour_where_its_ramp_and_mask_say():
