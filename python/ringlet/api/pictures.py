@@ -35,7 +35,7 @@ def write_still(
     height: int = 1000,
     samples: int = 40,
     view: str = "three_quarter",
-    color: str = "dark_brown",
+    color: str | None = None,
     seconds: float | None = None,
     progress: Progress | None = None,
 ) -> None:
@@ -43,6 +43,7 @@ def write_still(
 
     frame:   the first of the stage by default
     view:    ``three_quarter``, ``front``, ``side`` or ``back``
+    color:   a name of ``HAIR_COLORS``; by default the hairs' own, or dark brown where they have none
     seconds: stop adding samples after that long
     """
     from ringlet import picture
@@ -126,7 +127,7 @@ def write_sheet(
     frames: tuple[int, int] | None = None,
     count: int = 12,
     title: str = "",
-    color: str = "dark_brown",
+    color: str | None = None,
     progress: Progress | None = None,
 ) -> None:
     """Draws ``count`` frames of a USD stage, evenly spread, on one page, under a title if there is one."""

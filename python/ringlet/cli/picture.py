@@ -23,8 +23,13 @@ def picture(
     frame: Annotated[float | None, frame_option("Frame of the still; the first by default.")] = None,
     view: Annotated[str, typer.Option("--view", help="three_quarter, front, side or back.")] = "three_quarter",
     color: Annotated[
-        str, typer.Option("--color", help="black, dark_brown, brown, auburn, ginger, blond or gray.")
-    ] = "dark_brown",
+        str | None,
+        typer.Option(
+            "--color",
+            help="black, dark_brown, brown, auburn, ginger, blond, gray or white; by default the hair's own.",
+            show_default=False,
+        ),
+    ] = None,
     width: Annotated[int, typer.Option("--width", min=16, max=8192, help="Pixels across.")] = 900,
     height: Annotated[int, typer.Option("--height", min=16, max=8192, help="Pixels down.")] = 1000,
     samples: Annotated[

@@ -39,6 +39,8 @@ class Groom:
     region:     the named region that carries roots (None for all of it)
     space:      unit, up-axis and rate of that file
     hairs:      the ``[hairs]`` settings of the recipe, as plain values
+    color:      the ``[color]`` settings, as plain values (None without them)
+    fiber:      the ``[fiber]`` settings, as plain values (None without them)
     recipe:     the text of the recipe, kept with the groom
     shapes:     the locks before they were curled (None for a groom that was read from a file)
     unsculpted: the guides before they were sculpted by hand (None for a groom that was read from a file)
@@ -57,6 +59,8 @@ class Groom:
     region: str | None = None
     space: StageSpace = field(default_factory=StageSpace)
     hairs: dict[str, Any] = field(default_factory=dict)
+    color: dict[str, Any] | None = None
+    fiber: dict[str, Any] | None = None
     recipe: str | None = None
     shapes: Curves | None = None
     unsculpted: Curves | None = None

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -12,38 +11,23 @@ from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
 
 from ringlet.data.curves import Curves
-from ringlet.data.errors import UserError
+from ringlet.data.pigment import HairColor
 from ringlet.picture.bodies import COLORS, PosedBody, material
 from ringlet.picture.camera import Camera
+from ringlet.picture.fiber import fiber_bsdf
 from ringlet.picture.passes import Passes
-from ringlet.picture.strands import fibres, load_fibres
+from ringlet.picture.strands import fibres, load_fibres, split
 from ringlet.picture.studio import backdrop, lights
 
 # Arguments: name of the stage, steps done, total steps.
 Progress = Callable[[str, int, int], None]
 
 
-@dataclass(frozen=True)
-class HairColor:
-    """Melanin concentrations of a hair (Chiang et al. 2016) and the roughness of its cuticle."""
-
-    eumelanin: float
-    pheomelanin: float
-    roughness: float = 0.38
-
-
-HAIR_COLORS: dict[str, HairColor] = {
-    "black": HairColor(6.0, 0.3, 0.28),
-    "dark_brown": HairColor(2.0, 0.35),
-    "brown": HairColor(0.9, 0.7),
-    "auburn": HairColor(0.5, 2.4),
-    "ginger": HairColor(0.08, 0.9),
-    "blond": HairColor(0.15, 0.25, 0.33),
-    "gray": HairColor(0.12, 0.0, 0.36),
-}
-
-# Name of the hairs in a scene.
+# Beginning of the names of shapes of hairs in a scene.
 HAIRS = "hairs"
+
+# Bounces of light in stills and sheets: with fewer, light hair is darker and less saturated.
+MAX_DEPTH = 8
 
 # Smallest drawn diameter of a hair in a still [pixels].
 THINNEST = 0.3
@@ -54,13 +38,6 @@ MAX_PASS_SAMPLES, MAX_TIMED_PASS_SAMPLES, MIN_PASSES = 8, 4, 4
 
 # Fraction of the noise that stays on hair: the denoiser would remove single hairs with it.
 GRAIN = 0.68
-
-
-def hair_color(name: str) -> HairColor:
-    """Hair colour of a name; raises UserError for an unknown one."""
-    if name not in HAIR_COLORS:
-        raise UserError(f"picture: there is no hair colour '{name}'; choose one of {', '.join(HAIR_COLORS)}")
-    return HAIR_COLORS[name]
 
 
 def mitsuba() -> Any:
@@ -77,13 +54,14 @@ def build_scene(
     camera: Camera,
     *,
     size: tuple[int, int],
-    color: HairColor,
+    color: HairColor | None,
     max_depth: int,
     thinnest: float = THINNEST,
 ) -> Any:
     """Builds the Mitsuba scene, centred and scaled so that single precision resolves a hair's width.
 
     size:     width and height of the picture [pixels]
+    color:    of all hairs; None for that of their attributes
     thinnest: smallest drawn diameter of a hair [pixels]
     """
     mi = mitsuba()
@@ -118,19 +96,14 @@ def build_scene(
     for index, body in enumerate(bodies):
         scene[f"body{index}"] = _mesh(mi, body, target, scale)
     if hairs is not None and len(hairs):
-        controls, offsets = fibres(hairs, target)
         # Rays mostly miss a hair far thinner than a pixel, which costs many samples and looks like noise. A wider hair
         # also represents the hairs that a groom leaves out.
         pixel = 2.0 * camera.slopes[0] * camera.distance / size[0]
-        controls[:, 3] = np.maximum(controls[:, 3], 0.5 * thinnest * pixel)
-        bsdf = {
-            "type": "hair",
-            "eumelanin": color.eumelanin,
-            "pheomelanin": color.pheomelanin,
-            "longitudinal_roughness": color.roughness,
-            "azimuthal_roughness": color.roughness,
-        }
-        scene[HAIRS] = load_fibres(mi, controls * np.float32(scale), offsets, bsdf)
+        for index, part in enumerate(split(hairs)):
+            controls, offsets = fibres(part, target)
+            controls[:, 3] = np.maximum(controls[:, 3], 0.5 * thinnest * pixel)
+            bsdf = fiber_bsdf(mi, part, color)
+            scene[f"{HAIRS}{index}"] = load_fibres(mi, controls * np.float32(scale), offsets, bsdf)
     return mi.load_dict(scene)
 
 
@@ -176,11 +149,11 @@ def trace(
 def hair_share(scene: Any) -> NDArray[np.float32]:
     """Coverage of visible hair, from 0 to 1, blurred at its edges; shape (height, width, 1)."""
     mi = mitsuba()
-    names = [shape.id() for shape in scene.shapes()]
-    if HAIRS not in names:
+    is_fibres = np.array([False, *(shape.id().startswith(HAIRS) for shape in scene.shapes())])  # 0 is the background
+    if not is_fibres.any():
         return np.zeros((1, 1, 1), np.float32)
     shapes = mi.render(scene, integrator=mi.load_dict({"type": "aov", "aovs": "seen:shape_index"}), spp=1)
-    is_hair = np.abs(np.array(shapes)[:, :, 0] - (names.index(HAIRS) + 1)) < 0.5  # 0 is the background
+    is_hair = is_fibres[np.rint(np.array(shapes)[:, :, 0]).astype(int)]
     return np.asarray(gaussian_filter(is_hair.astype(np.float32), 1.2), np.float32)[:, :, None]
 
 

@@ -12,10 +12,11 @@ from PIL import Image, ImageDraw, ImageFont
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.files import replacing
+from ringlet.data.pigment import HairColor, hair_color
 from ringlet.picture.bodies import PosedBody
 from ringlet.picture.camera import Camera
 from ringlet.picture.camera import frame as frame_camera
-from ringlet.picture.render import HairColor, Progress, build_scene, hair_color, over_backdrop, trace
+from ringlet.picture.render import MAX_DEPTH, Progress, build_scene, over_backdrop, trace
 from ringlet.picture.still import subject
 from ringlet.picture.tone import develop
 
@@ -39,7 +40,7 @@ def sheet(
     hairs: int = 6000,
     samples: int = 12,
     view: str | tuple[float, float] = "three_quarter",
-    color: str = "dark_brown",
+    color: str | None = None,
     progress: Progress | None = None,
 ) -> Path:
     """Writes a PNG with one labelled tile per frame.
@@ -99,11 +100,11 @@ def draw_tile(
     hairs: Curves,
     camera: Camera,
     tile: tuple[int, int],
-    pigments: HairColor,
+    pigments: HairColor | None,
     samples: int,
 ) -> NDArray[np.uint8]:
     """Renders a tile, shape (height, width, 3)."""
-    scene = build_scene(bodies, hairs, camera, size=tile, color=pigments, max_depth=4, thinnest=THINNEST)
+    scene = build_scene(bodies, hairs, camera, size=tile, color=pigments, max_depth=MAX_DEPTH, thinnest=THINNEST)
     return develop(over_backdrop(trace(scene, samples=samples)))
 
 

@@ -12,9 +12,10 @@ from PIL import Image
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.files import replacing
+from ringlet.data.pigment import hair_color
 from ringlet.picture.bodies import PosedBody
 from ringlet.picture.camera import frame
-from ringlet.picture.render import Progress, build_scene, hair_color, over_backdrop, trace
+from ringlet.picture.render import MAX_DEPTH, Progress, build_scene, over_backdrop, trace
 from ringlet.picture.tone import develop
 
 
@@ -27,8 +28,8 @@ def still(
     height: int = 1000,
     samples: int = 40,
     view: str | tuple[float, float] = "three_quarter",
-    color: str = "dark_brown",
-    max_depth: int = 8,
+    color: str | None = None,
+    max_depth: int = MAX_DEPTH,
     seconds: float | None = None,
     progress: Progress | None = None,
 ) -> Path:
@@ -38,7 +39,7 @@ def still(
     hairs:     curves [m]; the point attribute ``width`` is the diameter [m]
     samples:   light paths per pixel
     view:      a name of ``VIEWS``, or azimuth and elevation of the camera [degrees]
-    color:     a name of ``HAIR_COLORS``
+    color:     a name of ``HAIR_COLORS``; by default the hairs' own, or dark brown where they have none
     max_depth: largest number of bounces of a light path
     seconds:   time limit of the rendering
     progress:  called with "picture", the passes done and their number
