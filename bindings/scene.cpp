@@ -124,7 +124,7 @@ std::vector<Vec3> joined(std::initializer_list<View<Vec3>> arrays) {
 }
 
 // Vertices (k, 4), and weights, normal, distance and force (k, 9).
-nb::tuple arrays_of(const std::vector<Contact> &contacts) {
+nb::tuple arrays_of(View<Contact> contacts) {
     std::vector<int> vertices;
     std::vector<double> values;
     for (const Contact &c : contacts) {
@@ -144,6 +144,20 @@ void bind_scene(nb::module_ &module) {
     nb::class_<SceneContact>(module, "SceneContact", "Contact in a scene (SI units).")
         .def(nb::init<>())
         .def_rw("strand_radius", &SceneContact::strand_radius)
+        .def_rw("strand_radii", &SceneContact::strand_radii)
+        .def(
+            "set_ties",
+            [](SceneContact &self, nb::ndarray<const int, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu> vertices,
+               Array1<double> lengths, Array1<double> stiffness) {
+                const size_t count = vertices.shape(0);
+                if (lengths.shape(0) != count || stiffness.shape(0) != count)
+                    throw std::invalid_argument("scene: as many lengths and stiffnesses as ties");
+                self.ties.clear();
+                for (size_t k = 0; k < count; ++k)
+                    self.ties.push_back({{vertices(k, 0), vertices(k, 1)}, view(lengths)[k], view(stiffness)[k]});
+            },
+            "vertices"_a, "lengths"_a, "stiffness"_a,
+            "Ties vertices of strands: pairs (k, 2) int32, their distances at rest [m] and spring constants [N/m], shape (k,).")
         .def_rw("strand_material", &SceneContact::strand_material)
         .def_rw("friction", &SceneContact::friction)
         .def_rw("stiffness", &SceneContact::stiffness)

@@ -69,6 +69,8 @@ def kind(about: dict[str, Any], unit: str = "") -> str:
         return ", ".join(f"`{value}`" for value in about.get("enum", [about.get("const")]))
     if about.get("type") == "array":
         return f"list of {kind(about['items'])}" if about.get("items") else "list"
+    if about.get("format") == "color":
+        return "colour `#rrggbb`"
     words = {"integer": "whole number", "object": "table", "boolean": "true or false", "string": "text"}
     name = "length" if unit == "m" else words.get(about.get("type", ""), about.get("type", "any"))
     bounds = {"minimum": "at least", "exclusiveMinimum": "above", "maximum": "at most", "exclusiveMaximum": "below"}

@@ -210,3 +210,27 @@ def test_two_looks_are_shown_side_by_side(opened: Any):
     assert different(left, right) > 0.005
     beside.select_option("")
     review.until("!ringlet.viewer.compared")
+
+
+def test_colour_is_edited_and_shown(opened: Any):
+    review: Review = opened()
+    before = review.picture()
+    review.choose("color")
+    review.drag(review.slider("color.melanin"), 0.9, 0.4, 0.02)
+    review.until("ringlet.model.documents.recipe.dirty")
+    assert tomllib.loads(review.text())["color"]["melanin"] < 0.2
+    review.settled()
+    light = review.picture()
+    assert different(light, before) > 0.001
+    assert light.sum() > before.sum()
+    dye = review.page.locator('[data-setting="color.dye"] details.table')
+    dye.evaluate("(details) => { details.open = true; }")
+    review.page.locator('[data-setting="color.dye.color"] input').fill("#1020ff")
+    review.answered()
+    review.settled()
+    red, _, blue = np.moveaxis(review.picture() - light, 2, 0)
+    assert tomllib.loads(review.text())["color"]["dye"]["color"] == "#1020ff"
+    assert red.sum() < blue.sum()
+    review.page.locator('select[aria-label="Hair colour"]').select_option("dark_brown")
+    assert different(review.picture(), before) < 0.002
+    assert not review.errors

@@ -49,6 +49,25 @@ BOOST_AUTO_TEST_CASE(barrier_and_friction_forces_are_the_derivatives_of_their_po
     }
 }
 
+BOOST_AUTO_TEST_CASE(a_tie_pulls_and_pushes_by_the_derivatives_of_its_energy) {
+    Random random;
+    const double h = 1e-8;
+    for (int i = 0; i < 200; ++i) {
+        const Contact tie = as_contact({{3, 7}, 1e-3, random(1.0, 10.0)}, i);
+        const Vec3 s = random(0.5, 2.0) * 1e-3 * random.vector(1.0).normalized();
+        const ContactValue value = contact_value(tie, s);
+        BOOST_TEST(value.energy == contact_energy(tie, s));
+        for (int k = 0; k < 3; ++k) {
+            const ContactValue up = contact_value(tie, s + h * Vec3::Unit(k)), down = contact_value(tie, s - h * Vec3::Unit(k));
+            BOOST_TEST(std::abs((up.energy - down.energy) / (2 * h) - value.gradient[k]) < 1e-8 * tie.stiffness);
+            if (s.norm() > 1e-3) // pressed together the Hessian is projected
+                BOOST_TEST(((up.gradient - down.gradient) / (2 * h) - value.hessian.col(k)).norm() < 1e-5 * tie.stiffness);
+        }
+        BOOST_TEST(Eigen::SelfAdjointEigenSolver<Mat3>(value.hessian).eigenvalues()[0] > -1e-9 * tie.stiffness);
+        BOOST_TEST(contact_value(tie, 1e-3 * s.normalized()).gradient.norm() < 1e-12 * tie.stiffness);
+    }
+}
+
 BOOST_AUTO_TEST_CASE(activation_distance_and_slip_invert_the_forces) {
     Random random;
     for (int i = 0; i < 1000; ++i) {

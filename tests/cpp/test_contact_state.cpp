@@ -17,16 +17,17 @@ BOOST_AUTO_TEST_CASE(a_vertex_is_as_stiff_as_its_load_asks_for) {
     mesh.moves = {0, 1, 1, 1, 1};
     mesh.object = {0, 0, 0, 0, 0};
     mesh.along_strand.resize(5);
+    mesh.radius.assign(5, 0.5 * d_hat);
     ContactStiffness stiffness(5);
     stiffness.begin_step({std::numeric_limits<double>::infinity(), largest, largest, largest, largest}, 0.01);
     stiffness.recall({0.0, 0.0, 0.0, 0.0, 0.05});
-    const std::vector<double> levels = stiffness.levels(mesh, d_hat);
+    const std::vector<double> levels = stiffness.levels(mesh);
     BOOST_TEST(std::isinf(levels[0]));
     BOOST_TEST(levels[1] == 0.01 * largest);                                     // carries nothing
     BOOST_TEST(levels[3] == 0.1 * largest, boost::test_tools::tolerance(1e-12)); // as its neighbour
     BOOST_TEST(levels[4] == 0.1 * largest, boost::test_tools::tolerance(1e-12)); // 10 < 0.05 / d̂ ≤ 100
     stiffness.recall({0.0, 0.0, 0.0, 0.0, 10.0});
-    BOOST_TEST(stiffness.levels(mesh, d_hat)[4] == largest);
+    BOOST_TEST(stiffness.levels(mesh)[4] == largest);
     stiffness.begin_step({largest, largest, largest, largest, largest}, 0.25); // a half-life
     BOOST_TEST(stiffness.loads()[4] == 5.0, boost::test_tools::tolerance(1e-12));
 }

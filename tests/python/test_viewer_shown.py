@@ -6,10 +6,12 @@ from pathlib import Path
 
 import numpy as np
 from pages import page, read, serving
+from ringlet.data.pigment import curve_reflectance
 from small_example import write_head
 from wear import SCARF, write_wear
 
 import ringlet
+from ringlet.groom import make_hairs
 
 
 def test_the_first_hairs_are_spread_over_all_locks(folder: Path):
@@ -136,3 +138,23 @@ def test_frames_include_contacts_and_penetration_of_the_head(folder: Path):
         assert len(frame["contact"]) == len(frame["depth"]) == 8 * 40
         assert frame["statistics"]["contacts"] > 0 and frame["contact"].max() > 0
         assert frame["statistics"]["inside"] == 0 and frame["depth"].max() == 0
+
+
+def test_the_page_receives_the_colours_that_files_have(folder: Path):
+    with serving(folder) as client, page(client) as one:
+        assert one.receive("colors")["stations"] == 0, "a recipe without colour has none"
+        color = {"preset": "brown", "melanin": {"value": 0.8, "ramp": [[0, 1], [1, 0.3]]}}
+        one.send(kind="set", changes=[[["color"], color]], gesture=1)
+        colors = one.receive("colors")
+        one.send(kind="set", changes=[[["color", "gray"], 1.0]], gesture=2)
+        white = one.receive("colors")
+    recipe = folder / "small.recipe.toml"
+    recipe.write_text(
+        recipe.read_text() + '[color]\npreset = "brown"\nmelanin = { value = 0.8, ramp = [[0, 1], [1, 0.3]] }\n'
+    )
+    hairs = make_hairs(ringlet.build_groom(recipe)).curves
+    ends = curve_reflectance(hairs, "hairs").reshape(len(hairs), -1, 3)[:, [0, -1]]
+    order = np.argsort(hairs.ids % 10_000, kind="stable")
+    shown = (colors["reflectance"].reshape(len(hairs), colors["stations"], 3) / 255.0) ** 4
+    assert np.allclose(shown[:, [0, -1]], ends[order], rtol=0.05, atol=1e-4)
+    assert white["reflectance"].min() > 200

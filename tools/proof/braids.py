@@ -12,9 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from judged_shots import EXAMPLE, judged
 from numpy.typing import NDArray
-from ringlet.groom.operators.woven import STRAND_RADIUS
+from ringlet.data.groom import SECTION
 from ringlet.groom.scalp import Scalp
-from ringlet.groom.sections import SECTION
 
 from ringlet import api
 from ringlet.groom import parse_recipe, weave
@@ -44,7 +43,6 @@ start = 1.2
 tail = 0.8
 """
 WOVEN = slice(22, 99)  # points of a strand that are neither in its start nor in its tail
-THINNER = 0.7  # radius of contact over that of a strand: points along it cut corners off its path
 
 
 @dataclass(frozen=True)
@@ -69,10 +67,7 @@ def start(style: str, where: str = "1"):
     groom = api.build_groom(
         parse_recipe(RECIPE.format(strands=strands, shape=shape, where=where), EXAMPLE / "braids.recipe.toml")
     )
-    nod = api.read_shot(EXAMPLE / "nod.shot.toml")
-    thickness = THINNER * float(groom.locks.curve[STRAND_RADIUS].max())
-    contact = nod.contact.model_copy(update={"radius": thickness})
-    return api.start_motion(nod.model_copy(update={"contact": contact}), groom), groom
+    return api.start_motion(api.read_shot(EXAMPLE / "nod.shot.toml"), groom), groom
 
 
 def played(motion, groom, frames: int) -> Iterator[Held]:

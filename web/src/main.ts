@@ -143,6 +143,9 @@ class App {
         viewer.setHairs(message);
         this.timeline.displaced(message.side);
         break;
+      case "colors":
+        viewer.setColors(message);
+        break;
       case "locks":
         viewer.setLocks(message);
         this.timeline.displaced(message.side);

@@ -1,6 +1,6 @@
 // Made by tools/make_protocol.py from python/ringlet/viewer/protocol.py; change it there.
 
-export const VERSION = 6;
+export const VERSION = 7;
 export type Json = string | number | boolean | null | Json[] | { [key: string]: Json };
 
 /** A stage of the groom. place: path of its settings in the recipe. */
@@ -146,7 +146,7 @@ export interface Welcome {
   mode: "recipe" | "shot" | "stage";
   schemas: Record<string, Json>;
   operators: string[];
-  pigments: Record<string, [number, number, number]>;
+  colors: Record<string, [number, number, number, number]>;
 }
 
 /** Holder of the edit lock. ``others`` is the number of other connected pages. */
@@ -241,6 +241,16 @@ export interface Hairs {
   blend: Float32Array;
   width: Float32Array;
   thinning: Float32Array;
+}
+
+/** Colours of the hairs, in the order of ``Hairs``; none where the groom has no colour. */
+export interface Colors {
+  kind: "colors";
+  side: "a" | "b";
+  stations: number;
+  roughness: number;
+  tilt: number;
+  reflectance: Uint8Array;
 }
 
 /** Statistics of the groom. revision: of the displayed recipe; times: times of the computed stages [ms]. */
@@ -347,6 +357,7 @@ export type FromServer =
   | Guides
   | Names
   | Hairs
+  | Colors
   | Numbers
   | Measured
   | Frame

@@ -35,7 +35,7 @@ SETTINGS = [
     setting("height", int, "Pixels down; by default ten ninths of the width, or in the camera's proportions."),
     setting("samples", int, "Light paths per pixel: more is cleaner and slower."),
     setting("seconds", float, "Time limit: no samples are added after that long."),
-    setting("color", str, "black, dark_brown, brown, auburn, ginger, blond or gray."),
+    setting("color", str, "black, dark_brown, brown, auburn, ginger, blond, gray or white; by default the hair's own."),
     setting("bounces", int, "Largest number of bounces of light; light hair needs 32."),
     setting("view", str, "three_quarter, front, side, back, or two angles such as 90,4.", "VIEW"),
     setting("camera", str, "A camera of the stage, with its lens and its focus, in place of the view.", "PRIM"),

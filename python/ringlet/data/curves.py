@@ -133,8 +133,9 @@ class Curves:
         return self
 
     def _check_values(self, what: str) -> None:
-        """Refuses widths and nails out of range."""
-        for name, least, most in (("width", 0.0, np.inf), ("nail", 0.0, 1.0)):
+        """Refuses widths, radii, nails and ties out of range."""
+        ranges = {"width": (0.0, np.inf), "strand_radius": (0.0, np.inf), "nail": (0.0, 1.0), "tied": (0.0, 1.0)}
+        for name, (least, most) in ranges.items():
             for kind, attributes in (("curve", self.curve), ("point", self.point)):
                 values = np.asarray(attributes.get(name, ()))
                 if values.dtype.kind not in "biuf" or values.ndim != 1:

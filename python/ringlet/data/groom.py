@@ -15,6 +15,12 @@ from ringlet.data.mesh import Mesh
 from ringlet.data.precision import origin_of
 from ringlet.data.stage import StageSpace
 
+# Attributes of locks that groom operators write and a run reads.
+SECTION = "section"  # of a lock: the id of its section of the scalp; −1: none
+STRAND_RADIUS = "strand_radius"  # of a lock: the radius that it has of its own, as a strand of a braid [m]; 0: none
+CORE = "core"  # of a lock: 1 where the locks of its section are simulated as one rod, 0 elsewhere
+TIED = "tied"  # of a point: 1 where a band ties the locks of a section, 0 elsewhere
+
 FLAT = 1e-9  # twice the area of a triangle, relative to its longest edge squared, at which it has no frame
 
 
@@ -25,13 +31,16 @@ class Groom:
     guides:     the artist's low-resolution curves
     locks:      groom guides, one per lock. Curve attributes: ``root_triangle`` (count,) int32 into ``scalp.triangles``,
                 ``root_barycentric`` (count, 3) float64. Their points are the groomed shape in the rest pose [m].
-                Point attribute, where something is nailed: ``nail`` (n,), how firmly the skin holds a point, 0 to 1.
+                Point attributes: ``nail`` (n,), where something is nailed: how firmly the skin holds a point, 0 to 1;
+                ``tied`` (n,), where something is tied. Locks with a thickness of their own have ``strand_radius`` [m].
     scalp:      the mesh they grow on, in its rest pose
     scalp_file: the USD file it came from (None for a mesh made in memory)
     scalp_prim: its prim path in that file
     region:     the named region that carries roots (None for all of it)
     space:      unit, up-axis and rate of that file
     hairs:      the ``[hairs]`` settings of the recipe, as plain values
+    color:      the ``[color]`` settings, as plain values (None without them)
+    fiber:      the ``[fiber]`` settings, as plain values (None without them)
     recipe:     the text of the recipe, kept with the groom
     shapes:     the locks before they were curled (None for a groom that was read from a file)
     unsculpted: the guides before they were sculpted by hand (None for a groom that was read from a file)
@@ -50,6 +59,8 @@ class Groom:
     region: str | None = None
     space: StageSpace = field(default_factory=StageSpace)
     hairs: dict[str, Any] = field(default_factory=dict)
+    color: dict[str, Any] | None = None
+    fiber: dict[str, Any] | None = None
     recipe: str | None = None
     shapes: Curves | None = None
     unsculpted: Curves | None = None

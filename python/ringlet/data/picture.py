@@ -21,7 +21,7 @@ class PictureSettings:
     width, height: size [pixels]; the height is that of the camera's proportions by default, or of 9 : 10
     samples:       light paths per pixel
     seconds:       time limit of the rendering; None for none
-    color:         a hair colour
+    color:         a hair colour; by default the hairs' own, or dark brown where they have none
     bounces:       largest number of bounces of a light path; dark hair ends most paths early, light hair needs 32
     view:          three_quarter, front, side or back; or azimuth and elevation of the camera [degrees], also as text.
                    By default three_quarter, and from outside of the head for a lock
@@ -59,7 +59,7 @@ class PictureSettings:
     height: int | None = None
     samples: int = 40
     seconds: float | None = None
-    color: str = "dark_brown"
+    color: str | None = None
     bounces: int = 64
     view: str | tuple[float, float] | None = None
     camera: str | None = None

@@ -2,6 +2,7 @@
 
 from ringlet.data.groom import Groom
 from ringlet.groom.check import Allowed, check_groom
+from ringlet.groom.color import hair_colors
 from ringlet.groom.edits_file import add_points, add_settings, release, restored_on_error, row_of
 from ringlet.groom.fix import fix_groom
 from ringlet.groom.hairs import HairMemory, Hairs, HairSettings, hair_count, lay_hairs, lock_thickness, make_hairs
@@ -23,6 +24,7 @@ __all__ = [
     "add_settings",
     "check_groom",
     "fix_groom",
+    "hair_colors",
     "hair_count",
     "lay_hairs",
     "lock_thickness",

@@ -18,9 +18,12 @@ from ringlet.data.errors import UserError
 from ringlet.data.groom import Groom
 from ringlet.data.mesh import Mesh
 from ringlet.data.painted import per_lock as for_each_lock
+from ringlet.data.pigment import TWIST
 from ringlet.data.precision import origin_of
 from ringlet.data.quantities import Quantity, Ramped, Section, Varied, explain
 from ringlet.data.random import Random, soft_threshold
+from ringlet.groom.color import hair_colors
+from ringlet.groom.fiber import FiberSettings
 from ringlet.groom.operators.woven import STRAND_RADIUS
 from ringlet.groom.scalp import axes
 
@@ -230,11 +233,12 @@ def make_hairs(groom: Groom, *, fraction: float = 1.0, wider: bool = False, memo
     """
     hairs = lay_hairs(groom, fraction=fraction, wider=wider, memory=memory)
     hairs.curves.points = hairs.deformed(groom.locks.points, groom.scalp.points, out=hairs.curves.points)
+    hairs.curves = hair_colors(groom, hairs.curves)
     return hairs
 
 
 def lay_hairs(groom: Groom, *, fraction: float = 1.0, wider: bool = False, memory: HairMemory | None = None) -> Hairs:
-    """Makes the hairs as ``make_hairs``, with unset points, for callers that deform them by themselves."""
+    """Makes the hairs as ``make_hairs``, without points and colours, for callers that compute them by themselves."""
     settings = _settings(groom.hairs)
     if not 0.0 < fraction <= 1.0:
         raise UserError(f"hairs: fraction is {fraction}; must be more than 0 and at most 1")
@@ -250,8 +254,9 @@ def lay_hairs(groom: Groom, *, fraction: float = 1.0, wider: bool = False, memor
 
 def _key(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -> bytes:
     """Digest of the inputs that determine the positions of hairs in their locks."""
-    locks, scalp = groom.locks, groom.scalp
-    digest = blake2b(f"{settings.model_dump_json()} {groom.region} {fraction} {wider}".encode(), digest_size=16)
+    locks, scalp, fiber = groom.locks, groom.scalp, _fiber(groom)
+    shape = settings.model_dump_json(), fiber.model_dump_json(include={"flatness", "twist_pitch"})
+    digest = blake2b(f"{shape} {groom.region} {fraction} {wider}".encode(), digest_size=16)
     values = _Values(settings, locks, scalp)
     for array in (
         locks.ids,
@@ -262,6 +267,7 @@ def _key(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -> 
         scalp.points,
         scalp.triangles,
         *((locks.points,) if settings.blend != HairSettings().blend else ()),
+        *((locks.lengths(),) if fiber.flatness else ()),
     ):
         digest.update(np.ascontiguousarray(array).data)
     return digest.digest()
@@ -322,11 +328,23 @@ def _place(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -
         attributes,
         {"width": widths},
     )
+    _flatten(groom, curves)
     layout = _layout(settings, per_lock, ids, number, lock, disk, u)
     layout |= _neighbours(settings, per_lock, groom, curves, is_lock, roots, u)
     hairs = Hairs(curves, groom, np.empty(0), {"first": first, **layout})
     hairs._root = hairs._root_offsets(scalp.points, roots)
     return hairs
+
+
+def _flatten(groom: Groom, hairs: Curves) -> None:
+    """Gives fibres with an elliptical section the angle ``twist`` of that section, and the widths that are seen."""
+    fiber = _fiber(groom)
+    if not fiber.flatness or not len(hairs):
+        return
+    lengths = groom.locks.lengths()[hairs.curve["lock"]]
+    twist = fiber.twist(hairs.ids, lengths, int(hairs.counts[0]))
+    seen = fiber.seen_widths(twist, lengths).astype(np.float32)
+    hairs.point |= {TWIST: twist.ravel(), "width": hairs.point["width"] * seen.ravel()}
 
 
 @dataclass
@@ -355,6 +373,13 @@ def _settings(values: dict[str, Any]) -> HairSettings:
         return HairSettings.model_validate(values, context={"unit": 1.0})
     except ValidationError as error:
         raise explain(error, "groom: hairs", values) from error
+
+
+def _fiber(groom: Groom) -> FiberSettings:
+    try:
+        return FiberSettings.model_validate(groom.fiber or {}, context={"unit": 1.0})
+    except ValidationError as error:
+        raise explain(error, "groom: fiber", groom.fiber) from error
 
 
 def _root_frames(groom: Groom, at: NDArray[np.float64], when: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

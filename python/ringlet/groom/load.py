@@ -15,6 +15,7 @@ FILES = (("scalp", "file"), ("guides", "file"))
 MOST_NAME = 255  # bytes of the name of a file or a folder
 APPEND = "append"  # key of a variant's operators that follow those of its base
 MAY_BE_FALSE = ("guides.whorl",)  # settings whose value may be `false`, which then does not remove them
+LOCK_TABLES = ("curl", "hairs", "color")  # tables besides operators whose settings single locks may have
 EDITS = ("edit", "sculpt")  # tables of a file of edits: edits of locks, edits of guides
 
 
@@ -195,8 +196,8 @@ def _with_lock(data: dict[str, Any], name: str, lock: str, value: Any, path: Pat
     stage, _, setting = name.rpartition(".")
     shape = data.get("shape", [])
     names = stage_names(shape) if isinstance(shape, list) else []
-    if stage not in (*names, "curl", "hairs"):
-        hint = did_you_mean(stage, [*names, "curl", "hairs"])
+    if stage not in (known := [*names, *LOCK_TABLES]):
+        hint = did_you_mean(stage, known)
         raise UserError(f"{path.name}: edit of lock {lock}: {name} is no setting of an operator{hint}")
     table = shape[names.index(stage)] if stage in names else data.get(stage, {})
     old = table.get(setting, {}) if isinstance(table, dict) else {}

@@ -8,7 +8,9 @@ from typing import Annotated, Any, Literal
 from pydantic import Discriminator, Field, PrivateAttr, Tag, ValidationError
 
 from ringlet.data.quantities import UNITS, LengthUnit, Section, explain
+from ringlet.groom.color import ColorSettings
 from ringlet.groom.edits import Edit
+from ringlet.groom.fiber import FiberSettings
 from ringlet.groom.hairs import HairSettings
 from ringlet.groom.helpers import HelperCurves
 from ringlet.groom.load import load, load_text
@@ -72,6 +74,10 @@ class Recipe(Section):
     nail: list[Nail] = Field(default=[], description="hair that is held to the skin")
     clean: Clean = Field(default=Clean(), description="keeping out of the head")
     hairs: HairSettings = Field(default=HairSettings(), description="the hairs of each lock")
+    color: ColorSettings | None = Field(default=None, description="colour of the hair; files have none when absent")
+    fiber: FiberSettings | None = Field(
+        default=None, description="what a hair is like; as the colour has it when absent"
+    )
 
     _path: Path | None = PrivateAttr(None)
     _text: str | None = PrivateAttr(None)

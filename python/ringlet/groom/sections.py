@@ -12,6 +12,7 @@ from scipy.spatial import KDTree
 
 from ringlet import _core
 from ringlet.data.curves import Curves
+from ringlet.data.groom import SECTION
 from ringlet.data.quantities import Quantity, Section
 from ringlet.data.random import Random
 from ringlet.groom.mask import Mask
@@ -23,9 +24,9 @@ WHOLE = 0.35  # a cell that covers less than this part of the usual area belongs
 FLATTEST = 20.0  # radius of the sphere through a flat scalp, in sizes of the scalp
 STRANDS_APART = 0.25  # distance of a section's strands from its middle at the scalp, in sizes of the section
 
-# Curve attributes of locks: the section's id; which of its strands; place in the section, 0 to 1 each; distance from
-# the section's border [m].
-SECTION, STRAND, U, V, EDGE = "section", "strand", "u", "v", "edge"
+# Curve attributes of locks besides the section's id: which of its strands; place in the section, 0 to 1 each; distance
+# from the section's border [m].
+STRAND, U, V, EDGE = "strand", "u", "v", "edge"
 
 
 class Sections(Section):

@@ -19,6 +19,7 @@ from ringlet.data.mesh import Mesh
 from ringlet.data.painted import painted
 from ringlet.data.quantities import Varied
 from ringlet.data.stage import StageSpace
+from ringlet.groom.color import colored
 from ringlet.groom.edits import Edit, Edits
 from ringlet.groom.hairs import HairMemory, HairSettings
 from ringlet.groom.load import stage_names
@@ -113,6 +114,7 @@ def make_groom(
             if progress:
                 progress(name, 1, 1)
         locks = _with_textures_of_hairs(nailed(curves, recipe.nail, scalp, recipe.seed), recipe.hairs, scalp)
+        locks = colored(locks, recipe.color, recipe.fiber, scalp)
     except UserError as error:
         raise UserError(f"{where}: {error}") from error
     return Groom(
@@ -125,6 +127,8 @@ def make_groom(
         cage=recipe.scalp.surface == "cage",
         space=space or StageSpace(),
         hairs=recipe.hairs.model_dump(mode="json"),
+        color=recipe.color and recipe.color.model_dump(mode="json"),
+        fiber=recipe.fiber and recipe.fiber.model_dump(mode="json"),
         recipe=recipe.text,
         shapes=shapes,
         unsculpted=unsculpted,

@@ -1,5 +1,6 @@
 """Pictures: path-traced stills, contact sheets of clips, and comparisons of shapes."""
 
+from ringlet.data.pigment import HAIR_COLORS
 from ringlet.picture.beads import beads
 from ringlet.picture.bodies import PosedBody, material_of
 from ringlet.picture.camera import VIEWS
@@ -7,7 +8,6 @@ from ringlet.picture.compare import compare
 from ringlet.picture.motion import Pose
 from ringlet.picture.movie import Movie, Shot, check_output, film, still_standpoint, turned_standpoints
 from ringlet.picture.places import write_places
-from ringlet.picture.render import HAIR_COLORS
 from ringlet.picture.sheet import sheet
 from ringlet.picture.still import still
 

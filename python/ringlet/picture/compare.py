@@ -12,8 +12,9 @@ from PIL import Image, ImageChops, ImageDraw, ImageFilter
 from ringlet.data.camera import Camera
 from ringlet.data.curves import Curves
 from ringlet.data.files import replacing
+from ringlet.data.pigment import hair_color
 from ringlet.picture.bodies import PosedBody
-from ringlet.picture.render import Progress, hair_color
+from ringlet.picture.render import Progress
 from ringlet.picture.sheet import arrange_tiles, draw_tile, frame_all, subsample
 
 OUTLINE = (255, 176, 59)
@@ -30,7 +31,7 @@ def compare(
     hairs: int = 6000,
     samples: int = 12,
     view: str | tuple[float, float] = "three_quarter",
-    color: str = "dark_brown",
+    color: str | None = None,
     progress: Progress | None = None,
 ) -> Path:
     """Writes a PNG with one tile per shape, under its name.

@@ -31,43 +31,51 @@ class Layers:
     lock: NDArray[np.int32]
 
 
-def trace_layers(
-    mi: Any,
-    scene: Any,
-    camera: Camera,
-    hairs: Curves,
-    *,
-    hair_shape: str,
-    hair_albedo: NDArray[np.floating],
-    scale: float,
-) -> Layers:
+@dataclass(frozen=True)
+class HairGroup:
+    """Hairs of one shape of the scene, and their reflectance, of each hair or of each point, shape (k, 3)."""
+
+    hairs: Curves
+    reflectance: NDArray[np.float64]
+
+    def locks(self) -> NDArray[np.integer]:
+        """Row of the lock of each segment."""
+        return np.repeat(self.hairs.curve["lock"], self.hairs.counts - 1)
+
+    def albedo(self) -> NDArray[np.float64]:
+        """Albedo of each segment (linear r, g, b), that of its first point where it varies along hairs."""
+        if len(self.reflectance) == len(self.hairs):
+            return np.repeat(self.reflectance, self.hairs.counts - 1, axis=0)
+        return np.delete(self.reflectance, self.hairs.offsets[1:] - 1, axis=0)
+
+
+def trace_layers(mi: Any, scene: Any, camera: Camera, groups: dict[str, HairGroup], *, scale: float) -> Layers:
     """Casts rays of one sample per pixel, so that each hits one surface, and takes the means.
 
     The second sensor of the scene has no pixel filter.
 
-    hair_shape:  name of the hairs in the scene
-    hair_albedo: of a hair, as a mass of hairs shows it (linear r, g, b)
-    scale:       scene units per metre; the origin of the scene is the camera's target
+    groups: hairs by the names of their shapes
+    scale:  scene units per metre; the origin of the scene is the camera's target
     """
-    names = [shape.id() for shape in scene.shapes()]
-    shown = np.array([False] + [not shape.is_emitter() for shape in scene.shapes()])  # 0 is the background
-    hair_index = names.index(hair_shape) + 1 if hair_shape in names else -1
-    hair_of_segment = np.repeat(np.arange(len(hairs)), hairs.counts - 1)
-    lock_of_hair = hairs.curve.get("lock", np.arange(len(hairs)))
+    shapes = scene.shapes()
+    shown = np.array([False, *(not shape.is_emitter() for shape in shapes)])  # 0 is the background
+    numbers = {shape.id(): number for number, shape in enumerate(shapes, 1)}
+    hair = [(numbers[name], group.locks(), group.albedo()) for name, group in groups.items()]
     aovs = "position:position,normal:sh_normal,albedo:albedo,shape:shape_index,segment:prim_index"
     integrator = mi.load_dict({"type": "aov", "aovs": aovs})
     sums: Any = 0.0
     lock: Any = None
     for number in range(SAMPLES):
         rays = np.array(mi.render(scene, sensor=1, integrator=integrator, spp=1, seed=number), np.float64)
-        position, normal, albedo, shape, segment = np.split(rays, [3, 6, 9, 10], axis=2)
-        is_hair, seen = shape == hair_index, shown[shape.astype(np.int64)]
+        position, normal, albedo = np.split(rays[:, :, :9], 3, axis=2)
+        shape, segment = (np.rint(rays[:, :, k]).astype(np.int64) for k in (9, 10))
+        seen, hit = shown[shape][:, :, None], np.full(shape.shape, NOTHING, np.int32)
+        for index, locks, colors in hair:
+            of_group = shape == index
+            at = np.minimum(segment[of_group], len(locks) - 1)  # the last one is the guard
+            albedo[of_group], hit[of_group] = colors[at], locks[at]
         depth = camera.distance - position @ camera.axes[2][:, None] / scale
-        albedo = np.where(is_hair, hair_albedo, albedo)
         sums = sums + np.concatenate([seen, seen * depth, seen * normal, seen * albedo], axis=2)
-        if lock is None:
-            at = np.clip(segment, 0, max(len(hair_of_segment) - 1, 0)).astype(np.int64)
-            rows = lock_of_hair[hair_of_segment[at]] if len(hair_of_segment) else at
-            lock = np.where(is_hair, rows, NOTHING)[:, :, 0].astype(np.int32)
+        lock = hit if lock is None else lock
     means = (sums[:, :, 1:] / np.maximum(sums[:, :, :1], 1.0)).astype(np.float32)
     return Layers(means[:, :, 0], means[:, :, 1:4], means[:, :, 4:7], lock)

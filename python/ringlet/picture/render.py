@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -14,42 +14,22 @@ from scipy.ndimage import gaussian_filter
 from ringlet.data.camera import Camera
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
+from ringlet.data.pigment import HairColor
 from ringlet.picture import oidn
 from ringlet.picture.bodies import COLORS, PosedBody, material
-from ringlet.picture.layers import Layers, trace_layers
+from ringlet.picture.fiber import fiber_bsdf, hair_reflectances
+from ringlet.picture.layers import HairGroup, Layers, trace_layers
 from ringlet.picture.motion import fraction_of_pass
 from ringlet.picture.passes import Passes
 from ringlet.picture.rigs import STUDIO, Rig
-from ringlet.picture.strands import fibres, load_fibres
+from ringlet.picture.strands import fibres, load_fibres, split
 from ringlet.picture.studio import backdrop
 
 # Arguments: name of the stage, steps done, total steps.
 Progress = Callable[[str, int, int], None]
 
 
-@dataclass(frozen=True)
-class HairColor:
-    """Melanin concentrations of a hair (Chiang et al. 2016) and the roughness of its cuticle."""
-
-    eumelanin: float
-    pheomelanin: float
-    roughness: float = 0.38
-
-
-HAIR_COLORS: dict[str, HairColor] = {
-    "black": HairColor(6.0, 0.3, 0.28),
-    "dark_brown": HairColor(2.0, 0.35),
-    "brown": HairColor(0.9, 0.7),
-    "auburn": HairColor(0.5, 2.4),
-    "ginger": HairColor(0.08, 0.9),
-    "blond": HairColor(0.15, 0.25, 0.33),
-    "gray": HairColor(0.12, 0.0, 0.36),
-}
-
-# Absorption of one unit of each melanin (r, g, b), after d'Eon et al. 2011.
-EUMELANIN, PHEOMELANIN = np.array([0.419, 0.697, 1.37]), np.array([0.187, 0.4, 1.05])
-
-# Name of the hairs in a scene.
+# Beginning of the names of shapes of hairs in a scene.
 HAIRS = "hairs"
 
 # Smallest drawn diameter of a hair [pixels]: a surface of no radius has no normals.
@@ -66,13 +46,6 @@ MIN_MOVED_PASSES = 16
 GRAIN = 0.68
 
 
-def hair_color(name: str) -> HairColor:
-    """Hair colour of a name; raises UserError for an unknown one."""
-    if name not in HAIR_COLORS:
-        raise UserError(f"picture: there is no hair colour '{name}'; choose one of {', '.join(HAIR_COLORS)}")
-    return HAIR_COLORS[name]
-
-
 def mitsuba() -> Any:
     """Loads Mitsuba in the variant ``scalar_rgb``, which runs on any machine; lazily, since loading is slow."""
     import mitsuba as mi
@@ -87,13 +60,14 @@ def build_scene(
     camera: Camera,
     *,
     size: tuple[int, int],
-    color: HairColor,
+    color: HairColor | None,
     max_depth: int,
     rig: Rig | None = None,
 ) -> Any:
     """Builds the Mitsuba scene, centred and scaled so that single precision resolves a hair's width.
 
     size:     width and height of the picture [pixels]
+    color:    of all hairs; None for that of their attributes
     rig:      light; by default the studio around what the camera looks at
     """
     mi = mitsuba()
@@ -109,17 +83,12 @@ def build_scene(
     for index, body in enumerate(bodies):
         scene[f"body{index}"] = _mesh(mi, body, target, scale)
     if hairs is not None and len(hairs):
-        controls, offsets = fibres(hairs, target)
         pixel = 2.0 * camera.slopes[0] * camera.distance / size[0]
-        controls[:, 3] = np.maximum(controls[:, 3], 0.5 * THINNEST * pixel)
-        bsdf = {
-            "type": "hair",
-            "eumelanin": color.eumelanin,
-            "pheomelanin": color.pheomelanin,
-            "longitudinal_roughness": color.roughness,
-            "azimuthal_roughness": color.roughness,
-        }
-        scene[HAIRS] = load_fibres(mi, controls * np.float32(scale), offsets, bsdf)
+        for index, some in enumerate(split(hairs)):
+            controls, offsets = fibres(some, target)
+            controls[:, 3] = np.maximum(controls[:, 3], 0.5 * THINNEST * pixel)
+            bsdf = fiber_bsdf(mi, some, color)
+            scene[f"{HAIRS}{index}"] = load_fibres(mi, controls * np.float32(scale), offsets, bsdf)
     return mi.load_dict(scene)
 
 
@@ -208,28 +177,24 @@ def trace(
     return np.asarray(denoised + grain, np.float32)
 
 
-def layers_of(scene: Any, camera: Camera, hairs: Curves, color: HairColor) -> Layers:
+def layers_of(scene: Any, camera: Camera, hairs: Curves, color: HairColor | None) -> Layers:
     """Layers of a scene beside its light: depth, normal, albedo and lock."""
-    hair = np.broadcast_to(albedo(color), (3,))
-    return trace_layers(mitsuba(), scene, camera, hairs, hair_shape=HAIRS, hair_albedo=hair, scale=scene_scale(camera))
-
-
-def albedo(color: HairColor) -> NDArray[np.float64]:
-    """Albedo of a mass of hairs of a colour (linear r, g, b), after Chiang et al. 2016, eq. 9, from its absorption."""
-    absorption = color.eumelanin * EUMELANIN + color.pheomelanin * PHEOMELANIN
-    b = color.roughness
-    slope = 5.969 - 0.215 * b + 2.532 * b**2 - 10.73 * b**3 + 5.574 * b**4 + 0.245 * b**5
-    return np.exp(-np.sqrt(absorption) * slope)
+    groups = {}
+    if len(hairs):
+        lock = hairs.curve.get("lock", np.arange(len(hairs)))
+        for index, some in enumerate(split(replace(hairs, curve={**hairs.curve, "lock": lock}))):
+            groups[f"{HAIRS}{index}"] = HairGroup(some, hair_reflectances(some, color))
+    return trace_layers(mitsuba(), scene, camera, groups, scale=scene_scale(camera))
 
 
 def hair_share(scene: Any) -> NDArray[np.float32]:
     """Coverage of visible hair, from 0 to 1, blurred at its edges; shape (height, width, 1)."""
     mi = mitsuba()
-    names = [shape.id() for shape in scene.shapes()]
-    if HAIRS not in names:
+    is_fibres = np.array([False, *(shape.id().startswith(HAIRS) for shape in scene.shapes())])  # 0 is the background
+    if not is_fibres.any():
         return np.zeros((1, 1, 1), np.float32)
     shapes = mi.render(scene, integrator=mi.load_dict({"type": "aov", "aovs": "seen:shape_index"}), spp=1)
-    is_hair = np.abs(np.array(shapes)[:, :, 0] - (names.index(HAIRS) + 1)) < 0.5  # 0 is the background
+    is_hair = is_fibres[np.rint(np.array(shapes)[:, :, 0]).astype(int)]
     return np.asarray(gaussian_filter(is_hair.astype(np.float32), 1.2), np.float32)[:, :, None]
 
 

@@ -14,10 +14,11 @@ from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.files import replacing
 from ringlet.data.picture import PictureSettings
+from ringlet.data.pigment import HairColor, hair_color
 from ringlet.picture.bodies import PosedBody
 from ringlet.picture.camera import frame as frame_camera
 from ringlet.picture.motion import Pose
-from ringlet.picture.render import HairColor, Progress, build_scene, hair_color, over_backdrop, trace
+from ringlet.picture.render import Progress, build_scene, over_backdrop, trace
 from ringlet.picture.rigs import Rig, check_rig
 from ringlet.picture.still import subject
 from ringlet.picture.strands import hair_widths
@@ -105,12 +106,14 @@ def draw_tile(
     hairs: Curves,
     camera: Camera,
     tile: tuple[int, int],
-    pigments: HairColor,
+    pigments: HairColor | None,
     samples: int,
     rig: Rig | None = None,
 ) -> NDArray[np.uint8]:
     """Renders a tile, shape (height, width, 3)."""
-    scene = build_scene(bodies, hairs, camera, size=tile, color=pigments, max_depth=4, rig=rig)
+    scene = build_scene(
+        bodies, hairs, camera, size=tile, color=pigments, max_depth=PictureSettings.bounces + 1, rig=rig
+    )
     return develop(over_backdrop(trace(scene, samples=samples)))
 
 

@@ -15,6 +15,7 @@ from ringlet.data.camera import Camera
 from ringlet.data.errors import UserError
 from ringlet.data.files import replacing
 from ringlet.data.picture import PictureSettings
+from ringlet.data.pigment import hair_color
 from ringlet.picture import oidn
 from ringlet.picture.camera import angles_towards, frame, picture_size, take_position
 from ringlet.picture.exr import write_exr
@@ -23,7 +24,6 @@ from ringlet.picture.motion import Pose
 from ringlet.picture.render import (
     Progress,
     build_scene,
-    hair_color,
     layers_of,
     mitsuba,
     over_backdrop,

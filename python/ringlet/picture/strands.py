@@ -15,6 +15,9 @@ from ringlet.data.curves import Curves, offsets_from_counts
 # Diameter of hairs without a width: that of a curly human hair [m].
 DEFAULT_WIDTH = 70e-6
 
+# Most points of a shape: a texture coordinate is one single-precision number over all of its segments.
+MOST_POINTS = 2**22
+
 
 def spline_controls(points: NDArray[np.floating]) -> NDArray[np.float64]:
     """Control points of uniform cubic B-splines that interpolate the given points.
@@ -56,6 +59,13 @@ def fibres(hairs: Curves, origin: NDArray[np.float64]) -> tuple[NDArray[np.float
         controls[targets, :3] = spline_controls(hairs.points[rows] - origin)
         controls[targets, 3] = 0.5 * np.pad(widths[rows], ((0, 0), (1, 1)), mode="edge")
     return controls, offsets
+
+
+def split(hairs: Curves) -> list[Curves]:
+    """Divides hairs, in their order, so that single precision resolves every place along a shape of them."""
+    shapes = (hairs.offsets[1:] - 1) // MOST_POINTS
+    borders = np.flatnonzero(np.diff(shapes)) + 1
+    return [hairs.take(chosen) for chosen in np.split(np.arange(len(hairs)), borders)] if len(borders) else [hairs]
 
 
 def load_fibres(mi: Any, controls: NDArray[np.float32], offsets: NDArray[np.int32], bsdf: dict[str, Any]) -> Any:

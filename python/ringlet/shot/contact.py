@@ -51,6 +51,13 @@ class ShotContact(Contact):
     """Contact of locks with one another, with colliders and with cloth."""
 
     on: bool = Field(default=True, description="false: everything passes through everything, as without this table")
+    own_radius: float = Field(
+        default=0.85,
+        ge=0,
+        le=1,
+        description="locks that have a radius of their own, as strands of braids and locs, touch at this part of it, "
+        "where that is more than `radius`; below 1, since the points along a lock cut corners off its path",
+    )
     pair: tuple[Pair, ...] = Field(
         default=(),
         description="friction of pairs; by default a lock on something has what that says, and two others the "

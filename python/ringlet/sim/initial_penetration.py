@@ -41,7 +41,7 @@ def report_overlaps(locks: Curves, scene: Scene) -> dict[str, Any]:
     vertices, values = scene.touching()
     pairs = _lock_of(locks, vertices[:, [0, 3]])
     of_two = (vertices < len(at)).all(axis=1) & (pairs[:, 0] != pairs[:, 1])
-    vertices, weights, pairs = vertices[of_two], values[of_two, :4], pairs[of_two]
+    vertices, weights, reach, pairs = vertices[of_two], values[of_two, :4], values[of_two, 7], pairs[of_two]
     distance = np.linalg.norm(np.einsum("kv,kvi->ki", weights, at[vertices]), axis=1)
     nearest = np.argsort(distance, kind="stable")[:WORST]
     of_coincident = scene.coincident[(scene.coincident < len(at)).all(axis=1)]
@@ -50,7 +50,7 @@ def report_overlaps(locks: Curves, scene: Scene) -> dict[str, Any]:
         "coincident": coincident[coincident[:, 0] != coincident[:, 1]].tolist(),
         "places": len(pairs),
         "locks": len(np.unique(pairs)),
-        "depth": float((2.0 * scene.contact.radius - distance).max(initial=0.0)),
+        "depth": float((reach - distance).max(initial=0.0)),
         "worst": [
             {
                 **_place(locks, int(vertices[k, 0])),
@@ -59,7 +59,7 @@ def report_overlaps(locks: Curves, scene: Scene) -> dict[str, Any]:
             }
             for k in nearest
         ],
-        "marks": _marks(locks.points[vertices[:, 0]], 2.0 * scene.contact.radius - distance),
+        "marks": _marks(locks.points[vertices[:, 0]], reach - distance),
     }
 
 

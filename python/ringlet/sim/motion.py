@@ -17,6 +17,7 @@ from ringlet.data.groom import Groom
 from ringlet.data.mesh import Clip
 from ringlet.data.precision import compact
 from ringlet.shot.shot import Shot
+from ringlet.sim.cores import Cores
 from ringlet.sim.garment import Garment, SimulatedGarment, moved_with
 from ringlet.sim.lag import ROOTS, lagging
 from ringlet.sim.nails import held_vertices, spring_forces
@@ -31,13 +32,20 @@ from ringlet.sim.variation import material_factors
 
 
 def make_strands(
-    shot: Shot, groom: Groom, rest: Curves | None = None, stiffened: NDArray[np.float64] | None = None
+    shot: Shot,
+    groom: Groom,
+    rest: Curves | None = None,
+    stiffened: NDArray[np.float64] | None = None,
+    of_cores: Mapping[str, NDArray[np.float64]] | None = None,
 ) -> Strands:
     """The locks of a groom as strands of a shot's material, whose rest shape is the groomed or another one.
 
     stiffened: times that each lock is stiffer against bend than that material, shape (count,)
+    of_cores:  further factors on the material, at the vertices of the locks, by name, shape (n,) each
     """
-    factors = material_factors(shot, groom)
+    factors = {**material_factors(shot, groom)}
+    for name, factor in (of_cores or {}).items():
+        factors[name] = factors.get(name, 1.0) * factor
     if stiffened is not None:
         factors["bend"] = factors.get("bend", 1.0) * np.repeat(stiffened, groom.locks.counts)
     return Strands(rest or groom.locks, shot.strands, held_vertices(groom.locks, shot.held), factors)
@@ -47,6 +55,7 @@ class Motion:
     """Locks on their moving scalp, in contact where the shot has it; see ``simulate`` for what it is made of.
 
     first:    the frame at which everything starts
+    cores:    the braids that are simulated as one rod each; ``locks`` are those that are simulated
     scene:    all that is in contact; None without contact
     start:    the report of initial penetration (see ``initial_penetration.py``)
     garments: the cloths that move with the locks
@@ -63,9 +72,12 @@ class Motion:
         first: int,
     ) -> None:
         _check(shot, groom.locks)
+        self.cores = Cores.of(groom)
+        groom, rest = self.cores.groom, rest and self.cores.reduced(rest)
         self.shot, self.clip, self.locks, self.first = shot, clip, groom.locks, first
         self.roots = Roots(groom)
-        self.strands = make_strands(shot, groom, rest, None if rest is None else rest.curve.get("stiffened"))
+        stiffened = None if rest is None else rest.curve.get("stiffened")
+        self.strands = make_strands(shot, groom, rest, stiffened, self.cores.material())
         self.strands.place(self.roots.carry(clip.at(first), first))
         self.obstacles = [obstacle.starting_at(first) for obstacle in obstacles]
         self.garments = [SimulatedGarment(garment, self.obstacles, first) for garment in garments]
@@ -82,7 +94,8 @@ class Motion:
     def _support(self, groom: Groom, forces: NDArray[np.float64]) -> None:
         """Contacts carry from the first step what supports the locks where they were groomed: ``forces`` [N]."""
         assert self.scene is not None and self.shot.touching is not None
-        groomed, of_locks = make_strands(self.shot, groom), len(groom.locks.points)
+        groomed = make_strands(self.shot, groom, of_cores=self.cores.material())
+        of_locks = len(groom.locks.points)
         vertices, shares = initial_contact_forces(self.shot.touching, groom.locks, groomed, self.obstacles, forces)
         # Vertices of cloths are between those of locks and of bodies.
         of_cloths = sum(len(garment.cloth.positions) for garment in self.garments)
@@ -99,6 +112,10 @@ class Motion:
             )
             for simulated in self.garments
         ]
+
+    def points(self, frame: float) -> NDArray[np.float64]:
+        """The points of all locks of the groom at ``frame``, where the motion is [m], shape (n, 3)."""
+        return self.cores.carried(self.strands.positions, self.roots, self.clip.at(frame), frame)
 
     @property
     def memory(self) -> dict[str, NDArray[Any]]:

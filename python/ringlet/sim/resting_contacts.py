@@ -12,6 +12,7 @@ from scipy.sparse.linalg import splu
 
 from ringlet.data.curves import Curves
 from ringlet.shot.contact import ShotContact
+from ringlet.sim.contact_radii import contact_radii
 from ringlet.sim.obstacle import Body, Obstacle
 from ringlet.sim.penetration import penetration_depths
 from ringlet.sim.scene import Scene
@@ -55,7 +56,7 @@ def resting_contacts(
         Body(surface, one.mesh.triangles, one.settings.thickness, one.settings.friction)
         for one, surface in zip(obstacles, surfaces, strict=True)
     ]
-    scene = Scene(strands, bodies, contact)
+    scene = Scene(strands, bodies, contact, radii=contact_radii(contact, locks))
     vertices, values = scene.touching()
     at, count = scene.positions, len(locks.points)
 

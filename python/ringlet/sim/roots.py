@@ -38,6 +38,10 @@ class Roots:
             np.asarray(points, np.float64), self.groom.locks.offsets, to_axes @ axes.transpose(0, 2, 1), place, to
         )
 
+    def axes(self, scalp_points: NDArray[np.float64], frame: float) -> NDArray[np.float64]:
+        """The axes of the roots' frames on the scalp at ``frame``, as columns, shape (count, 3, 3)."""
+        return self._frames(scalp_points, f"frame {frame:g}")[1]
+
     def _frames(self, scalp_points: NDArray[np.float64], when: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         self.groom.check_roots(scalp_points, when, "sim")
         bound, points = self.groom.locks.curve, np.ascontiguousarray(scalp_points, np.float64)

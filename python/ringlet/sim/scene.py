@@ -22,6 +22,7 @@ from ringlet.sim.core import Vector, assign, step_settings
 from ringlet.sim.friction import friction_matrix
 from ringlet.sim.obstacle import Body
 from ringlet.sim.strands import Strands
+from ringlet.sim.ties import Ties
 
 _OF_CLOTH = ("positions", "velocities")  # the state of a cloth
 
@@ -37,6 +38,9 @@ class Scene:
     pinned_to: per cloth the body that carries its held vertices, which these may touch; -1: none. Shape (cloths,)
     friction:  Coulomb's μ of each pair of materials: strands, then each cloth, then each body; by default
                ``friction_matrix``
+    radii:     half the distance at which two strands touch [m], at the vertices of strands and at least
+               ``contact.radius``, which it is by default; shape (n,)
+    ties:      between vertices of strands
     """
 
     strands: Strands = field(default_factory=lambda: Strands(Curves.from_list([]), Material()))
@@ -46,10 +50,18 @@ class Scene:
     cloths: Sequence[Cloth] = ()
     pinned_to: NDArray[np.integer] | None = None
     friction: NDArray[np.floating] | None = None
+    radii: NDArray[np.floating] | None = None
+    ties: Ties | None = None
 
     def __post_init__(self) -> None:
-        settings = assign(_core.SceneContact(), self.contact, without={"radius", "friction", "on", "pair"})
+        settings = assign(
+            _core.SceneContact(), self.contact, without={"radius", "own_radius", "friction", "on", "pair"}
+        )
         settings.strand_radius = self.contact.radius
+        if self.radii is not None:
+            settings.strand_radii = np.asarray(self.radii, np.float64).tolist()
+        if self.ties is not None:
+            settings.set_ties(self.ties.vertices, self.ties.lengths, self.ties.stiffness)
         friction = friction_matrix(self.contact, self.cloths, self.bodies) if self.friction is None else self.friction
         settings.friction = friction.ravel().tolist()
         pinned = [-1] * len(self.cloths) if self.pinned_to is None else [int(body) for body in self.pinned_to]

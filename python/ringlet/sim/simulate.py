@@ -102,7 +102,7 @@ class Frame:
         """The frame at which a motion is."""
         cloths = [compact(garment.cloth.positions) for garment in motion.garments]
         contacts = motion.scene.touches if touches and motion.scene else None
-        return cls(number, compact(motion.strands.positions), cloths, statistics, contacts)
+        return cls(number, compact(motion.points(number)), cloths, statistics, contacts)
 
     @classmethod
     def stored(cls, number: float, arrays: Mapping[str, NDArray[Any]], statistics: dict[str, Any]) -> Frame:

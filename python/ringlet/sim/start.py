@@ -9,6 +9,7 @@ import numpy as np
 
 from ringlet.data.groom import Groom
 from ringlet.shot.contact import ShotContact
+from ringlet.sim.contact_radii import contact_radii
 from ringlet.sim.friction import LOCKS, friction_matrix, override_pairs
 from ringlet.sim.garment import SimulatedGarment
 from ringlet.sim.initial_penetration import (
@@ -22,6 +23,7 @@ from ringlet.sim.obstacle import Obstacle
 from ringlet.sim.penetration import penetration_depths
 from ringlet.sim.scene import Scene
 from ringlet.sim.strands import Strands
+from ringlet.sim.ties import section_ties
 
 
 def scene_at_start(
@@ -51,6 +53,8 @@ def scene_at_start(
         cloths=cloths,
         pinned_to=np.array([one.pinned_to for one in garments]),
         friction=override_pairs(friction_matrix(contact, cloths, bodies), contact.pair, names),
+        radii=contact_radii(contact, locks),
+        ties=section_ties(groom.locks, strands),
     )
     inside = []
     for k, (obstacle, body) in enumerate(zip(obstacles, bodies, strict=True)):

@@ -169,14 +169,20 @@ def hairs_message(side: str, hairs: Hairs, scalp: Mesh) -> bytes:
         **{name: values[order] for name, values in blends.items()},
         **{name: layout[name] for name in ("profile", "hold", "blend")},
         width=widths.max(axis=1)[order],
-        thinning=widths[0] / widths[0].max(),
+        thinning=_thinning(widths),
     )
+
+
+def _thinning(widths: NDArray[np.floating]) -> NDArray[np.floating]:
+    """Mean width along hairs, relative to the widest point of each, shape (points,)."""
+    thinning = (widths / np.maximum(widths.max(axis=1, keepdims=True), 1e-12)).mean(axis=0)
+    return thinning / thinning.max()
 
 
 def curves_message(side: str, curves: Curves) -> bytes:
     """Message with curves that are hairs themselves: one hair at the centre of each lock."""
     count, points = len(curves), int(curves.counts.max())
-    order = np.random.default_rng(0).permutation(count)
+    order = shuffled_order(count)
     widths = curves.point.get("width")
     width = np.full(count, 7e-5) if widths is None else np.maximum.reduceat(widths, curves.offsets[:-1])
     return pack(
@@ -204,6 +210,11 @@ def spread_order(first: NDArray[np.integer]) -> NDArray[np.intp]:
     """
     number = np.arange(first[-1]) - np.repeat(first[:-1], np.diff(first))
     return np.argsort(number, kind="stable")
+
+
+def shuffled_order(count: int) -> NDArray[np.intp]:
+    """Order of curves that are hairs themselves, shape (count,)."""
+    return np.random.default_rng(0).permutation(count)
 
 
 def _stamp(file: Path) -> tuple[int, int]:

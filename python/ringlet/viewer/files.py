@@ -234,7 +234,7 @@ def stages(recipe: Recipe, muted: frozenset[str]) -> list[protocol.Stage]:
     """Stages of a recipe in their order."""
     found: list[tuple[str, str, Place]] = [("guides", "guides", ["guides"]), ("locks", "locks", ["locks"])]
     found += [(operator.op, operator.op, ["shape", k]) for k, operator in enumerate(recipe.shape)]
-    for name in ("curl", "clean", "hairs"):
+    for name in ("curl", "clean", "hairs", "color", "fiber"):
         found.append((name, name, [name]))
     return [
         protocol.Stage(name=name, op=op, place=place, muted="/".join(map(str, place)) in muted)

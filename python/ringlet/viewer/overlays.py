@@ -75,7 +75,7 @@ def contact(motion: Motion) -> Bytes:
     vertex_force = np.abs(values[:, :4]) * values[:, 8:9]
     of_locks = vertices < count
     force = np.bincount(vertices[of_locks], weights=vertex_force[of_locks], minlength=count)
-    return as_bytes(force / (force + weight))
+    return as_bytes(motion.cores.spread(force / (force + weight)))
 
 
 def depths(scalp: Mesh, corners: NDArray, locks: Curves, points: NDArray) -> Iterator[NDArray[np.float64]]:

@@ -13,7 +13,7 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
 from ringlet.data import limits
 
-VERSION = 6
+VERSION = 7
 Place = list[str | int]  # path of a setting in its file: ["shape", 0, "amount"]
 File = Literal["recipe", "shot"]
 Point = tuple[float, float, float]
@@ -210,7 +210,7 @@ class Welcome(Message):
     session:  id of the server's run
     heard:    number of messages that the server has handled for pages of this name
     schemas:  JSON schemas of ``recipe`` and ``shot``
-    pigments: eumelanin, pheomelanin and roughness of each hair colour
+    colors:   linear reflectance in red, green and blue, and roughness, of each hair colour
     """
 
     kind: Literal["welcome"] = "welcome"
@@ -221,7 +221,7 @@ class Welcome(Message):
     mode: Literal["recipe", "shot", "stage"]
     schemas: dict[str, Any]
     operators: list[str]
-    pigments: dict[str, Point]
+    colors: dict[str, tuple[float, float, float, float]]
 
 
 class Role(Message):
@@ -356,6 +356,21 @@ class Hairs(Message):
     }
 
 
+class Colors(Message):
+    """Colours of the hairs, in the order of ``Hairs``; none where the groom has no colour.
+
+    ``reflectance`` holds red, green and blue of each of the ``stations`` of each hair, evenly spaced from root to tip:
+    the fourth root of the linear reflectance (``ringlet.data.pigment``), times 255. tilt: of the cuticle [degrees].
+    """
+
+    kind: Literal["colors"] = "colors"
+    side: Literal["a", "b"]
+    stations: int
+    roughness: float
+    tilt: float
+    arrays: ClassVar[dict[str, str]] = {"reflectance": "u1"}
+
+
 class Numbers(Message):
     """Statistics of the groom. revision: of the displayed recipe; times: times of the computed stages [ms]."""
 
@@ -462,6 +477,7 @@ FROM_SERVER: tuple[type[Message], ...] = (
     Guides,
     Names,
     Hairs,
+    Colors,
     Numbers,
     Measured,
     Frame,

@@ -16,9 +16,9 @@ import numpy as np
 
 from ringlet import api
 from ringlet.data.errors import UserError
+from ringlet.data.pigment import HAIR_COLORS
 from ringlet.data.regular import read_text
 from ringlet.groom import Recipe
-from ringlet.picture import HAIR_COLORS
 from ringlet.viewer import overlays, protocol
 from ringlet.viewer.caches import Caches
 from ringlet.viewer.display_groom import DisplayGroom, GroomEvaluator
@@ -155,10 +155,7 @@ class Session:
                     "mode": self.files.mode,
                     "schemas": schemas,
                     "operators": operator_names(schemas["recipe"]),
-                    "pigments": {
-                        name: (color.eumelanin, color.pheomelanin, color.roughness)
-                        for name, color in HAIR_COLORS.items()
-                    },
+                    "colors": {name: (*color.reflectance, color.roughness) for name, color in HAIR_COLORS.items()},
                 }
             )
         )

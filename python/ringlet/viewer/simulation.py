@@ -229,7 +229,7 @@ class Simulation:
             k = step - shot.preroll
             statistics = motion.reach(k)
             cloths = {garment.name: garment.cloth.positions for garment in motion.garments}
-            state = FrameState(compact(motion.strands.positions), statistics, cloths)
+            state = FrameState(compact(motion.points(first + max(k, 0))), statistics, cloths)
             message = stage.frame("shot", first + k, state, motion) if k >= 0 else b""
             with self._results:
                 if stopping.is_set():

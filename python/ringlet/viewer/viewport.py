@@ -10,7 +10,7 @@ from ringlet.data.curves import Curves
 from ringlet.data.mesh import Mesh
 from ringlet.groom import Groom
 from ringlet.shot import Shot
-from ringlet.viewer import overlays, protocol
+from ringlet.viewer import display_colors, overlays, protocol
 from ringlet.viewer.display_groom import DisplayGroom
 from ringlet.viewer.publisher import Publisher
 from ringlet.viewer.scene import VisibleMesh, read_meshes, shot_meshes
@@ -32,6 +32,7 @@ class Viewport:
         self._origin = np.zeros(3)  # of positions in messages, near the head
         self._shot_inputs: object = None
         self._layouts: dict[str, Curves] = {}
+        self._colors: dict[str, tuple[Curves, str]] = {}
         self._names: protocol.Names | None = None
 
     def show(self, display: DisplayGroom, side: str, revision: int = 0) -> None:
@@ -44,6 +45,7 @@ class Viewport:
         if self._layouts.get(side) is not layout:
             self._layouts[side] = layout
             self._publisher.publish(f"{side}/hairs", display.layout(side))
+        self._publish_colors(display, side)
         self._publisher.publish(f"{side}/locks", display.locks(side))
         if side == "a":
             self._publish_numbers(display, revision)
@@ -65,6 +67,7 @@ class Viewport:
         """Removes the groom on side b."""
         self._publisher.clear("b/")
         self._layouts.pop("b", None)
+        self._colors.pop("b", None)
 
     def _show_scalp(self, display: DisplayGroom) -> None:
         if self._scalp is not display.groom.scalp:
@@ -77,6 +80,13 @@ class Viewport:
         self.bodies = bodies
         for index, body in enumerate(bodies):
             self._publisher.publish(f"body/{index}", body.message(index, self._origin))
+
+    def _publish_colors(self, display: DisplayGroom, side: str) -> None:
+        inputs = self._layouts[side], display_colors.inputs(display.groom)
+        before = self._colors.get(side)
+        if before is None or before[0] is not inputs[0] or before[1] != inputs[1]:
+            self._colors[side] = inputs
+            self._publisher.publish(f"{side}/colors", display_colors.message(side, display.groom, display.hairs))
 
     def _publish_names(self, groom: Groom, curves: Collection[str]) -> None:
         scalp = groom.scalp

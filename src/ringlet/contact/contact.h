@@ -5,6 +5,7 @@
 #include "ringlet/contact/settings.h"
 #include "ringlet/math/types.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -28,8 +29,10 @@ struct Contact {
     double force = 0.0;           // normal force there [N]
     double lagged_force = 0.0;    // N [N]
     uint64_t pair = 0;            // name of the pair of primitives, and of the place on it
+    double tied_length = -1.0;    // of a tie: see tie.h [m]; negative of a contact
 
     bool edge_edge() const { return first == 2; }
+    bool is_tie() const { return tied_length >= 0.0; }
 };
 
 // Energy of a contact with its derivatives by the separation; the Hessian is positive semi-definite.
@@ -61,11 +64,33 @@ inline double friction_energy(const Contact &c, const Vec3 &separation) {
     return c.friction * c.lagged_force * friction_potential(slip(c, separation).norm(), c.stick_length).value;
 }
 
+inline double tie_energy(const Contact &c, const Vec3 &separation) {
+    const double stretch = separation.norm() - c.tied_length;
+    return 0.5 * c.stiffness * stretch * stretch;
+}
+
+// What a known contact has besides its barrier.
+inline double kept_energy(const Contact &c, const Vec3 &separation) {
+    return c.is_tie() ? tie_energy(c, separation) : friction_energy(c, separation);
+}
+
 inline double contact_energy(const Contact &c, const Vec3 &separation) {
-    return barrier_energy(c, c.normal.dot(separation)) + friction_energy(c, separation);
+    return kept_energy(c, separation) + (c.is_tie() ? 0.0 : barrier_energy(c, c.normal.dot(separation)));
+}
+
+// Across a tie that is pressed together the Hessian is 0 where the exact one is negative.
+inline ContactValue tie_value(const Contact &c, const Vec3 &separation) {
+    const double length = separation.norm();
+    if (!(length > 0.0)) return {tie_energy(c, separation), Vec3::Zero(), c.stiffness * Mat3::Identity()};
+    const Vec3 along = separation / length;
+    const Mat3 outer = along * along.transpose();
+    const double across = std::max(0.0, 1.0 - c.tied_length / length);
+    return {tie_energy(c, separation), c.stiffness * (length - c.tied_length) * along,
+            c.stiffness * (outer + across * (Mat3::Identity() - outer))};
 }
 
 inline ContactValue contact_value(const Contact &c, const Vec3 &separation) {
+    if (c.is_tie()) return tie_value(c, separation);
     const Potential push = barrier(c.normal.dot(separation), c.d_hat, c.barrier_end);
     ContactValue value{c.stiffness * push.value, c.stiffness * push.first * c.normal,
                        c.stiffness * push.second * c.normal * c.normal.transpose()};

@@ -76,6 +76,7 @@ void ContactSet::begin(const CollisionMesh &mesh, const ContactMaterial &materia
 void ContactSet::commit_friction(View<Vec3> positions) {
     friction_.clear();
     for (const Contact &contact : contacts_) {
+        if (contact.is_tie()) continue;
         const Vec3 u = slip(contact, separation(contact, positions));
         const double length = u.norm(), most = contact.stick_length;
         friction_.push_back({contact.pair, length > most ? Vec3(most / length * u) : u, contact.normal});
@@ -142,6 +143,7 @@ void ContactSet::find(const CollisionMesh &mesh, const ContactMaterial &material
     std::vector<Contact> found = linearise(mesh, material, pairs, start, positions);
     for_known(lagged_, found, [](const LaggedForce &before, Contact &now) { now.lagged_force = before.force; });
     contacts_ = std::move(found);
+    for (const Tie &tie : ties) contacts_.push_back(as_contact(tie, int(&tie - ties.data())));
     lagged_.clear();
     for (const Contact &contact : contacts_) lagged_.push_back({contact.pair, contact.lagged_force});
     index(mesh);

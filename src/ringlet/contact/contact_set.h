@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ringlet/contact/initial_overlap.h"
+#include "ringlet/contact/tie.h"
 #include "ringlet/math/lists.h"
 
 #include <vector>
@@ -39,6 +40,7 @@ struct PairEnergy {
 class ContactSet {
 public:
     InitialOverlaps overlaps;
+    std::vector<Tie> ties; // always among the contacts, the last of them
 
     // The contact pairs before the first step are initial overlaps; some have a force.
     void begin(const CollisionMesh &mesh, const ContactMaterial &material, const std::vector<ContactPair> &pairs,
@@ -58,6 +60,10 @@ public:
                                      const std::vector<ContactPair> &pairs, View<Vec3> positions) const;
 
     const std::vector<Contact> &contacts() const { return contacts_; }
+    View<Contact> without_ties() const { // nothing before they are found
+        const View<Contact> all = contacts_;
+        return all.empty() ? all : all.first(all.size() - ties.size());
+    }
     void set_lagged_force(int contact, double force) { lagged_[contact].force = force; }
 
     // The contacts that act on a vertex, and as which of their four.

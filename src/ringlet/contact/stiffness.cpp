@@ -21,7 +21,7 @@ bool ContactStiffness::raise_loads(const ContactSet &contacts) {
     return raised;
 }
 
-std::vector<double> ContactStiffness::levels(const CollisionMesh &mesh, double d_hat) const {
+std::vector<double> ContactStiffness::levels(const CollisionMesh &mesh) const {
     std::vector<double> stiffness = largest_;
     const int strand_vertices = int(mesh.along_strand.size());
     for (int v = 0; v < strand_vertices; ++v) {
@@ -29,6 +29,7 @@ std::vector<double> ContactStiffness::levels(const CollisionMesh &mesh, double d
         double load = load_[v]; // a contact that slides passes on to the next vertex
         for (const int next : {v - 1, v + 1})
             if (next >= 0 && next < strand_vertices && mesh.object[next] == mesh.object[v]) load = std::max(load, load_[next]);
+        const double d_hat = 2.0 * mesh.radius[v]; // of two such strands
         double enough = contact_settings::softest_level * largest_[v];
         while (enough < load / d_hat && enough < largest_[v]) enough *= contact_settings::level_factor;
         stiffness[v] = std::min(enough, largest_[v]);

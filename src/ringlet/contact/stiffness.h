@@ -24,8 +24,7 @@ public:
 
     const std::vector<double> &largest() const { return largest_; }
 
-    // Per vertex [N/m], for strands whose activation distance is d_hat [m].
-    std::vector<double> levels(const CollisionMesh &mesh, double d_hat) const;
+    std::vector<double> levels(const CollisionMesh &mesh) const; // per vertex [N/m]
 
     const std::vector<double> &loads() const { return load_; } // per vertex, decayed: the largest force of a contact [N]
     void recall(std::vector<double> loads) { load_ = std::move(loads); }

@@ -40,8 +40,6 @@ struct SceneData {
     void exempt_coincident_pairs();
     bool is_placed() const; // strands and cloths are where the positions have them
     void take_placed();     // positions become those of strands and cloths
-
-    double activation_distance() const { return 2.0 * contact.strand_radius; } // of two strands [m]
 };
 
 // One step, in scene/step.cpp.

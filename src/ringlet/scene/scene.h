@@ -79,9 +79,9 @@ public:
     SceneMemory memory() const;
     void recall(const SceneMemory &memory);
 
-    View<Vec3> positions() const;                 // of all vertices: strands, cloths, bodies
-    int dynamic_vertices() const;                 // those of strands and cloths
-    const std::vector<Contact> &contacts() const; // of the last step
+    View<Vec3> positions() const;   // of all vertices: strands, cloths, bodies
+    int dynamic_vertices() const;   // those of strands and cloths
+    View<Contact> contacts() const; // of the last step, without ties
 
 private:
     std::unique_ptr<struct SceneData> data_;

@@ -13,7 +13,7 @@ namespace {
 void begin_contact(SceneData &scene, double dt) {
     scene.vertices.material.stick_length = scene.contact.creep_speed * dt;
     scene.stiffness.begin_step(scene.objective.contact_stiffness(scene.contact.stiffness, dt), dt);
-    scene.vertices.material.stiffness = scene.stiffness.levels(scene.vertices.mesh, scene.activation_distance());
+    scene.vertices.material.stiffness = scene.stiffness.levels(scene.vertices.mesh);
 }
 
 // Before the first step: the initial overlaps and their forces.
@@ -132,7 +132,7 @@ void commit(SceneData &scene, View<Vec3> start, double dt, const SolverEffort &e
     report.newton = effort.iterations;
     report.residual = effort.residual;
     report.unconverged = !effort.converged;
-    report.contacts = double(contacts.contacts().size());
+    report.contacts = double(contacts.without_ties().size());
 }
 
 } // namespace
@@ -170,7 +170,7 @@ SceneReport take_step(SceneData &scene, const SceneInput &input, const SceneStep
     for (const auto &[vertex, target] : scene.lagging)
         report.lag = std::max(report.lag, (scene.configuration.positions[vertex] - target).norm());
     report.closest = std::numeric_limits<double>::infinity();
-    for (const Contact &c : scene.objective.contacts.contacts())
+    for (const Contact &c : scene.objective.contacts.without_ties())
         report.closest = std::min(report.closest, separation(c, scene.configuration.positions).norm());
     return report;
 }

@@ -15,17 +15,17 @@ public:
     explicit Numbering(SceneVertices &all) : all_(all) {}
 
     struct Object {
-        double radius;
         int number, carrier, material; // carrier: the object that carries its prescribed vertices
     };
 
-    void add_strand(const StrandModel &model, const StrandState &state, int strand, const Object &object) {
+    // radii: of contact, per vertex of strands [m]
+    void add_strand(const StrandModel &model, const StrandState &state, int strand, View<double> radii, const Object &object) {
         const int first = model.offsets[strand], end = model.offsets[strand + 1];
         int held = 0;
         while (first + held < end && model.held[first + held]) ++held;
         add_yield(model, first, end);
         for (int v = first; v < end; ++v) {
-            add_vertex(object, state.positions[v], !model.held[v], model.mass[v]);
+            add_vertex(object, radii[v], state.positions[v], !model.held[v], model.mass[v]);
             if (held >= 3) all_.carriers[v] = Triangle(first, first + 1, first + 2);
             all_.mesh.points.push_back(v);
             if (v > first) all_.mesh.edges.push_back({v - 1, v});
@@ -34,16 +34,18 @@ public:
 
     void add_cloth(const SceneCloth &cloth, const Object &object) {
         const int base = all_.count();
+        const double radius = 0.5 * cloth.model->thickness;
         all_.mesh.yield.insert(all_.mesh.yield.end(), cloth.model->vertex_count(), std::numeric_limits<double>::infinity());
         for (int i = 0; i < cloth.model->vertex_count(); ++i)
-            all_.mesh.points.push_back(add_vertex(object, cloth.model->rest[i], !cloth.model->held[i], cloth.model->mass[i]));
+            all_.mesh.points.push_back(
+                add_vertex(object, radius, cloth.model->rest[i], !cloth.model->held[i], cloth.model->mass[i]));
         add_surface(cloth.model->triangles, base);
     }
 
     void add_body(const BodyModel &body, const Object &object, bool meets_triangles) {
         const int base = all_.count();
         for (const Vec3 &rest : body.rest) {
-            const int vertex = add_vertex(object, rest, false, 0.0);
+            const int vertex = add_vertex(object, body.thickness, rest, false, 0.0);
             all_.mesh.yield.push_back(0.0);
             if (meets_triangles) all_.mesh.points.push_back(vertex);
         }
@@ -62,12 +64,12 @@ private:
         for (int v = end - 1; v-- > first;) yield[v] = std::min(yield[v], yield[v + 1] + model.rest_length[v]);
     }
 
-    int add_vertex(const Object &object, const Vec3 &rest, bool moves, double mass) {
+    int add_vertex(const Object &object, double radius, const Vec3 &rest, bool moves, double mass) {
         const int vertex = all_.count();
         all_.mass.push_back(mass);
         all_.carriers.emplace_back(Triangle::Constant(vertex));
         all_.mesh.rest.push_back(rest);
-        all_.mesh.radius.push_back(object.radius);
+        all_.mesh.radius.push_back(radius);
         all_.mesh.moves.push_back(moves);
         all_.mesh.object.push_back(object.number);
         all_.mesh.anchor.push_back(moves ? -1 : object.carrier);
@@ -109,22 +111,24 @@ SceneVertices number_vertices(const StrandModel &strands, const StrandState &sta
     all.strands = strands.strand_count();
     all.objects = all.strands + int(cloths.size());
     const auto object_of_body = [&](int body) { return body >= 0 ? all.objects + body : -1; };
+    std::vector<double> radii = contact.strand_radii;
+    if (radii.empty()) radii.assign(state.positions.size(), contact.strand_radius);
+    if (radii.size() != state.positions.size()) throw std::invalid_argument("scene: as many radii as vertices of strands");
     for (int s = 0; s < all.strands; ++s) {
         const int carrier = object_of_body(s < int(rooted_in.size()) ? rooted_in[s] : -1);
-        numbering.add_strand(strands, state, s, {contact.strand_radius, s, carrier, contact.strand_material});
+        numbering.add_strand(strands, state, s, radii, {s, carrier, contact.strand_material});
     }
     all.mesh.strand_edges = int(all.mesh.edges.size());
     cache_activation_distances(all.mesh, View<int>(strands.offsets));
     for (int c = 0; c < int(cloths.size()); ++c) {
         all.cloths.push_back(all.count());
-        numbering.add_cloth(cloths[c], {0.5 * cloths[c].model->thickness, all.strands + c, object_of_body(cloths[c].pinned_to),
-                                        cloths[c].material});
+        numbering.add_cloth(cloths[c], {all.strands + c, object_of_body(cloths[c].pinned_to), cloths[c].material});
     }
     all.cloths.push_back(all.count());
     all.dynamic_vertices = all.count();
     for (int b = 0; b < int(bodies.size()); ++b) {
         all.bodies.push_back(all.count());
-        numbering.add_body(bodies[b], {bodies[b].thickness, object_of_body(b), -1, bodies[b].material}, !cloths.empty());
+        numbering.add_body(bodies[b], {object_of_body(b), -1, bodies[b].material}, !cloths.empty());
     }
     all.bodies.push_back(all.count());
     if (!contact.enabled) remove_primitives(all.mesh);

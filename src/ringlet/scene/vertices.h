@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ringlet/cloth/model.h"
+#include "ringlet/contact/tie.h"
 #include "ringlet/solver/vertex_table.h"
 #include "ringlet/strand/step.h"
 
@@ -28,6 +29,8 @@ struct SceneCloth {
 struct SceneContact {
     bool enabled = true;                  // without contact nothing is tested
     double strand_radius = 5e-4;          // half the activation distance of two strands [m]
+    std::vector<double> strand_radii;     // per vertex of strands, in place of it where there are any; none is smaller
+    std::vector<Tie> ties;                // of vertices of strands
     int strand_material = 0;              // row of `friction`
     std::vector<double> friction = {0.0}; // μ of each pair of materials, row-major
     double stiffness = 1.0;               // scales the contact stiffness

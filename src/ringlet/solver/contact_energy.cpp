@@ -14,20 +14,20 @@ void ContactEnergy::remove(View<unsigned char> changed) {
     std::erase_if(barriers_, [&](const Shared &shared) { return either(changed, shared.a, shared.b); });
 }
 
-void ContactEnergy::measure_friction(View<Vec3> positions, View<unsigned char> changed) {
+void ContactEnergy::measure_kept(View<Vec3> positions, View<unsigned char> changed) {
     const std::vector<Contact> &all = contacts_.contacts();
     for (size_t k = 0; k < all.size(); ++k)
         if (const auto [a, b] = objects_of(all[k]); either(changed, a, b))
-            friction_[k] = friction_energy(all[k], separation(all[k], positions));
+            kept_[k] = kept_energy(all[k], separation(all[k], positions));
 }
 
 void ContactEnergy::at_linearisation(View<Vec3> positions, View<unsigned char> active) {
-    friction_.assign(contacts_.contacts().size(), 0.0);
+    kept_.assign(contacts_.contacts().size(), 0.0);
     remove(active);
     for (const Contact &contact : contacts_.contacts())
-        if (const auto [a, b] = objects_of(contact); either(active, a, b))
+        if (const auto [a, b] = objects_of(contact); !contact.is_tie() && either(active, a, b))
             barriers_.push_back({a, b, barrier_energy(contact, contact.gap)});
-    measure_friction(positions, active);
+    measure_kept(positions, active);
 }
 
 void ContactEnergy::exact(const ReachablePairs &pairs, View<Vec3> positions, View<double> traveled,
@@ -37,7 +37,7 @@ void ContactEnergy::exact(const ReachablePairs &pairs, View<Vec3> positions, Vie
     const std::vector<ContactPair> there = contact_pairs(table_.mesh, pairs, positions, changed, traveled);
     for (const PairEnergy &pair : contacts_.energies(table_.mesh, table_.material, there, positions))
         barriers_.push_back({dynamic(pair.objects[0]), dynamic(pair.objects[1]), pair.energy()});
-    measure_friction(positions, changed);
+    measure_kept(positions, changed);
 }
 
 void ContactEnergy::add_to(std::vector<double> &of_objects) const {
@@ -49,7 +49,7 @@ void ContactEnergy::add_to(std::vector<double> &of_objects) const {
     const std::vector<Contact> &all = contacts_.contacts();
     for (size_t k = 0; k < all.size(); ++k) {
         const auto [a, b] = objects_of(all[k]);
-        share(a, b, friction_[k]);
+        share(a, b, kept_[k]);
     }
 }
 

@@ -12,7 +12,7 @@ namespace ringlet {
 // The barrier energy is that
 //   at_linearisation  of the contacts, where they were found: their gaps are known
 //   exact             of all pairs in reach, measured at the positions, be they contacts yet or not
-// Friction is that of the contacts in both. What no changed object has a part in is kept.
+// Friction, and the energy of ties, are those of the contacts in both. What no changed object has a part in is kept.
 class ContactEnergy {
 public:
     ContactEnergy(const VertexTable &table, const ContactSet &contacts) : table_(table), contacts_(contacts) {}
@@ -34,12 +34,12 @@ private:
         return {table_.object_of(contact.vertex[0]), table_.object_of(contact.vertex[3])};
     }
     void remove(View<unsigned char> changed);
-    void measure_friction(View<Vec3> positions, View<unsigned char> changed);
+    void measure_kept(View<Vec3> positions, View<unsigned char> changed);
 
     const VertexTable &table_;
     const ContactSet &contacts_;
     std::vector<Shared> barriers_;
-    std::vector<double> friction_; // of each contact [J]
+    std::vector<double> kept_; // of each contact: friction, or that of a tie [J]
 };
 
 } // namespace ringlet

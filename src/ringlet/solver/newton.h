@@ -13,7 +13,7 @@ struct NewtonSettings {
     int iterations = 5;      // at most
     int extra = 60;          // more, at most, for objects that were limited and are stretched
     double tolerance = 1e-7; // [m]; converged when no coordinate of the search direction is larger
-    double strand_radius;    // [m]: half the activation distance of two strands
+    double strand_radius;    // of contact [m], the least of all
     LinearSettings linear;
 };
 

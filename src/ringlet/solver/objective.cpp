@@ -104,6 +104,7 @@ void Objective::lag_normal_forces(const AlignedVector &direction) {
     const std::vector<Contact> &all = contacts.contacts();
     for (int k = 0; k < int(all.size()); ++k) {
         const Contact &c = all[k];
+        if (c.is_tie()) continue;
         Vec3 change = Vec3::Zero();
         for (int i = 0; i < 4; ++i)
             if (table.mesh.moves[c.vertex[i]] && c.weight[i] != 0.0)

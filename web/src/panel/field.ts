@@ -158,8 +158,9 @@ export class NumberField extends Field {
     if (this.held) return;
     const { factor, unit } = this.shown;
     const own = this.lock === null ? undefined : at(this.value, ["lock", this.lock]);
-    const value = own ?? (this.setting.varied ? at(this.value, ["value"]) : this.value);
     const given = this.setting.varied ? at(this.setting.fallback, ["value"]) : this.setting.fallback;
+    const absent = this.setting.optional ? undefined : given; // where the file has not even its table
+    const value = own ?? (this.setting.varied ? at(this.value, ["value"]) : this.value) ?? absent;
     const fallback = typeof given === "number" ? given * factor : 0;
     this.unit.textContent = unit;
     this.element.classList.toggle("absent", typeof value !== "number");
@@ -258,6 +259,22 @@ class TextField extends Field {
 
   protected show(): void {
     if (document.activeElement !== this.input) this.input.value = String(this.value ?? "");
+  }
+}
+
+/** A colour; while it is chosen, the hair shows it. */
+class ColorField extends Field {
+  private readonly input = h("input", { type: "color", id: this.id });
+
+  constructor(model: Model, file: File, place: Place, setting: Setting) {
+    super(model, file, place, setting);
+    this.element.append(this.head(this.input));
+    this.input.addEventListener("input", () => this.send(this.input.value, false));
+    this.input.addEventListener("change", () => this.send(this.input.value, true));
+  }
+
+  protected show(): void {
+    this.input.value = String(this.value ?? this.setting.fallback ?? "#000000");
   }
 }
 
@@ -428,6 +445,7 @@ export function makeField(model: Model, file: File, place: Place, setting: Setti
     toggle: ToggleField,
     choice: ChoiceField,
     text: TextField,
+    color: ColorField,
     name: NameField,
     regions: RegionsField,
     vector: VectorField,

@@ -26,6 +26,7 @@ export interface Setting {
     | "toggle"
     | "choice"
     | "text"
+    | "color"
     | "name"
     | "regions"
     | "ramp"
@@ -131,6 +132,7 @@ export class Schemas {
     const items = only["items"] as Schema | undefined;
     if (only["type"] === "boolean") setting.kind = "toggle";
     else if (only["enum"]) Object.assign(setting, { kind: "choice", choices: only["enum"] });
+    else if (only["format"] === "color") setting.kind = "color";
     else if (only["type"] === "string") setting.kind = name in NAMED ? "name" : "text";
     else if (only["type"] === "object" && name === "region") setting.kind = "regions";
     else if (only["type"] === "array" && items && isPair(items)) setting.kind = "ramp";

@@ -7,7 +7,7 @@ import type { Json, Stage } from "../protocol";
 /** A cloth or a collider of a shot. */
 type Entry = Record<"name" | "mesh" | "file", string | null>;
 
-const KEPT = ["guides", "locks", "hairs"]; // without these there is nothing to see
+const KEPT = ["guides", "locks", "hairs", "color", "fiber"]; // what has no effect to be muted
 
 export class Stack {
   readonly element = h("nav", { class: "panel stack", "aria-label": "Stages of the groom" });

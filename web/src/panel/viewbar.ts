@@ -31,13 +31,15 @@ export class Viewbar {
     light.addEventListener("change", () => viewer.setLights(light.value));
 
     const color = h("select", { "aria-label": "Hair colour" });
-    color.addEventListener("change", () =>
-      viewer.setPigments(...(model.welcome?.pigments[color.value] ?? [2, 0.35, 0.38])),
-    );
+    color.addEventListener("change", () => {
+      const colors = model.welcome?.colors ?? {};
+      viewer.setColour(colors[color.value] ?? null, colors["dark_brown"]);
+    });
     model.on("welcome", () => {
-      const names = Object.keys(this.model.welcome?.pigments ?? {});
-      const before = color.value || "dark_brown";
-      color.replaceChildren(...names.map((one) => h("option", { value: one }, one.replaceAll("_", " "))));
+      const names = Object.keys(this.model.welcome?.colors ?? {});
+      const before = color.value;
+      const named = names.map((one) => h("option", { value: one }, one.replaceAll("_", " ")));
+      color.replaceChildren(h("option", { value: "" }, "as groomed"), ...named);
       color.value = before;
       color.dispatchEvent(new Event("change"));
     });

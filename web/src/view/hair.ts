@@ -13,16 +13,16 @@ import {
   Vector3,
   type WebGLRenderer,
 } from "three";
-import type { Frame, Hairs, Locks } from "../protocol";
+import type { Colors, Frame, Hairs, Locks } from "../protocol";
 import { Carry } from "./carry";
 import { DEPTH_FRAGMENT, DEPTH_VERTEX, HAIR_FRAGMENT, HAIR_VERTEX, LAYERS_FRAGMENT } from "./hair_shader";
 import type { Lights } from "./lights";
 import type { Shadow } from "./shadow";
 import { type LockTable, lockTable } from "./table";
+import { Colours } from "./textures";
 
-/** Absorption of eumelanin and pheomelanin in red, green and blue (d'Eon et al. 2011). */
-const EUMELANIN = [0.419, 0.697, 1.37];
-const PHEOMELANIN = [0.187, 0.4, 1.05];
+/** A hair colour: linear reflectance in red, green and blue, and roughness. */
+export type Colour = [number, number, number, number];
 
 /** The least width at which a hair is drawn [pixels]. */
 const THINNEST = 0.9;
@@ -50,6 +50,10 @@ export class Hair {
   private stale = true;
   private stride = 1;
   private overlay: Uint8Array | undefined;
+  private own: Colors | null = null;
+  private named: Colour | null = null;
+  private ownShown = true;
+  private colours: Colours | null = null;
 
   constructor(lights: Lights, shadow: Shadow) {
     this.shared = {
@@ -65,8 +69,11 @@ export class Hair {
       ...lights.uniforms,
       ...shadow.uniforms,
       ...view(),
-      absorption: { value: new Vector3() },
+      reflectance: { value: new Vector3() },
       roughness: { value: 0.35 },
+      tilt: { value: 0.035 },
+      hairColor: { value: null },
+      stations: { value: 0 },
       middle: { value: new Vector3() },
       highlight: { value: new Vector3(0.2, 0.55, 0.9) },
       showOverlay: { value: 0 },
@@ -111,6 +118,7 @@ export class Hair {
     this.carry = new Carry(hairs);
     this.shared["points"].value = hairs.points;
     this.setStride(this.stride, true);
+    this.recolour();
     if (this.locks) this.setLocks(this.locks);
     this.stale = true;
   }
@@ -141,11 +149,31 @@ export class Hair {
     this.stale = true;
   }
 
-  setPigments(eumelanin: number, pheomelanin: number, roughness: number): void {
-    (this.material.uniforms["absorption"].value as Vector3).fromArray(
-      EUMELANIN.map((e, k) => eumelanin * e + pheomelanin * PHEOMELANIN[k]),
-    );
-    this.material.uniforms["roughness"].value = roughness;
+  /** Colours of the hairs by their pigments; without stations they have none. */
+  setColors(colors: Colors): void {
+    this.own = colors;
+    this.colours?.dispose();
+    this.colours = colors.stations ? new Colours(colors.reflectance) : null;
+    this.material.uniforms["hairColor"].value = this.colours?.texture ?? null;
+    this.recolour();
+  }
+
+  /** Shows all hair in one colour; null: in its own, or in `otherwise` where it has none. */
+  setColour(named: Colour | null, otherwise: Colour): void {
+    this.named = named ?? otherwise;
+    this.ownShown = named === null;
+    this.recolour();
+  }
+
+  private recolour(): void {
+    const { own, named } = this;
+    const { uniforms } = this.material;
+    const fits = own !== null && own.reflectance.length === 3 * own.stations * this.count;
+    const shown = this.ownShown && own !== null && own.stations > 0 && fits;
+    uniforms["stations"].value = shown ? own.stations : 0;
+    if (named) (uniforms["reflectance"].value as Vector3).fromArray(named);
+    uniforms["roughness"].value = shown || !named ? (own?.roughness ?? 0.38) : named[3];
+    uniforms["tilt"].value = ((own?.tilt ?? 2) * Math.PI) / 180;
   }
 
   /** Tints the hair by a value for each point of the locks; nothing: the hair as it is. */
@@ -213,6 +241,7 @@ export class Hair {
 
   dispose(): void {
     this.carry?.dispose();
+    this.colours?.dispose();
     this.geometry.dispose();
     for (const material of [this.material, this.first, this.depth, this.layers]) material.dispose();
   }

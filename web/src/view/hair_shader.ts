@@ -2,7 +2,7 @@
 //
 // S = Σ over R, TT, TRT of  M(θ) N(φ) A, with the longitudinal lobes M as Gaussians of sin θi + sin θr shifted by the
 // cuticle's tilt (Marschner et al. 2003) and the azimuthal lobes N and attenuations A fitted with few terms (Karis 2016).
-// Absorption is that of melanin (d'Eon et al. 2011), its colour after many scatterings as in Chiang et al. 2016.
+// C is the colour of hair after many scatterings (Chiang et al. 2016), which ringlet.data.pigment computes from pigments.
 
 import { DEVELOP, LIGHTS, LOOKUP, RIBBON, SHADOW } from "./shaders";
 
@@ -16,7 +16,10 @@ export const HAIR_VERTEX = /* glsl */ `${HEAD}
 ${LOOKUP}
 ${RIBBON}
 uniform sampler2D hairPlace, lockPlace, lockPoint;
-out vec3 place, direction;
+uniform sampler2D hairColor;  // of each hair at its stations: the fourth root of its reflectance
+uniform int stations;         // along a hair; 0: all hairs have one colour
+uniform vec3 reflectance;     // of all hairs
+out vec3 place, direction, tone;
 out float along, covered, chance, mark, overlay;
 invariant gl_Position;
 
@@ -28,6 +31,13 @@ void main() {
   int row = int(lock.x) + int(at);
   overlay = mix(lookup(lockPoint, row).w, lookup(lockPoint, row + 1).w, fract(at));
   chance = fract(sin(float(gl_InstanceID) * 12.9898 + 4.1) * 43758.5453);
+  tone = pow(reflectance, vec3(sqrt(0.8 + 0.4 * chance)));
+  if (stations > 0) {
+    float station = along * float(stations - 1);
+    int first = gl_InstanceID * stations + int(station), last = gl_InstanceID * stations + stations - 1;
+    vec3 root = mix(lookup(hairColor, first).rgb, lookup(hairColor, min(first + 1, last)).rgb, fract(station));
+    tone = root * root * root * root;
+  }
   gl_Position = projectionMatrix * viewMatrix * vec4(place, 1.0);
 }
 `;
@@ -36,12 +46,11 @@ export const HAIR_FRAGMENT = /* glsl */ `${HEAD}
 ${LIGHTS}
 ${SHADOW}
 ${DEVELOP}
-uniform vec3 absorption;   // of melanin, per radius of a hair
-uniform float roughness;
+uniform float roughness, tilt; // of the fibre; tilt of its cuticle [radians]
 uniform vec3 eye, middle;  // the camera; the middle of the hair
 uniform vec3 highlight;
 uniform float showOverlay;
-in vec3 place, direction;
+in vec3 place, direction, tone;
 in float along, covered, chance, mark, overlay;
 out vec4 color;
 
@@ -54,18 +63,18 @@ vec3 fibre(vec3 T, vec3 V, vec3 L, vec3 C, float through) {
   vec3 flatL = L - sinL * T, flatV = V - sinV * T;
   float cosPhi = dot(flatL, flatV) * inversesqrt(dot(flatL, flatL) * dot(flatV, flatV) + 1e-4);
   float cosHalf = sqrt(clamp(0.5 + 0.5 * cosPhi, 0.0, 1.0));
-  float tilt = 0.035 + 0.02 * (chance - 0.5), width = roughness * roughness + 0.02, sum = sinL + sinV;
+  float shift = tilt + 0.02 * (chance - 0.5), width = roughness * roughness + 0.02, sum = sinL + sinV;
 
-  vec3 S = vec3(0.14 * cosHalf * gauss(width, sum + 2.0 * tilt) * fresnel(sqrt(clamp(0.5 + 0.5 * dot(V, L), 0.0, 1.0))));
+  vec3 S = vec3(0.14 * cosHalf * gauss(width, sum + 2.0 * shift) * fresnel(sqrt(clamp(0.5 + 0.5 * dot(V, L), 0.0, 1.0))));
 
   float a = 1.0 / (1.19 / cosD + 0.36 * cosD);
   float h = cosHalf * (1.0 + a * (0.6 - 0.8 * cosPhi));
   float f = fresnel(cosD * sqrt(clamp(1.0 - h * h, 0.0, 1.0)));
   vec3 once = pow(C, vec3(0.5 * sqrt(max(1.0 - h * h * a * a, 0.0)) / cosD));
-  S += gauss(0.5 * width, sum - tilt) * exp(-3.65 * cosPhi - 3.98) * (1.0 - f) * (1.0 - f) * once * through;
+  S += gauss(0.5 * width, sum - shift) * exp(-3.65 * cosPhi - 3.98) * (1.0 - f) * (1.0 - f) * once * through;
 
   f = fresnel(0.5 * cosD);
-  S += gauss(2.0 * width, sum - 4.0 * tilt) * exp(17.0 * cosPhi - 16.78) * (1.0 - f) * (1.0 - f) * f * pow(C, vec3(0.8 / cosD));
+  S += gauss(2.0 * width, sum - 4.0 * shift) * exp(17.0 * cosPhi - 16.78) * (1.0 - f) * (1.0 - f) * f * pow(C, vec3(0.8 / cosD));
 
   // What has been scattered by many hairs before.
   vec3 N = normalize(V - T * sinV);
@@ -85,7 +94,7 @@ vec3 ramp(float x) { // from blue over pale to red
 
 void main() {
   vec3 T = normalize(direction), V = normalize(eye - place);
-  vec3 C = exp(-5.8 * sqrt(absorption * (0.8 + 0.4 * chance)));
+  vec3 C = max(tone, vec3(1e-6));
   vec3 outward = normalize(place - middle + vec3(0.0, 1e-5, 0.0));
   float open = mix(0.2, 1.0, smoothstep(0.0, 0.75, along)); // roots lie in the shade of what is above them
   vec3 light = sqrt(C) * ambient * open * (0.6 + 0.4 * outward.y) * 0.32;

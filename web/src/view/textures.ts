@@ -61,3 +61,22 @@ export class Shares {
     this.texture.dispose();
   }
 }
+
+/** A colour of three bytes a texel, `WIDTH` texels a row. */
+export class Colours {
+  readonly texture: DataTexture;
+
+  constructor(values: Uint8Array) {
+    const texels = values.length / 3;
+    const height = Math.max(1, Math.ceil(texels / WIDTH));
+    const data = new Uint8Array(4 * WIDTH * height);
+    for (let i = 0; i < texels; i++) data.set(values.subarray(3 * i, 3 * i + 3), 4 * i);
+    this.texture = new DataTexture(data, WIDTH, height, RGBAFormat);
+    this.texture.magFilter = this.texture.minFilter = NearestFilter;
+    this.texture.needsUpdate = true;
+  }
+
+  dispose(): void {
+    this.texture.dispose();
+  }
+}

@@ -2,11 +2,11 @@
 
 import { type Box3, PerspectiveCamera, Scene, Vector2, Vector3, WebGLRenderer } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
-import type { Body as BodyMessage, Hairs, Locks } from "../protocol";
+import type { Body as BodyMessage, Colors, Hairs, Locks } from "../protocol";
 import { Backdrop } from "./backdrop";
 import { Body, type Side } from "./body";
 import { GuideLines } from "./guides";
-import { Hair } from "./hair";
+import { type Colour, Hair } from "./hair";
 import { Lights, PRESETS } from "./lights";
 import { Shadow } from "./shadow";
 
@@ -103,8 +103,13 @@ export class Viewer {
     this.invalidate();
   }
 
-  setPigments(eumelanin: number, pheomelanin: number, roughness: number): void {
-    for (const hair of Object.values(this.hair)) hair.setPigments(eumelanin, pheomelanin, roughness);
+  setColors(message: Colors): void {
+    this.hair[message.side].setColors(message);
+    this.invalidate();
+  }
+
+  setColour(named: Colour | null, otherwise: Colour): void {
+    for (const hair of Object.values(this.hair)) hair.setColour(named, otherwise);
     this.invalidate();
   }
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,13 +13,13 @@ from scipy.optimize import linear_sum_assignment
 from ringlet import _core
 from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.data.errors import UserError
+from ringlet.data.groom import CORE, SECTION, STRAND_RADIUS, TIED
 from ringlet.data.quantities import Quantity, Ramped, Varied
 from ringlet.groom import weave
 from ringlet.groom.operators.operator import Context, arc_lengths, grid, packed, unit
 from ringlet.groom.operators.shape import Shape
-from ringlet.groom.sections import SECTION, STRAND
+from ringlet.groom.sections import STRAND
 
-STRAND_RADIUS = "strand_radius"  # curve attribute of locks: radius of a woven strand [m], 0 for others
 EASE = 0.5  # turns over which a braid begins and ends
 LEAST_POINTS, GOOD_POINTS = 6, 10  # of a strand, per wave of its path to the front and back
 
@@ -43,6 +43,15 @@ class Woven(Shape):
     )
     tail: Annotated[Varied, Quantity("m", 0.0, 1.0)] = Field(
         default=Varied(value=0.02), description="length at the tip that is not woven"
+    )
+    tie: Annotated[Varied, Quantity("m", 0.0, 0.1)] = Field(
+        default=Varied(value=0.004),
+        description="length before the tail over which a band ties the strands: they stay together there in a shot",
+    )
+
+    simulate: Literal["strands", "core"] = Field(
+        default="strands",
+        description="in a shot: each strand by itself, held by contact, or the braid as one rod that carries them",
     )
 
     @property
@@ -77,11 +86,19 @@ class Woven(Shape):
             return curves
         shapes = grid(fine).copy()
         radius = curves.curve.get(STRAND_RADIUS, np.zeros(len(curves), np.float32)).copy()
+        tied = np.zeros(shapes.shape[:2], np.float32)
+        core = curves.curve.get(CORE, np.zeros(len(curves), np.int32)).copy()
+        if TIED in fine.point:
+            tied[:] = fine.point[TIED].reshape(tied.shape)
         for braid in braids:
             shapes[braid.rows] = braid.woven(shapes[braid.rows], context.scalp.middle, self)
             radius[braid.rows] = braid.radius
+            tied[braid.rows] = braid.tied(points)
+            core[braid.rows] = self.simulate == "core"
         woven = self.blended(fine, shapes, weight)
-        return Curves(woven.points, woven.offsets, woven.ids, {**woven.curve, STRAND_RADIUS: radius}, woven.point)
+        of_points = {**woven.point, TIED: tied.ravel()} if tied.any() else woven.point
+        of_curves = {**woven.curve, STRAND_RADIUS: radius, **({CORE: core} if core.any() else {})}
+        return Curves(woven.points, woven.offsets, woven.ids, of_curves, of_points)
 
     def _braids(self, curves: Curves, weight: NDArray, context: Context) -> list[Braided]:
         """The braids of the sections of which a strand has weight."""
@@ -93,7 +110,7 @@ class Woven(Shape):
         leaders = curves.take(np.array([of_section[0] for of_section in rows]))
         leaders.ids = sections.astype(np.int64)  # chance goes by the section, not by one of its strands
         length = np.array([_length(curves, of_section) for of_section in rows])
-        values = {k: context.values(self, k, leaders) for k in ("width", "tightness", "start", "tail")}
+        values = {k: context.values(self, k, leaders) for k in ("width", "tightness", "start", "tail", "tie")}
         pitch = self.pitch_of(values["width"]) if self.pitch is None else context.values(self, "pitch", leaders)
         mirrored = self.mirrored(leaders, context)
         radius: dict[tuple, float] = {}
@@ -118,6 +135,7 @@ class Woven(Shape):
                     turns=length[k] / pitch[k],
                     start=min(values["start"][k] / length[k], 0.5),
                     tail=min(values["tail"][k] / length[k], 0.5),
+                    tie=values["tie"][k] / length[k],
                 )
             )
         return braids
@@ -141,6 +159,7 @@ class Braided:
     radius:        of a strand [m]
     turns:         turns of the path along the whole length, at a ramp of 1
     start, tail:   parts of the length in which strands come together and run on
+    tie:           part of the length before the tail in which they are tied
     """
 
     rows: NDArray[np.integer]
@@ -151,6 +170,13 @@ class Braided:
     turns: float
     start: float
     tail: float
+    tie: float
+
+    def tied(self, points: int) -> NDArray[np.bool_]:
+        """The points of a strand in the band; at least two where there is a band, shape (points,)."""
+        u = np.linspace(0.0, 1.0, points)
+        end, step = 1.0 - self.tail, 1.0 / (points - 1)
+        return (u <= end + 1e-9) & (u >= end - max(self.tie, 1.5 * step)) & (self.tie > 0.0)
 
     def woven(self, shapes: NDArray, middle: NDArray, settings: Woven) -> NDArray[np.float64]:
         """The strands for their shapes (strands, points, 3) [m]."""

@@ -15,6 +15,7 @@ from pxr import Sdf, Usd, UsdGeom, Vt
 from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Mesh
+from ringlet.data.pigment import DYE, FIBER, curve_reflectance, display_color
 from ringlet.data.stage import StageSpace
 from ringlet.io.space import to_metres
 from ringlet.io.usd.basis import Sampling
@@ -40,7 +41,9 @@ ID_HALVES = ("id_high", "id_low")  # halves of 64-bit ids, for programs without 
 COMMON = {"rest", "skinprim", "skinprimuv", "st", "surface_uv_coordinate", "guide_curve_index", "clumpid", *ID_HALVES}
 COMMON |= {"groom_id", "groom_group_id", "groom_guide", "groom_root_uv", "groom_color"}
 COMMON |= {"displayColor", "displayOpacity"}
-INNER = {"root_triangle", "root_barycentric", "lock", "guide_id", "nail", "groomed", "stiffened", "off", "moving"}
+INNER = {"root_triangle", "root_barycentric", "lock", "guide_id", "nail", "tied"}
+INNER |= {"groomed", "stiffened", "off", "moving"}
+CONSTANT = {DYE, *FIBER}  # attributes of curves that are written once where all curves have the same
 MOST_WIDTH = 1.0  # largest diameter of a curve that is written [m]
 SCHEMA = {"widths", "normals"}  # primvars that take precedence over the attribute of the same name
 HAIR_WIDTH = 70e-6  # default diameter of a hair [m]
@@ -155,6 +158,10 @@ def _set_attribute(prim: Usd.Prim, name: str, interpolation: str, values: NDArra
     """Writes an attribute of curves as a primvar whose name USD accepts."""
     valid = f"primvars:{name}"
     if Sdf.Path.IsValidNamespacedIdentifier(valid) and UsdGeom.Primvar.IsValidPrimvarName(valid):
+        if name in CONSTANT and len(values) and (values == values[0]).all():
+            kind = Types.Color3fArray if name == DYE and values.shape[1:] == (3,) else None
+            set_primvar(prim, name, "constant", values[:1], kind)
+            return
         own = name in COMMON | INNER | SCHEMA | {"width"}
         set_primvar(prim, OWN + name if own else name, interpolation, values)
         return
@@ -190,6 +197,16 @@ def set_roots(prim: Usd.Prim, curves: Curves, scalp: Mesh) -> None:
         set_primvar(prim, "st", "uniform", uv, Types.TexCoord2fArray)
         set_primvar(prim, "surface_uv_coordinate", "uniform", uv)
         set_primvar(prim, "groom_root_uv", "uniform", uv)
+
+
+def set_display_color(prim: Usd.Prim, curves: Curves) -> bool:
+    """Writes the colour of curves by their pigments as ``displayColor``; returns whether they have any."""
+    colors = curve_reflectance(curves, str(prim.GetPath()))
+    if colors is None:
+        return False
+    interpolation = "uniform" if len(colors) == len(curves) else "vertex"
+    set_primvar(prim, "displayColor", interpolation, display_color(colors).astype(np.float32), Types.Color3fArray)
+    return True
 
 
 def curve_widths(curves: Curves) -> NDArray:

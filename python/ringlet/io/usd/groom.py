@@ -29,7 +29,7 @@ from ringlet.data.reads import recorded
 from ringlet.data.regular import check_regular
 from ringlet.data.settings import did_you_mean
 from ringlet.data.stage import StageSpace
-from ringlet.io.usd.curves import define_curves, own_curves, set_points, set_roots
+from ringlet.io.usd.curves import define_curves, own_curves, set_display_color, set_points, set_roots
 from ringlet.io.usd.mesh import define_mesh, read_usd_mesh, select_mesh
 from ringlet.io.usd.place import Place, rounded
 from ringlet.io.usd.stage import (
@@ -121,6 +121,9 @@ def _define(stage: Usd.Stage, groom: Groom, space: StageSpace, file: Path | str)
     """Writes the prims and attributes that differ between variants."""
     root = stage.GetPrimAtPath(GROOM)
     _set(root, "hairs", Types.String, json.dumps(groom.hairs))
+    for name, settings in (("color", groom.color), ("fiber", groom.fiber)):
+        if settings is not None:
+            _set(root, name, Types.String, json.dumps(settings))
     if groom.recipe is not None:
         _set(root, "recipe", Types.String, groom.recipe)
     _define_guides(stage, LOCKS, groom.locks, groom, space, file)
@@ -160,9 +163,17 @@ def read_groom(path: Path | str, variant: str | None = None, *, bound: bool = Tr
             cage=source.cage,
             space=source.space,
             hairs=parse_json(source, _get(root, "hairs") or "{}", "ringlet:hairs"),
+            color=_settings(source, root, "color"),
+            fiber=_settings(source, root, "fiber"),
             recipe=_get(root, "recipe"),
             variant=root.GetVariantSets().GetVariantSet(VARIANTS).GetVariantSelection() or None,
         )
+
+
+def _settings(source: Source, root: Usd.Prim, name: str) -> dict[str, Any] | None:
+    """Settings of a table that a recipe may lack."""
+    text = _get(root, name)
+    return None if text is None else parse_json(source, text, f"ringlet:{name}")
 
 
 def groom_prim(source: Source) -> Usd.Prim:
@@ -244,6 +255,7 @@ def _define_guides(
     set_points(defined, curves.points, place, Usd.TimeCode.Default(), groom.scalp.points)
     UsdGeom.PrimvarsAPI(prim).CreatePrimvar("rest", Types.Point3fArray, "vertex").Set(defined.GetPointsAttr().Get())
     set_roots(prim, curves, groom.scalp)
+    set_display_color(prim, curves)
 
 
 def _curves(source: Source, path: str, scalp: Mesh | None) -> Curves:

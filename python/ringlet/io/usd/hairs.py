@@ -18,7 +18,7 @@ from ringlet.data.groom import Groom
 from ringlet.data.mesh import Clip
 from ringlet.data.precision import compact
 from ringlet.io.usd.clips import clip_at, whole_frames
-from ringlet.io.usd.curves import curve_widths, curves_at, define_curves, own_curves, set_roots
+from ringlet.io.usd.curves import curve_widths, curves_at, define_curves, own_curves, set_display_color, set_roots
 from ringlet.io.usd.groom import GROOM
 from ringlet.io.usd.mesh import Body, mesh_at
 from ringlet.io.usd.pose import rest_time
@@ -50,7 +50,8 @@ class HairWriter(StreamWriter):
         self._curves = define_curves(self.begin(), HAIRS, hairs, self.space, guide=False)
         prim = self._curves.GetPrim()
         set_roots(prim, hairs, self._groom.scalp)
-        set_primvar(prim, "displayColor", "constant", np.array([COLOR], np.float32), Types.Color3fArray)
+        if not set_display_color(prim, hairs):
+            set_primvar(prim, "displayColor", "constant", np.array([COLOR], np.float32), Types.Color3fArray)
         if LOCK_INDEX in hairs.curve:
             for name in ("guide_curve_index", "clumpid"):
                 set_primvar(prim, name, "uniform", hairs.curve[LOCK_INDEX].astype(np.int32))

@@ -1,0 +1,117 @@
+"""Cores: braids that are simulated as one rod each, which carries their strands."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ringlet import _core
+from ringlet.data.curves import Curves, offsets_from_counts
+from ringlet.data.groom import CORE, SECTION, STRAND_RADIUS, Groom
+from ringlet.sim.roots import Roots
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Cores:
+    """The locks of a groom, and the fewer that are simulated: all but the strands of cores, then the cores.
+
+    groom:     with the locks that are simulated. A core is the mean of its strands; it has the id, the root and the
+               attributes of the first, and a radius that covers all
+    of_core:   per lock of the whole groom the core that carries it; −1: it is simulated itself, shape (count,)
+    simulated: per lock of the whole groom the row of it, or of its core, among those simulated, shape (count,)
+    """
+
+    groom: Groom
+    whole: Curves
+    of_core: NDArray[np.int64]
+    simulated: NDArray[np.int64]
+
+    @classmethod
+    def of(cls, groom: Groom) -> Cores:
+        """The cores of a groom: the strands of each section whose locks have the attribute ``core``."""
+        locks = groom.locks
+        marked = np.asarray(locks.curve.get(CORE, np.zeros(len(locks))), bool)
+        of_core = np.full(len(locks), -1, np.int64)
+        if marked.any():
+            of_core[marked] = np.unique(locks.curve[SECTION][marked], return_inverse=True)[1]
+        alone = np.flatnonzero(of_core < 0)
+        simulated = np.where(of_core < 0, np.cumsum(of_core < 0) - 1, len(alone) + of_core)
+        cores = cls(groom, locks, of_core, simulated)
+        return cores if not marked.any() else replace(cores, groom=replace(groom, locks=cores.reduced(locks)))
+
+    @property
+    def count(self) -> int:
+        """The number of cores."""
+        return int(self.of_core.max(initial=-1)) + 1
+
+    @property
+    def strands(self) -> NDArray[np.int64]:
+        """The number of strands of each lock that is simulated, shape (locks,)."""
+        return np.bincount(self.simulated, minlength=len(self.groom.locks))
+
+    def reduced(self, curves: Curves) -> Curves:
+        """Of curves for all locks those that are simulated; forces at points add up in a core."""
+        if not self.count:
+            return curves
+        alone = curves.take(np.flatnonzero(self.of_core < 0))
+        parts = [alone]
+        for core in range(self.count):
+            rows = np.flatnonzero(self.of_core == core)
+            strands = [curves.take(rows[k : k + 1]) for k in range(len(rows))]
+            middle = np.mean([np.asarray(strand.points, np.float64) for strand in strands], axis=0)
+            of_curve, of_point = dict(strands[0].curve), dict(strands[0].point)
+            if STRAND_RADIUS in of_curve:
+                away = np.max([np.linalg.norm(s.points - middle, axis=1) for s in strands], axis=0)
+                of_curve[STRAND_RADIUS] = of_curve[STRAND_RADIUS] + np.float32(np.median(away))
+            for name in of_point:
+                all_of_them = np.array([strand.point[name] for strand in strands])
+                of_point[name] = all_of_them.sum(axis=0) if name == "borne" else all_of_them.max(axis=0)
+            parts.append(Curves(middle, strands[0].offsets, strands[0].ids, of_curve, of_point))
+        return _joined(parts)
+
+    def material(self) -> dict[str, Array]:
+        """Factors on the material at the vertices of simulated locks: a core has the mass, and resists stretch, bend
+        and twist, as its strands side by side do. Shapes (n,)."""
+        if not self.count:
+            return {}
+        strands = np.repeat(self.strands.astype(np.float64), self.groom.locks.counts)
+        # Stiffness against bend and twist goes by the fourth power of the radius, mass and stretch by the second.
+        return {"radius": np.sqrt(strands), "bend": 1.0 / strands, "twist": 1.0 / strands}
+
+    def spread(self, values: NDArray) -> NDArray:
+        """Values at the vertices of simulated locks, shape (n, …), at those of all locks; a strand has its core's."""
+        if not self.count:
+            return values
+        offsets = self.groom.locks.offsets
+        return np.concatenate([values[offsets[row] : offsets[row + 1]] for row in self.simulated])
+
+    def carried(self, points: Array, roots: Roots, scalp: Array, frame: float) -> Array:
+        """Points of all locks [m], shape (n, 3), for those of the simulated ones at ``frame`` on the scalp's points."""
+        if not self.count:
+            return points
+        locks = self.groom.locks
+        rest, now = (
+            _core.curve_frames(
+                np.ascontiguousarray(at, np.float64), locks.offsets, roots.axes(on, frame)[:, :, 0].copy()
+            )
+            for at, on in ((locks.points, self.groom.scalp.points), (points, scalp))
+        )
+        turn = now @ rest.transpose(0, 2, 1)
+        offset = self.whole.points - self.spread(locks.points)  # 0 of a lock that is simulated itself
+        return self.spread(points) + np.einsum("nij,nj->ni", self.spread(turn), offset)
+
+
+def _joined(parts: list[Curves]) -> Curves:
+    """Curves one after the other, with the attributes that the first has."""
+    first = parts[0] if len(parts[0]) else parts[1]
+    return Curves(
+        np.concatenate([part.points for part in parts]),
+        offsets_from_counts(np.concatenate([part.counts for part in parts])),
+        np.concatenate([part.ids for part in parts]),
+        {name: np.concatenate([part.curve[name] for part in parts]) for name in first.curve},
+        {name: np.concatenate([part.point[name] for part in parts]) for name in first.point},
+    )

@@ -1,0 +1,1 @@
+"""Ringlet as a solver of cosseratbench, a benchmark of rods by others (the extra ``cosserat``)."""

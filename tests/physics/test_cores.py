@@ -1,0 +1,72 @@
+"""Braids that are simulated as one rod each carry their strands."""
+
+import numpy as np
+import pytest
+from braids import EXAMPLE, RECIPE
+from ringlet.data.groom import CORE, SECTION
+from ringlet.sim.cores import Cores
+
+from ringlet import api
+from ringlet.groom import parse_recipe
+
+SHAPE = """
+op = "braid"
+width = 1.2
+simulate = "core"
+mask = { where = "x > 0" }
+start = 1.2
+tail = 0.8
+[[shape]]
+op = "braid"
+width = 1.2
+mask = { where = "x <= 0" }
+"""
+
+
+@pytest.fixture(scope="module")
+def groom():
+    text = RECIPE.format(strands=3, shape=SHAPE, where="z < -5 and y > 5")
+    return api.build_groom(parse_recipe(text, EXAMPLE / "cores.recipe.toml"))
+
+
+def test_cores_and_strands_play_in_one_shot(groom):
+    core = groom.locks.curve[CORE] > 0
+    assert core.any() and not core.all()
+    motion = api.start_motion(api.read_shot(EXAMPLE / "nod.shot.toml"), groom)
+    assert len(motion.locks) == (~core).sum() + core.sum() / 3
+    first = motion.first
+    np.testing.assert_allclose(motion.points(first), groom.locks.points, atol=1e-9)  # at rest nothing has moved
+    for k in range(1, 11):
+        statistics = motion.reach(k)
+    points = motion.points(first + 10)
+    assert np.isfinite(points).all() and statistics["max_stretch"] < 0.05
+    moved = np.linalg.norm(points - groom.locks.points, axis=1).reshape(len(core), -1)
+    assert (moved[core].max(axis=1) > 2e-3).all()  # they swing
+    # A core carries its strands rigidly across itself: distances of strands at one place stay.
+    for section in np.unique(groom.locks.curve[SECTION][core]):
+        rows = np.flatnonzero(groom.locks.curve[SECTION] == section)
+        now, groomed = (p.reshape(len(core), -1, 3)[rows] for p in (points, groom.locks.points))
+        for a, b in ((0, 1), (1, 2)):
+            now_apart, apart = (np.linalg.norm(p[a] - p[b], axis=1) for p in (now, groomed))
+            np.testing.assert_allclose(now_apart, apart, atol=1e-6)
+
+
+def test_a_core_weighs_and_resists_as_its_strands_side_by_side(groom):
+    cores = Cores.of(groom)
+    factors = cores.material()
+    strands = np.repeat(cores.strands, cores.groom.locks.counts)
+    assert set(np.unique(strands)) == {1, 3}
+    np.testing.assert_allclose(factors["radius"] ** 2, strands)  # mass and stretch
+    np.testing.assert_allclose(factors["radius"] ** 4 * factors["bend"], strands)
+    np.testing.assert_allclose(factors["radius"] ** 4 * factors["twist"], strands)
+    assert cores.count == (cores.strands == 3).sum()
+
+
+def test_a_groom_without_cores_is_simulated_as_it_is(groom):
+    plain = api.build_groom(
+        parse_recipe(
+            RECIPE.format(strands=3, shape='op = "braid"\nwidth = 1.2', where="z < -9"), EXAMPLE / "a.recipe.toml"
+        )
+    )
+    cores = Cores.of(plain)
+    assert cores.groom is plain and cores.reduced(plain.locks) is plain.locks and not cores.material()
