@@ -46,7 +46,18 @@ class Finding:
 
 def diagnose(*, self_test: bool = True, progress: api.Progress | None = None) -> list[Finding]:
     """Checks the installation and, with ``self_test``, grooms, simulates, writes, reads and draws a little."""
-    looks = [_ringlet, _processor, _memory, *(_package(name) for name in _needed()), _pardiso, _dask, _openjd, _page]
+    looks = [
+        _ringlet,
+        _processor,
+        _memory,
+        *(_package(name) for name in _needed()),
+        _pardiso,
+        _dask,
+        _openjd,
+        _oidn,
+        _ffmpeg,
+        _page,
+    ]
     tests: list[Callable[[Path], Finding]] = (
         [_test_core, _test_contact, _test_files, _test_picture] if self_test else []
     )
@@ -108,20 +119,20 @@ def _pardiso() -> Finding:
     )
 
 
-def _dask() -> Finding:
-    try:
-        return Finding("dask.distributed", "ok", version("distributed"))
-    except PackageNotFoundError:
-        return Finding("dask.distributed", "optional", "is not installed", "for wedges: pip install 'ringlet[farm]'")
+def _optional(package: str, title: str, use: str) -> Callable[[], Finding]:
+    def look() -> Finding:
+        try:
+            return Finding(title, "ok", version(package))
+        except PackageNotFoundError:
+            return Finding(title, "optional", "is not installed", use)
+
+    return look
 
 
-def _openjd() -> Finding:
-    try:
-        return Finding("Open Job Description", "ok", version("openjd-cli"))
-    except PackageNotFoundError:
-        return Finding(
-            "Open Job Description", "optional", "is not installed", "to run templates: pip install 'ringlet[farm]'"
-        )
+_dask = _optional("distributed", "dask.distributed", "for wedges: pip install 'ringlet[farm]'")
+_openjd = _optional("openjd-cli", "Open Job Description", "to run templates: pip install 'ringlet[farm]'")
+_oidn = _optional("pyoidn", "Open Image Denoise", "for --denoiser oidn: pip install 'ringlet[denoise]'")
+_ffmpeg = _optional("imageio-ffmpeg", "imageio-ffmpeg", "for videos: pip install 'ringlet[movie]'")
 
 
 def _page() -> Finding:

@@ -48,7 +48,7 @@ SETTINGS = [
     setting("light_turn", float, "Turns the light about the vertical, counter-clockwise from above.", "DEGREES"),
     setting("background", str, "studio or transparent."),
     setting("shutter", float, "Motion blur: 180 has the shutter open for half a frame.", "DEGREES"),
-    setting("denoiser", str, "auto, oidn, builtin or none."),
+    setting("denoiser", str, "builtin, oidn (Intel Open Image Denoise) or none."),
 ]
 UNITS = {"distance": CENTIMETRE, "focus": CENTIMETRE}
 

@@ -11,7 +11,7 @@ from ringlet.data import limits
 from ringlet.data.errors import UserError
 from ringlet.data.explain import did_you_mean
 
-CHOICES = {"background": ("studio", "transparent"), "denoiser": ("auto", "oidn", "builtin", "none")}
+CHOICES = {"background": ("studio", "transparent"), "denoiser": ("builtin", "oidn", "none")}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,7 +36,7 @@ class PictureSettings:
     light_turn:    turns the light about the vertical [degrees], counter-clockwise from above
     background:    studio or transparent; an EXR has no backdrop
     shutter:       angle of the shutter [degrees], for motion blur: 180 is open for half a frame from the frame on
-    denoiser:      auto, oidn, builtin or none
+    denoiser:      builtin, oidn or none
     """
 
     # The least and the most of each number.
@@ -72,7 +72,7 @@ class PictureSettings:
     light_turn: float = 0.0
     background: str = "studio"
     shutter: float = 0.0
-    denoiser: str = "auto"
+    denoiser: str = "builtin"
 
     @classmethod
     def of(cls, settings: dict[str, Any]) -> Self:

@@ -139,10 +139,10 @@ def place(
 
 
 def chosen_denoiser(name: str) -> str:
-    """The denoiser that is meant; raises UserError where it is not installed."""
+    """The name of a denoiser; raises UserError where it is not installed."""
     if name == "oidn" and not oidn.available():
         raise UserError("picture: the denoiser oidn needs pyoidn; install it with: pip install 'ringlet[denoise]'")
-    return "builtin" if name == "auto" else name
+    return name
 
 
 def developed(image: NDArray[np.float32], background: str) -> Image.Image:
