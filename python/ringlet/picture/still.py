@@ -94,6 +94,7 @@ def take(
     layers:     asks for depth, normal, albedo and lock, at the opening shutter
     """
     check_rig(settings.light)
+    check_denoiser(settings.denoiser)
     if len(pose.hairs):
         pose.hairs.check("hairs")
     if standpoint is None:
@@ -111,15 +112,14 @@ def take(
         at = camera if now.camera is None else place(settings, subject(now), lock, now.camera).camera
         return build_scene(now.bodies, now.hairs, at, **look)
 
-    scene, denoiser = scene_at(0.0), chosen_denoiser(settings.denoiser)
-    needs_layers = layers or denoiser == "oidn"
+    scene, needs_layers = scene_at(0.0), layers or settings.denoiser == "oidn"
     guides = layers_of(scene, camera, pose.hairs, pigments) if needs_layers else None
     image = trace(
         scene,
         samples=settings.samples,
         seconds=settings.seconds,
         progress=progress,
-        denoiser=denoiser,
+        denoiser=settings.denoiser,
         layers=guides,
         moved=None if closing is None else scene_at,
     )
@@ -138,11 +138,10 @@ def place(
     return Standpoint(camera, Rig(settings.light, settings.light_turn, camera.axes, portrait.target, portrait.distance))
 
 
-def chosen_denoiser(name: str) -> str:
-    """The name of a denoiser; raises UserError where it is not installed."""
+def check_denoiser(name: str) -> None:
+    """Raises UserError for a denoiser that is not installed."""
     if name == "oidn" and not oidn.available():
         raise UserError("picture: the denoiser oidn needs pyoidn; install it with: pip install 'ringlet[denoise]'")
-    return name
 
 
 def developed(image: NDArray[np.float32], background: str) -> Image.Image:
