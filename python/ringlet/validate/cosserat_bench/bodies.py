@@ -15,8 +15,8 @@ WIDE = 100.0  # size of a plane, in lengths of the longest rod
 
 def _across(axis: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Two unit vectors that make a right-handed frame with a unit axis."""
-    first = unit(np.cross(axis, np.eye(3)[np.abs(axis).argmin()]))
-    return first, np.cross(axis, first)
+    first = unit(np.asarray(np.cross(axis, np.eye(3)[np.abs(axis).argmin()]), np.float64))
+    return first, np.asarray(np.cross(axis, first), np.float64)
 
 
 def _plane(plane: Plane, scenario: Scenario, friction: float) -> Body:
