@@ -21,7 +21,7 @@ from websockets.asyncio.client import ClientConnection, connect
 
 import ringlet
 
-PROTOCOL = 6  # version of python/ringlet/viewer/protocol.py
+PROTOCOL = 7  # version of python/ringlet/viewer/protocol.py
 EXAMPLE = Path(__file__).parents[1] / "examples/child"
 
 

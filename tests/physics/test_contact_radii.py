@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from ringlet.data.curves import Curves
-from ringlet.data.groom import STRAND_RADIUS
+from ringlet.data.groom import STRAND_PROFILE, STRAND_RADIUS
 from ringlet.shot.contact import Contact, ShotContact
 from ringlet.shot.material import Material
 from ringlet.sim.contact_radii import contact_radii
@@ -40,3 +40,5 @@ def test_a_part_of_their_own_radius_counts_where_it_is_more():
     radii = contact_radii(ShotContact(radius=5e-4, own_radius=0.85), locks)
     np.testing.assert_allclose(radii, np.repeat([5e-4, 3.4e-3], 11))
     assert contact_radii(ShotContact(own_radius=0.0), locks) is None
+    locks.curve[STRAND_PROFILE] = np.array([[1.0, 1.0, 1.0], [1.0, 0.5, 0.0]])
+    np.testing.assert_allclose(contact_radii(ShotContact(), locks)[11:], np.linspace(3.4e-3, 0.0, 11).clip(5e-4))

@@ -13,7 +13,7 @@ import pytest
 from commands import edit, made, refused, run
 from pxr import Usd, UsdGeom
 from ringlet.sim.roots import Roots
-from small_example import FRAMES, write_example, write_head
+from small_example import FRAMES
 
 import ringlet
 from ringlet import api
@@ -167,16 +167,6 @@ def test_a_report_without_a_simulation_states_no_limit_of_contact(pipeline, tmp_
     )
     assert result.exit_code == 0, result.output
     assert json.loads((tmp_path / "report/report.json").read_text())["limits"] == []
-
-
-@pytest.mark.parametrize(("unit", "up"), [(1.0, "Y"), (0.01, "Z"), (0.0254, "Y")])
-def test_a_head_in_another_unit_or_up_axis_gives_the_same_groom(pipeline, tmp_path, unit, up):
-    write_example(tmp_path)
-    (tmp_path / "head.usda").unlink()
-    write_head(tmp_path / "head.usda", unit=unit, up=up)
-    same, other = ringlet.read_groom(pipeline / "groom.usdc"), ringlet.build_groom(tmp_path / "small.recipe.toml")
-    np.testing.assert_allclose(other.locks.points, same.locks.points, atol=2e-4)
-    assert other.space.meters_per_unit == pytest.approx(unit)
 
 
 def test_the_installed_command_writes_a_groom_and_refuses_a_missing_file(copy):

@@ -27,7 +27,7 @@ def test_a_run_in_a_long_frame_is_replaced_without_waiting_for_it(monkeypatch):
             return {"slow": slow}
 
         return SimpleNamespace(
-            reach=reach, garments=[], memory={"a": np.zeros(1)}, strands=SimpleNamespace(positions=np.zeros((2, 3)))
+            reach=reach, garments=[], memory={"a": np.zeros(1)}, points=lambda frame: np.zeros((2, 3))
         )
 
     def frame(layer, number, state, motion) -> bytes:

@@ -19,6 +19,7 @@ from ringlet.data.stage import StageSpace
 SECTION = "section"  # of a lock: the id of its section of the scalp; −1: none
 STRAND_RADIUS = "strand_radius"  # of a lock: the radius that it has of its own, as a strand of a braid [m]; 0: none
 CORE = "core"  # of a lock: 1 where the locks of its section are simulated as one rod, 0 elsewhere
+STRAND_PROFILE = "strand_profile"  # of a lock: factors on that radius at even steps from root to tip, shape (count, k)
 TIED = "tied"  # of a point: 1 where a band ties the locks of a section, 0 elsewhere
 
 FLAT = 1e-9  # twice the area of a triangle, relative to its longest edge squared, at which it has no frame

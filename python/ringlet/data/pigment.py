@@ -68,7 +68,7 @@ HAIR_COLORS: dict[str, HairColor] = {
     "dark_brown": HairColor(0.9, 0.15),
     "brown": HairColor(0.7, 0.4),
     "auburn": HairColor(0.8, 0.9),
-    "ginger": HairColor(0.5, 0.95),
+    "ginger": HairColor(0.6, 0.95),
     "blond": HairColor(0.28, 0.5, roughness=0.33),
     "gray": HairColor(0.9, 0.1, gray=0.65, roughness=0.36),
     "white": HairColor(0.01, 0.0, gray=0.8, roughness=0.33),

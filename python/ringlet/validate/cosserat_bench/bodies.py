@@ -7,6 +7,7 @@ from cosseratbench.scenario import Cylinder, Obstacle, Plane, Scenario  # pyrigh
 from numpy.typing import NDArray
 
 from ringlet.sim.obstacle import Body
+from ringlet.validate.cosserat_bench.rods import unit
 
 ROUND = 1e-3  # how far the facets of a cylinder leave its surface, in radii of the rods
 WIDE = 100.0  # size of a plane, in lengths of the longest rod
@@ -14,10 +15,8 @@ WIDE = 100.0  # size of a plane, in lengths of the longest rod
 
 def _across(axis: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Two unit vectors that make a right-handed frame with a unit axis."""
-    other = np.eye(3)[np.abs(axis).argmin()]
-    first = np.cross(axis, other)
-    first /= np.linalg.norm(first)
-    return first, np.cross(axis, first)
+    first = unit(np.asarray(np.cross(axis, np.eye(3)[np.abs(axis).argmin()]), np.float64))
+    return first, np.asarray(np.cross(axis, first), np.float64)
 
 
 def _plane(plane: Plane, scenario: Scenario, friction: float) -> Body:

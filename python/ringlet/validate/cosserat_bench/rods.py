@@ -163,7 +163,7 @@ class RodStrands:
 
 def unit(vectors: Points) -> Points:
     """Unit vectors along the last axis."""
-    return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return np.asarray(vectors / np.linalg.norm(vectors, axis=-1, keepdims=True), np.float64)
 
 
 def transported(across: Points, before: Points, after: Points) -> Points:
