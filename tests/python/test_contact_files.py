@@ -83,7 +83,7 @@ def test_a_picture_shows_contacts_and_initial_overlaps(touched, tmp_path):
 
 def test_a_picture_of_contacts_makes_only_cloth_transparent(touched, tmp_path, monkeypatch):
     drawn = []
-    monkeypatch.setattr(ringlet.picture, "still", lambda bodies, *rest, **options: drawn.extend(bodies))
+    monkeypatch.setattr(ringlet.picture, "still", lambda pose, *rest, **options: drawn.extend(pose.bodies))
     ringlet.write_touches_picture(touched, tmp_path / "a.png", frame=4)
     transparent = {body.mesh.name.split()[-1] for body in drawn if body.opacity < 1}
     assert transparent == {"/groom/cloths/wear/scarf"}
