@@ -276,3 +276,25 @@ def test_strands_of_sections_keep_their_length_at_a_hairline():
 def test_a_hairline_without_locks_to_thin_is_refused():
     with pytest.raises(UserError, match="locks has a hairline, but every guide becomes a lock; give it 'count'"):
         hairline("[locks.hairline]", locks="points = 8")
+
+
+def test_masks_and_values_go_by_places_in_sections():
+    expected = {
+        "section >= 0 and strand == 1": lambda at: (at[STRAND] == 1) & (at[SECTION] >= 0),
+        "u > 0.5 or v > 0.5": lambda at: (at["u"] > 0.5) | (at["v"] > 0.5),
+        "edge > 5": lambda at: at[EDGE] > 0.005,  # in the unit of the recipe
+    }
+    for where, held in expected.items():
+        nail = f"[[nail]]\nmask = {{ where = '{where}' }}"
+        locks = groom("size = 30\nstrands = 3", "", "points = 20\nspacing = 8", nail, "unit = 'mm'", length=160).locks
+        nailed = locks.point["nail"].reshape(len(locks), -1)[:, 0] > 0.5
+        assert nailed.any() and not nailed.all()
+        assert np.array_equal(nailed, held(locks.curve)), where
+    long = groom("strands = 3", "[[shape]]\nop = 'length'\nfactor = { value = 1.5, map = 'u' }").locks
+    np.testing.assert_allclose(long.lengths(), 0.16 * np.maximum(1.5 * long.curve["u"], 0.01), rtol=0.02)
+
+
+def test_a_mask_by_sections_is_refused_where_there_are_none():
+    recipe = "ringlet = 1\n[guides]\ncount = 9\n[[nail]]\nmask = { where = 'strand == 1' }"
+    with pytest.raises(UserError, match=r"nail\[0\].mask.where has 'strand', which only locks of sections have; add"):
+        make_groom(parse_recipe(recipe), sheet())
