@@ -8,9 +8,11 @@ from ringlet.groom.operators import Context
 from ringlet.groom.operators.woven import STRAND_RADIUS
 from ringlet.groom.scalp import Scalp
 from ringlet.groom.sections import EDGE, SECTION, STRAND
+from ringlet.groom.shares import REACH
+from scipy.spatial import KDTree
 from shapes import ball, sheet
 
-from ringlet import Curves, UserError
+from ringlet import Curves, UserError, _core, read_groom, write_groom
 from ringlet.groom import HairMemory, lock_thickness, make_groom, make_hairs, parse_recipe, weave
 
 PATTERNS = ["grid", "brick", "rows", "triangles", "radial"]
@@ -181,10 +183,9 @@ def test_hairs_of_a_strand_fill_it():
         "shorter": 0.0,
     }
     hairs = make_hairs(made).curves
-    lock = hairs.curve["lock"]
-    points = hairs.points.reshape(len(hairs), -1, 3)
-    guide = made.locks.points.reshape(len(made.locks), -1, 3)[lock]
-    away = np.linalg.norm(points - guide, axis=2)[:, 40]
+    middle = hairs.points.reshape(len(hairs), -1, 3)[hairs.curve["lock"] == 0, 60]
+    fine = _core.resample_curves(made.locks[0], np.array([0, 120], np.int32), 4000)
+    away = KDTree(fine).query(middle)[0]
     radius = made.locks.curve[STRAND_RADIUS]
     assert away.max() == pytest.approx(float(radius[0]), rel=0.15)
     assert lock_thickness(made) == pytest.approx(2.0 * float(radius.max()))
@@ -298,3 +299,43 @@ def test_a_mask_by_sections_is_refused_where_there_are_none():
     recipe = "ringlet = 1\n[guides]\ncount = 9\n[[nail]]\nmask = { where = 'strand == 1' }"
     with pytest.raises(UserError, match=r"nail\[0\].mask.where has 'strand', which only locks of sections have; add"):
         make_groom(parse_recipe(recipe), sheet())
+
+
+def hairs_of(made, **settings):
+    made.hairs = {"frizz": 0.0, "stray": 0.0, "shorter": 0.0, "gather": 0.1, **settings}
+    return make_hairs(made).curves
+
+
+@pytest.mark.parametrize("pattern", ["grid", "brick", "triangles"])
+def test_hairs_of_strands_cover_their_section_and_leave_the_parting_free(pattern):
+    made = groom(f"pattern = '{pattern}'\nstrands = 3\nsize = 4\ngap = 0.4", BRAID)
+    hairs = hairs_of(made, per_lock=150)
+    recipe = parse_recipe(text(f"pattern = '{pattern}'\nstrands = 3\nsize = 4\ngap = 0.4", region="region = 'scalp'"))
+    surface = Scalp(ball(), "scalp")
+    division = recipe.locks.sections.divide(surface, recipe.seed)
+    at = division.at(hairs.roots)
+    assert np.mean(at[SECTION] == made.locks.curve[SECTION][hairs.curve["lock"]]) > 0.98
+    assert np.mean(at[EDGE] > 0.0019) > 0.97
+    _, triangle, barycentric = surface.sample(3000, 5)
+    places = surface.positions(triangle, barycentric)
+    bare = KDTree(hairs.roots).query(places)[0][division.at(places)[EDGE] > 0.002]
+    assert np.median(bare) < 0.0012 and np.mean(bare < 0.004) > 0.95
+
+
+def test_hairs_lie_flat_from_their_root_to_where_their_strand_is_woven():
+    made = groom("strands = 3\nsize = 4", BRAID)
+    hairs = hairs_of(made, per_lock=60)
+    points = hairs.points.reshape(-1, 120, 3)[hairs.ids % 10_000 > 0]  # the first hair of a lock is the strand itself
+    height = Scalp(ball(), "scalp").solid.above(np.ascontiguousarray(points[:, :12].reshape(-1, 3), np.float64))[0]
+    height = height.reshape(-1, 12)
+    assert height.min() > -3e-4 and np.abs(height[:, 0]).max() < 1e-5
+    assert height[:, 6].max() < 0.004 < height[:, -1].max()  # where the strand is woven it stands off
+
+
+def test_hairs_of_strands_are_the_same_from_a_file(tmp_path):
+    made = groom("strands = 3", BRAID, locks="points = 120\nspacing = 2")
+    write_groom(made, tmp_path / "groom.usdc")
+    again = read_groom(tmp_path / "groom.usdc")
+    assert np.array_equal(again.locks.curve[REACH], made.locks.curve[REACH])
+    assert (made.locks.curve[REACH].max(axis=1) > 0.002).tolist() == (made.locks.curve[STRAND] >= 0).tolist()
+    np.testing.assert_allclose(make_hairs(again).curves.points, make_hairs(made).curves.points, atol=1e-6)

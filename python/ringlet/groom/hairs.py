@@ -24,11 +24,14 @@ from ringlet.data.quantities import Quantity, Ramped, Section, Varied, explain
 from ringlet.data.random import Random, soft_threshold
 from ringlet.groom.color import hair_colors
 from ringlet.groom.fiber import FiberSettings
-from ringlet.groom.operators.woven import STRAND_RADIUS
+from ringlet.groom.operators.woven import JOIN, STRAND_RADIUS
 from ringlet.groom.scalp import axes
+from ringlet.groom.shares import REACH, scattered
 
 IDS_PER_LOCK = 10_000  # id of a hair: id of its lock · 10 000 + number in the lock
 FRIZZ_KNOTS = 8
+LATEST_JOIN = 0.9  # part of a lock
+PACE_EASE = 0.3  # half the part of `gather` over which a flat hair turns into its lock
 MARGIN = 1e-4  # [m] distance of hairs from surfaces, twice the radius of a hair
 
 
@@ -55,7 +58,9 @@ class HairSettings(Section):
         default=Varied(value=0.0), description="where hairs are in it: 0 everywhere, 1 at the rim"
     )
     spread: Annotated[Varied, Quantity("m", 0.0, 0.1)] = Field(
-        default=Varied(value=0.003), description="radius on the scalp that a lock's roots cover"
+        default=Varied(value=0.003),
+        description="radius on the scalp that a lock's roots cover; those of a section's strand cover its share of the "
+        "section, and lie flat up to where it grows",
     )
     gather: Annotated[float, Quantity("", 0.001, 1.0)] = Field(
         default=0.15, description="part of the lock over which they come together"
@@ -158,7 +163,7 @@ class Hairs:
         points, offsets = np.ascontiguousarray(lock_points - origin, np.float32), self._groom.locks.offsets
         _core.warp_hairs(points, offsets, out, **deformation)
         if surfaces:
-            layout = {name: self._layout[name] for name in ("first", "tip", "hold")}
+            layout = {name: self._layout[name] for name in ("first", "tip", "join", "flat", "hold", "pace")}
             corners, triangles = _merged(surfaces)
             _core.keep_beside(points, offsets, out, corners - origin, triangles, MARGIN, **layout, shares=fractions)
         return origin
@@ -263,6 +268,8 @@ def _key(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -> 
         locks.offsets,
         locks.curve["root_triangle"],
         locks.curve["root_barycentric"],
+        locks.curve.get(REACH, np.empty(0)),
+        _joins(locks),
         *(values(name) for name in HairSettings.model_fields if isinstance(getattr(settings, name), Varied)),
         scalp.points,
         scalp.triangles,
@@ -290,7 +297,11 @@ def _place(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -
     points = settings.points or int(locks.counts.max())
 
     disk = _disk(settings, ids, number, full_count[lock])
-    scattered = roots[lock] + per_lock("spread")[lock, None] * np.einsum("hxk,hk->hx", frames[lock][:, :, :2], disk)
+    places = roots[lock] + per_lock("spread")[lock, None] * np.einsum("hxk,hk->hx", frames[lock][:, :, :2], disk)
+    shared = _shared(locks)[lock]
+    if shared.any():
+        of = lock[shared]
+        places[shared] = scattered(locks.curve[REACH][of], roots[of], frames[of, :, 2], disk[shared])
     try:
         region = np.ascontiguousarray(scalp.region(groom.region), np.int32)
     except KeyError as error:
@@ -299,7 +310,7 @@ def _place(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -
         raise UserError(
             f"hairs: region '{groom.region}' of {scalp.name} has no faces; choose the faces that carry hair"
         )
-    root_triangle, root_barycentric, _ = _core.bind_roots(scalp.points, scalp.triangles, scattered, region)
+    root_triangle, root_barycentric, _ = _core.bind_roots(scalp.points, scalp.triangles, places, region)
     is_lock = number == 0
     root_triangle[is_lock] = locks.curve["root_triangle"]
     root_barycentric[is_lock] = locks.curve["root_barycentric"]
@@ -368,6 +379,20 @@ def _strand_radius(locks: Curves, radius: NDArray[np.float64]) -> NDArray[np.flo
     return np.where(woven > 0.0, woven, radius)
 
 
+def _shared(locks: Curves) -> NDArray[np.bool_]:
+    """Whether the hairs of a lock come from its share of a section, shape (locks,)."""
+    if REACH not in locks.curve:
+        return np.zeros(len(locks), np.bool_)
+    return np.asarray(locks.curve[REACH].max(axis=1) > 0.0)
+
+
+def _joins(locks: Curves) -> NDArray[np.float64]:
+    """Part of each lock after which hairs come to it, shape (locks,)."""
+    if JOIN not in locks.curve:
+        return np.zeros(len(locks))
+    return np.minimum(locks.curve[JOIN] / np.maximum(locks.lengths(), 1e-9), LATEST_JOIN)
+
+
 def _settings(values: dict[str, Any]) -> HairSettings:
     try:
         return HairSettings.model_validate(values, context={"unit": 1.0})
@@ -425,11 +450,22 @@ def _layout(
     return {
         "offset": (per_lock("radius")[lock, None] * section).astype(np.float32),
         "tip": tip.astype(np.float32),
+        "join": (_joins(per_lock.locks)[lock] * free).astype(np.float32),
+        "flat": (_shared(per_lock.locks)[lock] & free).astype(np.float32),
         "taper": per_lock("taper")[lock].astype(np.float32),
         "frizz": knots.astype(np.float32),
         "profile": settings.radius.along(u).astype(np.float32),
         "hold": (t * t * (3.0 - 2.0 * t)).astype(np.float32),
+        "pace": _pace(u, settings.gather).astype(np.float32),
     }
+
+
+def _pace(u: NDArray, gather: float) -> NDArray[np.float64]:
+    """How far along its lock a flat hair is at its parameters u: it starts once it has come there, smoothly."""
+    soft = PACE_EASE * gather
+    late = np.clip(u - gather + soft, 0.0, None)
+    pace = np.where(late < 2.0 * soft, late * late / (4.0 * soft), late - soft)
+    return pace / max(1.0 - gather, 1e-9) if gather < 1.0 else 0.0 * u
 
 
 def _section(per_lock: _Values, lock: NDArray, disk: NDArray) -> NDArray[np.float64]:

@@ -20,6 +20,8 @@ from ringlet.groom.operators.operator import Context, arc_lengths, grid, packed,
 from ringlet.groom.operators.shape import Shape
 from ringlet.groom.sections import STRAND
 
+JOIN = "join"  # curve attribute of locks: length along a woven strand after which its hairs come to it [m]
+JOINED = 0.5  # place where they do, as a part of the start
 EASE = 0.5  # turns over which a braid begins and ends
 LEAST_POINTS, GOOD_POINTS = 6, 10  # of a strand, per wave of its path to the front and back
 
@@ -85,19 +87,21 @@ class Woven(Shape):
         if not braids:
             return curves
         shapes = grid(fine).copy()
-        radius = curves.curve.get(STRAND_RADIUS, np.zeros(len(curves), np.float32)).copy()
+        radius, join = (
+            curves.curve.get(name, np.zeros(len(curves), np.float32)).copy() for name in (STRAND_RADIUS, JOIN)
+        )
         tied = np.zeros(shapes.shape[:2], np.float32)
         core = curves.curve.get(CORE, np.zeros(len(curves), np.int32)).copy()
         if TIED in fine.point:
             tied[:] = fine.point[TIED].reshape(tied.shape)
         for braid in braids:
             shapes[braid.rows] = braid.woven(shapes[braid.rows], context.scalp.middle, self)
-            radius[braid.rows] = braid.radius
+            radius[braid.rows], join[braid.rows] = braid.radius, JOINED * braid.start * braid.length
             tied[braid.rows] = braid.tied(points)
             core[braid.rows] = self.simulate == "core"
         woven = self.blended(fine, shapes, weight)
         of_points = {**woven.point, TIED: tied.ravel()} if tied.any() else woven.point
-        of_curves = {**woven.curve, STRAND_RADIUS: radius, **({CORE: core} if core.any() else {})}
+        of_curves = {**woven.curve, STRAND_RADIUS: radius, JOIN: join, **({CORE: core} if core.any() else {})}
         return Curves(woven.points, woven.offsets, woven.ids, of_curves, of_points)
 
     def _braids(self, curves: Curves, weight: NDArray, context: Context) -> list[Braided]:
@@ -132,6 +136,7 @@ class Woven(Shape):
                     across=0.5 * width - radius[key],
                     front=(0.5 * depth - radius[key]) * (-1.0 if mirrored[k] else 1.0),
                     radius=values["tightness"][k] * radius[key],
+                    length=length[k],
                     turns=length[k] / pitch[k],
                     start=min(values["start"][k] / length[k], 0.5),
                     tail=min(values["tail"][k] / length[k], 0.5),
@@ -157,6 +162,7 @@ class Braided:
     rows:          rows of its locks
     across, front: amplitudes of the strands' path [m]
     radius:        of a strand [m]
+    length:        of the centre line [m]
     turns:         turns of the path along the whole length, at a ramp of 1
     start, tail:   parts of the length in which strands come together and run on
     tie:           part of the length before the tail in which they are tied
@@ -167,6 +173,7 @@ class Braided:
     across: float
     front: float
     radius: float
+    length: float
     turns: float
     start: float
     tail: float
