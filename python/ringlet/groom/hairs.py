@@ -15,7 +15,7 @@ from scipy.spatial import KDTree
 from ringlet import _core
 from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.data.errors import UserError
-from ringlet.data.groom import Groom
+from ringlet.data.groom import SECTION, STRAND_RADIUS, Groom
 from ringlet.data.mesh import Mesh
 from ringlet.data.painted import per_lock as for_each_lock
 from ringlet.data.pigment import TWIST
@@ -24,12 +24,13 @@ from ringlet.data.quantities import Quantity, Ramped, Section, Varied, explain
 from ringlet.data.random import Random, soft_threshold
 from ringlet.groom.color import hair_colors
 from ringlet.groom.fiber import FiberSettings
-from ringlet.groom.operators.woven import JOIN, STRAND_RADIUS
+from ringlet.groom.operators.woven import JOIN
 from ringlet.groom.scalp import axes
-from ringlet.groom.shares import REACH, scattered
+from ringlet.groom.shares import LAID, REACH, fed, scattered
 
 IDS_PER_LOCK = 10_000  # id of a hair: id of its lock · 10 000 + number in the lock
 FRIZZ_KNOTS = 8
+PLASTIC = np.array([0.7548776662466927, 0.5698402909980532])
 LATEST_JOIN = 0.9  # part of a lock
 PACE_EASE = 0.3  # half the part of `gather` over which a flat hair turns into its lock
 MARGIN = 1e-4  # [m] distance of hairs from surfaces, twice the radius of a hair
@@ -270,6 +271,7 @@ def _key(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -> 
         locks.curve["root_barycentric"],
         locks.curve.get(REACH, np.empty(0)),
         _joins(locks),
+        *((locks.points, locks.curve[LAID]) if LAID in locks.curve else ()),
         *(values(name) for name in HairSettings.model_fields if isinstance(getattr(settings, name), Varied)),
         scalp.points,
         scalp.triangles,
@@ -298,7 +300,14 @@ def _place(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -
 
     disk = _disk(settings, ids, number, full_count[lock])
     places = roots[lock] + per_lock("spread")[lock, None] * np.einsum("hxk,hk->hx", frames[lock][:, :, :2], disk)
-    shared = _shared(locks)[lock]
+    laid = locks.curve.get(LAID, np.zeros(len(locks))) > 0.0
+    shared = (_shared(locks) & ~laid)[lock]
+    joins = _joins(locks)[lock]
+    if laid.any():
+        solid = _core.Solid(np.ascontiguousarray(scalp.points, np.float64), scalp.triangles)
+        for k in np.flatnonzero(laid).tolist():
+            of = slice(first[k], first[k + 1])
+            places[of], joins[of] = _fed(settings, locks, solid, k, number[of])
     if shared.any():
         of = lock[shared]
         places[shared] = scattered(locks.curve[REACH][of], roots[of], frames[of, :, 2], disk[shared])
@@ -341,6 +350,7 @@ def _place(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -
     )
     _flatten(groom, curves)
     layout = _layout(settings, per_lock, ids, number, lock, disk, u)
+    layout["join"] = np.where(is_lock, 0.0, joins).astype(np.float32)
     layout |= _neighbours(settings, per_lock, groom, curves, is_lock, roots, u)
     hairs = Hairs(curves, groom, np.empty(0), {"first": first, **layout})
     hairs._root = hairs._root_offsets(scalp.points, roots)
@@ -384,6 +394,20 @@ def _shared(locks: Curves) -> NDArray[np.bool_]:
     if REACH not in locks.curve:
         return np.zeros(len(locks), np.bool_)
     return np.asarray(locks.curve[REACH].max(axis=1) > 0.0)
+
+
+def _fed(
+    settings: HairSettings, locks: Curves, solid: _core.Solid, lock: int, number: NDArray
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Places where the hairs of a cornrow's strand grow [m], shape (n, 3), and parts of it where they join, (n,)."""
+    own, counts = locks.curve, locks.counts
+    length = max(float(locks.take(np.array([lock])).lengths()[0]), 1e-9)
+    strands = (own[SECTION] == own[SECTION][lock]) & (counts == counts[lock]) & (own[LAID] > 0.0)
+    middle = locks.take(strands).points.reshape(-1, counts[lock], 3).mean(axis=0)
+    chance = Random(settings.seed, "hairs/row").uniforms(locks.ids[lock : lock + 1], 2)
+    at = (chance + number[:, None] * PLASTIC) % 1.0  # a low-discrepancy sequence (Roberts 2018)
+    found = fed(locks[lock], middle, solid, own[REACH][lock], own[LAID][lock] / length, own[JOIN][lock] / length, at)
+    return found.places, found.joins
 
 
 def _joins(locks: Curves) -> NDArray[np.float64]:
@@ -450,7 +474,6 @@ def _layout(
     return {
         "offset": (per_lock("radius")[lock, None] * section).astype(np.float32),
         "tip": tip.astype(np.float32),
-        "join": (_joins(per_lock.locks)[lock] * free).astype(np.float32),
         "flat": (_shared(per_lock.locks)[lock] & free).astype(np.float32),
         "taper": per_lock("taper")[lock].astype(np.float32),
         "frizz": knots.astype(np.float32),
