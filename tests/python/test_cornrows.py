@@ -48,6 +48,10 @@ shorter = 0
 """
 
 
+def no_helper(name, setting):
+    raise AssertionError(f"{setting} asks for {name}")
+
+
 def groom(cornrow="", sections="", curves="", seed=1, helpers=None):
     text = RECIPE.format(cornrow=cornrow, sections=sections, curves=curves, seed=seed)
     return make_groom(parse_recipe(text), BALL, helpers=helpers)
@@ -107,7 +111,7 @@ def test_hair_of_a_row_lies_flat_towards_its_braid_and_leaves_the_parting_free(m
     free = hairs.ids % 10_000 > 0
     lock, points = hairs.curve["lock"][free], hairs.points.reshape(-1, POINTS, 3)[free]
     recipe = parse_recipe(RECIPE.format(cornrow="", sections="", curves="", seed=1))
-    at = recipe.locks.sections.divide(SURFACE, recipe.seed).at(points[:, 0])
+    at = recipe.locks.sections.divide(SURFACE, recipe.seed, no_helper).at(points[:, 0])
     assert np.mean(at[SECTION] == made.locks.curve[SECTION][lock]) > 0.99
     assert np.mean(at[EDGE] > 0.0018) > 0.97
     assert np.abs(heights(points[:, 0])).max() < 1e-5

@@ -18,6 +18,10 @@ from ringlet.groom import HairMemory, lock_thickness, make_groom, make_hairs, pa
 PATTERNS = ["grid", "brick", "rows", "triangles", "radial"]
 
 
+def no_helper(name, setting):
+    raise AssertionError(f"{setting} asks for {name}")
+
+
 def groom(sections="strands = 3", shape="", locks="points = 120", curl="", top="", scalp=None, length=16):
     """A groom of straight hair that stands on the scalp."""
     return make_groom(
@@ -312,7 +316,7 @@ def test_hairs_of_strands_cover_their_section_and_leave_the_parting_free(pattern
     hairs = hairs_of(made, per_lock=150)
     recipe = parse_recipe(text(f"pattern = '{pattern}'\nstrands = 3\nsize = 4\ngap = 0.4", region="region = 'scalp'"))
     surface = Scalp(ball(), "scalp")
-    division = recipe.locks.sections.divide(surface, recipe.seed)
+    division = recipe.locks.sections.divide(surface, recipe.seed, no_helper)
     at = division.at(hairs.roots)
     assert np.mean(at[SECTION] == made.locks.curve[SECTION][hairs.curve["lock"]]) > 0.98
     assert np.mean(at[EDGE] > 0.0019) > 0.97
@@ -339,3 +343,44 @@ def test_hairs_of_strands_are_the_same_from_a_file(tmp_path):
     assert np.array_equal(again.locks.curve[REACH], made.locks.curve[REACH])
     assert (made.locks.curve[REACH].max(axis=1) > 0.002).tolist() == (made.locks.curve[STRAND] >= 0).tolist()
     np.testing.assert_allclose(make_hairs(again).curves.points, make_hairs(made).curves.points, atol=1e-6)
+
+
+def arc(plane, angle):
+    """A parting over the ball: where a plane through its middle, with that normal, cuts it near the top."""
+    normal = np.asarray(plane, float) / np.linalg.norm(plane)
+    up = np.array([0.0, 1.0, 0.0]) - normal[1] * normal
+    up /= np.linalg.norm(up)
+    t = np.linspace(-angle, angle, 30)[:, None]
+    return 0.09 * (np.cos(t) * up + np.sin(t) * np.cross(normal, up))
+
+
+def drawn(*lines, locks="points = 20", sections="strands = 1"):
+    recipe = parse_recipe(
+        text(f"pattern = 'drawn'\npartings = 'p'\n{sections}", locks=locks, region="region = 'scalp'")
+    )
+    return make_groom(recipe, ball(), helpers={"p": Curves.from_list(list(lines))}).locks
+
+
+def test_drawn_partings_divide_the_scalp_and_another_one_renames_only_what_it_divides():
+    across, ahead = arc((1, 0, 0), 1.55), arc((0, 0, 1), 1.55)
+    two, four = drawn(across), drawn(across, ahead)
+    assert (len(two), len(four)) == (2, 4)
+    assert sorted(np.sign(two.roots[:, 0])) == [-1, 1]
+    assert {(x, z) for x, z in np.sign(four.roots[:, [0, 2]])} == {(a, b) for a in (-1, 1) for b in (-1, 1)}
+    aside = drawn(across, 0.09 * np.stack([np.sin(t := np.linspace(0.05, 1.6, 20)), np.cos(t), 0.3 * t], axis=1))
+    same = np.isin(aside.ids, two.ids)
+    assert len(aside) == 3 and same.sum() == 2  # one is divided, and keeps its name on a side
+    left = two.take(two.roots[:, 0] < 0)
+    assert np.array_equal(aside.take(np.isin(aside.ids, left.ids)).points, left.points)
+
+
+def test_loose_hair_leaves_drawn_partings_free():
+    locks = drawn(arc((1, 0, 0), 1.55), locks="points = 8\ncount = 2000", sections="gap = 0.6")
+    assert 0.002 < np.abs(locks.roots[:, 0]).min() < 0.005  # as in the chart, which is wider at the border
+    assert locks.curve[EDGE].min() >= 0.003
+    assert len(np.unique(locks.curve[SECTION])) == 2
+
+
+def test_drawn_sections_without_partings_are_refused():
+    with pytest.raises(UserError, match="needs both pattern = 'drawn' and 'partings'"):
+        parse_recipe(text("pattern = 'drawn'"))

@@ -98,7 +98,7 @@ class Locks(Operator):
         """Roots outside of partings, and the strands of sections: ids, triangles, barycentrics, attributes."""
         assert self.sections is not None
         scalp = context.scalp
-        division = self.sections.divide(scalp, context.seed)
+        division = self.sections.divide(scalp, context.seed, context.helper)
         at = division.at(scalp.positions(triangle, barycentric))
         loose = division.grows(at)
         if self.sections.strands is not None and self.count is None and self.spacing is None:
