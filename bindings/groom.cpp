@@ -145,15 +145,17 @@ nb::tuple crossings(const Array3<double> &points, const Array1<int> &offsets, do
 void warp(const Array3<float> &lock_points, const Array1<int> &lock_offsets,
           nb::ndarray<float, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu> result, const Array3<double> &axis,
           const Array3<float> &root, const Array1<int> &first, const Table<float> &offset, const Array1<float> &tip,
-          const Array1<float> &taper, const Table<float> &frizz, const Array1<float> &profile, const Array1<float> &hold,
-          const Array1<int> &other, const Array1<float> &share, const Array1<float> &blend) {
+          const Array1<float> &join, const Array1<float> &flat, const Array1<float> &taper, const Table<float> &frizz,
+          const Array1<float> &profile, const Array1<float> &hold, const Array1<float> &pace, const Array1<int> &other,
+          const Array1<float> &share, const Array1<float> &blend) {
     const size_t locks = lock_offsets.size() - 1, points = profile.size(), hairs = first.data()[locks];
     require(first.size() == locks + 1 && axis.shape(0) == locks, "first and axis need one row a lock");
-    require(root.shape(0) == hairs && offset.size() == 2 * hairs && tip.size() == hairs && taper.size() == hairs &&
-                frizz.shape(0) == hairs,
-            "root, offset, tip, taper and frizz need one row a hair");
+    require(root.shape(0) == hairs && offset.size() == 2 * hairs && tip.size() == hairs && join.size() == hairs &&
+                flat.size() == hairs && taper.size() == hairs && frizz.shape(0) == hairs,
+            "root, offset, tip, join, flat, taper and frizz need one row a hair");
     require(frizz.shape(1) >= 4 && frizz.shape(1) % 2 == 0, "frizz needs at least 2 knots of two numbers");
-    require(hold.size() == points && blend.size() == points && points >= 2, "profile, hold and blend need one value a point");
+    require(hold.size() == points && pace.size() == points && blend.size() == points && points >= 2,
+            "profile, hold, pace and blend need one value a point");
     require(other.size() == share.size() && (other.size() == 0 || other.size() == hairs),
             "other and share need a value a hair");
     for (const int lock : view(other)) require(lock >= 0 && static_cast<size_t>(lock) < locks, "other is not one of the locks");
@@ -161,11 +163,14 @@ void warp(const Array3<float> &lock_points, const Array1<int> &lock_offsets,
     const HairLayout layout{.first = view(first),
                             .offset = numbers(offset),
                             .tip = view(tip),
+                            .join = view(join),
+                            .flat = view(flat),
                             .taper = view(taper),
                             .frizz = numbers(frizz),
                             .knots = static_cast<int>(frizz.shape(1) / 2),
                             .profile = view(profile),
                             .hold = view(hold),
+                            .pace = view(pace),
                             .other = view(other),
                             .share = view(share),
                             .blend = view(blend)};
@@ -177,14 +182,17 @@ void warp(const Array3<float> &lock_points, const Array1<int> &lock_offsets,
 int keep_hairs(const Array3<float> &lock_points, const Array1<int> &lock_offsets,
                nb::ndarray<float, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu> hairs, const Array3<double> &points,
                const Array3<int> &triangles, double margin, const Array1<int> &first, const Array1<float> &tip,
-               const Array1<float> &hold,
+               const Array1<float> &join, const Array1<float> &flat, const Array1<float> &hold, const Array1<float> &pace,
                std::optional<nb::ndarray<std::uint8_t, nb::shape<-1, -1>, nb::c_contig, nb::device::cpu>> shares) {
     const size_t locks = lock_offsets.size() - 1, count = first.data()[locks];
-    require(first.size() == locks + 1 && tip.size() == count, "first needs one row a lock, tip a value a hair");
-    require(hold.size() >= 2 && hairs.shape(0) == count * hold.size(), "the hairs need one row a point");
+    require(first.size() == locks + 1, "first needs one row a lock");
+    require(tip.size() == count && join.size() == count && flat.size() == count, "tip, join and flat need a value a hair");
+    require(hold.size() >= 2 && pace.size() == hold.size() && hairs.shape(0) == count * hold.size(),
+            "the hairs need one row a point");
     require(!shares || shares->size() == hairs.shape(0), "shares need one row a hair");
     HairLayout layout;
-    layout.first = view(first), layout.tip = view(tip), layout.hold = view(hold);
+    layout.first = view(first), layout.tip = view(tip), layout.join = view(join), layout.flat = view(flat);
+    layout.hold = view(hold), layout.pace = view(pace);
     const std::span<std::uint8_t> left = shares ? std::span{shares->data(), shares->size()} : std::span<std::uint8_t>{};
     const TriangleMesh surface = mesh_of(points, triangles);
     nb::gil_scoped_release release;
@@ -228,10 +236,11 @@ void bind_groom(nb::module_ &module) {
             },
             "Points (n, 3) [m] with the fewest violations so far.");
     module.def("warp_hairs", &warp, "lock_points"_a, "lock_offsets"_a, "result"_a, nb::kw_only(), "axis"_a, "root"_a, "first"_a,
-               "offset"_a, "tip"_a, "taper"_a, "frizz"_a, "profile"_a, "hold"_a, "other"_a, "share"_a, "blend"_a,
+               "offset"_a, "tip"_a, "join"_a, "flat"_a, "taper"_a, "frizz"_a, "profile"_a, "hold"_a, "pace"_a, "other"_a,
+               "share"_a, "blend"_a,
                "Writes the points of all hairs (hairs * points, 3) around the current locks; see groom/hairs.h.");
     module.def(
         "keep_beside", &keep_hairs, "lock_points"_a, "lock_offsets"_a, "hairs"_a, "points"_a, "triangles"_a, "margin"_a,
-        nb::kw_only(), "first"_a, "tip"_a, "hold"_a, "shares"_a = nb::none(),
+        nb::kw_only(), "first"_a, "tip"_a, "join"_a, "flat"_a, "hold"_a, "pace"_a, "shares"_a = nb::none(),
         "Keeps hairs, in place, on their lock's side of triangles; see groom/keep_beside.h. Returns how many hairs moved.");
 }

@@ -278,15 +278,33 @@ BOOST_AUTO_TEST_CASE(a_hair_off_the_middle_runs_beside_a_straight_lock) {
     for (const Vec3 &p : line) lock.push_back(p.cast<float>());
     const std::vector<int> offsets{0, 8}, first{0, 2};
     const std::vector<Vec3> axis{Vec3::UnitX()};
-    const std::vector<float> root(6, 0.0F), offset{0, 0, 0.002F, 0.001F}, tip{1, 1}, taper(2, 0.0F), frizz(8, 0.0F),
-        profile(8, 1.0F), hold(8, 0.0F);
+    const std::vector<float> root(6, 0.0F), offset{0, 0, 0.002F, 0.001F}, tip{1, 1}, none(2, 0.0F), taper(2, 0.0F),
+        frizz(8, 0.0F), profile(8, 1.0F), hold(8, 0.0F);
     std::vector<float> result(size_t{2} * 8 * 3);
-    warp_hairs(lock, offsets, axis, root, {first, offset, tip, taper, frizz, 2, profile, hold, {}, {}, {}}, result);
+    warp_hairs(lock, offsets, axis, root, {first, offset, tip, none, none, taper, frizz, 2, profile, hold, hold, {}, {}, {}},
+               result);
     for (size_t k = 0; k < 8; ++k) {
         BOOST_TEST((Eigen::Map<Vec3f>(&result[3 * k]) == lock[k]));
         const Vec3f beside = lock[k] + Vec3f(0.002F, 0.0F, -0.001F);
         BOOST_TEST((Eigen::Map<Vec3f>(&result[3 * (8 + k)]) - beside).norm() < 1e-8F);
     }
+}
+
+BOOST_AUTO_TEST_CASE(a_flat_hair_goes_straight_from_its_root_to_where_it_joins_the_lock) {
+    std::vector<Vec3f> lock;
+    for (const Vec3 &p : straight(9, 0.08)) lock.push_back(p.cast<float>());
+    const std::vector<int> offsets{0, 9}, first{0, 2};
+    const std::vector<Vec3> axis{Vec3::UnitX()};
+    const std::vector<float> root{0, 0, 0, 0.01F, 0, 0}, offset(4, 0.0F), tip{1, 1}, join{0, 0.5F}, flat{0, 1}, taper(2, 0.0F),
+        frizz(8, 0.0F), profile(5, 1.0F), hold{1, 0.5F, 0, 0, 0}, pace{0, 0, 0, 0.5F, 1};
+    std::vector<float> result(size_t{2} * 5 * 3);
+    warp_hairs(lock, offsets, axis, root, {first, offset, tip, join, flat, taper, frizz, 2, profile, hold, pace, {}, {}, {}},
+               result);
+    const auto point = [&](size_t k) { return Vec3f(Eigen::Map<Vec3f>(&result[3 * (5 + k)])); };
+    const Vec3f outside = lock[0] + Vec3f(0.01F, 0.0F, 0.0F);
+    BOOST_TEST((point(0) - outside).norm() < 1e-8F);
+    BOOST_TEST((point(1) - 0.5F * (outside + lock[4])).norm() < 1e-8F);
+    for (const size_t k : {2, 3, 4}) BOOST_TEST((point(k) - lock[2 * k]).norm() < 1e-8F); // the rest of the lock is its own
 }
 
 BOOST_AUTO_TEST_CASE(hairs_stop_short_of_a_wall_beside_their_lock_and_return_to_their_places_beyond) {
@@ -297,6 +315,7 @@ BOOST_AUTO_TEST_CASE(hairs_stop_short_of_a_wall_beside_their_lock_and_return_to_
     const std::vector<int> offsets{0, n}, first{0, 3};
     std::vector<float> tip{1, 1, 1}, hold(n, 0.0F), hairs;
     hold[0] = 1.0F;
+    const std::vector<float> none(3, 0.0F);
     for (const float x : {0.0F, beyond, -beyond})
         for (const Vec3f &p : lock) hairs.insert(hairs.end(), {p[0] + x, p[1], p[2]});
     const std::vector<float> before = hairs;
@@ -305,7 +324,7 @@ BOOST_AUTO_TEST_CASE(hairs_stop_short_of_a_wall_beside_their_lock_and_return_to_
     const std::vector<Vec3> wall{{at, y, -0.031}, {at, y, 0.03}, {at, 0.2, 0.03}, {at, 0.2, -0.03}};
     const std::vector<Triangle> triangles{{0, 1, 2}, {0, 2, 3}};
     HairLayout layout;
-    layout.first = first, layout.tip = tip, layout.hold = hold;
+    layout.first = first, layout.tip = tip, layout.join = layout.flat = none, layout.hold = layout.pace = hold;
 
     BOOST_TEST(keep_beside(lock, offsets, layout, {wall, triangles}, 1e-4, hairs) == 1);
     const auto x = [&](int hair, int k) { return hairs[3 * (hair * n + k)]; };
@@ -340,7 +359,7 @@ BOOST_AUTO_TEST_CASE(no_edge_of_a_hair_pierces_what_its_lock_does_not) {
             lock.emplace_back(Vec3(6e-3 * std::cos(angle), 1e-3 * k, 6e-3 * std::sin(angle)).cast<float>());
         }
         const std::vector<int> offsets{0, n}, first{0, count};
-        std::vector<float> tip, hairs, hold(n, 0.0F);
+        std::vector<float> tip, hairs, hold(n, 0.0F), none(count, 0.0F);
         for (int i = 0; i < count; ++i) { // shorter than the lock by up to a tenth, beside it by up to 3 mm
             tip.push_back(1.0F - 0.1F * static_cast<float>(i) / count);
             const Vec3f beside = (1.7e-3 * anywhere()).cast<float>();
@@ -376,7 +395,7 @@ BOOST_AUTO_TEST_CASE(no_edge_of_a_hair_pierces_what_its_lock_does_not) {
             return found;
         };
         HairLayout layout;
-        layout.first = first, layout.tip = tip, layout.hold = hold;
+        layout.first = first, layout.tip = tip, layout.join = layout.flat = none, layout.hold = layout.pace = hold;
         through_before += through();
         keep_beside(lock, offsets, layout, shards.view(), 1e-4, hairs);
         through_after += through();

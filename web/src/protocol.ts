@@ -231,6 +231,8 @@ export interface Hairs {
   lock: Uint32Array;
   offset: Float32Array;
   tip: Float32Array;
+  join: Float32Array;
+  flat: Float32Array;
   taper: Float32Array;
   other: Int32Array;
   share: Float32Array;
@@ -238,6 +240,7 @@ export interface Hairs {
   root: Float32Array;
   profile: Float32Array;
   hold: Float32Array;
+  pace: Float32Array;
   blend: Float32Array;
   width: Float32Array;
   thinning: Float32Array;

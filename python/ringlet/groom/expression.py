@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from ringlet.data.settings import did_you_mean, refuse
 
-NAMES = ("id", "random", "length", "x", "y", "z")  # x, y, z are of the root
+SECTIONED = ("section", "strand", "u", "v", "edge")  # attributes of locks that grow from sections
+NAMES = ("id", "random", "length", "x", "y", "z", *SECTIONED)  # x, y, z are of the root
 FUNCTIONS: dict[str, Callable[..., Any]] = {
     "abs": np.abs,
     "min": np.minimum,
@@ -56,10 +57,15 @@ def check(text: str) -> str:
     return text
 
 
+def names(text: str) -> set[str]:
+    """Names of values that a checked expression uses."""
+    return {node.id for node in ast.walk(ast.parse(text, mode="eval")) if isinstance(node, ast.Name)} & set(NAMES)
+
+
 def evaluate(text: str, values: Mapping[str, NDArray]) -> NDArray[np.float64]:
     """Evaluates a checked expression for each lock, shape (count,); true is 1.
 
-    values: an array of shape (count,) for each of NAMES
+    values: an array of shape (count,) for ``id`` and each name of the expression
     """
     with np.errstate(all="ignore"):  # the caller reports results that are not finite
         result = _value(ast.parse(text, mode="eval").body, values)

@@ -15,7 +15,7 @@ from scipy.spatial import KDTree
 from ringlet import _core
 from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.data.errors import UserError
-from ringlet.data.groom import Groom
+from ringlet.data.groom import SECTION, STRAND_RADIUS, Groom
 from ringlet.data.mesh import Mesh
 from ringlet.data.painted import per_lock as for_each_lock
 from ringlet.data.pigment import TWIST
@@ -24,11 +24,15 @@ from ringlet.data.quantities import Quantity, Ramped, Section, Varied, explain
 from ringlet.data.random import Random, soft_threshold
 from ringlet.groom.color import hair_colors
 from ringlet.groom.fiber import FiberSettings
-from ringlet.groom.operators.woven import STRAND_RADIUS
+from ringlet.groom.operators.woven import JOIN
 from ringlet.groom.scalp import axes
+from ringlet.groom.shares import LAID, REACH, fed, scattered
 
 IDS_PER_LOCK = 10_000  # id of a hair: id of its lock · 10 000 + number in the lock
 FRIZZ_KNOTS = 8
+PLASTIC = np.array([0.7548776662466927, 0.5698402909980532])
+LATEST_JOIN = 0.9  # part of a lock
+PACE_EASE = 0.3  # half the part of `gather` over which a flat hair turns into its lock
 MARGIN = 1e-4  # [m] distance of hairs from surfaces, twice the radius of a hair
 
 
@@ -55,7 +59,9 @@ class HairSettings(Section):
         default=Varied(value=0.0), description="where hairs are in it: 0 everywhere, 1 at the rim"
     )
     spread: Annotated[Varied, Quantity("m", 0.0, 0.1)] = Field(
-        default=Varied(value=0.003), description="radius on the scalp that a lock's roots cover"
+        default=Varied(value=0.003),
+        description="radius on the scalp that a lock's roots cover; those of a section's strand cover its share of the "
+        "section, and lie flat up to where it grows",
     )
     gather: Annotated[float, Quantity("", 0.001, 1.0)] = Field(
         default=0.15, description="part of the lock over which they come together"
@@ -158,7 +164,7 @@ class Hairs:
         points, offsets = np.ascontiguousarray(lock_points - origin, np.float32), self._groom.locks.offsets
         _core.warp_hairs(points, offsets, out, **deformation)
         if surfaces:
-            layout = {name: self._layout[name] for name in ("first", "tip", "hold")}
+            layout = {name: self._layout[name] for name in ("first", "tip", "join", "flat", "hold", "pace")}
             corners, triangles = _merged(surfaces)
             _core.keep_beside(points, offsets, out, corners - origin, triangles, MARGIN, **layout, shares=fractions)
         return origin
@@ -263,6 +269,9 @@ def _key(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -> 
         locks.offsets,
         locks.curve["root_triangle"],
         locks.curve["root_barycentric"],
+        locks.curve.get(REACH, np.empty(0)),
+        _joins(locks),
+        *((locks.points, locks.curve[LAID]) if LAID in locks.curve else ()),
         *(values(name) for name in HairSettings.model_fields if isinstance(getattr(settings, name), Varied)),
         scalp.points,
         scalp.triangles,
@@ -290,7 +299,18 @@ def _place(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -
     points = settings.points or int(locks.counts.max())
 
     disk = _disk(settings, ids, number, full_count[lock])
-    scattered = roots[lock] + per_lock("spread")[lock, None] * np.einsum("hxk,hk->hx", frames[lock][:, :, :2], disk)
+    places = roots[lock] + per_lock("spread")[lock, None] * np.einsum("hxk,hk->hx", frames[lock][:, :, :2], disk)
+    laid = locks.curve.get(LAID, np.zeros(len(locks))) > 0.0
+    shared = (_shared(locks) & ~laid)[lock]
+    joins = _joins(locks)[lock]
+    if laid.any():
+        solid = _core.Solid(np.ascontiguousarray(scalp.points, np.float64), scalp.triangles)
+        for k in np.flatnonzero(laid).tolist():
+            of = slice(first[k], first[k + 1])
+            places[of], joins[of] = _fed(settings, locks, solid, k, number[of])
+    if shared.any():
+        of = lock[shared]
+        places[shared] = scattered(locks.curve[REACH][of], roots[of], frames[of, :, 2], disk[shared])
     try:
         region = np.ascontiguousarray(scalp.region(groom.region), np.int32)
     except KeyError as error:
@@ -299,7 +319,7 @@ def _place(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -
         raise UserError(
             f"hairs: region '{groom.region}' of {scalp.name} has no faces; choose the faces that carry hair"
         )
-    root_triangle, root_barycentric, _ = _core.bind_roots(scalp.points, scalp.triangles, scattered, region)
+    root_triangle, root_barycentric, _ = _core.bind_roots(scalp.points, scalp.triangles, places, region)
     is_lock = number == 0
     root_triangle[is_lock] = locks.curve["root_triangle"]
     root_barycentric[is_lock] = locks.curve["root_barycentric"]
@@ -330,6 +350,7 @@ def _place(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -
     )
     _flatten(groom, curves)
     layout = _layout(settings, per_lock, ids, number, lock, disk, u)
+    layout["join"] = np.where(is_lock, 0.0, joins).astype(np.float32)
     layout |= _neighbours(settings, per_lock, groom, curves, is_lock, roots, u)
     hairs = Hairs(curves, groom, np.empty(0), {"first": first, **layout})
     hairs._root = hairs._root_offsets(scalp.points, roots)
@@ -366,6 +387,34 @@ def _strand_radius(locks: Curves, radius: NDArray[np.float64]) -> NDArray[np.flo
     """Radius of each lock [m], shape (locks,): hairs fill the strands of a braid."""
     woven = locks.curve.get(STRAND_RADIUS, np.zeros(len(locks)))
     return np.where(woven > 0.0, woven, radius)
+
+
+def _shared(locks: Curves) -> NDArray[np.bool_]:
+    """Whether the hairs of a lock come from its share of a section, shape (locks,)."""
+    if REACH not in locks.curve:
+        return np.zeros(len(locks), np.bool_)
+    return np.asarray(locks.curve[REACH].max(axis=1) > 0.0)
+
+
+def _fed(
+    settings: HairSettings, locks: Curves, solid: _core.Solid, lock: int, number: NDArray
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Places where the hairs of a cornrow's strand grow [m], shape (n, 3), and parts of it where they join, (n,)."""
+    own, counts = locks.curve, locks.counts
+    length = max(float(locks.take(np.array([lock])).lengths()[0]), 1e-9)
+    strands = (own[SECTION] == own[SECTION][lock]) & (counts == counts[lock]) & (own[LAID] > 0.0)
+    middle = locks.take(strands).points.reshape(-1, counts[lock], 3).mean(axis=0)
+    chance = Random(settings.seed, "hairs/row").uniforms(locks.ids[lock : lock + 1], 2)
+    at = (chance + number[:, None] * PLASTIC) % 1.0  # a low-discrepancy sequence (Roberts 2018)
+    found = fed(locks[lock], middle, solid, own[REACH][lock], own[LAID][lock] / length, own[JOIN][lock] / length, at)
+    return found.places, found.joins
+
+
+def _joins(locks: Curves) -> NDArray[np.float64]:
+    """Part of each lock after which hairs come to it, shape (locks,)."""
+    if JOIN not in locks.curve:
+        return np.zeros(len(locks))
+    return np.minimum(locks.curve[JOIN] / np.maximum(locks.lengths(), 1e-9), LATEST_JOIN)
 
 
 def _settings(values: dict[str, Any]) -> HairSettings:
@@ -425,11 +474,21 @@ def _layout(
     return {
         "offset": (per_lock("radius")[lock, None] * section).astype(np.float32),
         "tip": tip.astype(np.float32),
+        "flat": (_shared(per_lock.locks)[lock] & free).astype(np.float32),
         "taper": per_lock("taper")[lock].astype(np.float32),
         "frizz": knots.astype(np.float32),
         "profile": settings.radius.along(u).astype(np.float32),
         "hold": (t * t * (3.0 - 2.0 * t)).astype(np.float32),
+        "pace": _pace(u, settings.gather).astype(np.float32),
     }
+
+
+def _pace(u: NDArray, gather: float) -> NDArray[np.float64]:
+    """How far along its lock a flat hair is at its parameters u: it starts once it has come there, smoothly."""
+    soft = PACE_EASE * gather
+    late = np.clip(u - gather + soft, 0.0, None)
+    pace = np.where(late < 2.0 * soft, late * late / (4.0 * soft), late - soft)
+    return pace / max(1.0 - gather, 1e-9) if gather < 1.0 else 0.0 * u
 
 
 def _section(per_lock: _Values, lock: NDArray, disk: NDArray) -> NDArray[np.float64]:

@@ -32,7 +32,9 @@ class Mask(Section):
     where: Annotated[str, AfterValidator(expression.check)] | None = Field(
         default=None,
         description="an expression of `id`, `random` (0 to 1), `length`, and `x`, `y`, `z` of the root (in the unit "
-        "of the recipe), such as `id % 3 == 0 and length > 10`; what is true is 1",
+        "of the recipe), such as `id % 3 == 0 and length > 10`; what is true is 1. With `[locks.sections]` also of "
+        "`section`, `strand`, `u`, `v` (0 to 1 within the section) and `edge`, the distance from its border; `section` "
+        "and `strand` are -1 where there is none",
     )
     invert: bool = Field(default=False, description="act where this mask is not")
 
@@ -68,15 +70,26 @@ class Mask(Section):
         if self.region is not None:
             weight *= self._region_falloff(region(self.region, scalp, f"{what}.region"), curves, scalp)
         if self.where is not None:
-            x, y, z = curves.roots.T / self._unit
-            lengths = curves.lengths() / self._unit
-            values = {"id": curves.ids, "random": random.uniform(curves.ids), "length": lengths}
-            factor = expression.evaluate(self.where, {**values, "x": x, "y": y, "z": z})
+            factor = expression.evaluate(self.where, self._values(curves, random, f"{what}.where"))
             if not (finite := np.isfinite(factor)).all():
                 lock = curves.ids[np.flatnonzero(~finite)[0]]
                 raise UserError(f"{what}.where is '{self.where}', not a finite number on lock {lock}; rewrite it")
             weight *= np.clip(factor, 0.0, 1.0)
         return weight
+
+    def _values(self, curves: Curves, random: Random, what: str) -> dict[str, NDArray]:
+        """Values of the names in ``where``, shape (count,) each, lengths in the unit of the recipe."""
+        assert self.where is not None
+        used = expression.names(self.where)
+        if missing := sorted(used & set(expression.SECTIONED) - curves.curve.keys()):
+            raise UserError(f"{what} has '{missing[0]}', which only locks of sections have; add [locks.sections]")
+        x, y, z = curves.roots.T / self._unit
+        values = {"id": curves.ids, "random": random.uniform(curves.ids), "x": x, "y": y, "z": z}
+        if "length" in used:
+            values["length"] = curves.lengths() / self._unit
+        for name in used & set(expression.SECTIONED):
+            values[name] = curves.curve[name] / (self._unit if name == "edge" else 1.0)
+        return values
 
     def _region_falloff(self, triangles: NDArray[np.int32], curves: Curves, scalp: Mesh) -> NDArray[np.float64]:
         """Falloff of a region: 1 inside, 0 farther than ``soft`` from it, smooth between; shape (count,)."""

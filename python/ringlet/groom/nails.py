@@ -15,7 +15,9 @@ from ringlet.data.quantities import Quantity, Section
 from ringlet.data.random import Random
 from ringlet.groom.mask import Mask
 from ringlet.groom.operators.operator import arc_lengths, grid
+from ringlet.groom.shares import LAID
 
+LEAVE = 0.008  # [m] before the end of a row over which the hold of a cornrow fades out
 NAIL = "nail"  # point attribute of locks: 0 free … 1 moves rigidly with the skin at the root
 
 
@@ -45,11 +47,14 @@ class Nail(Section):
 
 
 def nailed(locks: Curves, nails: Sequence[Nail], scalp: Mesh, seed: int) -> Curves:
-    """Adds the point attribute ``nail``: the largest weight of all nails."""
-    if not nails:
-        return locks
+    """Adds the point attribute ``nail``: the largest weight of all nails, and of what lies on the scalp in cornrows."""
     weights = [
         nail.weights(locks, scalp, Random(seed, f"nail[{k}]/mask"), f"nail[{k}]") for k, nail in enumerate(nails)
     ]
+    if LAID in locks.curve and locks.curve[LAID].any():
+        t = np.clip((locks.curve[LAID][:, None] - arc_lengths(grid(locks))) / LEAVE, 0.0, 1.0)
+        weights.append(np.where(locks.curve[LAID][:, None] > 0.0, t * t * (3.0 - 2.0 * t), 0.0))
+    if not weights:
+        return locks
     weight = np.max(weights, axis=0).ravel().astype(np.float32)
     return Curves(locks.points, locks.offsets, locks.ids, locks.curve, {**locks.point, NAIL: weight})

@@ -212,8 +212,12 @@ def axes(curves: Curves, frames: NDArray) -> NDArray[np.float64]:
     normal = frames[:, :, 2]
     edge = curves.points[curves.offsets[:-1] + 1] - curves.roots
     edge = edge / np.maximum(np.linalg.norm(edge, axis=1, keepdims=True), 1e-12)
-    across = _transported(np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]), normal)
-    return np.ascontiguousarray(_transported(across, normal, edge))
+    return np.ascontiguousarray(_transported(tangents(normal), normal, edge))
+
+
+def tangents(normals: NDArray) -> NDArray[np.float64]:
+    """Unit tangents for normals (n, 3): the x axis, parallel-transported from y to the normal; shape (n, 3)."""
+    return _transported(np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]), normals)
 
 
 def _transported(vectors: NDArray, start: NDArray, end: NDArray) -> NDArray[np.float64]:

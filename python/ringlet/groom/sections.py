@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
+from pydantic import Field, model_validator
 from scipy.spatial import KDTree
 
 from ringlet import _core
 from ringlet.data.curves import Curves
 from ringlet.data.groom import SECTION
-from ringlet.data.quantities import Quantity, Section
+from ringlet.data.quantities import Quantity, Section, refuse
 from ringlet.data.random import Random
+from ringlet.groom.drawn_partings import DrawnPartings
 from ringlet.groom.mask import Mask
 from ringlet.groom.scalp import Scalp
 
@@ -22,7 +24,7 @@ MOST_CELLS = 4096  # along each axis of the chart, so that a section's id fits 2
 SAMPLES_A_SIDE = 6  # of the scalp, per side of a section
 WHOLE = 0.35  # a cell that covers less than this part of the usual area belongs to its neighbour
 FLATTEST = 20.0  # radius of the sphere through a flat scalp, in sizes of the scalp
-STRANDS_APART = 0.25  # distance of a section's strands from its middle at the scalp, in sizes of the section
+STRANDS_APART = 0.12  # distance of a section's strands from its middle at the scalp, in sizes of the section
 
 # Curve attributes of locks besides the section's id: which of its strands; place in the section, 0 to 1 each; distance
 # from the section's border [m].
@@ -33,10 +35,19 @@ class Sections(Section):
     """Divides the scalp into sections. The pattern lies in a chart of the scalp that keeps areas: the projection of
     Lambert from the sphere that fits it best, with the mean normal in the middle of the chart."""
 
-    pattern: Literal["grid", "brick", "rows", "triangles", "radial"] = Field(
-        default="brick", description="squares, squares in bond, rows from front to back, triangles, or rings"
+    pattern: Literal["grid", "brick", "rows", "triangles", "radial", "drawn"] = Field(
+        default="brick",
+        description="squares, squares in bond, rows from front to back, triangles, rings, or what lies between drawn "
+        "`partings`",
     )
-    size: Annotated[float, Quantity("m", 2e-3, 1.0)] = Field(default=0.025, description="width of a section")
+    partings: str | None = Field(
+        default=None,
+        description="name of helper curves along the partings of the pattern `drawn`, from `[curves]`; they are "
+        "projected on the scalp, and a quarter of the size longer at their ends",
+    )
+    size: Annotated[float, Quantity("m", 2e-3, 1.0)] = Field(
+        default=0.025, description="width of a section; of drawn ones, about that of the smallest"
+    )
     gap: Annotated[float, Quantity("m", 0.0, 0.1)] = Field(
         default=0.002, description="width of the visible parting between sections, where nothing grows"
     )
@@ -55,23 +66,37 @@ class Sections(Section):
         default=Mask(), description="where there are sections: those whose middle has more than a half"
     )
 
-    def divide(self, scalp: Scalp, seed: int) -> Division:
-        """Divides the region of the scalp."""
+    @model_validator(mode="after")
+    def _has_partings(self) -> Sections:
+        if (self.pattern == "drawn") != (self.partings is not None):
+            raise refuse("needs both pattern = 'drawn' and 'partings', or none of them; name curves of [curves]")
+        return self
+
+    def divide(self, scalp: Scalp, seed: int, helper: Callable[[str, str], Curves]) -> Division:
+        """Divides the region of the scalp; ``helper`` returns the helper curves of a name for a setting."""
         chart = Chart.of(scalp)
         _, triangle, barycentric = scalp.sample(scalp.count_for_spacing(self.size / SAMPLES_A_SIDE), seed)
         places = scalp.positions(triangle, barycentric)
-        cells = self._cells(chart, places, seed)
-        merged = Merged(cells.key, places)
+        drawn = None
+        if self.partings is not None:
+            curves = helper(self.partings, "sections.partings")
+            lines = [chart.flat(np.asarray(curves[k], np.float64)) for k in range(len(curves))]
+            drawn = DrawnPartings(lines, chart.flat(places), self.size)
+        cells = self._cells(chart, places, seed, drawn)
+        merged = Merged(cells.key, places, 0.0 if drawn else WHOLE)
         ids, section = np.unique(merged.sections(cells.key, places), return_inverse=True)
         middle = np.array([places[section == k].mean(axis=0) for k in range(len(ids))])
         _, nearest = KDTree(places).query(middle)
         bound = {"root_triangle": triangle[nearest], "root_barycentric": barycentric[nearest]}
         roots = Curves(places[nearest], np.arange(len(ids) + 1, dtype=np.int32), ids.astype(np.int64), bound)
         chosen = self.mask.weights(roots, scalp.mesh, Random(seed, "locks/sections"), "locks.sections.mask")[:, 0] > 0.5
-        return Division(self, chart, seed, merged, roots, chosen)
+        return Division(self, chart, seed, merged, roots, chosen, drawn)
 
-    def _cells(self, chart: Chart, places: NDArray, seed: int) -> Cells:
+    def _cells(self, chart: Chart, places: NDArray, seed: int, drawn: DrawnPartings | None) -> Cells:
         """The pattern's cells at places (n, 3) [m]."""
+        if drawn is not None:
+            name, at, edge = drawn.at(chart.flat(places))
+            return Cells(name, at[:, 0], at[:, 1], edge / self.size)
         flat = chart.flat(places) / self.size
         if self.jitter > 0.0:
             wander = [Random(seed, f"sections/{k}").field(places, 1.5 * self.size) for k in range(2)]
@@ -176,10 +201,11 @@ class Division:
     merged: Merged
     roots: Curves
     chosen: NDArray[np.bool_]
+    drawn: DrawnPartings | None = None
 
     def at(self, places: NDArray) -> dict[str, NDArray]:
         """Attributes of places (n, 3) [m] in their sections, shape (n,) each; section −1 where the mask has none."""
-        cells = self.sections._cells(self.chart, places, self.seed)
+        cells = self.sections._cells(self.chart, places, self.seed, self.drawn)
         section = self.merged.sections(cells.key, places)
         has = self.chosen[np.searchsorted(self.roots.ids, section)]
         return {
@@ -218,11 +244,14 @@ class Division:
 class Merged:
     """The section of each cell: its own, or the nearest where the scalp's border leaves little of the cell."""
 
-    def __init__(self, key: NDArray, places: NDArray) -> None:
-        """From the cells, shape (n,), of samples of the scalp at places (n, 3) [m]."""
+    def __init__(self, key: NDArray, places: NDArray, least: float) -> None:
+        """From the cells, shape (n,), of samples of the scalp at places (n, 3) [m].
+
+        least: part of the usual area below which a cell belongs to its neighbour
+        """
         keys, cell, count = np.unique(key, return_inverse=True, return_counts=True)
         middle = np.stack([np.bincount(cell, places[:, k]) / count for k in range(3)], axis=1)
-        whole = count >= WHOLE * np.median(count)
+        whole = count >= least * np.median(count)
         self._sections, self._nearest = keys[whole], KDTree(middle[whole])
 
     def sections(self, key: NDArray, places: NDArray) -> NDArray[np.int64]:

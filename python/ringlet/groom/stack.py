@@ -101,7 +101,7 @@ def make_groom(
                 shapes = curves
             if name == "clean":
                 uncleaned = curves
-            context = Context(recipe.seed, surface, name, recipe.locks.points, helpers, shapes)
+            context = Context(recipe.seed, surface, name, recipe.locks.points, helpers, shapes, recipe.locks.sections)
             before = curves
             curves, key = _run(operator, curves, key, context, memory)
             check_curves(curves, curves.points, scalp.points, name)

@@ -165,9 +165,9 @@ def hairs_message(side: str, hairs: Hairs, scalp: Mesh) -> bytes:
             {"side": side, "count": count, "points": points, "knots": layout["frizz"].shape[1] // 2}
         ),
         lock=hairs.curves.curve["lock"][order],
-        **{name: layout[name][order] for name in ("offset", "tip", "taper", "frizz", "root")},
+        **{name: layout[name][order] for name in ("offset", "tip", "join", "flat", "taper", "frizz", "root")},
         **{name: values[order] for name, values in blends.items()},
-        **{name: layout[name] for name in ("profile", "hold", "blend")},
+        **{name: layout[name] for name in ("profile", "hold", "pace", "blend")},
         width=widths.max(axis=1)[order],
         thinning=_thinning(widths),
     )
@@ -190,6 +190,8 @@ def curves_message(side: str, curves: Curves) -> bytes:
         lock=order,
         offset=np.zeros(2 * count),
         tip=np.ones(count),
+        join=np.zeros(count),
+        flat=np.zeros(count),
         taper=np.zeros(count),
         other=np.zeros(count),
         share=np.zeros(count),
@@ -197,6 +199,7 @@ def curves_message(side: str, curves: Curves) -> bytes:
         root=np.zeros(3 * count),
         profile=np.zeros(points),
         hold=np.zeros(points),
+        pace=np.zeros(points),
         blend=np.zeros(points),
         width=width[order],
         thinning=np.linspace(1.0, 0.4, points),

@@ -329,9 +329,9 @@ class Names(Message):
 class Hairs(Message):
     """Hairs relative to their locks; see ``src/ringlet/groom/hairs.h`` for the formula.
 
-    Any prefix of the hairs covers all locks evenly. ``profile``, ``hold``, ``blend`` and ``thinning`` are functions
-    along the hair, the same for all. ``frizz`` has ``knots`` × 2 numbers a hair; ``root`` is the offset from the lock's
-    root to the hair's. The diameter is ``width`` of the hair times ``thinning``.
+    Any prefix of the hairs covers all locks evenly. ``profile``, ``hold``, ``pace``, ``blend`` and ``thinning`` are
+    functions along the hair, the same for all. ``frizz`` has ``knots`` × 2 numbers a hair; ``root`` is the offset from
+    the lock's root to the hair's. The diameter is ``width`` of the hair times ``thinning``.
     """
 
     kind: Literal["hairs"] = "hairs"
@@ -343,6 +343,8 @@ class Hairs(Message):
         "lock": "u4",
         "offset": "f4",
         "tip": "f4",
+        "join": "f4",
+        "flat": "f4",
         "taper": "f4",
         "other": "i4",
         "share": "f4",
@@ -350,6 +352,7 @@ class Hairs(Message):
         "root": "f4",
         "profile": "f4",
         "hold": "f4",
+        "pace": "f4",
         "blend": "f4",
         "width": "f4",
         "thinning": "f4",

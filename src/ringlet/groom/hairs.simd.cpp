@@ -1,5 +1,6 @@
 #include "ringlet/groom/hairs_kernel.h"
 
+#include <algorithm>
 #include <cstring>
 
 namespace ringlet::RINGLET_SIMD {
@@ -24,8 +25,8 @@ void fill_hairs(const LockTable &lock, const HairSpan &hairs) {
     const int n = hairs.points, last = lock.last, last_knot = hairs.knots - 2;
     float *__restrict x = hairs.scratch, *__restrict y = x + n, *__restrict along = y + n, *__restrict eased = along + n;
     int *__restrict segment = reinterpret_cast<int *>(eased + n), *__restrict knot = segment + n;
-    const float *__restrict profile = hairs.profile, *__restrict hold = hairs.hold;
-    const float per_point = 1.0f / static_cast<float>(n - 1);
+    const float *__restrict profile = hairs.profile, *__restrict hold = hairs.hold, *__restrict pace = hairs.pace;
+    const float ends = static_cast<float>(n - 1), per_point = 1.0f / ends;
 
     // Frizz is interpolated by a smoothstep between knots, whose places all hairs share.
     for (int k = 0; k < n; ++k) {
@@ -46,15 +47,20 @@ void fill_hairs(const LockTable &lock, const HairSpan &hairs) {
             x[k] = follow * (wide * offset_x + frizz[i] + t * (frizz[i + 2] - frizz[i]));
             y[k] = follow * (wide * offset_y + frizz[i + 1] + t * (frizz[i + 3] - frizz[i + 1]));
         }
-        const float step = hairs.tip[hair] * (static_cast<float>(last) * per_point);
+        const float join = hairs.join[hair], flat = hairs.flat[hair], begin = join * static_cast<float>(last);
+        const float step = (hairs.tip[hair] - join) * (static_cast<float>(last) * per_point);
         for (int k = 0; k < n; ++k) { // along it
-            const float at = static_cast<float>(k) * step;
+            const float s = static_cast<float>(k), at = begin + (s + flat * (pace[k] * ends - s)) * step;
             const int i = static_cast<int>(at);
             segment[k] = i < last ? i : last;
             along[k] = at - static_cast<float>(i < last ? i : last);
         }
 
-        const Float4 root{hairs.root[3 * hair], hairs.root[3 * hair + 1], hairs.root[3 * hair + 2], 0.0f};
+        Float4 root{hairs.root[3 * hair], hairs.root[3 * hair + 1], hairs.root[3 * hair + 2], 0.0f};
+        if (join > 0.0f) {
+            const int i = std::min(static_cast<int>(begin), last);
+            root += row(lock.segments[0].c0) - on_lock(lock.segments[i], begin - static_cast<float>(i), 0.0f, 0.0f);
+        }
         float *result = hairs.result + 3L * n * hair;
         // A row of four also writes the first number of the next point, which is written after it.
         const auto put = [&](int k, Float4 point) { std::memcpy(result + 3 * k, &point, k + 1 < n ? 16 : 12); };

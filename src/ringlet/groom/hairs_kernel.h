@@ -19,13 +19,14 @@ struct LockTable {
 
 struct HairSpan {
     int count, points, knots;
-    const float *offset, *tip, *taper, *frizz, *root; // 2, 1, 1, 2 × knots and 3 numbers a hair
-    const float *profile, *hold, *blend;              // one a point
-    const int *other;                                 // neighbouring lock of each hair, or null
-    const float *share;                               // weight of that lock
-    const LockTable *locks;                           // all locks, for `other`
-    float *scratch;                                   // 6 × points
-    float *result;                                    // 3 × points a hair
+    const float *offset, *tip, *join, *flat, *taper; // 2, 1, 1, 1 and 1 numbers a hair
+    const float *frizz, *root;                       // 2 × knots and 3 numbers a hair
+    const float *profile, *hold, *pace, *blend;      // one a point
+    const int *other;                                // neighbouring lock of each hair, or null
+    const float *share;                              // weight of that lock
+    const LockTable *locks;                          // all locks, for `other`
+    float *scratch;                                  // 6 × points
+    float *result;                                   // 3 × points a hair
 };
 
 RINGLET_DECLARE(void fill_hairs(const LockTable &lock, const HairSpan &hairs);)

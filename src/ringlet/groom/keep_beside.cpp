@@ -69,11 +69,11 @@ public:
     int keep_hairs(View<Vec3f> lock, int first, int count, float *hairs, std::uint8_t *shares) {
         if (lock.size() < 2 || count == 0) return 0;
         bound_hairs(hairs, count);
-        find_near_triangles(lock, layout_.tip.subspan(first, count));
+        find_near_triangles(lock, first, count);
         if (near_.empty()) return 0;
         int moved = 0;
         for (int i = 0; i < count; ++i) {
-            if (!keep_hair(lock, layout_.tip[first + i], hairs + 3 * n_ * i)) continue;
+            if (!keep_hair(lock, first + i, hairs + 3 * n_ * i)) continue;
             ++moved;
             if (shares)
                 std::ranges::transform(share_, shares + n_ * i,
@@ -84,12 +84,14 @@ public:
 
 private:
     // Place on the lock of the k-th point of a hair, in segments from the root.
-    float place_along(View<Vec3f> lock, float tip, size_t k) const {
-        return static_cast<float>(k) * (tip * static_cast<float>(lock.size() - 1) / static_cast<float>(n_ - 1));
+    float place_along(View<Vec3f> lock, int hair, size_t k) const {
+        const float join = layout_.join[hair], last = static_cast<float>(lock.size() - 1), ends = static_cast<float>(n_ - 1);
+        const float s = static_cast<float>(k), along = s + layout_.flat[hair] * (layout_.pace[k] * ends - s);
+        return join * last + along * ((layout_.tip[hair] - join) * last / ends);
     }
 
-    Vec3f place_on(View<Vec3f> lock, float tip, size_t k, int &segment) const {
-        const float at = place_along(lock, tip, k);
+    Vec3f place_on(View<Vec3f> lock, int hair, size_t k, int &segment) const {
+        const float at = place_along(lock, hair, k);
         segment = std::min(static_cast<int>(at), static_cast<int>(lock.size()) - 2);
         return lock[segment] + (at - static_cast<float>(segment)) * (lock[segment + 1] - lock[segment]);
     }
@@ -117,14 +119,18 @@ private:
     }
 
     // Finds the triangles near the space between the hairs and their lock at each point.
-    void find_near_triangles(View<Vec3f> lock, View<float> tips) {
-        const auto [least, greatest] = std::ranges::minmax(tips);
+    void find_near_triangles(View<Vec3f> lock, int first, int count) {
         const auto bend = [&](size_t k) { return Eigen::Map<const Vec3f>(&bend_[3 * k]).norm(); };
         const size_t last = lock.size() - 1;
         for (size_t k = 0; k < n_; ++k) {
             const size_t after = std::min(k + 1, n_ - 1);
-            const auto begin = static_cast<size_t>(place_along(lock, least, k));
-            const auto end = std::min(static_cast<size_t>(place_along(lock, greatest, after)) + 1, last);
+            float least = static_cast<float>(last), greatest = 0.0f;
+            for (int hair = first; hair < first + count; ++hair) {
+                least = std::min(least, place_along(lock, hair, k));
+                greatest = std::max(greatest, place_along(lock, hair, after));
+            }
+            const auto begin = static_cast<size_t>(least);
+            const auto end = std::min(static_cast<size_t>(greatest) + 1, last);
             Box box;
             for (size_t j = std::min(begin, last - 1); j <= end; ++j) box.add(lock[j]);
             for (const size_t j : {k, after}) {
@@ -156,13 +162,13 @@ private:
         tree_.overlapping(box.low.cast<double>(), box.high.cast<double>(), found_);
     }
 
-    bool keep_hair(View<Vec3f> lock, float tip, float *hair) {
+    bool keep_hair(View<Vec3f> lock, int number, float *hair) {
         Eigen::Map<Eigen::Matrix3Xf> points(hair, 3, static_cast<Eigen::Index>(n_));
         std::ranges::fill(share_, 1.0);
         bool separated = false, pierced = false;
         for (const size_t k : near_) {
             int segment;
-            const Vec3 place = place_on(lock, tip, k, segment).cast<double>(), offset = points.col(k).cast<double>() - place;
+            const Vec3 place = place_on(lock, number, k, segment).cast<double>(), offset = points.col(k).cast<double>() - place;
             if (offset.isZero(0.0)) continue;
             share_[k] = free_fraction(facets_[k], place, offset, margin_ + bow(points, k));
             separated = separated || share_[k] < 1.0;
@@ -171,7 +177,7 @@ private:
             pierced = pierced || (is_free(k) && pierces(k, points.col(k).cast<double>(), points.col(k + 1).cast<double>()));
         if (!separated && !pierced) return false;
         for (size_t k = 0; k < n_; ++k) {
-            places_[k] = place_on(lock, tip, k, segment_[k]).cast<double>();
+            places_[k] = place_on(lock, number, k, segment_[k]).cast<double>();
             hair_[k] = points.col(k).cast<double>();
         }
         write(points);

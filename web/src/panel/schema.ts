@@ -14,6 +14,8 @@ const NAMED: Record<string, Named> = {
   curve: "curves",
   tie: "curves",
   line: "curves",
+  path: "curves",
+  partings: "curves",
 };
 
 export interface Setting {

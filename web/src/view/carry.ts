@@ -32,7 +32,8 @@ uniform highp sampler2D hairPlace;  // lock, tip, offset
 uniform highp sampler2D hairRoot;   // root, width
 uniform highp sampler2D hairFrizz;  // two knots a texel
 uniform highp sampler2D hairMix;    // taper, another lock, the share that it has
-uniform highp sampler2D ramps;      // profile, hold, thinning, blend
+uniform highp sampler2D hairJoin;   // join, flat
+uniform highp sampler2D ramps;      // profile, hold, thinning, blend; pace: two texels a point
 uniform highp sampler2D left;       // the part of its way from the lock that each point keeps, as many texels as the result
 uniform int hairs, points, knots;
 out vec4 result;
@@ -64,7 +65,8 @@ void main() {
   int index = int(gl_FragCoord.x) + 2048 * int(gl_FragCoord.y);
   int hair = index / points, k = index - hair * points;
   if (hair >= hairs) { result = vec4(0.0); return; }
-  vec4 sits = lookup(hairPlace, hair), root = lookup(hairRoot, hair), ramp = lookup(ramps, k), mixed = lookup(hairMix, hair);
+  vec4 sits = lookup(hairPlace, hair), root = lookup(hairRoot, hair), ramp = lookup(ramps, 2 * k), mixed = lookup(hairMix, hair);
+  vec2 joins = lookup(hairJoin, hair).xy;
   vec4 lock = lookup(lockPlace, int(sits.x));
   float u = float(k) / float(points - 1);
 
@@ -76,7 +78,8 @@ void main() {
   vec2 wander = mix(knot(hair, i), knot(hair, i + 1), ease);
   vec2 across = (1.0 - ramp.y) * (ramp.x * (1.0 - mixed.x * u) * sits.zw + wander);
 
-  float at = u * lock.y * sits.y;
+  float at = lock.y * (joins.x + (sits.y - joins.x) * mix(u, lookup(ramps, 2 * k + 1).x, joins.y));
+  if (joins.x > 0.0) root.xyz += lookup(lockPoint, int(lock.x)).xyz - onLock(lock, joins.x * lock.y, vec2(0.0));
   vec3 place = onLock(lock, at, across) + ramp.y * root.xyz;
   if (mixed.z > 0.0) { // drawn to a neighbouring lock: the same hair about that one
     vec4 other = lookup(lockPlace, int(mixed.y));
@@ -123,10 +126,13 @@ export class Carry {
     const mix = new Float32Array(4 * count);
     for (let i = 0; i < count; i++) mix.set([hairs.taper[i], hairs.other[i], hairs.share[i], 0], 4 * i);
     this.put("hairMix", mix);
+    const join = new Float32Array(4 * count);
+    for (let i = 0; i < count; i++) join.set([hairs.join[i], hairs.flat[i], 0, 0], 4 * i);
+    this.put("hairJoin", join);
     this.put("hairFrizz", evenKnots(hairs));
-    const ramps = new Float32Array(4 * hairs.points);
+    const ramps = new Float32Array(8 * hairs.points);
     for (let k = 0; k < hairs.points; k++)
-      ramps.set([hairs.profile[k], hairs.hold[k], hairs.thinning[k], hairs.blend[k]], 4 * k);
+      ramps.set([hairs.profile[k], hairs.hold[k], hairs.thinning[k], hairs.blend[k], hairs.pace[k]], 8 * k);
     this.put("ramps", ramps);
     this.setRoots(hairs.root);
   }

@@ -9,6 +9,7 @@ from ringlet.groom.operators.bend import Bend
 from ringlet.groom.operators.braid import Braid
 from ringlet.groom.operators.clean import Clean
 from ringlet.groom.operators.clump import Clump
+from ringlet.groom.operators.cornrow import Cornrow
 from ringlet.groom.operators.curl import Curl
 from ringlet.groom.operators.cut import Cut
 from ringlet.groom.operators.drawn import Drawn
@@ -48,7 +49,8 @@ ShapeOperator = Annotated[
     | Attract
     | Cut
     | Braid
-    | Twist,
+    | Twist
+    | Cornrow,
     Field(discriminator="op"),
 ]
 
@@ -59,6 +61,7 @@ __all__ = [
     "Clean",
     "Clump",
     "Context",
+    "Cornrow",
     "Curl",
     "Cut",
     "Drawn",

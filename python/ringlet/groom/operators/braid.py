@@ -8,8 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
+from ringlet.data.curves import Curves
 from ringlet.data.quantities import Quantity
 from ringlet.groom import weave
+from ringlet.groom.operators.operator import Context
 from ringlet.groom.operators.woven import Woven
 
 
@@ -25,11 +27,11 @@ class Braid(Woven):
     )
 
     @property
-    def path(self) -> weave.Pattern:
+    def weaving(self) -> weave.Pattern:
         """The pattern."""
         return self.pattern
 
-    def depth_of(self, width: NDArray, strands: int) -> NDArray[np.float64]:
+    def depths(self, width: NDArray, leaders: Curves, context: Context) -> NDArray[np.float64]:
         """A rope is round, another braid as flat as it is set to be."""
         return width * (1.0 if self.pattern == "rope" else 1.0 - self.flatness)
 

@@ -17,6 +17,7 @@ from ringlet.data.quantities import Quantity, refuse
 from ringlet.groom.hairline import Hairline
 from ringlet.groom.operators.operator import Context, Operator, arc_lengths, packed, unit
 from ringlet.groom.sections import SECTION, STRAND, Sections
+from ringlet.groom.shares import DIRECTIONS, REACH, reaches
 
 STRAND_IDS, IDS_PER_SECTION = 10**13, 100  # id of a strand: 10¹³ + section · 100 + number in the section
 
@@ -97,13 +98,15 @@ class Locks(Operator):
         """Roots outside of partings, and the strands of sections: ids, triangles, barycentrics, attributes."""
         assert self.sections is not None
         scalp = context.scalp
-        division = self.sections.divide(scalp, context.seed)
+        division = self.sections.divide(scalp, context.seed, context.helper)
         at = division.at(scalp.positions(triangle, barycentric))
         loose = division.grows(at)
         if self.sections.strands is not None and self.count is None and self.spacing is None:
             loose[:] = False
         at = {name: values[loose] for name, values in at.items()} | {STRAND: np.full(loose.sum(), -1, np.int32)}
+        at[REACH] = np.zeros((loose.sum(), DIRECTIONS), np.float32)
         strand_triangle, strand_barycentric, strand = division.strand_roots(scalp)
+        strand[REACH] = reaches(division, scalp, strand_triangle, strand_barycentric, strand[SECTION])
         strand_ids = STRAND_IDS + IDS_PER_SECTION * strand[SECTION].astype(np.int64) + strand[STRAND]
         if not len(strand_ids) and not loose.any():
             raise UserError("locks.sections leaves no hair: its gap is as wide as its size; make the gap smaller")

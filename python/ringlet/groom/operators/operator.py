@@ -15,6 +15,7 @@ from ringlet.data.quantities import Section
 from ringlet.data.random import Random
 from ringlet.data.settings import did_you_mean
 from ringlet.groom.scalp import Scalp
+from ringlet.groom.sections import Sections
 
 UP = np.array([0.0, 1.0, 0.0])
 
@@ -29,6 +30,7 @@ class Context:
     lock_points: points of a groom guide
     curves:      helper curves by name
     shapes:      the locks before the curl operator; None up to it
+    sections:    settings of the sections of the scalp; None without
     """
 
     seed: int
@@ -37,6 +39,7 @@ class Context:
     lock_points: int = 64
     curves: Mapping[str, Curves] = field(default_factory=dict)
     shapes: Curves | None = None
+    sections: Sections | None = None
 
     def random(self, setting: str = "") -> Random:
         """Random numbers of one setting of this operator."""

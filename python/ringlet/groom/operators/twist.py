@@ -25,7 +25,7 @@ class Twist(Woven):
     )
 
     @property
-    def path(self) -> weave.Pattern:
+    def weaving(self) -> weave.Pattern:
         """A rope."""
         return "rope"
 
@@ -33,7 +33,7 @@ class Twist(Woven):
         """The sections that are twisted left-handed."""
         return context.random("hand").uniform(leaders.ids) >= context.values(self, "right_handed", leaders)
 
-    def depth_of(self, width: NDArray, strands: int) -> NDArray[np.float64]:
+    def depths(self, width: NDArray, leaders: Curves, context: Context) -> NDArray[np.float64]:
         """Round."""
         return width
 

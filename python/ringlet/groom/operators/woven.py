@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
@@ -20,6 +21,8 @@ from ringlet.groom.operators.operator import Context, arc_lengths, grid, packed,
 from ringlet.groom.operators.shape import Shape
 from ringlet.groom.sections import STRAND
 
+JOIN = "join"  # curve attribute of locks: length along a woven strand after which its hairs come to it [m]
+JOINED = 0.5  # place where they do, as a part of the start
 EASE = 0.5  # turns over which a braid begins and ends
 LEAST_POINTS, GOOD_POINTS = 6, 10  # of a strand, per wave of its path to the front and back
 
@@ -55,7 +58,7 @@ class Woven(Shape):
     )
 
     @property
-    def path(self) -> weave.Pattern:
+    def weaving(self) -> weave.Pattern:
         """The pattern of the strands."""
         raise NotImplementedError
 
@@ -63,8 +66,8 @@ class Woven(Shape):
         """Which sections are woven as in a mirror, shape (count,), for a strand of each, named by the section."""
         return np.zeros(len(leaders), np.bool_)
 
-    def depth_of(self, width: NDArray, strands: int) -> NDArray[np.float64]:
-        """Depth of a braid of that width [m]."""
+    def depths(self, width: NDArray, leaders: Curves, context: Context) -> NDArray[np.float64]:
+        """Depth of braids of that width [m], shape (count,), for a strand of each."""
         raise NotImplementedError
 
     def pitch_of(self, width: NDArray) -> NDArray[np.float64]:
@@ -73,65 +76,80 @@ class Woven(Shape):
 
     def apply(self, curves: Curves, context: Context) -> Curves:
         """Returns the curves with the strands woven, all with ``lock_points`` points or more."""
-        if STRAND not in curves.curve or not (curves.curve[STRAND] >= 0).any():
-            raise UserError(f"{context.purpose}: no section has strands; give [locks.sections] strands = 3, say")
-        points = max(context.lock_points, int(curves.counts.max()))
-        fine = curves
-        if int(curves.counts.min()) != points:
-            resampled = _core.resample_curves(*packed(curves), points)
-            fine = Curves(resampled, offsets_from_counts([points] * len(curves)), curves.ids, curves.curve)
+        fine = self.resampled(curves, context)
         weight = self.weights(fine, context)
-        braids = self._braids(fine, weight, context)
-        if not braids:
+        leaders, rows = self.leaders(fine, weight > 0.0)
+        if not rows:
             return curves
         shapes = grid(fine).copy()
-        radius = curves.curve.get(STRAND_RADIUS, np.zeros(len(curves), np.float32)).copy()
+        radius, join = (
+            curves.curve.get(name, np.zeros(len(curves), np.float32)).copy() for name in (STRAND_RADIUS, JOIN)
+        )
+        points = shapes.shape[1]
         tied = np.zeros(shapes.shape[:2], np.float32)
         core = curves.curve.get(CORE, np.zeros(len(curves), np.int32)).copy()
         if TIED in fine.point:
             tied[:] = fine.point[TIED].reshape(tied.shape)
-        for braid in braids:
+        for braid in self.braids(fine, leaders, rows, context):
             shapes[braid.rows] = braid.woven(shapes[braid.rows], context.scalp.middle, self)
-            radius[braid.rows] = braid.radius
+            radius[braid.rows], join[braid.rows] = braid.radius, JOINED * braid.start * braid.length
             tied[braid.rows] = braid.tied(points)
             core[braid.rows] = self.simulate == "core"
         woven = self.blended(fine, shapes, weight)
         of_points = {**woven.point, TIED: tied.ravel()} if tied.any() else woven.point
-        of_curves = {**woven.curve, STRAND_RADIUS: radius, **({CORE: core} if core.any() else {})}
+        of_curves = {**woven.curve, STRAND_RADIUS: radius, JOIN: join, **({CORE: core} if core.any() else {})}
         return Curves(woven.points, woven.offsets, woven.ids, of_curves, of_points)
 
-    def _braids(self, curves: Curves, weight: NDArray, context: Context) -> list[Braided]:
-        """The braids of the sections of which a strand has weight."""
+    def resampled(self, curves: Curves, context: Context) -> Curves:
+        """The curves with ``lock_points`` points or more each; raises UserError where no section has strands."""
+        if STRAND not in curves.curve or not (curves.curve[STRAND] >= 0).any():
+            raise UserError(f"{context.purpose}: no section has strands; give [locks.sections] strands = 3, say")
+        points = max(context.lock_points, int(curves.counts.max()))
+        if int(curves.counts.min()) == points:
+            return curves
+        resampled = _core.resample_curves(*packed(curves), points)
+        return Curves(resampled, offsets_from_counts([points] * len(curves)), curves.ids, curves.curve)
+
+    def leaders(self, curves: Curves, acts: NDArray[np.bool_]) -> tuple[Curves, Sequence[NDArray[np.integer]]]:
+        """A strand of each section that an operator acts on, named by the section, and the rows of all its strands.
+
+        acts: whether it acts on points of the curves, shape (count, points)
+        """
         strand = curves.curve[STRAND] >= 0
-        sections = np.unique(curves.curve[SECTION][strand & (weight > 0.0).any(axis=1)])
-        if not len(sections):
-            return []
+        sections = np.unique(curves.curve[SECTION][strand & acts.any(axis=1)])
         rows = [np.flatnonzero(strand & (curves.curve[SECTION] == section)) for section in sections]
-        leaders = curves.take(np.array([of_section[0] for of_section in rows]))
+        leaders = curves.take(np.array([of_section[0] for of_section in rows], np.int64))
         leaders.ids = sections.astype(np.int64)  # chance goes by the section, not by one of its strands
+        return leaders, rows
+
+    def braids(
+        self, curves: Curves, leaders: Curves, rows: Sequence[NDArray[np.integer]], context: Context
+    ) -> list[Braided]:
+        """The braids of sections, for a strand of each and the rows of all."""
         length = np.array([_length(curves, of_section) for of_section in rows])
         values = {k: context.values(self, k, leaders) for k in ("width", "tightness", "start", "tail", "tie")}
         pitch = self.pitch_of(values["width"]) if self.pitch is None else context.values(self, "pitch", leaders)
-        mirrored = self.mirrored(leaders, context)
+        depths, mirrored = self.depths(values["width"], leaders, context), self.mirrored(leaders, context)
         radius: dict[tuple, float] = {}
         braids = []
         for k, strands in enumerate(rows):
-            if reason := weave.refusal(self.path, len(strands)):
+            if reason := weave.refusal(self.weaving, len(strands)):
                 raise UserError(f"{context.purpose} {reason}")
-            width, depth = values["width"][k], float(self.depth_of(values["width"][k], len(strands)))
+            width, depth = values["width"][k], depths[k]
             self._check_points(
-                length[k] / pitch[k], weave.waves(self.path, len(strands)), grid(curves).shape[1], context
+                length[k] / pitch[k], weave.waves(self.weaving, len(strands)), grid(curves).shape[1], context
             )
-            key = (self.path, len(strands), width, depth, pitch[k])
+            key = (self.weaving, len(strands), width, depth, pitch[k])
             if key not in radius:
                 radius[key] = weave.touching_radius(*key)
             braids.append(
                 Braided(
                     rows=strands,
-                    pattern=self.path,
+                    pattern=self.weaving,
                     across=0.5 * width - radius[key],
                     front=(0.5 * depth - radius[key]) * (-1.0 if mirrored[k] else 1.0),
                     radius=values["tightness"][k] * radius[key],
+                    length=length[k],
                     turns=length[k] / pitch[k],
                     start=min(values["start"][k] / length[k], 0.5),
                     tail=min(values["tail"][k] / length[k], 0.5),
@@ -157,6 +175,7 @@ class Braided:
     rows:          rows of its locks
     across, front: amplitudes of the strands' path [m]
     radius:        of a strand [m]
+    length:        of the centre line [m]
     turns:         turns of the path along the whole length, at a ramp of 1
     start, tail:   parts of the length in which strands come together and run on
     tie:           part of the length before the tail in which they are tied
@@ -167,6 +186,7 @@ class Braided:
     across: float
     front: float
     radius: float
+    length: float
     turns: float
     start: float
     tail: float
@@ -180,14 +200,23 @@ class Braided:
 
     def woven(self, shapes: NDArray, middle: NDArray, settings: Woven) -> NDArray[np.float64]:
         """The strands for their shapes (strands, points, 3) [m]."""
-        strands, points, _ = shapes.shape
+        points = shapes.shape[1]
         line = _core.resample_curves(shapes.mean(axis=0), np.array([0, points], np.int32), points)
-        across, front = weave.frames(line, middle)
-        u = np.linspace(0.0, 1.0, points)
+        return self.about(line, *weave.frames(line, middle), shapes[:, 0] - line[0], settings)
+
+    def about(
+        self, line: NDArray, across: NDArray, front: NDArray, offset: NDArray, settings: Woven
+    ) -> NDArray[np.float64]:
+        """The strands about a centre line (points, 3) with evenly spaced points [m].
+
+        across, front: unit vectors along the line, shape (points, 3) each
+        offset:        of the roots from the start of the line [m], shape (strands, 3)
+        """
+        strands = len(offset)
+        u = np.linspace(0.0, 1.0, len(line))
         phase = self._phase(u, settings)
         size = settings.width.along(u)
 
-        offset = shapes[:, 0] - line[0]
         order = self._order(np.stack([offset @ across[0], offset @ front[0]], axis=1))
         x, z = weave.path(self.pattern, strands, phase[None] + 2.0 * np.pi * order[:, None] / strands)
         path = (size * self.across * x)[..., None] * across + (size * self.front * z)[..., None] * front

@@ -1,0 +1,182 @@
+"""Shares of the scalp: the places from which hairs come to the strands of a section."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ringlet import _core
+from ringlet.data.groom import SECTION
+from ringlet.groom.scalp import Scalp, tangents
+from ringlet.groom.sections import EDGE, Division
+
+DIRECTIONS = 48
+FRONT = 0.12  # part of a row's hairs that grow at its front
+LAST_JOIN = 0.97  # part of a row
+HALVINGS = 9  # of a reach
+FARTHEST = 1.5  # reach, in sizes of a section
+BEYOND = 3e-4, 0.1  # how far a place is from the nearest of the scalp, across the normal: [m], and per reach
+
+# Curve attribute of locks: how far their share reaches from the root in directions around the normal [m], shape (count,
+# DIRECTIONS), float32; 0 for locks of no section.
+REACH = "reach"
+
+# Curve attribute of locks: length from the root that lies on the scalp along a row [m]; 0 for others. Their ``REACH``
+# is at even distances along the row, first to the left (across: normal × tangent), then to the right.
+LAID = "laid"
+
+
+def reaches(
+    division: Division, scalp: Scalp, triangle: NDArray[np.int32], barycentric: NDArray, section: NDArray
+) -> NDArray[np.float32]:
+    """``REACH`` of the strands of sections, for their roots, shape (n,), and sections, shape (n,), in order.
+
+    The share of a strand is the part of its section, without the parting, that is nearest to its root. It should be
+    star-shaped about the root.
+    """
+    if not len(triangle):
+        return np.zeros((0, DIRECTIONS), np.float32)
+    roots, frames = _core.root_frames(scalp.points, scalp.triangles, triangle, barycentric)
+    around = _directions(frames[:, :, 2], 2.0 * np.pi * np.arange(DIRECTIONS) / DIRECTIONS)
+    strands = roots.reshape(len(np.unique(section)), -1, 3)
+    low, high = np.zeros((len(roots), DIRECTIONS)), np.full((len(roots), DIRECTIONS), FARTHEST * division.sections.size)
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        has = _has(division, scalp, roots, around, middle, section, strands)
+        low, high = np.where(has, middle, low), np.where(has, high, middle)
+    return low.astype(np.float32)
+
+
+def _has(
+    division: Division,
+    scalp: Scalp,
+    roots: NDArray,
+    around: NDArray,
+    reach: NDArray,
+    section: NDArray,
+    strands: NDArray,
+) -> NDArray[np.bool_]:
+    """Whether the places at a reach are in the shares of roots, shape (n, DIRECTIONS)."""
+    wanted = (roots[:, None] + reach[:, :, None] * around).reshape(-1, 3)
+    places, off = _on_scalp(scalp, wanted, np.repeat(_normals(around), DIRECTIONS, axis=0))
+    at = division.at(places)
+    own = np.repeat(section, DIRECTIONS)
+    count = strands.shape[1]
+    of_section = np.repeat(np.arange(len(strands)), count * DIRECTIONS)
+    nearest = np.linalg.norm(strands[of_section] - places[:, None], axis=2).argmin(axis=1)
+    inside = (at[SECTION] == own) & (at[EDGE] >= 0.5 * division.sections.gap)
+    inside &= nearest == np.tile(np.repeat(np.arange(count), DIRECTIONS), len(strands))
+    return inside.reshape(reach.shape) & (off.reshape(reach.shape) <= BEYOND[0] + BEYOND[1] * reach)
+
+
+def row_reaches(
+    division: Division, scalp: Scalp, points: NDArray, normals: NDArray, section: int
+) -> NDArray[np.float32]:
+    """``REACH`` of the strands of a row with points (k, 3) [m], normals (k, 3) and a section, shape (DIRECTIONS,)."""
+    half = DIRECTIONS // 2
+    at = np.linspace(0, len(points) - 1, half).round().astype(np.int64)
+    tangent = np.gradient(points, axis=0)[at]
+    across = np.cross(normals[at], tangent)
+    across /= np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-12)
+    around = np.concatenate([across, -across])
+    roots, up = np.tile(points[at], (2, 1)), np.tile(normals[at], (2, 1))
+    low, high = np.zeros(DIRECTIONS), np.full(DIRECTIONS, FARTHEST * division.sections.size)
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        wanted = roots + middle[:, None] * around
+        places, off = _on_scalp(scalp, wanted, up)
+        at_places = division.at(places)
+        has = (at_places[SECTION] == section) & (at_places[EDGE] >= 0.5 * division.sections.gap)
+        has &= off <= BEYOND[0] + BEYOND[1] * middle
+        low, high = np.where(has, middle, low), np.where(has, high, middle)
+    return low.astype(np.float32)
+
+
+@dataclass(frozen=True)
+class Fed:
+    """Where hairs of a row's strand grow, and where they join it.
+
+    places: on the scalp but for its curvature [m], shape (n, 3)
+    joins:  parts of the strand after which they join it, shape (n,)
+    """
+
+    places: NDArray[np.float64]
+    joins: NDArray[np.float64]
+
+
+def fed(
+    lock: NDArray, middle: NDArray, scalp: _core.Solid, reach: NDArray, laid: float, feed: float, at: NDArray
+) -> Fed:
+    """Hairs that come to a strand (points, 3) of a row whose strands have the mean ``middle`` (points, 3) [m].
+
+    scalp: the mesh of the scalp
+    reach: ``REACH`` of the strand
+    laid:  part of the strand that lies on the scalp
+    feed:  part of the strand between where a hair grows and where it joins
+    at:    numbers from 0 to 1 of each hair, shape (n, 2): along the row, and from it to the border of its section
+    """
+    along = laid * np.clip((at[:, 0] - FRONT) / (1.0 - FRONT), 0.0, None)
+    along = np.where(at[:, 0] < FRONT, at[:, 0] / FRONT * min(feed, laid), along)
+    joins = np.minimum(along + feed, LAST_JOIN * laid)
+    foot, tangent = _on(middle, along)
+    up = scalp.above(np.ascontiguousarray(foot))[2]
+    across = np.cross(up, tangent)
+    across /= np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-12)
+    beside = np.sum((_on(lock, joins)[0] - _on(middle, joins)[0]) * across, axis=1)
+    left = beside >= 0.0
+    k = along / max(laid, 1e-9) * (DIRECTIONS // 2 - 1)
+    where = np.arange(DIRECTIONS // 2)
+    far = np.where(left, np.interp(k, where, reach[: DIRECTIONS // 2]), np.interp(k, where, reach[DIRECTIONS // 2 :]))
+    return Fed(foot + (np.where(left, 1.0, -1.0) * at[:, 1] * far)[:, None] * across, joins)
+
+
+def _on(line: NDArray, t: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Places on a line of evenly spaced points at parts of its length, and the edges there, shape (n, 3) each."""
+    at = np.clip(t, 0.0, 1.0) * (len(line) - 1)
+    i = np.minimum(at.astype(np.int64), len(line) - 2)
+    edge = (line[i + 1] - line[i]).astype(np.float64)
+    return line[i] + (at - i)[:, None] * edge, edge
+
+
+def _on_scalp(scalp: Scalp, wanted: NDArray, normals: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The places of the scalp nearest to those wanted (n, 3) [m], and how far off they are across the normals."""
+    triangle, barycentric, _ = _core.bind_roots(
+        scalp.points, scalp.triangles, np.ascontiguousarray(wanted), scalp.region
+    )
+    places = scalp.positions(triangle, barycentric)
+    return places, np.linalg.norm(np.cross(normals, places - wanted), axis=1)
+
+
+def scattered(reach: NDArray[np.float32], roots: NDArray, normals: NDArray, disk: NDArray) -> NDArray[np.float64]:
+    """Places of the unit disk, shape (n, 2), carried to shares so that areas keep their proportions [m], shape (n, 3).
+
+    reach, roots, normals: of the lock of each place, shape (n, DIRECTIONS), (n, 3) and (n, 3)
+    """
+    square = reach.astype(np.float64) ** 2
+    share = np.cumsum(0.5 * (square + np.roll(square, -1, axis=1)), axis=1)
+    share /= np.maximum(share[:, -1:], 1e-18)
+    wanted = (np.arctan2(disk[:, 1], disk[:, 0]) / (2.0 * np.pi)) % 1.0
+    rows = np.arange(len(disk))
+    k = np.minimum((share <= wanted[:, None]).sum(axis=1), DIRECTIONS - 1)
+    before = np.where(k > 0, share[rows, k - 1], 0.0)
+    t = np.clip((wanted - before) / np.maximum(share[rows, k] - before, 1e-18), 0.0, 1.0)
+    far = (1.0 - t) * reach[rows, k] + t * reach[rows, (k + 1) % DIRECTIONS]
+    angle = 2.0 * np.pi * (k + t) / DIRECTIONS
+    x, y = tangents(normals), np.cross(normals, tangents(normals))
+    direction = np.cos(angle)[:, None] * x + np.sin(angle)[:, None] * y
+    return roots + (np.linalg.norm(disk, axis=1) * far)[:, None] * direction
+
+
+def _directions(normals: NDArray, angle: NDArray) -> NDArray[np.float64]:
+    """Unit vectors around normals (n, 3) at angles (k,), shape (n, k, 3)."""
+    x = tangents(normals)
+    y = np.cross(normals, x)
+    return np.cos(angle)[:, None] * x[:, None] + np.sin(angle)[:, None] * y[:, None]
+
+
+def _normals(around: NDArray) -> NDArray[np.float64]:
+    """Normals that unit vectors (n, DIRECTIONS, 3) are around, shape (n, 3)."""
+    normals: NDArray[np.float64] = np.cross(around[:, 0], around[:, DIRECTIONS // 4])
+    return normals
