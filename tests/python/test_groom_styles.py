@@ -4,13 +4,14 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from ringlet.groom.felt import FUZZ, MATTING, PROFILE
 from ringlet.groom.operators import Context
 from ringlet.groom.operators.woven import STRAND_RADIUS
 from ringlet.groom.scalp import Scalp
 from ringlet.groom.sections import EDGE, SECTION, STRAND
 from shapes import ball, sheet
 
-from ringlet import Curves, UserError
+from ringlet import Curves, UserError, read_groom, write_groom
 from ringlet.groom import HairMemory, lock_thickness, make_groom, make_hairs, parse_recipe, weave
 
 PATTERNS = ["grid", "brick", "rows", "triangles", "radial"]
@@ -276,3 +277,62 @@ def test_strands_of_sections_keep_their_length_at_a_hairline():
 def test_a_hairline_without_locks_to_thin_is_refused():
     with pytest.raises(UserError, match="locks has a hairline, but every guide becomes a lock; give it 'count'"):
         hairline("[locks.hairline]", locks="points = 8")
+
+
+LOC = "[[shape]]\nop = 'loc'\nradius = 0.4\ntaper = 0\ntip = 0\nfuzz = 0\nmatting = { value = 0, ramp = [[0, 1]] }\n"
+FULL = {"per_lock": 60, "radius": {"value": 0.1, "ramp": [(0.0, 1.0)]}, "frizz": 0.0, "stray": 0.0, "shorter": 0.0}
+
+
+def hairs_of_locs(shape, **hairs):
+    """Offsets of hairs from their loc, shape (hairs, points, 3) [m], and the groom; a point every 4 mm."""
+    made = groom("strands = 1", shape, "points = 40")
+    made.hairs = {**FULL, "gather": 0.02, **hairs}
+    curves = make_hairs(made).curves
+    points = curves.points.reshape(len(curves), -1, 3)
+    lock = curves.curve["lock"]
+    offset = points - made.locks.points.reshape(len(made.locks), -1, 3)[lock]
+    return offset[np.r_[True, lock[1:] == lock[:-1]]], made  # the first hair of a lock is the lock
+
+
+def reach(offset):
+    """Distance of the outermost hair along the loc [m]."""
+    return np.linalg.norm(offset, axis=2).max(axis=0)
+
+
+def test_hairs_fill_the_radius_of_a_loc_with_its_taper_bud_and_tip():
+    even = reach(hairs_of_locs(LOC)[0])
+    np.testing.assert_allclose(even[2:], 0.004, rtol=0.02)
+    tapered = reach(hairs_of_locs(LOC.replace("taper = 0", "taper = 0.5"))[0])
+    np.testing.assert_allclose(tapered[2:], even[2:] * (1.0 - 0.5 * np.linspace(0, 1, 40)[2:]), rtol=0.02)
+    offset, made = hairs_of_locs(LOC + "bud = 0.5\nbud_at = 0.5\nbud_length = 3\n")
+    budded = reach(offset)
+    assert budded[18:22].max() == pytest.approx(0.006, rel=0.03) and budded[[5, 35]].max() < 0.0041
+    assert lock_thickness(made) == pytest.approx(0.012, rel=0.03)
+    closed = reach(hairs_of_locs(LOC.replace("tip = 0", "tip = 4"))[0])
+    assert closed[-1] < 1e-4 and (np.diff(closed[-9:]) < 0).all() and closed[20] > 0.0039
+
+
+def test_matted_hairs_wander_through_the_loc_and_stay_in_it():
+    for matting, alike in ((0, 1.0), (1, 0.0)):
+        offset = hairs_of_locs(LOC.replace("value = 0", f"value = {matting}"))[0]
+        assert reach(offset).max() < 0.00402
+        a, b = offset[:, 12], offset[:, 25]  # 5 cm apart on straight locs
+        assert np.sum(a * b) / np.sqrt(np.sum(a * a) * np.sum(b * b)) == pytest.approx(alike, abs=0.08)
+
+
+def test_fuzz_stands_off_the_surface_of_a_loc_no_farther_than_its_length():
+    offset = hairs_of_locs(LOC.replace("fuzz = 0", "fuzz = 0.2"))[0]
+    away = np.linalg.norm(offset, axis=2)
+    assert 0.0055 < away.max() < 0.00602
+    assert 0.01 < np.mean(away > 0.0041) < 0.2
+
+
+def test_a_loc_acts_on_the_locks_of_its_mask_alone(tmp_path):
+    made = groom("strands = 1", LOC + "mask = { where = 'x > 0' }", "points = 40")
+    radius = made.locks.curve[STRAND_RADIUS]
+    np.testing.assert_allclose(radius, np.where(made.locks.roots[:, 0] > 0.0, 0.004, 0.0), atol=1e-8)
+    assert np.array_equal(made.locks.points, groom("strands = 1", "", "points = 40").locks.points)
+    write_groom(made, tmp_path / "locs.usdc")
+    read = read_groom(tmp_path / "locs.usdc").locks.curve
+    for name in (STRAND_RADIUS, PROFILE, MATTING, FUZZ):
+        assert np.array_equal(read[name], made.locks.curve[name])

@@ -21,6 +21,7 @@ from ringlet.data.painted import per_lock as for_each_lock
 from ringlet.data.precision import origin_of
 from ringlet.data.quantities import Quantity, Ramped, Section, Varied, explain
 from ringlet.data.random import Random, soft_threshold
+from ringlet.groom import felt
 from ringlet.groom.operators.woven import STRAND_RADIUS
 from ringlet.groom.scalp import axes
 
@@ -216,7 +217,8 @@ def lock_thickness(groom: Groom) -> float:
     """Largest diameter of a lock with its hairs [m], but for chance and maps."""
     radius = _settings(groom.hairs).radius
     largest = max([radius.value, *radius.region.values(), *radius.lock.values()])
-    return 2.0 * float(_strand_radius(groom.locks, np.full(len(groom.locks), largest)).max(initial=0.0)) * radius.peak
+    thickness = _strand_radius(groom.locks, np.full(len(groom.locks), largest)) * felt.most_thick(groom.locks)
+    return 2.0 * float(thickness.max(initial=0.0)) * radius.peak
 
 
 def make_hairs(groom: Groom, *, fraction: float = 1.0, wider: bool = False, memory: HairMemory | None = None) -> Hairs:
@@ -261,6 +263,7 @@ def _key(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -> 
         *(values(name) for name in HairSettings.model_fields if isinstance(getattr(settings, name), Varied)),
         scalp.points,
         scalp.triangles,
+        *(locks.curve[name] for name in (felt.PROFILE, felt.MATTING, felt.FUZZ) if name in locks.curve),
         *((locks.points,) if settings.blend != HairSettings().blend else ()),
     ):
         digest.update(np.ascontiguousarray(array).data)
@@ -323,6 +326,8 @@ def _place(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -
         {"width": widths},
     )
     layout = _layout(settings, per_lock, ids, number, lock, disk, u)
+    if felt.is_felted(locks):
+        layout["frizz"] = _felted(settings, per_lock, ids, lock, disk, layout["frizz"])
     layout |= _neighbours(settings, per_lock, groom, curves, is_lock, roots, u)
     hairs = Hairs(curves, groom, np.empty(0), {"first": first, **layout})
     hairs._root = hairs._root_offsets(scalp.points, roots)
@@ -405,6 +410,16 @@ def _layout(
         "profile": settings.radius.along(u).astype(np.float32),
         "hold": (t * t * (3.0 - 2.0 * t)).astype(np.float32),
     }
+
+
+def _felted(
+    settings: HairSettings, per_lock: _Values, ids: NDArray, lock: NDArray, disk: NDArray, frizz: NDArray
+) -> NDArray[np.float32]:
+    """Knots of hairs with the thickness and the matting of their locks, shape (hairs, 2 · felt.KNOTS)."""
+    u = np.linspace(0.0, 1.0, felt.KNOTS)
+    radius = per_lock("radius")[:, None] * settings.radius.along(u) * (1.0 - per_lock("taper")[:, None] * u)
+    section = _section(per_lock, lock, disk)
+    return felt.felted(per_lock.locks, lock, ids, section, radius[lock], frizz, settings.seed).astype(np.float32)
 
 
 def _section(per_lock: _Values, lock: NDArray, disk: NDArray) -> NDArray[np.float64]:

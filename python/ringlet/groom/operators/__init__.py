@@ -18,6 +18,7 @@ from ringlet.groom.operators.gather import Gather
 from ringlet.groom.operators.grown import Grown
 from ringlet.groom.operators.length import Length
 from ringlet.groom.operators.lift import Lift
+from ringlet.groom.operators.loc import Loc
 from ringlet.groom.operators.locks import Locks
 from ringlet.groom.operators.loft import Loft
 from ringlet.groom.operators.noise import Noise
@@ -48,7 +49,8 @@ ShapeOperator = Annotated[
     | Attract
     | Cut
     | Braid
-    | Twist,
+    | Twist
+    | Loc,
     Field(discriminator="op"),
 ]
 
@@ -68,6 +70,7 @@ __all__ = [
     "Grown",
     "Length",
     "Lift",
+    "Loc",
     "Locks",
     "Loft",
     "Noise",

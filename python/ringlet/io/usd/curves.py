@@ -29,6 +29,7 @@ from ringlet.io.usd.values import (
     local_to_world,
     read_integers,
     read_time,
+    rows,
     set_primvar,
     transformed,
 )
@@ -74,7 +75,7 @@ def curves_at(source: Source, prim: Usd.Prim, time: Usd.TimeCode) -> Curves:
         name = primvar.GetPrimvarName().removeprefix(OWN)
         if name in SCHEMA:
             continue
-        values = np.atleast_1d(from_usd(flattened(primvar, time)))
+        values = rows(primvar, np.atleast_1d(from_usd(flattened(primvar, time))))
         if values.dtype.kind not in "bifuSU":
             continue
         if primvar.GetTypeName().role == Sdf.ValueRoleNames.Point:
@@ -268,6 +269,7 @@ def _add(curves: Curves, sampling: Sampling, name: str, values: NDArray, interpo
 def _add_own(curves: Curves, primvar: UsdGeom.Primvar, name: str, where: str) -> None:
     """Stores a primvar of Ringlet's curves as an attribute; raises UserError for a wrong number of values."""
     values, interpolation = np.atleast_1d(from_usd(primvar.ComputeFlattened())), primvar.GetInterpolation()
+    values = rows(primvar, values)
     if values.dtype.kind not in "bifuSU":
         return
     per_curve = interpolation in (UsdGeom.Tokens.constant, UsdGeom.Tokens.uniform)

@@ -59,9 +59,22 @@ def from_usd(value: Any) -> NDArray:
 def set_primvar(
     prim: Usd.Prim, name: str, interpolation: str, values: NDArray, kind: Sdf.ValueTypeName | None = None
 ) -> None:
-    """Writes ``primvars:name``; ``kind`` sets a type with a role, such as a colour."""
-    own, value = to_usd(values)
-    UsdGeom.PrimvarsAPI(prim).CreatePrimvar(name, kind or own, interpolation).Set(value)
+    """Writes ``primvars:name``; ``kind`` sets a type with a role, such as a colour.
+
+    Rows of numbers that no USD type holds are written one after another, with their length as the ``elementSize``.
+    """
+    row = 1 if values.ndim != 2 or (values.dtype.name, values.shape[1:]) in _TYPES else values.shape[1]
+    own, value = to_usd(values if row == 1 else values.reshape(-1))
+    primvar = UsdGeom.PrimvarsAPI(prim).CreatePrimvar(name, kind or own, interpolation)
+    primvar.Set(value)
+    if row > 1:
+        primvar.SetElementSize(row)
+
+
+def rows(primvar: UsdGeom.Primvar, values: NDArray) -> NDArray:
+    """Values of a primvar, one row per element where its ``elementSize`` is more than 1."""
+    size = primvar.GetElementSize()
+    return values.reshape(-1, size) if size > 1 and values.ndim == 1 and len(values) % size == 0 else values
 
 
 def read_time(time: Usd.TimeCode, *attributes: Usd.Attribute) -> Usd.TimeCode:
