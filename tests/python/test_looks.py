@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from ringlet.groom.operators.woven import STRAND_RADIUS
+from ringlet.groom.operators.sectioned import STRAND_RADIUS
 from ringlet.groom.sections import SECTION
 
 import ringlet
@@ -19,5 +19,5 @@ def test_a_look_is_short_builds_and_has_strands_of_equal_number(recipe):
     groom = ringlet.build_groom(recipe)
     assert not groom.conflicts and (groom.locks.curve[STRAND_RADIUS] > 5e-4).all()
     sections, strands = np.unique(groom.locks.curve[SECTION], return_counts=True)
-    assert len(sections) > 80 and len(set(strands.tolist())) == 1
+    assert len(sections) > 15 and len(set(strands.tolist())) == 1
     assert len(make_hairs(groom, fraction=0.1).curves) > len(groom.locks)

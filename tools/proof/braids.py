@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from judged_shots import EXAMPLE, judged
 from numpy.typing import NDArray
-from ringlet.groom.operators.woven import STRAND_RADIUS
+from ringlet.groom.operators.sectioned import STRAND_RADIUS
 from ringlet.groom.scalp import Scalp
 from ringlet.groom.sections import SECTION
 

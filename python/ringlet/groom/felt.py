@@ -18,6 +18,16 @@ PROFILE, MATTING, FUZZ = "strand_profile", "strand_matting", "strand_fuzz"
 FUZZY = 0.25  # part of the knots at which a hair leaves the surface of a fully fuzzy lock
 
 
+def with_profile(attributes: dict[str, NDArray], rows: NDArray, profile: NDArray) -> dict[str, NDArray]:
+    """Curve attributes with a profile (KNOTS,) of some locks; hairs of locks without matting keep their places."""
+    count = len(next(iter(attributes.values())))
+    plain = {PROFILE: np.ones, MATTING: np.zeros, FUZZ: np.zeros}
+    attributes = {**{name: make((count, KNOTS), np.float32) for name, make in plain.items()}, **attributes}
+    attributes[PROFILE] = attributes[PROFILE].copy()
+    attributes[PROFILE][rows] = profile
+    return attributes
+
+
 def is_felted(locks: Curves) -> bool:
     """Whether a lock is thicker in places or matted."""
     return PROFILE in locks.curve

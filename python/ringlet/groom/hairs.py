@@ -22,7 +22,7 @@ from ringlet.data.precision import origin_of
 from ringlet.data.quantities import Quantity, Ramped, Section, Varied, explain
 from ringlet.data.random import Random, soft_threshold
 from ringlet.groom import felt
-from ringlet.groom.operators.woven import STRAND_RADIUS
+from ringlet.groom.operators.sectioned import STRAND_RADIUS
 from ringlet.groom.scalp import axes
 
 IDS_PER_LOCK = 10_000  # id of a hair: id of its lock · 10 000 + number in the lock

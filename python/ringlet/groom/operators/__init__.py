@@ -16,6 +16,7 @@ from ringlet.groom.operators.flyaways import Flyaways
 from ringlet.groom.operators.frizz import Frizz
 from ringlet.groom.operators.gather import Gather
 from ringlet.groom.operators.grown import Grown
+from ringlet.groom.operators.knot import Knot
 from ringlet.groom.operators.length import Length
 from ringlet.groom.operators.lift import Lift
 from ringlet.groom.operators.loc import Loc
@@ -50,7 +51,8 @@ ShapeOperator = Annotated[
     | Cut
     | Braid
     | Twist
-    | Loc,
+    | Loc
+    | Knot,
     Field(discriminator="op"),
 ]
 
@@ -68,6 +70,7 @@ __all__ = [
     "Frizz",
     "Gather",
     "Grown",
+    "Knot",
     "Length",
     "Lift",
     "Loc",

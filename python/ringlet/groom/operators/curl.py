@@ -16,7 +16,7 @@ from ringlet.data.quantities import Quantity, Ramp, Ramped, Varied, along, refus
 from ringlet.data.random import soft_threshold
 from ringlet.groom.operators.operator import Context, Operator, packed
 from ringlet.groom.operators.phase_lock import PhaseLock
-from ringlet.groom.operators.woven import STRAND_RADIUS
+from ringlet.groom.operators.sectioned import STRAND_RADIUS
 from ringlet.groom.presets import PRESETS, Preset
 from ringlet.groom.scalp import axes
 

@@ -12,8 +12,8 @@ from ringlet.data.curves import Curves
 from ringlet.data.quantities import Quantity, Ramped, Varied
 from ringlet.groom.felt import FUZZ, KNOTS, MATTING, PROFILE
 from ringlet.groom.operators.operator import Context
+from ringlet.groom.operators.sectioned import STRAND_RADIUS
 from ringlet.groom.operators.shape import Shape
-from ringlet.groom.operators.woven import STRAND_RADIUS
 
 
 class Loc(Shape):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -11,23 +12,21 @@ from pydantic import Field
 from scipy.optimize import linear_sum_assignment
 
 from ringlet import _core
-from ringlet.data.curves import Curves, offsets_from_counts
+from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.quantities import Quantity, Ramped, Varied
 from ringlet.groom import weave
-from ringlet.groom.operators.operator import Context, arc_lengths, grid, packed, unit
-from ringlet.groom.operators.shape import Shape
-from ringlet.groom.sections import SECTION, STRAND
+from ringlet.groom.operators.operator import Context, arc_lengths, grid, unit
+from ringlet.groom.operators.sectioned import Sectioned, Strands, leaders
 
-STRAND_RADIUS = "strand_radius"  # curve attribute of locks: radius of a woven strand [m], 0 for others
 EASE = 0.5  # turns over which a braid begins and ends
 LEAST_POINTS, GOOD_POINTS = 6, 10  # of a strand, per wave of its path to the front and back
 
 
-class Woven(Shape):
+class Woven(Sectioned):
     """Weaves the strands of each section about a centre line, the mean of their shapes: ``p = c + a x + b z``, with x
     across the braid and z away from the head, in a rotation-minimising frame of c. The strands come together over
-    ``start`` and run on side by side over ``tail``. They get as many points as a groom guide has."""
+    ``start`` and run on side by side over ``tail``."""
 
     width: Annotated[Ramped, Quantity("m", 5e-4, 0.2)] = Field(
         default=Ramped(value=0.012), description="width, strands included; its ramp narrows the strands too"
@@ -62,43 +61,22 @@ class Woven(Shape):
         """Pitch where none is given [m]."""
         raise NotImplementedError
 
-    def apply(self, curves: Curves, context: Context) -> Curves:
-        """Returns the curves with the strands woven, all with ``lock_points`` points or more."""
-        if STRAND not in curves.curve or not (curves.curve[STRAND] >= 0).any():
-            raise UserError(f"{context.purpose}: no section has strands; give [locks.sections] strands = 3, say")
-        points = max(context.lock_points, int(curves.counts.max()))
-        fine = curves
-        if int(curves.counts.min()) != points:
-            resampled = _core.resample_curves(*packed(curves), points)
-            fine = Curves(resampled, offsets_from_counts([points] * len(curves)), curves.ids, curves.curve)
-        weight = self.weights(fine, context)
-        braids = self._braids(fine, weight, context)
-        if not braids:
-            return curves
-        shapes = grid(fine).copy()
-        radius = curves.curve.get(STRAND_RADIUS, np.zeros(len(curves), np.float32)).copy()
-        for braid in braids:
-            shapes[braid.rows] = braid.woven(shapes[braid.rows], context.scalp.middle, self)
-            radius[braid.rows] = braid.radius
-        woven = self.blended(fine, shapes, weight)
-        return Curves(woven.points, woven.offsets, woven.ids, {**woven.curve, STRAND_RADIUS: radius}, woven.point)
+    def strands(self, curves: Curves, sections: list[NDArray[np.integer]], context: Context) -> Iterator[Strands]:
+        """The strands of each section, woven about their mean."""
+        shapes = grid(curves)
+        for braid in self._braids(curves, sections, context):
+            yield Strands(braid.rows, braid.woven(shapes[braid.rows], context.scalp.middle, self), braid.radius)
 
-    def _braids(self, curves: Curves, weight: NDArray, context: Context) -> list[Braided]:
-        """The braids of the sections of which a strand has weight."""
-        strand = curves.curve[STRAND] >= 0
-        sections = np.unique(curves.curve[SECTION][strand & (weight > 0.0).any(axis=1)])
-        if not len(sections):
-            return []
-        rows = [np.flatnonzero(strand & (curves.curve[SECTION] == section)) for section in sections]
-        leaders = curves.take(np.array([of_section[0] for of_section in rows]))
-        leaders.ids = sections.astype(np.int64)  # chance goes by the section, not by one of its strands
-        length = np.array([_length(curves, of_section) for of_section in rows])
-        values = {k: context.values(self, k, leaders) for k in ("width", "tightness", "start", "tail")}
-        pitch = self.pitch_of(values["width"]) if self.pitch is None else context.values(self, "pitch", leaders)
-        mirrored = self.mirrored(leaders, context)
+    def _braids(self, curves: Curves, sections: list[NDArray[np.integer]], context: Context) -> list[Braided]:
+        """How the strands of each section are woven."""
+        leading = leaders(curves, sections)
+        length = np.array([_length(curves, of_section) for of_section in sections])
+        values = {k: context.values(self, k, leading) for k in ("width", "tightness", "start", "tail")}
+        pitch = self.pitch_of(values["width"]) if self.pitch is None else context.values(self, "pitch", leading)
+        mirrored = self.mirrored(leading, context)
         radius: dict[tuple, float] = {}
         braids = []
-        for k, strands in enumerate(rows):
+        for k, strands in enumerate(sections):
             if reason := weave.refusal(self.path, len(strands)):
                 raise UserError(f"{context.purpose} {reason}")
             width, depth = values["width"][k], float(self.depth_of(values["width"][k], len(strands)))
