@@ -5,15 +5,22 @@ from pathlib import Path
 import numpy as np
 import pytest
 from ringlet.groom.operators.sectioned import STRAND_RADIUS
+from ringlet.groom.operators.tied import TIED
 from ringlet.groom.sections import SECTION
 
 import ringlet
 from ringlet.groom import make_hairs
 
 LOOKS = sorted((Path(__file__).parents[2] / "examples" / "looks").glob("*.recipe.toml"))
+TIED_LOOKS = [recipe for recipe in LOOKS if 'op = "tie"' in recipe.read_text()]
+WOVEN_LOOKS = [recipe for recipe in LOOKS if recipe not in TIED_LOOKS]
 
 
-@pytest.mark.parametrize("recipe", LOOKS, ids=lambda path: path.name.removesuffix(".recipe.toml"))
+def name(recipe):
+    return recipe.name.removesuffix(".recipe.toml")
+
+
+@pytest.mark.parametrize("recipe", WOVEN_LOOKS, ids=name)
 def test_a_look_is_short_builds_and_has_strands_of_equal_number(recipe):
     assert len(recipe.read_text().splitlines()) < 60
     groom = ringlet.build_groom(recipe)
@@ -21,3 +28,11 @@ def test_a_look_is_short_builds_and_has_strands_of_equal_number(recipe):
     sections, strands = np.unique(groom.locks.curve[SECTION], return_counts=True)
     assert len(sections) > 15 and len(set(strands.tolist())) == 1
     assert len(make_hairs(groom, fraction=0.1).curves) > len(groom.locks)
+
+
+@pytest.mark.parametrize("recipe", TIED_LOOKS, ids=name)
+def test_a_tied_look_is_short_and_builds_with_its_bands(recipe):
+    assert len(recipe.read_text().splitlines()) < 60
+    groom = ringlet.build_groom(recipe)
+    assert not groom.conflicts and (groom.locks.curve[TIED] > 0.0).mean() > 0.98
+    assert len(groom.bands) == (2 if "puffs" in recipe.name else 1)

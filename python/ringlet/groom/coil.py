@@ -112,13 +112,12 @@ class Coil:
         return 0.0
 
 
-def on_scalp(line: NDArray, base: NDArray, scalp: Scalp) -> NDArray[np.float64]:
-    """A line (n, 3) in the local frame of a coil, placed with its axis along the normal over a base [m], shape (n, 3).
+def on_scalp(line: NDArray, base: NDArray, up: NDArray, scalp: Scalp) -> NDArray[np.float64]:
+    """A line (n, 3) in the local frame of a coil, placed with its axis along a unit direction over a base [m].
 
     Heights are those over the scalp below each point, so that windings lie on a curved head.
     """
-    foot, normal = scalp.nearest(base[None])
-    up = normal[0]
+    foot, _ = scalp.nearest(base[None])
     across = np.cross(up, np.eye(3)[np.abs(up).argmin()])
     across /= np.linalg.norm(across)
     flat = foot[0] + line[:, :1] * across + line[:, 1:2] * np.cross(up, across)

@@ -14,7 +14,6 @@ from ringlet.groom.operators.cut import Cut
 from ringlet.groom.operators.drawn import Drawn
 from ringlet.groom.operators.flyaways import Flyaways
 from ringlet.groom.operators.frizz import Frizz
-from ringlet.groom.operators.gather import Gather
 from ringlet.groom.operators.grown import Grown
 from ringlet.groom.operators.knot import Knot
 from ringlet.groom.operators.length import Length
@@ -30,6 +29,7 @@ from ringlet.groom.operators.scraggle import Scraggle
 from ringlet.groom.operators.shape import Shape
 from ringlet.groom.operators.smooth import Smooth
 from ringlet.groom.operators.straighten import Straighten
+from ringlet.groom.operators.tie import Tie
 from ringlet.groom.operators.twist import Twist
 
 ShapeOperator = Annotated[
@@ -44,7 +44,7 @@ ShapeOperator = Annotated[
     | Frizz
     | Clump
     | Part
-    | Gather
+    | Tie
     | Flyaways
     | Straighten
     | Attract
@@ -68,7 +68,6 @@ __all__ = [
     "Drawn",
     "Flyaways",
     "Frizz",
-    "Gather",
     "Grown",
     "Knot",
     "Length",
@@ -85,5 +84,6 @@ __all__ = [
     "ShapeOperator",
     "Smooth",
     "Straighten",
+    "Tie",
     "Twist",
 ]

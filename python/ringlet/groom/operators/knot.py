@@ -69,7 +69,8 @@ class Knot(Sectioned):
             coil = Coil.fitted(width, height, turns, dome, tuck)
             roots = shapes[rows, 0]
             line = coil.path() * [1.0, -1.0 if mirrored[k] else 1.0, 1.0]
-            line = on_scalp(line, roots.mean(axis=0), context.scalp)
+            base = roots.mean(axis=0)
+            line = on_scalp(line, base, context.scalp.nearest(base[None])[1][0], context.scalp)
             length = float(arc_lengths(line[None])[0, -1])
             twists = 0.0 if len(rows) == 1 else (length - coil.rise) / (4.0 * coil.rope if pitch is None else pitch[k])
             self._check_points(turns + twists, shapes.shape[1], context)
