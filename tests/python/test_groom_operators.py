@@ -23,7 +23,7 @@ OPERATORS = {
     "frizz": "amount = 0.3\nsize = 2",
     "clump": "amount = { value = 0.8, vary = 0 }\nsize = 3",
     "part": "amount = 2",
-    "gather": "tie = 'tail'",
+    "tie": "curve = 'tail'",
     "flyaways": "share = 0.5",
     "straighten": "",
     "attract": "curve = 'tail'",
@@ -328,7 +328,7 @@ def test_locks_part_at_a_plane_and_at_a_drawn_line():
 
 
 def test_gathered_locks_meet_at_the_tie_keep_their_length_and_hang_along_the_tail():
-    gathered, plain = locks("[[shape]]\nop='length'\nto=40\n" + step("gather")), locks()
+    gathered, plain = locks("[[shape]]\nop='length'\nto=40\n" + step("tie")), locks()
     np.testing.assert_allclose(gathered.lengths(), 0.4, rtol=0.05)  # chords cut corners
     tie = np.array([0, 0.08, -0.08])
     distance = np.linalg.norm(grid(gathered)[:, :, None] - tie, axis=3).min(axis=(1, 2))

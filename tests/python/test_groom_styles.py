@@ -4,10 +4,11 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from ringlet.data.groom import SECTION, STRAND_RADIUS
+from ringlet.groom.felt import FUZZ, MATTING, PROFILE
 from ringlet.groom.operators import Context
-from ringlet.groom.operators.woven import STRAND_RADIUS
 from ringlet.groom.scalp import Scalp
-from ringlet.groom.sections import EDGE, SECTION, STRAND
+from ringlet.groom.sections import EDGE, STRAND
 from ringlet.groom.shares import REACH
 from scipy.spatial import KDTree
 from shapes import ball, sheet
@@ -384,3 +385,136 @@ def test_loose_hair_leaves_drawn_partings_free():
 def test_drawn_sections_without_partings_are_refused():
     with pytest.raises(UserError, match="needs both pattern = 'drawn' and 'partings'"):
         parse_recipe(text("pattern = 'drawn'"))
+
+
+LOC = "[[shape]]\nop = 'loc'\nradius = 0.4\ntaper = 0\ntip = 0\nfuzz = 0\nmatting = { value = 0, ramp = [[0, 1]] }\n"
+FULL = {"per_lock": 60, "radius": {"value": 0.1, "ramp": [(0.0, 1.0)]}, "frizz": 0.0, "stray": 0.0, "shorter": 0.0}
+
+
+ROOT = 2  # points of hairs at their roots
+
+
+def hairs_of_locs(shape, **hairs):
+    """Offsets of hairs across their loc beyond its root, shape (hairs, points, 3) [m], and the groom."""
+    made = groom("strands = 1", shape, "points = 40")
+    made.hairs = {**FULL, "gather": 0.02, **hairs}
+    curves = make_hairs(made).curves
+    points = curves.points.reshape(len(curves), -1, 3)
+    lock = curves.curve["lock"]
+    lines = made.locks.points.reshape(len(made.locks), -1, 3)
+    tangent = np.gradient(lines, axis=1)
+    tangent /= np.linalg.norm(tangent, axis=2, keepdims=True)
+    offset = points - lines[lock]
+    offset -= np.sum(offset * tangent[lock], axis=2, keepdims=True) * tangent[lock]
+    # The first hair of a lock is the lock, and from the roots all over its section hairs come to it.
+    return offset[np.r_[True, lock[1:] == lock[:-1]], ROOT:], made
+
+
+def reach(offset):
+    """Distance of the outermost hair along the loc [m]."""
+    return np.linalg.norm(offset, axis=2).max(axis=0)
+
+
+def test_hairs_fill_the_radius_of_a_loc_with_its_taper_bud_and_tip():
+    even = reach(hairs_of_locs(LOC)[0])
+    np.testing.assert_allclose(even, 0.004, rtol=0.02)
+    tapered = reach(hairs_of_locs(LOC.replace("taper = 0", "taper = 0.5"))[0])
+    np.testing.assert_allclose(tapered, even * (1.0 - 0.5 * np.linspace(0, 1, 40)[ROOT:]), rtol=0.02)
+    offset, made = hairs_of_locs(LOC + "bud = 0.5\nbud_at = 0.5\nbud_length = 3\n")
+    budded = reach(offset)
+    assert budded[16:20].max() == pytest.approx(0.006, rel=0.03) and budded[[3, 33]].max() < 0.0041
+    assert lock_thickness(made) == pytest.approx(0.012, rel=0.03)
+    closed = reach(hairs_of_locs(LOC.replace("tip = 0", "tip = 4"))[0])
+    assert closed[-1] < 1e-4 and (np.diff(closed[-9:]) < 0).all() and closed[18] > 0.0039
+
+
+def test_matted_hairs_wander_through_the_loc_and_stay_in_it():
+    for matting, alike in ((0, 1.0), (1, 0.0)):
+        offset = hairs_of_locs(LOC.replace("value = 0", f"value = {matting}"))[0]
+        assert reach(offset).max() < 0.00402
+        a, b = offset[:, 10], offset[:, 23]  # 5 cm apart on straight locs
+        assert np.sum(a * b) / np.sqrt(np.sum(a * a) * np.sum(b * b)) == pytest.approx(alike, abs=0.08)
+
+
+def test_fuzz_stands_off_the_surface_of_a_loc_no_farther_than_its_length():
+    offset = hairs_of_locs(LOC.replace("fuzz = 0", "fuzz = 0.2"))[0]
+    away = np.linalg.norm(offset, axis=2)
+    assert 0.0055 < away.max() < 0.00602
+    assert 0.01 < np.mean(away > 0.0041) < 0.2
+
+
+def test_a_loc_acts_on_the_locks_of_its_mask_alone(tmp_path):
+    made = groom("strands = 1", LOC + "mask = { where = 'x > 0' }", "points = 40")
+    radius = made.locks.curve[STRAND_RADIUS]
+    np.testing.assert_allclose(radius, np.where(made.locks.roots[:, 0] > 0.0, 0.004, 0.0), atol=1e-8)
+    assert np.array_equal(made.locks.points, groom("strands = 1", "", "points = 40").locks.points)
+    write_groom(made, tmp_path / "locs.usdc")
+    read = read_groom(tmp_path / "locs.usdc").locks.curve
+    for name in (STRAND_RADIUS, PROFILE, MATTING, FUZZ):
+        assert np.array_equal(read[name], made.locks.curve[name])
+
+
+KNOT = "[[shape]]\nop = 'knot'\nwidth = 3\nheight = 2.4\n"
+
+
+def knots(strands, more="", points=300):
+    """Centre lines of knots (sections, points, 3), their locks, and heights of the lines over the ball [m]."""
+    locks = groom(f"strands = {strands}\nsize = 5", KNOT + more, f"points = {points}").locks
+    lines = np.array([one.mean(axis=0) for one in strands_of(locks)])
+    return lines, locks, np.linalg.norm(lines, axis=2) - 0.09
+
+
+def axis_distance(line):
+    """Distance of a knot's points from its axis, which goes through the middle of the ball [m]."""
+    axis = line[0] / np.linalg.norm(line[0])
+    return np.linalg.norm(line - np.outer(line @ axis, axis), axis=1)
+
+
+@pytest.mark.parametrize("windings", [2, 3.5])
+def test_windings_of_a_knot_touch_and_do_not_overlap(windings):
+    lines, locks, _ = knots(1, f"windings = {windings}")
+    thickness = 2.0 * locks.curve[STRAND_RADIUS]
+    for line, thick in zip(lines, thickness, strict=True):
+        along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
+        distance = np.linalg.norm(line[:, None] - line[None], axis=2)
+        others = np.abs(along[:, None] - along[None]) > 0.5 * np.pi * thick  # beyond half a circle of that thickness
+        nearest = np.where(others, distance, np.inf).min(axis=1)
+        assert 0.93 * thick < nearest.min() and np.median(nearest[150:]) < 1.1 * thick
+
+
+def test_a_knot_sits_on_the_scalp_with_its_width_and_height_and_its_end_tucked_under():
+    lines, locks, heights = knots(1)
+    assert np.array_equal(lines[:, 0], groom("strands = 1\nsize = 5", "", "points = 300").locks.roots)
+    for line, height, radius in zip(lines, heights, locks.curve[STRAND_RADIUS], strict=True):
+        away = axis_distance(line)
+        assert height.max() + radius == pytest.approx(0.024, rel=0.05)
+        assert 2.0 * (away.max() + radius) == pytest.approx(0.03, rel=0.07)
+        assert height[60:].min() == pytest.approx(radius, rel=0.3) and height[60:].argmin() > 200  # the last winding
+        assert away[-1] < away.max() - 0.5 * radius and height[-1] < 1.3 * radius  # the tip is under those above
+    loose = knots(1, "tuck = 0")[0]
+    assert min(map(axis_distance, loose), key=lambda away: away[-1])[-1] > max(axis_distance(one)[-1] for one in lines)
+    assert (locks.curve[PROFILE][:, -1] < 1e-6).all()  # the end closes
+
+
+def test_two_strands_of_a_knot_are_twisted_and_touch():
+    locks = knots(2, points=400)[1]
+    radius = float(locks.curve[STRAND_RADIUS][0])
+    for one in strands_of(locks):
+        apart = np.linalg.norm(one[0, 60:-30, None] - one[1, None], axis=2).min(axis=1)  # thinner at the end
+        np.testing.assert_allclose(apart, 2.0 * radius, rtol=0.08)
+        across = (one[0] - one[1])[60:]
+        across /= np.linalg.norm(across, axis=1, keepdims=True)
+        turned = np.arccos(np.clip(np.sum(across[1:] * across[:-1], axis=1), -1.0, 1.0)).sum() / (2.0 * np.pi)
+        length = np.linalg.norm(np.diff(one.mean(axis=0), axis=0), axis=1)[60:].sum()
+        assert turned > 0.3 * length / (4.0 * 2.0 * radius)  # a turn every two thicknesses, seen along a bent axis
+
+
+def test_a_knot_of_few_points_is_refused():
+    with pytest.raises(UserError, match=r"locks.points is 20: too few for the 3.0 turns of knot and its strands"):
+        knots(1, points=20)
+
+
+@pytest.mark.parametrize("more", ["mask = 0", "blend = 0"])
+def test_a_knot_that_acts_nowhere_changes_nothing(more):
+    plain = groom("strands = 1", "").locks
+    assert np.array_equal(plain.points, groom("strands = 1", KNOT + more).locks.points)

@@ -4,25 +4,38 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from ringlet.data.groom import SECTION, STRAND_RADIUS
 from ringlet.data.pigment import curve_reflectance
-from ringlet.groom.operators.woven import STRAND_RADIUS
-from ringlet.groom.sections import SECTION
+from ringlet.groom.operators.tied import TO_TIE
 
 import ringlet
 from ringlet.groom import make_hairs
 
 LOOKS = sorted((Path(__file__).parents[2] / "examples" / "looks").glob("*.recipe.toml"))
-WOVEN = [look for look in LOOKS if "[locks.sections]" in look.read_text()]
+TIED_LOOKS = [recipe for recipe in LOOKS if 'op = "tie"' in recipe.read_text()]
+WOVEN_LOOKS = [recipe for recipe in LOOKS if "strands =" in recipe.read_text()]
 
 
-@pytest.mark.parametrize("recipe", WOVEN, ids=lambda path: path.name.removesuffix(".recipe.toml"))
-def test_a_woven_look_is_short_builds_and_has_strands_of_equal_number(recipe):
+def name(recipe):
+    return recipe.name.removesuffix(".recipe.toml")
+
+
+@pytest.mark.parametrize("recipe", WOVEN_LOOKS, ids=name)
+def test_a_look_is_short_builds_and_has_strands_of_equal_number(recipe):
     assert len(recipe.read_text().splitlines()) < 60
     groom = ringlet.build_groom(recipe)
     assert not groom.conflicts and (groom.locks.curve[STRAND_RADIUS] > 5e-4).all()
     sections, strands = np.unique(groom.locks.curve[SECTION], return_counts=True)
     assert len(sections) > 10 and len(set(strands.tolist())) == 1
     assert len(make_hairs(groom, fraction=0.1).curves) > len(groom.locks)
+
+
+@pytest.mark.parametrize("recipe", TIED_LOOKS, ids=name)
+def test_a_tied_look_is_short_and_builds_with_its_bands(recipe):
+    assert len(recipe.read_text().splitlines()) < 60
+    groom = ringlet.build_groom(recipe)
+    assert not groom.conflicts and (groom.locks.curve[TO_TIE] > 0.0).mean() > 0.98
+    assert len(groom.bands) == (2 if "puffs" in recipe.name else 1)
 
 
 def test_the_ombre_is_dark_at_its_roots_and_light_at_its_tips():

@@ -58,8 +58,8 @@ spread = "9 mm"
 CURL = "[curl]\nwidth = {}\ncurls = {{ value = {}, vary = 0.1 }}\n"
 BUN = """
 [[shape]]
-op = 'gather'
-tie = 'bun'
+op = 'tie'
+curve = 'bun'
 radius = 1.5
 rise = 0.2
 [curves.bun]

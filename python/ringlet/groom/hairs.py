@@ -22,6 +22,7 @@ from ringlet.data.pigment import TWIST
 from ringlet.data.precision import origin_of
 from ringlet.data.quantities import Quantity, Ramped, Section, Varied, explain
 from ringlet.data.random import Random, soft_threshold
+from ringlet.groom import felt
 from ringlet.groom.color import hair_colors
 from ringlet.groom.fiber import FiberSettings
 from ringlet.groom.operators.woven import JOIN
@@ -225,7 +226,8 @@ def lock_thickness(groom: Groom) -> float:
     """Largest diameter of a lock with its hairs [m], but for chance and maps."""
     radius = _settings(groom.hairs).radius
     largest = max([radius.value, *radius.region.values(), *radius.lock.values()])
-    return 2.0 * float(_strand_radius(groom.locks, np.full(len(groom.locks), largest)).max(initial=0.0)) * radius.peak
+    thickness = _strand_radius(groom.locks, np.full(len(groom.locks), largest)) * felt.most_thick(groom.locks)
+    return 2.0 * float(thickness.max(initial=0.0)) * radius.peak
 
 
 def make_hairs(groom: Groom, *, fraction: float = 1.0, wider: bool = False, memory: HairMemory | None = None) -> Hairs:
@@ -275,6 +277,7 @@ def _key(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -> 
         *(values(name) for name in HairSettings.model_fields if isinstance(getattr(settings, name), Varied)),
         scalp.points,
         scalp.triangles,
+        *(locks.curve[name] for name in (felt.PROFILE, felt.MATTING, felt.FUZZ) if name in locks.curve),
         *((locks.points,) if settings.blend != HairSettings().blend else ()),
         *((locks.lengths(),) if fiber.flatness else ()),
     ):
@@ -351,6 +354,8 @@ def _place(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -
     _flatten(groom, curves)
     layout = _layout(settings, per_lock, ids, number, lock, disk, u)
     layout["join"] = np.where(is_lock, 0.0, joins).astype(np.float32)
+    if felt.is_felted(locks):
+        layout["frizz"] = _felted(settings, per_lock, ids, lock, disk, layout["frizz"])
     layout |= _neighbours(settings, per_lock, groom, curves, is_lock, roots, u)
     hairs = Hairs(curves, groom, np.empty(0), {"first": first, **layout})
     hairs._root = hairs._root_offsets(scalp.points, roots)
@@ -489,6 +494,16 @@ def _pace(u: NDArray, gather: float) -> NDArray[np.float64]:
     late = np.clip(u - gather + soft, 0.0, None)
     pace = np.where(late < 2.0 * soft, late * late / (4.0 * soft), late - soft)
     return pace / max(1.0 - gather, 1e-9) if gather < 1.0 else 0.0 * u
+
+
+def _felted(
+    settings: HairSettings, per_lock: _Values, ids: NDArray, lock: NDArray, disk: NDArray, frizz: NDArray
+) -> NDArray[np.float32]:
+    """Knots of hairs with the thickness and the matting of their locks, shape (hairs, 2 · felt.KNOTS)."""
+    u = np.linspace(0.0, 1.0, felt.KNOTS)
+    radius = per_lock("radius")[:, None] * settings.radius.along(u) * (1.0 - per_lock("taper")[:, None] * u)
+    section = _section(per_lock, lock, disk)
+    return felt.felted(per_lock.locks, lock, ids, section, radius[lock], frizz, settings.seed).astype(np.float32)
 
 
 def _section(per_lock: _Values, lock: NDArray, disk: NDArray) -> NDArray[np.float64]:

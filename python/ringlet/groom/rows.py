@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from ringlet import _core
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
+from ringlet.data.groom import SECTION
 from ringlet.groom.scalp import Scalp
-from ringlet.groom.sections import SECTION, Division, V
+from ringlet.groom.sections import Division, V
 
 SAMPLES_A_SIDE = 8  # of the scalp, per width of a section
 BIN = 0.5  # length of a row whose samples are averaged, in widths of a section

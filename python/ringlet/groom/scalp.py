@@ -169,6 +169,13 @@ class Scalp:
         corners = (self.points if points is None else points)[self.triangles[triangle]]
         return np.einsum("kc,kcx->kx", barycentric, corners)
 
+    def nearest(self, places: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Closest points of the mesh to places (n, 3) [m], and the normals of the frames there, shape (n, 3) each."""
+        flat = np.ascontiguousarray(places, np.float64)
+        triangle, barycentric, _ = _core.bind_roots(self.points, self.triangles, flat)
+        foot, frames = _core.root_frames(self.points, self.triangles, triangle, barycentric)
+        return foot, frames[:, :, 2]
+
     def frames(self, curves: Curves) -> NDArray[np.float64]:
         """Frames at the roots of bound curves, shape (count, 3, 3); columns tangent, bitangent, normal."""
         return _core.root_frames(

@@ -24,9 +24,10 @@ from ringlet.groom.edits import Edit, Edits
 from ringlet.groom.hairs import HairMemory, HairSettings
 from ringlet.groom.load import stage_names
 from ringlet.groom.nails import nailed
-from ringlet.groom.operators import Context, Drawn, Operator, Resample
+from ringlet.groom.operators import Context, Drawn, Operator, Resample, Tie
 from ringlet.groom.operators.operator import grid, unit
 from ringlet.groom.operators.shape import Displacement
+from ringlet.groom.operators.tied import TO_TIE
 from ringlet.groom.recipe import Recipe
 from ringlet.groom.scalp import Scalp
 from ringlet.groom.sculpt import Sculpted
@@ -94,6 +95,7 @@ def make_groom(
         stages = _stages(recipe)
         guides, unsculpted, shapes, uncleaned = curves, curves, None, curves
         lengthened: list[str] = []
+        bands: list[Mesh] = []
         for name, operator in stages:
             if progress:
                 progress(name, 0, 1)
@@ -105,6 +107,8 @@ def make_groom(
             before = curves
             curves, key = _run(operator, curves, key, context, memory)
             check_curves(curves, curves.points, scalp.points, name)
+            if isinstance(operator, Tie):
+                bands += operator.bands(before, context)
             if isinstance(operator, Displacement):
                 lengthened += _lengthened(name, before, curves)
             if name == "guides":
@@ -132,12 +136,14 @@ def make_groom(
         recipe=recipe.text,
         shapes=shapes,
         unsculpted=unsculpted,
+        bands=bands,
         conflicts=[
             *_conflicts(recipe, unsculpted, curves),
             *_odd_size(scalp, recipe.scalp.region),
             *lengthened,
             *_inward(uncleaned, surface),
             *_not_strands(curves),
+            *_former_names(recipe),
         ],
     )
 
@@ -213,6 +219,7 @@ def _inward(locks: Curves, scalp: Scalp) -> Iterator[str]:
     """A message for locks that start into the scalp: its faces may be turned inside out."""
     start = grid(locks)[:, 1 : max(2, locks.counts[0] // 4)].mean(axis=1) - locks.roots
     inward = np.einsum("ki,ki->k", unit(start), scalp.frames(locks)[:, :, 2]) < STEEPLY_INWARD
+    inward &= locks.curve.get(TO_TIE, np.zeros(len(locks))) == 0.0  # hair that is led to a tie follows the curved skin
     if inward.any():
         yield (
             f"{inward.sum()} of {len(locks)} locks, such as {locks.ids[inward.argmax()]}, start into the scalp and are "
@@ -226,6 +233,12 @@ def _not_strands(locks: Curves) -> Iterator[str]:
         locks.check_strands("locks")
     except UserError as error:
         yield f"{error}; as it is, the groom cannot be simulated"
+
+
+def _former_names(recipe: Recipe) -> Iterator[str]:
+    """A message for operators under their former names."""
+    if any(isinstance(operator, Tie) and operator.op == "gather" for operator in recipe.shape):
+        yield "the operator gather is now called tie, and its setting tie is curve; gather is still read"
 
 
 def _run(operator: Operator, curves: Curves, key: str, context: Context, memory: Memory) -> tuple[Curves, str]:

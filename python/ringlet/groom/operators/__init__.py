@@ -15,10 +15,11 @@ from ringlet.groom.operators.cut import Cut
 from ringlet.groom.operators.drawn import Drawn
 from ringlet.groom.operators.flyaways import Flyaways
 from ringlet.groom.operators.frizz import Frizz
-from ringlet.groom.operators.gather import Gather
 from ringlet.groom.operators.grown import Grown
+from ringlet.groom.operators.knot import Knot
 from ringlet.groom.operators.length import Length
 from ringlet.groom.operators.lift import Lift
+from ringlet.groom.operators.loc import Loc
 from ringlet.groom.operators.locks import Locks
 from ringlet.groom.operators.loft import Loft
 from ringlet.groom.operators.noise import Noise
@@ -29,6 +30,7 @@ from ringlet.groom.operators.scraggle import Scraggle
 from ringlet.groom.operators.shape import Shape
 from ringlet.groom.operators.smooth import Smooth
 from ringlet.groom.operators.straighten import Straighten
+from ringlet.groom.operators.tie import Tie
 from ringlet.groom.operators.twist import Twist
 
 ShapeOperator = Annotated[
@@ -43,14 +45,16 @@ ShapeOperator = Annotated[
     | Frizz
     | Clump
     | Part
-    | Gather
+    | Tie
     | Flyaways
     | Straighten
     | Attract
     | Cut
     | Braid
     | Twist
-    | Cornrow,
+    | Cornrow
+    | Loc
+    | Knot,
     Field(discriminator="op"),
 ]
 
@@ -67,10 +71,11 @@ __all__ = [
     "Drawn",
     "Flyaways",
     "Frizz",
-    "Gather",
     "Grown",
+    "Knot",
     "Length",
     "Lift",
+    "Loc",
     "Locks",
     "Loft",
     "Noise",
@@ -82,5 +87,6 @@ __all__ = [
     "ShapeOperator",
     "Smooth",
     "Straighten",
+    "Tie",
     "Twist",
 ]

@@ -12,11 +12,12 @@ from ringlet import _core
 from ringlet.data import limits
 from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.data.errors import UserError
+from ringlet.data.groom import STRAND_RADIUS
 from ringlet.data.quantities import Quantity, Ramp, Ramped, Varied, along, refuse
 from ringlet.data.random import soft_threshold
 from ringlet.groom.operators.operator import Context, Operator, packed
 from ringlet.groom.operators.phase_lock import PhaseLock
-from ringlet.groom.operators.woven import STRAND_RADIUS
+from ringlet.groom.operators.tied import after_ties, with_heads
 from ringlet.groom.presets import PRESETS, Preset
 from ringlet.groom.scalp import axes
 
@@ -134,9 +135,13 @@ class Curl(Operator):
             )
         return self
 
-    def turns(self, curves: Curves, context: Context, u: NDArray) -> tuple[NDArray[np.floating], NDArray[np.floating]]:
-        """Curl count of each lock, shape (count,), and its relative density at parameters ``u``, with mean 1."""
-        lengths = curves.lengths()
+    def turns(
+        self, curves: Curves, lengths: NDArray, context: Context, u: NDArray
+    ) -> tuple[NDArray[np.floating], NDArray[np.floating]]:
+        """Curl count of each lock, shape (count,), and its relative density at parameters ``u``, with mean 1.
+
+        lengths: of what is curled of each lock [m], shape (count,)
+        """
         if self.curls is not None:
             turns, rate = context.values(self, "curls", curves), self.curls.along(u)
             return turns, rate / max(float(np.mean(rate)), 1e-9)
@@ -161,9 +166,11 @@ class Curl(Operator):
             return context.values(self, name, curves)
 
         ids, u, points = curves.ids, np.linspace(0.0, 1.0, RAMP_SAMPLES), context.lock_points
-        turns, rate = self.turns(curves, context, u)
+        wound = after_ties(curves)
+        lengths = wound.lengths()
+        turns, rate = self.turns(curves, lengths, context, u)
         width = values("width")
-        self._check_points(turns, width, curves, points)
+        self._check_points(turns * curves.lengths() / lengths, width, lengths, points)
         # The irregularity itself varies per lock: some locks are neat, others are not.
         irregularity = (values("irregularity") * (0.5 + context.random("neatness").uniform(ids)))[:, None]
         noise = {
@@ -172,8 +179,8 @@ class Curl(Operator):
         }
         kink = values("kink")
         curled = _core.curl_curves(
-            *packed(curves),
-            axis=axes(curves, context.scalp.frames(curves)),
+            *packed(wound),
+            axis=axes(wound, context.scalp.frames(wound)),
             radius=0.5 * width,
             turns=turns,
             phase=np.radians(self._phase(curves, context)),
@@ -185,7 +192,7 @@ class Curl(Operator):
             flatness=np.clip(values("flatness"), 0.0, 1.0),
             kink=np.clip(kink, 0.0, 1.0),
             wave=0.5 * values("wave"),
-            wave_turns=curves.lengths() / values("wave_pitch"),
+            wave_turns=lengths / values("wave_pitch"),
             width_ramp=self.width.along(u),
             rate_ramp=rate,
             opening=along(self.opening, u),
@@ -202,15 +209,16 @@ class Curl(Operator):
             keep_length=self.keep == "length",
             count=points,
         )
+        curled = with_heads(curled, curves, wound)
         if (woven := curves.curve.get(STRAND_RADIUS, np.zeros(len(ids))) > 0.0).any():  # a braid holds its strands
             grid = curled.reshape(len(ids), points, 3)
             grid[woven] = _core.resample_curves(*packed(curves.take(woven)), points).reshape(-1, points, 3)
         return Curves(curled, offsets_from_counts(np.full(len(ids), points)), ids, curves.curve)
 
-    def _check_points(self, turns: NDArray, width: NDArray, curves: Curves, points: int) -> None:
+    def _check_points(self, turns: NDArray, width: NDArray, lengths: NDArray, points: int) -> None:
         """Raises UserError for fewer than 6 points a curl."""
         if self.keep == "length" and self.curls is None:  # the curled part of the shape is shorter
-            turns = turns / np.hypot(1.0, np.pi * width * turns / curves.lengths())
+            turns = turns / np.hypot(1.0, np.pi * width * turns / lengths)
         if (most := float(turns.max())) > points / 6.0:
             remedy = f"set it to {int(np.ceil(12 * most))} (at least {int(np.ceil(6 * most))}), or ask for fewer curls"
             if 12 * most > limits.POINTS:

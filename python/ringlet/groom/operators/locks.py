@@ -13,10 +13,11 @@ from ringlet import _core
 from ringlet.data import limits
 from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.data.errors import UserError
+from ringlet.data.groom import SECTION
 from ringlet.data.quantities import Quantity, refuse
 from ringlet.groom.hairline import Hairline
 from ringlet.groom.operators.operator import Context, Operator, arc_lengths, packed, unit
-from ringlet.groom.sections import SECTION, STRAND, Sections
+from ringlet.groom.sections import STRAND, Sections
 from ringlet.groom.shares import DIRECTIONS, REACH, reaches
 
 STRAND_IDS, IDS_PER_SECTION = 10**13, 100  # id of a strand: 10¹³ + section · 100 + number in the section

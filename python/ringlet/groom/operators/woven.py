@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
@@ -12,14 +12,13 @@ from pydantic import Field
 from scipy.optimize import linear_sum_assignment
 
 from ringlet import _core
-from ringlet.data.curves import Curves, offsets_from_counts
+from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
-from ringlet.data.groom import CORE, SECTION, STRAND_RADIUS, TIED
+from ringlet.data.groom import CORE, STRAND_RADIUS, TIED
 from ringlet.data.quantities import Quantity, Ramped, Varied
-from ringlet.groom import weave
-from ringlet.groom.operators.operator import Context, arc_lengths, grid, packed, unit
-from ringlet.groom.operators.shape import Shape
-from ringlet.groom.sections import STRAND
+from ringlet.groom import felt, weave
+from ringlet.groom.operators.operator import Context, arc_lengths, grid, unit
+from ringlet.groom.operators.sectioned import Sectioned, Strands
 
 JOIN = "join"  # curve attribute of locks: length along a woven strand after which its hairs come to it [m]
 JOINED = 0.5  # place where they do, as a part of the start
@@ -27,10 +26,10 @@ EASE = 0.5  # turns over which a braid begins and ends
 LEAST_POINTS, GOOD_POINTS = 6, 10  # of a strand, per wave of its path to the front and back
 
 
-class Woven(Shape):
+class Woven(Sectioned):
     """Weaves the strands of each section about a centre line, the mean of their shapes: ``p = c + a x + b z``, with x
     across the braid and z away from the head, in a rotation-minimising frame of c. The strands come together over
-    ``start`` and run on side by side over ``tail``. They get as many points as a groom guide has."""
+    ``start`` and run on side by side over ``tail``."""
 
     width: Annotated[Ramped, Quantity("m", 5e-4, 0.2)] = Field(
         default=Ramped(value=0.012), description="width, strands included; its ramp narrows the strands too"
@@ -74,53 +73,22 @@ class Woven(Shape):
         """Pitch where none is given [m]."""
         raise NotImplementedError
 
-    def apply(self, curves: Curves, context: Context) -> Curves:
-        """Returns the curves with the strands woven, all with ``lock_points`` points or more."""
-        fine = self.resampled(curves, context)
-        weight = self.weights(fine, context)
-        leaders, rows = self.leaders(fine, weight > 0.0)
-        if not rows:
-            return curves
-        shapes = grid(fine).copy()
-        radius, join = (
-            curves.curve.get(name, np.zeros(len(curves), np.float32)).copy() for name in (STRAND_RADIUS, JOIN)
-        )
-        points = shapes.shape[1]
-        tied = np.zeros(shapes.shape[:2], np.float32)
-        core = curves.curve.get(CORE, np.zeros(len(curves), np.int32)).copy()
-        if TIED in fine.point:
-            tied[:] = fine.point[TIED].reshape(tied.shape)
-        for braid in self.braids(fine, leaders, rows, context):
-            shapes[braid.rows] = braid.woven(shapes[braid.rows], context.scalp.middle, self)
-            radius[braid.rows], join[braid.rows] = braid.radius, JOINED * braid.start * braid.length
-            tied[braid.rows] = braid.tied(points)
-            core[braid.rows] = self.simulate == "core"
-        woven = self.blended(fine, shapes, weight)
-        of_points = {**woven.point, TIED: tied.ravel()} if tied.any() else woven.point
-        of_curves = {**woven.curve, STRAND_RADIUS: radius, JOIN: join, **({CORE: core} if core.any() else {})}
-        return Curves(woven.points, woven.offsets, woven.ids, of_curves, of_points)
-
-    def resampled(self, curves: Curves, context: Context) -> Curves:
-        """The curves with ``lock_points`` points or more each; raises UserError where no section has strands."""
-        if STRAND not in curves.curve or not (curves.curve[STRAND] >= 0).any():
-            raise UserError(f"{context.purpose}: no section has strands; give [locks.sections] strands = 3, say")
-        points = max(context.lock_points, int(curves.counts.max()))
-        if int(curves.counts.min()) == points:
-            return curves
-        resampled = _core.resample_curves(*packed(curves), points)
-        return Curves(resampled, offsets_from_counts([points] * len(curves)), curves.ids, curves.curve)
-
-    def leaders(self, curves: Curves, acts: NDArray[np.bool_]) -> tuple[Curves, Sequence[NDArray[np.integer]]]:
-        """A strand of each section that an operator acts on, named by the section, and the rows of all its strands.
-
-        acts: whether it acts on points of the curves, shape (count, points)
-        """
-        strand = curves.curve[STRAND] >= 0
-        sections = np.unique(curves.curve[SECTION][strand & acts.any(axis=1)])
-        rows = [np.flatnonzero(strand & (curves.curve[SECTION] == section)) for section in sections]
-        leaders = curves.take(np.array([of_section[0] for of_section in rows], np.int64))
-        leaders.ids = sections.astype(np.int64)  # chance goes by the section, not by one of its strands
-        return leaders, rows
+    def strands(
+        self, curves: Curves, leaders: Curves, rows: Sequence[NDArray[np.integer]], context: Context
+    ) -> Iterator[Strands]:
+        """The strands of each section, woven about their mean."""
+        shapes = grid(curves)
+        core = {CORE: float(self.simulate == "core")} if self.simulate == "core" or CORE in curves.curve else {}
+        narrows = self.width.along(np.linspace(0.0, 1.0, felt.KNOTS))
+        for braid in self.braids(curves, leaders, rows, context):
+            tied = braid.tied(shapes.shape[1])
+            yield Strands(
+                braid.rows,
+                braid.woven(shapes[braid.rows], context.scalp.middle, self),
+                {STRAND_RADIUS: braid.radius, JOIN: JOINED * braid.start * braid.length, **core},
+                {TIED: tied} if tied.any() or TIED in curves.point else {},
+                narrows if (narrows != 1.0).any() else None,
+            )
 
     def braids(
         self, curves: Curves, leaders: Curves, rows: Sequence[NDArray[np.integer]], context: Context

@@ -3,6 +3,7 @@
 - /groom: Xform, with the recipe
 - /groom/locks: BasisCurves, one per lock, in the rest pose
 - /groom/guides: BasisCurves, the guides
+- /groom/bands: the bands of ties, as meshes
 - /groom/body: the head, a reference to its file, or the mesh itself without a file
 
 With variants, locks and guides are in the variants of the set ``groom``.
@@ -47,6 +48,7 @@ from ringlet.io.usd.stage import (
 from ringlet.io.usd.values import Types
 
 GROOM, LOCKS, GUIDES, BODY = "/groom", "/groom/locks", "/groom/guides", "/groom/body"
+BANDS = "/groom/bands"
 VARIANTS, BASE = "groom", "base"
 VERSION = 1  # version of this layout
 REMEDY = "make the groom again, or bind it anew: ringlet sim SHOT --rebind"
@@ -128,6 +130,8 @@ def _define(stage: Usd.Stage, groom: Groom, space: StageSpace, file: Path | str)
         _set(root, "recipe", Types.String, groom.recipe)
     _define_guides(stage, LOCKS, groom.locks, groom, space, file)
     _define_guides(stage, GUIDES, groom.guides, groom, space, file)
+    for band in groom.bands:
+        define_mesh(stage, f"{BANDS}/{band.name.replace(' ', '_')}", band, space, file)
 
 
 def _check_variant(name: str, variant: Groom, groom: Groom) -> None:

@@ -1,0 +1,287 @@
+"""Ties: hair that is led over the head to a band, and becomes a tail, a puff or a bun there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Annotated, Any, ClassVar, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, model_validator
+
+from ringlet import _core
+from ringlet.data.curves import Curves, offsets_from_counts
+from ringlet.data.errors import UserError
+from ringlet.data.groom import SECTION
+from ringlet.data.mesh import Mesh
+from ringlet.data.quantities import Quantity, refuse
+from ringlet.groom.coil import Coil, on_scalp
+from ringlet.groom.operators.operator import UP, Context, arc_lengths, at_lengths, grid, packed, unit
+from ringlet.groom.operators.shape import Shape
+from ringlet.groom.operators.tied import TO_TIE
+from ringlet.groom.parting import Direction
+from ringlet.groom.scalp import Scalp
+
+PATH_POINTS = 24  # of the path over the head, and of that after the tie
+SMOOTHING = 3  # passes over the path on the skin
+CENTRE = 0.85  # distance of a puff's centre from its tie, in radii of the puff
+UNDERSIDE = -0.85  # cosine, from the axis, of the part of a puff around its tie where no lock ends
+BAND_AROUND, BAND_ACROSS = 48, 12  # points of a band
+BAND_COLOR = (0.02, 0.02, 0.025)
+
+
+class Tie(Shape):
+    """Leads each lock over the skin to a tie, where curls begin. From there it goes on in a ``tail`` of its own length,
+    to the surface of a round ``ball`` (a puff), or around the tie in the windings of a ``bun``.
+
+    Over the head the path is the spherical interpolation from root to tie about the centre of the scalp, projected onto
+    the skin and raised by up to ``rise`` midway. Each lock has a place of its own in the tie.
+    """
+
+    op: Literal["tie", "gather"] = "tie"
+    curve: str | None = Field(
+        default=None,
+        description="name of helper curves that begin at ties, from `[curves]`: the centre lines of tails. Locks go to "
+        "the nearest",
+    )
+    toward: Direction | None = Field(
+        default=None,
+        description="direction in which the tie is, from the middle of the scalp, Y up; per section it is added to the "
+        "unit direction of the section's middle",
+    )
+    each: Literal["head", "section"] = Field(default="head", description="one tie for all, or one for each section")
+    off: Annotated[float, Quantity("m", 0.0, 0.5)] = Field(
+        default=0.012, description="distance of the tie from the skin; with `curve` that of its first point counts"
+    )
+    radius: Annotated[float, Quantity("m", 0.0, 1.0)] = Field(default=0.01, description="of the hair in the tie")
+    rise: Annotated[float, Quantity("m", -0.5, 0.5)] = Field(
+        default=0.005, description="how high the uppermost hair lies over the skin half-way to the tie"
+    )
+    after: Literal["tail", "ball", "bun"] = Field(default="tail", description="what the hair becomes after the tie")
+    spread: Annotated[float, Quantity("", 0.0, 20.0)] = Field(
+        default=2.0, description="radius at the end of a tail, as a multiple of that in the tie"
+    )
+    fall: Annotated[float, Quantity("m", 1e-3, 10.0)] = Field(
+        default=0.06, description="length over which a tail without a curve turns down"
+    )
+    width: Annotated[float, Quantity("m", 5e-3, 1.0)] = Field(default=0.12, description="of the ball or the bun")
+    height: Annotated[float, Quantity("m", 5e-3, 1.0)] = Field(default=0.04, description="of the bun")
+    windings: Annotated[float, Quantity("", 1.0, 12.0)] = Field(
+        default=2.0, description="how often the hair of a bun is wound around the tie"
+    )
+    band: Annotated[float, Quantity("m", 0.0, 0.05)] = Field(
+        default=0.0, description="thickness of the band, a mesh in the groom's file that a shot can name; 0: none"
+    )
+
+    turns: ClassVar[bool] = True
+
+    @model_validator(mode="before")
+    @classmethod
+    def _former_name(cls, data: Any) -> Any:
+        """Reads the settings of ``gather``, the former name of a tail along a curve."""
+        if isinstance(data, dict) and data.get("op") == "gather" and "tie" in data:
+            return {**{key: value for key, value in data.items() if key != "tie"}, "curve": data["tie"]}
+        return data
+
+    @model_validator(mode="after")
+    def _one_place(self) -> Tie:
+        if self.curve is None and self.toward is None and self.each == "head":
+            raise refuse("says nowhere where the tie is; give it a curve, toward, or each = 'section'")
+        if self.curve is not None and (self.toward is not None or self.each == "section"):
+            raise refuse("has a curve besides toward or each = 'section'; give one of them")
+        return self
+
+    def apply(self, curves: Curves, context: Context) -> Curves:
+        """Returns the curves tied, all with ``lock_points`` points or more, with the attribute ``to_tie`` [m]."""
+        weight = self.weights(curves, context)
+        if not weight.any():
+            return curves
+        points = max(context.lock_points, int(curves.counts.max()))
+        fine = curves
+        if int(curves.counts.min()) != points:
+            resampled = _core.resample_curves(*packed(curves), points)
+            fine = Curves(resampled, offsets_from_counts([points] * len(curves)), curves.ids, curves.curve)
+            weight = self.weights(fine, context)
+        shapes = grid(fine).copy()
+        tied = curves.curve.get(TO_TIE, np.zeros(len(curves), np.float32)).copy()
+        affected: NDArray[np.bool_] = np.any(weight > 0.0, axis=1)
+        for tie in self._ties(fine, affected, context):
+            shapes[tie.rows], tied[tie.rows] = self._tied(shapes[tie.rows], fine.ids[tie.rows], tie, context)
+        result = self.blended(fine, shapes, weight)
+        return Curves(result.points, result.offsets, result.ids, {**result.curve, TO_TIE: tied}, result.point)
+
+    def bands(self, curves: Curves, context: Context) -> list[Mesh]:
+        """The bands around the hair in the ties, as rings."""
+        if self.band == 0.0:
+            return []
+        affected: NDArray[np.bool_] = np.any(self.weights(curves, context) > 0.0, axis=1)
+        return [
+            self._ring(tie, f"{context.purpose} {k}") for k, tie in enumerate(self._ties(curves, affected, context))
+        ]
+
+    def _ties(self, curves: Curves, affected: NDArray[np.bool_], context: Context) -> Iterator[Place]:
+        """The ties with the rows of their locks, among those that are affected."""
+        rows, scalp = np.flatnonzero(affected), context.scalp
+        if not len(rows):
+            return
+        if self.curve is not None:
+            helpers = context.helper(self.curve, "curve")
+            nearest = np.linalg.norm(curves.roots[rows, None] - helpers.roots[None], axis=2).argmin(axis=1)
+            for k in range(len(helpers)):
+                line = np.asarray(helpers[k], np.float64)
+                if (nearest == k).any():
+                    yield Place(rows[nearest == k], line[0], unit(line[1] - line[0]), line)
+            return
+        if self.each == "head":
+            yield self._over(rows, unit(np.array(self.toward)), scalp)
+            return
+        if SECTION not in curves.curve:
+            raise UserError(f"{context.purpose}.each is 'section', but there are none; add [locks.sections]")
+        section = curves.curve[SECTION][rows]
+        for one in np.unique(section[section >= 0]):
+            within = rows[section == one]
+            middle = unit(unit(curves.roots[within] - scalp.middle).mean(axis=0))
+            yield self._over(within, unit(middle + (0.0 if self.toward is None else np.array(self.toward))), scalp)
+
+    def _over(self, rows: NDArray, direction: NDArray, scalp: Scalp) -> Place:
+        """The tie in a direction from the middle of the scalp."""
+        size = float(np.ptp(scalp.points, axis=0).max())
+        probes = scalp.middle + np.linspace(0.0, size, 400)[:, None] * direction
+        inside = np.flatnonzero(np.asarray(scalp.solid.above(np.ascontiguousarray(probes))[0]) <= 0.0)
+        foot, normal = scalp.nearest(probes[inside[-1:] if len(inside) else [0]])
+        return Place(rows, foot[0] + self.off * normal[0], normal[0], None)
+
+    def _tied(
+        self, points: NDArray, ids: NDArray, tie: Place, context: Context
+    ) -> tuple[NDArray[np.floating], NDArray[np.floating]]:
+        """Locks (count, points, 3) after they are tied, and their lengths up to the tie [m], shape (count,)."""
+        disk = self._disk(ids, context)
+        offset = disk @ np.stack(tie.axes(context.scalp.middle))
+        over_head = self._over_head(points[:, 0], tie.place + self.radius * offset, ids, context)
+        tied = arc_lengths(over_head)[:, -1]
+        if self.after == "tail":
+            whole = np.concatenate([over_head, self._tail(points, offset, tie)[:, 1:]], axis=1)
+            return at_lengths(whole, arc_lengths(points)), tied
+        after = self._ball(disk, offset, tie) if self.after == "ball" else self._bun(offset, tie, context)
+        whole = np.concatenate([over_head, after[:, 1:]], axis=1)
+        length = arc_lengths(whole)[:, -1]
+        along = length[:, None] * np.linspace(0.0, 1.0, points.shape[1])
+        return at_lengths(whole, along), (length if self.after == "bun" else tied)
+
+    def _disk(self, ids: NDArray, context: Context) -> NDArray[np.float64]:
+        """Place of each lock in the unit disk, random by its id and evenly spread, shape (count, 2)."""
+        random = context.random("place")
+        angle, radius = 2.0 * np.pi * random.uniform(ids, 0), np.sqrt(random.uniform(ids, 1))
+        return radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+
+    def _over_head(self, roots: NDArray, ties: NDArray, ids: NDArray, context: Context) -> NDArray[np.float64]:
+        """Paths over the skin from roots to places in the tie (count, 3); shape (count, PATH_POINTS, 3)."""
+        scalp, t = context.scalp, np.linspace(0.0, 1.0, PATH_POINTS)
+        path = _around(roots, ties, scalp.middle, t)
+        foot, normal = (found.reshape(path.shape) for found in scalp.nearest(path.reshape(-1, 3)))
+        height = np.asarray(scalp.solid.above(np.ascontiguousarray(ties))[0])
+        layer = 0.3 + 0.7 * context.random("layer").uniform(ids)
+        raised = height[:, None] * t**4 + self.rise * layer[:, None] * np.sin(np.pi * t)
+        path = foot
+        for _ in range(SMOOTHING):
+            path[:, 1:-1] = 0.25 * (path[:, :-2] + path[:, 2:]) + 0.5 * path[:, 1:-1]
+        path = path + raised[:, :, None] * normal
+        near = np.clip((t - 0.7) / 0.3, 0.0, 1.0)  # the last piece ends at the place in the tie
+        path += (near * near * (3.0 - 2.0 * near))[None, :, None] * (ties - path[:, -1])[:, None]
+        path[:, 0] = roots
+        return path
+
+    def _tail(self, points: NDArray, offset: NDArray, tie: Place) -> NDArray[np.float64]:
+        """Paths of a tail, shape (count, k, 3)."""
+        line = tie.line
+        if line is None:
+            run = np.linspace(0.0, max(1.1 * float(arc_lengths(points)[:, -1].max()), 1e-3), 3 * PATH_POINTS)
+            direction = unit(tie.axis - (run / self.fall)[:, None] * UP)
+            line = tie.place + np.concatenate([np.zeros((1, 3)), np.cumsum(direction[:-1] * run[1], axis=0)])
+        width = self.radius * np.linspace(1.0, self.spread, len(line))
+        tail: NDArray[np.float64] = line[None] + width[None, :, None] * offset[:, None, :]
+        return tail
+
+    def _ball(self, disk: NDArray, offset: NDArray, tie: Place) -> NDArray[np.float64]:
+        """Paths from the tie to the surface of a sphere, evenly spread over it; shape (count, PATH_POINTS, 3)."""
+        ball = 0.5 * self.width
+        out = np.linalg.norm(disk, axis=1)
+        cosine = 1.0 - out**2 * (1.0 - UNDERSIDE)  # keeps areas
+        beside = unit(offset)
+        direction = cosine[:, None] * tie.axis + np.sqrt(1.0 - cosine**2)[:, None] * beside
+        start = tie.place + self.radius * offset
+        end = tie.place + CENTRE * ball * tie.axis + ball * direction
+        span = np.linalg.norm(end - start, axis=1, keepdims=True)
+        leaving = span * unit(tie.axis + 0.8 * out[:, None] * beside)
+        t = np.linspace(0.0, 1.0, PATH_POINTS)[None, :, None]
+        leaving, arriving = leaving[:, None], (0.8 * span * direction)[:, None]
+        path: NDArray[np.float64] = (
+            (2 * t**3 - 3 * t**2 + 1) * start[:, None]
+            + (t**3 - 2 * t**2 + t) * leaving
+            + (3 * t**2 - 2 * t**3) * end[:, None]
+            + (t**3 - t**2) * arriving
+        )
+        return path
+
+    def _bun(self, offset: NDArray, tie: Place, context: Context) -> NDArray[np.float64]:
+        """Paths of the locks of a rope that is wound around the tie, shape (count, k, 3)."""
+        coil = Coil.fitted(self.width, self.height, self.windings)
+        line = on_scalp(coil.path(), tie.place, tie.axis, context.scalp)
+        height = (line - tie.place) @ tie.axis
+        line = np.concatenate([tie.place[None], line[int(np.argmax(height > 0.5 * coil.rope)) :]])
+        line = at_lengths(line[None], np.linspace(0.0, arc_lengths(line[None])[0, -1], 200)[None])[0]
+        first = np.ascontiguousarray(tie.axes(context.scalp.middle)[0][None])
+        frames = _core.curve_frames(line, np.array([0, len(line)], np.int32), first)
+        axes = np.stack(tie.axes(context.scalp.middle))
+        place = offset @ axes.T
+        along = np.linspace(0.0, 1.0, len(line))
+        grow = np.clip(along / 0.1, 0.0, 1.0)
+        close = np.sqrt(np.clip((1.0 - along) / 0.06, 0.0, 1.0))  # the end is tucked in
+        size = (self.radius + grow * (0.95 * coil.rope - self.radius)) * close
+        path: NDArray[np.float64] = line + size[None, :, None] * np.einsum("nk,pxk->npx", place, frames[:, :, :2])
+        return path
+
+    def _ring(self, tie: Place, name: str) -> Mesh:
+        """A torus around the hair in the tie."""
+        beside, above = tie.axes(tie.place - tie.axis)
+        a, b = (np.linspace(0.0, 2.0 * np.pi, n, endpoint=False) for n in (BAND_AROUND, BAND_ACROSS))
+        out = np.cos(a)[:, None, None] * beside + np.sin(a)[:, None, None] * above
+        wide = self.radius + 0.5 * self.band * (1.0 + np.cos(b))
+        points = tie.place + wide[None, :, None] * out + 0.5 * self.band * np.sin(b)[None, :, None] * tie.axis
+        i, j = np.meshgrid(np.arange(BAND_AROUND), np.arange(BAND_ACROSS), indexing="ij")
+        i1, j1 = (i + 1) % BAND_AROUND, (j + 1) % BAND_ACROSS
+        corner = [(p * BAND_ACROSS + q).ravel() for p, q in ((i, j), (i1, j), (i1, j1), (i, j1))]
+        triangles = np.concatenate([np.stack([corner[0], corner[k + 1], corner[k]], axis=1) for k in (1, 2)])
+        return Mesh(name, points.reshape(-1, 3), triangles.astype(np.int32), color=BAND_COLOR)
+
+
+@dataclass(frozen=True)
+class Place:
+    """A tie: rows of its locks, its place [m], the unit axis of the hair in it, and the line of its tail or None."""
+
+    rows: NDArray[np.integer]
+    place: NDArray[np.float64]
+    axis: NDArray[np.float64]
+    line: NDArray[np.float64] | None
+
+    def axes(self, middle: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Two unit axes of the cross-section."""
+        along = self.axis if self.line is None else unit(self.line[-1] - self.line[0])
+        beside = unit(np.cross(along, unit(middle - self.place) + 1e-3))
+        return beside, unit(np.cross(beside, along))
+
+
+def _around(roots: NDArray, ties: NDArray, middle: NDArray, t: NDArray) -> NDArray[np.float64]:
+    """Spherical interpolation about a middle from roots to ties (count, 3), shape (count, len(t), 3)."""
+    from_middle, to_middle = roots - middle, ties - middle
+    a, b = unit(from_middle), unit(to_middle)
+    angle = np.arccos(np.clip(np.sum(a * b, axis=1), -1.0, 1.0))[:, None, None]
+    near = np.sin(angle) < 1e-6
+    sine = np.where(near, 1.0, np.sin(angle))
+    u = t[None, :, None]
+    first = np.where(near, 1.0 - u, np.sin((1.0 - u) * angle) / sine)
+    last = np.where(near, u, np.sin(u * angle) / sine)
+    direction = unit(first * a[:, None] + last * b[:, None])
+    start, end = (np.linalg.norm(v, axis=1)[:, None] for v in (from_middle, to_middle))
+    return middle + ((1.0 - t) * start + t * end)[:, :, None] * direction

@@ -1,0 +1,157 @@
+"""Ties: hair sleek on the head up to the band, and tails, puffs and buns after it."""
+
+import numpy as np
+import pytest
+from ringlet.groom.coil import Coil, on_scalp
+from ringlet.groom.operators.tied import TO_TIE
+from ringlet.groom.scalp import Scalp
+from shapes import ball
+
+from ringlet import UserError, io, read_groom, write_groom
+from ringlet.groom import make_groom, parse_recipe
+
+TOP = "toward = [0, 1, 0]\noff = 0.6\nradius = 1\n"
+CURL = "[curl]\nwidth = 0.5\npitch = 1\n"
+SECTIONS = "[locks.sections]\npattern = 'rows'\nsize = 40\ngap = 0.3\n"
+
+
+def tied(settings, more="", sections="", count=400, points=260, head="op = 'tie'\n"):
+    """A groom with a tie on the upper half of a ball of 9 cm."""
+    text = f"""
+ringlet = 1
+[scalp]
+region = 'scalp'
+[curves.tail]
+points = [[0, 10, 0], [0, 12, 0], [6, 13, 0]]
+[guides]
+count = 30
+length = 12
+[locks]
+count = {count}
+points = {points}
+{sections}
+[[shape]]
+{head}{settings}
+{more}
+[clean]
+margin = 0
+"""
+    return make_groom(parse_recipe(text), ball())
+
+
+def grid(locks):
+    return locks.points.reshape(len(locks), -1, 3)
+
+
+def arc(points):
+    return np.concatenate(
+        [np.zeros((len(points), 1)), np.cumsum(np.linalg.norm(np.diff(points, axis=1), axis=2), axis=1)], axis=1
+    )
+
+
+def test_a_curled_puff_is_round():
+    locks = tied(TOP + "after = 'ball'\nwidth = 12", CURL, count=900).locks
+    points = grid(locks)[arc(grid(locks)) > locks.curve[TO_TIE][:, None]]
+    centre = np.array([0.0, 0.096 + 0.85 * 0.06, 0.0])
+    offset = points - centre
+    distance = np.linalg.norm(offset, axis=1)
+    k = np.arange(200)
+    height, turn = 1.0 - 1.7 * (k + 0.5) / 200, k * np.pi * (3.0 - np.sqrt(5.0))  # but for the part around the tie
+    way = np.stack([np.sqrt(1 - height**2) * np.cos(turn), height, np.sqrt(1 - height**2) * np.sin(turn)], axis=1)
+    near = (offset @ way.T) / distance[:, None] > np.cos(np.radians(12))
+    envelope = np.where(near, distance[:, None], 0.0).max(axis=0)
+    assert envelope.mean() == pytest.approx(0.06, rel=0.02)
+    assert envelope.std() < 0.025 * envelope.mean() and np.ptp(envelope) < 0.12 * envelope.mean()
+
+
+@pytest.mark.parametrize("after", ["tail", "ball"])
+def test_curls_begin_at_the_tie_and_hair_before_it_is_as_it_was_led(after):
+    settings = TOP + f"after = '{after}'\nwidth = 12"
+    plain, curled = (tied(settings, more, count=60, points=400) for more in ("", CURL))
+    length = plain.locks.curve[TO_TIE]
+    ends = arc(grid(plain.locks))[:, -1]
+    assert (length < 0.16).all()
+    for a, b, tie, end in zip(grid(plain.locks), grid(curled.locks), length, ends, strict=True):
+        if end < tie + 0.03:  # too short for its tie
+            continue
+        apart = np.linalg.norm(b[:, None] - a[None], axis=2).min(axis=1)
+        before = arc(b[None])[0] < tie - 0.003
+        assert apart[before].max() < 5e-4 and apart[~before].max() > 0.001
+
+
+def test_hair_lies_on_the_skin_up_to_the_tie_and_never_under_it():
+    groom = tied(TOP + "after = 'ball'\nwidth = 12\nrise = 0.5")
+    scalp = Scalp(ball(), "scalp")
+    points = grid(groom.locks)
+    above = np.asarray(scalp.solid.above(np.ascontiguousarray(points.reshape(-1, 3)))[0]).reshape(points.shape[:2])
+    before = arc(points) < groom.locks.curve[TO_TIE][:, None] - 0.02
+    assert above.min() > -1e-4 and above[before].max() < 0.0075
+
+
+def test_each_section_has_its_tie_and_band():
+    groom = tied(
+        "each = 'section'\ntoward = [0, 0.5, 0]\nafter = 'ball'\nwidth = 8\nradius = 1\nband = 0.4", sections=SECTIONS
+    )
+    assert len(groom.bands) == 2
+    points, along = grid(groom.locks), arc(grid(groom.locks))
+    centres = np.array([band.points.mean(axis=0) for band in groom.bands])
+    assert centres[0, 0] * centres[1, 0] < 0.0  # one on each side
+    for lock, run, length in zip(points, along, groom.locks.curve[TO_TIE], strict=True):
+        place = lock[np.abs(run - length).argmin()]
+        own = centres[np.sign(centres[:, 0]) == np.sign(lock[0, 0])][0]
+        assert np.linalg.norm(place - own) < 0.0115  # in the band
+
+
+def test_a_band_is_a_closed_body_around_the_hair_that_a_shot_can_name(tmp_path):
+    groom = tied(TOP + "after = 'ball'\nwidth = 12\nband = 0.4")
+    write_groom(groom, tmp_path / "puff.usdc")
+    (band,) = io.read_bodies(tmp_path / "puff.usdc", "/groom/bands")
+    edges = np.sort(np.concatenate([band.mesh.triangles[:, [i, (i + 1) % 3]] for i in range(3)]), axis=1)
+    assert (np.unique(edges, axis=0, return_counts=True)[1] == 2).all()
+    a, b, c = (band.mesh.points[band.mesh.triangles[:, k]] for k in range(3))
+    assert np.sum(a * np.cross(b, c)) > 0.0  # faces look outwards
+    np.testing.assert_allclose(np.linalg.norm(band.mesh.points[:, [0, 2]], axis=1).min(), 0.01, rtol=0.01)
+    assert np.array_equal(read_groom(tmp_path / "puff.usdc").locks.curve[TO_TIE], groom.locks.curve[TO_TIE])
+
+
+def test_a_bun_is_wound_without_overlap_and_its_ends_are_in_it():
+    groom = tied(TOP + "after = 'bun'\nwidth = 7\nheight = 4\nwindings = 2.2\nband = 0.4", count=120)
+    points = grid(groom.locks)
+    coil = Coil.fitted(0.07, 0.04, 2.2)
+    centre = groom.bands[0].points.mean(axis=0)
+    axis = np.linalg.svd(groom.bands[0].points - centre)[2][2]
+    axis *= np.sign(axis[1])
+    rope = on_scalp(coil.path(), centre, axis, Scalp(ball(), "scalp"))
+    along = arc(rope[None])[0]
+    distance = np.linalg.norm(rope[:, None] - rope[None], axis=2)
+    windings = np.abs(along[:, None] - along[None]) > np.pi * coil.rope
+    assert np.where(windings, distance, np.inf).min() > 0.93 * 2.0 * coil.rope
+    in_bun = points[arc(points) > arc(points)[:, -1:] - 0.6 * along[-1]]
+    assert np.linalg.norm(in_bun[:, None] - rope[None, ::2], axis=2).min(axis=1).max() < 1.03 * coil.rope
+    away = np.linalg.norm(np.cross(in_bun - centre, axis), axis=1)
+    assert 2.0 * away.max() == pytest.approx(0.07, rel=0.06)
+    assert np.linalg.norm(points, axis=2).max() - 0.09 == pytest.approx(0.04, rel=0.15)
+    tips = np.linalg.norm(np.cross(points[:, -1] - centre, axis), axis=1)
+    assert tips.max() < away.max() - 0.8 * coil.rope  # in the middle of the last winding
+
+
+def test_the_former_name_of_a_tie_is_read_with_a_note():
+    former = tied("tie = 'tail'", head="op = 'gather'\n")
+    assert any("gather is now called tie" in note for note in former.conflicts)
+    assert not any("gather" in note for note in tied("curve = 'tail'").conflicts)
+    assert np.ptp(former.locks.points[former.locks.offsets[1:] - 1], axis=0).max() > 0.0
+
+
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        ("", "says nowhere where the tie is; give it a curve, toward, or each = 'section'"),
+        ("curve = 'tail'\ntoward = [0, 1, 0]", "has a curve besides toward or each = 'section'; give one of them"),
+        ("each = 'section'", "tie.each is 'section', but there are none; add [locks.sections]"),
+        ("curve = 'tial'", "tie.curve is 'tial', which is no helper curve; did you mean 'tail'"),
+    ],
+)
+def test_a_tie_without_a_place_is_refused(settings, message):
+    with pytest.raises(UserError) as refused:
+        tied(settings)
+    assert message in str(refused.value)
