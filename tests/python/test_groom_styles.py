@@ -319,8 +319,8 @@ def test_hairs_of_strands_cover_their_section_and_leave_the_parting_free(pattern
     surface = Scalp(ball(), "scalp")
     division = recipe.locks.sections.divide(surface, recipe.seed, no_helper)
     at = division.at(hairs.roots)
-    assert np.mean(at[SECTION] == made.locks.curve[SECTION][hairs.curve["lock"]]) > 0.98
-    assert np.mean(at[EDGE] > 0.0019) > 0.97
+    assert np.mean(at[SECTION] == made.locks.curve[SECTION][hairs.curve["lock"]]) > 0.97
+    assert np.mean(at[EDGE] > 0.0019) > 0.94
     _, triangle, barycentric = surface.sample(3000, 5)
     places = surface.positions(triangle, barycentric)
     bare = KDTree(hairs.roots).query(places)[0][division.at(places)[EDGE] > 0.002]

@@ -24,7 +24,7 @@ MOST_CELLS = 4096  # along each axis of the chart, so that a section's id fits 2
 SAMPLES_A_SIDE = 6  # of the scalp, per side of a section
 WHOLE = 0.35  # a cell that covers less than this part of the usual area belongs to its neighbour
 FLATTEST = 20.0  # radius of the sphere through a flat scalp, in sizes of the scalp
-STRANDS_APART = 0.12  # distance of a section's strands from its middle at the scalp, in sizes of the section
+STRANDS_APART = 0.2  # distance of a section's strands from its middle at the scalp, in sizes of the section
 
 # Curve attributes of locks besides the section's id: which of its strands; place in the section, 0 to 1 each; distance
 # from the section's border [m].
