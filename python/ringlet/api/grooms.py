@@ -217,7 +217,8 @@ def check_groom(
     """Intersections of a groom with the scalp, the body and itself: places, locks, greatest depth [m], worst places.
 
     Returns ``found``, the ``thickness``, the ``lock_thickness`` of locks with their hairs [m], and the density and
-    cover of ``measure_hairs``; with ``fixed`` also ``left``, the remaining intersections, and ``repair``, the displacements.
+    cover of ``measure_hairs``; with ``fixed`` also ``left``, the remaining intersections, and ``repair``, the
+    displacements.
 
     root_depth:  how deep a lock may be in the skin up to ``root_length`` from its root [m]
     thickness:   distance below which two locks count as intersecting [m]
