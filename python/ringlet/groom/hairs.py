@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from hashlib import blake2b
 from typing import Annotated, Any
 
@@ -307,7 +307,10 @@ def lay_hairs(groom: Groom, *, fraction: float = 1.0, wider: bool = False, memor
         memory.key, memory.hairs = key, _place(groom, settings, fraction, wider)
     cached = memory.hairs
     axis = np.einsum("lxk,lx->lk", frames, axes(groom.locks, frames))
-    return Hairs(cached.curves, groom, axis, _with_lengths(cached, groom.locks), cached._root)
+    layout = _with_lengths(cached, groom.locks)
+    # Whoever keeps a layout compares curves: with a curl of hairs it changes with the locks.
+    curves = cached.curves if layout is cached._layout else replace(cached.curves)
+    return Hairs(curves, groom, axis, layout, cached._root)
 
 
 def _with_lengths(hairs: Hairs, locks: Curves) -> dict[str, Any]:
