@@ -25,7 +25,7 @@ from ringlet.groom import PRESETS, Recipe, make_groom, make_hairs, read_recipe
 TYPES = Path(__file__).parents[1] / "examples" / "types"
 IMAGES = Path(__file__).parent / "images"
 PAIRS = ("2B", "3A", "3C", "4A", "4C")  # locks with and without a curl of their hairs
-SAMPLES = 24
+SAMPLES = 12
 
 
 def picture(name: str, folder: Path) -> None:
@@ -33,8 +33,8 @@ def picture(name: str, folder: Path) -> None:
     groom, hair, still = (folder / f"{name}.{kind}" for kind in ("usdc", "hair.usdc", "png"))
     ringlet.write_groom(ringlet.build_groom(TYPES / f"{name}.recipe.toml"), groom)
     ringlet.write_hairs(groom, hair)
-    ringlet.write_still(hair, still, width=480, height=540, samples=SAMPLES)
-    head = Image.open(still).convert("RGB").crop((40, 0, 440, 450))
+    ringlet.write_still(hair, still, width=440, height=495, samples=SAMPLES)
+    head = Image.open(still).convert("RGB").crop((18, 0, 422, 454))
     head.resize((320, 360), Image.Resampling.LANCZOS).save(IMAGES / "gallery" / f"{name}.jpg", quality=85)
 
 
