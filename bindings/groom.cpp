@@ -40,7 +40,7 @@ nb::ndarray<nb::numpy, int> thin_out_samples(const Array3<double> &candidates, d
 }
 
 // Array among the keyword arguments; valid as long as they are.
-template <class Scalar> View<Scalar> named(const nb::kwargs &arrays, const char *name) {
+template <class Scalar> View<Scalar> named(const nb::dict &arrays, const char *name) {
     if (!arrays.contains(name)) throw std::invalid_argument(std::string(name) + " is missing");
     const auto array = nb::cast<nb::ndarray<const Scalar, nb::c_contig, nb::device::cpu>>(arrays[name], false);
     return {array.data(), array.size()};
@@ -142,12 +142,31 @@ nb::tuple crossings(const Array3<double> &points, const Array1<int> &offsets, do
                           to_numpy<double>(std::move(distance), {count}));
 }
 
+// The curl of hairs from its arrays by name, valid as long as they are.
+HairCurl curl_of_hairs(const nb::dict &arrays, size_t hairs, size_t knots, size_t points) {
+    const struct {
+        const char *name;
+        View<float> HairCurl::*array;
+        size_t size;
+    } fields[] = {{"slip", &HairCurl::slip, knots * hairs},  {"escape", &HairCurl::escape, 2 * hairs},
+                  {"relax", &HairCurl::relax, hairs},        {"family", &HairCurl::family, 2 * hairs},
+                  {"coil", &HairCurl::coil, 4 * hairs},      {"phase", &HairCurl::phase, knots * hairs},
+                  {"escaping", &HairCurl::escaping, points}, {"relaxing", &HairCurl::relaxing, points},
+                  {"tight", &HairCurl::tight, points},       {"opening", &HairCurl::opening, points}};
+    HairCurl curl;
+    for (const auto &field : fields) {
+        curl.*field.array = named<float>(arrays, field.name);
+        require((curl.*field.array).size() == field.size, field.name);
+    }
+    return curl;
+}
+
 void warp(const Array3<float> &lock_points, const Array1<int> &lock_offsets,
           nb::ndarray<float, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu> result, const Array3<double> &axis,
           const Array3<float> &root, const Array1<int> &first, const Table<float> &offset, const Array1<float> &tip,
           const Array1<float> &join, const Array1<float> &flat, const Array1<float> &taper, const Table<float> &frizz,
           const Array1<float> &profile, const Array1<float> &hold, const Array1<float> &pace, const Array1<int> &other,
-          const Array1<float> &share, const Array1<float> &blend) {
+          const Array1<float> &share, const Array1<float> &blend, const Array1<int> &window, const nb::dict &curl) {
     const size_t locks = lock_offsets.size() - 1, points = profile.size(), hairs = first.data()[locks];
     require(first.size() == locks + 1 && axis.shape(0) == locks, "first and axis need one row a lock");
     require(root.shape(0) == hairs && offset.size() == 2 * hairs && tip.size() == hairs && join.size() == hairs &&
@@ -159,21 +178,25 @@ void warp(const Array3<float> &lock_points, const Array1<int> &lock_offsets,
     require(other.size() == share.size() && (other.size() == 0 || other.size() == hairs),
             "other and share need a value a hair");
     for (const int lock : view(other)) require(lock >= 0 && static_cast<size_t>(lock) < locks, "other is not one of the locks");
+    require(window.size() == (curl.size() ? locks : 0), "a curl of hairs needs a window a lock");
     require(result.shape(0) == hairs * points, "the result needs one row a point of a hair");
-    const HairLayout layout{.first = view(first),
-                            .offset = numbers(offset),
-                            .tip = view(tip),
-                            .join = view(join),
-                            .flat = view(flat),
-                            .taper = view(taper),
-                            .frizz = numbers(frizz),
-                            .knots = static_cast<int>(frizz.shape(1) / 2),
-                            .profile = view(profile),
-                            .hold = view(hold),
-                            .pace = view(pace),
-                            .other = view(other),
-                            .share = view(share),
-                            .blend = view(blend)};
+    HairLayout layout{.first = view(first),
+                      .offset = numbers(offset),
+                      .tip = view(tip),
+                      .join = view(join),
+                      .flat = view(flat),
+                      .taper = view(taper),
+                      .frizz = numbers(frizz),
+                      .knots = static_cast<int>(frizz.shape(1) / 2),
+                      .profile = view(profile),
+                      .hold = view(hold),
+                      .pace = view(pace),
+                      .other = view(other),
+                      .share = view(share),
+                      .blend = view(blend),
+                      .curl = {}};
+    if (curl.size()) layout.curl = curl_of_hairs(curl, hairs, layout.knots, points);
+    layout.curl.window = view(window);
     nb::gil_scoped_release release;
     warp_hairs(vectors<Vec3f>(lock_points), view(lock_offsets), vectors<Vec3>(axis), {root.data(), 3 * hairs}, layout,
                {result.data(), 3 * hairs * points});
@@ -237,7 +260,7 @@ void bind_groom(nb::module_ &module) {
             "Points (n, 3) [m] with the fewest violations so far.");
     module.def("warp_hairs", &warp, "lock_points"_a, "lock_offsets"_a, "result"_a, nb::kw_only(), "axis"_a, "root"_a, "first"_a,
                "offset"_a, "tip"_a, "join"_a, "flat"_a, "taper"_a, "frizz"_a, "profile"_a, "hold"_a, "pace"_a, "other"_a,
-               "share"_a, "blend"_a,
+               "share"_a, "blend"_a, "window"_a, "curl"_a,
                "Writes the points of all hairs (hairs * points, 3) around the current locks; see groom/hairs.h.");
     module.def(
         "keep_beside", &keep_hairs, "lock_points"_a, "lock_offsets"_a, "hairs"_a, "points"_a, "triangles"_a, "margin"_a,

@@ -7,16 +7,34 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
 from conftest import Review, different
 
 from ringlet import build_groom, build_hairs
 
+CURL = """
+[hairs.families]
+count = 3
+noise = 0.1
+[hairs.curl]
+drift = 0.3
+slips = 0.4
+escape = 0.3
+relax = 0.5
+[hairs.coil]
+width = 0.2
+pitch = 6
+kink = 0.4
+"""
 
-def test_gpu_hairs_equal_those_of_the_core(opened: Any, folder: Path):
+
+@pytest.mark.parametrize("curl", ["", CURL], ids=["as their lock", "with a curl of their own"])
+def test_gpu_hairs_equal_those_of_the_core(opened: Any, folder: Path, curl: str):
     """The shader implements src/ringlet/groom/hairs.cpp."""
     recipe = folder / "small.recipe.toml"
     recipe.write_text(
         recipe.read_text().replace("per_lock = 3", "per_lock = 7\nfrizz = 0.3\nspread = 0.4\nblend = 0.6\ntaper = 0.4")
+        + curl
     )
     review: Review = opened()
     review.picture()

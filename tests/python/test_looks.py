@@ -9,9 +9,10 @@ from ringlet.data.pigment import curve_reflectance
 from ringlet.groom.operators.tied import TO_TIE
 
 import ringlet
-from ringlet.groom import make_hairs
+from ringlet.groom import PRESETS, hairs_per_cm2, make_hairs, read_recipe
 
-LOOKS = sorted((Path(__file__).parents[2] / "examples" / "looks").glob("*.recipe.toml"))
+EXAMPLES = Path(__file__).parents[2] / "examples"
+LOOKS = sorted((EXAMPLES / "looks").glob("*.recipe.toml"))
 TIED_LOOKS = [recipe for recipe in LOOKS if 'op = "tie"' in recipe.read_text()]
 WOVEN_LOOKS = [recipe for recipe in LOOKS if "strands =" in recipe.read_text()]
 
@@ -43,3 +44,16 @@ def test_the_ombre_is_dark_at_its_roots_and_light_at_its_tips():
     colors = curve_reflectance(made, "hairs").reshape(len(made), -1, 3)
     assert np.median(colors[:, 0], axis=0).max() < 0.02
     assert np.median(colors[:, -1], axis=0)[0] > 0.3
+
+
+@pytest.mark.parametrize("kind", PRESETS)
+def test_every_type_has_a_recipe_with_the_density_of_a_full_head(kind):
+    recipe = read_recipe(EXAMPLES / "types" / f"{kind}.recipe.toml")
+    assert recipe.curl is not None and recipe.curl.preset == kind and recipe.name == kind
+    assert recipe.hairs.density is not None and recipe.hairs.density.value >= 120
+
+
+@pytest.mark.parametrize("kind", ["1", "4C"])
+def test_a_type_grows_as_dense_as_its_recipe_says(kind):
+    groom = ringlet.build_groom(EXAMPLES / "types" / f"{kind}.recipe.toml")
+    assert hairs_per_cm2(groom) == pytest.approx(120, rel=0.05)

@@ -244,6 +244,17 @@ export interface Hairs {
   blend: Float32Array;
   width: Float32Array;
   thinning: Float32Array;
+  window: Int32Array;
+  slip: Float32Array;
+  escape: Float32Array;
+  relax: Float32Array;
+  family: Float32Array;
+  coil: Float32Array;
+  phase: Float32Array;
+  escaping: Float32Array;
+  relaxing: Float32Array;
+  tight: Float32Array;
+  opening: Float32Array;
 }
 
 /** Colours of the hairs, in the order of ``Hairs``; none where the groom has no colour. */

@@ -216,8 +216,9 @@ def check_groom(
 ) -> dict[str, Any]:
     """Intersections of a groom with the scalp, the body and itself: places, locks, greatest depth [m], worst places.
 
-    Returns ``found``, the ``thickness``, and the ``lock_thickness`` of locks with their hairs [m]; with ``fixed`` also
-    ``left``, the remaining intersections, and ``repair``, the displacements.
+    Returns ``found``, the ``thickness``, the ``lock_thickness`` of locks with their hairs [m], and the density and
+    cover of ``measure_hairs``; with ``fixed`` also ``left``, the remaining intersections, and ``repair``, the
+    displacements.
 
     root_depth:  how deep a lock may be in the skin up to ``root_length`` from its root [m]
     thickness:   distance below which two locks count as intersecting [m]
@@ -239,6 +240,8 @@ def check_groom(
         "thickness": thickness,
         "lock_thickness": grooms.lock_thickness(groom),
         "found": findings.summary(),
+        "hairs_per_cm2": grooms.hairs_per_cm2(groom),
+        "scalp_seen": grooms.hair_cover(groom).seen(),
     }
     if fixed is not None:
         repair = grooms.fix_groom(groom, others, allowed, progress)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from ringlet.data.groom import Groom
     from ringlet.groom import Hairs, Memory
 
-__all__ = ["build_hairs", "write_hairs"]
+__all__ = ["build_hairs", "measure_hairs", "write_hairs"]
 
 
 def build_hairs(groom: Groom, *, fraction: float = 1.0, wider: bool = False, memory: Memory | None = None) -> Hairs:
@@ -30,6 +30,21 @@ def build_hairs(groom: Groom, *, fraction: float = 1.0, wider: bool = False, mem
     from ringlet import groom as grooms
 
     return grooms.make_hairs(groom, fraction=fraction, wider=wider, memory=memory.hairs if memory else None)
+
+
+def measure_hairs(groom: Groom | Path | str, *, variant: str | None = None) -> dict[str, float]:
+    """Density and cover of all hairs of a groom at rest.
+
+    ``hairs_per_cm2`` is the mean over the region that carries hair, and ``scalp_seen`` the part of that region that
+    cameras around the head see through the hair, 0 to 1.
+
+    variant: of the groom file, in place of the one that is selected in it
+    """
+    from ringlet import groom as grooms
+    from ringlet.data.groom import Groom
+
+    made = groom if isinstance(groom, Groom) else read_groom(groom, variant=variant)
+    return {"hairs_per_cm2": grooms.hairs_per_cm2(made), "scalp_seen": grooms.hair_cover(made).seen()}
 
 
 @recorded()

@@ -9,7 +9,7 @@ import typer
 
 import ringlet
 from ringlet.cli.options import Json, Threads, Variant, picture_file, usd_file
-from ringlet.cli.output import print_json, print_table
+from ringlet.cli.output import density, print_json, print_table
 from ringlet.cli.progress import shown_progress
 
 
@@ -90,5 +90,6 @@ def check(
                 f"Hair is checked as lines {1e3 * summary['thickness']:.3g} mm thick. With their hairs locks are "
                 f"{1e3 * wide:.3g} mm thick: --thickness {1e3 * wide:.3g} counts where these overlap."
             )
+        print(density(summary))
     if any(of["places"] for of in summary["left" if fix else "found"].values()):
         raise typer.Exit(1)

@@ -9,7 +9,7 @@ import typer
 
 import ringlet
 from ringlet.cli.options import Fraction, Frames, Json, Report, Threads, Variant, usd_file
-from ringlet.cli.output import wrote
+from ringlet.cli.output import density, wrote
 from ringlet.cli.progress import shown_progress
 
 
@@ -56,4 +56,7 @@ def hair(
                 progress=progress,
             )
         run.count(**counts)
-    wrote(output, run.counts, as_json)
+        measured = ringlet.measure_hairs(groom, variant=variant)
+    wrote(output, run.counts, as_json, **measured)
+    if not as_json:
+        print(density(measured))

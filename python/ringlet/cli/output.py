@@ -37,6 +37,11 @@ def wrote(path: Path, counts: dict[str, int], as_json: bool, **more: Any) -> Non
         print(f"{path}: {', '.join([*parts, size(path.stat().st_size)])}")
 
 
+def density(measured: dict[str, float]) -> str:
+    """The result of ``ringlet.measure_hairs`` in a line."""
+    return f"{measured['hairs_per_cm2']:.0f} hairs/cm²; {100 * measured['scalp_seen']:.1f} % of the scalp are seen"
+
+
 def size(count: int) -> str:
     """A number of bytes in a readable unit: ``3.2 MB``."""
     for unit, step in (("GB", 1e9), ("MB", 1e6), ("kB", 1e3)):

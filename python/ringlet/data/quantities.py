@@ -33,6 +33,7 @@ from ringlet.data.settings import refuse
 
 MAX_FACTOR = 1e6  # of a ramp
 LengthUnit = Literal["m", "dm", "cm", "mm", "in"]
+PER_CM2 = "/cm2"  # unit of a density
 UNITS: dict[str, float] = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001, "in": 0.0254}
 
 
@@ -69,7 +70,7 @@ def _as_stated(value: Varied, metadata: list[Any]) -> dict[str, Any]:
 @dataclass(frozen=True)
 class Quantity:
     """The unit and bounds of a setting. Unit ``m``: a number counts in the recipe's unit, a text carries its own, as in
-    ``"5 mm"``.
+    ``"5 mm"``. Unit ``/cm2``: a number, or a text with that unit.
 
     product: whether the bounds also count for the value times its ramp; not where an operator bounds or normalises that
     """
@@ -96,9 +97,10 @@ class Quantity:
 
     def number(self, value: Any, unit: float) -> float:
         """``value`` in SI, within the bounds."""
-        number = self._length(value) if isinstance(value, str) else value
+        number = self._measure(value) if isinstance(value, str) else value
         if isinstance(number, bool) or not isinstance(number, int | float):
-            raise refuse(f"is {shown(value)}; must be a number" + ' or a length such as "5 mm"' * (self.unit == "m"))
+            example = {"m": ' or a length such as "5 mm"', PER_CM2: ' or a density such as "120 /cm2"'}
+            raise refuse(f"is {shown(value)}; must be a number" + example.get(self.unit, ""))
         try:
             number = float(number) * (unit if self.unit == "m" and not isinstance(value, str) else 1.0)
         except OverflowError:  # a whole number that no float holds
@@ -112,13 +114,14 @@ class Quantity:
             raise refuse(f"is {said}; must be at most {self.most:.6g}{self.suffix}")
         return number
 
-    def _length(self, text: str) -> float | None:
-        """A length with its unit, such as ``5 mm``, in metres; None for other text."""
-        match = re.fullmatch(r"\s*([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*([a-z]+)\s*", text)
-        if self.unit != "m" or not match or match[2] not in UNITS:
+    def _measure(self, text: str) -> float | None:
+        """A length such as ``5 mm``, in metres, or a density such as ``120 /cm2``; None for other text."""
+        match = re.fullmatch(r"\s*([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*([a-z]+|/cm2)\s*", text)
+        units = {"m": UNITS, PER_CM2: {PER_CM2: 1.0}}.get(self.unit, {})
+        if not match or match[2] not in units:
             return None
         try:
-            return float(match[1]) * UNITS[match[2]]
+            return float(match[1]) * units[match[2]]
         except ValueError:
             return None
 
@@ -173,7 +176,7 @@ class Quantity:
 
     def __get_pydantic_json_schema__(self, schema: core_schema.CoreSchema, handler: Callable) -> dict[str, Any]:
         number = {"type": "number", "minimum": self.least, "maximum": self.most}
-        choices = [number, {"type": "string"}] if self.unit == "m" else [number]
+        choices = [number, {"type": "string"}] if self.unit in ("m", PER_CM2) else [number]
         inner = handler(schema)
         tables = [part for part in inner.get("anyOf", [inner]) if "$ref" in part or part.get("type") == "null"]
         return {"anyOf": choices + tables, "unit": self.unit}

@@ -5,7 +5,17 @@ from ringlet.groom.check import Allowed, check_groom
 from ringlet.groom.color import hair_colors
 from ringlet.groom.edits_file import add_points, add_settings, release, restored_on_error, row_of
 from ringlet.groom.fix import fix_groom
-from ringlet.groom.hairs import HairMemory, Hairs, HairSettings, hair_count, lay_hairs, lock_thickness, make_hairs
+from ringlet.groom.hairs import (
+    HairMemory,
+    Hairs,
+    HairSettings,
+    hair_count,
+    hair_cover,
+    hairs_per_cm2,
+    lay_hairs,
+    lock_thickness,
+    make_hairs,
+)
 from ringlet.groom.presets import PRESETS
 from ringlet.groom.rebind import rebind
 from ringlet.groom.recipe import Recipe, parse_recipe, read_recipe, schema
@@ -26,6 +36,8 @@ __all__ = [
     "fix_groom",
     "hair_colors",
     "hair_count",
+    "hair_cover",
+    "hairs_per_cm2",
     "lay_hairs",
     "lock_thickness",
     "make_groom",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from hashlib import blake2b
 from typing import Annotated, Any
 
@@ -22,9 +22,12 @@ from ringlet.data.pigment import TWIST
 from ringlet.data.precision import origin_of
 from ringlet.data.quantities import Quantity, Ramped, Section, Varied, explain
 from ringlet.data.random import Random, soft_threshold
-from ringlet.groom import felt
+from ringlet.groom import density, felt, hair_curl
 from ringlet.groom.color import hair_colors
+from ringlet.groom.cover import Cover, measure
 from ringlet.groom.fiber import FiberSettings
+from ringlet.groom.hair_curl import Families, HairCoil, HairCurl, Placed, Values
+from ringlet.groom.mask import Mask
 from ringlet.groom.operators.woven import JOIN
 from ringlet.groom.scalp import axes
 from ringlet.groom.shares import LAID, REACH, fed, scattered
@@ -34,6 +37,8 @@ FRIZZ_KNOTS = 8
 PLASTIC = np.array([0.7548776662466927, 0.5698402909980532])
 LATEST_JOIN = 0.9  # part of a lock
 PACE_EASE = 0.3  # half the part of `gather` over which a flat hair turns into its lock
+FIRST_PER_CM2, MOST_PER_CM2 = 60.0, 400.0  # densities that a cover begins with and ends at
+HAIR_SHARE = "hair_share"  # curve attribute of locks: part of their hairs that grow, where there is a mask
 MARGIN = 1e-4  # [m] distance of hairs from surfaces, twice the radius of a hair
 
 
@@ -42,6 +47,18 @@ class HairSettings(Section):
 
     per_lock: Annotated[Varied, Quantity("", 1, IDS_PER_LOCK)] = Field(
         default=Varied(value=20), description="hairs of a lock; the first of them is the groom guide itself"
+    )
+    density: Annotated[Varied | None, Quantity("/cm2", 0.1, 2000.0)] = Field(
+        default=None,
+        description="hairs per cm² of scalp, in place of `per_lock`: 120 is a full head. Roots fill the share of the "
+        "scalp that is nearest to their lock",
+    )
+    cover: Annotated[float | None, Quantity("", 0.0, 0.999)] = Field(
+        default=None,
+        description="part of the scalp that hair hides from cameras around the head; the density is raised to that",
+    )
+    mask: Annotated[Mask | None, Quantity("", 0.0, 1.0)] = Field(
+        default=None, description="part of the hairs that grow: a number, map, region or expression; all when absent"
     )
     points: int | None = Field(
         default=None, ge=2, le=10_000, description="points of a hair; those of the lock when absent"
@@ -89,7 +106,18 @@ class HairSettings(Section):
     apart: Annotated[float, Quantity("deg", 1.0, 180.0)] = Field(
         default=60.0, description="locks that lean further apart than this, as across a parting, are not mixed"
     )
+    families: Families | None = Field(default=None, description="sub-clumps of each lock; none when absent")
+    curl: HairCurl | None = Field(
+        default=None, description="how hairs follow the coil of their lock; all in the same phase when absent"
+    )
+    coil: HairCoil | None = Field(default=None, description="a coil of each hair's own; none when absent")
     seed: int = Field(default=1, ge=0, le=2**31, description="another seed, other places in the locks")
+
+    @property
+    def sections(self) -> dict[str, Section]:
+        """Tables of settings that are given, by name."""
+        tables = {"families": self.families, "curl": self.curl, "coil": self.coil}
+        return {name: table for name, table in tables.items() if table is not None}
 
 
 @dataclass
@@ -104,7 +132,7 @@ class Hairs:
     curves: Curves
     _groom: Groom
     _axis: NDArray[np.float64]  # reference direction of each lock, in the frame of the scalp at its root
-    _layout: dict[str, NDArray]
+    _layout: dict[str, Any]
     _root: NDArray[np.float32] | None = None  # offsets of hair roots from lock roots on the scalp at rest
 
     def deformed(
@@ -131,7 +159,7 @@ class Hairs:
     def offset_fractions(
         self,
         lock_points: NDArray,
-        deformation: dict[str, NDArray],
+        deformation: dict[str, Any],
         surfaces: Sequence[tuple[NDArray, NDArray]],
         *,
         buffer: NDArray[np.float32] | None = None,
@@ -155,7 +183,7 @@ class Hairs:
     def _deform(
         self,
         lock_points: NDArray,
-        deformation: dict[str, NDArray],
+        deformation: dict[str, Any],
         surfaces: Sequence[tuple[NDArray, NDArray]],
         out: NDArray[np.float32],
         fractions: NDArray[np.uint8] | None = None,
@@ -170,7 +198,7 @@ class Hairs:
             _core.keep_beside(points, offsets, out, corners - origin, triangles, MARGIN, **layout, shares=fractions)
         return origin
 
-    def deformation(self, scalp_points: NDArray) -> dict[str, NDArray]:
+    def deformation(self, scalp_points: NDArray) -> dict[str, Any]:
         """Inputs of the deformation (src/ringlet/groom/hairs.h) besides the locks, for a deformed scalp.
 
         ``axis`` (locks, 3) and ``root`` (hairs, 3) [m] follow the scalp; the other arrays are constant.
@@ -218,8 +246,37 @@ class HairMemory:
 
 
 def hair_count(groom: Groom) -> int:
-    """Approximate number of hairs of the whole groom."""
-    return max(1, round(len(groom.locks) * _settings(groom.hairs).per_lock.value))
+    """Number of hairs of the whole groom."""
+    settings = _settings(groom.hairs)
+    return int(_counts(groom, settings, _Values(settings, groom.locks, groom.scalp), _areas(groom, settings)).sum())
+
+
+def hairs_per_cm2(groom: Groom) -> float:
+    """Mean number of hairs per cm² of the region that carries hair."""
+    return hair_count(groom) / (density.PER_CM2 * density.region_area(groom.scalp, _region(groom)))
+
+
+def hair_cover(groom: Groom, hairs: Hairs | None = None) -> Cover:
+    """Cover of the scalp by all hairs of a groom at rest; ``hairs``: those, where they are made already."""
+    return measure(groom.scalp, _region(groom), (hairs or make_hairs(groom)).curves)
+
+
+def raise_density(groom: Groom, settings: HairSettings) -> None:
+    """Sets the density of a groom to the least that has the cover of the settings, or leaves it if that has more.
+
+    Adds to the groom's conflicts where MOST_PER_CM2 hairs do not suffice.
+    """
+    assert settings.cover is not None
+    start = settings.density or Varied(value=FIRST_PER_CM2)
+    groom.hairs["density"] = start.model_dump(mode="json")
+    cover, least = hair_cover(groom), 1.0 if settings.density else 0.0
+    factor = max(cover.factor_for(settings.cover, MOST_PER_CM2 / start.value), least)
+    groom.hairs["density"]["value"] = min(factor * start.value, MOST_PER_CM2)
+    if (seen := cover.seen(factor)) > 1.001 * (1.0 - settings.cover):
+        groom.conflicts.append(
+            f"hairs.cover is {settings.cover:g}, but at {MOST_PER_CM2:g} hairs/cm² {100 * seen:.1f} % of the scalp are "
+            "still seen; let locks grow closer, longer or flatter"
+        )
 
 
 def lock_thickness(groom: Groom) -> float:
@@ -257,7 +314,22 @@ def lay_hairs(groom: Groom, *, fraction: float = 1.0, wider: bool = False, memor
         memory.key, memory.hairs = key, _place(groom, settings, fraction, wider)
     cached = memory.hairs
     axis = np.einsum("lxk,lx->lk", frames, axes(groom.locks, frames))
-    return Hairs(cached.curves, groom, axis, cached._layout, cached._root)
+    layout = _with_lengths(cached, groom.locks)
+    # Whoever keeps a layout compares curves: with a curl of hairs it changes with the locks.
+    curves = cached.curves if layout is cached._layout else replace(cached.curves)
+    return Hairs(curves, groom, axis, layout, cached._root)
+
+
+def _with_lengths(hairs: Hairs, locks: Curves) -> dict[str, Any]:
+    """The layout with what depends on the shape of the locks: turns of coils, and of hairs' own."""
+    layout = hairs._layout
+    if not layout["curl"]:
+        return layout
+    curl = hair_curl.with_turns(
+        layout["curl"], locks.lengths()[hairs.curves.curve["lock"]] * (layout["tip"] - layout["join"])
+    )
+    hair_curl.check_points(curl["coil"], len(layout["profile"]))
+    return {**layout, "curl": curl, "window": hair_curl.turn_points(locks)}
 
 
 def _key(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -> bytes:
@@ -274,15 +346,26 @@ def _key(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -> 
         locks.curve.get(REACH, np.empty(0)),
         _joins(locks),
         *((locks.points, locks.curve[LAID]) if LAID in locks.curve else ()),
-        *(values(name) for name in HairSettings.model_fields if isinstance(getattr(settings, name), Varied)),
+        *(locks.curve[name] for name in (felt.PROFILE, felt.MATTING, felt.FUZZ) if name in locks.curve),
+        *(values(name) for name in _varied(settings)),
+        *(
+            Values(table, locks, scalp, settings.seed, f"hairs.{section}")(name)
+            for section, table in settings.sections.items()
+            for name in _varied(table)
+        ),
         scalp.points,
         scalp.triangles,
-        *(locks.curve[name] for name in (felt.PROFILE, felt.MATTING, felt.FUZZ) if name in locks.curve),
+        *((locks.curve[HAIR_SHARE],) if HAIR_SHARE in locks.curve else ()),
         *((locks.points,) if settings.blend != HairSettings().blend else ()),
         *((locks.lengths(),) if fiber.flatness else ()),
     ):
         digest.update(np.ascontiguousarray(array).data)
     return digest.digest()
+
+
+def _varied(settings: Section) -> list[str]:
+    """Names of the settings that vary from lock to lock."""
+    return [name for name in type(settings).model_fields if isinstance(getattr(settings, name), Varied)]
 
 
 def _place(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -> Hairs:
@@ -293,7 +376,8 @@ def _place(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -
     locks, scalp = groom.locks, groom.scalp
     roots, frames = _root_frames(groom, groom.scalp.points, "rest pose")
     per_lock = _Values(settings, locks, scalp)
-    full_count = np.maximum(1, np.round(per_lock("per_lock"))).astype(np.int64)
+    areas = _areas(groom, settings)
+    full_count = _counts(groom, settings, per_lock, areas)
     counts = np.maximum(1, np.round(full_count * fraction)).astype(np.int64)
     lock = np.repeat(np.arange(len(locks), dtype=np.int32), counts)
     first = offsets_from_counts(counts)
@@ -302,7 +386,8 @@ def _place(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -
     points = settings.points or int(locks.counts.max())
 
     disk = _disk(settings, ids, number, full_count[lock])
-    places = roots[lock] + per_lock("spread")[lock, None] * np.einsum("hxk,hk->hx", frames[lock][:, :, :2], disk)
+    spread = np.maximum(per_lock("spread"), np.sqrt(areas / np.pi))
+    places = roots[lock] + spread[lock, None] * np.einsum("hxk,hk->hx", frames[lock][:, :, :2], disk)
     laid = locks.curve.get(LAID, np.zeros(len(locks))) > 0.0
     shared = (_shared(locks) & ~laid)[lock]
     joins = _joins(locks)[lock]
@@ -314,15 +399,7 @@ def _place(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -
     if shared.any():
         of = lock[shared]
         places[shared] = scattered(locks.curve[REACH][of], roots[of], frames[of, :, 2], disk[shared])
-    try:
-        region = np.ascontiguousarray(scalp.region(groom.region), np.int32)
-    except KeyError as error:
-        raise UserError(f"hairs: {error.args[0]}") from None
-    if len(region) == 0:
-        raise UserError(
-            f"hairs: region '{groom.region}' of {scalp.name} has no faces; choose the faces that carry hair"
-        )
-    root_triangle, root_barycentric, _ = _core.bind_roots(scalp.points, scalp.triangles, places, region)
+    root_triangle, root_barycentric, _ = _core.bind_roots(scalp.points, scalp.triangles, places, _region(groom))
     is_lock = number == 0
     root_triangle[is_lock] = locks.curve["root_triangle"]
     root_barycentric[is_lock] = locks.curve["root_barycentric"]
@@ -356,6 +433,8 @@ def _place(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -
     layout["join"] = np.where(is_lock, 0.0, joins).astype(np.float32)
     if felt.is_felted(locks):
         layout["frizz"] = _felted(settings, per_lock, ids, lock, disk, layout["frizz"])
+    placed = Placed(ids, lock, _section(per_lock, lock, disk), per_lock("radius")[lock], number > 0)
+    layout |= _curl(settings, per_lock, layout, placed, u)
     layout |= _neighbours(settings, per_lock, groom, curves, is_lock, roots, u)
     hairs = Hairs(curves, groom, np.empty(0), {"first": first, **layout})
     hairs._root = hairs._root_offsets(scalp.points, roots)
@@ -371,6 +450,33 @@ def _flatten(groom: Groom, hairs: Curves) -> None:
     twist = fiber.twist(hairs.ids, lengths, int(hairs.counts[0]))
     seen = fiber.seen_widths(twist, lengths).astype(np.float32)
     hairs.point |= {TWIST: twist.ravel(), "width": hairs.point["width"] * seen.ravel()}
+
+
+def _region(groom: Groom) -> NDArray[np.int32]:
+    """Triangles that carry hair; raises UserError when the groom's region is not in its mesh."""
+    try:
+        region = np.ascontiguousarray(groom.scalp.region(groom.region), np.int32)
+    except KeyError as error:
+        raise UserError(f"hairs: {error.args[0]}") from None
+    if len(region) == 0:
+        raise UserError(
+            f"hairs: region '{groom.region}' of {groom.scalp.name} has no faces; choose the faces that carry hair"
+        )
+    return region
+
+
+def _areas(groom: Groom, settings: HairSettings) -> NDArray[np.float64]:
+    """Share of the scalp that each lock's hairs cover [m²], shape (locks,); 0 without a density."""
+    if settings.density is None:
+        return np.zeros(len(groom.locks))
+    return density.lock_areas(groom.scalp, _region(groom), np.asarray(groom.locks.roots, np.float64))
+
+
+def _counts(groom: Groom, settings: HairSettings, per_lock: _Values, areas: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Number of hairs of each lock, at least 1, shape (locks,)."""
+    count = per_lock("per_lock") if settings.density is None else density.PER_CM2 * per_lock("density") * areas
+    count = count * groom.locks.curve.get(HAIR_SHARE, 1.0)
+    return np.clip(np.round(count), 1, IDS_PER_LOCK).astype(np.int64)
 
 
 @dataclass
@@ -504,6 +610,27 @@ def _felted(
     radius = per_lock("radius")[:, None] * settings.radius.along(u) * (1.0 - per_lock("taper")[:, None] * u)
     section = _section(per_lock, lock, disk)
     return felt.felted(per_lock.locks, lock, ids, section, radius[lock], frizz, settings.seed).astype(np.float32)
+
+
+def _curl(
+    settings: HairSettings, per_lock: _Values, layout: dict[str, NDArray], hairs: Placed, u: NDArray
+) -> dict[str, Any]:
+    """Inputs of the kernel for the curl of hairs; empty where these only follow their lock."""
+    if not settings.sections:
+        return {"window": np.empty(0, np.int32), "curl": {}}
+    values = {
+        name: Values(table, per_lock.locks, per_lock.scalp, settings.seed, f"hairs.{name}")
+        for name, table in settings.sections.items()
+    }
+    knots = layout["frizz"].shape[1] // 2
+    curl, wander = hair_curl.curl_layout(
+        values.get("families"), values.get("curl"), values.get("coil"), hairs, u, knots
+    )
+    return {
+        "window": np.empty(0, np.int32),
+        "curl": curl,
+        "frizz": layout["frizz"] + wander.astype(np.float32),
+    }
 
 
 def _section(per_lock: _Values, lock: NDArray, disk: NDArray) -> NDArray[np.float64]:

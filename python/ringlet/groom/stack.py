@@ -12,16 +12,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ringlet.data.bounds import check_curves
-from ringlet.data.curves import Curves
+from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.data.errors import UserError
 from ringlet.data.groom import Groom
 from ringlet.data.mesh import Mesh
 from ringlet.data.painted import painted
 from ringlet.data.quantities import Varied
+from ringlet.data.random import Random
 from ringlet.data.stage import StageSpace
 from ringlet.groom.color import colored
 from ringlet.groom.edits import Edit, Edits
-from ringlet.groom.hairs import HairMemory, HairSettings
+from ringlet.groom.hairs import HAIR_SHARE, HairMemory, HairSettings, raise_density
 from ringlet.groom.load import stage_names
 from ringlet.groom.nails import nailed
 from ringlet.groom.operators import Context, Drawn, Operator, Resample, Tie
@@ -119,9 +120,10 @@ def make_groom(
                 progress(name, 1, 1)
         locks = _with_textures_of_hairs(nailed(curves, recipe.nail, scalp, recipe.seed), recipe.hairs, scalp)
         locks = colored(locks, recipe.color, recipe.fiber, scalp)
+        locks = _with_mask_of_hairs(locks, recipe, scalp)
     except UserError as error:
         raise UserError(f"{where}: {error}") from error
-    return Groom(
+    groom = Groom(
         guides=guides,
         locks=locks,
         scalp=scalp,
@@ -130,7 +132,7 @@ def make_groom(
         region=recipe.scalp.region,
         cage=recipe.scalp.surface == "cage",
         space=space or StageSpace(),
-        hairs=recipe.hairs.model_dump(mode="json"),
+        hairs=recipe.hairs.model_dump(mode="json", exclude={k for k, v in recipe.hairs if v is None} - {"points"}),
         color=recipe.color and recipe.color.model_dump(mode="json"),
         fiber=recipe.fiber and recipe.fiber.model_dump(mode="json"),
         recipe=recipe.text,
@@ -146,6 +148,9 @@ def make_groom(
             *_former_names(recipe),
         ],
     )
+    if recipe.hairs.cover is not None:
+        raise_density(groom, recipe.hairs)
+    return groom
 
 
 def _with_textures_of_hairs(locks: Curves, hairs: HairSettings, scalp: Mesh) -> Curves:
@@ -153,9 +158,20 @@ def _with_textures_of_hairs(locks: Curves, hairs: HairSettings, scalp: Mesh) -> 
 
     A groom file holds no textures, and hairs are made from that file alone.
     """
-    used = {value.map for _, value in hairs if isinstance(value, Varied) and value.map in scalp.textures}
+    values = [value for table in (hairs, *hairs.sections.values()) for _, value in table if isinstance(value, Varied)]
+    used = {value.map for value in values if value.map in scalp.textures}
     sampled = {name: painted(name, locks, scalp, "hairs").astype(np.float32) for name in sorted(used - {None})}
     return Curves(locks.points, locks.offsets, locks.ids, {**locks.curve, **sampled}, locks.point) if sampled else locks
+
+
+def _with_mask_of_hairs(locks: Curves, recipe: Recipe, scalp: Mesh) -> Curves:
+    """Adds the part of the hairs that grow, where the recipe has a mask of hairs, as a curve attribute of the locks."""
+    if recipe.hairs.mask is None:
+        return locks
+    flat = Curves(locks.roots, offsets_from_counts(np.ones(len(locks))), locks.ids, locks.curve)
+    share = recipe.hairs.mask.weights(flat, scalp, Random(recipe.seed, "hairs/mask"), "hairs.mask")[:, 0]
+    attributes = {**locks.curve, HAIR_SHARE: share.astype(np.float32)}
+    return Curves(locks.points, locks.offsets, locks.ids, attributes, locks.point)
 
 
 def _stages(recipe: Recipe) -> list[tuple[str, Operator]]:

@@ -21,6 +21,13 @@ from ringlet.viewer import protocol
 from ringlet.viewer.project import Project
 from ringlet.viewer.wire import pack
 
+RAMPS = ("escaping", "relaxing", "tight", "opening")  # of the curl of hairs, along them
+
+# Arrays of the curl of hairs, where these only follow their lock.
+NO_CURL: dict[str, NDArray] = {
+    name: np.empty(0) for name in ("slip", "escape", "relax", "family", "coil", "phase", *RAMPS)
+}
+
 
 class NoClean(Clean):
     """Does nothing. Its margin is invalid in a recipe, so that the cache distinguishes its results."""
@@ -170,6 +177,8 @@ def hairs_message(side: str, hairs: Hairs, scalp: Mesh) -> bytes:
         **{name: layout[name] for name in ("profile", "hold", "pace", "blend")},
         width=widths.max(axis=1)[order],
         thinning=_thinning(widths),
+        window=layout["window"],
+        **NO_CURL | {name: values if name in RAMPS else values[order] for name, values in layout["curl"].items()},
     )
 
 
@@ -203,6 +212,8 @@ def curves_message(side: str, curves: Curves) -> bytes:
         blend=np.zeros(points),
         width=width[order],
         thinning=np.linspace(1.0, 0.4, points),
+        window=np.empty(0),
+        **NO_CURL,
     )
 
 

@@ -331,7 +331,8 @@ class Hairs(Message):
 
     Any prefix of the hairs covers all locks evenly. ``profile``, ``hold``, ``pace``, ``blend`` and ``thinning`` are
     functions along the hair, the same for all. ``frizz`` has ``knots`` × 2 numbers a hair; ``root`` is the offset from
-    the lock's root to the hair's. The diameter is ``width`` of the hair times ``thinning``.
+    the lock's root to the hair's. The diameter is ``width`` of the hair times ``thinning``. The arrays from ``window``
+    on are those of the curl of hairs; empty where these only follow their lock.
     """
 
     kind: Literal["hairs"] = "hairs"
@@ -356,6 +357,9 @@ class Hairs(Message):
         "blend": "f4",
         "width": "f4",
         "thinning": "f4",
+        "window": "i4",
+        **dict.fromkeys(("slip", "escape", "relax", "family", "coil", "phase"), "f4"),
+        **dict.fromkeys(("escaping", "relaxing", "tight", "opening"), "f4"),
     }
 
 

@@ -11,10 +11,22 @@ struct alignas(64) LockSegment {
     float c0[4], c1[4], c2[4], c3[4], a[4], da[4], b[4], db[4];
 };
 
+// Centre line of the coil on the same segment: the frame u + t du, v + t dv; the fourth numbers are the lock's place in it [m].
+struct alignas(64) CentreSegment {
+    float u[4], v[4], du[4], dv[4];
+};
+
 // Segments of one lock, one for every point; the last is constant at the tip.
 struct LockTable {
     const LockSegment *segments;
-    int last; // index of the tip
+    const CentreSegment *centres; // null without a curl of hairs
+    int last;                     // index of the tip
+};
+
+// Arrays of HairCurl from the first hair of a lock on.
+struct CurlSpan {
+    const float *slip, *escape, *relax, *family, *coil, *phase;
+    const float *escaping, *relaxing, *tight, *opening;
 };
 
 struct HairSpan {
@@ -25,9 +37,12 @@ struct HairSpan {
     const int *other;                                // neighbouring lock of each hair, or null
     const float *share;                              // weight of that lock
     const LockTable *locks;                          // all locks, for `other`
-    float *scratch;                                  // 6 × points
+    CurlSpan curl;                                   // null without a curl of hairs
+    float *scratch;                                  // scratch_rows × points
     float *result;                                   // 3 × points a hair
 };
+
+inline constexpr int scratch_rows = 10;
 
 RINGLET_DECLARE(void fill_hairs(const LockTable &lock, const HairSpan &hairs);)
 

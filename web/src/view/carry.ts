@@ -29,22 +29,41 @@ precision highp int;
 ${LOOKUP}
 uniform highp sampler2D lockPoint, lockA, lockB, lockPlace;
 uniform highp sampler2D hairPlace;  // lock, tip, offset
-uniform highp sampler2D hairRoot;   // root, width
+uniform highp sampler2D hairRoot;   // root, width; join, flat: two texels a hair
 uniform highp sampler2D hairFrizz;  // two knots a texel
-uniform highp sampler2D hairMix;    // taper, another lock, the share that it has
-uniform highp sampler2D hairJoin;   // join, flat
+uniform highp sampler2D hairMix;    // taper, another lock, the share that it has, relaxation
+uniform highp sampler2D lockU, lockV; // frame of the centre line, and the lock's place in it
+uniform highp sampler2D hairTurn;   // slip and phase of two knots a texel
+uniform highp sampler2D hairCoil;   // radius times direction, turns, kink
+uniform highp sampler2D hairAway;   // family, escape
+uniform highp sampler2D curlRamps;  // escaping, relaxing, tight, opening
+uniform bool curled;
 uniform highp sampler2D ramps;      // profile, hold, thinning, blend; pace: two texels a point
 uniform highp sampler2D left;       // the part of its way from the lock that each point keeps, as many texels as the result
 uniform int hairs, points, knots;
 out vec4 result;
 
-vec2 knot(int hair, int i) {
-  vec4 two = lookup(hairFrizz, hair * ((knots + 1) / 2) + i / 2);
+vec2 knot(highp sampler2D values, int hair, int i) {
+  vec4 two = lookup(values, hair * ((knots + 1) / 2) + i / 2);
   return (i & 1) == 0 ? two.xy : two.zw;
 }
 
+// Of a phase in turns, as in the core.
+float cosine(float turns) {
+  float shifted = turns + 0.25, t = shifted - floor(shifted + 0.5);
+  float parabola = 8.0 * t * (1.0 - 2.0 * abs(t));
+  return parabola + 0.225 * (parabola * abs(parabola) - parabola);
+}
+float zigzag(float turns) { return 1.0 - 4.0 * abs(turns - floor(turns + 0.5)); }
+
+// Moves the lock in the frame of its centre line: turned by the slip and relaxed, and by the escape.
+vec3 curl(int row, float t, vec4 turned) {
+  vec4 u = mix(lookup(lockU, row), lookup(lockU, row + 1), t), v = mix(lookup(lockV, row), lookup(lockV, row + 1), t);
+  return (turned.z + turned.x * u.w - turned.y * v.w) * u.xyz + (turned.w + turned.y * u.w + turned.x * v.w) * v.xyz;
+}
+
 // A place on a lock at so many points from its root. Catmull–Rom for the points, straight for the frame.
-vec3 onLock(vec4 lock, float at, vec2 across) {
+vec3 onLock(vec4 lock, float at, vec2 across, vec4 turned) {
   int last = int(lock.y), j = min(int(at), last), row = int(lock.x) + j;
   float t = j == last ? 0.0 : at - float(j);
   vec3 p0 = lookup(lockPoint, row - 1).xyz, p1 = lookup(lockPoint, row).xyz;
@@ -52,7 +71,8 @@ vec3 onLock(vec4 lock, float at, vec2 across) {
   vec3 on = p1 + 0.5 * t * ((p2 - p0) + t * ((2.0 * p0 - 5.0 * p1 + 4.0 * p2 - p3) + t * (3.0 * (p1 - p2) + p3 - p0)));
   vec3 a = mix(lookup(lockA, row).xyz, lookup(lockA, row + 1).xyz, t);
   vec3 b = mix(lookup(lockB, row).xyz, lookup(lockB, row + 1).xyz, t);
-  return on + across.x * a + across.y * b;
+  vec3 place = on + across.x * a + across.y * b;
+  return curled ? place + curl(row, t, turned) : place;
 }
 
 // The same on the polyline of the lock, which touches nothing.
@@ -65,8 +85,8 @@ void main() {
   int index = int(gl_FragCoord.x) + 2048 * int(gl_FragCoord.y);
   int hair = index / points, k = index - hair * points;
   if (hair >= hairs) { result = vec4(0.0); return; }
-  vec4 sits = lookup(hairPlace, hair), root = lookup(hairRoot, hair), ramp = lookup(ramps, 2 * k), mixed = lookup(hairMix, hair);
-  vec2 joins = lookup(hairJoin, hair).xy;
+  vec4 sits = lookup(hairPlace, hair), root = lookup(hairRoot, 2 * hair), ramp = lookup(ramps, 2 * k), mixed = lookup(hairMix, hair);
+  vec2 joins = lookup(hairRoot, 2 * hair + 1).xy;
   vec4 lock = lookup(lockPlace, int(sits.x));
   float u = float(k) / float(points - 1);
 
@@ -75,16 +95,29 @@ void main() {
   int i = min(int(knotAt), knots - 2);
   float ease = knotAt - float(i);
   ease = ease * ease * (3.0 - 2.0 * ease);
-  vec2 wander = mix(knot(hair, i), knot(hair, i + 1), ease);
+  vec2 wander = mix(knot(hairFrizz, hair, i), knot(hairFrizz, hair, i + 1), ease);
   vec2 across = (1.0 - ramp.y) * (ramp.x * (1.0 - mixed.x * u) * sits.zw + wander);
 
+  vec4 turned = vec4(0.0); // cosine of the slip times the radius that is left, less 1; its sine; escape
+  if (curled) {
+    vec4 coil = lookup(hairCoil, hair), away = lookup(hairAway, hair), along = lookup(curlRamps, k);
+    vec2 phase = mix(knot(hairTurn, hair, i), knot(hairTurn, hair, i + 1), ease);
+    float follow = 1.0 - ramp.y, turn = coil.z * u + phase.y, flatly = cosine(turn);
+    vec2 wound = vec2(mix(flatly, zigzag(turn), coil.w), (1.0 - coil.w) * cosine(turn - 0.25));
+    across += follow * ramp.x * (1.0 - mixed.x * u) * along.z * away.xy;
+    across += follow * along.w * vec2(wound.x * coil.x - wound.y * coil.y, wound.x * coil.y + wound.y * coil.x);
+    float radius = 1.0 - mixed.w * along.y;
+    turned.xy = follow * vec2(radius * cosine(phase.x) - 1.0, radius * cosine(phase.x - 0.25));
+    turned.zw = follow * along.x * away.zw;
+  }
+
   float at = lock.y * (joins.x + (sits.y - joins.x) * mix(u, lookup(ramps, 2 * k + 1).x, joins.y));
-  if (joins.x > 0.0) root.xyz += lookup(lockPoint, int(lock.x)).xyz - onLock(lock, joins.x * lock.y, vec2(0.0));
-  vec3 place = onLock(lock, at, across) + ramp.y * root.xyz;
+  if (joins.x > 0.0) root.xyz += lookup(lockPoint, int(lock.x)).xyz - onLock(lock, joins.x * lock.y, vec2(0.0), vec4(0.0));
+  vec3 place = onLock(lock, at, across, turned) + ramp.y * root.xyz;
   if (mixed.z > 0.0) { // drawn to a neighbouring lock: the same hair about that one
     vec4 other = lookup(lockPlace, int(mixed.y));
     vec3 there = root.xyz + lookup(lockPoint, int(lock.x)).xyz - lookup(lockPoint, int(other.x)).xyz;
-    vec3 theirs = onLock(other, at * other.y / lock.y, across) + ramp.y * there;
+    vec3 theirs = onLock(other, at * other.y / lock.y, across, turned) + ramp.y * there;
     place += mixed.z * ramp.w * (theirs - place);
   }
   float part = texelFetch(left, ivec2(gl_FragCoord.xy), 0).r;
@@ -115,6 +148,7 @@ export class Carry {
         points: { value: hairs.points },
         knots: { value: hairs.knots },
         left: { value: this.left.texture },
+        curled: { value: hairs.window.length > 0 },
       },
     });
     this.scene.add(new Mesh(new PlaneGeometry(2, 2), this.material));
@@ -124,12 +158,11 @@ export class Carry {
       place.set([hairs.lock[i], hairs.tip[i], hairs.offset[2 * i], hairs.offset[2 * i + 1]], 4 * i);
     this.put("hairPlace", place);
     const mix = new Float32Array(4 * count);
-    for (let i = 0; i < count; i++) mix.set([hairs.taper[i], hairs.other[i], hairs.share[i], 0], 4 * i);
+    for (let i = 0; i < count; i++)
+      mix.set([hairs.taper[i], hairs.other[i], hairs.share[i], hairs.relax[i] ?? 0], 4 * i);
     this.put("hairMix", mix);
-    const join = new Float32Array(4 * count);
-    for (let i = 0; i < count; i++) join.set([hairs.join[i], hairs.flat[i], 0, 0], 4 * i);
-    this.put("hairJoin", join);
-    this.put("hairFrizz", evenKnots(hairs));
+    this.put("hairFrizz", evenKnots(hairs, hairs.frizz));
+    this.setCurl();
     const ramps = new Float32Array(8 * hairs.points);
     for (let k = 0; k < hairs.points; k++)
       ramps.set([hairs.profile[k], hairs.hold[k], hairs.thinning[k], hairs.blend[k], hairs.pace[k]], 8 * k);
@@ -148,9 +181,10 @@ export class Carry {
 
   /** Where roots are, from those of their locks: they turn with the head. */
   setRoots(root: Float32Array): void {
-    const { count, width } = this.hairs;
-    const rows = new Float32Array(4 * count);
-    for (let i = 0; i < count; i++) rows.set([root[3 * i], root[3 * i + 1], root[3 * i + 2], width[i]], 4 * i);
+    const { count, width, join, flat } = this.hairs;
+    const rows = new Float32Array(8 * count);
+    for (let i = 0; i < count; i++)
+      rows.set([root[3 * i], root[3 * i + 1], root[3 * i + 2], width[i], join[i], flat[i]], 8 * i);
     this.put("hairRoot", rows);
   }
 
@@ -159,10 +193,22 @@ export class Carry {
     this.left.update(drawn, left, this.hairs.points);
   }
 
+  /** The curl of hairs; one texel each where they only follow their lock. */
+  private setCurl(): void {
+    const { hairs } = this;
+    this.put("hairTurn", evenKnots(hairs, interleaved(hairs.slip, hairs.phase, 1)));
+    this.put("hairCoil", hairs.coil);
+    this.put("hairAway", interleaved(hairs.family, hairs.escape, 2));
+    const ramps = interleaved(hairs.escaping, hairs.relaxing, 1);
+    this.put("curlRamps", interleaved(ramps, interleaved(hairs.tight, hairs.opening, 1), 2));
+  }
+
   setLocks(table: LockTable): void {
     this.put("lockPoint", table.point);
     this.put("lockA", table.a);
     this.put("lockB", table.b);
+    this.put("lockU", table.u);
+    this.put("lockV", table.v);
     this.setPlaces(table);
   }
 
@@ -216,9 +262,19 @@ function target(texels: number): WebGLRenderTarget {
 }
 
 /** Knots of each hair in whole texels: an odd number gets one more at its end, which nobody reads. */
-function evenKnots({ count, knots, frizz }: Hairs): Float32Array {
-  if (knots % 2 === 0) return frizz;
+function evenKnots({ count, knots }: Hairs, values: Float32Array): Float32Array {
+  if (knots % 2 === 0 || !values.length) return values;
   const even = new Float32Array(2 * (knots + 1) * count);
-  for (let i = 0; i < count; i++) even.set(frizz.subarray(2 * knots * i, 2 * knots * (i + 1)), 2 * (knots + 1) * i);
+  for (let i = 0; i < count; i++) even.set(values.subarray(2 * knots * i, 2 * knots * (i + 1)), 2 * (knots + 1) * i);
   return even;
+}
+
+/** Rows of `size` numbers of one array, each followed by that of the other. */
+function interleaved(one: Float32Array, other: Float32Array, size: number): Float32Array {
+  const both = new Float32Array(2 * one.length);
+  for (let i = 0; i < one.length; i += size) {
+    both.set(one.subarray(i, i + size), 2 * i);
+    both.set(other.subarray(i, i + size), 2 * i + size);
+  }
+  return both;
 }

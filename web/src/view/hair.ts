@@ -131,7 +131,7 @@ export class Hair {
   /** Puts the hair where it is, at rest or in a frame. */
   place({ points, axis, root, drawn, left }: Placed): void {
     if (!this.locks || points.length !== this.locks.points.length) return;
-    this.table = lockTable(points, this.locks.offsets, axis);
+    this.table = lockTable(points, this.locks.offsets, axis, this.carry?.hairs.window ?? new Int32Array());
     this.setMarks(this.locks.marked);
     this.spread();
     if (root?.length) this.carry?.setRoots(root);

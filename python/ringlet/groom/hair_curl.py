@@ -1,0 +1,281 @@
+"""Curl of hairs within their lock: sub-clumps, phases that slip, and a coil of each hair's own."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, Field
+
+from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
+from ringlet.data.mesh import Mesh
+from ringlet.data.painted import per_lock
+from ringlet.data.quantities import Quantity, Ramped, Section, Varied
+from ringlet.data.random import Random, soft_threshold
+
+MOST_FAMILIES = 64
+LEAST_POINTS = 6  # of a hair, per turn of its own coil
+FEWEST_TURNS = 1.5  # of a lock below which it has no coil
+
+
+class Families(Section):
+    """Sub-clumps of each lock: its hairs are drawn to the middle of the family that they stand nearest to."""
+
+    count: Annotated[Varied, Quantity("", 1, MOST_FAMILIES)] = Field(
+        default=Varied(value=5), description="families of a lock"
+    )
+    amount: Annotated[Ramped, Quantity("", 0.0, 1.0)] = Field(
+        default=Ramped(value=0.8, ramp=[(0, 0), (0.3, 1), (1, 0.9)]),
+        description="how far hairs are drawn together: 0 not, 1 to the size of a family",
+    )
+    size: Annotated[Varied, Quantity("m", 0.0, 0.05)] = Field(
+        default=Varied(value=0.0001), description="radius of a family that is wholly drawn together"
+    )
+    noise: Annotated[Varied, Quantity("m", 0.0, 0.05)] = Field(
+        default=Varied(value=0.0), description="how far families wander from their place in the lock"
+    )
+
+
+class HairCurl(Section):
+    """How hairs follow the coil of their lock. The centre line of a coil is the lock smoothed over one turn."""
+
+    drift: Annotated[Varied, Quantity("", 0.0, 5.0)] = Field(
+        default=Varied(value=0.1), description="how far the phase of hairs drifts up to the tip (deviation, in turns)"
+    )
+    slips: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
+        default=Varied(value=0.1), description="part of the hairs whose phase slips somewhere along the lock"
+    )
+    slip: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
+        default=Varied(value=0.3), description="by how much these slip, in turns"
+    )
+    alike: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
+        default=Varied(value=0.5), description="how much of drift and slips the hairs of a family share"
+    )
+    escape: Annotated[Ramped, Quantity("m", 0.0, 0.1)] = Field(
+        default=Ramped(value=0.0, ramp=[(0, 0), (0.4, 0.2), (1, 1)]),
+        description="how far the coils of hairs leave the centre line of the lock (deviation)",
+    )
+    relax: Annotated[Ramped, Quantity("", 0.0, 1.0)] = Field(
+        default=Ramped(value=0.0, vary=0.3, ramp=[(0, 0), (0.8, 0), (1, 1)]),
+        description="how much narrower the coil of a hair gets towards its own tip",
+    )
+
+
+class HairCoil(Section):
+    """A coil of each hair's own about its place in the lock. Hairs get longer by it."""
+
+    width: Annotated[Ramped, Quantity("m", 0.0, 0.05)] = Field(
+        default=Ramped(value=0.0015, vary=0.3, ramp=[(0, 0), (0.1, 1), (1, 1)]),
+        description="diameter; it varies from hair to hair",
+    )
+    pitch: Annotated[Varied, Quantity("m", 5e-4, 1.0)] = Field(
+        default=Varied(value=0.006, vary=0.2), description="length of the lock per turn; it varies from hair to hair"
+    )
+    kink: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
+        default=Varied(value=0.0), description="0 a coil, 1 a zigzag in a plane"
+    )
+    irregularity: Annotated[Varied, Quantity("", 0.0, 0.9)] = Field(
+        default=Varied(value=0.3), description="how much the pitch wanders along a hair"
+    )
+    alike: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
+        default=Varied(value=0.0), description="how much of phase and pitch the hairs of a family share"
+    )
+
+
+@dataclass
+class Values:
+    """Settings of a section evaluated per lock."""
+
+    settings: BaseModel
+    locks: Curves
+    scalp: Mesh
+    seed: int
+    section: str  # such as ``hairs.coil``
+
+    def __call__(self, name: str) -> NDArray[np.float64]:
+        """Values of a setting, shape (locks,)."""
+        random = Random(self.seed, f"{self.section}.{name}".replace(".", "/"))
+        return per_lock(self.settings, name, random, self.locks, self.scalp, f"{self.section}.{name}")
+
+    def per_hair(self, name: str, lock: NDArray, ids: NDArray) -> NDArray[np.float64]:
+        """Values that vary from hair to hair instead of from lock to lock, shape (hairs,)."""
+        setting: Varied = getattr(self.settings, name)
+        even = self.settings.model_copy(update={name: setting.model_copy(update={"vary": 0.0})})
+        values = Values(even, self.locks, self.scalp, self.seed, self.section)(name)[lock]
+        random = Random(self.seed, f"{self.section}.{name}".replace(".", "/"))
+        values *= Varied(value=1.0, vary=setting.vary).factors(random, ids, ids)
+        return Quantity.of(self.settings, name).clipped(values, setting.peak)
+
+
+@dataclass
+class Placed:
+    """Hairs of all locks, in their places: arrays of one value a hair."""
+
+    ids: NDArray[np.int64]
+    lock: NDArray[np.int32]
+    disk: NDArray[np.float64]  # place in the cross-section, relative to its radius, shape (hairs, 2)
+    radius: NDArray[np.float64]  # of the lock's cross-section [m]
+    free: NDArray[np.bool_]  # False for the hair that is the lock itself
+
+
+def families(values: Values | None, hairs: Placed) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """The family of each hair: an id, shape (hairs,), and the vector to its middle in the disk, shape (hairs, 2).
+
+    Without families every hair is one of its own.
+    """
+    if values is None:
+        return hairs.ids, np.zeros((len(hairs.ids), 2))
+    lock_ids = values.locks.ids
+    counts = np.round(values("count")).astype(np.int64)
+    random = Random(values.seed, "hairs/families")
+    nearest, family = np.full(len(hairs.ids), np.inf), np.zeros(len(hairs.ids), np.int64)
+    to = np.zeros((len(hairs.ids), 2))
+    for k in range(int(counts.max())):
+        names = lock_ids * MOST_FAMILIES + k
+        radius = np.sqrt((k + 0.3 + 0.7 * random.uniform(names, 0)) / np.maximum(counts, 1))
+        angle = k * np.pi * (3.0 - np.sqrt(5.0)) + 2.0 * np.pi * random.uniform(lock_ids, 1)
+        middle = (0.9 * radius * (counts > 1))[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+        off = middle[hairs.lock] - hairs.disk
+        distance = np.where(k < counts[hairs.lock], np.sum(off**2, axis=1), np.inf)
+        nearer = distance < nearest
+        nearest[nearer], family[nearer], to[nearer] = distance[nearer], names[hairs.lock][nearer], off[nearer]
+    return family, to
+
+
+def curl_layout(
+    family_values: Values | None,
+    curl_values: Values | None,
+    coil_values: Values | None,
+    hairs: Placed,
+    u: NDArray[np.float64],
+    knots: int,
+) -> tuple[dict[str, NDArray], NDArray[np.float64]]:
+    """Arrays of the kernel's curl (src/ringlet/groom/hairs.h), and how far families wander at knots, (hairs, 2·knots).
+
+    Turns of a coil and the wander of its phase count per metre of lock, and ``start`` is that phase at the root;
+    ``with_turns`` puts them together.
+    """
+    count, points, lock = len(hairs.ids), len(u), hairs.lock
+    family, to = families(family_values, hairs)
+    layout = {
+        "slip": np.zeros((count, knots)),
+        "escape": np.zeros((count, 2)),
+        "relax": np.zeros(count),
+        "family": np.zeros((count, 2)),
+        "coil": np.zeros((count, 4)),
+        "phase": np.zeros((count, knots)),
+        "start": np.zeros(count),
+        **{ramp: np.zeros(points) for ramp in ("escaping", "relaxing", "tight", "opening")},
+    }
+    wander = np.zeros((count, 2 * knots))
+    if family_values is not None:
+        own_size = hairs.radius / np.sqrt(np.maximum(family_values("count")[lock], 1.0))
+        share = np.clip(1.0 - family_values("size")[lock] / np.maximum(own_size, 1e-9), 0.0, 1.0)
+        assert isinstance(family_values.settings, Families)
+        layout["family"] = (family_values("amount")[lock] * share * hairs.radius)[:, None] * to
+        layout["tight"] = family_values.settings.amount.along(u)
+        noise = 2.0 * Random(family_values.seed, "hairs/families/noise").uniforms(family, 2 * knots) - 1.0
+        wander = family_values("noise")[lock, None] * noise * np.linspace(0.0, 1.0, knots).repeat(2)
+    if curl_values is not None:
+        settings = curl_values.settings
+        assert isinstance(settings, HairCurl)
+        layout["slip"] = _slips(curl_values, hairs, family, knots)
+        away = Random(curl_values.seed, "hairs/escape").normals(hairs.ids, 2)
+        layout["escape"] = curl_values("escape")[lock, None] * away
+        layout["relax"] = curl_values.per_hair("relax", lock, hairs.ids)
+        layout["escaping"], layout["relaxing"] = settings.escape.along(u), settings.relax.along(u)
+    if coil_values is not None:
+        settings = coil_values.settings
+        assert isinstance(settings, HairCoil)
+        layout["coil"], layout["phase"], layout["start"] = _coils(coil_values, hairs, family, knots)
+        layout["opening"] = settings.width.along(u)
+    for name in ("slip", "escape", "relax", "family"):
+        layout[name][~hairs.free] = 0.0
+    layout["coil"][~hairs.free, :2] = 0.0
+    wander[~hairs.free] = 0.0
+    return {name: np.ascontiguousarray(values, np.float32) for name, values in layout.items()}, wander
+
+
+def _slips(values: Values, hairs: Placed, family: NDArray, knots: int) -> NDArray[np.float64]:
+    """Phase of each hair relative to its lock [turns] at knots, shape (hairs, knots): a random walk, and a slip."""
+
+    def phases(ids: NDArray, of: str) -> NDArray[np.float64]:
+        random = Random(values.seed, f"hairs/slips/{of}")
+        steps = random.normals(ids, knots - 1) * (values("drift")[hairs.lock, None] / np.sqrt(knots - 1))
+        chance = random.uniforms(ids, knots + 2)[:, -3:]
+        slips = soft_threshold(values("slips")[hairs.lock], chance[:, 0]) * np.where(chance[:, 1] < 0.5, -1.0, 1.0)
+        at = np.floor(chance[:, 2] * (knots - 1)).astype(np.int64)
+        steps[np.arange(len(ids)), at] += slips * values("slip")[hairs.lock]
+        return np.concatenate([np.zeros((len(ids), 1)), np.cumsum(steps, axis=1)], axis=1)
+
+    alike = values("alike")[hairs.lock, None]
+    return alike * phases(family, "family") + (1.0 - alike) * phases(hairs.ids, "hair")
+
+
+def _coils(values: Values, hairs: Placed, family: NDArray, knots: int) -> tuple[NDArray, NDArray, NDArray]:
+    """Coil of each hair: radius times its direction [m], turns per metre of lock, kink; wander of its phase at knots
+    [turns per metre], and the phase at the root [turns]."""
+    lock, alike = hairs.lock, values("alike")[hairs.lock]
+
+    def shared(own: NDArray, of_family: NDArray) -> NDArray[np.float64]:
+        weight = alike.reshape(-1, *[1] * (own.ndim - 1))
+        return weight * of_family + (1.0 - weight) * own
+
+    def of_both(purpose: str, columns: int) -> NDArray[np.float64]:
+        random = Random(values.seed, f"hairs/coil/{purpose}")
+        return shared(random.uniforms(hairs.ids, columns), random.uniforms(family, columns))
+
+    turns = 1.0 / shared(values.per_hair("pitch", lock, hairs.ids), values.per_hair("pitch", lock, family))
+    start = of_both("start", 2)
+    angle = 2.0 * np.pi * start[:, 1]
+    radius = 0.5 * values.per_hair("width", lock, hairs.ids)
+    hand = np.where(
+        Random(values.seed, "hairs/coil/hand").uniform(np.where(alike > 0.5, family, hairs.ids)) < 0.5, -1, 1
+    )
+    wander = (values("irregularity")[lock] * turns / (knots - 1))[:, None]
+    phase = np.cumsum(wander * (2.0 * of_both("wander", knots) - 1.0), axis=1)
+    coil = [radius * np.cos(angle), radius * np.sin(angle), hand * turns, np.minimum(values("kink"), 1.0)[lock]]
+    return np.stack(coil, axis=1), phase, start[:, 0]
+
+
+def with_turns(layout: dict[str, NDArray], lengths: NDArray) -> dict[str, NDArray]:
+    """The arrays of ``curl_layout`` as the kernel takes them, for hairs of these lengths [m], shape (hairs,)."""
+    lengths = lengths.astype(np.float32)
+    coil, start = layout["coil"].copy(), layout["start"][:, None]
+    coil[:, 2] *= lengths
+    rest = {name: values for name, values in layout.items() if name != "start"}
+    return {**rest, "coil": coil, "phase": start + lengths[:, None] * layout["phase"]}
+
+
+def check_points(coil: NDArray[np.float32], points: int) -> None:
+    """Raises UserError when hairs have fewer than 6 points a turn of their coil."""
+    most = float(np.abs(coil[:, 2]).max(initial=0.0))
+    if most * LEAST_POINTS > points and np.any(coil[:, :2]):
+        raise UserError(
+            f"hairs.points is {points}: too few for {most:.1f} turns of hairs.coil ({points / most:.1f} points a "
+            f"turn); set it to {int(np.ceil(10 * most))} (at least {int(np.ceil(LEAST_POINTS * most))}), or raise "
+            "hairs.coil.pitch"
+        )
+
+
+def turn_points(locks: Curves) -> NDArray[np.int32]:
+    """Points of a turn of each lock's coil, shape (locks,); 0 where a lock has none.
+
+    The number of turns is the centre of the strongest peak in the spectrum of the second differences of its points.
+    """
+    result = np.zeros(len(locks), np.int32)
+    for n in np.unique(locks.counts):
+        if n < 8:
+            continue
+        chosen = np.flatnonzero(locks.counts == n)
+        points = locks.points[locks.offsets[chosen, None] + np.arange(n)]
+        bend = np.diff(points, 2, axis=1)
+        bend = (bend - bend.mean(axis=1, keepdims=True)) * np.hanning(n)[1:-1, None]
+        power = np.sum(np.abs(np.fft.rfft(bend, n, axis=1)) ** 2, axis=2)
+        peak = np.where(power >= 0.25 * power.max(axis=1, keepdims=True), power, 0.0)
+        turns = np.sum(peak * np.arange(power.shape[1]), axis=1) / np.maximum(peak.sum(axis=1), 1e-300)
+        result[chosen] = np.where(turns >= FEWEST_TURNS, np.round(n / np.maximum(turns, 1.0)), 0.0)
+    return result
