@@ -9,6 +9,7 @@ from ringlet.sim.cores import Cores
 from ringlet import api
 from ringlet.groom import parse_recipe
 
+SECTIONS = "size = 4.5\nstrands = 3"
 SHAPE = """
 op = "braid"
 width = 1.2
@@ -20,12 +21,14 @@ tail = 0.8
 op = "braid"
 width = 1.2
 mask = { where = "x <= 0" }
+start = 1.2
+tail = 0.8
 """
 
 
 @pytest.fixture(scope="module")
 def groom():
-    text = RECIPE.format(strands=3, shape=SHAPE, where="z < -5 and y > 5")
+    text = RECIPE.format(sections=SECTIONS, points=110, shape=SHAPE, where="z < -5 and y > 5")
     return api.build_groom(parse_recipe(text, EXAMPLE / "cores.recipe.toml"))
 
 
@@ -65,7 +68,8 @@ def test_a_core_weighs_and_resists_as_its_strands_side_by_side(groom):
 def test_a_groom_without_cores_is_simulated_as_it_is(groom):
     plain = api.build_groom(
         parse_recipe(
-            RECIPE.format(strands=3, shape='op = "braid"\nwidth = 1.2', where="z < -9"), EXAMPLE / "a.recipe.toml"
+            RECIPE.format(sections=SECTIONS, points=110, shape='op = "braid"\nwidth = 1.2', where="z < -9"),
+            EXAMPLE / "a.recipe.toml",
         )
     )
     cores = Cores.of(plain)

@@ -1,4 +1,4 @@
-"""Braids and twists on the example's nodding head: the word of each, and how far strands leave it.
+"""Braids, twists and tails of cornrows on the example's nodding head: the word of each, and how far strands leave it.
 
 Usage: python tools/proof/braids.py [FRAMES]
 """
@@ -14,11 +14,21 @@ from judged_shots import EXAMPLE, judged
 from numpy.typing import NDArray
 from ringlet.data.groom import SECTION
 from ringlet.groom.scalp import Scalp
+from ringlet.groom.shares import LAID
 
-from ringlet import api
+from ringlet import Curves, api
 from ringlet.groom import parse_recipe, weave
 
-SHAPES = {"braids": (3, 'op = "braid"\nwidth = 1.2'), "twists": (2, 'op = "twist"\nwidth = 1')}
+WOVEN = "start = 1.2\ntail = 0.8\n"
+SHAPES = {
+    "braids": ("size = 4.5\nstrands = 3", 110, 'op = "braid"\nwidth = 1.2\n' + WOVEN),
+    "twists": ("size = 4.5\nstrands = 2", 110, 'op = "twist"\nwidth = 1\n' + WOVEN),
+    "cornrows": (
+        'pattern = "rows"\nsize = 3\ngap = 0.3\nstrands = 3',
+        300,
+        'op = "cornrow"\nwidth = 1\nheight = 0.6\npitch = 2.2\nlength = 7\ntail = 0.8',
+    ),
+}
 RECIPE = """
 ringlet = 1
 seed = 7
@@ -32,17 +42,15 @@ length = 9
 lift = 0.35
 droop = 1.6
 [locks]
-points = 110
+points = {points}
 [locks.sections]
-size = 4.5
-strands = {strands}
+{sections}
 mask = {{ where = "{where}" }}
 [[shape]]
 {shape}
-start = 1.2
-tail = 0.8
 """
-WOVEN = slice(22, 99)  # points of a strand that are neither in its start nor in its tail
+START, END = 0.2, 0.905  # parts of a braid at its root and beyond its tie, where it is not woven
+AFTER_ROW, BEFORE_TIP = 0.005, 0.025  # likewise of the tail of a cornrow [m]
 
 
 @dataclass(frozen=True)
@@ -63,31 +71,43 @@ class Held:
 
 def start(style: str, where: str = "1"):
     """Motion of the nod with braids in the sections that the mask has, and their groom."""
-    strands, shape = SHAPES[style]
-    groom = api.build_groom(
-        parse_recipe(RECIPE.format(strands=strands, shape=shape, where=where), EXAMPLE / "braids.recipe.toml")
-    )
+    sections, points, shape = SHAPES[style]
+    recipe = RECIPE.format(sections=sections, points=points, shape=shape, where=where)
+    groom = api.build_groom(parse_recipe(recipe, EXAMPLE / "braids.recipe.toml"))
     return api.start_motion(api.read_shot(EXAMPLE / "nod.shot.toml"), groom), groom
 
 
 def played(motion, groom, frames: int) -> Iterator[Held]:
     """Plays frames of a motion, each judged."""
     section, middle = groom.locks.curve[SECTION], Scalp(groom.scalp, groom.region).middle
+    sections = [np.flatnonzero(section == one) for one in np.unique(section)]
+    parts = [woven(groom.locks, rows) for rows in sections]
 
     def braids(points: NDArray) -> list[NDArray]:
         strands = points.reshape(len(groom.locks), -1, 3)
-        return [weave.cross_sections(strands[section == one], middle) for one in np.unique(section)]
+        return [
+            weave.cross_sections(strands[rows], middle)[:, part] for rows, part in zip(sections, parts, strict=True)
+        ]
 
     groomed = braids(groom.locks.points)
-    words = [weave.braid_word(places[:, WOVEN]) for places in groomed]
+    words = [weave.braid_word(places) for places in groomed]
     for frame in judged(motion, frames):
         now = [turned(a, b) for a, b in zip(braids(motion.strands.positions), groomed, strict=True)]
         yield Held(
             crossings=frame.crossings or 0,
-            changed=sum(not same(weave.braid_word(a[:, WOVEN]), word) for a, word in zip(now, words, strict=True)),
+            changed=sum(not same(weave.braid_word(a), word) for a, word in zip(now, words, strict=True)),
             radius=np.array([_radius(a) / _radius(b) for a, b in zip(now, groomed, strict=True)]),
             max_stretch=frame.statistics["max_stretch"],
         )
+
+
+def woven(locks: Curves, rows: NDArray[np.integer]) -> NDArray[np.bool_]:
+    """The points of the strands of a section that are judged: the braid, or the tail of a cornrow; shape (points,)."""
+    u = np.linspace(0.0, 1.0, int(locks.counts[rows[0]]))
+    if LAID not in locks.curve:
+        return (u > START) & (u < END)
+    along = u * locks.lengths()[rows].min()
+    return (along > locks.curve[LAID][rows].max() + AFTER_ROW) & (along < along[-1] - BEFORE_TIP)
 
 
 def turned(places: NDArray, to: NDArray) -> NDArray[np.float64]:
@@ -109,7 +129,7 @@ def same(a: list[tuple[int, int]], b: list[tuple[int, int]]) -> bool:
 
 
 def _radius(places: NDArray) -> float:
-    return float(np.linalg.norm(places[:, WOVEN], axis=2).max())
+    return float(np.linalg.norm(places, axis=2).max())
 
 
 if __name__ == "__main__":
