@@ -18,6 +18,7 @@ from ringlet.groom import felt, weave
 from ringlet.groom.coil import Coil, on_scalp
 from ringlet.groom.operators.operator import Context, arc_lengths, at_lengths, grid, unit
 from ringlet.groom.operators.sectioned import Sectioned, Strands
+from ringlet.groom.operators.woven import JOIN, JOINED
 
 LEAST_POINTS, GOOD_POINTS = 8, 14  # per winding, and per turn of twisted strands
 END = 3.0  # length over which the rope's end closes, in radii of the rope
@@ -80,7 +81,9 @@ class Knot(Sectioned):
             points = rope.around(at_lengths(line[None], np.linspace(0.0, length, shapes.shape[1])[None])[0], roots)
             ends = np.clip((1.0 - np.linspace(0.0, 1.0, felt.KNOTS)) * length / (END * coil.rope), 0.0, 1.0)
             radius = float(tightness * rope.strand)
-            yield Strands(of, points, {STRAND_RADIUS: radius}, profile=np.sqrt(ends * (2.0 - ends)))
+            yield Strands(
+                of, points, {STRAND_RADIUS: radius, JOIN: JOINED * start}, profile=np.sqrt(ends * (2.0 - ends))
+            )
 
     def _check_points(self, turns: float, points: int, context: Context) -> None:
         """Raises UserError for fewer than LEAST_POINTS points a turn."""
