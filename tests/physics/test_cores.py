@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from braids import EXAMPLE, RECIPE
+from braids import EXAMPLE, RECIPE, SHAPES
 from ringlet.data.groom import CORE, SECTION
 from ringlet.sim.cores import Cores
 
@@ -74,3 +74,20 @@ def test_a_groom_without_cores_is_simulated_as_it_is(groom):
     )
     cores = Cores.of(plain)
     assert cores.groom is plain and cores.reduced(plain.locks) is plain.locks and not cores.material()
+
+
+def test_a_cornrow_may_be_a_core_too():
+    sections, points, shape = SHAPES["cornrows"]
+    recipe = RECIPE.format(sections=sections, points=points, shape=shape + '\nsimulate = "core"', where="x > 3")
+    made = api.build_groom(parse_recipe(recipe, EXAMPLE / "cores.recipe.toml"))
+    motion = api.start_motion(api.read_shot(EXAMPLE / "nod.shot.toml"), made)
+    assert len(motion.locks) == len(made.locks) / 3
+    for k in range(1, 6):
+        statistics = motion.reach(k)
+    assert statistics["max_stretch"] < 0.05
+    rows = motion.points(motion.first + 5).reshape(len(made.locks), -1, 3)
+    groomed = made.locks.points.reshape(rows.shape)
+    for a, b in ((0, 1), (1, 2)):
+        np.testing.assert_allclose(
+            np.linalg.norm(rows[a] - rows[b], axis=1), np.linalg.norm(groomed[a] - groomed[b], axis=1), atol=1e-6
+        )

@@ -3,19 +3,12 @@
 from ringlet.data.groom import Groom
 from ringlet.groom.check import Allowed, check_groom
 from ringlet.groom.color import hair_colors
+from ringlet.groom.density import hair_count, hairs_per_cm2
 from ringlet.groom.edits_file import add_points, add_settings, release, restored_on_error, row_of
 from ringlet.groom.fix import fix_groom
-from ringlet.groom.hairs import (
-    HairMemory,
-    Hairs,
-    HairSettings,
-    hair_count,
-    hair_cover,
-    hairs_per_cm2,
-    lay_hairs,
-    lock_thickness,
-    make_hairs,
-)
+from ringlet.groom.hair_measures import hair_cover, lock_thickness
+from ringlet.groom.hair_settings import HairSettings
+from ringlet.groom.hairs import HairMemory, Hairs, lay_hairs, make_hairs
 from ringlet.groom.presets import PRESETS
 from ringlet.groom.rebind import rebind
 from ringlet.groom.recipe import Recipe, parse_recipe, read_recipe, schema

@@ -6,12 +6,55 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
+from ringlet.data.errors import UserError
+from ringlet.data.groom import Groom
 from ringlet.data.mesh import Mesh
 from ringlet.data.random import Random
+from ringlet.groom.hair_settings import IDS_PER_LOCK, hair_settings, hair_values
 
+HAIR_SHARE = "hair_share"  # curve attribute of locks: part of their hairs that grow, where there is a mask
 SAMPLES_PER_LOCK = 60
 LARGEST_SHARE = 1.5  # of a lock, relative to the median: hair stays sparse where locks are
 PER_CM2 = 1e4  # 1/cm² in 1/m²
+
+
+def hair_count(groom: Groom) -> int:
+    """Number of hairs of the whole groom."""
+    return int(lock_counts(groom, groom_areas(groom)).sum())
+
+
+def hairs_per_cm2(groom: Groom) -> float:
+    """Mean number of hairs per cm² of the region that carries hair."""
+    return hair_count(groom) / (PER_CM2 * region_area(groom.scalp, hair_region(groom)))
+
+
+def lock_counts(groom: Groom, areas: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Number of hairs of each lock, at least 1, shape (locks,); ``areas`` are those of ``groom_areas``."""
+    settings = hair_settings(groom)
+    values = hair_values(groom, settings)[""]
+    count = values("per_lock") if settings.density is None else PER_CM2 * values("density") * areas
+    count = count * groom.locks.curve.get(HAIR_SHARE, 1.0)
+    return np.clip(np.round(count), 1, IDS_PER_LOCK).astype(np.int64)
+
+
+def hair_region(groom: Groom) -> NDArray[np.int32]:
+    """Triangles that carry hair; raises UserError when the groom's region is not in its mesh."""
+    try:
+        region = np.ascontiguousarray(groom.scalp.region(groom.region), np.int32)
+    except KeyError as error:
+        raise UserError(f"hairs: {error.args[0]}") from None
+    if len(region) == 0:
+        raise UserError(
+            f"hairs: region '{groom.region}' of {groom.scalp.name} has no faces; choose the faces that carry hair"
+        )
+    return region
+
+
+def groom_areas(groom: Groom) -> NDArray[np.float64]:
+    """Share of the scalp that each lock's hairs cover [m²], shape (locks,); 0 where the settings have no density."""
+    if hair_settings(groom).density is None:
+        return np.zeros(len(groom.locks))
+    return lock_areas(groom.scalp, hair_region(groom), np.asarray(groom.locks.roots, np.float64))
 
 
 def lock_areas(scalp: Mesh, region: NDArray[np.int32], roots: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -7,14 +7,13 @@ from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, Field
+from pydantic import Field
 
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
-from ringlet.data.mesh import Mesh
-from ringlet.data.painted import per_lock
 from ringlet.data.quantities import Quantity, Ramped, Section, Varied
 from ringlet.data.random import Random, soft_threshold
+from ringlet.groom.values import Values
 
 MOST_FAMILIES = 64
 LEAST_POINTS = 6  # of a hair, per turn of its own coil
@@ -83,31 +82,6 @@ class HairCoil(Section):
     alike: Annotated[Varied, Quantity("", 0.0, 1.0)] = Field(
         default=Varied(value=0.0), description="how much of phase and pitch the hairs of a family share"
     )
-
-
-@dataclass
-class Values:
-    """Settings of a section evaluated per lock."""
-
-    settings: BaseModel
-    locks: Curves
-    scalp: Mesh
-    seed: int
-    section: str  # such as ``hairs.coil``
-
-    def __call__(self, name: str) -> NDArray[np.float64]:
-        """Values of a setting, shape (locks,)."""
-        random = Random(self.seed, f"{self.section}.{name}".replace(".", "/"))
-        return per_lock(self.settings, name, random, self.locks, self.scalp, f"{self.section}.{name}")
-
-    def per_hair(self, name: str, lock: NDArray, ids: NDArray) -> NDArray[np.float64]:
-        """Values that vary from hair to hair instead of from lock to lock, shape (hairs,)."""
-        setting: Varied = getattr(self.settings, name)
-        even = self.settings.model_copy(update={name: setting.model_copy(update={"vary": 0.0})})
-        values = Values(even, self.locks, self.scalp, self.seed, self.section)(name)[lock]
-        random = Random(self.seed, f"{self.section}.{name}".replace(".", "/"))
-        values *= Varied(value=1.0, vary=setting.vary).factors(random, ids, ids)
-        return Quantity.of(self.settings, name).clipped(values, setting.peak)
 
 
 @dataclass

@@ -11,7 +11,7 @@ from ringlet.data.quantities import UNITS, LengthUnit, Section, explain
 from ringlet.groom.color import ColorSettings
 from ringlet.groom.edits import Edit
 from ringlet.groom.fiber import FiberSettings
-from ringlet.groom.hairs import HairSettings
+from ringlet.groom.hair_settings import HairSettings
 from ringlet.groom.helpers import HelperCurves
 from ringlet.groom.load import load, load_text
 from ringlet.groom.nails import Nail

@@ -11,6 +11,7 @@ from ringlet import _core
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.groom import SECTION
+from ringlet.groom.operators.operator import evenly
 from ringlet.groom.scalp import Scalp
 from ringlet.groom.sections import Division, V
 
@@ -35,7 +36,7 @@ class Row:
     def of(cls, line: NDArray, scalp: Scalp) -> Row:
         """The projection of a line (k, 3) [m] on the scalp."""
         count = max(8, int(np.linalg.norm(np.diff(line, axis=0), axis=1).sum() / SPACING))
-        fine = _core.resample_curves(np.ascontiguousarray(line), np.array([0, len(line)], np.int32), count)
+        fine = evenly(line, count)
         triangle, barycentric, _ = _core.bind_roots(scalp.points, scalp.triangles, fine, scalp.region)
         places, frames = _core.root_frames(scalp.points, scalp.triangles, triangle, barycentric)
         return cls(places, _smooth(frames[:, :, 2]))
@@ -106,7 +107,7 @@ def _middle_line(places: NDArray, v: NDArray, step: float) -> NDArray[np.float64
     line = np.array([places[bins == k].mean(axis=0) for k in kept])
     first, last = 0.45 * (line[0] - line[1]), 0.45 * (line[-1] - line[-2])
     line = np.concatenate([[line[0] + first], line, [line[-1] + last]])
-    fine = _core.resample_curves(np.ascontiguousarray(line), np.array([0, len(line)], np.int32), 8 * len(line))
+    fine = evenly(line, 8 * len(line))
     return _smooth(fine)
 
 

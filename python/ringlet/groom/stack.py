@@ -21,8 +21,11 @@ from ringlet.data.quantities import Varied
 from ringlet.data.random import Random
 from ringlet.data.stage import StageSpace
 from ringlet.groom.color import colored
+from ringlet.groom.density import HAIR_SHARE
 from ringlet.groom.edits import Edit, Edits
-from ringlet.groom.hairs import HAIR_SHARE, HairMemory, HairSettings, raise_density
+from ringlet.groom.hair_measures import raise_density
+from ringlet.groom.hair_settings import HairSettings
+from ringlet.groom.hairs import HairMemory
 from ringlet.groom.load import stage_names
 from ringlet.groom.nails import nailed
 from ringlet.groom.operators import Context, Drawn, Operator, Resample, Tie

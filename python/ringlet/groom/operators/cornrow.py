@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Annotated, Literal
 
 import numpy as np
@@ -11,10 +12,10 @@ from pydantic import Field
 from ringlet import _core
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
-from ringlet.data.groom import SECTION, STRAND_RADIUS, TIED
+from ringlet.data.groom import CORE, SECTION, STRAND_RADIUS, TIED
 from ringlet.data.quantities import Quantity, Varied
 from ringlet.groom import weave
-from ringlet.groom.operators.operator import UP, Context, arc_lengths, grid, unit
+from ringlet.groom.operators.operator import UP, Context, arc_lengths, evenly, grid, unit
 from ringlet.groom.operators.woven import JOIN, Braided, Woven
 from ringlet.groom.rows import Row, drawn_rows, middle_rows
 from ringlet.groom.sections import Division
@@ -57,10 +58,6 @@ class Cornrow(Woven):
         default=Varied(value=2.0), description="how much the tail hangs down"
     )
 
-    simulate: Literal["strands"] = Field(  # pyright: ignore[reportIncompatibleVariableOverride]
-        default="strands", description="in a shot: each strand of a tail by itself, held by contact"
-    )
-
     @property
     def weaving(self) -> weave.Pattern:
         """The pattern."""
@@ -91,13 +88,16 @@ class Cornrow(Woven):
 
         shapes, points = grid(fine).copy(), grid(fine).shape[1]
         for k, (row, of) in enumerate(zip(lain, rows, strict=True)):
-            shapes[of] = _evenly(_with_tail(row, row.points, values["length"][k], values["droop"][k])[0], points)
+            shapes[of] = evenly(_with_tail(row, row.points, values["length"][k], values["droop"][k])[0], points)
         fine = fine.with_points(np.ascontiguousarray(shapes.reshape(-1, 3)))
-        attributes = _attributes(fine)
+        core = (CORE,) if self.simulate == "core" else ()
+        attributes = _attributes(fine, (STRAND_RADIUS, JOIN, LAID, *core))
         tied = fine.point.get(TIED, np.zeros(len(fine.points), np.float32)).reshape(shapes.shape[:2]).copy()
         for k, braid in enumerate(self.braids(fine, leaders, rows, context)):
             self._lay(braid, lain[k], values["length"][k], values["droop"][k], shapes, attributes, context)
             tied[braid.rows] = braid.tied(points)
+            if CORE in attributes:
+                attributes[CORE][braid.rows] = self.simulate == "core"
             attributes[JOIN][braid.rows] = values["feed"][k] * attributes[LAID][braid.rows] / lain[k].length
             reach = row_reaches(division, context.scalp, lain[k].points, lain[k].normals, int(leaders.ids[k]))
             attributes[REACH][braid.rows] = reach
@@ -132,7 +132,7 @@ class Cornrow(Woven):
         lift = (size * abs(braid.front) + braid.radius) * t * t * (3.0 - 2.0 * t)
         skin = row.points + lift[:, None] * row.normals
         line, normals = _with_tail(row, skin, length, droop)
-        line, front = _evenly(line, points), _along(line, normals, points)
+        line, front = evenly(line, points), _along(line, normals, points)
         tangent = unit(np.gradient(line, axis=0))
         front = unit(front - np.sum(front * tangent, axis=1, keepdims=True) * tangent)
         across = np.cross(front, tangent)
@@ -150,9 +150,9 @@ class Cornrow(Woven):
         attributes[LAID][braid.rows] = [np.interp(end, np.linspace(0.0, 1.0, points), of) for of in run]
 
 
-def _attributes(curves: Curves) -> dict[str, NDArray]:
-    """Copies of the attributes of locks, with those that cornrows set."""
-    none = {name: np.zeros(len(curves), np.float32) for name in (STRAND_RADIUS, JOIN, LAID)}
+def _attributes(curves: Curves, names: Sequence[str]) -> dict[str, NDArray]:
+    """Copies of the attributes of locks, with the named ones, which are 0 where they are new."""
+    none = {name: np.zeros(len(curves), np.float32) for name in names}
     return {name: values.copy() for name, values in {**none, **curves.curve}.items()}
 
 
@@ -166,11 +166,6 @@ def _with_tail(row: Row, skin: NDArray, length: float, droop: float) -> tuple[ND
     first = np.ascontiguousarray(row.normals[-1:])
     normals = _core.curve_frames(line, np.array([0, len(line)], np.int32), first)[1:, :, 0]
     return np.concatenate([skin, tail]), np.concatenate([row.normals, normals])
-
-
-def _evenly(line: NDArray, points: int) -> NDArray[np.float64]:
-    """A line with that many points at even distances."""
-    return _core.resample_curves(np.ascontiguousarray(line), np.array([0, len(line)], np.int32), points)
 
 
 def _along(line: NDArray, values: NDArray, points: int) -> NDArray[np.float64]:

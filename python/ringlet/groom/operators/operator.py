@@ -8,7 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from ringlet.data.curves import Curves
+from ringlet import _core
+from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.data.errors import UserError
 from ringlet.data.painted import per_lock
 from ringlet.data.quantities import Section
@@ -78,6 +79,23 @@ def grid(curves: Curves) -> NDArray[np.floating]:
 def packed(curves: Curves) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
     """Points (n, 3) and offsets (count + 1,) as contiguous arrays of the core's types."""
     return np.ascontiguousarray(curves.points, np.float64), np.ascontiguousarray(curves.offsets, np.int32)
+
+
+def resampled(curves: Curves, points: int) -> Curves:
+    """The curves with that many points each, at even distances along their splines; without attributes of points."""
+    fine = _core.resample_curves(*packed(curves), points)
+    return Curves(fine, offsets_from_counts(np.full(len(curves), points)), curves.ids, curves.curve)
+
+
+def with_lock_points(curves: Curves, context: Context) -> Curves:
+    """The curves with ``lock_points`` points each, or as many as the longest has; as they are if they have these."""
+    points = max(context.lock_points, int(curves.counts.max()))
+    return curves if int(curves.counts.min()) == points else resampled(curves, points)
+
+
+def evenly(line: NDArray, points: int) -> NDArray[np.float64]:
+    """A line, shape (n, 3), with that many points at even distances along its spline."""
+    return _core.resample_curves(np.ascontiguousarray(line, np.float64), np.array([0, len(line)], np.int32), points)
 
 
 def arc_lengths(points: NDArray) -> NDArray[np.floating]:

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from typing import Literal
 
-import numpy as np
 from pydantic import Field
 
-from ringlet import _core
-from ringlet.data.curves import Curves, offsets_from_counts
-from ringlet.groom.operators.operator import Context, Operator, packed
+from ringlet.data.curves import Curves
+from ringlet.groom.operators.operator import Context, Operator, resampled
 
 
 class Resample(Operator):
@@ -20,6 +18,4 @@ class Resample(Operator):
 
     def apply(self, curves: Curves, context: Context) -> Curves:
         """Returns the shapes with ``points`` points each."""
-        points = _core.resample_curves(*packed(curves), self.points)
-        offsets = offsets_from_counts(np.full(len(curves), self.points))
-        return Curves(points, offsets, curves.ids, curves.curve)
+        return resampled(curves, self.points)

@@ -8,12 +8,11 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from ringlet import _core
-from ringlet.data.curves import Curves, offsets_from_counts
+from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.groom import SECTION
 from ringlet.groom import felt
-from ringlet.groom.operators.operator import Context, grid, packed
+from ringlet.groom.operators.operator import Context, grid, with_lock_points
 from ringlet.groom.operators.shape import Shape
 from ringlet.groom.sections import STRAND
 
@@ -70,11 +69,7 @@ class Sectioned(Shape):
         """The curves with ``lock_points`` points or more each; raises UserError where no section has strands."""
         if STRAND not in curves.curve or not (curves.curve[STRAND] >= 0).any():
             raise UserError(f"{context.purpose}: no section has strands; give [locks.sections] strands = 3, say")
-        points = max(context.lock_points, int(curves.counts.max()))
-        if int(curves.counts.min()) == points:
-            return curves
-        resampled = _core.resample_curves(*packed(curves), points)
-        return Curves(resampled, offsets_from_counts([points] * len(curves)), curves.ids, curves.curve)
+        return with_lock_points(curves, context)
 
     def leaders(self, curves: Curves, acts: NDArray[np.bool_]) -> tuple[Curves, Sequence[NDArray[np.integer]]]:
         """A strand of each section that an operator acts on, named by the section, and the rows of all its strands.

@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from ringlet import _core
-from ringlet.data.curves import Curves, offsets_from_counts
+from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.groom import SECTION
 from ringlet.data.mesh import Mesh
 from ringlet.data.quantities import Quantity, refuse
 from ringlet.groom.coil import Coil, on_scalp
-from ringlet.groom.operators.operator import UP, Context, arc_lengths, at_lengths, grid, packed, unit
+from ringlet.groom.operators.operator import UP, Context, arc_lengths, at_lengths, grid, unit, with_lock_points
 from ringlet.groom.operators.shape import Shape
 from ringlet.groom.operators.tied import TO_TIE
 from ringlet.groom.parting import Direction
@@ -94,15 +94,10 @@ class Tie(Shape):
 
     def apply(self, curves: Curves, context: Context) -> Curves:
         """Returns the curves tied, all with ``lock_points`` points or more, with the attribute ``to_tie`` [m]."""
-        weight = self.weights(curves, context)
+        fine = with_lock_points(curves, context)
+        weight = self.weights(fine, context)
         if not weight.any():
             return curves
-        points = max(context.lock_points, int(curves.counts.max()))
-        fine = curves
-        if int(curves.counts.min()) != points:
-            resampled = _core.resample_curves(*packed(curves), points)
-            fine = Curves(resampled, offsets_from_counts([points] * len(curves)), curves.ids, curves.curve)
-            weight = self.weights(fine, context)
         shapes = grid(fine).copy()
         tied = curves.curve.get(TO_TIE, np.zeros(len(curves), np.float32)).copy()
         affected: NDArray[np.bool_] = np.any(weight > 0.0, axis=1)

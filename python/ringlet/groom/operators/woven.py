@@ -11,13 +11,12 @@ from numpy.typing import NDArray
 from pydantic import Field
 from scipy.optimize import linear_sum_assignment
 
-from ringlet import _core
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.groom import CORE, STRAND_RADIUS, TIED
 from ringlet.data.quantities import Quantity, Ramped, Varied
 from ringlet.groom import felt, weave
-from ringlet.groom.operators.operator import Context, arc_lengths, grid, unit
+from ringlet.groom.operators.operator import Context, arc_lengths, evenly, grid, unit
 from ringlet.groom.operators.sectioned import Sectioned, Strands
 
 JOIN = "join"  # curve attribute of locks: length along a woven strand after which its hairs come to it [m]
@@ -169,7 +168,7 @@ class Braided:
     def woven(self, shapes: NDArray, middle: NDArray, settings: Woven) -> NDArray[np.float64]:
         """The strands for their shapes (strands, points, 3) [m]."""
         points = shapes.shape[1]
-        line = _core.resample_curves(shapes.mean(axis=0), np.array([0, points], np.int32), points)
+        line = evenly(shapes.mean(axis=0), points)
         return self.about(line, *weave.frames(line, middle), shapes[:, 0] - line[0], settings)
 
     def about(
