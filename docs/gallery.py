@@ -58,7 +58,7 @@ def bundles(recipe: Recipe, numbers: tuple[int, ...]) -> list[list[NDArray[np.fl
 
 
 def draw(axes: Axes, lines: list[NDArray[np.floating]], x: float, width: float) -> None:
-    """Draws the hairs of a lock beside one another's middle at x [mm]."""
+    """Draws the hairs of a lock, centred at x [mm]."""
     shades = np.linspace(0.25, 0.6, len(lines))
     colors = [(shade, 0.6 * shade, 0.4 * shade) for shade in shades]
     axes.add_collection(LineCollection([line[:, :2] + [x, 0] for line in lines], colors=colors, linewidths=width))
@@ -76,7 +76,7 @@ def locks(name: str) -> None:
 
 
 def pairs() -> None:
-    """Draws locks of several types whose hairs only follow them, and beside them the same with a curl of hairs."""
+    """Draws locks of several types twice: with hairs that only follow them, and with a curl of hairs."""
     figure = Figure(figsize=(10, 4.6), dpi=100)
     axes = figure.add_axes((0, 0, 1, 0.94))
     for number, name in enumerate(PAIRS):

@@ -146,7 +146,7 @@ def test_the_former_name_of_a_tie_is_read_with_a_note():
     ("settings", "message"),
     [
         ("", "says nowhere where the tie is; give it a curve, toward, or each = 'section'"),
-        ("curve = 'tail'\ntoward = [0, 1, 0]", "has a curve besides toward or each = 'section'; give one of them"),
+        ("curve = 'tail'\ntoward = [0, 1, 0]", "has a curve and also toward or each = 'section'; give one of them"),
         ("each = 'section'", "tie.each is 'section', but there are none; add [locks.sections]"),
         ("curve = 'tial'", "tie.curve is 'tial', which is no helper curve; did you mean 'tail'"),
     ],

@@ -31,7 +31,7 @@ CASES: tuple[tuple[str, dict[str, float], int | None], ...] = (
     ("twist", {}, None),
     ("pile", {}, None),
 )
-OBSERVED = {"max_penetration", "max_rod_overlap"}  # besides the metrics of each experiment, where not 0
+OBSERVED = {"max_penetration", "max_rod_overlap"}  # in addition to the metrics of each experiment, where not 0
 
 
 class Timed:

@@ -34,7 +34,7 @@ def write_movie(
 
     Frames that are there already, from the same hairs, bodies, camera and settings, are kept.
 
-    path:     a .mp4 or .mov, whose frames go to a folder beside it, or a folder of PNG frames. Without the package
+    path:     a .mp4 or .mov, whose frames go to a folder of its name, or a folder of PNG frames. Without the package
               imageio-ffmpeg there are only frames
     frames:   first and last; all by default
     settings: those of ``PictureSettings``

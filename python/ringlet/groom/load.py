@@ -15,7 +15,7 @@ FILES = (("scalp", "file"), ("guides", "file"))
 MOST_NAME = 255  # bytes of the name of a file or a folder
 APPEND = "append"  # key of a variant's operators that follow those of its base
 MAY_BE_FALSE = ("guides.whorl",)  # settings whose value may be `false`, which then does not remove them
-LOCK_TABLES = ("curl", "hairs", "color")  # tables besides operators whose settings single locks may have
+LOCK_TABLES = ("curl", "hairs", "color")  # tables, operators aside, whose settings single locks may have
 EDITS = ("edit", "sculpt")  # tables of a file of edits: edits of locks, edits of guides
 
 

@@ -26,7 +26,7 @@ WHOLE = 0.35  # a cell that covers less than this part of the usual area belongs
 FLATTEST = 20.0  # radius of the sphere through a flat scalp, in sizes of the scalp
 STRANDS_APART = 0.2  # distance of a section's strands from its middle at the scalp, in sizes of the section
 
-# Curve attributes of locks besides the section's id: which of its strands; place in the section, 0 to 1 each; distance
+# Further curve attributes of locks in sections: which of its strands; place in the section, 0 to 1 each; distance
 # from the section's border [m].
 STRAND, U, V, EDGE = "strand", "u", "v", "edge"
 

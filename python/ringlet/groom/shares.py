@@ -124,8 +124,8 @@ def fed(
     up = scalp.above(np.ascontiguousarray(foot))[2]
     across = np.cross(up, tangent)
     across /= np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-12)
-    beside = np.sum((_on(lock, joins)[0] - _on(middle, joins)[0]) * across, axis=1)
-    left = beside >= 0.0
+    side = np.sum((_on(lock, joins)[0] - _on(middle, joins)[0]) * across, axis=1)
+    left = side >= 0.0
     k = along / max(laid, 1e-9) * (DIRECTIONS // 2 - 1)
     where = np.arange(DIRECTIONS // 2)
     far = np.where(left, np.interp(k, where, reach[: DIRECTIONS // 2]), np.interp(k, where, reach[DIRECTIONS // 2 :]))

@@ -1,4 +1,4 @@
-"""OpenEXR files: linear light with coverage, and the layers beside it."""
+"""OpenEXR files: linear light with coverage, and further layers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Layers of a picture beside its light (AOVs): depth, normal, albedo, and which lock is seen."""
+"""Layers of a picture other than its light (AOVs): depth, normal, albedo, and which lock is seen."""
 
 from __future__ import annotations
 

@@ -62,7 +62,7 @@ class Movie:
 
 
 def frames_folder(output: Path) -> Path:
-    """Folder of the frames: the output itself, or one beside the video."""
+    """Folder of the frames: the output itself, or one of the name of the video."""
     return output.with_name(f"{output.stem}.frames") if output.suffix in VIDEOS else output
 
 

@@ -178,7 +178,7 @@ def trace(
 
 
 def layers_of(scene: Any, camera: Camera, hairs: Curves, color: HairColor | None) -> Layers:
-    """Layers of a scene beside its light: depth, normal, albedo and lock."""
+    """Layers of a scene other than its light: depth, normal, albedo and lock."""
     groups = {}
     if len(hairs):
         lock = hairs.curve.get("lock", np.arange(len(hairs)))

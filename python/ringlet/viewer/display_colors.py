@@ -29,7 +29,7 @@ STATIONS = 24  # of a hair whose colour varies along it
 
 
 def inputs(groom: Groom) -> str:
-    """Digest of what the colours of hairs depend on besides their layout."""
+    """Digest of what the colours of hairs depend on, their layout aside."""
     locks, names = groom.locks, (MELANIN, REDNESS, GRAY, DYE, DYE_AMOUNT, *FIBER)
     values = [kind[name] for name in names for kind in (locks.curve, locks.point) if name in kind]
     return digest(groom.color, groom.fiber, *values)

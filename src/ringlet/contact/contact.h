@@ -69,7 +69,7 @@ inline double tie_energy(const Contact &c, const Vec3 &separation) {
     return 0.5 * c.stiffness * stretch * stretch;
 }
 
-// What a known contact has besides its barrier.
+// The energy of a known contact without its barrier.
 inline double kept_energy(const Contact &c, const Vec3 &separation) {
     return c.is_tie() ? tie_energy(c, separation) : friction_energy(c, separation);
 }

@@ -137,8 +137,8 @@ class Cornrow(Woven):
         front = unit(front - np.sum(front * tangent, axis=1, keepdims=True) * tangent)
         across = np.cross(front, tangent)
 
-        beside = (np.arange(strands) - 0.5 * (strands - 1)) * ROOTS_APART * braid.radius
-        wanted = np.ascontiguousarray(row.points[0] + beside[:, None] * across[0])
+        offset = (np.arange(strands) - 0.5 * (strands - 1)) * ROOTS_APART * braid.radius
+        wanted = np.ascontiguousarray(row.points[0] + offset[:, None] * across[0])
         triangle, barycentric, _ = _core.bind_roots(scalp.points, scalp.triangles, wanted, scalp.region)
         roots = scalp.positions(triangle, barycentric)
         shapes[braid.rows] = braid.about(line, across, front, roots - line[0], self)

@@ -89,7 +89,7 @@ class Tie(Shape):
         if self.curve is None and self.toward is None and self.each == "head":
             raise refuse("says nowhere where the tie is; give it a curve, toward, or each = 'section'")
         if self.curve is not None and (self.toward is not None or self.each == "section"):
-            raise refuse("has a curve besides toward or each = 'section'; give one of them")
+            raise refuse("has a curve and also toward or each = 'section'; give one of them")
         return self
 
     def apply(self, curves: Curves, context: Context) -> Curves:
@@ -203,12 +203,12 @@ class Tie(Shape):
         ball = 0.5 * self.width
         out = np.linalg.norm(disk, axis=1)
         cosine = 1.0 - out**2 * (1.0 - UNDERSIDE)  # keeps areas
-        beside = unit(offset)
-        direction = cosine[:, None] * tie.axis + np.sqrt(1.0 - cosine**2)[:, None] * beside
+        radial = unit(offset)
+        direction = cosine[:, None] * tie.axis + np.sqrt(1.0 - cosine**2)[:, None] * radial
         start = tie.place + self.radius * offset
         end = tie.place + CENTRE * ball * tie.axis + ball * direction
         span = np.linalg.norm(end - start, axis=1, keepdims=True)
-        leaving = span * unit(tie.axis + 0.8 * out[:, None] * beside)
+        leaving = span * unit(tie.axis + 0.8 * out[:, None] * radial)
         t = np.linspace(0.0, 1.0, PATH_POINTS)[None, :, None]
         leaving, arriving = leaving[:, None], (0.8 * span * direction)[:, None]
         path: NDArray[np.float64] = (
@@ -239,9 +239,9 @@ class Tie(Shape):
 
     def _ring(self, tie: Place, name: str) -> Mesh:
         """A torus around the hair in the tie."""
-        beside, above = tie.axes(tie.place - tie.axis)
+        across, upward = tie.axes(tie.place - tie.axis)
         a, b = (np.linspace(0.0, 2.0 * np.pi, n, endpoint=False) for n in (BAND_AROUND, BAND_ACROSS))
-        out = np.cos(a)[:, None, None] * beside + np.sin(a)[:, None, None] * above
+        out = np.cos(a)[:, None, None] * across + np.sin(a)[:, None, None] * upward
         wide = self.radius + 0.5 * self.band * (1.0 + np.cos(b))
         points = tie.place + wide[None, :, None] * out + 0.5 * self.band * np.sin(b)[None, :, None] * tie.axis
         i, j = np.meshgrid(np.arange(BAND_AROUND), np.arange(BAND_ACROSS), indexing="ij")
@@ -263,8 +263,8 @@ class Place:
     def axes(self, middle: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Two unit axes of the cross-section."""
         along = self.axis if self.line is None else unit(self.line[-1] - self.line[0])
-        beside = unit(np.cross(along, unit(middle - self.place) + 1e-3))
-        return beside, unit(np.cross(beside, along))
+        across = unit(np.cross(along, unit(middle - self.place) + 1e-3))
+        return across, unit(np.cross(across, along))
 
 
 def _around(roots: NDArray, ties: NDArray, middle: NDArray, t: NDArray) -> NDArray[np.float64]:

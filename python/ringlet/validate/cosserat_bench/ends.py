@@ -1,6 +1,6 @@
 """The ends of a rod of cosseratbench as vertices of a strand.
 
-A strand holds whole vertices, its root always. What an end needs besides stands on extra vertices outside of the rod:
+A strand holds whole vertices, its root always. An end may need extra vertices outside of the rod:
 
 free, pinned  At the start an edge without resistance to stretch and bend: the root that every strand has. The first
               element thereby is an edge with a director.
@@ -9,7 +9,7 @@ clamped       Short edges that are held with the end node: two at the start, as 
 sliding       A short edge without resistance to stretch, aligned with a held edge that follows the node along the slide
               direction.
 
-The factor of an edge is the mean of its vertices' factors: −1 + 2s beside 1 gives the edge the factor s.
+The factor of an edge is the mean of its vertices' factors: −1 + 2s and 1 give the edge the factor s.
 """
 
 from __future__ import annotations
@@ -53,20 +53,20 @@ def fitting(rod: Rod, end: End) -> Fitting:
     return _loose_root(held) if end is End.START else Fitting(held=held)
 
 
-def _beside_one(factor: float) -> float:
+def _mean_with_one(factor: float) -> float:
     return 2.0 * factor - 1.0
 
 
 def _loose_root(held: bool) -> Fitting:
-    light = {"radius": _beside_one(SOFT**0.5), "stretch": _beside_one(SOFT)}
+    light = {"radius": _mean_with_one(SOFT**0.5), "stretch": _mean_with_one(SOFT)}
     # Without bending stiffness at the node its element has half of it in the mean, from which its twist comes.
-    return Fitting((1.0,), held, {"bend": 0.0, "twist": _beside_one(2.0)}, light)
+    return Fitting((1.0,), held, {"bend": 0.0, "twist": _mean_with_one(2.0)}, light)
 
 
 def _sliding(end: End) -> Fitting:
     if end is End.START:
         raise NotImplementedError("a start that slides")
     bend = 1.0 + SLIDING  # half an element resists bending at the node, and not half of the sliding edge
-    node = {"bend": bend, "twist": _beside_one(2.0 / (1.0 + bend))}
-    first = {"stretch": _beside_one(SOFT), "bend": RIGID}
+    node = {"bend": bend, "twist": _mean_with_one(2.0 / (1.0 + bend))}
+    first = {"stretch": _mean_with_one(SOFT), "bend": RIGID}
     return Fitting((SLIDING, 2 * SLIDING), False, node, first, framed=True)
