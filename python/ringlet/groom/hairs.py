@@ -14,12 +14,11 @@ from pydantic import BaseModel
 from ringlet import _core
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
-from ringlet.data.groom import STRAND_RADIUS, Groom
+from ringlet.data.groom import HAIR_SHARE, STRAND_RADIUS, Groom
 from ringlet.data.precision import origin_of
 from ringlet.data.quantities import Varied
 from ringlet.groom import felt, hair_curl
 from ringlet.groom.color import hair_colors
-from ringlet.groom.density import HAIR_SHARE
 from ringlet.groom.hair_layout import lock_joins, place_hairs, root_frames
 from ringlet.groom.hair_settings import HairSettings, fiber_settings, hair_settings, hair_values
 from ringlet.groom.scalp import axes
