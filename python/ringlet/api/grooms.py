@@ -313,8 +313,5 @@ def _beside_scalp(groom: Groom) -> list[Mesh]:
 
     if groom.scalp_file is None or groom.scalp_file.suffix == ".obj":
         return []
-    return [
-        mesh
-        for mesh in io.read_meshes(groom.scalp_file, groom.cage)
-        if mesh.name not in (groom.scalp.name, *groom.hidden)
-    ]
+    meshes = io.read_meshes(groom.scalp_file, groom.cage)
+    return [mesh for mesh in meshes if mesh.name != groom.scalp.name and groom.shows(mesh.name)]

@@ -113,6 +113,10 @@ class Groom:
         """The named regions that carry roots, one for each groom; None for all of the scalp."""
         return [settings["region"] for settings in self.grooms.values()] or [self.region]
 
+    def shows(self, mesh: str) -> bool:
+        """Whether a mesh of the head's file, by its name, is not replaced by hair."""
+        return mesh.rpartition(" ")[2] not in self.hidden
+
     @property
     def origin(self) -> NDArray[np.float64]:
         """The origin near the head [m], relative to which single precision is exact, shape (3,); 0 up to 8 m away."""
