@@ -8,8 +8,8 @@ from ringlet.groom.edits_file import add_points, add_settings, release, restored
 from ringlet.groom.fix import fix_groom
 from ringlet.groom.hair_measures import hair_cover, hair_measures, lock_thickness
 from ringlet.groom.hair_settings import HairSettings
-from ringlet.groom.hairs import HairMemory, Hairs, lay_hairs
-from ringlet.groom.joined_hairs import AnyHairs, JoinedHairs, make_hairs
+from ringlet.groom.hairs import HairMemory, Hairs
+from ringlet.groom.joined_hairs import AnyHairs, JoinedHairs, lay_hairs, make_hairs
 from ringlet.groom.presets import PRESETS
 from ringlet.groom.rebind import rebind
 from ringlet.groom.recipe import Recipe, parse_recipe, read_recipe, schema

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from hashlib import blake2b
 from typing import Any
 
@@ -146,10 +146,15 @@ def _merged(surfaces: Sequence[tuple[NDArray, NDArray]]) -> tuple[NDArray[np.flo
 
 @dataclass
 class HairMemory:
-    """Cache of the last hairs, valid while the locks keep their roots."""
+    """Cache of the last hairs, valid while the locks keep their roots.
+
+    grooms, joined: caches of each of several grooms by name, and their curves with those that are joined of them
+    """
 
     key: bytes = b""
     hairs: Hairs | None = None
+    grooms: dict[str, HairMemory] = field(default_factory=dict)
+    joined: tuple[list[Curves], Curves] | None = None
 
 
 def make_hairs(groom: Groom, *, fraction: float = 1.0, wider: bool = False, memory: HairMemory | None = None) -> Hairs:

@@ -24,6 +24,7 @@ from pxr import Sdf, Usd, UsdGeom
 from ringlet.data.binding import check_roots, root_places
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
+from ringlet.data.groom import GROOM as ROW
 from ringlet.data.groom import Groom
 from ringlet.data.mesh import Mesh
 from ringlet.data.reads import recorded
@@ -49,6 +50,7 @@ from ringlet.io.usd.values import Types
 
 GROOM, LOCKS, GUIDES, BODY = "/groom", "/groom/locks", "/groom/guides", "/groom/body"
 BANDS = "/groom/bands"
+OF_EACH = {"region", "edge", "hairs", "color", "fiber", "absent"}  # settings of one of several grooms
 VARIANTS, BASE = "groom", "base"
 VERSION, SEVERAL = 1, 2  # versions of this layout, with one groom and with several
 REMEDY = "make the groom again, or bind it anew: ringlet sim SHOT --rebind"
@@ -187,7 +189,7 @@ def read_groom(path: Path | str, variant: str | None = None, *, bound: bool = Tr
             hairs=parse_json(source, _get(root, "hairs") or "{}", "ringlet:hairs"),
             color=_settings(source, root, "color"),
             fiber=_settings(source, root, "fiber"),
-            grooms=parse_json(source, _get(root, "grooms") or "{}", "ringlet:grooms"),
+            grooms=_grooms(source, root),
             recipe=_get(root, "recipe"),
             variant=root.GetVariantSets().GetVariantSet(VARIANTS).GetVariantSelection() or None,
         )
@@ -197,6 +199,18 @@ def _settings(source: Source, root: Usd.Prim, name: str) -> dict[str, Any] | Non
     """Settings of a table that a recipe may lack."""
     text = _get(root, name)
     return None if text is None else parse_json(source, text, f"ringlet:{name}")
+
+
+def _grooms(source: Source, root: Usd.Prim) -> dict[str, dict[str, Any]]:
+    """Settings of several grooms, by name; raises UserError for damaged ones."""
+    grooms = parse_json(source, _get(root, "grooms") or "{}", "ringlet:grooms")
+    if not all(isinstance(one, dict) and one.keys() >= OF_EACH for one in grooms.values()):
+        raise UserError(f"{source.path}: ringlet:grooms is damaged; make the groom again")
+    for path in (LOCKS, GUIDES) if grooms else ():
+        rows = UsdGeom.PrimvarsAPI(source.stage.GetPrimAtPath(path)).GetPrimvar(f"ringlet:{ROW}").Get()
+        if rows is None or not len(rows) or min(rows) < 0 or max(rows) >= len(grooms) or list(rows) != sorted(rows):
+            raise UserError(f"{source.path}: {path} does not say which groom each curve is of; make the groom again")
+    return grooms
 
 
 def groom_prim(source: Source) -> Usd.Prim:
