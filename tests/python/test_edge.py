@@ -118,6 +118,17 @@ def test_values_and_zones_use_the_place_along_the_line(lashes):
     assert length[u < 0.4] == pytest.approx(0.01, rel=0.02) and length[u > 0.6] == pytest.approx(0.005, rel=0.02)
 
 
+def test_guides_that_become_locks_carry_their_place_too(lashes):
+    edit(
+        lashes,
+        "count = 120\npoints = 8",
+        'points = 8\n[[shape]]\nop = "length"\nfactor = 2\nmask = { where = "u < 0.5" }',
+    )
+    locks = ringlet.build_groom(lashes).locks
+    assert len(locks) == 40
+    np.testing.assert_allclose(locks.lengths(), np.where(locks.curve["u"] < 0.5, 0.02, 0.01), rtol=0.02)
+
+
 def test_the_border_of_a_region_carries_hair_where_its_mask_is(copy):
     (copy / "around.recipe.toml").write_text(AROUND)
     made = ringlet.build_groom(copy / "around.recipe.toml")

@@ -86,7 +86,8 @@ class Edge(Section):
             return []
         closed = np.linalg.norm(places[0] - places[-1]) < 2.0 * STEP
         if closed and not kept.all():
-            first = int(np.flatnonzero(~kept)[0])
+            places, kept = places[:-1], kept[:-1]
+            first = int(np.flatnonzero(~kept)[0]) if not kept.all() else 0
             places, kept = np.roll(places, -first, axis=0), np.roll(kept, -first)
         stretches = np.split(np.arange(len(kept)), np.flatnonzero(np.diff(kept.astype(int))) + 1)
         found = [places[rows] for rows in stretches if kept[rows[0]] and len(rows) > 2]

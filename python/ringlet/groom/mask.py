@@ -34,7 +34,7 @@ class Mask(Section):
         description="an expression of `id`, `random` (0 to 1), `length`, and `x`, `y`, `z` of the root (in the unit "
         "of the recipe), such as `id % 3 == 0 and length > 10`; what is true is 1. With `[locks.sections]` also of "
         "`section`, `strand`, `u`, `v` (0 to 1 within the section) and `edge`, the distance from its border; `section` "
-        "and `strand` are -1 where there is none",
+        "and `strand` are -1 where there is none. With `[scalp.edge]` also of `u` along the line and `v` across it",
     )
     invert: bool = Field(default=False, description="act where this mask is not")
 
