@@ -241,3 +241,20 @@ def test_grooms_on_different_heads_are_refused(project, recipe):
     edit(recipe, "small.recipe.toml", "other.recipe.toml")
     edit(recipe, "scalp.edge", 'scalp.file = "head.usda"\nscalp.edge')
     refused(run("groom", recipe, "-o", project / "groom.usdc"), "grooms.brows: grows on another scalp")
+
+
+def test_a_region_without_faces_is_refused_with_its_groom(project, recipe):
+    stage = Usd.Stage.Open(str(project / "head.usda"))
+    UsdGeom.Subset.CreateGeomSubset(UsdGeom.Mesh(stage.GetPrimAtPath("/ball/skin")), "beard", "face", [], "region")
+    stage.Save()
+    edit(recipe, "[grooms.hair]", '[grooms.beard]\nscalp.region = "beard"\n[grooms.hair]')
+    refused(run("groom", recipe, "-o", project / "groom.usdc"), "grooms.beard: ", "region 'beard'", "no faces")
+
+
+@pytest.mark.parametrize("damage", ['{"hair": {}, "brows": {}}', "[1, 2]", "{"])
+def test_a_file_of_several_grooms_that_was_damaged_is_refused(project, recipe, damage):
+    assert run("groom", recipe, "-o", project / "groom.usda").exit_code == 0
+    stage = Usd.Stage.Open(str(project / "groom.usda"))
+    stage.GetPrimAtPath("/groom").GetAttribute("ringlet:grooms").Set(damage)
+    stage.Save()
+    refused(run("hair", project / "groom.usda", "-o", project / "hair.usdc"), "ringlet:grooms")

@@ -204,7 +204,9 @@ def _settings(source: Source, root: Usd.Prim, name: str) -> dict[str, Any] | Non
 def _grooms(source: Source, root: Usd.Prim) -> dict[str, dict[str, Any]]:
     """Settings of several grooms, by name; raises UserError for damaged ones."""
     grooms = parse_json(source, _get(root, "grooms") or "{}", "ringlet:grooms")
-    if not all(isinstance(one, dict) and one.keys() >= OF_EACH for one in grooms.values()):
+    if not isinstance(grooms, dict) or not all(
+        isinstance(one, dict) and one.keys() >= OF_EACH for one in grooms.values()
+    ):
         raise UserError(f"{source.path}: ringlet:grooms is damaged; make the groom again")
     for path in (LOCKS, GUIDES) if grooms else ():
         rows = UsdGeom.PrimvarsAPI(source.stage.GetPrimAtPath(path)).GetPrimvar(f"ringlet:{ROW}").Get()
