@@ -9,8 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import Review, different
+from test_several_grooms import SEVERAL
 
 from ringlet import build_groom, build_hairs
+from ringlet.groom import lay_hairs
 
 CURL = """
 [hairs.families]
@@ -49,6 +51,43 @@ def test_gpu_hairs_equal_those_of_the_core(opened: Any, folder: Path, curl: str)
     widths = hairs.curves.point["width"].reshape(count, points)[order]
     assert np.allclose(drawn[:, :, 3], widths, rtol=1e-4)
     assert not review.errors
+
+
+@pytest.mark.parametrize("curl", ["", CURL], ids=["as their lock", "with a curl of their own"])
+def test_gpu_hairs_of_several_grooms_equal_those_of_the_core(opened: Any, folder: Path, curl: str):
+    """Grooms differ in what is the same along the hairs of each."""
+    recipe = folder / "several.recipe.toml"
+    recipe.write_text(SEVERAL)
+    small = folder / "small.recipe.toml"
+    small.write_text(small.read_text().replace("per_lock = 3", "per_lock = 7\nfrizz = 0.3\nspread = 0.4") + curl)
+    review: Review = opened("several.recipe.toml")
+    review.picture()
+    groom = build_groom(recipe)
+    hairs = lay_hairs(groom)
+    points = hairs.deformed(groom.locks.points, groom.scalp.points).reshape(len(hairs.curves), -1, 3)
+    lock = hairs.curves.curve["lock"]
+    order = np.argsort(np.arange(len(lock)) - np.searchsorted(lock, lock), kind="stable")
+    read = review.get("Array.from(ringlet.viewer.hair.a.read(ringlet.viewer.renderer, 1e6))")
+    drawn = np.array(read).reshape(*points.shape[:2], 4)
+    assert np.abs(drawn[:, :, :3] - points[order]).max() < 2e-6
+    width = hairs.curves.point["width"].reshape(points.shape[:2])[order]
+    assert np.allclose(drawn[:, :, 3], width, rtol=1e-4)
+    assert not review.errors
+
+
+def test_the_list_above_the_stages_chooses_the_groom_that_is_changed(opened: Any, folder: Path):
+    (folder / "several.recipe.toml").write_text(SEVERAL)
+    review: Review = opened("several.recipe.toml")
+    before = review.picture()
+    review.page.get_by_label("Groom", exact=True).select_option("brows")
+    review.until("ringlet.model.documents.recipe.groom === 'brows'")
+    review.choose("guides")
+    review.drag(review.slider("guides.length"), 0.1, 0.5, 0.8)
+    review.until("ringlet.model.documents.recipe.dirty")
+    changed = tomllib.loads(review.text())["grooms"]
+    assert changed["brows"]["guides"]["length"] > 2 and "guides" not in changed["hair"]
+    review.settled()
+    assert different(before, review.picture()) > 0 and not review.errors
 
 
 def test_a_slider_changes_picture_and_recipe_and_undo_reverts_both(opened: Any):

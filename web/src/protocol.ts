@@ -47,6 +47,12 @@ export interface Arrange {
   op?: string;
 }
 
+/** Chooses the one of several grooms whose settings are shown and changed. */
+export interface Choose {
+  kind: "choose";
+  groom: string;
+}
+
 /** Mutes stages such as ``shape/0`` or ``curl``; not stored in the file. */
 export interface Mute {
   kind: "mute";
@@ -173,6 +179,8 @@ export interface Document {
   said: Record<string, Json>;
   values: Record<string, Json>;
   stages: Stage[];
+  grooms: string[];
+  groom: string;
   dirty: boolean;
   undo: boolean;
   redo: boolean;
@@ -229,6 +237,7 @@ export interface Hairs {
   points: number;
   knots: number;
   lock: Uint32Array;
+  group: Uint8Array;
   offset: Float32Array;
   tip: Float32Array;
   join: Float32Array;
@@ -348,6 +357,7 @@ export type FromPage =
   | Lead
   | Set
   | Arrange
+  | Choose
   | Mute
   | Step
   | Save

@@ -34,7 +34,7 @@ class Mask(Section):
         description="an expression of `id`, `random` (0 to 1), `length`, and `x`, `y`, `z` of the root (in the unit "
         "of the recipe), such as `id % 3 == 0 and length > 10`; what is true is 1. With `[locks.sections]` also of "
         "`section`, `strand`, `u`, `v` (0 to 1 within the section) and `edge`, the distance from its border; `section` "
-        "and `strand` are -1 where there is none",
+        "and `strand` are -1 where there is none. With `[scalp.edge]` also of `u` along the line and `v` across it",
     )
     invert: bool = Field(default=False, description="act where this mask is not")
 
@@ -82,7 +82,10 @@ class Mask(Section):
         assert self.where is not None
         used = expression.names(self.where)
         if missing := sorted(used & set(expression.SECTIONED) - curves.curve.keys()):
-            raise UserError(f"{what} has '{missing[0]}', which only locks of sections have; add [locks.sections]")
+            raise UserError(
+                f"{what} has '{missing[0]}', which only locks of sections and edges have; add [locks.sections] or "
+                "[scalp.edge]"
+            )
         x, y, z = curves.roots.T / self._unit
         values = {"id": curves.ids, "random": random.uniform(curves.ids), "x": x, "y": y, "z": z}
         if "length" in used:

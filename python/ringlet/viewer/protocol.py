@@ -80,6 +80,13 @@ class Mute(Message):
     stages: list[str] = Field(max_length=256)
 
 
+class Choose(Message):
+    """Chooses the one of several grooms whose settings are shown and changed."""
+
+    kind: Literal["choose"] = "choose"
+    groom: str = Field(max_length=240)
+
+
 class Step(Message):
     """Undoes, redoes or reverts changes."""
 
@@ -184,6 +191,7 @@ FromPage = Annotated[
     | Lead
     | Set
     | Arrange
+    | Choose
     | Mute
     | Step
     | Save
@@ -262,6 +270,7 @@ class Document(Message):
     said:     contents of the file; operators inherited from a base have their index in the resolved recipe
     values:   values of all settings, defaults included, in SI units
     edits:    unsaved text of its file of edits
+    grooms:   names of several grooms; ``said``, ``values`` and ``stages`` are those of ``groom``, the chosen one
     """
 
     kind: Literal["document"] = "document"
@@ -273,6 +282,8 @@ class Document(Message):
     said: dict[str, Any]
     values: dict[str, Any]
     stages: list[Stage]
+    grooms: list[str]
+    groom: str
     dirty: bool
     undo: bool
     redo: bool
@@ -330,9 +341,10 @@ class Hairs(Message):
     """Hairs relative to their locks; see ``src/ringlet/groom/hairs.h`` for the formula.
 
     Any prefix of the hairs covers all locks evenly. ``profile``, ``hold``, ``pace``, ``blend`` and ``thinning`` are
-    functions along the hair, the same for all. ``frizz`` has ``knots`` × 2 numbers a hair; ``root`` is the offset from
-    the lock's root to the hair's. The diameter is ``width`` of the hair times ``thinning``. The arrays from ``window``
-    on are those of the curl of hairs; empty where these only follow their lock.
+    functions along the hairs of each groom, one groom after another; ``group`` is the groom of a hair. ``frizz`` has
+    ``knots`` × 2 numbers a hair; ``root`` is the offset from the lock's root to the hair's. The diameter is ``width``
+    of the hair times ``thinning``. The arrays from ``window`` on are those of the curl of hairs; empty where these only
+    follow their lock.
     """
 
     kind: Literal["hairs"] = "hairs"
@@ -342,6 +354,7 @@ class Hairs(Message):
     knots: int
     arrays: ClassVar[dict[str, str]] = {
         "lock": "u4",
+        "group": "u1",
         "offset": "f4",
         "tip": "f4",
         "join": "f4",

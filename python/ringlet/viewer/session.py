@@ -42,12 +42,14 @@ log = logging.getLogger("ringlet.viewer")
 
 @dataclass(frozen=True)
 class Work:
-    """A request for a groom: a recipe, its revision, its muted stages, and whether a draft suffices."""
+    """A request for a groom: a recipe, its revision, its muted stages, whether a draft suffices, and the
+    chosen one of several grooms."""
 
     recipe: Recipe
     revision: int
     muted: frozenset[str]
     draft: bool
+    chosen: str
 
 
 class Page:
@@ -192,6 +194,9 @@ class Session:
         elif isinstance(message, protocol.Arrange):
             files.edit_operators(message.action, message.at, message.to, message.op)
             self._edited("recipe")
+        elif isinstance(message, protocol.Choose):
+            files.choose(message.groom)
+            self._edited("recipe")
         elif isinstance(message, protocol.Mute):
             files.recipe.apply(files.recipe.text, muted=frozenset(message.stages))
             self._edited("recipe")
@@ -231,6 +236,7 @@ class Session:
 
         Raises UserError before the groom is made.
         """
+        self.files.refuse_several()
         display = self._viewport.display
         if display is None:
             raise UserError("sculpt: the groom is not made yet; wait until it is seen")
@@ -241,7 +247,7 @@ class Session:
         else:
             document = self.files.recipe
             sculpted = self._sculptor.preview(document.model)
-            self._worker.submit(Work(sculpted, document.revision, document.state.muted, True))
+            self._worker.submit(Work(sculpted, document.revision, document.state.muted, True, ""))
 
     def _compare(self, page: Page, message: protocol.Compare) -> None:
         """Shows a groom for comparison as soon as it is made; raises UserError for a recipe that cannot be read."""
@@ -290,14 +296,17 @@ class Session:
     def regroom(self, *, draft: bool = False) -> None:
         """Requests the groom of the current recipe; a draft while a gesture is in progress."""
         document = self.files.recipe
-        self._worker.submit(Work(document.model, document.revision, document.state.muted, draft))
+        muted = document.state.muted
+        self._worker.submit(Work(document.model, document.revision, muted, draft, self.files.groom))
 
     def _groom(self, work: Work) -> None:
         """Grooms on the worker thread. A draft is never aborted, so that the page updates during a gesture."""
         check_abort: Callable[[], None] = (lambda: None) if work.draft else self._worker.raise_if_stale
         self._measurer.cancel()
         try:
-            display = self._evaluator.groom(work.recipe, work.muted, draft=work.draft, check_abort=check_abort)
+            display = self._evaluator.groom(
+                work.recipe, work.muted, chosen=work.chosen, draft=work.draft, check_abort=check_abort
+            )
             self._call(self.publisher.clear, NO_GROOM)
             self._call(self._show, display, work.revision)
             if not work.draft:

@@ -72,7 +72,9 @@ class Locks(Operator):
         guides = _core.resample_curves(*packed(curves), self.shape_points)
         shapes = guides.reshape(len(curves), self.shape_points, 3)
         if self.count is None and self.spacing is None and self.sections is None:
-            return _pack(shapes, curves.ids, curves.curve["root_triangle"], curves.curve["root_barycentric"])
+            attributes = dict(context.scalp.attributes(np.asarray(curves.roots, np.float64)))
+            root = curves.curve["root_triangle"], curves.curve["root_barycentric"]
+            return _pack(shapes, curves.ids, *root, attributes)
 
         scalp = context.scalp
         count = self.count or scalp.count_for_spacing(self.spacing or 0.01)
@@ -81,7 +83,7 @@ class Locks(Operator):
         if fade:
             grows = fade.grows(scalp.positions(triangle, barycentric), ids, context.random("hairline"))
             ids, triangle, barycentric = ids[grows], triangle[grows], barycentric[grows]
-        attributes: dict[str, NDArray] = {}
+        attributes: dict[str, NDArray] = {**scalp.attributes(scalp.positions(triangle, barycentric))}
         if self.sections is not None:
             ids, triangle, barycentric, attributes = self._sectioned(ids, triangle, barycentric, context)
         if not len(ids):
