@@ -49,15 +49,26 @@ def test_one_page_holds_the_edit_lock_and_the_others_follow(folder: Path):
         assert two.receive("role", leads=True) and one.receive("role", leads=False)
 
 
+def forget_unsaved(folder: Path) -> None:
+    """Removes the journal, as in a folder that cannot be written."""
+    (folder / ".small.recipe.toml.unsaved").unlink()
+
+
 def test_a_restarted_server_restores_the_document_of_a_page(folder: Path):
     with serving(folder) as client, page(client) as one:
-        one.send(kind="set", changes=[[["curl", "width"], 1.7]], gesture=1)
-        text = one.receive("document", dirty=True)["text"]
+        edited = one_edit(one)
+    forget_unsaved(folder)
     with serving(folder) as client, page(client) as one:
         assert not one.receive("document")["dirty"]
-        one.send(kind="restore", text=text)
+        one.send(kind="restore", **{name: edited[name] for name in ("text", "saved")})
         document = one.receive("document", dirty=True)
         assert document["said"]["curl"]["width"] == 1.7 and document["undo"]
+
+
+def one_edit(one: Page) -> dict[str, Any]:
+    """Changes a setting; returns the document."""
+    one.send(kind="set", changes=[[["curl", "width"], 1.7]], gesture=1)
+    return one.receive("document", dirty=True)
 
 
 def test_every_page_receives_the_build_error_until_the_groom_is_built(folder: Path):
@@ -66,15 +77,15 @@ def test_every_page_receives_the_build_error_until_the_groom_is_built(folder: Pa
     with serving(folder) as client:
         for name in ("one", "two"):
             with page(client, name) as one:
-                while (message := read(one.socket.receive_bytes()))["kind"] != "trouble":
+                while not (problems := one.receive("problems")["problems"]):
                     pass
-                assert "no region 'gone'" in message["message"]
+                assert problems[0]["subject"] == "groom" and "no region 'gone'" in problems[0]["message"]
         with page(client, "one") as one:
             one.send(kind="restore", text=recipe.read_text().replace("gone", "scalp"))
-            while read(one.socket.receive_bytes())["kind"] != "numbers":
-                pass
+            one.receive("numbers")
         with page(client, "one") as one:
-            assert one.receive("numbers")["locks"] == 8  # without an error before it
+            assert one.receive("numbers")["locks"] == 8
+            assert not one.latest("problems")["problems"]
 
 
 def test_only_caches_are_offered_for_comparison(folder: Path, tmp_path, monkeypatch):
@@ -187,6 +198,7 @@ def test_a_restarted_server_restores_sculpts(folder: Path):
     with serving(folder) as client, page(client) as one:
         stroke(one, one.receive("guides"))
         document = one.receive("document", dirty=True)
+    forget_unsaved(folder)
     with serving(folder) as client, page(client) as one:
         assert one.receive("guides")["changed"].sum() == 0
         one.send(kind="restore", text=document["text"], edits=document["edits"])

@@ -1,6 +1,6 @@
 // Made by tools/make_protocol.py from python/ringlet/viewer/protocol.py; change it there.
 
-export const VERSION = 7;
+export const VERSION = 8;
 export type Json = string | number | boolean | null | Json[] | { [key: string]: Json };
 
 /** A stage of the groom. place: path of its settings in the recipe. */
@@ -9,6 +9,7 @@ export interface Stage {
   op: string;
   place: (string | number)[];
   muted: boolean;
+  solo: boolean;
 }
 
 /** A line of the diff against the saved file. */
@@ -17,11 +18,37 @@ export interface Change {
   line: string;
 }
 
-/** First message of a page. ``client`` is a name that the page keeps when it reconnects. */
+/** A remedy of a problem: a button, and the message of the page that it sends. */
+export interface Fix {
+  label: string;
+  message: Record<string, Json>;
+}
+
+/** A setting of a file whose value on disk (theirs) differs from that of the session (mine). */
+export interface Difference {
+  name: string;
+  base: string;
+  mine: string;
+  theirs: string;
+  both: boolean;
+}
+
+/** What stands in the way, until it is gone. */
+export interface Problem {
+  subject: string;
+  message: string;
+  file: "recipe" | "shot";
+  setting: string;
+  fixes: Fix[];
+  differences: Difference[];
+}
+
+/** First message of a page. */
 export interface Hello {
   kind: "hello";
   version: number;
   client: string;
+  leads?: boolean;
 }
 
 /** Requests the edit lock. */
@@ -45,12 +72,14 @@ export interface Arrange {
   at: number;
   to?: number;
   op?: string;
+  values?: Record<string, string>;
 }
 
 /** Mutes stages such as ``shape/0`` or ``curl``; not stored in the file. */
 export interface Mute {
   kind: "mute";
   stages: string[];
+  solo?: string;
 }
 
 /** Undoes, redoes or reverts changes. */
@@ -58,12 +87,45 @@ export interface Step {
   kind: "undo" | "redo" | "revert";
 }
 
-/** Saves a file; with a name, a copy beside it, or a variant that extends it. */
+/** Saves a file; with a name, a copy beside it, or a variant that extends it, which the session then goes on with. */
 export interface Save {
   kind: "save";
   file?: "recipe" | "shot";
   name?: string;
   variant?: boolean;
+  anyway?: boolean;
+}
+
+/** Opens another recipe, shot or USD file of the project in the session. */
+export interface Open {
+  kind: "open";
+  name: string;
+  discard?: boolean;
+}
+
+/** Resolves a conflict with the version of a file on disk. */
+export interface Resolve {
+  kind: "resolve";
+  file?: "recipe" | "shot";
+  choice: "mine" | "theirs" | "merge";
+  mine?: string[];
+  theirs?: string[];
+}
+
+/** Removes a problem that needs no remedy. */
+export interface Dismiss {
+  kind: "dismiss";
+  subject: string;
+}
+
+/** Makes a groom that takes much longer than the displayed one. */
+export interface Proceed {
+  kind: "proceed";
+}
+
+/** Cancels the groom that is being made; the displayed one stays. */
+export interface Cancel {
+  kind: "cancel";
 }
 
 /** Restores unsaved text of a page, and of its file of edits, after a restart of the server. */
@@ -72,6 +134,8 @@ export interface Restore {
   file?: "recipe" | "shot";
   text: string;
   edits?: string;
+  saved?: string;
+  saved_edits?: string;
 }
 
 /** Shows a second groom for comparison: a snapshot, the saved one, another recipe of the project, or none. */
@@ -146,6 +210,7 @@ export interface Welcome {
   mode: "recipe" | "shot" | "stage";
   schemas: Record<string, Json>;
   operators: string[];
+  recovered: boolean;
   colors: Record<string, [number, number, number, number]>;
 }
 
@@ -170,6 +235,8 @@ export interface Document {
   revision: number;
   text: string;
   edits: string;
+  saved: string;
+  saved_edits: string;
   said: Record<string, Json>;
   values: Record<string, Json>;
   stages: Stage[];
@@ -337,10 +404,29 @@ export interface Saved {
   name: string;
 }
 
-/** An error message of one line. */
+/** A short message of what has happened. */
+export interface Notice {
+  kind: "notice";
+  message: string;
+}
+
+/** An error message of one line, for a request that was refused. */
 export interface Trouble {
   kind: "trouble";
   message: string;
+}
+
+/** All problems of the session. */
+export interface Problems {
+  kind: "problems";
+  problems: Problem[];
+}
+
+/** Progress of a groom that takes long. done: fraction of the stage; an empty stage ends it. */
+export interface Progress {
+  kind: "progress";
+  stage: string;
+  done: number;
 }
 
 export type FromPage =
@@ -351,6 +437,11 @@ export type FromPage =
   | Mute
   | Step
   | Save
+  | Open
+  | Resolve
+  | Dismiss
+  | Proceed
+  | Cancel
   | Restore
   | Compare
   | Drag
@@ -379,4 +470,7 @@ export type FromServer =
   | Compared
   | Heard
   | Saved
-  | Trouble;
+  | Notice
+  | Trouble
+  | Problems
+  | Progress;

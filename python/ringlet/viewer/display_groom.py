@@ -94,29 +94,42 @@ class GroomEvaluator:
         self._hairs = HairMemory()
 
     def groom(
-        self, recipe: Recipe, muted: frozenset[str] = frozenset(), *, draft: bool, check_abort: Callable[[], None]
+        self,
+        recipe: Recipe,
+        muted: frozenset[str] = frozenset(),
+        *,
+        draft: bool,
+        check_abort: Callable[[], None],
+        progress: Callable[[str, float], None] = lambda stage, done: None,
     ) -> DisplayGroom:
         """Evaluates a recipe.
 
         muted:       stages without effect
         draft:       skips the clean stage
         check_abort: called between stages; may raise an exception to abort
+        progress:    called with each stage and the fraction of the stages before it
         """
         began = time.perf_counter()
         times: dict[str, float] = {}
         clock = [began]
 
-        def progress(stage: str, done: int, total: int) -> None:
+        stages, begun = len(recipe.shape) + 5, 0
+
+        def clocked(stage: str, done: int, total: int) -> None:
+            nonlocal begun
             if not done:
                 check_abort()
+                progress(stage, min(begun / stages, 1.0))
+                begun += 1
                 clock[0] = time.perf_counter()
             elif (took := 1e3 * (time.perf_counter() - clock[0])) > 0.5:
                 times[stage] = round(took, 1)
 
         recipe = without_muted(recipe, muted | ({"clean"} if draft else frozenset()))
-        groom = make_groom(recipe, progress=progress, memory=self._memory, **self._read(recipe))
+        groom = make_groom(recipe, progress=clocked, memory=self._memory, **self._read(recipe))
         groom.hairs = recipe.hairs.model_dump(mode="json")
         check_abort()
+        progress("hairs", 1.0 - 1.0 / stages)
         clock[0] = time.perf_counter()
         hairs = lay_hairs(groom, memory=self._hairs)
         if (took := 1e3 * (time.perf_counter() - clock[0])) > 0.5:

@@ -14,9 +14,10 @@ from ringlet.groom.edits_file import edits_text
 from ringlet.groom.load import APPEND, inherited, parse_edits
 from ringlet.shot import Shot, parse_shot
 from ringlet.viewer import protocol
-from ringlet.viewer.document import Document, History, set_value
+from ringlet.viewer.document import Document, History, State, set_value
+from ringlet.viewer.merge import Versions
 from ringlet.viewer.project import Project
-from ringlet.viewer.protocol import Place
+from ringlet.viewer.protocol import Difference, Place
 from ringlet.viewer.variant import variant
 from ringlet.viewer.wire import pack
 
@@ -111,38 +112,50 @@ class Files:
         if file == "recipe" and document.model.edits_file != before.edits_file:
             document.apply(document.text, edits=_text_of(document.model.edits_file), gesture=gesture)
 
-    def edit_operators(self, action: str, at: int, to: int, op: str) -> None:
+    def edit_operators(self, action: str, at: int, to: int, op: str, values: dict[str, str] | None = None) -> None:
         """Adds, removes or moves a shape operator of the recipe; muted operators stay muted.
 
-        Raises UserError when a variant would move or add an operator of its base.
+        values: settings of an operator that is added
+
+        Raises UserError when a variant would move an operator of its base, or add one before it.
         """
         document = self.recipe
         names = self._inherited(document)
         order = [f"shape/{k}" for k in range(len(document.model.shape))]
+        new = {"op": op, **(values or {})}
         if names is None:
             if action == "add":
-                document.add_tables("shape", at, [{"op": op} if op else {}])
+                document.add_tables("shape", at, [new])
             elif action == "remove":
                 document.remove_tables("shape", [at])
             else:
                 document.move_table("shape", at, to)
         elif action == "remove" and at < len(names):
             document.set([(["shape", names[at]], None), (["shape", names[at]], False)])
+        elif action == "add" and at >= len(names):
+            document.add_tables(f"shape.{APPEND}", at - len(names), [new])
+        elif action == "remove":
+            document.remove_tables(f"shape.{APPEND}", [at - len(names)])
+        elif action == "move" and min(at, to) >= len(names):
+            document.move_table(f"shape.{APPEND}", at - len(names), to - len(names))
         else:
             base = document.contents()["extends"]
             raise UserError(
-                f"{document.path.name}: changes and removes operators of {base}, and does neither move nor add any; "
-                f"do that in {base}, or give it [[shape]] tables of its own"
+                f"{document.path.name}: operators of {base} keep their order, and others follow them; "
+                f"move them in {base}, or give {document.path.name} [[shape]] tables of its own"
             )
-        muted = document.state.muted
-        if muted & set(order):
-            if action == "add":
-                order.insert(at, "")
-            else:
-                moved = order.pop(at)
-                order[to:to] = [moved] if action == "move" else []
-            muted_shapes = {f"shape/{k}" for k, old in enumerate(order) if old in muted}
-            document.apply(document.text, muted=frozenset(muted_shapes | {one for one in muted if "/" not in one}))
+        if action == "add":
+            order.insert(at, "")
+        else:
+            moved = order.pop(at)
+            order[to:to] = [moved] if action == "move" else []
+        places = {old: f"shape/{k}" for k, old in enumerate(order)}
+
+        def now(stage: str) -> str:
+            return places.get(stage, "") if "/" in stage else stage
+
+        muted = frozenset(filter(None, map(now, document.state.muted)))
+        document.keep(muted=muted, solo=now(document.state.solo))
 
     def write_edits(self, kind: str, tables: list[dict[str, Any]], gesture: int | None = None) -> None:
         """Replaces the tables of a kind in the recipe's file of edits; names a new file when there is none."""
@@ -152,6 +165,90 @@ class Files:
         if not document.contents().get("edits"):
             document.set([(["edits"], self._unused_name(document.path, ".edits.toml"))], gesture)
         document.apply(document.text, edits=text, gesture=gesture)
+
+    # Other programs
+
+    def watched(self) -> dict[Path, str]:
+        """Files on disk that the session depends on, and the kind of the document that each belongs to."""
+        found: dict[Path, str] = {}
+        for kind, document in self.documents.items():
+            if kind == "recipe":
+                found |= dict.fromkeys(document.model.named_files().values(), kind)
+            found |= dict.fromkeys([document.path, *_bases(document.contents(), document.path)], kind)
+        return found
+
+    def meet_disk(self, file: str) -> bool:
+        """Takes in what another program wrote to a document and its file of edits; returns whether its state changed.
+
+        Raises UserError when that is invalid.
+        """
+        document = self.document(file)
+        if not document.path.exists():  # it is written again with the next save
+            return False
+        text = read_text(document.path, "give a file")
+        edits = document.saved_edits
+        if file == "recipe":
+            try:
+                edits = _text_of(self._edits_file(text, document.path))
+            except UserError:
+                if text == document.saved:
+                    raise
+        return document.meet(text, edits)
+
+    def _edits_file(self, text: str, path: Path) -> Path | None:
+        name = parse_toml(text, path.name, "recipe").get("edits")
+        return self.project.inside(path.parent / name, f"{path.name}: edits") if isinstance(name, str) else None
+
+    def versions(self, file: str) -> list[tuple[Versions, str]]:
+        """The three versions of a document in conflict and of its file of edits, each with a prefix for names."""
+        document = self.document(file)
+        if document.theirs is None:
+            raise UserError(f"{document.path.name}: has no conflict with its file; go on")
+        text, edits = document.theirs
+        return [
+            (Versions(document.saved, document.text, text), ""),
+            (Versions(document.saved_edits, document.state.edits, edits), "edits: "),
+        ]
+
+    def differences(self, file: str) -> list[Difference]:
+        """Settings in which a document differs from its file on disk; none where one of both is no TOML."""
+        try:
+            return [
+                difference.model_copy(update={"name": prefix + difference.name})
+                for versions, prefix in self.versions(file)
+                for _, difference in versions.differences()
+            ]
+        except ValueError:
+            return []
+
+    def resolve(self, file: str, choice: str, mine: list[str], theirs: list[str]) -> None:
+        """Resolves a conflict; raises UserError for a merge that leaves a setting open or gives an invalid file.
+
+        choice:       ``mine``, ``theirs``, or ``merge`` for a choice by setting
+        mine, theirs: names of the settings that keep the value of the session, or take that on disk
+        """
+        document = self.document(file)
+        versions = [one for one, _ in self.versions(file)]
+        if choice == "mine":
+            texts = [one.mine for one in versions]
+        elif choice == "theirs":
+            texts = [one.theirs for one in versions]
+        else:
+            differences = self.differences(file)
+            if open_ := [one.name for one in differences if one.name not in {*mine, *theirs}]:
+                raise UserError(f"{document.path.name}: {open_[0]} differs; choose one of both values")
+            names = iter(differences)
+            texts = []
+            for one in versions:
+                places = [place for place, _ in one.differences()]
+                texts.append(one.merged([place for place in places if next(names).name in mine]))
+        document.resolve(*texts)
+
+    def recover(self, file: str, text: str, edits: str, saved: str, saved_edits: str) -> None:
+        """Restores unsaved texts of an earlier session; raises UserError when they are invalid."""
+        document = self.document(file)
+        base = (saved, saved_edits) if saved else (document.saved, document.saved_edits)
+        document.recover(text, edits or document.saved_edits, *base)
 
     def step(self, kind: str) -> list[str]:
         """Undoes, redoes or reverts to the saved state; returns the kinds of the changed files."""
@@ -178,6 +275,9 @@ class Files:
         """
         document = self.document(file)
         if not name:
+            self.meet_disk(file)
+            if document.theirs is not None:
+                raise UserError(f"{document.path.name}: was changed by another program; choose first what is kept")
             if document.state.edits != document.saved_edits:
                 _write(document.model.edits_file, document.state.edits)
             return document.save()
@@ -218,9 +318,11 @@ class Files:
                     "revision": document.revision,
                     "text": document.text,
                     "edits": document.state.edits if document.state.edits != document.saved_edits else "",
+                    "saved": document.saved if document.dirty else "",
+                    "saved_edits": document.saved_edits if document.state.edits != document.saved_edits else "",
                     "said": contents,
                     "values": model.model_dump(mode="json", exclude={"sculpt"}),
-                    "stages": stages(model, document.state.muted) if file == "recipe" else [],
+                    "stages": stages(model, document.state) if file == "recipe" else [],
                     "dirty": document.dirty,
                     "undo": document.can_undo,
                     "redo": document.can_redo,
@@ -230,14 +332,27 @@ class Files:
         )
 
 
-def stages(recipe: Recipe, muted: frozenset[str]) -> list[protocol.Stage]:
+def without_effect(recipe: Recipe, state: State) -> frozenset[str]:
+    """Stages that have no effect: the muted ones, or while one acts alone all others that can be muted."""
+    if not state.solo:
+        return state.muted
+    return frozenset({*(f"shape/{k}" for k in range(len(recipe.shape))), "curl"} - {state.solo})
+
+
+def stages(recipe: Recipe, state: State) -> list[protocol.Stage]:
     """Stages of a recipe in their order."""
     found: list[tuple[str, str, Place]] = [("guides", "guides", ["guides"]), ("locks", "locks", ["locks"])]
     found += [(operator.op, operator.op, ["shape", k]) for k, operator in enumerate(recipe.shape)]
     for name in ("curl", "clean", "hairs", "color", "fiber"):
         found.append((name, name, [name]))
     return [
-        protocol.Stage(name=name, op=op, place=place, muted="/".join(map(str, place)) in muted)
+        protocol.Stage(
+            name=name,
+            op=op,
+            place=place,
+            muted=(key := "/".join(map(str, place))) in state.muted,
+            solo=key == state.solo,
+        )
         for name, op, place in found
     ]
 
@@ -258,6 +373,18 @@ def _by_name(place: Place, names: list[str]) -> Place:
         at = place[1]
         return ["shape", names[at], *place[2:]] if at < len(names) else ["shape", APPEND, at - len(names), *place[2:]]
     return place
+
+
+def _bases(data: dict[str, Any], path: Path) -> list[Path]:
+    """Files that a recipe extends, the nearest first."""
+    found: list[Path] = []
+    while isinstance(name := data.get("extends"), str) and (file := path.parent / name).is_file() and file not in found:
+        found.append(file)
+        try:
+            path, data = file, read_toml(file, "recipe")[1]
+        except UserError:
+            break
+    return found
 
 
 def _text_of(file: Path | None) -> str:

@@ -13,7 +13,9 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
 from ringlet.data import limits
 
-VERSION = 7
+VERSION = 8
+MOST_TEXT = 1_800_000  # characters of a file
+
 Place = list[str | int]  # path of a setting in its file: ["shape", 0, "amount"]
 File = Literal["recipe", "shot"]
 Point = tuple[float, float, float]
@@ -36,11 +38,16 @@ class Message(BaseModel):
 
 
 class Hello(Message):
-    """First message of a page. ``client`` is a name that the page keeps when it reconnects."""
+    """First message of a page.
+
+    client: name that the page keeps when it reconnects
+    leads:  whether it held the edit lock when it was connected last
+    """
 
     kind: Literal["hello"] = "hello"
     version: Row
     client: str = Field(max_length=64)
+    leads: bool = False
 
 
 class Lead(Message):
@@ -64,20 +71,28 @@ class Set(Message):
 
 
 class Arrange(Message):
-    """Adds, removes or moves a shape operator of the recipe."""
+    """Adds, removes or moves a shape operator of the recipe.
+
+    values: settings of an operator that is added, for those without a default
+    """
 
     kind: Literal["arrange"] = "arrange"
     action: Literal["add", "remove", "move"]
     at: Row
     to: Row = 0
     op: str = Field(default="", max_length=64)
+    values: dict[str, str] = Field(default_factory=dict, max_length=8)
 
 
 class Mute(Message):
-    """Mutes stages such as ``shape/0`` or ``curl``; not stored in the file."""
+    """Mutes stages such as ``shape/0`` or ``curl``; not stored in the file.
+
+    solo: the one stage that acts while it is set; the mutes stay
+    """
 
     kind: Literal["mute"] = "mute"
     stages: list[str] = Field(max_length=256)
+    solo: str = Field(default="", max_length=64)
 
 
 class Step(Message):
@@ -87,21 +102,73 @@ class Step(Message):
 
 
 class Save(Message):
-    """Saves a file; with a name, a copy beside it, or a variant that extends it."""
+    """Saves a file; with a name, a copy beside it, or a variant that extends it, which the session then goes on with.
+
+    anyway: saves a recipe whose groom cannot be made
+    """
 
     kind: Literal["save"] = "save"
     file: File = "recipe"
     name: str = Field(default="", max_length=120)
     variant: bool = False
+    anyway: bool = False
+
+
+class Open(Message):
+    """Opens another recipe, shot or USD file of the project in the session.
+
+    discard: discards unsaved changes; without it, they keep the file open
+    """
+
+    kind: Literal["open"] = "open"
+    name: str = Field(max_length=240)
+    discard: bool = False
+
+
+class Resolve(Message):
+    """Resolves a conflict with the version of a file on disk.
+
+    mine, theirs: for ``merge``, names of the settings of which the session's value, or that on disk, is kept
+    """
+
+    kind: Literal["resolve"] = "resolve"
+    file: File = "recipe"
+    choice: Literal["mine", "theirs", "merge"]
+    mine: list[str] = Field(default_factory=list, max_length=10_000)
+    theirs: list[str] = Field(default_factory=list, max_length=10_000)
+
+
+class Dismiss(Message):
+    """Removes a problem that needs no remedy."""
+
+    kind: Literal["dismiss"] = "dismiss"
+    subject: str = Field(max_length=64)
+
+
+class Proceed(Message):
+    """Makes a groom that takes much longer than the displayed one."""
+
+    kind: Literal["proceed"] = "proceed"
+
+
+class Cancel(Message):
+    """Cancels the groom that is being made; the displayed one stays."""
+
+    kind: Literal["cancel"] = "cancel"
 
 
 class Restore(Message):
-    """Restores unsaved text of a page, and of its file of edits, after a restart of the server."""
+    """Restores unsaved text of a page, and of its file of edits, after a restart of the server.
+
+    saved, saved_edits: the texts as they were read or saved last; another version on disk is a conflict
+    """
 
     kind: Literal["restore"] = "restore"
     file: File = "recipe"
-    text: str = Field(max_length=900_000)
-    edits: str = Field(default="", max_length=900_000)
+    text: str = Field(max_length=MOST_TEXT)
+    edits: str = Field(default="", max_length=MOST_TEXT)
+    saved: str = Field(default="", max_length=MOST_TEXT)
+    saved_edits: str = Field(default="", max_length=MOST_TEXT)
 
 
 class Compare(Message):
@@ -187,6 +254,11 @@ FromPage = Annotated[
     | Mute
     | Step
     | Save
+    | Open
+    | Resolve
+    | Dismiss
+    | Proceed
+    | Cancel
     | Restore
     | Compare
     | Drag
@@ -210,6 +282,7 @@ class Welcome(Message):
     session:  id of the server's run
     heard:    number of messages that the server has handled for pages of this name
     schemas:  JSON schemas of ``recipe`` and ``shot``
+    recovered: whether the server recovered what pages of an earlier run had not saved
     colors:   linear reflectance in red, green and blue, and roughness, of each hair colour
     """
 
@@ -221,6 +294,7 @@ class Welcome(Message):
     mode: Literal["recipe", "shot", "stage"]
     schemas: dict[str, Any]
     operators: list[str]
+    recovered: bool
     colors: dict[str, tuple[float, float, float, float]]
 
 
@@ -246,6 +320,7 @@ class Stage(Message):
     op: str
     place: Place
     muted: bool = False
+    solo: bool = False
 
 
 class Change(Message):
@@ -262,6 +337,7 @@ class Document(Message):
     said:     contents of the file; operators inherited from a base have their index in the resolved recipe
     values:   values of all settings, defaults included, in SI units
     edits:    unsaved text of its file of edits
+    saved, saved_edits: the texts as they were read or saved last; empty where they are ``text`` and ``edits``
     """
 
     kind: Literal["document"] = "document"
@@ -270,6 +346,8 @@ class Document(Message):
     revision: int
     text: str
     edits: str
+    saved: str
+    saved_edits: str
     said: dict[str, Any]
     values: dict[str, Any]
     stages: list[Stage]
@@ -467,11 +545,71 @@ class Saved(Message):
     name: str
 
 
+class Notice(Message):
+    """A short message of what has happened."""
+
+    kind: Literal["notice"] = "notice"
+    message: str
+
+
 class Trouble(Message):
-    """An error message of one line."""
+    """An error message of one line, for a request that was refused."""
 
     kind: Literal["trouble"] = "trouble"
     message: str
+
+
+class Fix(Message):
+    """A remedy of a problem: a button, and the message of the page that it sends."""
+
+    label: str
+    message: dict[str, Any]
+
+
+class Difference(Message):
+    """A setting of a file whose value on disk (theirs) differs from that of the session (mine).
+
+    base: value in their common ancestor
+    both: whether both changed it
+    """
+
+    name: str
+    base: str
+    mine: str
+    theirs: str
+    both: bool
+
+
+class Problem(Message):
+    """What stands in the way, until it is gone.
+
+    subject:     ``groom`` for a groom that cannot be made; the page then marks the look that it shows
+    file:        file of ``setting``, or of the conflict
+    setting:     name of the setting that is wrong; empty for none
+    differences: of a conflict with the version on disk
+    """
+
+    subject: str
+    message: str
+    file: File
+    setting: str
+    fixes: list[Fix]
+    differences: list[Difference]
+
+
+class Problems(Message):
+    """All problems of the session."""
+
+    kind: Literal["problems"] = "problems"
+    problems: list[Problem]
+
+
+class Progress(Message):
+    """Progress of a groom that takes long. done: fraction of the stage; an empty stage ends it."""
+
+    kind: Literal["progress"] = "progress"
+    stage: str
+    done: float
 
 
 FROM_SERVER: tuple[type[Message], ...] = (
@@ -492,5 +630,8 @@ FROM_SERVER: tuple[type[Message], ...] = (
     Compared,
     Heard,
     Saved,
+    Notice,
     Trouble,
+    Problems,
+    Progress,
 )

@@ -69,6 +69,11 @@ class Sculptor:
             self._finish(stroke)
         return stroke.guides
 
+    def finish(self) -> None:
+        """Ends the current stroke and writes its sculpts."""
+        if self._stroke is not None:
+            self._finish(self._stroke)
+
     def preview(self, recipe: Recipe) -> Recipe:
         """The recipe with the current stroke."""
         if self._stroke is None:

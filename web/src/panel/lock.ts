@@ -79,7 +79,7 @@ export class LockTool {
   /** Settings are those of this lock, or of all again. */
   private scope(alone: boolean): void {
     this.alone.checked = alone;
-    this.model.lock = alone ? this.id : null;
+    this.model.locks = alone ? [this.id] : [];
     this.model.tell("chosen");
   }
 

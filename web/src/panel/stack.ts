@@ -25,7 +25,7 @@ export class Stack {
     const focused = (globalThis.document.activeElement as HTMLElement | null)?.dataset["stage"];
     const parts: HTMLElement[] = [];
     if (document) {
-      parts.push(h("h2", {}, "groom"), this.row({ name: "recipe", op: "", place: [], muted: false }, document.stages));
+      parts.push(h("h2", {}, "groom"), this.row({ name: "recipe", op: "", place: [], muted: false, solo: false }, document.stages));
       parts.push(...document.stages.map((stage) => this.row(stage, document.stages)), this.adding());
     }
     if (shot) {
@@ -62,7 +62,7 @@ export class Stack {
     const canMute = key && !KEPT.includes(key) && role.leads;
     return h(
       "div",
-      { class: `stage${current ? " chosen" : ""}${stage.muted ? " muted" : ""}` },
+      { class: `stage${current ? " chosen" : ""}${stage.muted || this.silenced(stage, all) ? " muted" : ""}` },
       choose,
       isShape && role.leads && index > 0
         ? iconButton("up", `Move ${stage.name} up`, () => this.move(index, index - 1))
@@ -70,7 +70,10 @@ export class Stack {
       isShape && role.leads && index < last
         ? iconButton("down", `Move ${stage.name} down`, () => this.move(index, index + 1))
         : null,
-      canMute ? iconButton("solo", `Only ${stage.name}`, () => this.solo(stage, all)) : null,
+      canMute ? iconButton("solo", `Only ${stage.name}`, () => this.solo(stage, all), {
+            class: "icon-button solo",
+            "aria-pressed": String(stage.solo),
+          }) : null,
       isShape && role.leads ? iconButton("bin", `Remove ${stage.name}`, () => this.remove(index)) : null,
       canMute
         ? h(
@@ -104,7 +107,7 @@ export class Stack {
           "aria-current": current ? "true" : undefined,
           onclick: () => this.model.choose("shot", place),
         },
-        name === "strands" ? "material" : name,
+        name === "strands" ? "hair material" : name,
       ),
     );
   }
@@ -123,6 +126,12 @@ export class Stack {
     return list;
   }
 
+  /** Whether another operator acts alone. */
+  private silenced(stage: Stage, all: Stage[]): boolean {
+    const key = stage.place.join("/");
+    return all.some((one) => one.solo) && !stage.solo && !KEPT.includes(key) && key !== "clean" && key !== "";
+  }
+
   private muted(all: Stage[]): string[] {
     return all.filter((stage) => stage.muted).map((stage) => stage.place.join("/"));
   }
@@ -132,17 +141,13 @@ export class Stack {
     this.model.say({
       kind: "mute",
       stages: muted.includes(key) ? muted.filter((one) => one !== key) : [...muted, key],
+      solo: all.find((one) => one.solo)?.place.join("/") ?? "",
     });
   }
 
-  /** Mutes all other operators; again, none. */
+  /** Lets one operator act alone; again, those that are not muted act as before. */
   private solo(stage: Stage, all: Stage[]): void {
-    const key = stage.place.join("/");
-    const others = all
-      .map((one) => one.place.join("/"))
-      .filter((one) => one !== key && !KEPT.includes(one) && one !== "clean");
-    const already = others.every((one) => this.muted(all).includes(one));
-    this.model.say({ kind: "mute", stages: already ? [] : others });
+    this.model.say({ kind: "mute", stages: this.muted(all), solo: stage.solo ? "" : stage.place.join("/") });
   }
 
   private move(from: number, to: number): void {

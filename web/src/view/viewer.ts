@@ -80,6 +80,16 @@ export class Viewer {
     this.invalidate();
   }
 
+  /** Removes what belongs to a file that is no longer open. */
+  reset(): void {
+    for (const body of this.bodies.values()) body.dispose();
+    this.bodies.clear();
+    this.hair.a.clear();
+    this.hair.b.clear();
+    this.compare(false);
+    this.framed = false;
+  }
+
   /** Moves all bodies on one side, whose points follow one another; nothing: to where they rest. */
   placeBodies(side: Side, points?: Float32Array): void {
     let at = 0;
