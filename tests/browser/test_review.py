@@ -69,6 +69,7 @@ def test_a_slider_changes_picture_and_recipe_and_undo_reverts_both(opened: Any):
 
 def test_a_ramp_is_edited_by_its_points(opened: Any):
     review: Review = opened()
+    review.page.locator('[data-setting="curl.width"] summary', has_text="along the hair").click()
     ramp = review.page.locator('[data-setting="curl.width.ramp"] svg.ramp')
     box = ramp.bounding_box()
     review.page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 0.3 * box["height"])
@@ -162,10 +163,14 @@ def test_guides_are_sculpted_with_a_brush(opened: Any):
     assert np.linalg.norm(after - before, axis=1)[offsets[front + 1] - 1] > 0.003
     assert np.array_equal(after[offsets[:-1]], before[offsets[:-1]])  # roots stay
     eye = review.get("ringlet.viewer.camera.position.toArray()")
-    page.mouse.move(260, 600)  # a drag beside the hair orbits the camera
-    page.mouse.down()
+    page.mouse.move(260, 600)
+    page.mouse.down()  # a stroke beside the hair does nothing
     page.mouse.move(300, 600, steps=2)
     page.mouse.up()
+    assert review.get("ringlet.viewer.camera.position.toArray()") == eye
+    page.mouse.down(button="right")  # the right button turns the head
+    page.mouse.move(340, 600, steps=2)
+    page.mouse.up(button="right")
     assert review.get("ringlet.viewer.camera.position.toArray()") != eye
     page.keyboard.press("Control+z")
     review.until("!ringlet.model.documents.recipe.dirty && !ringlet.model.guides.changed.some(one => one)")

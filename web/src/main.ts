@@ -6,8 +6,10 @@ import { Link, type LinkState } from "./link";
 import { Model } from "./model";
 import { Bar } from "./panel/bar";
 import { BrushTool } from "./panel/brush";
+import { bindKey, plainKey } from "./panel/keys";
 import { LockTool } from "./panel/lock";
 import { Settings } from "./panel/settings";
+import { Sheets } from "./panel/sheets";
 import { Stack } from "./panel/stack";
 import { ProblemBar } from "./panel/problems";
 import { Notices, Status } from "./panel/status";
@@ -44,6 +46,11 @@ class App {
       this.status.drew(statistics);
       this.lock.place();
     };
+    const keys = (names: string, does: string, ...all: string[]) =>
+      bindKey({ keys: names, does, on: plainKey(...all), run: (event) => void this.viewer.key(event.key) });
+    keys("Arrows", "turn about the head", "ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown");
+    keys("+ and -", "nearer, away", "+", "=", "-");
+    keys("F", "frame all hair", "f");
     const name = () => (this.model.welcome?.name ?? "ringlet").split(".")[0];
     const left = h("div", { class: "left" }, new Stack(this.model).element, this.lock.element, this.brush.element);
     const settings = new Settings(this.model).element;
@@ -60,6 +67,7 @@ class App {
       this.status.element,
       this.notices.element,
       this.problems.element,
+      new Sheets(this.model).element,
     );
     const preferred = matchMedia("(prefers-color-scheme: light)").matches ? "light" : "dark";
     this.setTheme((localStorage.getItem("ringlet-theme") as "dark" | "light" | null) ?? preferred);

@@ -166,11 +166,13 @@ export interface Isolate {
 /** Moves a brush over the guides, or returns guides to the recipe. */
 export interface Sculpt {
   kind: "sculpt";
-  tool: "grab" | "comb" | "smooth" | "cut" | "lengthen" | "return";
+  tool: "grab" | "comb" | "smooth" | "cut" | "lengthen" | "return" | "freeze" | "thaw";
   at: [number, number, number];
   by: [number, number, number];
   radius: number;
   mirrored?: boolean;
+  strength?: number;
+  falloff?: "smooth" | "sharp" | "flat";
   gesture: number;
   resting?: boolean;
 }
@@ -270,13 +272,14 @@ export interface Locks {
   marked: Uint8Array;
 }
 
-/** Positions of the guides; ``changed`` is 1 for sculpted ones. */
+/** Positions of the guides; ``changed`` is 1 for sculpted ones, ``frozen`` for those that brushes leave. */
 export interface Guides {
   kind: "guides";
   middle: [number, number, number];
   points: Float32Array;
   offsets: Int32Array;
   changed: Uint8Array;
+  frozen: Uint8Array;
 }
 
 /** Valid names in settings: regions, maps and directions of the scalp, and helper curves. */

@@ -205,14 +205,20 @@ class Sculpt(Message):
     at, by:   position of the brush, and its displacement since the last message of this gesture [m]
     radius:   radius of the brush [m]
     mirrored: whether a mirror image of the brush acts on the other side of the head
+    strength: fraction of its displacement that the brush moves what is at its centre
+    falloff:  of the strength towards the radius: smooth, sharp (steep at the centre) or flat (none)
+
+    ``freeze`` protects guides from all brushes, ``thaw`` ends that; neither is stored in the file.
     """
 
     kind: Literal["sculpt"] = "sculpt"
-    tool: Literal["grab", "comb", "smooth", "cut", "lengthen", "return"]
+    tool: Literal["grab", "comb", "smooth", "cut", "lengthen", "return", "freeze", "thaw"]
     at: Position
     by: Position
     radius: float = Field(gt=0.0, le=1.0)
     mirrored: bool = False
+    strength: float = Field(default=1.0, gt=0.0, le=1.0)
+    falloff: Literal["smooth", "sharp", "flat"] = "smooth"
     gesture: Gesture
     resting: bool = True
 
@@ -387,11 +393,11 @@ class Locks(Message):
 
 
 class Guides(Message):
-    """Positions of the guides; ``changed`` is 1 for sculpted ones."""
+    """Positions of the guides; ``changed`` is 1 for sculpted ones, ``frozen`` for those that brushes leave."""
 
     kind: Literal["guides"] = "guides"
     middle: Point
-    arrays: ClassVar[dict[str, str]] = {"points": "f4", "offsets": "i4", "changed": "u1"}
+    arrays: ClassVar[dict[str, str]] = {"points": "f4", "offsets": "i4", "changed": "u1", "frozen": "u1"}
 
 
 class Names(Message):

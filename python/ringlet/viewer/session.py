@@ -346,6 +346,10 @@ class Session:
         display = self._viewport.display
         if display is None:
             raise UserError("sculpt: the groom is not made yet; wait until it is seen")
+        if message.tool in ("freeze", "thaw"):
+            guides = self._sculptor.freeze(message, display.groom)
+            self.publisher.publish("guides", self._sculptor.message(guides, display.groom))
+            return
         guides = self._sculptor.move(message, display.groom)
         self.publisher.publish("guides", self._sculptor.message(guides, display.groom))
         if message.resting:

@@ -13,13 +13,15 @@ import type { Setting } from "./schema";
 import { Slider } from "./slider";
 import { shownAs } from "./units";
 
+const ALONG = "along the hair";
+
 export class NumberField extends Field {
   private readonly slider: Slider;
   private readonly number: NumberInput;
   /** The range of usual values; another serves only while the value is outside of it. */
   private usual: Range | null = null;
   private range: Range = { least: 0, most: 1, step: 0.01 };
-  private readonly more: HTMLElement[] = [];
+  private more: HTMLElement[] = [];
   private readonly inner: Field[];
 
   constructor(model: Model, file: File, place: Place, setting: Setting) {
@@ -41,10 +43,14 @@ export class NumberField extends Field {
     this.element.append(this.head(this.number.element), this.slider.element);
     this.inner = setting.inner.map((one) => makeField(model, file, [...place, one.name], one));
     if (!this.inner.length) return;
-    const details = h("details", { class: "varies" }, h("summary", {}, "varies"));
-    for (const field of this.inner) details.append(field.element);
-    const ramp = this.inner.find((field) => field instanceof RampField);
-    this.more = ramp ? [ramp.element, details] : [details];
+    const ramps = this.inner.filter((field) => field instanceof RampField);
+    const others = this.inner.filter((field) => !ramps.includes(field));
+    const fold = (label: string, fields: Field[]) => {
+      const details = h("details", { class: "varies" }, h("summary", {}, label), ...fields.map((field) => field.element));
+      details.toggleAttribute("open", label === ALONG && fields.some((field) => field.isSaid));
+      return details;
+    };
+    this.more = [...(ramps.length ? [fold(ALONG, ramps)] : []), ...(others.length ? [fold("varies", others)] : [])];
     this.element.append(...this.more);
   }
 

@@ -15,6 +15,9 @@ export class ProblemBar {
   constructor(private readonly model: Model) {
     for (const topic of ["problems", "role"] as const) model.on(topic, () => this.update());
     model.on("progress", () => this.showProgress());
+    new ResizeObserver(() => {
+      document.documentElement.style.setProperty("--problems", `${this.element.offsetHeight}px`);
+    }).observe(this.element);
     this.update();
   }
 

@@ -65,6 +65,14 @@ export class Schemas {
     return this.of(schema);
   }
 
+  /** Settings of an operator that have no default. */
+  required(op: string): Setting[] {
+    const shape = this.resolve(this.root["properties"] as Schema, null)["shape"] as Schema;
+    const schema = this.resolve(shape["items"] as Schema, { op });
+    const names = ((schema["required"] ?? []) as string[]).filter((name) => name !== "op");
+    return this.of(schema).filter((setting) => names.includes(setting.name));
+  }
+
   /** Settings of the file itself that are no tables. */
   private own(properties: Record<string, Schema>): Setting[] {
     return Object.entries(properties)

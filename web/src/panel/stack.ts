@@ -3,6 +3,8 @@
 import { h, ICONS, icon, iconButton } from "../dom";
 import type { Model, Place } from "../model";
 import type { Json, Stage } from "../protocol";
+import { chooseNames } from "./choose";
+import { Schemas } from "./schema";
 
 /** A cloth or a collider of a shot. */
 type Entry = Record<"name" | "mesh" | "file", string | null>;
@@ -118,9 +120,7 @@ export class Stack {
     for (const op of this.model.welcome?.operators ?? [])
       list.append(h("option", { value: op }, op.replaceAll("_", " ")));
     list.addEventListener("change", () => {
-      const at = (this.model.documents.recipe?.stages ?? []).filter((stage) => stage.place[0] === "shape").length;
-      if (list.value) this.model.say({ kind: "arrange", action: "add", at, op: list.value });
-      if (list.value) this.model.choose("recipe", ["shape", at]);
+      if (list.value) this.add(list.value);
       list.value = "";
     });
     return list;
@@ -130,6 +130,20 @@ export class Stack {
   private silenced(stage: Stage, all: Stage[]): boolean {
     const key = stage.place.join("/");
     return all.some((one) => one.solo) && !stage.solo && !KEPT.includes(key) && key !== "clean" && key !== "";
+  }
+
+  /** Adds an operator after the others; asks first for what it cannot be without. */
+  private add(op: string): void {
+    const { model } = this;
+    const at = (model.documents.recipe?.stages ?? []).filter((stage) => stage.place[0] === "shape").length;
+    const give = (values: Record<string, string>) => {
+      model.say({ kind: "arrange", action: "add", at, op, values });
+      model.choose("recipe", ["shape", at]);
+    };
+    const schemas = new Schemas(model.welcome!.schemas["recipe"] as ConstructorParameters<typeof Schemas>[0]);
+    const required = schemas.required(op);
+    if (required.length) chooseNames(model, op, required, give);
+    else give({});
   }
 
   private muted(all: Stage[]): string[] {

@@ -3,6 +3,7 @@
 
 import { h, iconButton } from "../dom";
 import type { Model } from "../model";
+import { bindKey, plainKey } from "./keys";
 import type { Frame } from "../protocol";
 import { OVERLAYS, overlayValues } from "../view/overlays";
 import type { Viewer } from "../view/viewer";
@@ -46,12 +47,16 @@ export class TimelineBar {
     this.run.addEventListener("click", () => this.press());
     this.element.append(this.run, this.again, this.watch, this.slider, this.readout, this.against);
     for (const topic of ["timeline", "role", "files"] as const) model.on(topic, () => this.update());
-    addEventListener("keydown", (event) => {
-      if (event.key !== " " || (event.target as HTMLElement).closest("button, input, select, textarea, dialog")) return;
-      if (!model.timeline) return;
-      event.preventDefault();
-      this.toggle();
-    });
+    bindKey({ keys: "Space", does: "play the frames that are there, or stop", on: plainKey(" "), run: () => model.timeline && this.toggle() });
+    bindKey({ keys: ", and .", does: "one frame back, one on", on: plainKey(",", "."), run: (event) => this.by(event.key === "," ? -1 : 1) });
+  }
+
+  /** Shows the frame that many frames on. */
+  private by(frames: number): void {
+    const { timeline } = this.model;
+    if (!timeline) return;
+    this.follows = false;
+    this.show(Math.min(timeline.last, Math.max(timeline.first, this.frame + frames)));
   }
 
   /** A frame has come. */

@@ -70,7 +70,6 @@ export class Viewer {
     this.shadow = new Shadow(this.software ? 384 : 1024);
     this.hair = { a: new Hair(this.lights, this.shadow), b: new Hair(this.lights, this.shadow) };
     new ResizeObserver(() => this.resize()).observe(element);
-    canvas.addEventListener("keydown", (event) => this.key(event));
     this.resize();
   }
 
@@ -309,7 +308,8 @@ export class Viewer {
     this.camera.lookAt(this.controls.target);
   }
 
-  private key(event: KeyboardEvent): void {
+  /** Turns, approaches or frames by a key; whether it was one of these. */
+  key(key: string): boolean {
     const step = 0.1;
     const turns: Record<string, [number, number]> = {
       ArrowLeft: [-step, 0],
@@ -318,14 +318,14 @@ export class Viewer {
       ArrowDown: [0, -step],
     };
     const nearer: Record<string, number> = { "+": 0.9, "=": 0.9, "-": 1.1 };
-    if (turns[event.key]) this.orbit(...turns[event.key]);
-    else if (nearer[event.key]) {
-      const away = this.camera.position.clone().sub(this.controls.target).multiplyScalar(nearer[event.key]);
+    if (turns[key]) this.orbit(...turns[key]);
+    else if (nearer[key]) {
+      const away = this.camera.position.clone().sub(this.controls.target).multiplyScalar(nearer[key]);
       this.camera.position.copy(this.controls.target).add(away);
-    } else if (event.key.toLowerCase() === "f") this.frame();
-    else return;
-    event.preventDefault();
+    } else if (key.toLowerCase() === "f") this.frame();
+    else return false;
     this.move();
+    return true;
   }
 }
 
