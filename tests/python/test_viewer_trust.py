@@ -212,6 +212,30 @@ def test_acting_alone_keeps_the_mutes(folder: Path):
         assert [place for place, stage in stages.items() if stage["muted"]] == [("shape", 0)]
 
 
+# Frames
+
+
+def test_frames_tell_their_run_and_come_back_with_their_groom(folder: Path):
+    with serving(folder, "small.shot.toml") as client, page(client) as one:
+        one.receive("numbers", draft=False)
+        one.send(kind="play", action="start")
+        timeline = one.receive("timeline", state="done")
+        assert timeline["runs"].tolist() == [1] * 4 and not timeline["stale"].any()
+        one.send(kind="set", file="shot", changes=[[["strands", "bend_scale"], 0.5]], gesture=1)
+        assert one.receive("timeline")["stale"].all()
+        one.send(kind="play", action="again_from", frame=2)
+        timeline = one.receive("timeline", state="done")
+        assert timeline["runs"].tolist() == [1, 1, 2, 2] and timeline["stale"].tolist() == [1, 1, 0, 0]
+        edit(one, 1.4)
+        while len(one.receive("timeline")["frames"]):
+            pass
+        one.send(kind="undo")
+        while not len((timeline := one.receive("timeline"))["frames"]):
+            pass
+        assert timeline["runs"].tolist() == [1, 1, 2, 2]
+        assert len(one.watch(1.0, 4.0)) == 2
+
+
 # Files
 
 

@@ -42,10 +42,8 @@ class App {
     this.brush.changed.push((on) => on && this.lock.choose(-1));
     this.lock.busy = () => this.brush.on;
     picture.append(this.lock.handles, this.brush.ring);
-    this.viewer.onDraw = (statistics) => {
-      this.status.drew(statistics);
-      this.lock.place();
-    };
+    this.viewer.onPaint = () => this.lock.place();
+    this.viewer.onDraw = (statistics) => this.status.drew(statistics);
     const keys = (names: string, does: string, ...all: string[]) =>
       bindKey({ keys: names, does, on: plainKey(...all), run: (event) => void this.viewer.key(event.key) });
     keys("Arrows", "turn about the head", "ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown");

@@ -387,6 +387,8 @@ export interface Timeline {
   against: string;
   frames: Float64Array;
   beside: Float64Array;
+  runs: Int32Array;
+  stale: Uint8Array;
 }
 
 /** Name of the groom or cache to compare with; empty for none. */

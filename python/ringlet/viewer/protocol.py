@@ -515,7 +515,9 @@ class Frame(Message):
 class Timeline(Message):
     """State of the simulation, and the existing frames of the shot and of the cache to compare with.
 
-    key: changes when existing frames become invalid
+    key:   changes when existing frames become invalid
+    runs:  number of the run that made each frame, from 1; 0 for frames of a file
+    stale: 1 for frames of other settings than the present ones
     """
 
     kind: Literal["timeline"] = "timeline"
@@ -527,7 +529,7 @@ class Timeline(Message):
     preroll: int
     key: int
     against: str = ""
-    arrays: ClassVar[dict[str, str]] = {"frames": "f8", "beside": "f8"}
+    arrays: ClassVar[dict[str, str]] = {"frames": "f8", "beside": "f8", "runs": "i4", "stale": "u1"}
 
 
 class Compared(Message):

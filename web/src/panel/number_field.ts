@@ -43,7 +43,7 @@ export class NumberField extends Field {
     this.element.append(this.head(this.number.element), this.slider.element);
     this.inner = setting.inner.map((one) => makeField(model, file, [...place, one.name], one));
     if (!this.inner.length) return;
-    const ramps = this.inner.filter((field) => field instanceof RampField);
+    const ramps: Field[] = this.inner.filter((field) => field instanceof RampField);
     const others = this.inner.filter((field) => !ramps.includes(field));
     const fold = (label: string, fields: Field[]) => {
       const details = h("details", { class: "varies" }, h("summary", {}, label), ...fields.map((field) => field.element));

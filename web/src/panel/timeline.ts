@@ -4,7 +4,7 @@
 import { h, iconButton } from "../dom";
 import type { Model } from "../model";
 import { bindKey, plainKey } from "./keys";
-import type { Frame } from "../protocol";
+import type { Frame, Timeline } from "../protocol";
 import { OVERLAYS, overlayValues } from "../view/overlays";
 import type { Viewer } from "../view/viewer";
 
@@ -17,6 +17,7 @@ export class TimelineBar {
   readonly element = h("section", { class: "timeline", hidden: true, "aria-label": "Frames" });
   private readonly frames: Record<Layer, Map<number, Frame>> = { shot: new Map(), against: new Map() };
   private readonly slider = h("input", { type: "range", step: 1, "aria-label": "Frame" });
+  private readonly runs = h("div", { class: "runs", "aria-hidden": "true" });
   private readonly readout = h("output", { class: "frame-told" });
   private readonly run = h("button", { type: "button", class: "primary" }, "Run");
   private readonly again = iconButton("again", "Run again from this frame, with the settings as they are", () =>
@@ -45,7 +46,8 @@ export class TimelineBar {
       this.show(Number(this.slider.value));
     });
     this.run.addEventListener("click", () => this.press());
-    this.element.append(this.run, this.again, this.watch, this.slider, this.readout, this.against);
+    const frames = h("div", { class: "frames" }, this.slider, this.runs);
+    this.element.append(this.run, this.again, this.watch, frames, this.readout, this.against);
     for (const topic of ["timeline", "role", "files"] as const) model.on(topic, () => this.update());
     bindKey({ keys: "Space", does: "play the frames that are there, or stop", on: plainKey(" "), run: () => model.timeline && this.toggle() });
     bindKey({ keys: ", and .", does: "one frame back, one on", on: plainKey(",", "."), run: (event) => this.by(event.key === "," ? -1 : 1) });
@@ -149,6 +151,7 @@ export class TimelineBar {
       this.drop("against");
     }
     const ready = timeline.frames.at(-1);
+    this.runs.replaceChildren(...runMarks(timeline));
     this.slider.min = String(timeline.first);
     this.slider.max = String(timeline.last);
     const there =
@@ -257,9 +260,29 @@ export class TimelineBar {
     const parts = [`frame ${this.frame}`];
     if (timeline.state === "rolling") parts[0] = `before the first frame: ${timeline.rolled} of ${timeline.preroll}`;
     else if (!timeline.frames.length) parts[0] = "not run yet";
-    else if (typeof stretch === "number") parts.push(`stretched ${(100 * stretch).toFixed(1)} % at most`);
+    else {
+      const at = closest(timeline.frames, this.frame);
+      if (timeline.stale[at]) parts.push(`of run ${timeline.runs[at]}, with other settings`);
+    }
+    if (typeof stretch === "number") parts.push(`stretched ${(100 * stretch).toFixed(1)} % at most`);
     this.readout.textContent = parts.join(" · ");
   }
+}
+
+/** Marks below the slider: one color a run, hatched where its settings are no longer those of the shot. */
+function runMarks({ frames, runs, stale, first, last }: Timeline): HTMLElement[] {
+  const marks: HTMLElement[] = [];
+  const span = Math.max(1, last - first);
+  for (let from = 0, to = 0; from < frames.length; from = to) {
+    while (to < frames.length && runs[to] === runs[from] && stale[to] === stale[from]) to++;
+    if (!runs[from]) continue;
+    const mark = h("span", { class: stale[from] ? "stale" : "" });
+    mark.style.setProperty("--hue", String((25 + 137 * (runs[from] - 1)) % 360));
+    mark.style.left = `${(100 * (frames[from] - first)) / span}%`;
+    mark.style.width = `max(3px, ${(100 * (frames[to - 1] - frames[from])) / span}%)`;
+    marks.push(mark);
+  }
+  return marks;
 }
 
 /** The place of the number that is nearest to another; numbers are in order. */

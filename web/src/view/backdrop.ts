@@ -21,7 +21,7 @@ void main() {
 }
 `;
 
-const WALLS = { dark: ["#5a6164", "#1c1f21"], light: ["#f4f0ea", "#d3cdc4"] } as const;
+const WALLS = { dark: ["#5a6164", "#1c1f21"], light: ["#cdc8c0", "#a7a198"] } as const;
 
 export class Backdrop {
   readonly scene = new Scene();

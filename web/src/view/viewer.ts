@@ -8,11 +8,11 @@ import { Body, type Side } from "./body";
 import { GuideLines } from "./guides";
 import { type Colour, Hair } from "./hair";
 import { Lights, PRESETS } from "./lights";
+import { Pace, whenDrawn } from "./pace";
 import { Shadow } from "./shadow";
 
 const FOV = 24;
 const SUBJECT = 0.8; // width of what is framed, as a part of the picture's height
-const SLOW = 45; // a picture that takes longer is drawn with less detail while something moves [ms]
 const REST_AFTER = 180; // time without a movement after which all detail is drawn [ms]
 
 export interface DrawStatistics {
@@ -29,6 +29,7 @@ export class Viewer {
   readonly guides = new GuideLines();
   compared = false;
   turntable = false;
+  onPaint: () => void = () => {};
   onDraw: (statistics: DrawStatistics) => void = () => {};
 
   /** How much of the picture panels cover on the left and on the right [pixels]. */
@@ -46,13 +47,17 @@ export class Viewer {
   private hairShown = true;
   private wanted = false;
   private moved = 0;
-  private detail = 1;
+  private readonly pace: Pace;
+  /** Whether the graphics card is at work on a picture: the next one waits for it. */
+  private drawing = false;
+  private fresh = true;
   private resting = 0;
   private turned = 0;
   private drawn = 0;
 
   constructor(readonly element: HTMLElement) {
     this.software = drawsInSoftware();
+    this.pace = new Pace(this.software);
     this.renderer = new WebGLRenderer({ antialias: !this.software, powerPreference: "high-performance" });
     this.renderer.autoClear = false;
     this.renderer.outputColorSpace = "srgb-linear"; // the shaders develop on their own
@@ -178,9 +183,14 @@ export class Viewer {
   }
 
   invalidate(): void {
+    this.fresh = true;
+    this.request();
+  }
+
+  private request(): void {
     if (this.wanted) return;
     this.wanted = true;
-    requestAnimationFrame(() => this.draw());
+    if (!this.drawing) requestAnimationFrame(() => this.draw());
   }
 
   /** Draws at once, with all detail: for pictures. */
@@ -195,7 +205,7 @@ export class Viewer {
 
   /** Whether no picture is to come until something changes. */
   get idle(): boolean {
-    return !this.wanted && !this.resting && !this.turntable;
+    return !this.wanted && !this.resting && !this.turntable && !this.drawing;
   }
 
   private draw(): void {
@@ -208,11 +218,11 @@ export class Viewer {
       this.moved = now;
     } else this.turned = 0;
     const moving = now - this.moved < REST_AFTER;
-    this.paint(moving ? this.detail : 1);
-    const took = performance.now() - now;
+    const detail = this.pace.next(moving, this.fresh);
+    this.fresh = false;
+    this.paint(detail);
+    this.onPaint();
     if (moving) {
-      if (took > SLOW) this.detail = Math.max(0.06, this.detail * 0.75);
-      else if (took < 0.4 * SLOW) this.detail = Math.min(1, this.detail * 1.15);
       clearTimeout(this.resting);
       this.resting = window.setTimeout(() => {
         this.resting = 0;
@@ -220,8 +230,16 @@ export class Viewer {
       }, REST_AFTER + 20);
     }
     this.drawn++;
-    this.onDraw({ drawMs: took, shown: Math.round(this.hair.a.count * (moving ? this.detail : 1)) });
-    if (this.turntable) this.invalidate();
+    this.drawing = true;
+    whenDrawn(this.renderer.getContext() as WebGL2RenderingContext, () => {
+      const took = performance.now() - now;
+      this.drawing = false;
+      this.pace.took(took, detail, moving);
+      this.onDraw({ drawMs: took, shown: Math.round(this.hair.a.count * detail) });
+      if (this.wanted) requestAnimationFrame(() => this.draw());
+      else if (this.turntable) this.invalidate();
+      else if (!moving && this.pace.refines) this.request();
+    });
   }
 
   private paint(detail: number): void {
@@ -293,7 +311,7 @@ export class Viewer {
     this.renderer.setSize(clientWidth, clientHeight);
     this.camera.aspect = clientWidth / clientHeight;
     this.camera.updateProjectionMatrix();
-    this.paint(this.detail); // before the browser shows the emptied canvas
+    this.paint(this.pace.next(true, true)); // before the browser shows the emptied canvas
     this.invalidate();
   }
 
