@@ -124,7 +124,7 @@ def test_a_lock_is_isolated_dragged_and_returned(opened: Any):
     moved = np.linalg.norm(after - np.array(before).reshape(8, -1, 3), axis=2)
     assert moved[2, -1] > 0.005 and moved[2, 0] == 0.0
     assert np.delete(moved, 2, axis=0).max() < 1e-6
-    page.get_by_role("button", name="Return to the recipe").click()
+    page.get_by_role("button", name="Reset lock").click()
     review.until("!ringlet.model.documents.recipe.said.edit")
     assert not review.errors
 

@@ -18,8 +18,23 @@ def test_one_page_edits_and_the_other_follows(opened: Any, serve: Any):
     two.until("ringlet.model.documents.recipe.dirty")
     two.settled()
     assert different(two.picture(), before) > 0.005
-    two.page.get_by_role("button", name="Take the lead").click()
-    two.until("ringlet.model.role.leads")
+    one.choose("locks")
+    one.page.get_by_label("Light").select_option(index=1)
+    one.get("ringlet.viewer.orbit(0.5, 0), ringlet.viewer.move()")
+    eye = one.get("ringlet.viewer.camera.position.toArray()")
+    two.until("ringlet.model.chosen.place[0] == 'locks'")
+    two.until(f"Math.abs(ringlet.viewer.camera.position.x - {eye[0]}) < 1e-6")
+    assert two.page.get_by_label("Light").input_value() == one.page.get_by_label("Light").input_value()
+    two.page.mouse.move(500, 500)  # a page that turns the head itself follows no more
+    two.page.mouse.down()
+    two.page.mouse.move(540, 500, steps=2)
+    two.page.mouse.up()
+    assert two.page.get_by_role("button", name="Follow", exact=True).is_visible()
+    for answer, leads in (("Not now", False), ("Hand over", True)):
+        two.page.get_by_role("button", name="Ask to edit").click()
+        one.page.get_by_role("button", name=answer).click()
+        two.until("!ringlet.model.role.asks")
+        assert two.get("ringlet.model.role.leads") == leads
     one.until("!ringlet.model.role.leads")
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
 from pages import Page, page, read, serving
 
 import ringlet
@@ -46,7 +47,32 @@ def test_one_page_holds_the_edit_lock_and_the_others_follow(folder: Path):
         one.send(kind="set", changes=[[["curl", "width"], 1.4]], gesture=1)
         assert two.receive("document", dirty=True)["said"]["curl"]["width"] == 1.4
         two.send(kind="lead")
+        assert one.receive("role", asked=True) and two.receive("role", asks=True)
+        one.send(kind="hand", over=False)
+        assert two.receive("role", asks=False, leads=False)
+        two.send(kind="lead")
+        one.receive("role", asked=True)
+        one.send(kind="hand", over=True)
         assert two.receive("role", leads=True) and one.receive("role", leads=False)
+
+
+def test_a_page_that_does_not_answer_hands_the_edit_lock_over(folder: Path, monkeypatch):
+    monkeypatch.setattr("ringlet.viewer.session.ANSWER_AFTER", 0.1)
+    with serving(folder) as client, page(client, "one") as one, page(client, "two") as two:
+        one.receive("role", leads=True)
+        two.send(kind="lead")
+        assert two.receive("role", leads=True)
+
+
+def test_pages_that_follow_receive_the_look_of_the_one_that_leads(folder: Path):
+    look = {"camera": [0.0] * 6, "light": "studio", "color": "", "overlay": "", "file": "recipe", "locks": []}
+    with serving(folder) as client, page(client, "one") as one:
+        one.send(kind="look", place=["curl"], frame=None, **look)
+        with page(client, "two") as two:
+            assert two.receive("followed")["place"] == ["curl"]
+            two.send(kind="look", place=["locks"], frame=None, **look)
+            with pytest.raises(AssertionError, match="another page leads"):
+                two.receive("saved")
 
 
 def forget_unsaved(folder: Path) -> None:

@@ -192,6 +192,8 @@ def test_a_draft_is_completed_when_its_page_leaves(folder: Path, monkeypatch):
         two.receive("numbers", draft=False)
         with page(client, "one") as one:
             one.send(kind="lead")
+            two.receive("role", asked=True)
+            two.send(kind="hand", over=True)
             one.receive("role", leads=True)
             edit(one, 1.5, resting=False)
             assert two.receive("numbers")["draft"]

@@ -6,8 +6,10 @@ import { Link, type LinkState } from "./link";
 import { Model } from "./model";
 import { Bar } from "./panel/bar";
 import { BrushTool } from "./panel/brush";
+import { CompareBar } from "./panel/compare";
 import { bindKey, plainKey } from "./panel/keys";
 import { LockTool } from "./panel/lock";
+import { Look } from "./panel/look";
 import { Settings } from "./panel/settings";
 import { Sheets } from "./panel/sheets";
 import { Stack } from "./panel/stack";
@@ -24,6 +26,7 @@ class App {
   readonly timeline: TimelineBar;
   readonly lock: LockTool;
   readonly brush: BrushTool;
+  readonly look: Look;
   private readonly notices = new Notices();
   private readonly problems: ProblemBar;
   private readonly status = new Status(this.model);
@@ -56,11 +59,14 @@ class App {
       left.getBoundingClientRect().right,
       settings.hidden ? 0 : innerWidth - settings.getBoundingClientRect().left,
     ];
+    const viewbar = new Viewbar(this.model, this.viewer, this.brush, name);
+    this.look = new Look(this.model, this.viewer, viewbar, this.lock, this.timeline, this.notices);
     root.append(
-      new Bar(this.model, () => this.setTheme()).element,
+      new Bar(this.model, () => this.setTheme(), () => this.look).element,
       left,
       settings,
-      new Viewbar(this.model, this.viewer, this.brush, name).element,
+      viewbar.element,
+      new CompareBar(this.model, this.viewer, () => this.endComparison()).element,
       this.timeline.element,
       this.status.element,
       this.notices.element,
@@ -194,6 +200,10 @@ class App {
       case "saved":
         this.notices.show(`${message.name} is saved`);
         break;
+      case "followed":
+        model.followed = message;
+        model.tell("followed");
+        break;
       case "notice":
         this.notices.show(message.message);
         break;
@@ -202,6 +212,12 @@ class App {
         model.tell("document"); // controls go back to what holds
         break;
     }
+  }
+
+  private endComparison(): void {
+    const { model } = this;
+    if (model.timeline?.against) model.say({ kind: "against", name: "" });
+    else model.say({ kind: "compare", to: "none" });
   }
 
   /** Another file is open. */

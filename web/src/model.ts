@@ -4,6 +4,7 @@ import type { Link } from "./link";
 import { inUnit } from "./panel/units";
 import type {
   Document,
+  Followed,
   FromPage,
   Guides,
   Json,
@@ -34,12 +35,14 @@ type Topic =
   | "chosen"
   | "problems"
   | "progress"
+  | "look"
+  | "followed"
   | "overlay";
 
 export class Model {
   welcome: Welcome | null = null;
   documents: Partial<Record<File, Document>> = {};
-  role: Role = { kind: "role", leads: true, others: 0 };
+  role: Role = { kind: "role", leads: true, others: 0, asked: false, asks: false };
   numbers: Numbers | null = null;
   names: Names = { kind: "names", regions: [], maps: [], vectors: [], curves: [] };
   guides: Guides | null = null;
@@ -54,6 +57,8 @@ export class Model {
   /** The locks whose own values are edited, in place of those of all locks; empty: all. */
   locks: number[] = [];
   problems: Problem[] = [];
+  /** How the leading page looks at the groom. */
+  followed: Followed | null = null;
   /** Progress of a groom that takes long. */
   progress: Progress | null = null;
   link: Link | null = null;

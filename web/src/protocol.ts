@@ -51,7 +51,7 @@ export interface Hello {
   leads?: boolean;
 }
 
-/** Requests the edit lock. */
+/** Requests the edit lock; a page that holds it is asked, and hands it over after a while without an answer. */
 export interface Lead {
   kind: "lead";
 }
@@ -182,6 +182,25 @@ export interface Unsculpt {
   kind: "unsculpt";
 }
 
+/** Shares the look of the leading page with those that follow. */
+export interface Look {
+  kind: "look";
+  camera: number[];
+  light: string;
+  color: string;
+  overlay: string;
+  file: "recipe" | "shot";
+  place: (string | number)[];
+  locks: number[];
+  frame: number | null;
+}
+
+/** Answers another page that asks for the edit lock. */
+export interface Hand {
+  kind: "hand";
+  over: boolean;
+}
+
 /** Starts, pauses or resumes the simulation, or restarts it from an existing frame. */
 export interface Play {
   kind: "play";
@@ -216,11 +235,13 @@ export interface Welcome {
   colors: Record<string, [number, number, number, number]>;
 }
 
-/** Holder of the edit lock. ``others`` is the number of other connected pages. */
+/** Holder of the edit lock. */
 export interface Role {
   kind: "role";
   leads: boolean;
   others: number;
+  asked: boolean;
+  asks: boolean;
 }
 
 /** Names of the recipes and caches of the project; sent again when they change. */
@@ -415,6 +436,19 @@ export interface Notice {
   message: string;
 }
 
+/** The look of the leading page. */
+export interface Followed {
+  kind: "followed";
+  camera: number[];
+  light: string;
+  color: string;
+  overlay: string;
+  file: "recipe" | "shot";
+  place: (string | number)[];
+  locks: number[];
+  frame: number | null;
+}
+
 /** An error message of one line, for a request that was refused. */
 export interface Trouble {
   kind: "trouble";
@@ -453,6 +487,8 @@ export type FromPage =
   | Isolate
   | Sculpt
   | Unsculpt
+  | Look
+  | Hand
   | Play
   | Against
   | Watch;
@@ -476,6 +512,7 @@ export type FromServer =
   | Heard
   | Saved
   | Notice
+  | Followed
   | Trouble
   | Problems
   | Progress;

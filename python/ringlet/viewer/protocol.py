@@ -51,7 +51,7 @@ class Hello(Message):
 
 
 class Lead(Message):
-    """Requests the edit lock."""
+    """Requests the edit lock; a page that holds it is asked, and hands it over after a while without an answer."""
 
     kind: Literal["lead"] = "lead"
 
@@ -223,6 +223,39 @@ class Sculpt(Message):
     resting: bool = True
 
 
+class Shared(Message):
+    """How the leading page looks at the groom.
+
+    camera: position and target [m], six numbers
+    light, color, overlay: their choices on the page; empty for none
+    file, place: the stage whose settings are shown
+    locks:  ids of the chosen locks
+    frame:  the frame that is seen; None without a timeline
+    """
+
+    camera: list[Coordinate] = Field(min_length=6, max_length=6)
+    light: str = Field(max_length=64)
+    color: str = Field(max_length=64)
+    overlay: str = Field(max_length=64)
+    file: File
+    place: Place = Field(max_length=8)
+    locks: list[Id] = Field(max_length=10_000)
+    frame: FrameNumber | None
+
+
+class Look(Shared):
+    """Shares the look of the leading page with those that follow."""
+
+    kind: Literal["look"] = "look"
+
+
+class Hand(Message):
+    """Answers another page that asks for the edit lock."""
+
+    kind: Literal["hand"] = "hand"
+    over: bool
+
+
 class Unsculpt(Message):
     """Removes the sculpts of all guides."""
 
@@ -271,6 +304,8 @@ FromPage = Annotated[
     | Isolate
     | Sculpt
     | Unsculpt
+    | Look
+    | Hand
     | Play
     | Against
     | Watch,
@@ -305,11 +340,24 @@ class Welcome(Message):
 
 
 class Role(Message):
-    """Holder of the edit lock. ``others`` is the number of other connected pages."""
+    """Holder of the edit lock.
+
+    others: number of other connected pages
+    asked:  whether another page asks this one for the lock
+    asks:   whether this page waits for the answer
+    """
 
     kind: Literal["role"] = "role"
     leads: bool
     others: int
+    asked: bool = False
+    asks: bool = False
+
+
+class Followed(Shared):
+    """The look of the leading page."""
+
+    kind: Literal["followed"] = "followed"
 
 
 class Files(Message):
@@ -639,6 +687,7 @@ FROM_SERVER: tuple[type[Message], ...] = (
     Heard,
     Saved,
     Notice,
+    Followed,
     Trouble,
     Problems,
     Progress,

@@ -45,6 +45,7 @@ PATIENCE = 1.0  # that the end of the server waits for work in progress [s]
 FILES_INTERVAL = 2.0  # interval at which the list of files is refreshed [s]
 WATCH_INTERVAL = 0.4  # interval at which open files are looked at [s]
 REST_AFTER = 1.0  # time without a message of a gesture after which its whole groom is made [s]
+ANSWER_AFTER = 10.0  # time after which a page that does not answer hands the edit lock over [s]
 PROGRESS_AFTER = 0.6  # time from which the progress of a groom is shown [s]
 
 MAKE = Fix(label="Make it", message={"kind": "proceed"})
@@ -105,7 +106,8 @@ class Session:
         self.publisher = Publisher()
         self.problems = ProblemList(self.publisher)
         self.pages: list[Page] = []
-        self.leader, self._claimed = "", False
+        self.leader, self._claimed, self._asking = "", False, ""
+        self._answer = Timer(ANSWER_AFTER, self.submit)
         self._heard = Counter[str]()
         self._thread = SerialWorker("session")
         self._watching: asyncio.Task[None] | None = None
@@ -208,6 +210,7 @@ class Session:
         if self._watching is not None:
             self._watching.cancel()
         self._rest.cancel()
+        self._answer.cancel()
         self._thread.submit(self._finish)
         self._thread.stop(PATIENCE)
         self._playback.stop()
@@ -241,6 +244,7 @@ class Session:
         self.publisher.unsubscribe(page.queue)
         if page.name == self.leader:
             self._end_gesture()
+            self._hand_over(over=bool(self._asking))
         self._send_roles()
 
     def _welcome(self, heard: int) -> bytes:
@@ -261,10 +265,36 @@ class Session:
             )
         )
 
+    def _ask_for_lead(self, page: Page) -> None:
+        """Gives the edit lock to a page, or asks the connected page that holds it."""
+        if page.name == self.leader or not any(other.name == self.leader for other in self.pages):
+            self._asking = page.name
+            self._hand_over(over=True)
+            return
+        self._asking = page.name
+        self._answer.restart(lambda: self._hand_over(over=True))
+        self._send_roles()
+
+    def _hand_over(self, *, over: bool) -> None:
+        """Answers the page that asks for the edit lock."""
+        self._answer.cancel()
+        asking, self._asking = self._asking, ""
+        if over and asking:
+            self._end_gesture()
+            self.leader, self._claimed = asking, True
+        self._send_roles()
+
+    def _share(self, page: Page, look: protocol.Look) -> None:
+        """Shares the look of the leading page with the others, and with those that join later."""
+        self.publisher.publish("followed", pack(protocol.Followed(**look.model_dump(exclude={"kind"}))))
+        page.queue.discard("followed")
+
     def _send_roles(self) -> None:
         others = len({page.name for page in self.pages}) - 1
         for page in self.pages:
-            page.queue.put("role", pack(protocol.Role(leads=page.name == self.leader, others=others)))
+            leads = page.name == self.leader
+            asked, asks = leads and bool(self._asking), page.name == self._asking
+            page.queue.put("role", pack(protocol.Role(leads=leads, others=others, asked=asked, asks=asks)))
 
     # Messages
 
@@ -279,8 +309,7 @@ class Session:
 
     def _dispatch(self, page: Page, message: protocol.FromPage) -> None:
         if isinstance(message, protocol.Lead):
-            self.leader, self._claimed = page.name, True
-            self._send_roles()
+            self._ask_for_lead(page)
             return
         if isinstance(message, protocol.Watch):
             page.queue.request(self._playback.frame_sources(message))
@@ -288,7 +317,11 @@ class Session:
         if page.name != self.leader:
             raise UserError("another page leads this session; take the lead to edit")
         files = self.files
-        if isinstance(message, protocol.Set):
+        if isinstance(message, protocol.Look):
+            self._share(page, message)
+        elif isinstance(message, protocol.Hand):
+            self._hand_over(over=message.over)
+        elif isinstance(message, protocol.Set):
             files.set(message.file, message.changes, message.gesture)
             self._edited(message.file, resting=message.resting)
         elif isinstance(message, protocol.Arrange):

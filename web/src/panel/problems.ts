@@ -29,7 +29,8 @@ export class ProblemBar {
 
   private update(): void {
     const own = this.own ? [h("div", { class: "problem" }, h("p", {}, this.own))] : [];
-    this.element.replaceChildren(...own, ...this.model.problems.map((one) => this.row(one)), this.progress);
+    const asked = this.model.role.asked ? [this.question()] : [];
+    this.element.replaceChildren(...own, ...asked, ...this.model.problems.map((one) => this.row(one)), this.progress);
     document.documentElement.classList.toggle("old-look", this.model.problems.some((one) => OLD_LOOK.includes(one.subject)));
   }
 
@@ -47,6 +48,18 @@ export class ProblemBar {
       { class: `problem ${problem.subject.split("/")[0]}`, "data-problem": problem.subject },
       h("p", {}, this.model.words(problem.message)),
       h("div", { class: "group" }, ...buttons),
+    );
+  }
+
+  /** Another page asks to edit. */
+  private question(): HTMLElement {
+    const answer = (label: string, over: boolean) =>
+      h("button", { type: "button", class: "quiet", onclick: () => this.model.say({ kind: "hand", over }) }, label);
+    return h(
+      "div",
+      { class: "problem recovered" },
+      h("p", {}, "Another viewer asks to edit. Without an answer they may in 10 seconds."),
+      h("div", { class: "group" }, answer("Hand over", true), answer("Not now", false)),
     );
   }
 

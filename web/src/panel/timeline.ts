@@ -71,6 +71,11 @@ export class TimelineBar {
     else this.ask();
   }
 
+  /** The frame that is seen; none without a timeline. */
+  get current(): number | null {
+    return this.model.timeline ? this.frame : null;
+  }
+
   /** How many frames there are. */
   get count(): number {
     return this.model.timeline?.frames.length ?? 0;
@@ -215,6 +220,7 @@ export class TimelineBar {
 
   /** Shows a frame, or the nearest that is there, as soon as it has come. */
   show(frame: number): void {
+    if (frame !== this.frame) this.model.tell("look");
     this.frame = frame;
     this.slider.value = String(frame);
     this.draw();

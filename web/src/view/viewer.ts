@@ -15,6 +15,8 @@ const FOV = 24;
 const SUBJECT = 0.8; // width of what is framed, as a part of the picture's height
 const REST_AFTER = 180; // time without a movement after which all detail is drawn [ms]
 
+export type Arrangement = "split" | "wipe" | "flip";
+
 export interface DrawStatistics {
   drawMs: number;
   shown: number;
@@ -28,8 +30,16 @@ export class Viewer {
   readonly hair: Record<Side, Hair>;
   readonly guides = new GuideLines();
   compared = false;
+  /** How two looks are arranged, which is on the left, which is seen alone, and where the wipe is. */
+  arrangement: Arrangement = "split";
+  first: Side = "a";
+  front: Side = "a";
+  wipe = 0.5;
+  private theme: "dark" | "light" = "dark";
   turntable = false;
   onPaint: () => void = () => {};
+  /** The camera has moved. */
+  onLook: () => void = () => {};
   onDraw: (statistics: DrawStatistics) => void = () => {};
 
   /** How much of the picture panels cover on the left and on the right [pixels]. */
@@ -133,6 +143,7 @@ export class Viewer {
   }
 
   setTheme(theme: "dark" | "light"): void {
+    this.theme = theme;
     this.backdrop.setTheme(theme);
     this.invalidate();
   }
@@ -173,11 +184,23 @@ export class Viewer {
       .multiplyScalar(distance)
       .add(target);
     this.controls.update();
+    this.onLook();
+    this.invalidate();
+  }
+
+  /** Puts the camera: its place and its target, six numbers. */
+  lookFrom(camera: number[]): void {
+    this.framed = true;
+    this.camera.position.fromArray(camera);
+    this.controls.target.fromArray(camera, 3);
+    this.camera.lookAt(this.controls.target);
+    this.onLook();
     this.invalidate();
   }
 
   /** Something moves: speed counts more than detail for a moment. */
   move(): void {
+    this.onLook();
     this.moved = performance.now();
     this.invalidate();
   }
@@ -197,6 +220,21 @@ export class Viewer {
   drawNow(): void {
     this.moved = 0;
     this.paint(1);
+  }
+
+  /** Draws at a size and before a wall of one color, for a picture that is kept; then as before. */
+  drawAt(width: number, height: number, taken: (drawn: HTMLCanvasElement) => void, wall?: string): void {
+    const { renderer, element } = this;
+    const ratio = renderer.getPixelRatio();
+    renderer.setPixelRatio(1);
+    renderer.setSize(width, height, false);
+    if (wall) this.backdrop.setWall(wall, wall);
+    this.drawNow();
+    taken(renderer.domElement);
+    this.backdrop.setTheme(this.theme);
+    renderer.setPixelRatio(ratio);
+    renderer.setSize(element.clientWidth, element.clientHeight);
+    this.drawNow();
   }
 
   get pictures(): number {
@@ -248,8 +286,10 @@ export class Viewer {
     camera.updateMatrixWorld();
     lights.update(camera);
     this.backdrop.update(size.x / Math.max(size.y, 1));
-    const sides: Side[] = this.compared ? ["a", "b"] : ["a"];
-    const width = size.x / sides.length;
+    const both: Side[] = this.first === "a" ? ["a", "b"] : ["b", "a"];
+    const sides: Side[] = !this.compared ? ["a"] : this.arrangement === "flip" ? [this.front] : both;
+    const split = this.compared && this.arrangement === "split";
+    const width = split ? size.x / 2 : size.x;
     camera.aspect = width / Math.max(size.y, 1);
     const aside = this.makeRoom(width, size.y);
     const pixel = (2 * Math.tan((0.5 * FOV * Math.PI) / 180)) / (size.y * camera.zoom * renderer.getPixelRatio());
@@ -270,8 +310,9 @@ export class Viewer {
         this.shadow.update(renderer, lights.key, box, casters);
       }
       renderer.setScissorTest(sides.length > 1);
-      renderer.setViewport(k * width, 0, width, size.y);
-      renderer.setScissor(k * width, 0, width, size.y);
+      const [begin, end] = split ? [k * width, (k + 1) * width] : [k * this.wipe * width, k ? width : this.wipe * width];
+      renderer.setViewport(split ? begin : 0, 0, width, size.y);
+      renderer.setScissor(begin, 0, end - begin, size.y);
       renderer.clear();
       renderer.render(this.backdrop.scene, camera);
       renderer.render(this.scene, camera);
@@ -292,7 +333,7 @@ export class Viewer {
   /** Two looks are as large as fits between the panels; returns by how much each is moved to the middle there [pixels]. */
   private makeRoom(width: number, height: number): [number, number] {
     this.camera.zoom = 1;
-    if (!this.compared) return [0, 0];
+    if (!this.compared || this.arrangement !== "split") return [0, 0];
     const [left, right] = this.covered().map((pixels) => Math.min(pixels, 0.8 * width));
     this.camera.zoom = Math.min(1, (width - Math.max(left, right)) / (SUBJECT * height));
     return [0.5 * left, -0.5 * right];
