@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from conftest import Review
+from conftest import Review, different
 
 
 def number(review: Review, setting: str) -> Any:
@@ -189,3 +189,196 @@ def test_another_file_is_opened_after_unsaved_changes_are_saved(opened: Any, fol
     review.until("ringlet.model.welcome.name == 'third.recipe.toml'")
     assert page.locator(".file-name").inner_text() == "third.recipe.toml"
     assert not review.errors
+
+
+def test_the_first_sight_of_settings_is_short_and_a_search_finds_the_others(opened: Any):
+    review: Review = opened(viewport={"width": 1280, "height": 800})
+    shown = "[...document.querySelectorAll('.settings > .fields > .field')].filter(e => e.checkVisibility()).length"
+    assert review.get("document.querySelector('.settings').scrollHeight") <= 640
+    assert review.get(shown) == 5
+    review.page.get_by_label("Search settings").fill("flat")
+    assert review.page.locator('[data-setting="curl.flatness"]').is_visible() and review.get(shown) < 5
+    review.page.get_by_label("Search settings").fill("")
+    review.page.get_by_role("button", name="Show all settings").click()
+    assert review.get(shown) > 20
+
+
+def test_points_of_a_ramp_stay_in_its_box_and_shapes_are_offered(opened: Any):
+    review: Review = opened()
+    review.page.locator('[data-setting="curl.width"] summary', has_text="along the hair").click()
+    ramp = review.page.locator('[data-setting="curl.width.ramp"] svg.ramp')
+    ramp.scroll_into_view_if_needed()
+    box = ramp.bounding_box()
+    review.page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
+    review.page.mouse.down()
+    review.page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] - 80, steps=3)
+    assert 0 <= float(ramp.locator("circle").nth(1).get_attribute("cy")) <= 104
+    review.page.mouse.up()
+    for _ in range(2):
+        review.answered()
+        heights = [float(dot.get_attribute("cy")) for dot in ramp.locator("circle").all()]
+        assert min(heights) >= 5 and max(heights) <= 99
+    assert next(text for text in ramp.locator("text").all_inner_texts() if text) == "0"
+    review.page.get_by_label("ramp: shape of the curve").first.select_option("fades to the tip")
+    review.until("JSON.stringify(ringlet.model.documents.recipe.said.curl.width.ramp) == '[[0,1],[1,0]]'")
+
+
+OVERLAPS = """() => {
+    const parts = [...document.querySelectorAll('.bar, .left > *, .settings, .viewbar, .status, .sheets, .problems')]
+        .filter((e) => e.checkVisibility() && e.getBoundingClientRect().height > 0)
+        .map((e) => [e.className, e.getBoundingClientRect()]);
+    return parts.flatMap(([a, p], k) => parts.slice(k + 1)
+        .filter(([, q]) => Math.min(p.right, q.right) - Math.max(p.left, q.left) > 1
+            && Math.min(p.bottom, q.bottom) - Math.max(p.top, q.top) > 1)
+        .map(([b]) => `${a} / ${b}`));
+}"""
+
+SMALL = """() => [...document.querySelectorAll('button, input, select, summary')]
+    .filter((e) => e.checkVisibility() && !e.closest('.ramp, .choice'))
+    .map((e) => [e, e.getBoundingClientRect()]).filter(([, box]) => box.width && Math.min(box.width, box.height) < 24)
+    .map(([e]) => e.outerHTML.slice(0, 100))"""
+
+
+@pytest.mark.parametrize("width, height", [(390, 844), (844, 390), (820, 1180), (1280, 800)])
+def test_panels_do_not_overlap_and_targets_are_large_enough(opened: Any, width: int, height: int):
+    review: Review = opened(viewport={"width": width, "height": height}, has_touch=True, is_mobile=width != 1280)
+    for sheet in ("Settings", "Stages", "View", "Picture") if width <= 720 else ("",):
+        if sheet:
+            review.page.get_by_role("navigation", name="Panels").get_by_role("button", name=sheet).click()
+        assert review.page.evaluate(OVERLAPS) == []
+        assert review.page.evaluate(SMALL) == []
+        assert review.get("document.documentElement.scrollWidth") <= width
+
+
+def test_light_camera_and_bookmarks_are_remembered(opened: Any):
+    review: Review = opened()
+    page = review.page
+    page.get_by_label("Light").select_option(index=1)
+    review.get("(ringlet.viewer.orbit(0.7, 0.1), ringlet.viewer.move())")
+    page.locator("main canvas").focus()
+    page.keyboard.press("Shift+Digit1")
+    eye = review.get("ringlet.viewer.camera.position.toArray()")
+    page.keyboard.press("ArrowLeft")
+    page.keyboard.press("1")
+    assert review.get("ringlet.viewer.camera.position.toArray()") == pytest.approx(eye)
+    page.wait_for_timeout(300)
+    page.reload()
+    review.until("window.ringlet?.viewer.hair.a.table && ringlet.model.settled")
+    assert review.get("ringlet.viewer.camera.position.toArray()") == pytest.approx(eye)
+    assert page.get_by_label("Light").evaluate("e => e.selectedIndex") == 1
+
+
+def test_locks_are_chosen_by_a_lasso_and_by_keys_and_the_edited_ones_are_listed(opened: Any):
+    review: Review = opened()
+    page = review.page
+    page.keyboard.press("n")
+    assert review.get("ringlet.lock.rows") == [0]
+    box = page.locator("main canvas").bounding_box()
+    page.keyboard.down("Shift")
+    page.mouse.move(box["width"] / 2, 60)
+    page.mouse.down()
+    for x, y in ((0.75, 0.5), (0.5, 0.95), (0.25, 0.5), (0.5, 0.1)):
+        page.mouse.move(box["width"] * x, box["height"] * y, steps=3)
+    page.mouse.up()
+    page.keyboard.up("Shift")
+    chosen = review.get("ringlet.lock.rows.length")
+    assert chosen > 1
+    page.get_by_role("button", name="Isolate").click()
+    review.until(f"ringlet.viewer.hair.a.locks.marked.reduce((sum, one) => sum + one, 0) == {chosen}")
+    assert page.get_by_role("list", name="Edited locks").get_by_role("button").count() == chosen
+    assert not review.errors
+
+
+def test_two_looks_are_labelled_wiped_swapped_and_flipped(opened: Any):
+    review: Review = opened()
+    page = review.page
+    number(review, "curl.width").fill("2")
+    number(review, "curl.width").press("Enter")
+    review.until("ringlet.model.documents.recipe.dirty")
+    review.settled()
+    now = review.picture()
+    page.get_by_label("Show another look beside this one").select_option("saved")
+    review.until("ringlet.viewer.compared && ringlet.viewer.hair.b.table")
+    assert page.locator(".look-label").all_inner_texts() == ["now", "as saved"]
+    page.get_by_label("Arrangement of the two looks").select_option("wipe")
+    page.get_by_label("Place of the wipe").focus()
+    for _ in range(30):
+        page.keyboard.press("ArrowRight")
+    wiped = review.picture()
+    assert different(wiped[:, :900], now[:, :900]) < 0.002 < different(wiped[:, 970:], now[:, 970:]) + 0.003
+    page.get_by_role("button", name="Swap the two sides").click()
+    assert different(review.picture()[:, :900], now[:, :900]) > 0.005
+    page.get_by_label("Arrangement of the two looks").select_option("flip")
+    page.get_by_label("Arrangement of the two looks").blur()
+    assert different(review.picture(), now) < 0.002
+    page.keyboard.press("Tab")
+    assert different(review.picture(), now) > 0.005
+    page.get_by_role("button", name="End", exact=True).click()
+    review.until("!ringlet.viewer.compared")
+    assert not review.errors
+
+
+def test_messages_do_not_pile_up_and_the_diff_is_whole(opened: Any):
+    review: Review = opened()
+    for k in range(5):
+        review.get(f"ringlet.notices.show('message {k % 3}')")
+    assert review.page.locator(".notice").count() == 2
+    long = "x" * 300
+    review.get(f"ringlet.model.say({{ kind: 'set', changes: [[['name'], '{long}']], gesture: 1 }})")
+    review.until("ringlet.model.documents.recipe.dirty")
+    review.page.locator(".file-name").click()
+    assert long in review.page.locator("ins.change").inner_text()
+
+
+def test_the_focus_of_the_picture_is_seen_between_the_panels(opened: Any):
+    review: Review = opened()
+    review.page.keyboard.press("Tab")
+    review.page.locator("main canvas").focus()
+    style = "getComputedStyle(document.querySelector('.picture'), '::before')"
+    left, right = (float(review.get(f"{style}.{side}").removesuffix("px")) for side in ("left", "right"))
+    panel = review.get("document.querySelector('.left').getBoundingClientRect().right")
+    settings = review.get("innerWidth - document.querySelector('.settings').getBoundingClientRect().left")
+    assert left >= panel and right >= settings
+    assert review.get("getComputedStyle(document.querySelector('canvas')).outlineStyle") == "none"
+
+
+def test_an_operator_asks_for_the_curve_that_it_needs(opened: Any, folder: Path):
+    recipe = folder / "small.recipe.toml"
+    recipe.write_text(recipe.read_text() + "[curves.wave]\npoints = [[0, 9, 0], [0, 14, 0]]\n")
+    review: Review = opened()
+    review.until("ringlet.model.names.curves.length")
+    review.page.get_by_label("Add an operator").select_option("attract")
+    dialog = review.page.get_by_role("dialog", name="Choose a curve for ‘attract’")
+    dialog.get_by_role("combobox").select_option("wave")
+    dialog.get_by_role("button", name="Add").click()
+    review.until("ringlet.model.documents.recipe.said.shape?.[0].curve == 'wave' && ringlet.model.settled")
+
+
+def test_numbers_of_a_shot_have_units(opened: Any):
+    review: Review = opened("small.shot.toml")
+    review.choose("shot:strands")
+    assert review.page.locator(".settings h2").inner_text().lower() == "hair material"
+    unit = review.page.locator('[data-setting="strands.youngs_modulus"] .unit').first
+    assert unit.inner_text() == "GPa"
+    number(review, "strands.youngs_modulus").fill("3")
+    number(review, "strands.youngs_modulus").press("Enter")
+    review.until("ringlet.model.documents.shot.said.strands?.youngs_modulus == 3e9")
+    assert review.page.evaluate("() => ringlet.model.words('curl.width is 0.3 m; must be at most 0.2 m')") == (
+        "curl.width is 30 cm; must be at most 20 cm"
+    )
+
+
+def test_a_picture_that_takes_long_grows_in_detail_at_rest(opened: Any):
+    review: Review = opened()
+    details = review.page.evaluate(
+        """() => new Promise((done) => {
+            const { pace } = ringlet.viewer, seen = [], next = pace.next.bind(pace);
+            pace.whole = 2000;
+            pace.took = () => {};
+            pace.next = (moving, fresh) => (seen.push(next(moving, fresh)), seen.at(-1));
+            ringlet.viewer.invalidate();
+            const look = () => (seen.at(-1) === 1 ? done(seen) : setTimeout(look, 20));
+            look();
+        })"""
+    )
+    assert len(details) > 2 and details == sorted(details) and details[-1] == 1

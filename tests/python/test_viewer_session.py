@@ -220,6 +220,24 @@ def test_a_brush_stroke_is_one_step_and_is_saved_beside_the_recipe(folder: Path)
         assert np.array_equal(one.latest("guides")["points"], guides["points"])
 
 
+def test_frozen_guides_stay_under_every_brush(folder: Path):
+    with serving(folder) as client, page(client) as one:
+        guides = one.receive("guides")
+        one.latest("numbers", draft=False)
+        tip = guides["points"].reshape(-1, 3)[guides["offsets"][1] - 1].tolist()
+        brush = {"at": tip, "by": [0, 0, 0], "radius": 0.02, "gesture": 1}
+        one.send(kind="sculpt", tool="freeze", **brush)
+        assert one.receive("guides")["frozen"].tolist() == [1, 0, 0, 0, 0, 0]
+        stroke(one, guides, gesture=2)
+        one.receive("guides")
+        assert np.array_equal(one.receive("guides")["points"], guides["points"])
+        one.send(kind="sculpt", tool="thaw", **brush)
+        assert not one.receive("guides")["frozen"].any()
+        stroke(one, guides, gesture=3)
+        one.receive("guides")
+        assert not np.array_equal(one.receive("guides")["points"], guides["points"])
+
+
 def test_a_restarted_server_restores_sculpts(folder: Path):
     with serving(folder) as client, page(client) as one:
         stroke(one, one.receive("guides"))

@@ -49,7 +49,7 @@ def press(one: Page, found: dict[str, Any], label: str) -> None:
 # Outside writes
 
 
-def test_an_outside_write_is_loaded_as_one_undo_step(folder: Path):
+def test_an_outside_write_is_loaded_as_an_undo_step(folder: Path):
     recipe = folder / "small.recipe.toml"
     with serving(folder) as client, page(client) as one:
         before = one.receive("document")["text"]

@@ -17,7 +17,7 @@ from ringlet.viewer import protocol
 from ringlet.viewer.document import Document, History, State, set_value
 from ringlet.viewer.merge import Versions
 from ringlet.viewer.project import Project
-from ringlet.viewer.protocol import Difference, Place
+from ringlet.viewer.protocol import Difference, File, Place
 from ringlet.viewer.variant import variant
 from ringlet.viewer.wire import pack
 
@@ -30,7 +30,7 @@ class Files:
 
     def __init__(self, file: Path, project: Project) -> None:
         self.project, self.file = project, project.inside(file, "view")
-        self.documents: dict[str, Document] = {}
+        self.documents: dict[File, Document] = {}
         self.mode = "stage"
         self._history = History()
         if self.file.suffix == ".toml":
@@ -81,7 +81,7 @@ class Files:
             self.project.inside(file, f"{self.file.name}: {what}")
         return shot
 
-    def document(self, file: str) -> Document:
+    def document(self, file: File) -> Document:
         """The open file of a kind, ``recipe`` or ``shot``; raises UserError when none is open."""
         if file not in self.documents:
             raise UserError(f"{self.file.name}: no {file} is open; open one with: ringlet view")
@@ -101,7 +101,7 @@ class Files:
 
     # Changes
 
-    def set(self, file: str, changes: list[tuple[Place, Any]], gesture: int) -> None:
+    def set(self, file: File, changes: list[tuple[Place, Any]], gesture: int) -> None:
         """Sets values of settings; None removes a setting."""
         document = self.document(file)
         before = document.model
@@ -168,16 +168,16 @@ class Files:
 
     # Other programs
 
-    def watched(self) -> dict[Path, str]:
+    def watched(self) -> dict[Path, File]:
         """Files on disk that the session depends on, and the kind of the document that each belongs to."""
-        found: dict[Path, str] = {}
+        found: dict[Path, File] = {}
         for kind, document in self.documents.items():
             if kind == "recipe":
                 found |= dict.fromkeys(document.model.named_files().values(), kind)
             found |= dict.fromkeys([document.path, *_bases(document.contents(), document.path)], kind)
         return found
 
-    def meet_disk(self, file: str) -> bool:
+    def meet_disk(self, file: File) -> bool:
         """Takes in what another program wrote to a document and its file of edits; returns whether its state changed.
 
         Raises UserError when that is invalid.
@@ -199,7 +199,7 @@ class Files:
         name = parse_toml(text, path.name, "recipe").get("edits")
         return self.project.inside(path.parent / name, f"{path.name}: edits") if isinstance(name, str) else None
 
-    def versions(self, file: str) -> list[tuple[Versions, str]]:
+    def versions(self, file: File) -> list[tuple[Versions, str]]:
         """The three versions of a document in conflict and of its file of edits, each with a prefix for names."""
         document = self.document(file)
         if document.theirs is None:
@@ -210,7 +210,7 @@ class Files:
             (Versions(document.saved_edits, document.state.edits, edits), "edits: "),
         ]
 
-    def differences(self, file: str) -> list[Difference]:
+    def differences(self, file: File) -> list[Difference]:
         """Settings in which a document differs from its file on disk; none where one of both is no TOML."""
         try:
             return [
@@ -221,7 +221,7 @@ class Files:
         except ValueError:
             return []
 
-    def resolve(self, file: str, choice: str, mine: list[str], theirs: list[str]) -> None:
+    def resolve(self, file: File, choice: str, mine: list[str], theirs: list[str]) -> None:
         """Resolves a conflict; raises UserError for a merge that leaves a setting open or gives an invalid file.
 
         choice:       ``mine``, ``theirs``, or ``merge`` for a choice by setting
@@ -244,13 +244,13 @@ class Files:
                 texts.append(one.merged([place for place in places if next(names).name in mine]))
         document.resolve(*texts)
 
-    def recover(self, file: str, text: str, edits: str, saved: str, saved_edits: str) -> None:
+    def recover(self, file: File, text: str, edits: str, saved: str, saved_edits: str) -> None:
         """Restores unsaved texts of an earlier session; raises UserError when they are invalid."""
         document = self.document(file)
         base = (saved, saved_edits) if saved else (document.saved, document.saved_edits)
         document.recover(text, edits or document.saved_edits, *base)
 
-    def step(self, kind: str) -> list[str]:
+    def step(self, kind: str) -> list[File]:
         """Undoes, redoes or reverts to the saved state; returns the kinds of the changed files."""
         if kind == "revert":
             before = {name: document.state for name, document in self.documents.items()}
@@ -265,7 +265,7 @@ class Files:
 
     # Saving
 
-    def save(self, file: str, name: str = "", as_variant: bool = False) -> Path:
+    def save(self, file: File, name: str = "", as_variant: bool = False) -> Path:
         """Writes a file and its manual edits.
 
         name:       file name of a copy beside it; empty for the file itself
@@ -303,7 +303,7 @@ class Files:
 
     # Messages
 
-    def message(self, file: str) -> bytes:
+    def message(self, file: File) -> bytes:
         """Message with the state of a file."""
         document = self.documents[file]
         contents, model = document.contents(), document.model

@@ -31,7 +31,7 @@ from ringlet.viewer.playback import Playback
 from ringlet.viewer.problems import GROOM, RECOVERED, SAVE, UNDO, WORK, ProblemList, conflict_fixes, dismiss, fixes_of
 from ringlet.viewer.progress_report import ProgressReport
 from ringlet.viewer.project import Project
-from ringlet.viewer.protocol import Fix
+from ringlet.viewer.protocol import File, Fix
 from ringlet.viewer.publisher import Publisher, SendQueue
 from ringlet.viewer.scene import read_scene
 from ringlet.viewer.sculpting import Sculptor
@@ -145,8 +145,9 @@ class Session:
                 return
             self._heard.update(entry.heard)
             self.leader, self.recovered = entry.leader, True
-            for kind, one in entry.documents.items():
-                if kind in self.files.documents and self.files.documents[kind].path.name == one.name:
+            for kind, document in self.files.documents.items():
+                one = entry.documents.get(kind)
+                if one is not None and document.path.name == one.name:
                     self.files.recover(kind, one.text, one.edits, one.saved, one.saved_edits)
         except UserError as error:
             self.problems.show(RECOVERED, str(error), [dismiss(RECOVERED)])
@@ -450,7 +451,7 @@ class Session:
         for page in self.pages:
             page.queue.put("saved", pack(protocol.Saved(name=path.name)))
 
-    def _go_on_with(self, file: str, path: Path) -> None:
+    def _go_on_with(self, file: File, path: Path) -> None:
         """Goes on with a copy that was saved: it holds the changes, and the file that it is a copy of has none."""
         files = self.files
         if files.mode == "shot" and file == "recipe":
@@ -504,7 +505,7 @@ class Session:
             self._show_conflict(file)
         self._record()
 
-    def _show_conflict(self, file: str) -> None:
+    def _show_conflict(self, file: File) -> None:
         """Shows the conflict of a document with its file on disk, or that there is none."""
         document = self.files.documents.get(file)
         if document is None or document.theirs is None:
@@ -520,7 +521,7 @@ class Session:
 
     # Grooming
 
-    def _edited(self, file: str, *, resting: bool = True) -> None:
+    def _edited(self, file: File, *, resting: bool = True) -> None:
         document = self.files.document(file)
         if document.theirs is not None and not document.dirty:
             document.meet(*document.theirs)

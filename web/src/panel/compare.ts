@@ -34,7 +34,7 @@ export class CompareBar {
       iconButton("swap", "Swap the two sides", () => this.swap()),
       h("button", { type: "button", class: "quiet", onclick: () => this.end() }, "End"),
     );
-    this.element.append(this.labels.a, this.labels.b, bar, this.divider);
+    this.element.append(this.divider, this.labels.a, this.labels.b, bar);
     model.on("compared", () => this.update());
     bindKey({ keys: "Tab", does: "flip between two looks that are compared", on: (event) => this.flips(event), run: () => this.flip() });
     let held = false;

@@ -21,6 +21,7 @@ export class LockTool {
   private readonly back = h("button", { type: "button", class: "quiet" }, "Reset lock");
   private readonly reach = h("input", { type: "range", min: 0.05, max: 0.8, step: 0.05, value: 0.3, id: "lock-reach" });
   private readonly alone = h("input", { type: "checkbox", role: "switch", class: "switch", id: "lock-alone" });
+  private readonly aloneLabel = h("label", { for: "lock-alone", title: "Settings on the right are those of the chosen locks" });
   private readonly own = h("ul", { class: "own", "aria-label": "Values of this lock alone" });
   private readonly edited = h("ul", { class: "own", "aria-label": "Edited locks" });
   private readonly lasso = document.createElementNS(NS, "polyline");
@@ -47,7 +48,7 @@ export class LockTool {
       h(
         "div",
         { class: "field-head" },
-        h("label", { for: "lock-alone", title: "Settings on the right are those of this lock" }, "values of this lock alone"),
+        this.aloneLabel,
         this.alone,
       ),
       this.own,
@@ -133,6 +134,20 @@ export class LockTool {
     );
   }
 
+  /** What a lock is called: its place in the list, and where on the head it grows. */
+  private called(row: number): string {
+    const { locks } = this.viewer.hair.a;
+    if (!locks || row < 0) return "";
+    const root = new Vector3().fromArray(locks.points, 3 * locks.offsets[row]);
+    const { x, y, z } = root.sub(this.viewer.middle);
+    const size = Math.hypot(x, y, z) || 1;
+    const where = [
+      y > 0.75 * size ? "top" : z > 0.3 * size ? "front" : z < -0.3 * size ? "back" : "",
+      x > 0.3 * size ? "left" : x < -0.3 * size ? "right" : "",
+    ];
+    return `${row + 1} · ${where.filter(Boolean).join(" ") || "side"}`;
+  }
+
   /** The locks that were edited, each a button that chooses it. */
   private listEdited(): void {
     const recipe = this.model.documents.recipe;
@@ -143,7 +158,7 @@ export class LockTool {
     const rows = new Map(all.map((id) => [id, locks!.ids.indexOf(id)]));
     const there = all.filter((id) => rows.get(id)! >= 0).slice(0, MOST_LISTED);
     const button = (id: number) =>
-      h("button", { type: "button", class: "quiet chip", onclick: () => this.choose(rows.get(id)!) }, String(id));
+      h("button", { type: "button", class: "quiet chip", title: `id ${id}`, onclick: () => this.choose(rows.get(id)!) }, this.called(rows.get(id)!));
     this.edited.replaceChildren(h("li", { class: "chips" }, "edited locks: ", ...there.map(button)));
   }
 
@@ -270,7 +285,9 @@ export class LockTool {
 
   private update(): void {
     this.element.toggleAttribute("hidden", this.row < 0);
-    const one = `Lock ${this.id}${this.isolated ? ", isolated" : ""}`;
+    const one = `Lock ${this.called(this.row)}${this.isolated ? ", isolated" : ""}`;
+    this.title.title = this.ids.map((id) => `id ${id}`).join(", ");
+    this.aloneLabel.textContent = `values of ${this.rows.length > 1 ? "these locks" : "this lock"} alone`;
     this.title.textContent = this.rows.length > 1 ? `${this.rows.length} locks` : one;
     const isolated = this.isolatedIds.length;
     this.isolate.toggleAttribute("hidden", isolated === this.rows.length);

@@ -73,7 +73,7 @@ const count = (n: number) => n.toLocaleString("en").replaceAll(",", "\u202f");
 
 const MOST_NOTICES = 2;
 
-/** Short messages that go on their own; what stays is a problem. */
+/** Short messages that go on their own; lasting ones are problems. */
 export class Notices {
   readonly element = h("div", { class: "notices", role: "status", "aria-live": "polite" });
   private readonly shown = new Map<string, { notice: HTMLElement; timer: number }>();
