@@ -57,7 +57,7 @@ def test_one_page_holds_the_edit_lock_and_the_others_follow(folder: Path):
 
 
 def test_a_page_that_does_not_answer_hands_the_edit_lock_over(folder: Path, monkeypatch):
-    monkeypatch.setattr("ringlet.viewer.session.ANSWER_AFTER", 0.1)
+    monkeypatch.setattr("ringlet.viewer.edit_lock.ANSWER_AFTER", 0.1)
     with serving(folder) as client, page(client, "one") as one, page(client, "two") as two:
         one.receive("role", leads=True)
         two.send(kind="lead")

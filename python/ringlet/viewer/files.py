@@ -88,6 +88,11 @@ class Files:
         return self.documents[file]
 
     @property
+    def clean(self) -> bool:
+        """Whether no file has unsaved changes."""
+        return not any(document.dirty for document in self.documents.values())
+
+    @property
     def recipe(self) -> Document:
         """The open recipe; raises UserError when none is open."""
         if "recipe" not in self.documents:
@@ -176,6 +181,11 @@ class Files:
                 found |= dict.fromkeys(document.model.named_files().values(), kind)
             found |= dict.fromkeys([document.path, *_bases(document.contents(), document.path)], kind)
         return found
+
+    def own(self, file: File) -> set[Path]:
+        """The file of a document, and its file of edits."""
+        edits = self.document(file).model.edits_file if file == "recipe" else None
+        return {self.document(file).path} | ({edits} if edits is not None else set())
 
     def meet_disk(self, file: File) -> bool:
         """Takes in what another program wrote to a document and its file of edits; returns whether its state changed.

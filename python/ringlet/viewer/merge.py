@@ -32,7 +32,7 @@ class Versions:
 
     def differences(self) -> list[tuple[Place, Difference]]:
         """Settings that differ between ``mine`` and ``theirs``; raises ValueError for invalid TOML."""
-        tables = (tomllib.loads(text) for text in (self.base, self.mine, self.theirs))
+        first, second, third = (tomllib.loads(text) for text in (self.base, self.mine, self.theirs))
         return [
             (
                 place,
@@ -44,7 +44,7 @@ class Versions:
                     both=base != mine and base != theirs,
                 ),
             )
-            for place, base, mine, theirs in _differing(*tables, [])
+            for place, base, mine, theirs in _differing(first, second, third, [])
         ]
 
     def merged(self, places: Sequence[Place]) -> str:

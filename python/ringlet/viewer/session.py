@@ -8,6 +8,7 @@ import secrets
 from collections import Counter
 from collections.abc import Callable
 from concurrent.futures import Future
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -24,8 +25,8 @@ from ringlet.viewer import overlays, protocol
 from ringlet.viewer.caches import Caches
 from ringlet.viewer.display_groom import DisplayGroom, GroomEvaluator
 from ringlet.viewer.document import Document
+from ringlet.viewer.edit_lock import EditLock
 from ringlet.viewer.files import Files, operator_names, without_effect
-from ringlet.viewer.journal import Entry, Journal, Unsaved
 from ringlet.viewer.manipulator import LockManipulator
 from ringlet.viewer.playback import Playback
 from ringlet.viewer.problems import GROOM, RECOVERED, SAVE, UNDO, WORK, ProblemList, conflict_fixes, dismiss, fixes_of
@@ -33,6 +34,7 @@ from ringlet.viewer.progress_report import ProgressReport
 from ringlet.viewer.project import Project
 from ringlet.viewer.protocol import File, Fix
 from ringlet.viewer.publisher import Publisher, SendQueue
+from ringlet.viewer.recovery import Recovery
 from ringlet.viewer.scene import read_scene
 from ringlet.viewer.sculpting import Sculptor
 from ringlet.viewer.viewport import Viewport, measured
@@ -45,7 +47,6 @@ PATIENCE = 1.0  # that the end of the server waits for work in progress [s]
 FILES_INTERVAL = 2.0  # interval at which the list of files is refreshed [s]
 WATCH_INTERVAL = 0.4  # interval at which open files are looked at [s]
 REST_AFTER = 1.0  # time without a message of a gesture after which its whole groom is made [s]
-ANSWER_AFTER = 10.0  # time after which a page that does not answer hands the edit lock over [s]
 PROGRESS_AFTER = 0.6  # time from which the progress of a groom is shown [s]
 
 MAKE = Fix(label="Make it", message={"kind": "proceed"})
@@ -106,8 +107,7 @@ class Session:
         self.publisher = Publisher()
         self.problems = ProblemList(self.publisher)
         self.pages: list[Page] = []
-        self.leader, self._claimed, self._asking = "", False, ""
-        self._answer = Timer(ANSWER_AFTER, self.submit)
+        self._lock = EditLock(self.submit, self._handed_over)
         self._heard = Counter[str]()
         self._thread = SerialWorker("session")
         self._watching: asyncio.Task[None] | None = None
@@ -125,55 +125,20 @@ class Session:
         files, viewport = Files(file, self.project), Viewport(self.publisher)
         scene = None if "recipe" in files.documents else read_scene(file)
         self.files, self._viewport = files, viewport
-        self._journal = Journal(files.file)
+        self._recovery = Recovery(files, self.problems)
         self._playback = Playback(files, self.publisher, viewport, self._call, self.trouble)
         self._manipulator, self._sculptor = LockManipulator(files), Sculptor(files)
         self._shown: Recipe | None = None  # recipe of the displayed groom
-        self.recovered = False
         self._watcher.changed(files.watched())
-        self._recover()
+        entry = self._recovery.recover()
+        self.recovered = entry is not None
+        if entry is not None:
+            self._heard.update(entry.heard)
+            self._lock.leader = entry.leader
         if scene is not None:
             bodies, display = scene
             viewport.stage(display, bodies)
             self._playback.read(display)
-
-    def _recover(self) -> None:
-        """Restores what the last session of the file left unsaved."""
-        try:
-            entry = self._journal.read()
-            if entry is None:
-                return
-            self._heard.update(entry.heard)
-            self.leader, self.recovered = entry.leader, True
-            for kind, document in self.files.documents.items():
-                one = entry.documents.get(kind)
-                if one is not None and document.path.name == one.name:
-                    self.files.recover(kind, one.text, one.edits, one.saved, one.saved_edits)
-        except UserError as error:
-            self.problems.show(RECOVERED, str(error), [dismiss(RECOVERED)])
-            return
-        if names := [document.path.name for document in self.files.documents.values() if document.dirty]:
-            fixes = [Fix(label="Discard them", message={"kind": "revert"}), dismiss(RECOVERED)]
-            self.problems.show(RECOVERED, f"Unsaved changes of {' and '.join(names)} were recovered", fixes)
-
-    def _record(self) -> None:
-        """Writes the journal."""
-        documents = {
-            kind: Unsaved(
-                name=document.path.name,
-                text=document.text,
-                edits=document.state.edits,
-                saved=document.saved,
-                saved_edits=document.saved_edits,
-            )
-            for kind, document in self.files.documents.items()
-            if document.dirty
-        }
-        self._journal.write(Entry(documents=documents, heard=dict(self._heard), leader=self.leader))
-
-    @property
-    def _clean(self) -> bool:
-        return not any(document.dirty for document in self.files.documents.values())
 
     # Pages
 
@@ -193,7 +158,7 @@ class Session:
         """Takes in what other programs write: the open files, and the recipes and caches of the project."""
         posted, looks = None, 0
         while True:
-            if changed := await asyncio.to_thread(lambda: self._watcher.changed(self.files.watched())):
+            if changed := await asyncio.to_thread(self._changed_files):
                 self._call(self._meet_disk, changed)
             if looks * WATCH_INTERVAL % FILES_INTERVAL < WATCH_INTERVAL:
                 names = await asyncio.to_thread(self._names)
@@ -203,6 +168,13 @@ class Session:
             looks += 1
             await asyncio.sleep(WATCH_INTERVAL)
 
+    def _changed_files(self) -> set[Path]:
+        try:
+            return self._watcher.changed(self.files.watched())
+        except Exception:
+            log.exception("files could not be watched")
+            return set()
+
     def _names(self) -> list[str]:
         return [*self.project.files("*.recipe.toml", "*.shot.toml"), *self._caches.names()]
 
@@ -211,7 +183,7 @@ class Session:
         if self._watching is not None:
             self._watching.cancel()
         self._rest.cancel()
-        self._answer.cancel()
+        self._lock.stop()
         self._thread.submit(self._finish)
         self._thread.stop(PATIENCE)
         self._playback.stop()
@@ -220,7 +192,11 @@ class Session:
 
     def _finish(self) -> None:
         self._end_gesture()
-        self._journal.close(clean=self._clean)
+        self._record()
+        self._recovery.close()
+
+    def _record(self) -> None:
+        self._recovery.record(self._heard, self._lock.leader)
 
     def submit(self, do: Callable[..., Any], *arguments: Any) -> Future[Any]:
         """Runs a call on the session's thread, after those submitted before it."""
@@ -232,10 +208,8 @@ class Session:
         leads: whether the page held it when it was connected last; it does not take it from a page that asked for it
         """
         page = Page(name, self.publisher.subscribe(self._welcome(self._heard[name])))
+        self._lock.join(name, self._connected, led=leads)
         self.pages.append(page)
-        held = any(other.name == self.leader for other in self.pages)
-        if not held or (leads and not self._claimed):
-            self.leader, self._claimed = name, leads
         self._send_roles()
         return page
 
@@ -243,10 +217,16 @@ class Session:
         """Removes a page; the edit lock stays reserved for it until another page requests it."""
         self.pages.remove(page)
         self.publisher.unsubscribe(page.queue)
-        if page.name == self.leader:
+        if page.name == self._lock.leader:
             self._end_gesture()
-            self._hand_over(over=bool(self._asking))
+            self._record()
+        self._lock.leave(page.name)
         self._send_roles()
+
+    @property
+    def _connected(self) -> set[str]:
+        """Names of the connected pages."""
+        return {page.name for page in self.pages}
 
     def _welcome(self, heard: int) -> bytes:
         schemas = _schemas()
@@ -266,23 +246,9 @@ class Session:
             )
         )
 
-    def _ask_for_lead(self, page: Page) -> None:
-        """Gives the edit lock to a page, or asks the connected page that holds it."""
-        if page.name == self.leader or not any(other.name == self.leader for other in self.pages):
-            self._asking = page.name
-            self._hand_over(over=True)
-            return
-        self._asking = page.name
-        self._answer.restart(lambda: self._hand_over(over=True))
-        self._send_roles()
-
-    def _hand_over(self, *, over: bool) -> None:
-        """Answers the page that asks for the edit lock."""
-        self._answer.cancel()
-        asking, self._asking = self._asking, ""
-        if over and asking:
+    def _handed_over(self, over: bool) -> None:
+        if over:
             self._end_gesture()
-            self.leader, self._claimed = asking, True
         self._send_roles()
 
     def _share(self, page: Page, look: protocol.Look) -> None:
@@ -291,11 +257,10 @@ class Session:
         page.queue.discard("followed")
 
     def _send_roles(self) -> None:
-        others = len({page.name for page in self.pages}) - 1
+        others = len(self._connected) - 1
         for page in self.pages:
-            leads = page.name == self.leader
-            asked, asks = leads and bool(self._asking), page.name == self._asking
-            page.queue.put("role", pack(protocol.Role(leads=leads, others=others, asked=asked, asks=asks)))
+            role = protocol.Role.model_validate({"others": others, **self._lock.role(page.name)})
+            page.queue.put("role", pack(role))
 
     # Messages
 
@@ -310,18 +275,19 @@ class Session:
 
     def _dispatch(self, page: Page, message: protocol.FromPage) -> None:
         if isinstance(message, protocol.Lead):
-            self._ask_for_lead(page)
+            self._lock.ask(page.name, self._connected)
+            self._send_roles()
             return
         if isinstance(message, protocol.Watch):
             page.queue.request(self._playback.frame_sources(message))
             return
-        if page.name != self.leader:
+        if page.name != self._lock.leader:
             raise UserError("another page leads this session; take the lead to edit")
         files = self.files
         if isinstance(message, protocol.Look):
             self._share(page, message)
         elif isinstance(message, protocol.Hand):
-            self._hand_over(over=message.over)
+            self._lock.answer(over=message.over)
         elif isinstance(message, protocol.Set):
             files.set(message.file, message.changes, message.gesture)
             self._edited(message.file, resting=message.resting)
@@ -463,9 +429,9 @@ class Session:
 
     def _open(self, file: Path, *, discard: bool) -> None:
         """Opens another file; raises UserError when it cannot be read, and when unsaved changes would be lost."""
-        if not discard and not self._clean:
+        if not discard and not self.files.clean:
             raise UserError(f"open: {self.files.file.name} has unsaved changes; save them, or discard them")
-        before, journal, playback = self.publisher.retained(), self._journal, self._playback
+        before, recovery, playback = self.publisher.retained(), self._recovery, self._playback
         self._rest.cancel()
         self._worker.cancel()
         self._comparer.cancel()
@@ -477,7 +443,7 @@ class Session:
                 self.publisher.publish(subject, message)
             raise
         playback.stop()
-        journal.close(clean=True)
+        recovery.close(discard=True)
         self.problems.clear(*(self.problems.subjects - {RECOVERED}))
         self.problems.publish()
         if files := before.get("files"):
@@ -496,14 +462,22 @@ class Session:
                 if self.files.meet_disk(file):
                     self._notice(f"{document.path.name} was changed by another program, and is loaded again")
                     self._edited(file)
-                elif document.theirs is None:
-                    document.recheck()  # a file that it refers to has changed
-                    self._edited(file)
+                elif document.theirs is None and not changed <= self.files.own(file):
+                    self._recheck(file)
             except UserError as error:
                 self.problems.show(f"conflict/{file}", str(error), conflict_fixes(file), place=(file, ""))
                 continue
             self._show_conflict(file)
         self._record()
+
+    def _recheck(self, file: File) -> None:
+        """Takes in a change of a file that a document refers to."""
+        try:
+            self.files.document(file).recheck()
+        except UserError as error:
+            self.problems.show(GROOM, str(error))
+            return
+        self._edited(file)
 
     def _show_conflict(self, file: File) -> None:
         """Shows the conflict of a document with its file on disk, or that there is none."""
@@ -524,7 +498,8 @@ class Session:
     def _edited(self, file: File, *, resting: bool = True) -> None:
         document = self.files.document(file)
         if document.theirs is not None and not document.dirty:
-            document.meet(*document.theirs)
+            with suppress(UserError):  # theirs is invalid, and the conflict stays
+                document.meet(*document.theirs)
         self._show_conflict(file)
         self.publisher.publish(f"document/{file}", self.files.message(file))
         if file == "recipe":
