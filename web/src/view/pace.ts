@@ -21,7 +21,7 @@ export class Pace {
       return this.detail;
     }
     if (this.whole <= AT_REST) this.step = 1;
-    else if (fresh) this.step = Math.min(1, Math.max(this.detail, AT_REST / this.whole));
+    else if (fresh) this.step = Math.max(LEAST, AT_REST / this.whole);
     else this.step = Math.min(1, GROWTH * this.step);
     return this.step;
   }

@@ -264,7 +264,7 @@ export class Viewer {
       clearTimeout(this.resting);
       this.resting = window.setTimeout(() => {
         this.resting = 0;
-        this.invalidate();
+        this.request(); // goes on from the detail of the last picture
       }, REST_AFTER + 20);
     }
     this.drawn++;
