@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from distances import Array
 from numpy.typing import NDArray
-from regions import NAMES, SKULL_CENTRE
+from regions import NAMES
 from remesh import adjacency
 from scipy.sparse.csgraph import laplacian
 from scipy.sparse.linalg import spsolve
@@ -26,26 +26,28 @@ DISCS = {
 SCALP_AXIS = np.array([0.0, 0.77, -0.64]) / np.hypot(0.77, 0.64)
 
 
-def unwrap(points: Array, triangles: NDArray, labels: NDArray) -> Array:
-    """Texture coordinates of every triangle corner, shape (m, 3, 2)."""
+def unwrap(points: Array, triangles: NDArray, labels: NDArray, skull: Array) -> Array:
+    """Texture coordinates of every triangle corner, shape (m, 3, 2).
+
+    skull: middle of the skull, from which the scalp is projected, shape (3,)
+    """
     uv = np.zeros((len(triangles), 3, 2))
     for k, name in enumerate(NAMES):
         chosen = np.flatnonzero(labels == k)
         used, local = np.unique(triangles[chosen], return_inverse=True)
         local = local.reshape(-1, 3)
-        flat = azimuthal(points[used]) if name == "scalp" else harmonic(points[used], local)
+        flat = azimuthal(points[used] - skull) if name == "scalp" else harmonic(points[used], local)
         (u, v), radius = DISCS[name]
         uv[chosen] = (np.array([u, v]) + radius * flat)[local]
     return uv
 
 
-def azimuthal(points: Array) -> Array:
-    """Equal-area projection of directions from the skull's centre around the scalp's axis to the unit disc.
+def azimuthal(direction: Array) -> Array:
+    """Equal-area projection of directions from the middle of the skull around the scalp's axis to the unit disc.
 
     Lambert's radius is √2 sin(θ/2), here scaled so that the disc extends slightly beyond the lowest hair.
     """
-    direction = points - SKULL_CENTRE
-    direction /= np.linalg.norm(direction, axis=1, keepdims=True)
+    direction = direction / np.linalg.norm(direction, axis=1, keepdims=True)
     right = np.array([1.0, 0.0, 0.0])
     up = np.cross(SCALP_AXIS, right)
     planar = np.stack([direction @ right, direction @ up], axis=1)

@@ -7,24 +7,23 @@ soft forms (skull, cheeks, jaw), and small at edges (lids, lips, wings of the no
 from __future__ import annotations
 
 import numpy as np
+from anatomy import Head, mirrored
 from distances import Array, capsule, ellipsoid, engrave, intersect, smooth, sphere, stroke, subtract, union
+from features import Ear, Eye
+from scipy.interpolate import PchipInterpolator
 
-EYE_CENTRE = np.array([3.15, -0.5, 4.5])
-EYE_RADIUS = 2.25
-EYE_WIDTH, UPPER_LID, LOWER_LID = np.radians([45.0, 28.5, 25.0])  # half angles of the opening at the eyeball's centre
-EYE_SLANT = 0.06  # raises the outer corner
-LID = 0.2  # thickness of the lids
+EYE = Eye(
+    centre=np.array([3.15, -0.5, 4.5]),
+    radius=2.25,
+    width=np.radians(45.0),
+    upper=np.radians(28.5),
+    lower=np.radians(25.0),
+    slant=0.06,
+    lid=0.2,
+)
+EAR = Ear(centre=np.array([6.95, -1.5, -1.3]), flare=np.radians(33.0), tilt=np.radians(12.0))
 
 WAIST, STRETCH = -17.0, 13.0  # height of the waist, and length of the constant width below, past any picture's edge
-
-EAR_CENTRE = np.array([6.95, -1.5, -1.3])
-EAR_FLARE = np.radians(33.0)  # angle of the rim from the skull
-EAR_TILT = np.radians(12.0)  # tilts the top backwards
-
-
-def mirrored(p: Array) -> Array:
-    """Mirrors points to the left side, smoothly at the middle, so that the face has no crease."""
-    return np.column_stack([np.sqrt(p[:, 0] ** 2 + 0.03**2), p[:, 1], p[:, 2]])
 
 
 def skin(points: Array) -> Array:
@@ -78,32 +77,8 @@ def torso(p: Array) -> Array:
 
 
 def eyes(d: Array, p: Array) -> Array:
-    """Adds sockets, lids as shells around the eyeballs, and the opening between the lids."""
-    d = subtract(d, ellipsoid(p, (3.15, -0.15, 7.6), (2.7, 2.0, 1.75)), 1.2)
-    d = union(d, sphere(p, EYE_CENTRE, EYE_RADIUS + LID), 0.4)
-    upper, lower = lid_edges(p)
-    pocket = np.maximum(np.maximum(upper, lower), EYE_RADIUS - 0.3 - np.linalg.norm(p - EYE_CENTRE, axis=-1))
-    return subtract(d, np.maximum(pocket, EYE_CENTRE[2] - p[:, 2]), 0.12)
-
-
-def lid_edges(p: Array) -> tuple[Array, Array]:
-    """Distances along the eyeball beyond the edges of the upper and the lower lid; both negative in the opening."""
-    direction = p - EYE_CENTRE
-    across = np.arctan2(direction[:, 0], np.maximum(direction[:, 2], 1e-3)) / EYE_WIDTH
-    along = np.arctan2(direction[:, 1], np.hypot(direction[:, 0], direction[:, 2])) - EYE_SLANT * across
-    return EYE_RADIUS * (along - UPPER_LID * lid_arch(across)), EYE_RADIUS * (-along - LOWER_LID * lid_arch(across))
-
-
-def lid_arch(across: Array) -> Array:
-    """Relative opening of the lids, at most 1, by the position from the inner corner (-1) to the outer one (1)."""
-    return 1.0 - np.minimum(np.abs(across + 0.08), 1.6) ** 2.2
-
-
-def lid_direction(across: Array) -> Array:
-    """Directions from the eyeball's centre to the edge of the upper lid, shape (n, 3)."""
-    along = UPPER_LID * lid_arch(across) + EYE_SLANT * across
-    turn = EYE_WIDTH * across
-    return np.column_stack([np.cos(along) * np.sin(turn), np.sin(along), np.cos(along) * np.cos(turn)])
+    """Adds sockets, lids and the openings between them."""
+    return EYE.added(subtract(d, ellipsoid(p, (3.15, -0.15, 7.6), (2.7, 2.0, 1.75)), 1.2), p)
 
 
 def nose(d: Array, p: Array) -> Array:
@@ -133,37 +108,50 @@ def mouth_line(x: Array) -> Array:
     return -5.38 + 0.07 * np.cos(2.4 * x) + 0.11 * x**2
 
 
-def ear(d: Array, p: Array) -> Array:
-    q = ear_frame(p)
-    d = union(d, ear_leaf(q), 0.5)
-    d = subtract(d, ellipsoid(q, (0.45, -0.4, 0.72), (0.72, 0.95, 0.8)), 0.25)  # the bowl
-    return union(d, ellipsoid(q, (-0.5, -0.55, 0.35), (0.35, 0.5, 0.3)), 0.3)  # tragus
-
-
-def ear_leaf(q: Array) -> Array:
-    """The ear without its bowl: a flat ellipsoid with a rolled rim, a lobe and an inner fold."""
-    leaf = ellipsoid(q, (0.7, 0.1, 0.0), (1.75, 2.6, 0.5))
-    rim = [(-0.2, 0.0, 0.15), (-0.5, 1.0, 0.2), (-0.15, 2.0, 0.3), (0.75, 2.6, 0.35), (1.7, 2.2, 0.4)]
-    rim += [(2.25, 0.9, 0.4), (2.05, -0.7, 0.35), (1.4, -1.9, 0.2), (0.6, -2.5, 0.1)]
-    leaf = union(leaf, stroke(q, *smooth(rim, [0.2, 0.3, 0.34, 0.36, 0.36, 0.34, 0.32, 0.3, 0.3])), 0.25)
-    leaf = union(leaf, ellipsoid(q, (0.35, -2.4, 0.05), (0.75, 0.75, 0.42)), 0.5)  # lobe
-    fold = [(1.2, 1.5, 0.3), (1.4, 0.3, 0.4), (1.15, -0.8, 0.4), (0.5, -1.45, 0.3)]
-    return union(leaf, stroke(q, *smooth(fold, [0.2, 0.3, 0.3, 0.25])), 0.3)
-
-
-def ear_frame(p: Array) -> Array:
-    """Transforms points to the frame of the ear: backwards in its plane, up, and along its normal."""
-    back = np.array([np.sin(EAR_FLARE), 0.0, -np.cos(EAR_FLARE)])
-    up = np.array([0.0, np.cos(EAR_TILT), -np.sin(EAR_TILT)])
-    up -= (up @ back) * back
-    up /= np.linalg.norm(up)
-    return (p - EAR_CENTRE) @ np.column_stack([back, up, np.cross(back, up)])
-
-
 # Features of the head, in the order of modelling, each with the ball that bounds its effect.
 FEATURES = (
-    (eyes, EYE_CENTRE + [0, 0, 1.5], 5.0),
+    (eyes, EYE.centre + [0, 0, 1.5], 5.0),
     (nose, (0, -2.0, 7.2), 4.5),
     (mouth, (0, -5.2, 5.8), 4.8),
-    (ear, EAR_CENTRE, 5.0),
+    (EAR.added, EAR.centre, 5.0),
+)
+
+_HAIRLINE = PchipInterpolator(  # forehead, corner, temple, sideburn, over the ear, behind it, nape
+    np.radians([0, 15, 30, 42, 55, 66, 78, 85, 90, 97, 104, 110, 118, 130, 150, 165, 180]),
+    [6.0, 6.05, 6.0, 5.3, 3.9, 2.6, 0.6, -0.3, 0.3, 1.2, 0.9, -0.8, -2.6, -4.0, -5.1, -5.4, -5.2],
+)
+
+HEAD = Head(
+    name="child",
+    skin=skin,
+    shirt=shirt,
+    neckline=neckline,
+    lips=lips,
+    skin_box=((-9.6, -20.0, -11.2), (9.6, 11.2, 9.8)),
+    shirt_box=((-11.6, -38.6, -9.2), (11.6, -7.6, 3.2)),
+    cell=0.3,
+    fine=(
+        (lambda p: sphere(p, EYE.centre + [0, 0, 1.4], 1.9), 0.155),
+        (lambda p: capsule(p, (0, -5.1, 7.0), (2.3, -4.9, 6.0), 0.8), 0.14),
+        (lambda p: sphere(p, (0.5, -3.2, 7.8), 1.0), 0.155),
+        (lambda p: sphere(p, EAR.centre + [0.5, 0, -0.5], 2.8), 0.235),
+    ),
+    glow=(((3.9, -3.4, 6.0), 1.7), ((0.0, -3.2, 8.6), 1.0), (EAR.centre + [1.2, 0.5, -1.0], 2.0)),
+    skull=np.array([0.0, 0.5, -1.2]),
+    hairline=_HAIRLINE,
+    jawline=PchipInterpolator(np.radians([0, 30, 60, 90, 110, 180]), [-8.7, -8.3, -7.2, -5.6, -4.4, -4.0]),
+    eye=EYE,
+    ear=EAR,
+    brow=((1.45, 2.1, 8.0), (3.35, 2.8, 7.3), (5.35, 1.8, 5.6)),
+    brow_width=(0.2, 0.34, 0.3, 0.07),
+    brow_height=0.14,
+    patches={},
+    iris=np.radians(30.0),
+    colors={
+        "skin": np.array([0.34, 0.165, 0.095]),
+        "lips": np.array([0.32, 0.085, 0.07]),
+        "blush": np.array([0.40, 0.125, 0.08]),
+        "shirt": np.array([0.55, 0.31, 0.085]),
+        "iris": np.array([0.105, 0.041, 0.016]),
+    },
 )

@@ -1,59 +1,60 @@
-"""Meshes of eyes, lashes and brows, in the head's rest pose."""
+"""Meshes of eyes, lashes and brows of any head, in its rest pose."""
 
 from __future__ import annotations
 
 import numpy as np
+from anatomy import Head
 from distances import Array, gradient, project
-from head_shape import EYE_CENTRE, EYE_RADIUS, LID, lid_direction, skin
+from features import Eye
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 Part = tuple[Array, NDArray[np.int32]]
 
-IRIS = np.radians(30.0)  # half-angle at the eyeball's centre
-PUPIL = np.radians(14.0)
+PUPIL = 14.0 / 30.0  # half-angle of the pupil, as a part of that of the iris
 
 
-def dome(last: float, rings: int, lift: float, segments: int = 28) -> Part:
+def dome(eye: Eye, last: float, rings: int, lift: float, segments: int = 28) -> Part:
     """The front of an eyeball up to an angle from its axis (+Z), with a bulging cornea for highlights."""
     theta = last * np.arange(1, rings + 1) / rings
     around = 2.0 * np.pi * np.arange(segments) / segments
     bulge = np.maximum(1.0 - (np.append(0.0, theta) / np.radians(34.0)) ** 2, 0.0) ** 2
-    radius = EYE_RADIUS + lift + 0.09 * bulge
+    radius = eye.radius + lift + 0.04 * eye.radius * bulge
     ring = np.stack([np.outer(np.sin(theta), np.cos(around)), np.outer(np.sin(theta), np.sin(around))], axis=-1)
     ring = np.concatenate([ring, np.broadcast_to(np.cos(theta)[:, None, None], (rings, segments, 1))], axis=-1)
     points = np.concatenate([[[0.0, 0.0, radius[0]]], (radius[1:, None, None] * ring).reshape(-1, 3)])
     return points, np.concatenate([fan(0, 1, segments), tube(1, rings, segments)])
 
 
-def eyeball() -> Part:
-    return dome(np.radians(120.0), 14, 0.0)
+def eyeball(head: Head) -> Part:
+    return dome(head.eye, np.radians(120.0), 14, 0.0)
 
 
-def iris() -> Part:
-    return dome(IRIS, 7, 0.012)
+def iris(head: Head) -> Part:
+    return dome(head.eye, head.iris, 7, 0.012)
 
 
-def pupil() -> Part:
-    return dome(PUPIL, 3, 0.024)
+def pupil(head: Head) -> Part:
+    return dome(head.eye, PUPIL * head.iris, 3, 0.024)
 
 
-def brow(side: float) -> Part:
-    """A strip on the skin above the eye; ``side`` is 1 for the child's left and -1 for the right."""
-    bow = CubicSpline([0.0, 0.5, 1.0], [(1.45, 2.1, 8.0), (3.35, 2.8, 7.3), (5.35, 1.8, 5.6)])
+def brow(head: Head, side: float) -> Part:
+    """A strip on the skin above the eye; ``side`` is 1 for the left of the head and -1 for the right."""
+    bow = CubicSpline([0.0, 0.5, 1.0], head.brow)
     t = np.linspace(0.0, 1.0, 12)
-    points = project(skin, bow(t) * [side, 1.0, 1.0], steps=8)
-    normals = gradient(skin, points)
-    return strip(points, normals, np.interp(t, [0, 0.2, 0.55, 1], [0.2, 0.34, 0.3, 0.07]), 0.14)
+    points = project(head.skin, bow(t) * [side, 1.0, 1.0], steps=8)
+    normals = gradient(head.skin, points)
+    return strip(points, normals, np.interp(t, [0, 0.2, 0.55, 1], head.brow_width), head.brow_height)
 
 
-def lash(side: float) -> Part:
+def lash(head: Head, side: float) -> Part:
     """A dark line along the edge of the upper lid."""
+    eye, scale = head.eye, head.eye.radius / 2.25
     across = np.linspace(-0.93, 1.02, 16)
-    normals = lid_direction(across) * [side, 1.0, 1.0]
-    points = EYE_CENTRE * [side, 1.0, 1.0] + (EYE_RADIUS + 0.5 * LID + 0.05) * normals
-    widths = np.interp(across, [-0.93, 0.0, 0.8, 1.02], [0.02, 0.07, 0.1, 0.03])
-    return strip(points, normals, widths, LID)
+    normals = eye.lid_direction(across) * [side, 1.0, 1.0]
+    points = eye.centre * [side, 1.0, 1.0] + (eye.radius + 0.5 * eye.lid + 0.05 * scale) * normals
+    widths = scale * np.interp(across, [-0.93, 0.0, 0.8, 1.02], [0.02, 0.07, 0.1, 0.03])
+    return strip(points, normals, widths, eye.lid)
 
 
 def strip(points: Array, normals: Array, widths: Array, thickness: float, segments: int = 8) -> Part:

@@ -3,39 +3,28 @@
 from __future__ import annotations
 
 import numpy as np
-from distances import Array
-from head_shape import EAR_CENTRE, ear_frame, ear_leaf, mirrored
+from anatomy import Head, mirrored
 from numpy.typing import NDArray
-from scipy.interpolate import PchipInterpolator
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import connected_components
 
 NAMES = ("scalp", "face", "ear_left", "ear_right", "neck")
-SKULL_CENTRE = np.array([0.0, 0.5, -1.2])
-
-# Heights by the angle around the vertical axis: 0° is the front, 90° the ear, 180° the back.
-_HAIRLINE = PchipInterpolator(  # forehead, corner, temple, sideburn, over the ear, behind it, nape
-    np.radians([0, 15, 30, 42, 55, 66, 78, 85, 90, 97, 104, 110, 118, 130, 150, 165, 180]),
-    [6.0, 6.05, 6.0, 5.3, 3.9, 2.6, 0.6, -0.3, 0.3, 1.2, 0.9, -0.8, -2.6, -4.0, -5.1, -5.4, -5.2],
-)
-_JAWLINE = PchipInterpolator(np.radians([0, 30, 60, 90, 110, 180]), [-8.7, -8.3, -7.2, -5.6, -4.4, -4.0])
 
 
-def above_hairline(points: Array) -> Array:
-    """Height above the hairline [cm], positive where hair grows, shape (n,); not valid on ears."""
-    p = mirrored(points) - SKULL_CENTRE
-    return points[:, 1] - _HAIRLINE(np.arctan2(p[:, 0], p[:, 2]))
-
-
-def label(points: Array, triangles: NDArray) -> NDArray:
+def label(head: Head, points: NDArray, triangles: NDArray) -> NDArray:
     """Index into ``NAMES`` of each triangle, shape (m,); every region is connected."""
     p = mirrored(points[triangles].mean(axis=1))
-    around = np.arctan2(p[:, 0], p[:, 2] - SKULL_CENTRE[2])
-    is_ear = (ear_leaf(ear_frame(p)) < 0.2) & (p[:, 0] > EAR_CENTRE[0] - 0.7)
+    around = np.arctan2(p[:, 0], p[:, 2] - head.skull[2])
     side = np.where(points[triangles, 0].mean(axis=1) > 0, NAMES.index("ear_left"), NAMES.index("ear_right"))
-    labels = np.where(p[:, 1] > _JAWLINE(around), NAMES.index("face"), NAMES.index("neck"))
-    labels = np.where(above_hairline(p) > 0, NAMES.index("scalp"), labels)
-    return without_islands(np.where(is_ear, side, labels), triangles)
+    labels = np.where(p[:, 1] > head.jawline(around), NAMES.index("face"), NAMES.index("neck"))
+    labels = np.where(head.above_hairline(p) > 0, NAMES.index("scalp"), labels)
+    return without_islands(np.where(head.ear.contains(p), side, labels), triangles)
+
+
+def patches(head: Head, points: NDArray, triangles: NDArray) -> dict[str, NDArray[np.int32]]:
+    """Triangles of the further regions of a head, such as its brows, by name."""
+    p = mirrored(points[triangles].mean(axis=1))
+    return {name: np.flatnonzero(inside(p)).astype(np.int32) for name, inside in head.patches.items()}
 
 
 def without_islands(labels: NDArray, triangles: NDArray) -> NDArray:

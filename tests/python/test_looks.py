@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 from ringlet.data.groom import SECTION, STRAND_RADIUS
 from ringlet.data.pigment import curve_reflectance
+from ringlet.groom.operators.operator import grid
 from ringlet.groom.operators.tied import TO_TIE
+from ringlet.groom.scalp import Scalp
 
 import ringlet
-from ringlet.groom import PRESETS, hairs_per_cm2, make_hairs, read_recipe
+from ringlet.groom import PRESETS, grooms_of, hairs_per_cm2, make_hairs, read_recipe
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 LOOKS = sorted((EXAMPLES / "looks").glob("*.recipe.toml"))
@@ -57,3 +59,35 @@ def test_every_type_has_a_recipe_with_the_density_of_a_full_head(kind):
 def test_a_type_grows_as_dense_as_its_recipe_says(kind):
     groom = ringlet.build_groom(EXAMPLES / "types" / f"{kind}.recipe.toml")
     assert hairs_per_cm2(groom) == pytest.approx(120, rel=0.05)
+
+
+def test_the_beard_has_the_density_and_lengths_of_a_beard_and_stays_out_of_the_mouth():
+    recipe = EXAMPLES / "looks" / "beard.recipe.toml"
+    assert len(recipe.read_text().splitlines()) < 60
+    made = ringlet.build_groom(recipe)
+    grooms = grooms_of(made)
+    assert not made.conflicts and list(grooms) == ["hair", "beard", "brows", "lashes", "lower_lashes"]
+    assert 40 <= hairs_per_cm2(grooms["beard"]) <= 65
+    assert np.median(grooms["lashes"].locks.lengths()) == pytest.approx(0.009, abs=0.001)
+    assert np.median(grooms["lower_lashes"].locks.lengths()) == pytest.approx(0.006, abs=0.001)
+    in_mouth = np.abs(grooms["beard"].locks.points - (0.0, 0.3034, 0.07)) < (0.018, 0.002, 0.02)
+    assert not in_mouth.all(axis=1).any()
+
+
+@pytest.mark.parametrize("look", ["beard", "brows_and_lashes"])
+def test_lashes_fan_out_and_curl_up_and_brows_lie_on_the_skin_outwards(look):
+    recipe = read_recipe(EXAMPLES / "looks" / f"{look}.recipe.toml")
+    assert len((EXAMPLES / "looks" / f"{look}.recipe.toml").read_text().splitlines()) < 60
+    lashes, brows = (ringlet.build_groom(recipe.grooms[name]).locks for name in ("lashes", "brows"))
+    points, side = grid(lashes), np.sign(lashes.roots[:, 0])
+    start, end = points[:, 2] - points[:, 0], points[:, -1] - points[:, -3]
+    assert (end[:, 1] > start[:, 1]).mean() > 0.95 and (end[:, 1] > 0).mean() > 0.9
+    outwards = side * (points[:, -1, 0] - points[:, 0, 0])
+    u = lashes.curve["u"]
+    assert np.median(outwards[u > 0.8]) > 0.002 and np.median(outwards[u < 0.3]) < 0.001
+    assert np.median(points[:, -1, 2] - points[:, 0, 2]) > 0.003  # forward, out of the eye
+    tips = grid(brows)[:, -1]
+    assert (np.sign(brows.roots[:, 0]) * (tips[:, 0] - brows.roots[:, 0]) > 0).mean() > 0.9
+    scalp = Scalp(ringlet.build_groom(recipe.grooms["brows"]).scalp, None)
+    off = np.linalg.norm(scalp.nearest(tips)[0] - tips, axis=1)
+    assert np.median(off) < 0.001 and off.max() < 0.0025

@@ -75,6 +75,12 @@ export interface Arrange {
   values?: Record<string, string>;
 }
 
+/** Chooses the one of several grooms whose settings are shown and changed. */
+export interface Choose {
+  kind: "choose";
+  groom: string;
+}
+
 /** Mutes stages such as ``shape/0`` or ``curl``; not stored in the file. */
 export interface Mute {
   kind: "mute";
@@ -263,6 +269,8 @@ export interface Document {
   said: Record<string, Json>;
   values: Record<string, Json>;
   stages: Stage[];
+  grooms: string[];
+  groom: string;
   dirty: boolean;
   undo: boolean;
   redo: boolean;
@@ -320,6 +328,7 @@ export interface Hairs {
   points: number;
   knots: number;
   lock: Uint32Array;
+  group: Uint8Array;
   offset: Float32Array;
   tip: Float32Array;
   join: Float32Array;
@@ -473,6 +482,7 @@ export type FromPage =
   | Lead
   | Set
   | Arrange
+  | Choose
   | Mute
   | Step
   | Save

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -50,10 +51,40 @@ def build_groom(
 
     if not isinstance(recipe, groom.Recipe):
         recipe = read_recipe(recipe)
+    if recipe.grooms:
+        return _joined_groom(recipe, progress, memory)
     notes: list[str] = []
     made = groom.make_groom(recipe, progress=progress, memory=memory, **groom_inputs(recipe, memory, notes))
     made.conflicts += notes
     return made
+
+
+def _joined_groom(recipe: Recipe, progress: Progress | None, memory: Memory | None) -> Groom:
+    """The grooms of a recipe with several, joined."""
+    from ringlet import groom
+
+    memory, made = memory or groom.Memory(), {}
+    for name, one in recipe.grooms.items():
+        own = memory.grooms.setdefault(name, groom.Memory())
+        own.files = memory.files
+        try:
+            made[name] = build_groom(one, progress=progress and _of_stage(name, progress), memory=own)
+        except UserError as error:
+            raise _of_groom(error, recipe, name) from error
+    joined = groom.join_grooms(made)
+    joined.recipe = recipe.text
+    return joined
+
+
+def _of_stage(name: str, progress: Progress) -> Progress:
+    """Progress of one groom of several, whose name comes before each stage."""
+    return lambda stage, done, total: progress(f"{name}: {stage}", done, total)
+
+
+def _of_groom(error: UserError, recipe: Recipe, name: str) -> UserError:
+    """An error of a recipe with the name of the groom that it is in."""
+    where = f"{recipe.path.name if recipe.path else 'recipe'}: "
+    return UserError(str(error).replace(where, f"{where}grooms.{name}: ", 1))
 
 
 def groom_inputs(recipe: Recipe, memory: Memory | None = None, notes: list[str] | None = None) -> dict[str, Any]:
@@ -73,9 +104,8 @@ def groom_inputs(recipe: Recipe, memory: Memory | None = None, notes: list[str] 
         f"{chosen.mesh} {chosen.surface} {chosen.space}",
         lambda file: io.read_mesh(file, chosen.mesh, space=chosen.space, cage=chosen.surface == "cage", notes=notes),
     )
-    scalp.textures = {
-        name: _cached(memory, file, "texture", io.read_texture) for name, file in recipe.map_files().items()
-    }
+    textures = {name: _cached(memory, file, "texture", io.read_texture) for name, file in recipe.map_files().items()}
+    scalp = replace(scalp, textures=textures)
     drawn = None
     if isinstance(recipe.guides, Drawn) and recipe.guides_file is not None:
         drawn = io.read_curves(recipe.guides_file, recipe.guides.prim, space=recipe.guides.space, notes=notes)
@@ -87,10 +117,23 @@ def groom_inputs(recipe: Recipe, memory: Memory | None = None, notes: list[str] 
         "scalp": scalp,
         "drawn_guides": drawn,
         "helpers": helpers,
+        "hidden": _hidden(recipe),
         "scalp_file": recipe.scalp_file,
         "scalp_prim": recipe.scalp.mesh,
         "space": io.read_space(recipe.scalp_file, space=recipe.scalp.space),
     }
+
+
+def _hidden(recipe: Recipe) -> list[str]:
+    """Paths of the meshes of the head's file that the hair replaces."""
+    from ringlet import io
+
+    file, names = recipe.scalp_file, recipe.scalp.hide
+    if not names or file is None:
+        return []
+    if file.suffix == ".obj":
+        raise UserError(f"{recipe.path or 'recipe'}: scalp.hide names prims of a USD file; {file.name} has none")
+    return io.surface_paths(file, names, "scalp.hide")
 
 
 def _cached(memory: Memory | None, file: Path, settings: str, read: Callable[[Path], Any]) -> Any:
@@ -166,7 +209,7 @@ def edit_lock(
     """
     from ringlet import groom
 
-    before = read_recipe(recipe)
+    before, lock = groom.recipe_of_lock(read_recipe(recipe), lock)
     with groom.restored_on_error(before):
         if settings is not None:
             groom.add_settings(before, lock, settings)
@@ -184,21 +227,29 @@ def release_locks(recipe: Path | str, locks: Collection[int] | None = None) -> l
     """Gives edited locks back to the recipe, all or those named; returns their ids."""
     from ringlet import groom
 
-    return groom.release(read_recipe(recipe), locks)
+    read, released = read_recipe(recipe), list[int]()
+    for one, offset in groom.recipes_of(read):
+        own = None if locks is None else [lock - offset for lock in locks if groom.recipe_of_lock(read, lock)[0] is one]
+        if own or (own is None and one.edits_file is not None) or not read.grooms:
+            released += [lock + offset for lock in groom.release(one, own)]
+    return released
 
 
 def list_edits(recipe: Path | str) -> list[dict[str, Any]]:
     """The edited locks of a recipe: ``lock``, ``stage``, ``what`` was changed, and whether the lock is ``there``."""
+    from ringlet import groom
+
     read = read_recipe(recipe)
-    there = set(build_groom(read).locks.ids.tolist()) if read.edit else set()
+    edits = [(offset, edit) for one, offset in groom.recipes_of(read) for edit in one.edit]
+    there = set(build_groom(read).locks.ids.tolist()) if edits else set()
     return [
         {
-            "lock": edit.lock,
+            "lock": edit.lock + offset,
             "stage": edit.stage,
             "what": [*edit.set, *(name for name in ("curve", "offsets", "move") if getattr(edit, name))],
-            "there": edit.lock in there,
+            "there": edit.lock + offset in there,
         }
-        for edit in read.edit
+        for offset, edit in edits
     ]
 
 
@@ -240,8 +291,7 @@ def check_groom(
         "thickness": thickness,
         "lock_thickness": grooms.lock_thickness(groom),
         "found": findings.summary(),
-        "hairs_per_cm2": grooms.hairs_per_cm2(groom),
-        "scalp_seen": grooms.hair_cover(groom).seen(),
+        **grooms.hair_measures(groom),
     }
     if fixed is not None:
         repair = grooms.fix_groom(groom, others, allowed, progress)
@@ -263,4 +313,5 @@ def _beside_scalp(groom: Groom) -> list[Mesh]:
 
     if groom.scalp_file is None or groom.scalp_file.suffix == ".obj":
         return []
-    return [mesh for mesh in io.read_meshes(groom.scalp_file, groom.cage) if mesh.name != groom.scalp.name]
+    meshes = io.read_meshes(groom.scalp_file, groom.cage)
+    return [mesh for mesh in meshes if mesh.name != groom.scalp.name and groom.shows(mesh.name)]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ringlet.api.grooms import read_groom
 from ringlet.api.progress import Progress
@@ -15,12 +15,12 @@ from ringlet.data.reads import recorded
 
 if TYPE_CHECKING:
     from ringlet.data.groom import Groom
-    from ringlet.groom import Hairs, Memory
+    from ringlet.groom import AnyHairs, Memory
 
 __all__ = ["build_hairs", "measure_hairs", "write_hairs"]
 
 
-def build_hairs(groom: Groom, *, fraction: float = 1.0, wider: bool = False, memory: Memory | None = None) -> Hairs:
+def build_hairs(groom: Groom, *, fraction: float = 1.0, wider: bool = False, memory: Memory | None = None) -> AnyHairs:
     """Makes the hairs of every lock. ``fraction`` of them: the same ones every time, in (0, 1]; with ``wider`` these
     make up by their width for those left out.
 
@@ -32,11 +32,12 @@ def build_hairs(groom: Groom, *, fraction: float = 1.0, wider: bool = False, mem
     return grooms.make_hairs(groom, fraction=fraction, wider=wider, memory=memory.hairs if memory else None)
 
 
-def measure_hairs(groom: Groom | Path | str, *, variant: str | None = None) -> dict[str, float]:
+def measure_hairs(groom: Groom | Path | str, *, variant: str | None = None) -> dict[str, Any]:
     """Density and cover of all hairs of a groom at rest.
 
     ``hairs_per_cm2`` is the mean over the region that carries hair, and ``scalp_seen`` the part of that region that
-    cameras around the head see through the hair, 0 to 1.
+    cameras around the head see through the hair, 0 to 1. A groom on an edge has ``hairs_per_cm`` of its lines instead;
+    several grooms have ``grooms``, with ``hairs`` and those of each by name.
 
     variant: of the groom file, in place of the one that is selected in it
     """
@@ -44,7 +45,7 @@ def measure_hairs(groom: Groom | Path | str, *, variant: str | None = None) -> d
     from ringlet.data.groom import Groom
 
     made = groom if isinstance(groom, Groom) else read_groom(groom, variant=variant)
-    return {"hairs_per_cm2": grooms.hairs_per_cm2(made), "scalp_seen": grooms.hair_cover(made).seen()}
+    return grooms.hair_measures(made)
 
 
 @recorded()

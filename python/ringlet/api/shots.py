@@ -356,6 +356,8 @@ def _obstacles(shot: Shot, groom: Groom, garments: Sequence[Garment], frames: tu
         else:
             of_head = groom.scalp_file is not None and file.resolve() == groom.scalp_file.resolve()
             bodies = io.read_bodies(file, collider.mesh, frames, groom.space.fps, groom.cage and of_head)
+            if of_head and collider.mesh is None:
+                bodies = [body for body in bodies if groom.shows(body.prim)]
         for body in bodies:
             found[file.resolve(), body.prim] = sim.Obstacle(body.mesh, body.clip, collider)
     for garment in garments:  # cloth is no obstacle, even where its file is the head's

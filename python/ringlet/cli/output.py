@@ -37,8 +37,12 @@ def wrote(path: Path, counts: dict[str, int], as_json: bool, **more: Any) -> Non
         print(f"{path}: {', '.join([*parts, size(path.stat().st_size)])}")
 
 
-def density(measured: dict[str, float]) -> str:
-    """The result of ``ringlet.measure_hairs`` in a line."""
+def density(measured: dict[str, Any]) -> str:
+    """The result of ``ringlet.measure_hairs`` in a line, or in one for each of several grooms."""
+    if "grooms" in measured:
+        return "\n".join(f"{name}: {of['hairs']:,} hairs, {density(of)}" for name, of in measured["grooms"].items())
+    if "hairs_per_cm" in measured:
+        return f"{measured['hairs_per_cm']:.0f} hairs/cm of its edge"
     return f"{measured['hairs_per_cm2']:.0f} hairs/cm²; {100 * measured['scalp_seen']:.1f} % of the scalp are seen"
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -84,6 +84,37 @@ class Curves:
             nearest = self.ids[np.abs(self.ids - id).argmin()]
             raise UserError(f"{what}: there is no lock {id}; the nearest id is {nearest}")
         return int(found[0])
+
+    @classmethod
+    def joined(cls, sets: Sequence[Curves], absent: Mapping[str, float] | None = None) -> Curves:
+        """Several sets of curves as one, in their order; ids must be different.
+
+        An attribute that some sets lack is ``absent[name]`` there, by default 0. One that varies along the curves of
+        some sets is an attribute of the points of all.
+        """
+        defaults = absent or {}
+        along = {name for one in sets for name in one.point}
+        kinds = {name: values for one in sets for name, values in {**one.curve, **one.point}.items()}
+
+        def of(one: Curves, name: str) -> NDArray:
+            count = len(one.points) if name in along else len(one)
+            if name in one.point:
+                return one.point[name]
+            if name in one.curve:
+                return np.repeat(one.curve[name], one.counts, axis=0) if name in along else one.curve[name]
+            like = kinds[name]
+            if like.dtype.kind in "SU":
+                return np.zeros((count, *like.shape[1:]), like.dtype)
+            return np.full((count, *like.shape[1:]), defaults.get(name, 0), like.dtype)
+
+        joined = {name: np.concatenate([of(one, name) for one in sets]) for name in kinds}
+        return cls(
+            np.concatenate([one.points for one in sets]),
+            offsets_from_counts(np.concatenate([one.counts for one in sets])),
+            np.concatenate([one.ids for one in sets]),
+            {name: values for name, values in joined.items() if name not in along},
+            {name: values for name, values in joined.items() if name in along},
+        )
 
     def with_points(self, points: NDArray[np.floating]) -> Curves:
         """The same curves with other points, of the same shape."""

@@ -19,8 +19,11 @@ from ringlet.data.stage import StageSpace
 SECTION = "section"  # of a lock: the id of its section of the scalp; −1: none
 STRAND_RADIUS = "strand_radius"  # of a lock: the radius that it has of its own, as a strand of a braid [m]; 0: none
 CORE = "core"  # of a lock: 1 where the locks of its section are simulated as one rod, 0 elsewhere
+HAIR_SHARE = "hair_share"  # of a lock: part of its hairs that grow, where there is a mask
 STRAND_PROFILE = "strand_profile"  # of a lock: factors on that radius at even steps from root to tip, shape (count, k)
 TIED = "tied"  # of a point: 1 where a band ties the locks of a section, 0 elsewhere
+
+GROOM = "groom"  # of a lock, a guide or a hair: the row of its groom among those of the head, where there are several
 
 FLAT = 1e-9  # twice the area of a triangle, relative to its longest edge squared, at which it has no frame
 
@@ -50,7 +53,12 @@ class Groom:
                 in the files of the recipe but not used, for locks that start into the head, and for those that a
                 displacement makes much longer
     bands:      rings around the hair in ties, which are bodies or cloth for shots (empty for a groom that was read)
+    edge:       length of the lines that carry hair, as for lashes [m] (None for hair on an area)
+    hidden:     paths of the meshes of the head's file that the hair replaces: not shown, and touched by nothing
     cage:       whether hair grows on the cage of a subdivision surface, instead of on its limit surface
+    grooms:     settings by name where this is several grooms on one head, such as hair, brows and lashes: ``region``,
+                ``edge``, ``hairs``, ``color`` and ``fiber`` as above, and ``absent``: attributes that only others have.
+                Curves have the attribute ``groom``, the row of their groom here. Empty for one groom.
     """
 
     guides: Curves
@@ -69,7 +77,10 @@ class Groom:
     variant: str | None = None
     conflicts: list[str] = field(default_factory=list)
     cage: bool = False
+    edge: float | None = None
+    hidden: list[str] = field(default_factory=list)
     bands: list[Mesh] = field(default_factory=list)
+    grooms: dict[str, dict[str, Any]] = field(default_factory=dict)
 
     def check_roots(self, scalp_points: NDArray[np.floating], when: str, what: str) -> None:
         """Refuses locks without roots on the scalp, and a scalp on which a root has no frame.
@@ -96,6 +107,15 @@ class Groom:
                 f"{scalp.name}: at {when} triangle {bound['root_triangle'][lock]}, where lock {self.locks.ids[lock]} "
                 "is rooted, has no area or is not finite; mend the mesh or its animation"
             )
+
+    @property
+    def regions(self) -> list[str | None]:
+        """The named regions that carry roots, one for each groom; None for all of the scalp."""
+        return [settings["region"] for settings in self.grooms.values()] or [self.region]
+
+    def shows(self, mesh: str) -> bool:
+        """Whether a mesh of the head's file, by its name, is not replaced by hair."""
+        return mesh.rpartition(" ")[2] not in self.hidden
 
     @property
     def origin(self) -> NDArray[np.float64]:

@@ -156,7 +156,8 @@ def curve_reflectance(curves: Curves, what: str) -> NDArray[np.float64] | None:
     rows = {name: _spread(curves, name, values, along) for name, values in found.items() if values is not None}
     colors = reflectance(absorption(rows[MELANIN], rows.get(REDNESS, 0.0)), roughness)
     if dye is not None and DYE_AMOUNT in rows and len(dye):
-        colors = dyed(colors, dye[0], rows[DYE_AMOUNT])
+        same = (dye == dye[0]).all()
+        colors = dyed(colors, dye[0] if same else _spread(curves, DYE, dye, along), rows[DYE_AMOUNT])
     return colors
 
 
@@ -180,7 +181,7 @@ def _attribute(curves: Curves, name: str, what: str) -> NDArray[np.float64] | No
 
 def _spread(curves: Curves, name: str, values: NDArray, along: bool) -> NDArray:
     """Values with a row for each point where ``along``, else for each curve."""
-    return np.repeat(values, curves.counts) if along and name not in curves.point else values
+    return np.repeat(values, curves.counts, axis=0) if along and name not in curves.point else values
 
 
 def _falloff(roughness: ArrayLike) -> NDArray[np.float64]:

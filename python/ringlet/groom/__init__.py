@@ -6,31 +6,38 @@ from ringlet.groom.color import hair_colors
 from ringlet.groom.density import hair_count, hairs_per_cm2
 from ringlet.groom.edits_file import add_points, add_settings, release, restored_on_error, row_of
 from ringlet.groom.fix import fix_groom
-from ringlet.groom.hair_measures import hair_cover, lock_thickness
+from ringlet.groom.hair_measures import hair_cover, hair_measures, lock_thickness
 from ringlet.groom.hair_settings import HairSettings
-from ringlet.groom.hairs import HairMemory, Hairs, lay_hairs, make_hairs
+from ringlet.groom.hairs import HairMemory, Hairs
+from ringlet.groom.joined_hairs import AnyHairs, JoinedHairs, lay_hairs, make_hairs
 from ringlet.groom.presets import PRESETS
 from ringlet.groom.rebind import rebind
 from ringlet.groom.recipe import Recipe, parse_recipe, read_recipe, schema
+from ringlet.groom.several import grooms_of, join_grooms, recipe_of_lock, recipes_of
 from ringlet.groom.stack import Memory, make_groom
 
 __all__ = [
     "PRESETS",
     "Allowed",
+    "AnyHairs",
     "Groom",
     "HairMemory",
     "HairSettings",
     "Hairs",
+    "JoinedHairs",
     "Memory",
     "Recipe",
     "add_points",
     "add_settings",
     "check_groom",
     "fix_groom",
+    "grooms_of",
     "hair_colors",
     "hair_count",
     "hair_cover",
+    "hair_measures",
     "hairs_per_cm2",
+    "join_grooms",
     "lay_hairs",
     "lock_thickness",
     "make_groom",
@@ -38,6 +45,8 @@ __all__ = [
     "parse_recipe",
     "read_recipe",
     "rebind",
+    "recipe_of_lock",
+    "recipes_of",
     "release",
     "restored_on_error",
     "row_of",

@@ -112,7 +112,7 @@ class Bodies:
 
     def __init__(self, groom: Groom, others: Sequence[Mesh]) -> None:
         try:
-            region = groom.scalp.region(groom.region)
+            region = np.concatenate([groom.scalp.region(name) for name in groom.regions])
         except KeyError as error:
             raise UserError(f"check: {error.args[0]}") from None
         self.on_scalp = np.zeros(len(groom.scalp.triangles), bool)

@@ -7,20 +7,20 @@ from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
 from ringlet.data.errors import UserError
-from ringlet.data.groom import Groom
+from ringlet.data.groom import HAIR_SHARE, Groom
 from ringlet.data.mesh import Mesh
 from ringlet.data.random import Random
 from ringlet.groom.hair_settings import IDS_PER_LOCK, hair_settings, hair_values
+from ringlet.groom.several import grooms_of
 
-HAIR_SHARE = "hair_share"  # curve attribute of locks: part of their hairs that grow, where there is a mask
 SAMPLES_PER_LOCK = 60
 LARGEST_SHARE = 1.5  # of a lock, relative to the median: hair stays sparse where locks are
 PER_CM2 = 1e4  # 1/cm² in 1/m²
 
 
 def hair_count(groom: Groom) -> int:
-    """Number of hairs of the whole groom."""
-    return int(lock_counts(groom, groom_areas(groom)).sum())
+    """Number of hairs of the whole groom, or of all grooms that are joined in it."""
+    return sum(int(lock_counts(one, groom_areas(one)).sum()) for one in grooms_of(groom).values())
 
 
 def hairs_per_cm2(groom: Groom) -> float:

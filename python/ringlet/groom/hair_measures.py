@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from ringlet.data.groom import Groom
 from ringlet.data.quantities import Varied
 from ringlet.groom import felt
 from ringlet.groom.cover import Cover, measure
-from ringlet.groom.density import hair_region
+from ringlet.groom.density import hair_count, hair_region, hairs_per_cm2
 from ringlet.groom.hair_settings import HairSettings, hair_settings, lock_radii
 from ringlet.groom.hairs import Hairs, make_hairs
+from ringlet.groom.several import grooms_of
 
+CM = 100.0  # in a metre
 FIRST_PER_CM2, MOST_PER_CM2 = 60.0, 400.0  # densities that a cover begins with and ends at
 
 
@@ -38,8 +42,23 @@ def raise_density(groom: Groom, settings: HairSettings) -> None:
         )
 
 
+def hair_measures(groom: Groom) -> dict[str, Any]:
+    """Density and cover of a groom at rest: ``hairs_per_cm2``, and ``scalp_seen`` through its hair, from 0 to 1.
+
+    Of one on an edge, ``hairs_per_cm`` of its lines. Of several that are joined, ``grooms`` with those of each by name.
+    """
+    if groom.grooms:
+        alone = grooms_of(groom).items()
+        return {"grooms": {name: {"hairs": hair_count(one), **hair_measures(one)} for name, one in alone}}
+    if groom.edge is not None:
+        return {"hairs_per_cm": hair_count(groom) / (CM * groom.edge)}
+    return {"hairs_per_cm2": hairs_per_cm2(groom), "scalp_seen": hair_cover(groom).seen()}
+
+
 def lock_thickness(groom: Groom) -> float:
     """Largest diameter of a lock with its hairs [m], but for chance and maps."""
+    if groom.grooms:
+        return max(lock_thickness(one) for one in grooms_of(groom).values())
     radius = hair_settings(groom).radius
     largest = max([radius.value, *radius.region.values(), *radius.lock.values()])
     thickness = lock_radii(groom.locks, np.full(len(groom.locks), largest)) * felt.most_thick(groom.locks)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from hashlib import blake2b
 from typing import Any
 
@@ -14,12 +14,11 @@ from pydantic import BaseModel
 from ringlet import _core
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
-from ringlet.data.groom import STRAND_RADIUS, Groom
+from ringlet.data.groom import HAIR_SHARE, STRAND_RADIUS, Groom
 from ringlet.data.precision import origin_of
 from ringlet.data.quantities import Varied
 from ringlet.groom import felt, hair_curl
 from ringlet.groom.color import hair_colors
-from ringlet.groom.density import HAIR_SHARE
 from ringlet.groom.hair_layout import lock_joins, place_hairs, root_frames
 from ringlet.groom.hair_settings import HairSettings, fiber_settings, hair_settings, hair_values
 from ringlet.groom.scalp import axes
@@ -147,10 +146,15 @@ def _merged(surfaces: Sequence[tuple[NDArray, NDArray]]) -> tuple[NDArray[np.flo
 
 @dataclass
 class HairMemory:
-    """Cache of the last hairs, valid while the locks keep their roots."""
+    """Cache of the last hairs, valid while the locks keep their roots.
+
+    grooms, joined: caches of each of several grooms by name, and their curves with those that are joined of them
+    """
 
     key: bytes = b""
     hairs: Hairs | None = None
+    grooms: dict[str, HairMemory] = field(default_factory=dict)
+    joined: tuple[list[Curves], Curves] | None = None
 
 
 def make_hairs(groom: Groom, *, fraction: float = 1.0, wider: bool = False, memory: HairMemory | None = None) -> Hairs:

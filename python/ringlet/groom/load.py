@@ -10,6 +10,7 @@ from ringlet.data.errors import UserError
 from ringlet.data.explain import did_you_mean, shown
 from ringlet.data.settings import parse_toml, read_toml
 from ringlet.data.toml import to_toml
+from ringlet.groom.named import GROOMS, with_grooms, within_groom
 
 FILES = (("scalp", "file"), ("guides", "file"))
 MOST_NAME = 255  # bytes of the name of a file or a folder
@@ -48,12 +49,46 @@ def resolve(
     resolved = data
     if "extends" in data:
         resolved = _extended(data, path, (*extending, path.resolve()))
-    if "edits" in resolved and not extending:
-        resolved = _with_edits(resolved, path, edits)
-    resolved = _with_settings_of_locks(resolved, path)
-    if {"extends", "edits"} & data.keys():
-        text = to_toml({key: value for key, value in resolved.items() if key != "edits"})
+    if extending:
+        return text, _with_settings_of_locks(resolved, path)
+    if GROOMS in resolved:
+        resolved = with_grooms(resolved, path.name, lambda table, shared: _groom(table, shared, path))
+    else:
+        resolved = _edited(resolved, path, edits)
+    if {"extends", "edits", GROOMS} & data.keys():
+        text = resolved_text(resolved)
     return text, resolved
+
+
+def resolved_text(data: dict[str, Any]) -> str:
+    """Text of a recipe that refers to no other recipe: edits are in its tables, and so is what grooms share."""
+    kept = {key: value for key, value in data.items() if key != "edits"}
+    if GROOMS not in kept:
+        return to_toml(kept)
+    apart = ("edits", "ringlet", "unit", "name")
+    grooms = {
+        name: {key: value for key, value in table.items() if key not in apart} for name, table in kept[GROOMS].items()
+    }
+    return to_toml({**{key: kept[key] for key in ("ringlet", "name", "unit") if key in kept}, GROOMS: grooms})
+
+
+def _groom(table: dict[str, Any], outside: dict[str, Any], path: Path) -> dict[str, Any]:
+    """Tables of one groom of several: what it extends, changed by what is outside of the grooms, then by its own.
+
+    table:   the groom's own
+    outside: those that all grooms share
+    """
+    base = _base(table, path, (path.resolve(),)) if "extends" in table else {}
+    if GROOMS in base:
+        raise UserError(f"{path.name}: a groom extends {table['extends']}, which has several; must have one")
+    shared = _merged(base, outside, path.name, "")
+    own = {key: value for key, value in table.items() if key != "extends"}
+    return _edited(_merged(shared, own, path.name, ""), path, None)
+
+
+def _edited(data: dict[str, Any], path: Path, edits: str | None) -> dict[str, Any]:
+    """Tables with their manual edits; ``edits`` replaces the contents of the file of edits."""
+    return _with_settings_of_locks(_with_edits(data, path, edits) if "edits" in data else data, path)
 
 
 def read_edits(path: Path) -> dict[str, list[dict[str, Any]]]:
@@ -77,6 +112,12 @@ def parse_edits(text: str, path: Path) -> dict[str, list[dict[str, Any]]]:
 
 def _extended(data: dict[str, Any], path: Path, extending: tuple[Path, ...]) -> dict[str, Any]:
     """Merges the changes of a variant into the tables of its base."""
+    base = _base(data, path, extending)
+    return _merged(base, {key: value for key, value in data.items() if key != "extends"}, path.name, "")
+
+
+def _base(data: dict[str, Any], path: Path, extending: tuple[Path, ...]) -> dict[str, Any]:
+    """Tables of the recipe that ``data`` extends, with file names that count from the folder of ``path``."""
     name = _file_name(data, "extends", path)
     base_path = path.parent / name
     if base_path.resolve() in extending:
@@ -90,7 +131,7 @@ def _extended(data: dict[str, Any], path: Path, extending: tuple[Path, ...]) -> 
         )
     if base_path.parent.resolve() != path.parent.resolve():
         base = _with_absolute_paths(base, base_path.parent.resolve())
-    return _merged(base, {key: value for key, value in data.items() if key != "extends"}, path.name, "")
+    return base
 
 
 def _file_name(data: dict[str, Any], setting: str, path: Path) -> str:
@@ -107,15 +148,15 @@ def _merged(base: dict[str, Any], changes: dict[str, Any], where: str, place: st
     result = dict(base)
     for key, value in changes.items():
         old = base.get(key)
-        name = f"{place}.{key}".removeprefix(".")
-        if name == "shape" and isinstance(value, dict):
+        name = within_groom(f"{place}.{key}".removeprefix("."))
+        if name == "shape" and isinstance(value, dict) and not isinstance(old, dict):
             result[key] = _merged_shape(old if isinstance(old, list) else [], value, where)
         elif name in EDITS and isinstance(value, list) and isinstance(old, list):
             result[key] = old + value
         elif value is False and key in base and not isinstance(old, bool) and name not in MAY_BE_FALSE:
             del result[key]
         elif isinstance(value, dict) and isinstance(old, dict) and not ("file" in value) > ("file" in old):
-            result[key] = _merged(old, value, where, name)
+            result[key] = _merged(old, value, where, f"{place}.{key}".removeprefix("."))
         elif isinstance(value, dict) and key in base and not isinstance(old, dict | list) and "value" not in value:
             result[key] = {"value": old, **value}  # promotes a plain value to a table
         else:
@@ -221,6 +262,12 @@ def _with_absolute_paths(data: dict[str, Any], folder: Path) -> dict[str, Any]:
             key: {**one, "file": str(folder / one["file"])} if isinstance(one, dict) and "file" in one else one
             for key, one in curves.items()
         }
-    if isinstance(data.get("edits"), str):
-        data["edits"] = str(folder / data["edits"])
+    for key in ("edits", "extends"):
+        if isinstance(data.get(key), str):
+            data[key] = str(folder / data[key])
+    if isinstance(grooms := data.get(GROOMS), dict):
+        data[GROOMS] = {
+            name: _with_absolute_paths(table, folder) if isinstance(table, dict) else table
+            for name, table in grooms.items()
+        }
     return data

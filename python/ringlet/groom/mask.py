@@ -82,7 +82,10 @@ class Mask(Section):
         assert self.where is not None
         used = expression.names(self.where)
         if missing := sorted(used & set(expression.SECTIONED) - curves.curve.keys()):
-            raise UserError(f"{what} has '{missing[0]}', which only locks of sections have; add [locks.sections]")
+            raise UserError(
+                f"{what} has '{missing[0]}', which only locks of sections and edges have; add [locks.sections] or "
+                "[scalp.edge]"
+            )
         x, y, z = curves.roots.T / self._unit
         values = {"id": curves.ids, "random": random.uniform(curves.ids), "x": x, "y": y, "z": z}
         if "length" in used:

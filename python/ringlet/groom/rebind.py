@@ -14,6 +14,7 @@ from ringlet.data.errors import UserError
 from ringlet.data.groom import Groom
 from ringlet.data.mesh import Mesh
 from ringlet.data.rigid import best_rotation
+from ringlet.groom.several import with_each
 
 SAME_SURFACE = 0.1  # largest deviation of roots from a similar arrangement, relative to its size
 NEAR = 0.01  # farthest from a new surface that a root is bound to it [m]
@@ -28,6 +29,8 @@ def rebind(groom: Groom) -> Groom:
     nearest place. Raises UserError where that is farther than 1 cm.
     """
     turn = _turn(groom.locks, groom.scalp)
+    if turn is None and groom.grooms:
+        return with_each(groom, rebind)
     if turn is None:
         return replace(groom, locks=_on_nearest(groom.locks, groom), guides=_on_nearest(groom.guides, groom))
     locks, guides = (

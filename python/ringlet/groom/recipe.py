@@ -5,19 +5,23 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import Discriminator, Field, PrivateAttr, Tag, ValidationError
+from pydantic import Discriminator, Field, PrivateAttr, Tag, ValidationError, WithJsonSchema
 
 from ringlet.data.quantities import UNITS, LengthUnit, Section, explain
 from ringlet.groom.color import ColorSettings
+from ringlet.groom.edge import Edge
 from ringlet.groom.edits import Edit
 from ringlet.groom.fiber import FiberSettings
 from ringlet.groom.hair_settings import HairSettings
 from ringlet.groom.helpers import HelperCurves
-from ringlet.groom.load import load, load_text
+from ringlet.groom.load import load, load_text, resolved_text
 from ringlet.groom.nails import Nail
+from ringlet.groom.named import GROOMS
 from ringlet.groom.operators import Clean, Curl, Drawn, Grown, Locks, ShapeOperator
 from ringlet.groom.sculpt import Sculpt
 from ringlet.groom.source import Source
+
+OF_FILE = ("ringlet", "name", "unit", GROOMS)  # settings that no groom of several has of its own
 
 
 class ScalpSettings(Source):
@@ -33,6 +37,14 @@ class ScalpSettings(Source):
         "its cage",
     )
     region: str | None = Field(default=None, description="named faces (GeomSubset) that carry hair; all when absent")
+    hide: list[str] = Field(
+        default=[],
+        description="prims of its USD file that this hair replaces, such as modelled brows: not shown, and nothing "
+        "touches them",
+    )
+    edge: Edge | None = Field(
+        default=None, description="lines that carry hair, as for lashes and brows; the whole area when absent"
+    )
 
 
 def _kind_of_guides(data: Any) -> str:
@@ -78,6 +90,11 @@ class Recipe(Section):
     fiber: FiberSettings | None = Field(
         default=None, description="what a hair is like; as the colour has it when absent"
     )
+    grooms: Annotated[dict[str, Recipe], WithJsonSchema({"type": "object"})] = Field(
+        default={},
+        description="several grooms on one head, such as scalp hair, brows and lashes: each is a whole recipe that "
+        "takes from outside of it what it does not say itself, and `extends` another as it is. One groom when absent",
+    )
 
     _path: Path | None = PrivateAttr(None)
     _text: str | None = PrivateAttr(None)
@@ -117,6 +134,12 @@ class Recipe(Section):
 
     def named_files(self) -> dict[str, Path]:
         """Files that the recipe names, by setting."""
+        if self.grooms:
+            return {
+                f"{GROOMS}.{name}.{what}": file
+                for name, one in self.grooms.items()
+                for what, file in one.named_files().items()
+            }
         files = {"scalp.file": self.scalp_file, "guides.file": self.guides_file, "edits": self.edits_file}
         files |= {f"maps.{name}": file for name, file in self.map_files().items()}
         files |= {f"curves.{name}": file for name, file in self.helper_files().items()}
@@ -148,9 +171,18 @@ def _recipe(text: str, data: dict[str, Any], path: Path | None) -> Recipe:
     except ValidationError as error:
         raise explain(error, path.name if path else "recipe", data) from error
     recipe._path, recipe._text = path, text
+    for name, groom in recipe.grooms.items():
+        groom._path, groom._text = path, resolved_text(data[GROOMS][name])
     return recipe
 
 
 def schema() -> dict[str, Any]:
     """The JSON schema of a recipe: types, bounds, units, defaults and descriptions of all settings."""
-    return Recipe.model_json_schema()
+    found = Recipe.model_json_schema()
+    of_groom = {name: {"$ref": f"#/properties/{name}"} for name in found["properties"] if name not in OF_FILE}
+    found["properties"][GROOMS]["additionalProperties"] = {
+        "type": "object",
+        "additionalProperties": False,
+        "properties": of_groom,
+    }
+    return found

@@ -21,6 +21,9 @@ MAX_DENSITY_RATIO = 20  # largest ratio of the peak to the mean of a painted den
 THINNING_FACTOR, THINNING_STEPS = 0.8, 24
 
 
+Samples = tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.float64]]  # ids, triangles and barycentrics
+
+
 class Scalp:
     """A mesh in its rest pose and the region of it that carries roots."""
 
@@ -58,9 +61,7 @@ class Scalp:
         places = self.points[np.unique(self.triangles[self.region])]
         return 0.5 * (places.min(axis=0) + places.max(axis=0))
 
-    def sample(
-        self, count: int, seed: int, density: str | None = None, what: str = "density"
-    ) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.float64]]:
+    def sample(self, count: int, seed: int, density: str | None = None, what: str = "density") -> Samples:
         """Blue-noise samples of the region, uniform or after a painted density.
 
         Returns ids (count,), triangles (count,) and barycentrics (count, 3). Samples are chosen from candidates that
@@ -159,6 +160,10 @@ class Scalp:
         bound = {"root_triangle": triangle, "root_barycentric": barycentric}
         places = Curves(np.zeros((count, 3)), np.arange(count + 1, dtype=np.int32), np.arange(count), bound)
         return painted(name, places, self.mesh, what)
+
+    def attributes(self, roots: NDArray[np.float64]) -> dict[str, NDArray[np.float32]]:
+        """Attributes of curves with these roots (n, 3) [m], which masks and values can use; none for an area."""
+        return {}
 
     def count_for_spacing(self, spacing: float) -> int:
         """Number of uniform samples of the region at a mean spacing [m]."""

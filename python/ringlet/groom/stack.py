@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from hashlib import blake2b
 from pathlib import Path
@@ -14,14 +14,14 @@ from numpy.typing import NDArray
 from ringlet.data.bounds import check_curves
 from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.data.errors import UserError
-from ringlet.data.groom import Groom
+from ringlet.data.groom import HAIR_SHARE, Groom
 from ringlet.data.mesh import Mesh
 from ringlet.data.painted import painted
 from ringlet.data.quantities import Varied
 from ringlet.data.random import Random
 from ringlet.data.stage import StageSpace
 from ringlet.groom.color import colored
-from ringlet.groom.density import HAIR_SHARE
+from ringlet.groom.edge import Edge, EdgeScalp
 from ringlet.groom.edits import Edit, Edits
 from ringlet.groom.hair_measures import raise_density
 from ringlet.groom.hair_settings import HairSettings
@@ -50,12 +50,14 @@ class Memory:
     results: key and curves of each stage
     files:   contents of files that have not changed, by name
     hairs:   cache of the render hairs
+    grooms:  caches of each groom, by name, where the recipe has several
     """
 
     results: dict[str, tuple[str, Curves]] = field(default_factory=dict)
     scalp: tuple[str, Scalp] | None = None
     files: dict[str, tuple[tuple[int, str], Any]] = field(default_factory=dict)
     hairs: HairMemory = field(default_factory=HairMemory)
+    grooms: dict[str, Memory] = field(default_factory=dict)
 
 
 def make_groom(
@@ -64,6 +66,7 @@ def make_groom(
     *,
     drawn_guides: Curves | None = None,
     helpers: Mapping[str, Curves] | None = None,
+    hidden: Sequence[str] = (),
     scalp_file: Path | None = None,
     scalp_prim: str | None = None,
     space: StageSpace | None = None,
@@ -75,6 +78,7 @@ def make_groom(
     scalp:        the mesh in its rest pose [m]
     drawn_guides: the curves of ``[guides] file`` [m]
     helpers:      the curves of the files of ``[curves]``, by name [m]
+    hidden:       paths of the meshes of the head's file that the hair replaces
     scalp_file, scalp_prim, space: source of the mesh, stored in the groom
     progress:     called with (stage, 0, 1) before and (stage, 1, 1) after every stage
     memory:       cache between calls, so that an edit recomputes only the stages from there on
@@ -95,6 +99,9 @@ def make_groom(
         helpers = {name: helper.check(f"curves.{name}").distinct() for name, helper in helpers.items()}
         for name, helper in helpers.items():
             key = _key(key, name.encode(), helper.points.tobytes(), helper.offsets.tobytes())
+        if recipe.scalp.edge is not None:
+            surface = _on_edge(recipe, recipe.scalp.edge, surface, helpers)
+            key = _key(key, recipe.scalp.edge.model_dump_json().encode())
         curves = drawn_guides or Curves.from_list([])
         stages = _stages(recipe)
         guides, unsculpted, shapes, uncleaned = curves, curves, None, curves
@@ -133,6 +140,7 @@ def make_groom(
         scalp_file=scalp_file,
         scalp_prim=scalp_prim,
         region=recipe.scalp.region,
+        edge=surface.length if isinstance(surface, EdgeScalp) else None,
         cage=recipe.scalp.surface == "cage",
         space=space or StageSpace(),
         hairs=recipe.hairs.model_dump(mode="json", exclude={k for k, v in recipe.hairs if v is None} - {"points"}),
@@ -142,6 +150,7 @@ def make_groom(
         shapes=shapes,
         unsculpted=unsculpted,
         bands=bands,
+        hidden=list(hidden),
         conflicts=[
             *_conflicts(recipe, unsculpted, curves),
             *_odd_size(scalp, recipe.scalp.region),
@@ -154,6 +163,20 @@ def make_groom(
     if recipe.hairs.cover is not None:
         raise_density(groom, recipe.hairs)
     return groom
+
+
+def _on_edge(recipe: Recipe, edge: Edge, scalp: Scalp, helpers: Mapping[str, Curves]) -> EdgeScalp:
+    """The scalp with hair on lines alone; raises UserError for settings that need an area."""
+    needs_area = {
+        "locks.sections": recipe.locks.sections,
+        "locks.hairline": recipe.locks.hairline,
+        "hairs.density": recipe.hairs.density,
+        "hairs.cover": recipe.hairs.cover,
+    }
+    for name, setting in needs_area.items():
+        if setting is not None:
+            raise UserError(f"{name} needs an area, but scalp.edge grows hair on lines; take one of the two away")
+    return edge.of(scalp, Context(recipe.seed, scalp, "scalp", curves=helpers).helper, recipe.seed)
 
 
 def _with_textures_of_hairs(locks: Curves, hairs: HairSettings, scalp: Mesh) -> Curves:

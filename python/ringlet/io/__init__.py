@@ -7,7 +7,7 @@ from ringlet.io.usd.camera import read_camera
 from ringlet.io.usd.check import problems
 from ringlet.io.usd.groom import as_written, read_groom, write_groom
 from ringlet.io.usd.hairs import HairWriter, read_hair_frames, read_hairs, read_stage
-from ringlet.io.usd.mesh import Body, read_bodies, read_body, read_meshes, unread_surfaces
+from ringlet.io.usd.mesh import Body, read_bodies, read_body, read_meshes, surface_paths, unread_surfaces
 from ringlet.io.usd.rest import read_rest, write_rest
 from ringlet.io.usd.stage import check_target
 from ringlet.io.usd.touches import heat, read_touches, start_marks, write_touches
@@ -41,6 +41,7 @@ __all__ = [
     "read_texture",
     "read_touches",
     "start_marks",
+    "surface_paths",
     "unread_surfaces",
     "write_cache",
     "write_groom",

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from scipy.linalg import solve_banded
 
 from ringlet.data.curves import Curves, offsets_from_counts
+from ringlet.data.groom import GROOM
 
 # Diameter of hairs without a width: that of a curly human hair [m].
 DEFAULT_WIDTH = 70e-6
@@ -62,9 +63,11 @@ def fibres(hairs: Curves, origin: NDArray[np.float64]) -> tuple[NDArray[np.float
 
 
 def split(hairs: Curves) -> list[Curves]:
-    """Divides hairs, in their order, so that single precision resolves every place along a shape of them."""
+    """Divides hairs, in their order, so that single precision resolves every place along a shape of them, and by groom,
+    as these differ in their fibre."""
     shapes = (hairs.offsets[1:] - 1) // MOST_POINTS
-    borders = np.flatnonzero(np.diff(shapes)) + 1
+    groom = hairs.curve.get(GROOM, np.zeros(len(hairs), np.int32))
+    borders = np.flatnonzero((np.diff(shapes) != 0) | (np.diff(groom) != 0)) + 1
     return [hairs.take(chosen) for chosen in np.split(np.arange(len(hairs)), borders)] if len(borders) else [hairs]
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -20,7 +22,9 @@ from ringlet.data.pigment import (
     curve_reflectance,
     of_fiber,
 )
-from ringlet.groom import Hairs, hair_colors
+from ringlet.groom import AnyHairs, JoinedHairs, grooms_of, hair_colors
+from ringlet.groom.joined_hairs import IDS_PER_GROOM
+from ringlet.groom.several import WITHOUT
 from ringlet.viewer import protocol
 from ringlet.viewer.display_groom import shuffled_order, spread_order
 from ringlet.viewer.wire import pack
@@ -32,18 +36,17 @@ def inputs(groom: Groom) -> str:
     """Digest of what the colours of hairs depend on, their layout aside."""
     locks, names = groom.locks, (MELANIN, REDNESS, GRAY, DYE, DYE_AMOUNT, *FIBER)
     values = [kind[name] for name in names for kind in (locks.curve, locks.point) if name in kind]
-    return digest(groom.color, groom.fiber, *values)
+    return digest(groom.color, groom.fiber, groom.grooms, *values)
 
 
-def message(side: str, groom: Groom, hairs: Hairs | None) -> bytes:
+def message(side: str, groom: Groom, hairs: AnyHairs | None) -> bytes:
     """Message with the colours of hairs, or of the locks where these are the hairs."""
     if hairs is None:
         curves, order = groom.locks, shuffled_order(len(groom.locks))
         colors = _at_stations(curves, curve_reflectance(curves, "hairs"))
     else:
         order = spread_order(offsets_from_counts(np.bincount(hairs.curves.curve["lock"], minlength=len(groom.locks))))
-        curves = hair_colors(groom, _stations(hairs.curves))
-        colors = curve_reflectance(curves, "hairs")
+        curves, colors = _hair_reflectances(groom, hairs)
     stations = 0 if colors is None else len(colors) // max(len(curves), 1)
     values = np.empty(0) if colors is None else colors.reshape(len(curves), stations, 3)[order]
     return pack(
@@ -57,6 +60,16 @@ def message(side: str, groom: Groom, hairs: Hairs | None) -> bytes:
         ),
         reflectance=np.rint(255.0 * np.sqrt(np.sqrt(values))),
     )
+
+
+def _hair_reflectances(groom: Groom, hairs: AnyHairs) -> tuple[Curves, NDArray[np.float64] | None]:
+    """Hairs with their colours, and these at their stations, or one for each hair; None for hairs without any."""
+    if not isinstance(hairs, JoinedHairs):
+        curves = hair_colors(groom, _stations(hairs.curves))
+        return curves, curve_reflectance(curves, "hairs")
+    each = [hair_colors(one, _stations(hairs.members[name].curves)) for name, one in grooms_of(groom).items()]
+    curves = Curves.joined([replace(one, ids=one.ids + k * IDS_PER_GROOM) for k, one in enumerate(each)], WITHOUT)
+    return curves, curve_reflectance(curves, "hairs")
 
 
 def _stations(hairs: Curves) -> Curves:

@@ -15,7 +15,7 @@ from ringlet import api
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Mesh
-from ringlet.groom import Groom, HairMemory, Hairs, Memory, Recipe, lay_hairs, make_groom
+from ringlet.groom import AnyHairs, Groom, HairMemory, Memory, Recipe, join_grooms, lay_hairs, make_groom, recipes_of
 from ringlet.groom.operators import Clean, Context, Drawn
 from ringlet.viewer import protocol
 from ringlet.viewer.project import Project
@@ -50,7 +50,7 @@ class DisplayGroom:
     """
 
     groom: Groom
-    hairs: Hairs | None
+    hairs: AnyHairs | None
     draft: bool
     isolated: frozenset[int] = frozenset()
     curves: frozenset[str] = frozenset()
@@ -89,8 +89,8 @@ class GroomEvaluator:
 
     def __init__(self, project: Project) -> None:
         self._project = project
-        self._memory = Memory()
-        self._inputs: tuple[str, dict[str, Any]] | None = None
+        self._memories: dict[str, Memory] = {}
+        self._inputs: dict[str, tuple[str, dict[str, Any]]] = {}
         self._hairs = HairMemory()
 
     def groom(
@@ -98,6 +98,7 @@ class GroomEvaluator:
         recipe: Recipe,
         muted: frozenset[str] = frozenset(),
         *,
+        chosen: str = "",
         draft: bool,
         check_abort: Callable[[], None],
         progress: Callable[[str, float], None] = lambda stage, done: None,
@@ -105,6 +106,7 @@ class GroomEvaluator:
         """Evaluates a recipe.
 
         muted:       stages without effect
+        chosen:      the one of several grooms that ``muted`` is about
         draft:       skips the clean stage
         check_abort: called between stages; may raise an exception to abort
         progress:    called with each stage and the fraction of the stages before it
@@ -113,7 +115,8 @@ class GroomEvaluator:
         times: dict[str, float] = {}
         clock = [began]
 
-        stages, begun = len(recipe.shape) + 5, 0
+        each = (recipe.grooms or {"": recipe}).values()
+        stages, begun = sum(len(one.shape) + 4 for one in each) + 1, 0
 
         def clocked(stage: str, done: int, total: int) -> None:
             nonlocal begun
@@ -125,10 +128,15 @@ class GroomEvaluator:
             elif (took := 1e3 * (time.perf_counter() - clock[0])) > 0.5:
                 times[stage] = round(took, 1)
 
-        recipe = without_muted(recipe, muted | ({"clean"} if draft else frozenset()))
-        groom = make_groom(recipe, progress=clocked, memory=self._memory, **self._read(recipe))
-        groom.hairs = recipe.hairs.model_dump(mode="json")
-        check_abort()
+        always = frozenset({"clean"}) if draft else frozenset()
+        made = {}
+        for name, one in (recipe.grooms or {"": recipe}).items():
+            one = without_muted(one, always | (muted if name == chosen else frozenset()))
+            memory = self._memories.setdefault(name, Memory())
+            made[name] = make_groom(one, progress=clocked, memory=memory, **self._read(name, one))
+            made[name].hairs = one.hairs.model_dump(mode="json")
+            check_abort()
+        groom = join_grooms(made) if recipe.grooms else made[""]
         progress("hairs", 1.0 - 1.0 / stages)
         clock[0] = time.perf_counter()
         hairs = lay_hairs(groom, memory=self._hairs)
@@ -138,23 +146,23 @@ class GroomEvaluator:
             groom,
             hairs,
             draft,
-            frozenset(edit.lock for edit in recipe.edit),
+            frozenset(edit.lock + offset for one, offset in recipes_of(recipe) for edit in one.edit),
             frozenset(recipe.curves),
             times,
             1e3 * (time.perf_counter() - began),
         )
 
-    def _read(self, recipe: Recipe) -> dict[str, Any]:
-        """Inputs from the recipe's files, read again only after one of them changes."""
+    def _read(self, name: str, recipe: Recipe) -> dict[str, Any]:
+        """Inputs from the files of a groom's recipe, read again only after one of them changes."""
         files = recipe.named_files()
         for what, file in files.items():
             self._project.inside(file, f"{recipe.path.name if recipe.path else 'recipe'}: {what}")
         stamps = [(what, str(file), _stamp(file)) for what, file in sorted(files.items()) if what != "edits"]
         drawn = recipe.guides if isinstance(recipe.guides, Drawn) else None
         key = repr((stamps, recipe.scalp, drawn, recipe.curves))
-        if self._inputs is None or self._inputs[0] != key:
-            self._inputs = key, api.groom_inputs(recipe)
-        return self._inputs[1]
+        if name not in self._inputs or self._inputs[name][0] != key:
+            self._inputs[name] = key, api.groom_inputs(recipe)
+        return self._inputs[name][1]
 
 
 def without_muted(recipe: Recipe, muted: frozenset[str]) -> Recipe:
@@ -172,10 +180,11 @@ def without_muted(recipe: Recipe, muted: frozenset[str]) -> Recipe:
     return recipe.model_copy(update=changed)
 
 
-def hairs_message(side: str, hairs: Hairs, scalp: Mesh) -> bytes:
+def hairs_message(side: str, hairs: AnyHairs, scalp: Mesh) -> bytes:
     """Message with hairs, ordered so that any prefix covers all locks evenly."""
     layout = hairs.deformation(scalp.points)
-    count, points = len(hairs.curves), len(layout["profile"])
+    group = layout.get("group", np.zeros(len(hairs.curves), np.uint8))
+    count, points = len(hairs.curves), int(hairs.curves.counts[0])
     order = spread_order(layout["first"])
     widths = hairs.curves.point["width"].reshape(count, points)
     unblended = {"other": np.zeros(count), "share": np.zeros(count)}
@@ -185,11 +194,12 @@ def hairs_message(side: str, hairs: Hairs, scalp: Mesh) -> bytes:
             {"side": side, "count": count, "points": points, "knots": layout["frizz"].shape[1] // 2}
         ),
         lock=hairs.curves.curve["lock"][order],
+        group=group[order],
         **{name: layout[name][order] for name in ("offset", "tip", "join", "flat", "taper", "frizz", "root")},
         **{name: values[order] for name, values in blends.items()},
         **{name: layout[name] for name in ("profile", "hold", "pace", "blend")},
         width=widths.max(axis=1)[order],
-        thinning=_thinning(widths),
+        thinning=np.concatenate([_thinning(widths[group == k]) for k in range(int(group[-1]) + 1)]),
         window=layout["window"],
         **NO_CURL | {name: values if name in RAMPS else values[order] for name, values in layout["curl"].items()},
     )
@@ -210,6 +220,7 @@ def curves_message(side: str, curves: Curves) -> bytes:
     return pack(
         protocol.Hairs.model_validate({"side": side, "count": count, "points": points, "knots": 2}),
         lock=order,
+        group=np.zeros(count),
         offset=np.zeros(2 * count),
         tip=np.ones(count),
         join=np.zeros(count),

@@ -8,10 +8,11 @@ from typing import Any
 from ringlet.data.errors import UserError
 from ringlet.data.files import replacing
 from ringlet.data.regular import read_text
-from ringlet.data.settings import parse_toml, read_toml
+from ringlet.data.settings import check_name, parse_toml, read_toml
 from ringlet.groom import Recipe, parse_recipe
 from ringlet.groom.edits_file import edits_text
 from ringlet.groom.load import APPEND, inherited, parse_edits
+from ringlet.groom.named import GROOMS
 from ringlet.shot import Shot, parse_shot
 from ringlet.viewer import protocol
 from ringlet.viewer.document import Document, History, State, set_value
@@ -32,6 +33,7 @@ class Files:
         self.project, self.file = project, project.inside(file, "view")
         self.documents: dict[File, Document] = {}
         self.mode = "stage"
+        self._chosen = ""
         self._history = History()
         if self.file.suffix == ".toml":
             self._open()
@@ -73,6 +75,10 @@ class Files:
             file = self.project.inside(path.parent / name, f"{path.name}: {setting}")
             if setting == "extends" and file.is_file() and file != path.resolve():
                 self._confine(read_toml(file, "recipe")[1], file)
+        grooms = data.get(GROOMS, {})
+        for table in grooms.values() if isinstance(grooms, dict) else ():
+            if isinstance(table, dict):
+                self._confine(table, path)
 
     def parse_shot(self, text: str) -> Shot:
         """Parses a shot whose files are all inside the project; raises UserError for others."""
@@ -104,6 +110,32 @@ class Files:
         """The shot in its current state."""
         return self.document("shot").model
 
+    @property
+    def groom(self) -> str:
+        """The chosen one of several grooms of the recipe, by default the first; empty where it has one."""
+        names = list(self.recipe.model.grooms)
+        return self._chosen if self._chosen in names else next(iter(names), "")
+
+    def choose(self, name: str) -> None:
+        """Chooses one of several grooms; raises UserError for an unknown one."""
+        check_name(name, self.recipe.model.grooms, self.recipe.path.name, "groom of the recipe")
+        self._chosen = name
+        self.recipe.apply(self.recipe.text, muted=frozenset())
+
+    @property
+    def chosen_recipe(self) -> Recipe:
+        """The recipe, or that of the chosen one of several grooms."""
+        model = self.recipe.model
+        return model.grooms[self.groom] if model.grooms else model
+
+    def refuse_several(self) -> None:
+        """Raises UserError for a recipe with several grooms, whose locks and guides are not edited by hand."""
+        if self.groom:
+            raise UserError(
+                f"{self.recipe.path.name}: has several grooms; locks and guides are edited by hand in the recipe of "
+                "one: open it, and let the groom extend it"
+            )
+
     # Changes
 
     def set(self, file: File, changes: list[tuple[Place, Any]], gesture: int) -> None:
@@ -113,6 +145,8 @@ class Files:
         names = self._inherited(document) if file == "recipe" else None
         if names is not None:
             changes = [(_by_name(place, names), value) for place, value in changes]
+        if file == "recipe" and self.groom:
+            changes = [([GROOMS, self.groom, *place], value) for place, value in changes]
         document.set(changes, gesture)
         if file == "recipe" and document.model.edits_file != before.edits_file:
             document.apply(document.text, edits=_text_of(document.model.edits_file), gesture=gesture)
@@ -126,9 +160,11 @@ class Files:
         """
         document = self.recipe
         names = self._inherited(document)
-        order = [f"shape/{k}" for k in range(len(document.model.shape))]
+        order = [f"shape/{k}" for k in range(len(self.chosen_recipe.shape))]
         new = {"op": op, **(values or {})}
-        if names is None:
+        if self.groom and names is None:
+            document.set([([GROOMS, self.groom, "shape"], self._arranged(action, at, to, new))])
+        elif names is None:
             if action == "add":
                 document.add_tables("shape", at, [new])
             elif action == "remove":
@@ -136,15 +172,16 @@ class Files:
             else:
                 document.move_table("shape", at, to)
         elif action == "remove" and at < len(names):
-            document.set([(["shape", names[at]], None), (["shape", names[at]], False)])
-        elif action == "add" and at >= len(names):
+            place: Place = [GROOMS, self.groom, "shape"] if self.groom else ["shape"]
+            document.set([([*place, names[at]], None), ([*place, names[at]], False)])
+        elif not self.groom and action == "add" and at >= len(names):
             document.add_tables(f"shape.{APPEND}", at - len(names), [new])
-        elif action == "remove":
+        elif not self.groom and action == "remove":
             document.remove_tables(f"shape.{APPEND}", [at - len(names)])
-        elif action == "move" and min(at, to) >= len(names):
+        elif not self.groom and action == "move" and min(at, to) >= len(names):
             document.move_table(f"shape.{APPEND}", at - len(names), to - len(names))
         else:
-            base = document.contents()["extends"]
+            base = self._own_tables(document)["extends"]
             raise UserError(
                 f"{document.path.name}: operators of {base} keep their order, and others follow them; "
                 f"move them in {base}, or give {document.path.name} [[shape]] tables of its own"
@@ -162,8 +199,23 @@ class Files:
         muted = frozenset(filter(None, map(now, document.state.muted)))
         document.keep(muted=muted, solo=now(document.state.solo))
 
+    def _arranged(self, action: str, at: int, to: int, new: dict[str, Any]) -> list[dict[str, Any]]:
+        """The operators of the chosen groom, with one added, removed or moved."""
+        shape = list(self._own_tables(self.recipe).get("shape", []))
+        if not 0 <= at < len(shape) + (action == "add"):
+            raise UserError(f"{self.recipe.path.name}: shape has {len(shape)} operators; there is none at {at}")
+        moved = [new] if action == "add" else [shape.pop(at)]
+        if action != "remove":
+            to = at if action == "add" else to
+            shape[to:to] = moved
+        return shape
+
     def write_edits(self, kind: str, tables: list[dict[str, Any]], gesture: int | None = None) -> None:
-        """Replaces the tables of a kind in the recipe's file of edits; names a new file when there is none."""
+        """Replaces the tables of a kind in the recipe's file of edits; names a new file when there is none.
+
+        Raises UserError for a recipe with several grooms.
+        """
+        self.refuse_several()
         document = self.recipe
         edits = parse_edits(document.state.edits or "ringlet = 1", document.path)
         text = edits_text({**edits, kind: tables})
@@ -177,9 +229,12 @@ class Files:
         """Files on disk that the session depends on, and the kind of the document that each belongs to."""
         found: dict[Path, File] = {}
         for kind, document in self.documents.items():
-            if kind == "recipe":
-                found |= dict.fromkeys(document.model.named_files().values(), kind)
-            found |= dict.fromkeys([document.path, *_bases(document.contents(), document.path)], kind)
+            for model in (document.model, *document.model.grooms.values()) if kind == "recipe" else ():
+                found |= dict.fromkeys(model.named_files().values(), kind)
+            contents = document.contents()
+            for table in (contents, *contents.get(GROOMS, {}).values()) if kind == "recipe" else ():
+                found |= dict.fromkeys(_bases(table, document.path), kind)
+            found[document.path] = kind
         return found
 
     def own(self, file: File) -> set[Path]:
@@ -271,7 +326,12 @@ class Files:
         return [name for name, document in self.documents.items() if document is changed]
 
     def _inherited(self, document: Document) -> list[str] | None:
-        return inherited(document.contents(), document.path)
+        return inherited(self._own_tables(document), document.path)
+
+    def _own_tables(self, document: Document) -> dict[str, Any]:
+        """The tables of a recipe's file, or of the chosen groom in it."""
+        contents = document.contents()
+        return contents.get(GROOMS, {}).get(self.groom, {}) if document.model.grooms else contents
 
     # Saving
 
@@ -317,6 +377,9 @@ class Files:
         """Message with the state of a file."""
         document = self.documents[file]
         contents, model = document.contents(), document.model
+        grooms, groom = ([*model.grooms], self.groom) if file == "recipe" else ([], "")
+        if groom:
+            contents, model = self._own_tables(document), model.grooms[groom]
         if file == "recipe" and (names := self._inherited(document)) is not None:
             shape = contents.get("shape", {})
             contents = {**contents, "shape": [shape.get(name, {}) for name in names] + shape.get(APPEND, [])}
@@ -332,6 +395,8 @@ class Files:
                     "saved_edits": document.saved_edits if document.state.edits != document.saved_edits else "",
                     "said": contents,
                     "values": model.model_dump(mode="json", exclude={"sculpt"}),
+                    "grooms": grooms,
+                    "groom": groom,
                     "stages": stages(model, document.state) if file == "recipe" else [],
                     "dirty": document.dirty,
                     "undo": document.can_undo,

@@ -95,6 +95,13 @@ class Mute(Message):
     solo: str = Field(default="", max_length=64)
 
 
+class Choose(Message):
+    """Chooses the one of several grooms whose settings are shown and changed."""
+
+    kind: Literal["choose"] = "choose"
+    groom: str = Field(max_length=240)
+
+
 class Step(Message):
     """Undoes, redoes or reverts changes."""
 
@@ -290,6 +297,7 @@ FromPage = Annotated[
     | Lead
     | Set
     | Arrange
+    | Choose
     | Mute
     | Step
     | Save
@@ -392,6 +400,7 @@ class Document(Message):
     values:   values of all settings, defaults included, in SI units
     edits:    unsaved text of its file of edits
     saved, saved_edits: the texts as they were read or saved last; empty where they are ``text`` and ``edits``
+    grooms:   names of several grooms; ``said``, ``values`` and ``stages`` are those of ``groom``, the chosen one
     """
 
     kind: Literal["document"] = "document"
@@ -405,6 +414,8 @@ class Document(Message):
     said: dict[str, Any]
     values: dict[str, Any]
     stages: list[Stage]
+    grooms: list[str]
+    groom: str
     dirty: bool
     undo: bool
     redo: bool
@@ -462,9 +473,10 @@ class Hairs(Message):
     """Hairs relative to their locks; see ``src/ringlet/groom/hairs.h`` for the formula.
 
     Any prefix of the hairs covers all locks evenly. ``profile``, ``hold``, ``pace``, ``blend`` and ``thinning`` are
-    functions along the hair, the same for all. ``frizz`` has ``knots`` × 2 numbers a hair; ``root`` is the offset from
-    the lock's root to the hair's. The diameter is ``width`` of the hair times ``thinning``. The arrays from ``window``
-    on are those of the curl of hairs; empty where these only follow their lock.
+    functions along the hairs of each groom, one groom after another; ``group`` is the groom of a hair. ``frizz`` has
+    ``knots`` × 2 numbers a hair; ``root`` is the offset from the lock's root to the hair's. The diameter is ``width``
+    of the hair times ``thinning``. The arrays from ``window`` on are those of the curl of hairs; empty where these only
+    follow their lock.
     """
 
     kind: Literal["hairs"] = "hairs"
@@ -474,6 +486,7 @@ class Hairs(Message):
     knots: int
     arrays: ClassVar[dict[str, str]] = {
         "lock": "u4",
+        "group": "u1",
         "offset": "f4",
         "tip": "f4",
         "join": "f4",

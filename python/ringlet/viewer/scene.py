@@ -75,6 +75,7 @@ def read_meshes(groom: Groom) -> list[VisibleMesh]:
     """Visible meshes of the head's file at rest; the scalp alone when the file has none."""
     scalp, file = groom.scalp, groom.scalp_file
     shown = io.read_meshes(file, groom.cage) if file is not None and file.suffix in USD else []
+    shown = [mesh for mesh in shown if groom.shows(mesh.name)]
     return [VisibleMesh(mesh) for mesh in shown or [scalp]]
 
 
@@ -105,6 +106,7 @@ def shot_meshes(shot: Shot, groom: Groom) -> list[VisibleMesh]:
     """
     head = read_bodies(groom.scalp, groom.scalp_file, shot.frames, groom.space.fps, cage=groom.cage)
     cloths, colliders = api.cloths_and_colliders(shot, groom)
+    head = [body for body in head if groom.shows(body.mesh.name)]
     of_head = {cloth.mesh.name for cloth in cloths if cloth.file == groom.scalp_file}
     bodies = [body for body in head if body.mesh.name not in of_head]
     bodies += [VisibleMesh(cloth.mesh, cloth.clip, cloth.name) for cloth in cloths]

@@ -68,6 +68,7 @@ class Work:
     without:  stages without effect
     draft:    whether a draft suffices
     large:    whether it is made however long it takes
+    chosen:   the one of several grooms that ``without`` is about
     """
 
     document: Document
@@ -76,6 +77,7 @@ class Work:
     without: frozenset[str]
     draft: bool
     large: bool = False
+    chosen: str = ""
 
 
 class Page:
@@ -294,6 +296,9 @@ class Session:
         elif isinstance(message, protocol.Arrange):
             files.edit_operators(message.action, message.at, message.to, message.op, message.values)
             self._edited("recipe")
+        elif isinstance(message, protocol.Choose):
+            files.choose(message.groom)
+            self._edited("recipe")
         elif isinstance(message, protocol.Mute):
             files.recipe.apply(files.recipe.text, muted=frozenset(message.stages), solo=message.solo)
             self._edited("recipe")
@@ -343,6 +348,7 @@ class Session:
 
         Raises UserError before the groom is made.
         """
+        self.files.refuse_several()
         display = self._viewport.display
         if display is None:
             raise UserError("sculpt: the groom is not made yet; wait until it is seen")
@@ -533,7 +539,7 @@ class Session:
     def _without(self) -> frozenset[str]:
         """Stages without effect."""
         document = self.files.recipe
-        return without_effect(document.model, document.state)
+        return without_effect(self.files.chosen_recipe, document.state)
 
     def regroom(self, *, draft: bool = False, large: bool = False) -> None:
         """Requests the groom of the current recipe; a draft while a gesture is in progress.
@@ -550,7 +556,9 @@ class Session:
             self.problems.show(WORK, message, [MAKE, UNDO])
             return
         self.problems.clear(WORK)
-        self._worker.submit(Work(document, document.model, document.revision, self._without, draft, large))
+        self._worker.submit(
+            Work(document, document.model, document.revision, self._without, draft, large, self.files.groom)
+        )
 
     def _cancel(self) -> None:
         """Cancels the groom that is being made."""
@@ -564,7 +572,12 @@ class Session:
         progress = ProgressReport(lambda *now: self._call(self._report, *now), PROGRESS_AFTER)
         try:
             display = self._evaluator.groom(
-                work.recipe, work.without, draft=work.draft, check_abort=check_abort, progress=progress
+                work.recipe,
+                work.without,
+                chosen=work.chosen,
+                draft=work.draft,
+                check_abort=check_abort,
+                progress=progress,
             )
             self._call(self._show, display, work)
             if not work.draft:

@@ -16,7 +16,7 @@ from ringlet import api
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Clip
 from ringlet.data.precision import compact
-from ringlet.groom import Groom, Hairs
+from ringlet.groom import AnyHairs, Groom
 from ringlet.shot import Shot
 from ringlet.sim.motion import Motion
 from ringlet.viewer import overlays, protocol
@@ -35,7 +35,7 @@ class Stage:
     """The scene of a simulation: groom, hairs, animated scalp and bodies."""
 
     groom: Groom
-    hairs: Hairs | None
+    hairs: AnyHairs | None
     clip: Clip
     bodies: list[VisibleMesh]
     _lock: threading.Lock = field(default_factory=threading.Lock, init=False)  # guards the buffer of hairs

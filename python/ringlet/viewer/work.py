@@ -14,6 +14,8 @@ def too_large(recipe: Recipe, shown: Recipe, display: DisplayGroom) -> float:
 
     shown: recipe of the displayed groom
     """
+    if recipe.grooms or shown.grooms:  # of several grooms the estimate knows too little
+        return 0.0
     before, now = (_points(one, shown, display) for one in (shown, recipe))
     return now / before if now > MOST_RATIO * before and now > SMALL else 0.0
 

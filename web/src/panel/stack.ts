@@ -27,6 +27,7 @@ export class Stack {
     const focused = (globalThis.document.activeElement as HTMLElement | null)?.dataset["stage"];
     const parts: HTMLElement[] = [];
     if (document) {
+      if (document.grooms.length) parts.push(this.grooms(document.grooms, document.groom));
       parts.push(h("h2", {}, "groom"), this.row({ name: "recipe", op: "", place: [], muted: false, solo: false }, document.stages));
       parts.push(...document.stages.map((stage) => this.row(stage, document.stages)), this.adding());
     }
@@ -92,6 +93,20 @@ export class Stack {
           )
         : null,
     );
+  }
+
+  /** Chooses the one of several grooms whose stages are shown. */
+  private grooms(names: string[], chosen: string): HTMLElement {
+    const options = names.map((name) =>
+      h("option", { value: name, selected: name === chosen || undefined }, name.replaceAll("_", " ")),
+    );
+    const select = h("select", { "aria-label": "Groom", "data-stage": "grooms" }, ...options);
+    select.disabled = !this.model.role.leads;
+    select.onchange = () => {
+      this.model.choose("recipe", []);
+      this.model.say({ kind: "choose", groom: select.value });
+    };
+    return select;
   }
 
   private shotRow(name: string, place: Place): HTMLElement {

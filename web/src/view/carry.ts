@@ -29,7 +29,7 @@ precision highp int;
 ${LOOKUP}
 uniform highp sampler2D lockPoint, lockA, lockB, lockPlace;
 uniform highp sampler2D hairPlace;  // lock, tip, offset
-uniform highp sampler2D hairRoot;   // root, width; join, flat: two texels a hair
+uniform highp sampler2D hairRoot;   // root, width; join, flat, groom: two texels a hair
 uniform highp sampler2D hairFrizz;  // two knots a texel
 uniform highp sampler2D hairMix;    // taper, another lock, the share that it has, relaxation
 uniform highp sampler2D lockU, lockV; // frame of the centre line, and the lock's place in it
@@ -38,7 +38,7 @@ uniform highp sampler2D hairCoil;   // radius times direction, turns, kink
 uniform highp sampler2D hairAway;   // family, escape
 uniform highp sampler2D curlRamps;  // escaping, relaxing, tight, opening
 uniform bool curled;
-uniform highp sampler2D ramps;      // profile, hold, thinning, blend; pace: two texels a point
+uniform highp sampler2D ramps;      // profile, hold, thinning, blend; pace: two texels a point of each groom
 uniform highp sampler2D left;       // the part of its way from the lock that each point keeps, as many texels as the result
 uniform int hairs, points, knots;
 out vec4 result;
@@ -85,8 +85,10 @@ void main() {
   int index = int(gl_FragCoord.x) + 2048 * int(gl_FragCoord.y);
   int hair = index / points, k = index - hair * points;
   if (hair >= hairs) { result = vec4(0.0); return; }
-  vec4 sits = lookup(hairPlace, hair), root = lookup(hairRoot, 2 * hair), ramp = lookup(ramps, 2 * k), mixed = lookup(hairMix, hair);
-  vec2 joins = lookup(hairRoot, 2 * hair + 1).xy;
+  vec4 sits = lookup(hairPlace, hair), root = lookup(hairRoot, 2 * hair), mixed = lookup(hairMix, hair);
+  vec3 joins = lookup(hairRoot, 2 * hair + 1).xyz;
+  int station = int(joins.z) * points + k;
+  vec4 ramp = lookup(ramps, 2 * station);
   vec4 lock = lookup(lockPlace, int(sits.x));
   float u = float(k) / float(points - 1);
 
@@ -100,7 +102,7 @@ void main() {
 
   vec4 turned = vec4(0.0); // cosine of the slip times the radius that is left, less 1; its sine; escape
   if (curled) {
-    vec4 coil = lookup(hairCoil, hair), away = lookup(hairAway, hair), along = lookup(curlRamps, k);
+    vec4 coil = lookup(hairCoil, hair), away = lookup(hairAway, hair), along = lookup(curlRamps, station);
     vec2 phase = mix(knot(hairTurn, hair, i), knot(hairTurn, hair, i + 1), ease);
     float follow = 1.0 - ramp.y, turn = coil.z * u + phase.y, flatly = cosine(turn);
     vec2 wound = vec2(mix(flatly, zigzag(turn), coil.w), (1.0 - coil.w) * cosine(turn - 0.25));
@@ -111,7 +113,7 @@ void main() {
     turned.zw = follow * along.x * away.zw;
   }
 
-  float at = lock.y * (joins.x + (sits.y - joins.x) * mix(u, lookup(ramps, 2 * k + 1).x, joins.y));
+  float at = lock.y * (joins.x + (sits.y - joins.x) * mix(u, lookup(ramps, 2 * station + 1).x, joins.y));
   if (joins.x > 0.0) root.xyz += lookup(lockPoint, int(lock.x)).xyz - onLock(lock, joins.x * lock.y, vec2(0.0), vec4(0.0));
   vec3 place = onLock(lock, at, across, turned) + ramp.y * root.xyz;
   if (mixed.z > 0.0) { // drawn to a neighbouring lock: the same hair about that one
@@ -163,8 +165,9 @@ export class Carry {
     this.put("hairMix", mix);
     this.put("hairFrizz", evenKnots(hairs, hairs.frizz));
     this.setCurl();
-    const ramps = new Float32Array(8 * hairs.points);
-    for (let k = 0; k < hairs.points; k++)
+    const stations = hairs.profile.length;
+    const ramps = new Float32Array(8 * stations);
+    for (let k = 0; k < stations; k++)
       ramps.set([hairs.profile[k], hairs.hold[k], hairs.thinning[k], hairs.blend[k], hairs.pace[k]], 8 * k);
     this.put("ramps", ramps);
     this.setRoots(hairs.root);
@@ -181,10 +184,10 @@ export class Carry {
 
   /** Where roots are, from those of their locks: they turn with the head. */
   setRoots(root: Float32Array): void {
-    const { count, width, join, flat } = this.hairs;
+    const { count, width, join, flat, group } = this.hairs;
     const rows = new Float32Array(8 * count);
     for (let i = 0; i < count; i++)
-      rows.set([root[3 * i], root[3 * i + 1], root[3 * i + 2], width[i], join[i], flat[i]], 8 * i);
+      rows.set([root[3 * i], root[3 * i + 1], root[3 * i + 2], width[i], join[i], flat[i], group[i]], 8 * i);
     this.put("hairRoot", rows);
   }
 

@@ -11,6 +11,7 @@ from pydantic import BeforeValidator, Field, model_validator
 from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.data.painted import painted_directions
 from ringlet.data.quantities import Quantity, Section, Varied, refuse
+from ringlet.groom.edge import EdgeScalp
 from ringlet.groom.mask import Mask
 from ringlet.groom.operators.guides import Guides
 from ringlet.groom.operators.operator import UP, Context, unit
@@ -105,6 +106,7 @@ class Grown(Guides):
         ids, triangle, barycentric = scalp.sample(count, context.seed, self.density, "guides.density")
         bound = {"root_triangle": triangle, "root_barycentric": barycentric}
         roots = scalp.positions(triangle, barycentric)
+        bound |= scalp.attributes(roots)
         seeds = Curves(roots, offsets_from_counts(np.ones(len(ids))), ids, bound)
 
         frames = scalp.frames(seeds)
@@ -131,13 +133,15 @@ class Grown(Guides):
         return Curves(np.ascontiguousarray(points.reshape(-1, 3)), offsets, ids, bound)
 
     def _flow(self, seeds: Curves, frames: NDArray, context: Context) -> NDArray[np.float64]:
-        """Unit tangents of the surface in the direction of growth, shape (n, 3).
+        """Unit tangents of the surface in the direction of growth, shape (n, 3); on an edge, those of its ``turn``.
 
         Where the flow is across the surface, as at the whorl, the tangent of the scalp's frame takes its place.
         """
         roots, normal, scalp = seeds.points, frames[:, :, 2], context.scalp
         from_middle = roots - scalp.middle
-        if self.whorl is None:
+        if isinstance(scalp, EdgeScalp):
+            flow = scalp.flow(np.asarray(roots, np.float64), normal, np.array(self.flow))
+        elif self.whorl is None:
             flow = np.broadcast_to(np.array(self.flow), normal.shape)
         else:
             away = unit(unit(from_middle) - unit(np.array(self.whorl)))

@@ -81,7 +81,7 @@ class Locks(Operator):
         if fade:
             grows = fade.grows(scalp.positions(triangle, barycentric), ids, context.random("hairline"))
             ids, triangle, barycentric = ids[grows], triangle[grows], barycentric[grows]
-        attributes: dict[str, NDArray] = {}
+        attributes: dict[str, NDArray] = {**scalp.attributes(scalp.positions(triangle, barycentric))}
         if self.sections is not None:
             ids, triangle, barycentric, attributes = self._sectioned(ids, triangle, barycentric, context)
         if not len(ids):

@@ -14,6 +14,7 @@ from pxr import Sdf, Usd, UsdGeom, Vt
 
 from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.data.errors import UserError
+from ringlet.data.groom import GROOM
 from ringlet.data.mesh import Mesh
 from ringlet.data.pigment import DYE, FIBER, curve_reflectance, display_color
 from ringlet.data.stage import StageSpace
@@ -42,7 +43,7 @@ ID_HALVES = ("id_high", "id_low")  # halves of 64-bit ids, for programs without 
 COMMON = {"rest", "skinprim", "skinprimuv", "st", "surface_uv_coordinate", "guide_curve_index", "clumpid", *ID_HALVES}
 COMMON |= {"groom_id", "groom_group_id", "groom_guide", "groom_root_uv", "groom_color"}
 COMMON |= {"displayColor", "displayOpacity"}
-INNER = {"root_triangle", "root_barycentric", "lock", "guide_id", "nail", "tied"}
+INNER = {"root_triangle", "root_barycentric", "lock", "guide_id", "nail", "tied", GROOM}
 INNER |= {"groomed", "stiffened", "off", "moving"}
 CONSTANT = {DYE, *FIBER}  # attributes of curves that are written once where all curves have the same
 MOST_WIDTH = 1.0  # largest diameter of a curve that is written [m]
@@ -150,7 +151,7 @@ def define_curves(
     set_primvar(prim, "groom_id", "uniform", (curves.ids if fits else np.arange(len(curves))).astype(np.int32))
     for name, half in zip(ID_HALVES, (curves.ids >> 32, curves.ids & 0xFFFFFFFF), strict=True):
         set_primvar(prim, name, "uniform", half.astype(np.uint32).view(np.int32))
-    set_primvar(prim, "groom_group_id", "uniform", np.zeros(len(curves), np.int32))
+    set_primvar(prim, "groom_group_id", "uniform", curves.curve.get(GROOM, np.zeros(len(curves), np.int32)))
     set_primvar(prim, "groom_guide", "uniform", np.full(len(curves), guide, np.int32))
     return defined
 

@@ -24,6 +24,7 @@ from pxr import Sdf, Usd, UsdGeom
 from ringlet.data.binding import check_roots, root_places
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
+from ringlet.data.groom import GROOM as ROW
 from ringlet.data.groom import Groom
 from ringlet.data.mesh import Mesh
 from ringlet.data.reads import recorded
@@ -49,8 +50,9 @@ from ringlet.io.usd.values import Types
 
 GROOM, LOCKS, GUIDES, BODY = "/groom", "/groom/locks", "/groom/guides", "/groom/body"
 BANDS = "/groom/bands"
+OF_EACH = {"region", "edge", "hairs", "color", "fiber", "absent"}  # settings of one of several grooms
 VARIANTS, BASE = "groom", "base"
-VERSION = 1  # version of this layout
+VERSION, SEVERAL = 1, 2  # versions of this layout, with one groom and with several
 REMEDY = "make the groom again, or bind it anew: ringlet sim SHOT --rebind"
 WEIGHT_TOLERANCE = 1e-3  # largest error of a root's barycentric coordinates
 
@@ -68,7 +70,8 @@ def write_groom(groom: Groom, path: Path | str, variants: Mapping[str, Groom] | 
     with writing(path) as aside:
         stage = new_stage(aside, space)
         root = UsdGeom.Xform.Define(stage, GROOM).GetPrim()
-        _set(root, "version", Types.Int, VERSION)
+        several = any(made.grooms for made in (groom, *(variants or {}).values()))
+        _set(root, "version", Types.Int, SEVERAL if several else VERSION)
         _set(root, "surface", Types.Token, CAGE if groom.cage else LIMIT)
         if groom.region is not None:
             _set(root, "region", Types.String, groom.region)
@@ -123,15 +126,30 @@ def _define(stage: Usd.Stage, groom: Groom, space: StageSpace, file: Path | str)
     """Writes the prims and attributes that differ between variants."""
     root = stage.GetPrimAtPath(GROOM)
     _set(root, "hairs", Types.String, json.dumps(groom.hairs))
+    if groom.edge is not None:
+        _set(root, "edge", Types.Double, groom.edge)
     for name, settings in (("color", groom.color), ("fiber", groom.fiber)):
         if settings is not None:
             _set(root, name, Types.String, json.dumps(settings))
+    _hide(stage, groom)
+    if groom.grooms:
+        _set(root, "grooms", Types.String, json.dumps(groom.grooms))
     if groom.recipe is not None:
         _set(root, "recipe", Types.String, groom.recipe)
     _define_guides(stage, LOCKS, groom.locks, groom, space, file)
     _define_guides(stage, GUIDES, groom.guides, groom, space, file)
     for band in groom.bands:
         define_mesh(stage, f"{BANDS}/{band.name.replace(' ', '_')}", band, space, file)
+
+
+def _hide(stage: Usd.Stage, groom: Groom) -> None:
+    """Makes the meshes of the head that hair replaces invisible."""
+    if not groom.hidden:
+        return
+    _set(stage.GetPrimAtPath(GROOM), "hidden", Types.StringArray, groom.hidden)
+    for path in map(Sdf.Path, groom.hidden):
+        if prim := stage.GetPrimAtPath(path.ReplacePrefix(path.GetPrefixes()[0], BODY)):
+            UsdGeom.Imageable(prim).CreateVisibilityAttr(UsdGeom.Tokens.invisible)
 
 
 def _check_variant(name: str, variant: Groom, groom: Groom) -> None:
@@ -164,11 +182,14 @@ def read_groom(path: Path | str, variant: str | None = None, *, bound: bool = Tr
             scalp_file=scalp_file,
             scalp_prim=scalp_prim,
             region=_get(root, "region"),
+            edge=_get(root, "edge"),
+            hidden=list(_get(root, "hidden") or []),
             cage=source.cage,
             space=source.space,
             hairs=parse_json(source, _get(root, "hairs") or "{}", "ringlet:hairs"),
             color=_settings(source, root, "color"),
             fiber=_settings(source, root, "fiber"),
+            grooms=_grooms(source, root),
             recipe=_get(root, "recipe"),
             variant=root.GetVariantSets().GetVariantSet(VARIANTS).GetVariantSelection() or None,
         )
@@ -180,6 +201,18 @@ def _settings(source: Source, root: Usd.Prim, name: str) -> dict[str, Any] | Non
     return None if text is None else parse_json(source, text, f"ringlet:{name}")
 
 
+def _grooms(source: Source, root: Usd.Prim) -> dict[str, dict[str, Any]]:
+    """Settings of several grooms, by name; raises UserError for damaged ones."""
+    grooms = parse_json(source, _get(root, "grooms") or "{}", "ringlet:grooms")
+    if not all(isinstance(one, dict) and one.keys() >= OF_EACH for one in grooms.values()):
+        raise UserError(f"{source.path}: ringlet:grooms is damaged; make the groom again")
+    for path in (LOCKS, GUIDES) if grooms else ():
+        rows = UsdGeom.PrimvarsAPI(source.stage.GetPrimAtPath(path)).GetPrimvar(f"ringlet:{ROW}").Get()
+        if rows is None or not len(rows) or min(rows) < 0 or max(rows) >= len(grooms) or list(rows) != sorted(rows):
+            raise UserError(f"{source.path}: {path} does not say which groom each curve is of; make the groom again")
+    return grooms
+
+
 def groom_prim(source: Source) -> Usd.Prim:
     """The prim ``/groom``; raises UserError for a stage that is no groom or has a later layout."""
     root = source.stage.GetPrimAtPath(GROOM)
@@ -188,17 +221,17 @@ def groom_prim(source: Source) -> Usd.Prim:
         raise UserError(
             f"{source.path}: is no groom of Ringlet's; make one with: ringlet groom RECIPE.toml -o groom.usdc"
         )
-    check_version(source, version)
+    check_version(source, version, SEVERAL)
     for path in (LOCKS, GUIDES):
         if not source.stage.GetPrimAtPath(path):
             raise UserError(f"{source.path}: has no {path}; make the groom again")
     return root
 
 
-def check_version(source: Source, version: Any) -> None:
-    """Raises UserError for a layout later than ``VERSION``."""
-    if not isinstance(version, int) or version > VERSION:
-        raise UserError(f"{source.path}: has layout {version}; this Ringlet reads up to {VERSION}: update it")
+def check_version(source: Source, version: Any, latest: int = VERSION) -> None:
+    """Raises UserError for a layout later than ``latest``."""
+    if not isinstance(version, int) or version > latest:
+        raise UserError(f"{source.path}: has layout {version}; this Ringlet reads up to {latest}: update it")
 
 
 def _select(source: Source, variant: str) -> None:

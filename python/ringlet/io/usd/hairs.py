@@ -1,5 +1,7 @@
 """Render hairs as USD: ``/groom/hairs`` in a layer over the groom or the cache, which includes the head.
 
+Of several grooms each has its own prim, ``/groom/hairs/NAME``, for its own material and visibility.
+
 Also reads the bodies and hairs of a stage for pictures.
 """
 
@@ -14,6 +16,7 @@ from pxr import Usd, UsdGeom
 
 from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.data.errors import UserError
+from ringlet.data.groom import GROOM as GROOM_ROW
 from ringlet.data.groom import Groom
 from ringlet.data.mesh import Clip
 from ringlet.data.precision import compact
@@ -46,9 +49,23 @@ class HairWriter(StreamWriter):
         self._groom, self._hairs = groom, curves
 
     def __enter__(self) -> Self:
-        hairs = self._hairs
-        self._curves = define_curves(self.begin(), HAIRS, hairs, self.space, guide=False)
-        prim = self._curves.GetPrim()
+        stage, groom = self.begin(), self._groom
+        if not groom.grooms:
+            self._prims = [(self._define(stage, HAIRS, self._hairs), self._hairs, slice(None))]
+            return self
+        UsdGeom.Scope.Define(stage, HAIRS)
+        self._prims = []
+        for row, name in enumerate(groom.grooms):
+            chosen = np.flatnonzero(self._hairs.curve[GROOM_ROW] == row)
+            hairs, offsets = self._hairs.take(chosen), self._hairs.offsets
+            rows = slice(int(offsets[chosen[0]]), int(offsets[chosen[-1] + 1]))
+            self._prims.append((self._define(stage, f"{HAIRS}/{name}", hairs), hairs, rows))
+        return self
+
+    def _define(self, stage: Usd.Stage, path: str, hairs: Curves) -> UsdGeom.BasisCurves:
+        """Defines curves with the primvars that other programs need."""
+        curves = define_curves(stage, path, hairs, self.space, guide=False)
+        prim = curves.GetPrim()
         set_roots(prim, hairs, self._groom.scalp)
         if not set_display_color(prim, hairs):
             set_primvar(prim, "displayColor", "constant", np.array([COLOR], np.float32), Types.Color3fArray)
@@ -57,7 +74,7 @@ class HairWriter(StreamWriter):
                 set_primvar(prim, name, "uniform", hairs.curve[LOCK_INDEX].astype(np.int32))
         if "color" in hairs.point:
             set_primvar(prim, "groom_color", "vertex", hairs.point["color"].astype(np.float32), Types.Color3fArray)
-        return self
+        return curves
 
     def add(self, frame: float | None, points: NDArray, *, around: NDArray | None = None) -> None:
         """Adds a frame, or the rest pose for None.
@@ -67,7 +84,8 @@ class HairWriter(StreamWriter):
 
         Raises UserError for positions that are not finite, far from the head, or not as many as the curves have.
         """
-        self.put(self._curves, frame, points, self._hairs, around)
+        for prim, hairs, rows in self._prims:
+            self.put(prim, frame, points[rows], hairs, around)
 
 
 def read_hairs(path: Path | str, frame: float | None = None) -> Curves:
@@ -117,7 +135,7 @@ def _frames(source: Source) -> NDArray[np.float64]:
 def _hair_prims(source: Source) -> list[Usd.Prim]:
     """Curves that are visible in a render."""
     if own := source.stage.GetPrimAtPath(HAIRS):
-        return [own]
+        return [own] if UsdGeom.BasisCurves(own) else [prim for prim in own.GetChildren() if UsdGeom.BasisCurves(prim)]
     shown = (UsdGeom.Tokens.default_, UsdGeom.Tokens.render)
     found = (prim for prim in prims(source.stage.GetPseudoRoot()) if UsdGeom.BasisCurves(prim))
     return [prim for prim in found if UsdGeom.Imageable(prim).ComputePurpose() in shown]
@@ -128,6 +146,8 @@ def _hairs(source: Source, frame: float | None) -> Curves | None:
     found = [_hairs_at(source, prim, frame) for prim in _hair_prims(source)]
     if len(found) < 2:
         return found[0] if found else None
+    if all(GROOM_ROW in curves.curve for curves in found):
+        return Curves.joined(found)
     counts = np.concatenate([curves.counts for curves in found])
     return Curves(
         np.concatenate([curves.points for curves in found]),
@@ -143,7 +163,7 @@ def _hairs_at(source: Source, prim: Usd.Prim, frame: float | None) -> Curves:
     if frame is None and samples:
         frame = samples[0]
     time = rest_time(source, prim) if frame is None else Usd.TimeCode(frame)
-    if prim.GetPath() == HAIRS:
+    if prim.GetPath().HasPrefix(HAIRS):
         curves = own_curves(source, prim, time, np.float32)
     else:
         curves = curves_at(source, prim, time)

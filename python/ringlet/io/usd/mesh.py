@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -134,6 +134,15 @@ def select_mesh(source: Source, name: str | None) -> Usd.Prim:
     meshes = [prim for prim in prims(root) if UsdGeom.Mesh(prim)]
     scalps = [prim for prim in meshes if SCALP in _subsets(prim)]
     return choose(source, scalps if len(scalps) == 1 else meshes, "Mesh")
+
+
+def surface_paths(path: Path | str, names: Sequence[str], what: str) -> list[str]:
+    """Paths of the meshes at and below prims; raises UserError, which begins with ``what``, for a prim without any."""
+    with reading(path) as source:
+        try:
+            return [str(prim.GetPath()) for name in names for prim in surfaces_below(source, name)]
+        except UserError as error:
+            raise UserError(f"{what}: {error}") from error
 
 
 def surfaces_below(source: Source, name: str) -> list[Usd.Prim]:

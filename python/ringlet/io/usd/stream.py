@@ -28,7 +28,7 @@ class StreamWriter:
         self.path, self.under, self.space, self.variant = Path(path), Path(under), space, variant
         self._frames: list[float] = []
         self._unsaved = 0
-        self._place: Place | None = None
+        self._place_of_prim: dict[Sdf.Path, Place] = {}
 
     def begin(self) -> Usd.Stage:
         """Opens a temporary file beside ``path`` and returns its stage over the groom.
@@ -61,15 +61,16 @@ class StreamWriter:
         curves: Curves,
         around: NDArray | None = None,
     ) -> None:
-        """Sets the points [m] of the curves of this writer at a frame; at rest for None.
+        """Sets the points [m] of curves at a frame; at rest for None.
 
         curves: those of the prim
         around: points of the head [m], shape (k, 3); by default the roots
         """
-        if self._place is None:
-            self._place = Place(prim.GetPrim(), self.space, self.path, curves)
+        place = self._place_of_prim.get(prim.GetPath())
+        if place is None:
+            place = self._place_of_prim[prim.GetPath()] = Place(prim.GetPrim(), self.space, self.path, curves)
         time = Usd.TimeCode.Default() if frame is None else Usd.TimeCode(float(frame))
-        set_points(prim, points, self._place, time, around)
+        set_points(prim, points, place, time, around)
         self.record(frame, points.size * 4)
 
     def record(self, frame: float | None, size: int) -> None:
