@@ -355,11 +355,11 @@ def test_a_hundred_kills_outside_writes_and_leaving_pages_lose_nothing(folder: P
     session, client, pages = start(), Client(0), 1
     client.join(session)
     kills = writes = leaves = 0
-    for lock in range(160):
+    for lock in range(130):
         if session.files.recipe.theirs is not None:
             client.say(session, _merge(session))
         change = protocol.Set(changes=[(["curl", here[lock % len(here)], "lock", str(lock)], 0.5)], gesture=lock)
-        dying[0] = chance.choice(["", "before", "after"])
+        dying[0] = chance.choice(["", "before", "after", "before", "after"])
         try:
             if chance.random() < 0.3:
                 client.say(session, protocol.Save())
@@ -381,14 +381,14 @@ def test_a_hundred_kills_outside_writes_and_leaving_pages_lose_nothing(folder: P
             session.leave(client.page)
             client, pages = Client(pages), pages + 1
             client.join(session)
-    assert kills > 100 and min(writes, leaves) > 60
+    assert kills >= 100 and min(writes, leaves) > 50
     session.files.meet_disk("recipe")
     if session.files.recipe.theirs is not None:
         session.handle(client.page, _merge(session))
     session.handle(client.page, protocol.Save())
     curl = read_recipe(recipe).curl
     assert curl is not None
-    assert sorted(int(lock) for name in here for lock in getattr(curl, name).lock) == list(range(160))
+    assert sorted(int(lock) for name in here for lock in getattr(curl, name).lock) == list(range(130))
     assert sum(len(getattr(curl, name).lock) for name in there) == writes
 
 

@@ -356,17 +356,34 @@ def _add(text: str, place: Place, value: Any) -> str:
 
 
 def _add_inside(text: str, place: Place, value: Any) -> str:
+    """Adds a setting inside an inline table."""
+    data: Any = tomllib.loads(text)
+    depth = 0
+    while _has(data, place[depth]):
+        data, depth = data[place[depth]], depth + 1
+    return _in_block(text, place, lambda part, inside: _added(part, inside, depth, value))
+
+
+def _added(text: str, place: Place, depth: int, value: Any) -> str:
+    """Adds a setting to the table at the first ``depth`` parts of its place."""
     document = tomlkit.parse(text)
     table: Any = document
-    at = 0
-    while _has(table.unwrap(), place[at]):
-        table, at = table[place[at]], at + 1
-    table[place[at]] = _item(_nested(place[at + 1 :], value))
+    for part in place[:depth]:
+        table = table[part]
+    table[place[depth]] = _item(_nested(place[depth + 1 :], value))
     return tomlkit.dumps(document)
 
 
 def _replace(text: str, place: Place, value: Any) -> str:
-    """Replaces or removes a value. Parses only the lines of its table, so that dragging a slider is fast."""
+    """Replaces or removes a value."""
+    return _in_block(text, place, lambda part, inside: _replaced(part, inside, value))
+
+
+def _in_block(text: str, place: Place, edit: Callable[[str, Place], str]) -> str:
+    """Edits a text. Parses only the lines of the table of a place, so that dragging a slider is fast.
+
+    edit: called with a part of the text and the place in it; raises KeyError where the place is in another part
+    """
     tables = blocks.split(text)
     index = place[1] if len(place) > 2 and isinstance(place[1], int) else None
     own = [block for block in tables if block.name == place[0]]
@@ -374,11 +391,11 @@ def _replace(text: str, place: Place, value: Any) -> str:
         block = own[index or 0]
         inside = [place[0], *([] if index is None else [0]), *place[1 if index is None else 2 :]]
         try:
-            block.lines = _replaced("\n".join(block.lines), inside, value).split("\n")
+            block.lines = edit("\n".join(block.lines), inside).split("\n")
         except KeyError:  # the value is in a table with its own header
-            return _replaced(text, place, value)
+            return edit(text, place)
         return "\n".join(line for table in tables for line in table.lines) + ("\n" if text.endswith("\n") else "")
-    return _replaced(text, place, value)
+    return edit(text, place)
 
 
 def _replaced(text: str, place: Place, value: Any) -> str:
