@@ -24,7 +24,10 @@ def test_one_page_edits_and_the_other_follows(opened: Any, serve: Any):
     eye = one.get("ringlet.viewer.camera.position.toArray()")
     two.until("ringlet.model.chosen.place[0] == 'locks'")
     two.until(f"Math.abs(ringlet.viewer.camera.position.x - {eye[0]}) < 1e-6")
-    assert two.page.get_by_label("Light", exact=True).input_value() == one.page.get_by_label("Light").input_value()
+    assert (
+        two.page.get_by_label("Light", exact=True).input_value()
+        == one.page.get_by_label("Light", exact=True).input_value()
+    )
     two.page.mouse.move(500, 500)  # a page that turns the head itself follows no more
     two.page.mouse.down()
     two.page.mouse.move(540, 500, steps=2)
