@@ -229,13 +229,19 @@ class Files:
         """Files on disk that the session depends on, and the kind of the document that each belongs to."""
         found: dict[Path, File] = {}
         for kind, document in self.documents.items():
-            for model in (document.model, *document.model.grooms.values()) if kind == "recipe" else ():
-                found |= dict.fromkeys(model.named_files().values(), kind)
-            contents = document.contents()
-            for table in (contents, *contents.get(GROOMS, {}).values()) if kind == "recipe" else ():
-                found |= dict.fromkeys(_bases(table, document.path), kind)
-            found[document.path] = kind
+            paths = [document.path, *(self._read_by_recipe(document) if kind == "recipe" else [])]
+            for path in paths:
+                found.setdefault(path, kind)
         return found
+
+    @staticmethod
+    def _read_by_recipe(document: Document) -> list[Path]:
+        """Files that a recipe, its grooms and their bases name."""
+        contents = document.contents()
+        tables = [contents, *contents.get(GROOMS, {}).values()]
+        bases = [base for table in tables for base in _bases(table, document.path)]
+        models = [document.model, *document.model.grooms.values()]
+        return [*bases, *(file for model in models for file in model.named_files().values())]
 
     def own(self, file: File) -> set[Path]:
         """The file of a document, and its file of edits."""
