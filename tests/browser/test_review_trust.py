@@ -376,6 +376,7 @@ def test_a_picture_that_takes_long_grows_in_detail_at_rest(opened: Any):
         """() => new Promise((done) => {
             const { pace } = ringlet.viewer, seen = [], next = pace.next.bind(pace);
             pace.whole = 2000;
+            Object.defineProperty(pace, 'hairs', { get: () => 50000, set: () => {} });
             pace.took = () => {};
             pace.next = (moving, fresh) => (seen.push(next(moving, fresh)), seen.at(-1));
             ringlet.viewer.invalidate();

@@ -256,6 +256,7 @@ export class Viewer {
       this.moved = now;
     } else this.turned = 0;
     const moving = now - this.moved < REST_AFTER;
+    this.pace.hairs = this.hair.a.count;
     const detail = this.pace.next(moving, this.fresh);
     this.fresh = false;
     this.paint(detail);
