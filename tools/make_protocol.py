@@ -57,12 +57,16 @@ def interface(message: type[protocol.Message], *, from_page: bool) -> Iterator[s
     """Lines of a message's interface."""
     yield f"/** {(message.__doc__ or '').splitlines()[0]} */"
     yield f"export interface {message.__name__} {{"
-    for name, info in message.model_fields.items():
+    for name, info in _kind_first(message.model_fields):
         yield field(name, info, from_page=from_page)
     for name, array in message.arrays.items():
         yield f"  {name}: {ARRAYS[array]};"
     yield "}"
     yield ""
+
+
+def _kind_first(fields: dict[str, FieldInfo]) -> list[tuple[str, FieldInfo]]:
+    return sorted(fields.items(), key=lambda item: item[0] != "kind")
 
 
 def lines() -> Iterator[str]:
@@ -73,7 +77,7 @@ def lines() -> Iterator[str]:
     yield f"export const VERSION = {protocol.VERSION};"
     yield "export type Json = string | number | boolean | null | Json[] | { [key: string]: Json };"
     yield ""
-    for message in (protocol.Stage, protocol.Change):
+    for message in (protocol.Stage, protocol.Change, protocol.Fix, protocol.Difference, protocol.Problem):
         yield from interface(message, from_page=False)
     for message in union:
         yield from interface(message, from_page=True)

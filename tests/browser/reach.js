@@ -3,7 +3,7 @@
   const named = (e) =>
     e.labels?.length || e.getAttribute("aria-label") || (e.matches("button, circle") && e.textContent.trim());
   const nameless = [...document.querySelectorAll("button, input, select, [role], [tabindex], section, nav, aside")]
-    .filter((e) => !e.matches("[role=status], [role=note]") && !named(e))
+    .filter((e) => !e.matches("[role=status], [role=note], [role=alert]") && !named(e))
     .map((e) => e.outerHTML.slice(0, 160));
 
   // WCAG 2 contrast of at least 4.5 : 1 against the nearest background of at least half opacity.

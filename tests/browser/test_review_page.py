@@ -5,8 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from conftest import Review
+from PIL import Image
 
 SIXTY_FRAMES = """() => new Promise(done => {
     let left = 60;
@@ -57,15 +59,24 @@ def test_the_page_loads_no_external_resource(opened: Any):
 
 def test_pictures_and_movies_are_saved(opened: Any):
     review: Review = opened()
-    with review.page.expect_download() as picture:
-        review.page.get_by_label("Keep a picture").click()
-    assert picture.value.suggested_filename == "small.png"
-    assert Path(picture.value.path()).read_bytes()[:4] == b"\x89PNG"
+    for size, clear in (("", False), ("2048 × 2048", True)):
+        review.page.get_by_role("button", name="Save picture").click()
+        review.page.get_by_label("Size in pixels").select_option(size)
+        review.page.get_by_label("Without the wall").set_checked(clear)
+        with review.page.expect_download() as picture:
+            review.page.get_by_role("dialog").get_by_role("button", name="Save", exact=True).click()
+        assert picture.value.suggested_filename == "small.png"
+        saved = Image.open(picture.value.path())
+        assert saved.size == ((2048, 2048) if clear else (1000, 640))
+        alpha = np.asarray(saved.convert("RGBA"))[:, :, 3]
+        assert (alpha[0, 0] < 10 and alpha[1000, 1000] > 245) if clear else alpha.min() == 255
+    assert review.get("ringlet.viewer.renderer.domElement.width") == 1000
     film = review.page.get_by_label("Record a movie")
     film.click()
     for turn in (0.3, 0.6):
         review.get(f"(ringlet.viewer.orbit({turn}, 0), ringlet.viewer.move())")
         review.page.wait_for_timeout(700)
+    assert review.page.get_by_label("Recorded time").inner_text() in ("0:01", "0:02", "0:03", "0:04")
     with review.page.expect_download() as movie:
         film.click()
     assert Path(movie.value.path()).stat().st_size > 1000

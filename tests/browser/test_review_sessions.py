@@ -18,8 +18,26 @@ def test_one_page_edits_and_the_other_follows(opened: Any, serve: Any):
     two.until("ringlet.model.documents.recipe.dirty")
     two.settled()
     assert different(two.picture(), before) > 0.005
-    two.page.get_by_role("button", name="Take the lead").click()
-    two.until("ringlet.model.role.leads")
+    one.choose("locks")
+    one.page.get_by_label("Light", exact=True).select_option(index=1)
+    one.get("ringlet.viewer.orbit(0.5, 0), ringlet.viewer.move()")
+    eye = one.get("ringlet.viewer.camera.position.toArray()")
+    two.until("ringlet.model.chosen.place[0] == 'locks'")
+    two.until(f"Math.abs(ringlet.viewer.camera.position.x - {eye[0]}) < 1e-6")
+    assert (
+        two.page.get_by_label("Light", exact=True).input_value()
+        == one.page.get_by_label("Light", exact=True).input_value()
+    )
+    two.page.mouse.move(500, 500)  # a page that turns the head itself follows no more
+    two.page.mouse.down()
+    two.page.mouse.move(540, 500, steps=2)
+    two.page.mouse.up()
+    assert two.page.get_by_role("button", name="Follow", exact=True).is_visible()
+    for answer, leads in (("Not now", False), ("Hand over", True)):
+        two.page.get_by_role("button", name="Ask to edit").click()
+        one.page.get_by_role("button", name=answer).click()
+        two.until("!ringlet.model.role.asks")
+        assert two.get("ringlet.model.role.leads") == leads
     one.until("!ringlet.model.role.leads")
 
 
@@ -60,4 +78,19 @@ def test_unanswered_messages_are_resent_after_a_restart(opened: Any, serve: Any)
     review.until(f"ringlet.model.welcome.session != '{session}'")
     review.until("ringlet.model.documents.recipe.said.curl.pitch == 2.25")
     assert review.get("ringlet.model.documents.recipe.said.curl.width") == 1.75
+    review.until("ringlet.model.settled")
+
+
+def test_a_page_that_is_loaded_again_says_what_was_not_answered(opened: Any, serve: Any):
+    server = serve("small.recipe.toml")
+    review: Review = opened(server)
+    server.process.send_signal(signal.SIGSTOP)
+    field = review.page.locator('[data-setting="curl.width"] > .field-head input.number')
+    field.fill("1.75")
+    field.press("Enter")
+    server.kill()
+    server.start()
+    review.page.reload()
+    review.until("window.ringlet?.model.documents.recipe?.said.curl.width == 1.75")
+    assert review.get("ringlet.model.role.leads")
     review.until("ringlet.model.settled")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from ringlet.viewer.brush import TOOLS, Ball, grab, grab_weights, restore
@@ -80,3 +82,10 @@ def test_a_mirrored_brush_gives_the_mirror_image(guides: Curves):
 def test_the_revert_brush_restores_guides(guides: Curves):
     changed = TOOLS["comb"](guides, ball())
     assert np.array_equal(restore(changed, ball(), guides).points, guides.points)
+
+
+def test_strength_and_falloff_weigh_what_a_brush_moves(guides: Curves):
+    at = np.array([[0.0, 0.08, 0.0], [0.0, 0.09, 0.0], [0.0, 0.099, 0.0]])  # centre, half the radius, near its border
+    weights = {name: replace(ball(), profile=name, strength=0.5).falloff(at) for name in ("smooth", "sharp", "flat")}
+    assert all(values[0] == pytest.approx(0.5) for values in weights.values())
+    assert weights["flat"][2] == 0.5 > weights["smooth"][1] > weights["sharp"][1] > 0.0

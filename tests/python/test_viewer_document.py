@@ -62,6 +62,13 @@ def test_a_value_becomes_a_table_when_it_gains_fields(document: Document):
     assert comments(document.text) == comments(TEXT)
 
 
+def test_a_setting_is_added_to_a_table_with_a_header_of_its_own(document: Document):
+    document.apply(document.text + "\n[curl.pitch]\nvalue = 2 # wide\n")
+    document.set([(["curl", "pitch", "lock", "3"], 4.0), (["curl", "width", "lock", "3"], 1.0)])
+    assert document.contents()["curl"]["pitch"] == {"value": 2, "lock": {"3": 4.0}}
+    assert document.contents()["curl"]["width"]["lock"] == {"3": 1.0} and "# wide" in document.text
+
+
 def test_a_new_setting_is_inserted_before_the_comment_of_the_next_table(document: Document):
     document.set([(["curl", "start"], "12 mm"), (["guides", "whorl_turn"], 10.0), (["seed"], 4)])
     lines = document.text.splitlines()

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
 from pages import Page, page, read, serving
 
 import ringlet
@@ -46,18 +47,54 @@ def test_one_page_holds_the_edit_lock_and_the_others_follow(folder: Path):
         one.send(kind="set", changes=[[["curl", "width"], 1.4]], gesture=1)
         assert two.receive("document", dirty=True)["said"]["curl"]["width"] == 1.4
         two.send(kind="lead")
+        assert one.receive("role", asked=True) and two.receive("role", asks=True)
+        one.send(kind="hand", over=False)
+        assert two.receive("role", asks=False, leads=False)
+        two.send(kind="lead")
+        one.receive("role", asked=True)
+        one.send(kind="hand", over=True)
         assert two.receive("role", leads=True) and one.receive("role", leads=False)
+
+
+def test_a_page_that_does_not_answer_hands_the_edit_lock_over(folder: Path, monkeypatch):
+    monkeypatch.setattr("ringlet.viewer.edit_lock.ANSWER_AFTER", 0.1)
+    with serving(folder) as client, page(client, "one") as one, page(client, "two") as two:
+        one.receive("role", leads=True)
+        two.send(kind="lead")
+        assert two.receive("role", leads=True)
+
+
+def test_pages_that_follow_receive_the_look_of_the_one_that_leads(folder: Path):
+    look = {"camera": [0.0] * 6, "light": "studio", "color": "", "overlay": "", "file": "recipe", "locks": []}
+    with serving(folder) as client, page(client, "one") as one:
+        one.send(kind="look", place=["curl"], frame=None, **look)
+        with page(client, "two") as two:
+            assert two.receive("followed")["place"] == ["curl"]
+            two.send(kind="look", place=["locks"], frame=None, **look)
+            with pytest.raises(AssertionError, match="another page leads"):
+                two.receive("saved")
+
+
+def forget_unsaved(folder: Path) -> None:
+    """Removes the journal, as in a folder that cannot be written."""
+    (folder / ".small.recipe.toml.unsaved").unlink()
 
 
 def test_a_restarted_server_restores_the_document_of_a_page(folder: Path):
     with serving(folder) as client, page(client) as one:
-        one.send(kind="set", changes=[[["curl", "width"], 1.7]], gesture=1)
-        text = one.receive("document", dirty=True)["text"]
+        edited = one_edit(one)
+    forget_unsaved(folder)
     with serving(folder) as client, page(client) as one:
         assert not one.receive("document")["dirty"]
-        one.send(kind="restore", text=text)
+        one.send(kind="restore", **{name: edited[name] for name in ("text", "saved")})
         document = one.receive("document", dirty=True)
         assert document["said"]["curl"]["width"] == 1.7 and document["undo"]
+
+
+def one_edit(one: Page) -> dict[str, Any]:
+    """Changes a setting; returns the document."""
+    one.send(kind="set", changes=[[["curl", "width"], 1.7]], gesture=1)
+    return one.receive("document", dirty=True)
 
 
 def test_every_page_receives_the_build_error_until_the_groom_is_built(folder: Path):
@@ -66,15 +103,15 @@ def test_every_page_receives_the_build_error_until_the_groom_is_built(folder: Pa
     with serving(folder) as client:
         for name in ("one", "two"):
             with page(client, name) as one:
-                while (message := read(one.socket.receive_bytes()))["kind"] != "trouble":
+                while not (problems := one.receive("problems")["problems"]):
                     pass
-                assert "no region 'gone'" in message["message"]
+                assert problems[0]["subject"] == "groom" and "no region 'gone'" in problems[0]["message"]
         with page(client, "one") as one:
             one.send(kind="restore", text=recipe.read_text().replace("gone", "scalp"))
-            while read(one.socket.receive_bytes())["kind"] != "numbers":
-                pass
+            one.receive("numbers")
         with page(client, "one") as one:
-            assert one.receive("numbers")["locks"] == 8  # without an error before it
+            assert one.receive("numbers")["locks"] == 8
+            assert not one.latest("problems")["problems"]
 
 
 def test_only_caches_are_offered_for_comparison(folder: Path, tmp_path, monkeypatch):
@@ -183,10 +220,29 @@ def test_a_brush_stroke_is_one_step_and_is_saved_beside_the_recipe(folder: Path)
         assert np.array_equal(one.latest("guides")["points"], guides["points"])
 
 
+def test_frozen_guides_stay_under_every_brush(folder: Path):
+    with serving(folder) as client, page(client) as one:
+        guides = one.receive("guides")
+        one.latest("numbers", draft=False)
+        tip = guides["points"].reshape(-1, 3)[guides["offsets"][1] - 1].tolist()
+        brush = {"at": tip, "by": [0, 0, 0], "radius": 0.02, "gesture": 1}
+        one.send(kind="sculpt", tool="freeze", **brush)
+        assert one.receive("guides")["frozen"].tolist() == [1, 0, 0, 0, 0, 0]
+        stroke(one, guides, gesture=2)
+        one.receive("guides")
+        assert np.array_equal(one.receive("guides")["points"], guides["points"])
+        one.send(kind="sculpt", tool="thaw", **brush)
+        assert not one.receive("guides")["frozen"].any()
+        stroke(one, guides, gesture=3)
+        one.receive("guides")
+        assert not np.array_equal(one.receive("guides")["points"], guides["points"])
+
+
 def test_a_restarted_server_restores_sculpts(folder: Path):
     with serving(folder) as client, page(client) as one:
         stroke(one, one.receive("guides"))
         document = one.receive("document", dirty=True)
+    forget_unsaved(folder)
     with serving(folder) as client, page(client) as one:
         assert one.receive("guides")["changed"].sum() == 0
         one.send(kind="restore", text=document["text"], edits=document["edits"])

@@ -54,7 +54,7 @@ def test_operators_of_a_base_are_changed_and_removed_by_name(extended: Path):
         one.send(kind="arrange", action="remove", at=1)
         assert [stage["op"] for stage in one.receive("document")["stages"]][2:4] == ["clump", "curl"]
         one.send(kind="arrange", action="move", at=0, to=0)
-        assert "neither move nor add" in one.receive("trouble")["message"]
+        assert "keep their order" in one.receive("trouble")["message"]
         one.send(kind="save")
         one.receive("saved")
     text = (extended / "more.recipe.toml").read_text()

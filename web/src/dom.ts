@@ -53,6 +53,9 @@ export const ICONS = {
   pause: "M7 4v12M13 4v12",
   again: "M4 4v5h5M4.5 9A6 6 0 1 1 4 12",
   brush: "M13 3l4 4-6.5 6.5-4-4zM6.5 9.5c-2.5.3-1.8 3.8-4 5.5 2.5 1.2 7.3.6 8-1.5",
+  folder: "M3 6h5l1.5 2H17v8H3zM3 6v10",
+  keys: "M3 6h14v8H3zM6 9h.01M9 9h.01M12 9h.01M14 9h.01M7 11.5h6",
+  swap: "M3 7h12l-3-3M17 13H5l3 3",
   solo: "M10 3l2 5h5l-4 3.2 1.5 5.3L10 13.3 5.5 16.5 7 11.2 3 8h5z",
 } as const;
 

@@ -9,7 +9,8 @@ const REFUSED = 4403;
 const WRONG = 4400;
 
 // What changes something: it is said again to a server that has not heard it.
-const CHANGES = ["set", "arrange", "mute", "save", "restore", "isolate", "drag", "sculpt", "unsculpt"];
+const CHANGES = ["set", "arrange", "mute", "save", "resolve", "restore", "isolate", "drag", "sculpt", "unsculpt"];
+const STORE = "ringlet-owed"; // what this tab has not been answered when it is left
 
 export type LinkState = "open" | "lost" | "refused";
 
@@ -19,13 +20,37 @@ export class Link {
   /** What was said and not heard yet, oldest first; also what was said while nobody was there. */
   private owed: FromPage[] = [];
   private heard = 0;
+  /** Whether this tab held the edit lock before it was loaded again. */
+  private led = false;
   /** What was said before and has to be said again. */
   private again: FromPage[] = [];
 
   constructor(
     private readonly hear: (message: FromServer) => void,
     private readonly changed: (state: LinkState, why: string) => void,
-  ) {}
+    /** Whether this page holds the edit lock. */
+    private readonly leads: () => boolean,
+  ) {
+    const stored = sessionStorage.getItem(STORE);
+    if (stored) {
+      sessionStorage.removeItem(STORE);
+      const { heard, owed, led } = JSON.parse(stored) as Stored;
+      [this.heard, this.owed, this.led] = [heard, owed, led];
+    }
+    addEventListener("pagehide", () => this.store());
+  }
+
+  /** Keeps what was not answered for when this tab is loaded again. */
+  private store(): void {
+    const owed = [...this.owed, ...this.again];
+    const led = this.leads();
+    if (owed.length || led) sessionStorage.setItem(STORE, JSON.stringify({ heard: this.heard, owed, led }));
+  }
+
+  /** Whether something was said that nobody has heard. */
+  get unanswered(): boolean {
+    return this.owed.some(({ kind }) => CHANGES.includes(kind)) || this.again.length > 0;
+  }
 
   /** Connects, and keeps at it. */
   start(): void {
@@ -37,7 +62,8 @@ export class Link {
     socket.onopen = () => {
       this.socket = socket;
       this.wait = FIRST_WAIT;
-      this.send({ kind: "hello", version: VERSION, client: clientName() });
+      this.send({ kind: "hello", version: VERSION, client: clientName(), leads: this.led || this.leads() });
+      this.led = false;
       this.changed("open", "");
     };
     socket.onmessage = (event) => this.hear(decode(event.data as ArrayBuffer));
@@ -72,8 +98,9 @@ export class Link {
     this.heard = count;
   }
 
-  /** Says again what the server before has not heard. */
+  /** Says again what the server before has not heard; a page that follows keeps it until it leads. */
   sayAgain(): void {
+    if (!this.leads()) return;
     for (const message of this.again.splice(0)) this.say(message);
   }
 
@@ -85,6 +112,12 @@ export class Link {
   get pending(): number {
     return this.socket?.bufferedAmount ?? 0;
   }
+}
+
+interface Stored {
+  heard: number;
+  owed: FromPage[];
+  led: boolean;
 }
 
 /** A name of this tab that it keeps when it is loaded again. */

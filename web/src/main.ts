@@ -6,9 +6,14 @@ import { Link, type LinkState } from "./link";
 import { Model } from "./model";
 import { Bar } from "./panel/bar";
 import { BrushTool } from "./panel/brush";
+import { CompareBar } from "./panel/compare";
+import { bindKey, plainKey } from "./panel/keys";
 import { LockTool } from "./panel/lock";
+import { Look } from "./panel/look";
 import { Settings } from "./panel/settings";
+import { Sheets } from "./panel/sheets";
 import { Stack } from "./panel/stack";
+import { ProblemBar } from "./panel/problems";
 import { Notices, Status } from "./panel/status";
 import { TimelineBar } from "./panel/timeline";
 import { Viewbar } from "./panel/viewbar";
@@ -21,14 +26,17 @@ class App {
   readonly timeline: TimelineBar;
   readonly lock: LockTool;
   readonly brush: BrushTool;
+  readonly look: Look;
   private readonly notices = new Notices();
+  private readonly problems: ProblemBar;
   private readonly status = new Status(this.model);
   private session = "";
   /** What the page had when the connection was lost, to be given back to a server that was started anew. */
-  private kept: Partial<Record<"recipe" | "shot", { text: string; edits: string }>> = {};
+  private kept: Partial<Record<"recipe" | "shot", Unsaved>> = {};
 
   constructor(root: HTMLElement) {
     const picture = h("main", { class: "picture" });
+    this.problems = new ProblemBar(this.model);
     root.append(picture);
     this.viewer = new Viewer(picture);
     this.lock = new LockTool(this.model, this.viewer);
@@ -37,10 +45,13 @@ class App {
     this.brush.changed.push((on) => on && this.lock.choose(-1));
     this.lock.busy = () => this.brush.on;
     picture.append(this.lock.handles, this.brush.ring);
-    this.viewer.onDraw = (statistics) => {
-      this.status.drew(statistics);
-      this.lock.place();
-    };
+    this.viewer.onPaint = () => this.lock.place();
+    this.viewer.onDraw = (statistics) => this.status.drew(statistics);
+    const keys = (names: string, does: string, ...all: string[]) =>
+      bindKey({ keys: names, does, on: plainKey(...all), run: (event) => void this.viewer.key(event.key) });
+    keys("Arrows", "turn about the head", "ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown");
+    keys("+ and -", "nearer, away", "+", "=", "-");
+    keys("F", "frame all hair", "f");
     const name = () => (this.model.welcome?.name ?? "ringlet").split(".")[0];
     const left = h("div", { class: "left" }, new Stack(this.model).element, this.lock.element, this.brush.element);
     const settings = new Settings(this.model).element;
@@ -48,21 +59,31 @@ class App {
       left.getBoundingClientRect().right,
       settings.hidden ? 0 : innerWidth - settings.getBoundingClientRect().left,
     ];
+    const viewbar = new Viewbar(this.model, this.viewer, this.brush, name);
+    this.look = new Look(this.model, this.viewer, viewbar, this.lock, this.timeline, this.notices);
     root.append(
-      new Bar(this.model, () => this.setTheme()).element,
+      new Bar(this.model, () => this.setTheme(), () => this.look).element,
       left,
       settings,
-      new Viewbar(this.model, this.viewer, this.brush, name).element,
+      viewbar.element,
+      new CompareBar(this.model, this.viewer, () => this.endComparison()).element,
       this.timeline.element,
       this.status.element,
       this.notices.element,
+      this.problems.element,
+      new Sheets(this.model).element,
     );
     const preferred = matchMedia("(prefers-color-scheme: light)").matches ? "light" : "dark";
     this.setTheme((localStorage.getItem("ringlet-theme") as "dark" | "light" | null) ?? preferred);
     this.model.link = new Link(
       (message) => this.hear(message),
       (state, why) => this.connected(state, why),
+      () => this.model.welcome !== null && this.model.role.leads,
     );
+    addEventListener("beforeunload", (event) => {
+      (document.activeElement as HTMLElement | null)?.blur(); // what is typed counts
+      if (document.documentElement.dataset["link"] !== "open" && this.model.link?.unanswered) event.preventDefault();
+    });
     this.model.link.start();
   }
 
@@ -76,12 +97,12 @@ class App {
 
   private connected(state: LinkState, why: string): void {
     document.documentElement.dataset["link"] = state;
-    this.notices.keep(state === "open" ? "" : why);
+    this.problems.keep(state === "open" ? "" : why);
     if (state !== "lost") return;
     for (const [file, known] of Object.entries(this.model.documents))
       if (known.dirty && this.model.role.leads) {
-        const { text, edits } = known;
-        this.kept[file as "recipe" | "shot"] = { text, edits };
+        const { text, edits, saved, saved_edits } = known;
+        this.kept[file as "recipe" | "shot"] = { text, edits, saved, saved_edits };
       }
   }
 
@@ -90,9 +111,11 @@ class App {
     switch (message.kind) {
       case "welcome":
         model.link?.met(message.heard);
-        if (this.session && this.session !== message.session) {
+        if (model.welcome && (model.welcome.name !== message.name || model.welcome.mode !== message.mode)) this.reset();
+        else if (this.session && this.session !== message.session) {
           model.numbers = null;
-          this.giveBack();
+          model.problems = [];
+          if (!message.recovered) this.giveBack();
         }
         this.kept = {};
         this.session = message.session;
@@ -111,6 +134,7 @@ class App {
       case "role":
         model.role = message;
         model.tell("role");
+        if (model.settled || model.stuck) model.link?.sayAgain();
         break;
       case "files":
         model.files = message.names;
@@ -120,6 +144,16 @@ class App {
         model.numbers = message;
         model.tell("numbers");
         if (model.settled) model.link?.sayAgain();
+        break;
+      case "problems":
+        model.problems = message.problems;
+        model.tell("problems");
+        model.tell("document");
+        if (model.stuck) model.link?.sayAgain(); // what was not heard may be what makes the groom possible
+        break;
+      case "progress":
+        model.progress = message.stage ? message : null;
+        model.tell("progress");
         break;
       case "names":
         model.names = message;
@@ -166,11 +200,33 @@ class App {
       case "saved":
         this.notices.show(`${message.name} is saved`);
         break;
+      case "followed":
+        model.followed = message;
+        model.tell("followed");
+        break;
+      case "notice":
+        this.notices.show(message.message);
+        break;
       case "trouble":
-        this.notices.show(message.message, "bad");
+        this.notices.show(model.words(message.message), "bad");
         model.tell("document"); // controls go back to what holds
         break;
     }
+  }
+
+  private endComparison(): void {
+    const { model } = this;
+    if (model.timeline?.against) model.say({ kind: "against", name: "" });
+    else model.say({ kind: "compare", to: "none" });
+  }
+
+  /** Another file is open. */
+  private reset(): void {
+    this.lock.choose(-1);
+    this.brush.show(false);
+    this.model.reset();
+    this.viewer.reset();
+    for (const topic of ["document", "timeline", "guides", "compared", "chosen"] as const) this.model.tell(topic);
   }
 
   /** The server was started anew: it gets what had not been saved, as one step that can be undone. */
@@ -179,6 +235,9 @@ class App {
       this.model.say({ kind: "restore", file: file as "recipe" | "shot", ...kept });
   }
 }
+
+/** Unsaved texts of a file, and those that were read or saved last. */
+type Unsaved = Record<"text" | "edits" | "saved" | "saved_edits", string>;
 
 const app = new App(document.getElementById("app")!);
 Object.assign(window, { ringlet: app });

@@ -1,7 +1,22 @@
 // What the page knows of the session, and whom it tells when that changes.
 
 import type { Link } from "./link";
-import type { Document, FromPage, Guides, Json, Measured, Names, Numbers, Role, Timeline, Welcome } from "./protocol";
+import { inUnit } from "./panel/units";
+import type {
+  Document,
+  Followed,
+  FromPage,
+  Guides,
+  Json,
+  Measured,
+  Names,
+  Numbers,
+  Problem,
+  Progress,
+  Role,
+  Timeline,
+  Welcome,
+} from "./protocol";
 import type { OverlayName } from "./view/overlays";
 
 export type File = "recipe" | "shot";
@@ -18,12 +33,16 @@ type Topic =
   | "timeline"
   | "compared"
   | "chosen"
+  | "problems"
+  | "progress"
+  | "look"
+  | "followed"
   | "overlay";
 
 export class Model {
   welcome: Welcome | null = null;
   documents: Partial<Record<File, Document>> = {};
-  role: Role = { kind: "role", leads: true, others: 0 };
+  role: Role = { kind: "role", leads: true, others: 0, asked: false, asks: false };
   numbers: Numbers | null = null;
   names: Names = { kind: "names", regions: [], maps: [], vectors: [], curves: [] };
   guides: Guides | null = null;
@@ -35,8 +54,13 @@ export class Model {
   files: string[] = [];
   /** The stage whose settings are shown, and the file that it belongs to. */
   chosen: { file: File; place: Place } = { file: "recipe", place: ["curl"] };
-  /** The lock whose own values are edited, in place of those of all locks. */
-  lock: number | null = null;
+  /** The locks whose own values are edited, in place of those of all locks; empty: all. */
+  locks: number[] = [];
+  problems: Problem[] = [];
+  /** How the leading page looks at the groom. */
+  followed: Followed | null = null;
+  /** Progress of a groom that takes long. */
+  progress: Progress | null = null;
   link: Link | null = null;
   private gesture = Date.now() % 1e9;
   private readonly listeners = new Map<Topic, (() => void)[]>();
@@ -56,6 +80,30 @@ export class Model {
 
   say(message: FromPage): void {
     this.link?.say(message);
+  }
+
+  /** Forgets the file that was open. */
+  reset(): void {
+    this.documents = {};
+    this.numbers = this.guides = this.measured = this.timeline = null;
+    this.compared = "";
+    this.locks = [];
+    this.chosen = { file: "recipe", place: ["curl"] };
+  }
+
+  /** Whether a problem names a setting as wrong. */
+  isWrong(file: File, place: Place): boolean {
+    return this.problems.some((one) => one.setting && one.file === file && one.setting === place.join("."));
+  }
+
+  /** Whether the groom of the recipe as it is cannot be made, or is held. */
+  get stuck(): boolean {
+    return this.problems.some(({ subject }) => subject === "groom" || subject === "work");
+  }
+
+  /** A message with its lengths in the unit of the recipe. */
+  words(message: string): string {
+    return inUnit(message, String(this.value("recipe", ["unit"]) ?? "cm"));
   }
 
   /** A number for what one hand does from pressing to letting go: one step of undo. */

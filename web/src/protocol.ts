@@ -1,6 +1,6 @@
 // Made by tools/make_protocol.py from python/ringlet/viewer/protocol.py; change it there.
 
-export const VERSION = 7;
+export const VERSION = 8;
 export type Json = string | number | boolean | null | Json[] | { [key: string]: Json };
 
 /** A stage of the groom. place: path of its settings in the recipe. */
@@ -9,6 +9,7 @@ export interface Stage {
   op: string;
   place: (string | number)[];
   muted: boolean;
+  solo: boolean;
 }
 
 /** A line of the diff against the saved file. */
@@ -17,14 +18,40 @@ export interface Change {
   line: string;
 }
 
-/** First message of a page. ``client`` is a name that the page keeps when it reconnects. */
+/** A remedy of a problem: a button, and the message of the page that it sends. */
+export interface Fix {
+  label: string;
+  message: Record<string, Json>;
+}
+
+/** A setting of a file whose value on disk (theirs) differs from that of the session (mine). */
+export interface Difference {
+  name: string;
+  base: string;
+  mine: string;
+  theirs: string;
+  both: boolean;
+}
+
+/** What stands in the way, until it is gone. */
+export interface Problem {
+  subject: string;
+  message: string;
+  file: "recipe" | "shot";
+  setting: string;
+  fixes: Fix[];
+  differences: Difference[];
+}
+
+/** First message of a page. */
 export interface Hello {
   kind: "hello";
   version: number;
   client: string;
+  leads?: boolean;
 }
 
-/** Requests the edit lock. */
+/** Requests the edit lock; a page that holds it is asked, and hands it over after a while without an answer. */
 export interface Lead {
   kind: "lead";
 }
@@ -45,6 +72,7 @@ export interface Arrange {
   at: number;
   to?: number;
   op?: string;
+  values?: Record<string, string>;
 }
 
 /** Chooses the one of several grooms whose settings are shown and changed. */
@@ -57,6 +85,7 @@ export interface Choose {
 export interface Mute {
   kind: "mute";
   stages: string[];
+  solo?: string;
 }
 
 /** Undoes, redoes or reverts changes. */
@@ -64,12 +93,45 @@ export interface Step {
   kind: "undo" | "redo" | "revert";
 }
 
-/** Saves a file; with a name, a copy beside it, or a variant that extends it. */
+/** Saves a file; with a name, a copy beside it, or a variant that extends it, which the session then goes on with. */
 export interface Save {
   kind: "save";
   file?: "recipe" | "shot";
   name?: string;
   variant?: boolean;
+  anyway?: boolean;
+}
+
+/** Opens another recipe, shot or USD file of the project in the session. */
+export interface Open {
+  kind: "open";
+  name: string;
+  discard?: boolean;
+}
+
+/** Resolves a conflict with the version of a file on disk. */
+export interface Resolve {
+  kind: "resolve";
+  file?: "recipe" | "shot";
+  choice: "mine" | "theirs" | "merge";
+  mine?: string[];
+  theirs?: string[];
+}
+
+/** Removes a problem that needs no remedy. */
+export interface Dismiss {
+  kind: "dismiss";
+  subject: string;
+}
+
+/** Makes a groom that takes much longer than the displayed one. */
+export interface Proceed {
+  kind: "proceed";
+}
+
+/** Cancels the groom that is being made; the displayed one stays. */
+export interface Cancel {
+  kind: "cancel";
 }
 
 /** Restores unsaved text of a page, and of its file of edits, after a restart of the server. */
@@ -78,6 +140,8 @@ export interface Restore {
   file?: "recipe" | "shot";
   text: string;
   edits?: string;
+  saved?: string;
+  saved_edits?: string;
 }
 
 /** Shows a second groom for comparison: a snapshot, the saved one, another recipe of the project, or none. */
@@ -108,11 +172,13 @@ export interface Isolate {
 /** Moves a brush over the guides, or returns guides to the recipe. */
 export interface Sculpt {
   kind: "sculpt";
-  tool: "grab" | "comb" | "smooth" | "cut" | "lengthen" | "return";
+  tool: "grab" | "comb" | "smooth" | "cut" | "lengthen" | "return" | "freeze" | "thaw";
   at: [number, number, number];
   by: [number, number, number];
   radius: number;
   mirrored?: boolean;
+  strength?: number;
+  falloff?: "smooth" | "sharp" | "flat";
   gesture: number;
   resting?: boolean;
 }
@@ -120,6 +186,25 @@ export interface Sculpt {
 /** Removes the sculpts of all guides. */
 export interface Unsculpt {
   kind: "unsculpt";
+}
+
+/** Shares the look of the leading page with those that follow. */
+export interface Look {
+  kind: "look";
+  camera: number[];
+  light: string;
+  color: string;
+  overlay: string;
+  file: "recipe" | "shot";
+  place: (string | number)[];
+  locks: number[];
+  frame: number | null;
+}
+
+/** Answers another page that asks for the edit lock. */
+export interface Hand {
+  kind: "hand";
+  over: boolean;
 }
 
 /** Starts, pauses or resumes the simulation, or restarts it from an existing frame. */
@@ -152,14 +237,17 @@ export interface Welcome {
   mode: "recipe" | "shot" | "stage";
   schemas: Record<string, Json>;
   operators: string[];
+  recovered: boolean;
   colors: Record<string, [number, number, number, number]>;
 }
 
-/** Holder of the edit lock. ``others`` is the number of other connected pages. */
+/** Holder of the edit lock. */
 export interface Role {
   kind: "role";
   leads: boolean;
   others: number;
+  asked: boolean;
+  asks: boolean;
 }
 
 /** Names of the recipes and caches of the project; sent again when they change. */
@@ -176,6 +264,8 @@ export interface Document {
   revision: number;
   text: string;
   edits: string;
+  saved: string;
+  saved_edits: string;
   said: Record<string, Json>;
   values: Record<string, Json>;
   stages: Stage[];
@@ -211,13 +301,14 @@ export interface Locks {
   marked: Uint8Array;
 }
 
-/** Positions of the guides; ``changed`` is 1 for sculpted ones. */
+/** Positions of the guides; ``changed`` is 1 for sculpted ones, ``frozen`` for those that brushes leave. */
 export interface Guides {
   kind: "guides";
   middle: [number, number, number];
   points: Float32Array;
   offsets: Int32Array;
   changed: Uint8Array;
+  frozen: Uint8Array;
 }
 
 /** Valid names in settings: regions, maps and directions of the scalp, and helper curves. */
@@ -326,6 +417,8 @@ export interface Timeline {
   against: string;
   frames: Float64Array;
   beside: Float64Array;
+  runs: Int32Array;
+  stale: Uint8Array;
 }
 
 /** Name of the groom or cache to compare with; empty for none. */
@@ -346,10 +439,42 @@ export interface Saved {
   name: string;
 }
 
-/** An error message of one line. */
+/** A short message of what has happened. */
+export interface Notice {
+  kind: "notice";
+  message: string;
+}
+
+/** The look of the leading page. */
+export interface Followed {
+  kind: "followed";
+  camera: number[];
+  light: string;
+  color: string;
+  overlay: string;
+  file: "recipe" | "shot";
+  place: (string | number)[];
+  locks: number[];
+  frame: number | null;
+}
+
+/** An error message of one line, for a request that was refused. */
 export interface Trouble {
   kind: "trouble";
   message: string;
+}
+
+/** All problems of the session. */
+export interface Problems {
+  kind: "problems";
+  problems: Problem[];
+}
+
+/** Progress of a groom that takes long. done: fraction of the stage; an empty stage ends it. */
+export interface Progress {
+  kind: "progress";
+  stage: string;
+  done: number;
 }
 
 export type FromPage =
@@ -361,12 +486,19 @@ export type FromPage =
   | Mute
   | Step
   | Save
+  | Open
+  | Resolve
+  | Dismiss
+  | Proceed
+  | Cancel
   | Restore
   | Compare
   | Drag
   | Isolate
   | Sculpt
   | Unsculpt
+  | Look
+  | Hand
   | Play
   | Against
   | Watch;
@@ -389,4 +521,8 @@ export type FromServer =
   | Compared
   | Heard
   | Saved
-  | Trouble;
+  | Notice
+  | Followed
+  | Trouble
+  | Problems
+  | Progress;

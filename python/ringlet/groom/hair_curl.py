@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from ringlet.data.curves import Curves
-from ringlet.data.errors import UserError
+from ringlet.data.errors import Fix, UserError
 from ringlet.data.quantities import Quantity, Ramped, Section, Varied
 from ringlet.data.random import Random, soft_threshold
 from ringlet.groom.values import Values
@@ -228,10 +228,12 @@ def check_points(coil: NDArray[np.float32], points: int) -> None:
     """Raises UserError when hairs have fewer than 6 points a turn of their coil."""
     most = float(np.abs(coil[:, 2]).max(initial=0.0))
     if most * LEAST_POINTS > points and np.any(coil[:, :2]):
+        good = int(np.ceil(10 * most))
         raise UserError(
             f"hairs.points is {points}: too few for {most:.1f} turns of hairs.coil ({points / most:.1f} points a "
-            f"turn); set it to {int(np.ceil(10 * most))} (at least {int(np.ceil(LEAST_POINTS * most))}), or raise "
-            "hairs.coil.pitch"
+            f"turn); set it to {good} (at least {int(np.ceil(LEAST_POINTS * most))}), or raise "
+            "hairs.coil.pitch",
+            [Fix(("hairs", "points"), good)],
         )
 
 

@@ -132,7 +132,7 @@ def make_groom(
         locks = colored(locks, recipe.color, recipe.fiber, scalp)
         locks = _with_mask_of_hairs(locks, recipe, scalp)
     except UserError as error:
-        raise UserError(f"{where}: {error}") from error
+        raise UserError(f"{where}: {error}", error.fixes) from error
     groom = Groom(
         guides=guides,
         locks=locks,

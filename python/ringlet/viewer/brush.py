@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,23 +19,37 @@ MIN_LENGTH_FRACTION = 0.05  # smallest fraction of a guide's length that a cut l
 CUT_SAMPLES = 8  # samples per edge of a guide at which a cut is tested
 
 
+# Weight by the distance from the radius inwards, 0 at the radius and 1 at the centre.
+PROFILES: dict[str, Callable[[Array], Array]] = {
+    "smooth": lambda t: t * t * (3.0 - 2.0 * t),
+    "sharp": lambda t: t**4,
+    "flat": lambda t: (t > 0.0).astype(np.float64),
+}
+
+
 @dataclass(frozen=True)
 class Ball:
-    """A brush: centre [m], displacement since the last message [m], and radius [m]."""
+    """A brush: centre [m], displacement since the last message [m], and radius [m].
+
+    strength: weight at the centre
+    profile:  falloff from there to the radius: smooth, sharp or flat
+    """
 
     at: Array
     by: Array
     radius: float
+    strength: float = 1.0
+    profile: str = "smooth"
 
     def mirrored(self, middle: float) -> Ball:
         """The mirror image in the plane x = middle."""
         flip = np.array([-1.0, 1.0, 1.0])
-        return Ball(self.at * flip + np.array([2.0 * middle, 0.0, 0.0]), self.by * flip, self.radius)
+        return replace(self, at=self.at * flip + np.array([2.0 * middle, 0.0, 0.0]), by=self.by * flip)
 
     def falloff(self, points: NDArray) -> Array:
-        """Weights at points (n, 3): 1 at the centre, 0 from the radius on, smooth between; shape (n,)."""
+        """Weights at points (n, 3): ``strength`` at the centre, 0 from the radius on; shape (n,)."""
         t = np.clip(1.0 - np.linalg.norm(points - self.at, axis=1) / self.radius, 0.0, 1.0)
-        return t * t * (3.0 - 2.0 * t)
+        return self.strength * PROFILES[self.profile](t)
 
     @property
     def relative_step(self) -> float:
@@ -105,7 +119,7 @@ def cut(guides: Curves, ball: Ball) -> Curves:
 
 def restore(guides: Curves, ball: Ball, before: Curves) -> Curves:
     """Resets guides in the ball to their shape before sculpting."""
-    inside = np.repeat(_in_ball(guides, ball), guides.counts)
+    inside = np.repeat(in_ball(guides, ball), guides.counts)
     return guides.with_points(np.where(inside[:, None], before.points, guides.points))
 
 
@@ -121,7 +135,7 @@ def _each(guides: Curves, ball: Ball, change: Callable[[Array, Array], Array]) -
     """Applies a change to each guide in the ball; roots stay."""
     points = np.array(guides.points, np.float64)
     weights = grab_weights(guides, ball)
-    for row in np.flatnonzero(_in_ball(guides, ball)).tolist():
+    for row in np.flatnonzero(in_ball(guides, ball)).tolist():
         own = slice(guides.offsets[row], guides.offsets[row + 1])
         root = points[own][0].copy()
         points[own] = change(points[own], weights[own])
@@ -129,7 +143,7 @@ def _each(guides: Curves, ball: Ball, change: Callable[[Array, Array], Array]) -
     return guides.with_points(points)
 
 
-def _in_ball(guides: Curves, ball: Ball) -> NDArray[np.bool_]:
+def in_ball(guides: Curves, ball: Ball) -> NDArray[np.bool_]:
     """Guides that intersect the ball, shape (count,); tests edges, which may be longer than the ball."""
     points = np.asarray(guides.points, np.float64)
     edge = np.diff(points, axis=0)

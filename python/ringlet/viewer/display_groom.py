@@ -101,6 +101,7 @@ class GroomEvaluator:
         chosen: str = "",
         draft: bool,
         check_abort: Callable[[], None],
+        progress: Callable[[str, float], None] = lambda stage, done: None,
     ) -> DisplayGroom:
         """Evaluates a recipe.
 
@@ -108,14 +109,21 @@ class GroomEvaluator:
         chosen:      the one of several grooms that ``muted`` is about
         draft:       skips the clean stage
         check_abort: called between stages; may raise an exception to abort
+        progress:    called with each stage and the fraction of the stages before it
         """
         began = time.perf_counter()
         times: dict[str, float] = {}
         clock = [began]
 
-        def progress(stage: str, done: int, total: int) -> None:
+        each = (recipe.grooms or {"": recipe}).values()
+        stages, begun = sum(len(one.shape) + 4 for one in each) + 1, 0
+
+        def clocked(stage: str, done: int, total: int) -> None:
+            nonlocal begun
             if not done:
                 check_abort()
+                progress(stage, min(begun / stages, 1.0))
+                begun += 1
                 clock[0] = time.perf_counter()
             elif (took := 1e3 * (time.perf_counter() - clock[0])) > 0.5:
                 times[stage] = round(took, 1)
@@ -125,10 +133,11 @@ class GroomEvaluator:
         for name, one in (recipe.grooms or {"": recipe}).items():
             one = without_muted(one, always | (muted if name == chosen else frozenset()))
             memory = self._memories.setdefault(name, Memory())
-            made[name] = make_groom(one, progress=progress, memory=memory, **self._read(name, one))
+            made[name] = make_groom(one, progress=clocked, memory=memory, **self._read(name, one))
             made[name].hairs = one.hairs.model_dump(mode="json")
             check_abort()
         groom = join_grooms(made) if recipe.grooms else made[""]
+        progress("hairs", 1.0 - 1.0 / stages)
         clock[0] = time.perf_counter()
         hairs = lay_hairs(groom, memory=self._hairs)
         if (took := 1e3 * (time.perf_counter() - clock[0])) > 0.5:

@@ -7,7 +7,7 @@ import re
 import time
 import tomllib
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -28,11 +28,12 @@ MOST_COMPARED = 4_000_000  # pairs of lines that a diff compares
 
 @dataclass(frozen=True)
 class State:
-    """A state for undo: text, muted stages, and text of the file of edits."""
+    """A state for undo: text, muted stages, the one stage that acts alone, and text of the file of edits."""
 
     text: str
     muted: frozenset[str] = frozenset()
     edits: str = ""
+    solo: str = ""
 
 
 class History:
@@ -74,6 +75,8 @@ class History:
 class Document:
     """A file in its current state, with its history. Every state passes ``check``.
 
+    saved, saved_edits: the texts on disk, as they were read or written last
+    theirs:   texts of another program that are not loaded, for unsaved changes or since ``check`` refuses them
     check:    parses a text and the text of its file of edits; raises UserError for invalid ones
     edits:    text of the file of edits
     history:  undo history shared with other files
@@ -86,6 +89,7 @@ class Document:
     ) -> None:
         self.path, self.history = path, history or History()
         self.saved, self.saved_edits = read_text(path), edits
+        self.theirs: tuple[str, str] | None = None
         self._check, self.revision = check, 0
         self.restore(State(self.saved, edits=edits))
 
@@ -114,6 +118,45 @@ class Document:
     def can_redo(self) -> bool:
         """Whether the redo stack has a step."""
         return bool(self.history.redo_stack)
+
+    def recheck(self) -> None:
+        """Checks the current state again, after a file changed that it refers to; raises UserError as ``check``."""
+        self.restore(self.state)
+
+    def recover(self, text: str, edits: str, saved: str, saved_edits: str) -> None:
+        """Sets unsaved texts of an earlier session as one undo step; a version on disk other than ``saved`` is then a
+        conflict. Raises UserError when they are invalid."""
+        on_disk = self.saved, self.saved_edits
+        self.apply(text, edits=edits)
+        self.saved, self.saved_edits = saved, saved_edits
+        self.meet(*on_disk)
+
+    def meet(self, text: str, edits: str) -> bool:
+        """Takes in the texts on disk: a document without unsaved changes loads them as one undo step, for another they
+        become ``theirs``. Returns whether the current state changed.
+
+        Raises UserError when they are invalid; they are then ``theirs``.
+        """
+        self.theirs = None
+        if (text, edits) == (self.saved, self.saved_edits):
+            return False
+        if (text, edits) != (self.text, self.state.edits):
+            if self.dirty:
+                self.theirs = text, edits
+                return False
+            try:
+                self.apply(text, edits=edits)
+            except UserError:
+                self.theirs = text, edits
+                raise
+        self.saved, self.saved_edits = text, edits
+        return True
+
+    def resolve(self, text: str, edits: str) -> None:
+        """Ends a conflict with the given texts as one undo step; raises UserError when they are invalid."""
+        if self.theirs is not None:
+            self.apply(text, edits=edits)
+            (self.saved, self.saved_edits), self.theirs = self.theirs, None
 
     def set(self, changes: Sequence[tuple[Place, Any]], gesture: int | None = None) -> None:
         """Sets values of settings; None removes a setting. One gesture is one undo step.
@@ -167,7 +210,7 @@ class Document:
         """Blocks of the text, and which of them are the tables ``name``; checks rows of these, and of ``new`` more."""
         tables = blocks.split(self.text)
         places = [k for k, block in enumerate(tables) if block.name == name and block.many]
-        if len(places) != len(self.contents().get(name, [])):
+        if len(places) != len(_table_at(self.contents(), name)):
             raise UserError(f"{self.path.name}: {name} is not written as tables [[{name}]]; edit it in the file")
         for row in rows:
             if not 0 <= row < len(places) + new:
@@ -182,17 +225,28 @@ class Document:
         return next((k for k, block in enumerate(tables) if block.name == "curl"), len(tables))
 
     def apply(
-        self, text: str, *, muted: frozenset[str] | None = None, edits: str | None = None, gesture: int | None = None
+        self,
+        text: str,
+        *,
+        muted: frozenset[str] | None = None,
+        edits: str | None = None,
+        solo: str | None = None,
+        gesture: int | None = None,
     ) -> None:
         """Sets another text, muted stages or edits as one undo step; raises UserError when they are invalid."""
+        changes = {"muted": muted, "edits": edits, "solo": solo}
+        state = replace(self.state, text=text, **{name: one for name, one in changes.items() if one is not None})
         current = self.state
-        state = State(text, current.muted if muted is None else muted, current.edits if edits is None else edits)
         if state == current:
             return
         model = self._check(state.text, state.edits)
         self.history.record(self, gesture)
         self.model, self.state = model, state
         self.revision += 1
+
+    def keep(self, *, muted: frozenset[str], solo: str) -> None:
+        """Sets the muted stages as part of the last step: they are the same, but their places changed."""
+        self.state = replace(self.state, muted=muted, solo=solo)
 
     def save(self, path: Path | None = None, text: str | None = None) -> Path:
         """Writes the text to the document's file, or a text to another file; returns the path."""
@@ -209,7 +263,7 @@ class Document:
     def diff(self) -> list[Change]:
         """Diff of the current text against the saved one, with one line of context."""
         lines = [*_diff(self.saved, self.text), *_diff(self.saved_edits, self.state.edits)]
-        return [Change.model_validate({"sign": line[0], "line": line[1:120]}) for line in lines[:400]]
+        return [Change.model_validate({"sign": line[0], "line": line[1:]}) for line in lines[:400]]
 
 
 def _diff(before: str, now: str) -> list[str]:
@@ -229,6 +283,14 @@ def _alike(one: list[str], other: list[str]) -> int:
     """Number of equal lines at the beginning of both lists."""
     pairs = zip(one, other, strict=False)
     return next((k for k, (a, b) in enumerate(pairs) if a != b), min(len(one), len(other)))
+
+
+def _table_at(data: dict[str, Any], name: str) -> list[Any]:
+    """An array of tables by its dotted name; empty where there is none."""
+    found: Any = data
+    for part in name.split("."):
+        found = found.get(part, []) if isinstance(found, dict) else []
+    return found
 
 
 def toml_value(value: Any) -> str:
@@ -294,17 +356,34 @@ def _add(text: str, place: Place, value: Any) -> str:
 
 
 def _add_inside(text: str, place: Place, value: Any) -> str:
+    """Adds a setting inside an inline table."""
+    data: Any = tomllib.loads(text)
+    depth = 0
+    while _has(data, place[depth]):
+        data, depth = data[place[depth]], depth + 1
+    return _in_block(text, place, lambda part, inside: _added(part, inside, depth, value))
+
+
+def _added(text: str, place: Place, depth: int, value: Any) -> str:
+    """Adds a setting to the table at the first ``depth`` parts of its place."""
     document = tomlkit.parse(text)
     table: Any = document
-    at = 0
-    while _has(table.unwrap(), place[at]):
-        table, at = table[place[at]], at + 1
-    table[place[at]] = _item(_nested(place[at + 1 :], value))
+    for part in place[:depth]:
+        table = table[part]
+    table[place[depth]] = _item(_nested(place[depth + 1 :], value))
     return tomlkit.dumps(document)
 
 
 def _replace(text: str, place: Place, value: Any) -> str:
-    """Replaces or removes a value. Parses only the lines of its table, so that dragging a slider is fast."""
+    """Replaces or removes a value."""
+    return _in_block(text, place, lambda part, inside: _replaced(part, inside, value))
+
+
+def _in_block(text: str, place: Place, edit: Callable[[str, Place], str]) -> str:
+    """Edits a text. Parses only the lines of the table of a place, so that dragging a slider is fast.
+
+    edit: called with a part of the text and the place in it; raises KeyError where the place is in another part
+    """
     tables = blocks.split(text)
     index = place[1] if len(place) > 2 and isinstance(place[1], int) else None
     own = [block for block in tables if block.name == place[0]]
@@ -312,11 +391,11 @@ def _replace(text: str, place: Place, value: Any) -> str:
         block = own[index or 0]
         inside = [place[0], *([] if index is None else [0]), *place[1 if index is None else 2 :]]
         try:
-            block.lines = _replaced("\n".join(block.lines), inside, value).split("\n")
+            block.lines = edit("\n".join(block.lines), inside).split("\n")
         except KeyError:  # the value is in a table with its own header
-            return _replaced(text, place, value)
+            return edit(text, place)
         return "\n".join(line for table in tables for line in table.lines) + ("\n" if text.endswith("\n") else "")
-    return _replaced(text, place, value)
+    return edit(text, place)
 
 
 def _replaced(text: str, place: Place, value: Any) -> str:

@@ -15,9 +15,10 @@ from ringlet.groom.load import APPEND, inherited, parse_edits
 from ringlet.groom.named import GROOMS
 from ringlet.shot import Shot, parse_shot
 from ringlet.viewer import protocol
-from ringlet.viewer.document import Document, History, set_value
+from ringlet.viewer.document import Document, History, State, set_value
+from ringlet.viewer.merge import Versions
 from ringlet.viewer.project import Project
-from ringlet.viewer.protocol import Place
+from ringlet.viewer.protocol import Difference, File, Place
 from ringlet.viewer.variant import variant
 from ringlet.viewer.wire import pack
 
@@ -30,7 +31,7 @@ class Files:
 
     def __init__(self, file: Path, project: Project) -> None:
         self.project, self.file = project, project.inside(file, "view")
-        self.documents: dict[str, Document] = {}
+        self.documents: dict[File, Document] = {}
         self.mode = "stage"
         self._chosen = ""
         self._history = History()
@@ -86,11 +87,16 @@ class Files:
             self.project.inside(file, f"{self.file.name}: {what}")
         return shot
 
-    def document(self, file: str) -> Document:
+    def document(self, file: File) -> Document:
         """The open file of a kind, ``recipe`` or ``shot``; raises UserError when none is open."""
         if file not in self.documents:
             raise UserError(f"{self.file.name}: no {file} is open; open one with: ringlet view")
         return self.documents[file]
+
+    @property
+    def clean(self) -> bool:
+        """Whether no file has unsaved changes."""
+        return not any(document.dirty for document in self.documents.values())
 
     @property
     def recipe(self) -> Document:
@@ -132,7 +138,7 @@ class Files:
 
     # Changes
 
-    def set(self, file: str, changes: list[tuple[Place, Any]], gesture: int) -> None:
+    def set(self, file: File, changes: list[tuple[Place, Any]], gesture: int) -> None:
         """Sets values of settings; None removes a setting."""
         document = self.document(file)
         before = document.model
@@ -145,19 +151,22 @@ class Files:
         if file == "recipe" and document.model.edits_file != before.edits_file:
             document.apply(document.text, edits=_text_of(document.model.edits_file), gesture=gesture)
 
-    def edit_operators(self, action: str, at: int, to: int, op: str) -> None:
+    def edit_operators(self, action: str, at: int, to: int, op: str, values: dict[str, str] | None = None) -> None:
         """Adds, removes or moves a shape operator of the recipe; muted operators stay muted.
 
-        Raises UserError when a variant would move or add an operator of its base.
+        values: settings of an operator that is added
+
+        Raises UserError when a variant would move an operator of its base, or add one before it.
         """
         document = self.recipe
         names = self._inherited(document)
         order = [f"shape/{k}" for k in range(len(self.chosen_recipe.shape))]
+        new = {"op": op, **(values or {})}
         if self.groom and names is None:
-            document.set([([GROOMS, self.groom, "shape"], self._arranged(action, at, to, op))])
+            document.set([([GROOMS, self.groom, "shape"], self._arranged(action, at, to, new))])
         elif names is None:
             if action == "add":
-                document.add_tables("shape", at, [{"op": op} if op else {}])
+                document.add_tables("shape", at, [new])
             elif action == "remove":
                 document.remove_tables("shape", [at])
             else:
@@ -165,28 +174,37 @@ class Files:
         elif action == "remove" and at < len(names):
             place: Place = [GROOMS, self.groom, "shape"] if self.groom else ["shape"]
             document.set([([*place, names[at]], None), ([*place, names[at]], False)])
+        elif not self.groom and action == "add" and at >= len(names):
+            document.add_tables(f"shape.{APPEND}", at - len(names), [new])
+        elif not self.groom and action == "remove":
+            document.remove_tables(f"shape.{APPEND}", [at - len(names)])
+        elif not self.groom and action == "move" and min(at, to) >= len(names):
+            document.move_table(f"shape.{APPEND}", at - len(names), to - len(names))
         else:
             base = self._own_tables(document)["extends"]
             raise UserError(
-                f"{document.path.name}: changes and removes operators of {base}, and does neither move nor add any; "
-                f"do that in {base}, or give it [[shape]] tables of its own"
+                f"{document.path.name}: operators of {base} keep their order, and others follow them; "
+                f"move them in {base}, or give {document.path.name} [[shape]] tables of its own"
             )
-        muted = document.state.muted
-        if muted & set(order):
-            if action == "add":
-                order.insert(at, "")
-            else:
-                moved = order.pop(at)
-                order[to:to] = [moved] if action == "move" else []
-            muted_shapes = {f"shape/{k}" for k, old in enumerate(order) if old in muted}
-            document.apply(document.text, muted=frozenset(muted_shapes | {one for one in muted if "/" not in one}))
+        if action == "add":
+            order.insert(at, "")
+        else:
+            moved = order.pop(at)
+            order[to:to] = [moved] if action == "move" else []
+        places = {old: f"shape/{k}" for k, old in enumerate(order)}
 
-    def _arranged(self, action: str, at: int, to: int, op: str) -> list[dict[str, Any]]:
+        def now(stage: str) -> str:
+            return places.get(stage, "") if "/" in stage else stage
+
+        muted = frozenset(filter(None, map(now, document.state.muted)))
+        document.keep(muted=muted, solo=now(document.state.solo))
+
+    def _arranged(self, action: str, at: int, to: int, new: dict[str, Any]) -> list[dict[str, Any]]:
         """The operators of the chosen groom, with one added, removed or moved."""
         shape = list(self._own_tables(self.recipe).get("shape", []))
         if not 0 <= at < len(shape) + (action == "add"):
             raise UserError(f"{self.recipe.path.name}: shape has {len(shape)} operators; there is none at {at}")
-        moved = [{"op": op} if op else {}] if action == "add" else [shape.pop(at)]
+        moved = [new] if action == "add" else [shape.pop(at)]
         if action != "remove":
             to = at if action == "add" else to
             shape[to:to] = moved
@@ -205,7 +223,105 @@ class Files:
             document.set([(["edits"], self._unused_name(document.path, ".edits.toml"))], gesture)
         document.apply(document.text, edits=text, gesture=gesture)
 
-    def step(self, kind: str) -> list[str]:
+    # Other programs
+
+    def watched(self) -> dict[Path, File]:
+        """Files on disk that the session depends on, and the kind of the document that each belongs to."""
+        found: dict[Path, File] = {}
+        for kind, document in self.documents.items():
+            paths = [document.path, *(self._read_by_recipe(document) if kind == "recipe" else [])]
+            for path in paths:
+                found.setdefault(path, kind)
+        return found
+
+    @staticmethod
+    def _read_by_recipe(document: Document) -> list[Path]:
+        """Files that a recipe, its grooms and their bases name."""
+        contents = document.contents()
+        tables = [contents, *contents.get(GROOMS, {}).values()]
+        bases = [base for table in tables for base in _bases(table, document.path)]
+        models = [document.model, *document.model.grooms.values()]
+        return [*bases, *(file for model in models for file in model.named_files().values())]
+
+    def own(self, file: File) -> set[Path]:
+        """The file of a document, and its file of edits."""
+        edits = self.document(file).model.edits_file if file == "recipe" else None
+        return {self.document(file).path} | ({edits} if edits is not None else set())
+
+    def meet_disk(self, file: File) -> bool:
+        """Takes in what another program wrote to a document and its file of edits; returns whether its state changed.
+
+        Raises UserError when that is invalid.
+        """
+        document = self.document(file)
+        if not document.path.exists():  # it is written again with the next save
+            return False
+        text = read_text(document.path, "give a file")
+        edits = document.saved_edits
+        if file == "recipe":
+            try:
+                edits = _text_of(self._edits_file(text, document.path))
+            except UserError:
+                if text == document.saved:
+                    raise
+        return document.meet(text, edits)
+
+    def _edits_file(self, text: str, path: Path) -> Path | None:
+        name = parse_toml(text, path.name, "recipe").get("edits")
+        return self.project.inside(path.parent / name, f"{path.name}: edits") if isinstance(name, str) else None
+
+    def versions(self, file: File) -> list[tuple[Versions, str]]:
+        """The three versions of a document in conflict and of its file of edits, each with a prefix for names."""
+        document = self.document(file)
+        if document.theirs is None:
+            raise UserError(f"{document.path.name}: has no conflict with its file; go on")
+        text, edits = document.theirs
+        return [
+            (Versions(document.saved, document.text, text), ""),
+            (Versions(document.saved_edits, document.state.edits, edits), "edits: "),
+        ]
+
+    def differences(self, file: File) -> list[Difference]:
+        """Settings in which a document differs from its file on disk; none where one of both is no TOML."""
+        try:
+            return [
+                difference.model_copy(update={"name": prefix + difference.name})
+                for versions, prefix in self.versions(file)
+                for _, difference in versions.differences()
+            ]
+        except ValueError:
+            return []
+
+    def resolve(self, file: File, choice: str, mine: list[str], theirs: list[str]) -> None:
+        """Resolves a conflict; raises UserError for a merge that leaves a setting open or gives an invalid file.
+
+        choice:       ``mine``, ``theirs``, or ``merge`` for a choice by setting
+        mine, theirs: names of the settings that keep the value of the session, or take that on disk
+        """
+        document = self.document(file)
+        versions = [one for one, _ in self.versions(file)]
+        if choice == "mine":
+            texts = [one.mine for one in versions]
+        elif choice == "theirs":
+            texts = [one.theirs for one in versions]
+        else:
+            differences = self.differences(file)
+            if open_ := [one.name for one in differences if one.name not in {*mine, *theirs}]:
+                raise UserError(f"{document.path.name}: {open_[0]} differs; choose one of both values")
+            names = iter(differences)
+            texts = []
+            for one in versions:
+                places = [place for place, _ in one.differences()]
+                texts.append(one.merged([place for place in places if next(names).name in mine]))
+        document.resolve(*texts)
+
+    def recover(self, file: File, text: str, edits: str, saved: str, saved_edits: str) -> None:
+        """Restores unsaved texts of an earlier session; raises UserError when they are invalid."""
+        document = self.document(file)
+        base = (saved, saved_edits) if saved else (document.saved, document.saved_edits)
+        document.recover(text, edits or document.saved_edits, *base)
+
+    def step(self, kind: str) -> list[File]:
         """Undoes, redoes or reverts to the saved state; returns the kinds of the changed files."""
         if kind == "revert":
             before = {name: document.state for name, document in self.documents.items()}
@@ -225,7 +341,7 @@ class Files:
 
     # Saving
 
-    def save(self, file: str, name: str = "", as_variant: bool = False) -> Path:
+    def save(self, file: File, name: str = "", as_variant: bool = False) -> Path:
         """Writes a file and its manual edits.
 
         name:       file name of a copy beside it; empty for the file itself
@@ -235,6 +351,9 @@ class Files:
         """
         document = self.document(file)
         if not name:
+            self.meet_disk(file)
+            if document.theirs is not None:
+                raise UserError(f"{document.path.name}: was changed by another program; choose first what is kept")
             if document.state.edits != document.saved_edits:
                 _write(document.model.edits_file, document.state.edits)
             return document.save()
@@ -260,7 +379,7 @@ class Files:
 
     # Messages
 
-    def message(self, file: str) -> bytes:
+    def message(self, file: File) -> bytes:
         """Message with the state of a file."""
         document = self.documents[file]
         contents, model = document.contents(), document.model
@@ -278,11 +397,13 @@ class Files:
                     "revision": document.revision,
                     "text": document.text,
                     "edits": document.state.edits if document.state.edits != document.saved_edits else "",
+                    "saved": document.saved if document.dirty else "",
+                    "saved_edits": document.saved_edits if document.state.edits != document.saved_edits else "",
                     "said": contents,
                     "values": model.model_dump(mode="json", exclude={"sculpt"}),
                     "grooms": grooms,
                     "groom": groom,
-                    "stages": stages(model, document.state.muted) if file == "recipe" else [],
+                    "stages": stages(model, document.state) if file == "recipe" else [],
                     "dirty": document.dirty,
                     "undo": document.can_undo,
                     "redo": document.can_redo,
@@ -292,14 +413,27 @@ class Files:
         )
 
 
-def stages(recipe: Recipe, muted: frozenset[str]) -> list[protocol.Stage]:
+def without_effect(recipe: Recipe, state: State) -> frozenset[str]:
+    """Stages that have no effect: the muted ones, or while one acts alone all others that can be muted."""
+    if not state.solo:
+        return state.muted
+    return frozenset({*(f"shape/{k}" for k in range(len(recipe.shape))), "curl"} - {state.solo})
+
+
+def stages(recipe: Recipe, state: State) -> list[protocol.Stage]:
     """Stages of a recipe in their order."""
     found: list[tuple[str, str, Place]] = [("guides", "guides", ["guides"]), ("locks", "locks", ["locks"])]
     found += [(operator.op, operator.op, ["shape", k]) for k, operator in enumerate(recipe.shape)]
     for name in ("curl", "clean", "hairs", "color", "fiber"):
         found.append((name, name, [name]))
     return [
-        protocol.Stage(name=name, op=op, place=place, muted="/".join(map(str, place)) in muted)
+        protocol.Stage(
+            name=name,
+            op=op,
+            place=place,
+            muted=(key := "/".join(map(str, place))) in state.muted,
+            solo=key == state.solo,
+        )
         for name, op, place in found
     ]
 
@@ -320,6 +454,18 @@ def _by_name(place: Place, names: list[str]) -> Place:
         at = place[1]
         return ["shape", names[at], *place[2:]] if at < len(names) else ["shape", APPEND, at - len(names), *place[2:]]
     return place
+
+
+def _bases(data: dict[str, Any], path: Path) -> list[Path]:
+    """Files that a recipe extends, the nearest first."""
+    found: list[Path] = []
+    while isinstance(name := data.get("extends"), str) and (file := path.parent / name).is_file() and file not in found:
+        found.append(file)
+        try:
+            path, data = file, read_toml(file, "recipe")[1]
+        except UserError:
+            break
+    return found
 
 
 def _text_of(file: Path | None) -> str:

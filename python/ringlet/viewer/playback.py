@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from ringlet import api
+from ringlet.data.digest import digest
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Clip
 from ringlet.viewer import protocol
@@ -25,6 +26,8 @@ from ringlet.viewer.wire import pack, trouble
 
 PackFrame = Callable[[float, FrameState], bytes]  # packs the number and contents of a frame into a message
 
+MAX_GROOMS = 4  # grooms of a shot whose simulated frames are kept
+KEYS_PER_GROOM = 1_000_000  # distance of the keys of timelines of two grooms
 MAX_OPEN_TRIES = 20  # attempts to open a file that is being replaced
 
 
@@ -45,16 +48,18 @@ class Playback:
     ) -> None:
         self._files, self._publisher, self._viewport = files, publisher, viewport
         self._call, self._failed = call, failed
-        self._simulated, self._shown, self._beside = FrameCache(), OpenFrames(), OpenFrames()
+        self._shown, self._beside = OpenFrames(), OpenFrames()
         self._stage: Stage | None = None
         self._against = ""
         self._replaced = 0
         self._span: tuple[float, float] | None = None
-        self._simulation = Simulation(
-            self._simulated,
-            lambda: call(self.publish_timeline),
-            lambda message: call(failed, message),
-        )
+        self._kept: dict[str, tuple[FrameCache, Simulation]] = {}  # by the digest of the groom, the last one at the end
+        self._simulated, self._simulation = self._new_simulation()
+
+    def _new_simulation(self) -> tuple[FrameCache, Simulation]:
+        frames = FrameCache()
+        changed, failed = partial(self._call, self.publish_timeline), partial(self._call, self._failed)
+        return frames, Simulation(frames, changed, failed)
 
     def stop(self) -> None:
         """Stops the simulation and closes the open files."""
@@ -124,10 +129,9 @@ class Playback:
             self._simulation.start(shot, self._stage, restart_frame)
 
     def set_groom(self, display: DisplayGroom) -> None:
-        """Sets the groom of the shot; another groom discards all frames."""
+        """Sets the groom of the shot. Another groom has other frames; those of the last grooms come back with them."""
         if self._stage is None or self._stage.groom.locks.points is not display.groom.locks.points:
-            self._simulation.stop()
-            self._simulation.reset()
+            self._switch_simulation(digest(display.groom.locks.points, display.groom.locks.ids))
             self._beside.close()
             self._against = ""
             try:
@@ -137,6 +141,18 @@ class Playback:
             clip = api.scalp_clip(display.groom, self._files.shot.frames)
             self._stage = Stage(display.groom, display.hairs, clip, self._viewport.bodies)
         self.publish_timeline()
+
+    def _switch_simulation(self, groom: str) -> None:
+        """Shows the frames that were simulated of a groom, or none yet."""
+        if groom in self._kept and self._kept[groom][1] is self._simulation:
+            return
+        self._simulation.set_aside()
+        self._replaced += KEYS_PER_GROOM
+        frames = self._kept.pop(groom, None) or self._new_simulation()
+        self._kept[groom] = frames
+        self._simulated, self._simulation = frames
+        while len(self._kept) > MAX_GROOMS:
+            del self._kept[next(iter(self._kept))]
 
     def read(self, display: DisplayGroom) -> None:
         """Opens the frames of a USD file; does nothing for a file without frames."""
@@ -192,7 +208,8 @@ class Playback:
             }
         )
         frames, beside = (source.frames if source else np.empty(0) for source in (self._shot, self._beside.source))
-        self._publisher.publish("timeline", pack(timeline, frames=frames, beside=beside))
+        made, stale = simulation.origins(self._files.shot) if runs else (np.zeros(len(frames)), np.zeros(len(frames)))
+        self._publisher.publish("timeline", pack(timeline, frames=frames, beside=beside, runs=made, stale=stale))
 
 
 class OpenFrames:

@@ -13,7 +13,9 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
 from ringlet.data import limits
 
-VERSION = 7
+VERSION = 8
+MOST_TEXT = 1_800_000  # characters of a file
+
 Place = list[str | int]  # path of a setting in its file: ["shape", 0, "amount"]
 File = Literal["recipe", "shot"]
 Point = tuple[float, float, float]
@@ -36,15 +38,20 @@ class Message(BaseModel):
 
 
 class Hello(Message):
-    """First message of a page. ``client`` is a name that the page keeps when it reconnects."""
+    """First message of a page.
+
+    client: name that the page keeps when it reconnects
+    leads:  whether it held the edit lock when it was connected last
+    """
 
     kind: Literal["hello"] = "hello"
     version: Row
     client: str = Field(max_length=64)
+    leads: bool = False
 
 
 class Lead(Message):
-    """Requests the edit lock."""
+    """Requests the edit lock; a page that holds it is asked, and hands it over after a while without an answer."""
 
     kind: Literal["lead"] = "lead"
 
@@ -64,20 +71,28 @@ class Set(Message):
 
 
 class Arrange(Message):
-    """Adds, removes or moves a shape operator of the recipe."""
+    """Adds, removes or moves a shape operator of the recipe.
+
+    values: settings of an operator that is added, for those without a default
+    """
 
     kind: Literal["arrange"] = "arrange"
     action: Literal["add", "remove", "move"]
     at: Row
     to: Row = 0
     op: str = Field(default="", max_length=64)
+    values: dict[str, str] = Field(default_factory=dict, max_length=8)
 
 
 class Mute(Message):
-    """Mutes stages such as ``shape/0`` or ``curl``; not stored in the file."""
+    """Mutes stages such as ``shape/0`` or ``curl``; not stored in the file.
+
+    solo: the one stage that acts while it is set; the mutes stay
+    """
 
     kind: Literal["mute"] = "mute"
     stages: list[str] = Field(max_length=256)
+    solo: str = Field(default="", max_length=64)
 
 
 class Choose(Message):
@@ -94,21 +109,73 @@ class Step(Message):
 
 
 class Save(Message):
-    """Saves a file; with a name, a copy beside it, or a variant that extends it."""
+    """Saves a file; with a name, a copy beside it, or a variant that extends it, which the session then goes on with.
+
+    anyway: saves a recipe whose groom cannot be made
+    """
 
     kind: Literal["save"] = "save"
     file: File = "recipe"
     name: str = Field(default="", max_length=120)
     variant: bool = False
+    anyway: bool = False
+
+
+class Open(Message):
+    """Opens another recipe, shot or USD file of the project in the session.
+
+    discard: discards unsaved changes; without it, they keep the file open
+    """
+
+    kind: Literal["open"] = "open"
+    name: str = Field(max_length=240)
+    discard: bool = False
+
+
+class Resolve(Message):
+    """Resolves a conflict with the version of a file on disk.
+
+    mine, theirs: for ``merge``, names of the settings of which the session's value, or that on disk, is kept
+    """
+
+    kind: Literal["resolve"] = "resolve"
+    file: File = "recipe"
+    choice: Literal["mine", "theirs", "merge"]
+    mine: list[str] = Field(default_factory=list, max_length=10_000)
+    theirs: list[str] = Field(default_factory=list, max_length=10_000)
+
+
+class Dismiss(Message):
+    """Removes a problem that needs no remedy."""
+
+    kind: Literal["dismiss"] = "dismiss"
+    subject: str = Field(max_length=64)
+
+
+class Proceed(Message):
+    """Makes a groom that takes much longer than the displayed one."""
+
+    kind: Literal["proceed"] = "proceed"
+
+
+class Cancel(Message):
+    """Cancels the groom that is being made; the displayed one stays."""
+
+    kind: Literal["cancel"] = "cancel"
 
 
 class Restore(Message):
-    """Restores unsaved text of a page, and of its file of edits, after a restart of the server."""
+    """Restores unsaved text of a page, and of its file of edits, after a restart of the server.
+
+    saved, saved_edits: the texts as they were read or saved last; another version on disk is a conflict
+    """
 
     kind: Literal["restore"] = "restore"
     file: File = "recipe"
-    text: str = Field(max_length=900_000)
-    edits: str = Field(default="", max_length=900_000)
+    text: str = Field(max_length=MOST_TEXT)
+    edits: str = Field(default="", max_length=MOST_TEXT)
+    saved: str = Field(default="", max_length=MOST_TEXT)
+    saved_edits: str = Field(default="", max_length=MOST_TEXT)
 
 
 class Compare(Message):
@@ -145,16 +212,55 @@ class Sculpt(Message):
     at, by:   position of the brush, and its displacement since the last message of this gesture [m]
     radius:   radius of the brush [m]
     mirrored: whether a mirror image of the brush acts on the other side of the head
+    strength: fraction of its displacement that the brush moves what is at its centre
+    falloff:  of the strength towards the radius: smooth, sharp (steep at the centre) or flat (none)
+
+    ``freeze`` protects guides from all brushes, ``thaw`` ends that; neither is stored in the file.
     """
 
     kind: Literal["sculpt"] = "sculpt"
-    tool: Literal["grab", "comb", "smooth", "cut", "lengthen", "return"]
+    tool: Literal["grab", "comb", "smooth", "cut", "lengthen", "return", "freeze", "thaw"]
     at: Position
     by: Position
     radius: float = Field(gt=0.0, le=1.0)
     mirrored: bool = False
+    strength: float = Field(default=1.0, gt=0.0, le=1.0)
+    falloff: Literal["smooth", "sharp", "flat"] = "smooth"
     gesture: Gesture
     resting: bool = True
+
+
+class Shared(Message):
+    """How the leading page looks at the groom.
+
+    camera: position and target [m], six numbers
+    light, color, overlay: their choices on the page; empty for none
+    file, place: the stage whose settings are shown
+    locks:  ids of the chosen locks
+    frame:  the frame that is seen; None without a timeline
+    """
+
+    camera: list[Coordinate] = Field(min_length=6, max_length=6)
+    light: str = Field(max_length=64)
+    color: str = Field(max_length=64)
+    overlay: str = Field(max_length=64)
+    file: File
+    place: Place = Field(max_length=8)
+    locks: list[Id] = Field(max_length=10_000)
+    frame: FrameNumber | None
+
+
+class Look(Shared):
+    """Shares the look of the leading page with those that follow."""
+
+    kind: Literal["look"] = "look"
+
+
+class Hand(Message):
+    """Answers another page that asks for the edit lock."""
+
+    kind: Literal["hand"] = "hand"
+    over: bool
 
 
 class Unsculpt(Message):
@@ -195,12 +301,19 @@ FromPage = Annotated[
     | Mute
     | Step
     | Save
+    | Open
+    | Resolve
+    | Dismiss
+    | Proceed
+    | Cancel
     | Restore
     | Compare
     | Drag
     | Isolate
     | Sculpt
     | Unsculpt
+    | Look
+    | Hand
     | Play
     | Against
     | Watch,
@@ -218,6 +331,7 @@ class Welcome(Message):
     session:  id of the server's run
     heard:    number of messages that the server has handled for pages of this name
     schemas:  JSON schemas of ``recipe`` and ``shot``
+    recovered: whether the server recovered what pages of an earlier run had not saved
     colors:   linear reflectance in red, green and blue, and roughness, of each hair colour
     """
 
@@ -229,15 +343,29 @@ class Welcome(Message):
     mode: Literal["recipe", "shot", "stage"]
     schemas: dict[str, Any]
     operators: list[str]
+    recovered: bool
     colors: dict[str, tuple[float, float, float, float]]
 
 
 class Role(Message):
-    """Holder of the edit lock. ``others`` is the number of other connected pages."""
+    """Holder of the edit lock.
+
+    others: number of other connected pages
+    asked:  whether another page asks this one for the lock
+    asks:   whether this page waits for the answer
+    """
 
     kind: Literal["role"] = "role"
     leads: bool
     others: int
+    asked: bool = False
+    asks: bool = False
+
+
+class Followed(Shared):
+    """The look of the leading page."""
+
+    kind: Literal["followed"] = "followed"
 
 
 class Files(Message):
@@ -254,6 +382,7 @@ class Stage(Message):
     op: str
     place: Place
     muted: bool = False
+    solo: bool = False
 
 
 class Change(Message):
@@ -270,6 +399,7 @@ class Document(Message):
     said:     contents of the file; operators inherited from a base have their index in the resolved recipe
     values:   values of all settings, defaults included, in SI units
     edits:    unsaved text of its file of edits
+    saved, saved_edits: the texts as they were read or saved last; empty where they are ``text`` and ``edits``
     grooms:   names of several grooms; ``said``, ``values`` and ``stages`` are those of ``groom``, the chosen one
     """
 
@@ -279,6 +409,8 @@ class Document(Message):
     revision: int
     text: str
     edits: str
+    saved: str
+    saved_edits: str
     said: dict[str, Any]
     values: dict[str, Any]
     stages: list[Stage]
@@ -320,11 +452,11 @@ class Locks(Message):
 
 
 class Guides(Message):
-    """Positions of the guides; ``changed`` is 1 for sculpted ones."""
+    """Positions of the guides; ``changed`` is 1 for sculpted ones, ``frozen`` for those that brushes leave."""
 
     kind: Literal["guides"] = "guides"
     middle: Point
-    arrays: ClassVar[dict[str, str]] = {"points": "f4", "offsets": "i4", "changed": "u1"}
+    arrays: ClassVar[dict[str, str]] = {"points": "f4", "offsets": "i4", "changed": "u1", "frozen": "u1"}
 
 
 class Names(Message):
@@ -444,7 +576,9 @@ class Frame(Message):
 class Timeline(Message):
     """State of the simulation, and the existing frames of the shot and of the cache to compare with.
 
-    key: changes when existing frames become invalid
+    key:   changes when existing frames become invalid
+    runs:  number of the run that made each frame, from 1; 0 for frames of a file
+    stale: 1 for frames of other settings than the present ones
     """
 
     kind: Literal["timeline"] = "timeline"
@@ -456,7 +590,7 @@ class Timeline(Message):
     preroll: int
     key: int
     against: str = ""
-    arrays: ClassVar[dict[str, str]] = {"frames": "f8", "beside": "f8"}
+    arrays: ClassVar[dict[str, str]] = {"frames": "f8", "beside": "f8", "runs": "i4", "stale": "u1"}
 
 
 class Compared(Message):
@@ -480,11 +614,71 @@ class Saved(Message):
     name: str
 
 
+class Notice(Message):
+    """A short message of what has happened."""
+
+    kind: Literal["notice"] = "notice"
+    message: str
+
+
 class Trouble(Message):
-    """An error message of one line."""
+    """An error message of one line, for a request that was refused."""
 
     kind: Literal["trouble"] = "trouble"
     message: str
+
+
+class Fix(Message):
+    """A remedy of a problem: a button, and the message of the page that it sends."""
+
+    label: str
+    message: dict[str, Any]
+
+
+class Difference(Message):
+    """A setting of a file whose value on disk (theirs) differs from that of the session (mine).
+
+    base: value in their common ancestor
+    both: whether both changed it
+    """
+
+    name: str
+    base: str
+    mine: str
+    theirs: str
+    both: bool
+
+
+class Problem(Message):
+    """What stands in the way, until it is gone.
+
+    subject:     ``groom`` for a groom that cannot be made; the page then marks the look that it shows
+    file:        file of ``setting``, or of the conflict
+    setting:     name of the setting that is wrong; empty for none
+    differences: of a conflict with the version on disk
+    """
+
+    subject: str
+    message: str
+    file: File
+    setting: str
+    fixes: list[Fix]
+    differences: list[Difference]
+
+
+class Problems(Message):
+    """All problems of the session."""
+
+    kind: Literal["problems"] = "problems"
+    problems: list[Problem]
+
+
+class Progress(Message):
+    """Progress of a groom that takes long. done: fraction of the stage; an empty stage ends it."""
+
+    kind: Literal["progress"] = "progress"
+    stage: str
+    done: float
 
 
 FROM_SERVER: tuple[type[Message], ...] = (
@@ -505,5 +699,9 @@ FROM_SERVER: tuple[type[Message], ...] = (
     Compared,
     Heard,
     Saved,
+    Notice,
+    Followed,
     Trouble,
+    Problems,
+    Progress,
 )

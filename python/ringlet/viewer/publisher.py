@@ -88,6 +88,10 @@ class Publisher:
         for queue in self._queues:
             queue.put(subject, message)
 
+    def retained(self) -> dict[str, bytes]:
+        """The retained messages, by subject."""
+        return dict(self._latest)
+
     def subjects(self, prefix: str) -> list[str]:
         """Retained subjects that start with a prefix."""
         return [subject for subject in self._latest if subject.startswith(prefix)]

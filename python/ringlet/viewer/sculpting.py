@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,6 +42,7 @@ class Sculptor:
         self._files = files
         self._stroke: Stroke | None = None
         self._scalp: Scalp | None = None
+        self._frozen = frozenset[int]()
 
     @property
     def busy(self) -> bool:
@@ -53,11 +54,13 @@ class Sculptor:
         stroke = self._stroke
         if stroke is None or stroke.gesture != message.gesture:
             stroke = self._stroke = self._begin(message.gesture, groom)
-        ball = Ball(np.array(message.at) + groom.origin, np.array(message.by), message.radius)
+        shape = message.radius, message.strength, message.falloff
+        ball = Ball(np.array(message.at) + groom.origin, np.array(message.by), *shape)
         balls = [ball, ball.mirrored(stroke.scalp.middle[0])] if message.mirrored else [ball]
         if message.tool == "grab" and not stroke.weights:
-            starts = [Ball(one.at - one.by, one.by, one.radius) for one in balls]
+            starts = [replace(one, at=one.at - one.by) for one in balls]
             stroke.weights = [brush.grab_weights(stroke.guides, start) for start in starts]
+        before = stroke.guides
         for k, one in enumerate(balls):
             if message.tool == "grab":
                 stroke.guides = brush.grab(stroke.guides, one, stroke.weights[min(k, len(stroke.weights) - 1)])
@@ -65,9 +68,29 @@ class Sculptor:
                 stroke.guides = brush.restore(stroke.guides, one, stroke.before)
             else:
                 stroke.guides = brush.TOOLS[message.tool](stroke.guides, one)
+        held = np.repeat(self._held(before), before.counts)
+        stroke.guides = stroke.guides.with_points(np.where(held[:, None], before.points, stroke.guides.points))
         if message.resting:
             self._finish(stroke)
         return stroke.guides
+
+    def freeze(self, message: protocol.Sculpt, groom: Groom) -> Curves:
+        """Freezes or thaws the guides in the brush; returns the guides. Raises UserError as ``move``."""
+        stroke = self._begin(message.gesture, groom)
+        ball = Ball(np.array(message.at) + groom.origin, np.array(message.by), message.radius)
+        for one in [ball, ball.mirrored(stroke.scalp.middle[0])] if message.mirrored else [ball]:
+            ids = set(stroke.guides.ids[brush.in_ball(stroke.guides, one)].tolist())
+            self._frozen = self._frozen | ids if message.tool == "freeze" else self._frozen - ids
+        return stroke.guides
+
+    def _held(self, guides: Curves) -> NDArray[np.bool_]:
+        """Which guides are frozen, shape (count,)."""
+        return np.isin(guides.ids, list(self._frozen))
+
+    def finish(self) -> None:
+        """Ends the current stroke and writes its sculpts."""
+        if self._stroke is not None:
+            self._finish(self._stroke)
 
     def preview(self, recipe: Recipe) -> Recipe:
         """The recipe with the current stroke."""
@@ -120,4 +143,5 @@ class Sculptor:
             points=guides.points - groom.origin,
             offsets=guides.offsets,
             changed=np.logical_or.reduceat(moved, guides.offsets[:-1]),
+            frozen=self._held(guides),
         )

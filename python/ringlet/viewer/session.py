@@ -8,7 +8,9 @@ import secrets
 from collections import Counter
 from collections.abc import Callable
 from concurrent.futures import Future
+from contextlib import suppress
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -22,34 +24,60 @@ from ringlet.groom import Recipe
 from ringlet.viewer import overlays, protocol
 from ringlet.viewer.caches import Caches
 from ringlet.viewer.display_groom import DisplayGroom, GroomEvaluator
-from ringlet.viewer.files import Files, operator_names
+from ringlet.viewer.document import Document
+from ringlet.viewer.edit_lock import EditLock
+from ringlet.viewer.files import Files, operator_names, without_effect
 from ringlet.viewer.manipulator import LockManipulator
 from ringlet.viewer.playback import Playback
+from ringlet.viewer.problems import GROOM, RECOVERED, SAVE, UNDO, WORK, ProblemList, conflict_fixes, dismiss, fixes_of
+from ringlet.viewer.progress_report import ProgressReport
 from ringlet.viewer.project import Project
+from ringlet.viewer.protocol import File, Fix
 from ringlet.viewer.publisher import Publisher, SendQueue
+from ringlet.viewer.recovery import Recovery
 from ringlet.viewer.scene import read_scene
 from ringlet.viewer.sculpting import Sculptor
 from ringlet.viewer.viewport import Viewport, measured
+from ringlet.viewer.watcher import FileWatcher
 from ringlet.viewer.wire import pack, trouble
-from ringlet.viewer.worker import LatestTaskWorker, SerialWorker, Stale
+from ringlet.viewer.work import too_large
+from ringlet.viewer.worker import LatestTaskWorker, SerialWorker, Stale, Timer
 
 PATIENCE = 1.0  # that the end of the server waits for work in progress [s]
 FILES_INTERVAL = 2.0  # interval at which the list of files is refreshed [s]
-NO_GROOM = "groom/trouble"  # subject of the error that prevents a groom
+WATCH_INTERVAL = 0.4  # interval at which open files are looked at [s]
+REST_AFTER = 1.0  # time without a message of a gesture after which its whole groom is made [s]
+PROGRESS_AFTER = 0.6  # time from which the progress of a groom is shown [s]
+
+MAKE = Fix(label="Make it", message={"kind": "proceed"})
 
 log = logging.getLogger("ringlet.viewer")
 
 
+@cache
+def _schemas() -> dict[str, Any]:
+    """JSON schemas of recipes and shots, made once: it takes half a second."""
+    return api.schema()
+
+
 @dataclass(frozen=True)
 class Work:
-    """A request for a groom: a recipe, its revision, its muted stages, whether a draft suffices, and the
-    chosen one of several grooms."""
+    """A request for a groom.
 
+    document: the recipe's document
+    without:  stages without effect
+    draft:    whether a draft suffices
+    large:    whether it is made however long it takes
+    chosen:   the one of several grooms that ``without`` is about
+    """
+
+    document: Document
     recipe: Recipe
     revision: int
-    muted: frozenset[str]
+    without: frozenset[str]
     draft: bool
-    chosen: str
+    large: bool = False
+    chosen: str = ""
 
 
 class Page:
@@ -77,65 +105,113 @@ class Session:
     """
 
     def __init__(self, file: Path, project: Project) -> None:
-        self.project, self.files = project, Files(file, project)
-        self.id = secrets.token_hex(8)
+        self.project, self.id = project, secrets.token_hex(8)
         self.publisher = Publisher()
+        self.problems = ProblemList(self.publisher)
         self.pages: list[Page] = []
-        self.leader = ""
+        self._lock = EditLock(self.submit, self._handed_over)
         self._heard = Counter[str]()
         self._thread = SerialWorker("session")
-        self._file_watcher: asyncio.Task[None] | None = None
+        self._watching: asyncio.Task[None] | None = None
+        self._watcher = FileWatcher()
+        self._rest = Timer(REST_AFTER, self.submit)
         self._evaluator, self._beside = GroomEvaluator(project), GroomEvaluator(project)
-        self._viewport, self._caches = Viewport(self.publisher), Caches(project)
-        self._playback = Playback(self.files, self.publisher, self._viewport, self._call, self.trouble)
-        self._manipulator, self._sculptor = LockManipulator(self.files), Sculptor(self.files)
-        if "recipe" not in self.files.documents:  # raises a read error before the server starts
-            bodies, display = read_scene(file)
-            self._viewport.stage(display, bodies)
-            self._playback.read(display)
+        self._caches = Caches(project)
         self._worker = LatestTaskWorker[Work](self._groom, "groom")
         self._measurer = LatestTaskWorker[DisplayGroom](self._measure, "measure")
         self._comparer = LatestTaskWorker[Comparison](self._groom_beside, "compare")
+        self._load(file)
+
+    def _load(self, file: Path) -> None:
+        """Opens a file; raises UserError for one that cannot be read, before anything changes."""
+        files, viewport = Files(file, self.project), Viewport(self.publisher)
+        scene = None if "recipe" in files.documents else read_scene(file)
+        self.files, self._viewport = files, viewport
+        self._recovery = Recovery(files, self.problems)
+        self._playback = Playback(files, self.publisher, viewport, self._call, self.trouble)
+        self._manipulator, self._sculptor = LockManipulator(files), Sculptor(files)
+        self._shown: Recipe | None = None  # recipe of the displayed groom
+        self._watcher.changed(files.watched())
+        entry = self._recovery.recover()
+        self.recovered = entry is not None
+        if entry is not None:
+            self._heard.update(entry.heard)
+            self._lock.leader = entry.leader
+        if scene is not None:
+            bodies, display = scene
+            viewport.stage(display, bodies)
+            self._playback.read(display)
 
     # Pages
 
     def start(self, loop: asyncio.AbstractEventLoop) -> None:
         """Publishes the documents, starts grooming and watches the project's files."""
+        self._publish()
+        self._watching = loop.create_task(self._watch())
+
+    def _publish(self) -> None:
         for file in self.files.documents:
             self.publisher.publish(f"document/{file}", self.files.message(file))
+            self._show_conflict(file)
         if "recipe" in self.files.documents:
             self.regroom()
-        self._file_watcher = loop.create_task(self._watch_files())
 
-    async def _watch_files(self) -> None:
-        """Publishes the recipes and caches of the project whenever they change; other programs write them."""
-        posted = None
+    async def _watch(self) -> None:
+        """Takes in what other programs write: the open files, and the recipes and caches of the project."""
+        posted, looks = None, 0
         while True:
-            names = await asyncio.to_thread(lambda: [*self.project.files("*.recipe.toml"), *self._caches.names()])
-            if names != posted:
-                self._call(self.publisher.publish, "files", pack(protocol.Files(names=names)))
-            posted = names
-            await asyncio.sleep(FILES_INTERVAL)
+            if changed := await asyncio.to_thread(self._changed_files):
+                self._call(self._meet_disk, changed)
+            if looks * WATCH_INTERVAL % FILES_INTERVAL < WATCH_INTERVAL:
+                names = await asyncio.to_thread(self._names)
+                if names != posted:
+                    self._call(self.publisher.publish, "files", pack(protocol.Files(names=names)))
+                posted = names
+            looks += 1
+            await asyncio.sleep(WATCH_INTERVAL)
+
+    def _changed_files(self) -> set[Path]:
+        try:
+            return self._watcher.changed(self.files.watched())
+        except Exception:
+            log.exception("files could not be watched")
+            return set()
+
+    def _names(self) -> list[str]:
+        return [*self.project.files("*.recipe.toml", "*.shot.toml"), *self._caches.names()]
 
     def stop(self) -> None:
         """Stops the background work; what takes longer than ``PATIENCE`` ends with the program."""
-        if self._file_watcher is not None:
-            self._file_watcher.cancel()
+        if self._watching is not None:
+            self._watching.cancel()
+        self._rest.cancel()
+        self._lock.stop()
+        self._thread.submit(self._finish)
         self._thread.stop(PATIENCE)
         self._playback.stop()
         for worker in (self._worker, self._measurer, self._comparer):
             worker.stop(PATIENCE)
 
+    def _finish(self) -> None:
+        self._end_gesture()
+        self._record()
+        self._recovery.close()
+
+    def _record(self) -> None:
+        self._recovery.record(self._heard, self._lock.leader)
+
     def submit(self, do: Callable[..., Any], *arguments: Any) -> Future[Any]:
         """Runs a call on the session's thread, after those submitted before it."""
         return self._thread.submit(do, *arguments)
 
-    def join(self, name: str) -> Page:
-        """Adds a page. It gets the edit lock when it held it before, or when no connected page holds it."""
+    def join(self, name: str, leads: bool = False) -> Page:
+        """Adds a page. It gets the edit lock when it held it before, or when no connected page holds it.
+
+        leads: whether the page held it when it was connected last; it does not take it from a page that asked for it
+        """
         page = Page(name, self.publisher.subscribe(self._welcome(self._heard[name])))
+        self._lock.join(name, self._connected, led=leads)
         self.pages.append(page)
-        if not self.leader or not any(other.name == self.leader for other in self.pages):
-            self.leader = name
         self._send_roles()
         return page
 
@@ -143,29 +219,50 @@ class Session:
         """Removes a page; the edit lock stays reserved for it until another page requests it."""
         self.pages.remove(page)
         self.publisher.unsubscribe(page.queue)
+        if page.name == self._lock.leader:
+            self._end_gesture()
+            self._record()
+        self._lock.leave(page.name)
         self._send_roles()
 
+    @property
+    def _connected(self) -> set[str]:
+        """Names of the connected pages."""
+        return {page.name for page in self.pages}
+
     def _welcome(self, heard: int) -> bytes:
-        schemas = api.schema()
+        schemas = _schemas()
         return pack(
             protocol.Welcome.model_validate(
                 {
                     "version": protocol.VERSION,
                     "session": self.id,
                     "heard": heard,
-                    "name": self.files.file.name,
+                    "name": str(self.files.file.relative_to(self.project.folder)),
                     "mode": self.files.mode,
                     "schemas": schemas,
                     "operators": operator_names(schemas["recipe"]),
+                    "recovered": self.recovered,
                     "colors": {name: (*color.reflectance, color.roughness) for name, color in HAIR_COLORS.items()},
                 }
             )
         )
 
+    def _handed_over(self, over: bool) -> None:
+        if over:
+            self._end_gesture()
+        self._send_roles()
+
+    def _share(self, page: Page, look: protocol.Look) -> None:
+        """Shares the look of the leading page with the others, and with those that join later."""
+        self.publisher.publish("followed", pack(protocol.Followed(**look.model_dump(exclude={"kind"}))))
+        page.queue.discard("followed")
+
     def _send_roles(self) -> None:
-        others = len({page.name for page in self.pages}) - 1
+        others = len(self._connected) - 1
         for page in self.pages:
-            page.queue.put("role", pack(protocol.Role(leads=page.name == self.leader, others=others)))
+            role = protocol.Role.model_validate({"others": others, **self._lock.role(page.name)})
+            page.queue.put("role", pack(role))
 
     # Messages
 
@@ -175,42 +272,57 @@ class Session:
             self._dispatch(page, message)
         finally:
             self._heard[page.name] += 1
+            self._record()
             page.queue.put("heard", pack(protocol.Heard(count=self._heard[page.name])))
 
     def _dispatch(self, page: Page, message: protocol.FromPage) -> None:
         if isinstance(message, protocol.Lead):
-            self.leader = page.name
+            self._lock.ask(page.name, self._connected)
             self._send_roles()
             return
         if isinstance(message, protocol.Watch):
             page.queue.request(self._playback.frame_sources(message))
             return
-        if page.name != self.leader:
+        if page.name != self._lock.leader:
             raise UserError("another page leads this session; take the lead to edit")
         files = self.files
-        if isinstance(message, protocol.Set):
+        if isinstance(message, protocol.Look):
+            self._share(page, message)
+        elif isinstance(message, protocol.Hand):
+            self._lock.answer(over=message.over)
+        elif isinstance(message, protocol.Set):
             files.set(message.file, message.changes, message.gesture)
             self._edited(message.file, resting=message.resting)
         elif isinstance(message, protocol.Arrange):
-            files.edit_operators(message.action, message.at, message.to, message.op)
+            files.edit_operators(message.action, message.at, message.to, message.op, message.values)
             self._edited("recipe")
         elif isinstance(message, protocol.Choose):
             files.choose(message.groom)
             self._edited("recipe")
         elif isinstance(message, protocol.Mute):
-            files.recipe.apply(files.recipe.text, muted=frozenset(message.stages))
+            files.recipe.apply(files.recipe.text, muted=frozenset(message.stages), solo=message.solo)
             self._edited("recipe")
         elif isinstance(message, protocol.Step):
+            self.problems.clear(RECOVERED)
             for file in files.step(message.kind):
                 self._edited(file)
         elif isinstance(message, protocol.Save):
-            path = files.save(message.file, message.name, message.variant)
-            self.publisher.publish(f"document/{message.file}", files.message(message.file))
-            for each in self.pages:
-                each.queue.put("saved", pack(protocol.Saved(name=path.name)))
-        elif isinstance(message, protocol.Restore):
-            files.document(message.file).apply(message.text, edits=message.edits or None)
+            self._save(message)
+        elif isinstance(message, protocol.Open):
+            self._open(self.project.inside(message.name, "open"), discard=message.discard)
+        elif isinstance(message, protocol.Resolve):
+            files.resolve(message.file, message.choice, message.mine, message.theirs)
             self._edited(message.file)
+        elif isinstance(message, protocol.Dismiss):
+            self.problems.clear(message.subject)
+        elif isinstance(message, protocol.Proceed):
+            self.regroom(large=True)
+        elif isinstance(message, protocol.Cancel):
+            self._cancel()
+        elif isinstance(message, protocol.Restore):
+            if not self.recovered:
+                files.recover(message.file, message.text, message.edits, message.saved, message.saved_edits)
+                self._edited(message.file)
         elif isinstance(message, protocol.Compare):
             self._compare(page, message)
         elif isinstance(message, protocol.Isolate):
@@ -240,6 +352,10 @@ class Session:
         display = self._viewport.display
         if display is None:
             raise UserError("sculpt: the groom is not made yet; wait until it is seen")
+        if message.tool in ("freeze", "thaw"):
+            guides = self._sculptor.freeze(message, display.groom)
+            self.publisher.publish("guides", self._sculptor.message(guides, display.groom))
+            return
         guides = self._sculptor.move(message, display.groom)
         self.publisher.publish("guides", self._sculptor.message(guides, display.groom))
         if message.resting:
@@ -247,7 +363,8 @@ class Session:
         else:
             document = self.files.recipe
             sculpted = self._sculptor.preview(document.model)
-            self._worker.submit(Work(sculpted, document.revision, document.state.muted, True, ""))
+            self._worker.submit(Work(document, sculpted, document.revision, self._without, True))
+            self._rest.restart(self._settle)
 
     def _compare(self, page: Page, message: protocol.Compare) -> None:
         """Shows a groom for comparison as soon as it is made; raises UserError for a recipe that cannot be read."""
@@ -257,7 +374,7 @@ class Session:
             self.publisher.publish("b/none", pack(protocol.Compared(name="")))
             return
         document = self.files.recipe
-        recipe, muted, name = document.model, document.state.muted, "as it was"
+        recipe, muted, name = document.model, self._without, "as it was"
         if message.to == "saved":
             recipe = self.files.parse(document.saved, document.path, document.saved_edits)
             muted, name = frozenset[str](), "as saved"
@@ -284,40 +401,208 @@ class Session:
             log.exception("a groom to compare with could not be made")
             asked.page.queue.put("trouble", trouble(f"this is a mistake in Ringlet ({error}); see the terminal"))
 
+    # Files
+
+    def _save(self, message: protocol.Save) -> None:
+        """Saves a file, and goes on with a copy; asks first when its groom cannot be made."""
+        files = self.files
+        if message.file == "recipe" and GROOM in self.problems and not message.anyway:
+            anyway = Fix(label="Save anyway", message={**message.model_dump(), "anyway": True})
+            reason = f"{files.recipe.path.name} is not saved: {self.problems[GROOM].message}"
+            self.problems.show(SAVE, reason, [anyway, dismiss(SAVE)])
+            return
+        self.problems.clear(SAVE, RECOVERED)
+        try:
+            path = files.save(message.file, message.name, message.variant)
+        finally:
+            self._show_conflict(message.file)
+        if message.name:
+            self._go_on_with(message.file, path)
+        else:
+            self.publisher.publish(f"document/{message.file}", files.message(message.file))
+        for page in self.pages:
+            page.queue.put("saved", pack(protocol.Saved(name=path.name)))
+
+    def _go_on_with(self, file: File, path: Path) -> None:
+        """Goes on with a copy that was saved: it holds the changes, and the file that it is a copy of has none."""
+        files = self.files
+        if files.mode == "shot" and file == "recipe":
+            message = f"{path.name} is saved; the shot goes on with {files.recipe.path.name}, which its groom names"
+            self.problems.show(SAVE, message, [dismiss(SAVE)])
+            return
+        other = [kind for kind, document in files.documents.items() if kind != file and document.dirty]
+        self._open(path, discard=not other)
+
+    def _open(self, file: Path, *, discard: bool) -> None:
+        """Opens another file; raises UserError when it cannot be read, and when unsaved changes would be lost."""
+        if not discard and not self.files.clean:
+            raise UserError(f"open: {self.files.file.name} has unsaved changes; save them, or discard them")
+        before, recovery, playback = self.publisher.retained(), self._recovery, self._playback
+        self._rest.cancel()
+        self._worker.cancel()
+        self._comparer.cancel()
+        self.publisher.clear("")
+        try:
+            self._load(file)
+        except UserError:
+            for subject, message in before.items():
+                self.publisher.publish(subject, message)
+            raise
+        playback.stop()
+        recovery.close(discard=True)
+        self.problems.clear(*(self.problems.subjects - {RECOVERED}))
+        self.problems.publish()
+        if files := before.get("files"):
+            self.publisher.publish("files", files)
+        for page in self.pages:
+            page.queue.put("welcome", self._welcome(self._heard[page.name]))
+        self._publish()
+
+    def _meet_disk(self, changed: set[Path]) -> None:
+        """Takes in files that other programs changed: loads them, or shows the conflict with unsaved changes."""
+        watched = self.files.watched()
+        for file, document in self.files.documents.items():
+            if not any(watched.get(path) == file for path in changed):
+                continue
+            try:
+                if self.files.meet_disk(file):
+                    self._notice(f"{document.path.name} was changed by another program, and is loaded again")
+                    self._edited(file)
+                elif document.theirs is None and not changed <= self.files.own(file):
+                    self._recheck(file)
+            except UserError as error:
+                self.problems.show(f"conflict/{file}", str(error), conflict_fixes(file), place=(file, ""))
+                continue
+            self._show_conflict(file)
+        self._record()
+
+    def _recheck(self, file: File) -> None:
+        """Takes in a change of a file that a document refers to."""
+        try:
+            self.files.document(file).recheck()
+        except UserError as error:
+            self.problems.show(GROOM, str(error))
+            return
+        self._edited(file)
+
+    def _show_conflict(self, file: File) -> None:
+        """Shows the conflict of a document with its file on disk, or that there is none."""
+        document = self.files.documents.get(file)
+        if document is None or document.theirs is None:
+            self.problems.clear(f"conflict/{file}")
+            return
+        message = f"{document.path.name} was changed by another program while it has unsaved changes here"
+        differences = self.files.differences(file)
+        self.problems.show(f"conflict/{file}", message, conflict_fixes(file), place=(file, ""), differences=differences)
+
+    def _notice(self, message: str) -> None:
+        for page in self.pages:
+            page.queue.put("notice", pack(protocol.Notice(message=message)))
+
     # Grooming
 
-    def _edited(self, file: str, *, resting: bool = True) -> None:
+    def _edited(self, file: File, *, resting: bool = True) -> None:
+        document = self.files.document(file)
+        if document.theirs is not None and not document.dirty:
+            with suppress(UserError):  # theirs is invalid, and the conflict stays
+                document.meet(*document.theirs)
+        self._show_conflict(file)
         self.publisher.publish(f"document/{file}", self.files.message(file))
         if file == "recipe":
             self.regroom(draft=not resting)
         else:
             self._playback.publish_timeline()
+        if resting:
+            self._rest.cancel()
+        else:  # the hand may never be heard to rest
+            self._rest.restart(self._settle)
 
-    def regroom(self, *, draft: bool = False) -> None:
-        """Requests the groom of the current recipe; a draft while a gesture is in progress."""
+    def _settle(self) -> None:
+        """Makes the whole groom of a gesture whose hand was not heard to rest."""
+        if not self._rest.cancel() or "recipe" not in self.files.documents:
+            return
+        if self._sculptor.busy:
+            document = self.files.recipe
+            recipe = self._sculptor.preview(document.model)
+            self._worker.submit(Work(document, recipe, document.revision, self._without, False))
+        else:
+            self.regroom()
+
+    def _end_gesture(self) -> None:
+        """Ends the gesture of a page that is gone: its stroke is kept, and the whole groom is made."""
+        if self._sculptor.busy:
+            self._sculptor.finish()
+            self._edited("recipe")
+        self._settle()
+
+    @property
+    def _without(self) -> frozenset[str]:
+        """Stages without effect."""
         document = self.files.recipe
-        muted = document.state.muted
-        self._worker.submit(Work(document.model, document.revision, muted, draft, self.files.groom))
+        return without_effect(self.files.chosen_recipe, document.state)
+
+    def regroom(self, *, draft: bool = False, large: bool = False) -> None:
+        """Requests the groom of the current recipe; a draft while a gesture is in progress.
+
+        large: makes it however long it takes; otherwise one that takes much longer than the displayed one is held
+        """
+        document, display = self.files.recipe, self._viewport.display
+        ratio = 0.0
+        if not large and display is not None and self._shown is not None:
+            ratio = too_large(document.model, self._shown, display)
+        if ratio:
+            self._worker.cancel()
+            message = f"This groom has about {ratio:.0f} times as many points as the one that is seen"
+            self.problems.show(WORK, message, [MAKE, UNDO])
+            return
+        self.problems.clear(WORK)
+        self._worker.submit(
+            Work(document, document.model, document.revision, self._without, draft, large, self.files.groom)
+        )
+
+    def _cancel(self) -> None:
+        """Cancels the groom that is being made."""
+        self._worker.cancel()
+        self.problems.show(WORK, "The groom was canceled; the last one is seen", [MAKE, UNDO])
 
     def _groom(self, work: Work) -> None:
-        """Grooms on the worker thread. A draft is never aborted, so that the page updates during a gesture."""
-        check_abort: Callable[[], None] = (lambda: None) if work.draft else self._worker.raise_if_stale
+        """Grooms on the worker thread. Newer work does not abort a draft, so that the page updates during a gesture."""
+        check_abort = self._worker.raise_if_cancelled if work.draft else self._worker.raise_if_stale
         self._measurer.cancel()
+        progress = ProgressReport(lambda *now: self._call(self._report, *now), PROGRESS_AFTER)
         try:
             display = self._evaluator.groom(
-                work.recipe, work.muted, chosen=work.chosen, draft=work.draft, check_abort=check_abort
+                work.recipe,
+                work.without,
+                chosen=work.chosen,
+                draft=work.draft,
+                check_abort=check_abort,
+                progress=progress,
             )
-            self._call(self.publisher.clear, NO_GROOM)
-            self._call(self._show, display, work.revision)
+            self._call(self._show, display, work)
             if not work.draft:
                 self._measurer.submit(display)
-        except UserError as error:  # retained for pages that join later and see no hair
-            self._call(self.publisher.publish, NO_GROOM, trouble(str(error)))
+        except UserError as error:
+            self._call(self._fail, error, work)
         except Stale:
             raise
         except Exception as error:
             log.exception("a groom could not be made")
             self._call(self.trouble, f"this is a mistake in Ringlet ({error}); see the terminal")
+        finally:
+            progress.close()
+
+    def _report(self, stage: str, done: float) -> None:
+        self.publisher.publish("progress", pack(protocol.Progress(stage=stage, done=done)))
+
+    def _fail(self, error: UserError, work: Work) -> None:
+        """Shows why a groom cannot be made, with the remedies; it stays until one can."""
+        if work.document is not self.files.documents.get("recipe"):
+            return
+        undo = [UNDO] if work.document.can_undo else []
+        fixes = fixes_of(error, "recipe")
+        setting = ".".join(str(part) for part in error.fixes[0].place) if error.fixes else ""
+        self.problems.show(GROOM, str(error), [*fixes, *undo], place=("recipe", setting))
 
     def _measure(self, display: DisplayGroom) -> None:
         """Measures a groom on a worker thread; a new groom cancels it."""
@@ -327,9 +612,12 @@ class Session:
             chunks.append(chunk)
         self._call(self.publisher.publish, "measured", measured(groom, np.concatenate([np.empty(0), *chunks])))
 
-    def _show(self, display: DisplayGroom, revision: int) -> None:
-        before = self._viewport.display
-        self._viewport.show(display, "a", revision)
+    def _show(self, display: DisplayGroom, work: Work) -> None:
+        if work.document is not self.files.documents.get("recipe"):  # another file was opened meanwhile
+            return
+        self.problems.clear(GROOM, SAVE)
+        before, self._shown = self._viewport.display, work.recipe
+        self._viewport.show(display, "a", work.revision)
         guides_changed = before is None or before.groom.guides is not display.groom.guides
         if guides_changed and display.groom.unsculpted is not None and not self._sculptor.busy:
             self.publisher.publish("guides", self._sculptor.message(display.groom.guides, display.groom))

@@ -108,6 +108,7 @@ class Run:
 
     restart_frame: frame of the checkpoint that it starts from; None for the start of the shot
     checkpoint:    state of the motion there
+    number:        number of the run, from 1
     stopping:      set to end it
     """
 
@@ -115,6 +116,7 @@ class Run:
     stage: Stage
     restart_frame: int | None
     checkpoint: dict[str, NDArray[Any]] | None
+    number: int
     stopping: threading.Event
 
 
@@ -136,6 +138,8 @@ class Simulation:
         self._thread: threading.Thread | None = None
         self._results = threading.Lock()  # guards frames and checkpoints: a run that is stopped adds no more
         self._checkpoints: dict[int, dict[str, NDArray[Any]]] = {}
+        self._runs: list[Shot] = []  # shot of each run
+        self._run_of: dict[float, int] = {}  # number of the run of each frame
 
     def start(self, shot: Shot, stage: Stage, restart_frame: int | None = None) -> None:
         """Simulates a shot with its current settings, from the start or from a checkpoint.
@@ -160,7 +164,8 @@ class Simulation:
         self.rolled, self.key, self.state = 0, self.key + 1, "rolling"
         self._stopping = threading.Event()
         self._running.set()
-        run = Run(shot, stage, restart_frame, checkpoint, self._stopping)
+        self._runs.append(shot)
+        run = Run(shot, stage, restart_frame, checkpoint, len(self._runs), self._stopping)
         self._thread = threading.Thread(target=self._run, args=(run, previous), daemon=True)
         self._thread.start()
         self._changed()
@@ -191,11 +196,18 @@ class Simulation:
             self._thread.join(patience)
         self._thread = None
 
-    def reset(self) -> None:
-        """Removes all frames and checkpoints."""
-        self._checkpoints.clear()
-        self._frames.truncate()
-        self.state, self.rolled, self.key = "still", 0, self.key + 1
+    def set_aside(self) -> None:
+        """Stops, and keeps what is needed to show the frames again and to go on from the last one."""
+        self.stop()
+        self._checkpoints = {frame: self._checkpoints[frame] for frame in sorted(self._checkpoints)[-1:]}
+        if self.state != "done":
+            self.state = "still"
+
+    def origins(self, shot: Shot) -> tuple[NDArray[np.int32], NDArray[np.bool_]]:
+        """Number of the run that made each frame, and whether it ran with other settings than those of a shot."""
+        runs = np.array([self._run_of.get(frame, 0) for frame in self._frames.frames.tolist()], np.int32)
+        other = np.array([False, *(_inputs(run) != _inputs(shot) for run in self._runs)])
+        return runs, other[runs]
 
     def _run(self, run: Run, previous: threading.Thread | None) -> None:
         """Simulates once the thread of the previous run has ended."""
@@ -241,6 +253,7 @@ class Simulation:
                     if self.state == "rolling":
                         self.state = "running"
                     self._frames.add(first + k, message)
+                    self._run_of[float(first + k)] = run.number
             self._changed()
         self.state = "done"
 
@@ -251,3 +264,8 @@ class Simulation:
         size = sum(values.nbytes for values in checkpoint.values())
         while len(self._checkpoints) > 1 and size * len(self._checkpoints) > MAX_CHECKPOINT_BYTES:
             del self._checkpoints[min(self._checkpoints)]
+
+
+def _inputs(shot: Shot) -> dict[str, Any]:
+    """Settings of a shot that its frames depend on."""
+    return shot.model_dump(exclude={"frames"})

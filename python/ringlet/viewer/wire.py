@@ -20,7 +20,7 @@ from ringlet.data.errors import UserError
 from ringlet.data.explain import explain
 from ringlet.viewer.protocol import FROM_PAGE, FromPage, Message, Trouble
 
-MOST = 1_000_000  # largest size of a message from a page [bytes]
+MOST = 8_000_000  # largest size of a message from a page [bytes]
 
 
 def pack(message: Message, **arrays: NDArray) -> bytes:

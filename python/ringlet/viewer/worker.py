@@ -56,6 +56,31 @@ def _log_exception(future: Future[Any]) -> None:
         log.error("the review could not go on", exc_info=error)
 
 
+class Timer:
+    """Submits a call after some seconds without another one.
+
+    submit: runs a call on the thread of the caller
+    """
+
+    def __init__(self, seconds: float, submit: Callable[..., Any]) -> None:
+        self._seconds, self._submit = seconds, submit
+        self._timer: threading.Timer | None = None
+
+    def restart(self, do: Callable[[], None]) -> None:
+        """Replaces the call that waits; the time begins again."""
+        self.cancel()
+        self._timer = threading.Timer(self._seconds, self._submit, (do,))
+        self._timer.daemon = True
+        self._timer.start()
+
+    def cancel(self) -> bool:
+        """Removes the call; returns whether one was waiting, or has just been submitted."""
+        timer, self._timer = self._timer, None
+        if timer is not None:
+            timer.cancel()
+        return timer is not None
+
+
 class Stale(Exception):
     """Raised inside a task that is outdated."""
 
@@ -88,6 +113,11 @@ class LatestTaskWorker(Generic[Task]):
     def raise_if_stale(self) -> None:
         """Raises Stale when the running task is outdated."""
         if self._next is not None or self._cancelled or self._stop:
+            raise Stale
+
+    def raise_if_cancelled(self) -> None:
+        """Raises Stale when the running task was cancelled; newer tasks do not count."""
+        if self._cancelled or self._stop:
             raise Stale
 
     def stop(self, patience: float) -> None:

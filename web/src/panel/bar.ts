@@ -2,7 +2,9 @@
 
 import { h, iconButton } from "../dom";
 import type { File, Model } from "../model";
-import { saveAs, showChanges } from "./files";
+import { openFile, saveAs, showChanges } from "./files";
+import type { Look } from "./look";
+import { bindKey, command, showKeys } from "./keys";
 
 export class Bar {
   readonly element = h("header", { class: "bar" });
@@ -15,32 +17,43 @@ export class Bar {
   private readonly redo = iconButton("redo", "Redo (Ctrl+Shift+Z)", () => this.model.say({ kind: "redo" }));
   private readonly save = h("button", { type: "button", class: "primary", title: "Save (Ctrl+S)" }, "Save");
   private readonly as = h("button", { type: "button", class: "quiet" }, "Save as…");
+  private readonly open = iconButton("folder", "Open another file (Ctrl+O)", () => openFile(this.model));
   private readonly role = h("span", { class: "role" });
-  private readonly lead = h("button", { type: "button", class: "quiet" }, "Take the lead");
+  private readonly lead = h("button", { type: "button", class: "quiet" }, "Ask to edit");
+  private readonly follow = h("button", { type: "button", class: "quiet" }, "Follow");
   private readonly beside = h("select", { "aria-label": "Show another look beside this one", class: "beside" });
 
   constructor(
     private readonly model: Model,
     setTheme: () => void,
+    private readonly look: () => Look,
   ) {
     this.name.addEventListener("click", () => showChanges(model));
     this.save.addEventListener("click", () => this.saveAll());
     this.as.addEventListener("click", () => saveAs(model, this.file));
     this.lead.addEventListener("click", () => model.say({ kind: "lead" }));
+    this.follow.addEventListener("click", () => this.look().setFollows(!this.look().follows));
     this.beside.addEventListener("change", () => this.compare());
     this.element.append(
       h("span", { class: "brand" }, "Ringlet"),
+      this.open,
       this.name,
       h("span", { class: "group" }, this.undo, this.redo),
       h("span", { class: "group" }, this.save, this.as),
       this.beside,
       h("span", { class: "space" }),
       this.role,
+      this.follow,
       this.lead,
+      iconButton("keys", "Keys (?)", showKeys),
       iconButton("sun", "Dark or light", setTheme),
     );
     for (const topic of ["document", "role", "welcome", "files", "compared"] as const) model.on(topic, () => this.update());
-    addEventListener("keydown", (event) => this.key(event));
+    bindKey({ keys: "Ctrl+Z", does: "undo", on: command("z"), run: () => model.say({ kind: "undo" }) });
+    const redo = (event: KeyboardEvent) => command("z", true)(event) || command("y")(event);
+    bindKey({ keys: "Ctrl+Shift+Z", does: "redo", on: redo, run: () => model.say({ kind: "redo" }) });
+    bindKey({ keys: "Ctrl+S", does: "save", on: command("s"), run: () => this.saveAll(), anywhere: true });
+    bindKey({ keys: "Ctrl+O", does: "open another file", on: command("o"), run: () => openFile(model), anywhere: true });
   }
 
   private get file(): File {
@@ -48,6 +61,7 @@ export class Bar {
   }
 
   saveAll(): void {
+    (document.activeElement as HTMLElement | null)?.blur(); // what is typed counts
     for (const file of ["recipe", "shot"] as const)
       if (this.model.documents[file]?.dirty) this.model.say({ kind: "save", file });
   }
@@ -71,11 +85,14 @@ export class Bar {
       part.toggleAttribute("hidden", !open.length);
     this.as.toggleAttribute("disabled", !role.leads);
     this.lead.toggleAttribute("hidden", role.leads);
-    this.role.textContent = role.leads
-      ? role.others > 0
-        ? `${role.others} ${role.others > 1 ? "others look" : "other looks"} on`
-        : ""
-      : "you are looking on";
+    this.lead.toggleAttribute("disabled", role.asks);
+    this.lead.textContent = role.asks ? "Asked to edit …" : "Ask to edit";
+    this.follow.toggleAttribute("hidden", role.leads);
+    if (!role.leads) this.follow.setAttribute("aria-pressed", String(this.look().follows));
+    this.follow.textContent = !role.leads && this.look().follows ? "Following" : "Follow";
+    this.open.toggleAttribute("disabled", !role.leads);
+    const viewers = role.others > 0 ? `${role.others} ${role.others > 1 ? "viewers" : "viewer"}` : "";
+    this.role.textContent = role.leads ? viewers : "";
     const files = this.model.files.filter((name) => name.endsWith(".toml") && name !== documents.recipe?.name);
     const choices: [string, string][] = [
       ["", "Compare with …"],
@@ -88,15 +105,5 @@ export class Bar {
     this.beside.replaceChildren(...choices.map(([key, label]) => h("option", { value: key }, label)));
     this.beside.value = compared ? value : "";
     this.beside.toggleAttribute("disabled", !role.leads);
-  }
-
-  private key(event: KeyboardEvent): void {
-    if (!(event.ctrlKey || event.metaKey)) return;
-    const key = event.key.toLowerCase();
-    if (key === "z") this.model.say({ kind: event.shiftKey ? "redo" : "undo" });
-    else if (key === "y") this.model.say({ kind: "redo" });
-    else if (key === "s") this.saveAll();
-    else return;
-    event.preventDefault();
   }
 }

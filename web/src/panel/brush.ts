@@ -1,10 +1,12 @@
 // The brush: a ball that is drawn through the guides. What it does to them, the server does.
 
-import { Vector3 } from "three";
+import { MOUSE, Vector3 } from "three";
 import { h } from "../dom";
 import type { Model } from "../model";
+import { bindKey, plainKey } from "./keys";
 import { inPlane, pick, pixelsPerMetre } from "../view/pick";
 import type { Viewer } from "../view/viewer";
+import { Slider } from "./slider";
 
 const TOOLS = {
   grab: "Takes guides along",
@@ -13,6 +15,8 @@ const TOOLS = {
   cut: "Cuts guides where they come into the ring",
   lengthen: "Lets guides grow",
   return: "Gives guides back to the recipe",
+  freeze: "Protects guides from all brushes",
+  thaw: "Ends the protection",
 } as const;
 type Tool = keyof typeof TOOLS;
 
@@ -39,6 +43,16 @@ export class BrushTool {
   private readonly mirrored = h("input", { type: "checkbox", role: "switch", class: "switch", id: "brush-mirrored" });
   private readonly hair = h("input", { type: "checkbox", role: "switch", class: "switch", id: "brush-hair" });
   private readonly all = h("button", { type: "button", class: "quiet" }, "Return all guides");
+  private readonly strength = new Slider({ id: "brush-strength" }, () => this.tellStrength());
+  private readonly strong = h("output", { class: "unit", for: "brush-strength" });
+  private readonly falloff = h(
+    "select",
+    { id: "brush-falloff" },
+    ...["smooth", "sharp", "flat"].map((name) => h("option", { value: name }, name)),
+  );
+  private readonly pen = h("input", { type: "checkbox", role: "switch", class: "switch", id: "brush-pen" });
+  /** Of the pen; a mouse has half of it. */
+  private pressure = 0.5;
   private gesture = 0;
   private place: Vector3 | null = null;
   private way = new Vector3();
@@ -61,6 +75,9 @@ export class BrushTool {
       h("h2", {}, "Sculpt guides"),
       h("div", { class: "choices", role: "radiogroup", "aria-label": "Brush" }, ...tools),
       row("radius", this.radius, this.readout),
+      row("strength", this.strength.element, this.strong),
+      row("falloff", this.falloff),
+      row("pressure of the pen", this.pen),
       row("both sides", this.mirrored),
       row("show the hair", this.hair),
       h(
@@ -70,6 +87,12 @@ export class BrushTool {
         h("button", { type: "button", class: "quiet", onclick: () => this.show(false) }, "Done"),
       ),
     );
+    this.element.append(
+      h("p", { class: "told" }, "The right button, Alt or the arrow keys turn the head; a finger beside the hair does too."),
+    );
+    this.strength.set(1, { least: 0.05, most: 1, step: 0.05 });
+    this.tellStrength();
+    this.mirrored.addEventListener("change", () => this.update());
     this.hair.checked = true;
     this.hair.addEventListener("change", () => viewer.showHair(this.hair.checked));
     this.radius.addEventListener("input", () => this.resize(1));
@@ -80,7 +103,9 @@ export class BrushTool {
     for (const end of ["pointerup", "pointercancel"] as const)
       element.addEventListener(end, () => this.lift(), { capture: true });
     element.addEventListener("pointerleave", () => this.ring.toggleAttribute("hidden", true));
-    addEventListener("keydown", (event) => this.key(event));
+    bindKey({ keys: "[ and ]", does: "smaller brush, larger brush", on: plainKey("[", "]"), run: (event) => this.resize(event.key === "[" ? 1 / STEP : STEP) });
+    bindKey({ keys: "B", does: "take up the brush, or lay it down", on: plainKey("b"), run: () => this.show(!this.on) });
+    bindKey({ keys: "Escape", does: "lay down the brush", on: (event) => this.on && event.key === "Escape", run: () => this.show(false) });
     for (const topic of ["role", "guides"] as const) model.on(topic, () => this.update());
     this.resize(1);
   }
@@ -90,6 +115,7 @@ export class BrushTool {
     this.on = on && this.model.guides !== null;
     this.element.toggleAttribute("hidden", !this.on);
     this.viewer.guides.shown = this.on;
+    this.viewer.controls.mouseButtons.RIGHT = this.on ? MOUSE.ROTATE : MOUSE.PAN;
     this.viewer.showHair(!this.on || this.hair.checked);
     this.viewer.element.classList.toggle("sculpts", this.on);
     if (!this.on) this.ring.toggleAttribute("hidden", true);
@@ -99,7 +125,19 @@ export class BrushTool {
 
   private update(): void {
     this.element.toggleAttribute("inert", !this.model.role.leads);
+    this.viewer.guides.showPlane(this.on && this.mirrored.checked);
+    this.viewer.invalidate();
     this.all.toggleAttribute("disabled", !this.model.guides?.changed.some((one) => one > 0));
+  }
+
+  private tellStrength(): void {
+    this.strong.textContent = `${Math.round(100 * this.strength.value)} %`;
+  }
+
+  /** What of its strength the brush has under the pen. */
+  private get applied(): number {
+    const pressed = this.pen.checked ? Math.max(0.02, this.pressure) : 1;
+    return Math.min(1, this.strength.value * pressed);
   }
 
   private get metres(): number {
@@ -138,10 +176,13 @@ export class BrushTool {
 
   private press(event: PointerEvent): void {
     if (!this.on || event.button !== 0 || this.viewer.compared || !this.model.role.leads) return;
+    if (event.altKey) return; // turns the head
     const near = this.under(this.at(event));
-    if (!near) return; // beside the hair the hand turns the head
+    if (!near && event.pointerType === "touch") return; // a finger has no other button to turn the head
     event.stopPropagation();
     event.preventDefault();
+    if (!near) return;
+    this.pressure = event.pressure;
     this.viewer.element.setPointerCapture(event.pointerId);
     this.gesture = this.model.newGesture();
     this.place = inPlane(this.at(event), near, this.viewer.camera, this.size);
@@ -157,6 +198,7 @@ export class BrushTool {
       return;
     }
     event.stopPropagation();
+    this.pressure = event.pressure;
     const there = inPlane(at, this.place, this.viewer.camera, this.size);
     this.way.add(there.clone().sub(this.place));
     const near = this.tool === "grab" ? null : this.under(at);
@@ -184,6 +226,8 @@ export class BrushTool {
       by: [way.x, way.y, way.z],
       radius: this.metres,
       mirrored: this.mirrored.checked,
+      strength: this.applied,
+      falloff: this.falloff.value as "smooth" | "sharp" | "flat",
       gesture: this.gesture,
       resting,
     });
@@ -202,12 +246,5 @@ export class BrushTool {
       width: `${2 * pixels}px`,
       height: `${2 * pixels}px`,
     });
-  }
-
-  private key(event: KeyboardEvent): void {
-    if (!this.on || (event.target as HTMLElement).closest("input[type=text], input[type=number], dialog")) return;
-    if (event.key === "[") this.resize(1 / STEP);
-    else if (event.key === "]") this.resize(STEP);
-    else if (event.key === "Escape") this.show(false);
   }
 }

@@ -21,6 +21,56 @@ export function showChanges(model: Model): void {
   });
 }
 
+/** Opens another file of the project; asks what becomes of unsaved changes. */
+export function openFile(model: Model): void {
+  const files = model.files.filter((name) => name !== model.welcome?.name);
+  const dirty = Object.values(model.documents).some((one) => one.dirty);
+  const open = (name: string, discard: boolean) => model.say({ kind: "open", name, discard });
+  const buttons = files.map((name) =>
+    h(
+      "button",
+      {
+        type: "button",
+        class: "quiet file",
+        onclick: () => {
+          dialog.close();
+          if (dirty) askUnsaved(model, name, open);
+          else open(name, false);
+        },
+      },
+      name,
+    ),
+  );
+  const none = h("p", {}, "There is no other recipe, shot or cache in this folder.");
+  const dialog = openDialog("Open", buttons.length ? h("div", { class: "files scrolls" }, ...buttons) : none);
+}
+
+function askUnsaved(model: Model, name: string, open: (name: string, discard: boolean) => void): void {
+  const button = (label: string, press: () => void, kind = "quiet") =>
+    h(
+      "button",
+      {
+        type: "button",
+        class: kind,
+        onclick: () => {
+          press();
+          dialog.close();
+        },
+      },
+      label,
+    );
+  const save = () => {
+    for (const file of ["recipe", "shot"] as const)
+      if (model.documents[file]?.dirty) model.say({ kind: "save", file });
+    open(name, false);
+  };
+  const dialog = openDialog(
+    "Unsaved changes",
+    h("p", {}, `${model.welcome?.name} has unsaved changes.`),
+    h("div", { class: "group" }, button("Save them", save, "primary"), button("Discard them", () => open(name, true))),
+  );
+}
+
 export function saveAs(model: Model, file: File): void {
   const name = h("input", {
     type: "text",
@@ -33,7 +83,7 @@ export function saveAs(model: Model, file: File): void {
   const form = h(
     "form",
     { class: "save-form" },
-    h("p", {}, `Beside ${model.documents[file]?.name ?? "the file"}, as a new file.`),
+    h("p", {}, `A new file in the folder of ${model.documents[file]?.name ?? "the file"}; the review goes on with it.`),
     h("label", { for: "save-name" }, "Name"),
     name,
     file === "recipe"

@@ -1,13 +1,15 @@
-// One lock: click it to choose it, isolate it, drag its points, return it.
+// Locks: click one to choose it, or draw a lasso with Shift; isolate them, drag points of one, return them.
 
 import { Vector3 } from "three";
 import { h, iconButton } from "../dom";
 import type { Model, Place } from "../model";
+import { bindKey, plainKey } from "./keys";
 import type { Json } from "../protocol";
 import { inPlane, onScreen, pick } from "../view/pick";
 import type { Viewer } from "../view/viewer";
 
 const HANDLES = [0.2, 0.4, 0.6, 0.8, 1]; // places along a lock that can be dragged
+const MOST_LISTED = 40; // edited locks that are listed
 const NS = "http://www.w3.org/2000/svg";
 const STILL = 4; // a pointer that moves less has clicked [pixels]
 
@@ -16,11 +18,15 @@ export class LockTool {
   readonly handles = document.createElementNS(NS, "svg");
   private readonly title = h("h2", {});
   private readonly isolate = h("button", { type: "button", class: "quiet" }, "Isolate");
-  private readonly back = h("button", { type: "button", class: "quiet" }, "Return to the recipe");
+  private readonly back = h("button", { type: "button", class: "quiet" }, "Reset lock");
   private readonly reach = h("input", { type: "range", min: 0.05, max: 0.8, step: 0.05, value: 0.3, id: "lock-reach" });
   private readonly alone = h("input", { type: "checkbox", role: "switch", class: "switch", id: "lock-alone" });
+  private readonly aloneLabel = h("label", { for: "lock-alone", title: "Settings on the right are those of the chosen locks" });
   private readonly own = h("ul", { class: "own", "aria-label": "Values of this lock alone" });
-  private row = -1;
+  private readonly edited = h("ul", { class: "own", "aria-label": "Edited locks" });
+  private readonly lasso = document.createElementNS(NS, "polyline");
+  /** Rows of the chosen locks; the last one has the handles. */
+  private rows: number[] = [];
   private held = -1;
   private gesture = 0;
   private sending = 0;
@@ -42,14 +48,19 @@ export class LockTool {
       h(
         "div",
         { class: "field-head" },
-        h("label", { for: "lock-alone", title: "Settings on the right are those of this lock" }, "values of this lock alone"),
+        this.aloneLabel,
         this.alone,
       ),
       this.own,
+      this.edited,
     );
+    this.lasso.classList.add("lasso");
+    this.handles.append(this.lasso);
+    this.listenForLasso();
+    bindKey({ keys: "N and P", does: "choose the next lock, the one before", on: plainKey("n", "p"), run: (event) => this.step(event.key.toLowerCase() === "n" ? 1 : -1) });
     this.alone.addEventListener("change", () => this.scope(this.alone.checked));
-    this.isolate.addEventListener("click", () => model.say({ kind: "isolate", locks: [this.id] }));
-    this.back.addEventListener("click", () => model.say({ kind: "isolate", locks: [this.id], out: false }));
+    this.isolate.addEventListener("click", () => model.say({ kind: "isolate", locks: this.ids }));
+    this.back.addEventListener("click", () => model.say({ kind: "isolate", locks: this.isolatedIds, out: false }));
     this.reach.style.setProperty("--part", "33%");
     const canvas = viewer.renderer.domElement;
     let pressed = { x: 0, y: 0 };
@@ -63,23 +74,48 @@ export class LockTool {
     model.on("role", () => this.update());
   }
 
-  /** The id of the chosen lock. */
+  private get row(): number {
+    return this.rows.at(-1) ?? -1;
+  }
+
+  /** The id of the lock that was chosen last. */
   get id(): number {
     return this.viewer.hair.a.locks?.ids[this.row] ?? -1;
   }
 
-  /** Chooses a lock by its place in the list; -1: none. */
-  choose(row: number): void {
-    this.row = row;
-    this.scope(row >= 0 && this.alone.checked);
+  /** The ids of the chosen locks. */
+  get ids(): number[] {
+    const { locks } = this.viewer.hair.a;
+    return locks ? this.rows.map((row) => locks.ids[row]) : [];
+  }
+
+  /** Chooses locks by their places in the list; -1: none. */
+  choose(...rows: number[]): void {
+    this.rows = rows.filter((row) => row >= 0);
+    this.scope(this.rows.length > 0 && this.alone.checked);
     this.update();
     this.mark();
+    this.model.tell("look");
+  }
+
+  /** Chooses locks by their ids. */
+  chooseIds(ids: number[]): void {
+    const { locks } = this.viewer.hair.a;
+    const rows = ids.map((id) => locks?.ids.indexOf(id) ?? -1);
+    if (rows.join() !== this.rows.join()) this.choose(...rows);
+  }
+
+  /** Chooses the next lock of the list, or the one before. */
+  private step(by: number): void {
+    const count = this.viewer.hair.a.locks?.ids.length ?? 0;
+    if (!count || !this.model.documents.recipe) return;
+    this.choose(this.row < 0 ? (by > 0 ? 0 : count - 1) : (this.row + by + count) % count);
   }
 
   /** Settings are those of this lock, or of all again. */
   private scope(alone: boolean): void {
     this.alone.checked = alone;
-    this.model.lock = alone ? this.id : null;
+    this.model.locks = alone ? this.ids : [];
     this.model.tell("chosen");
   }
 
@@ -98,9 +134,38 @@ export class LockTool {
     );
   }
 
+  /** What a lock is called: its place in the list, and where on the head it grows. */
+  private called(row: number): string {
+    const { locks } = this.viewer.hair.a;
+    if (!locks || row < 0) return "";
+    const root = new Vector3().fromArray(locks.points, 3 * locks.offsets[row]);
+    const { x, y, z } = root.sub(this.viewer.middle);
+    const size = Math.hypot(x, y, z) || 1;
+    const where = [
+      y > 0.75 * size ? "top" : z > 0.3 * size ? "front" : z < -0.3 * size ? "back" : "",
+      x > 0.3 * size ? "left" : x < -0.3 * size ? "right" : "",
+    ];
+    return `${row + 1} · ${where.filter(Boolean).join(" ") || "side"}`;
+  }
+
+  /** The locks that were edited, each a button that chooses it. */
+  private listEdited(): void {
+    const recipe = this.model.documents.recipe;
+    const { locks } = this.viewer.hair.a;
+    const edits = ((recipe?.values["edit"] ?? []) as Record<string, Json>[]).map((edit) => Number(edit["lock"]));
+    const all = locks ? [...new Set([...edits, ...lockIds(recipe?.said ?? {})])].sort((a, b) => a - b) : [];
+    this.edited.toggleAttribute("hidden", !all.length);
+    const rows = new Map(all.map((id) => [id, locks!.ids.indexOf(id)]));
+    const there = all.filter((id) => rows.get(id)! >= 0).slice(0, MOST_LISTED);
+    const button = (id: number) =>
+      h("button", { type: "button", class: "quiet chip", title: `id ${id}`, onclick: () => this.choose(rows.get(id)!) }, this.called(rows.get(id)!));
+    this.edited.replaceChildren(h("li", { class: "chips" }, "edited locks: ", ...there.map(button)));
+  }
+
   /** Locks have come: the chosen one may be another row, or gone. */
   arrived(): void {
-    if (this.row >= (this.viewer.hair.a.locks?.ids.length ?? 0)) this.row = -1;
+    const count = this.viewer.hair.a.locks?.ids.length ?? 0;
+    this.rows = this.rows.filter((row) => row < count);
     this.mark();
     this.update();
   }
@@ -118,6 +183,12 @@ export class LockTool {
       dot.setAttribute("cx", String(x));
       dot.setAttribute("cy", String(y));
     });
+  }
+
+  /** Those of the chosen locks that are isolated. */
+  private get isolatedIds(): number[] {
+    const { locks } = this.viewer.hair.a;
+    return locks ? this.rows.filter((row) => locks.marked[row]).map((row) => locks.ids[row]) : [];
   }
 
   private get isolated(): boolean {
@@ -142,26 +213,87 @@ export class LockTool {
 
   private click(event: MouseEvent): void {
     const { locks } = this.viewer.hair.a;
-    if (!locks || this.viewer.compared || !this.model.documents.recipe || this.busy()) return;
+    if (!locks || (this.viewer.compared && this.viewer.arrangement === "split") || !this.model.documents.recipe || this.busy()) return;
     const box = this.viewer.element.getBoundingClientRect();
     const at = { x: event.clientX - box.left, y: event.clientY - box.top };
-    this.choose(pick(locks.points, locks.offsets, this.viewer.camera, this.size, at)?.lock ?? -1);
+    const row = pick(locks.points, locks.offsets, this.viewer.camera, this.size, at)?.lock ?? -1;
+    const more = event.shiftKey || event.ctrlKey || event.metaKey;
+    if (!more) this.choose(row);
+    else if (row >= 0) this.choose(...(this.rows.includes(row) ? this.rows.filter((one) => one !== row) : [...this.rows, row]));
+  }
+
+  /** Shift and a drag draw a lasso: locks whose tips are seen in it are chosen. */
+  private listenForLasso(): void {
+    const { element } = this.viewer;
+    let path: { x: number; y: number }[] = [];
+    const at = (event: PointerEvent) => {
+      const box = element.getBoundingClientRect();
+      return { x: event.clientX - box.left, y: event.clientY - box.top };
+    };
+    const draw = () => this.lasso.setAttribute("points", path.map(({ x, y }) => `${x},${y}`).join(" "));
+    element.addEventListener(
+      "pointerdown",
+      (event) => {
+        if (!event.shiftKey || event.button !== 0 || this.busy() || !this.model.documents.recipe) return;
+        event.stopPropagation();
+        element.setPointerCapture(event.pointerId);
+        path = [at(event)];
+      },
+      { capture: true },
+    );
+    element.addEventListener(
+      "pointermove",
+      (event) => {
+        if (!path.length) return;
+        event.stopPropagation();
+        path.push(at(event));
+        draw();
+      },
+      { capture: true },
+    );
+    const end = () => {
+      if (path.length > 3) this.choose(...new Set([...this.rows, ...this.inLasso(path)]));
+      path = [];
+      draw();
+    };
+    for (const name of ["pointerup", "pointercancel"] as const) element.addEventListener(name, end, { capture: true });
+  }
+
+  private inLasso(path: { x: number; y: number }[]): number[] {
+    const { locks } = this.viewer.hair.a;
+    if (!locks) return [];
+    const { camera } = this.viewer;
+    const middle = this.viewer.middle;
+    const toEye = camera.position.clone().sub(middle).normalize();
+    const found: number[] = [];
+    for (let row = 0; row + 1 < locks.offsets.length; row++) {
+      const tip = new Vector3().fromArray(locks.points, 3 * (locks.offsets[row + 1] - 1));
+      const inFront = tip.clone().sub(middle).dot(toEye) > -0.02;
+      if (inFront && isInside(onScreen(tip, camera, this.size), path)) found.push(row);
+    }
+    return found;
   }
 
   private mark(): void {
     const { locks } = this.viewer.hair.a;
     if (!locks) return;
     const marked = Uint8Array.from(locks.marked);
-    if (this.row >= 0) marked[this.row] = 2;
+    for (const row of this.rows) marked[row] = 2;
     this.viewer.hair.a.mark(marked);
     this.viewer.invalidate();
   }
 
   private update(): void {
     this.element.toggleAttribute("hidden", this.row < 0);
-    this.title.textContent = `Lock ${this.id}${this.isolated ? ", isolated" : ""}`;
-    this.isolate.toggleAttribute("hidden", this.isolated);
-    this.back.toggleAttribute("hidden", !this.isolated);
+    const one = `Lock ${this.called(this.row)}${this.isolated ? ", isolated" : ""}`;
+    this.title.title = this.ids.map((id) => `id ${id}`).join(", ");
+    this.aloneLabel.textContent = `values of ${this.rows.length > 1 ? "these locks" : "this lock"} alone`;
+    this.title.textContent = this.rows.length > 1 ? `${this.rows.length} locks` : one;
+    const isolated = this.isolatedIds.length;
+    this.isolate.toggleAttribute("hidden", isolated === this.rows.length);
+    this.back.toggleAttribute("hidden", !isolated);
+    this.back.textContent = this.rows.length > 1 ? "Reset locks" : "Reset lock";
+    this.listEdited();
     this.element.querySelector(".reach")!.toggleAttribute("hidden", !this.isolated);
     this.element.toggleAttribute("inert", !this.model.role.leads);
     this.tellOwn();
@@ -186,6 +318,9 @@ export class LockTool {
     dot.addEventListener("pointerup", (event) => {
       if (this.held !== index) return;
       this.pull(index, this.under(event, index), true);
+      this.held = -1;
+    });
+    dot.addEventListener("pointercancel", () => {
       this.held = -1;
     });
     dot.addEventListener("keydown", (event) => this.key(event, index));
@@ -245,6 +380,25 @@ function* ownValues(said: Json, lock: string, place: Place = []): Generator<[Pla
     if (lock in own) yield [[...here, lock], own[lock]];
     else yield* ownValues(value, lock, here);
   }
+}
+
+/** Ids of locks that a recipe gives values of their own. */
+function* lockIds(said: Json): Generator<number> {
+  if (said === null || typeof said !== "object") return;
+  for (const [key, value] of Object.entries(said)) {
+    if (key === "lock" && value !== null && typeof value === "object") yield* Object.keys(value).map(Number);
+    else yield* lockIds(value);
+  }
+}
+
+/** Whether a place is inside of a closed path: a ray from there crosses it an odd number of times. */
+function isInside(at: { x: number; y: number }, path: { x: number; y: number }[]): boolean {
+  let inside = false;
+  path.forEach((a, k) => {
+    const b = path[(k + 1) % path.length];
+    if (a.y > at.y !== b.y > at.y && at.x < a.x + ((at.y - a.y) / (b.y - a.y)) * (b.x - a.x)) inside = !inside;
+  });
+  return inside;
 }
 
 /** A setting as a person calls it: the operator in place of its number. */

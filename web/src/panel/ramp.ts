@@ -4,17 +4,54 @@ import { h } from "../dom";
 
 export type Ramp = [number, number][];
 
-const WIDTH = 260;
-const HEIGHT = 92;
-const EDGE = 9;
+const WIDTH = 268;
+const HEIGHT = 104;
+const [LEFT, RIGHT, TOP, BOTTOM] = [26, 9, 9, 9]; // room for dots and, on the left, for numbers
 const NS = "http://www.w3.org/2000/svg";
+
+/** Shapes to begin with. */
+const PRESETS: Record<string, Ramp> = {
+  "the same all along": [
+    [0, 1],
+    [1, 1],
+  ],
+  "grows to the tip": [
+    [0, 0],
+    [1, 1],
+  ],
+  "fades to the tip": [
+    [0, 1],
+    [1, 0],
+  ],
+  "begins late": [
+    [0, 0],
+    [0.3, 0],
+    [0.6, 1],
+    [1, 1],
+  ],
+  "in the middle": [
+    [0, 0],
+    [0.5, 1],
+    [1, 0],
+  ],
+  "at both ends": [
+    [0, 1],
+    [0.5, 0],
+    [1, 1],
+  ],
+};
+
+/** The ramp that was copied last, for another setting. */
+let copied: Ramp | null = null;
 
 export class RampEditor {
   readonly element: HTMLElement;
   private readonly svg = document.createElementNS(NS, "svg");
   private readonly curve = document.createElementNS(NS, "path");
   private readonly area = document.createElementNS(NS, "path");
+  private readonly numbers = document.createElementNS(NS, "g");
   private readonly readout = h("output", { class: "ramp-told" });
+  private readonly shapes = h("select", { class: "ramp-shapes" });
   private points: Ramp = [
     [0, 1],
     [1, 1],
@@ -32,21 +69,47 @@ export class RampEditor {
     this.svg.classList.add("ramp");
     this.area.classList.add("ramp-area");
     this.curve.classList.add("ramp-curve");
-    this.svg.append(this.area, this.curve);
+    this.numbers.classList.add("ramp-numbers");
+    this.svg.append(this.numbers, this.area, this.curve);
+    this.shapes.setAttribute("aria-label", `${label}: shape of the curve`);
+    this.shapes.addEventListener("change", () => this.take(this.shapes.value));
+    this.shapes.addEventListener("focus", () => this.offer());
+    this.shapes.addEventListener("pointerdown", () => this.offer());
+    this.offer();
     this.element = h("div", { class: "ramp-editor" });
     this.element.append(
       this.svg,
       h("div", { class: "ramp-ends" }, h("span", {}, "root"), this.readout, h("span", {}, "tip")),
+      this.shapes,
     );
     this.svg.addEventListener("pointerdown", (event) => this.press(event));
     this.svg.addEventListener("pointermove", (event) => this.move(event));
     for (const name of ["pointerup", "pointercancel"] as const) this.svg.addEventListener(name, () => this.release());
   }
 
+  private offer(): void {
+    this.shapes.replaceChildren(
+      h("option", { value: "" }, "shape …"),
+      ...Object.keys(PRESETS).map((name) => h("option", { value: name }, name)),
+      h("option", { value: "copy" }, "copy this curve"),
+      h("option", { value: "paste", disabled: !copied }, "paste the copied curve"),
+    );
+  }
+
+  private take(name: string): void {
+    this.shapes.value = "";
+    if (name === "copy") copied = this.points.map(([x, y]) => [x, y]);
+    const ramp = name === "paste" ? copied : PRESETS[name];
+    if (!ramp) return;
+    this.set(ramp);
+    this.change(this.points, true);
+  }
+
   set(ramp: Ramp): void {
     if (this.held >= 0) return;
     this.points = ramp.map(([x, y]) => [x, y]);
-    this.top = Math.max(1, ...ramp.map(([, y]) => 1.1 * y));
+    const highest = Math.max(...ramp.map(([, y]) => y));
+    this.top = Math.max(1.25, 1.25 * highest);
     this.draw();
   }
 
@@ -76,7 +139,7 @@ export class RampEditor {
     const after = this.points[this.held + 1]?.[0] ?? 1.01;
     this.points[this.held] = [
       round(Math.min(Math.max(x, before + 0.01, 0), after - 0.01, 1)),
-      round(Math.min(Math.max(y, 0), 2 * this.top)),
+      round(Math.min(Math.max(y, 0), this.top)), // the box grows when the hand rests
     ];
     this.draw();
     this.change(this.points, false);
@@ -118,18 +181,19 @@ export class RampEditor {
     const box = this.svg.getBoundingClientRect();
     const x = ((event.clientX - box.left) / box.width) * WIDTH;
     const y = ((event.clientY - box.top) / box.height) * HEIGHT;
-    return [(x - EDGE) / (WIDTH - 2 * EDGE), ((HEIGHT - EDGE - y) / (HEIGHT - 2 * EDGE)) * this.top];
+    return [(x - LEFT) / (WIDTH - LEFT - RIGHT), ((HEIGHT - BOTTOM - y) / (HEIGHT - TOP - BOTTOM)) * this.top];
   }
 
   private draw(): void {
     const at = (x: number, y: number): [number, number] => [
-      EDGE + x * (WIDTH - 2 * EDGE),
-      HEIGHT - EDGE - (y / this.top) * (HEIGHT - 2 * EDGE),
+      LEFT + x * (WIDTH - LEFT - RIGHT),
+      HEIGHT - BOTTOM - (y / this.top) * (HEIGHT - TOP - BOTTOM),
     ];
+    this.drawNumbers((y) => at(0, y)[1]);
     const along = Array.from({ length: 65 }, (_, k) => at(k / 64, evaluate(this.points, k / 64)));
     const line = along.map(([x, y], k) => `${k ? "L" : "M"}${x.toFixed(1)} ${y.toFixed(1)}`).join("");
     this.curve.setAttribute("d", line);
-    this.area.setAttribute("d", `${line}L${WIDTH - EDGE} ${HEIGHT - EDGE}L${EDGE} ${HEIGHT - EDGE}Z`);
+    this.area.setAttribute("d", `${line}L${WIDTH - RIGHT} ${HEIGHT - BOTTOM}L${LEFT} ${HEIGHT - BOTTOM}Z`);
     const dots = this.svg.querySelectorAll("circle");
     for (let k = this.points.length; k < dots.length; k++) dots[k].remove();
     this.points.forEach(([x, y], k) => {
@@ -141,6 +205,23 @@ export class RampEditor {
     });
     const [x, y] = this.points[this.held] ?? [];
     this.readout.textContent = this.held >= 0 ? `${x} → ${y}` : "";
+  }
+
+  /** Lines at round factors, with their numbers. */
+  private drawNumbers(height: (y: number) => number): void {
+    const step = [0.25, 0.5, 1, 2, 5, 10, 20, 50].find((one) => this.top / one <= 4) ?? this.top;
+    const marks = Array.from({ length: Math.floor(this.top / step) + 1 }, (_, k) => k * step);
+    this.numbers.replaceChildren(
+      ...marks.flatMap((y) => {
+        const line = document.createElementNS(NS, "path");
+        line.setAttribute("d", `M${LEFT} ${height(y)}H${WIDTH - RIGHT}`);
+        const text = document.createElementNS(NS, "text");
+        text.setAttribute("x", String(LEFT - 6));
+        text.setAttribute("y", String(height(y) + 3.5));
+        text.textContent = String(y);
+        return [line, text];
+      }),
+    );
   }
 
   private dot(index: number): SVGCircleElement {

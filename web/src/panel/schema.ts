@@ -37,6 +37,8 @@ export interface Setting {
     | "list"
     | "other";
   unit: string;
+  /** Whether plain numbers in the file are in SI, and not in the recipe's unit. */
+  si: boolean;
   least: number;
   most: number;
   fallback: Json;
@@ -61,6 +63,14 @@ export class Schemas {
     let schema = this.resolve(properties[String(place[0])], values);
     if (place.length > 1) schema = this.resolve(schema["items"] as Schema, values);
     return this.of(schema);
+  }
+
+  /** Settings of an operator that have no default. */
+  required(op: string): Setting[] {
+    const shape = this.resolve(this.root["properties"] as Schema, null)["shape"] as Schema;
+    const schema = this.resolve(shape["items"] as Schema, { op });
+    const names = ((schema["required"] ?? []) as string[]).filter((name) => name !== "op");
+    return this.of(schema).filter((setting) => names.includes(setting.name));
   }
 
   /** Settings of the file itself that are no tables. */
@@ -103,7 +113,8 @@ export class Schemas {
       label: name.replaceAll("_", " "),
       description: String(given["description"] ?? ""),
       kind: "other",
-      unit: String(given["unit"] ?? ""),
+      unit: String(given["unit"] ?? unitIn(String(given["description"] ?? ""))),
+      si: given["unit"] === undefined,
       least: Number.NEGATIVE_INFINITY,
       most: Number.POSITIVE_INFINITY,
       fallback: given["default"] ?? null,
@@ -125,7 +136,8 @@ export class Schemas {
         setting.inner = this.of(this.resolve(table, null)).filter(
           (inner) => inner.name !== "value" && inner.kind !== "other",
         );
-        for (const inner of setting.inner) if (inner.kind === "regions") inner.unit = setting.unit;
+        const { unit, si, least, most } = setting;
+        for (const inner of setting.inner) if (inner.kind === "regions") Object.assign(inner, { unit, si, least, most });
         setting.perLock = "lock" in (this.resolve(table, null)["properties"] as Schema);
       }
       return setting;
@@ -144,6 +156,11 @@ export class Schemas {
     else if (only["properties"]) Object.assign(setting, { kind: "table", inner: this.of(only) });
     return setting;
   }
+}
+
+/** The unit that a description gives in brackets: `E [Pa]`. */
+function unitIn(description: string): string {
+  return /\[([^\]\d,]+[²³]?[^\]\d,]*)\]/.exec(description)?.[1] ?? "";
 }
 
 function without(schema: Schema, name: string): Schema {

@@ -3,6 +3,8 @@
 import { h, ICONS, icon, iconButton } from "../dom";
 import type { Model, Place } from "../model";
 import type { Json, Stage } from "../protocol";
+import { chooseNames } from "./choose";
+import { Schemas } from "./schema";
 
 /** A cloth or a collider of a shot. */
 type Entry = Record<"name" | "mesh" | "file", string | null>;
@@ -26,7 +28,7 @@ export class Stack {
     const parts: HTMLElement[] = [];
     if (document) {
       if (document.grooms.length) parts.push(this.grooms(document.grooms, document.groom));
-      parts.push(h("h2", {}, "groom"), this.row({ name: "recipe", op: "", place: [], muted: false }, document.stages));
+      parts.push(h("h2", {}, "groom"), this.row({ name: "recipe", op: "", place: [], muted: false, solo: false }, document.stages));
       parts.push(...document.stages.map((stage) => this.row(stage, document.stages)), this.adding());
     }
     if (shot) {
@@ -63,7 +65,7 @@ export class Stack {
     const canMute = key && !KEPT.includes(key) && role.leads;
     return h(
       "div",
-      { class: `stage${current ? " chosen" : ""}${stage.muted ? " muted" : ""}` },
+      { class: `stage${current ? " chosen" : ""}${stage.muted || this.silenced(stage, all) ? " muted" : ""}` },
       choose,
       isShape && role.leads && index > 0
         ? iconButton("up", `Move ${stage.name} up`, () => this.move(index, index - 1))
@@ -71,7 +73,10 @@ export class Stack {
       isShape && role.leads && index < last
         ? iconButton("down", `Move ${stage.name} down`, () => this.move(index, index + 1))
         : null,
-      canMute ? iconButton("solo", `Only ${stage.name}`, () => this.solo(stage, all)) : null,
+      canMute ? iconButton("solo", `Only ${stage.name}`, () => this.solo(stage, all), {
+            class: "icon-button solo",
+            "aria-pressed": String(stage.solo),
+          }) : null,
       isShape && role.leads ? iconButton("bin", `Remove ${stage.name}`, () => this.remove(index)) : null,
       canMute
         ? h(
@@ -119,7 +124,7 @@ export class Stack {
           "aria-current": current ? "true" : undefined,
           onclick: () => this.model.choose("shot", place),
         },
-        name === "strands" ? "material" : name,
+        name === "strands" ? "hair material" : name,
       ),
     );
   }
@@ -130,12 +135,30 @@ export class Stack {
     for (const op of this.model.welcome?.operators ?? [])
       list.append(h("option", { value: op }, op.replaceAll("_", " ")));
     list.addEventListener("change", () => {
-      const at = (this.model.documents.recipe?.stages ?? []).filter((stage) => stage.place[0] === "shape").length;
-      if (list.value) this.model.say({ kind: "arrange", action: "add", at, op: list.value });
-      if (list.value) this.model.choose("recipe", ["shape", at]);
+      if (list.value) this.add(list.value);
       list.value = "";
     });
     return list;
+  }
+
+  /** Whether another operator acts alone. */
+  private silenced(stage: Stage, all: Stage[]): boolean {
+    const key = stage.place.join("/");
+    return all.some((one) => one.solo) && !stage.solo && !KEPT.includes(key) && key !== "clean" && key !== "";
+  }
+
+  /** Adds an operator after the others; asks first for what it cannot be without. */
+  private add(op: string): void {
+    const { model } = this;
+    const at = (model.documents.recipe?.stages ?? []).filter((stage) => stage.place[0] === "shape").length;
+    const give = (values: Record<string, string>) => {
+      model.say({ kind: "arrange", action: "add", at, op, values });
+      model.choose("recipe", ["shape", at]);
+    };
+    const schemas = new Schemas(model.welcome!.schemas["recipe"] as ConstructorParameters<typeof Schemas>[0]);
+    const required = schemas.required(op);
+    if (required.length) chooseNames(model, op, required, give);
+    else give({});
   }
 
   private muted(all: Stage[]): string[] {
@@ -147,17 +170,13 @@ export class Stack {
     this.model.say({
       kind: "mute",
       stages: muted.includes(key) ? muted.filter((one) => one !== key) : [...muted, key],
+      solo: all.find((one) => one.solo)?.place.join("/") ?? "",
     });
   }
 
-  /** Mutes all other operators; again, none. */
+  /** Lets one operator act alone; again, those that are not muted act as before. */
   private solo(stage: Stage, all: Stage[]): void {
-    const key = stage.place.join("/");
-    const others = all
-      .map((one) => one.place.join("/"))
-      .filter((one) => one !== key && !KEPT.includes(one) && one !== "clean");
-    const already = others.every((one) => this.muted(all).includes(one));
-    this.model.say({ kind: "mute", stages: already ? [] : others });
+    this.model.say({ kind: "mute", stages: this.muted(all), solo: stage.solo ? "" : stage.place.join("/") });
   }
 
   private move(from: number, to: number): void {

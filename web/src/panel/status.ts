@@ -71,21 +71,24 @@ export class Status {
 
 const count = (n: number) => n.toLocaleString("en").replaceAll(",", "\u202f");
 
-/** Short messages that go on their own; a lasting one stays until it is taken back. */
+const MOST_NOTICES = 2;
+
+/** Short messages that go on their own; lasting ones are problems. */
 export class Notices {
   readonly element = h("div", { class: "notices", role: "status", "aria-live": "polite" });
-  private lasting: HTMLElement | null = null;
+  private readonly shown = new Map<string, { notice: HTMLElement; timer: number }>();
 
+  /** Shows a message; the same message again only renews it. */
   show(text: string, kind: "good" | "bad" = "good"): void {
-    const notice = h("p", { class: `notice ${kind}` }, text);
-    this.element.append(notice);
-    while (this.element.children.length > 4) this.element.firstElementChild?.remove();
-    setTimeout(() => notice.remove(), kind === "bad" ? 9000 : 3500);
-  }
-
-  keep(text: string): void {
-    this.lasting?.remove();
-    this.lasting = text ? h("p", { class: "notice bad" }, text) : null;
-    if (this.lasting) this.element.append(this.lasting);
+    const known = this.shown.get(text);
+    clearTimeout(known?.timer);
+    const notice = known?.notice ?? h("p", { class: `notice ${kind}` }, text);
+    const remove = () => {
+      notice.remove();
+      this.shown.delete(text);
+    };
+    this.shown.set(text, { notice, timer: window.setTimeout(remove, kind === "bad" ? 9000 : 3500) });
+    if (!known) this.element.append(notice);
+    while (this.element.children.length > MOST_NOTICES) this.element.firstElementChild?.remove();
   }
 }

@@ -3,7 +3,8 @@
 
 import { h, iconButton } from "../dom";
 import type { Model } from "../model";
-import type { Frame } from "../protocol";
+import { bindKey, plainKey } from "./keys";
+import type { Frame, Timeline } from "../protocol";
 import { OVERLAYS, overlayValues } from "../view/overlays";
 import type { Viewer } from "../view/viewer";
 
@@ -16,6 +17,7 @@ export class TimelineBar {
   readonly element = h("section", { class: "timeline", hidden: true, "aria-label": "Frames" });
   private readonly frames: Record<Layer, Map<number, Frame>> = { shot: new Map(), against: new Map() };
   private readonly slider = h("input", { type: "range", step: 1, "aria-label": "Frame" });
+  private readonly runs = h("div", { class: "runs", "aria-hidden": "true" });
   private readonly readout = h("output", { class: "frame-told" });
   private readonly run = h("button", { type: "button", class: "primary" }, "Run");
   private readonly again = iconButton("again", "Run again from this frame, with the settings as they are", () =>
@@ -44,14 +46,19 @@ export class TimelineBar {
       this.show(Number(this.slider.value));
     });
     this.run.addEventListener("click", () => this.press());
-    this.element.append(this.run, this.again, this.watch, this.slider, this.readout, this.against);
+    const frames = h("div", { class: "frames" }, this.slider, this.runs);
+    this.element.append(this.run, this.again, this.watch, frames, this.readout, this.against);
     for (const topic of ["timeline", "role", "files"] as const) model.on(topic, () => this.update());
-    addEventListener("keydown", (event) => {
-      if (event.key !== " " || (event.target as HTMLElement).closest("button, input, select, textarea, dialog")) return;
-      if (!model.timeline) return;
-      event.preventDefault();
-      this.toggle();
-    });
+    bindKey({ keys: "Space", does: "play the frames that are there, or stop", on: plainKey(" "), run: () => model.timeline && this.toggle() });
+    bindKey({ keys: ", and .", does: "one frame back, one on", on: plainKey(",", "."), run: (event) => this.by(event.key === "," ? -1 : 1) });
+  }
+
+  /** Shows the frame that many frames on. */
+  private by(frames: number): void {
+    const { timeline } = this.model;
+    if (!timeline) return;
+    this.follows = false;
+    this.show(Math.min(timeline.last, Math.max(timeline.first, this.frame + frames)));
   }
 
   /** A frame has come. */
@@ -62,6 +69,11 @@ export class TimelineBar {
     this.forget(layer);
     if (frame.frame === this.nearest(layer)) this.draw();
     else this.ask();
+  }
+
+  /** The frame that is seen; none without a timeline. */
+  get current(): number | null {
+    return this.model.timeline ? this.frame : null;
   }
 
   /** How many frames there are. */
@@ -144,6 +156,7 @@ export class TimelineBar {
       this.drop("against");
     }
     const ready = timeline.frames.at(-1);
+    this.runs.replaceChildren(...runMarks(timeline));
     this.slider.min = String(timeline.first);
     this.slider.max = String(timeline.last);
     const there =
@@ -207,6 +220,7 @@ export class TimelineBar {
 
   /** Shows a frame, or the nearest that is there, as soon as it has come. */
   show(frame: number): void {
+    if (frame !== this.frame) this.model.tell("look");
     this.frame = frame;
     this.slider.value = String(frame);
     this.draw();
@@ -252,9 +266,29 @@ export class TimelineBar {
     const parts = [`frame ${this.frame}`];
     if (timeline.state === "rolling") parts[0] = `before the first frame: ${timeline.rolled} of ${timeline.preroll}`;
     else if (!timeline.frames.length) parts[0] = "not run yet";
-    else if (typeof stretch === "number") parts.push(`stretched ${(100 * stretch).toFixed(1)} % at most`);
+    else {
+      const at = closest(timeline.frames, this.frame);
+      if (timeline.stale[at]) parts.push(`of run ${timeline.runs[at]}, with other settings`);
+    }
+    if (typeof stretch === "number") parts.push(`stretched ${(100 * stretch).toFixed(1)} % at most`);
     this.readout.textContent = parts.join(" · ");
   }
+}
+
+/** Marks below the slider: one color a run, hatched where its settings are no longer those of the shot. */
+function runMarks({ frames, runs, stale, first, last }: Timeline): HTMLElement[] {
+  const marks: HTMLElement[] = [];
+  const span = Math.max(1, last - first);
+  for (let from = 0, to = 0; from < frames.length; from = to) {
+    while (to < frames.length && runs[to] === runs[from] && stale[to] === stale[from]) to++;
+    if (!runs[from]) continue;
+    const mark = h("span", { class: stale[from] ? "stale" : "" });
+    mark.style.setProperty("--hue", String((25 + 137 * (runs[from] - 1)) % 360));
+    mark.style.left = `${(100 * (frames[from] - first)) / span}%`;
+    mark.style.width = `max(3px, ${(100 * (frames[to - 1] - frames[from])) / span}%)`;
+    marks.push(mark);
+  }
+  return marks;
 }
 
 /** The place of the number that is nearest to another; numbers are in order. */

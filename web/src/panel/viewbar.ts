@@ -3,7 +3,8 @@
 import { h, iconButton } from "../dom";
 import type { Model } from "../model";
 import type { BrushTool } from "./brush";
-import { Recorder, takePicture } from "../view/capture";
+import { savePicture } from "./picture";
+import { Recorder } from "../view/capture";
 import { PRESETS } from "../view/lights";
 import { OVERLAYS, type OverlayName } from "../view/overlays";
 import type { Viewer } from "../view/viewer";
@@ -18,6 +19,9 @@ const VIEWS: [string, number, number][] = [
 ];
 
 export class Viewbar {
+  readonly light = h("select", { "aria-label": "Light" });
+  readonly color = h("select", { "aria-label": "Hair colour" });
+  private readonly overlay = h("select", { "aria-label": "Overlay" });
   readonly element = h("div", { class: "viewbar", role: "toolbar", "aria-label": "View" });
 
   constructor(
@@ -26,14 +30,18 @@ export class Viewbar {
     brush: BrushTool,
     name: () => string,
   ) {
-    const light = h("select", { "aria-label": "Light" });
+    const { light, color, overlay } = this;
+    viewer.onLook = () => model.tell("look");
     for (const [key, preset] of Object.entries(PRESETS)) light.append(h("option", { value: key }, preset.label));
-    light.addEventListener("change", () => viewer.setLights(light.value));
+    light.addEventListener("change", () => {
+      viewer.setLights(light.value);
+      model.tell("look");
+    });
 
-    const color = h("select", { "aria-label": "Hair colour" });
     color.addEventListener("change", () => {
       const colors = model.welcome?.colors ?? {};
       viewer.setColour(colors[color.value] ?? null, colors["dark_brown"]);
+      model.tell("look");
     });
     model.on("welcome", () => {
       const names = Object.keys(this.model.welcome?.colors ?? {});
@@ -51,7 +59,6 @@ export class Viewbar {
       viewer.frame(azimuth, elevation);
     });
 
-    const overlay = h("select", { "aria-label": "Overlay" });
     const legend = h("div", { class: "legend", hidden: true, role: "note" });
     overlay.addEventListener("change", () => {
       model.overlay = overlay.value as OverlayName | "";
@@ -90,7 +97,19 @@ export class Viewbar {
       if (recorder.running) recorder.stop(name());
       else recorder.start();
       film.setAttribute("aria-pressed", String(recorder.running));
+      const began = performance.now();
+      const tell = () => {
+        const seconds = Math.floor((performance.now() - began) / 1000);
+        recorded.textContent = `${Math.floor(seconds / 60)}:${String(seconds % 60).padStart(2, "0")}`;
+      };
+      clearInterval(ticking);
+      recorded.hidden = !recorder.running;
+      if (!recorder.running) return;
+      tell();
+      ticking = window.setInterval(tell, 250);
     });
+    let ticking = 0;
+    const recorded = h("output", { class: "recorded", hidden: true, "aria-label": "Recorded time" });
     film.setAttribute("aria-pressed", "false");
 
     this.element.append(
@@ -103,10 +122,21 @@ export class Viewbar {
         viewer.frame(...(VIEWS[from.selectedIndex].slice(1) as [number, number])),
       ),
       turn,
-      iconButton("camera", "Keep a picture", () => takePicture(viewer, name())),
+      iconButton("camera", "Save picture", () => savePicture(viewer, name())),
       film,
+      recorded,
       legend,
     );
+  }
+
+  /** Chooses light, color and overlay. */
+  choose(look: Record<"light" | "color" | "overlay", string>): void {
+    for (const name of ["light", "color", "overlay"] as const) {
+      const list = this[name];
+      if (list.value === look[name] || ![...list.options].some((option) => option.value === look[name])) continue;
+      list.value = look[name];
+      list.dispatchEvent(new Event("change"));
+    }
   }
 
   /** What the colours of the overlay say. */

@@ -21,7 +21,7 @@ void main() {
 }
 `;
 
-const WALLS = { dark: ["#5a6164", "#1c1f21"], light: ["#f4f0ea", "#d3cdc4"] } as const;
+const WALLS = { dark: ["#5a6164", "#1c1f21"], light: ["#cdc8c0", "#a7a198"] } as const;
 
 export class Backdrop {
   readonly scene = new Scene();
@@ -43,6 +43,11 @@ export class Backdrop {
 
   setTheme(theme: "dark" | "light"): void {
     const [near, far] = WALLS[theme];
+    this.setWall(near, far);
+  }
+
+  /** Colors of the wall in its pool of light, and away from it. */
+  setWall(near: string, far: string): void {
     // Written as they are seen: no conversion to linear light.
     (this.material.uniforms["near"].value as Color).copy(new Color(near).convertLinearToSRGB());
     (this.material.uniforms["far"].value as Color).copy(new Color(far).convertLinearToSRGB());

@@ -113,6 +113,13 @@ export class Hair {
     return this.carry?.hairs.count ?? 0;
   }
 
+  /** Removes the hair. */
+  clear(): void {
+    this.carry?.dispose();
+    this.carry = this.locks = this.table = null;
+    this.box.makeEmpty();
+  }
+
   setHairs(hairs: Hairs): void {
     this.carry?.dispose();
     this.carry = new Carry(hairs);

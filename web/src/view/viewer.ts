@@ -8,12 +8,14 @@ import { Body, type Side } from "./body";
 import { GuideLines } from "./guides";
 import { type Colour, Hair } from "./hair";
 import { Lights, PRESETS } from "./lights";
+import { Pace, whenDrawn } from "./pace";
 import { Shadow } from "./shadow";
 
 const FOV = 24;
 const SUBJECT = 0.8; // width of what is framed, as a part of the picture's height
-const SLOW = 45; // a picture that takes longer is drawn with less detail while something moves [ms]
 const REST_AFTER = 180; // time without a movement after which all detail is drawn [ms]
+
+export type Arrangement = "split" | "wipe" | "flip";
 
 export interface DrawStatistics {
   drawMs: number;
@@ -28,7 +30,16 @@ export class Viewer {
   readonly hair: Record<Side, Hair>;
   readonly guides = new GuideLines();
   compared = false;
+  /** How two looks are arranged, which is on the left, which is seen alone, and where the wipe is. */
+  arrangement: Arrangement = "split";
+  first: Side = "a";
+  front: Side = "a";
+  wipe = 0.5;
+  private theme: "dark" | "light" = "dark";
   turntable = false;
+  onPaint: () => void = () => {};
+  /** The camera has moved. */
+  onLook: () => void = () => {};
   onDraw: (statistics: DrawStatistics) => void = () => {};
 
   /** How much of the picture panels cover on the left and on the right [pixels]. */
@@ -46,13 +57,17 @@ export class Viewer {
   private hairShown = true;
   private wanted = false;
   private moved = 0;
-  private detail = 1;
+  private readonly pace: Pace;
+  /** Whether the graphics card is at work on a picture: the next one waits for it. */
+  private drawing = false;
+  private fresh = true;
   private resting = 0;
   private turned = 0;
   private drawn = 0;
 
   constructor(readonly element: HTMLElement) {
     this.software = drawsInSoftware();
+    this.pace = new Pace(this.software);
     this.renderer = new WebGLRenderer({ antialias: !this.software, powerPreference: "high-performance" });
     this.renderer.autoClear = false;
     this.renderer.outputColorSpace = "srgb-linear"; // the shaders develop on their own
@@ -70,7 +85,6 @@ export class Viewer {
     this.shadow = new Shadow(this.software ? 384 : 1024);
     this.hair = { a: new Hair(this.lights, this.shadow), b: new Hair(this.lights, this.shadow) };
     new ResizeObserver(() => this.resize()).observe(element);
-    canvas.addEventListener("keydown", (event) => this.key(event));
     this.resize();
   }
 
@@ -78,6 +92,16 @@ export class Viewer {
     this.bodies.get(message.index)?.dispose();
     this.bodies.set(message.index, new Body(message, this.lights, this.shadow, [this.scene, this.casters]));
     this.invalidate();
+  }
+
+  /** Removes what belongs to a file that is no longer open. */
+  reset(): void {
+    for (const body of this.bodies.values()) body.dispose();
+    this.bodies.clear();
+    this.hair.a.clear();
+    this.hair.b.clear();
+    this.compare(false);
+    this.framed = false;
   }
 
   /** Moves all bodies on one side, whose points follow one another; nothing: to where they rest. */
@@ -119,6 +143,7 @@ export class Viewer {
   }
 
   setTheme(theme: "dark" | "light"): void {
+    this.theme = theme;
     this.backdrop.setTheme(theme);
     this.invalidate();
   }
@@ -159,19 +184,36 @@ export class Viewer {
       .multiplyScalar(distance)
       .add(target);
     this.controls.update();
+    this.onLook();
+    this.invalidate();
+  }
+
+  /** Puts the camera: its place and its target, six numbers. */
+  lookFrom(camera: number[]): void {
+    this.framed = true;
+    this.camera.position.fromArray(camera);
+    this.controls.target.fromArray(camera, 3);
+    this.camera.lookAt(this.controls.target);
+    this.onLook();
     this.invalidate();
   }
 
   /** Something moves: speed counts more than detail for a moment. */
   move(): void {
+    this.onLook();
     this.moved = performance.now();
     this.invalidate();
   }
 
   invalidate(): void {
+    this.fresh = true;
+    this.request();
+  }
+
+  private request(): void {
     if (this.wanted) return;
     this.wanted = true;
-    requestAnimationFrame(() => this.draw());
+    if (!this.drawing) requestAnimationFrame(() => this.draw());
   }
 
   /** Draws at once, with all detail: for pictures. */
@@ -180,13 +222,28 @@ export class Viewer {
     this.paint(1);
   }
 
+  /** Draws at a size and before a wall of one color, for a picture that is kept; then as before. */
+  drawAt(width: number, height: number, taken: (drawn: HTMLCanvasElement) => void, wall?: string): void {
+    const { renderer, element } = this;
+    const ratio = renderer.getPixelRatio();
+    renderer.setPixelRatio(1);
+    renderer.setSize(width, height, false);
+    if (wall) this.backdrop.setWall(wall, wall);
+    this.drawNow();
+    taken(renderer.domElement);
+    this.backdrop.setTheme(this.theme);
+    renderer.setPixelRatio(ratio);
+    renderer.setSize(element.clientWidth, element.clientHeight);
+    this.drawNow();
+  }
+
   get pictures(): number {
     return this.drawn;
   }
 
   /** Whether no picture is to come until something changes. */
   get idle(): boolean {
-    return !this.wanted && !this.resting && !this.turntable;
+    return !this.wanted && !this.resting && !this.turntable && !this.drawing;
   }
 
   private draw(): void {
@@ -199,20 +256,29 @@ export class Viewer {
       this.moved = now;
     } else this.turned = 0;
     const moving = now - this.moved < REST_AFTER;
-    this.paint(moving ? this.detail : 1);
-    const took = performance.now() - now;
+    this.pace.hairs = this.hair.a.count;
+    const detail = this.pace.next(moving, this.fresh);
+    this.fresh = false;
+    this.paint(detail);
+    this.onPaint();
     if (moving) {
-      if (took > SLOW) this.detail = Math.max(0.06, this.detail * 0.75);
-      else if (took < 0.4 * SLOW) this.detail = Math.min(1, this.detail * 1.15);
       clearTimeout(this.resting);
       this.resting = window.setTimeout(() => {
         this.resting = 0;
-        this.invalidate();
+        this.request(); // goes on from the detail of the last picture
       }, REST_AFTER + 20);
     }
     this.drawn++;
-    this.onDraw({ drawMs: took, shown: Math.round(this.hair.a.count * (moving ? this.detail : 1)) });
-    if (this.turntable) this.invalidate();
+    this.drawing = true;
+    whenDrawn(this.renderer.getContext() as WebGL2RenderingContext, () => {
+      const took = performance.now() - now;
+      this.drawing = false;
+      this.pace.took(took, detail, moving);
+      this.onDraw({ drawMs: took, shown: Math.round(this.hair.a.count * detail) });
+      if (this.wanted) requestAnimationFrame(() => this.draw());
+      else if (this.turntable) this.invalidate();
+      else if (!moving && this.pace.refines) this.request();
+    });
   }
 
   private paint(detail: number): void {
@@ -221,8 +287,10 @@ export class Viewer {
     camera.updateMatrixWorld();
     lights.update(camera);
     this.backdrop.update(size.x / Math.max(size.y, 1));
-    const sides: Side[] = this.compared ? ["a", "b"] : ["a"];
-    const width = size.x / sides.length;
+    const both: Side[] = this.first === "a" ? ["a", "b"] : ["b", "a"];
+    const sides: Side[] = !this.compared ? ["a"] : this.arrangement === "flip" ? [this.front] : both;
+    const split = this.compared && this.arrangement === "split";
+    const width = split ? size.x / 2 : size.x;
     camera.aspect = width / Math.max(size.y, 1);
     const aside = this.makeRoom(width, size.y);
     const pixel = (2 * Math.tan((0.5 * FOV * Math.PI) / 180)) / (size.y * camera.zoom * renderer.getPixelRatio());
@@ -243,8 +311,9 @@ export class Viewer {
         this.shadow.update(renderer, lights.key, box, casters);
       }
       renderer.setScissorTest(sides.length > 1);
-      renderer.setViewport(k * width, 0, width, size.y);
-      renderer.setScissor(k * width, 0, width, size.y);
+      const [begin, end] = split ? [k * width, (k + 1) * width] : [k * this.wipe * width, k ? width : this.wipe * width];
+      renderer.setViewport(split ? begin : 0, 0, width, size.y);
+      renderer.setScissor(begin, 0, end - begin, size.y);
       renderer.clear();
       renderer.render(this.backdrop.scene, camera);
       renderer.render(this.scene, camera);
@@ -265,7 +334,7 @@ export class Viewer {
   /** Two looks are as large as fits between the panels; returns by how much each is moved to the middle there [pixels]. */
   private makeRoom(width: number, height: number): [number, number] {
     this.camera.zoom = 1;
-    if (!this.compared) return [0, 0];
+    if (!this.compared || this.arrangement !== "split") return [0, 0];
     const [left, right] = this.covered().map((pixels) => Math.min(pixels, 0.8 * width));
     this.camera.zoom = Math.min(1, (width - Math.max(left, right)) / (SUBJECT * height));
     return [0.5 * left, -0.5 * right];
@@ -284,7 +353,7 @@ export class Viewer {
     this.renderer.setSize(clientWidth, clientHeight);
     this.camera.aspect = clientWidth / clientHeight;
     this.camera.updateProjectionMatrix();
-    this.paint(this.detail); // before the browser shows the emptied canvas
+    this.paint(this.pace.next(true, true)); // before the browser shows the emptied canvas
     this.invalidate();
   }
 
@@ -299,7 +368,8 @@ export class Viewer {
     this.camera.lookAt(this.controls.target);
   }
 
-  private key(event: KeyboardEvent): void {
+  /** Turns, approaches or frames by a key; whether it was one of these. */
+  key(key: string): boolean {
     const step = 0.1;
     const turns: Record<string, [number, number]> = {
       ArrowLeft: [-step, 0],
@@ -308,14 +378,14 @@ export class Viewer {
       ArrowDown: [0, -step],
     };
     const nearer: Record<string, number> = { "+": 0.9, "=": 0.9, "-": 1.1 };
-    if (turns[event.key]) this.orbit(...turns[event.key]);
-    else if (nearer[event.key]) {
-      const away = this.camera.position.clone().sub(this.controls.target).multiplyScalar(nearer[event.key]);
+    if (turns[key]) this.orbit(...turns[key]);
+    else if (nearer[key]) {
+      const away = this.camera.position.clone().sub(this.controls.target).multiplyScalar(nearer[key]);
       this.camera.position.copy(this.controls.target).add(away);
-    } else if (event.key.toLowerCase() === "f") this.frame();
-    else return;
-    event.preventDefault();
+    } else if (key.toLowerCase() === "f") this.frame();
+    else return false;
     this.move();
+    return true;
   }
 }
 

@@ -11,7 +11,7 @@ from pydantic import Field, field_validator, model_validator
 from ringlet import _core
 from ringlet.data import limits
 from ringlet.data.curves import Curves, offsets_from_counts
-from ringlet.data.errors import UserError
+from ringlet.data.errors import Fix, UserError
 from ringlet.data.groom import STRAND_RADIUS
 from ringlet.data.quantities import Quantity, Ramp, Ramped, Varied, along, refuse
 from ringlet.data.random import soft_threshold
@@ -220,11 +220,13 @@ class Curl(Operator):
         if self.keep == "length" and self.curls is None:  # the curled part of the shape is shorter
             turns = turns / np.hypot(1.0, np.pi * width * turns / lengths)
         if (most := float(turns.max())) > points / 6.0:
-            remedy = f"set it to {int(np.ceil(12 * most))} (at least {int(np.ceil(6 * most))}), or ask for fewer curls"
+            good = int(np.ceil(12 * most))
+            remedy = f"set it to {good} (at least {int(np.ceil(6 * most))}), or ask for fewer curls"
             if 12 * most > limits.POINTS:
                 remedy = f"must be at most {limits.POINTS}, so ask for fewer than {points // 6} curls"
             raise UserError(
-                f"locks.points is {points}: too few for {most:.1f} curls ({points / most:.1f} points a curl); {remedy}"
+                f"locks.points is {points}: too few for {most:.1f} curls ({points / most:.1f} points a curl); {remedy}",
+                [Fix(("locks", "points"), good)] if good <= limits.POINTS else [],
             )
 
     def _phase(self, curves: Curves, context: Context) -> NDArray[np.float64]:

@@ -11,7 +11,7 @@ from pydantic import Field
 
 from ringlet import _core
 from ringlet.data.curves import Curves
-from ringlet.data.errors import UserError
+from ringlet.data.errors import Fix, UserError
 from ringlet.data.groom import STRAND_RADIUS
 from ringlet.data.quantities import Quantity, Varied
 from ringlet.groom import felt, weave
@@ -91,7 +91,8 @@ class Knot(Sectioned):
             least, good = (int(np.ceil(each * turns)) for each in (LEAST_POINTS, GOOD_POINTS))
             raise UserError(
                 f"locks.points is {points}: too few for the {turns:.1f} turns of {context.purpose} and its strands; "
-                f"set it to {good} (at least {least}), or lower its windings"
+                f"set it to {good} (at least {least}), or lower its windings",
+                [Fix(("locks", "points"), good)],
             )
 
 

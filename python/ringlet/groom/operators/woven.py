@@ -12,7 +12,7 @@ from pydantic import Field
 from scipy.optimize import linear_sum_assignment
 
 from ringlet.data.curves import Curves
-from ringlet.data.errors import UserError
+from ringlet.data.errors import Fix, UserError
 from ringlet.data.groom import CORE, STRAND_RADIUS, TIED
 from ringlet.data.quantities import Quantity, Ramped, Varied
 from ringlet.groom import felt, weave
@@ -131,7 +131,8 @@ class Woven(Sectioned):
         if points < least:
             raise UserError(
                 f"locks.points is {points}: too few for the {turns:.1f} turns of {context.purpose}; set it to {good} "
-                f"(at least {least}), or raise its pitch"
+                f"(at least {least}), or raise its pitch",
+                [Fix(("locks", "points"), good)],
             )
 
 

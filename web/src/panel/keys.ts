@@ -1,0 +1,76 @@
+// All keys in one place: what they do, where they act, and the list of them.
+
+import { h } from "../dom";
+import { openDialog } from "./dialog";
+
+interface Key {
+  keys: string; // as the list shows them
+  does: string;
+  /** Whether an event is this key; Ctrl or Command is in `with`. */
+  on: (event: KeyboardEvent) => boolean;
+  run: (event: KeyboardEvent) => void;
+  /** Whether it also acts while text is typed. */
+  anywhere?: boolean;
+}
+
+const bound: Key[] = [];
+
+/** Keys that a control which has the focus takes itself. */
+const OWN = [
+  ["Arrows, Shift with arrows", "change a number that has the focus; finer"],
+  ["Arrows, Enter, Delete", "move a point of a ramp, add one, take it away"],
+  ["Arrows", "move a point of an isolated lock"],
+  ["Escape", "put back what was typed; close a dialog"],
+];
+
+export function bindKey(key: Key): void {
+  bound.push(key);
+}
+
+/** Whether an event belongs to a text that is typed. */
+export function typing(event: Event): boolean {
+  const target = event.target as HTMLElement | null;
+  return Boolean(target?.closest?.("input:not([type=range], [type=checkbox], [type=radio], [type=color]), textarea"));
+}
+
+/** Whether a control with the focus, or a dialog, has a use of its own for plain keys. */
+function taken(event: KeyboardEvent): boolean {
+  const target = event.target as HTMLElement | null;
+  if (document.querySelector("dialog[open]")) return true;
+  if (!target?.closest) return false;
+  if (event.key === " " || event.key === "Enter") return Boolean(target.closest("button, summary, input, select, a"));
+  if (event.key.startsWith("Arrow")) return Boolean(target.closest("input, select, svg, [role=slider]"));
+  return Boolean(target.closest("select"));
+}
+
+addEventListener("keydown", (event) => {
+  if (event.defaultPrevented || event.altKey) return;
+  const command = event.ctrlKey || event.metaKey;
+  for (const key of bound) {
+    if (!key.on(event)) continue;
+    if (!key.anywhere && (typing(event) || (!command && taken(event)))) continue;
+    event.preventDefault();
+    key.run(event);
+    return;
+  }
+});
+
+/** Ctrl or Command with a letter. */
+export const command =
+  (letter: string, shift = false) =>
+  (event: KeyboardEvent): boolean =>
+    (event.ctrlKey || event.metaKey) && event.shiftKey === shift && event.key.toLowerCase() === letter;
+
+/** One of some plain keys. */
+export const plainKey =
+  (...keys: string[]) =>
+  (event: KeyboardEvent): boolean =>
+    !event.ctrlKey && !event.metaKey && keys.includes(event.key.length === 1 ? event.key.toLowerCase() : event.key);
+
+export function showKeys(): void {
+  const row = (keys: string, does: string) => h("tr", {}, h("th", { scope: "row" }, keys), h("td", {}, does));
+  const rows = [...bound.map(({ keys, does }) => row(keys, does)), ...OWN.map(([keys, does]) => row(keys, does))];
+  openDialog("Keys", h("div", { class: "scrolls" }, h("table", { class: "keys" }, h("tbody", {}, ...rows))));
+}
+
+bindKey({ keys: "?", does: "this list", on: plainKey("?"), run: showKeys });

@@ -1,0 +1,85 @@
+// What stands in the way, with buttons that remedy it; it stays until it is gone. Also the progress of long work.
+
+import { h } from "../dom";
+import type { Model } from "../model";
+import type { FromPage, Problem } from "../protocol";
+import { openMerge } from "./merge";
+import { showChanges } from "./files";
+
+export class ProblemBar {
+  readonly element = h("section", { class: "problems", role: "alert", "aria-label": "Problems" });
+  private readonly progress = h("div", { class: "problem progress", hidden: true, role: "status" });
+  /** A problem of the page itself, such as a lost connection. */
+  private own = "";
+
+  constructor(private readonly model: Model) {
+    for (const topic of ["problems", "role"] as const) model.on(topic, () => this.update());
+    model.on("progress", () => this.showProgress());
+    new ResizeObserver(() => {
+      document.documentElement.style.setProperty("--problems", `${this.element.offsetHeight}px`);
+    }).observe(this.element);
+    this.update();
+  }
+
+  /** Shows a problem of the page itself; an empty text removes it. */
+  keep(text: string): void {
+    this.own = text;
+    this.update();
+  }
+
+  private update(): void {
+    const own = this.own ? [h("div", { class: "problem" }, h("p", {}, this.own))] : [];
+    const asked = this.model.role.asked ? [this.question()] : [];
+    this.element.replaceChildren(...own, ...asked, ...this.model.problems.map((one) => this.row(one)), this.progress);
+    document.documentElement.classList.toggle("old-look", this.model.problems.some((one) => OLD_LOOK.includes(one.subject)));
+  }
+
+  private row(problem: Problem): HTMLElement {
+    const { leads } = this.model.role;
+    const button = (label: string, press: () => void, more = {}) =>
+      h("button", { type: "button", class: "quiet", disabled: !leads, onclick: press, ...more }, label);
+    const buttons = problem.fixes.map((fix) => button(fix.label, () => this.remedy(fix.message as unknown as FromPage)));
+    if (problem.subject === "recovered") buttons.unshift(button("See", () => showChanges(this.model), { disabled: false }));
+    if (problem.subject.startsWith("conflict/")) {
+      buttons.unshift(button("See and merge …", () => openMerge(this.model, problem), { disabled: false }));
+    }
+    return h(
+      "div",
+      { class: `problem ${problem.subject.split("/")[0]}`, "data-problem": problem.subject },
+      h("p", {}, this.model.words(problem.message)),
+      h("div", { class: "group" }, ...buttons),
+    );
+  }
+
+  /** Another page asks to edit. */
+  private question(): HTMLElement {
+    const answer = (label: string, over: boolean) =>
+      h("button", { type: "button", class: "quiet", onclick: () => this.model.say({ kind: "hand", over }) }, label);
+    return h(
+      "div",
+      { class: "problem recovered" },
+      h("p", {}, "Another viewer asks to edit. Without an answer they may in 10 seconds."),
+      h("div", { class: "group" }, answer("Hand over", true), answer("Not now", false)),
+    );
+  }
+
+  private remedy(message: FromPage): void {
+    const gesture = message.kind === "set" ? { gesture: this.model.newGesture() } : {};
+    this.model.say({ ...message, ...gesture } as FromPage);
+  }
+
+  private showProgress(): void {
+    const { progress } = this.model;
+    this.progress.hidden = !progress;
+    if (!progress) return;
+    const stage = progress.stage.replaceAll("_", " ");
+    this.progress.replaceChildren(
+      h("p", {}, `The groom is being made: ${stage}`),
+      h("progress", { max: 1, value: progress.done, "aria-label": "Progress of the groom" }),
+      h("button", { type: "button", class: "quiet", onclick: () => this.model.say({ kind: "cancel" }) }, "Cancel"),
+    );
+  }
+}
+
+/** Problems during which the look that is seen is not that of the settings. */
+const OLD_LOOK = ["groom", "work"];

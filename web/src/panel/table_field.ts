@@ -1,0 +1,63 @@
+// A table of settings, or a list of such tables, each of which opens.
+
+import { h, iconButton } from "../dom";
+import type { File, Model, Place } from "../model";
+import type { Json } from "../protocol";
+import { Field } from "./field";
+import { makeField } from "./make_field";
+import type { Setting } from "./schema";
+
+/** A table of settings, or a list of such tables, each of which opens. */
+export class TableField extends Field {
+  private readonly box = h("div", { class: "tables" });
+  private entries: Field[][] = [];
+
+  constructor(model: Model, file: File, place: Place, setting: Setting) {
+    super(model, file, place, setting);
+    const add =
+      setting.kind === "list"
+        ? iconButton("plus", `Add to ${setting.label}`, () =>
+            this.send([...(((this.said as Json[]) ?? []) as Json[]), this.fresh()], true),
+          )
+        : undefined;
+    this.element.append(this.head(add), this.box);
+  }
+
+  private fresh(): Json {
+    const vector = this.setting.inner.find((one) => one.kind === "vector");
+    return vector ? { [vector.name]: [0, 0.4, 1] } : {};
+  }
+
+  protected show(): void {
+    const count = this.setting.kind === "list" ? ((this.value as Json[] | undefined) ?? []).length : 1;
+    if (count !== this.entries.length) {
+      this.entries = Array.from({ length: count }, (_, k) =>
+        this.setting.inner.map((one) => {
+          const place = this.setting.kind === "list" ? [...this.place, k, one.name] : [...this.place, one.name];
+          return makeField(this.model, this.file, place, one);
+        }),
+      );
+      this.box.replaceChildren(
+        ...this.entries.map((fields, k) => {
+          const title = this.setting.kind === "list" ? `${this.setting.label} ${k + 1}` : this.setting.label;
+          const details = h("details", { class: "table" }, h("summary", {}, title));
+          details.append(...fields.map((field) => field.element));
+          if (this.setting.kind === "list")
+            details.append(
+              h("button", { type: "button", class: "quiet", onclick: () => this.take(k) }, `Remove ${title}`),
+            );
+          return details;
+        }),
+      );
+    }
+    for (const field of this.entries.flat()) field.update();
+  }
+
+  private take(index: number): void {
+    this.send(
+      ((this.said as Json[]) ?? []).filter((_, k) => k !== index),
+      true,
+    );
+  }
+}
+
