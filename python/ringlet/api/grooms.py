@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -83,10 +84,20 @@ def groom_inputs(recipe: Recipe, memory: Memory | None = None, notes: list[str] 
         name: io.read_curves(file, recipe.curves[name].prim, space=recipe.curves[name].space, notes=notes)
         for name, file in recipe.helper_files().items()
     }
+    meshes = {
+        name: _cached(
+            memory,
+            file,
+            f"{recipe.meshes[name].mesh} {recipe.meshes[name].space}",
+            partial(io.read_mesh, prim=recipe.meshes[name].mesh, space=recipe.meshes[name].space, notes=notes),
+        )
+        for name, file in recipe.mesh_files().items()
+    }
     return {
         "scalp": scalp,
         "drawn_guides": drawn,
         "helpers": helpers,
+        "meshes": meshes,
         "scalp_file": recipe.scalp_file,
         "scalp_prim": recipe.scalp.mesh,
         "space": io.read_space(recipe.scalp_file, space=recipe.scalp.space),

@@ -64,6 +64,7 @@ def make_groom(
     *,
     drawn_guides: Curves | None = None,
     helpers: Mapping[str, Curves] | None = None,
+    meshes: Mapping[str, Mesh] | None = None,
     scalp_file: Path | None = None,
     scalp_prim: str | None = None,
     space: StageSpace | None = None,
@@ -75,6 +76,7 @@ def make_groom(
     scalp:        the mesh in its rest pose [m]
     drawn_guides: the curves of ``[guides] file`` [m]
     helpers:      the curves of the files of ``[curves]``, by name [m]
+    meshes:       the meshes of the files of ``[meshes]``, by name [m]
     scalp_file, scalp_prim, space: source of the mesh, stored in the groom
     progress:     called with (stage, 0, 1) before and (stage, 1, 1) after every stage
     memory:       cache between calls, so that an edit recomputes only the stages from there on
@@ -95,6 +97,9 @@ def make_groom(
         helpers = {name: helper.check(f"curves.{name}").distinct() for name, helper in helpers.items()}
         for name, helper in helpers.items():
             key = _key(key, name.encode(), helper.points.tobytes(), helper.offsets.tobytes())
+        meshes = {**{name: m for name, h in recipe.meshes.items() if (m := h.inline_mesh(name))}, **(meshes or {})}
+        for name, mesh in meshes.items():
+            key = _key(key, name.encode(), mesh.points.tobytes(), mesh.triangles.tobytes())
         curves = drawn_guides or Curves.from_list([])
         stages = _stages(recipe)
         guides, unsculpted, shapes, uncleaned = curves, curves, None, curves
@@ -107,7 +112,9 @@ def make_groom(
                 shapes = curves
             if name == "clean":
                 uncleaned = curves
-            context = Context(recipe.seed, surface, name, recipe.locks.points, helpers, shapes, recipe.locks.sections)
+            context = Context(
+                recipe.seed, surface, name, recipe.locks.points, helpers, meshes, shapes, recipe.locks.sections
+            )
             before = curves
             curves, key = _run(operator, curves, key, context, memory)
             check_curves(curves, curves.points, scalp.points, name)

@@ -138,7 +138,7 @@ class GroomEvaluator:
             self._project.inside(file, f"{recipe.path.name if recipe.path else 'recipe'}: {what}")
         stamps = [(what, str(file), _stamp(file)) for what, file in sorted(files.items()) if what != "edits"]
         drawn = recipe.guides if isinstance(recipe.guides, Drawn) else None
-        key = repr((stamps, recipe.scalp, drawn, recipe.curves))
+        key = repr((stamps, recipe.scalp, drawn, recipe.curves, recipe.meshes))
         if self._inputs is None or self._inputs[0] != key:
             self._inputs = key, api.groom_inputs(recipe)
         return self._inputs[1]

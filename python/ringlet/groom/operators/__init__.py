@@ -15,6 +15,7 @@ from ringlet.groom.operators.cut import Cut
 from ringlet.groom.operators.drawn import Drawn
 from ringlet.groom.operators.flyaways import Flyaways
 from ringlet.groom.operators.frizz import Frizz
+from ringlet.groom.operators.grow_to import GrowTo
 from ringlet.groom.operators.grown import Grown
 from ringlet.groom.operators.knot import Knot
 from ringlet.groom.operators.length import Length
@@ -50,6 +51,7 @@ ShapeOperator = Annotated[
     | Straighten
     | Attract
     | Cut
+    | GrowTo
     | Braid
     | Twist
     | Cornrow
@@ -71,6 +73,7 @@ __all__ = [
     "Drawn",
     "Flyaways",
     "Frizz",
+    "GrowTo",
     "Grown",
     "Knot",
     "Length",

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ringlet import _core
 from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.data.errors import UserError
+from ringlet.data.mesh import Mesh
 from ringlet.data.painted import per_lock
 from ringlet.data.quantities import Section
 from ringlet.data.random import Random
@@ -30,6 +31,7 @@ class Context:
     purpose:     unique name of the operator in the stack, which keys its random numbers
     lock_points: points of a groom guide
     curves:      helper curves by name
+    meshes:      helper meshes by name
     shapes:      the locks before the curl operator; None up to it
     sections:    settings of the sections of the scalp; None without
     """
@@ -39,6 +41,7 @@ class Context:
     purpose: str
     lock_points: int = 64
     curves: Mapping[str, Curves] = field(default_factory=dict)
+    meshes: Mapping[str, Mesh] = field(default_factory=dict)
     shapes: Curves | None = None
     sections: Sections | None = None
 
@@ -52,6 +55,16 @@ class Context:
             remedy = did_you_mean(name, self.curves) if self.curves else f"; add a table [curves.{name}]"
             raise UserError(f"{self.purpose}.{setting} is '{name}', which is no helper curve{remedy}")
         return self.curves[name]
+
+    def mesh(self, name: str, setting: str) -> _core.Solid:
+        """The helper mesh that a setting names, for distances; raises UserError for an unknown name."""
+        if name not in self.meshes:
+            remedy = did_you_mean(name, self.meshes) if self.meshes else f"; add a table [meshes.{name}]"
+            raise UserError(f"{self.purpose}.{setting} is '{name}', which is no helper mesh{remedy}")
+        mesh = self.meshes[name]
+        return _core.Solid(
+            np.ascontiguousarray(mesh.points, np.float64), np.ascontiguousarray(mesh.triangles, np.int32)
+        )
 
     def values(self, settings: Section, name: str, curves: Curves, table: str = "") -> NDArray[np.float64]:
         """Values of a varied setting per curve, shape (count,).
