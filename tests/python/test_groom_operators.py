@@ -28,6 +28,7 @@ OPERATORS = {
     "straighten": "",
     "attract": "curve = 'tail'",
     "cut": "at = -6\nsoft = 0.5",
+    "edges": "within = 15",
     "grow_to": "mesh = 'round'\nsoft = 0.5",
 }
 KEEPING_LENGTH = ["lift", "loft", "bend", "part", "flyaways", "straighten"]

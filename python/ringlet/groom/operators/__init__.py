@@ -13,6 +13,7 @@ from ringlet.groom.operators.cornrow import Cornrow
 from ringlet.groom.operators.curl import Curl
 from ringlet.groom.operators.cut import Cut
 from ringlet.groom.operators.drawn import Drawn
+from ringlet.groom.operators.edges import Edges
 from ringlet.groom.operators.flyaways import Flyaways
 from ringlet.groom.operators.frizz import Frizz
 from ringlet.groom.operators.grow_to import GrowTo
@@ -56,7 +57,8 @@ ShapeOperator = Annotated[
     | Twist
     | Cornrow
     | Loc
-    | Knot,
+    | Knot
+    | Edges,
     Field(discriminator="op"),
 ]
 
@@ -71,6 +73,7 @@ __all__ = [
     "Curl",
     "Cut",
     "Drawn",
+    "Edges",
     "Flyaways",
     "Frizz",
     "GrowTo",
