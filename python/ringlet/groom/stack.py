@@ -30,11 +30,12 @@ from ringlet.groom.load import stage_names
 from ringlet.groom.nails import nailed
 from ringlet.groom.operators import Context, Drawn, Operator, Resample, Tie
 from ringlet.groom.operators.operator import grid, unit
-from ringlet.groom.operators.shape import Displacement
+from ringlet.groom.operators.shape import Displacement, Shape
 from ringlet.groom.operators.tied import TO_TIE
 from ringlet.groom.recipe import Recipe
 from ringlet.groom.scalp import Scalp
 from ringlet.groom.sculpt import Sculpted
+from ringlet.groom.worn import Worn, accessories
 
 Progress = Callable[[str, int, int], None]
 
@@ -104,7 +105,7 @@ def make_groom(
         stages = _stages(recipe)
         guides, unsculpted, shapes, uncleaned = curves, curves, None, curves
         lengthened: list[str] = []
-        bands: list[Mesh] = []
+        worn: list[Worn] = []
         for name, operator in stages:
             if progress:
                 progress(name, 0, 1)
@@ -118,8 +119,8 @@ def make_groom(
             before = curves
             curves, key = _run(operator, curves, key, context, memory)
             check_curves(curves, curves.points, scalp.points, name)
-            if isinstance(operator, Tie):
-                bands += operator.bands(before, context)
+            if isinstance(operator, Shape):
+                worn += operator.worn(before, curves, context)
             if isinstance(operator, Displacement):
                 lengthened += _lengthened(name, before, curves)
             if name == "guides":
@@ -148,7 +149,7 @@ def make_groom(
         recipe=recipe.text,
         shapes=shapes,
         unsculpted=unsculpted,
-        bands=bands,
+        accessories=accessories(worn, locks),
         conflicts=[
             *_conflicts(recipe, unsculpted, curves),
             *_odd_size(scalp, recipe.scalp.region),
