@@ -95,9 +95,24 @@ def packed(curves: Curves) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
 
 
 def resampled(curves: Curves, points: int) -> Curves:
-    """The curves with that many points each, at even distances along their splines; without attributes of points."""
+    """The curves with that many points each, at even distances along their splines."""
     fine = _core.resample_curves(*packed(curves), points)
-    return Curves(fine, offsets_from_counts(np.full(len(curves), points)), curves.ids, curves.curve)
+    offsets = offsets_from_counts(np.full(len(curves), points))
+    return Curves(fine, offsets, curves.ids, curves.curve, at_even_lengths(curves, points))
+
+
+def at_even_lengths(curves: Curves, points: int) -> dict[str, NDArray]:
+    """Numbers of points at even distances along curves, linear between points, by name; shape (count · points,)."""
+    u, found = np.linspace(0.0, 1.0, points), dict[str, NDArray]()
+    for name, values in curves.point.items():
+        if values.ndim > 1:
+            continue
+        rows = []
+        for k in range(len(curves)):
+            run = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(curves[k], axis=0), axis=1))])
+            rows.append(np.interp(u * run[-1], run, values[curves.offsets[k] : curves.offsets[k + 1]]))
+        found[name] = np.concatenate(rows).astype(values.dtype)
+    return found
 
 
 def with_lock_points(curves: Curves, context: Context) -> Curves:
