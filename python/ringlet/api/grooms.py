@@ -220,6 +220,7 @@ def check_groom(
     root_depth: float = 5e-4,
     root_length: float = 5e-3,
     thickness: float = 1e-4,
+    own_radius: float = 0.85,
     fixed: Path | str | None = None,
     picture: Path | str | None = None,
     variant: str | None = None,
@@ -227,22 +228,24 @@ def check_groom(
 ) -> dict[str, Any]:
     """Intersections of a groom with the scalp, the body and itself: places, locks, greatest depth [m], worst places.
 
-    Returns ``found``, the ``thickness``, the ``lock_thickness`` of locks with their hairs [m], and the density and
-    cover of ``measure_hairs``; with ``fixed`` also ``left``, the remaining intersections, and ``repair``, the
-    displacements.
+    Returns ``found``; lengths [m]: the ``thickness``, the ``lock_thickness`` of locks with their hairs, and the largest
+    ``own_thickness`` at which locks with a radius of their own count; the density and cover of ``measure_hairs``. With
+    ``fixed`` also ``left``, the remaining intersections, and ``repair``, the displacements.
 
     root_depth:  how deep a lock may be in the skin up to ``root_length`` from its root [m]
     thickness:   distance below which two locks count as intersecting [m]
+    own_radius:  part of the radius of their own at which locs and strands of braids touch, where that is more
     fixed:       where to write the repaired groom
     picture:     where to write a picture of the places: of those that are left, if it is repaired
     variant:     of the groom file, in place of the one that is selected in it
     """
     from ringlet import groom as grooms
     from ringlet.data.groom import Groom
+    from ringlet.data.thickness import own_radii
 
     if not isinstance(groom, Groom):
         groom = load_groom(groom, variant=variant, progress=progress)
-    allowed = grooms.Allowed(root_depth, root_length, thickness)
+    allowed = grooms.Allowed(root_depth, root_length, thickness, own_radius)
     others = _beside_scalp(groom)
     findings = grooms.check_groom(groom, others, allowed)
     summary: dict[str, Any] = {
@@ -250,6 +253,7 @@ def check_groom(
         "points": len(groom.locks.points),
         "thickness": thickness,
         "lock_thickness": grooms.lock_thickness(groom),
+        "own_thickness": 2.0 * own_radius * float(own_radii(groom.locks).max(initial=0.0)),
         "found": findings.summary(),
         "hairs_per_cm2": grooms.hairs_per_cm2(groom),
         "scalp_seen": grooms.hair_cover(groom).seen(),
