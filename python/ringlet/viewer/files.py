@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 from ringlet.data.errors import UserError
 from ringlet.data.files import replacing
@@ -12,6 +12,7 @@ from ringlet.data.settings import parse_toml, read_toml
 from ringlet.groom import Recipe, parse_recipe
 from ringlet.groom.edits_file import edits_text
 from ringlet.groom.load import APPEND, inherited, parse_edits
+from ringlet.groom.operators import Operator, ShapeOperator
 from ringlet.shot import Shot, parse_shot
 from ringlet.viewer import protocol
 from ringlet.viewer.document import Document, History, set_value
@@ -121,7 +122,7 @@ class Files:
         order = [f"shape/{k}" for k in range(len(document.model.shape))]
         if names is None:
             if action == "add":
-                document.add_tables("shape", at, [{"op": op} if op else {}])
+                document.add_tables("shape", at, [{"op": op, **_starter(op)} if op else {}])
             elif action == "remove":
                 document.remove_tables("shape", [at])
             else:
@@ -240,6 +241,12 @@ def stages(recipe: Recipe, muted: frozenset[str]) -> list[protocol.Stage]:
         protocol.Stage(name=name, op=op, place=place, muted="/".join(map(str, place)) in muted)
         for name, op, place in found
     ]
+
+
+def _starter(op: str) -> dict[str, Any]:
+    """Settings with which a shape operator is added; none for an unknown one."""
+    kinds: tuple[type[Operator], ...] = get_args(get_args(ShapeOperator)[0])
+    return next((dict(kind.starter) for kind in kinds if kind.model_fields["op"].default == op), {})
 
 
 def operator_names(schema: dict[str, Any]) -> list[str]:

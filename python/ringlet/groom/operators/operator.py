@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -78,6 +79,8 @@ class Context:
 
 class Operator(Section):
     """A pure function from curves to curves, given its settings and a context."""
+
+    starter: ClassVar[Mapping[str, Any]] = {}  # settings that the page adds it with, in TOML notation
 
     def apply(self, curves: Curves, context: Context) -> Curves:
         """Returns the curves after this operator."""

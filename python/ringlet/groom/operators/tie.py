@@ -83,6 +83,7 @@ class Tie(Shape):
     )
 
     turns: ClassVar[bool] = True
+    starter: ClassVar[Mapping[str, Any]] = {"toward": [0, 1, -0.35]}
 
     @model_validator(mode="before")
     @classmethod
