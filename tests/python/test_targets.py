@@ -102,6 +102,10 @@ def test_a_mesh_is_read_from_a_file_and_read_again_when_it_changes(tmp_path):
         shapes = build_groom(recipe, memory=memory).shapes
         ends = shapes.points.reshape(len(shapes), -1, 3)[:, -1]
         np.testing.assert_allclose(np.abs(ends).max(axis=1), 0.01 * half, atol=1e-6)
+    (tmp_path / "variants").mkdir()
+    variant = tmp_path / "variants" / "other.recipe.toml"
+    variant.write_text('ringlet = 1\nextends = "../small.recipe.toml"\n')
+    assert np.array_equal(build_groom(variant).shapes.points, shapes.points)
 
 
 @pytest.mark.parametrize(

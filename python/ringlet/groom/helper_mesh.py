@@ -15,7 +15,7 @@ from ringlet.groom.source import Source
 
 RINGS = 48  # of an ellipsoid, from pole to pole
 
-Radius = Annotated[float, Quantity("m", 1e-3, 10.0)]
+Size = Annotated[float, Quantity("m", 1e-3, 10.0)]
 
 
 class HelperMesh(Source):
@@ -26,9 +26,9 @@ class HelperMesh(Source):
     )
     mesh: str | None = Field(default=None, description="prim of the mesh; needed when the file has several")
     middle: Place | None = Field(default=None, description="[x, y, z] of the middle of an ellipsoid, Y up")
-    width: Radius = Field(default=0.3, description="of the ellipsoid, along x")
-    height: Radius = Field(default=0.3, description="of the ellipsoid, along y")
-    depth: Radius = Field(default=0.3, description="of the ellipsoid, along z")
+    width: Size = Field(default=0.3, description="of the ellipsoid, along x")
+    height: Size = Field(default=0.3, description="of the ellipsoid, along y")
+    depth: Size = Field(default=0.3, description="of the ellipsoid, along z")
 
     @model_validator(mode="after")
     def _one_source(self) -> HelperMesh:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from hashlib import blake2b
 from pathlib import Path
@@ -49,11 +49,13 @@ class Memory:
     """Cache of the last run: an edit recomputes the stages from the edited one on.
 
     results: key and curves of each stage
+    worn:    key of each operator, and what locks wear from there on
     files:   contents of files that have not changed, by name
     hairs:   cache of the render hairs
     """
 
     results: dict[str, tuple[str, Curves]] = field(default_factory=dict)
+    worn: dict[str, tuple[str, Sequence[Worn]]] = field(default_factory=dict)
     scalp: tuple[str, Scalp] | None = None
     files: dict[str, tuple[tuple[int, str], Any]] = field(default_factory=dict)
     hairs: HairMemory = field(default_factory=HairMemory)
@@ -120,7 +122,7 @@ def make_groom(
             curves, key = _run(operator, curves, key, context, memory)
             check_curves(curves, curves.points, scalp.points, name)
             if isinstance(operator, Shape):
-                worn += operator.worn(before, curves, context)
+                worn += _worn(operator, before, curves, key, context, memory)
             if isinstance(operator, Displacement):
                 lengthened += _lengthened(name, before, curves)
             if name == "guides":
@@ -276,6 +278,15 @@ def _run(operator: Operator, curves: Curves, key: str, context: Context, memory:
         cached = (key, operator.apply(curves, context))
         memory.results[context.purpose] = cached
     return cached[1], key
+
+
+def _worn(operator: Shape, before: Curves, after: Curves, key: str, context: Context, memory: Memory) -> Sequence[Worn]:
+    """What locks wear from an operator on; from the cache when its key is unchanged."""
+    cached = memory.worn.get(context.purpose)
+    if cached is None or cached[0] != key:
+        cached = (key, operator.worn(before, after, context))
+        memory.worn[context.purpose] = cached
+    return cached[1]
 
 
 def _scalp(recipe: Recipe, mesh: Mesh, memory: Memory) -> tuple[str, Scalp]:
