@@ -5,7 +5,9 @@ import json
 import numpy as np
 import pytest
 from ringlet.cli.app import app
-from ringlet.data.groom import Groom
+from ringlet.data.groom import STRAND_PROFILE, STRAND_RADIUS, Groom
+from ringlet.groom.nails import NAIL
+from ringlet.groom.scalp import Scalp
 from shapes import ball, sheet
 from small_example import write_example
 from typer.testing import CliRunner
@@ -74,6 +76,36 @@ def test_roots_may_be_below_the_skin_to_the_allowed_depth():
     assert len(check_groom(groom_of([sunk]))) == 0
     found = check_groom(groom_of([sunk]), allowed=Allowed(root_depth=1e-4)).summary()
     assert found["scalp"]["depth"] == pytest.approx(2e-4, abs=1e-4)  # next to the root, which is excluded
+
+
+def test_locks_with_a_radius_of_their_own_count_at_it():
+    groom = groom_of([up(), up(x=0.004), up(x=0.009), up(x=0.0095)])
+    assert len(check_groom(groom)) == 0
+    groom.locks.curve[STRAND_RADIUS] = np.array([0.003, 0.003, 0.0, 0.0], np.float32)  # two locs, two hairs
+    found = check_groom(groom).summary()["hair"]
+    assert found["locks"] == 2 and found["depth"] == pytest.approx(2 * 0.85 * 0.003 - 0.004, rel=0.02)
+    assert check_groom(groom, allowed=Allowed(own_radius=0.6)).summary()["hair"]["places"] == 0
+    thin = Allowed(thickness=1e-3)  # hairs half a millimetre apart count too, and are not counted twice
+    assert check_groom(groom, allowed=thin).summary()["hair"]["locks"] == 4
+    groom.locks.curve[STRAND_PROFILE] = np.array([[1, 0.1, 0.1]] * 4, np.float32)
+    places = [row["place"][1] for row in check_groom(groom).summary()["hair"]["worst"]]
+    assert places and max(places) < RADIUS + 0.02  # near the roots, where they are thick
+    groom.locks.point[NAIL] = np.ones(len(groom.locks.points), np.float32)
+    assert len(check_groom(groom)) == 0
+
+
+def test_the_command_says_how_thick_locks_with_a_radius_of_their_own_are(tmp_path):
+    groom = groom_of([up(), up(x=0.004)])
+    bound = groom.locks.curve["root_triangle"], groom.locks.curve["root_barycentric"]
+    off = Scalp(groom.scalp, None).positions(*bound) - groom.locks.roots  # the ball has facets
+    groom.locks.points += np.repeat(off, groom.locks.counts, axis=0)
+    groom.locks.curve[STRAND_RADIUS] = np.full(2, 0.003, np.float32)
+    ringlet.write_groom(groom, tmp_path / "locs.usdc")
+    result = CliRunner().invoke(app, ["check", str(tmp_path / "locs.usdc")])
+    assert result.exit_code == 1, result.output
+    assert "checked as up to 5.1 mm thick, others as lines of 0.1 mm" in result.output
+    result = CliRunner().invoke(app, ["check", str(tmp_path / "locs.usdc"), "--own-radius", "0.5"])
+    assert result.exit_code == 0, result.output
 
 
 def test_locks_nearer_than_their_thickness_are_found():

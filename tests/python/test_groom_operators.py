@@ -28,9 +28,12 @@ OPERATORS = {
     "straighten": "",
     "attract": "curve = 'tail'",
     "cut": "at = -6\nsoft = 0.5",
+    "edges": "within = 15",
+    "grow_to": "mesh = 'round'\nsoft = 0.5",
 }
 KEEPING_LENGTH = ["lift", "loft", "bend", "part", "flyaways", "straighten"]
 TAIL = "[curves.tail]\npoints = [[0, 8, -8], [0, 6, -11], [0, -4, -12]]\n"
+ROUND = "[meshes.round]\nmiddle = [0, 0, 0]\n"
 GROWN = """
 [guides]
 count = 30
@@ -47,7 +50,7 @@ margin = 0
 
 def locks(shape="", count=40, top="", scalp=None):
     """Locks on a ball before curl and cleaning."""
-    text = f"ringlet = 1\n{top}\n[scalp]\nregion = 'scalp'\n{TAIL}{GROWN.format(count=count)}{shape}"
+    text = f"ringlet = 1\n{top}\n[scalp]\nregion = 'scalp'\n{TAIL}{ROUND}{GROWN.format(count=count)}{shape}"
     return uncleaned(parse_recipe(text), scalp or ball())
 
 
@@ -55,12 +58,13 @@ def uncleaned(recipe, scalp):
     """Curves after the shape stack of a recipe."""
     surface, curves = Scalp(scalp, recipe.scalp.region), Curves.from_list([])
     helpers = {name: helper.inline_curve() for name, helper in recipe.curves.items()}
+    meshes = {name: mesh.inline_mesh(name) for name, mesh in recipe.meshes.items()}
     for name, operator in [
         ("guides", recipe.guides),
         ("locks", recipe.locks),
         *((one.op, one) for one in recipe.shape),
     ]:
-        curves = operator.apply(curves, Context(recipe.seed, surface, name, recipe.locks.points, helpers))
+        curves = operator.apply(curves, Context(recipe.seed, surface, name, recipe.locks.points, helpers, meshes))
     return curves
 
 
@@ -386,7 +390,13 @@ def test_values_by_region_and_by_lock():
 
 
 def test_a_recipe_of_all_operators_makes_a_groom():
-    text = "ringlet = 1\n[scalp]\nregion = 'scalp'\n" + TAIL + GROWN.format(count=40) + "".join(map(step, OPERATORS))
+    text = (
+        "ringlet = 1\n[scalp]\nregion = 'scalp'\n"
+        + TAIL
+        + ROUND
+        + GROWN.format(count=40)
+        + "".join(map(step, OPERATORS))
+    )
     groom = make_groom(parse_recipe(text), ball())
     assert len(groom.locks) == 40 and np.isfinite(groom.locks.points).all()
 

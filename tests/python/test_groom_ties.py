@@ -5,9 +5,11 @@ import pytest
 from ringlet.groom.coil import Coil, on_scalp
 from ringlet.groom.operators.tied import TO_TIE
 from ringlet.groom.scalp import Scalp
-from shapes import ball
+from shapes import ball, rotation
+from small_example import FRAMES
+from wear import sim
 
-from ringlet import UserError, io, read_groom, write_groom
+from ringlet import UserError, build_groom, io, read_groom, write_groom, write_hairs
 from ringlet.groom import make_groom, parse_recipe
 
 TOP = "toward = [0, 1, 0]\noff = 0.6\nradius = 1\n"
@@ -15,7 +17,7 @@ CURL = "[curl]\nwidth = 0.5\npitch = 1\n"
 SECTIONS = "[locks.sections]\npattern = 'rows'\nsize = 40\ngap = 0.3\n"
 
 
-def tied(settings, more="", sections="", count=400, points=260, head="op = 'tie'\n"):
+def tied(settings, more="", sections="", count=400, points=260, head="op = 'tie'\n", scalp=None):
     """A groom with a tie on the upper half of a ball of 9 cm."""
     text = f"""
 ringlet = 1
@@ -36,7 +38,11 @@ points = {points}
 [clean]
 margin = 0
 """
-    return make_groom(parse_recipe(text), ball())
+    return make_groom(parse_recipe(text), scalp or ball())
+
+
+def bands(made):
+    return [accessory.mesh for accessory in made.accessories]
 
 
 def grid(locks):
@@ -92,9 +98,9 @@ def test_each_section_has_its_tie_and_band():
     groom = tied(
         "each = 'section'\ntoward = [0, 0.5, 0]\nafter = 'ball'\nwidth = 8\nradius = 1\nband = 0.4", sections=SECTIONS
     )
-    assert len(groom.bands) == 2
+    assert len(groom.accessories) == 2
     points, along = grid(groom.locks), arc(grid(groom.locks))
-    centres = np.array([band.points.mean(axis=0) for band in groom.bands])
+    centres = np.array([band.points.mean(axis=0) for band in bands(groom)])
     assert centres[0, 0] * centres[1, 0] < 0.0  # one on each side
     for lock, run, length in zip(points, along, groom.locks.curve[TO_TIE], strict=True):
         place = lock[np.abs(run - length).argmin()]
@@ -105,7 +111,7 @@ def test_each_section_has_its_tie_and_band():
 def test_a_band_is_a_closed_body_around_the_hair_that_a_shot_can_name(tmp_path):
     groom = tied(TOP + "after = 'ball'\nwidth = 12\nband = 0.4")
     write_groom(groom, tmp_path / "puff.usdc")
-    (band,) = io.read_bodies(tmp_path / "puff.usdc", "/groom/bands")
+    (band,) = io.read_bodies(tmp_path / "puff.usdc", "/groom/accessories")
     edges = np.sort(np.concatenate([band.mesh.triangles[:, [i, (i + 1) % 3]] for i in range(3)]), axis=1)
     assert (np.unique(edges, axis=0, return_counts=True)[1] == 2).all()
     a, b, c = (band.mesh.points[band.mesh.triangles[:, k]] for k in range(3))
@@ -118,8 +124,8 @@ def test_a_bun_is_wound_without_overlap_and_its_ends_are_in_it():
     groom = tied(TOP + "after = 'bun'\nwidth = 7\nheight = 4\nwindings = 2.2\nband = 0.4", count=120)
     points = grid(groom.locks)
     coil = Coil.fitted(0.07, 0.04, 2.2)
-    centre = groom.bands[0].points.mean(axis=0)
-    axis = np.linalg.svd(groom.bands[0].points - centre)[2][2]
+    centre = bands(groom)[0].points.mean(axis=0)
+    axis = np.linalg.svd(bands(groom)[0].points - centre)[2][2]
     axis *= np.sign(axis[1])
     rope = on_scalp(coil.path(), centre, axis, Scalp(ball(), "scalp"))
     along = arc(rope[None])[0]
@@ -155,3 +161,82 @@ def test_a_tie_without_a_place_is_refused(settings, message):
     with pytest.raises(UserError) as refused:
         tied(settings)
     assert message in str(refused.value)
+
+
+TIED = """
+[[shape]]
+op = "tie"
+toward = [0, 1, 0]
+radius = 1
+band = 0.4
+[curl]"""
+
+
+def tied_example(folder):
+    recipe = folder / "small.recipe.toml"
+    recipe.write_text(recipe.read_text().replace("[curl]", TIED).replace("points = 40", "points = 120"))
+    write_groom(build_groom(recipe), folder / "groom.usdc")
+    return folder
+
+
+def test_the_band_of_a_tie_follows_the_head(copy):
+    result = sim(tied_example(copy))
+    assert result.exit_code == 0, result.output
+    assert io.problems(copy / "cache.usdc") == []
+    write_hairs(copy / "groom.usdc", copy / "hair.usdc", cache=copy / "cache.usdc")
+    (rest,) = read_groom(copy / "groom.usdc").accessories
+    for frame in (1, FRAMES):
+        bodies, _, _ = io.read_stage(copy / "hair.usdc", frame)
+        (band,) = [body for body in bodies if body.prim == "/groom/accessories/tie_0"]
+        turn = rotation((0, 1, 0), 5.0 * (frame - 1))  # as the head does
+        np.testing.assert_allclose(band.clip.at(frame), rest.mesh.points @ turn.T, atol=2e-6)
+
+
+def test_a_band_that_a_shot_makes_cloth_is_there_once(copy):
+    shot = copy / "small.shot.toml"
+    cloth = '[contact]\n[[cloth]]\nfile = "groom.usdc"\nmesh = "/groom/accessories/tie_0"\n[[cloth.pin]]\nto = "skin"\n'
+    shot.write_text(shot.read_text() + cloth)
+    result = sim(tied_example(copy))
+    assert result.exit_code == 0, result.output
+    bodies = [body.prim for body in io.read_bodies(copy / "cache.usdc")]
+    assert [prim for prim in bodies if "tie" in prim] == ["/groom/accessories/tie_0"]
+
+
+def test_ties_have_values_of_their_own():
+    settings = "each = 'section'\ntoward = [0, 0.5, 0]\nafter = 'tail'\nband = 0.4\noff = 2\n"
+    plain = tied(settings, sections=SECTIONS)
+    first, second = np.unique(plain.locks.curve["section"])
+    own = f"off = {{ value = 2, lock = {{ {second} = 5 }} }}\nradius = {{ value = 1, lock = {{ {first} = 2 }} }}"
+    varied = tied(settings.replace("off = 2", own), sections=SECTIONS)
+    before, after = (np.array([band.points.mean(axis=0) for band in bands(made)]) for made in (plain, varied))
+    assert np.linalg.norm(after - before, axis=1) == pytest.approx([0.0, 0.03], abs=1e-3)
+    sizes = [np.linalg.norm(band.points - band.points.mean(axis=0), axis=1).max() for band in bands(varied)]
+    assert sizes == pytest.approx([0.024, 0.014], abs=1e-3)
+
+
+def test_the_rise_of_locks_goes_by_maps_and_ramps():
+    scalp = ball()
+    scalp.maps["right"] = (scalp.points[scalp.triangles][:, :, 0] > 0.0).astype(np.float64)
+
+    def heights(ramp):
+        locks = tied(f"{TOP}rise = {{ value = 2, map = 'right', ramp = {ramp} }}", scalp=scalp).locks
+        above = Scalp(scalp, "scalp").solid.above(np.ascontiguousarray(locks.points, np.float64))[0]
+        on_head = arc(grid(locks)) < locks.curve[TO_TIE][:, None] - 0.03
+        highest = np.where(on_head, np.asarray(above).reshape(on_head.shape), 0.0).max(axis=1)
+        return [highest[side].max() for side in (locks.roots[:, 0] > 0.01, locks.roots[:, 0] < -0.01)]
+
+    right, left = heights("[[0, 1], [1, 1]]")
+    assert right > 0.014 and left < 0.004
+    assert max(heights("[[0, 0], [1, 0]]")) < 0.004
+
+
+def test_the_spread_of_a_tail_has_a_ramp():
+    made = [
+        tied(f"{TOP}spread = {{ value = 4, ramp = {ramp} }}").locks for ramp in ("[[0, 1], [1, 1]]", "[[0, 0], [1, 1]]")
+    ]
+    apart = []
+    for locks in made:
+        past = np.abs(arc(grid(locks)) - locks.curve[TO_TIE][:, None] - 0.02).argmin(axis=1)
+        places = grid(locks)[np.arange(len(locks)), past][locks.lengths() > 0.1]
+        apart.append(np.linalg.norm(places - places.mean(axis=0), axis=1).mean())
+    assert apart[0] > 1.3 * apart[1]

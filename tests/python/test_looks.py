@@ -38,7 +38,7 @@ def test_a_tied_look_is_short_and_builds_with_its_bands(recipe):
     assert len(recipe.read_text().splitlines()) < 60
     groom = ringlet.build_groom(recipe)
     assert not groom.conflicts and (groom.locks.curve[TO_TIE] > 0.0).mean() > 0.98
-    assert len(groom.bands) == (2 if "puffs" in recipe.name else 1)
+    assert len(groom.accessories) == (2 if "puffs" in recipe.name else 1)
 
 
 def test_the_ombre_is_dark_at_its_roots_and_light_at_its_tips():

@@ -8,14 +8,17 @@ import numpy as np
 import pytest
 from commands import edit, refused, run
 from pxr import Usd, UsdGeom
-from ringlet.data.groom import GROOM
+from ringlet.data.accessory import Accessory
+from ringlet.data.curves import Curves
+from ringlet.data.groom import GROOM, Groom
+from ringlet.data.mesh import Mesh
 from ringlet.data.pigment import ROUGHNESS, of_fiber
 from ringlet.picture.strands import split
 from small_example import RECIPE, SHOT, write_head
 
 import ringlet
 from ringlet import io
-from ringlet.groom import grooms_of, make_hairs, parse_recipe
+from ringlet.groom import grooms_of, join_grooms, make_hairs, parse_recipe
 
 SEVERAL = """
 ringlet = 1
@@ -258,3 +261,20 @@ def test_a_file_of_several_grooms_that_was_damaged_is_refused(project, recipe, d
     stage.GetPrimAtPath("/groom").GetAttribute("ringlet:grooms").Set(damage)
     stage.Save()
     refused(run("hair", project / "groom.usda", "-o", project / "hair.usdc"), "ringlet:grooms")
+
+
+def test_what_locks_wear_stays_on_the_locks_of_its_groom():
+    points = np.linspace([0.0, 0.0, 0.0], [0.0, 0.0, 0.1], 5)
+    scalp = Mesh("scalp", np.eye(3), np.array([[0, 1, 2]], np.int32))
+    bead = Accessory(Mesh("bead 1", points[:3], np.array([[0, 1, 2]], np.int32)), np.array([3, 4]))
+
+    def groom(count, worn):
+        locks = Curves.from_list([points + [0.01 * k, 0.0, 0.0] for k in range(count)])
+        return Groom(locks, locks, scalp, accessories=worn)
+
+    several = join_grooms({"hair": groom(3, []), "beard": groom(2, [bead])})
+    (worn,) = several.accessories
+    assert worn.mesh.name == "beard bead 1" and worn.vertices.tolist() == [18, 19]
+    each = grooms_of(several)
+    assert each["hair"].accessories == []
+    assert each["beard"].accessories[0].vertices.tolist() == [3, 4]

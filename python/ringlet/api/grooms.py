@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -113,11 +114,21 @@ def groom_inputs(recipe: Recipe, memory: Memory | None = None, notes: list[str] 
         name: io.read_curves(file, recipe.curves[name].prim, space=recipe.curves[name].space, notes=notes)
         for name, file in recipe.helper_files().items()
     }
+    meshes = {
+        name: _cached(
+            memory,
+            file,
+            f"{recipe.meshes[name].mesh} {recipe.meshes[name].space}",
+            partial(io.read_mesh, prim=recipe.meshes[name].mesh, space=recipe.meshes[name].space, notes=notes),
+        )
+        for name, file in recipe.mesh_files().items()
+    }
     return {
         "scalp": scalp,
         "drawn_guides": drawn,
         "helpers": helpers,
         "hidden": _hidden(recipe),
+        "meshes": meshes,
         "scalp_file": recipe.scalp_file,
         "scalp_prim": recipe.scalp.mesh,
         "space": io.read_space(recipe.scalp_file, space=recipe.scalp.space),
@@ -260,6 +271,7 @@ def check_groom(
     root_depth: float = 5e-4,
     root_length: float = 5e-3,
     thickness: float = 1e-4,
+    own_radius: float = 0.85,
     fixed: Path | str | None = None,
     picture: Path | str | None = None,
     variant: str | None = None,
@@ -267,22 +279,24 @@ def check_groom(
 ) -> dict[str, Any]:
     """Intersections of a groom with the scalp, the body and itself: places, locks, greatest depth [m], worst places.
 
-    Returns ``found``, the ``thickness``, the ``lock_thickness`` of locks with their hairs [m], and the density and
-    cover of ``measure_hairs``; with ``fixed`` also ``left``, the remaining intersections, and ``repair``, the
-    displacements.
+    Returns ``found``; lengths [m]: the ``thickness``, the ``lock_thickness`` of locks with their hairs, and the largest
+    ``own_thickness`` at which locks with a radius of their own count; the density and cover of ``measure_hairs``. With
+    ``fixed`` also ``left``, the remaining intersections, and ``repair``, the displacements.
 
     root_depth:  how deep a lock may be in the skin up to ``root_length`` from its root [m]
     thickness:   distance below which two locks count as intersecting [m]
+    own_radius:  part of the radius of their own at which locs and strands of braids touch, where that is more
     fixed:       where to write the repaired groom
     picture:     where to write a picture of the places: of those that are left, if it is repaired
     variant:     of the groom file, in place of the one that is selected in it
     """
     from ringlet import groom as grooms
     from ringlet.data.groom import Groom
+    from ringlet.data.thickness import own_radii
 
     if not isinstance(groom, Groom):
         groom = load_groom(groom, variant=variant, progress=progress)
-    allowed = grooms.Allowed(root_depth, root_length, thickness)
+    allowed = grooms.Allowed(root_depth, root_length, thickness, own_radius)
     others = _beside_scalp(groom)
     findings = grooms.check_groom(groom, others, allowed)
     summary: dict[str, Any] = {
@@ -290,6 +304,7 @@ def check_groom(
         "points": len(groom.locks.points),
         "thickness": thickness,
         "lock_thickness": grooms.lock_thickness(groom),
+        "own_thickness": 2.0 * own_radius * float(own_radii(groom.locks).max(initial=0.0)),
         "found": findings.summary(),
         **grooms.hair_measures(groom),
     }

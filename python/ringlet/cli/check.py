@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -58,6 +58,16 @@ def check(
             help="Distance below which locks count as intersecting.",
         ),
     ] = 0.1,
+    own_radius: Annotated[
+        float,
+        typer.Option(
+            "--own-radius",
+            metavar="PART",
+            min=0,
+            max=1,
+            help="Part of the radius of their own at which locs and strands of braids touch.",
+        ),
+    ] = 0.85,
     as_json: Json = False,
     threads: Threads = None,
 ) -> None:
@@ -71,6 +81,7 @@ def check(
         "root_depth": 1e-3 * root_depth,
         "root_length": 1e-3 * root_length,
         "thickness": 1e-3 * thickness,
+        "own_radius": own_radius,
     }
     with shown_progress() as progress:
         summary = ringlet.check_groom(
@@ -85,11 +96,23 @@ def check(
                 for kind, of in summary[name].items()
             ]
             print_table([name, "places", "locks", "depth"], rows, right=(1, 2, 3))
-        if (wide := summary["lock_thickness"]) > summary["thickness"]:
-            print(
-                f"Hair is checked as lines {1e3 * summary['thickness']:.3g} mm thick. With their hairs locks are "
-                f"{1e3 * wide:.3g} mm thick: --thickness {1e3 * wide:.3g} counts where these overlap."
-            )
+        print(_thicknesses(summary))
         print(density(summary))
     if any(of["places"] for of in summary["left" if fix else "found"].values()):
         raise typer.Exit(1)
+
+
+def _thicknesses(summary: dict[str, Any]) -> str:
+    """How thick the hair that was checked was taken to be."""
+    thickness, wide, own = (1e3 * summary[name] for name in ("thickness", "lock_thickness", "own_thickness"))
+    if own > thickness:
+        return (
+            f"Locks with a radius of their own are checked as up to {own:.3g} mm thick, others as lines of "
+            f"{thickness:.3g} mm."
+        )
+    if wide > thickness:
+        return (
+            f"Hair is checked as lines {thickness:.3g} mm thick. With their hairs locks are {wide:.3g} mm thick: "
+            f"--thickness {wide:.3g} counts where these overlap."
+        )
+    return f"Hair is checked as lines {thickness:.3g} mm thick."

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ringlet.data.accessory import Accessory
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Mesh
@@ -52,7 +53,7 @@ class Groom:
     conflicts:  a sentence for every edit of a guide or a lock that is not there, for a head of an odd size, for what is
                 in the files of the recipe but not used, for locks that start into the head, and for those that a
                 displacement makes much longer
-    bands:      rings around the hair in ties, which are bodies or cloth for shots (empty for a groom that was read)
+    accessories: what the hair wears, such as bands of ties and beads, which locks carry
     edge:       length of the lines that carry hair, as for lashes [m] (None for hair on an area)
     hidden:     paths of the meshes of the head's file that the hair replaces: not shown, and touched by nothing
     cage:       whether hair grows on the cage of a subdivision surface, instead of on its limit surface
@@ -77,9 +78,9 @@ class Groom:
     variant: str | None = None
     conflicts: list[str] = field(default_factory=list)
     cage: bool = False
+    accessories: list[Accessory] = field(default_factory=list)
     edge: float | None = None
     hidden: list[str] = field(default_factory=list)
-    bands: list[Mesh] = field(default_factory=list)
     grooms: dict[str, dict[str, Any]] = field(default_factory=dict)
 
     def check_roots(self, scalp_points: NDArray[np.floating], when: str, what: str) -> None:

@@ -8,12 +8,15 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import KDTree
 
 from ringlet import _core
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.groom import Groom
 from ringlet.data.mesh import Mesh
+from ringlet.data.thickness import own_radii
+from ringlet.groom.nails import NAIL
 from ringlet.groom.operators.operator import packed
 
 Array = NDArray[np.float64]
@@ -29,15 +32,19 @@ class Allowed:
     root_depth:  largest depth of a lock below the skin near its root [m]
     root_length: arc length from the root to which ``root_depth`` applies [m]
     thickness:   smallest distance between two locks that do not intersect [m]
+    own_radius:  part of the radius of their own, as of locs and strands of braids, at which locks touch; as in a shot
 
-    Raises UserError for a value that is negative or at least 1 m.
+    Raises UserError for a length that is negative or at least 1 m, and for a part that is not from 0 to 1.
     """
 
     root_depth: float = 5e-4
     root_length: float = 5e-3
     thickness: float = 1e-4
+    own_radius: float = 0.85
 
     def __post_init__(self) -> None:
+        if not 0.0 <= self.own_radius <= 1.0:
+            raise UserError(f"check: own_radius is {self.own_radius:g}; must be from 0 to 1")
         for name in ("root_depth", "root_length", "thickness"):
             if not 0.0 <= (value := getattr(self, name)) < 1.0:
                 raise UserError(f"check: {name} is {value:g} m; must be at least 0 and under 1 m")
@@ -50,7 +57,7 @@ class Findings:
     kind:     0 scalp, 1 body, 2 hair (``KINDS``), shape (k,)
     point:    index of the lock's point at the place or just before it, shape (k,)
     place:    position [m], shape (k, 3)
-    depth:    depth beyond the tolerance; for hair, the thickness less the distance [m], shape (k,)
+    depth:    depth beyond the tolerance; for hair, the distance at which they touch less their own [m], shape (k,)
     other:    index of the other lock's point, -1 for scalp and body, shape (k,)
     """
 
@@ -143,7 +150,37 @@ def find(locks: Curves, bodies: Bodies, allowed: Allowed) -> Findings:
         findings.add(kind, point[rows], place[rows], depth[rows])
     pair, place, distance = _core.crossings(*packed(locks), allowed.thickness)
     findings.add("hair", pair[:, 0], place, allowed.thickness - distance, pair[:, 1])
+    _add_thick(findings, allowed)
     return findings
+
+
+def _add_thick(findings: Findings, allowed: Allowed) -> None:
+    """Adds intersections between locks of which one at least is thicker than the thickness that is allowed for all.
+
+    Two places that the skin holds do not count: they stay as they are.
+    """
+    radius = np.maximum(allowed.own_radius * own_radii(findings.locks), 0.5 * allowed.thickness)
+    widest = 2.0 * float(radius.max(initial=0.0))
+    if widest <= allowed.thickness:
+        return
+    rows = _near(findings.locks, radius > 0.5 * allowed.thickness, widest)
+    locks = findings.locks.take(rows)
+    points = np.concatenate([np.arange(*findings.locks.offsets[row : row + 2]) for row in rows])
+    held = findings.locks.point.get(NAIL, np.zeros(len(radius)))[points] >= 1.0
+    pair, place, distance = _core.crossings(*packed(locks), widest)
+    touching = radius[points[pair]].sum(axis=1)
+    new = (distance < touching) & (touching > allowed.thickness) & ~held[pair].all(axis=1)
+    new &= distance >= allowed.thickness  # nearer ones are there already
+    pair = points[pair[new]]
+    findings.add("hair", pair[:, 0], place[new], touching[new] - distance[new], pair[:, 1])
+
+
+def _near(locks: Curves, thick: NDArray[np.bool_], within: float) -> NDArray[np.int64]:
+    """Rows of the locks with thick points, and of those with points within a distance of one [m]."""
+    edges = np.linalg.norm(np.diff(locks.points, axis=0), axis=1)
+    reach = within + float(edges.max(initial=0.0))
+    near = thick | np.isfinite(KDTree(locks.points[thick]).query(locks.points, distance_upper_bound=reach)[0])
+    return np.flatnonzero(np.logical_or.reduceat(near, locks.offsets[:-1]))
 
 
 def lock_of(locks: Curves, points: NDArray) -> NDArray[np.int64]:

@@ -51,7 +51,7 @@ def place_hairs(groom: Groom, settings: HairSettings, fraction: float, wider: bo
     places = roots[lock] + spread[lock, None] * np.einsum("hxk,hk->hx", frames[lock][:, :, :2], disk)
     joins = lock_joins(locks)[lock]
     _root_in_rows(groom, settings, first, number, places, joins)
-    shared = (_is_shared(locks) & ~_is_laid(locks))[lock]
+    shared = (_is_shared(locks) & ~_is_row(locks))[lock]
     if shared.any():
         of = lock[shared]
         places[shared] = scattered(locks.curve[REACH][of], roots[of], frames[of, :, 2], disk[shared])
@@ -91,11 +91,11 @@ def _root_in_rows(
     groom: Groom, settings: HairSettings, first: NDArray, number: NDArray, places: NDArray, joins: NDArray
 ) -> None:
     """Sets the places where hairs of cornrows grow [m], shape (hairs, 3), and where they join their lock, (hairs,)."""
-    laid = np.flatnonzero(_is_laid(groom.locks))
-    if not len(laid):
+    rows = np.flatnonzero(_is_row(groom.locks))
+    if not len(rows):
         return
     solid = _core.Solid(np.ascontiguousarray(groom.scalp.points, np.float64), groom.scalp.triangles)
-    for k in laid.tolist():
+    for k in rows.tolist():
         of = slice(first[k], first[k + 1])
         places[of], joins[of] = _fed(settings, groom.locks, solid, k, number[of])
 
@@ -119,8 +119,13 @@ def _is_shared(locks: Curves) -> NDArray[np.bool_]:
 
 
 def _is_laid(locks: Curves) -> NDArray[np.bool_]:
-    """Whether a lock lies on the scalp along a row, shape (locks,)."""
+    """Whether a lock lies on the scalp, shape (locks,)."""
     return np.asarray(locks.curve.get(LAID, np.zeros(len(locks))) > 0.0)
+
+
+def _is_row(locks: Curves) -> NDArray[np.bool_]:
+    """Whether a lock lies on the scalp along the row of a section, shape (locks,)."""
+    return _is_shared(locks) & _is_laid(locks)
 
 
 def _fed(
@@ -174,6 +179,10 @@ def _layout(settings: HairSettings, per_lock: Values, hairs: Placed, u: NDArray)
     strays = soft_threshold(per_lock("stray")[lock], random.uniform(ids, 1))
     frizz, stray = per_lock("frizz")[lock], per_lock("stray_radius")[lock]
     amplitude = (frizz + strays * (stray - frizz)) * free
+    edges = (_is_laid(per_lock.locks) & ~_is_row(per_lock.locks))[lock]
+    amplitude = np.where(
+        edges, np.minimum(amplitude, hairs.radius), amplitude
+    )  # laid edges have no hairs that stand off
     knots = (
         amplitude[:, None]
         * np.linspace(0.0, 1.0, FRIZZ_KNOTS).repeat(2)

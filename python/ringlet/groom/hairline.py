@@ -83,11 +83,22 @@ class Fade:
 
 def border_points(scalp: Scalp) -> NDArray[np.float64]:
     """Points along the border of the scalp's region, at most BORDER_SPACING apart [m], shape (n, 3)."""
+    return border(scalp)[0]
+
+
+def border(scalp: Scalp) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Points along the border of the scalp's region, at most BORDER_SPACING apart [m], and unit directions out of the
+    region, along the skin and across the border, shape (n, 3) each."""
     corners = scalp.triangles[scalp.region].astype(np.int64)
-    edges = np.sort(np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]]), axis=1)
-    sides, uses = np.unique(edges, axis=0, return_counts=True)
-    a, b = scalp.points[sides[uses == 1]].transpose(1, 0, 2)
+    edges = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
+    _, first, uses = np.unique(np.sort(edges, axis=1), axis=0, return_index=True, return_counts=True)
+    sides = first[uses == 1]
+    a, b = scalp.points[edges[sides]].transpose(1, 0, 2)
+    opposite = scalp.points[np.concatenate([corners[:, 2], corners[:, 0], corners[:, 1]])[sides]]
+    along = unit(b - a)
+    inward = opposite - a
+    outward = -unit(inward - np.sum(inward * along, axis=1, keepdims=True) * along)
     count = np.maximum(1, np.ceil(np.linalg.norm(b - a, axis=1) / BORDER_SPACING)).astype(np.int64)
     side = np.repeat(np.arange(len(a)), count)
     t = (np.arange(len(side)) - np.repeat(np.cumsum(count) - count, count)) / count[side]
-    return a[side] + t[:, None] * (b - a)[side]
+    return a[side] + t[:, None] * (b - a)[side], outward[side]

@@ -257,11 +257,12 @@ def _with_absolute_paths(data: dict[str, Any], folder: Path) -> dict[str, Any]:
             data[table] = {**data[table], key: str(folder / name)}
     if isinstance(maps := data.get("maps"), dict):
         data["maps"] = {key: str(folder / name) for key, name in maps.items()}
-    if isinstance(curves := data.get("curves"), dict):
-        data["curves"] = {
-            key: {**one, "file": str(folder / one["file"])} if isinstance(one, dict) and "file" in one else one
-            for key, one in curves.items()
-        }
+    for table in ("curves", "meshes"):
+        if isinstance(named := data.get(table), dict):
+            data[table] = {
+                key: {**one, "file": str(folder / one["file"])} if isinstance(one, dict) and "file" in one else one
+                for key, one in named.items()
+            }
     for key in ("edits", "extends"):
         if isinstance(data.get(key), str):
             data[key] = str(folder / data[key])

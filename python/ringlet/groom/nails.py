@@ -15,9 +15,8 @@ from ringlet.data.quantities import Quantity, Section
 from ringlet.data.random import Random
 from ringlet.groom.mask import Mask
 from ringlet.groom.operators.operator import arc_lengths, grid
-from ringlet.groom.shares import LAID
+from ringlet.groom.shares import LAID, LEAVE
 
-LEAVE = 0.008  # [m] before the end of a row over which the hold of a cornrow fades out
 NAIL = "nail"  # point attribute of locks: 0 free … 1 moves rigidly with the skin at the root
 
 
@@ -47,7 +46,7 @@ class Nail(Section):
 
 
 def nailed(locks: Curves, nails: Sequence[Nail], scalp: Mesh, seed: int) -> Curves:
-    """Adds the point attribute ``nail``: the largest weight of all nails, and of what lies on the scalp in cornrows."""
+    """Adds the point attribute ``nail``: the largest weight of all nails, and of what lies on the scalp."""
     weights = [
         nail.weights(locks, scalp, Random(seed, f"nail[{k}]/mask"), f"nail[{k}]") for k, nail in enumerate(nails)
     ]

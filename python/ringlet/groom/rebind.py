@@ -32,11 +32,14 @@ def rebind(groom: Groom) -> Groom:
     if turn is None and groom.grooms:
         return with_each(groom, rebind)
     if turn is None:
-        return replace(groom, locks=_on_nearest(groom.locks, groom), guides=_on_nearest(groom.guides, groom))
-    locks, guides = (
-        _moved(c, root_places(c, groom.scalp.points, groom.scalp.triangles), turn) for c in (groom.locks, groom.guides)
-    )
-    return replace(groom, locks=locks, guides=guides)
+        locks, guides = (_on_nearest(curves, groom) for curves in (groom.locks, groom.guides))
+    else:
+        locks, guides = (
+            _moved(c, root_places(c, groom.scalp.points, groom.scalp.triangles), turn)
+            for c in (groom.locks, groom.guides)
+        )
+    worn = [accessory.moved(groom.locks.points, locks.points) for accessory in groom.accessories]
+    return replace(groom, locks=locks, guides=guides, accessories=worn)
 
 
 def _turn(locks: Curves, scalp: Mesh) -> Array | None:

@@ -13,6 +13,7 @@ from ringlet.groom.edge import Edge
 from ringlet.groom.edits import Edit
 from ringlet.groom.fiber import FiberSettings
 from ringlet.groom.hair_settings import HairSettings
+from ringlet.groom.helper_mesh import HelperMesh
 from ringlet.groom.helpers import HelperCurves
 from ringlet.groom.load import load, load_text, resolved_text
 from ringlet.groom.nails import Nail
@@ -73,6 +74,7 @@ class Recipe(Section):
         default={}, description="pictures over the texture coordinates of the scalp, as maps by name: black 0, white 1"
     )
     curves: dict[str, HelperCurves] = Field(default={}, description="curves by name that operators go by")
+    meshes: dict[str, HelperMesh] = Field(default={}, description="meshes by name that operators go by")
     guides: Annotated[
         Annotated[Grown, Tag("grown")] | Annotated[Drawn, Tag("drawn")], Discriminator(_kind_of_guides)
     ] = Field(
@@ -128,6 +130,10 @@ class Recipe(Section):
         """Files of helper curves, by name of the curves."""
         return {name: file for name, curves in self.curves.items() if (file := self._beside(curves.file)) is not None}
 
+    def mesh_files(self) -> dict[str, Path]:
+        """Files of helper meshes, by name of the mesh."""
+        return {name: file for name, mesh in self.meshes.items() if (file := self._beside(mesh.file)) is not None}
+
     def map_files(self) -> dict[str, Path]:
         """Texture files of maps, by name of the map."""
         return {name: file for name, text in self.maps.items() if (file := self._beside(text)) is not None}
@@ -143,6 +149,7 @@ class Recipe(Section):
         files = {"scalp.file": self.scalp_file, "guides.file": self.guides_file, "edits": self.edits_file}
         files |= {f"maps.{name}": file for name, file in self.map_files().items()}
         files |= {f"curves.{name}": file for name, file in self.helper_files().items()}
+        files |= {f"meshes.{name}": file for name, file in self.mesh_files().items()}
         return {what: file for what, file in files.items() if file is not None}
 
     def _beside(self, name: str | None) -> Path | None:

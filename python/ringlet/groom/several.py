@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from ringlet.data.accessory import Accessory
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.groom import GROOM, HAIR_SHARE, SECTION, STRAND_PROFILE, Groom
@@ -68,7 +69,7 @@ def join_grooms(grooms: Mapping[str, Groom]) -> Groom:
         fiber=None,
         recipe=None,
         hidden=list(dict.fromkeys(path for groom in grooms.values() for path in groom.hidden)),
-        bands=[replace(band, name=f"{name} {band.name}") for name, groom in grooms.items() for band in groom.bands],
+        accessories=_accessories(grooms),
         conflicts=[f"{name}: {line}" for name, groom in grooms.items() for line in groom.conflicts],
         grooms={
             name: {
@@ -92,6 +93,7 @@ def grooms_of(groom: Groom) -> dict[str, Groom]:
             guides=_alone(groom.guides, row, offsets[name], ()),
             shapes=groom.shapes and _alone(groom.shapes, row, offsets[name], ()),
             unsculpted=groom.unsculpted and _alone(groom.unsculpted, row, offsets[name], ()),
+            accessories=_accessories_of(groom, row),
             grooms={},
             **{key: settings[key] for key in ALONE},
         )
@@ -102,7 +104,24 @@ def grooms_of(groom: Groom) -> dict[str, Groom]:
 def with_each(groom: Groom, changed: Callable[[Groom], Groom]) -> Groom:
     """Several grooms with each of them changed on its own."""
     joined = join_grooms({name: changed(one) for name, one in grooms_of(groom).items()})
-    return replace(joined, recipe=groom.recipe, bands=groom.bands, conflicts=groom.conflicts)
+    return replace(joined, recipe=groom.recipe, accessories=groom.accessories, conflicts=groom.conflicts)
+
+
+def _accessories(grooms: Mapping[str, Groom]) -> list[Accessory]:
+    """What all grooms wear, on the points of the joined locks, with names that are unique."""
+    worn, first = [], 0
+    for name, groom in grooms.items():
+        for one in groom.accessories:
+            worn.append(Accessory(replace(one.mesh, name=f"{name} {one.mesh.name}"), one.vertices + first))
+        first += len(groom.locks.points)
+    return worn
+
+
+def _accessories_of(groom: Groom, row: int) -> list[Accessory]:
+    """What the locks of one groom wear, on its own points."""
+    own = np.repeat(groom.locks.curve[GROOM], groom.locks.counts) == row
+    first = int(own.argmax())
+    return [Accessory(one.mesh, one.vertices - first) for one in groom.accessories if own[one.vertices].all()]
 
 
 def id_offsets(names: list[str]) -> dict[str, int]:

@@ -23,9 +23,10 @@ BEYOND = 3e-4, 0.1  # how far a place is from the nearest of the scalp, across t
 # DIRECTIONS), float32; 0 for locks of no section.
 REACH = "reach"
 
-# Curve attribute of locks: length from the root that lies on the scalp along a row [m]; 0 for others. Their ``REACH``
-# is at even distances along the row, first to the left (across: normal × tangent), then to the right.
+# Curve attribute of locks: length from the root that lies on the scalp, along a row or as laid edges [m]; 0 for others.
+# The ``REACH`` of rows is at even distances along them, first to the left (normal × tangent), then to the right.
 LAID = "laid"
+LEAVE = 0.008  # [m] before the end of what lies on the scalp over which its hold fades out in a shot
 
 
 def reaches(

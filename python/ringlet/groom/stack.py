@@ -30,11 +30,12 @@ from ringlet.groom.load import stage_names
 from ringlet.groom.nails import nailed
 from ringlet.groom.operators import Context, Drawn, Operator, Resample, Tie
 from ringlet.groom.operators.operator import grid, unit
-from ringlet.groom.operators.shape import Displacement
+from ringlet.groom.operators.shape import Displacement, Shape
 from ringlet.groom.operators.tied import TO_TIE
 from ringlet.groom.recipe import Recipe
 from ringlet.groom.scalp import Scalp
 from ringlet.groom.sculpt import Sculpted
+from ringlet.groom.worn import Worn, accessories
 
 Progress = Callable[[str, int, int], None]
 
@@ -48,12 +49,14 @@ class Memory:
     """Cache of the last run: an edit recomputes the stages from the edited one on.
 
     results: key and curves of each stage
+    worn:    key of each operator, and what locks wear from there on
     files:   contents of files that have not changed, by name
     hairs:   cache of the render hairs
     grooms:  caches of each groom, by name, where the recipe has several
     """
 
     results: dict[str, tuple[str, Curves]] = field(default_factory=dict)
+    worn: dict[str, tuple[str, Sequence[Worn]]] = field(default_factory=dict)
     scalp: tuple[str, Scalp] | None = None
     files: dict[str, tuple[tuple[int, str], Any]] = field(default_factory=dict)
     hairs: HairMemory = field(default_factory=HairMemory)
@@ -67,6 +70,7 @@ def make_groom(
     drawn_guides: Curves | None = None,
     helpers: Mapping[str, Curves] | None = None,
     hidden: Sequence[str] = (),
+    meshes: Mapping[str, Mesh] | None = None,
     scalp_file: Path | None = None,
     scalp_prim: str | None = None,
     space: StageSpace | None = None,
@@ -79,6 +83,7 @@ def make_groom(
     drawn_guides: the curves of ``[guides] file`` [m]
     helpers:      the curves of the files of ``[curves]``, by name [m]
     hidden:       paths of the meshes of the head's file that the hair replaces
+    meshes:       the meshes of the files of ``[meshes]``, by name [m]
     scalp_file, scalp_prim, space: source of the mesh, stored in the groom
     progress:     called with (stage, 0, 1) before and (stage, 1, 1) after every stage
     memory:       cache between calls, so that an edit recomputes only the stages from there on
@@ -102,11 +107,14 @@ def make_groom(
         if recipe.scalp.edge is not None:
             surface = _on_edge(recipe, recipe.scalp.edge, surface, helpers)
             key = _key(key, recipe.scalp.edge.model_dump_json().encode())
+        meshes = {**{name: m for name, h in recipe.meshes.items() if (m := h.inline_mesh(name))}, **(meshes or {})}
+        for name, mesh in meshes.items():
+            key = _key(key, name.encode(), mesh.points.tobytes(), mesh.triangles.tobytes())
         curves = drawn_guides or Curves.from_list([])
         stages = _stages(recipe)
         guides, unsculpted, shapes, uncleaned = curves, curves, None, curves
         lengthened: list[str] = []
-        bands: list[Mesh] = []
+        worn: list[Worn] = []
         for name, operator in stages:
             if progress:
                 progress(name, 0, 1)
@@ -114,12 +122,14 @@ def make_groom(
                 shapes = curves
             if name == "clean":
                 uncleaned = curves
-            context = Context(recipe.seed, surface, name, recipe.locks.points, helpers, shapes, recipe.locks.sections)
+            context = Context(
+                recipe.seed, surface, name, recipe.locks.points, helpers, meshes, shapes, recipe.locks.sections
+            )
             before = curves
             curves, key = _run(operator, curves, key, context, memory)
             check_curves(curves, curves.points, scalp.points, name)
-            if isinstance(operator, Tie):
-                bands += operator.bands(before, context)
+            if isinstance(operator, Shape):
+                worn += _worn(operator, before, curves, key, context, memory)
             if isinstance(operator, Displacement):
                 lengthened += _lengthened(name, before, curves)
             if name == "guides":
@@ -149,8 +159,8 @@ def make_groom(
         recipe=recipe.text,
         shapes=shapes,
         unsculpted=unsculpted,
-        bands=bands,
         hidden=list(hidden),
+        accessories=accessories(worn, locks),
         conflicts=[
             *_conflicts(recipe, unsculpted, curves),
             *_odd_size(scalp, recipe.scalp.region),
@@ -291,6 +301,15 @@ def _run(operator: Operator, curves: Curves, key: str, context: Context, memory:
         cached = (key, operator.apply(curves, context))
         memory.results[context.purpose] = cached
     return cached[1], key
+
+
+def _worn(operator: Shape, before: Curves, after: Curves, key: str, context: Context, memory: Memory) -> Sequence[Worn]:
+    """What locks wear from an operator on; from the cache when its key is unchanged."""
+    cached = memory.worn.get(context.purpose)
+    if cached is None or cached[0] != key:
+        cached = (key, operator.worn(before, after, context))
+        memory.worn[context.purpose] = cached
+    return cached[1]
 
 
 def _scalp(recipe: Recipe, mesh: Mesh, memory: Memory) -> tuple[str, Scalp]:

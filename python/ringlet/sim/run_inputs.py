@@ -6,7 +6,7 @@ They are all that was read and given: nothing is chosen from it, so that nothing
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import fields, is_dataclass
+from dataclasses import fields, is_dataclass, replace
 from importlib.metadata import version
 from itertools import zip_longest
 from pathlib import Path
@@ -41,7 +41,7 @@ def run_inputs(shot: Shot, groom: Groom, read: Reads, frames: tuple[int, int] | 
         "Ringlet": version("ringlet"),
         "the first frame": first,
         "settings": _plain(shot.model_dump(mode="json", exclude=_PLACES)),
-        "groom": dict(_digests(groom, "")),
+        "groom": dict(_digests(replace(groom, accessories=[]), "")),  # locks carry these, and do not feel them
         "files": [list(one) for one in read.contents()],
     }
 

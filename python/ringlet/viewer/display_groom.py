@@ -159,7 +159,7 @@ class GroomEvaluator:
             self._project.inside(file, f"{recipe.path.name if recipe.path else 'recipe'}: {what}")
         stamps = [(what, str(file), _stamp(file)) for what, file in sorted(files.items()) if what != "edits"]
         drawn = recipe.guides if isinstance(recipe.guides, Drawn) else None
-        key = repr((stamps, recipe.scalp, drawn, recipe.curves))
+        key = repr((stamps, recipe.scalp, drawn, recipe.curves, recipe.meshes))
         if name not in self._inputs or self._inputs[name][0] != key:
             self._inputs[name] = key, api.groom_inputs(recipe)
         return self._inputs[name][1]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 from ringlet.data.errors import UserError
 from ringlet.data.files import replacing
@@ -13,6 +13,7 @@ from ringlet.groom import Recipe, parse_recipe
 from ringlet.groom.edits_file import edits_text
 from ringlet.groom.load import APPEND, inherited, parse_edits
 from ringlet.groom.named import GROOMS
+from ringlet.groom.operators import Operator, ShapeOperator
 from ringlet.shot import Shot, parse_shot
 from ringlet.viewer import protocol
 from ringlet.viewer.document import Document, History, State, set_value
@@ -161,7 +162,7 @@ class Files:
         document = self.recipe
         names = self._inherited(document)
         order = [f"shape/{k}" for k in range(len(self.chosen_recipe.shape))]
-        new = {"op": op, **(values or {})}
+        new = {**({"op": op, **_starter(op)} if op else {}), **(values or {})}
         if self.groom and names is None:
             document.set([([GROOMS, self.groom, "shape"], self._arranged(action, at, to, new))])
         elif names is None:
@@ -436,6 +437,12 @@ def stages(recipe: Recipe, state: State) -> list[protocol.Stage]:
         )
         for name, op, place in found
     ]
+
+
+def _starter(op: str) -> dict[str, Any]:
+    """Settings with which a shape operator is added; none for an unknown one."""
+    kinds: tuple[type[Operator], ...] = get_args(get_args(ShapeOperator)[0])
+    return next((dict(kind.starter) for kind in kinds if kind.model_fields["op"].default == op), {})
 
 
 def operator_names(schema: dict[str, Any]) -> list[str]:

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ringlet import api, io
+from ringlet.data.accessory import Accessory
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Clip, Mesh
 from ringlet.groom import Groom, lay_hairs
@@ -31,11 +32,13 @@ class VisibleMesh:
 
     clip:  animation of the mesh; None for a static one
     cloth: name of the cloth that frames move; empty for other meshes
+    worn:  the accessory that locks carry, and the points of these at rest [m]; None for other meshes
     """
 
     mesh: Mesh
     clip: Clip | None = None
     cloth: str = ""
+    worn: tuple[Accessory, NDArray] | None = None
 
     def message(self, index: int, origin: NDArray) -> bytes:
         """Message with the mesh in its rest pose, relative to an origin [m]."""
@@ -49,12 +52,12 @@ class VisibleMesh:
             colors=np.clip(colors, 0.0, 1.0),
         )
 
-    def at(self, frame: float, cloths: Mapping[str, NDArray]) -> NDArray:
-        """Positions of the points at a frame [m], shape (n, 3).
-
-        cloths: positions of the cloths at that frame [m], by name
-        """
-        moved = cloths.get(self.cloth)
+    def at(self, frame: float, state: FrameState) -> NDArray:
+        """Positions of the points at a frame with its contents [m], shape (n, 3)."""
+        if self.worn is not None:
+            accessory, rest = self.worn
+            return accessory.at(rest, state.points)
+        moved = state.cloths.get(self.cloth)
         if moved is not None and moved.shape == self.mesh.points.shape:
             return moved
         return self.clip.at(frame) if self.clip else self.mesh.points
@@ -77,6 +80,11 @@ def read_meshes(groom: Groom) -> list[VisibleMesh]:
     shown = io.read_meshes(file, groom.cage) if file is not None and file.suffix in USD else []
     shown = [mesh for mesh in shown if groom.shows(mesh.name)]
     return [VisibleMesh(mesh) for mesh in shown or [scalp]]
+
+
+def worn_meshes(groom: Groom) -> list[VisibleMesh]:
+    """What the hair of a groom wears."""
+    return [VisibleMesh(one.mesh, worn=(one, groom.locks.points)) for one in groom.accessories]
 
 
 def read_bodies(
@@ -123,18 +131,20 @@ def read_scene(file: Path) -> tuple[list[VisibleMesh], DisplayGroom]:
     try:
         groom = io.read_groom(file)
     except UserError:
-        bodies, curves, _ = io.read_stage(file)
+        shown, curves, _ = io.read_stage(file)
         if curves is None:
             raise UserError(f"{file.name}: has no hair; give a recipe, a shot or a USD file with curves") from None
-        visible = [VisibleMesh(replace(body.mesh, points=body.clip.points[0]), body.clip) for body in bodies]
-        mesh = bodies[0].mesh if bodies else Mesh("none", np.zeros((0, 3)), np.zeros((0, 3), np.int32))
+        visible = [VisibleMesh(replace(body.mesh, points=body.clip.points[0]), body.clip) for body in shown]
+        mesh = shown[0].mesh if shown else Mesh("none", np.zeros((0, 3)), np.zeros((0, 3), np.int32))
         return visible, DisplayGroom(Groom(curves, curves, mesh), None, False)
     cloths: dict[str, str] = {}
     frames: tuple[int, int] | None = None
     if io.is_cache(file):
         with io.open_cache(file) as cache:
             cloths, frames = cache.cloth_prims, (math.floor(cache.frames[0]), math.ceil(cache.frames[-1]))
-    return read_bodies(groom.scalp, file, frames, cloths=cloths), DisplayGroom(groom, lay_hairs(groom), False)
+    worn = {one.mesh.name for one in groom.accessories}  # carried by locks, also in a cache
+    bodies = [body for body in read_bodies(groom.scalp, file, frames, cloths=cloths) if body.mesh.name not in worn]
+    return bodies, DisplayGroom(groom, lay_hairs(groom), False)
 
 
 @contextmanager

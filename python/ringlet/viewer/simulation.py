@@ -57,10 +57,10 @@ class Stage:
         motion: Motion | None = None,
     ) -> bytes:
         """Message of a frame; contact and depth need ``motion``."""
-        points, statistics, cloths = state
+        points, statistics, _ = state
         axis, root, left = np.empty(0), np.empty(0), np.empty((0, 0), np.uint8)
         corners, locks = self.clip.at(frame), self.groom.locks
-        bodies = [body.at(frame, cloths) for body in self.bodies]
+        bodies = [body.at(frame, state) for body in self.bodies]
         if self.hairs is not None:
             deformation = self.hairs.deformation(corners)
             order = spread_order(deformation["first"])

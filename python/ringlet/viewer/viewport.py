@@ -13,7 +13,7 @@ from ringlet.shot import Shot
 from ringlet.viewer import display_colors, overlays, protocol
 from ringlet.viewer.display_groom import DisplayGroom
 from ringlet.viewer.publisher import Publisher
-from ringlet.viewer.scene import VisibleMesh, read_meshes, shot_meshes
+from ringlet.viewer.scene import VisibleMesh, read_meshes, shot_meshes, worn_meshes
 from ringlet.viewer.wire import pack
 
 
@@ -21,13 +21,13 @@ class Viewport:
     """The displayed grooms on sides a and b.
 
     display: groom on side a
-    bodies:  visible meshes with their animation
     """
 
     def __init__(self, publisher: Publisher) -> None:
         self._publisher = publisher
         self.display: DisplayGroom | None = None
-        self.bodies: list[VisibleMesh] = []
+        self._scene: list[VisibleMesh] = []
+        self._worn: list[VisibleMesh] = []
         self._scalp: Mesh | None = None
         self._origin = np.zeros(3)  # of positions in messages, near the head
         self._shot_inputs: object = None
@@ -35,11 +35,17 @@ class Viewport:
         self._colors: dict[str, tuple[Curves, str]] = {}
         self._names: protocol.Names | None = None
 
+    @property
+    def bodies(self) -> list[VisibleMesh]:
+        """Visible meshes with their animation, those that the hair wears last."""
+        return self._scene + self._worn
+
     def show(self, display: DisplayGroom, side: str, revision: int = 0) -> None:
         """Shows a groom on one side. revision: of its recipe."""
         if side == "a":
             self.display = display
             self._show_scalp(display)
+            self._show_worn(display.groom)
             self._publish_names(display.groom, display.curves)
         layout = display.hairs.curves if display.hairs else display.groom.locks
         if self._layouts.get(side) is not layout:
@@ -75,10 +81,18 @@ class Viewport:
             self._shot_inputs = None
             self._publish_bodies(read_meshes(display.groom))
 
-    def _publish_bodies(self, bodies: list[VisibleMesh]) -> None:
+    def _show_worn(self, groom: Groom) -> None:
+        before, self._worn = self._worn, worn_meshes(groom)
+        if len(before) != len(self._worn) or any(
+            a.mesh.points.shape != b.mesh.points.shape or (a.mesh.points != b.mesh.points).any()
+            for a, b in zip(before, self._worn, strict=True)
+        ):
+            self._publish_bodies(self._scene)
+
+    def _publish_bodies(self, scene: list[VisibleMesh]) -> None:
         self._publisher.clear("body/")
-        self.bodies = bodies
-        for index, body in enumerate(bodies):
+        self._scene = scene
+        for index, body in enumerate(self.bodies):
             self._publisher.publish(f"body/{index}", body.message(index, self._origin))
 
     def _publish_colors(self, display: DisplayGroom, side: str) -> None:

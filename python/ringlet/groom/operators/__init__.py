@@ -13,8 +13,10 @@ from ringlet.groom.operators.cornrow import Cornrow
 from ringlet.groom.operators.curl import Curl
 from ringlet.groom.operators.cut import Cut
 from ringlet.groom.operators.drawn import Drawn
+from ringlet.groom.operators.edges import Edges
 from ringlet.groom.operators.flyaways import Flyaways
 from ringlet.groom.operators.frizz import Frizz
+from ringlet.groom.operators.grow_to import GrowTo
 from ringlet.groom.operators.grown import Grown
 from ringlet.groom.operators.knot import Knot
 from ringlet.groom.operators.length import Length
@@ -50,11 +52,13 @@ ShapeOperator = Annotated[
     | Straighten
     | Attract
     | Cut
+    | GrowTo
     | Braid
     | Twist
     | Cornrow
     | Loc
-    | Knot,
+    | Knot
+    | Edges,
     Field(discriminator="op"),
 ]
 
@@ -69,8 +73,10 @@ __all__ = [
     "Curl",
     "Cut",
     "Drawn",
+    "Edges",
     "Flyaways",
     "Frizz",
+    "GrowTo",
     "Grown",
     "Knot",
     "Length",

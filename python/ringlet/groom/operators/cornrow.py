@@ -14,7 +14,7 @@ from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.groom import CORE, SECTION, STRAND_RADIUS, TIED
 from ringlet.data.quantities import Quantity, Varied
-from ringlet.groom import weave
+from ringlet.groom import felt, weave
 from ringlet.groom.operators.operator import UP, Context, arc_lengths, evenly, grid, unit
 from ringlet.groom.operators.woven import JOIN, Braided, Woven
 from ringlet.groom.rows import Row, drawn_rows, middle_rows
@@ -48,7 +48,7 @@ class Cornrow(Woven):
     feed: Annotated[Varied, Quantity("m", 0.0, 0.1)] = Field(
         default=Varied(value=0.006), description="length along the row between where hair grows and where it joins"
     )
-    end: Annotated[Varied, Quantity("m", 0.0, 1.0)] = Field(
+    off: Annotated[Varied, Quantity("m", 0.0, 1.0)] = Field(
         default=Varied(value=0.0), description="length at the back of the row where the braid is off the scalp already"
     )
     length: Annotated[Varied, Quantity("m", 1e-3, 2.0)] = Field(
@@ -83,8 +83,8 @@ class Cornrow(Woven):
         if not has.any():
             raise UserError(f"{context.purpose}: no row is long enough; make the sections wider, or draw the path")
         leaders, rows = leaders.take(has), [of for of, there in zip(rows, has, strict=True) if there]
-        values = {k: context.values(self, k, leaders) for k in ("feed", "end", "length", "droop")}
-        lain = [lines[int(section)].shortened(end) for section, end in zip(leaders.ids, values["end"], strict=True)]
+        values = {k: context.values(self, k, leaders) for k in ("feed", "off", "length", "droop")}
+        lain = [lines[int(section)].shortened(off) for section, off in zip(leaders.ids, values["off"], strict=True)]
 
         shapes, points = grid(fine).copy(), grid(fine).shape[1]
         for k, (row, of) in enumerate(zip(lain, rows, strict=True)):
@@ -101,6 +101,8 @@ class Cornrow(Woven):
             attributes[JOIN][braid.rows] = values["feed"][k] * attributes[LAID][braid.rows] / lain[k].length
             reach = row_reaches(division, context.scalp, lain[k].points, lain[k].normals, int(leaders.ids[k]))
             attributes[REACH][braid.rows] = reach
+            if ((narrows := braid.narrows(np.linspace(0.0, 1.0, felt.KNOTS), self)) != 1.0).any():
+                attributes = felt.with_profile(attributes, braid.rows, narrows)
         laid = np.concatenate(rows)
         places = context.scalp.positions(attributes["root_triangle"][laid], attributes["root_barycentric"][laid])
         for name, at in division.at(places).items():

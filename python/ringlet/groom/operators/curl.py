@@ -15,7 +15,7 @@ from ringlet.data.errors import Fix, UserError
 from ringlet.data.groom import STRAND_RADIUS
 from ringlet.data.quantities import Quantity, Ramp, Ramped, Varied, along, refuse
 from ringlet.data.random import soft_threshold
-from ringlet.groom.operators.operator import Context, Operator, packed
+from ringlet.groom.operators.operator import Context, Operator, at_even_lengths, packed
 from ringlet.groom.operators.phase_lock import PhaseLock
 from ringlet.groom.operators.tied import after_ties, with_heads
 from ringlet.groom.presets import PRESETS, Preset
@@ -213,7 +213,8 @@ class Curl(Operator):
         if (woven := curves.curve.get(STRAND_RADIUS, np.zeros(len(ids))) > 0.0).any():  # a braid holds its strands
             grid = curled.reshape(len(ids), points, 3)
             grid[woven] = _core.resample_curves(*packed(curves.take(woven)), points).reshape(-1, points, 3)
-        return Curves(curled, offsets_from_counts(np.full(len(ids), points)), ids, curves.curve)
+        offsets = offsets_from_counts(np.full(len(ids), points))
+        return Curves(curled, offsets, ids, curves.curve, at_even_lengths(curves, points))
 
     def _check_points(self, turns: NDArray, width: NDArray, lengths: NDArray, points: int) -> None:
         """Raises UserError for fewer than 6 points a curl."""

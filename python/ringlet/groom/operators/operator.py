@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 from ringlet import _core
 from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.data.errors import UserError
+from ringlet.data.mesh import Mesh
 from ringlet.data.painted import per_lock
 from ringlet.data.quantities import Section
 from ringlet.data.random import Random
@@ -30,6 +32,7 @@ class Context:
     purpose:     unique name of the operator in the stack, which keys its random numbers
     lock_points: points of a groom guide
     curves:      helper curves by name
+    meshes:      helper meshes by name
     shapes:      the locks before the curl operator; None up to it
     sections:    settings of the sections of the scalp; None without
     """
@@ -39,6 +42,7 @@ class Context:
     purpose: str
     lock_points: int = 64
     curves: Mapping[str, Curves] = field(default_factory=dict)
+    meshes: Mapping[str, Mesh] = field(default_factory=dict)
     shapes: Curves | None = None
     sections: Sections | None = None
 
@@ -53,6 +57,16 @@ class Context:
             raise UserError(f"{self.purpose}.{setting} is '{name}', which is no helper curve{remedy}")
         return self.curves[name]
 
+    def mesh(self, name: str, setting: str) -> _core.Solid:
+        """The helper mesh that a setting names, for distances; raises UserError for an unknown name."""
+        if name not in self.meshes:
+            remedy = did_you_mean(name, self.meshes) if self.meshes else f"; add a table [meshes.{name}]"
+            raise UserError(f"{self.purpose}.{setting} is '{name}', which is no helper mesh{remedy}")
+        mesh = self.meshes[name]
+        return _core.Solid(
+            np.ascontiguousarray(mesh.points, np.float64), np.ascontiguousarray(mesh.triangles, np.int32)
+        )
+
     def values(self, settings: Section, name: str, curves: Curves, table: str = "") -> NDArray[np.float64]:
         """Values of a varied setting per curve, shape (count,).
 
@@ -65,6 +79,8 @@ class Context:
 
 class Operator(Section):
     """A pure function from curves to curves, given its settings and a context."""
+
+    starter: ClassVar[Mapping[str, Any]] = {}  # settings that the page adds it with, in TOML notation
 
     def apply(self, curves: Curves, context: Context) -> Curves:
         """Returns the curves after this operator."""
@@ -82,9 +98,24 @@ def packed(curves: Curves) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
 
 
 def resampled(curves: Curves, points: int) -> Curves:
-    """The curves with that many points each, at even distances along their splines; without attributes of points."""
+    """The curves with that many points each, at even distances along their splines."""
     fine = _core.resample_curves(*packed(curves), points)
-    return Curves(fine, offsets_from_counts(np.full(len(curves), points)), curves.ids, curves.curve)
+    offsets = offsets_from_counts(np.full(len(curves), points))
+    return Curves(fine, offsets, curves.ids, curves.curve, at_even_lengths(curves, points))
+
+
+def at_even_lengths(curves: Curves, points: int) -> dict[str, NDArray]:
+    """Numbers of points at even distances along curves, linear between points, by name; shape (count · points,)."""
+    u, found = np.linspace(0.0, 1.0, points), dict[str, NDArray]()
+    for name, values in curves.point.items():
+        if values.ndim > 1:
+            continue
+        rows = []
+        for k in range(len(curves)):
+            run = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(curves[k], axis=0), axis=1))])
+            rows.append(np.interp(u * run[-1], run, values[curves.offsets[k] : curves.offsets[k + 1]]))
+        found[name] = np.concatenate(rows).astype(values.dtype)
+    return found
 
 
 def with_lock_points(curves: Curves, context: Context) -> Curves:

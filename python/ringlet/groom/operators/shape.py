@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
@@ -12,6 +13,7 @@ from ringlet.data.curves import Curves
 from ringlet.data.quantities import Quantity
 from ringlet.groom.mask import Mask
 from ringlet.groom.operators.operator import Context, Operator, along_edges, grid, unit, with_grid
+from ringlet.groom.worn import Worn
 
 
 class Shape(Operator):
@@ -33,6 +35,10 @@ class Shape(Operator):
         """Returns the curves with the new shape, weighted by mask and blend."""
         weight = self.weights(curves, context)
         return self.blended(curves, self.shape(grid(curves), curves, context), weight) if weight.any() else curves
+
+    def worn(self, before: Curves, after: Curves, context: Context) -> Sequence[Worn]:
+        """What the locks wear from here on, for the curves before and after this operator."""
+        return ()
 
     def weights(self, curves: Curves, context: Context) -> NDArray[np.floating]:
         """Weight w of each point, shape (count, points)."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar, Literal
 
@@ -14,20 +14,20 @@ from ringlet import _core
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.groom import SECTION
-from ringlet.data.mesh import Mesh
-from ringlet.data.quantities import Quantity, refuse
+from ringlet.data.quantities import Quantity, Ramped, Varied, refuse
 from ringlet.groom.coil import Coil, on_scalp
 from ringlet.groom.operators.operator import UP, Context, arc_lengths, at_lengths, grid, unit, with_lock_points
 from ringlet.groom.operators.shape import Shape
 from ringlet.groom.operators.tied import TO_TIE
 from ringlet.groom.parting import Direction
-from ringlet.groom.scalp import Scalp
+from ringlet.groom.worn import Worn, revolved, ring
 
 PATH_POINTS = 24  # of the path over the head, and of that after the tie
 SMOOTHING = 3  # passes over the path on the skin
 CENTRE = 0.85  # distance of a puff's centre from its tie, in radii of the puff
 UNDERSIDE = -0.85  # cosine, from the axis, of the part of a puff around its tie where no lock ends
-BAND_AROUND, BAND_ACROSS = 48, 12  # points of a band
+PER_TIE = ("off", "radius", "fall", "width", "height", "windings", "band")  # settings with a value for each tie
+CARRIERS = 40  # roots nearest to a tie, which carry its band
 BAND_COLOR = (0.02, 0.02, 0.025)
 
 
@@ -51,30 +51,39 @@ class Tie(Shape):
         "unit direction of the section's middle",
     )
     each: Literal["head", "section"] = Field(default="head", description="one tie for all, or one for each section")
-    off: Annotated[float, Quantity("m", 0.0, 0.5)] = Field(
-        default=0.012, description="distance of the tie from the skin; with `curve` that of its first point counts"
+    off: Annotated[Varied, Quantity("m", 0.0, 0.5)] = Field(
+        default=Varied(value=0.012),
+        description="distance of the tie from the skin; with `curve` that of its first point counts",
     )
-    radius: Annotated[float, Quantity("m", 0.0, 1.0)] = Field(default=0.01, description="of the hair in the tie")
-    rise: Annotated[float, Quantity("m", -0.5, 0.5)] = Field(
-        default=0.005, description="how high the uppermost hair lies over the skin half-way to the tie"
+    radius: Annotated[Varied, Quantity("m", 0.0, 1.0)] = Field(
+        default=Varied(value=0.01), description="of the hair in the tie"
+    )
+    rise: Annotated[Ramped, Quantity("m", -0.5, 0.5)] = Field(
+        default=Ramped(value=0.005),
+        description="how high the uppermost hair lies over the skin half-way to the tie, with a ramp from root to tie",
     )
     after: Literal["tail", "ball", "bun"] = Field(default="tail", description="what the hair becomes after the tie")
-    spread: Annotated[float, Quantity("", 0.0, 20.0)] = Field(
-        default=2.0, description="radius at the end of a tail, as a multiple of that in the tie"
+    spread: Annotated[Ramped, Quantity("", 0.0, 20.0, product=False)] = Field(
+        default=Ramped(value=2.0, ramp=[(0, 0), (1, 1)]),
+        description="radius of a tail, as a multiple of that in the tie; its ramp goes from that in the tie, 0, to it",
     )
-    fall: Annotated[float, Quantity("m", 1e-3, 10.0)] = Field(
-        default=0.06, description="length over which a tail without a curve turns down"
+    fall: Annotated[Varied, Quantity("m", 1e-3, 10.0)] = Field(
+        default=Varied(value=0.06), description="length over which a tail without a curve turns down"
     )
-    width: Annotated[float, Quantity("m", 5e-3, 1.0)] = Field(default=0.12, description="of the ball or the bun")
-    height: Annotated[float, Quantity("m", 5e-3, 1.0)] = Field(default=0.04, description="of the bun")
-    windings: Annotated[float, Quantity("", 1.0, 12.0)] = Field(
-        default=2.0, description="how often the hair of a bun is wound around the tie"
+    width: Annotated[Varied, Quantity("m", 5e-3, 1.0)] = Field(
+        default=Varied(value=0.12), description="of the ball or the bun"
     )
-    band: Annotated[float, Quantity("m", 0.0, 0.05)] = Field(
-        default=0.0, description="thickness of the band, a mesh in the groom's file that a shot can name; 0: none"
+    height: Annotated[Varied, Quantity("m", 5e-3, 1.0)] = Field(default=Varied(value=0.04), description="of the bun")
+    windings: Annotated[Varied, Quantity("", 1.0, 12.0)] = Field(
+        default=Varied(value=2.0), description="how often the hair of a bun is wound around the tie"
+    )
+    band: Annotated[Varied, Quantity("m", 0.0, 0.05)] = Field(
+        default=Varied(value=0.0),
+        description="thickness of the band, a mesh that the groom's file has and the head carries; 0: none",
     )
 
     turns: ClassVar[bool] = True
+    starter: ClassVar[Mapping[str, Any]] = {"toward": [0, 1, -0.35]}
 
     @model_validator(mode="before")
     @classmethod
@@ -102,18 +111,22 @@ class Tie(Shape):
         tied = curves.curve.get(TO_TIE, np.zeros(len(curves), np.float32)).copy()
         affected: NDArray[np.bool_] = np.any(weight > 0.0, axis=1)
         for tie in self._ties(fine, affected, context):
-            shapes[tie.rows], tied[tie.rows] = self._tied(shapes[tie.rows], fine.ids[tie.rows], tie, context)
+            shapes[tie.rows], tied[tie.rows] = self._tied(fine.take(tie.rows), tie, context)
         result = self.blended(fine, shapes, weight)
         return Curves(result.points, result.offsets, result.ids, {**result.curve, TO_TIE: tied}, result.point)
 
-    def bands(self, curves: Curves, context: Context) -> list[Mesh]:
-        """The bands around the hair in the ties, as rings."""
-        if self.band == 0.0:
-            return []
-        affected: NDArray[np.bool_] = np.any(self.weights(curves, context) > 0.0, axis=1)
-        return [
-            self._ring(tie, f"{context.purpose} {k}") for k, tie in enumerate(self._ties(curves, affected, context))
-        ]
+    def worn(self, before: Curves, after: Curves, context: Context) -> list[Worn]:
+        """The bands around the hair in the ties, as rings that the roots nearest to them carry."""
+        affected: NDArray[np.bool_] = np.any(self.weights(before, context) > 0.0, axis=1)
+        made = []
+        for k, tie in enumerate(self._ties(before, affected, context)):
+            if (band := tie.value["band"]) > 0.0:
+                profile = ring(tie.value["radius"], band, band)
+                mesh = revolved(f"{context.purpose} {k}", tie.place, tie.axis, profile, BAND_COLOR)
+                away = np.linalg.norm(after.roots[tie.rows] - tie.place, axis=1)
+                nearest = tie.rows[np.argsort(away, kind="stable")[:CARRIERS]]
+                made.append(Worn.around(mesh, after, nearest, np.zeros(1)))
+        return made
 
     def _ties(self, curves: Curves, affected: NDArray[np.bool_], context: Context) -> Iterator[Place]:
         """The ties with the rows of their locks, among those that are affected."""
@@ -126,10 +139,11 @@ class Tie(Shape):
             for k in range(len(helpers)):
                 line = np.asarray(helpers[k], np.float64)
                 if (nearest == k).any():
-                    yield Place(rows[nearest == k], line[0], unit(line[1] - line[0]), line)
+                    value = self._values(line[0], int(helpers.ids[k]), context)
+                    yield Place(rows[nearest == k], line[0], unit(line[1] - line[0]), line, value)
             return
         if self.each == "head":
-            yield self._over(rows, unit(np.array(self.toward)), scalp)
+            yield self._over(rows, unit(np.array(self.toward)), 0, context)
             return
         if SECTION not in curves.curve:
             raise UserError(f"{context.purpose}.each is 'section', but there are none; add [locks.sections]")
@@ -137,26 +151,34 @@ class Tie(Shape):
         for one in np.unique(section[section >= 0]):
             within = rows[section == one]
             middle = unit(unit(curves.roots[within] - scalp.middle).mean(axis=0))
-            yield self._over(within, unit(middle + (0.0 if self.toward is None else np.array(self.toward))), scalp)
+            toward = 0.0 if self.toward is None else np.array(self.toward)
+            yield self._over(within, unit(middle + toward), int(one), context)
 
-    def _over(self, rows: NDArray, direction: NDArray, scalp: Scalp) -> Place:
+    def _over(self, rows: NDArray, direction: NDArray, number: int, context: Context) -> Place:
         """The tie in a direction from the middle of the scalp."""
+        scalp = context.scalp
         size = float(np.ptp(scalp.points, axis=0).max())
         probes = scalp.middle + np.linspace(0.0, size, 400)[:, None] * direction
         inside = np.flatnonzero(np.asarray(scalp.solid.above(np.ascontiguousarray(probes))[0]) <= 0.0)
         foot, normal = scalp.nearest(probes[inside[-1:] if len(inside) else [0]])
-        return Place(rows, foot[0] + self.off * normal[0], normal[0], None)
+        value = self._values(foot[0], number, context)
+        return Place(rows, foot[0] + value["off"] * normal[0], normal[0], None, value)
 
-    def _tied(
-        self, points: NDArray, ids: NDArray, tie: Place, context: Context
-    ) -> tuple[NDArray[np.floating], NDArray[np.floating]]:
-        """Locks (count, points, 3) after they are tied, and their lengths up to the tie [m], shape (count,)."""
-        disk = self._disk(ids, context)
+    def _values(self, place: NDArray, number: int, context: Context) -> dict[str, float]:
+        """The values of a tie, as those of a lock with its number that grows at the place of the scalp under it."""
+        curve = Curves(np.array([place], np.float64), np.array([0, 1], np.int32), np.array([number], np.int64))
+        under = context.scalp.bind(curve, np.inf, context.purpose)
+        return {name: float(context.values(self, name, under)[0]) for name in PER_TIE}
+
+    def _tied(self, curves: Curves, tie: Place, context: Context) -> tuple[NDArray[np.floating], NDArray[np.floating]]:
+        """Locks after they are tied, shape (count, points, 3), and their lengths up to the tie [m], shape (count,)."""
+        points, disk = grid(curves), self._disk(curves.ids, context)
         offset = disk @ np.stack(tie.axes(context.scalp.middle))
-        over_head = self._over_head(points[:, 0], tie.place + self.radius * offset, ids, context)
+        over_head = self._over_head(curves, tie.place + tie.value["radius"] * offset, context)
         tied = arc_lengths(over_head)[:, -1]
         if self.after == "tail":
-            whole = np.concatenate([over_head, self._tail(points, offset, tie)[:, 1:]], axis=1)
+            spread = context.values(self, "spread", curves)
+            whole = np.concatenate([over_head, self._tail(points, offset, spread, tie)[:, 1:]], axis=1)
             return at_lengths(whole, arc_lengths(points)), tied
         after = self._ball(disk, offset, tie) if self.after == "ball" else self._bun(offset, tie, context)
         whole = np.concatenate([over_head, after[:, 1:]], axis=1)
@@ -170,14 +192,15 @@ class Tie(Shape):
         angle, radius = 2.0 * np.pi * random.uniform(ids, 0), np.sqrt(random.uniform(ids, 1))
         return radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
 
-    def _over_head(self, roots: NDArray, ties: NDArray, ids: NDArray, context: Context) -> NDArray[np.float64]:
+    def _over_head(self, curves: Curves, ties: NDArray, context: Context) -> NDArray[np.float64]:
         """Paths over the skin from roots to places in the tie (count, 3); shape (count, PATH_POINTS, 3)."""
-        scalp, t = context.scalp, np.linspace(0.0, 1.0, PATH_POINTS)
+        scalp, t, roots = context.scalp, np.linspace(0.0, 1.0, PATH_POINTS), curves.roots
         path = _around(roots, ties, scalp.middle, t)
         foot, normal = (found.reshape(path.shape) for found in scalp.nearest(path.reshape(-1, 3)))
         height = np.asarray(scalp.solid.above(np.ascontiguousarray(ties))[0])
-        layer = 0.3 + 0.7 * context.random("layer").uniform(ids)
-        raised = height[:, None] * t**4 + self.rise * layer[:, None] * np.sin(np.pi * t)
+        layer = 0.3 + 0.7 * context.random("layer").uniform(curves.ids)
+        rise = (context.values(self, "rise", curves) * layer)[:, None] * self.rise.along(t)
+        raised = height[:, None] * t**4 + rise * np.sin(np.pi * t)
         path = foot
         for _ in range(SMOOTHING):
             path[:, 1:-1] = 0.25 * (path[:, :-2] + path[:, 2:]) + 0.5 * path[:, 1:-1]
@@ -187,25 +210,26 @@ class Tie(Shape):
         path[:, 0] = roots
         return path
 
-    def _tail(self, points: NDArray, offset: NDArray, tie: Place) -> NDArray[np.float64]:
-        """Paths of a tail, shape (count, k, 3)."""
+    def _tail(self, points: NDArray, offset: NDArray, spread: NDArray, tie: Place) -> NDArray[np.float64]:
+        """Paths of a tail, shape (count, k, 3), for the spread of each lock, shape (count,)."""
         line = tie.line
         if line is None:
             run = np.linspace(0.0, max(1.1 * float(arc_lengths(points)[:, -1].max()), 1e-3), 3 * PATH_POINTS)
-            direction = unit(tie.axis - (run / self.fall)[:, None] * UP)
+            direction = unit(tie.axis - (run / tie.value["fall"])[:, None] * UP)
             line = tie.place + np.concatenate([np.zeros((1, 3)), np.cumsum(direction[:-1] * run[1], axis=0)])
-        width = self.radius * np.linspace(1.0, self.spread, len(line))
-        tail: NDArray[np.float64] = line[None] + width[None, :, None] * offset[:, None, :]
+        wider = (spread - 1.0)[:, None] * self.spread.along(np.linspace(0.0, 1.0, len(line)))
+        width = tie.value["radius"] * np.maximum(1.0 + wider, 0.0)
+        tail: NDArray[np.float64] = line[None] + width[:, :, None] * offset[:, None, :]
         return tail
 
     def _ball(self, disk: NDArray, offset: NDArray, tie: Place) -> NDArray[np.float64]:
         """Paths from the tie to the surface of a sphere, evenly spread over it; shape (count, PATH_POINTS, 3)."""
-        ball = 0.5 * self.width
+        ball = 0.5 * tie.value["width"]
         out = np.linalg.norm(disk, axis=1)
         cosine = 1.0 - out**2 * (1.0 - UNDERSIDE)  # keeps areas
         radial = unit(offset)
         direction = cosine[:, None] * tie.axis + np.sqrt(1.0 - cosine**2)[:, None] * radial
-        start = tie.place + self.radius * offset
+        start = tie.place + tie.value["radius"] * offset
         end = tie.place + CENTRE * ball * tie.axis + ball * direction
         span = np.linalg.norm(end - start, axis=1, keepdims=True)
         leaving = span * unit(tie.axis + 0.8 * out[:, None] * radial)
@@ -221,7 +245,7 @@ class Tie(Shape):
 
     def _bun(self, offset: NDArray, tie: Place, context: Context) -> NDArray[np.float64]:
         """Paths of the locks of a rope that is wound around the tie, shape (count, k, 3)."""
-        coil = Coil.fitted(self.width, self.height, self.windings)
+        coil = Coil.fitted(*(tie.value[name] for name in ("width", "height", "windings")))
         line = on_scalp(coil.path(), tie.place, tie.axis, context.scalp)
         height = (line - tie.place) @ tie.axis
         line = np.concatenate([tie.place[None], line[int(np.argmax(height > 0.5 * coil.rope)) :]])
@@ -233,32 +257,22 @@ class Tie(Shape):
         along = np.linspace(0.0, 1.0, len(line))
         grow = np.clip(along / 0.1, 0.0, 1.0)
         close = np.sqrt(np.clip((1.0 - along) / 0.06, 0.0, 1.0))  # the end is tucked in
-        size = (self.radius + grow * (0.95 * coil.rope - self.radius)) * close
+        radius = tie.value["radius"]
+        size = (radius + grow * (0.95 * coil.rope - radius)) * close
         path: NDArray[np.float64] = line + size[None, :, None] * np.einsum("nk,pxk->npx", place, frames[:, :, :2])
         return path
-
-    def _ring(self, tie: Place, name: str) -> Mesh:
-        """A torus around the hair in the tie."""
-        across, upward = tie.axes(tie.place - tie.axis)
-        a, b = (np.linspace(0.0, 2.0 * np.pi, n, endpoint=False) for n in (BAND_AROUND, BAND_ACROSS))
-        out = np.cos(a)[:, None, None] * across + np.sin(a)[:, None, None] * upward
-        wide = self.radius + 0.5 * self.band * (1.0 + np.cos(b))
-        points = tie.place + wide[None, :, None] * out + 0.5 * self.band * np.sin(b)[None, :, None] * tie.axis
-        i, j = np.meshgrid(np.arange(BAND_AROUND), np.arange(BAND_ACROSS), indexing="ij")
-        i1, j1 = (i + 1) % BAND_AROUND, (j + 1) % BAND_ACROSS
-        corner = [(p * BAND_ACROSS + q).ravel() for p, q in ((i, j), (i1, j), (i1, j1), (i, j1))]
-        triangles = np.concatenate([np.stack([corner[0], corner[k + 1], corner[k]], axis=1) for k in (1, 2)])
-        return Mesh(name, points.reshape(-1, 3), triangles.astype(np.int32), color=BAND_COLOR)
 
 
 @dataclass(frozen=True)
 class Place:
-    """A tie: rows of its locks, its place [m], the unit axis of the hair in it, and the line of its tail or None."""
+    """A tie: rows of its locks, its place [m], the unit axis of the hair in it, the line of its tail or None, and the
+    values of its settings."""
 
     rows: NDArray[np.integer]
     place: NDArray[np.float64]
     axis: NDArray[np.float64]
     line: NDArray[np.float64] | None
+    value: Mapping[str, float]
 
     def axes(self, middle: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Two unit axes of the cross-section."""

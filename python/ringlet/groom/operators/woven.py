@@ -16,16 +16,18 @@ from ringlet.data.errors import Fix, UserError
 from ringlet.data.groom import CORE, STRAND_RADIUS, TIED
 from ringlet.data.quantities import Quantity, Ramped, Varied
 from ringlet.groom import felt, weave
+from ringlet.groom.operators.ended import Ended
 from ringlet.groom.operators.operator import Context, arc_lengths, evenly, grid, unit
-from ringlet.groom.operators.sectioned import Sectioned, Strands
+from ringlet.groom.operators.sectioned import Strands
 
 JOIN = "join"  # curve attribute of locks: length along a woven strand after which its hairs come to it [m]
 JOINED = 0.5  # place where they do, as a part of the start
 EASE = 0.5  # turns over which a braid begins and ends
 LEAST_POINTS, GOOD_POINTS = 6, 10  # of a strand, per wave of its path to the front and back
+SEALED = 0.15  # factor on the width of a braid at a sealed tip
 
 
-class Woven(Sectioned):
+class Woven(Ended):
     """Weaves the strands of each section about a centre line, the mean of their shapes: ``p = c + a x + b z``, with x
     across the braid and z away from the head, in a rotation-minimising frame of c. The strands come together over
     ``start`` and run on side by side over ``tail``."""
@@ -42,14 +44,6 @@ class Woven(Sectioned):
     start: Annotated[Varied, Quantity("m", 0.0, 1.0)] = Field(
         default=Varied(value=0.01), description="length over which the strands come together"
     )
-    tail: Annotated[Varied, Quantity("m", 0.0, 1.0)] = Field(
-        default=Varied(value=0.02), description="length at the tip that is not woven"
-    )
-    tie: Annotated[Varied, Quantity("m", 0.0, 0.1)] = Field(
-        default=Varied(value=0.004),
-        description="length before the tail over which a band ties the strands: they stay together there in a shot",
-    )
-
     simulate: Literal["strands", "core"] = Field(
         default="strands",
         description="in a shot: each strand by itself, held by contact, or the braid as one rod that carries them",
@@ -78,9 +72,9 @@ class Woven(Sectioned):
         """The strands of each section, woven about their mean."""
         shapes = grid(curves)
         core = {CORE: float(self.simulate == "core")} if self.simulate == "core" or CORE in curves.curve else {}
-        narrows = self.width.along(np.linspace(0.0, 1.0, felt.KNOTS))
         for braid in self.braids(curves, leaders, rows, context):
             tied = braid.tied(shapes.shape[1])
+            narrows = braid.narrows(np.linspace(0.0, 1.0, felt.KNOTS), self)
             yield Strands(
                 braid.rows,
                 braid.woven(shapes[braid.rows], context.scalp.middle, self),
@@ -94,7 +88,8 @@ class Woven(Sectioned):
     ) -> list[Braided]:
         """The braids of sections, for a strand of each and the rows of all."""
         length = np.array([_length(curves, of_section) for of_section in rows])
-        values = {k: context.values(self, k, leaders) for k in ("width", "tightness", "start", "tail", "tie")}
+        values = {k: context.values(self, k, leaders) for k in ("width", "tightness", "start")}
+        tail, tie, hold = self.ends(values["width"], leaders, context)
         pitch = self.pitch_of(values["width"]) if self.pitch is None else context.values(self, "pitch", leaders)
         depths, mirrored = self.depths(values["width"], leaders, context), self.mirrored(leaders, context)
         radius: dict[tuple, float] = {}
@@ -119,8 +114,10 @@ class Woven(Sectioned):
                     length=length[k],
                     turns=length[k] / pitch[k],
                     start=min(values["start"][k] / length[k], 0.5),
-                    tail=min(values["tail"][k] / length[k], 0.5),
-                    tie=values["tie"][k] / length[k],
+                    tail=min(tail[k] / length[k], 0.5),
+                    tie=tie[k] / length[k],
+                    hold=hold[k],
+                    seal=width / length[k] if self.end == "burnt" else 0.0,
                 )
             )
         return braids
@@ -147,6 +144,8 @@ class Braided:
     turns:         turns of the path along the whole length, at a ramp of 1
     start, tail:   parts of the length in which strands come together and run on
     tie:           part of the length before the tail in which they are tied
+    hold:          factor on the width there
+    seal:          part of the length over which strands close to a sealed tip
     """
 
     rows: NDArray[np.integer]
@@ -159,6 +158,22 @@ class Braided:
     start: float
     tail: float
     tie: float
+    hold: float
+    seal: float
+
+    def narrows(self, u: NDArray, settings: Woven) -> NDArray[np.float64]:
+        """Factor on the width of the braid and of its strands at places u from root (0) to tip (1)."""
+        size = settings.width.along(u)
+        if self.hold < 1.0:
+            step = 0.5 / (felt.KNOTS - 1)  # so that a knot of the profile is where it is narrowest
+            end = 1.0 - self.tail
+            off = np.maximum(np.maximum(end - self.tie - step - u, u - end - step), 0.0)
+            t = np.clip(off / (2.0 * step + self.tie), 0.0, 1.0)
+            size = size * (self.hold + (1.0 - self.hold) * t * t * (3.0 - 2.0 * t))
+        if self.seal > 0.0:
+            t = np.clip((1.0 - u) / self.seal, 0.0, 1.0)
+            size = size * np.maximum(np.sqrt(t * (2.0 - t)), SEALED)
+        return size
 
     def tied(self, points: int) -> NDArray[np.bool_]:
         """The points of a strand in the band; at least two where there is a band, shape (points,)."""
@@ -183,7 +198,7 @@ class Braided:
         strands = len(offset)
         u = np.linspace(0.0, 1.0, len(line))
         phase = self._phase(u, settings)
-        size = settings.width.along(u)
+        size = self.narrows(u, settings)
 
         order = self._order(np.stack([offset @ across[0], offset @ front[0]], axis=1))
         x, z = weave.path(self.pattern, strands, phase[None] + 2.0 * np.pi * order[:, None] / strands)

@@ -1,4 +1,5 @@
-"""A simulation as USD: a layer over the groom that animates the points of ``/groom/locks`` and of cloths."""
+"""A simulation as USD: a layer over the groom that animates the points of ``/groom/locks``, of cloths and of what the
+hair wears."""
 
 from __future__ import annotations
 
@@ -12,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pxr import Sdf, Usd, UsdGeom
 
+from ringlet.data.accessory import Accessory
 from ringlet.data.cache import Cache, CachedCloth
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Mesh
@@ -21,7 +23,7 @@ from ringlet.io.space import to_metres
 from ringlet.io.usd.clips import clip_at
 from ringlet.io.usd.cloths import ClothPrims, cloth_metadata, read_cloth, set_cloth
 from ringlet.io.usd.curves import OWN, own_curves
-from ringlet.io.usd.groom import LOCKS, VERSION, check_version, groom_prim
+from ringlet.io.usd.groom import LOCKS, VERSION, check_version, groom_prim, read_accessories
 from ringlet.io.usd.mesh import mesh_at
 from ringlet.io.usd.place import Place, placed
 from ringlet.io.usd.stage import Source, parse_json, reading, reading_more
@@ -224,8 +226,15 @@ class CacheWriter(StreamWriter):
         with reading(self.under) as groom:
             prims = ClothPrims(stage, groom)
             self._meshes = [prims.over(cloth) for cloth in self._cloths]
+            cloths = {mesh.GetPrim().GetPath() for mesh in self._meshes}
+            worn = [(prim, one) for prim, one in read_accessories(groom) if prim.GetPath() not in cloths]
         self._places = [Place(mesh.GetPrim(), self.space, self.path) for mesh in self._meshes]
+        self._worn = [self._over(stage, prim.GetPath(), accessory) for prim, accessory in worn]
         return self
+
+    def _over(self, stage: Usd.Stage, path: Sdf.Path, accessory: Accessory) -> tuple[UsdGeom.Mesh, Place, Accessory]:
+        prim = stage.OverridePrim(path)
+        return UsdGeom.Mesh(prim), Place(prim, self.space, self.path), accessory
 
     def add(
         self,
@@ -250,6 +259,8 @@ class CacheWriter(StreamWriter):
         self._add_lag(frame, statistics or {})
         for mesh, place, positions in zip(self._meshes, self._places, cloths, strict=True):
             set_cloth(mesh, frame, positions, place, around)
+        for mesh, place, accessory in self._worn:
+            set_cloth(mesh, frame, accessory.at(self._locks.points, points), place, around)
         self._statistics.append(statistics or {})
 
     def _add_lag(self, frame: float, statistics: dict[str, Any]) -> None:

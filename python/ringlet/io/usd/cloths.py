@@ -1,6 +1,6 @@
 """Simulated cloth in a cache: an over on the prim of its mesh.
 
-A mesh from another file than the head's is referenced under ``/groom/cloths``.
+A mesh from another file than the groom's or the head's is referenced under ``/groom/cloths``.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class ClothPrims:
     """
 
     def __init__(self, stage: Usd.Stage, groom: Source) -> None:
-        self._stage = stage
+        self._stage, self._groom = stage, groom.path
         self._head, scalp = scalp_source(groom)
         self._head_top = Sdf.Path(scalp).GetPrefixes()[0]
         self._tops: dict[tuple[Path, Sdf.Path], Sdf.Path] = {}
@@ -48,6 +48,8 @@ class ClothPrims:
         if cloth.file is None:
             raise UserError(f"cloth '{cloth.name}': comes from no file; write its mesh as USD and read it from there")
         prim = Sdf.Path(cloth.prim)
+        if cloth.file.resolve() == self._groom.resolve():
+            return prim
         top = prim.GetPrefixes()[0]
         if cloth.file.resolve() == self._head.resolve() and top == self._head_top:
             return prim.ReplacePrefix(top, Sdf.Path(BODY))

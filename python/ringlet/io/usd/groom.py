@@ -3,7 +3,8 @@
 - /groom: Xform, with the recipe
 - /groom/locks: BasisCurves, one per lock, in the rest pose
 - /groom/guides: BasisCurves, the guides
-- /groom/bands: the bands of ties, as meshes
+- /groom/accessories: what the hair wears, such as bands and beads: meshes with ``ringlet:vertices``, the points of
+  /groom/locks that carry them rigidly
 - /groom/body: the head, a reference to its file, or the mesh itself without a file
 
 With variants, locks and guides are in the variants of the set ``groom``.
@@ -19,8 +20,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from pxr import Sdf, Usd, UsdGeom
+from pxr import Sdf, Usd, UsdGeom, Vt
 
+from ringlet.data.accessory import Accessory
 from ringlet.data.binding import check_roots, root_places
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
@@ -32,7 +34,7 @@ from ringlet.data.regular import check_regular
 from ringlet.data.settings import did_you_mean
 from ringlet.data.stage import StageSpace
 from ringlet.io.usd.curves import define_curves, own_curves, set_display_color, set_points, set_roots
-from ringlet.io.usd.mesh import define_mesh, read_usd_mesh, select_mesh
+from ringlet.io.usd.mesh import define_mesh, mesh_at, read_usd_mesh, select_mesh
 from ringlet.io.usd.place import Place, rounded
 from ringlet.io.usd.stage import (
     CAGE,
@@ -41,6 +43,7 @@ from ringlet.io.usd.stage import (
     Source,
     new_stage,
     parse_json,
+    prims,
     read_usd_space,
     reading,
     relative,
@@ -49,7 +52,7 @@ from ringlet.io.usd.stage import (
 from ringlet.io.usd.values import Types
 
 GROOM, LOCKS, GUIDES, BODY = "/groom", "/groom/locks", "/groom/guides", "/groom/body"
-BANDS = "/groom/bands"
+ACCESSORIES = "/groom/accessories"
 OF_EACH = {"region", "edge", "hairs", "color", "fiber", "absent"}  # settings of one of several grooms
 VARIANTS, BASE = "groom", "base"
 VERSION, SEVERAL = 1, 2  # versions of this layout, with one groom and with several
@@ -138,8 +141,10 @@ def _define(stage: Usd.Stage, groom: Groom, space: StageSpace, file: Path | str)
         _set(root, "recipe", Types.String, groom.recipe)
     _define_guides(stage, LOCKS, groom.locks, groom, space, file)
     _define_guides(stage, GUIDES, groom.guides, groom, space, file)
-    for band in groom.bands:
-        define_mesh(stage, f"{BANDS}/{band.name.replace(' ', '_')}", band, space, file)
+    for accessory in groom.accessories:
+        place = f"{ACCESSORIES}/{accessory.mesh.name.replace(' ', '_')}"
+        prim = define_mesh(stage, place, accessory.mesh, space, file)
+        _set(prim, "vertices", Types.IntArray, Vt.IntArray.FromNumpy(accessory.vertices.astype(np.int32)))
 
 
 def _hide(stage: Usd.Stage, groom: Groom) -> None:
@@ -192,7 +197,24 @@ def read_groom(path: Path | str, variant: str | None = None, *, bound: bool = Tr
             grooms=_grooms(source, root),
             recipe=_get(root, "recipe"),
             variant=root.GetVariantSets().GetVariantSet(VARIANTS).GetVariantSelection() or None,
+            accessories=[accessory for _, accessory in read_accessories(source)],
         )
+
+
+def read_accessories(source: Source) -> list[tuple[Usd.Prim, Accessory]]:
+    """What the hair of a groom wears at rest, with the prims; raises UserError for carriers that are not there."""
+    top = source.stage.GetPrimAtPath(ACCESSORIES)
+    worn = [prim for prim in prims(top) if UsdGeom.Mesh(prim)] if top else []
+    count = len(UsdGeom.PointBased(source.stage.GetPrimAtPath(LOCKS)).GetPointsAttr().Get() or ()) if worn else 0
+    found = []
+    for prim in worn:
+        vertices = np.array(_get(prim, "vertices") or (), np.int64)
+        if not len(vertices) or vertices.min() < 0 or vertices.max() >= count:
+            raise UserError(
+                f"{source.where(prim)}: ringlet:vertices must name points of {LOCKS}, which has {count}; {REMEDY}"
+            )
+        found.append((prim, Accessory(mesh_at(source, prim), vertices)))
+    return found
 
 
 def _settings(source: Source, root: Usd.Prim, name: str) -> dict[str, Any] | None:
