@@ -35,7 +35,7 @@ FOCAL_LENGTH, AWAY = 0.085, 1.9  # of the lens; from the camera to what it looks
 
 PAGE_HEAD = """# Gallery
 
-Styles on two heads in one light. The child and the adult are made by code of the [examples](../examples/README.md).
+Styles on two heads in one light. The child and the adult are made by the code in `examples/child` and `examples/adult`.
 Every picture is path-traced with all hairs of the groom: 120 or more on a cm² of scalp where hair is loose.
 `python docs/gallery.py` makes the pictures, and this page from `docs/gallery.toml`.
 
@@ -247,14 +247,12 @@ def main() -> None:
     parser.add_argument("--page", action="store_true", help="write docs/gallery.md, and render nothing")
     chosen = parser.parse_args()
     styles = read_styles()
-    write_page(styles)
-    if chosen.page:
-        return
     FOLDER.mkdir(exist_ok=True)
-    wanted = [style for style in styles if not chosen.styles or style.name in chosen.styles]
+    wanted = [] if chosen.page else [style for style in styles if not chosen.styles or style.name in chosen.styles]
     with tempfile.TemporaryDirectory() as folder:
         for style, names in due(wanted, chosen.again, chosen.first):
             render(style, names, Path(folder))
+    write_page(styles)  # with the pictures that are there now
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import re
 import tomllib
 from functools import cache
@@ -9,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 from ringlet.data.groom import Groom
 from ringlet.groom.load import load
 from ringlet.groom.sections import STRAND
@@ -54,6 +56,23 @@ def test_there_are_twenty_styles_on_two_heads_with_short_recipes_and_a_page():
     page = (ROOT / "docs/gallery.md").read_text()
     assert all(entry["recipe"] in page and f"## {entry['title']}\n" in page for entry in STYLES.values())
     assert all((ROOT / "docs" / picture).exists() for picture in re.findall(r"images/gallery/\w+\.jpg", page))
+
+
+def test_a_picture_is_due_until_it_holds_the_digest_of_its_recipe_and_camera(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.syspath_prepend(str(ROOT / "docs"))
+    import gallery
+
+    monkeypatch.setattr(gallery, "FOLDER", tmp_path)
+    (bob,) = (style for style in gallery.read_styles() if style.name == "bob")
+    assert [names for _, names in gallery.due([bob], again=False)] == [["adult", "close"], ["child"]]
+    mark = gallery.digest(bob.recipe, *bob.shots["close"])
+    Image.new("RGB", (8, 8)).save(tmp_path / "bob_close.jpg", comment=mark.encode())
+    assert [names for _, names in gallery.due([bob], again=False)] == [["adult"], ["child"]]
+    moved = dataclasses.replace(bob.shots["close"][1], height=7.0)
+    bob.shots["close"] = ("adult", moved)
+    assert [names for _, names in gallery.due([bob], again=False)] == [["adult", "close"], ["child"]]
 
 
 def test_locks_of_a_style_are_rooted_in_the_scalp_and_stay_out_of_the_head(style: tuple[str, str, Groom]):
