@@ -13,7 +13,7 @@ sources := pyproject.toml CMakeLists.txt $(wildcard cmake/* python/ringlet/*/__i
 # What the review page is made from.
 page := tools/web.sh $(wildcard web/*.json web/*.ts web/*.html) $(shell find web/src web/public -type f)
 
-.PHONY: help build demo view test blender bench docs lint clean
+.PHONY: help build demo view test blender bench docs gallery lint clean
 
 help: ## list the targets
 	@grep -E '^[a-z]+:.*##' Makefile | sed -E 's/:.*## /\t/' | expand -t 10
@@ -66,6 +66,9 @@ bench: build ## speed, as JSON
 
 docs: .venv/tooled ## the documents: docs/_build/html/index.html
 	@tools/docs.sh
+
+gallery: .venv/tooled ## pictures of docs/gallery.md that are missing or out of date, and the page
+	@$(python) docs/gallery.py
 
 lint: .venv/tooled ## formatting, types, static analysis, who may call whom
 	@tools/lint.sh

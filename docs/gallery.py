@@ -1,100 +1,259 @@
-"""Makes the pictures of the gallery: every type of hair on the example head in the same light, and single locks.
+"""Makes the gallery: styles on two heads in one light, each with a close-up, and the page that shows them.
 
-.venv/bin/python docs/gallery.py [TYPE …]
+    .venv/bin/python docs/gallery.py            all pictures that are missing or out of date, one at a time
+    .venv/bin/python docs/gallery.py bob 4C     those of these styles
+    .venv/bin/python docs/gallery.py --page     only docs/gallery.md
+
+Styles and their cameras stand in docs/gallery.toml. A picture holds a digest of its resolved recipe, its head and its
+camera: it is rendered again when one of them changes, so that an interrupted run goes on. ``--again`` renders all.
 """
 
 from __future__ import annotations
 
-import sys
+import argparse
+import hashlib
 import tempfile
+import tomllib
+from collections.abc import Iterator
+from dataclasses import astuple, dataclass
+from math import cos, radians, sin
 from pathlib import Path
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection
-from matplotlib.figure import Figure
-from numpy.typing import NDArray
 from PIL import Image
-from ringlet.data.quantities import Varied
-from ringlet.groom.operators import Grown, Locks
+from pxr import Gf, Usd, UsdGeom
+from ringlet.groom.load import load
 
 import ringlet
-from ringlet import Mesh
-from ringlet.groom import PRESETS, Recipe, make_groom, make_hairs, read_recipe
 
-TYPES = Path(__file__).parents[1] / "examples" / "types"
-IMAGES = Path(__file__).parent / "images"
-PAIRS = ("2B", "3A", "3C", "4A", "4C")  # locks with and without a curl of their hairs
-SAMPLES = 12
-
-
-def picture(name: str, folder: Path) -> None:
-    """Writes the picture of one type."""
-    groom, hair, still = (folder / f"{name}.{kind}" for kind in ("usdc", "hair.usdc", "png"))
-    ringlet.write_groom(ringlet.build_groom(TYPES / f"{name}.recipe.toml"), groom)
-    ringlet.write_hairs(groom, hair)
-    ringlet.write_still(hair, still, width=440, height=495, samples=SAMPLES)
-    head = Image.open(still).convert("RGB").crop((18, 0, 422, 454))
-    head.resize((320, 360), Image.Resampling.LANCZOS).save(IMAGES / "gallery" / f"{name}.jpg", quality=85)
+DOCS = Path(__file__).parent
+ROOT, FOLDER = DOCS.parent, DOCS / "images" / "gallery"
+HEADS = ("child", "adult")
+COLUMNS = 6  # of small pictures
+FOCAL_LENGTH, AWAY = 0.085, 1.9  # of the lens; from the camera to what it looks at [m]
 
 
-def bundles(recipe: Recipe, numbers: tuple[int, ...]) -> list[list[NDArray[np.floating]]]:
-    """Hairs of hanging locks of a recipe, from the root of their lock [mm]."""
-    corners = np.array([[-0.03, 0, -0.03], [-0.03, 0, 0.03], [0.03, 0, 0.03], [0.03, 0, -0.03]])
-    floor = Mesh("sheet", corners, np.array([[0, 1, 2], [0, 2, 3]]))
-    assert recipe.curl is not None
-    upright = {
-        "seed": 5,
-        "guides": Grown(count=40, length=Varied(value=0.12), lift=Varied(value=1.0), droop=Varied(value=0.0)),
-        "locks": Locks(count=40, points=500),
-        "shape": [],
-        "scalp": recipe.scalp.model_copy(update={"region": None}),
-        "curl": recipe.curl.model_copy(update={"keep": "silhouette", "phase_lock": None}),
-        "hairs": recipe.hairs.model_copy(update={"density": None, "per_lock": Varied(value=50), "points": 900}),
-    }
-    hairs = make_hairs(make_groom(recipe.model_copy(update=upright), floor)).curves
-    locks = [np.flatnonzero(hairs.curve["lock"] == number).tolist() for number in numbers]
-    return [[1e3 * (hairs[hair] - hairs[own[0]][0]) * [1, -1, 1] for hair in own] for own in locks]
+PAGE_HEAD = """# Gallery
+
+Styles on two heads in one light. The child and the adult are made by the code in `examples/child` and `examples/adult`.
+Every picture is path-traced with all hairs of the groom: 120 or more on a cm² of scalp where hair is loose.
+`python docs/gallery.py` makes the pictures, and this page from `docs/gallery.toml`.
+
+A recipe fits the other head with two lines, as the middle of the skull and the names of regions are the same:
+
+```toml
+ringlet = 1
+extends = "../looks/bob.recipe.toml"
+
+[scalp]
+file = "../adult/head.usdc"
+mesh = "/adult/skin"
+```
+"""
 
 
-def draw(axes: Axes, lines: list[NDArray[np.floating]], x: float, width: float) -> None:
-    """Draws the hairs of a lock, centred at x [mm]."""
-    shades = np.linspace(0.25, 0.6, len(lines))
-    colors = [(shade, 0.6 * shade, 0.4 * shade) for shade in shades]
-    axes.add_collection(LineCollection([line[:, :2] + [x, 0] for line in lines], colors=colors, linewidths=width))
+@dataclass(frozen=True)
+class Shot:
+    """A camera of the gallery.
+
+    at:     point in the middle of the picture [cm]
+    height: of what is seen at that distance [cm]
+    view:   azimuth from the front to the left of the head, and elevation [degrees]
+    size:   of the picture [pixels]
+    """
+
+    at: tuple[float, float, float]
+    height: float
+    view: tuple[float, float]
+    size: tuple[int, int]
+    samples: int
 
 
-def locks(name: str) -> None:
-    """Draws two locks of one type, hanging side by side: 60 mm by 68 mm."""
-    figure = Figure(figsize=(3.2, 3.6), dpi=100)
-    axes = figure.add_axes((0, 0, 1, 1))
-    for number, lines in enumerate(bundles(read_recipe(TYPES / f"{name}.recipe.toml"), (3, 4))):
-        draw(axes, lines, 30 * number, 0.6)
-    axes.set(xlim=(-15, 45), ylim=(-66, 1.5), aspect="equal")
-    axes.axis("off")
-    figure.savefig(IMAGES / "gallery" / f"{name}_locks.jpg", pil_kwargs={"quality": 82})
+@dataclass(frozen=True)
+class Style:
+    """A style of the gallery: its recipe, the head of its large picture, and its cameras by the name of the picture."""
+
+    name: str
+    title: str
+    text: str
+    recipe: Path
+    shots: dict[str, tuple[str, Shot]]
 
 
-def pairs() -> None:
-    """Draws locks of several types twice: with hairs that only follow them, and with a curl of hairs."""
-    figure = Figure(figsize=(10, 4.6), dpi=100)
-    axes = figure.add_axes((0, 0, 1, 0.94))
-    for number, name in enumerate(PAIRS):
-        recipe = read_recipe(TYPES / f"{name}.recipe.toml")
-        plain = recipe.hairs.model_copy(update={"families": None, "curl": None, "coil": None})
-        for side, hairs in enumerate((plain, recipe.hairs)):
-            lines = bundles(recipe.model_copy(update={"hairs": hairs}), (3,))[0]
-            draw(axes, lines, 62 * number + 28 * side, 0.5)
-        axes.text(62 * number + 14, 6, name, ha="center")
-    axes.set(xlim=(-18, 62 * len(PAIRS) - 15), ylim=(-128, 2), aspect="equal")
-    axes.axis("off")
-    figure.savefig(IMAGES / "hair_curl.jpg", pil_kwargs={"quality": 82})
+def read_styles() -> list[Style]:
+    """The styles of docs/gallery.toml."""
+    table = tomllib.loads((DOCS / "gallery.toml").read_text())
+    common = table["camera"]
+    return [read_style(entry, common) for entry in table["style"]]
+
+
+def read_style(entry: dict, common: dict) -> Style:
+    """A style with its cameras: one of each head, the large one first, and one close-up."""
+    shots = {}
+    order = sorted(HEADS, key=lambda head: head != entry["head"])
+    for head, kind in zip(order, ("large", "other"), strict=True):
+        camera = common["head"] | common[kind] | entry.get("camera", {}) | entry.get(f"camera_{head}", {})
+        shots[head] = (head, shot(camera))
+    shots["close"] = (order[0], shot(common["close"] | entry["close"]))
+    return Style(entry["name"], entry["title"], entry["text"], ROOT / entry["recipe"], shots)
+
+
+def shot(table: dict) -> Shot:
+    return Shot(tuple(table["at"]), table["height"], tuple(table["view"]), tuple(table["size"]), table["samples"])
+
+
+def variant(recipe: Path, head: str) -> str:
+    """Text of a recipe for a head: the recipe with another scalp."""
+    file = ROOT / "examples" / head / "head.usdc"
+    return f'ringlet = 1\nextends = "{recipe}"\n[scalp]\nfile = "{file}"\nmesh = "/{head}/skin"\n'
+
+
+def digest(recipe: Path, head: str, camera: Shot) -> str:
+    """Digest of all that a picture is made of, but for the program."""
+    parts = [load(recipe)[0], (ROOT / "examples" / head / "head.usdc").read_bytes(), repr(astuple(camera))]
+    made = hashlib.sha256()
+    for part in parts:
+        made.update(part if isinstance(part, bytes) else part.encode())
+    return made.hexdigest()
+
+
+def stored_digest(path: Path) -> str:
+    """Digest in a picture; empty without one."""
+    if not path.exists():
+        return ""
+    with Image.open(path) as picture:
+        return bytes(picture.info.get("comment", b"")).decode(errors="replace")
+
+
+def due(styles: list[Style], again: bool, first_only: bool = False) -> Iterator[tuple[Style, list[str]]]:
+    """Styles with the names of their pictures that are missing or out of date: first those of the style's own head."""
+    for second in (False,) if first_only else (False, True):
+        for style in styles:
+            own = next(iter(style.shots.values()))[0]
+            names = [
+                name
+                for name, (head, camera) in style.shots.items()
+                if (head != own) == second
+                and (again or stored_digest(picture_path(style, name)) != digest(style.recipe, head, camera))
+            ]
+            if names:
+                yield style, names
+
+
+def picture_path(style: Style, name: str) -> Path:
+    return FOLDER / f"{style.name}_{name}.jpg"
+
+
+def render(style: Style, names: list[str], folder: Path, fraction: float = 1.0) -> None:
+    """Renders pictures of a style, head by head; ``fraction`` of the hairs, each wider."""
+    for head in HEADS:
+        chosen = [name for name in names if style.shots[name][0] == head]
+        if not chosen:
+            continue
+        recipe, groom, hair = (folder / f"{style.name}.{kind}" for kind in ("recipe.toml", "usdc", "hair.usdc"))
+        recipe.write_text(variant(style.recipe, head))
+        ringlet.write_groom(ringlet.build_groom(recipe), groom)
+        ringlet.write_hairs(groom, hair, fraction=fraction, wider=fraction < 1.0)
+        for name in chosen:
+            camera = style.shots[name][1]
+            add_camera(hair, name, camera)
+            still = folder / "still.png"
+            width, height = camera.size
+            ringlet.write_still(hair, still, width=width, height=height, samples=camera.samples, camera=f"/{name}")
+            mark = digest(style.recipe, head, camera)
+            Image.open(still).convert("RGB").save(picture_path(style, name), quality=84, comment=mark.encode())
+            print(picture_path(style, name).relative_to(ROOT), flush=True)
+
+
+def add_camera(stage_file: Path, name: str, camera: Shot) -> None:
+    """Adds a camera to a stage: its prim is ``/name``."""
+    stage = Usd.Stage.Open(str(stage_file))
+    unit = UsdGeom.GetStageMetersPerUnit(stage)
+    azimuth, elevation = map(radians, camera.view)
+    backward = np.array([sin(azimuth) * cos(elevation), sin(elevation), cos(azimuth) * cos(elevation)])
+    right = np.array([cos(azimuth), 0.0, -sin(azimuth)])
+    matrix = np.eye(4)
+    matrix[:3, :3] = right, np.cross(backward, right), backward
+    matrix[3, :3] = (0.01 * np.array(camera.at) + AWAY * backward) / unit
+    prim = UsdGeom.Camera.Define(stage, f"/{name}")
+    prim.MakeMatrixXform().Set(Gf.Matrix4d(*matrix.ravel().tolist()))
+    tenth = 0.1 * unit
+    aperture = 0.01 * camera.height * FOCAL_LENGTH / AWAY / tenth
+    prim.CreateFocalLengthAttr(FOCAL_LENGTH / tenth)
+    prim.CreateVerticalApertureAttr(aperture)
+    prim.CreateHorizontalApertureAttr(aperture * camera.size[0] / camera.size[1])
+    prim.CreateFocusDistanceAttr(AWAY / unit)
+    stage.GetRootLayer().Save()
+
+
+def write_page(styles: list[Style]) -> None:
+    """Writes docs/gallery.md: small pictures of all styles, then every style with its pictures and its recipe."""
+    cells = [
+        f"{linked(style, next(iter(style.shots)))} [{style.title}](#{slug(style.title)})".strip() for style in styles
+    ]
+    rows = [cells[first : first + COLUMNS] for first in range(0, len(cells), COLUMNS)]
+    overview = table([row + [""] * (COLUMNS - len(row)) for row in rows])
+    (DOCS / "gallery.md").write_text("\n".join([PAGE_HEAD, overview, *map(section, styles)]))
+
+
+def section(style: Style) -> str:
+    """Heading, pictures and recipe of a style; its first picture is the large one."""
+    first, other, _ = style.shots
+    recipe = style.recipe.relative_to(ROOT)
+    return f"""
+## {style.title}
+
+{style.text} [`{recipe}`](../{recipe})
+
+{table([[linked(style, name) for name in (first, "close", other)]])}
+
+<details><summary>Recipe</summary>
+
+```{{literalinclude}} ../{recipe}
+:language: toml
+```
+
+</details>
+"""
+
+
+def linked(style: Style, name: str) -> str:
+    """A picture that opens itself; empty where it is not there yet."""
+    if not picture_path(style, name).exists():
+        return ""
+    file = f"images/gallery/{style.name}_{name}.jpg"
+    what = "close-up" if name == "close" else f"on the {name}"
+    return f"[![{style.title}, {what}]({file})]({file})"
+
+
+def table(rows: list[list[str]]) -> str:
+    """A table of Markdown with an empty head."""
+    columns = len(rows[0])
+    lines = [[""] * columns, ["---"] * columns, *rows]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+
+
+def slug(title: str) -> str:
+    """The anchor of a heading."""
+    kept = "".join(letter for letter in title.lower() if letter.isalnum() or letter in " -_")
+    return kept.replace(" ", "-")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("styles", nargs="*", help="names of styles; all by default")
+    parser.add_argument("--again", action="store_true", help="render pictures that are up to date, too")
+    parser.add_argument("--first", action="store_true", help="only pictures on the head that a style is shown on first")
+    parser.add_argument("--page", action="store_true", help="write docs/gallery.md, and render nothing")
+    chosen = parser.parse_args()
+    styles = read_styles()
+    FOLDER.mkdir(exist_ok=True)
+    wanted = [] if chosen.page else [style for style in styles if not chosen.styles or style.name in chosen.styles]
+    with tempfile.TemporaryDirectory() as folder:
+        for style, names in due(wanted, chosen.again, chosen.first):
+            render(style, names, Path(folder))
+    write_page(styles)  # with the pictures that are there now
 
 
 if __name__ == "__main__":
-    (IMAGES / "gallery").mkdir(exist_ok=True)
-    pairs()
-    with tempfile.TemporaryDirectory() as name:
-        for kind in sys.argv[1:] or PRESETS:
-            locks(kind)
-            picture(kind, Path(name))
+    main()

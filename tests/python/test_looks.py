@@ -29,7 +29,7 @@ def test_a_look_is_short_builds_and_has_strands_of_equal_number(recipe):
     groom = ringlet.build_groom(recipe)
     assert not groom.conflicts and (groom.locks.curve[STRAND_RADIUS] > 5e-4).all()
     sections, strands = np.unique(groom.locks.curve[SECTION], return_counts=True)
-    assert len(sections) > 10 and len(set(strands.tolist())) == 1
+    assert len(sections) > 6 and len(set(strands.tolist())) == 1
     assert len(make_hairs(groom, fraction=0.1).curves) > len(groom.locks)
 
 

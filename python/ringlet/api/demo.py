@@ -6,10 +6,14 @@ import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ringlet import api
 from ringlet.api.run import Run
 from ringlet.data.share import share
+
+if TYPE_CHECKING:
+    from ringlet.shot import Shot
 
 __all__ = ["run_demo"]
 
@@ -19,7 +23,7 @@ STILL_SECONDS = 110.0  # a slow machine gets a noisier picture, not a longer wai
 MOVING = 1 / 6  # share of the hairs that move in hair.usdc, which keeps it small; the still has all of them
 
 # The share of each stage in the total time, as measured; only the overall bar depends on it.
-SHARES = {"groom": 1, "simulate": 23, "hairs": 1, "still": 48, "sheet": 27}
+SHARES = {"groom": 1, "loft": 2, "simulate": 21, "hairs": 1, "still": 48, "sheet": 27}
 
 
 def run_demo(folder: Path | str, *, progress: api.Progress | None = None) -> Run:
@@ -27,14 +31,17 @@ def run_demo(folder: Path | str, *, progress: api.Progress | None = None) -> Run
     folder = Path(folder)
     example = share("examples/child")
     groom_file, cache_file, hair_file = folder / "groom.usdc", folder / "cache.usdc", folder / "hair.usdc"
-    still_file, sheet_file = folder / "still.png", folder / "sheet.png"
+    rest_file, still_file, sheet_file = folder / "ribbon.rest.usdc", folder / "still.png", folder / "sheet.png"
     with Run("demo", folder) as run:
         with run.stage("groom", groom_file, "groom guides over the head"):
             groom = api.build_groom(example / "ribbon.recipe.toml", progress=_overall("groom", progress))
             api.write_groom(groom, groom_file)
             run.count(guides=len(groom.guides), locks=len(groom.locks))
+        shot = balanced(api.read_shot(example / "ribbon.shot.toml"), rest_file)
+        with run.stage("loft", rest_file, "the shape that guides remember, with which they hang as groomed"):
+            api.write_loft(api.loft(shot, groom, progress=_overall("loft", progress)), shot, rest_file)
         with run.stage("simulate", cache_file, "the guides and a ribbon in motion"), _aside(folder) as checkpoints:
-            shot, inner = api.read_shot(example / "ribbon.shot.toml"), _overall("simulate", progress)
+            inner = _overall("simulate", progress)
             record = api.write_simulation(shot, groom, groom_file, cache_file, checkpoints=checkpoints, progress=inner)
             run.count(frames=len(record.frames))
             run.simulated(record)
@@ -66,6 +73,11 @@ def run_demo(folder: Path | str, *, progress: api.Progress | None = None) -> Run
             )
             run.pictured(sheet_file, "The clip: a nod, a quick turn and a hop.")
     return run
+
+
+def balanced(shot: Shot, rest_file: Path) -> Shot:
+    """The shot with a rest shape in equilibrium, so that its hair hangs as groomed; ``rest_file`` keeps it."""
+    return shot.model_copy(update={"rest": shot.rest.model_copy(update={"mode": "equilibrium", "file": rest_file})})
 
 
 @contextmanager
