@@ -9,7 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
 
+from ringlet.picture.along import HairField
 from ringlet.picture.denoise import denoise
+
+DETAIL_WINDOW = 4.0  # deviation of the window that separates detail from noise [pixels]
 
 
 class Passes:
@@ -68,3 +71,17 @@ class Passes:
         denoised = denoise(a / many, self._sums[1] / few, variance / few) * many
         denoised += denoise(b / few, self._sums[0] / many, variance / many) * few
         return denoised / self.count
+
+    def detail(
+        self, sums: Sequence[NDArray[np.float64]], denoised: NDArray[np.float64], hair: HairField
+    ) -> NDArray[np.float64]:
+        """What both halves have in common beyond the denoised mean, such as single hairs; needs two passes.
+
+        A Wiener filter of the residual along the hairs. Noise of the halves is independent, so their covariance is that
+        of the detail.
+        """
+        a, b = (hair.along(total / count - denoised) for total, count in zip(sums, self.counts, strict=True))
+        mean = (a * self.counts[0] + b * self.counts[1]) / self.count
+        window = (DETAIL_WINDOW, DETAIL_WINDOW)
+        common, power = (gaussian_filter(x.mean(axis=2), window)[:, :, None] for x in (a * b, mean**2))
+        return mean * np.clip(common / np.maximum(power, 1e-12), 0.0, 1.0)
