@@ -67,4 +67,5 @@ def hair_field(mi: Any, scene: Any) -> HairField:
         double = np.stack([run[:, :, 0] ** 2 - run[:, :, 1] ** 2, 2.0 * run[:, :, 0] * run[:, :, 1]], axis=2)
         sums = sums + np.concatenate([hair[:, :, None], hair[:, :, None] * double / squared[:, :, None]], axis=2)
     mean = gaussian_filter(sums / RAYS, (1.2, 1.2, 0.0)).astype(np.float32)
-    return HairField(mean[:, :, 0], mean[:, :, 1:] / np.maximum(mean[:, :, :1], 1e-3))
+    direction = mean[:, :, 1:] / np.maximum(mean[:, :, :1], np.float32(1e-3))
+    return HairField(mean[:, :, 0], direction.astype(np.float32))
