@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
 
 HAIRS = "hairs"  # beginning of the names of shapes of hairs in a scene
-RAYS = 4  # per pixel
+RAYS = 2  # per pixel
 REACH = 6  # pixels to each side along a hair
 ALIKE = 0.7  # cosine of the double angle from which on a pixel counts as along the same hairs
 

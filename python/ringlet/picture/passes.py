@@ -12,7 +12,10 @@ from scipy.ndimage import gaussian_filter
 from ringlet.picture.along import HairField
 from ringlet.picture.denoise import denoise
 
-DETAIL_WINDOW = 4.0  # deviation of the window that separates detail from noise [pixels]
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
+DARKEST = 1e-4  # luminance below which detail has no color of its surroundings
+BRIGHTEST = 2.0  # deviations of detail beyond which it is a speck
+DETAIL_WINDOW = 6.0  # deviation of the window that separates detail from noise [pixels]
 
 
 class Passes:
@@ -78,10 +81,20 @@ class Passes:
         """What both halves have in common beyond the denoised mean, such as single hairs; needs two passes.
 
         A Wiener filter of the residual along the hairs. Noise of the halves is independent, so their covariance is that
-        of the detail.
+        of the detail, which bounds it: what stands out further is a speck. Detail has the color of its surroundings.
         """
-        a, b = (hair.along(total / count - denoised) for total, count in zip(sums, self.counts, strict=True))
+        light = denoised[:, :, :3] @ LUMINANCE
+        a, b = (
+            hair.along(_brightness(total / count - denoised)) for total, count in zip(sums, self.counts, strict=True)
+        )
         mean = (a * self.counts[0] + b * self.counts[1]) / self.count
-        window = (DETAIL_WINDOW, DETAIL_WINDOW)
-        common, power = (gaussian_filter(x.mean(axis=2), window)[:, :, None] for x in (a * b, mean**2))
-        return mean * np.clip(common / np.maximum(power, 1e-12), 0.0, 1.0)
+        common, power = (gaussian_filter(x, (DETAIL_WINDOW, DETAIL_WINDOW, 0.0)) for x in (a * b, mean**2))
+        brightest = BRIGHTEST * np.sqrt(np.maximum(common, 0.0))
+        kept = np.clip(mean, -brightest, brightest) * np.clip(common / np.maximum(power, 1e-12), 0.0, 1.0)
+        colored = denoised[:, :, :3] * (kept[:, :, 0] / np.maximum(light, DARKEST))[:, :, None]
+        return np.concatenate([colored, kept[:, :, 1:]], axis=2)
+
+
+def _brightness(image: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Luminance and coverage of an image (r, g, b, a), shape (height, width, 2)."""
+    return np.stack([image[:, :, :3] @ LUMINANCE, image[:, :, 3]], axis=2)
