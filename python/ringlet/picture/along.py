@@ -57,7 +57,7 @@ def hair_field(mi: Any, scene: Any) -> HairField:
     if not is_hair.any():
         return HairField(np.zeros((1, 1), np.float32), np.zeros((1, 1, 2), np.float32))
     integrator = mi.load_dict({"type": "aov", "aovs": "tangent:dp_dv,shape:shape_index"})
-    to_camera = np.array(scene.sensors()[0].world_transform().matrix)[:3, :3].T
+    to_camera = np.array(scene.sensors()[0].world_transform().matrix).reshape(4, 4)[:3, :3].T
     sums: Any = 0.0
     for seed in range(RAYS):
         seen = np.array(mi.render(scene, sensor=1, integrator=integrator, spp=1, seed=seed), np.float64)

@@ -17,6 +17,7 @@ from ringlet.data.pigment import HairColor
 from ringlet.picture import oidn
 from ringlet.picture.along import HAIRS, hair_field
 from ringlet.picture.bodies import COLORS, PosedBody, material
+from ringlet.picture.engine import mitsuba
 from ringlet.picture.fiber import fiber_bsdf, hair_reflectances
 from ringlet.picture.layers import HairGroup, Layers, trace_layers
 from ringlet.picture.motion import fraction_of_pass
@@ -38,14 +39,6 @@ MAX_PASS_SAMPLES, MAX_TIMED_PASS_SAMPLES, MIN_PASSES = 8, 4, 4
 
 # Passes of a picture with motion blur: each sees the scene at one time.
 MIN_MOVED_PASSES = 16
-
-
-def mitsuba() -> Any:
-    """Loads Mitsuba in the variant ``scalar_rgb``, which runs on any machine; lazily, since loading is slow."""
-    import mitsuba as mi
-
-    mi.set_variant("scalar_rgb")
-    return mi
 
 
 def build_scene(
