@@ -41,7 +41,7 @@ class PictureSettings:
     background:    studio or transparent; an EXR has no backdrop
     shutter:       angle of the shutter [degrees], for motion blur: 180 is open for half a frame from the frame on
     denoiser:      builtin, oidn or none
-    engine:        scalar, or llvm, which takes less time and more memory and needs a library of LLVM
+    engine:        scalar, or llvm, which compiles for each scene, needs more memory and a library of LLVM
     """
 
     # The least and the most of each number.
