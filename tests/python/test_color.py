@@ -209,6 +209,28 @@ def test_dye_replaces_the_natural_colour_where_its_ramp_and_mask_say():
     assert streaks.mean() == pytest.approx(0.25, abs=0.12)
 
 
+def test_each_dye_covers_those_before_it_by_its_amount():
+    made = hairs(
+        '[color]\n[color.dye]\ncolor = "#ff0000"\namount = 0.5\n'
+        '[[color.dyes]]\ncolor = "#0000ff"\namount = { value = 1, ramp = [[0, 0], [1, 0.5]] }\n'
+        '[[color.dyes]]\ncolor = "#00ff00"\nmask = { where = "random < 0.3" }\n'
+    )
+    natural = curve_reflectance(hairs("[color]\n"), "hairs")
+    colors = curve_reflectance(made, "hairs").reshape(len(made), -1, 3)
+    green = np.abs(colors[:, 0] - [0.0, 1.0, 0.0]).max(axis=1) < 1e-5
+    assert 0.1 < green.mean() < 0.5
+    assert colors[green] == pytest.approx(np.broadcast_to([0.0, 1.0, 0.0], colors[green].shape), abs=1e-5)
+    red = 0.5 * natural[~green] + 0.5 * np.array([1.0, 0.0, 0.0])
+    assert colors[~green, 0] == pytest.approx(red, abs=1e-5)
+    assert colors[~green, -1] == pytest.approx(0.5 * red + 0.5 * np.array([0.0, 0.0, 1.0]), abs=1e-5)
+
+
+def test_one_dye_is_as_good_as_the_same_dye_in_the_list():
+    dye = 'color = "#2060c0"\namount = { value = 0.8, ramp = [[0, 0], [1, 1]] }\n'
+    one, listed = (hairs(f"[color]\n{table}\n{dye}") for table in ("[color.dye]", "[[color.dyes]]"))
+    assert curve_reflectance(one, "hairs") == pytest.approx(curve_reflectance(listed, "hairs"), abs=1e-6)
+
+
 def test_regrowth_is_a_length_in_the_natural_colour():
     made = groom("[color]\n[color.dye]\nregrowth = 2\n")
     amount = per_point(made.locks, "dye_amount")
@@ -264,13 +286,44 @@ def test_a_flat_fibre_turns_about_its_axis_and_is_seen_narrower_and_wider():
     assert np.ptp(mean) < 1e-6, "turns closer than the points of a hair are shown by their mean"
 
 
+def test_fibers_vary_from_lock_to_lock_and_from_hair_to_hair():
+    lock = groom().locks.ids[5]
+    table = f"[fiber]\nroughness = {{ value = 0.2, vary = 0.5, lock = {{ {lock} = 0.6 }} }}\ntilt = 3\n"
+    locks = groom(table).locks.curve
+    assert locks["roughness"][5] == pytest.approx(0.6)
+    assert 0.1 <= np.delete(locks["roughness"], 5).min() < 0.13
+    made = hairs(table)
+    assert np.array_equal(made.curve["roughness"], locks["roughness"][made.curve["lock"]])
+    assert np.ptp(made.curve["tilt"]) == 0.0
+    varied = hairs(table + "vary_hairs = 0.3\n")
+    factor = varied.curve["roughness"] / made.curve["roughness"]
+    assert 0.7 <= factor.min() < 0.75
+    assert 1.25 < factor.max() <= 1.3 + 1e-3
+    assert np.ptp(varied.curve["tilt"]) > 1.0
+    half = hairs(table + "vary_hairs = 0.3\n", fraction=0.5)
+    values = dict(zip(varied.ids.tolist(), varied.curve["tilt"].tolist(), strict=True))
+    assert [values[name] for name in half.ids.tolist()] == half.curve["tilt"].tolist()
+
+
+def test_the_section_varies_from_lock_to_lock():
+    recipe = RECIPE.replace("[hairs]", "[hairs]\nwidth = 0.01")
+    table = "[fiber]\nflatness = { value = 0.5, vary = 1 }\ntwist_pitch = { value = 4, vary = 0.5 }\n"
+    flat = make_hairs(groom(table, recipe)).curves
+    seen = per_point(flat, "width") / per_point(make_hairs(groom("", recipe)).curves, "width")
+    narrowest = 1.0 - flat.curve["flatness"]
+    assert np.ptp(flat.curve["flatness"]) > 0.5
+    assert (seen.min(axis=1) >= narrowest - 1e-5).all()
+    assert np.corrcoef(seen.mean(axis=1), narrowest)[0, 1] > 0.9
+
+
 # Files
 
 
 def test_colours_come_back_from_files(tmp_path):
     made = groom(
         '[color]\npreset = "brown"\ngray = 0.2\nmelanin = { value = 0.8, ramp = [[0, 1], [1, 0.5]] }\n'
-        "[color.dye]\namount = 0.4\n[fiber]\nroughness = 0.25\ntilt = 3\n"
+        "[color.dye]\namount = 0.4\n[fiber]\nroughness = 0.25\nazimuthal_roughness = { value = 0.3, vary = 0.2 }\n"
+        "tilt = 3\n"
     )
     write_groom(made, tmp_path / "groom.usdc")
     again = read_groom(tmp_path / "groom.usdc")
@@ -299,6 +352,26 @@ def test_colours_come_back_from_files(tmp_path):
         "redness": "uniform",
     }
     assert json.loads(prim.GetParent().GetAttribute("ringlet:color").Get())["preset"] == "brown"
+
+
+def test_dyes_and_fibers_that_vary_come_back_from_files(tmp_path):
+    made = groom(
+        '[color]\n[color.dye]\n[[color.dyes]]\ncolor = "#2060c0"\namount = { value = 0.5, ramp = [[0, 0], [1, 1]] }\n'
+        "[fiber]\nflatness = { value = 0.4, vary = 0.2 }\nvary_hairs = 0.1\n"
+    )
+    write_groom(made, tmp_path / "groom.usdc")
+    again = read_groom(tmp_path / "groom.usdc")
+    assert (again.color, again.fiber) == (made.color, made.fiber)
+    before, after = make_hairs(made).curves, make_hairs(again).curves
+    with HairWriter(tmp_path / "hair.usdc", made, before, tmp_path / "groom.usdc") as writer:
+        writer.add(None, before.points)
+    read = read_hairs(tmp_path / "hair.usdc")
+    for name in ("roughness", "tilt", "flatness"):
+        assert len(np.unique(before.curve[name])) > 100, name
+        assert np.array_equal(before.curve[name], after.curve[name]), name
+        assert np.array_equal(before.curve[name], read.curve[name]), name
+    assert np.array_equal(before.point["dye"], read.point["dye"])
+    assert np.array_equal(curve_reflectance(before, "hairs"), curve_reflectance(read, "hairs"))
 
 
 # Pictures

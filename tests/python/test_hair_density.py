@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
+import ringlet.groom.hairs as hair_module
 from scipy.spatial import KDTree
 from shapes import ball, sheet
 
-from ringlet import Curves, UserError
+from ringlet import Curves, UserError, measure_hairs, write_groom, write_hairs
 from ringlet.groom import cover, hair_count, hair_cover, hairs_per_cm2, make_groom, make_hairs, parse_recipe
 
 DENSE = """
@@ -62,6 +63,16 @@ def test_cover_raises_the_density_until_so_much_of_the_scalp_is_hidden():
     unchanged = dense(lying + f"density = {hairs_per_cm2(thick):.0f}\ncover = 0.1\n")
     assert np.isclose(hairs_per_cm2(unchanged), hairs_per_cm2(thick), rtol=0.02)
     assert any("hairs.cover is 0.999, but at 400" in each for each in dense("cover = 0.999\nradius = 0\n").conflicts)
+
+
+def test_hairs_are_made_once_to_be_written_and_measured(tmp_path, monkeypatch):
+    write_groom(dense("density = '20 /cm2'\n"), tmp_path / "groom.usdc")
+    made, place = [], hair_module.place_hairs
+    monkeypatch.setattr(hair_module, "place_hairs", lambda *given: made.append(1) or place(*given))
+    measures: dict[str, float] = {}
+    write_hairs(tmp_path / "groom.usdc", tmp_path / "hair.usdc", measures=measures)
+    assert len(made) == 1
+    assert measures == measure_hairs(tmp_path / "groom.usdc")
 
 
 def test_hairs_that_hang_before_the_scalp_hide_the_part_that_their_optical_depth_says():

@@ -13,9 +13,10 @@ from ringlet.data.errors import UserError
 from ringlet.data.mesh import Mesh
 from ringlet.data.picture import PictureSettings
 from ringlet.picture import HAIR_COLORS, VIEWS, Pose, PosedBody, sheet, still
+from ringlet.picture.along import hair_field
 from ringlet.picture.bodies import material
 from ringlet.picture.camera import frame
-from ringlet.picture.render import build_scene, hair_share, mitsuba, trace
+from ringlet.picture.render import build_scene, mitsuba, trace
 from ringlet.picture.sheet import subsample
 from ringlet.picture.strands import fibres, load_fibres, spline_controls
 from ringlet.picture.tone import develop
@@ -241,7 +242,7 @@ def test_hair_is_distinguished_from_skin() -> None:
     hairs = tuft()
     camera = frame([hairs.points, ball().points], view="front")
     scene = build_scene([ball()], hairs, camera, size=(64, 64), color=HAIR_COLORS["black"], max_depth=2)
-    share = hair_share(scene)[:, :, 0]
+    share = hair_field(mitsuba(), scene).share
     where = np.clip((camera.project(hairs.points) * 64).astype(int), 0, 63)
     assert share[where[:, 1], where[:, 0]].mean() > 0.4
     below = camera.project(ball().points[3:4])[0] * 64

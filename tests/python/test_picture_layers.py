@@ -16,7 +16,8 @@ from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Mesh
 from ringlet.data.picture import PictureSettings
-from ringlet.picture import Pose, PosedBody
+from ringlet.picture import Pose, PosedBody, engine
+from ringlet.picture.engine import OLDEST_LLVM, llvm_version
 from ringlet.picture.still import still, take
 
 QUICK = PictureSettings(width=40, height=40, samples=4)
@@ -177,3 +178,28 @@ def test_without_a_denoiser_the_noise_stays():
     for name in ("none", "builtin"):
         noise[name] = take(pose, replace(QUICK, denoiser=name)).image[15:25, 15:25, 0].std()
     assert noise["none"] > 1.5 * noise["builtin"]
+
+
+# Engines
+
+
+@pytest.mark.skipif(llvm_version() < OLDEST_LLVM, reason="needs a library of LLVM")
+def test_code_of_llvm_makes_the_same_picture():
+    hairs = bars((-0.05, 0.0), (0.0, 0.02), (0.05, 0.0), locks=(2, 1, 0))
+    settings = replace(QUICK, samples=64, denoiser="none")
+    taken = {
+        name: take(Pose([board(z=-0.1)], hairs, AHEAD), replace(settings, engine=name), layers=True)
+        for name in ("scalar", "llvm")
+    }
+    light = {name: each.image for name, each in taken.items()}
+    assert light["llvm"].mean(axis=(0, 1)) == pytest.approx(light["scalar"].mean(axis=(0, 1)), rel=0.03)
+    assert np.abs(light["llvm"] - light["scalar"]).mean() < 0.1 * light["scalar"].mean()
+    assert (taken["llvm"].layers.lock == taken["scalar"].layers.lock).mean() > 0.95
+
+
+@pytest.mark.parametrize(("found", "said"), [(-1, "finds none"), (15, "finds version 15 of it")])
+def test_llvm_that_is_missing_or_too_old_is_refused(monkeypatch, found, said):
+    monkeypatch.setattr(engine, "llvm_version", lambda: found)
+    with pytest.raises(UserError, match=f"needs LLVM 17 or newer, and Mitsuba {said}; install one"):
+        take(Pose([board()], Curves.from_list([]), AHEAD), replace(QUICK, engine="llvm"))
+    assert engine.mitsuba().variant() == "scalar_rgb"

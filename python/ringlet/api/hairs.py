@@ -32,7 +32,9 @@ def build_hairs(groom: Groom, *, fraction: float = 1.0, wider: bool = False, mem
     return grooms.make_hairs(groom, fraction=fraction, wider=wider, memory=memory.hairs if memory else None)
 
 
-def measure_hairs(groom: Groom | Path | str, *, variant: str | None = None) -> dict[str, Any]:
+def measure_hairs(
+    groom: Groom | Path | str, *, variant: str | None = None, hairs: Hairs | None = None
+) -> dict[str, Any]:
     """Density and cover of all hairs of a groom at rest.
 
     ``hairs_per_cm2`` is the mean over the region that carries hair, and ``scalp_seen`` the part of that region that
@@ -40,12 +42,13 @@ def measure_hairs(groom: Groom | Path | str, *, variant: str | None = None) -> d
     several grooms have ``grooms``, with ``hairs`` and those of each by name.
 
     variant: of the groom file, in place of the one that is selected in it
+    hairs:   all hairs of the groom, where they are made already
     """
     from ringlet import groom as grooms
     from ringlet.data.groom import Groom
 
     made = groom if isinstance(groom, Groom) else read_groom(groom, variant=variant)
-    return grooms.hair_measures(made)
+    return grooms.hair_measures(made, hairs)
 
 
 @recorded()
@@ -58,15 +61,17 @@ def write_hairs(
     fraction: float = 1.0,
     wider: bool = False,
     variant: str | None = None,
+    measures: dict[str, float] | None = None,
     progress: Progress | None = None,
 ) -> dict[str, int]:
     """Writes the hairs of the USD file ``groom``, at rest, or carried by the guides of ``cache`` through ``frames``.
 
     They stay on that side of the scalp, and of what else the file shows, where their lock is.
 
-    groom:   a groom, or a cache by itself, which lies over its groom
-    frames:  the first and the last of the cache; all by default
-    variant: of the groom, in place of the one that is selected in it, or that the cache was made of
+    groom:    a groom, or a cache by itself, which lies over its groom
+    frames:   the first and the last of the cache; all by default
+    variant:  of the groom, in place of the one that is selected in it, or that the cache was made of
+    measures: receives the entries of ``measure_hairs``
 
     Returns how many ``locks``, ``hairs``, ``points`` and ``frames`` there are.
     """
@@ -81,6 +86,8 @@ def write_hairs(
         variant = read_groom(cache).variant
     locks = read_groom(groom, variant=variant)
     hairs = build_hairs(locks, fraction=fraction, wider=wider)
+    if measures is not None:
+        measures |= measure_hairs(locks, hairs=hairs if fraction == 1.0 else None)
     written = 0
     if cache is None:
         scalp = locks.scalp

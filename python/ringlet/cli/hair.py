@@ -43,6 +43,7 @@ def hair(
 
     Example: ringlet hair groom.usdc --cache cache.usdc -o hair.usdc
     """
+    measures: dict[str, float] = {}
     with ringlet.Run("hair", report) as run, shown_progress() as progress:
         with run.stage("hairs", output):
             counts = ringlet.write_hairs(
@@ -53,10 +54,10 @@ def hair(
                 fraction=fraction,
                 wider=wider,
                 variant=variant,
+                measures=measures,
                 progress=progress,
             )
         run.count(**counts)
-        measured = ringlet.measure_hairs(groom, variant=variant)
-    wrote(output, run.counts, as_json, **measured)
+    wrote(output, run.counts, as_json, **measures)
     if not as_json:
-        print(density(measured))
+        print(density(measures))

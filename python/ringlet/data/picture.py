@@ -11,7 +11,11 @@ from ringlet.data import limits
 from ringlet.data.errors import UserError
 from ringlet.data.explain import did_you_mean
 
-CHOICES = {"background": ("studio", "transparent"), "denoiser": ("builtin", "oidn", "none")}
+CHOICES = {
+    "background": ("studio", "transparent"),
+    "denoiser": ("builtin", "oidn", "none"),
+    "engine": ("scalar", "llvm"),
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,6 +41,7 @@ class PictureSettings:
     background:    studio or transparent; an EXR has no backdrop
     shutter:       angle of the shutter [degrees], for motion blur: 180 is open for half a frame from the frame on
     denoiser:      builtin, oidn or none
+    engine:        scalar, or llvm, which compiles for each scene, needs more memory and a library of LLVM
     """
 
     # The least and the most of each number.
@@ -73,6 +78,7 @@ class PictureSettings:
     background: str = "studio"
     shutter: float = 0.0
     denoiser: str = "builtin"
+    engine: str = "scalar"
 
     @classmethod
     def of(cls, settings: dict[str, Any]) -> Self:

@@ -30,7 +30,7 @@ SURFACE = 0.032  # albedo of dense hair that absorbs all light: what the surface
 # Attributes of hairs and locks: parts from 0 to 1, and the linear colour of the dye. One row a curve or a point.
 MELANIN, REDNESS, DYE, DYE_AMOUNT, GRAY = "melanin", "redness", "dye", "dye_amount", "gray"
 
-# Attributes of the fibre, the same for all hairs: roughnesses and flatness from 0 to 1, tilt of the cuticle [degrees].
+# Attributes of the fiber: roughnesses and flatness from 0 to 1, tilt of the cuticle [degrees]. One row a curve.
 FIBER = ROUGHNESS, AZIMUTHAL_ROUGHNESS, TILT, FLATNESS = "roughness", "azimuthal_roughness", "tilt", "flatness"
 TWIST = "twist"  # of points: angle of the section's wide axis [degrees]
 WHITE = 0.002  # melanin of a gray hair
@@ -40,41 +40,51 @@ WHITE = 0.002  # melanin of a gray hair
 class HairColor:
     """A natural hair colour.
 
-    melanin:   amount of pigment, from 0 (white) to 1 (black)
-    redness:   fraction of it that is pheomelanin, from 0 to 1
-    gray:      fraction of the hairs that are white
-    roughness: of the fibre, along it and around it
+    melanin:             amount of pigment, from 0 (white) to 1 (black)
+    redness:             fraction of it that is pheomelanin, from 0 to 1
+    gray:                fraction of the hairs that are white
+    roughness:           of the fiber along it: 0.25 widens the reflection by 13°
+    azimuthal_roughness: around it
     """
 
     melanin: float
     redness: float
     gray: float = 0.0
-    roughness: float = 0.38
+    roughness: float = 0.25
+    azimuthal_roughness: float = 0.38
 
     @property
     def reflectance(self) -> NDArray[np.float64]:
         """Mean reflectance of the hairs in linear red, green and blue, shape (3,)."""
-        dark, white = (reflectance(absorption(m, self.redness), self.roughness) for m in (self.melanin, WHITE))
+        dark, white = (
+            reflectance(absorption(m, self.redness), self.azimuthal_roughness) for m in (self.melanin, WHITE)
+        )
         return (1.0 - self.gray) * dark + self.gray * white
 
     def reflectances(self, ids: NDArray[np.int64]) -> NDArray[np.float64]:
         """Reflectance of each hair, by its id, shape (hairs, 3)."""
         white = Random(1, "color/white").uniform(ids) < self.gray
-        return reflectance(absorption(np.where(white, WHITE, self.melanin), self.redness), self.roughness)
+        melanin = np.where(white, WHITE, self.melanin)
+        return reflectance(absorption(melanin, self.redness), self.azimuthal_roughness)
 
 
 HAIR_COLORS: dict[str, HairColor] = {
-    "black": HairColor(0.998, 0.05, roughness=0.28),
+    "black": HairColor(0.998, 0.05, roughness=0.22, azimuthal_roughness=0.28),
     "dark_brown": HairColor(0.9, 0.15),
     "brown": HairColor(0.7, 0.4),
     "auburn": HairColor(0.8, 0.9),
     "ginger": HairColor(0.6, 0.95),
-    "blond": HairColor(0.28, 0.5, roughness=0.33),
-    "gray": HairColor(0.9, 0.1, gray=0.65, roughness=0.36),
-    "white": HairColor(0.01, 0.0, gray=0.8, roughness=0.33),
+    "blond": HairColor(0.28, 0.5, azimuthal_roughness=0.33),
+    "gray": HairColor(0.9, 0.1, gray=0.65, azimuthal_roughness=0.36),
+    "white": HairColor(0.01, 0.0, gray=0.8, azimuthal_roughness=0.33),
 }
 DEFAULT_COLOR = "dark_brown"
-USUAL_FIBER = {ROUGHNESS: 0.38, AZIMUTHAL_ROUGHNESS: 0.38, TILT: 2.0, FLATNESS: 0.0}
+USUAL_FIBER = {
+    ROUGHNESS: HAIR_COLORS[DEFAULT_COLOR].roughness,
+    AZIMUTHAL_ROUGHNESS: HAIR_COLORS[DEFAULT_COLOR].azimuthal_roughness,
+    TILT: 2.0,
+    FLATNESS: 0.0,
+}
 
 
 def hair_color(name: str | None) -> HairColor | None:
@@ -109,7 +119,7 @@ def reflectance(absorption: ArrayLike, roughness: ArrayLike) -> NDArray[np.float
     """Linear colour of dense hair by light that passes through fibres, without what their surfaces reflect.
 
     absorption: shape (…, 3)
-    roughness:  azimuthal roughness of the fibre, from 0 to 1
+    roughness:  azimuthal roughness of the fiber, from 0 to 1; one, or shape (…)
     """
     return np.exp(-_falloff(roughness) * np.sqrt(absorption))
 
@@ -151,22 +161,37 @@ def curve_reflectance(curves: Curves, what: str) -> NDArray[np.float64] | None:
     found = {name: _attribute(curves, name, what) for name in (MELANIN, REDNESS, DYE_AMOUNT)}
     if found[MELANIN] is None:
         return None
-    dye, roughness = curves.curve.get(DYE), of_fiber(curves, AZIMUTHAL_ROUGHNESS)
-    along = any(values is not None and name in curves.point for name, values in found.items())
+    dye, roughness = _dye(curves), fiber_rows(curves, AZIMUTHAL_ROUGHNESS)
+    along = any(values is not None and name in curves.point for name, values in {**found, DYE: dye}.items())
     rows = {name: _spread(curves, name, values, along) for name, values in found.items() if values is not None}
-    colors = reflectance(absorption(rows[MELANIN], rows.get(REDNESS, 0.0)), roughness)
+    around = _spread(curves, AZIMUTHAL_ROUGHNESS, roughness, along)
+    colors = reflectance(absorption(rows[MELANIN], rows.get(REDNESS, 0.0)), around)
     if dye is not None and DYE_AMOUNT in rows and len(dye):
-        same = (dye == dye[0]).all()
-        colors = dyed(colors, dye[0] if same else _spread(curves, DYE, dye, along), rows[DYE_AMOUNT])
+        colors = dyed(colors, _spread(curves, DYE, dye, along), rows[DYE_AMOUNT])
     return colors
 
 
 def of_fiber(curves: Curves, name: str, otherwise: float | None = None) -> float:
-    """Value of an attribute of ``FIBER`` that all curves share; ``otherwise``, or the usual value, without it."""
+    """Mean of an attribute of ``FIBER`` over the curves; ``otherwise``, or the usual value, without it."""
+    rows = fiber_rows(curves, name, otherwise)
+    return float(rows.mean()) if len(rows) else USUAL_FIBER[name] if otherwise is None else otherwise
+
+
+def fiber_rows(curves: Curves, name: str, otherwise: float | None = None) -> NDArray[np.float64]:
+    """Values of an attribute of ``FIBER``, shape (curves,); ``otherwise``, or the usual value, where there are none."""
+    usual = USUAL_FIBER[name] if otherwise is None else otherwise
     values = curves.curve.get(name)
-    if values is not None and len(values) and values.ndim == 1 and np.isfinite(values[0]):
-        return float(values[0])
-    return USUAL_FIBER[name] if otherwise is None else otherwise
+    if values is None or values.ndim != 1 or values.dtype.kind not in "biuf":
+        return np.broadcast_to(usual, len(curves))
+    return np.where(np.isfinite(values), values, usual).astype(np.float64)
+
+
+def _dye(curves: Curves) -> NDArray[np.float64] | None:
+    """Linear colors of the dye, of each curve or of each point, shape (k, 3)."""
+    values = curves.point.get(DYE, curves.curve.get(DYE))
+    if values is None or values.ndim != 2 or not len(values):
+        return None
+    return np.clip(np.nan_to_num(np.asarray(values, np.float64)), 0.0, 1.0)
 
 
 def _attribute(curves: Curves, name: str, what: str) -> NDArray[np.float64] | None:
@@ -187,4 +212,5 @@ def _spread(curves: Curves, name: str, values: NDArray, along: bool) -> NDArray:
 def _falloff(roughness: ArrayLike) -> NDArray[np.float64]:
     """D(β) of Chiang et al. 2016."""
     b = np.asarray(roughness, np.float64)
+    b = b[..., None] if b.ndim else b
     return 5.969 + b * (-0.215 + b * (2.532 + b * (-10.73 + b * (5.574 + b * 0.245))))

@@ -13,6 +13,7 @@ from ringlet.data.groom import Groom
 from ringlet.data.mesh import Mesh
 from ringlet.data.painted import per_lock
 from ringlet.data.pigment import (
+    AZIMUTHAL_ROUGHNESS,
     DEFAULT_COLOR,
     DYE,
     DYE_AMOUNT,
@@ -21,6 +22,7 @@ from ringlet.data.pigment import (
     HAIR_COLORS,
     MELANIN,
     REDNESS,
+    ROUGHNESS,
     WHITE,
     concentration,
     linear_color,
@@ -29,9 +31,11 @@ from ringlet.data.pigment import (
 from ringlet.data.quantities import Quantity, Ramped, Section, Varied, refuse
 from ringlet.data.random import Random, soft_threshold
 from ringlet.groom.fiber import FiberSettings
+from ringlet.groom.hair_settings import fiber_settings
 from ringlet.groom.mask import Mask
 from ringlet.groom.operators.operator import arc_lengths, grid
 
+MOST_DYES = 32
 REGROWN = 0.15  # part of the regrowth over which the natural colour passes into the dye
 
 Preset = Literal["black", "dark_brown", "brown", "auburn", "ginger", "blond", "gray", "white"]
@@ -66,15 +70,19 @@ class Dye(Section):
         default=Varied(value=0.0), description="length at the root that has grown since, in the natural colour"
     )
 
-    def amounts(self, locks: Curves, scalp: Mesh, seed: int) -> NDArray[np.float64]:
-        """Amount of dye at the points of locks, shape (locks, points), or (locks, 1) where it is the same along all."""
+    def amounts(self, locks: Curves, scalp: Mesh, seed: int, what: str) -> NDArray[np.float64]:
+        """Amount of dye at the points of locks, shape (locks, points), or (locks, 1) where it is the same along all.
+
+        what: the table's name in the recipe, such as ``color.dye``
+        """
+        source = what.replace(".", "/")
 
         def values(name: str) -> NDArray[np.float64]:
-            return per_lock(self, name, Random(seed, f"color/dye/{name}"), locks, scalp, f"color.dye.{name}")
+            return per_lock(self, name, Random(seed, f"{source}/{name}"), locks, scalp, f"{what}.{name}")
 
         u = np.linspace(0.0, 1.0, int(locks.counts[0]))
         amount = values("amount")[:, None] * self.amount.along(u)
-        amount = amount * self.mask.weights(locks, scalp, Random(seed, "color/dye/mask"), "color.dye.mask")
+        amount = amount * self.mask.weights(locks, scalp, Random(seed, f"{source}/mask"), f"{what}.mask")
         if (regrowth := values("regrowth")).any():
             beyond = arc_lengths(grid(locks)) / np.maximum(regrowth, 1e-9)[:, None] - 1.0
             t = np.clip(beyond / REGROWN + 1.0, 0.0, 1.0)
@@ -103,6 +111,9 @@ class ColorSettings(Section):
         default=Varied(value=0.0), description="part of the hairs that are white"
     )
     dye: Dye | None = Field(default=None, description="dyed hair; none when absent")
+    dyes: list[Dye] = Field(
+        default=[], max_length=MOST_DYES, description="further dyes, each over those before it: `[[color.dyes]]`"
+    )
     seed: int = Field(default=1, ge=0, le=2**31, description="another seed varies other locks and hairs")
 
     @classmethod
@@ -112,10 +123,23 @@ class ColorSettings(Section):
         preset = {name: {"value": getattr(named, name)} for name in (MELANIN, REDNESS, GRAY)} if named else {}
         return {**super().defaults(data), **preset}
 
-    @property
-    def roughness(self) -> float:
-        """Roughness of the fibre, where the recipe gives none."""
-        return HAIR_COLORS[self.preset or DEFAULT_COLOR].roughness
+    def dye_layers(self) -> dict[str, Dye]:
+        """All dyes by the name of their tables, the lowest first."""
+        first = {"color.dye": self.dye} if self.dye is not None else {}
+        return {**first, **{f"color.dyes[{k}]": dye for k, dye in enumerate(self.dyes)}}
+
+    def dyed_at(self, locks: Curves, scalp: Mesh) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Linear color of all dyes together and their amount at the points of locks: (locks, k, 3), (locks, k).
+
+        k is 1 where one is the same along all. Each dye covers what is below it by its amount (Porter and Duff 1984).
+        """
+        color, amount = np.zeros((len(locks), 1, 3)), np.zeros((len(locks), 1))
+        for number, (name, dye) in enumerate(self.dye_layers().items()):
+            own, over = dye.amounts(locks, scalp, self.seed, name), linear_color(dye.color)
+            amount = 1.0 - (1.0 - own) * (1.0 - amount)
+            share = np.where(amount > 0.0, own / np.maximum(amount, 1e-12), 1.0)[:, :, None]
+            color = color + share * (over - color) if number else np.broadcast_to(over, color.shape)
+        return color, amount
 
     def melanin_at(self, locks: Curves, scalp: Mesh) -> NDArray[np.float64]:
         """Melanin at the points of locks, shape (locks, points), or (locks, 1) where it is the same along all.
@@ -146,16 +170,16 @@ def colored(locks: Curves, color: ColorSettings | None, fiber: FiberSettings | N
     curve, point = dict(locks.curve), dict(locks.point)
     if color is not None:
         found = {MELANIN: color.melanin_at(locks, scalp), REDNESS: color.redness_at(locks, scalp)}
-        if color.dye is not None:
-            found[DYE_AMOUNT] = color.dye.amounts(locks, scalp, color.seed)
-            curve[DYE] = _same(linear_color(color.dye.color), len(locks))
+        if color.dye_layers():
+            found[DYE], found[DYE_AMOUNT] = color.dyed_at(locks, scalp)
         for name, values in found.items():
-            (curve if values.shape[1] == 1 else point)[name] = values.ravel().astype(np.float32)
+            rows = values.reshape(-1, *values.shape[2:]).astype(np.float32)
+            (curve if values.shape[1] == 1 else point)[name] = rows
         random = Random(color.seed, "color/gray")
         curve[GRAY] = per_lock(color, GRAY, random, locks, scalp, "color.gray").astype(np.float32)
-    default = HAIR_COLORS[DEFAULT_COLOR].roughness if color is None else color.roughness
-    optics = (fiber or FiberSettings()).optics(default)
-    curve |= {name: _same(value, len(locks)) for name, value in optics.items()}
+    named = HAIR_COLORS[(color and color.preset) or DEFAULT_COLOR]
+    usual = {ROUGHNESS: named.roughness, AZIMUTHAL_ROUGHNESS: named.azimuthal_roughness}
+    curve |= (fiber or FiberSettings()).optics(locks, scalp, usual)
     return Curves(locks.points, locks.offsets, locks.ids, curve, point)
 
 
@@ -166,12 +190,15 @@ def hair_colors(groom: Groom, hairs: Curves) -> Curves:
     """
     locks, lock = groom.locks, hairs.curve["lock"]
     curve, point = dict(hairs.curve), dict(hairs.point)
-    for name in (DYE, *FIBER):
+    fiber = fiber_settings(groom)
+    for name in FIBER:
         if (values := locks.curve.get(name)) is not None and len(values):
-            curve[name] = _same(values[0], len(hairs))
-    for name in (REDNESS, DYE_AMOUNT):
+            same = not fiber.vary_hairs and (values == values[0]).all()
+            curve[name] = _same(values[0], len(hairs)) if same else fiber.of_hairs(name, values, lock, hairs.ids)
+    for name in (REDNESS, DYE, DYE_AMOUNT):
         if name in locks.point:
-            point[name] = _carried(locks, name, lock, hairs).ravel()
+            carried = _carried(locks, name, lock, hairs)
+            point[name] = carried.reshape(-1, *carried.shape[2:])
         elif name in locks.curve:
             curve[name] = locks.curve[name][lock]
     if MELANIN in locks.point or MELANIN in locks.curve:
@@ -195,13 +222,14 @@ def _hair_melanin(groom: Groom, hairs: Curves) -> NDArray[np.float32]:
 
 
 def _carried(locks: Curves, name: str, lock: NDArray[np.int32], hairs: Curves) -> NDArray[np.float32]:
-    """Values at the points of locks at those of their hairs, shape (hairs, points), linear between them."""
+    """Values at the points of locks at those of their hairs, shape (hairs, points, …), linear between them."""
     points = int(hairs.counts[0]) if len(hairs) else 0
     u = np.linspace(0.0, 1.0, points)
     values, first, last = locks.point[name], locks.offsets[:-1, None], locks.counts[:, None] - 1
     at = u * last
     below = np.minimum(at.astype(np.int64), np.maximum(last - 1, 0))
     row, t = first + below, at - below
+    t = t.reshape(*t.shape, *[1] * (values.ndim - 1))
     sampled = (1.0 - t) * values[row] + t * values[np.minimum(row + 1, first + last)]
     return sampled.astype(np.float32)[lock]
 

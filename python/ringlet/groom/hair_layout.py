@@ -11,11 +11,12 @@ from scipy.spatial import KDTree
 from ringlet import _core
 from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.data.groom import SECTION, Groom
-from ringlet.data.pigment import TWIST
+from ringlet.data.pigment import FLATNESS, TWIST
 from ringlet.data.quantities import Quantity
 from ringlet.data.random import Random, soft_threshold
 from ringlet.groom import felt, hair_curl
 from ringlet.groom.density import groom_areas, hair_region, lock_counts
+from ringlet.groom.fiber import seen_widths
 from ringlet.groom.hair_curl import Placed
 from ringlet.groom.hair_settings import IDS_PER_LOCK, HairSettings, fiber_settings, hair_values, lock_radii
 from ringlet.groom.operators.woven import JOIN
@@ -101,13 +102,15 @@ def _root_in_rows(
 
 
 def _flatten(groom: Groom, hairs: Curves) -> None:
-    """Gives fibres with an elliptical section the angle ``twist`` of that section, and the widths that are seen."""
-    fiber = fiber_settings(groom)
-    if not fiber.flatness or not len(hairs):
+    """Gives fibers with an elliptical section the angle ``twist`` of that section, and the widths that are seen."""
+    fiber, lock = fiber_settings(groom), hairs.curve["lock"]
+    if not fiber.is_flat or not len(hairs):
         return
-    lengths = groom.locks.lengths()[hairs.curve["lock"]]
-    twist = fiber.twist(hairs.ids, lengths, int(hairs.counts[0]))
-    seen = fiber.seen_widths(twist, lengths).astype(np.float32)
+    values = fiber.values(groom.locks, groom.scalp)
+    flatness, pitch = (fiber.of_hairs(name, values(name), lock, hairs.ids) for name in (FLATNESS, "twist_pitch"))
+    lengths = groom.locks.lengths()[lock]
+    twist = fiber.twist(hairs.ids, lengths, pitch, int(hairs.counts[0]))
+    seen = seen_widths(flatness, twist, lengths, pitch).astype(np.float32)
     hairs.point |= {TWIST: twist.ravel(), "width": hairs.point["width"] * seen.ravel()}
 
 

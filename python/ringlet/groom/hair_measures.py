@@ -42,17 +42,18 @@ def raise_density(groom: Groom, settings: HairSettings) -> None:
         )
 
 
-def hair_measures(groom: Groom) -> dict[str, Any]:
+def hair_measures(groom: Groom, hairs: Hairs | None = None) -> dict[str, Any]:
     """Density and cover of a groom at rest: ``hairs_per_cm2``, and ``scalp_seen`` through its hair, from 0 to 1.
 
     Of one on an edge, ``hairs_per_cm`` of its lines. Of several that are joined, ``grooms`` with those of each by name.
+    ``hairs``: all of them, where they are made already; those of several are made again, one by one.
     """
     if groom.grooms:
         alone = grooms_of(groom).items()
         return {"grooms": {name: {"hairs": hair_count(one), **hair_measures(one)} for name, one in alone}}
     if groom.edge is not None:
         return {"hairs_per_cm": hair_count(groom) / (CM * groom.edge)}
-    return {"hairs_per_cm2": hairs_per_cm2(groom), "scalp_seen": hair_cover(groom).seen()}
+    return {"hairs_per_cm2": hairs_per_cm2(groom), "scalp_seen": hair_cover(groom, hairs).seen()}
 
 
 def lock_thickness(groom: Groom) -> float:

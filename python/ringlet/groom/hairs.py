@@ -213,7 +213,8 @@ def _with_lengths(hairs: Hairs, locks: Curves) -> dict[str, Any]:
 def _key(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -> bytes:
     """Digest of the inputs that determine the positions of hairs in their locks."""
     locks, scalp, fiber = groom.locks, groom.scalp, fiber_settings(groom)
-    shape = settings.model_dump_json(), fiber.model_dump_json(include={"flatness", "twist_pitch"})
+    section = fiber.values(locks, scalp)
+    shape = settings.model_dump_json(), fiber.model_dump_json(include={"flatness", "twist_pitch", "vary_hairs", "seed"})
     digest = blake2b(f"{shape} {groom.region} {fraction} {wider}".encode(), digest_size=16)
     for array in (
         locks.ids,
@@ -230,7 +231,7 @@ def _key(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -> 
         scalp.triangles,
         *((locks.curve[HAIR_SHARE],) if HAIR_SHARE in locks.curve else ()),
         *((locks.points,) if settings.blend != HairSettings().blend else ()),
-        *((locks.lengths(),) if fiber.flatness else ()),
+        *((locks.lengths(), *map(section, ("flatness", "twist_pitch"))) if fiber.is_flat else ()),
     ):
         digest.update(np.ascontiguousarray(array).data)
     return digest.digest()

@@ -32,7 +32,8 @@ def fiber_bsdf(mi: Any, hairs: Curves, color: HairColor | None) -> dict[str, Any
     if color is None and MELANIN not in hairs.curve and MELANIN not in hairs.point:
         color = HAIR_COLORS[DEFAULT_COLOR]
     reflectance = hair_reflectances(hairs, color)
-    along, around = (of_fiber(hairs, name, color and color.roughness) for name in (ROUGHNESS, AZIMUTHAL_ROUGHNESS))
+    along = of_fiber(hairs, ROUGHNESS, color and color.roughness)
+    around = of_fiber(hairs, AZIMUTHAL_ROUGHNESS, color and color.azimuthal_roughness)
     return {
         "type": "hair",
         "sigma_a": _texture(mi, absorption_of(reflectance, around), hairs.counts - 1, len(reflectance) != len(hairs)),

@@ -9,7 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
 
+from ringlet.picture.along import HairField
 from ringlet.picture.denoise import denoise
+
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
+DARKEST = 1e-4  # luminance below which detail has no color of its surroundings
+BRIGHTEST = 2.0  # deviations of detail beyond which it is a speck
+DETAIL_WINDOW = 6.0  # deviation of the window that separates detail from noise [pixels]
 
 
 class Passes:
@@ -68,3 +74,27 @@ class Passes:
         denoised = denoise(a / many, self._sums[1] / few, variance / few) * many
         denoised += denoise(b / few, self._sums[0] / many, variance / many) * few
         return denoised / self.count
+
+    def detail(
+        self, sums: Sequence[NDArray[np.float64]], denoised: NDArray[np.float64], hair: HairField
+    ) -> NDArray[np.float64]:
+        """What both halves have in common beyond the denoised mean, such as single hairs; needs two passes.
+
+        A Wiener filter of the residual along the hairs. Noise of the halves is independent, so their covariance is that
+        of the detail, which bounds it: what stands out further is a speck. Detail has the color of its surroundings.
+        """
+        light = denoised[:, :, :3] @ LUMINANCE
+        a, b = (
+            hair.along(_brightness(total / count - denoised)) for total, count in zip(sums, self.counts, strict=True)
+        )
+        mean = (a * self.counts[0] + b * self.counts[1]) / self.count
+        common, power = (gaussian_filter(x, (DETAIL_WINDOW, DETAIL_WINDOW, 0.0)) for x in (a * b, mean**2))
+        brightest = BRIGHTEST * np.sqrt(np.maximum(common, 0.0))
+        kept = np.clip(mean, -brightest, brightest) * np.clip(common / np.maximum(power, 1e-12), 0.0, 1.0)
+        colored = denoised[:, :, :3] * (kept[:, :, 0] / np.maximum(light, DARKEST))[:, :, None]
+        return np.concatenate([colored, kept[:, :, 1:]], axis=2)
+
+
+def _brightness(image: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Luminance and coverage of an image (r, g, b, a), shape (height, width, 2)."""
+    return np.stack([image[:, :, :3] @ LUMINANCE, image[:, :, 3]], axis=2)

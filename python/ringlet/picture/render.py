@@ -9,14 +9,15 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter
 
 from ringlet.data.camera import Camera
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.pigment import HairColor
 from ringlet.picture import oidn
+from ringlet.picture.along import HAIRS, hair_field
 from ringlet.picture.bodies import COLORS, PosedBody, material
+from ringlet.picture.engine import mitsuba
 from ringlet.picture.fiber import fiber_bsdf, hair_reflectances
 from ringlet.picture.layers import HairGroup, Layers, trace_layers
 from ringlet.picture.motion import fraction_of_pass
@@ -29,9 +30,6 @@ from ringlet.picture.studio import backdrop
 Progress = Callable[[str, int, int], None]
 
 
-# Beginning of the names of shapes of hairs in a scene.
-HAIRS = "hairs"
-
 # Smallest drawn diameter of a hair [pixels]: a surface of no radius has no normals.
 THINNEST = 1e-3
 
@@ -41,17 +39,6 @@ MAX_PASS_SAMPLES, MAX_TIMED_PASS_SAMPLES, MIN_PASSES = 8, 4, 4
 
 # Passes of a picture with motion blur: each sees the scene at one time.
 MIN_MOVED_PASSES = 16
-
-# Fraction of the noise that stays on hair: the denoiser would remove single hairs with it.
-GRAIN = 0.68
-
-
-def mitsuba() -> Any:
-    """Loads Mitsuba in the variant ``scalar_rgb``, which runs on any machine; lazily, since loading is slow."""
-    import mitsuba as mi
-
-    mi.set_variant("scalar_rgb")
-    return mi
 
 
 def build_scene(
@@ -172,9 +159,9 @@ def trace(
     if done < 3 or denoiser == "none":
         return accumulated.mean().astype(np.float32)
     halves = accumulated.without_specks()
-    light, denoised = (halves[0] + halves[1]) / done, accumulated.without_noise(halves)
-    grain: NDArray = GRAIN * hair_share(scene) * (light - denoised)
-    return np.asarray(denoised + grain, np.float32)
+    denoised = accumulated.without_noise(halves)
+    hair = hair_field(mi, scene)
+    return np.asarray(denoised + hair.share[:, :, None] * accumulated.detail(halves, denoised, hair), np.float32)
 
 
 def layers_of(scene: Any, camera: Camera, hairs: Curves, color: HairColor | None) -> Layers:
@@ -185,17 +172,6 @@ def layers_of(scene: Any, camera: Camera, hairs: Curves, color: HairColor | None
         for index, some in enumerate(split(replace(hairs, curve={**hairs.curve, "lock": lock}))):
             groups[f"{HAIRS}{index}"] = HairGroup(some, hair_reflectances(some, color))
     return trace_layers(mitsuba(), scene, camera, groups, scale=scene_scale(camera))
-
-
-def hair_share(scene: Any) -> NDArray[np.float32]:
-    """Coverage of visible hair, from 0 to 1, blurred at its edges; shape (height, width, 1)."""
-    mi = mitsuba()
-    is_fibres = np.array([False, *(shape.id().startswith(HAIRS) for shape in scene.shapes())])  # 0 is the background
-    if not is_fibres.any():
-        return np.zeros((1, 1, 1), np.float32)
-    shapes = mi.render(scene, integrator=mi.load_dict({"type": "aov", "aovs": "seen:shape_index"}), spp=1)
-    is_hair = is_fibres[np.rint(np.array(shapes)[:, :, 0]).astype(int)]
-    return np.asarray(gaussian_filter(is_hair.astype(np.float32), 1.2), np.float32)[:, :, None]
 
 
 def over_backdrop(image: NDArray[np.float32]) -> NDArray[np.floating]:

@@ -18,6 +18,7 @@ from ringlet.data.picture import PictureSettings
 from ringlet.data.pigment import hair_color
 from ringlet.picture import oidn
 from ringlet.picture.camera import angles_towards, frame, picture_size, take_position
+from ringlet.picture.engine import mitsuba, using
 from ringlet.picture.exr import write_exr
 from ringlet.picture.layers import Layers
 from ringlet.picture.motion import Pose
@@ -25,7 +26,6 @@ from ringlet.picture.render import (
     Progress,
     build_scene,
     layers_of,
-    mitsuba,
     over_backdrop,
     trace,
 )
@@ -95,6 +95,20 @@ def take(
     """
     check_rig(settings.light)
     check_denoiser(settings.denoiser)
+    with using(settings.engine):
+        return _taken(pose, settings, lock, closing, standpoint, layers, progress)
+
+
+def _taken(
+    pose: Pose,
+    settings: PictureSettings,
+    lock: NDArray[np.floating] | None,
+    closing: Pose | None,
+    standpoint: Standpoint | None,
+    layers: bool,
+    progress: Progress | None,
+) -> Taken:
+    """``take`` with settings that are checked."""
     if len(pose.hairs):
         pose.hairs.check("hairs")
     if standpoint is None:

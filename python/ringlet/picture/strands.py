@@ -12,12 +12,15 @@ from scipy.linalg import solve_banded
 
 from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.data.groom import GROOM
+from ringlet.data.pigment import AZIMUTHAL_ROUGHNESS, ROUGHNESS, TILT, fiber_rows
 
 # Diameter of hairs without a width: that of a curly human hair [m].
 DEFAULT_WIDTH = 70e-6
 
 # Most points of a shape: a texture coordinate is one single-precision number over all of its segments.
 MOST_POINTS = 2**22
+
+FIBER_LEVELS = 4  # of a roughness, or of the tilt, that varies from hair to hair
 
 
 def spline_controls(points: NDArray[np.floating]) -> NDArray[np.float64]:
@@ -63,12 +66,35 @@ def fibres(hairs: Curves, origin: NDArray[np.float64]) -> tuple[NDArray[np.float
 
 
 def split(hairs: Curves) -> list[Curves]:
-    """Divides hairs, in their order, so that single precision resolves every place along a shape of them, and by groom,
-    as these differ in their fibre."""
+    """Divides hairs into those of the shapes of a scene: one material each, and places that single precision resolves.
+
+    Hairs keep their order within a shape.
+    """
+    kinds = _fiber_kinds(hairs)
+    alike = [hairs.take(np.flatnonzero(kinds == kind)) for kind in np.unique(kinds)] if kinds.any() else [hairs]
+    return [part for some in alike for part in _short(some)]
+
+
+def _short(hairs: Curves) -> list[Curves]:
+    """Parts of at most about MOST_POINTS points, each of one groom."""
     shapes = (hairs.offsets[1:] - 1) // MOST_POINTS
     groom = hairs.curve.get(GROOM, np.zeros(len(hairs), np.int32))
     borders = np.flatnonzero((np.diff(shapes) != 0) | (np.diff(groom) != 0)) + 1
     return [hairs.take(chosen) for chosen in np.split(np.arange(len(hairs)), borders)] if len(borders) else [hairs]
+
+
+def _fiber_kinds(hairs: Curves) -> NDArray[np.int64]:
+    """The kind of fiber of each hair: a level of each attribute that varies, as many hairs in each; 0 where none does.
+
+    A material of Mitsuba has one roughness and one tilt.
+    """
+    kinds = np.zeros(len(hairs), np.int64)
+    for name in (ROUGHNESS, AZIMUTHAL_ROUGHNESS, TILT):
+        values = fiber_rows(hairs, name)
+        if len(values) and np.ptp(values) > 0.0:
+            borders = np.quantile(values, np.arange(1, FIBER_LEVELS) / FIBER_LEVELS)
+            kinds = FIBER_LEVELS * kinds + np.searchsorted(borders, values, side="right")
+    return kinds
 
 
 def load_fibres(mi: Any, controls: NDArray[np.float32], offsets: NDArray[np.int32], bsdf: dict[str, Any]) -> Any:

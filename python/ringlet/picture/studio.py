@@ -18,7 +18,7 @@ class Light:
     elevation: above the camera's height [degrees]
     size:      diameter, in units of the subject's distance from the light
     strength:  irradiance of a surface that faces the box (linear r, g, b)
-    attention: sampling weight of the light; a larger one lowers its noise
+    attention: part of the light samples that it gets
     """
 
     azimuth: float
@@ -29,12 +29,12 @@ class Light:
 
 
 LIGHTS = {
-    "key": Light(-36.0, 25.0, 0.62, (10.5, 9.0, 7.3), 3.0),  # warm and large, below the fringe: models the face
-    "fill": Light(64.0, 4.0, 1.0, (1.2, 1.4, 1.7)),  # cool and dim, from the other side
+    "key": Light(-36.0, 25.0, 0.62, (10.5, 9.0, 7.3)),  # warm and large, below the fringe: models the face
+    "fill": Light(64.0, 4.0, 1.0, (1.2, 1.4, 1.7), 0.35),  # cool and dim, from the other side
     "rim_right": Light(142.0, 34.0, 0.7, (9.5, 9.2, 8.8)),  # from behind: outlines every curl of the silhouette
     "rim_left": Light(-128.0, 52.0, 0.7, (9.5, 9.2, 9.2)),
 }
-AMBIENT = (0.22, 0.23, 0.25)
+AMBIENT, AMBIENT_ATTENTION = (0.22, 0.23, 0.25), 0.15
 
 # Linear colours of the backdrop: behind the subject's shoulders, and at the picture's edge.
 BACKDROP_NEAR, BACKDROP_FAR = np.array([0.33, 0.38, 0.40]), np.array([0.05, 0.062, 0.072])
@@ -42,7 +42,9 @@ BACKDROP_NEAR, BACKDROP_FAR = np.array([0.33, 0.38, 0.40]), np.array([0.05, 0.06
 
 def lights(mi: Any, axes: NDArray[np.float64], distance: float, centre: NDArray[np.float64]) -> dict[str, Any]:
     """Soft boxes as Mitsuba shapes, at ``distance`` from the centre of the subject; ``axes`` as in Camera."""
-    shapes: dict[str, Any] = {"ambient": {"type": "constant", "radiance": rgb(AMBIENT), "sampling_weight": 1.0}}
+    shapes: dict[str, Any] = {
+        "ambient": {"type": "constant", "radiance": rgb(AMBIENT), "sampling_weight": AMBIENT_ATTENTION}
+    }
     for name, light in LIGHTS.items():
         azimuth, elevation = radians(light.azimuth), radians(light.elevation)
         local = np.array([sin(azimuth) * cos(elevation), sin(elevation), cos(azimuth) * cos(elevation)])

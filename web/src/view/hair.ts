@@ -179,7 +179,7 @@ export class Hair {
     const shown = this.ownShown && own !== null && own.stations > 0 && fits;
     uniforms["stations"].value = shown ? own.stations : 0;
     if (named) (uniforms["reflectance"].value as Vector3).fromArray(named);
-    uniforms["roughness"].value = shown || !named ? (own?.roughness ?? 0.38) : named[3];
+    uniforms["roughness"].value = shown || !named ? (own?.roughness ?? 0.25) : named[3];
     uniforms["tilt"].value = ((own?.tilt ?? 2) * Math.PI) / 180;
   }
 

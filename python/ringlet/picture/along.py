@@ -1,0 +1,71 @@
+"""Means along hairs in a picture: noise averages out, while single hairs keep their edges."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter
+
+HAIRS = "hairs"  # beginning of the names of shapes of hairs in a scene
+RAYS = 2  # per pixel
+REACH = 6  # pixels to each side along a hair
+ALIKE = 0.7  # cosine of the double angle from which on a pixel counts as along the same hairs
+
+
+@dataclass(frozen=True)
+class HairField:
+    """Where hair is seen in a picture, and how it runs.
+
+    share:     coverage of visible hair, from 0 to 1, blurred at its edges; shape (height, width)
+    direction: mean of (cos 2φ, sin 2φ) over the hairs in a pixel, with the angle φ of each from the picture's x axis
+               towards its y axis; its length tells how parallel they are. Shape (height, width, 2)
+    """
+
+    share: NDArray[np.float32]
+    direction: NDArray[np.float32]
+
+    def along(self, image: NDArray[np.floating]) -> NDArray[np.float64]:
+        """Means of an image (height, width, channels) along the hairs, over up to ``REACH`` pixels to each side.
+
+        Line integral convolution (Cabral and Leedom 1993), which ends where hairs turn away or cross.
+        """
+        height, width = self.share.shape
+        rows, columns = np.mgrid[:height, :width].astype(np.float64)
+        angle = 0.5 * np.arctan2(self.direction[:, :, 1], self.direction[:, :, 0])
+        step = np.stack([np.cos(angle), np.sin(angle)])
+        total, weights = np.array(image, np.float64), np.ones((height, width))
+        for sign in (1.0, -1.0):
+            ahead, x, y, weight = sign * step, columns.copy(), rows.copy(), np.ones((height, width))
+            for _ in range(REACH):
+                x, y = np.clip(x + ahead[0], 0, width - 1), np.clip(y + ahead[1], 0, height - 1)
+                at = np.rint(y).astype(np.int64), np.rint(x).astype(np.int64)
+                alike = np.einsum("hwk,hwk->hw", self.direction, self.direction[at])
+                weight = weight * np.clip(alike / ALIKE, 0.0, 1.0)
+                total += weight[:, :, None] * image[at]
+                weights += weight
+                there = step[:, at[0], at[1]]
+                ahead = np.where((there * ahead).sum(axis=0) < 0.0, -there, there)
+        return total / weights[:, :, None]
+
+
+def hair_field(mi: Any, scene: Any) -> HairField:
+    """Casts ``RAYS`` rays a pixel to see where hair is, and how it runs."""
+    is_hair = np.array([False, *(shape.id().startswith(HAIRS) for shape in scene.shapes())])  # 0 is the background
+    if not is_hair.any():
+        return HairField(np.zeros((1, 1), np.float32), np.zeros((1, 1, 2), np.float32))
+    integrator = mi.load_dict({"type": "aov", "aovs": "tangent:dp_dv,shape:shape_index"})
+    to_camera = np.array(scene.sensors()[0].world_transform().matrix).reshape(4, 4)[:3, :3].T
+    sums: Any = 0.0
+    for seed in range(RAYS):
+        seen = np.array(mi.render(scene, sensor=1, integrator=integrator, spp=1, seed=seed), np.float64)
+        hair = is_hair[np.rint(seen[:, :, 3]).astype(np.int64)].astype(np.float64)
+        run = seen[:, :, :3] @ to_camera.T[:, :2]
+        squared = np.maximum((run**2).sum(axis=2), 1e-30)
+        double = np.stack([run[:, :, 0] ** 2 - run[:, :, 1] ** 2, 2.0 * run[:, :, 0] * run[:, :, 1]], axis=2)
+        sums = sums + np.concatenate([hair[:, :, None], hair[:, :, None] * double / squared[:, :, None]], axis=2)
+    mean = gaussian_filter(sums / RAYS, (1.2, 1.2, 0.0)).astype(np.float32)
+    direction = mean[:, :, 1:] / np.maximum(mean[:, :, :1], np.float32(1e-3))
+    return HairField(mean[:, :, 0], direction.astype(np.float32))
