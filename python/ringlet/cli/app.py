@@ -30,6 +30,7 @@ COMMANDS = [
     "converge",
     "wedge",
     "hair",
+    "convert",
     "picture",
     "movie",
     "turntable",

@@ -1,5 +1,6 @@
-"""Reads and writes USD; reads meshes and polylines from OBJ, and hairs from .hair."""
+"""Reads and writes USD, Alembic, .hair, TressFX .tfx and polylines of OBJ; reads meshes from OBJ."""
 
+from ringlet.io.formats import format_of, open_scene, write_scene
 from ringlet.io.read import read_clip, read_curves, read_mesh, read_space
 from ringlet.io.texture import read_texture
 from ringlet.io.usd.cache import CacheFile, CacheWriter, cache_groom_path, is_cache, open_cache, read_cache, write_cache
@@ -20,9 +21,11 @@ __all__ = [
     "as_written",
     "cache_groom_path",
     "check_target",
+    "format_of",
     "heat",
     "is_cache",
     "open_cache",
+    "open_scene",
     "problems",
     "read_bodies",
     "read_body",
@@ -45,5 +48,6 @@ __all__ = [
     "write_cache",
     "write_groom",
     "write_rest",
+    "write_scene",
     "write_touches",
 ]

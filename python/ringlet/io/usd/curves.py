@@ -17,8 +17,8 @@ from ringlet.data.errors import UserError
 from ringlet.data.mesh import Mesh
 from ringlet.data.pigment import DYE, FIBER, curve_reflectance, display_color
 from ringlet.data.stage import StageSpace
+from ringlet.io.basis import Sampling
 from ringlet.io.space import to_metres
-from ringlet.io.usd.basis import Sampling
 from ringlet.io.usd.names import identifier, keep_name, original_name
 from ringlet.io.usd.place import Place, placed
 from ringlet.io.usd.pose import posed_points, rest_time
@@ -67,11 +67,8 @@ def read_usd_curves(path: Path | str, prim: str | None = None, notes: list[str] 
 def curves_at(source: Source, prim: Usd.Prim, time: Usd.TimeCode) -> Curves:
     """Polylines of a curves prim at a time [m], with its primvars as attributes."""
     where = source.where(prim)
-    vertices = posed_points(source, prim, time, where)
-    counts = _counts(prim, time, len(vertices), where)
-    ids = np.arange(len(counts), dtype=np.int64)
-    Curves(vertices, offsets_from_counts(counts), ids).check(where)
-    sampling = Sampling(UsdGeom.BasisCurves(prim), time, counts, where)
+    vertices, sampling = _sampled(source, prim, time)
+    ids = np.arange(len(sampling.offsets) - 1, dtype=np.int64)
     curves = Curves(sampling.vertex(vertices), sampling.offsets, ids)
 
     for primvar in UsdGeom.PrimvarsAPI(prim).GetPrimvarsWithAuthoredValues():
@@ -87,6 +84,25 @@ def curves_at(source: Source, prim: Usd.Prim, time: Usd.TimeCode) -> Curves:
     _add_widths(curves, sampling, source, prim, time)
     _assign_ids(curves)
     return curves
+
+
+def points_at(source: Source, prim: Usd.Prim, time: Usd.TimeCode) -> NDArray[np.float64]:
+    """Points of the polylines of a curves prim at a time [m], shape (n, 3)."""
+    vertices, sampling = _sampled(source, prim, time)
+    return sampling.vertex(vertices)
+
+
+def _sampled(source: Source, prim: Usd.Prim, time: Usd.TimeCode) -> tuple[NDArray[np.float64], Sampling]:
+    """Vertices of a curves prim at a time [m], and their interpolation."""
+    where = source.where(prim)
+    vertices = posed_points(source, prim, time, where)
+    counts = _counts(prim, time, len(vertices), where)
+    Curves(vertices, offsets_from_counts(counts), np.arange(len(counts), dtype=np.int64)).check(where)
+    schema = UsdGeom.BasisCurves(prim)
+    kind, basis, wrap = (
+        attribute.Get(time) for attribute in (schema.GetTypeAttr(), schema.GetBasisAttr(), schema.GetWrapAttr())
+    )
+    return vertices, Sampling(kind, basis, wrap, counts, where)
 
 
 def own_curves(source: Source, prim: Usd.Prim, time: Usd.TimeCode | None = None, dtype: type = np.float64) -> Curves:
