@@ -76,7 +76,7 @@ def test_alembic_has_the_attributes_that_unreal_reads(hair, tmp_path):
     assert Abc.IInt16Property(properties, "groom_version_major").getValue() == 1
     assert Abc.IStringProperty(properties, "groom_tool").getValue() == "Ringlet"
     root = archive.getTop().getChild(0)
-    for child in (root.getChild(k) for k in range(root.getNumChildren())):
+    for child in (root.getChild(k).getChild(0) for k in range(root.getNumChildren())):
         if not AbcGeom.ICurves.matches(child.getMetaData()):
             continue
         schema = AbcGeom.ICurves(child, Abc.WrapExistingFlag.kWrapExisting).getSchema()
@@ -86,7 +86,7 @@ def test_alembic_has_the_attributes_that_unreal_reads(hair, tmp_path):
         guide = AbcGeom.IInt32GeomParam(parameters, "groom_guide")
         assert guide.getScope() == AbcGeom.GeometryScope.kUniformScope
         values = np.array(memoryview(guide.getExpandedValue().getVals()))
-        assert (values == (child.getName() == "guides")).all() and len(values) == (5 if values[0] else 10)
+        assert (values == (child.getName() == "guidesShape")).all() and len(values) == (5 if values[0] else 10)
         assert schema.getWidthsParam().getScope() == AbcGeom.GeometryScope.kVertexScope
         points = np.array(schema.getValue().getPositions())
         assert points.max() > 5.0  # centimetres

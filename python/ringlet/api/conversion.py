@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from ringlet.data import limits
 from ringlet.data.errors import UserError
 from ringlet.data.files import check_place
-from ringlet.data.random import Random
 from ringlet.data.reads import recorded
 from ringlet.data.resampling import Resampling
 from ringlet.data.stage import StageSpace
@@ -123,6 +122,8 @@ def _chosen(scene: HairScene, only: str | None, source: Path | str) -> list[Curv
 
 def _thinned(one: CurveSet, fraction: float, wider: bool, points: int | None) -> CurveSet:
     """A share of the curves, with other numbers of points."""
+    from ringlet.data.random import Random
+
     curves, steps = one.curves, list[Callable[[NDArray], NDArray]]()
     if fraction < 1.0:
         order = Random(SEED, "convert").uniform(curves.ids)

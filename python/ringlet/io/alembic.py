@@ -34,6 +34,7 @@ VERSION_MAJOR, VERSION_MINOR = 1, 5  # of Unreal's groom attributes
 MAGIC = b"Ogawa", b"\x89HDF"
 # Attributes that have a property of their own in the schema of curves, or that only Ringlet knows.
 SCHEMA = {"width", "root_triangle", "root_barycentric", "lock", "guide_id", "rest"}
+SHAPE = "Shape"  # ends the name of a shape, whose transform has the name itself
 UNREAL = ("groom_guide", "groom_group_id", "groom_id", "groom_root_uv")
 
 
@@ -86,6 +87,7 @@ class _Reader:
         self.library, self.path, self.space = library, path, space
         self.fps = space.fps
         self.frames = set[float]()
+        self.names = dict[int, str]()
 
     def scene(self, top: Any) -> HairScene:
         """Everything below the top object."""
@@ -125,7 +127,8 @@ class _Reader:
             for kind in (geom.ICurves, geom.IPolyMesh, geom.ISubD):
                 if kind.matches(data):
                     schema = kind(child, wrap).getSchema()
-                    self.names = getattr(self, "names", {}) | {id(schema): child.getName()}
+                    own = child.getName() != parent.getName() + SHAPE
+                    self.names[id(schema)] = child.getName() if own else parent.getName()
                     yield schema, path
             yield from self._objects(child, path)
 
@@ -321,13 +324,18 @@ def _unique(name: str, taken: set[str]) -> str:
     return found
 
 
+def _place(library: SimpleNamespace, root: Any, name: str) -> tuple[Any, str]:
+    """The transform of a shape, and its name: other programs show the transform as the object."""
+    return library.geom.OXform(root, name), name + SHAPE
+
+
 def _write_curves(
     library: SimpleNamespace, root: Any, name: str, one: CurveSet, frames: NDArray, times: int, space: StageSpace
 ) -> None:
     geom, imath, curves = library.geom, library.imath, one.curves
     vertex, uniform = geom.GeometryScope.kVertexScope, geom.GeometryScope.kUniformScope
     moves = one.motion is not None and len(frames) > 0
-    schema = (geom.OCurves(root, name, times) if moves else geom.OCurves(root, name)).getSchema()
+    schema = geom.OCurves(*_place(library, root, name), *([times] if moves else [])).getSchema()
     widths = curves.point.get("width")
     if widths is None and "width" in curves.curve:
         widths = np.repeat(curves.curve["width"], curves.counts)
@@ -401,7 +409,7 @@ def _write_body(
 ) -> None:
     geom, imath, (mesh, clip) = library.geom, library.imath, body
     moves = clip is not None and len(frames) > 0
-    schema = (geom.OPolyMesh(root, name, times) if moves else geom.OPolyMesh(root, name)).getSchema()
+    schema = geom.OPolyMesh(*_place(library, root, name), *([times] if moves else [])).getSchema()
     counts = imath.IntArrayFromBuffer(np.full(len(mesh.triangles), 3, np.int32))
     indices = imath.IntArrayFromBuffer(np.ascontiguousarray(mesh.triangles[:, ::-1], np.int32).ravel())
     for frame in frames.tolist() if moves else [None]:
