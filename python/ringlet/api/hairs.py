@@ -56,6 +56,7 @@ def write_hairs(
     frames: tuple[int, int] | None = None,
     fraction: float = 1.0,
     wider: bool = False,
+    velocities: bool = False,
     variant: str | None = None,
     progress: Progress | None = None,
 ) -> dict[str, int]:
@@ -65,6 +66,7 @@ def write_hairs(
 
     groom:   a groom, or a cache by itself, which lies over its groom
     frames:  the first and the last of the cache; all by default
+    velocities: writes those of hairs in motion too, in units per second, which doubles the size of the file
     variant: of the groom, in place of the one that is selected in it, or that the cache was made of
 
     Returns how many ``locks``, ``hairs``, ``points`` and ``frames`` there are.
@@ -81,15 +83,17 @@ def write_hairs(
     locks = read_groom(groom, variant=variant)
     hairs = build_hairs(locks, fraction=fraction, wider=wider)
     written = 0
+    shown = io.read_meshes(groom) or [locks.scalp]  # a head of an OBJ is in no stage
+    around = [(mesh.points, mesh.triangles) for mesh in shown]
+    hairs.curves.points = hairs.deformed(locks.locks.points, locks.scalp.points, surfaces=around)
     if cache is None:
-        scalp = locks.scalp
-        shown = io.read_meshes(groom) or [scalp]  # a head of an OBJ is in no stage
-        surfaces = [(mesh.points, mesh.triangles) for mesh in shown]
-        points = hairs.deformed(locks.locks.points, scalp.points, surfaces=surfaces)
         with io.HairWriter(Path(path), locks, hairs.curves, Path(groom)) as writer:
-            writer.add(None, points, around=scalp.points)
+            writer.add(None, hairs.curves.points, around=locks.scalp.points)
     else:
-        with io.open_cache(cache) as moved, io.HairWriter(Path(path), locks, hairs.curves, Path(cache)) as writer:
+        with (
+            io.open_cache(cache) as moved,
+            io.HairWriter(Path(path), locks, hairs.curves, Path(cache), velocities) as writer,
+        ):
             chosen = moved.within(frames)
             clip = scalp_clip(locks, (math.floor(chosen[0]), math.ceil(chosen[-1])))
             for frame in chosen:

@@ -190,11 +190,17 @@ def _set_attribute(prim: Usd.Prim, name: str, interpolation: str, values: NDArra
 
 def set_points(
     curves: UsdGeom.BasisCurves, points: NDArray, place: Place, time: Usd.TimeCode, around: NDArray | None = None
-) -> None:
-    """Writes points [m] and their extent at a time; ``around`` as for ``Place.local``."""
+) -> Vt.Vec3fArray:
+    """Writes points [m] and their extent at a time; ``around`` as for ``Place.local``. Returns the value."""
     value = place.local(points, time, around)
     curves.CreatePointsAttr().Set(value, time)
     curves.CreateExtentAttr().Set(UsdGeom.Curves.ComputeExtent(value, curves.GetWidthsAttr().Get()), time)
+    return value
+
+
+def set_rest(curves: UsdGeom.PointBased, value: Vt.Vec3fArray) -> None:
+    """Writes the rest pose, in the space of the prim, as the primvar of Houdini and of hair materials."""
+    UsdGeom.PrimvarsAPI(curves).CreatePrimvar("rest", Types.Point3fArray, "vertex").Set(value)
 
 
 def set_roots(prim: Usd.Prim, curves: Curves, scalp: Mesh) -> None:

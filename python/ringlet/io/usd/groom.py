@@ -30,7 +30,7 @@ from ringlet.data.reads import recorded
 from ringlet.data.regular import check_regular
 from ringlet.data.settings import did_you_mean
 from ringlet.data.stage import StageSpace
-from ringlet.io.usd.curves import define_curves, own_curves, set_display_color, set_points, set_roots
+from ringlet.io.usd.curves import define_curves, own_curves, set_display_color, set_points, set_rest, set_roots
 from ringlet.io.usd.mesh import define_mesh, read_usd_mesh, select_mesh
 from ringlet.io.usd.place import Place, rounded
 from ringlet.io.usd.stage import (
@@ -45,7 +45,7 @@ from ringlet.io.usd.stage import (
     relative,
     writing,
 )
-from ringlet.io.usd.values import Types
+from ringlet.io.usd.values import Types, read_time
 
 GROOM, LOCKS, GUIDES, BODY = "/groom", "/groom/locks", "/groom/guides", "/groom/body"
 BANDS = "/groom/bands"
@@ -246,7 +246,20 @@ def _reference(stage: Usd.Stage, head: Path, scalp: str | None) -> Sdf.Path:
     body = stage.DefinePrim(BODY)
     name = relative(head, stage.GetRootLayer().realPath)
     body.GetReferences().AddReference(Sdf.Reference(name) if whole else Sdf.Reference(name, top))
-    return prim.ReplacePrefix(top, BODY)
+    scalp_path = prim.ReplacePrefix(top, BODY)
+    _rest_of_skin(stage, scalp_path)
+    return scalp_path
+
+
+def _rest_of_skin(stage: Usd.Stage, scalp: Sdf.Path) -> None:
+    """Writes the primvar ``rest`` of the skin, over the head; not where the head has one, or is instanced."""
+    prim = stage.GetPrimAtPath(scalp)
+    if not prim or prim.IsInstanceProxy() or UsdGeom.PrimvarsAPI(prim).HasPrimvar("rest"):
+        return
+    points = UsdGeom.PointBased(prim).GetPointsAttr()
+    value = points.Get(read_time(Usd.TimeCode.Default(), points))
+    if value:
+        set_rest(UsdGeom.PointBased(stage.OverridePrim(scalp)), value)
 
 
 def _define_guides(
@@ -256,8 +269,7 @@ def _define_guides(
     defined = define_curves(stage, path, curves, space, guide=True)
     prim = defined.GetPrim()
     place = Place(prim, space, file, curves)
-    set_points(defined, curves.points, place, Usd.TimeCode.Default(), groom.scalp.points)
-    UsdGeom.PrimvarsAPI(prim).CreatePrimvar("rest", Types.Point3fArray, "vertex").Set(defined.GetPointsAttr().Get())
+    set_rest(defined, set_points(defined, curves.points, place, Usd.TimeCode.Default(), groom.scalp.points))
     set_roots(prim, curves, groom.scalp)
     set_display_color(prim, curves)
 

@@ -18,8 +18,9 @@ from ringlet.data.mesh import Clip, Mesh
 from ringlet.data.reads import record
 from ringlet.data.stage import StageSpace
 from ringlet.io.usd.clips import clip_at, whole_frames
-from ringlet.io.usd.curves import COMMON, curves_at, define_curves, points_at, set_points
+from ringlet.io.usd.curves import COMMON, curves_at, define_curves, points_at, set_points, set_rest
 from ringlet.io.usd.groom import GROOM, GUIDES, LOCKS
+from ringlet.io.usd.material import bind_hair_material
 from ringlet.io.usd.mesh import define_mesh, mesh_at
 from ringlet.io.usd.names import identifier
 from ringlet.io.usd.place import Place
@@ -27,6 +28,7 @@ from ringlet.io.usd.pose import motion_samples, rest_time
 from ringlet.io.usd.stage import Source, layer_files, new_stage, prims, reading, reading_more, writing
 from ringlet.io.usd.surfaces import shown_surfaces
 from ringlet.io.usd.values import Types, set_primvar
+from ringlet.io.usd.velocities import Velocities
 
 DEFAULT = Usd.TimeCode.Default()
 PLAIN = {  # attributes with a type of their own in the schema of other programs
@@ -124,11 +126,14 @@ def _define_set(stage: Usd.Stage, path: str, one: CurveSet, frames: NDArray, spa
     for name, (interpolation, values) in kept.items():
         values = values.astype(np.int32 if values.dtype.kind in "iu" else np.float32)
         set_primvar(prim, name, interpolation, values, PLAIN[name])
+    if not one.guide:
+        bind_hair_material(defined, plain)
     place = Place(prim, space, file, plain)
-    set_points(defined, curves.points, place, DEFAULT)
-    UsdGeom.PrimvarsAPI(prim).CreatePrimvar("rest", Types.Point3fArray, "vertex").Set(defined.GetPointsAttr().Get())
-    for frame in frames if one.motion else ():
-        set_points(defined, one.points(frame), place, Usd.TimeCode(float(frame)))
+    set_rest(defined, set_points(defined, curves.points, place, DEFAULT))
+    velocities = Velocities(defined, stage.GetTimeCodesPerSecond())
+    for frame in frames.tolist() if one.motion else ():
+        velocities.add(frame, np.array(set_points(defined, one.points(frame), place, Usd.TimeCode(frame))))
+    velocities.finish()
 
 
 def _define_body(stage: Usd.Stage, path: str, mesh: Mesh, clip: Clip | None, space: StageSpace, file: Path) -> None:
