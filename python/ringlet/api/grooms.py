@@ -83,9 +83,11 @@ def groom_inputs(recipe: Recipe, memory: Memory | None = None, notes: list[str] 
         name: io.read_curves(file, recipe.curves[name].prim, space=recipe.curves[name].space, notes=notes)
         for name, file in recipe.helper_files().items()
     }
+    offsets = None if recipe.offsets_file is None else _cached(memory, recipe.offsets_file, "hairs", io.read_offsets)
     return {
         "scalp": scalp,
         "drawn_guides": drawn,
+        "offsets": offsets,
         "helpers": helpers,
         "scalp_file": recipe.scalp_file,
         "scalp_prim": recipe.scalp.mesh,

@@ -31,6 +31,7 @@ COMMANDS = [
     "wedge",
     "hair",
     "convert",
+    "adopt",
     "picture",
     "movie",
     "turntable",

@@ -115,9 +115,15 @@ class Recipe(Section):
         """Texture files of maps, by name of the map."""
         return {name: file for name, text in self.maps.items() if (file := self._beside(text)) is not None}
 
+    @property
+    def offsets_file(self) -> Path | None:
+        """File of adopted hairs; None when hairs are made by the settings."""
+        return self._beside(self.hairs.file)
+
     def named_files(self) -> dict[str, Path]:
         """Files that the recipe names, by setting."""
         files = {"scalp.file": self.scalp_file, "guides.file": self.guides_file, "edits": self.edits_file}
+        files["hairs.file"] = self.offsets_file
         files |= {f"maps.{name}": file for name, file in self.map_files().items()}
         files |= {f"curves.{name}": file for name, file in self.helper_files().items()}
         return {what: file for what, file in files.items() if file is not None}

@@ -9,6 +9,7 @@ from ringlet.io.usd.check import problems
 from ringlet.io.usd.groom import as_written, read_groom, write_groom
 from ringlet.io.usd.hairs import HairWriter, read_hair_frames, read_hairs, read_stage
 from ringlet.io.usd.mesh import Body, read_bodies, read_body, read_meshes, unread_surfaces
+from ringlet.io.usd.offsets import read_offsets, write_offsets
 from ringlet.io.usd.rest import read_rest, write_rest
 from ringlet.io.usd.stage import check_target
 from ringlet.io.usd.touches import heat, read_touches, start_marks, write_touches
@@ -38,6 +39,7 @@ __all__ = [
     "read_hairs",
     "read_mesh",
     "read_meshes",
+    "read_offsets",
     "read_rest",
     "read_space",
     "read_stage",
@@ -47,6 +49,7 @@ __all__ = [
     "unread_surfaces",
     "write_cache",
     "write_groom",
+    "write_offsets",
     "write_rest",
     "write_scene",
     "write_touches",

@@ -122,7 +122,7 @@ def _unheld(scene: HairScene, kind: Format) -> list[str]:
 def _one_set(scene: HairScene, kind: Format) -> tuple[Curves, list[str]]:
     """The curves that a format of one set holds, and a sentence for each thing that it does not."""
     shown, lost = scene.shown, list[str]()
-    curves = _joined(shown)
+    curves = joined(shown)
     if left := [one for one in scene.sets if one not in shown]:
         lost.append(f"{kind.name} holds one set of curves: without {sum(len(one.curves) for one in left)} guides")
     if scene.bodies:
@@ -151,7 +151,7 @@ def _one_set(scene: HairScene, kind: Format) -> tuple[Curves, list[str]]:
     return curves, lost
 
 
-def _joined(sets: list[CurveSet]) -> Curves:
+def joined(sets: list[CurveSet]) -> Curves:
     """All curves as one set, with the attributes that all have."""
     every = [one.curves for one in sets]
     if len(every) == 1:

@@ -25,6 +25,10 @@ class Drawn(Source, Guides):
         default=0.01, description="how far a root may be off the scalp"
     )
 
+    residual: Annotated[float, Quantity("", 0.0, 1.0)] = Field(
+        default=1.0, description="part that is kept of what the curl does not fit, of guides that were adopted"
+    )
+
     def make(self, curves: Curves, context: Context) -> Curves:
         """Returns the drawn curves without coincident points, each bound to the nearest point of the scalp region."""
         return context.scalp.bind(curves.check("guides").distinct(), self.tolerance, "guides")

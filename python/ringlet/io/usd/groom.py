@@ -32,6 +32,8 @@ from ringlet.data.settings import did_you_mean
 from ringlet.data.stage import StageSpace
 from ringlet.io.usd.curves import define_curves, own_curves, set_display_color, set_points, set_rest, set_roots
 from ringlet.io.usd.mesh import define_mesh, read_usd_mesh, select_mesh
+from ringlet.io.usd.offsets import NAME as OFFSETS_NAME
+from ringlet.io.usd.offsets import define_offsets, offsets_at
 from ringlet.io.usd.place import Place, rounded
 from ringlet.io.usd.stage import (
     CAGE,
@@ -130,6 +132,8 @@ def _define(stage: Usd.Stage, groom: Groom, space: StageSpace, file: Path | str)
         _set(root, "recipe", Types.String, groom.recipe)
     _define_guides(stage, LOCKS, groom.locks, groom, space, file)
     _define_guides(stage, GUIDES, groom.guides, groom, space, file)
+    if groom.offsets is not None:
+        define_offsets(stage, f"{GROOM}/{OFFSETS_NAME}", groom.offsets)
     for band in groom.bands:
         define_mesh(stage, f"{BANDS}/{band.name.replace(' ', '_')}", band, space, file)
 
@@ -171,6 +175,7 @@ def read_groom(path: Path | str, variant: str | None = None, *, bound: bool = Tr
             fiber=_settings(source, root, "fiber"),
             recipe=_get(root, "recipe"),
             variant=root.GetVariantSets().GetVariantSet(VARIANTS).GetVariantSelection() or None,
+            offsets=offsets_at(prim, source.where(prim)) if (prim := root.GetChild(OFFSETS_NAME)) else None,
         )
 
 
