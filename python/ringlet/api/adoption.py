@@ -40,6 +40,7 @@ FARTHEST_ROOT = 0.05  # [m] of a root from the head
 WIDTH, PITCH, HAND, PHASE = (f"adopted_{name}" for name in ("width", "pitch", "hand", "phase"))
 COILED = 0.2  # share of the locks that must be coiled for the recipe to have a curl
 MOST_PITCH = 0.9  # [m] of a lock without a coil, as the recipe has it
+MEASURED = 2000  # hairs whose distances are measured
 TURN_POINTS = 8  # points of a turn of a lock
 
 
@@ -154,18 +155,19 @@ def _read(
     hair = _resampled(curves)
     roots = hair.points[:, 0]
     if head is not None:
-        return hair, io.read_mesh(head, mesh), {"file": _absolute(head), **({"mesh": mesh} if mesh else {})}
+        return hair, io.read_mesh(head, mesh), {"file": _from(files["scalp"], head), **({"mesh": mesh} if mesh else {})}
     if Path(source).suffix.lower().startswith(".usd") and bodies:
         near = min(io.read_bodies(source), key=lambda body: _distance(body.mesh, roots))
-        return hair, near.mesh, {"file": _absolute(source), "mesh": near.prim}
+        return hair, near.mesh, {"file": _from(files["scalp"], source), "mesh": near.prim}
     from ringlet.adoption.scalp import scalp_of_roots
 
     own = min(bodies, key=lambda body: _distance(body, roots)) if bodies else scalp_of_roots(roots, str(source))
     return hair, replace(own, name="scalp"), {"file": files["scalp"].name}
 
 
-def _absolute(path: Path | str) -> str:
-    return str(Path(path).absolute())
+def _from(recipe: Path, path: Path | str) -> str:
+    """Name of a file as the recipe has it."""
+    return Path(os.path.relpath(Path(path).absolute(), recipe.absolute().parent)).as_posix()
 
 
 def _distance(mesh: Mesh, roots: NDArray[np.float64]) -> float:
@@ -289,7 +291,7 @@ def _fitted(recipe: Recipe, scalp: Mesh, guides: Curves, target: NDArray[np.floa
 
 
 def _add_hairs(groom: Groom, hair: _Hair, clumps: Clumps) -> NDArray[np.float64]:
-    """Gives a groom its hairs; returns how far they are from what they were [m], shape (hairs, points)."""
+    """Gives a groom its hairs; returns how far what they were is from them [m], shape (hairs, points)."""
     from ringlet import groom as grooms
     from ringlet.data.random import Random
     from ringlet.groom import adopted
@@ -303,7 +305,23 @@ def _add_hairs(groom: Groom, hair: _Hair, clumps: Clumps) -> NDArray[np.float64]
         groom, hair.points[order], hair.lengths[order], hair.widths[order][:, at], clumps.of[order]
     )
     made = grooms.make_hairs(groom).curves.points.reshape(len(order), -1, 3)
-    return np.linalg.norm(made - hair.points[order], axis=2)
+    measured = order[:: max(1, len(order) // MEASURED)]
+    return distances(hair.points[measured], made[:: max(1, len(order) // MEASURED)].astype(np.float64))
+
+
+def distances(points: NDArray[np.float64], lines: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Distance of points from the polyline of their hair [m], shape (hairs, k).
+
+    points: shape (hairs, k, 3); lines: shape (hairs, n, 3)
+    """
+    found = np.empty(points.shape[:2])
+    for row, (hair, line) in enumerate(zip(points, lines, strict=True)):
+        start, edge = line[:-1], np.diff(line, axis=0)
+        from_start = hair[:, None] - start
+        t = (from_start * edge).sum(axis=2) / np.maximum((edge**2).sum(axis=1), 1e-18)
+        off = from_start - np.clip(t, 0.0, 1.0)[..., None] * edge
+        found[row] = np.sqrt((off**2).sum(axis=2).min(axis=1))
+    return found
 
 
 def _write(

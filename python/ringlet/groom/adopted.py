@@ -19,7 +19,10 @@ from ringlet.groom.scalp import axes
 
 GATHER = 0.1  # part of a hair over which it comes from its root to its offset
 FREE = 0.3  # least part of an offset that is solved for: the rest holds to the root
-TIPS = np.linspace(0.9, 1.1, 21)  # places of a hair's tip that are tried, relative to its length
+STEPS = 8  # of Newton's method for places that are abreast
+LONGEST = 0.02  # step, as a part of a hair
+LEAST_RATE = 0.3  # cosine of a hair to its lock from which steps are damped
+SHORTEST = 0.02  # hair, as a part of its lock
 WIDTHS = 8  # diameters that are kept of a hair
 
 
@@ -107,18 +110,17 @@ def fit_offsets(
     first = np.r_[True, lock[1:] != lock[:-1]]
     across = np.zeros((len(points), points.shape[1], 2), np.float32)
     tip = np.ones(len(points), np.float32)
-    tips = np.minimum(lengths / np.maximum(lengths[first][lock], 1e-9), 1.0 / TIPS[0])
-    starts = np.flatnonzero(first)
+    own, starts = lengths[first], np.flatnonzero(first)
     for row, (start, end) in enumerate(zip(starts, np.r_[starts[1:], len(lock)], strict=True)):
-        hairs = np.arange(start + 1, end)
-        ends = np.minimum(tips[hairs, None] * TIPS, 1.0)
-        center, frame = _at(grown[row], frames[row], ends[..., None] * s)
-        off = points[hairs, None] - center - hold[:, None] * (roots[hairs] - grown[row, 0])[:, None, None]
-        local = np.einsum("htpxk,htpx->htpk", frame, off)
-        best = (local[..., 2] ** 2).sum(axis=2).argmin(axis=1)
-        chosen = np.arange(len(hairs)), best
-        tip[hairs] = ends[chosen]
-        across[hairs] = local[chosen][..., :2] / np.maximum(1.0 - hold, FREE)[:, None]
+        hairs = slice(start + 1, end)
+        lock_at = _Along(grown[row][None], frames[row][None], float(own[row]))
+        hair_at = _Along(points[hairs], None, lengths[hairs, None])
+        tip[hairs] = tips = _tips(lock_at, hair_at)
+        center, frame = lock_at(tips[:, None] * s)
+        root = roots[hairs] - grown[row, 0]
+        places = _abreast(hair_at, center + hold[:, None] * root[:, None], frame[..., 2], s)
+        off = hair_at(places)[0] - center - hold[:, None] * root[:, None]
+        across[hairs] = np.einsum("hpxk,hpx->hpk", frame[..., :2], off) / np.maximum(1.0 - hold, FREE)[:, None]
     triangle[first], barycentric[first] = locks.curve["root_triangle"], locks.curve["root_barycentric"]
     return HairOffsets(locks.ids[lock], tip, across, widths.astype(np.float32), triangle, barycentric, GATHER)
 
@@ -131,13 +133,52 @@ def _carried_frames(groom: Groom) -> NDArray[np.float64]:
     return frames.reshape(len(groom.locks), -1, 3, 3)
 
 
-def _at(points: NDArray, frames: NDArray, u: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Points and frames of a lock at places from 0 to 1, of the shape of ``u`` and (3,), (3, 3)."""
-    at = u * (len(points) - 1)
-    i = np.minimum(at.astype(int), len(points) - 2)
-    t = (at - i)[..., None]
-    center = (1.0 - t) * points[i] + t * points[i + 1]
-    return center, (1.0 - t[..., None]) * frames[i] + t[..., None] * frames[i + 1]
+class _Along:
+    """Polylines of evenly spaced points, evaluated at places from 0 to 1.
+
+    points: shape (hairs or 1, k, 3); frames: (hairs or 1, k, 3, 3) or None; lengths: [m], broadcast over places
+    """
+
+    def __init__(self, points: NDArray, frames: NDArray | None, lengths: NDArray | float) -> None:
+        self._points, self._frames, self.lengths = points, frames, lengths
+
+    def __call__(self, u: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Points, and frames or else edges, at places u, shape (hairs, n)."""
+        points, last = self._points, self._points.shape[1] - 1
+        rows = np.arange(len(points))[:, None]
+        i = np.clip((u * last).astype(int), 0, last - 1)
+        t = (u * last - i)[..., None]
+        at = (1.0 - t) * points[rows, i] + t * points[rows, i + 1]
+        if self._frames is None:
+            return at, (points[rows, i + 1] - points[rows, i]) * last
+        return at, (1.0 - t[..., None]) * self._frames[rows, i] + t[..., None] * self._frames[rows, i + 1]
+
+
+def _tips(lock: _Along, hair: _Along) -> NDArray[np.float32]:
+    """Places on a lock that are abreast of the tips of its hairs, shape (hairs,)."""
+    u = np.minimum(np.asarray(hair.lengths) / lock.lengths, 1.0)
+    ends = hair(np.ones_like(u))[0]
+    for _ in range(STEPS):
+        center, frame = lock(u)
+        u = np.clip(u + np.einsum("hpx,hpx->hp", ends - center, frame[..., 2]) / lock.lengths, SHORTEST, 1.0)
+    return u[:, 0].astype(np.float32)
+
+
+def _abreast(hair: _Along, center: NDArray, along: NDArray, s: NDArray) -> NDArray[np.float64]:
+    """Places on hairs in the planes across a lock, shape (hairs, points), in order from root to tip.
+
+    center, along: points and tangents of the lock, shape (hairs, points, 3)
+    s:             places of these points on the hair, from 0 to 1, shape (points,)
+    """
+    at = np.broadcast_to(s, center.shape[:2])
+    for _ in range(STEPS):
+        points, edges = hair(at)
+        rate = np.einsum("hpx,hpx->hp", edges, along)
+        off = np.einsum("hpx,hpx->hp", points - center, along)
+        at = np.clip(at - np.clip(off / np.maximum(rate, LEAST_RATE * hair.lengths), -LONGEST, LONGEST), 0.0, 1.0)
+        at = np.maximum.accumulate(at, axis=1)
+    at[:, 0] = 0.0
+    return at
 
 
 def place_adopted(
