@@ -73,6 +73,11 @@ def find_clumps(points: Array, lengths: Array, curve: dict[str, NDArray], count:
     return Clumps(of, _middles(features, lengths, of), source)
 
 
+def each_alone(hairs: int) -> Clumps:
+    """Each hair as a clump of its own."""
+    return Clumps(np.arange(hairs), np.arange(hairs), "each")
+
+
 def _tells_clumps(values: NDArray | None, hairs: int) -> bool:
     """Whether an attribute holds whole numbers, one for each of several hairs."""
     if values is None or values.ndim != 1 or len(values) != hairs or values.dtype.kind not in "iu":

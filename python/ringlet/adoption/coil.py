@@ -76,6 +76,12 @@ def fit_coils(points: Array) -> Coils:
     return _measured(points, center, around, grid[best])
 
 
+def no_coils(points: Array) -> Coils:
+    """Locks as their own centre lines, without a curl."""
+    count, none = len(points), np.zeros(len(points))
+    return Coils(points, none, np.full(count, np.inf), np.ones(count), none, np.zeros_like(points))
+
+
 def _proposed_turns(points: Array, most: float) -> Array:
     """Number of turns at which the spectrum of the tangents is strongest, shape (locks,)."""
     tangents = np.diff(points, axis=1)

@@ -8,7 +8,20 @@ Each module lists its public names in ``__all__``; they are public in ``ringlet`
 
 from __future__ import annotations
 
-from ringlet.api import adoption, convergence, conversion, demo, doctor, grooms, hairs, movies, pictures, program, run, shots
+from ringlet.api import (
+    adoption,
+    convergence,
+    conversion,
+    demo,
+    doctor,
+    grooms,
+    hairs,
+    movies,
+    pictures,
+    program,
+    run,
+    shots,
+)
 from ringlet.api.adoption import *
 from ringlet.api.convergence import *
 from ringlet.api.conversion import *

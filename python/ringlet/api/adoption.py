@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from ringlet.data.mesh import Mesh
     from ringlet.groom import Recipe
 
-__all__ = ["adopt"]
+__all__ = ["adopt", "adopt_groom", "is_finished_hair"]
 
 MOST_POINTS = 160  # of a hair that is adopted
 FEWEST_POINTS = 24
@@ -88,6 +88,7 @@ def adopt(
     ``width`` and ``pitch`` [m] and the share ``right_handed`` of these, and ``error``: the median and the 95th
     percentile of the distances between the hair as it was and as the recipe makes it [m].
     """
+    from ringlet import io
     from ringlet.adoption import find_clumps
 
     target = Path(recipe)
@@ -99,7 +100,9 @@ def adopt(
     files = {name: target.with_name(f"{stem}.{name}.usdc") for name in ("guides", "hairs", "scalp")}
     step = _Steps(progress)
     with step("read"):
-        hair, scalp, scalp_table = _read(source, head, mesh, source_space_of(source, source_unit, source_up), files)
+        hair, scalp, scalp_table, prim = _read(
+            source, head, mesh, source_space_of(source, source_unit, source_up), files
+        )
         for path in (target, *files.values()):
             check_place(path)
     with step("clumps"):
@@ -111,7 +114,9 @@ def adopt(
         groom = _fitted(groom_recipe(text, target), scalp, guides, hair.points[clumps.middle])
     with step("hairs"):
         error = _add_hairs(groom, hair, clumps)
-    _write(groom, guides, text, target, files, scalp_table)
+    if prim is not None:
+        io.write_head(source, prim, files["scalp"])
+    _write(groom, guides, text, target, files, scalp_table if prim is None else {})
     coiled = coils.width > 0.0
     return {
         "hairs": len(hair.points),
@@ -123,6 +128,56 @@ def adopt(
         "right_handed": float((coils.hand[coiled] > 0.0).mean()) if coiled.any() else 0.0,
         "error": {"median": float(np.median(error)), "95": float(np.quantile(error, 0.95))},
     }
+
+
+@recorded()
+def adopt_groom(
+    source: Path | str,
+    *,
+    head: Path | str | None = None,
+    mesh: str | None = None,
+    head_file: Path | str | None = None,
+    locks: int | None = None,
+    source_unit: float | None = None,
+    source_up: Literal["Y", "Z"] | None = None,
+) -> Groom:
+    """A groom of finished hair without a recipe, to be simulated as it is: each curve is a lock.
+
+    head_file: where to write a reference to the head of a USD source, which moves with it; without it the head is
+               stored with the groom, and stands still
+    locks:     a number of locks, whose middle hairs are simulated, and carry the others
+    head, mesh, source_unit, source_up: as for ``adopt``
+    """
+    from ringlet import io
+    from ringlet.adoption import each_alone, find_clumps
+    from ringlet.adoption.coil import no_coils
+
+    target = Path(source).absolute().with_suffix(".recipe.toml")
+    files = {name: target.with_suffix(f".{name}.usdc") for name in ("guides", "hairs", "scalp")}
+    hair, scalp, table, prim = _read(source, head, mesh, source_space_of(source, source_unit, source_up), files)
+    clumps = each_alone(len(hair.points)) if locks is None else find_clumps(hair.points, hair.lengths, {}, locks)
+    coils = no_coils(hair.points[clumps.middle])
+    guides = _packed(coils.center)
+    tables = _tables(target.stem, files, table, coils, hair, _distance_of(guides, scalp))
+    groom = _fitted(groom_recipe(to_toml(tables), target), scalp, guides, hair.points[clumps.middle])
+    _add_hairs(groom, hair, clumps)
+    groom.recipe = None
+    if prim is not None and head_file is not None:
+        io.write_head(source, prim, head_file)
+        groom.scalp_file, groom.scalp_prim = Path(head_file), io.head_path(prim)
+    elif head is not None:
+        groom.scalp_file, groom.scalp_prim = Path(head), mesh
+    groom.space = io.read_space(groom.scalp_file) if groom.scalp_file else StageSpace()
+    return groom
+
+
+def is_finished_hair(path: Path | str) -> bool:
+    """Whether a file holds curves that are no groom of Ringlet's."""
+    from ringlet import io
+
+    if Path(path).suffix.lower() in (".abc", ".hair", ".tfx", ".obj"):
+        return True
+    return Path(path).suffix.lower() in (".usd", ".usda", ".usdc", ".usdz") and not io.is_groom(path)
 
 
 class _Steps:
@@ -142,8 +197,8 @@ class _Steps:
 
 def _read(
     source: Path | str, head: Path | str | None, mesh: str | None, space: Any, files: dict[str, Path]
-) -> tuple[_Hair, Mesh, dict[str, Any]]:
-    """The hairs, the scalp, and the table of the recipe that names it."""
+) -> tuple[_Hair, Mesh, dict[str, Any], str | None]:
+    """The hairs, the scalp, the table of the recipe that names it, and its prim where it is one of the source."""
     from ringlet import io
     from ringlet.io.formats import joined
 
@@ -155,14 +210,15 @@ def _read(
     hair = _resampled(curves)
     roots = hair.points[:, 0]
     if head is not None:
-        return hair, io.read_mesh(head, mesh), {"file": _from(files["scalp"], head), **({"mesh": mesh} if mesh else {})}
+        table = {"file": _from(files["scalp"], head), **({"mesh": mesh} if mesh else {})}
+        return hair, io.read_mesh(head, mesh), table, None
     if Path(source).suffix.lower().startswith(".usd") and bodies:
         near = min(io.read_bodies(source), key=lambda body: _distance(body.mesh, roots))
-        return hair, near.mesh, {"file": _from(files["scalp"], source), "mesh": near.prim}
+        return hair, near.mesh, {"file": files["scalp"].name, "mesh": io.head_path(near.prim)}, near.prim
     from ringlet.adoption.scalp import scalp_of_roots
 
     own = min(bodies, key=lambda body: _distance(body, roots)) if bodies else scalp_of_roots(roots, str(source))
-    return hair, replace(own, name="scalp"), {"file": files["scalp"].name}
+    return hair, replace(own, name="scalp"), {"file": files["scalp"].name}, None
 
 
 def _from(recipe: Path, path: Path | str) -> str:
@@ -199,7 +255,9 @@ def _guides(hair: _Hair, clumps: Clumps, scalp: Mesh) -> tuple[Curves, Coils]:
     center = along.values(coils.center.reshape(-1, 3)).reshape(len(clumps), SHAPE_POINTS, 3)
     guides = _packed(center)
     coiled = coils.width > 0.0
-    width, pitch = (_median(values, coiled, otherwise) for values, otherwise in ((coils.width, 1.0), (coils.pitch, 1.0)))
+    width, pitch = (
+        _median(values, coiled, otherwise) for values, otherwise in ((coils.width, 1.0), (coils.pitch, 1.0))
+    )
     guides.curve = {
         WIDTH: (coils.width / width).astype(np.float32),
         PITCH: (np.where(coiled, coils.pitch, MOST_PITCH) / pitch).astype(np.float32),
@@ -337,7 +395,7 @@ def _write(
         made = {name: Path(folder, file.name) for name, file in files.items()}
         io.write_scene(HairScene([CurveSet("guides", guides, guide=True)]), made["guides"], StageSpace())
         io.write_offsets(groom.offsets, made["hairs"])
-        if scalp["file"] == files["scalp"].name:
+        if scalp.get("file") == files["scalp"].name:
             io.write_scene(HairScene([], [(groom.scalp, None)]), made["scalp"], StageSpace())
         for name, file in made.items():
             if file.exists():

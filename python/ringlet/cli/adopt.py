@@ -39,7 +39,9 @@ def adopt(
     ] = None,
     from_unit: Annotated[
         Unit | None,
-        typer.Option("--from-unit", help="Unit of a HAIR that stores none; cm for Alembic, else m.", show_default=False),
+        typer.Option(
+            "--from-unit", help="Unit of a HAIR that stores none; cm for Alembic, else m.", show_default=False
+        ),
     ] = None,
     from_up: Annotated[
         Axis | None, typer.Option("--from-up", help="Up-axis of a HAIR that stores none; Y.", show_default=False)

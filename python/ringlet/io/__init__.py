@@ -6,8 +6,9 @@ from ringlet.io.texture import read_texture
 from ringlet.io.usd.cache import CacheFile, CacheWriter, cache_groom_path, is_cache, open_cache, read_cache, write_cache
 from ringlet.io.usd.camera import read_camera
 from ringlet.io.usd.check import problems
-from ringlet.io.usd.groom import as_written, read_groom, write_groom
+from ringlet.io.usd.groom import as_written, is_groom, read_groom, write_groom
 from ringlet.io.usd.hairs import HairWriter, read_hair_frames, read_hairs, read_stage
+from ringlet.io.usd.head import head_path, write_head
 from ringlet.io.usd.mesh import Body, read_bodies, read_body, read_meshes, unread_surfaces
 from ringlet.io.usd.offsets import read_offsets, write_offsets
 from ringlet.io.usd.rest import read_rest, write_rest
@@ -23,8 +24,10 @@ __all__ = [
     "cache_groom_path",
     "check_target",
     "format_of",
+    "head_path",
     "heat",
     "is_cache",
+    "is_groom",
     "open_cache",
     "open_scene",
     "problems",
@@ -49,6 +52,7 @@ __all__ = [
     "unread_surfaces",
     "write_cache",
     "write_groom",
+    "write_head",
     "write_offsets",
     "write_rest",
     "write_scene",

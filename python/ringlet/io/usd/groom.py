@@ -185,6 +185,13 @@ def _settings(source: Source, root: Usd.Prim, name: str) -> dict[str, Any] | Non
     return None if text is None else parse_json(source, text, f"ringlet:{name}")
 
 
+def is_groom(path: Path | str) -> bool:
+    """Whether a USD file is a groom of Ringlet's, or lies over one."""
+    with reading(path) as source:
+        root = source.stage.GetPrimAtPath(GROOM)
+        return bool(root) and _get(root, "version") is not None
+
+
 def groom_prim(source: Source) -> Usd.Prim:
     """The prim ``/groom``; raises UserError for a stage that is no groom or has a later layout."""
     root = source.stage.GetPrimAtPath(GROOM)
