@@ -62,14 +62,14 @@ def find_clumps(points: Array, lengths: Array, curve: dict[str, NDArray], count:
     if count is not None:
         of, source = _divided(features, count), "count"
     elif named is not None:
-        of, source = np.unique(curve[named], return_inverse=True)[1], named
+        of, source = np.asarray(np.unique(curve[named], return_inverse=True)[1]), named
     elif len(points) > NEIGHBOURS and (found := _by_shape(features)) is not None:
         of, source = found, "shape"
     elif len(points) <= MOST_LOCKS:
         of, source = np.arange(len(points)), "each"
     else:
         of, source = _divided(features, MOST_LOCKS), "count"
-    of = np.unique(of, return_inverse=True)[1].astype(np.int64)
+    of = np.asarray(np.unique(of, return_inverse=True)[1], np.int64)
     return Clumps(of, _middles(features, lengths, of), source)
 
 
@@ -99,7 +99,7 @@ def _features(points: Array) -> Array:
 def _by_shape(features: Array) -> NDArray[np.int64] | None:
     """Components of the tree without its long edges; None where its edges are of one kind."""
     hairs = len(features)
-    distance, index = KDTree(features).query(features, k=min(NEIGHBOURS + 1, hairs))
+    distance, index = map(np.asarray, KDTree(features).query(features, k=min(NEIGHBOURS + 1, hairs)))
     core = distance[:, min(CORE, distance.shape[1] - 1)]
     start = np.repeat(np.arange(hairs), distance.shape[1] - 1)
     end = index[:, 1:].ravel()

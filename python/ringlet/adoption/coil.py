@@ -15,7 +15,7 @@ from scipy.interpolate import BSpline
 
 from ringlet import _core
 
-FEWEST_TURNS = 0.75  # below, a coil cannot be told from a bend
+FEWEST_TURNS = 0.75  # below, a coil looks like a bend
 POINTS_PER_TURN = 6.5  # fewest points of a turn that can be fitted
 STEP = 1.03  # ratio of the numbers of turns that are tried
 AROUND = 8  # steps up and down from the proposal
@@ -73,7 +73,7 @@ def fit_coils(points: Array) -> Coils:
         solved = np.linalg.lstsq(np.concatenate([smooth, coil], axis=1), _columns(points[rows]), rcond=1e-9)[0]
         center[rows] = _rows(smooth @ solved[: smooth.shape[1]], len(rows))
         around[rows] = _rows(coil @ solved[smooth.shape[1] :], len(rows))
-    return _measured(points, center, around, grid[best])
+    return _measured(points, center, around, np.asarray(grid[best], np.float64))
 
 
 def no_coils(points: Array) -> Coils:
@@ -87,7 +87,7 @@ def _proposed_turns(points: Array, most: float) -> Array:
     tangents = np.diff(points, axis=1)
     tangents = tangents / np.maximum(np.linalg.norm(tangents, axis=2, keepdims=True), 1e-12)
     size = tangents.shape[1]
-    smooth = np.polynomial.legendre.legvander(np.linspace(-1, 1, size), 2)
+    smooth = np.asarray(np.polynomial.legendre.legvander(np.linspace(-1, 1, size), 2), np.float64)
     bent = _residual(smooth, tangents) * np.hanning(size)[:, None]
     power = (np.abs(np.fft.rfft(bent, PADDED * size, axis=1)) ** 2).sum(axis=2)
     turns = np.arange(power.shape[1]) / PADDED

@@ -100,9 +100,8 @@ def adopt(
     files = {name: target.with_name(f"{stem}.{name}.usdc") for name in ("guides", "hairs", "scalp")}
     step = _Steps(progress)
     with step("read"):
-        hair, scalp, scalp_table, prim = _read(
-            source, head, mesh, source_space_of(source, source_unit, source_up), files
-        )
+        space = source_space_of(source, source_unit, source_up)
+        hair, scalp, scalp_table, prim = _read(source, head, mesh, space, files)
         for path in (target, *files.values()):
             check_place(path)
     with step("clumps"):
@@ -242,7 +241,7 @@ def _resampled(curves: Curves) -> _Hair:
     else:
         own = np.asarray(curves.curve.get("width", np.full(len(curves), 7e-5)), np.float64)
         widths = np.repeat(own[:, None], count, axis=1)
-    return _Hair(curves, points, curves.lengths(), widths)
+    return _Hair(curves, points, np.asarray(curves.lengths(), np.float64), widths)
 
 
 def _guides(hair: _Hair, clumps: Clumps, scalp: Mesh) -> tuple[Curves, Coils]:
@@ -255,9 +254,7 @@ def _guides(hair: _Hair, clumps: Clumps, scalp: Mesh) -> tuple[Curves, Coils]:
     center = along.values(coils.center.reshape(-1, 3)).reshape(len(clumps), SHAPE_POINTS, 3)
     guides = _packed(center)
     coiled = coils.width > 0.0
-    width, pitch = (
-        _median(values, coiled, otherwise) for values, otherwise in ((coils.width, 1.0), (coils.pitch, 1.0))
-    )
+    width, pitch = (_median(values, coiled) for values in (coils.width, coils.pitch))
     guides.curve = {
         WIDTH: (coils.width / width).astype(np.float32),
         PITCH: (np.where(coiled, coils.pitch, MOST_PITCH) / pitch).astype(np.float32),
@@ -400,13 +397,14 @@ def _write(
         for name, file in made.items():
             if file.exists():
                 with replacing(files[name]) as aside:
-                    os.replace(file, aside)
+                    file.replace(aside)
     with replacing(recipe) as aside:
         aside.write_text(text, encoding="utf-8")
 
 
-def _median(values: NDArray, chosen: NDArray[np.bool_], otherwise: float) -> float:
-    return float(np.median(values[chosen])) if chosen.any() else otherwise
+def _median(values: NDArray, chosen: NDArray[np.bool_]) -> float:
+    """Median of the chosen values; 1 where none is chosen."""
+    return float(np.median(values[chosen])) if chosen.any() else 1.0
 
 
 def _packed(grid: NDArray[np.float64]) -> Curves:
