@@ -20,8 +20,10 @@ POINTS_PER_TURN = 6.5  # fewest points of a turn that can be fitted
 STEP = 1.03  # ratio of the numbers of turns that are tried
 AROUND = 8  # steps up and down from the proposal
 LEAST_GAIN = 0.35  # share of the deviation from a smooth line that a coil must explain
+LEAST_SHARE = 0.5  # of the radius of a coil, by which a smooth line must miss the lock (root mean square)
 LEAST_RADIUS = 2e-4  # [m] a narrower coil is frizz
 ENDS = 0.12  # part of a lock at either end that is left out of the averages
+LONGEST = 1.05  # centre line, relative to the lock that winds about it
 PADDED = 8  # zero-padding of the spectrum
 
 Array = NDArray[np.float64]
@@ -151,8 +153,11 @@ def _measured(points: Array, center: Array, around: Array, turns: Array) -> Coil
         alone = _splines(np.linspace(0, 1, size), round(turns[row] / 1.5) + 3)
         smooth[row] = np.linalg.norm(_residual(alone, points[row : row + 1]))
     left = np.linalg.norm(points - center - around, axis=(1, 2))
-    coiled = (left < LEAST_GAIN * np.minimum(smooth, straight)) & (radius > LEAST_RADIUS)
+    unexplained = np.minimum(smooth, straight)
+    coiled = (left < LEAST_GAIN * unexplained) & (radius > LEAST_RADIUS)
+    coiled &= unexplained > LEAST_SHARE * radius * np.sqrt(size)
     coiled &= np.abs(slope) * run[:, -1] > 2.0 * np.pi * FEWEST_TURNS
+    coiled &= run[:, -1] < LONGEST * np.linalg.norm(np.diff(points, axis=1), axis=2).sum(axis=1)
     pitch = 2.0 * np.pi / np.maximum(np.abs(slope), 1e-6)
     center = np.where(coiled[:, None, None], center, points)
     return Coils(

@@ -257,7 +257,7 @@ def _guides(hair: _Hair, clumps: Clumps, scalp: Mesh) -> tuple[Curves, Coils]:
     width, pitch = (_median(values, coiled) for values in (coils.width, coils.pitch))
     guides.curve = {
         WIDTH: (coils.width / width).astype(np.float32),
-        PITCH: (np.where(coiled, coils.pitch, MOST_PITCH) / pitch).astype(np.float32),
+        PITCH: (np.where(coiled, np.minimum(coils.pitch, MOST_PITCH), MOST_PITCH) / pitch).astype(np.float32),
         HAND: (coils.hand > 0.0).astype(np.float32),
         PHASE: np.zeros(len(clumps), np.float32),
     }
