@@ -174,10 +174,8 @@ def test_finished_hair_is_simulated_on_its_moving_head(known, tmp_path):
     locks = read_groom(tmp_path / "a.usdc").locks
     assert len(locks) <= 9
     assert run("hair", tmp_path / "a.usdc", "-o", tmp_path / "h.usdc").exit_code == 0
-    result = run(
-        "sim", tmp_path / "a.shot.toml", "-o", tmp_path / "b.usdc", "--groom", tmp_path / "a.groom.usdc", "--locks", 3
-    )
-    refused(result, "has locks already")
+    again = ("--groom", tmp_path / "a.groom.usdc", "--locks", 3)
+    refused(run("sim", tmp_path / "a.shot.toml", "-o", tmp_path / "b.usdc", *again), "has locks already")
 
 
 def test_wrong_input_is_refused_and_leaves_nothing(known, tmp_path):

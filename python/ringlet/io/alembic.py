@@ -143,6 +143,10 @@ class _Reader:
         """Positions in world space [m], shape (n, 3)."""
         points = np.array(schema.getValue(self._at(frame)).getPositions(), np.float64).reshape(-1, 3)
         check_points(points, self._where(schema))
+        return self._in_world(points, above, frame)
+
+    def _in_world(self, points: NDArray[np.float64], above: list[Any], frame: float | None) -> NDArray[np.float64]:
+        """Positions of a shape in world space [m], shape (n, 3)."""
         for xform in reversed(above):
             matrix = np.array(xform.getValue(self._at(frame)).getMatrix(), np.float64).reshape(4, 4)
             points = points @ matrix[:3, :3] + matrix[3, :3]
@@ -176,6 +180,9 @@ class _Reader:
         curves = Curves(sampling.vertex(controls), sampling.offsets, ids)
         for name, values, scope in self._attributes(schema):
             self._add(curves, sampling, name, values, scope, where)
+        rest = curves.point.pop("rest", None)
+        if rest is not None and rest.shape == curves.points.shape and np.isfinite(rest).all():
+            curves.points = self._in_world(rest.astype(np.float64), above, None)
         guide = curves.curve.pop("groom_guide", np.zeros(len(ids)))
         curves.curve.pop("groom_group_id", None)
         root_uv = curves.curve.pop("groom_root_uv", None)
@@ -355,6 +362,8 @@ def _write_curves(
             sample.setUVs(geom.OV2fGeomParamSample(value, uniform))
         schema.set(sample)
     parameters = schema.getArbGeomParams()
+    if moves:
+        _write_attribute(library, parameters, "rest", from_metres(curves.points, space), vertex)
     for attribute, values, scope in unreal_attributes(one):
         _write_attribute(library, parameters, attribute, values, vertex if scope == "vertex" else uniform)
 
