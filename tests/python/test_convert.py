@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import importlib.util
 import struct
+import subprocess
+import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -191,3 +194,11 @@ def test_a_missing_library_is_named(hair, tmp_path, monkeypatch):
     with pytest.raises(UserError, match=r"pip install 'ringlet\[alembic\]'"):
         convert(hair, tmp_path / "a.abc")
     assert not (tmp_path / "a.abc").exists()
+
+
+@needs_alembic
+def test_the_round_trip_table_is_what_is_measured():
+    root = Path(__file__).parents[2]
+    command = [sys.executable, root / "tools/proof/round_trip.py"]
+    printed = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True).stdout
+    assert printed.strip() in (root / "docs/convert.md").read_text()

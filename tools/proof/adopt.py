@@ -29,7 +29,7 @@ def known(name: str, locks: int) -> list[str]:
         path = Path(folder, "known.recipe.toml")
         path.write_text(
             f'ringlet = 1\nextends = "{TYPES / name}.recipe.toml"\n[locks]\ncount = {locks}\n'
-            "[hairs]\ndensity = false\ncover = false\nper_lock = 8\n"
+            "[hairs]\ndensity = false\nper_lock = 8\n"
         )
         recipe = ringlet.read_recipe(path)
         groom = ringlet.build_groom(recipe)
@@ -39,7 +39,9 @@ def known(name: str, locks: int) -> list[str]:
         done = ringlet.adopt(Path(folder, "hair.hair"), Path(folder, "a.recipe.toml"), head=recipe.scalp_file)
         coils = fit_coils(grid(resampled(groom.locks, POINTS)))
         value = {
-            setting: per_lock(recipe.curl, setting, Random(recipe.seed, f"curl/{setting}"), groom.locks, groom.scalp, "")
+            setting: per_lock(
+                recipe.curl, setting, Random(recipe.seed, f"curl/{setting}"), groom.locks, groom.scalp, ""
+            )
             for setting in ("width", "pitch", "right_handed")
         }
         right = soft_threshold(value["right_handed"], Random(recipe.seed, "curl/hand").uniform(groom.locks.ids)) > 0.5

@@ -102,7 +102,7 @@ HEAD = [
     "head",
     "widths",
     "root `st`",
-    "colour",
+    "color",
     "named attributes",
     "ids",
 ]
