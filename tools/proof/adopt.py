@@ -8,6 +8,7 @@ from __future__ import annotations
 import argparse
 import tempfile
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from ringlet.adoption import fit_coils
@@ -16,6 +17,7 @@ from ringlet.data.random import Random, soft_threshold
 from ringlet.groom.operators.operator import grid, resampled
 
 import ringlet
+from ringlet.groom import Recipe
 
 TYPES = Path(__file__).parents[2] / "examples/types"
 KNOWN = ("3A", "3B", "3C", "4A", "4B")
@@ -38,12 +40,7 @@ def known(name: str, locks: int) -> list[str]:
         ringlet.convert(Path(folder, "all.usdc"), Path(folder, "hair.hair"), only="hairs", unit=1.0)
         done = ringlet.adopt(Path(folder, "hair.hair"), Path(folder, "a.recipe.toml"), head=recipe.scalp_file)
         coils = fit_coils(grid(resampled(groom.locks, POINTS)))
-        value = {
-            setting: per_lock(
-                recipe.curl, setting, Random(recipe.seed, f"curl/{setting}"), groom.locks, groom.scalp, ""
-            )
-            for setting in ("width", "pitch", "right_handed")
-        }
+        value = {name: _values(recipe, groom, name) for name in ("width", "pitch", "right_handed")}
         right = soft_threshold(value["right_handed"], Random(recipe.seed, "curl/hand").uniform(groom.locks.ids)) > 0.5
         coiled = coils.width > 0.0
         errors = [
@@ -52,8 +49,16 @@ def known(name: str, locks: int) -> list[str]:
         ]
         hand = ((coils.hand > 0.0) == right)[coiled].mean()
         cells = [f"{100 * np.median(error):.1f} %, {100 * np.quantile(error, 0.95):.1f} %" for error in errors]
-        found = f"{done['locks']} / {locks}"
+        found = f"{done['locks']} / {len(groom.locks)}"
         return [f"`types/{name}`", str(done["hairs"]), found, *cells, f"{100 * hand:.0f} %", *_distances(done)]
+
+
+def _values(recipe: Recipe, groom: ringlet.Groom, name: str) -> np.ndarray:
+    """Values of a setting of the curl for each lock, with the mean of its ramp, shape (locks,)."""
+    assert recipe.curl is not None
+    setting = getattr(recipe.curl, name)
+    ramp = setting.along(np.linspace(0.0, 1.0, POINTS)).mean() if hasattr(setting, "ramp") else 1.0
+    return ramp * per_lock(recipe.curl, name, Random(recipe.seed, f"curl/{name}"), groom.locks, groom.scalp, name)
 
 
 def measured(path: Path) -> list[str]:
@@ -63,7 +68,7 @@ def measured(path: Path) -> list[str]:
     return [f"`{path.name}`", str(done["hairs"]), f"{done['locks']} / –", "–", "–", "–", *_distances(done)]
 
 
-def _distances(done: dict) -> list[str]:
+def _distances(done: dict[str, Any]) -> list[str]:
     return [f"{1e3 * done['error'][name]:.2g} mm" for name in ("median", "95")]
 
 
