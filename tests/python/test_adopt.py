@@ -198,3 +198,14 @@ def test_wrong_input_is_refused_and_leaves_nothing(known, tmp_path):
             f'ringlet = 1\n[scalp]\nfile = "{folder / "head.usda"}"\n[hairs]\nfile = "{folder / "hair.usdc"}"\n'
         )
         build_groom(tmp_path / "b.recipe.toml")
+
+
+def test_adopted_hairs_that_do_not_fit_the_groom_are_refused(known):
+    folder, _, _ = known
+    groom = build_groom(folder / "adopted.recipe.toml")
+    groom.offsets.root_triangle[3] = 10**6
+    with pytest.raises(UserError, match="root on triangle 1000000"):
+        build_hairs(groom)
+    groom.offsets.lock[:] = groom.locks.ids[0]
+    with pytest.raises(UserError, match=f"of {LOCKS - 1} locks in all"):
+        build_hairs(groom)

@@ -186,7 +186,7 @@ def place_adopted(
 ) -> tuple[Curves, dict[str, Any]]:
     """Adopted hairs with unset points, and the inputs of the kernel, as ``place_hairs`` has them.
 
-    Raises UserError for a lock without hairs.
+    Raises UserError for a lock without hairs, and for a root on a triangle that is not there.
     """
     rows = {int(name): row for row, name in enumerate(groom.locks.ids)}
     row = np.array([rows.get(int(name), -1) for name in offsets.lock], np.int64)
@@ -202,7 +202,12 @@ def place_adopted(
     number = np.arange(len(order)) - np.repeat(np.cumsum(full) - full, full)
     order = order[number < np.repeat(counts, full)]
     kept, lock = offsets.take(order), row[order].astype(np.int32)
-    first = offsets_from_counts(counts)
+    first, triangles = offsets_from_counts(counts), len(groom.scalp.triangles)
+    if (off := np.flatnonzero((kept.root_triangle < 0) | (kept.root_triangle >= triangles))).size:
+        raise UserError(
+            f"hairs.file: has a root on triangle {kept.root_triangle[off[0]]}, but {groom.scalp.name} has {triangles}; "
+            "the head has changed: adopt the hair again"
+        )
     u = np.linspace(0.0, 1.0, settings.points or kept.across.shape[1])
     attributes: dict[str, NDArray] = {
         "lock": lock,

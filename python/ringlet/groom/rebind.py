@@ -28,6 +28,11 @@ def rebind(groom: Groom) -> Groom:
     nearest place. Raises UserError where that is farther than 1 cm.
     """
     turn = _turn(groom.locks, groom.scalp)
+    if turn is None and groom.offsets is not None:
+        raise UserError(
+            f"rebind: {groom.scalp.name} is another mesh than that of the adopted hair; adopt it again: "
+            "ringlet adopt HAIR --head FILE"
+        )
     if turn is None:
         return replace(groom, locks=_on_nearest(groom.locks, groom), guides=_on_nearest(groom.guides, groom))
     locks, guides = (
