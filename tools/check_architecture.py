@@ -35,6 +35,7 @@ API = "the public API"  # ringlet/__init__.py
 PYTHON = {
     "data": set(),
     "groom": {"data", "_core"},
+    "adoption": {"data", "_core"},
     "shot": {"data"},
     "sim": {"data", "_core", "shot"},
     "rest": {"data", "_core", "shot", "sim"},
@@ -42,7 +43,7 @@ PYTHON = {
     "io": {"data"},
     "picture": {"data"},
     "report": {"data"},
-    "api": {"data", "_core", "groom", "shot", "sim", "rest", "validate", "io", "picture", "report"},
+    "api": {"data", "_core", "adoption", "groom", "shot", "sim", "rest", "validate", "io", "picture", "report"},
     "viewer": {"data", "_core", "groom", "shot", "sim", "io", "picture", "api"},
     "farm": {"data", "groom", "shot", "report", "api"},
     API: {"data", "api", "groom", "shot", "sim", "rest", "viewer", "farm"},

@@ -74,6 +74,8 @@ def main(action: str, *files: str) -> dict:
     ringlet_groom.register()
     if action == "plain":
         bpy.ops.wm.usd_import(filepath=files[0], import_guide=True)
+    elif action == "alembic":
+        bpy.ops.wm.alembic_import(filepath=files[0], as_background_job=False)
     elif action == "add-on":
         bpy.ops.ringlet.import_groom(filepath=files[0])
         if len(files) > 1:

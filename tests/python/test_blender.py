@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import os
 import subprocess
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +16,7 @@ import pytest
 from ringlet.io import HairWriter, read_curves, read_space, write_cache, write_groom
 from usd_scenes import hairs_of, make_groom, write_head
 
-from ringlet import Cache
+from ringlet import Cache, convert
 
 ROOT = Path(__file__).parents[2]
 BLENDER = Path(os.environ.get("RINGLET_BLENDER_PYTHON", ROOT / ".venv-blender/bin/python"))
@@ -90,6 +91,18 @@ def test_blender_reads_curves_attributes_units_and_motion(groom, blender, tmp_pa
     assert domain == "POINT" and len(rest) == len(groom.locks.points)
     domain, lock = scene["objects"]["hairs"]["attributes"]["guide_curve_index"]
     assert domain == "CURVE" and lock == hairs.curve["lock"].tolist()
+
+
+@pytest.mark.skipif(find_spec("alembic3d") is None, reason="alembic3d is not installed: pip install 'ringlet[alembic]'")
+def test_blender_reads_curves_head_and_motion_of_alembic(groom, blender, tmp_path):
+    convert(tmp_path / "hair.usdc", tmp_path / "hair.abc")
+    objects, hairs = blender("alembic", tmp_path / "hair.abc")["objects"], hairs_of(groom)
+    for name, curves in (("guides", groom.locks), ("hairs", hairs)):
+        for k in range(3):
+            there = 100.0 * z_up(curves.points + [0, 0.01 * k, 0])  # Blender takes centimetres as its units
+            np.testing.assert_allclose(objects[name]["frames"][str(k + 1)], there, atol=1e-4)
+    slid = np.array(objects["skin"]["frames"]["3"]) - objects["skin"]["frames"]["1"]
+    np.testing.assert_allclose(slid, np.tile([2.0, 0, 0], (len(slid), 1)), atol=1e-4)
 
 
 def test_the_add_on_sets_the_surface_and_plays_the_file(groom, blender, tmp_path):

@@ -12,7 +12,7 @@ from ringlet.data.accessory import Accessory
 from ringlet.data.curves import Curves
 from ringlet.data.groom import GROOM, Groom
 from ringlet.data.mesh import Mesh
-from ringlet.data.pigment import ROUGHNESS, of_fiber
+from ringlet.data.pigment import ROUGHNESS, USUAL_FIBER, of_fiber
 from ringlet.picture.strands import split
 from small_example import RECIPE, SHOT, write_head
 
@@ -147,9 +147,8 @@ def test_hairs_of_each_groom_have_their_own_fiber_in_pictures(project, recipe):
     assert run("hair", project / "groom.usdc", "-o", project / "hair.usdc").exit_code == 0
     shapes = split(io.read_hairs(project / "hair.usdc"))
     assert len(shapes) == 2
-    assert of_fiber(shapes[0], ROUGHNESS) == pytest.approx(0.38) and of_fiber(shapes[1], ROUGHNESS) == pytest.approx(
-        0.6
-    )
+    assert of_fiber(shapes[0], ROUGHNESS) == pytest.approx(USUAL_FIBER[ROUGHNESS])
+    assert of_fiber(shapes[1], ROUGHNESS) == pytest.approx(0.6)
 
 
 def test_all_grooms_are_simulated_and_a_nailed_one_moves_with_the_skin(project):

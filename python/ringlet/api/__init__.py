@@ -8,8 +8,23 @@ Each module lists its public names in ``__all__``; they are public in ``ringlet`
 
 from __future__ import annotations
 
-from ringlet.api import convergence, demo, doctor, grooms, hairs, movies, pictures, program, run, shots
+from ringlet.api import (
+    adoption,
+    convergence,
+    conversion,
+    demo,
+    doctor,
+    grooms,
+    hairs,
+    movies,
+    pictures,
+    program,
+    run,
+    shots,
+)
+from ringlet.api.adoption import *
 from ringlet.api.convergence import *
+from ringlet.api.conversion import *
 from ringlet.api.demo import *
 from ringlet.api.doctor import *
 from ringlet.api.grooms import *
@@ -29,7 +44,9 @@ from ringlet.api.shots import scalp_clip as scalp_clip
 from ringlet.api.shots import start_motion as start_motion
 
 __all__: list[str] = []
+__all__ += adoption.__all__
 __all__ += convergence.__all__
+__all__ += conversion.__all__
 __all__ += demo.__all__
 __all__ += doctor.__all__
 __all__ += grooms.__all__

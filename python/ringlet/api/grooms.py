@@ -123,9 +123,11 @@ def groom_inputs(recipe: Recipe, memory: Memory | None = None, notes: list[str] 
         )
         for name, file in recipe.mesh_files().items()
     }
+    offsets = None if recipe.offsets_file is None else _cached(memory, recipe.offsets_file, "hairs", io.read_offsets)
     return {
         "scalp": scalp,
         "drawn_guides": drawn,
+        "offsets": offsets,
         "helpers": helpers,
         "hidden": _hidden(recipe),
         "meshes": meshes,

@@ -33,7 +33,7 @@ def build_hairs(groom: Groom, *, fraction: float = 1.0, wider: bool = False, mem
 
 
 def measure_hairs(
-    groom: Groom | Path | str, *, variant: str | None = None, hairs: Hairs | None = None
+    groom: Groom | Path | str, *, variant: str | None = None, hairs: AnyHairs | None = None
 ) -> dict[str, Any]:
     """Density and cover of all hairs of a groom at rest.
 
@@ -48,7 +48,7 @@ def measure_hairs(
     from ringlet.data.groom import Groom
 
     made = groom if isinstance(groom, Groom) else read_groom(groom, variant=variant)
-    return grooms.hair_measures(made, hairs)
+    return grooms.hair_measures(made, hairs.curves if hairs is not None else None)
 
 
 @recorded()
@@ -60,6 +60,7 @@ def write_hairs(
     frames: tuple[int, int] | None = None,
     fraction: float = 1.0,
     wider: bool = False,
+    velocities: bool = False,
     variant: str | None = None,
     measures: dict[str, float] | None = None,
     progress: Progress | None = None,
@@ -68,10 +69,11 @@ def write_hairs(
 
     They stay on that side of the scalp, and of what else the file shows, where their lock is.
 
-    groom:    a groom, or a cache by itself, which lies over its groom
-    frames:   the first and the last of the cache; all by default
-    variant:  of the groom, in place of the one that is selected in it, or that the cache was made of
-    measures: receives the entries of ``measure_hairs``
+    groom:      a groom, or a cache by itself, which lies over its groom
+    frames:     the first and the last of the cache; all by default
+    velocities: writes those of hairs in motion too, in units per second, which doubles the size of the file
+    variant:    of the groom, in place of the one that is selected in it, or that the cache was made of
+    measures:   receives the entries of ``measure_hairs``
 
     Returns how many ``locks``, ``hairs``, ``points`` and ``frames`` there are.
     """
@@ -89,15 +91,17 @@ def write_hairs(
     if measures is not None:
         measures |= measure_hairs(locks, hairs=hairs if fraction == 1.0 else None)
     written = 0
+    shown = io.read_meshes(groom) or [locks.scalp]  # a head of an OBJ is in no stage
+    around = [(mesh.points, mesh.triangles) for mesh in shown]
+    hairs.curves.points = hairs.deformed(locks.locks.points, locks.scalp.points, surfaces=around)
     if cache is None:
-        scalp = locks.scalp
-        shown = io.read_meshes(groom) or [scalp]  # a head of an OBJ is in no stage
-        surfaces = [(mesh.points, mesh.triangles) for mesh in shown]
-        points = hairs.deformed(locks.locks.points, scalp.points, surfaces=surfaces)
         with io.HairWriter(Path(path), locks, hairs.curves, Path(groom)) as writer:
-            writer.add(None, points, around=scalp.points)
+            writer.add(None, hairs.curves.points, around=locks.scalp.points)
     else:
-        with io.open_cache(cache) as moved, io.HairWriter(Path(path), locks, hairs.curves, Path(cache)) as writer:
+        with (
+            io.open_cache(cache) as moved,
+            io.HairWriter(Path(path), locks, hairs.curves, Path(cache), velocities) as writer,
+        ):
             chosen = moved.within(frames)
             clip = scalp_clip(locks, (math.floor(chosen[0]), math.ceil(chosen[-1])))
             for frame in chosen:

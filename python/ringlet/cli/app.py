@@ -30,6 +30,8 @@ COMMANDS = [
     "converge",
     "wedge",
     "hair",
+    "convert",
+    "adopt",
     "picture",
     "movie",
     "turntable",

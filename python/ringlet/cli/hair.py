@@ -35,6 +35,9 @@ def hair(
     wider: Annotated[
         bool, typer.Option("--wider", help="With --fraction: wider hairs, which cover as much as all of them.")
     ] = False,
+    velocities: Annotated[
+        bool, typer.Option("--velocities", help="Write the velocities of points, which doubles the size of the file.")
+    ] = False,
     report: Report = None,
     as_json: Json = False,
     threads: Threads = None,
@@ -53,6 +56,7 @@ def hair(
                 frames=frames,
                 fraction=fraction,
                 wider=wider,
+                velocities=velocities,
                 variant=variant,
                 measures=measures,
                 progress=progress,

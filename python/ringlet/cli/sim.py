@@ -33,6 +33,17 @@ def sim(
             help="Rebind the groom to the current head; writes CACHE.groom.usdc next to the cache.",
         ),
     ] = False,
+    locks: Annotated[
+        int | None,
+        typer.Option(
+            "--locks",
+            min=1,
+            max=1_000_000,
+            metavar="N",
+            help="Of finished hair without a recipe: strands to simulate, which carry the rest; all by default.",
+            show_default=False,
+        ),
+    ] = None,
     resume: Annotated[
         bool, typer.Option("--resume", help="Go on with a run that was broken off; its result is the same to the bit.")
     ] = False,
@@ -52,7 +63,8 @@ def sim(
 ) -> None:
     """Simulates the groom of a SHOT while the scalp moves.
 
-    The cache is a layer over the groom. Where the shot names a recipe, the groom is made first and written beside
+    The cache is a layer over the groom. Where the shot names a recipe, or finished hair of another program, the groom
+    is made first and written beside
     the cache: cache.groom.usdc under cache.usdc. What is done is kept in CACHE.part while it runs; after a run that
     was killed, or met a full disk, --resume goes on from there.
 
@@ -64,20 +76,30 @@ def sim(
         if contacts is not None and not settings.touching:
             raise ringlet.UserError(f"{shot}: nothing touches, --contacts has nothing to write; add [contact]")
         source = groom or settings.groom
-        made = rebind or source.suffix == ".toml"
+        finished = ringlet.is_finished_hair(source)
+        if locks is not None and not finished:
+            raise ringlet.UserError(f"--locks {locks}: {source} has locks already; leave it out")
+        made = rebind or finished or source.suffix == ".toml"
         layer = output.with_suffix(f".groom{output.suffix}") if made else source
         _check_places(settings.named_files() | {"groom": source}, layer if made else None, output, contacts)
         with _checkpoint_folder(output, resume) as folder:  # from here on everything beside the cache is this run's
             with run.stage("groom", layer if made else None):
-                locks = ringlet.load_groom(source, variant=variant, rebind=rebind, progress=progress)
+                if finished:
+                    made_groom = ringlet.adopt_groom(
+                        source, head_file=output.with_suffix(f".head{output.suffix}"), locks=locks
+                    )
+                else:
+                    made_groom = ringlet.load_groom(source, variant=variant, rebind=rebind, progress=progress)
                 for path in filter(None, (output, contacts)):
-                    ringlet.check_place(path, {"head": locks.scalp_file})
+                    ringlet.check_place(path, {"head": made_groom.scalp_file})
                 if made:
-                    ringlet.write_groom(locks, layer)
+                    ringlet.write_groom(made_groom, layer)
+                if finished:
+                    made_groom = ringlet.read_groom(layer)  # which holds the scalp
             with run.stage("simulate", output):
                 record = ringlet.write_simulation(
                     settings,
-                    locks,
+                    made_groom,
                     layer,
                     output,
                     frames=frames,
@@ -92,7 +114,7 @@ def sim(
                 with run.stage("contacts", contacts, "what touches, frame by frame"):
                     ringlet.write_touches(record, output, contacts)
         run.simulated(record)
-        run.count(locks=len(locks.locks), points=len(locks.locks.points), frames=len(record.frames))
+        run.count(locks=len(made_groom.locks), points=len(made_groom.locks.points), frames=len(record.frames))
         if record.cloths:
             run.count(cloths=len(record.cloths), cloth_points=sum(record.cloths.values()))
     unsaid = [sentence for sentence in run.warnings if sentence not in said]

@@ -29,6 +29,49 @@ GROOM = "groom"  # of a lock, a guide or a hair: the row of its groom among thos
 FLAT = 1e-9  # twice the area of a triangle, relative to its longest edge squared, at which it has no frame
 
 
+ADOPTED = "adopted_"  # begins the names of what was fitted to locks of finished hair
+# Of a lock: what its curl does not fit, in the frames of its shape [m], shape (count, 3 · points).
+OFFSETS = f"{ADOPTED}offsets"
+
+
+@dataclass
+class HairOffsets:
+    """Hairs that were made elsewhere, each by its offsets from its lock.
+
+    lock:             id of the lock of each hair, shape (hairs,), int64; the first hair of each lock is the lock
+    tip:              place on the lock where the hair ends, 0 root … 1 tip, shape (hairs,), float32
+    across:           offsets at even steps from root to tip, in the lock's frame [m], shape (hairs, points, 2), float32
+    width:            diameters at even steps [m], shape (hairs, k), float32
+    root_triangle:    triangle of the root, shape (hairs,), int32
+    root_barycentric: weights of the root, shape (hairs, 3), float64
+    gather:           part of a hair over which it comes from its root to its offset
+    """
+
+    lock: NDArray[np.int64]
+    tip: NDArray[np.float32]
+    across: NDArray[np.float32]
+    width: NDArray[np.float32]
+    root_triangle: NDArray[np.int32]
+    root_barycentric: NDArray[np.float64]
+    gather: float
+
+    def take(self, rows: NDArray) -> HairOffsets:
+        """The chosen hairs."""
+        arrays = {name: values[rows] for name, values in vars(self).items() if isinstance(values, np.ndarray)}
+        return HairOffsets(**arrays, gather=self.gather)
+
+    def check(self, what: str) -> HairOffsets:
+        """Raises UserError for arrays that do not fit one another or are not finite. Returns self."""
+        count = len(self.lock)
+        arrays = {name: values for name, values in vars(self).items() if isinstance(values, np.ndarray)}
+        shaped = self.across.ndim == 3 and self.across.shape[1] >= 2 and self.across.shape[2] == 2
+        if not count or any(len(values) != count for values in arrays.values()) or not shaped:
+            raise UserError(f"{what}: its arrays of hairs do not fit one another; adopt the hair again")
+        if not all(np.isfinite(values).all() for values in arrays.values()) or not 0.0 < self.gather <= 1.0:
+            raise UserError(f"{what}: holds values that are not finite or out of range; adopt the hair again")
+        return self
+
+
 @dataclass
 class Groom:
     """The final groom guides with everything that later stages need.
@@ -56,6 +99,7 @@ class Groom:
     accessories: what the hair wears, such as bands of ties and beads, which locks carry
     edge:       length of the lines that carry hair, as for lashes [m] (None for hair on an area)
     hidden:     paths of the meshes of the head's file that the hair replaces: not shown, and touched by nothing
+    offsets:    hairs in place of those that the settings make (None for a groom whose hairs are made)
     cage:       whether hair grows on the cage of a subdivision surface, instead of on its limit surface
     grooms:     settings by name where this is several grooms on one head, such as hair, brows and lashes: ``region``,
                 ``edge``, ``hairs``, ``color`` and ``fiber`` as above, and ``absent``: attributes that only others have.
@@ -82,6 +126,7 @@ class Groom:
     edge: float | None = None
     hidden: list[str] = field(default_factory=list)
     grooms: dict[str, dict[str, Any]] = field(default_factory=dict)
+    offsets: HairOffsets | None = None
 
     def check_roots(self, scalp_points: NDArray[np.floating], when: str, what: str) -> None:
         """Refuses locks without roots on the scalp, and a scalp on which a root has no frame.

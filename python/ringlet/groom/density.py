@@ -30,6 +30,11 @@ def hairs_per_cm2(groom: Groom) -> float:
 
 def lock_counts(groom: Groom, areas: NDArray[np.float64]) -> NDArray[np.int64]:
     """Number of hairs of each lock, at least 1, shape (locks,); ``areas`` are those of ``groom_areas``."""
+    if groom.offsets is not None:
+        order = np.argsort(groom.locks.ids)
+        at = np.searchsorted(groom.locks.ids[order], groom.offsets.lock).clip(0, len(order) - 1)
+        there = groom.locks.ids[order[at]] == groom.offsets.lock
+        return np.maximum(np.bincount(order[at[there]], minlength=len(order)), 1)
     settings = hair_settings(groom)
     values = hair_values(groom, settings)[""]
     count = values("per_lock") if settings.density is None else PER_CM2 * values("density") * areas

@@ -15,6 +15,7 @@ from ringlet.data.pigment import FLATNESS, TWIST
 from ringlet.data.quantities import Quantity
 from ringlet.data.random import Random, soft_threshold
 from ringlet.groom import felt, hair_curl
+from ringlet.groom.adopted import place_adopted
 from ringlet.groom.density import groom_areas, hair_region, lock_counts
 from ringlet.groom.fiber import seen_widths
 from ringlet.groom.hair_curl import Placed
@@ -35,6 +36,8 @@ def place_hairs(groom: Groom, settings: HairSettings, fraction: float, wider: bo
 
     Raises UserError when the groom's region is not in its mesh.
     """
+    if groom.offsets is not None:
+        return place_adopted(groom, groom.offsets, settings, fraction, wider)
     locks, scalp, values = groom.locks, groom.scalp, hair_values(groom, settings)
     own = values[""]
     roots, frames = root_frames(groom, scalp.points, "rest pose")

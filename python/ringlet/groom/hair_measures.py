@@ -6,22 +6,23 @@ from typing import Any
 
 import numpy as np
 
+from ringlet.data.curves import Curves
 from ringlet.data.groom import Groom
 from ringlet.data.quantities import Varied
 from ringlet.groom import felt
 from ringlet.groom.cover import Cover, measure
 from ringlet.groom.density import hair_count, hair_region, hairs_per_cm2
 from ringlet.groom.hair_settings import HairSettings, hair_settings, lock_radii
-from ringlet.groom.hairs import Hairs, make_hairs
+from ringlet.groom.hairs import make_hairs
 from ringlet.groom.several import grooms_of
 
 CM = 100.0  # in a metre
 FIRST_PER_CM2, MOST_PER_CM2 = 60.0, 400.0  # densities that a cover begins with and ends at
 
 
-def hair_cover(groom: Groom, hairs: Hairs | None = None) -> Cover:
+def hair_cover(groom: Groom, hairs: Curves | None = None) -> Cover:
     """Cover of the scalp by all hairs of a groom at rest; ``hairs``: those, where they are made already."""
-    return measure(groom.scalp, hair_region(groom), (hairs or make_hairs(groom)).curves)
+    return measure(groom.scalp, hair_region(groom), hairs or make_hairs(groom).curves)
 
 
 def raise_density(groom: Groom, settings: HairSettings) -> None:
@@ -42,7 +43,7 @@ def raise_density(groom: Groom, settings: HairSettings) -> None:
         )
 
 
-def hair_measures(groom: Groom, hairs: Hairs | None = None) -> dict[str, Any]:
+def hair_measures(groom: Groom, hairs: Curves | None = None) -> dict[str, Any]:
     """Density and cover of a groom at rest: ``hairs_per_cm2``, and ``scalp_seen`` through its hair, from 0 to 1.
 
     Of one on an edge, ``hairs_per_cm`` of its lines. Of several that are joined, ``grooms`` with those of each by name.

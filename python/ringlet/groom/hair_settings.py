@@ -88,6 +88,14 @@ class HairSettings(Section):
         default=None, description="how hairs follow the coil of their lock; all in the same phase when absent"
     )
     coil: HairCoil | None = Field(default=None, description="a coil of each hair's own; none when absent")
+    file: str | None = Field(
+        default=None,
+        description="USD file with hairs that `ringlet adopt` took from elsewhere, in place of those that the settings "
+        "make; `offset` and `seed` apply to them, and `color`",
+    )
+    offset: Annotated[float, Quantity("", 0.0, 10.0)] = Field(
+        default=1.0, description="factor on the distances of adopted hairs from their lock"
+    )
     seed: int = Field(default=1, ge=0, le=2**31, description="another seed, other places in the locks")
 
     @property

@@ -232,6 +232,7 @@ def _key(groom: Groom, settings: HairSettings, fraction: float, wider: bool) -> 
         *((locks.curve[HAIR_SHARE],) if HAIR_SHARE in locks.curve else ()),
         *((locks.points,) if settings.blend != HairSettings().blend else ()),
         *((locks.lengths(), *map(section, ("flatness", "twist_pitch"))) if fiber.is_flat else ()),
+        *((groom.offsets.lock, groom.offsets.tip, groom.offsets.across, groom.offsets.width) if groom.offsets else ()),
     ):
         digest.update(np.ascontiguousarray(array).data)
     return digest.digest()

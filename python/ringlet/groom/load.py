@@ -12,7 +12,7 @@ from ringlet.data.settings import parse_toml, read_toml
 from ringlet.data.toml import to_toml
 from ringlet.groom.named import GROOMS, with_grooms, within_groom
 
-FILES = (("scalp", "file"), ("guides", "file"))
+FILES = (("scalp", "file"), ("guides", "file"), ("hairs", "file"))
 MOST_NAME = 255  # bytes of the name of a file or a folder
 APPEND = "append"  # key of a variant's operators that follow those of its base
 MAY_BE_FALSE = ("guides.whorl",)  # settings whose value may be `false`, which then does not remove them

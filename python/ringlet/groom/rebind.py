@@ -31,6 +31,11 @@ def rebind(groom: Groom) -> Groom:
     turn = _turn(groom.locks, groom.scalp)
     if turn is None and groom.grooms:
         return with_each(groom, rebind)
+    if turn is None and groom.offsets is not None:
+        raise UserError(
+            f"rebind: {groom.scalp.name} is another mesh than that of the adopted hair; adopt it again: "
+            "ringlet adopt HAIR --head FILE"
+        )
     if turn is None:
         locks, guides = (_on_nearest(curves, groom) for curves in (groom.locks, groom.guides))
     else:

@@ -138,6 +138,11 @@ class Recipe(Section):
         """Texture files of maps, by name of the map."""
         return {name: file for name, text in self.maps.items() if (file := self._beside(text)) is not None}
 
+    @property
+    def offsets_file(self) -> Path | None:
+        """File of adopted hairs; None when hairs are made by the settings."""
+        return self._beside(self.hairs.file)
+
     def named_files(self) -> dict[str, Path]:
         """Files that the recipe names, by setting."""
         if self.grooms:
@@ -147,6 +152,7 @@ class Recipe(Section):
                 for what, file in one.named_files().items()
             }
         files = {"scalp.file": self.scalp_file, "guides.file": self.guides_file, "edits": self.edits_file}
+        files["hairs.file"] = self.offsets_file
         files |= {f"maps.{name}": file for name, file in self.map_files().items()}
         files |= {f"curves.{name}": file for name, file in self.helper_files().items()}
         files |= {f"meshes.{name}": file for name, file in self.mesh_files().items()}

@@ -11,10 +11,10 @@ from ringlet.data.stage import StageSpace
 
 
 class Source(Section):
-    """Unit and up axis of an OBJ or .hair file. A USD file stores its own."""
+    """Unit and up axis of another file than USD, which stores its own."""
 
-    unit: LengthUnit = Field(default="m", description="unit of an OBJ or .hair file")
-    up: Literal["Y", "Z"] = Field(default="Y", description="axis that is up in an OBJ or .hair file")
+    unit: LengthUnit = Field(default="m", description="unit of a file of another format than USD")
+    up: Literal["Y", "Z"] = Field(default="Y", description="axis that is up in such a file")
 
     @property
     def space(self) -> StageSpace:

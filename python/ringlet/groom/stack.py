@@ -14,12 +14,13 @@ from numpy.typing import NDArray
 from ringlet.data.bounds import check_curves
 from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.data.errors import UserError
-from ringlet.data.groom import HAIR_SHARE, Groom
+from ringlet.data.groom import ADOPTED, HAIR_SHARE, OFFSETS, Groom, HairOffsets
 from ringlet.data.mesh import Mesh
 from ringlet.data.painted import painted
 from ringlet.data.quantities import Varied
 from ringlet.data.random import Random
 from ringlet.data.stage import StageSpace
+from ringlet.groom.adopted import Residual
 from ringlet.groom.color import colored
 from ringlet.groom.edge import Edge, EdgeScalp
 from ringlet.groom.edits import Edit, Edits
@@ -71,6 +72,7 @@ def make_groom(
     helpers: Mapping[str, Curves] | None = None,
     hidden: Sequence[str] = (),
     meshes: Mapping[str, Mesh] | None = None,
+    offsets: HairOffsets | None = None,
     scalp_file: Path | None = None,
     scalp_prim: str | None = None,
     space: StageSpace | None = None,
@@ -84,6 +86,7 @@ def make_groom(
     helpers:      the curves of the files of ``[curves]``, by name [m]
     hidden:       paths of the meshes of the head's file that the hair replaces
     meshes:       the meshes of the files of ``[meshes]``, by name [m]
+    offsets:      the hairs of ``[hairs] file``
     scalp_file, scalp_prim, space: source of the mesh, stored in the groom
     progress:     called with (stage, 0, 1) before and (stage, 1, 1) after every stage
     memory:       cache between calls, so that an edit recomputes only the stages from there on
@@ -100,6 +103,8 @@ def make_groom(
             )
         if drawn_guides is not None:
             key = _key(key, drawn_guides.points.tobytes(), drawn_guides.offsets.tobytes(), drawn_guides.ids.tobytes())
+            fitted = {name: values for name, values in drawn_guides.curve.items() if name.startswith(ADOPTED)}
+            key = _key(key, *_contents(fitted))
         helpers = {**{name: c for name, h in recipe.curves.items() if (c := h.inline_curve())}, **(helpers or {})}
         helpers = {name: helper.check(f"curves.{name}").distinct() for name, helper in helpers.items()}
         for name, helper in helpers.items():
@@ -111,7 +116,7 @@ def make_groom(
         for name, mesh in meshes.items():
             key = _key(key, name.encode(), mesh.points.tobytes(), mesh.triangles.tobytes())
         curves = drawn_guides or Curves.from_list([])
-        stages = _stages(recipe)
+        stages = _stages(recipe, OFFSETS in curves.curve)
         guides, unsculpted, shapes, uncleaned = curves, curves, None, curves
         lengthened: list[str] = []
         worn: list[Worn] = []
@@ -161,6 +166,7 @@ def make_groom(
         unsculpted=unsculpted,
         hidden=list(hidden),
         accessories=accessories(worn, locks),
+        offsets=offsets,
         conflicts=[
             *_conflicts(recipe, unsculpted, curves),
             *_odd_size(scalp, recipe.scalp.region),
@@ -210,7 +216,7 @@ def _with_mask_of_hairs(locks: Curves, recipe: Recipe, scalp: Mesh) -> Curves:
     return Curves(locks.points, locks.offsets, locks.ids, attributes, locks.point)
 
 
-def _stages(recipe: Recipe) -> list[tuple[str, Operator]]:
+def _stages(recipe: Recipe, adopted: bool = False) -> list[tuple[str, Operator]]:
     """Stages with their unique names: ``scraggle``, a second one ``scraggle 2``. Later stages change no name."""
     stages: list[tuple[str, Operator]] = [("guides", recipe.guides)]
     if recipe.sculpt:
@@ -221,6 +227,8 @@ def _stages(recipe: Recipe) -> list[tuple[str, Operator]]:
     if by_stage["shape"]:
         stages.append(("edits of shapes", Edits(edits=by_stage["shape"])))
     stages.append(("curl", recipe.curl or Resample(points=recipe.locks.points)))
+    if adopted and isinstance(recipe.guides, Drawn):
+        stages.append(("residual", Residual(amount=recipe.guides.residual)))
     if by_stage["groom"]:
         stages.append(("edits", Edits(edits=by_stage["groom"])))
     stages.append(("clean", recipe.clean))

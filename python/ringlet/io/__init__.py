@@ -1,13 +1,16 @@
-"""Reads and writes USD; reads meshes and polylines from OBJ, and hairs from .hair."""
+"""Reads and writes USD, Alembic, .hair, TressFX .tfx and polylines of OBJ; reads meshes from OBJ."""
 
+from ringlet.io.formats import format_of, open_scene, write_scene
 from ringlet.io.read import read_clip, read_curves, read_mesh, read_space
 from ringlet.io.texture import read_texture
 from ringlet.io.usd.cache import CacheFile, CacheWriter, cache_groom_path, is_cache, open_cache, read_cache, write_cache
 from ringlet.io.usd.camera import read_camera
 from ringlet.io.usd.check import problems
-from ringlet.io.usd.groom import as_written, read_groom, write_groom
+from ringlet.io.usd.groom import as_written, is_groom, read_groom, write_groom
 from ringlet.io.usd.hairs import HairWriter, read_hair_frames, read_hairs, read_stage
+from ringlet.io.usd.head import head_path, write_head
 from ringlet.io.usd.mesh import Body, read_bodies, read_body, read_meshes, surface_paths, unread_surfaces
+from ringlet.io.usd.offsets import read_offsets, write_offsets
 from ringlet.io.usd.rest import read_rest, write_rest
 from ringlet.io.usd.stage import check_target
 from ringlet.io.usd.touches import heat, read_touches, start_marks, write_touches
@@ -20,9 +23,13 @@ __all__ = [
     "as_written",
     "cache_groom_path",
     "check_target",
+    "format_of",
+    "head_path",
     "heat",
     "is_cache",
+    "is_groom",
     "open_cache",
+    "open_scene",
     "problems",
     "read_bodies",
     "read_body",
@@ -35,6 +42,7 @@ __all__ = [
     "read_hairs",
     "read_mesh",
     "read_meshes",
+    "read_offsets",
     "read_rest",
     "read_space",
     "read_stage",
@@ -45,6 +53,9 @@ __all__ = [
     "unread_surfaces",
     "write_cache",
     "write_groom",
+    "write_head",
+    "write_offsets",
     "write_rest",
+    "write_scene",
     "write_touches",
 ]

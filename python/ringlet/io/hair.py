@@ -14,15 +14,18 @@ from numpy.typing import NDArray
 from ringlet.data import limits
 from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.data.errors import UserError
+from ringlet.data.files import replacing
 from ringlet.data.reads import record
 from ringlet.data.regular import read_bytes
 from ringlet.data.stage import StageSpace
-from ringlet.io.space import check_points, to_metres
+from ringlet.io.space import check_points, from_metres, to_metres
 
 HEADER = struct.Struct(
     "<4sIIIIff3f88s"
 )  # magic, hairs, points, arrays, segments, thickness, transparency, colour, text
 SEGMENTS, POINTS, THICKNESS, TRANSPARENCY, COLOR = (1 << bit for bit in range(5))
+MOST_SEGMENTS = 2**16 - 1  # of a hair
+PLAIN = (0.0, 0.0, 0.0, 0.0, 0.0)  # thickness, transparency and colour of files without such arrays
 
 
 def read_hair(path: Path, space: StageSpace) -> Curves:
@@ -83,3 +86,24 @@ def read_hair(path: Path, space: StageSpace) -> Curves:
         point=attributes,
     )
     return curves.check(str(path))
+
+
+def write_hair(curves: Curves, path: Path, space: StageSpace) -> None:
+    """Writes hairs with their diameters, and colours where they have the point attribute ``color``.
+
+    Raises UserError for a hair of more points than the format can count.
+    """
+    if (most := int(curves.counts.max())) > MOST_SEGMENTS + 1:
+        raise UserError(f"{path}: a hair has {most} points; must have at most {MOST_SEGMENTS + 1}: resample them")
+    widths, color = curves.point.get("width"), curves.point.get("color")
+    arrays = {
+        SEGMENTS: (curves.counts - 1).astype("<u2"),
+        POINTS: from_metres(curves.points, space),
+        THICKNESS: None if widths is None else widths / space.meters_per_unit,
+        COLOR: color,
+    }
+    kept = {flag: values for flag, values in arrays.items() if values is not None}
+    header = HEADER.pack(b"HAIR", len(curves), len(curves.points), sum(kept), 0, *PLAIN, b"Ringlet".ljust(88, b"\0"))
+    chunks = [values if flag == SEGMENTS else np.asarray(values, "<f4") for flag, values in kept.items()]
+    with replacing(path) as aside:
+        aside.write_bytes(header + b"".join(np.ascontiguousarray(chunk).tobytes() for chunk in chunks))

@@ -14,12 +14,13 @@ from numpy.typing import NDArray
 from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.explain import shown
+from ringlet.data.files import replacing
 from ringlet.data.mesh import Mesh
 from ringlet.data.reads import record
 from ringlet.data.regular import read_bytes
 from ringlet.data.stage import StageSpace
 from ringlet.io.polygons import check_polygons, polygon_places, triangulate
-from ringlet.io.space import check_points, to_metres
+from ringlet.io.space import check_points, from_metres, to_metres
 
 MOST_BYTES = 1_000_000_000  # of a file, which takes about 20 times as much memory
 MAX_POINTS = 2**31 - 1
@@ -88,6 +89,14 @@ def read_obj_curves(path: Path, space: StageSpace) -> Curves:
         if min(line) < 0 or max(line) >= len(points):
             raise UserError(f"{path}: a line uses point {max(line) + 1}; must be from 1 to {len(points)}")
     return Curves.from_list([points[line] for line in content.lines]).check(str(path))
+
+
+def write_obj_curves(curves: Curves, path: Path, space: StageSpace) -> None:
+    """Writes curves as polylines."""
+    with replacing(path) as aside, aside.open("w", encoding="ascii") as file:
+        file.writelines(f"v {x:.9g} {y:.9g} {z:.9g}\n" for x, y, z in from_metres(curves.points, space).tolist())
+        for first, last in zip(curves.offsets[:-1].tolist(), curves.offsets[1:].tolist(), strict=True):
+            file.write(f"l {' '.join(map(str, range(first + 1, last + 1)))}\n")
 
 
 def _parse(path: Path) -> _Content:

@@ -10,8 +10,10 @@ from ringlet.data.curves import Curves
 from ringlet.data.errors import UserError
 from ringlet.data.mesh import Clip, Mesh
 from ringlet.data.stage import StageSpace
+from ringlet.io.alembic import read_alembic_curves
 from ringlet.io.hair import read_hair
 from ringlet.io.obj import read_obj_curves, read_obj_mesh
+from ringlet.io.tfx import read_tfx
 from ringlet.io.usd.curves import read_usd_curves
 from ringlet.io.usd.mesh import read_usd_clip, read_usd_mesh
 from ringlet.io.usd.stage import read_usd_space
@@ -43,6 +45,11 @@ def read_mesh(
     Raises UserError for a file that is not readable, or has no such mesh.
     """
     path = Path(path)
+    if _has_suffix(path, ".abc"):
+        raise UserError(
+            f"{path}: meshes of Alembic are read by ringlet convert alone; run: ringlet convert {path} "
+            f"{path.with_suffix('.usdc')}, and name that file"
+        )
     return (
         read_obj_mesh(_without_prim(path, prim), space)
         if _has_suffix(path, ".obj")
@@ -75,34 +82,33 @@ def read_clip(
 def read_curves(
     path: Path | str, prim: str | None = None, *, space: StageSpace = METRES, notes: list[str] | None = None
 ) -> Curves:
-    """Reads curves in their rest pose as polylines, in metres and Y-up, from USD, OBJ or .hair.
+    """Reads curves in their rest pose as polylines, in metres and Y-up, from USD, Alembic, OBJ, .hair or .tfx.
 
     Cubic curves of USD are evaluated at 6 points per segment; pinned Catmull-Rom curves keep their vertices. Ids come
     from a primvar like ``groom_id``, or are 0, 1, 2 …. Primvars become attributes, and ``widths`` the attribute
     ``width`` [m]. The value of an attribute is its default, or else its first sample.
 
-    prim:  path of a ``BasisCurves`` prim in USD; by default the only one
-    space: unit and up-axis of an OBJ or .hair file, which store neither
+    prim:  path of a ``BasisCurves`` prim in USD, or name of curves in Alembic; by default the only ones
+    space: unit and up-axis of another file than USD, which stores neither
     notes: receives a sentence for each thing in the file that is not used
 
     Raises UserError for a file that is not readable, or has no such curves.
     """
     path = Path(path)
-    if _has_suffix(path, ".obj"):
-        return read_obj_curves(_without_prim(path, prim), space)
-    return (
-        read_hair(_without_prim(path, prim), space)
-        if _has_suffix(path, ".hair")
-        else read_usd_curves(path, prim, notes)
-    )
+    if _has_suffix(path, ".abc"):
+        return read_alembic_curves(path, prim, space)
+    readers = {".obj": read_obj_curves, ".hair": read_hair, ".tfx": read_tfx}
+    if reader := readers.get(path.suffix.lower()):
+        return reader(_without_prim(path, prim), space)
+    return read_usd_curves(path, prim, notes)
 
 
 def read_space(path: Path | str, *, space: StageSpace = METRES) -> StageSpace:
-    """Unit, up-axis and frame rate of a file; ``space`` for an OBJ or .hair file.
+    """Unit, up-axis and frame rate of a USD file; ``space`` for a file of another format.
 
     Fallbacks of a USD file: 0.01 m, Y and 24 frames per second.
     """
-    return space if _has_suffix(Path(path), ".obj", ".hair") else read_usd_space(path)
+    return space if _has_suffix(Path(path), ".obj", ".hair", ".tfx", ".abc") else read_usd_space(path)
 
 
 def _has_suffix(path: Path, *suffixes: str) -> bool:

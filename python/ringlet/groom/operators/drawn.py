@@ -14,14 +14,19 @@ from ringlet.groom.source import Source
 
 
 class Drawn(Source, Guides):
-    """Reads guides from a USD, OBJ or .hair file and binds them to the scalp."""
+    """Reads guides from a file and binds them to the scalp."""
 
     file: str = Field(
-        min_length=1, description="USD, OBJ or .hair file with the curves, beside the recipe or with a full path"
+        min_length=1,
+        description="USD, .abc, .obj, .hair or .tfx file with the curves, beside the recipe or with a full path",
     )
     prim: str | None = Field(default=None, description="prim of the curves; needed when the file has several")
     tolerance: Annotated[float, Quantity("m", 0.0, 1.0)] = Field(
         default=0.01, description="how far a root may be off the scalp"
+    )
+
+    residual: Annotated[float, Quantity("", 0.0, 1.0)] = Field(
+        default=1.0, description="part that is kept of what the curl does not fit, of guides that were adopted"
     )
 
     def make(self, curves: Curves, context: Context) -> Curves:

@@ -13,7 +13,7 @@ from ringlet import _core
 from ringlet.data import limits
 from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.data.errors import UserError
-from ringlet.data.groom import SECTION
+from ringlet.data.groom import ADOPTED, SECTION
 from ringlet.data.quantities import Quantity, refuse
 from ringlet.groom.hairline import Hairline
 from ringlet.groom.operators.operator import Context, Operator, arc_lengths, packed, unit
@@ -25,7 +25,7 @@ STRAND_IDS, IDS_PER_SECTION = 10**13, 100  # id of a strand: 10¹³ + section ·
 
 class Locks(Operator):
     """Samples locks on the scalp and interpolates their shapes from the nearest guides. Without ``count`` and
-    ``spacing`` every guide becomes a lock.
+    ``spacing`` every guide becomes a lock, with what was fitted to it if it is adopted.
 
     ``shape = Σ wᵢ Rᵢ (guideᵢ - rootᵢ)``, scaled to the weighted length. Rᵢ is the smallest rotation from the guide's
     normal to the lock's normal, and the weight wᵢ is 1/d². Guides that lean away from the nearest one by more than
@@ -74,6 +74,7 @@ class Locks(Operator):
         if self.count is None and self.spacing is None and self.sections is None:
             attributes = dict(context.scalp.attributes(np.asarray(curves.roots, np.float64)))
             root = curves.curve["root_triangle"], curves.curve["root_barycentric"]
+            attributes |= {name: values for name, values in curves.curve.items() if name.startswith(ADOPTED)}
             return _pack(shapes, curves.ids, *root, attributes)
 
         scalp = context.scalp

@@ -14,4 +14,11 @@ def problems(path: Path | str) -> list[str]:
     with reading(path) as source:
         validators = UsdValidation.ValidationRegistry().GetOrLoadAllValidators()
         found = UsdValidation.ValidationContext(validators).Validate(source.stage)
-        return [error.GetErrorAsString() for error in found]
+        return [error.GetErrorAsString() for error in found if not _is_unknown_node(error)]
+
+
+def _is_unknown_node(error: UsdValidation.ValidationError) -> bool:
+    """Whether an error is that of a MaterialX node in a USD without MaterialX, such as ``usd-core``."""
+    if error.GetName() != "MissingShaderIdInRegistry":
+        return False
+    return all(site.IsProperty() and str(site.GetProperty().Get()).startswith("ND_") for site in error.GetSites())

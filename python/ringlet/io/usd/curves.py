@@ -18,8 +18,8 @@ from ringlet.data.groom import GROOM
 from ringlet.data.mesh import Mesh
 from ringlet.data.pigment import DYE, FIBER, curve_reflectance, display_color
 from ringlet.data.stage import StageSpace
+from ringlet.io.basis import Sampling
 from ringlet.io.space import to_metres
-from ringlet.io.usd.basis import Sampling
 from ringlet.io.usd.names import identifier, keep_name, original_name
 from ringlet.io.usd.place import Place, placed
 from ringlet.io.usd.pose import posed_points, rest_time
@@ -68,11 +68,8 @@ def read_usd_curves(path: Path | str, prim: str | None = None, notes: list[str] 
 def curves_at(source: Source, prim: Usd.Prim, time: Usd.TimeCode) -> Curves:
     """Polylines of a curves prim at a time [m], with its primvars as attributes."""
     where = source.where(prim)
-    vertices = posed_points(source, prim, time, where)
-    counts = _counts(prim, time, len(vertices), where)
-    ids = np.arange(len(counts), dtype=np.int64)
-    Curves(vertices, offsets_from_counts(counts), ids).check(where)
-    sampling = Sampling(UsdGeom.BasisCurves(prim), time, counts, where)
+    vertices, sampling = _sampled(source, prim, time)
+    ids = np.arange(len(sampling.offsets) - 1, dtype=np.int64)
     curves = Curves(sampling.vertex(vertices), sampling.offsets, ids)
 
     for primvar in UsdGeom.PrimvarsAPI(prim).GetPrimvarsWithAuthoredValues():
@@ -88,6 +85,25 @@ def curves_at(source: Source, prim: Usd.Prim, time: Usd.TimeCode) -> Curves:
     _add_widths(curves, sampling, source, prim, time)
     _assign_ids(curves)
     return curves
+
+
+def points_at(source: Source, prim: Usd.Prim, time: Usd.TimeCode) -> NDArray[np.float64]:
+    """Points of the polylines of a curves prim at a time [m], shape (n, 3)."""
+    vertices, sampling = _sampled(source, prim, time)
+    return sampling.vertex(vertices)
+
+
+def _sampled(source: Source, prim: Usd.Prim, time: Usd.TimeCode) -> tuple[NDArray[np.float64], Sampling]:
+    """Vertices of a curves prim at a time [m], and their interpolation."""
+    where = source.where(prim)
+    vertices = posed_points(source, prim, time, where)
+    counts = _counts(prim, time, len(vertices), where)
+    Curves(vertices, offsets_from_counts(counts), np.arange(len(counts), dtype=np.int64)).check(where)
+    schema = UsdGeom.BasisCurves(prim)
+    kind, basis, wrap = (
+        attribute.Get(time) for attribute in (schema.GetTypeAttr(), schema.GetBasisAttr(), schema.GetWrapAttr())
+    )
+    return vertices, Sampling(kind, basis, wrap, counts, where)
 
 
 def own_curves(source: Source, prim: Usd.Prim, time: Usd.TimeCode | None = None, dtype: type = np.float64) -> Curves:
@@ -175,11 +191,17 @@ def _set_attribute(prim: Usd.Prim, name: str, interpolation: str, values: NDArra
 
 def set_points(
     curves: UsdGeom.BasisCurves, points: NDArray, place: Place, time: Usd.TimeCode, around: NDArray | None = None
-) -> None:
-    """Writes points [m] and their extent at a time; ``around`` as for ``Place.local``."""
+) -> Vt.Vec3fArray:
+    """Writes points [m] and their extent at a time; ``around`` as for ``Place.local``. Returns the value."""
     value = place.local(points, time, around)
     curves.CreatePointsAttr().Set(value, time)
     curves.CreateExtentAttr().Set(UsdGeom.Curves.ComputeExtent(value, curves.GetWidthsAttr().Get()), time)
+    return value
+
+
+def set_rest(curves: UsdGeom.PointBased, value: Vt.Vec3fArray) -> None:
+    """Writes the rest pose, in the space of the prim, as the primvar of Houdini and of hair materials."""
+    UsdGeom.PrimvarsAPI(curves).CreatePrimvar("rest", Types.Point3fArray, "vertex").Set(value)
 
 
 def set_roots(prim: Usd.Prim, curves: Curves, scalp: Mesh) -> None:

@@ -33,8 +33,10 @@ from ringlet.data.reads import recorded
 from ringlet.data.regular import check_regular
 from ringlet.data.settings import did_you_mean
 from ringlet.data.stage import StageSpace
-from ringlet.io.usd.curves import define_curves, own_curves, set_display_color, set_points, set_roots
+from ringlet.io.usd.curves import define_curves, own_curves, set_display_color, set_points, set_rest, set_roots
 from ringlet.io.usd.mesh import define_mesh, mesh_at, read_usd_mesh, select_mesh
+from ringlet.io.usd.offsets import NAME as OFFSETS_NAME
+from ringlet.io.usd.offsets import define_offsets, offsets_at
 from ringlet.io.usd.place import Place, rounded
 from ringlet.io.usd.stage import (
     CAGE,
@@ -49,7 +51,7 @@ from ringlet.io.usd.stage import (
     relative,
     writing,
 )
-from ringlet.io.usd.values import Types
+from ringlet.io.usd.values import Types, read_time
 
 GROOM, LOCKS, GUIDES, BODY = "/groom", "/groom/locks", "/groom/guides", "/groom/body"
 ACCESSORIES = "/groom/accessories"
@@ -141,6 +143,8 @@ def _define(stage: Usd.Stage, groom: Groom, space: StageSpace, file: Path | str)
         _set(root, "recipe", Types.String, groom.recipe)
     _define_guides(stage, LOCKS, groom.locks, groom, space, file)
     _define_guides(stage, GUIDES, groom.guides, groom, space, file)
+    if groom.offsets is not None:
+        define_offsets(stage, f"{GROOM}/{OFFSETS_NAME}", groom.offsets)
     for accessory in groom.accessories:
         place = f"{ACCESSORIES}/{accessory.mesh.name.replace(' ', '_')}"
         prim = define_mesh(stage, place, accessory.mesh, space, file)
@@ -198,6 +202,7 @@ def read_groom(path: Path | str, variant: str | None = None, *, bound: bool = Tr
             recipe=_get(root, "recipe"),
             variant=root.GetVariantSets().GetVariantSet(VARIANTS).GetVariantSelection() or None,
             accessories=[accessory for _, accessory in read_accessories(source)],
+            offsets=offsets_at(prim, source.where(prim)) if (prim := root.GetChild(OFFSETS_NAME)) else None,
         )
 
 
@@ -235,6 +240,13 @@ def _grooms(source: Source, root: Usd.Prim) -> dict[str, dict[str, Any]]:
         if rows is None or not len(rows) or min(rows) < 0 or max(rows) >= len(grooms) or list(rows) != sorted(rows):
             raise UserError(f"{source.path}: {path} does not say which groom each curve is of; make the groom again")
     return grooms
+
+
+def is_groom(path: Path | str) -> bool:
+    """Whether a USD file is a groom of Ringlet's, or lies over one."""
+    with reading(path) as source:
+        root = source.stage.GetPrimAtPath(GROOM)
+        return bool(root) and _get(root, "version") is not None
 
 
 def groom_prim(source: Source) -> Usd.Prim:
@@ -303,7 +315,20 @@ def _reference(stage: Usd.Stage, head: Path, scalp: str | None) -> Sdf.Path:
     body = stage.DefinePrim(BODY)
     name = relative(head, stage.GetRootLayer().realPath)
     body.GetReferences().AddReference(Sdf.Reference(name) if whole else Sdf.Reference(name, top))
-    return prim.ReplacePrefix(top, BODY)
+    scalp_path = prim.ReplacePrefix(top, BODY)
+    _rest_of_skin(stage, scalp_path)
+    return scalp_path
+
+
+def _rest_of_skin(stage: Usd.Stage, scalp: Sdf.Path) -> None:
+    """Writes the primvar ``rest`` of the skin, over the head; not where the head has one, or is instanced."""
+    prim = stage.GetPrimAtPath(scalp)
+    if not prim or prim.IsInstanceProxy() or UsdGeom.PrimvarsAPI(prim).HasPrimvar("rest"):
+        return
+    points = UsdGeom.PointBased(prim).GetPointsAttr()
+    value = points.Get(read_time(Usd.TimeCode.Default(), points))
+    if value:
+        set_rest(UsdGeom.PointBased(stage.OverridePrim(scalp)), value)
 
 
 def _define_guides(
@@ -313,8 +338,7 @@ def _define_guides(
     defined = define_curves(stage, path, curves, space, guide=True)
     prim = defined.GetPrim()
     place = Place(prim, space, file, curves)
-    set_points(defined, curves.points, place, Usd.TimeCode.Default(), groom.scalp.points)
-    UsdGeom.PrimvarsAPI(prim).CreatePrimvar("rest", Types.Point3fArray, "vertex").Set(defined.GetPointsAttr().Get())
+    set_rest(defined, set_points(defined, curves.points, place, Usd.TimeCode.Default(), groom.scalp.points))
     set_roots(prim, curves, groom.scalp)
     set_display_color(prim, curves)
 

@@ -21,8 +21,17 @@ from ringlet.data.groom import Groom
 from ringlet.data.mesh import Clip
 from ringlet.data.precision import compact
 from ringlet.io.usd.clips import clip_at, whole_frames
-from ringlet.io.usd.curves import curve_widths, curves_at, define_curves, own_curves, set_display_color, set_roots
+from ringlet.io.usd.curves import (
+    curve_widths,
+    curves_at,
+    define_curves,
+    own_curves,
+    set_display_color,
+    set_rest,
+    set_roots,
+)
 from ringlet.io.usd.groom import GROOM
+from ringlet.io.usd.material import bind_hair_material
 from ringlet.io.usd.mesh import Body, mesh_at
 from ringlet.io.usd.pose import rest_time
 from ringlet.io.usd.stage import Source, prims, reading
@@ -40,13 +49,17 @@ class HairWriter(StreamWriter):
 
     The file appears at ``path`` when the block ends; an error leaves ``path`` unchanged.
 
-    curves:     hairs with their attributes; ``width`` is the diameter [m], ``lock`` the row of a hair's lock
+    curves:     hairs at rest with their attributes; ``width`` is the diameter [m], ``lock`` the row of a hair's lock
     groom_path: groom or cache under the layer
+    velocities: writes them too, in units per second, which doubles the size of the file
     """
 
-    def __init__(self, path: Path | str, groom: Groom, curves: Curves, groom_path: Path | str) -> None:
+    def __init__(
+        self, path: Path | str, groom: Groom, curves: Curves, groom_path: Path | str, velocities: bool = False
+    ) -> None:
         super().__init__(path, groom_path, groom.space, groom.variant)
-        self._groom, self._hairs = groom, curves
+        self._groom, self._hairs, self.moving = groom, curves, velocities
+        self._has_rest = False
 
     def __enter__(self) -> Self:
         stage, groom = self.begin(), self._groom
@@ -74,6 +87,7 @@ class HairWriter(StreamWriter):
                 set_primvar(prim, name, "uniform", hairs.curve[LOCK_INDEX].astype(np.int32))
         if "color" in hairs.point:
             set_primvar(prim, "groom_color", "vertex", hairs.point["color"].astype(np.float32), Types.Color3fArray)
+        bind_hair_material(curves, hairs)
         return curves
 
     def add(self, frame: float | None, points: NDArray, *, around: NDArray | None = None) -> None:
@@ -85,7 +99,12 @@ class HairWriter(StreamWriter):
         Raises UserError for positions that are not finite, far from the head, or not as many as the curves have.
         """
         for prim, hairs, rows in self._prims:
-            self.put(prim, frame, points[rows], hairs, around)
+            if not self._has_rest:
+                rest = points[rows] if frame is None else hairs.points
+                set_rest(prim, self.put(prim, None, rest, hairs, self._groom.scalp.points))
+            if frame is not None:
+                self.put(prim, frame, points[rows], hairs, around)
+        self._has_rest = True
 
 
 def read_hairs(path: Path | str, frame: float | None = None) -> Curves:

@@ -82,7 +82,7 @@ def reading(path: Path | str, cage: bool | None = None) -> Iterator[Source]:
         _reload(stage, path)
         _refuse_missing(stage, path)
         yield Source(path, stage, _space(stage, path), _reads_cages(stage) if cage is None else cage)
-        record(path, *_layer_files(stage))
+        record(path, *layer_files(stage))
 
 
 def _check_layers(path: Path) -> list[Sdf.Layer]:
@@ -142,7 +142,7 @@ def _refuse_missing(stage: Usd.Stage, path: Path) -> None:
             )
 
 
-def _layer_files(stage: Usd.Stage) -> Iterator[str]:
+def layer_files(stage: Usd.Stage) -> Iterator[str]:
     """Files of all layers that a stage uses: sublayers, references, payloads and value clips."""
     for layer in stage.GetUsedLayers():
         if layer.realPath:

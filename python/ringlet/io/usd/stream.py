@@ -6,8 +6,9 @@ from contextlib import ExitStack
 from pathlib import Path
 from types import TracebackType
 
+import numpy as np
 from numpy.typing import NDArray
-from pxr import Sdf, Usd, UsdGeom
+from pxr import Sdf, Usd, UsdGeom, Vt
 
 from ringlet.data.curves import Curves
 from ringlet.data.reads import recorded, refuse_inputs
@@ -16,12 +17,18 @@ from ringlet.io.usd.curves import set_points
 from ringlet.io.usd.groom import choose_variant, groom_prim
 from ringlet.io.usd.place import Place
 from ringlet.io.usd.stage import check_target, new_stage, reading, writing
+from ringlet.io.usd.velocities import Velocities
 
 FLUSH = 64e6  # bytes of points in memory before they are saved
 
 
 class StreamWriter:
-    """Base of writers that add frames to a layer over another file; the file appears when the block succeeds."""
+    """Base of writers that add frames to a layer over another file; the file appears when the block succeeds.
+
+    moving: writes ``velocities`` too, in units per second
+    """
+
+    moving = True
 
     def __init__(self, path: Path | str, under: Path | str, space: StageSpace, variant: str | None = None) -> None:
         check_target(path, under)
@@ -29,6 +36,7 @@ class StreamWriter:
         self._frames: list[float] = []
         self._unsaved = 0
         self._place_of_prim: dict[Sdf.Path, Place] = {}
+        self._velocities_of_prim: dict[Sdf.Path, Velocities] = {}
 
     def begin(self) -> Usd.Stage:
         """Opens a temporary file beside ``path`` and returns its stage over the groom.
@@ -60,8 +68,8 @@ class StreamWriter:
         points: NDArray,
         curves: Curves,
         around: NDArray | None = None,
-    ) -> None:
-        """Sets the points [m] of curves at a frame; at rest for None.
+    ) -> Vt.Vec3fArray:
+        """Sets the points [m] of curves at a frame, at rest for None; returns the value.
 
         curves: those of the prim
         around: points of the head [m], shape (k, 3); by default the roots
@@ -70,8 +78,14 @@ class StreamWriter:
         if place is None:
             place = self._place_of_prim[prim.GetPath()] = Place(prim.GetPrim(), self.space, self.path, curves)
         time = Usd.TimeCode.Default() if frame is None else Usd.TimeCode(float(frame))
-        set_points(prim, points, place, time, around)
+        value = set_points(prim, points, place, time, around)
+        if frame is not None and self.moving:
+            velocities = self._velocities_of_prim.get(prim.GetPath())
+            if velocities is None:
+                velocities = self._velocities_of_prim[prim.GetPath()] = Velocities(prim, self.space.fps)
+            velocities.add(float(frame), np.array(value))
         self.record(frame, points.size * 4)
+        return value
 
     def record(self, frame: float | None, size: int) -> None:
         """Records ``size`` bytes that were set at a frame; saves the layer when much is unsaved."""
@@ -96,5 +110,7 @@ class StreamWriter:
             if self._frames:
                 self._stage.SetStartTimeCode(min(self._frames))
                 self._stage.SetEndTimeCode(max(self._frames))
+            for velocities in self._velocities_of_prim.values():
+                velocities.finish()
             self.finish()
             self.layer.Save()

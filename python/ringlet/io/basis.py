@@ -1,10 +1,9 @@
-"""Evaluation of cubic USD curves as polylines: Bézier, B-spline and Catmull-Rom, nonperiodic or pinned."""
+"""Evaluation of cubic curves as polylines: Bézier, B-spline and Catmull-Rom, nonperiodic or pinned."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from pxr import Usd, UsdGeom
 
 from ringlet.data.curves import offsets_from_counts
 from ringlet.data.errors import UserError
@@ -13,29 +12,31 @@ STEPS = 6  # points per segment of a cubic curve
 
 # One row per power of t, one column per control point, after the reference of UsdGeomBasisCurves.
 _BASES = {
-    UsdGeom.Tokens.bezier: np.array([[1, 0, 0, 0], [-3, 3, 0, 0], [3, -6, 3, 0], [-1, 3, -3, 1]], float),
-    UsdGeom.Tokens.bspline: np.array([[1, 4, 1, 0], [-3, 0, 3, 0], [3, -6, 3, 0], [-1, 3, -3, 1]]) / 6.0,
-    UsdGeom.Tokens.catmullRom: np.array([[0, 2, 0, 0], [-1, 0, 1, 0], [2, -5, 4, -1], [-1, 3, -3, 1]]) / 2.0,
+    "bezier": np.array([[1, 0, 0, 0], [-3, 3, 0, 0], [3, -6, 3, 0], [-1, 3, -3, 1]], float),
+    "bspline": np.array([[1, 4, 1, 0], [-3, 0, 3, 0], [3, -6, 3, 0], [-1, 3, -3, 1]]) / 6.0,
+    "catmullRom": np.array([[0, 2, 0, 0], [-1, 0, 1, 0], [2, -5, 4, -1], [-1, 3, -3, 1]]) / 2.0,
 }
 
 
 class Sampling:
     """Interpolation from the control points of curves to the points of polylines.
 
+    kind:   ``linear`` or ``cubic``
+    basis:  ``bezier``, ``bspline`` or ``catmullRom``, of cubic curves
+    wrap:   ``nonperiodic`` or ``pinned``
+    counts: control points of each curve, shape (count,)
+
     Raises UserError for periodic curves, an unknown basis, and point counts that do not fit the basis.
     """
 
-    def __init__(self, curves: UsdGeom.BasisCurves, time: Usd.TimeCode, counts: NDArray, where: str) -> None:
-        kind, basis, wrap = (
-            attribute.Get(time) for attribute in (curves.GetTypeAttr(), curves.GetBasisAttr(), curves.GetWrapAttr())
-        )
-        if wrap == UsdGeom.Tokens.periodic:
+    def __init__(self, kind: str, basis: str, wrap: str, counts: NDArray, where: str) -> None:
+        if wrap == "periodic":
             raise UserError(
                 f"{where}: wrap is periodic; must be nonperiodic or pinned, since hairs have a root and a tip"
             )
         self.offsets_in = offsets_from_counts(counts)
-        pinned = wrap == UsdGeom.Tokens.pinned and basis != UsdGeom.Tokens.bezier
-        self.identity = kind == UsdGeom.Tokens.linear or (pinned and basis == UsdGeom.Tokens.catmullRom)
+        pinned = wrap == "pinned" and basis != "bezier"
+        self.identity = kind == "linear" or (pinned and basis == "catmullRom")
         self.pinned = pinned and not self.identity
         if self.identity:
             self.segments, self.offsets = counts - 1, self.offsets_in
@@ -43,7 +44,7 @@ class Sampling:
 
         if basis not in _BASES:
             raise UserError(f"{where}: basis is {basis}; must be bezier, bspline or catmullRom: convert the curves")
-        stride, least = (3, 4) if basis == UsdGeom.Tokens.bezier else (1, 2 if pinned else 4)
+        stride, least = (3, 4) if basis == "bezier" else (1, 2 if pinned else 4)
         if (bad := np.flatnonzero((counts < least) | ((counts - 1) % stride != 0))).size:
             rule = "4, 7, 10 …" if stride == 3 else f"at least {least}"
             raise UserError(

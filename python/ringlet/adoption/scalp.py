@@ -1,0 +1,78 @@
+"""A surface through the roots of hair that comes without a head."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import ConvexHull, Delaunay, KDTree
+
+from ringlet.data.errors import UserError
+from ringlet.data.mesh import Mesh
+
+MARGIN = 2.0  # of the surface around the roots, in spacings of roots
+GRID = 5e-4  # [m] roots that are nearer to one another become one point
+
+
+def scalp_of_roots(roots: NDArray[np.float64], name: str) -> Mesh:
+    """A triangulation of roots: their Delaunay triangulation after a stereographic projection from below.
+
+    Hair grows upwards from what lies around one centre, as on a head. The surface faces away from that.
+
+    roots: [m], shape (k, 3)
+    name:  of the mesh
+
+    Raises UserError for roots that span no surface.
+    """
+    points = roots[np.unique(np.round(roots / GRID), axis=0, return_index=True)[1]]
+    if len(points) < 3:
+        raise UserError(f"{name}: has {len(points)} different roots, which span no surface; give it a head with --head")
+    spacing = float(np.median(KDTree(points).query(points, k=2)[0][:, 1]))
+    middle = points.mean(axis=0)
+    spread = np.linalg.svd(points - middle, full_matrices=False)
+    across = spread[2][2] if spread[2][2, 1] >= 0.0 else -spread[2][2]
+    center = _center(points, middle, across)
+    outward = points - center
+    outward /= np.linalg.norm(outward, axis=1, keepdims=True)
+    pole = outward.mean(axis=0)
+    pole /= np.linalg.norm(pole)
+    flat = _projected(outward, pole)
+    hull = ConvexHull(flat).vertices
+    scale = MARGIN * spacing / float(np.median(np.linalg.norm(points - center, axis=1)))
+    rim = flat[hull] + scale * _unit(flat[hull] - flat[hull].mean(axis=0))
+    distance = np.linalg.norm(points[hull] - center, axis=1)
+    rim_points = center + distance[:, None] * _unprojected(rim, pole)
+    every, places = np.concatenate([points, rim_points]), np.concatenate([flat, rim])
+    triangles = Delaunay(places).simplices
+    normals = np.cross(every[triangles[:, 1]] - every[triangles[:, 0]], every[triangles[:, 2]] - every[triangles[:, 0]])
+    turned = np.einsum("kx,kx->k", normals, every[triangles].mean(axis=1) - center) < 0.0
+    triangles[turned] = triangles[turned][:, ::-1]
+    kept = np.linalg.norm(normals, axis=1) > 1e-14 * np.ptp(every, axis=0).max() ** 2
+    used, index = np.unique(triangles[kept], return_inverse=True)
+    return Mesh(name, every[used], index.reshape(-1, 3).astype(np.int32))
+
+
+def _center(points: NDArray, middle: NDArray, across: NDArray) -> NDArray[np.float64]:
+    """Centre of the sphere that fits points best; below them where they are nearly flat."""
+    rows = np.concatenate([2.0 * (points - middle), np.ones((len(points), 1))], axis=1)
+    fitted = np.linalg.lstsq(rows, ((points - middle) ** 2).sum(axis=1), rcond=1e-6)[0][:3]
+    size = float(np.linalg.norm(np.ptp(points, axis=0)))
+    if not 0.2 * size < np.linalg.norm(fitted) < 5.0 * size or fitted[1] > 0.3 * size:
+        fitted = -size * across
+    return middle + fitted
+
+
+def _projected(outward: NDArray, pole: NDArray) -> NDArray[np.float64]:
+    """Stereographic projection of directions from the point opposite the pole, shape (k, 2)."""
+    along = outward @ pole
+    plane = np.linalg.svd(pole[None])[2][1:]
+    return (outward @ plane.T) / np.maximum(1.0 + along, 1e-3)[:, None]
+
+
+def _unprojected(flat: NDArray, pole: NDArray) -> NDArray[np.float64]:
+    """Directions of projected points, shape (k, 3)."""
+    plane, squared = np.linalg.svd(pole[None])[2][1:], (flat**2).sum(axis=1)[:, None]
+    return (2.0 * flat @ plane + (1.0 - squared) * pole) / (1.0 + squared)
+
+
+def _unit(vectors: NDArray) -> NDArray[np.float64]:
+    return vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-12)

@@ -1,0 +1,413 @@
+"""Finished hair of any program as a groom with a recipe."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ringlet.api.conversion import source_space_of
+from ringlet.api.progress import Progress
+from ringlet.data import limits
+from ringlet.data.curves import Curves, offsets_from_counts
+from ringlet.data.errors import UserError
+from ringlet.data.files import check_place, replacing
+from ringlet.data.groom import OFFSETS
+from ringlet.data.reads import recorded
+from ringlet.data.resampling import Resampling
+from ringlet.data.stage import StageSpace
+from ringlet.data.toml import to_toml
+
+if TYPE_CHECKING:
+    from ringlet.adoption import Clumps, Coils
+    from ringlet.data.groom import Groom
+    from ringlet.data.mesh import Mesh
+    from ringlet.groom import Recipe
+
+__all__ = ["adopt", "adopt_groom", "is_finished_hair"]
+
+MOST_POINTS = 160  # of a hair that is adopted
+FEWEST_POINTS = 24
+SHAPE_POINTS = 40  # of the centre line of a lock
+FARTHEST_ROOT = 0.05  # [m] of a root from the head
+WIDTH, PITCH, HAND, PHASE = (f"adopted_{name}" for name in ("width", "pitch", "hand", "phase"))
+COILED = 0.2  # share of the locks that must be coiled for the recipe to have a curl
+MOST_PITCH = 0.9  # [m] of a lock without a coil, as the recipe has it
+MEASURED = 2000  # hairs whose distances are measured
+TURN_POINTS = 8  # points of a turn of a lock
+
+
+@dataclass
+class _Hair:
+    """Finished hairs, evenly resampled.
+
+    points:  [m], shape (hairs, k, 3)
+    lengths: [m], shape (hairs,)
+    widths:  diameters at even steps [m], shape (hairs, k)
+    """
+
+    curves: Curves
+    points: NDArray[np.float64]
+    lengths: NDArray[np.float64]
+    widths: NDArray[np.float64]
+
+
+@recorded()
+def adopt(
+    source: Path | str,
+    recipe: Path | str,
+    *,
+    head: Path | str | None = None,
+    mesh: str | None = None,
+    locks: int | None = None,
+    source_unit: float | None = None,
+    source_up: Literal["Y", "Z"] | None = None,
+    progress: Progress | None = None,
+) -> dict[str, Any]:
+    """Makes a recipe of finished hair, whatever program made it: USD, Alembic, ``.hair``, ``.tfx`` or OBJ.
+
+    Clumps become locks, each with a centre line and a curl of its own width, pitch, hand and phase. What a curl does
+    not fit stays with its lock, and every hair keeps its offsets from its lock, so that the groom is the hair as it
+    was; settings of the recipe change it. Beside the recipe NAME.recipe.toml stand NAME.guides.usdc, NAME.hairs.usdc
+    and, for hair without a head, NAME.scalp.usdc.
+
+    head:  USD or OBJ file of the head; by default the mesh of the source on which the roots are, or else a surface
+           through the roots
+    mesh:  prim of the head; needed where the file has several
+    locks: number of locks; by default one for each clump that is found
+    source_unit, source_up: unit [m] and up-axis of a source that stores neither
+
+    Returns the numbers of ``hairs`` and ``locks``, how ``clumps`` were found, ``coiled`` locks, the medians of
+    ``width`` and ``pitch`` [m] and the share ``right_handed`` of these, and ``error``: the median and the 95th
+    percentile of the distances between the hair as it was and as the recipe makes it [m].
+    """
+    from ringlet import io
+    from ringlet.adoption import find_clumps
+
+    target = Path(recipe)
+    if target.suffix != ".toml":
+        raise UserError(f"{target}: ends in '{target.suffix}'; must end in .toml")
+    if locks is not None:
+        limits.check_count("locks", locks, 1_000_000)
+    stem = target.name.removesuffix(".toml").removesuffix(".recipe")
+    files = {name: target.with_name(f"{stem}.{name}.usdc") for name in ("guides", "hairs", "scalp")}
+    step = _Steps(progress)
+    with step("read"):
+        space = source_space_of(source, source_unit, source_up)
+        hair, scalp, scalp_table, prim = _read(source, head, mesh, space, files)
+        for path in (target, *files.values()):
+            check_place(path)
+    with step("clumps"):
+        clumps = find_clumps(hair.points, hair.lengths, hair.curves.curve, locks)
+    with step("curls"):
+        guides, coils = _guides(hair, clumps, scalp)
+    text = to_toml(_tables(stem, files, scalp_table, coils, hair, _distance_of(guides, scalp)))
+    with step("groom"):
+        groom = _fitted(groom_recipe(text, target), scalp, guides, hair.points[clumps.middle])
+    with step("hairs"):
+        error = _add_hairs(groom, hair, clumps)
+    if prim is not None:
+        io.write_head(source, prim, files["scalp"])
+    _write(groom, guides, text, target, files, scalp_table if prim is None else {})
+    coiled = coils.width > 0.0
+    return {
+        "hairs": len(hair.points),
+        "locks": len(clumps),
+        "clumps": clumps.source,
+        "coiled": int(coiled.sum()),
+        "width": float(np.median(coils.width[coiled])) if coiled.any() else 0.0,
+        "pitch": float(np.median(coils.pitch[coiled])) if coiled.any() else 0.0,
+        "right_handed": float((coils.hand[coiled] > 0.0).mean()) if coiled.any() else 0.0,
+        "error": {"median": float(np.median(error)), "95": float(np.quantile(error, 0.95))},
+    }
+
+
+@recorded()
+def adopt_groom(
+    source: Path | str,
+    *,
+    head: Path | str | None = None,
+    mesh: str | None = None,
+    head_file: Path | str | None = None,
+    locks: int | None = None,
+    source_unit: float | None = None,
+    source_up: Literal["Y", "Z"] | None = None,
+) -> Groom:
+    """A groom of finished hair without a recipe, to be simulated as it is: each curve is a lock.
+
+    head_file: where to write a reference to the head of a USD source, which moves with it; without it the head is
+               stored with the groom, and stands still
+    locks:     a number of locks, whose middle hairs are simulated, and carry the others
+    head, mesh, source_unit, source_up: as for ``adopt``
+    """
+    from ringlet import io
+    from ringlet.adoption import each_alone, find_clumps
+    from ringlet.adoption.coil import no_coils
+
+    target = Path(source).absolute().with_suffix(".recipe.toml")
+    files = {name: target.with_suffix(f".{name}.usdc") for name in ("guides", "hairs", "scalp")}
+    hair, scalp, table, prim = _read(source, head, mesh, source_space_of(source, source_unit, source_up), files)
+    clumps = each_alone(len(hair.points)) if locks is None else find_clumps(hair.points, hair.lengths, {}, locks)
+    coils = no_coils(hair.points[clumps.middle])
+    guides = _packed(coils.center)
+    tables = _tables(target.stem, files, table, coils, hair, _distance_of(guides, scalp))
+    groom = _fitted(groom_recipe(to_toml(tables), target), scalp, guides, hair.points[clumps.middle])
+    _add_hairs(groom, hair, clumps)
+    groom.recipe = None
+    if prim is not None and head_file is not None:
+        io.write_head(source, prim, head_file)
+        groom.scalp_file, groom.scalp_prim = Path(head_file), io.head_path(prim)
+    elif head is not None:
+        groom.scalp_file, groom.scalp_prim = Path(head), mesh
+    groom.space = io.read_space(groom.scalp_file) if groom.scalp_file else StageSpace()
+    return groom
+
+
+def is_finished_hair(path: Path | str) -> bool:
+    """Whether a file holds curves that are no groom of Ringlet's."""
+    from ringlet import io
+
+    if Path(path).suffix.lower() in (".abc", ".hair", ".tfx", ".obj"):
+        return True
+    return Path(path).suffix.lower() in (".usd", ".usda", ".usdc", ".usdz") and not io.is_groom(path)
+
+
+class _Steps:
+    """Reports stages to a function of progress."""
+
+    def __init__(self, progress: Progress | None) -> None:
+        self._progress = progress
+
+    @contextmanager
+    def __call__(self, name: str) -> Iterator[None]:
+        if self._progress:
+            self._progress(name, 0, 1)
+        yield
+        if self._progress:
+            self._progress(name, 1, 1)
+
+
+def _read(
+    source: Path | str, head: Path | str | None, mesh: str | None, space: Any, files: dict[str, Path]
+) -> tuple[_Hair, Mesh, dict[str, Any], str | None]:
+    """The hairs, the scalp, the table of the recipe that names it, and its prim where it is one of the source."""
+    from ringlet import io
+    from ringlet.io.formats import joined
+
+    with io.open_scene(source, space) as scene:
+        if not scene.sets:
+            raise UserError(f"{source}: has no curves; export the hair as curves or choose another file")
+        curves = joined(scene.shown).distinct().check(str(source))
+        bodies = [body for body, _ in scene.bodies]
+    hair = _resampled(curves)
+    roots = hair.points[:, 0]
+    if head is not None:
+        table = {"file": _from(files["scalp"], head), **({"mesh": mesh} if mesh else {})}
+        return hair, io.read_mesh(head, mesh), table, None
+    if Path(source).suffix.lower().startswith(".usd") and bodies:
+        near = min(io.read_bodies(source), key=lambda body: _distance(body.mesh, roots))
+        return hair, near.mesh, {"file": files["scalp"].name, "mesh": io.head_path(near.prim)}, near.prim
+    from ringlet.adoption.scalp import scalp_of_roots
+
+    own = min(bodies, key=lambda body: _distance(body, roots)) if bodies else scalp_of_roots(roots, str(source))
+    return hair, replace(own, name="scalp"), {"file": files["scalp"].name}, None
+
+
+def _from(recipe: Path, path: Path | str) -> str:
+    """Name of a file as the recipe has it."""
+    return Path(os.path.relpath(Path(path).absolute(), recipe.absolute().parent)).as_posix()
+
+
+def _distance(mesh: Mesh, roots: NDArray[np.float64]) -> float:
+    """Median distance of roots from a mesh [m]."""
+    from ringlet import _core
+
+    return float(np.median(_core.bind_roots(mesh.points, mesh.triangles, np.ascontiguousarray(roots))[2]))
+
+
+def _resampled(curves: Curves) -> _Hair:
+    count = int(np.clip(curves.counts.max(), FEWEST_POINTS, MOST_POINTS))
+    resampling = Resampling(curves, count)
+    points = resampling.values(np.asarray(curves.points, np.float64)).reshape(len(curves), count, 3)
+    if "width" in curves.point:
+        widths = resampling.values(np.asarray(curves.point["width"], np.float64)).reshape(len(curves), count)
+    else:
+        own = np.asarray(curves.curve.get("width", np.full(len(curves), 7e-5)), np.float64)
+        widths = np.repeat(own[:, None], count, axis=1)
+    return _Hair(curves, points, np.asarray(curves.lengths(), np.float64), widths)
+
+
+def _guides(hair: _Hair, clumps: Clumps, scalp: Mesh) -> tuple[Curves, Coils]:
+    """The centre lines of the locks, with what was fitted to each as attributes."""
+    from ringlet.adoption import fit_coils
+
+    target = hair.points[clumps.middle]
+    coils = fit_coils(target)
+    along = Resampling(_packed(coils.center), SHAPE_POINTS)
+    center = along.values(coils.center.reshape(-1, 3)).reshape(len(clumps), SHAPE_POINTS, 3)
+    guides = _packed(center)
+    coiled = coils.width > 0.0
+    width, pitch = (_median(values, coiled) for values in (coils.width, coils.pitch))
+    guides.curve = {
+        WIDTH: (coils.width / width).astype(np.float32),
+        PITCH: (np.where(coiled, np.minimum(coils.pitch, MOST_PITCH), MOST_PITCH) / pitch).astype(np.float32),
+        HAND: (coils.hand > 0.0).astype(np.float32),
+        PHASE: np.zeros(len(clumps), np.float32),
+    }
+    return guides, coils
+
+
+def _distance_of(guides: Curves, scalp: Mesh) -> float:
+    """Largest distance of roots from the scalp [m]; raises UserError for hair that does not grow there."""
+    from ringlet import _core
+
+    roots = np.ascontiguousarray(guides.roots, np.float64)
+    distance = _core.bind_roots(scalp.points, scalp.triangles, roots)[2]
+    if (far := float(np.median(distance))) > FARTHEST_ROOT:
+        raise UserError(
+            f"{scalp.name}: half of the roots are more than {far:.3g} m away from it; see whether both files have the "
+            "same unit and axis, or name the head of this hair with --head"
+        )
+    return float(distance.max())
+
+
+def _tables(
+    stem: str, files: dict[str, Path], scalp: dict[str, Any], coils: Coils, hair: _Hair, distance: float
+) -> dict[str, Any]:
+    """The tables of the recipe."""
+    coiled = coils.width > 0.0
+    tables: dict[str, Any] = {
+        "ringlet": 1,
+        "name": stem,
+        "unit": "mm",
+        "scalp": scalp,
+        "guides": {"file": files["guides"].name, "tolerance": f"{1e3 * (1.1 * distance + 1e-3):.4g} mm"},
+        "locks": {"points": _lock_points(hair, coils), "shape_points": SHAPE_POINTS},
+    }
+    if coiled.mean() >= COILED:
+        width, pitch = float(np.median(coils.width[coiled])), float(np.median(coils.pitch[coiled]))
+        tables["curl"] = {
+            "width": {"value": f"{1e3 * width:.6g} mm", "map": WIDTH},
+            "pitch": {"value": f"{1e3 * pitch:.6g} mm", "map": PITCH},
+            "right_handed": {"value": 1.0, "map": HAND},
+            "phase": {"value": 360.0, "map": PHASE},
+            "phase_spread": 0.0,
+            "irregularity": 0.0,
+            "start": f"{1e3 * min(pitch, 0.5):.4g} mm",
+        }
+    return {**tables, "clean": {"margin": 0.0}, "hairs": {"file": files["hairs"].name}}
+
+
+def _lock_points(hair: _Hair, coils: Coils) -> int:
+    """Points of a lock: those of the hairs, or more where its turns need them."""
+    most = int(np.ceil(TURN_POINTS * float(coils.turns.max(initial=0.0))))
+    return int(np.clip(max(hair.points.shape[1], most), 4, limits.POINTS))
+
+
+def groom_recipe(text: str, path: Path | None = None) -> Recipe:
+    """Parses the text of a recipe."""
+    from ringlet import groom
+
+    return groom.parse_recipe(text, path)
+
+
+def _fitted(recipe: Recipe, scalp: Mesh, guides: Curves, target: NDArray[np.float64]) -> Groom:
+    """The groom of a recipe and its guides, which get the phases of their curls and what these do not fit.
+
+    target: points of the locks as they were [m], evenly spaced, shape (locks, k, 3)
+    """
+    from ringlet import groom
+    from ringlet.groom import adopted
+    from ringlet.groom.operators import Context, Drawn, Resample
+    from ringlet.groom.scalp import Scalp
+
+    assert isinstance(recipe.guides, Drawn)
+    surface, points = Scalp(scalp, None), recipe.locks.points
+    context = Context(recipe.seed, surface, "curl", points)
+    wanted = _packed(target)
+    wanted = Resampling(wanted, points).values(wanted.points).reshape(len(guides), points, 3)
+    shapes = recipe.locks.apply(recipe.guides.apply(guides, context), context)
+    context = replace(context, shapes=shapes)
+    curl = recipe.curl or Resample(points=points)
+    curled = curl.apply(shapes, context)
+    if recipe.curl is not None:
+        turned = adopted.phase_of(wanted, curled, shapes, context)
+        shapes.curve[PHASE] = guides.curve[PHASE] = turned.astype(np.float32)
+        curled = curl.apply(shapes, context)
+    guides.curve[OFFSETS] = adopted.residual_of(wanted, curled, shapes, context)
+    return groom.make_groom(recipe, scalp, drawn_guides=guides)
+
+
+def _add_hairs(groom: Groom, hair: _Hair, clumps: Clumps) -> NDArray[np.float64]:
+    """Gives a groom its hairs; returns how far what they were is from them [m], shape (hairs, points)."""
+    from ringlet import groom as grooms
+    from ringlet.data.random import Random
+    from ringlet.groom import adopted
+
+    shuffled = Random(1, "adopt").uniform(np.arange(len(clumps.of)))
+    shuffled[clumps.middle] = -1.0
+    order = np.lexsort((shuffled, clumps.of))
+    size = hair.widths.shape[1]
+    at = np.round(np.linspace(0, size - 1, adopted.WIDTHS)).astype(int)
+    groom.offsets = adopted.fit_offsets(
+        groom, hair.points[order], hair.lengths[order], hair.widths[order][:, at], clumps.of[order]
+    )
+    made = grooms.make_hairs(groom).curves.points.reshape(len(order), -1, 3)
+    measured = order[:: max(1, len(order) // MEASURED)]
+    return distances(hair.points[measured], made[:: max(1, len(order) // MEASURED)].astype(np.float64))
+
+
+def distances(points: NDArray[np.float64], lines: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Distance of points from the polyline of their hair [m], shape (hairs, k).
+
+    points: shape (hairs, k, 3); lines: shape (hairs, n, 3)
+    """
+    found = np.empty(points.shape[:2])
+    for row, (hair, line) in enumerate(zip(points, lines, strict=True)):
+        start, edge = line[:-1], np.diff(line, axis=0)
+        from_start = hair[:, None] - start
+        t = (from_start * edge).sum(axis=2) / np.maximum((edge**2).sum(axis=1), 1e-18)
+        off = from_start - np.clip(t, 0.0, 1.0)[..., None] * edge
+        found[row] = np.sqrt((off**2).sum(axis=2).min(axis=1))
+    return found
+
+
+def _write(
+    groom: Groom, guides: Curves, text: str, recipe: Path, files: dict[str, Path], scalp: dict[str, Any]
+) -> None:
+    """Writes the files of an adopted groom, the recipe last."""
+    from ringlet import io
+    from ringlet.data.hair_scene import CurveSet, HairScene
+
+    assert groom.offsets is not None
+    recipe.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix=".adopt.", dir=recipe.parent) as folder:
+        made = {name: Path(folder, file.name) for name, file in files.items()}
+        io.write_scene(HairScene([CurveSet("guides", guides, guide=True)]), made["guides"], StageSpace())
+        io.write_offsets(groom.offsets, made["hairs"])
+        if scalp.get("file") == files["scalp"].name:
+            io.write_scene(HairScene([], [(groom.scalp, None)]), made["scalp"], StageSpace())
+        for name, file in made.items():
+            if file.exists():
+                with replacing(files[name]) as aside:
+                    file.replace(aside)
+    with replacing(recipe) as aside:
+        aside.write_text(text, encoding="utf-8")
+
+
+def _median(values: NDArray, chosen: NDArray[np.bool_]) -> float:
+    """Median of the chosen values; 1 where none is chosen."""
+    return float(np.median(values[chosen])) if chosen.any() else 1.0
+
+
+def _packed(grid: NDArray[np.float64]) -> Curves:
+    count, points, _ = grid.shape
+    ids = np.arange(count, dtype=np.int64)
+    return Curves(grid.reshape(-1, 3).copy(), offsets_from_counts(np.full(count, points)), ids)

@@ -1,0 +1,152 @@
+"""Conversion of hair between file formats."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ringlet.data import limits
+from ringlet.data.errors import UserError
+from ringlet.data.files import check_place
+from ringlet.data.reads import recorded
+from ringlet.data.resampling import Resampling
+from ringlet.data.stage import StageSpace
+
+if TYPE_CHECKING:
+    from ringlet.data.hair_scene import CurveSet, HairScene
+
+__all__ = ["convert"]
+
+SEED = 1  # of the choice of strands
+
+
+@recorded()
+def convert(
+    source: Path | str,
+    target: Path | str,
+    *,
+    source_unit: float | None = None,
+    source_up: Literal["Y", "Z"] | None = None,
+    unit: float | None = None,
+    up: Literal["Y", "Z"] | None = None,
+    only: Literal["hairs", "guides"] | None = None,
+    bodies: bool = True,
+    frames: tuple[int, int] | None = None,
+    fraction: float = 1.0,
+    wider: bool = False,
+    points: int | None = None,
+) -> dict[str, Any]:
+    """Converts a file of hair to the format that the suffix of the target names.
+
+    Formats are USD, Alembic (``.abc``), ``.hair``, TressFX (``.tfx``) and polylines of OBJ.
+
+    source_unit, source_up: unit [m] and up-axis of a source that stores neither; by default centimetres for Alembic,
+                            else metres, and Y
+    unit, up: unit [m] and up-axis of the target; by default centimetres and Y for Alembic, else those of the source
+    only:     leaves the other curves out
+    bodies:   writes surfaces too, where the format holds any
+    frames:   first and last frame; all by default
+    fraction: share of the curves to keep, in (0, 1], the same ones every time; with ``wider`` these make up by their
+              width for those left out
+    points:   points of each curve, evenly spaced along it; as they are by default
+
+    Returns numbers of ``hairs``, ``guides``, ``points``, ``bodies`` and ``frames`` that were written, the ``unit`` [m]
+    and the axis ``up``, and ``lost``: a sentence for each thing that the format cannot hold.
+    """
+    from ringlet import io
+
+    limits.check_count("points", 2 if points is None else points - 1, limits.POINTS - 1)
+    if not 0.0 < fraction <= 1.0:
+        raise UserError(f"fraction is {fraction:g}; must be more than 0 and at most 1")
+    kind = io.format_of(target)
+    source_space = source_space_of(source, source_unit, source_up)
+    with io.open_scene(source, source_space) as scene:
+        check_place(target)
+        default = kind.space if kind.several and kind.space else scene.space
+        space = StageSpace(unit or default.meters_per_unit, up or default.up_axis, scene.space.fps)
+        scene = replace(scene, frames=_within(scene, frames, source), bodies=scene.bodies if bodies else [])
+        scene.sets = [_thinned(one, fraction, wider, points) for one in _chosen(scene, only, source)]
+        lost = io.write_scene(scene, target, space)
+    written = scene.sets if kind.several else scene.shown
+    return {
+        "hairs": sum(len(one.curves) for one in written if not one.guide),
+        "guides": sum(len(one.curves) for one in written if one.guide),
+        "points": sum(len(one.curves.points) for one in written),
+        "bodies": len(scene.bodies) if kind.several else 0,
+        "frames": len(scene.frames) if kind.several else 0,
+        "unit": space.meters_per_unit,
+        "up": space.up_axis,
+        "lost": lost,
+    }
+
+
+def source_space_of(source: Path | str, unit: float | None, up: Literal["Y", "Z"] | None) -> StageSpace | None:
+    """Unit and up-axis of a source that stores neither; None for its defaults.
+
+    Raises UserError where one is given for a format that stores it.
+    """
+    from ringlet import io
+
+    if unit is None and up is None:
+        return None
+    default = io.format_of(source).space
+    if default is None:
+        raise UserError(f"{source}: stores its unit and its axis; leave those for it out")
+    return StageSpace(unit or default.meters_per_unit, up or default.up_axis)
+
+
+def _within(scene: HairScene, frames: tuple[int, int] | None, source: Path | str) -> NDArray[np.float64]:
+    """Frames in a closed range; raises UserError when there are none."""
+    if frames is None:
+        return scene.frames
+    chosen = scene.frames[(scene.frames >= frames[0]) & (scene.frames <= frames[1])]
+    if not len(chosen):
+        held = f"it holds {scene.frames[0]:g} to {scene.frames[-1]:g}" if len(scene.frames) else "nothing in it moves"
+        raise UserError(f"{source}: has no frame from {frames[0]} to {frames[1]}; {held}")
+    return chosen
+
+
+def _chosen(scene: HairScene, only: str | None, source: Path | str) -> list[CurveSet]:
+    """Hairs, guides, or both; raises UserError for a source without those that are asked for."""
+    chosen = [one for one in scene.sets if only is None or one.guide == (only == "guides")]
+    if only is not None and not chosen:
+        other = "guides" if only == "hairs" else "hairs"
+        raise UserError(f"{source}: has no {only}; leave --only out, or ask for its {other}")
+    return chosen
+
+
+def _thinned(one: CurveSet, fraction: float, wider: bool, points: int | None) -> CurveSet:
+    """A share of the curves, with other numbers of points."""
+    from ringlet.data.random import Random
+
+    curves, steps = one.curves, list[Callable[[NDArray], NDArray]]()
+    if fraction < 1.0:
+        order = Random(SEED, "convert").uniform(curves.ids)
+        kept = np.sort(np.argsort(order, kind="stable")[: max(1, round(fraction * len(curves)))])
+        rows = np.flatnonzero(np.repeat(np.isin(np.arange(len(curves)), kept), curves.counts))
+        steps.append(lambda at: at[rows])
+        scale = np.float32(len(curves) / len(kept) if wider else 1.0)
+        curves = curves.take(kept)
+        for values in (curves.curve, curves.point):
+            if "width" in values:
+                values["width"] = values["width"] * scale
+    if points is not None:
+        resampling = Resampling(curves, points)
+        steps.append(resampling.values)
+        curves = resampling.curves(curves)
+    if one.motion is None or not steps:
+        return replace(one, curves=curves)
+    motion = one.motion
+
+    def thinned(frame: float) -> NDArray[np.floating]:
+        at = motion(frame)
+        for step in steps:
+            at = step(at)
+        return at
+
+    return replace(one, curves=curves, motion=thinned)

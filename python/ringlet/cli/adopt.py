@@ -1,0 +1,86 @@
+"""``ringlet adopt``: a recipe of finished hair."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+import ringlet
+from ringlet.cli.convert import UNITS, Axis, Unit
+from ringlet.cli.options import Json, Report, Threads
+from ringlet.cli.output import print_json
+from ringlet.cli.progress import shown_progress
+
+
+def adopt(
+    hair: Annotated[Path, typer.Argument(metavar="HAIR", help="USD, .abc, .hair, .tfx, or .obj with polylines.")],
+    output: Annotated[
+        Path, typer.Option("--output", "-o", metavar="RECIPE", help="The recipe to write, with files beside it.")
+    ] = Path("adopted.recipe.toml"),
+    head: Annotated[
+        Path | None,
+        typer.Option(
+            "--head",
+            metavar="FILE",
+            help="USD or OBJ of the head; by default the mesh of HAIR, or else a surface through the roots.",
+            show_default=False,
+        ),
+    ] = None,
+    mesh: Annotated[
+        str | None, typer.Option("--mesh", metavar="PRIM", help="Prim of the head.", show_default=False)
+    ] = None,
+    locks: Annotated[
+        int | None,
+        typer.Option(
+            "--locks", min=1, max=1_000_000, metavar="N", help="Number of locks; one a clump.", show_default=False
+        ),
+    ] = None,
+    from_unit: Annotated[
+        Unit | None,
+        typer.Option(
+            "--from-unit", help="Unit of a HAIR that stores none; cm for Alembic, else m.", show_default=False
+        ),
+    ] = None,
+    from_up: Annotated[
+        Axis | None, typer.Option("--from-up", help="Up-axis of a HAIR that stores none; Y.", show_default=False)
+    ] = None,
+    report: Report = None,
+    as_json: Json = False,
+    threads: Threads = None,
+) -> None:
+    """Makes a recipe of finished HAIR of any program, so that it can be simulated as it is, and changed.
+
+    Clumps become locks, their curls become settings, and what these do not fit is kept.
+
+    Example: ringlet adopt mohawk.tfx -o mohawk.recipe.toml --from-unit cm
+    """
+    with ringlet.Run("adopt", report) as run, shown_progress() as progress:
+        with run.stage("adopt", output):
+            done: dict[str, Any] = ringlet.adopt(
+                hair,
+                output,
+                head=head,
+                mesh=mesh,
+                locks=locks,
+                source_unit=UNITS[from_unit] if from_unit else None,
+                source_up=from_up,
+                progress=progress,
+            )
+        run.count(hairs=done["hairs"], locks=done["locks"])
+    if as_json:
+        print_json({"path": str(output), **done})
+        return
+    how = {"shape": "found by their shapes", "each": "one a hair", "count": "as many as asked for"}
+    print(f"{output}: {done['hairs']:,} hairs in {done['locks']:,} locks ({how.get(done['clumps'], done['clumps'])})")
+    if done["coiled"]:
+        print(
+            f"{done['coiled']:,} coiled: width {1e3 * done['width']:.3g} mm, pitch {1e3 * done['pitch']:.3g} mm, "
+            f"{100 * done['right_handed']:.0f} % right-handed"
+        )
+    print(f"distance to the hair as it was: median {_mm(done, 'median')}, 95 % below {_mm(done, '95')}")
+
+
+def _mm(done: dict[str, Any], name: str) -> str:
+    return f"{1e3 * done['error'][name]:.3g} mm"

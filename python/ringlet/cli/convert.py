@@ -1,0 +1,86 @@
+"""``ringlet convert``: hair from one file format to another."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import typer
+
+import ringlet
+from ringlet.cli.options import Frames, Json, Threads
+from ringlet.cli.output import wrote
+
+UNITS = {"mm": 0.001, "cm": 0.01, "dm": 0.1, "m": 1.0, "in": 0.0254, "ft": 0.3048}
+Unit = Literal["mm", "cm", "dm", "m", "in", "ft"]
+Axis = Literal["Y", "Z"]
+
+
+def convert(
+    source: Annotated[Path, typer.Argument(metavar="IN", help="USD, .abc, .hair, .tfx, or .obj with polylines.")],
+    target: Annotated[Path, typer.Argument(metavar="OUT", help="The file to write; its suffix names the format.")],
+    unit: Annotated[
+        Unit | None, typer.Option("--unit", help="Unit of OUT; cm for Alembic, else that of IN.", show_default=False)
+    ] = None,
+    up: Annotated[
+        Axis | None, typer.Option("--up", help="Up-axis of OUT; Y for Alembic, else that of IN.", show_default=False)
+    ] = None,
+    from_unit: Annotated[
+        Unit | None,
+        typer.Option("--from-unit", help="Unit of an IN that stores none; cm for Alembic, else m.", show_default=False),
+    ] = None,
+    from_up: Annotated[
+        Axis | None, typer.Option("--from-up", help="Up-axis of an IN that stores none; Y.", show_default=False)
+    ] = None,
+    frames: Frames = None,
+    only: Annotated[
+        Literal["hairs", "guides"] | None,
+        typer.Option("--only", help="Leave the other curves out.", show_default=False),
+    ] = None,
+    bodies: Annotated[bool, typer.Option("--bodies/--no-bodies", help="Write the head and other surfaces.")] = True,
+    fraction: Annotated[
+        float, typer.Option("--fraction", min=0.0001, max=1.0, help="Share of the curves to keep.")
+    ] = 1.0,
+    wider: Annotated[
+        bool, typer.Option("--wider", help="With --fraction: wider curves, which cover as much as all of them.")
+    ] = False,
+    points: Annotated[
+        int | None,
+        typer.Option(
+            "--points",
+            min=2,
+            max=ringlet.limits.POINTS,
+            help="Points of each curve, evenly spaced along it.",
+            show_default=False,
+        ),
+    ] = None,
+    as_json: Json = False,
+    threads: Threads = None,
+) -> None:
+    """Converts hair between USD, Alembic, .hair, TressFX .tfx and OBJ, and reports what the format cannot hold.
+
+    Examples: ringlet convert hair.usdc hair.abc · ringlet convert mohawk.tfx mohawk.usdc --from-unit cm --points 16
+    """
+    done: dict[str, Any] = ringlet.convert(
+        source,
+        target,
+        source_unit=UNITS[from_unit] if from_unit else None,
+        source_up=from_up,
+        unit=UNITS[unit] if unit else None,
+        up=up,
+        only=only,
+        bodies=bodies,
+        frames=frames,
+        fraction=fraction,
+        wider=wider,
+        points=points,
+    )
+    counts = {name: done[name] for name in ("hairs", "guides", "points", "bodies", "frames")}
+    if as_json:
+        wrote(target, counts, True, unit=done["unit"], up=done["up"], lost=done["lost"])
+        return
+    wrote(target, counts, False)
+    names = {length: name for name, length in UNITS.items()}
+    print(f"in {names.get(done['unit'], format(done['unit'], 'g') + ' m')}, {done['up']} up")
+    for sentence in done["lost"]:
+        print(f"lost: {sentence}")

@@ -1,0 +1,434 @@
+"""Alembic archives: curves with Unreal's groom attributes, and polygon meshes, with their motion.
+
+Needs ``alembic3d`` (``pip install 'ringlet[alembic]'``). An archive stores neither its unit nor its up-axis. Faces of
+Alembic are clockwise, seen from outside.
+
+Groom attributes: https://dev.epicgames.com/documentation/en-us/unreal-engine/using-alembic-for-grooms-in-unreal-engine
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ringlet.data import limits
+from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
+from ringlet.data.files import replacing
+from ringlet.data.hair_scene import CurveSet, HairScene
+from ringlet.data.mesh import Clip, Mesh
+from ringlet.data.reads import record
+from ringlet.data.regular import check_regular
+from ringlet.data.stage import StageSpace
+from ringlet.io.basis import Sampling
+from ringlet.io.polygons import check_polygons, polygon_places, triangulate
+from ringlet.io.space import check_points, from_metres, to_metres
+
+VERSION_MAJOR, VERSION_MINOR = 1, 5  # of Unreal's groom attributes
+MAGIC = b"Ogawa", b"\x89HDF"
+# Attributes that have a property of their own in the schema of curves, or that only Ringlet knows.
+SCHEMA = {"width", "root_triangle", "root_barycentric", "lock", "guide_id", "rest"}
+SHAPE = "Shape"  # ends the name of a shape, whose transform has the name itself
+UNREAL = ("groom_guide", "groom_group_id", "groom_id", "groom_root_uv")
+
+
+def _library(path: Path) -> SimpleNamespace:
+    """The modules of alembic3d; raises UserError where it is not installed."""
+    try:
+        import imath  # pyright: ignore[reportMissingImports]
+        from alembic3d import Abc, AbcCoreAbstract, AbcGeom  # pyright: ignore[reportMissingImports]
+    except ImportError:
+        raise UserError(
+            f"{path}: Alembic needs alembic3d, which is not installed; try: pip install 'ringlet[alembic]'"
+        ) from None
+    return SimpleNamespace(abc=Abc, geom=AbcGeom, core=AbcCoreAbstract, imath=imath)
+
+
+# Reading
+
+
+@contextmanager
+def open_alembic(path: Path, space: StageSpace) -> Iterator[HairScene]:
+    """Opens an archive; its frames are read as they are asked for.
+
+    space: unit and up-axis of the archive
+
+    Raises UserError for a file that is not readable, and for curves or meshes that are not valid.
+    """
+    library = _library(path)
+    check_regular(path)
+    _check_magic(path)
+    record(path)
+    try:
+        archive = library.abc.IArchive(str(path))
+        top = archive.getTop()
+        yield _Reader(library, path, space).scene(top)
+    except RuntimeError as error:
+        line = next(iter(str(error).splitlines()), "it is damaged")
+        raise UserError(f"{path}: cannot be read as Alembic ({line[:120]}); export it again") from None
+
+
+def _check_magic(path: Path) -> None:
+    if not path.is_file():
+        raise UserError(f"{path}: there is no such file; check the name")
+    with path.open("rb") as file:
+        if not file.read(8).startswith(MAGIC):
+            raise UserError(f"{path}: is no Alembic archive; choose another")
+
+
+class _Reader:
+    def __init__(self, library: SimpleNamespace, path: Path, space: StageSpace) -> None:
+        self.library, self.path, self.space = library, path, space
+        self.fps = space.fps
+        self.frames = set[float]()
+        self.names = dict[int, str]()
+
+    def scene(self, top: Any) -> HairScene:
+        """Everything below the top object."""
+        sets, meshes = list[CurveSet](), list[tuple[Any, list[Any]]]()
+        found = list(self._objects(top, []))
+        samplings = [schema.getTimeSampling() for schema, _ in found if schema.getNumSamples() > 1]
+        samplings += [xform.getTimeSampling() for _, above in found for xform in above if xform.getNumSamples() > 1]
+        cycles = [sampling.getTimeSamplingType().getTimePerCycle() for sampling in samplings]
+        if cycles and 1e-5 < min(cycles) < 100.0:
+            self.fps = round(1.0 / min(cycles), 6)
+        for schema, above in found:
+            times = {
+                round(timed.getTimeSampling().getSampleTime(k) * self.fps, 3)
+                for timed in (schema, *above)
+                if timed.getNumSamples() > 1
+                for k in range(timed.getNumSamples())
+            }
+            self.frames |= {time for time in times if time == round(time)}
+            if isinstance(schema, self.library.geom.ICurvesSchema):
+                sets += self._curve_sets(schema, above, bool(times))
+            else:
+                meshes.append((schema, above))
+        frames = np.array(sorted(self.frames))
+        if len(frames) > limits.FRAMES:
+            raise UserError(f"{self.path}: has {len(frames)} frames; must be at most {limits.FRAMES:,}")
+        bodies = [self._body(schema, above, frames) for schema, above in meshes]
+        space = StageSpace(self.space.meters_per_unit, self.space.up_axis, self.fps)
+        return HairScene(sorted(sets, key=lambda one: one.guide), bodies, frames, space)
+
+    def _objects(self, parent: Any, above: list[Any]) -> Iterator[tuple[Any, list[Any]]]:
+        """The schemas of curves and meshes below an object, each with those of the transforms above it."""
+        geom, wrap = self.library.geom, self.library.abc.WrapExistingFlag.kWrapExisting
+        for child in (parent.getChild(index) for index in range(parent.getNumChildren())):
+            data, path = child.getMetaData(), above
+            if geom.IXform.matches(data):
+                path = [*above, geom.IXform(child, wrap).getSchema()]
+            for kind in (geom.ICurves, geom.IPolyMesh, geom.ISubD):
+                if kind.matches(data):
+                    schema = kind(child, wrap).getSchema()
+                    own = child.getName() != parent.getName() + SHAPE
+                    self.names[id(schema)] = child.getName() if own else parent.getName()
+                    yield schema, path
+            yield from self._objects(child, path)
+
+    def _where(self, schema: Any) -> str:
+        return f"{self.path} {self.names[id(schema)]}"
+
+    def _at(self, frame: float | None) -> Any:
+        selector = self.library.abc.ISampleSelector
+        return selector(0) if frame is None else selector(float(frame) / self.fps)
+
+    def _placed(self, schema: Any, above: list[Any], frame: float | None) -> NDArray[np.float64]:
+        """Positions in world space [m], shape (n, 3)."""
+        points = np.array(schema.getValue(self._at(frame)).getPositions(), np.float64).reshape(-1, 3)
+        check_points(points, self._where(schema))
+        return self._in_world(points, above, frame)
+
+    def _in_world(self, points: NDArray[np.float64], above: list[Any], frame: float | None) -> NDArray[np.float64]:
+        """Positions of a shape in world space [m], shape (n, 3)."""
+        for xform in reversed(above):
+            matrix = np.array(xform.getValue(self._at(frame)).getMatrix(), np.float64).reshape(4, 4)
+            points = points @ matrix[:3, :3] + matrix[3, :3]
+        return to_metres(points, self.space)
+
+    def _curve_sets(self, schema: Any, above: list[Any], moves: bool) -> Iterator[CurveSet]:
+        """The curves of a schema; its guides and its hairs apart, where it has both."""
+        geom, where = self.library.geom, self._where(schema)
+        sample = schema.getValue(self._at(None))
+        controls = self._placed(schema, above, None)
+        counts = np.array(sample.getCurvesNumVertices(), np.int64)
+        if len(counts) == 0 or counts.min() < 2 or counts.sum() != len(controls):
+            raise UserError(f"{where}: its {len(counts)} curves do not fit its {len(controls)} points; export it again")
+        basis = {
+            geom.BasisType.kBezierBasis: "bezier",
+            geom.BasisType.kBsplineBasis: "bspline",
+            geom.BasisType.kCatmullromBasis: "catmullRom",
+        }.get(sample.getBasis())
+        linear = sample.getType() != geom.CurveType.kCubic or basis is None
+        periodic = sample.getWrap() == geom.CurvePeriodicity.kPeriodic
+        wrap = "periodic" if periodic else "nonperiodic"
+        sampling = Sampling("linear" if linear else "cubic", basis or "", wrap, counts, where)
+
+        def motion(frame: float) -> NDArray[np.float64]:
+            points = self._placed(schema, above, frame)
+            if points.shape != controls.shape:
+                raise UserError(f"{where}: has {len(points)} points at frame {frame:g}, {len(controls)} at first")
+            return sampling.vertex(points)
+
+        ids = np.arange(len(counts), dtype=np.int64)
+        curves = Curves(sampling.vertex(controls), sampling.offsets, ids)
+        for name, values, scope in self._attributes(schema):
+            self._add(curves, sampling, name, values, scope, where)
+        rest = curves.point.pop("rest", None)
+        if rest is not None and rest.shape == curves.points.shape and np.isfinite(rest).all():
+            curves.points = self._in_world(rest.astype(np.float64), above, None)
+        guide = curves.curve.pop("groom_guide", np.zeros(len(ids)))
+        curves.curve.pop("groom_group_id", None)
+        root_uv = curves.curve.pop("groom_root_uv", None)
+        if root_uv is not None and root_uv.shape == (len(ids), 2):
+            curves.curve["st"] = root_uv.astype(np.float32)
+        named = curves.curve.pop("groom_id", ids)
+        if named.dtype.kind in "iu" and len(np.unique(named)) == len(ids):
+            curves.ids = named.astype(np.int64)
+        curves.check(where)
+        for wanted in (False, True):
+            chosen = np.flatnonzero((guide > 0) == wanted)
+            if len(chosen):
+                name = self.names[id(schema)] if len(chosen) == len(ids) else ("guides" if wanted else "hairs")
+                yield CurveSet(name, curves.take(chosen), wanted, _chosen(motion, curves, chosen) if moves else None)
+
+    def _attributes(self, schema: Any) -> Iterator[tuple[str, NDArray, str]]:
+        """Names, values and scopes of widths and of arbitrary parameters, of types that attributes have."""
+        geom = self.library.geom
+        if (widths := schema.getWidthsParam()).valid():
+            yield "width", self._values(widths) * np.float32(self.space.meters_per_unit), str(widths.getScope())
+        parameters = schema.getArbGeomParams()
+        if not parameters.valid():
+            return
+        kinds = (
+            geom.IFloatGeomParam,
+            geom.IInt32GeomParam,
+            geom.IInt16GeomParam,
+            geom.IV2fGeomParam,
+            geom.IV3fGeomParam,
+            geom.IC3fGeomParam,
+        )
+        for header in (parameters.getPropertyHeader(k) for k in range(parameters.getNumProperties())):
+            for kind in kinds:
+                if kind.matches(header):
+                    parameter = kind(parameters, header.getName())
+                    yield header.getName(), self._values(parameter), str(parameter.getScope())
+                    break
+
+    def _values(self, parameter: Any) -> NDArray:
+        values = parameter.getExpandedValue(self._at(None)).getVals()
+        try:
+            return np.array(memoryview(values))
+        except TypeError:
+            return np.array(list(values))
+
+    def _add(self, curves: Curves, sampling: Sampling, name: str, values: NDArray, scope: str, where: str) -> None:
+        """Stores an attribute; raises UserError for a width without a value for each curve or point."""
+        if scope == "kConstantScope" and len(values) == 1:
+            curves.curve[name] = np.repeat(values, len(curves), axis=0)
+        elif len(values) == len(curves) and scope != "kVertexScope":
+            curves.curve[name] = values
+        elif len(values) == sampling.offsets_in[-1]:
+            curves.point[name] = sampling.vertex(values)
+        elif name == "width":
+            raise UserError(
+                f"{where}: has {len(values)} widths for {len(curves)} curves and {sampling.offsets_in[-1]} points; "
+                "export it again"
+            )
+
+    def _body(self, schema: Any, above: list[Any], frames: NDArray) -> tuple[Mesh, Clip | None]:
+        where, sample = self._where(schema), schema.getValue(self._at(None))
+        points = self._placed(schema, above, None)
+        counts = np.array(sample.getFaceCounts(), np.int64)
+        indices = np.array(sample.getFaceIndices(), np.int64)
+        check_polygons(counts, indices, len(points), where)
+        corners, faces = triangulate(points, counts, indices, clockwise=True)
+        uv, parameter = None, schema.getUVsParam()
+        if parameter.valid() and str(parameter.getScope()) == "kFacevaryingScope":
+            values = self._values(parameter)
+            uv = values[corners].astype(np.float64) if len(values) == len(indices) else None
+        mesh = Mesh(
+            name=f"{self.path.name} {self.names[id(schema)]}",
+            points=points,
+            triangles=indices[corners].astype(np.int32),
+            uv=uv,
+            faces=faces.astype(np.int32),
+            places=polygon_places(counts)[corners],
+        )
+        moves = any(timed.getNumSamples() > 1 for timed in (schema, *above))
+        if not moves or not len(frames):
+            return mesh, None
+        clip = [self._placed(schema, above, frame) for frame in frames]
+        if any(at.shape != points.shape for at in clip):
+            raise UserError(f"{where}: its number of points changes over time; export it with one topology")
+        return mesh, Clip(frames, np.stack(clip), self.fps)
+
+
+def _chosen(motion: Callable[[float], NDArray], curves: Curves, chosen: NDArray) -> Callable[[float], NDArray]:
+    """The motion of the chosen curves alone."""
+    if len(chosen) == len(curves):
+        return motion
+    rows = curves.with_points(np.arange(len(curves.points))[:, None] * np.ones((1, 3))).take(chosen).points[:, 0]
+    return lambda frame: motion(frame)[rows.astype(np.int64)]
+
+
+def read_alembic_curves(path: Path, prim: str | None, space: StageSpace) -> Curves:
+    """Reads the curves of an archive in their first frame: those of a name, or by default the only ones."""
+    with open_alembic(path, space) as scene:
+        found = [one for one in scene.sets if prim is None or one.name == prim]
+        if len(found) != 1:
+            names = ", ".join(one.name for one in scene.sets) or "none"
+            wrong = "has no such curves" if not found else f"has {len(found)} sets of curves"
+            raise UserError(f"{path}: {wrong}; name one of: {names}")
+        return found[0].curves
+
+
+# Writing
+
+
+def write_alembic(scene: HairScene, path: Path, space: StageSpace) -> None:
+    """Writes curves with Unreal's groom attributes, and surfaces.
+
+    space: unit and up-axis to write in; Unreal expects centimetres and Y up
+    """
+    library = _library(path)
+    with replacing(path) as aside:
+        _write(library, scene, aside, space)  # the archive is closed when its objects are gone
+
+
+def _write(library: SimpleNamespace, scene: HairScene, path: Path, space: StageSpace) -> None:
+    abc, geom, fps = library.abc, library.geom, scene.space.fps
+    archive = abc.CreateArchiveWithInfo(str(path), fps, "Ringlet", "")
+    top = archive.getTop()
+    first = float(scene.frames[0]) / fps if len(scene.frames) else 0.0
+    times = archive.addTimeSampling(library.core.TimeSampling(1.0 / fps, first))
+    properties = top.getProperties()
+    for name, value in (("major", VERSION_MAJOR), ("minor", VERSION_MINOR)):
+        abc.OInt16Property(properties, f"groom_version_{name}").setValue(value)
+    abc.OStringProperty(properties, "groom_tool").setValue("Ringlet")
+    root = geom.OXform(top, "groom")
+    taken = set[str]()
+    for one in scene.sets:
+        _write_curves(library, root, _unique(one.name, taken), one, scene.frames, times, space)
+    for mesh, clip in scene.bodies:
+        _write_body(library, root, _unique(mesh.name, taken), (mesh, clip), scene.frames, times, space)
+
+
+def _unique(name: str, taken: set[str]) -> str:
+    """A name of an object that is not taken: the last word of a path, without what Alembic reserves."""
+    stem = name.replace("/", " ").split()[-1] if name.strip() else "object"
+    found, number = stem, 1
+    while found in taken:
+        number += 1
+        found = f"{stem}_{number}"
+    taken.add(found)
+    return found
+
+
+def _place(library: SimpleNamespace, root: Any, name: str) -> tuple[Any, str]:
+    """The transform of a shape, and its name: other programs show the transform as the object."""
+    return library.geom.OXform(root, name), name + SHAPE
+
+
+def _write_curves(
+    library: SimpleNamespace, root: Any, name: str, one: CurveSet, frames: NDArray, times: int, space: StageSpace
+) -> None:
+    geom, imath, curves = library.geom, library.imath, one.curves
+    vertex, uniform = geom.GeometryScope.kVertexScope, geom.GeometryScope.kUniformScope
+    moves = one.motion is not None and len(frames) > 0
+    schema = geom.OCurves(*_place(library, root, name), *([times] if moves else [])).getSchema()
+    widths = curves.point.get("width")
+    if widths is None and "width" in curves.curve:
+        widths = np.repeat(curves.curve["width"], curves.counts)
+    for frame in frames.tolist() if moves else [None]:
+        sample = geom.OCurvesSchemaSample()
+        sample.setPositions(imath.V3fArrayFromBuffer(from_metres(one.points(frame), space)))
+        sample.setCurvesNumVertices(imath.IntArrayFromBuffer(curves.counts.astype(np.int32)))
+        # Polylines: a Catmull-Rom curve of Alembic ends before its first and last points.
+        sample.setType(geom.CurveType.kLinear)
+        sample.setWrap(geom.CurvePeriodicity.kNonPeriodic)
+        sample.setBasis(geom.BasisType.kNoBasis)
+        if widths is not None:
+            value = imath.FloatArrayFromBuffer(np.ascontiguousarray(widths / space.meters_per_unit, np.float32))
+            sample.setWidths(geom.OFloatGeomParamSample(value, vertex))
+        if "st" in curves.curve:
+            value = imath.V2fArrayFromBuffer(np.ascontiguousarray(curves.curve["st"], np.float32))
+            sample.setUVs(geom.OV2fGeomParamSample(value, uniform))
+        schema.set(sample)
+    parameters = schema.getArbGeomParams()
+    if moves:
+        _write_attribute(library, parameters, "rest", from_metres(curves.points, space), vertex)
+    for attribute, values, scope in unreal_attributes(one):
+        _write_attribute(library, parameters, attribute, values, vertex if scope == "vertex" else uniform)
+
+
+def unreal_attributes(one: CurveSet) -> Iterator[tuple[str, NDArray, str]]:
+    """Unreal's groom attributes of curves, then those that these have themselves: name, values, scope."""
+    curves, count = one.curves, len(one.curves)
+    fits = np.abs(curves.ids).max(initial=0) < 2**31
+    yield "groom_id", (curves.ids if fits else np.arange(count)).astype(np.int32), "uniform"
+    yield "groom_group_id", np.zeros(count, np.int32), "uniform"
+    yield "groom_guide", np.full(count, one.guide, np.int32), "uniform"
+    if "st" in curves.curve:
+        yield "groom_root_uv", curves.curve["st"].astype(np.float32), "uniform"
+    color = curves.point.get("color", curves.point.get("displayColor"))
+    if color is None and "displayColor" in curves.curve:
+        color = np.repeat(curves.curve["displayColor"], curves.counts, axis=0)
+    if color is not None:
+        yield "groom_color", color.astype(np.float32), "vertex"
+    for scope, attributes in (("uniform", curves.curve), ("vertex", curves.point)):
+        for name, values in attributes.items():
+            if name not in {*SCHEMA, *UNREAL, "st", "displayColor", "color"} and holds(values):
+                yield name, values, scope
+
+
+def holds(values: NDArray) -> bool:
+    """Whether an attribute can be written: numbers, alone or in rows of two or three."""
+    return values.dtype.kind in "bifu" and values.shape[1:] in ((), (2,), (3,))
+
+
+def _write_attribute(library: SimpleNamespace, parent: Any, name: str, values: NDArray, scope: Any) -> None:
+    geom, imath = library.geom, library.imath
+    whole = values.dtype.kind in "biu" and values.ndim == 1
+    kind, array = {
+        (True, ()): ("Int32", imath.IntArrayFromBuffer),
+        (False, ()): ("Float", imath.FloatArrayFromBuffer),
+        (False, (2,)): ("V2f", imath.V2fArrayFromBuffer),
+        (False, (3,)): ("V3f", imath.V3fArrayFromBuffer),
+    }[whole, values.shape[1:]]
+    value = array(np.ascontiguousarray(values, np.int32 if whole else np.float32))
+    parameter = getattr(geom, f"O{kind}GeomParam")(parent, name, False, scope, 1)
+    parameter.set(getattr(geom, f"O{kind}GeomParamSample")(value, scope))
+
+
+def _write_body(
+    library: SimpleNamespace,
+    root: Any,
+    name: str,
+    body: tuple[Mesh, Clip | None],
+    frames: NDArray,
+    times: int,
+    space: StageSpace,
+) -> None:
+    geom, imath, (mesh, clip) = library.geom, library.imath, body
+    moves = clip is not None and len(frames) > 0
+    schema = geom.OPolyMesh(*_place(library, root, name), *([times] if moves else [])).getSchema()
+    counts = imath.IntArrayFromBuffer(np.full(len(mesh.triangles), 3, np.int32))
+    indices = imath.IntArrayFromBuffer(np.ascontiguousarray(mesh.triangles[:, ::-1], np.int32).ravel())
+    for frame in frames.tolist() if moves else [None]:
+        points = mesh.points if frame is None or clip is None else clip.at(frame)
+        sample = geom.OPolyMeshSchemaSample()
+        sample.setPositions(imath.V3fArrayFromBuffer(from_metres(points, space)))
+        sample.setFaceIndices(indices)
+        sample.setFaceCounts(counts)
+        if mesh.uv is not None:
+            uv = np.ascontiguousarray(mesh.uv[:, ::-1].reshape(-1, 2), np.float32)
+            value = geom.OV2fGeomParamSample(imath.V2fArrayFromBuffer(uv), geom.GeometryScope.kFacevaryingScope)
+            sample.setUVs(value)
+        schema.set(sample)

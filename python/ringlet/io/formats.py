@@ -1,0 +1,174 @@
+"""Formats of hair: how a file is opened and written, and what each can hold."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
+from ringlet.data.hair_scene import CurveSet, HairScene
+from ringlet.data.resampling import Resampling
+from ringlet.data.stage import StageSpace
+from ringlet.io.alembic import open_alembic, write_alembic
+from ringlet.io.hair import read_hair, write_hair
+from ringlet.io.obj import read_obj_curves, write_obj_curves
+from ringlet.io.tfx import read_tfx, write_tfx
+from ringlet.io.usd.scene import open_usd_scene, write_usd_scene
+
+METRES, CENTIMETRES = StageSpace(), StageSpace(0.01)
+
+
+@dataclass(frozen=True)
+class Format:
+    """What a format of hair holds.
+
+    several: guides and hairs apart, surfaces and motion; the others hold one set of curves at rest
+    widths:  ``point``, ``curve`` or ``none``
+    even:    whether all curves have the same number of points
+    named:   further attributes, with names
+    kept:    attributes besides widths of a format without names
+    space:   unit and up-axis that a file is taken to have; None where the file says
+    """
+
+    name: str
+    several: bool = False
+    widths: str = "none"
+    even: bool = False
+    named: bool = False
+    kept: frozenset[str] = frozenset()
+    space: StageSpace | None = METRES
+    read: Callable[[Path, StageSpace], Curves] | None = None
+    write: Callable[[Curves, Path, StageSpace], None] | None = None
+
+
+USD = Format("USD", several=True, widths="point", named=True, space=None)
+FORMATS = {
+    ".usd": USD,
+    ".usda": USD,
+    ".usdc": USD,
+    ".abc": Format("Alembic", several=True, widths="point", named=True, space=CENTIMETRES),
+    ".hair": Format(".hair", widths="point", kept=frozenset({"color"}), read=read_hair, write=write_hair),
+    ".tfx": Format(".tfx", widths="curve", even=True, kept=frozenset({"st"}), read=read_tfx, write=write_tfx),
+    ".obj": Format("OBJ", read=read_obj_curves, write=write_obj_curves),
+}
+
+
+def format_of(path: Path | str) -> Format:
+    """The format that the suffix of a file names; raises UserError for another."""
+    suffix = Path(path).suffix.lower()
+    if suffix == ".usdz":
+        return USD
+    if suffix not in FORMATS:
+        raise UserError(f"{path}: ends in '{Path(path).suffix}'; must end in {', '.join(FORMATS)}")
+    return FORMATS[suffix]
+
+
+@contextmanager
+def open_scene(path: Path | str, space: StageSpace | None = None) -> Iterator[HairScene]:
+    """Opens a file of hair; its frames are read as they are asked for.
+
+    space: unit and up-axis of a format that stores neither; by default centimetres for Alembic, else metres, Y up
+
+    Raises UserError for a file that is not readable or has neither curves nor surfaces.
+    """
+    path, kind = Path(path), format_of(path)
+    if kind.read is not None:
+        space = space or kind.space or StageSpace()
+        yield HairScene([CurveSet("hairs", kind.read(path, space))], space=space)
+        return
+    opened = open_usd_scene(path) if kind is USD else open_alembic(path, space or CENTIMETRES)
+    with opened as scene:
+        if not scene.sets and not scene.bodies:
+            raise UserError(f"{path}: has neither curves nor surfaces; export it again or choose another")
+        yield scene
+
+
+def write_scene(scene: HairScene, path: Path | str, space: StageSpace) -> list[str]:
+    """Writes a scene in a format, and returns a sentence for each thing that the format cannot hold.
+
+    space: unit and up-axis of the file
+
+    Raises UserError for a scene without curves, in a format that holds nothing else.
+    """
+    path, kind = Path(path), format_of(path)
+    if path.suffix.lower() == ".usdz":
+        raise UserError(f"{path}: packages are not written; name a .usdc, .usd or .usda file")
+    if kind.write is None:
+        (write_usd_scene if kind is USD else write_alembic)(scene, path, space)
+        return _unheld(scene, kind)
+    if not scene.sets:
+        raise UserError(f"{path}: there are no curves to write, and {kind.name} holds nothing else")
+    curves, lost = _one_set(scene, kind)
+    kind.write(curves, path, space)
+    return lost
+
+
+def _unheld(scene: HairScene, kind: Format) -> list[str]:
+    """What Alembic does not hold: values that are no numbers, or in rows of another length."""
+    from ringlet.io.alembic import SCHEMA, holds
+
+    if kind is USD:
+        return []
+    names = {n for one in scene.sets for n, v in (one.curves.curve | one.curves.point).items() if not holds(v)}
+    lost = sorted(names - SCHEMA)
+    return [f"{kind.name} holds no text and no long rows: without {', '.join(lost)}"] if lost else []
+
+
+def _one_set(scene: HairScene, kind: Format) -> tuple[Curves, list[str]]:
+    """The curves that a format of one set holds, and a sentence for each thing that it does not."""
+    shown, lost = scene.shown, list[str]()
+    curves = joined(shown)
+    if left := [one for one in scene.sets if one not in shown]:
+        lost.append(f"{kind.name} holds one set of curves: without {sum(len(one.curves) for one in left)} guides")
+    if scene.bodies:
+        lost.append(f"{kind.name} holds no surfaces: without {', '.join(mesh.name for mesh, _ in scene.bodies)}")
+    if any(one.motion for one in shown):
+        lost.append(f"{kind.name} holds no motion: {len(scene.frames)} frames became the rest pose")
+    if kind.even and (curves.counts != curves.counts[0]).any():
+        count = int(curves.counts.max())
+        lost.append(f"{kind.name} holds curves of equal numbers of points: all were resampled to {count}")
+        curves = Resampling(curves, count).curves(curves)
+    own = "width" in curves.point, "width" in curves.curve
+    if any(own) and kind.widths == "none":
+        lost.append(f"{kind.name} holds no widths")
+    elif own[0] and kind.widths == "curve":
+        widths = np.maximum.reduceat(curves.point["width"], curves.offsets[:-1])
+        curves = replace(curves, curve={**curves.curve, "width": widths})
+        lost.append(f"{kind.name} holds one width for each curve: the largest of its points")
+    elif own[1] and kind.widths == "point":
+        widths = np.repeat(curves.curve["width"], curves.counts)
+        curves = replace(curves, point={**curves.point, "width": widths})
+    names = {*curves.curve, *curves.point} - {"width", *kind.kept}
+    if names:
+        lost.append(f"{kind.name} holds no such attributes: without {', '.join(sorted(names))}")
+    if (curves.ids != np.arange(len(curves))).any():
+        lost.append(f"{kind.name} holds no ids: curves are numbered from 0")
+    return curves, lost
+
+
+def joined(sets: list[CurveSet]) -> Curves:
+    """All curves as one set, with the attributes that all have."""
+    every = [one.curves for one in sets]
+    if len(every) == 1:
+        return every[0]
+    ids = np.concatenate([curves.ids for curves in every])
+    unique = len(np.unique(ids)) == len(ids)
+
+    def shared(kind: str) -> dict[str, np.ndarray]:
+        names = set.intersection(*(set(getattr(curves, kind)) for curves in every))
+        return {name: np.concatenate([getattr(curves, kind)[name] for curves in every]) for name in sorted(names)}
+
+    starts = np.cumsum([0] + [len(curves.points) for curves in every])
+    offsets = [curves.offsets[1:] + start for curves, start in zip(every, starts, strict=False)]
+    return Curves(
+        np.concatenate([curves.points for curves in every]),
+        np.concatenate([np.zeros(1, np.int64), *offsets]).astype(np.int32),
+        ids if unique else np.arange(len(ids), dtype=np.int64),
+        shared("curve"),
+        shared("point"),
+    )

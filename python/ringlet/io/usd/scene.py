@@ -1,0 +1,147 @@
+"""All curves and surfaces of a stage, whoever wrote it; and a stage of curves and surfaces from other formats."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from pxr import Usd, UsdGeom
+
+from ringlet.data.curves import Curves
+from ringlet.data.errors import UserError
+from ringlet.data.hair_scene import CurveSet, HairScene
+from ringlet.data.mesh import Clip, Mesh
+from ringlet.data.reads import record
+from ringlet.data.stage import StageSpace
+from ringlet.io.usd.clips import clip_at, whole_frames
+from ringlet.io.usd.curves import COMMON, curves_at, define_curves, points_at, set_points, set_rest
+from ringlet.io.usd.groom import GROOM, GUIDES, LOCKS
+from ringlet.io.usd.material import bind_hair_material
+from ringlet.io.usd.mesh import define_mesh, mesh_at
+from ringlet.io.usd.names import identifier
+from ringlet.io.usd.place import Place
+from ringlet.io.usd.pose import motion_samples, rest_time
+from ringlet.io.usd.stage import Source, layer_files, new_stage, prims, reading, reading_more, writing
+from ringlet.io.usd.surfaces import shown_surfaces
+from ringlet.io.usd.values import Types, set_primvar
+from ringlet.io.usd.velocities import Velocities
+
+DEFAULT = Usd.TimeCode.Default()
+PLAIN = {  # attributes with a type of their own in the schema of other programs
+    "st": Types.TexCoord2fArray,
+    "displayColor": Types.Color3fArray,
+    "groom_color": Types.Color3fArray,
+    "surface_uv_coordinate": None,
+    "groom_root_uv": None,
+    "skinprim": None,
+    "skinprimuv": Types.TexCoord2fArray,
+    "guide_curve_index": None,
+    "clumpid": None,
+}
+
+
+@contextmanager
+def open_usd_scene(path: Path) -> Iterator[HairScene]:
+    """Opens a stage; its frames are read as they are asked for.
+
+    Locks of a groom of Ringlet's are its guides. Its drawn guides, which nothing moves, are left out.
+    """
+    with reading(path) as source:
+        found = [prim for prim in prims(source.stage.GetPseudoRoot()) if UsdGeom.BasisCurves(prim)]
+        if source.stage.GetPrimAtPath(LOCKS):
+            found = [prim for prim in found if str(prim.GetPath()) != GUIDES]
+        found = [prim for prim in found if UsdGeom.Imageable(prim).ComputeVisibility() != UsdGeom.Tokens.invisible]
+        surfaces = shown_surfaces(source)
+        times = [time for prim in found or surfaces for time in motion_samples(source, prim)]
+        frames = whole_frames(min(times), max(times), str(path)) if times else np.empty(0)
+        sets = [_curve_set(source, prim) for prim in found]
+        record(path, *layer_files(source.stage))  # the caller may write while the stage is open
+        yield HairScene(
+            sorted(sets, key=lambda one: one.guide),
+            [_body(source, prim, frames) for prim in surfaces],
+            frames,
+            source.space,
+        )
+
+
+def _curve_set(source: Source, prim: Usd.Prim) -> CurveSet:
+    curves = curves_at(source, prim, rest_time(source, prim)).check(source.where(prim))
+    guide = UsdGeom.Imageable(prim).ComputePurpose() in (UsdGeom.Tokens.guide, UsdGeom.Tokens.proxy)
+    name = "guides" if str(prim.GetPath()) == LOCKS else prim.GetName()
+
+    def motion(frame: float) -> NDArray[np.float64]:
+        with reading_more(source.path):
+            points = points_at(source, prim, Usd.TimeCode(float(frame)))
+        if points.shape != curves.points.shape:
+            raise UserError(
+                f"{source.where(prim)}: has {len(points)} points at frame {frame:g}, {len(curves.points)} "
+                "at rest; export it with one topology"
+            )
+        return points
+
+    return CurveSet(name, curves, guide, motion if motion_samples(source, prim) else None)
+
+
+def _body(source: Source, prim: Usd.Prim, frames: NDArray) -> tuple[Mesh, Clip | None]:
+    mesh = mesh_at(source, prim)
+    mesh.name = prim.GetName()
+    if not len(frames) or not motion_samples(source, prim):
+        return mesh, None
+    return mesh, clip_at(source, prim, (float(frames[0]), float(frames[-1])))
+
+
+def write_usd_scene(scene: HairScene, path: Path, space: StageSpace) -> None:
+    """Writes curves and surfaces below ``/groom``, in metres and axes of ``space`` and at the rate of the scene."""
+    with writing(path) as aside:
+        stage = new_stage(aside, replace(space, fps=scene.space.fps))
+        UsdGeom.Xform.Define(stage, GROOM)
+        if len(scene.frames):
+            stage.SetStartTimeCode(float(scene.frames[0]))
+            stage.SetEndTimeCode(float(scene.frames[-1]))
+        taken = list[str]()
+        for one in scene.sets:
+            taken.append(identifier(one.name, taken))
+            _define_set(stage, f"{GROOM}/{taken[-1]}", one, scene.frames, space, path)
+        for mesh, clip in scene.bodies:
+            taken.append(identifier(mesh.name.split("/")[-1].split(" ")[-1], taken))
+            _define_body(stage, f"{GROOM}/{taken[-1]}", mesh, clip, space, path)
+        stage.Save()
+
+
+def _define_set(stage: Usd.Stage, path: str, one: CurveSet, frames: NDArray, space: StageSpace, file: Path) -> None:
+    kept, curves = dict[str, tuple[str, NDArray]](), one.curves
+    for interpolation, attributes in (("uniform", curves.curve), ("vertex", curves.point)):
+        kept |= {name: (interpolation, values) for name, values in attributes.items() if name in PLAIN}
+    own = {*COMMON, *PLAIN}
+    curve, point = ({n: v for n, v in kind.items() if n not in own} for kind in (curves.curve, curves.point))
+    plain = Curves(curves.points, curves.offsets, curves.ids, curve, point)
+    defined = define_curves(stage, path, plain, space, guide=one.guide)
+    prim = defined.GetPrim()
+    if "st" in kept and "groom_root_uv" not in kept:
+        kept["groom_root_uv"] = kept["st"]
+    for name, (interpolation, values) in kept.items():
+        values = values.astype(np.int32 if values.dtype.kind in "iu" else np.float32)
+        set_primvar(prim, name, interpolation, values, PLAIN[name])
+    if not one.guide:
+        bind_hair_material(defined, plain)
+    place = Place(prim, space, file, plain)
+    set_rest(defined, set_points(defined, curves.points, place, DEFAULT))
+    velocities = Velocities(defined, stage.GetTimeCodesPerSecond())
+    for frame in frames.tolist() if one.motion else ():
+        velocities.add(frame, np.array(set_points(defined, one.points(frame), place, Usd.TimeCode(frame))))
+    velocities.finish()
+
+
+def _define_body(stage: Usd.Stage, path: str, mesh: Mesh, clip: Clip | None, space: StageSpace, file: Path) -> None:
+    defined = UsdGeom.Mesh(define_mesh(stage, path, mesh, space, file))
+    if clip is None:
+        return
+    place = Place(defined.GetPrim(), space, file)
+    for frame, points in zip(clip.frames, clip.points, strict=True):
+        value, time = place.local(points, Usd.TimeCode(float(frame))), Usd.TimeCode(float(frame))
+        defined.GetPointsAttr().Set(value, time)
+        defined.GetExtentAttr().Set(UsdGeom.PointBased.ComputeExtent(value), time)
