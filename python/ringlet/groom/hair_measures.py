@@ -22,7 +22,7 @@ FIRST_PER_CM2, MOST_PER_CM2 = 60.0, 400.0  # densities that a cover begins with 
 
 def hair_cover(groom: Groom, hairs: Curves | None = None) -> Cover:
     """Cover of the scalp by all hairs of a groom at rest; ``hairs``: those, where they are made already."""
-    return measure(groom.scalp, hair_region(groom), hairs or make_hairs(groom).curves)
+    return measure(groom.scalp, hair_region(groom), make_hairs(groom).curves if hairs is None else hairs)
 
 
 def raise_density(groom: Groom, settings: HairSettings) -> None:
