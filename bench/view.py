@@ -21,7 +21,7 @@ from websockets.asyncio.client import ClientConnection, connect
 
 import ringlet
 
-PROTOCOL = 7  # version of python/ringlet/viewer/protocol.py
+PROTOCOL = 8  # version of python/ringlet/viewer/protocol.py
 EXAMPLE = Path(__file__).parents[1] / "examples/child"
 
 

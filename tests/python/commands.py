@@ -23,7 +23,7 @@ def refused(result, *words: str) -> str:
     assert sum(line.startswith("error: ") for line in lines) == 1
     assert "Traceback" not in result.output
     for word in words:
-        assert word in message
+        assert word in message, message
     return message
 
 

@@ -227,9 +227,9 @@ def test_files_without_groom_or_head_are_refused(tmp_path):
 
 def test_a_groom_of_a_later_layout_is_refused(tmp_path):
     write_groom(make_groom(write_head(tmp_path / "head.usda")), tmp_path / "groom.usda")
-    text = (tmp_path / "groom.usda").read_text().replace("ringlet:version = 1", "ringlet:version = 2")
+    text = (tmp_path / "groom.usda").read_text().replace("ringlet:version = 1", "ringlet:version = 3")
     (tmp_path / "later.usda").write_text(text)
-    assert "has layout 2; this Ringlet reads up to 1" in refused(read_groom, tmp_path / "later.usda")
+    assert "has layout 3; this Ringlet reads up to 2" in refused(read_groom, tmp_path / "later.usda")
 
 
 def test_unwritable_paths_are_refused(tmp_path):

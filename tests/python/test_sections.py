@@ -64,7 +64,9 @@ def test_masks_and_values_go_by_places_in_sections():
 
 def test_a_mask_by_sections_is_refused_where_there_are_none():
     recipe = "ringlet = 1\n[guides]\ncount = 9\n[[nail]]\nmask = { where = 'strand == 1' }"
-    with pytest.raises(UserError, match=r"nail\[0\].mask.where has 'strand', which only locks of sections have; add"):
+    with pytest.raises(
+        UserError, match=r"nail\[0\].mask.where has 'strand', which only locks of sections and edges have; add"
+    ):
         make_groom(parse_recipe(recipe), sheet())
 
 

@@ -30,10 +30,10 @@ def test_a_shot_streams_its_frames_and_reruns_from_a_frame(folder: Path):
         assert [frame["frame"] for frame in frames] == [1, 2, 3, 4]
         assert frames[0]["points"].shape == (8 * 40 * 3,) and len(frames[0]["curl"]) == 8 * 40
         assert np.abs(frames[3]["points"] - frames[0]["points"]).max() > 1e-3
-        one.latest("timeline", state="done")
+        first = one.latest("timeline", state="done")
         one.send(kind="set", file="shot", changes=[[["strands", "bend_scale"], 30.0]], gesture=1)
         one.send(kind="play", action="again_from", frame=2)
-        one.receive("timeline", key=3)
+        one.receive("timeline", key=first["key"] + 1)
         again = one.watch(3, 4)
         assert [frame["frame"] for frame in again] == [3, 4]
         assert np.abs(again[1]["points"] - frames[3]["points"]).max() > 1e-6
