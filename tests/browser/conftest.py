@@ -155,6 +155,12 @@ class Review:
     def choose(self, stage: str) -> None:
         self.page.locator(f'[data-stage="{stage}"]').click()
 
+    def show_all_settings(self) -> None:
+        """Shows the settings that the panel of the chosen stage hides at first sight, if there are any."""
+        more = self.page.get_by_role("button", name="Show all settings")
+        if more.is_visible():
+            more.click()
+
     def slider(self, setting: str) -> Any:
         return self.page.locator(f'[data-setting="{setting}"] > input[type=range]')
 

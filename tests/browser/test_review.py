@@ -241,8 +241,9 @@ def test_regions_and_overlays_are_chosen_from_lists(opened: Any, folder: Path):
     recipe.write_text(recipe.read_text() + '[[nail]]\nreach = "2 cm"\n[[shape]]\nop = "scraggle"\n')
     review: Review = opened()
     review.choose("shape/0")
-    review.page.get_by_role("button", name="Show all settings").click()
-    review.page.locator('[data-setting="shape.0.mask"] summary').first.click()
+    review.show_all_settings()
+    mask = review.page.locator('[data-setting="shape.0.mask"] details').first
+    mask.evaluate("(details) => { details.open = true; }")
     review.page.locator('[data-setting="shape.0.mask.region"] select').select_option("scalp")
     review.until("ringlet.model.documents.recipe.said.shape[0].mask?.region === 'scalp'")
     review.settled()
@@ -286,6 +287,7 @@ def test_colour_is_edited_and_shown(opened: Any):
     light = review.picture()
     assert different(light, before) > 0.001
     assert light.sum() > before.sum()
+    review.show_all_settings()
     dye = review.page.locator('[data-setting="color.dye"] details.table')
     dye.evaluate("(details) => { details.open = true; }")
     review.page.locator('[data-setting="color.dye.color"] input').fill("#1020ff")
