@@ -244,7 +244,7 @@ def test_regions_and_overlays_are_chosen_from_lists(opened: Any, folder: Path):
     review.show_all_settings()
     mask = review.page.locator('[data-setting="shape.0.mask"] details').first
     mask.evaluate("(details) => { details.open = true; }")
-    review.page.locator('[data-setting="shape.0.mask.region"] select').select_option("scalp")
+    review.page.locator('[data-setting="shape.0.mask.region"] select').select_option("scalp", force=True)
     review.until("ringlet.model.documents.recipe.said.shape[0].mask?.region === 'scalp'")
     review.settled()
     plain = review.picture()
