@@ -209,3 +209,11 @@ def test_adopted_hairs_that_do_not_fit_the_groom_are_refused(known):
     groom.offsets.lock[:] = groom.locks.ids[0]
     with pytest.raises(UserError, match=f"of {LOCKS - 1} locks in all"):
         build_hairs(groom)
+
+
+def test_adopted_hairs_are_refused_among_several_grooms(known, tmp_path):
+    folder, _, _ = known
+    several = folder / "several.recipe.toml"
+    several.write_text('ringlet = 1\n[grooms.hair]\nextends = "adopted.recipe.toml"\n')
+    refused(run("groom", several, "-o", tmp_path / "g.usdc"), "grooms.hair.hairs.file: adopted hairs cannot be one of")
+    assert not (tmp_path / "g.usdc").exists()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from ringlet.data.curves import Curves
 from ringlet.data.groom import GROOM, Groom
 from ringlet.data.mesh import Mesh
 from ringlet.data.pigment import ROUGHNESS, USUAL_FIBER, of_fiber
+from ringlet.groom.several import with_each
 from ringlet.picture.strands import split
 from small_example import RECIPE, SHOT, write_head
 
@@ -273,7 +275,18 @@ def test_what_locks_wear_stays_on_the_locks_of_its_groom():
 
     several = join_grooms({"hair": groom(3, []), "beard": groom(2, [bead])})
     (worn,) = several.accessories
-    assert worn.mesh.name == "beard bead 1" and worn.vertices.tolist() == [18, 19]
+    assert worn.mesh.name == "beard_bead 1" and worn.vertices.tolist() == [18, 19]
     each = grooms_of(several)
     assert each["hair"].accessories == []
     assert each["beard"].accessories[0].vertices.tolist() == [3, 4]
+    assert each["beard"].accessories[0].mesh.name == "bead 1"
+    shift = np.array([0.0, 1.0, 0.0])
+
+    def shifted(one):
+        return replace(
+            one, accessories=[of.moved(one.locks.points, one.locks.points + shift) for of in one.accessories]
+        )
+
+    (moved,) = with_each(several, shifted).accessories
+    assert moved.mesh.name == "beard_bead 1" and moved.vertices.tolist() == [18, 19]
+    np.testing.assert_allclose(moved.mesh.points, bead.mesh.points + shift, atol=1e-12)

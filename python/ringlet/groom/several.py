@@ -40,7 +40,7 @@ def join_grooms(grooms: Mapping[str, Groom]) -> Groom:
     """Several grooms on one head, by name, as one groom.
 
     Ids of locks, guides and sections become unique: those of a groom depend on its name alone, whichever others there
-    are. Raises UserError for grooms on different heads.
+    are. Raises UserError for grooms on different heads, and for adopted hairs.
     """
     names, first = list(grooms), next(iter(grooms.values()))
     for name, groom in grooms.items():
@@ -48,6 +48,11 @@ def join_grooms(grooms: Mapping[str, Groom]) -> Groom:
             raise UserError(
                 f"grooms.{name}: grows on another scalp ({groom.scalp.name}) than {names[0]} ({first.scalp.name}); "
                 "must be the same"
+            )
+        if groom.offsets is not None:
+            raise UserError(
+                f"grooms.{name}.hairs.file: adopted hairs cannot be one of several grooms; "
+                "keep them in a recipe of their own"
             )
     offsets = id_offsets(names)
     locks = {name: _marked(groom.locks, row, offsets[name]) for row, (name, groom) in enumerate(grooms.items())}
@@ -93,7 +98,7 @@ def grooms_of(groom: Groom) -> dict[str, Groom]:
             guides=_alone(groom.guides, row, offsets[name], ()),
             shapes=groom.shapes and _alone(groom.shapes, row, offsets[name], ()),
             unsculpted=groom.unsculpted and _alone(groom.unsculpted, row, offsets[name], ()),
-            accessories=_accessories_of(groom, row),
+            accessories=_accessories_of(groom, row, name),
             grooms={},
             **{key: settings[key] for key in ALONE},
         )
@@ -104,7 +109,7 @@ def grooms_of(groom: Groom) -> dict[str, Groom]:
 def with_each(groom: Groom, changed: Callable[[Groom], Groom]) -> Groom:
     """Several grooms with each of them changed on its own."""
     joined = join_grooms({name: changed(one) for name, one in grooms_of(groom).items()})
-    return replace(joined, recipe=groom.recipe, accessories=groom.accessories, conflicts=groom.conflicts)
+    return replace(joined, recipe=groom.recipe, conflicts=groom.conflicts)
 
 
 def _accessories(grooms: Mapping[str, Groom]) -> list[Accessory]:
@@ -112,16 +117,20 @@ def _accessories(grooms: Mapping[str, Groom]) -> list[Accessory]:
     worn, first = [], 0
     for name, groom in grooms.items():
         for one in groom.accessories:
-            worn.append(Accessory(replace(one.mesh, name=f"{name} {one.mesh.name}"), one.vertices + first))
+            worn.append(Accessory(replace(one.mesh, name=f"{name}_{one.mesh.name}"), one.vertices + first))
         first += len(groom.locks.points)
     return worn
 
 
-def _accessories_of(groom: Groom, row: int) -> list[Accessory]:
-    """What the locks of one groom wear, on its own points."""
+def _accessories_of(groom: Groom, row: int, name: str) -> list[Accessory]:
+    """What the locks of one groom wear, on its own points and with the names that it has alone."""
     own = np.repeat(groom.locks.curve[GROOM], groom.locks.counts) == row
     first = int(own.argmax())
-    return [Accessory(one.mesh, one.vertices - first) for one in groom.accessories if own[one.vertices].all()]
+    return [
+        Accessory(replace(one.mesh, name=one.mesh.name.removeprefix(f"{name}_")), one.vertices - first)
+        for one in groom.accessories
+        if own[one.vertices].all()
+    ]
 
 
 def id_offsets(names: list[str]) -> dict[str, int]:
