@@ -114,7 +114,7 @@ def adopt(
         error = _add_hairs(groom, hair, clumps)
     if prim is not None:
         io.write_head(source, prim, files["scalp"])
-    _write(groom, guides, text, target, files, scalp_table if prim is None else {})
+    _write(groom, guides, text, target, files, with_scalp=head is None and prim is None)
     coiled = coils.coiled
     return {
         "hairs": len(hair.points),
@@ -373,10 +373,8 @@ def distances(points: NDArray[np.float64], lines: NDArray[np.float64]) -> NDArra
     return found
 
 
-def _write(
-    groom: Groom, guides: Curves, text: str, recipe: Path, files: dict[str, Path], scalp: dict[str, Any]
-) -> None:
-    """Writes the files of an adopted groom, the recipe last."""
+def _write(groom: Groom, guides: Curves, text: str, recipe: Path, files: dict[str, Path], *, with_scalp: bool) -> None:
+    """Writes the files of an adopted groom, the recipe last; ``with_scalp`` also its scalp."""
     from ringlet import io
     from ringlet.data.hair_scene import CurveSet, HairScene
 
@@ -386,7 +384,7 @@ def _write(
         made = {name: Path(folder, file.name) for name, file in files.items()}
         io.write_scene(HairScene([CurveSet("guides", guides, guide=True)]), made["guides"], StageSpace())
         io.write_offsets(groom.offsets, made["hairs"])
-        if scalp.get("file") == files["scalp"].name:
+        if with_scalp:
             io.write_scene(HairScene([], [(groom.scalp, None)]), made["scalp"], StageSpace())
         for name, file in made.items():
             if file.exists():
