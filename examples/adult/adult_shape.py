@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 from anatomy import Head, mirrored
-from distances import Array, capsule, ellipsoid, engrave, intersect, smooth, sphere, stroke, subtract, union
-from features import Ear, Eye
+from distances import Array, capsule, ellipsoid, intersect, smooth, sphere, stroke, subtract, union
+from features import Ear, Eye, Mouth, Nose, with_features, with_neckline
 from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
@@ -22,6 +22,23 @@ EYE = Eye(
     slant=0.09,
     lid=0.14,
 )
+NOSE = Nose(
+    bridge=((0, -0.3, 7.1), (0, -4.0, 8.4), 0.6, 0.75),
+    tip=((0, -4.5, 8.75), (1.05, 0.85, 0.95)),
+    wing=((1.25, -4.85, 7.7), (0.65, 0.62, 0.8)),
+    blend=0.45,
+    nostril=((0.6, -5.5, 8.25), (0.34, 0.4, 0.46)),
+)
+MOUTH = Mouth(
+    mound=((0, -7.3, 5.3), (2.8, 2.3, 2.15)),
+    philtrum=((0, -5.5, 7.9), (0, -6.6, 7.9), 0.16, 0.24),
+    groove=0.3,
+    upper=([(2.6, -7.42, 6.5), (1.5, -7.2, 7.15), (0.5, -6.92, 7.45), (0, -7.05, 7.45)], [0.16, 0.42, 0.55, 0.5]),
+    lower=([(2.45, -7.52, 6.52), (1.35, -8.1, 6.95), (0, -8.4, 7.15)], [0.16, 0.56, 0.7]),
+    line=-7.66,
+    bow=2.2,
+    smile=0.04,
+)
 EAR = Ear(centre=np.array([6.75, -2.0, -1.2]), flare=np.radians(24.0), tilt=np.radians(14.0))
 SKULL = np.array([0.0, 0.5, -1.2])
 BROW = ((1.5, 0.75, 8.2), (3.5, 1.5, 7.4), (5.6, 0.35, 5.6))
@@ -33,11 +50,7 @@ def skin(points: Array) -> Array:
     """Head, ears, neck, and the chest inside a neckline."""
     p = mirrored(points)
     visible = intersect(body(p), sphere(p, (0, -15.5, -3.0), 11.0), 0.6)
-    d = union(head(p), visible, 1.6)
-    for feature, centre, reach in FEATURES:
-        near = np.flatnonzero(sphere(p, centre, reach) < 0.0)
-        d[near] = feature(d[near], p[near])
-    return d
+    return with_features(union(head(p), visible, 1.6), p, FEATURES)
 
 
 def shirt(points: Array) -> Array:
@@ -45,9 +58,7 @@ def shirt(points: Array) -> Array:
     p = mirrored(points)
     p[:, 1] += np.clip(WAIST - p[:, 1], 0.0, STRETCH)
     cloth = intersect(torso(p) - 0.4, ellipsoid(p, (0, -20.0, -3.0), (24.0, 13.0, 14.0)), 1.5)
-    opening = neckline(p)
-    rib = np.hypot(opening - 0.25, cloth + 0.05) - 0.34
-    return union(subtract(cloth, opening, 0.15), rib, 0.12)
+    return with_neckline(cloth, neckline(p), 0.34)
 
 
 def neckline(p: Array) -> Array:
@@ -87,38 +98,10 @@ def eyes(d: Array, p: Array) -> Array:
     return EYE.added(d, p)
 
 
-def nose(d: Array, p: Array) -> Array:
-    d = union(d, capsule(p, (0, -0.3, 7.1), (0, -4.0, 8.4), 0.6, 0.75), 1.3)  # bridge
-    d = union(d, ellipsoid(p, (0, -4.5, 8.75), (1.05, 0.85, 0.95)), 0.6)  # tip
-    d = union(d, ellipsoid(p, (1.25, -4.85, 7.7), (0.65, 0.62, 0.8)), 0.45)  # wings
-    return subtract(d, ellipsoid(p, (0.6, -5.5, 8.25), (0.34, 0.4, 0.46)), 0.15)  # nostrils
-
-
-def mouth(d: Array, p: Array) -> Array:
-    d = union(d, ellipsoid(p, (0, -7.3, 5.3), (2.8, 2.3, 2.15)), 1.4)
-    d = engrave(d, capsule(p, (0, -5.5, 7.9), (0, -6.6, 7.9), 0.16, 0.24), 0.1, 0.3)  # philtrum
-    d = union(d, lips(p), 0.25)
-    gap = np.hypot(p[:, 1] - mouth_line(p[:, 0]), np.maximum(p[:, 0] - 2.5, 0.0)) - 0.12
-    return engrave(d, np.maximum(gap, 3.0 - p[:, 2]), 0.26 - 0.06 * p[:, 0], 0.18)
-
-
-def lips(p: Array) -> Array:
-    upper = [(2.6, -7.42, 6.5), (1.5, -7.2, 7.15), (0.5, -6.92, 7.45), (0, -7.05, 7.45)]
-    lower = [(2.45, -7.52, 6.52), (1.35, -8.1, 6.95), (0, -8.4, 7.15)]
-    d = stroke(p, *smooth(upper, [0.16, 0.42, 0.55, 0.5]))
-    return np.minimum(d, stroke(p, *smooth(lower, [0.16, 0.56, 0.7])))
-
-
-def mouth_line(x: Array) -> Array:
-    """Height of the line between the lips: a bow with a slight smile."""
-    return -7.66 + 0.07 * np.cos(2.2 * x) + 0.04 * x**2
-
-
-# Features of the head, in the order of modelling, each with the ball that bounds its effect.
 FEATURES = (
     (eyes, EYE.centre + [0, 0, 1.0], 4.2),
-    (nose, (0, -3.2, 8.0), 4.6),
-    (mouth, (0, -7.3, 5.9), 4.8),
+    (NOSE.added, (0, -3.2, 8.0), 4.6),
+    (MOUTH.added, (0, -7.3, 5.9), 4.8),
     (EAR.added, EAR.centre, 5.0),
 )
 
@@ -148,7 +131,7 @@ def on_beard(p: Array) -> NDArray[np.bool_]:
     """Points of jaw, chin, cheeks and upper lip where a beard grows, shape (n,), bool."""
     around = np.arctan2(p[:, 0], p[:, 2] - SKULL[2])
     below = (p[:, 1] < _BEARD(np.minimum(around, np.radians(84.0)))) & (around < np.radians(86.0))
-    return below & (p[:, 1] > _JAWLINE(around) - 1.2) & (lips(p) > 0.12) & ~EAR.contains(p)
+    return below & (p[:, 1] > _JAWLINE(around) - 1.2) & (MOUTH.lips(p) > 0.12) & ~EAR.contains(p)
 
 
 HEAD = Head(
@@ -156,7 +139,7 @@ HEAD = Head(
     skin=skin,
     shirt=shirt,
     neckline=neckline,
-    lips=lips,
+    lips=MOUTH.lips,
     skin_box=((-12.6, -28.0, -15.2), (12.6, 11.2, 11.0)),
     shirt_box=((-22.0, -42.4, -14.2), (22.0, -8.0, 8.2)),
     cell=0.25,

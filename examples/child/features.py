@@ -1,11 +1,19 @@
-"""Eyes and ears of a head as signed distances, placed by a head's own measures [cm]."""
+"""Eyes, noses, mouths and ears of heads, and necklines, as signed distances by the measures of each head [cm]."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from distances import Array, ellipsoid, smooth, sphere, stroke, subtract, union
+from distances import Array, capsule, ellipsoid, engrave, smooth, sphere, stroke, subtract, union
+from numpy.typing import ArrayLike
+
+Point = tuple[float, float, float]
+Ellipsoid = tuple[Point, Point]  # centre and half axes
+Capsule = tuple[Point, Point, float, float]  # ends and their radii
+Stroke = tuple[list[Point], list[float]]  # points and their radii
+Feature = tuple[Callable[[Array, Array], Array], ArrayLike, float]  # what adds it; the ball that bounds its effect
 
 
 @dataclass(frozen=True)
@@ -56,6 +64,60 @@ def lid_arch(across: Array) -> Array:
 
 
 @dataclass(frozen=True)
+class Nose:
+    """A nose; its left wing and nostril.
+
+    blend: radius of the blend of the wings [cm]
+    """
+
+    bridge: Capsule
+    tip: Ellipsoid
+    wing: Ellipsoid
+    blend: float
+    nostril: Ellipsoid
+
+    def added(self, d: Array, p: Array) -> Array:
+        d = union(d, capsule(p, *self.bridge), 1.3)
+        d = union(d, ellipsoid(p, *self.tip), 0.6)
+        d = union(d, ellipsoid(p, *self.wing), self.blend)
+        return subtract(d, ellipsoid(p, *self.nostril), 0.15)
+
+
+@dataclass(frozen=True)
+class Mouth:
+    """A mouth; the left half of its lips, from the corner to the middle.
+
+    mound:       the jaws under the lips
+    groove:      width of the philtrum [cm]
+    line:        height of the line between the lips in the middle, less the bow's height [cm]
+    bow, smile:  its waves per length [rad/cm], and its curvature upwards [1/cm]
+    """
+
+    mound: Ellipsoid
+    philtrum: Capsule
+    groove: float
+    upper: Stroke
+    lower: Stroke
+    line: float
+    bow: float
+    smile: float
+
+    def added(self, d: Array, p: Array) -> Array:
+        d = union(d, ellipsoid(p, *self.mound), 1.4)
+        d = engrave(d, capsule(p, *self.philtrum), 0.1, self.groove)
+        d = union(d, self.lips(p), 0.25)
+        gap = np.hypot(p[:, 1] - self.height(p[:, 0]), np.maximum(p[:, 0] - 2.5, 0.0)) - 0.12
+        return engrave(d, np.maximum(gap, 3.0 - p[:, 2]), 0.26 - 0.06 * p[:, 0], 0.18)
+
+    def lips(self, p: Array) -> Array:
+        return np.minimum(stroke(p, *smooth(*self.upper)), stroke(p, *smooth(*self.lower)))
+
+    def height(self, x: Array) -> Array:
+        """Height of the line between the lips: a bow with a slight smile."""
+        return self.line + 0.07 * np.cos(self.bow * x) + self.smile * x**2
+
+
+@dataclass(frozen=True)
 class Ear:
     """The left ear.
 
@@ -96,3 +158,17 @@ def leaf(q: Array) -> Array:
     d = union(d, ellipsoid(q, (0.35, -2.4, 0.05), (0.75, 0.75, 0.42)), 0.5)  # lobe
     fold = [(1.2, 1.5, 0.3), (1.4, 0.3, 0.4), (1.15, -0.8, 0.4), (0.5, -1.45, 0.3)]
     return union(d, stroke(q, *smooth(fold, [0.2, 0.3, 0.3, 0.25])), 0.3)
+
+
+def with_features(d: Array, p: Array, features: Sequence[Feature]) -> Array:
+    """A head with features, in the order of modelling, each evaluated in the ball that bounds its effect."""
+    for add, centre, reach in features:
+        near = np.flatnonzero(sphere(p, centre, reach) < 0.0)
+        d[near] = add(d[near], p[near])
+    return d
+
+
+def with_neckline(cloth: Array, opening: Array, rib: float) -> Array:
+    """A shirt with an opening around the neck, and a rib of a radius along the opening."""
+    rim = np.hypot(opening - 0.25, cloth + 0.05) - rib
+    return union(subtract(cloth, opening, 0.15), rim, 0.12)

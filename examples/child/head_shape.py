@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 from anatomy import Head, mirrored
-from distances import Array, capsule, ellipsoid, engrave, intersect, smooth, sphere, stroke, subtract, union
-from features import Ear, Eye
+from distances import Array, capsule, ellipsoid, intersect, sphere, stroke, subtract, union
+from features import Ear, Eye, Mouth, Nose, with_features, with_neckline
 from scipy.interpolate import PchipInterpolator
 
 EYE = Eye(
@@ -21,6 +21,23 @@ EYE = Eye(
     slant=0.06,
     lid=0.2,
 )
+NOSE = Nose(
+    bridge=((0, 0.2, 6.4), (0, -2.5, 7.5), 0.62, 0.75),
+    tip=((0, -2.9, 7.85), (1.05, 0.9, 1.0)),
+    wing=((1.0, -3.2, 7.2), (0.64, 0.58, 0.75)),
+    blend=0.4,
+    nostril=((0.52, -3.82, 7.75), (0.32, 0.42, 0.44)),
+)
+MOUTH = Mouth(
+    mound=((0, -5.4, 5.2), (2.6, 1.7, 1.9)),
+    philtrum=((0, -3.9, 7.4), (0, -4.45, 7.4), 0.14, 0.2),
+    groove=0.25,
+    upper=([(2.4, -4.8, 6.9), (1.4, -4.97, 7.0), (0.45, -4.8, 7.22), (0, -4.93, 7.22)], [0.2, 0.34, 0.43, 0.38]),
+    lower=([(2.35, -4.94, 6.88), (1.3, -5.64, 6.86), (0, -5.98, 7.05)], [0.2, 0.44, 0.56]),
+    line=-5.38,
+    bow=2.4,
+    smile=0.11,
+)
 EAR = Ear(centre=np.array([6.95, -1.5, -1.3]), flare=np.radians(33.0), tilt=np.radians(12.0))
 
 WAIST, STRETCH = -17.0, 13.0  # height of the waist, and length of the constant width below, past any picture's edge
@@ -30,11 +47,7 @@ def skin(points: Array) -> Array:
     """Head, ears, neck, and the chest inside a neckline."""
     p = mirrored(points)
     visible = intersect(body(p), sphere(p, (0, -10.0, -2.5), 7.4), 0.6)
-    d = union(head(p), visible, 1.4)
-    for feature, centre, reach in FEATURES:
-        near = np.flatnonzero(sphere(p, centre, reach) < 0.0)
-        d[near] = feature(d[near], p[near])
-    return d
+    return with_features(union(head(p), visible, 1.4), p, FEATURES)
 
 
 def shirt(points: Array) -> Array:
@@ -42,9 +55,7 @@ def shirt(points: Array) -> Array:
     p = mirrored(points)
     p[:, 1] += np.clip(WAIST - p[:, 1], 0.0, STRETCH)
     cloth = intersect(torso(p) - 0.45, ellipsoid(p, (0, -14.5, -3.0), (11.4, 10.6, 9.0)), 1.5)
-    opening = neckline(p)
-    rib = np.hypot(opening - 0.25, cloth + 0.05) - 0.36
-    return union(subtract(cloth, opening, 0.15), rib, 0.12)
+    return with_neckline(cloth, neckline(p), 0.36)
 
 
 def neckline(p: Array) -> Array:
@@ -81,38 +92,10 @@ def eyes(d: Array, p: Array) -> Array:
     return EYE.added(subtract(d, ellipsoid(p, (3.15, -0.15, 7.6), (2.7, 2.0, 1.75)), 1.2), p)
 
 
-def nose(d: Array, p: Array) -> Array:
-    d = union(d, capsule(p, (0, 0.2, 6.4), (0, -2.5, 7.5), 0.62, 0.75), 1.3)  # bridge
-    d = union(d, ellipsoid(p, (0, -2.9, 7.85), (1.05, 0.9, 1.0)), 0.6)  # tip
-    d = union(d, ellipsoid(p, (1.0, -3.2, 7.2), (0.64, 0.58, 0.75)), 0.4)  # wings
-    return subtract(d, ellipsoid(p, (0.52, -3.82, 7.75), (0.32, 0.42, 0.44)), 0.15)  # nostrils
-
-
-def mouth(d: Array, p: Array) -> Array:
-    d = union(d, ellipsoid(p, (0, -5.4, 5.2), (2.6, 1.7, 1.9)), 1.4)
-    d = engrave(d, capsule(p, (0, -3.9, 7.4), (0, -4.45, 7.4), 0.14, 0.2), 0.1, 0.25)  # philtrum
-    d = union(d, lips(p), 0.25)
-    gap = np.hypot(p[:, 1] - mouth_line(p[:, 0]), np.maximum(p[:, 0] - 2.5, 0.0)) - 0.12
-    return engrave(d, np.maximum(gap, 3.0 - p[:, 2]), 0.26 - 0.06 * p[:, 0], 0.18)
-
-
-def lips(p: Array) -> Array:
-    upper = [(2.4, -4.8, 6.9), (1.4, -4.97, 7.0), (0.45, -4.8, 7.22), (0, -4.93, 7.22)]
-    lower = [(2.35, -4.94, 6.88), (1.3, -5.64, 6.86), (0, -5.98, 7.05)]
-    d = stroke(p, *smooth(upper, [0.2, 0.34, 0.43, 0.38]))
-    return np.minimum(d, stroke(p, *smooth(lower, [0.2, 0.44, 0.56])))
-
-
-def mouth_line(x: Array) -> Array:
-    """Height of the line between the lips: a bow with a slight smile."""
-    return -5.38 + 0.07 * np.cos(2.4 * x) + 0.11 * x**2
-
-
-# Features of the head, in the order of modelling, each with the ball that bounds its effect.
 FEATURES = (
     (eyes, EYE.centre + [0, 0, 1.5], 5.0),
-    (nose, (0, -2.0, 7.2), 4.5),
-    (mouth, (0, -5.2, 5.8), 4.8),
+    (NOSE.added, (0, -2.0, 7.2), 4.5),
+    (MOUTH.added, (0, -5.2, 5.8), 4.8),
     (EAR.added, EAR.centre, 5.0),
 )
 
@@ -126,7 +109,7 @@ HEAD = Head(
     skin=skin,
     shirt=shirt,
     neckline=neckline,
-    lips=lips,
+    lips=MOUTH.lips,
     skin_box=((-9.6, -20.0, -11.2), (9.6, 11.2, 9.8)),
     shirt_box=((-11.6, -38.6, -9.2), (11.6, -7.6, 3.2)),
     cell=0.3,

@@ -22,7 +22,7 @@ PLACES = 12  # points of a hair that are compared
 NEIGHBOURS = 12  # of a hair, among which edges of the tree are sought
 CORE = 3  # the neighbour whose distance is the core distance of a hair
 APART = 3.0  # least ratio of the distances between and within clumps
-NAMES = ("guide_curve_index", "clumpid", "lock", "guide_id")  # attributes that tell clumps
+NAMES = ("guide_curve_index", "clumpid", "lock", "guide_id")  # attributes that number clumps
 MOST_LOCKS = 5000  # hairs without clumps that become a lock each; more are divided into as many
 
 Array = NDArray[np.float64]
@@ -46,7 +46,7 @@ class Clumps:
 
 
 def find_clumps(points: Array, lengths: Array, curve: dict[str, NDArray], count: int | None = None) -> Clumps:
-    """Finds clumps by an attribute that tells them, or by the shapes of hairs.
+    """Finds clumps by an attribute that numbers them, or by the shapes of hairs.
 
     points:  evenly spaced by arc length [m], shape (hairs, k, 3)
     lengths: of the hairs [m], shape (hairs,)
@@ -58,7 +58,7 @@ def find_clumps(points: Array, lengths: Array, curve: dict[str, NDArray], count:
     if count is not None and count > len(points):
         raise UserError(f"locks is {count}, but there are {len(points)} hairs; ask for at most as many")
     features = _features(points)
-    named = next((name for name in NAMES if _tells_clumps(curve.get(name), len(points))), None)
+    named = next((name for name in NAMES if _numbers_clumps(curve.get(name), len(points))), None)
     if count is not None:
         of, source = _divided(features, count), "count"
     elif named is not None:
@@ -78,7 +78,7 @@ def each_alone(hairs: int) -> Clumps:
     return Clumps(np.arange(hairs), np.arange(hairs), "each")
 
 
-def _tells_clumps(values: NDArray | None, hairs: int) -> bool:
+def _numbers_clumps(values: NDArray | None, hairs: int) -> bool:
     """Whether an attribute holds whole numbers, one for each of several hairs."""
     if values is None or values.ndim != 1 or len(values) != hairs or values.dtype.kind not in "iu":
         return False

@@ -48,6 +48,11 @@ class Coils:
     turns: Array
     around: Array
 
+    @property
+    def coiled(self) -> NDArray[np.bool_]:
+        """Which locks have a coil, shape (locks,)."""
+        return self.width > 0.0
+
 
 def fit_coils(points: Array) -> Coils:
     """Fits coils to locks.
@@ -100,10 +105,15 @@ def _proposed_turns(points: Array, most: float) -> Array:
 def _bases(turns: float, size: int) -> tuple[Array, Array]:
     """Values of the functions of C, shape (size, k), and of those of U and V times cosine and sine, shape (size, m)."""
     s = np.linspace(0.0, 1.0, size)
-    smooth = _splines(s, round(turns / 1.5) + 3)
+    smooth = _splines(s, _center_functions(turns))
     slow = _splines(s, round(turns / 2.0) + 2)
     phase = 2.0 * np.pi * turns * s[:, None]
     return smooth, np.concatenate([slow * np.cos(phase), slow * np.sin(phase)], axis=1)
+
+
+def _center_functions(turns: float) -> int:
+    """Number of the functions of C, whose knots are farther apart than a turn."""
+    return round(turns / 1.5) + 3
 
 
 def _splines(s: Array, count: int) -> Array:
@@ -141,7 +151,7 @@ def _measured(points: Array, center: Array, around: Array, turns: Array) -> Coil
     x, y = (np.einsum("lpk,lpk->lp", around, frames[..., axis]) for axis in (0, 1))
     inner = slice(int(ENDS * size), size - int(ENDS * size))
     angle = np.unwrap(np.arctan2(y, x), axis=1)[:, inner]
-    run = np.concatenate([np.zeros((count, 1)), np.cumsum(np.linalg.norm(np.diff(center, axis=1), axis=2), axis=1)], 1)
+    run = _arc_length(center)
     along = run[:, inner]
     along = along - along.mean(axis=1, keepdims=True)
     slope = (along * (angle - angle.mean(axis=1, keepdims=True))).sum(axis=1) / (along**2).sum(axis=1)
@@ -150,7 +160,7 @@ def _measured(points: Array, center: Array, around: Array, turns: Array) -> Coil
     straight = np.linalg.norm(_residual(line, points), axis=(1, 2))
     smooth = np.empty(count)
     for row in range(count):
-        alone = _splines(np.linspace(0, 1, size), round(turns[row] / 1.5) + 3)
+        alone = _splines(np.linspace(0.0, 1.0, size), _center_functions(float(turns[row])))
         smooth[row] = np.linalg.norm(_residual(alone, points[row : row + 1]))
     left = np.linalg.norm(points - center - around, axis=(1, 2))
     unexplained = np.minimum(smooth, straight)
@@ -170,6 +180,12 @@ def _measured(points: Array, center: Array, around: Array, turns: Array) -> Coil
     )
 
 
+def _arc_length(lines: Array) -> Array:
+    """Arc length from the first point of each line [m], shape (locks, points)."""
+    edges = np.linalg.norm(np.diff(lines, axis=1), axis=2)
+    return np.concatenate([np.zeros((len(lines), 1)), np.cumsum(edges, axis=1)], axis=1)
+
+
 def _frames(center: Array) -> Array:
     """Rotation-minimising frames of centre lines, shape (locks, points, 3, 3)."""
     count, size, _ = center.shape
@@ -183,9 +199,7 @@ def _frames(center: Array) -> Array:
 
 def _rooted(center: Array, roots: Array, pitch: Array) -> Array:
     """Centre lines that begin at the roots, bent towards them over a turn."""
-    run = np.concatenate(
-        [np.zeros((len(center), 1)), np.cumsum(np.linalg.norm(np.diff(center, axis=1), axis=2), axis=1)], axis=1
-    )
+    run = _arc_length(center)
     reach = np.minimum(pitch, 0.5 * run[:, -1])
     t = np.clip(1.0 - run / np.maximum(reach, 1e-9)[:, None], 0.0, 1.0)
     return center + (t * t * (3.0 - 2.0 * t))[..., None] * (roots - center[:, 0])[:, None]

@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from ringlet.adoption import Clumps, Coils
     from ringlet.data.groom import Groom
     from ringlet.data.mesh import Mesh
-    from ringlet.groom import Recipe
 
 __all__ = ["adopt", "adopt_groom", "is_finished_hair"]
 
@@ -108,22 +107,22 @@ def adopt(
         clumps = find_clumps(hair.points, hair.lengths, hair.curves.curve, locks)
     with step("curls"):
         guides, coils = _guides(hair, clumps, scalp)
-    text = to_toml(_tables(stem, files, scalp_table, coils, hair, _distance_of(guides, scalp)))
+    text = to_toml(_tables(stem, files, scalp_table, coils, hair, _largest_distance(scalp, guides)))
     with step("groom"):
-        groom = _fitted(groom_recipe(text, target), scalp, guides, hair.points[clumps.middle])
+        groom = _fitted(text, target, scalp, guides, hair.points[clumps.middle])
     with step("hairs"):
         error = _add_hairs(groom, hair, clumps)
     if prim is not None:
         io.write_head(source, prim, files["scalp"])
-    _write(groom, guides, text, target, files, scalp_table if prim is None else {})
-    coiled = coils.width > 0.0
+    _write(groom, guides, text, target, files, with_scalp=head is None and prim is None)
+    coiled = coils.coiled
     return {
         "hairs": len(hair.points),
         "locks": len(clumps),
         "clumps": clumps.source,
         "coiled": int(coiled.sum()),
-        "width": float(np.median(coils.width[coiled])) if coiled.any() else 0.0,
-        "pitch": float(np.median(coils.pitch[coiled])) if coiled.any() else 0.0,
+        "width": _median(coils.width[coiled], 0.0),
+        "pitch": _median(coils.pitch[coiled], 0.0),
         "right_handed": float((coils.hand[coiled] > 0.0).mean()) if coiled.any() else 0.0,
         "error": {"median": float(np.median(error)), "95": float(np.quantile(error, 0.95))},
     }
@@ -157,8 +156,8 @@ def adopt_groom(
     clumps = each_alone(len(hair.points)) if locks is None else find_clumps(hair.points, hair.lengths, {}, locks)
     coils = no_coils(hair.points[clumps.middle])
     guides = _packed(coils.center)
-    tables = _tables(target.stem, files, table, coils, hair, _distance_of(guides, scalp))
-    groom = _fitted(groom_recipe(to_toml(tables), target), scalp, guides, hair.points[clumps.middle])
+    tables = _tables(target.stem, files, table, coils, hair, _largest_distance(scalp, guides))
+    groom = _fitted(to_toml(tables), target, scalp, guides, hair.points[clumps.middle])
     _add_hairs(groom, hair, clumps)
     groom.recipe = None
     if prim is not None and head_file is not None:
@@ -195,7 +194,7 @@ class _Steps:
 
 
 def _read(
-    source: Path | str, head: Path | str | None, mesh: str | None, space: Any, files: dict[str, Path]
+    source: Path | str, head: Path | str | None, mesh: str | None, space: StageSpace | None, files: dict[str, Path]
 ) -> tuple[_Hair, Mesh, dict[str, Any], str | None]:
     """The hairs, the scalp, the table of the recipe that names it, and its prim where it is one of the source."""
     from ringlet import io
@@ -209,27 +208,31 @@ def _read(
     hair = _resampled(curves)
     roots = hair.points[:, 0]
     if head is not None:
-        table = {"file": _from(files["scalp"], head), **({"mesh": mesh} if mesh else {})}
+        table = {"file": _relative(head, files["scalp"]), **({"mesh": mesh} if mesh else {})}
         return hair, io.read_mesh(head, mesh), table, None
     if Path(source).suffix.lower().startswith(".usd") and bodies:
-        near = min(io.read_bodies(source), key=lambda body: _distance(body.mesh, roots))
+        near = min(io.read_bodies(source), key=lambda body: _median_distance(body.mesh, roots))
         return hair, near.mesh, {"file": files["scalp"].name, "mesh": io.head_path(near.prim)}, near.prim
     from ringlet.adoption.scalp import scalp_of_roots
 
-    own = min(bodies, key=lambda body: _distance(body, roots)) if bodies else scalp_of_roots(roots, str(source))
+    own = min(bodies, key=lambda body: _median_distance(body, roots)) if bodies else scalp_of_roots(roots, str(source))
     return hair, replace(own, name="scalp"), {"file": files["scalp"].name}, None
 
 
-def _from(recipe: Path, path: Path | str) -> str:
-    """Name of a file as the recipe has it."""
-    return Path(os.path.relpath(Path(path).absolute(), recipe.absolute().parent)).as_posix()
+def _relative(path: Path | str, neighbour: Path) -> str:
+    """Name of a file for a recipe that is in the folder of another."""
+    return Path(os.path.relpath(Path(path).absolute(), neighbour.absolute().parent)).as_posix()
 
 
-def _distance(mesh: Mesh, roots: NDArray[np.float64]) -> float:
-    """Median distance of roots from a mesh [m]."""
+def _root_distances(mesh: Mesh, roots: NDArray) -> NDArray[np.float64]:
+    """Distances of roots from a mesh [m], shape (k,)."""
     from ringlet import _core
 
-    return float(np.median(_core.bind_roots(mesh.points, mesh.triangles, np.ascontiguousarray(roots))[2]))
+    return _core.bind_roots(mesh.points, mesh.triangles, np.ascontiguousarray(roots, np.float64))[2]
+
+
+def _median_distance(mesh: Mesh, roots: NDArray) -> float:
+    return float(np.median(_root_distances(mesh, roots)))
 
 
 def _resampled(curves: Curves) -> _Hair:
@@ -253,8 +256,8 @@ def _guides(hair: _Hair, clumps: Clumps, scalp: Mesh) -> tuple[Curves, Coils]:
     along = Resampling(_packed(coils.center), SHAPE_POINTS)
     center = along.values(coils.center.reshape(-1, 3)).reshape(len(clumps), SHAPE_POINTS, 3)
     guides = _packed(center)
-    coiled = coils.width > 0.0
-    width, pitch = (_median(values, coiled) for values in (coils.width, coils.pitch))
+    coiled = coils.coiled
+    width, pitch = (_median(values[coiled], 1.0) for values in (coils.width, coils.pitch))
     guides.curve = {
         WIDTH: (coils.width / width).astype(np.float32),
         PITCH: (np.where(coiled, np.minimum(coils.pitch, MOST_PITCH), MOST_PITCH) / pitch).astype(np.float32),
@@ -264,12 +267,9 @@ def _guides(hair: _Hair, clumps: Clumps, scalp: Mesh) -> tuple[Curves, Coils]:
     return guides, coils
 
 
-def _distance_of(guides: Curves, scalp: Mesh) -> float:
+def _largest_distance(scalp: Mesh, guides: Curves) -> float:
     """Largest distance of roots from the scalp [m]; raises UserError for hair that does not grow there."""
-    from ringlet import _core
-
-    roots = np.ascontiguousarray(guides.roots, np.float64)
-    distance = _core.bind_roots(scalp.points, scalp.triangles, roots)[2]
+    distance = _root_distances(scalp, guides.roots)
     if (far := float(np.median(distance))) > FARTHEST_ROOT:
         raise UserError(
             f"{scalp.name}: half of the roots are more than {far:.3g} m away from it; see whether both files have the "
@@ -282,7 +282,7 @@ def _tables(
     stem: str, files: dict[str, Path], scalp: dict[str, Any], coils: Coils, hair: _Hair, distance: float
 ) -> dict[str, Any]:
     """The tables of the recipe."""
-    coiled = coils.width > 0.0
+    coiled = coils.coiled
     tables: dict[str, Any] = {
         "ringlet": 1,
         "name": stem,
@@ -311,15 +311,8 @@ def _lock_points(hair: _Hair, coils: Coils) -> int:
     return int(np.clip(max(hair.points.shape[1], most), 4, limits.POINTS))
 
 
-def groom_recipe(text: str, path: Path | None = None) -> Recipe:
-    """Parses the text of a recipe."""
-    from ringlet import groom
-
-    return groom.parse_recipe(text, path)
-
-
-def _fitted(recipe: Recipe, scalp: Mesh, guides: Curves, target: NDArray[np.float64]) -> Groom:
-    """The groom of a recipe and its guides, which get the phases of their curls and what these do not fit.
+def _fitted(text: str, path: Path, scalp: Mesh, guides: Curves, target: NDArray[np.float64]) -> Groom:
+    """The groom of the text of a recipe and its guides, which get the phases of their curls and what these do not fit.
 
     target: points of the locks as they were [m], evenly spaced, shape (locks, k, 3)
     """
@@ -328,6 +321,7 @@ def _fitted(recipe: Recipe, scalp: Mesh, guides: Curves, target: NDArray[np.floa
     from ringlet.groom.operators import Context, Drawn, Resample
     from ringlet.groom.scalp import Scalp
 
+    recipe = groom.parse_recipe(text, path)
     assert isinstance(recipe.guides, Drawn)
     surface, points = Scalp(scalp, None), recipe.locks.points
     context = Context(recipe.seed, surface, "curl", points)
@@ -379,10 +373,8 @@ def distances(points: NDArray[np.float64], lines: NDArray[np.float64]) -> NDArra
     return found
 
 
-def _write(
-    groom: Groom, guides: Curves, text: str, recipe: Path, files: dict[str, Path], scalp: dict[str, Any]
-) -> None:
-    """Writes the files of an adopted groom, the recipe last."""
+def _write(groom: Groom, guides: Curves, text: str, recipe: Path, files: dict[str, Path], *, with_scalp: bool) -> None:
+    """Writes the files of an adopted groom, the recipe last; ``with_scalp`` also its scalp."""
     from ringlet import io
     from ringlet.data.hair_scene import CurveSet, HairScene
 
@@ -392,7 +384,7 @@ def _write(
         made = {name: Path(folder, file.name) for name, file in files.items()}
         io.write_scene(HairScene([CurveSet("guides", guides, guide=True)]), made["guides"], StageSpace())
         io.write_offsets(groom.offsets, made["hairs"])
-        if scalp.get("file") == files["scalp"].name:
+        if with_scalp:
             io.write_scene(HairScene([], [(groom.scalp, None)]), made["scalp"], StageSpace())
         for name, file in made.items():
             if file.exists():
@@ -402,9 +394,9 @@ def _write(
         aside.write_text(text, encoding="utf-8")
 
 
-def _median(values: NDArray, chosen: NDArray[np.bool_]) -> float:
-    """Median of the chosen values; 1 where none is chosen."""
-    return float(np.median(values[chosen])) if chosen.any() else 1.0
+def _median(values: NDArray, without: float) -> float:
+    """Median of values; ``without`` where there are none."""
+    return float(np.median(values)) if len(values) else without
 
 
 def _packed(grid: NDArray[np.float64]) -> Curves:

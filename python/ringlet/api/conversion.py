@@ -128,7 +128,7 @@ def _thinned(one: CurveSet, fraction: float, wider: bool, points: int | None) ->
     if fraction < 1.0:
         order = Random(SEED, "convert").uniform(curves.ids)
         kept = np.sort(np.argsort(order, kind="stable")[: max(1, round(fraction * len(curves)))])
-        rows = np.flatnonzero(np.repeat(np.isin(np.arange(len(curves)), kept), curves.counts))
+        rows = curves.point_rows(kept)
         steps.append(lambda at: at[rows])
         scale = np.float32(len(curves) / len(kept) if wider else 1.0)
         curves = curves.take(kept)

@@ -8,8 +8,7 @@ from typing import Annotated, Any
 import typer
 
 import ringlet
-from ringlet.cli.convert import UNITS, Axis, Unit
-from ringlet.cli.options import Json, Report, Threads
+from ringlet.cli.options import UNITS, FromUnit, FromUp, Json, Report, Threads
 from ringlet.cli.output import print_json
 from ringlet.cli.progress import shown_progress
 
@@ -17,7 +16,7 @@ from ringlet.cli.progress import shown_progress
 def adopt(
     hair: Annotated[Path, typer.Argument(metavar="HAIR", help="USD, .abc, .hair, .tfx, or .obj with polylines.")],
     output: Annotated[
-        Path, typer.Option("--output", "-o", metavar="RECIPE", help="The recipe to write, with files beside it.")
+        Path, typer.Option("--output", "-o", metavar="RECIPE", help="The recipe to write, with files next to it.")
     ] = Path("adopted.recipe.toml"),
     head: Annotated[
         Path | None,
@@ -37,15 +36,8 @@ def adopt(
             "--locks", min=1, max=1_000_000, metavar="N", help="Number of locks; one a clump.", show_default=False
         ),
     ] = None,
-    from_unit: Annotated[
-        Unit | None,
-        typer.Option(
-            "--from-unit", help="Unit of a HAIR that stores none; cm for Alembic, else m.", show_default=False
-        ),
-    ] = None,
-    from_up: Annotated[
-        Axis | None, typer.Option("--from-up", help="Up-axis of a HAIR that stores none; Y.", show_default=False)
-    ] = None,
+    from_unit: FromUnit = None,
+    from_up: FromUp = None,
     report: Report = None,
     as_json: Json = False,
     threads: Threads = None,

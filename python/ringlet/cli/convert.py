@@ -8,12 +8,8 @@ from typing import Annotated, Any, Literal
 import typer
 
 import ringlet
-from ringlet.cli.options import Frames, Json, Threads
+from ringlet.cli.options import UNITS, Axis, Frames, FromUnit, FromUp, Json, Threads, Unit
 from ringlet.cli.output import wrote
-
-UNITS = {"mm": 0.001, "cm": 0.01, "dm": 0.1, "m": 1.0, "in": 0.0254, "ft": 0.3048}
-Unit = Literal["mm", "cm", "dm", "m", "in", "ft"]
-Axis = Literal["Y", "Z"]
 
 
 def convert(
@@ -25,13 +21,8 @@ def convert(
     up: Annotated[
         Axis | None, typer.Option("--up", help="Up-axis of OUT; Y for Alembic, else that of IN.", show_default=False)
     ] = None,
-    from_unit: Annotated[
-        Unit | None,
-        typer.Option("--from-unit", help="Unit of an IN that stores none; cm for Alembic, else m.", show_default=False),
-    ] = None,
-    from_up: Annotated[
-        Axis | None, typer.Option("--from-up", help="Up-axis of an IN that stores none; Y.", show_default=False)
-    ] = None,
+    from_unit: FromUnit = None,
+    from_up: FromUp = None,
     frames: Frames = None,
     only: Annotated[
         Literal["hairs", "guides"] | None,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import typer
 
@@ -27,6 +27,16 @@ Threads = Annotated[
         help="Threads to use; all processors by default.",
         show_default=False,
     ),
+]
+UNITS = {"mm": 0.001, "cm": 0.01, "dm": 0.1, "m": 1.0, "in": 0.0254, "ft": 0.3048}
+Unit = Literal["mm", "cm", "dm", "m", "in", "ft"]
+Axis = Literal["Y", "Z"]
+FromUnit = Annotated[
+    Unit | None,
+    typer.Option("--from-unit", help="Unit of a source that stores none; cm for Alembic, else m.", show_default=False),
+]
+FromUp = Annotated[
+    Axis | None, typer.Option("--from-up", help="Up-axis of a source that stores none; Y.", show_default=False)
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON value instead of text.")]
 Report = Annotated[

@@ -65,17 +65,21 @@ class Curves:
 
     def take(self, indices: NDArray) -> Curves:
         """The chosen curves (indices or a mask), with their attributes."""
-        chosen = np.arange(len(self))[indices]
-        counts = self.counts[chosen]
-        offsets = offsets_from_counts(counts)
-        rows = np.repeat(self.offsets[chosen] - offsets[:-1], counts) + np.arange(offsets[-1])
+        chosen, rows = np.arange(len(self))[indices], self.point_rows(indices)
         return Curves(
             self.points[rows],
-            offsets,
+            offsets_from_counts(self.counts[chosen]),
             self.ids[chosen],
             {name: values[chosen] for name, values in self.curve.items()},
             {name: values[rows] for name, values in self.point.items()},
         )
+
+    def point_rows(self, indices: NDArray) -> NDArray[np.int64]:
+        """Rows of the points of the chosen curves (indices or a mask), shape (k,)."""
+        chosen = np.arange(len(self))[indices]
+        counts = self.counts[chosen]
+        offsets = offsets_from_counts(counts)
+        return np.repeat(self.offsets[chosen] - offsets[:-1], counts) + np.arange(offsets[-1])
 
     def row_of(self, id: int, what: str) -> int:
         """Row of the curve with an id; raises UserError, which begins with ``what``, when there is none."""

@@ -58,7 +58,7 @@ def recorded() -> Iterator[Reads]:
 
 @contextmanager
 def unrecorded() -> Iterator[None]:
-    """Files that are read in the block are no inputs: those that are about to be written anew."""
+    """Files that are read in the block are no inputs: they are about to be replaced, or only their kind is needed."""
     before = _open.set(())
     try:
         yield

@@ -274,8 +274,8 @@ def _chosen(motion: Callable[[float], NDArray], curves: Curves, chosen: NDArray)
     """The motion of the chosen curves alone."""
     if len(chosen) == len(curves):
         return motion
-    rows = curves.with_points(np.arange(len(curves.points))[:, None] * np.ones((1, 3))).take(chosen).points[:, 0]
-    return lambda frame: motion(frame)[rows.astype(np.int64)]
+    rows = curves.point_rows(chosen)
+    return lambda frame: motion(frame)[rows]
 
 
 def read_alembic_curves(path: Path, prim: str | None, space: StageSpace) -> Curves:

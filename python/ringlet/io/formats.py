@@ -14,7 +14,7 @@ from ringlet.data.errors import UserError
 from ringlet.data.hair_scene import CurveSet, HairScene
 from ringlet.data.resampling import Resampling
 from ringlet.data.stage import StageSpace
-from ringlet.io.alembic import open_alembic, write_alembic
+from ringlet.io.alembic import SCHEMA, holds, open_alembic, write_alembic
 from ringlet.io.hair import read_hair, write_hair
 from ringlet.io.obj import read_obj_curves, write_obj_curves
 from ringlet.io.tfx import read_tfx, write_tfx
@@ -110,8 +110,6 @@ def write_scene(scene: HairScene, path: Path | str, space: StageSpace) -> list[s
 
 def _unheld(scene: HairScene, kind: Format) -> list[str]:
     """What Alembic does not hold: values that are no numbers, or in rows of another length."""
-    from ringlet.io.alembic import SCHEMA, holds
-
     if kind is USD:
         return []
     names = {n for one in scene.sets for n, v in (one.curves.curve | one.curves.point).items() if not holds(v)}
@@ -156,19 +154,17 @@ def joined(sets: list[CurveSet]) -> Curves:
     every = [one.curves for one in sets]
     if len(every) == 1:
         return every[0]
-    ids = np.concatenate([curves.ids for curves in every])
-    unique = len(np.unique(ids)) == len(ids)
 
-    def shared(kind: str) -> dict[str, np.ndarray]:
-        names = set.intersection(*(set(getattr(curves, kind)) for curves in every))
-        return {name: np.concatenate([getattr(curves, kind)[name] for curves in every]) for name in sorted(names)}
+    def shared(kind: str) -> list[dict[str, np.ndarray]]:
+        sets_of_values = [getattr(curves, kind) for curves in every]
+        names = sorted(set.intersection(*map(set, sets_of_values)))
+        return [{name: values[name] for name in names} for values in sets_of_values]
 
-    starts = np.cumsum([0] + [len(curves.points) for curves in every])
-    offsets = [curves.offsets[1:] + start for curves, start in zip(every, starts, strict=False)]
-    return Curves(
-        np.concatenate([curves.points for curves in every]),
-        np.concatenate([np.zeros(1, np.int64), *offsets]).astype(np.int32),
-        ids if unique else np.arange(len(ids), dtype=np.int64),
-        shared("curve"),
-        shared("point"),
+    made = Curves.joined(
+        [
+            replace(curves, curve=curve, point=point)
+            for curves, curve, point in zip(every, shared("curve"), shared("point"), strict=True)
+        ]
     )
+    unique = len(np.unique(made.ids)) == len(made)
+    return made if unique else replace(made, ids=np.arange(len(made), dtype=np.int64))

@@ -29,7 +29,7 @@ from ringlet.data.errors import UserError
 from ringlet.data.groom import GROOM as ROW
 from ringlet.data.groom import Groom
 from ringlet.data.mesh import Mesh
-from ringlet.data.reads import recorded
+from ringlet.data.reads import recorded, unrecorded
 from ringlet.data.regular import check_regular
 from ringlet.data.settings import did_you_mean
 from ringlet.data.stage import StageSpace
@@ -243,8 +243,8 @@ def _grooms(source: Source, root: Usd.Prim) -> dict[str, dict[str, Any]]:
 
 
 def is_groom(path: Path | str) -> bool:
-    """Whether a USD file is a groom of Ringlet's, or lies over one."""
-    with reading(path) as source:
+    """Whether a USD file is a groom of Ringlet's, or lies over one; does not count as reading it."""
+    with unrecorded(), reading(path) as source:
         root = source.stage.GetPrimAtPath(GROOM)
         return bool(root) and _get(root, "version") is not None
 

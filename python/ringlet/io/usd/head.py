@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from pxr import Sdf, Usd, UsdGeom
+from pxr import Sdf, UsdGeom
 
 from ringlet.io.usd.mesh import select_mesh
 from ringlet.io.usd.stage import new_stage, prims, reading, relative, writing
@@ -29,7 +29,7 @@ def write_head(source: Path | str, mesh: str, path: Path | str) -> None:
                 stage.SetEndTimeCode(opened.stage.GetEndTimeCode())
             stage.DefinePrim(HEAD).GetReferences().AddReference(Sdf.Reference(relative(source, aside), top.GetPath()))
             for curve in curves:
-                _deactivate(stage, Sdf.Path(head_path(str(curve))))
+                stage.OverridePrim(head_path(str(curve))).SetActive(False)
             stage.Save()
 
 
@@ -37,7 +37,3 @@ def head_path(mesh: str) -> str:
     """Path of a prim of the source in the file of its head."""
     path = Sdf.Path(mesh)
     return str(path.ReplacePrefix(path.GetPrefixes()[0], HEAD))
-
-
-def _deactivate(stage: Usd.Stage, path: Sdf.Path) -> None:
-    stage.OverridePrim(path).SetActive(False)

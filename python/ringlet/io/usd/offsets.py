@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import prod
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +16,7 @@ from ringlet.io.usd.stage import new_stage, reading, writing
 from ringlet.io.usd.values import Types, to_usd
 
 NAME = "offsets"  # of the prim below /groom
-VARYING = {"across": 2, "width": 1}  # arrays with several rows a hair, and the length of a row
+ROWS: dict[str, tuple[int, ...]] = {"across": (2,), "width": ()}  # arrays with several rows a hair; shape of a row
 PREFIX = "ringlet:offsets:"
 
 
@@ -25,8 +26,7 @@ def define_offsets(stage: Usd.Stage, path: str, offsets: HairOffsets) -> None:
     _set(prim, "gather", Types.Float, offsets.gather)
     for name, values in vars(offsets).items():
         if isinstance(values, np.ndarray):
-            flat = values.reshape(-1, VARYING[name]).squeeze(axis=1) if VARYING.get(name) == 1 else values
-            kind, value = to_usd(flat.reshape(-1, *flat.shape[2:]) if name == "across" else flat)
+            kind, value = to_usd(values.reshape(-1, *ROWS[name]) if name in ROWS else values)
             _set(prim, name, kind, value)
 
 
@@ -40,11 +40,10 @@ def offsets_at(prim: Usd.Prim, where: str) -> HairOffsets:
             raise UserError(f"{where}: has no {PREFIX}{name}; adopt the hair again")
         found[name] = np.array(value)
     count = max(len(found["lock"]), 1)
-    for name, row in VARYING.items():
-        values = found[name]
-        if values.size % (count * row):
+    for name, row in ROWS.items():
+        if found[name].size % (count * prod(row)):
             raise UserError(f"{where}: {PREFIX}{name} does not fit its {count} hairs; adopt the hair again")
-        found[name] = values.reshape(count, -1, row).squeeze(axis=2) if row == 1 else values.reshape(count, -1, row)
+        found[name] = found[name].reshape(count, -1, *row)
     gather = prim.GetAttribute(f"{PREFIX}gather")
     return HairOffsets(**found, gather=float(gather.Get()) if gather else 0.0).check(where)
 
