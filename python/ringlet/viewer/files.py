@@ -129,6 +129,14 @@ class Files:
         model = self.recipe.model
         return model.grooms[self.groom] if model.grooms else model
 
+    @property
+    def without_effect(self) -> frozenset[str]:
+        """Stages of the chosen groom that have no effect: the muted ones, or all but the one that is soloed."""
+        state = self.recipe.state
+        if not state.solo:
+            return state.muted
+        return frozenset({*(f"shape/{k}" for k in range(len(self.chosen_recipe.shape))), "curl"} - {state.solo})
+
     def refuse_several(self) -> None:
         """Raises UserError for a recipe with several grooms, whose locks and guides are not edited by hand."""
         if self.groom:
@@ -412,13 +420,6 @@ class Files:
                 }
             )
         )
-
-
-def without_effect(recipe: Recipe, state: State) -> frozenset[str]:
-    """Stages that have no effect: the muted ones, or while one acts alone all others that can be muted."""
-    if not state.solo:
-        return state.muted
-    return frozenset({*(f"shape/{k}" for k in range(len(recipe.shape))), "curl"} - {state.solo})
 
 
 def stages(recipe: Recipe, state: State) -> list[protocol.Stage]:
