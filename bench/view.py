@@ -21,8 +21,8 @@ from websockets.asyncio.client import ClientConnection, connect
 
 import ringlet
 
-PROTOCOL = 8  # version of python/ringlet/viewer/protocol.py
-EXAMPLE = Path(__file__).parents[1] / "examples/child"
+ROOT = Path(__file__).parents[1]
+EXAMPLE = ROOT / "examples/child"
 
 
 def run(locks: int = 1389, per_lock: int = 36, points: int = 60, steps: int = 12, warm_up: int = 2) -> dict[str, Any]:
@@ -103,8 +103,16 @@ async def _page(port: int) -> AsyncIterator[ClientConnection]:
                 raise
             await asyncio.sleep(0.1)
     async with page:
-        await _send(page, kind="hello", version=PROTOCOL, client="bench")
+        await _send(page, kind="hello", version=_protocol_version(), client="bench")
         yield page
+
+
+def _protocol_version() -> int:
+    """Version of the messages that the source of the page states."""
+    source = ROOT / "web/src/protocol.ts"
+    version = re.search(r"^export const VERSION = (\d+);$", source.read_text(), re.MULTILINE)
+    assert version, f"{source}: states no version"
+    return int(version[1])
 
 
 async def _drag(port: int, clock: ringlet.Clock, steps: int) -> dict[str, Any]:

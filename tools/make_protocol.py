@@ -1,4 +1,4 @@
-"""Generates web/src/protocol.ts, the messages in TypeScript, from python/ringlet/viewer/protocol.py.
+"""Generates web/src/protocol.ts, the messages in TypeScript, from python/ringlet/viewer/protocol.
 
 Usage: python tools/make_protocol.py [--check]. With --check it writes nothing, and exits with 1 if the file is stale.
 """
@@ -72,7 +72,7 @@ def _kind_first(fields: dict[str, FieldInfo]) -> list[tuple[str, FieldInfo]]:
 def lines() -> Iterator[str]:
     """Lines of the file."""
     union = get_args(get_args(protocol.FromPage)[0])
-    yield "// Made by tools/make_protocol.py from python/ringlet/viewer/protocol.py; change it there."
+    yield "// Made by tools/make_protocol.py from python/ringlet/viewer/protocol; change it there."
     yield ""
     yield f"export const VERSION = {protocol.VERSION};"
     yield "export type Json = string | number | boolean | null | Json[] | { [key: string]: Json };"

@@ -12,6 +12,7 @@ from pages import Page, page, serving
 from ringlet.data.errors import UserError
 from ringlet.viewer import protocol
 from ringlet.viewer.document import set_value
+from ringlet.viewer.grooming import Grooming
 from ringlet.viewer.merge import Versions
 from ringlet.viewer.project import Project
 from ringlet.viewer.session import Page as SessionPage
@@ -345,7 +346,7 @@ def test_a_hundred_kills_outside_writes_and_leaving_pages_lose_nothing(folder: P
             raise Killed
 
     monkeypatch.setattr(Session, "_record", mortal)
-    monkeypatch.setattr(Session, "regroom", lambda session, **_: None)  # the groom is no part of this
+    monkeypatch.setattr(Grooming, "request", lambda grooming, **_: None)  # the groom is no part of this
     recipe = folder / "small.recipe.toml"
 
     def start() -> Session:

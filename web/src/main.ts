@@ -49,8 +49,8 @@ class App {
     this.viewer.onDraw = (statistics) => this.status.drew(statistics);
     const keys = (names: string, does: string, ...all: string[]) =>
       bindKey({ keys: names, does, on: plainKey(...all), run: (event) => void this.viewer.key(event.key) });
-    keys("Arrows", "turn about the head", "ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown");
-    keys("+ and -", "nearer, away", "+", "=", "-");
+    keys("Arrows", "orbit the camera", "ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown");
+    keys("+ and -", "zoom in, zoom out", "+", "=", "-");
     keys("F", "frame all hair", "f");
     const name = () => (this.model.welcome?.name ?? "ringlet").split(".")[0];
     const left = h("div", { class: "left" }, new Stack(this.model).element, this.lock.element, this.brush.element);

@@ -1,4 +1,4 @@
-// Made by tools/make_protocol.py from python/ringlet/viewer/protocol.py; change it there.
+// Made by tools/make_protocol.py from python/ringlet/viewer/protocol; change it there.
 
 export const VERSION = 8;
 export type Json = string | number | boolean | null | Json[] | { [key: string]: Json };

@@ -47,6 +47,11 @@ def join(blocks: list[Block]) -> str:
     return "\n".join(block.text for block in blocks if block.lines)
 
 
+def place_of_new_array(blocks: list[Block]) -> int:
+    """Index at which the first table of a new array is inserted: before the curl, or else at the end."""
+    return next((k for k, block in enumerate(blocks) if block.name == "curl"), len(blocks))
+
+
 def insert_line(block: Block, line: str) -> None:
     """Inserts a line after the last setting of a block, before its trailing comments and blank lines."""
     at = len(block.lines)

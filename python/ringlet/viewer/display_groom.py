@@ -84,6 +84,44 @@ class DisplayGroom:
         return len(self.hairs.curves) if self.hairs else len(self.groom.locks)
 
 
+class StageClock:
+    """Times the stages of a groom and reports their progress.
+
+    stages: expected number of stages
+    times:  times of the computed stages [ms]
+    """
+
+    def __init__(self, stages: int, check_abort: Callable[[], None], progress: Callable[[str, float], None]) -> None:
+        self.stages, self.times = stages, dict[str, float]()
+        self._check_abort, self._progress = check_abort, progress
+        self._begun = 0
+        self._start = self._stage_start = time.perf_counter()
+
+    def __call__(self, stage: str, done: int, total: int) -> None:
+        """A stage begins, or ends where ``done`` is not 0."""
+        if done:
+            self.end(stage)
+            return
+        self._check_abort()
+        self.begin(stage, min(self._begun / self.stages, 1.0))
+        self._begun += 1
+
+    def begin(self, stage: str, before: float) -> None:
+        """A stage begins. before: fraction of the stages before it."""
+        self._progress(stage, before)
+        self._stage_start = time.perf_counter()
+
+    def end(self, stage: str) -> None:
+        """The current stage ends; one of less than 0.5 ms was not computed again."""
+        if (took := 1e3 * (time.perf_counter() - self._stage_start)) > 0.5:
+            self.times[stage] = round(took, 1)
+
+    @property
+    def total(self) -> float:
+        """Time since the start [ms]."""
+        return 1e3 * (time.perf_counter() - self._start)
+
+
 class GroomEvaluator:
     """Evaluates recipes of one project; caches the results of unchanged stages."""
 
@@ -111,45 +149,28 @@ class GroomEvaluator:
         check_abort: called between stages; may raise an exception to abort
         progress:    called with each stage and the fraction of the stages before it
         """
-        began = time.perf_counter()
-        times: dict[str, float] = {}
-        clock = [began]
-
-        each = (recipe.grooms or {"": recipe}).values()
-        stages, begun = sum(len(one.shape) + 4 for one in each) + 1, 0
-
-        def clocked(stage: str, done: int, total: int) -> None:
-            nonlocal begun
-            if not done:
-                check_abort()
-                progress(stage, min(begun / stages, 1.0))
-                begun += 1
-                clock[0] = time.perf_counter()
-            elif (took := 1e3 * (time.perf_counter() - clock[0])) > 0.5:
-                times[stage] = round(took, 1)
-
+        recipes = recipe.grooms or {"": recipe}
+        clock = StageClock(sum(len(one.shape) + 4 for one in recipes.values()) + 1, check_abort, progress)
         always = frozenset({"clean"}) if draft else frozenset()
         made = {}
-        for name, one in (recipe.grooms or {"": recipe}).items():
+        for name, one in recipes.items():
             one = without_muted(one, always | (muted if name == chosen else frozenset()))
             memory = self._memories.setdefault(name, Memory())
-            made[name] = make_groom(one, progress=clocked, memory=memory, **self._read(name, one))
+            made[name] = make_groom(one, progress=clock, memory=memory, **self._read(name, one))
             made[name].hairs = one.hairs.model_dump(mode="json")
             check_abort()
         groom = join_grooms(made) if recipe.grooms else made[""]
-        progress("hairs", 1.0 - 1.0 / stages)
-        clock[0] = time.perf_counter()
+        clock.begin("hairs", 1.0 - 1.0 / clock.stages)
         hairs = lay_hairs(groom, memory=self._hairs)
-        if (took := 1e3 * (time.perf_counter() - clock[0])) > 0.5:
-            times["hairs"] = round(took, 1)
+        clock.end("hairs")
         return DisplayGroom(
             groom,
             hairs,
             draft,
             frozenset(edit.lock + offset for one, offset in recipes_of(recipe) for edit in one.edit),
             frozenset(recipe.curves),
-            times,
-            1e3 * (time.perf_counter() - began),
+            clock.times,
+            clock.total,
         )
 
     def _read(self, name: str, recipe: Recipe) -> dict[str, Any]:

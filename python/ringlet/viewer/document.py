@@ -222,7 +222,7 @@ class Document:
         """Position of a new table: among its array of tables, or else before the curl."""
         if places:
             return places[at] if at < len(places) else places[-1] + 1
-        return next((k for k, block in enumerate(tables) if block.name == "curl"), len(tables))
+        return blocks.place_of_new_array(tables)
 
     def apply(
         self,

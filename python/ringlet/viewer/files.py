@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any, TypeVar, get_args
 
 from ringlet.data.errors import UserError
 from ringlet.data.files import replacing
@@ -22,6 +23,8 @@ from ringlet.viewer.project import Project
 from ringlet.viewer.protocol import Difference, File, Place
 from ringlet.viewer.variant import variant
 from ringlet.viewer.wire import pack
+
+Entry = TypeVar("Entry")
 
 
 class Files:
@@ -129,6 +132,14 @@ class Files:
         model = self.recipe.model
         return model.grooms[self.groom] if model.grooms else model
 
+    @property
+    def without_effect(self) -> frozenset[str]:
+        """Stages of the chosen groom that have no effect: the muted ones, or all but the one that is soloed."""
+        state = self.recipe.state
+        if not state.solo:
+            return state.muted
+        return frozenset({*(f"shape/{k}" for k in range(len(self.chosen_recipe.shape))), "curl"} - {state.solo})
+
     def refuse_several(self) -> None:
         """Raises UserError for a recipe with several grooms, whose locks and guides are not edited by hand."""
         if self.groom:
@@ -161,38 +172,15 @@ class Files:
         """
         document = self.recipe
         names = self._inherited(document)
-        order = [f"shape/{k}" for k in range(len(self.chosen_recipe.shape))]
+        stages = [f"shape/{k}" for k in range(len(self.chosen_recipe.shape))]
         new = {**({"op": op, **_starter(op)} if op else {}), **(values or {})}
-        if self.groom and names is None:
-            document.set([([GROOMS, self.groom, "shape"], self._arranged(action, at, to, new))])
-        elif names is None:
-            if action == "add":
-                document.add_tables("shape", at, [new])
-            elif action == "remove":
-                document.remove_tables("shape", [at])
-            else:
-                document.move_table("shape", at, to)
-        elif action == "remove" and at < len(names):
-            place: Place = [GROOMS, self.groom, "shape"] if self.groom else ["shape"]
-            document.set([([*place, names[at]], None), ([*place, names[at]], False)])
-        elif not self.groom and action == "add" and at >= len(names):
-            document.add_tables(f"shape.{APPEND}", at - len(names), [new])
-        elif not self.groom and action == "remove":
-            document.remove_tables(f"shape.{APPEND}", [at - len(names)])
-        elif not self.groom and action == "move" and min(at, to) >= len(names):
-            document.move_table(f"shape.{APPEND}", at - len(names), to - len(names))
+        if names is not None:
+            self._edit_inherited(names, action, at, to, new)
+        elif self.groom:
+            document.set([([GROOMS, self.groom, "shape"], self._arranged_shape(action, at, to, new))])
         else:
-            base = self._own_tables(document)["extends"]
-            raise UserError(
-                f"{document.path.name}: operators of {base} keep their order, and others follow them; "
-                f"move them in {base}, or give {document.path.name} [[shape]] tables of its own"
-            )
-        if action == "add":
-            order.insert(at, "")
-        else:
-            moved = order.pop(at)
-            order[to:to] = [moved] if action == "move" else []
-        places = {old: f"shape/{k}" for k, old in enumerate(order)}
+            _edit_tables(document, "shape", action, at, to, new)
+        places = {old: f"shape/{k}" for k, old in enumerate(_arranged(stages, action, at, to, ""))}
 
         def now(stage: str) -> str:
             return places.get(stage, "") if "/" in stage else stage
@@ -200,16 +188,31 @@ class Files:
         muted = frozenset(filter(None, map(now, document.state.muted)))
         document.keep(muted=muted, solo=now(document.state.solo))
 
-    def _arranged(self, action: str, at: int, to: int, new: dict[str, Any]) -> list[dict[str, Any]]:
+    def _edit_inherited(self, names: list[str], action: str, at: int, to: int, new: dict[str, Any]) -> None:
+        """Edits the operators of a variant: it removes those of its base by name, and has tables of its own after them.
+
+        names: names of the operators of the base
+        """
+        document = self.recipe
+        if action == "remove" and at < len(names):
+            place: Place = [GROOMS, self.groom, "shape"] if self.groom else ["shape"]
+            document.set([([*place, names[at]], None), ([*place, names[at]], False)])
+            return
+        first = min(at, to) if action == "move" else at
+        if self.groom or first < len(names):
+            base = self._own_tables(document)["extends"]
+            raise UserError(
+                f"{document.path.name}: operators of {base} keep their order, and others follow them; "
+                f"move them in {base}, or give {document.path.name} [[shape]] tables of its own"
+            )
+        _edit_tables(document, f"shape.{APPEND}", action, at - len(names), to - len(names), new)
+
+    def _arranged_shape(self, action: str, at: int, to: int, new: dict[str, Any]) -> list[dict[str, Any]]:
         """The operators of the chosen groom, with one added, removed or moved."""
-        shape = list(self._own_tables(self.recipe).get("shape", []))
+        shape = self._own_tables(self.recipe).get("shape", [])
         if not 0 <= at < len(shape) + (action == "add"):
             raise UserError(f"{self.recipe.path.name}: shape has {len(shape)} operators; there is none at {at}")
-        moved = [new] if action == "add" else [shape.pop(at)]
-        if action != "remove":
-            to = at if action == "add" else to
-            shape[to:to] = moved
-        return shape
+        return _arranged(shape, action, at, to, new)
 
     def write_edits(self, kind: str, tables: list[dict[str, Any]], gesture: int | None = None) -> None:
         """Replaces the tables of a kind in the recipe's file of edits; names a new file when there is none.
@@ -345,7 +348,7 @@ class Files:
     def save(self, file: File, name: str = "", as_variant: bool = False) -> Path:
         """Writes a file and its manual edits.
 
-        name:       file name of a copy beside it; empty for the file itself
+        name:       file name of a copy next to it; empty for the file itself
         as_variant: whether the copy extends the file
 
         Raises UserError when the copy exists already.
@@ -414,13 +417,6 @@ class Files:
         )
 
 
-def without_effect(recipe: Recipe, state: State) -> frozenset[str]:
-    """Stages that have no effect: the muted ones, or while one acts alone all others that can be muted."""
-    if not state.solo:
-        return state.muted
-    return frozenset({*(f"shape/{k}" for k in range(len(recipe.shape))), "curl"} - {state.solo})
-
-
 def stages(recipe: Recipe, state: State) -> list[protocol.Stage]:
     """Stages of a recipe in their order."""
     found: list[tuple[str, str, Place]] = [("guides", "guides", ["guides"]), ("locks", "locks", ["locks"])]
@@ -453,6 +449,27 @@ def operator_names(schema: dict[str, Any]) -> list[str]:
 def copied(document: Document, edits: Path | None) -> str:
     """Text of a copy of a document, with the name of its own file of edits if it has one."""
     return document.text if edits is None else set_value(document.text, ["edits"], edits.name)
+
+
+def _edit_tables(document: Document, name: str, action: str, at: int, to: int, new: dict[str, Any]) -> None:
+    """Adds, removes or moves a table of an array of tables."""
+    if action == "add":
+        document.add_tables(name, at, [new])
+    elif action == "remove":
+        document.remove_tables(name, [at])
+    else:
+        document.move_table(name, at, to)
+
+
+def _arranged(entries: Sequence[Entry], action: str, at: int, to: int, new: Entry) -> list[Entry]:
+    """A list with ``new`` added at ``at``, or the entry there removed or moved to ``to``."""
+    arranged = list(entries)
+    if action == "add":
+        arranged.insert(at, new)
+    else:
+        moved = arranged.pop(at)
+        arranged[to:to] = [moved] if action == "move" else []
+    return arranged
 
 
 def _by_name(place: Place, names: list[str]) -> Place:

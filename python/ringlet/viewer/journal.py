@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import json
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
@@ -42,7 +40,7 @@ class Entry(BaseModel):
 
 
 class Journal:
-    """The journal of one file, beside it; it exists while there is something to recover."""
+    """The journal of one file, next to it; it exists while there is something to recover."""
 
     def __init__(self, file: Path) -> None:
         self.path = file.with_name(f".{file.name}.unsaved")
@@ -68,7 +66,7 @@ class Journal:
         if not entry.documents and not self._written:
             return
         with suppress(UserError), replacing(self.path, update=True) as aside:
-            aside.write_text(_json(entry.model_dump()), encoding="utf-8")
+            aside.write_text(entry.model_dump_json(), encoding="utf-8")
             self._written = True
 
     def close(self, *, clean: bool) -> None:
@@ -77,7 +75,3 @@ class Journal:
             with suppress(OSError):
                 self.path.unlink(missing_ok=True)
             self._written = False
-
-
-def _json(value: Any) -> str:
-    return json.dumps(value, ensure_ascii=False)

@@ -102,7 +102,7 @@ def _with_tables(text: str, name: str, source: str) -> str:
     tables = blocks.split(text)
     first = next((k for k, block in enumerate(tables) if block.name == name), None)
     if first is None:
-        first = next((k for k, block in enumerate(tables) if block.name == "curl"), len(tables))
+        first = blocks.place_of_new_array(tables)
     new = [block for block in blocks.split(source) if _belongs(block, name)]
     before = [block for block in tables[:first] if not _belongs(block, name)]
     after = [block for block in tables[first:] if not _belongs(block, name)]

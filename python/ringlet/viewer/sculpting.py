@@ -54,9 +54,7 @@ class Sculptor:
         stroke = self._stroke
         if stroke is None or stroke.gesture != message.gesture:
             stroke = self._stroke = self._begin(message.gesture, groom)
-        shape = message.radius, message.strength, message.falloff
-        ball = Ball(np.array(message.at) + groom.origin, np.array(message.by), *shape)
-        balls = [ball, ball.mirrored(stroke.scalp.middle[0])] if message.mirrored else [ball]
+        balls = _balls(message, groom, stroke.scalp)
         if message.tool == "grab" and not stroke.weights:
             starts = [replace(one, at=one.at - one.by) for one in balls]
             stroke.weights = [brush.grab_weights(stroke.guides, start) for start in starts]
@@ -77,8 +75,7 @@ class Sculptor:
     def freeze(self, message: protocol.Sculpt, groom: Groom) -> Curves:
         """Freezes or thaws the guides in the brush; returns the guides. Raises UserError as ``move``."""
         stroke = self._begin(message.gesture, groom)
-        ball = Ball(np.array(message.at) + groom.origin, np.array(message.by), message.radius)
-        for one in [ball, ball.mirrored(stroke.scalp.middle[0])] if message.mirrored else [ball]:
+        for one in _balls(message, groom, stroke.scalp):
             ids = set(stroke.guides.ids[brush.in_ball(stroke.guides, one)].tolist())
             self._frozen = self._frozen | ids if message.tool == "freeze" else self._frozen - ids
         return stroke.guides
@@ -145,3 +142,10 @@ class Sculptor:
             changed=np.logical_or.reduceat(moved, guides.offsets[:-1]),
             frozen=self._held(guides),
         )
+
+
+def _balls(message: protocol.Sculpt, groom: Groom, scalp: Scalp) -> list[Ball]:
+    """The brush, and its mirror image where it has one."""
+    shape = message.radius, message.strength, message.falloff
+    ball = Ball(np.array(message.at) + groom.origin, np.array(message.by), *shape)
+    return [ball, ball.mirrored(scalp.middle[0])] if message.mirrored else [ball]

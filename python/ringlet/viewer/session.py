@@ -9,47 +9,38 @@ from collections import Counter
 from collections.abc import Callable
 from concurrent.futures import Future
 from contextlib import suppress
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from ringlet import api
 from ringlet.data.errors import UserError
 from ringlet.data.pigment import HAIR_COLORS
-from ringlet.data.regular import read_text
-from ringlet.groom import Recipe
-from ringlet.viewer import overlays, protocol
+from ringlet.viewer import protocol
 from ringlet.viewer.caches import Caches
-from ringlet.viewer.display_groom import DisplayGroom, GroomEvaluator
-from ringlet.viewer.document import Document
+from ringlet.viewer.comparer import Comparer
+from ringlet.viewer.display_groom import DisplayGroom
 from ringlet.viewer.edit_lock import EditLock
-from ringlet.viewer.files import Files, operator_names, without_effect
+from ringlet.viewer.files import Files, operator_names
+from ringlet.viewer.grooming import Grooming
 from ringlet.viewer.manipulator import LockManipulator
 from ringlet.viewer.playback import Playback
-from ringlet.viewer.problems import GROOM, RECOVERED, SAVE, UNDO, WORK, ProblemList, conflict_fixes, dismiss, fixes_of
-from ringlet.viewer.progress_report import ProgressReport
+from ringlet.viewer.problems import GROOM, RECOVERED, SAVE, ProblemList, conflict_fixes, dismiss
 from ringlet.viewer.project import Project
 from ringlet.viewer.protocol import File, Fix
 from ringlet.viewer.publisher import Publisher, SendQueue
 from ringlet.viewer.recovery import Recovery
 from ringlet.viewer.scene import read_scene
 from ringlet.viewer.sculpting import Sculptor
-from ringlet.viewer.viewport import Viewport, measured
+from ringlet.viewer.viewport import Viewport
 from ringlet.viewer.watcher import FileWatcher
 from ringlet.viewer.wire import pack, trouble
-from ringlet.viewer.work import too_large
-from ringlet.viewer.worker import LatestTaskWorker, SerialWorker, Stale, Timer
+from ringlet.viewer.worker import SerialWorker, Timer
 
 PATIENCE = 1.0  # that the end of the server waits for work in progress [s]
 FILES_INTERVAL = 2.0  # interval at which the list of files is refreshed [s]
 WATCH_INTERVAL = 0.4  # interval at which open files are looked at [s]
 REST_AFTER = 1.0  # time without a message of a gesture after which its whole groom is made [s]
-PROGRESS_AFTER = 0.6  # time from which the progress of a groom is shown [s]
-
-MAKE = Fix(label="Make it", message={"kind": "proceed"})
 
 log = logging.getLogger("ringlet.viewer")
 
@@ -60,41 +51,11 @@ def _schemas() -> dict[str, Any]:
     return api.schema()
 
 
-@dataclass(frozen=True)
-class Work:
-    """A request for a groom.
-
-    document: the recipe's document
-    without:  stages without effect
-    draft:    whether a draft suffices
-    large:    whether it is made however long it takes
-    chosen:   the one of several grooms that ``without`` is about
-    """
-
-    document: Document
-    recipe: Recipe
-    revision: int
-    without: frozenset[str]
-    draft: bool
-    large: bool = False
-    chosen: str = ""
-
-
 class Page:
     """A connected page."""
 
     def __init__(self, name: str, queue: SendQueue) -> None:
         self.name, self.queue = name, queue
-
-
-@dataclass(frozen=True)
-class Comparison:
-    """A request for a groom to compare with: a recipe, its muted stages, its name, and the page that asks."""
-
-    recipe: Recipe
-    muted: frozenset[str]
-    name: str
-    page: Page
 
 
 class Session:
@@ -115,11 +76,9 @@ class Session:
         self._watching: asyncio.Task[None] | None = None
         self._watcher = FileWatcher()
         self._rest = Timer(REST_AFTER, self.submit)
-        self._evaluator, self._beside = GroomEvaluator(project), GroomEvaluator(project)
         self._caches = Caches(project)
-        self._worker = LatestTaskWorker[Work](self._groom, "groom")
-        self._measurer = LatestTaskWorker[DisplayGroom](self._measure, "measure")
-        self._comparer = LatestTaskWorker[Comparison](self._groom_beside, "compare")
+        self._grooming = Grooming(project, self.publisher, self.problems, self._call, self._show, self.trouble)
+        self._comparer = Comparer(project, self.publisher, self._call)
         self._load(file)
 
     def _load(self, file: Path) -> None:
@@ -130,7 +89,8 @@ class Session:
         self._recovery = Recovery(files, self.problems)
         self._playback = Playback(files, self.publisher, viewport, self._call, self.trouble)
         self._manipulator, self._sculptor = LockManipulator(files), Sculptor(files)
-        self._shown: Recipe | None = None  # recipe of the displayed groom
+        self._grooming.open(files, viewport)
+        self._comparer.open(files, viewport)
         self._watcher.changed(files.watched())
         entry = self._recovery.recover()
         self.recovered = entry is not None
@@ -154,7 +114,7 @@ class Session:
             self.publisher.publish(f"document/{file}", self.files.message(file))
             self._show_conflict(file)
         if "recipe" in self.files.documents:
-            self.regroom()
+            self._grooming.request()
 
     async def _watch(self) -> None:
         """Takes in what other programs write: the open files, and the recipes and caches of the project."""
@@ -189,8 +149,8 @@ class Session:
         self._thread.submit(self._finish)
         self._thread.stop(PATIENCE)
         self._playback.stop()
-        for worker in (self._worker, self._measurer, self._comparer):
-            worker.stop(PATIENCE)
+        self._grooming.stop(PATIENCE)
+        self._comparer.stop(PATIENCE)
 
     def _finish(self) -> None:
         self._end_gesture()
@@ -316,15 +276,15 @@ class Session:
         elif isinstance(message, protocol.Dismiss):
             self.problems.clear(message.subject)
         elif isinstance(message, protocol.Proceed):
-            self.regroom(large=True)
+            self._grooming.request(large=True)
         elif isinstance(message, protocol.Cancel):
-            self._cancel()
+            self._grooming.cancel_by_hand()
         elif isinstance(message, protocol.Restore):
             if not self.recovered:
                 files.recover(message.file, message.text, message.edits, message.saved, message.saved_edits)
                 self._edited(message.file)
         elif isinstance(message, protocol.Compare):
-            self._compare(page, message)
+            self._comparer.compare(message, page.queue)
         elif isinstance(message, protocol.Isolate):
             self._manipulator.isolate(message, self._viewport.display)
             self._edited("recipe")
@@ -361,45 +321,12 @@ class Session:
         if message.resting:
             self._edited("recipe")
         else:
-            document = self.files.recipe
-            sculpted = self._sculptor.preview(document.model)
-            self._worker.submit(Work(document, sculpted, document.revision, self._without, True))
+            self._preview(draft=True)
             self._rest.restart(self._settle)
 
-    def _compare(self, page: Page, message: protocol.Compare) -> None:
-        """Shows a groom for comparison as soon as it is made; raises UserError for a recipe that cannot be read."""
-        self._viewport.clear_beside()
-        self._comparer.cancel()
-        if message.to == "none":
-            self.publisher.publish("b/none", pack(protocol.Compared(name="")))
-            return
-        document = self.files.recipe
-        recipe, muted, name = document.model, self._without, "as it was"
-        if message.to == "saved":
-            recipe = self.files.parse(document.saved, document.path, document.saved_edits)
-            muted, name = frozenset[str](), "as saved"
-        elif message.to == "file":
-            path = self.project.inside(message.name, "compare")
-            recipe = self.files.parse(read_text(path, "choose a recipe of the project"), path)
-            muted, name = frozenset[str](), path.name
-        self._comparer.submit(Comparison(recipe, muted, name, page))
-
-    def _groom_beside(self, asked: Comparison) -> None:
-        """Grooms on a worker thread what is shown for comparison."""
-        try:
-            display = self._beside.groom(
-                asked.recipe, asked.muted, draft=False, check_abort=self._comparer.raise_if_stale
-            )
-            self._comparer.raise_if_stale()
-            self._call(self.publisher.publish, "b/none", pack(protocol.Compared(name=asked.name)))
-            self._call(self._viewport.show, display, "b")
-        except UserError as error:
-            asked.page.queue.put("trouble", trouble(str(error)))
-        except Stale:
-            raise
-        except Exception as error:
-            log.exception("a groom to compare with could not be made")
-            asked.page.queue.put("trouble", trouble(f"this is a mistake in Ringlet ({error}); see the terminal"))
+    def _preview(self, *, draft: bool) -> None:
+        """Requests the groom with the current stroke."""
+        self._grooming.request_of(self._sculptor.preview(self.files.recipe.model), draft=draft)
 
     # Files
 
@@ -439,7 +366,7 @@ class Session:
             raise UserError(f"open: {self.files.file.name} has unsaved changes; save them, or discard them")
         before, recovery, playback = self.publisher.retained(), self._recovery, self._playback
         self._rest.cancel()
-        self._worker.cancel()
+        self._grooming.cancel()
         self._comparer.cancel()
         self.publisher.clear("")
         try:
@@ -509,7 +436,7 @@ class Session:
         self._show_conflict(file)
         self.publisher.publish(f"document/{file}", self.files.message(file))
         if file == "recipe":
-            self.regroom(draft=not resting)
+            self._grooming.request(draft=not resting)
         else:
             self._playback.publish_timeline()
         if resting:
@@ -522,11 +449,9 @@ class Session:
         if not self._rest.cancel() or "recipe" not in self.files.documents:
             return
         if self._sculptor.busy:
-            document = self.files.recipe
-            recipe = self._sculptor.preview(document.model)
-            self._worker.submit(Work(document, recipe, document.revision, self._without, False))
+            self._preview(draft=False)
         else:
-            self.regroom()
+            self._grooming.request()
 
     def _end_gesture(self) -> None:
         """Ends the gesture of a page that is gone: its stroke is kept, and the whole groom is made."""
@@ -535,89 +460,9 @@ class Session:
             self._edited("recipe")
         self._settle()
 
-    @property
-    def _without(self) -> frozenset[str]:
-        """Stages without effect."""
-        document = self.files.recipe
-        return without_effect(self.files.chosen_recipe, document.state)
-
-    def regroom(self, *, draft: bool = False, large: bool = False) -> None:
-        """Requests the groom of the current recipe; a draft while a gesture is in progress.
-
-        large: makes it however long it takes; otherwise one that takes much longer than the displayed one is held
-        """
-        document, display = self.files.recipe, self._viewport.display
-        ratio = 0.0
-        if not large and display is not None and self._shown is not None:
-            ratio = too_large(document.model, self._shown, display)
-        if ratio:
-            self._worker.cancel()
-            message = f"This groom has about {ratio:.0f} times as many points as the one that is seen"
-            self.problems.show(WORK, message, [MAKE, UNDO])
-            return
-        self.problems.clear(WORK)
-        self._worker.submit(
-            Work(document, document.model, document.revision, self._without, draft, large, self.files.groom)
-        )
-
-    def _cancel(self) -> None:
-        """Cancels the groom that is being made."""
-        self._worker.cancel()
-        self.problems.show(WORK, "The groom was canceled; the last one is seen", [MAKE, UNDO])
-
-    def _groom(self, work: Work) -> None:
-        """Grooms on the worker thread. Newer work does not abort a draft, so that the page updates during a gesture."""
-        check_abort = self._worker.raise_if_cancelled if work.draft else self._worker.raise_if_stale
-        self._measurer.cancel()
-        progress = ProgressReport(lambda *now: self._call(self._report, *now), PROGRESS_AFTER)
-        try:
-            display = self._evaluator.groom(
-                work.recipe,
-                work.without,
-                chosen=work.chosen,
-                draft=work.draft,
-                check_abort=check_abort,
-                progress=progress,
-            )
-            self._call(self._show, display, work)
-            if not work.draft:
-                self._measurer.submit(display)
-        except UserError as error:
-            self._call(self._fail, error, work)
-        except Stale:
-            raise
-        except Exception as error:
-            log.exception("a groom could not be made")
-            self._call(self.trouble, f"this is a mistake in Ringlet ({error}); see the terminal")
-        finally:
-            progress.close()
-
-    def _report(self, stage: str, done: float) -> None:
-        self.publisher.publish("progress", pack(protocol.Progress(stage=stage, done=done)))
-
-    def _fail(self, error: UserError, work: Work) -> None:
-        """Shows why a groom cannot be made, with the remedies; it stays until one can."""
-        if work.document is not self.files.documents.get("recipe"):
-            return
-        undo = [UNDO] if work.document.can_undo else []
-        fixes = fixes_of(error, "recipe")
-        setting = ".".join(str(part) for part in error.fixes[0].place) if error.fixes else ""
-        self.problems.show(GROOM, str(error), [*fixes, *undo], place=("recipe", setting))
-
-    def _measure(self, display: DisplayGroom) -> None:
-        """Measures a groom on a worker thread; a new groom cancels it."""
-        groom, chunks = display.groom, []
-        for chunk in overlays.depths(groom.scalp, groom.scalp.points, groom.locks, groom.locks.points):
-            self._measurer.raise_if_stale()
-            chunks.append(chunk)
-        self._call(self.publisher.publish, "measured", measured(groom, np.concatenate([np.empty(0), *chunks])))
-
-    def _show(self, display: DisplayGroom, work: Work) -> None:
-        if work.document is not self.files.documents.get("recipe"):  # another file was opened meanwhile
-            return
-        self.problems.clear(GROOM, SAVE)
-        before, self._shown = self._viewport.display, work.recipe
-        self._viewport.show(display, "a", work.revision)
+    def _show(self, display: DisplayGroom, revision: int) -> None:
+        before = self._viewport.display
+        self._viewport.show(display, "a", revision)
         guides_changed = before is None or before.groom.guides is not display.groom.guides
         if guides_changed and display.groom.unsculpted is not None and not self._sculptor.busy:
             self.publisher.publish("guides", self._sculptor.message(display.groom.guides, display.groom))

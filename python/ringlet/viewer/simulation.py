@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -24,10 +23,9 @@ from ringlet.viewer.display_groom import spread_order
 from ringlet.viewer.frame_cache import FrameCache
 from ringlet.viewer.scene import FrameState, VisibleMesh
 from ringlet.viewer.wire import pack
+from ringlet.viewer.worker import report_mistake
 
 MAX_CHECKPOINT_BYTES = 1_500_000_000  # memory for the checkpoints of frames
-
-log = logging.getLogger("ringlet.viewer")
 
 
 @dataclass
@@ -218,8 +216,7 @@ class Simulation:
         except UserError as error:
             self._fail(str(error), run.stopping)
         except Exception as error:
-            log.exception("a shot could not be run")
-            self._fail(f"this is a mistake in Ringlet ({error}); see the terminal", run.stopping)
+            self._fail(report_mistake("a shot could not be run", error), run.stopping)
         self._changed()
 
     def _fail(self, message: str, stopping: threading.Event) -> None:

@@ -56,6 +56,12 @@ def _log_exception(future: Future[Any]) -> None:
         log.error("the review could not go on", exc_info=error)
 
 
+def report_mistake(what: str, error: Exception) -> str:
+    """Logs an error that is no UserError; returns a message for the pages."""
+    log.error(what, exc_info=error)
+    return f"this is a mistake in Ringlet ({error}); see the terminal"
+
+
 class Timer:
     """Submits a call after some seconds without another one.
 

@@ -88,7 +88,7 @@ export class BrushTool {
       ),
     );
     this.element.append(
-      h("p", { class: "told" }, "The right button, Alt or the arrow keys turn the head; a finger beside the hair does too."),
+      h("p", { class: "told" }, "The right button, Alt or the arrow keys orbit the camera; so does a finger that starts off the hair."),
     );
     this.strength.set(1, { least: 0.05, most: 1, step: 0.05 });
     this.tellStrength();
@@ -104,8 +104,8 @@ export class BrushTool {
       element.addEventListener(end, () => this.lift(), { capture: true });
     element.addEventListener("pointerleave", () => this.ring.toggleAttribute("hidden", true));
     bindKey({ keys: "[ and ]", does: "smaller brush, larger brush", on: plainKey("[", "]"), run: (event) => this.resize(event.key === "[" ? 1 / STEP : STEP) });
-    bindKey({ keys: "B", does: "take up the brush, or lay it down", on: plainKey("b"), run: () => this.show(!this.on) });
-    bindKey({ keys: "Escape", does: "lay down the brush", on: (event) => this.on && event.key === "Escape", run: () => this.show(false) });
+    bindKey({ keys: "B", does: "turn the brush on or off", on: plainKey("b"), run: () => this.show(!this.on) });
+    bindKey({ keys: "Escape", does: "turn the brush off", on: (event) => this.on && event.key === "Escape", run: () => this.show(false) });
     for (const topic of ["role", "guides"] as const) model.on(topic, () => this.update());
     this.resize(1);
   }
@@ -150,16 +150,6 @@ export class BrushTool {
     this.radius.style.setProperty("--part", `${(100 * (this.metres - SMALLEST)) / (LARGEST - SMALLEST)}%`);
   }
 
-  private get size() {
-    const { clientWidth, clientHeight } = this.viewer.element;
-    return { width: clientWidth, height: clientHeight };
-  }
-
-  private at(event: PointerEvent) {
-    const box = this.viewer.element.getBoundingClientRect();
-    return { x: event.clientX - box.left, y: event.clientY - box.top };
-  }
-
   /** The place on a guide that is nearest to the eye under the brush; guides behind the head do not count. */
   private under(at: { x: number; y: number }): Vector3 | null {
     const { guides } = this.viewer.guides;
@@ -169,15 +159,15 @@ export class BrushTool {
     const toEye = camera.position.clone().sub(middle).normalize();
     const counts = (x: number, y: number, z: number) =>
       (x - middle.x) * toEye.x + (y - middle.y) * toEye.y + (z - middle.z) * toEye.z > -0.02;
-    const reach = this.metres * pixelsPerMetre(controls.target, camera, this.size.height);
-    const found = pick(guides.points, guides.offsets, camera, this.size, at, Math.max(reach, 8), counts);
+    const reach = this.metres * pixelsPerMetre(controls.target, camera, this.viewer.size.height);
+    const found = pick(guides.points, guides.offsets, camera, this.viewer.size, at, Math.max(reach, 8), counts);
     return found && new Vector3().fromArray(guides.points, 3 * (guides.offsets[found.lock] + found.point));
   }
 
   private press(event: PointerEvent): void {
     if (!this.on || event.button !== 0 || this.viewer.compared || !this.model.role.leads) return;
     if (event.altKey) return; // turns the head
-    const near = this.under(this.at(event));
+    const near = this.under(this.viewer.at(event));
     if (!near && event.pointerType === "touch") return; // a finger has no other button to turn the head
     event.stopPropagation();
     event.preventDefault();
@@ -185,24 +175,24 @@ export class BrushTool {
     this.pressure = event.pressure;
     this.viewer.element.setPointerCapture(event.pointerId);
     this.gesture = this.model.newGesture();
-    this.place = inPlane(this.at(event), near, this.viewer.camera, this.size);
+    this.place = inPlane(this.viewer.at(event), near, this.viewer.camera, this.viewer.size);
     this.way.set(0, 0, 0);
     this.send(event.shiftKey, false);
   }
 
   private move(event: PointerEvent): void {
     if (!this.on) return;
-    const at = this.at(event);
+    const at = this.viewer.at(event);
     if (!this.place) {
       this.draw(at, this.under(at));
       return;
     }
     event.stopPropagation();
     this.pressure = event.pressure;
-    const there = inPlane(at, this.place, this.viewer.camera, this.size);
+    const there = inPlane(at, this.place, this.viewer.camera, this.viewer.size);
     this.way.add(there.clone().sub(this.place));
     const near = this.tool === "grab" ? null : this.under(at);
-    this.place = near ? inPlane(at, near, this.viewer.camera, this.size) : there;
+    this.place = near ? inPlane(at, near, this.viewer.camera, this.viewer.size) : there;
     this.draw(at, this.place);
     const smooth = event.shiftKey;
     if (!this.sending) this.sending = requestAnimationFrame(() => this.send(smooth, false));
@@ -237,7 +227,7 @@ export class BrushTool {
   /** Puts the ring where the brush is. */
   private draw(at: { x: number; y: number }, near: Vector3 | null): void {
     const place = near ?? this.viewer.controls.target;
-    const pixels = this.metres * pixelsPerMetre(place, this.viewer.camera, this.size.height);
+    const pixels = this.metres * pixelsPerMetre(place, this.viewer.camera, this.viewer.size.height);
     this.ring.toggleAttribute("hidden", false);
     this.ring.classList.toggle("idle", !near);
     Object.assign(this.ring.style, {

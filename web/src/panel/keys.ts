@@ -18,9 +18,9 @@ const bound: Key[] = [];
 /** Keys that a control which has the focus takes itself. */
 const OWN = [
   ["Arrows, Shift with arrows", "change a number that has the focus; finer"],
-  ["Arrows, Enter, Delete", "move a point of a ramp, add one, take it away"],
+  ["Arrows, Enter, Delete", "move a point of a ramp, add one, remove it"],
   ["Arrows", "move a point of an isolated lock"],
-  ["Escape", "put back what was typed; close a dialog"],
+  ["Escape", "discard what was typed; close a dialog"],
 ];
 
 export function bindKey(key: Key): void {

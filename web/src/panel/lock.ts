@@ -57,7 +57,7 @@ export class LockTool {
     this.lasso.classList.add("lasso");
     this.handles.append(this.lasso);
     this.listenForLasso();
-    bindKey({ keys: "N and P", does: "choose the next lock, the one before", on: plainKey("n", "p"), run: (event) => this.step(event.key.toLowerCase() === "n" ? 1 : -1) });
+    bindKey({ keys: "N and P", does: "choose the next lock, the previous one", on: plainKey("n", "p"), run: (event) => this.step(event.key.toLowerCase() === "n" ? 1 : -1) });
     this.alone.addEventListener("change", () => this.scope(this.alone.checked));
     this.isolate.addEventListener("click", () => model.say({ kind: "isolate", locks: this.ids }));
     this.back.addEventListener("click", () => model.say({ kind: "isolate", locks: this.isolatedIds, out: false }));
@@ -179,7 +179,7 @@ export class LockTool {
       dot.toggleAttribute("hidden", !points[k]);
       dot.style.display = points[k] ? "" : "none";
       if (!points[k]) return;
-      const { x, y } = onScreen(points[k], this.viewer.camera, this.size);
+      const { x, y } = onScreen(points[k], this.viewer.camera, this.viewer.size);
       dot.setAttribute("cx", String(x));
       dot.setAttribute("cy", String(y));
     });
@@ -193,11 +193,6 @@ export class LockTool {
 
   private get isolated(): boolean {
     return this.row >= 0 && (this.viewer.hair.a.locks?.marked[this.row] ?? 0) > 0;
-  }
-
-  private get size() {
-    const { clientWidth, clientHeight } = this.viewer.element;
-    return { width: clientWidth, height: clientHeight };
   }
 
   private points(): Vector3[] {
@@ -214,9 +209,7 @@ export class LockTool {
   private click(event: MouseEvent): void {
     const { locks } = this.viewer.hair.a;
     if (!locks || (this.viewer.compared && this.viewer.arrangement === "split") || !this.model.documents.recipe || this.busy()) return;
-    const box = this.viewer.element.getBoundingClientRect();
-    const at = { x: event.clientX - box.left, y: event.clientY - box.top };
-    const row = pick(locks.points, locks.offsets, this.viewer.camera, this.size, at)?.lock ?? -1;
+    const row = pick(locks.points, locks.offsets, this.viewer.camera, this.viewer.size, this.viewer.at(event))?.lock ?? -1;
     const more = event.shiftKey || event.ctrlKey || event.metaKey;
     if (!more) this.choose(row);
     else if (row >= 0) this.choose(...(this.rows.includes(row) ? this.rows.filter((one) => one !== row) : [...this.rows, row]));
@@ -226,10 +219,6 @@ export class LockTool {
   private listenForLasso(): void {
     const { element } = this.viewer;
     let path: { x: number; y: number }[] = [];
-    const at = (event: PointerEvent) => {
-      const box = element.getBoundingClientRect();
-      return { x: event.clientX - box.left, y: event.clientY - box.top };
-    };
     const draw = () => this.lasso.setAttribute("points", path.map(({ x, y }) => `${x},${y}`).join(" "));
     element.addEventListener(
       "pointerdown",
@@ -237,7 +226,7 @@ export class LockTool {
         if (!event.shiftKey || event.button !== 0 || this.busy() || !this.model.documents.recipe) return;
         event.stopPropagation();
         element.setPointerCapture(event.pointerId);
-        path = [at(event)];
+        path = [this.viewer.at(event)];
       },
       { capture: true },
     );
@@ -246,7 +235,7 @@ export class LockTool {
       (event) => {
         if (!path.length) return;
         event.stopPropagation();
-        path.push(at(event));
+        path.push(this.viewer.at(event));
         draw();
       },
       { capture: true },
@@ -269,7 +258,7 @@ export class LockTool {
     for (let row = 0; row + 1 < locks.offsets.length; row++) {
       const tip = new Vector3().fromArray(locks.points, 3 * (locks.offsets[row + 1] - 1));
       const inFront = tip.clone().sub(middle).dot(toEye) > -0.02;
-      if (inFront && isInside(onScreen(tip, camera, this.size), path)) found.push(row);
+      if (inFront && isInside(onScreen(tip, camera, this.viewer.size), path)) found.push(row);
     }
     return found;
   }
@@ -329,9 +318,7 @@ export class LockTool {
   }
 
   private under(event: PointerEvent, index: number): Vector3 {
-    const box = this.viewer.element.getBoundingClientRect();
-    const at = { x: event.clientX - box.left, y: event.clientY - box.top };
-    return inPlane(at, this.points()[index], this.viewer.camera, this.size);
+    return inPlane(this.viewer.at(event), this.points()[index], this.viewer.camera, this.viewer.size);
   }
 
   private key(event: KeyboardEvent, index: number): void {

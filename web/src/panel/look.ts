@@ -39,7 +39,7 @@ export class Look {
     const digit = (event: KeyboardEvent) => /^Digit[1-9]$/.test(event.code) && !event.ctrlKey && !event.metaKey;
     bindKey({
       keys: "1 … 9, Shift with 1 … 9",
-      does: "show a bookmark of camera, light and color; keep one",
+      does: "recall a bookmark of camera, light and color; store one",
       on: digit,
       run: (event) => this.bookmark(event.code.slice(5), event.shiftKey),
     });

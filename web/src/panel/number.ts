@@ -70,9 +70,7 @@ export class NumberInput {
       const by = event.clientX - x;
       if (!moved && Math.abs(by) < STILL) return;
       moved = true;
-      const step = this.kind.whole ? 1 : event.shiftKey ? this.step / 10 : this.step;
-      const [least, most] = this.bounds;
-      this.scrub(Math.min(most, Math.max(least, rounded(start + Math.round(by / PIXELS) * step, step))), false);
+      this.scrub(this.stepped(start, Math.round(by / PIXELS), event.shiftKey), false);
     });
     const release = () => {
       if (held && moved) this.scrub(this.value ?? start, true);
@@ -80,6 +78,13 @@ export class NumberInput {
     };
     for (const name of ["pointerup", "pointercancel", "lostpointercapture"] as const) handle.addEventListener(name, release);
     handle.addEventListener("click", (event) => moved && event.preventDefault());
+  }
+
+  /** A value that many steps further, within the bounds. */
+  private stepped(from: number, steps: number, fine: boolean): number {
+    const step = this.kind.whole ? 1 : fine ? this.step / 10 : this.step;
+    const [least, most] = this.bounds;
+    return Math.min(most, Math.max(least, rounded(from + steps * step, step)));
   }
 
   private scrub(value: number, resting: boolean): void {
@@ -130,10 +135,7 @@ export class NumberInput {
       this.input.select();
       event.stopPropagation();
     } else if ((event.key === "ArrowUp" || event.key === "ArrowDown") && this.value !== null) {
-      const step = this.kind.whole ? 1 : event.shiftKey ? this.step / 10 : this.step;
-      const [least, most] = this.bounds;
-      const to = this.value + (event.key === "ArrowUp" ? step : -step);
-      this.scrub(Math.min(most, Math.max(least, rounded(to, step))), true);
+      this.scrub(this.stepped(this.value, event.key === "ArrowUp" ? 1 : -1, event.shiftKey), true);
       event.preventDefault();
     }
   }

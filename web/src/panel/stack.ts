@@ -141,13 +141,13 @@ export class Stack {
     return list;
   }
 
-  /** Whether another operator acts alone. */
+  /** Whether the solo of another operator silences a stage. */
   private silenced(stage: Stage, all: Stage[]): boolean {
-    const key = stage.place.join("/");
-    return all.some((one) => one.solo) && !stage.solo && !KEPT.includes(key) && key !== "clean" && key !== "";
+    const operates = stage.place[0] === "shape" || stage.place[0] === "curl";
+    return operates && !stage.solo && all.some((one) => one.solo);
   }
 
-  /** Adds an operator after the others; asks first for what it cannot be without. */
+  /** Adds an operator after the others; asks first for its settings without a default. */
   private add(op: string): void {
     const { model } = this;
     const at = (model.documents.recipe?.stages ?? []).filter((stage) => stage.place[0] === "shape").length;
@@ -174,7 +174,7 @@ export class Stack {
     });
   }
 
-  /** Lets one operator act alone; again, those that are not muted act as before. */
+  /** Solos an operator, or ends its solo; mutes stay. */
   private solo(stage: Stage, all: Stage[]): void {
     this.model.say({ kind: "mute", stages: this.muted(all), solo: stage.solo ? "" : stage.place.join("/") });
   }

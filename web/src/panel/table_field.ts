@@ -7,20 +7,25 @@ import { Field } from "./field";
 import { makeField } from "./make_field";
 import type { Setting } from "./schema";
 
-/** A table of settings, or a list of such tables, each of which opens. */
 export class TableField extends Field {
   private readonly box = h("div", { class: "tables" });
   private entries: Field[][] = [];
 
   constructor(model: Model, file: File, place: Place, setting: Setting) {
     super(model, file, place, setting);
-    const add =
-      setting.kind === "list"
-        ? iconButton("plus", `Add to ${setting.label}`, () =>
-            this.send([...(((this.said as Json[]) ?? []) as Json[]), this.fresh()], true),
-          )
-        : undefined;
+    const add = this.isList
+      ? iconButton("plus", `Add to ${setting.label}`, () => this.send([...this.tables, this.fresh()], true))
+      : undefined;
     this.element.append(this.head(add), this.box);
+  }
+
+  private get isList(): boolean {
+    return this.setting.kind === "list";
+  }
+
+  /** The tables that the file has. */
+  private get tables(): Json[] {
+    return (this.said as Json[] | undefined) ?? [];
   }
 
   private fresh(): Json {
@@ -29,20 +34,20 @@ export class TableField extends Field {
   }
 
   protected show(): void {
-    const count = this.setting.kind === "list" ? ((this.value as Json[] | undefined) ?? []).length : 1;
+    const count = this.isList ? ((this.value as Json[] | undefined) ?? []).length : 1;
     if (count !== this.entries.length) {
       this.entries = Array.from({ length: count }, (_, k) =>
         this.setting.inner.map((one) => {
-          const place = this.setting.kind === "list" ? [...this.place, k, one.name] : [...this.place, one.name];
+          const place = this.isList ? [...this.place, k, one.name] : [...this.place, one.name];
           return makeField(this.model, this.file, place, one);
         }),
       );
       this.box.replaceChildren(
         ...this.entries.map((fields, k) => {
-          const title = this.setting.kind === "list" ? `${this.setting.label} ${k + 1}` : this.setting.label;
+          const title = this.isList ? `${this.setting.label} ${k + 1}` : this.setting.label;
           const details = h("details", { class: "table" }, h("summary", {}, title));
           details.append(...fields.map((field) => field.element));
-          if (this.setting.kind === "list")
+          if (this.isList)
             details.append(
               h("button", { type: "button", class: "quiet", onclick: () => this.take(k) }, `Remove ${title}`),
             );
@@ -55,7 +60,7 @@ export class TableField extends Field {
 
   private take(index: number): void {
     this.send(
-      ((this.said as Json[]) ?? []).filter((_, k) => k !== index),
+      this.tables.filter((_, k) => k !== index),
       true,
     );
   }

@@ -49,8 +49,8 @@ export class TimelineBar {
     const frames = h("div", { class: "frames" }, this.slider, this.runs);
     this.element.append(this.run, this.again, this.watch, frames, this.readout, this.against);
     for (const topic of ["timeline", "role", "files"] as const) model.on(topic, () => this.update());
-    bindKey({ keys: "Space", does: "play the frames that are there, or stop", on: plainKey(" "), run: () => model.timeline && this.toggle() });
-    bindKey({ keys: ", and .", does: "one frame back, one on", on: plainKey(",", "."), run: (event) => this.by(event.key === "," ? -1 : 1) });
+    bindKey({ keys: "Space", does: "play the frames that exist, or stop", on: plainKey(" "), run: () => model.timeline && this.toggle() });
+    bindKey({ keys: ", and .", does: "previous frame, next frame", on: plainKey(",", "."), run: (event) => this.by(event.key === "," ? -1 : 1) });
   }
 
   /** Shows the frame that many frames on. */

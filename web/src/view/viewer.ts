@@ -222,6 +222,18 @@ export class Viewer {
     this.paint(1);
   }
 
+  /** Size of the picture [pixels]. */
+  get size(): { width: number; height: number } {
+    const { clientWidth, clientHeight } = this.element;
+    return { width: clientWidth, height: clientHeight };
+  }
+
+  /** Where a pointer is in the picture [pixels]. */
+  at(event: MouseEvent): { x: number; y: number } {
+    const box = this.element.getBoundingClientRect();
+    return { x: event.clientX - box.left, y: event.clientY - box.top };
+  }
+
   /** Draws at a size and before a wall of one color, for a picture that is kept; then as before. */
   drawAt(width: number, height: number, taken: (drawn: HTMLCanvasElement) => void, wall?: string): void {
     const { renderer, element } = this;

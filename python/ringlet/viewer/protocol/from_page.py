@@ -1,0 +1,277 @@
+"""Messages of a page: its requests to the session."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, TypeAdapter
+
+from ringlet.data import limits
+from ringlet.viewer.protocol.message import File, FrameNumber, Gesture, Id, Message, Place, Position, Row, Shared
+
+MOST_TEXT = 1_800_000  # characters of a file
+
+
+class Hello(Message):
+    """First message of a page.
+
+    client: name that the page keeps when it reconnects
+    leads:  whether it held the edit lock when it was connected last
+    """
+
+    kind: Literal["hello"] = "hello"
+    version: Row
+    client: str = Field(max_length=64)
+    leads: bool = False
+
+
+class Lead(Message):
+    """Requests the edit lock; a page that holds it is asked, and hands it over after a while without an answer."""
+
+    kind: Literal["lead"] = "lead"
+
+
+class Set(Message):
+    """Sets values of settings, in TOML notation; None removes a setting, so that its default applies.
+
+    gesture: number of the gesture; its changes are one undo step
+    resting: whether the gesture has ended; a moving one gets a draft
+    """
+
+    kind: Literal["set"] = "set"
+    file: File = "recipe"
+    changes: list[tuple[Place, Any]] = Field(max_length=256)
+    gesture: Gesture
+    resting: bool = True
+
+
+class Arrange(Message):
+    """Adds, removes or moves a shape operator of the recipe.
+
+    values: settings of an operator that is added, for those without a default
+    """
+
+    kind: Literal["arrange"] = "arrange"
+    action: Literal["add", "remove", "move"]
+    at: Row
+    to: Row = 0
+    op: str = Field(default="", max_length=64)
+    values: dict[str, str] = Field(default_factory=dict, max_length=8)
+
+
+class Mute(Message):
+    """Mutes stages such as ``shape/0`` or ``curl``; not stored in the file.
+
+    solo: the one stage that acts while it is set; the mutes stay
+    """
+
+    kind: Literal["mute"] = "mute"
+    stages: list[str] = Field(max_length=256)
+    solo: str = Field(default="", max_length=64)
+
+
+class Choose(Message):
+    """Chooses the one of several grooms whose settings are shown and changed."""
+
+    kind: Literal["choose"] = "choose"
+    groom: str = Field(max_length=240)
+
+
+class Step(Message):
+    """Undoes, redoes or reverts changes."""
+
+    kind: Literal["undo", "redo", "revert"]
+
+
+class Save(Message):
+    """Saves a file; with a name, a copy beside it, or a variant that extends it, which the session then goes on with.
+
+    anyway: saves a recipe whose groom cannot be made
+    """
+
+    kind: Literal["save"] = "save"
+    file: File = "recipe"
+    name: str = Field(default="", max_length=120)
+    variant: bool = False
+    anyway: bool = False
+
+
+class Open(Message):
+    """Opens another recipe, shot or USD file of the project in the session.
+
+    discard: discards unsaved changes; without it, they keep the file open
+    """
+
+    kind: Literal["open"] = "open"
+    name: str = Field(max_length=240)
+    discard: bool = False
+
+
+class Resolve(Message):
+    """Resolves a conflict with the version of a file on disk.
+
+    mine, theirs: for ``merge``, names of the settings of which the session's value, or that on disk, is kept
+    """
+
+    kind: Literal["resolve"] = "resolve"
+    file: File = "recipe"
+    choice: Literal["mine", "theirs", "merge"]
+    mine: list[str] = Field(default_factory=list, max_length=10_000)
+    theirs: list[str] = Field(default_factory=list, max_length=10_000)
+
+
+class Dismiss(Message):
+    """Removes a problem that needs no remedy."""
+
+    kind: Literal["dismiss"] = "dismiss"
+    subject: str = Field(max_length=64)
+
+
+class Proceed(Message):
+    """Makes a groom that takes much longer than the displayed one."""
+
+    kind: Literal["proceed"] = "proceed"
+
+
+class Cancel(Message):
+    """Cancels the groom that is being made; the displayed one stays."""
+
+    kind: Literal["cancel"] = "cancel"
+
+
+class Restore(Message):
+    """Restores unsaved text of a page, and of its file of edits, after a restart of the server.
+
+    saved, saved_edits: the texts as they were read or saved last; another version on disk is a conflict
+    """
+
+    kind: Literal["restore"] = "restore"
+    file: File = "recipe"
+    text: str = Field(max_length=MOST_TEXT)
+    edits: str = Field(default="", max_length=MOST_TEXT)
+    saved: str = Field(default="", max_length=MOST_TEXT)
+    saved_edits: str = Field(default="", max_length=MOST_TEXT)
+
+
+class Compare(Message):
+    """Shows a second groom for comparison: a snapshot, the saved one, another recipe of the project, or none."""
+
+    kind: Literal["compare"] = "compare"
+    to: Literal["now", "saved", "file", "none"]
+    name: str = Field(default="", max_length=240)
+
+
+class Drag(Message):
+    """Drags a point of an isolated lock to a position [m]."""
+
+    kind: Literal["drag"] = "drag"
+    lock: Id
+    point: Row
+    to: Position
+    reach: float = Field(default=0.2, ge=0.0, le=1.0)
+    gesture: Gesture
+    resting: bool = True
+
+
+class Isolate(Message):
+    """Isolates locks from the procedural groom for manual edits, or returns them."""
+
+    kind: Literal["isolate"] = "isolate"
+    locks: list[Id] = Field(max_length=10_000)
+    out: bool = True
+
+
+class Sculpt(Message):
+    """Moves a brush over the guides, or returns guides to the recipe.
+
+    at, by:   position of the brush, and its displacement since the last message of this gesture [m]
+    radius:   radius of the brush [m]
+    mirrored: whether a mirror image of the brush acts on the other side of the head
+    strength: fraction of its displacement that the brush moves what is at its centre
+    falloff:  of the strength towards the radius: smooth, sharp (steep at the centre) or flat (none)
+
+    ``freeze`` protects guides from all brushes, ``thaw`` ends that; neither is stored in the file.
+    """
+
+    kind: Literal["sculpt"] = "sculpt"
+    tool: Literal["grab", "comb", "smooth", "cut", "lengthen", "return", "freeze", "thaw"]
+    at: Position
+    by: Position
+    radius: float = Field(gt=0.0, le=1.0)
+    mirrored: bool = False
+    strength: float = Field(default=1.0, gt=0.0, le=1.0)
+    falloff: Literal["smooth", "sharp", "flat"] = "smooth"
+    gesture: Gesture
+    resting: bool = True
+
+
+class Look(Shared):
+    """Shares the look of the leading page with those that follow."""
+
+    kind: Literal["look"] = "look"
+
+
+class Hand(Message):
+    """Answers another page that asks for the edit lock."""
+
+    kind: Literal["hand"] = "hand"
+    over: bool
+
+
+class Unsculpt(Message):
+    """Removes the sculpts of all guides."""
+
+    kind: Literal["unsculpt"] = "unsculpt"
+
+
+class Play(Message):
+    """Starts, pauses or resumes the simulation, or restarts it from an existing frame."""
+
+    kind: Literal["play"] = "play"
+    action: Literal["start", "pause", "go_on", "again_from"]
+    frame: Annotated[int, Field(ge=-limits.FRAME, le=limits.FRAME)] = 0
+
+
+class Against(Message):
+    """Shows the frames of another cache of the project for comparison; an empty name removes them."""
+
+    kind: Literal["against"] = "against"
+    name: str = Field(default="", max_length=240)
+
+
+class Watch(Message):
+    """Requests frames, the current one first; replaces earlier requests that are still pending."""
+
+    kind: Literal["watch"] = "watch"
+    shot: list[FrameNumber] = Field(default_factory=list, max_length=64)
+    against: list[FrameNumber] = Field(default_factory=list, max_length=64)
+
+
+FromPage = Annotated[
+    Hello
+    | Lead
+    | Set
+    | Arrange
+    | Choose
+    | Mute
+    | Step
+    | Save
+    | Open
+    | Resolve
+    | Dismiss
+    | Proceed
+    | Cancel
+    | Restore
+    | Compare
+    | Drag
+    | Isolate
+    | Sculpt
+    | Unsculpt
+    | Look
+    | Hand
+    | Play
+    | Against
+    | Watch,
+    Field(discriminator="kind"),
+]
+FROM_PAGE: TypeAdapter[FromPage] = TypeAdapter(FromPage)

@@ -1,0 +1,48 @@
+"""The base of all messages, its version, and the types of fields."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from ringlet.data import limits
+
+VERSION = 8
+
+Place = list[str | int]  # path of a setting in its file: ["shape", 0, "amount"]
+File = Literal["recipe", "shot"]
+Point = tuple[float, float, float]
+Id = Annotated[int, Field(ge=-limits.ID, le=limits.ID)]
+Row = Annotated[int, Field(ge=0, le=1_000_000)]
+Gesture = Annotated[int, Field(ge=-limits.ID, le=limits.ID)]
+FrameNumber = Annotated[float, Field(ge=-limits.FRAME, le=limits.FRAME)]
+Coordinate = Annotated[float, Field(ge=-1e6, le=1e6)]  # [m]
+Position = tuple[Coordinate, Coordinate, Coordinate]
+
+
+class Message(BaseModel):
+    """Base of all messages; ``kind`` is the type."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+    arrays: ClassVar[dict[str, str]] = {}
+
+
+class Shared(Message):
+    """How the leading page looks at the groom.
+
+    camera: position and target [m], six numbers
+    light, color, overlay: their choices on the page; empty for none
+    file, place: the stage whose settings are shown
+    locks:  ids of the chosen locks
+    frame:  the frame that is seen; None without a timeline
+    """
+
+    camera: list[Coordinate] = Field(min_length=6, max_length=6)
+    light: str = Field(max_length=64)
+    color: str = Field(max_length=64)
+    overlay: str = Field(max_length=64)
+    file: File
+    place: Place = Field(max_length=8)
+    locks: list[Id] = Field(max_length=10_000)
+    frame: FrameNumber | None

@@ -1,0 +1,167 @@
+"""Messages of the server with the state of the session: its pages, files and timeline, and answers to a page."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Literal
+
+from ringlet.viewer.protocol.message import File, Message, Place, Shared
+
+
+class Welcome(Message):
+    """First message of the server.
+
+    session:  id of the server's run
+    heard:    number of messages that the server has handled for pages of this name
+    schemas:  JSON schemas of ``recipe`` and ``shot``
+    recovered: whether the server recovered what pages of an earlier run had not saved
+    colors:   linear reflectance in red, green and blue, and roughness, of each hair colour
+    """
+
+    kind: Literal["welcome"] = "welcome"
+    version: int
+    session: str
+    heard: int
+    name: str
+    mode: Literal["recipe", "shot", "stage"]
+    schemas: dict[str, Any]
+    operators: list[str]
+    recovered: bool
+    colors: dict[str, tuple[float, float, float, float]]
+
+
+class Role(Message):
+    """Holder of the edit lock.
+
+    others: number of other connected pages
+    asked:  whether another page asks this one for the lock
+    asks:   whether this page waits for the answer
+    """
+
+    kind: Literal["role"] = "role"
+    leads: bool
+    others: int
+    asked: bool = False
+    asks: bool = False
+
+
+class Followed(Shared):
+    """The look of the leading page."""
+
+    kind: Literal["followed"] = "followed"
+
+
+class Files(Message):
+    """Names of the recipes and caches of the project; sent again when they change."""
+
+    kind: Literal["files"] = "files"
+    names: list[str]
+
+
+class Stage(Message):
+    """A stage of the groom. place: path of its settings in the recipe."""
+
+    name: str
+    op: str
+    place: Place
+    muted: bool = False
+    solo: bool = False
+
+
+class Change(Message):
+    """A line of the diff against the saved file."""
+
+    sign: Literal["+", "-", " "]
+    line: str
+
+
+class Document(Message):
+    """Current state of a file.
+
+    revision: counter of changes
+    said:     contents of the file; operators inherited from a base have their index in the resolved recipe
+    values:   values of all settings, defaults included, in SI units
+    edits:    unsaved text of its file of edits
+    saved, saved_edits: the texts as they were read or saved last; empty where they are ``text`` and ``edits``
+    grooms:   names of several grooms; ``said``, ``values`` and ``stages`` are those of ``groom``, the chosen one
+    """
+
+    kind: Literal["document"] = "document"
+    file: File
+    name: str
+    revision: int
+    text: str
+    edits: str
+    saved: str
+    saved_edits: str
+    said: dict[str, Any]
+    values: dict[str, Any]
+    stages: list[Stage]
+    grooms: list[str]
+    groom: str
+    dirty: bool
+    undo: bool
+    redo: bool
+    changes: list[Change]
+
+
+class Timeline(Message):
+    """State of the simulation, and the existing frames of the shot and of the cache to compare with.
+
+    key:   changes when existing frames become invalid
+    runs:  number of the run that made each frame, from 1; 0 for frames of a file
+    stale: 1 for frames of other settings than the present ones
+    """
+
+    kind: Literal["timeline"] = "timeline"
+    first: float
+    last: float
+    fps: float
+    state: Literal["none", "still", "rolling", "running", "paused", "done"]
+    rolled: int
+    preroll: int
+    key: int
+    against: str = ""
+    arrays: ClassVar[dict[str, str]] = {"frames": "f8", "beside": "f8", "runs": "i4", "stale": "u1"}
+
+
+class Compared(Message):
+    """Name of the groom or cache to compare with; empty for none."""
+
+    kind: Literal["compared"] = "compared"
+    name: str
+
+
+class Heard(Message):
+    """Number of messages that the server has handled for pages of this name."""
+
+    kind: Literal["heard"] = "heard"
+    count: int
+
+
+class Saved(Message):
+    """A file was written."""
+
+    kind: Literal["saved"] = "saved"
+    name: str
+
+
+class Notice(Message):
+    """A short message of what has happened."""
+
+    kind: Literal["notice"] = "notice"
+    message: str
+
+
+class Trouble(Message):
+    """An error message of one line, for a request that was refused."""
+
+    kind: Literal["trouble"] = "trouble"
+    message: str
+
+
+class Progress(Message):
+    """Progress of a groom that takes long. done: fraction of the stage; an empty stage ends it."""
+
+    kind: Literal["progress"] = "progress"
+    stage: str
+    done: float
