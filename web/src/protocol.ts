@@ -1,6 +1,6 @@
 // Made by tools/make_protocol.py from python/ringlet/viewer/protocol; change it there.
 
-export const VERSION = 8;
+export const VERSION = 9;
 export type Json = string | number | boolean | null | Json[] | { [key: string]: Json };
 
 /** A stage of the groom. place: path of its settings in the recipe. */
@@ -43,12 +43,35 @@ export interface Problem {
   differences: Difference[];
 }
 
+/** A person at a connected page. */
+export interface Person {
+  name: string;
+  hue: number;
+  leads: boolean;
+  follows: boolean;
+  you: boolean;
+}
+
 /** First message of a page. */
 export interface Hello {
   kind: "hello";
   version: number;
   client: string;
   leads?: boolean;
+  person?: string;
+}
+
+/** Names the person of a page. follows: whether the page shows what the leading page looks at. */
+export interface Introduce {
+  kind: "introduce";
+  person?: string;
+  follows?: boolean;
+}
+
+/** Position of the leading page's pointer in the scene [m]; None where it is elsewhere. */
+export interface Point {
+  kind: "point";
+  at: [number, number, number] | null;
 }
 
 /** Requests the edit lock; a page that holds it is asked, and hands it over after a while without an answer. */
@@ -241,13 +264,14 @@ export interface Welcome {
   colors: Record<string, [number, number, number, number]>;
 }
 
-/** Holder of the edit lock. */
+/** Holder of the edit lock, and the people at the connected pages. */
 export interface Role {
   kind: "role";
   leads: boolean;
-  others: number;
   asked: boolean;
+  asking: string;
   asks: boolean;
+  people: Person[];
 }
 
 /** Names of the recipes and caches of the project; sent again when they change. */
@@ -458,6 +482,12 @@ export interface Followed {
   frame: number | null;
 }
 
+/** Position of the leading page's pointer in the scene [m]; None where it is elsewhere. */
+export interface Pointer {
+  kind: "pointer";
+  at: [number, number, number] | null;
+}
+
 /** An error message of one line, for a request that was refused. */
 export interface Trouble {
   kind: "trouble";
@@ -479,6 +509,8 @@ export interface Progress {
 
 export type FromPage =
   | Hello
+  | Introduce
+  | Point
   | Lead
   | Set
   | Arrange
@@ -523,6 +555,7 @@ export type FromServer =
   | Saved
   | Notice
   | Followed
+  | Pointer
   | Trouble
   | Problems
   | Progress;
