@@ -56,6 +56,10 @@ export const ICONS = {
   folder: "M3 6h5l1.5 2H17v8H3zM3 6v10",
   keys: "M3 6h14v8H3zM6 9h.01M9 9h.01M12 9h.01M14 9h.01M7 11.5h6",
   swap: "M3 7h12l-3-3M17 13H5l3 3",
+  close: "M5 5l10 10M15 5L5 15",
+  tray: "M3 12h14v5H3zM5 8.5h10M7 5h6",
+  snapshot: "M4 4h12v12H4zM10 7v6M7 10h6",
+  load: "M10 3v9M6 8.5l4 4 4-4M4 16.5h12",
   solo: "M10 3l2 5h5l-4 3.2 1.5 5.3L10 13.3 5.5 16.5 7 11.2 3 8h5z",
 } as const;
 

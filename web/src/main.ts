@@ -11,11 +11,13 @@ import { bindKey, plainKey } from "./panel/keys";
 import { LockTool } from "./panel/lock";
 import { Look } from "./panel/look";
 import { Settings } from "./panel/settings";
+import { Snapshots } from "./panel/snapshots";
 import { Sheets } from "./panel/sheets";
 import { Stack } from "./panel/stack";
 import { ProblemBar } from "./panel/problems";
 import { Notices, Status } from "./panel/status";
 import { TimelineBar } from "./panel/timeline";
+import { Tray } from "./panel/tray";
 import { Viewbar } from "./panel/viewbar";
 import type { FromServer } from "./protocol";
 import { Viewer } from "./view/viewer";
@@ -27,6 +29,7 @@ class App {
   readonly lock: LockTool;
   readonly brush: BrushTool;
   readonly look: Look;
+  readonly tray: Tray;
   private readonly notices = new Notices();
   private readonly problems: ProblemBar;
   private readonly status = new Status(this.model);
@@ -58,15 +61,21 @@ class App {
     this.viewer.covered = () => [
       left.getBoundingClientRect().right,
       settings.hidden ? 0 : innerWidth - settings.getBoundingClientRect().left,
+      46,
+      98,
     ];
     const viewbar = new Viewbar(this.model, this.viewer, this.brush, name);
     this.look = new Look(this.model, this.viewer, viewbar, this.lock, this.timeline, this.notices);
+    this.tray = new Tray();
+    const snapshots = new Snapshots(this.model, this.viewer, this.look, this.tray);
+    viewbar.element.append(snapshots.button, this.tray.button);
     root.append(
-      new Bar(this.model, () => this.setTheme(), () => this.look).element,
+      new Bar(this.model, () => this.setTheme(), () => this.look, () => this.endComparison()).element,
       left,
       settings,
       viewbar.element,
       new CompareBar(this.model, this.viewer, () => this.endComparison()).element,
+      this.tray.element,
       this.timeline.element,
       this.status.element,
       this.notices.element,
@@ -193,9 +202,18 @@ class App {
         this.timeline.add(message);
         break;
       case "compared":
-        model.compared = message.name;
-        viewer.compare(message.name !== "");
+        if (message.name) model.compared[message.side] = message;
+        else delete model.compared[message.side];
+        if (message.side !== "a") viewer.compare(message.side, message.name !== "");
         model.tell("compared");
+        break;
+      case "snapshots":
+        model.snapshots = message.snapshots;
+        model.tell("snapshots");
+        break;
+      case "picture":
+        model.setPicture(message.name, message.data as Uint8Array<ArrayBuffer>);
+        model.tell("pictures");
         break;
       case "saved":
         this.notices.show(`${message.name} is saved`);
@@ -217,7 +235,7 @@ class App {
   private endComparison(): void {
     const { model } = this;
     if (model.timeline?.against) model.say({ kind: "against", name: "" });
-    else model.say({ kind: "compare", to: "none" });
+    else for (const side of model.others) model.say({ kind: "compare", to: "none", side: side as "b" });
   }
 
   /** Another file is open. */

@@ -49,11 +49,11 @@ export class Look {
     return STORE + (this.model.welcome?.name ?? "");
   }
 
-  private get state(): State {
-    const { camera, controls } = this.viewer;
+  /** How the groom is looked at now. */
+  get state(): State {
     const { chosen, locks, overlay } = this.model;
     return {
-      camera: [...camera.position.toArray(), ...controls.target.toArray()],
+      ...this.viewer.cameraState,
       light: this.bar.light.value,
       color: this.bar.color.value,
       overlay,
@@ -64,9 +64,11 @@ export class Look {
     };
   }
 
-  private apply(state: State, all: boolean): void {
+  /** Looks at the groom as a state says; with `all` also at its stage, locks and frame. */
+  apply(state: State, all: boolean): void {
     this.applying = true;
-    this.viewer.lookFrom(state.camera);
+    this.viewer.lookFrom(state.camera, state.focal_length);
+    this.viewer.setLightTurn(state.light_turn ?? 0);
     this.bar.choose(state);
     if (all) {
       this.model.choose(state.file, state.place);

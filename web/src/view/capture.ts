@@ -35,6 +35,17 @@ export function still(viewer: Viewer, width: number, height: number, clear: bool
   return canvas;
 }
 
+/** A small picture of the open look alone. */
+export function thumbnail(viewer: Viewer): HTMLCanvasElement {
+  const { looks } = viewer;
+  const { order } = looks;
+  looks.order = ["a"];
+  const canvas = still(viewer, 400, 250, false);
+  looks.order = order;
+  viewer.drawNow();
+  return canvas;
+}
+
 /** Records what is drawn until it is stopped. */
 export class Recorder {
   private recorder: MediaRecorder | null = null;
