@@ -39,8 +39,8 @@ def test_a_snapshot_is_taken_compared_loaded_noted_and_deleted(opened: Any, fold
     page = review.page
     first = review.picture()
     page.keyboard.press("t")
-    page.get_by_label("Your name").fill("Ann")
-    page.get_by_label("Your name").press("Enter")
+    page.locator(".author").fill("Ann")
+    page.locator(".author").press("Enter")
     take(review)
     review.until("document.querySelector('.card img')?.naturalWidth == 400")
     set_curl(review, width=2.5)
@@ -51,6 +51,7 @@ def test_a_snapshot_is_taken_compared_loaded_noted_and_deleted(opened: Any, fold
     cards.nth(1).get_by_role("textbox").blur()
     review.until("ringlet.model.snapshots[0].note == 'as agreed'")
     page.get_by_role("button", name="Compare with ‘as agreed’").click()
+    page.get_by_role("button", name="Close the tray").click()
     review.until("ringlet.viewer.compared && ringlet.viewer.hair.b.table")
     assert page.locator(".look-label b").all_inner_texts() == ["now", "as agreed"]
     assert "Ann" in page.locator('.look-label[data-side="b"] span').inner_text()
@@ -58,6 +59,8 @@ def test_a_snapshot_is_taken_compared_loaded_noted_and_deleted(opened: Any, fold
     assert page.locator(".compare-changes tbody tr").all_inner_texts() == ["curl.width\t2.5\t1.0"]
     page.get_by_role("button", name="End", exact=True).click()
     review.until("!ringlet.viewer.compared")
+    page.locator("body").click(position={"x": 640, "y": 300})
+    page.keyboard.press("t")
     cards.nth(1).get_by_role("button", name="Load").click()
     review.until("ringlet.model.said('recipe', ['curl', 'width']) == 1 && ringlet.model.settled")
     review.settled()
@@ -82,13 +85,10 @@ def test_four_looks_have_one_camera_and_their_labels(opened: Any):
     for width in (1.8, 2.6):
         set_curl(review, width=width)
         take(review)
-    page.keyboard.press("t")
+    page.get_by_role("button", name="Close the tray").click()
     set_curl(review, width=3.2)
     for card in (0, 1, 2):
-        review.get(f"document.querySelectorAll('.thumbnail')[{card}]?.click()")
-        page.keyboard.press("t")
-        page.locator(".thumbnail").nth(card).click()
-        page.keyboard.press("t")
+        review.get(f"document.querySelectorAll('.thumbnail')[{card}].click()")
         review.until(f"ringlet.viewer.looks.order.length == {card + 2}")
     review.until("ringlet.viewer.hair.d.table")
     labels = [label.bounding_box() for label in page.locator(".look-label").all()]

@@ -1,6 +1,7 @@
 // The page: connects what the server says with the picture and the panels.
 
 import "./style.css";
+import { Vector3 } from "three";
 import { h } from "./dom";
 import { Link, type LinkState } from "./link";
 import { Model } from "./model";
@@ -10,6 +11,8 @@ import { CompareBar } from "./panel/compare";
 import { bindKey, plainKey } from "./panel/keys";
 import { LockTool } from "./panel/lock";
 import { Look } from "./panel/look";
+import { ownName, People } from "./panel/people";
+import { PresenterPointer } from "./panel/pointer";
 import { Settings } from "./panel/settings";
 import { Snapshots } from "./panel/snapshots";
 import { Sheets } from "./panel/sheets";
@@ -30,6 +33,7 @@ class App {
   readonly brush: BrushTool;
   readonly look: Look;
   readonly tray: Tray;
+  private readonly pointer: PresenterPointer;
   private readonly notices = new Notices();
   private readonly problems: ProblemBar;
   private readonly status = new Status(this.model);
@@ -39,7 +43,8 @@ class App {
 
   constructor(root: HTMLElement) {
     const picture = h("main", { class: "picture" });
-    this.problems = new ProblemBar(this.model);
+    const people = new People(this.model, () => this.look);
+    this.problems = new ProblemBar(this.model, people.questions);
     root.append(picture);
     this.viewer = new Viewer(picture);
     this.lock = new LockTool(this.model, this.viewer);
@@ -47,8 +52,12 @@ class App {
     this.brush = new BrushTool(this.model, this.viewer);
     this.brush.changed.push((on) => on && this.lock.choose(-1));
     this.lock.busy = () => this.brush.on;
-    picture.append(this.lock.handles, this.brush.ring);
-    this.viewer.onPaint = () => this.lock.place();
+    this.pointer = new PresenterPointer(this.model, this.viewer);
+    picture.append(this.lock.handles, this.brush.ring, this.pointer.element);
+    this.viewer.onPaint = () => {
+      this.lock.place();
+      this.pointer.place();
+    };
     this.viewer.onDraw = (statistics) => this.status.drew(statistics);
     const keys = (names: string, does: string, ...all: string[]) =>
       bindKey({ keys: names, does, on: plainKey(...all), run: (event) => void this.viewer.key(event.key) });
@@ -66,11 +75,11 @@ class App {
     ];
     const viewbar = new Viewbar(this.model, this.viewer, this.brush, name);
     this.look = new Look(this.model, this.viewer, viewbar, this.lock, this.timeline, this.notices);
-    this.tray = new Tray();
+    this.tray = new Tray(() => this.look.introduce());
     const snapshots = new Snapshots(this.model, this.viewer, this.look, this.tray);
     viewbar.element.append(snapshots.button, this.tray.button);
     root.append(
-      new Bar(this.model, () => this.setTheme(), () => this.look, () => this.endComparison()).element,
+      new Bar(this.model, () => this.setTheme(), people.element, () => this.endComparison()).element,
       left,
       settings,
       viewbar.element,
@@ -88,6 +97,7 @@ class App {
       (message) => this.hear(message),
       (state, why) => this.connected(state, why),
       () => this.model.welcome !== null && this.model.role.leads,
+      ownName,
     );
     addEventListener("beforeunload", (event) => {
       (document.activeElement as HTMLElement | null)?.blur(); // what is typed counts
@@ -222,6 +232,9 @@ class App {
         model.followed = message;
         model.tell("followed");
         break;
+      case "pointer":
+        this.pointer.show(message.at && new Vector3(...message.at));
+        break;
       case "notice":
         this.notices.show(message.message);
         break;
@@ -240,9 +253,9 @@ class App {
 
   /** Another file is open. */
   private reset(): void {
+    this.model.reset();
     this.lock.choose(-1);
     this.brush.show(false);
-    this.model.reset();
     this.viewer.reset();
     for (const topic of ["document", "timeline", "guides", "compared", "chosen"] as const) this.model.tell(topic);
   }

@@ -47,7 +47,7 @@ type Topic =
 export class Model {
   welcome: Welcome | null = null;
   documents: Partial<Record<File, Document>> = {};
-  role: Role = { kind: "role", leads: true, others: 0, asked: false, asks: false };
+  role: Role = { kind: "role", leads: true, asked: false, asking: "", asks: false, people: [] };
   numbers: Numbers | null = null;
   names: Names = { kind: "names", regions: [], maps: [], vectors: [], curves: [] };
   guides: Guides | null = null;
@@ -97,6 +97,7 @@ export class Model {
     this.numbers = this.guides = this.measured = this.timeline = null;
     this.compared = {};
     this.locks = [];
+    this.followed = null;
     this.chosen = { file: "recipe", place: ["curl"] };
   }
 

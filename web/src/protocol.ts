@@ -1,6 +1,6 @@
 // Made by tools/make_protocol.py from python/ringlet/viewer/protocol; change it there.
 
-export const VERSION = 9;
+export const VERSION = 10;
 export type Json = string | number | boolean | null | Json[] | { [key: string]: Json };
 
 /** A stage of the groom. place: path of its settings in the recipe. */
@@ -41,6 +41,15 @@ export interface Problem {
   setting: string;
   fixes: Fix[];
   differences: Difference[];
+}
+
+/** A person at a connected page. */
+export interface Person {
+  name: string;
+  hue: number;
+  leads: boolean;
+  follows: boolean;
+  you: boolean;
 }
 
 /** How the leading page looks at the groom. */
@@ -113,6 +122,20 @@ export interface Hello {
   version: number;
   client: string;
   leads?: boolean;
+  person?: string;
+}
+
+/** Names the person of a page. follows: whether the page shows what the leading page looks at. */
+export interface Introduce {
+  kind: "introduce";
+  person?: string;
+  follows?: boolean;
+}
+
+/** Position of the leading page's pointer in the scene [m]; None where it is elsewhere. */
+export interface Point {
+  kind: "point";
+  at: [number, number, number] | null;
 }
 
 /** Requests the edit lock; a page that holds it is asked, and hands it over after a while without an answer. */
@@ -399,13 +422,14 @@ export interface Welcome {
   colors: Record<string, [number, number, number, number]>;
 }
 
-/** Holder of the edit lock. */
+/** Holder of the edit lock, and the people at the connected pages. */
 export interface Role {
   kind: "role";
   leads: boolean;
-  others: number;
   asked: boolean;
+  asking: string;
   asks: boolean;
+  people: Person[];
 }
 
 /** Names of the recipes and caches of the project; sent again when they change. */
@@ -621,6 +645,12 @@ export interface Followed {
   frame: number | null;
 }
 
+/** Position of the leading page's pointer in the scene [m]; None where it is elsewhere. */
+export interface Pointer {
+  kind: "pointer";
+  at: [number, number, number] | null;
+}
+
 /** An error message of one line, for a request that was refused. */
 export interface Trouble {
   kind: "trouble";
@@ -679,6 +709,8 @@ export interface Cameras {
 
 export type FromPage =
   | Hello
+  | Introduce
+  | Point
   | Lead
   | Set
   | Arrange
@@ -735,6 +767,7 @@ export type FromServer =
   | Saved
   | Notice
   | Followed
+  | Pointer
   | Trouble
   | Problems
   | Progress

@@ -25,6 +25,7 @@ from ringlet.viewer.files import Files, operator_names
 from ringlet.viewer.grooming import Grooming
 from ringlet.viewer.manipulator import LockManipulator
 from ringlet.viewer.playback import Playback
+from ringlet.viewer.presence import Presence
 from ringlet.viewer.problems import GROOM, RECOVERED, SAVE, ProblemList, conflict_fixes, dismiss
 from ringlet.viewer.project import Project
 from ringlet.viewer.protocol import File, Fix
@@ -72,7 +73,8 @@ class Session:
         self.publisher = Publisher()
         self.problems = ProblemList(self.publisher)
         self.pages: list[Page] = []
-        self._lock = EditLock(self.submit, self._handed_over)
+        self._presence = Presence()
+        self._lock = EditLock(self.submit, self._answered)
         self._heard = Counter[str]()
         self._thread = SerialWorker("session")
         self._watching: asyncio.Task[None] | None = None
@@ -173,12 +175,14 @@ class Session:
         """Runs a call on the session's thread, after those submitted before it."""
         return self._thread.submit(do, *arguments)
 
-    def join(self, name: str, leads: bool = False) -> Page:
+    def join(self, name: str, leads: bool = False, person: str = "") -> Page:
         """Adds a page. It gets the edit lock when it held it before, or when no connected page holds it.
 
-        leads: whether the page held it when it was connected last; it does not take it from a page that asked for it
+        leads:  whether the page held it when it was connected last; it does not take it from a page that asked for it
+        person: name of the person at the page; empty where it is not known
         """
         page = Page(name, self.publisher.subscribe(self._welcome(self._heard[name])))
+        self._presence.join(page, name, person)
         self._lock.join(name, self._connected, led=leads)
         self.pages.append(page)
         self._send_roles()
@@ -187,6 +191,7 @@ class Session:
     def leave(self, page: Page) -> None:
         """Removes a page; the edit lock stays reserved for it until another page requests it."""
         self.pages.remove(page)
+        self._presence.leave(page)
         self.publisher.unsubscribe(page.queue)
         if page.name == self._lock.leader:
             self._end_gesture()
@@ -217,26 +222,56 @@ class Session:
             )
         )
 
-    def _handed_over(self, over: bool) -> None:
-        if over:
+    def _answered(self, asked: str, before: str) -> None:
+        """The page that asked for the edit lock has it, or ``before`` keeps it."""
+        leader = self._lock.leader
+        if asked == leader:
             self._end_gesture()
+        if asked and leader != before:
+            self._notice(f"{self._called(leader)} can edit now")
+        elif asked != leader:
+            self._notice(f"{self._called(leader)} goes on editing", to=asked)
         self._send_roles()
 
-    def _share(self, page: Page, look: protocol.Look) -> None:
-        """Shares the look of the leading page with the others, and with those that join later."""
-        self.publisher.publish("followed", pack(protocol.Followed(**look.model_dump(exclude={"kind"}))))
-        page.queue.discard("followed")
+    def _called(self, name: str) -> str:
+        """Name of the person at a page."""
+        return next((self._presence[page].name for page in self.pages if page.name == name), "Another page")
+
+    def _present(self, page: Page, message: protocol.FromPage) -> None:
+        """Handles a message of presence; what a page shares that no longer leads is outdated."""
+        if isinstance(message, protocol.Introduce):
+            self._presence.rename(page, message.person)
+            self._presence[page].follows = message.follows
+            self._send_roles()
+        elif page.name != self._lock.leader:
+            return
+        elif isinstance(message, protocol.Look):  # also for those that join later
+            self.publisher.publish("followed", pack(protocol.Followed(**message.model_dump(exclude={"kind"}))))
+            page.queue.discard("followed")
+        elif isinstance(message, protocol.Point):
+            for other in self.pages:
+                if other is not page:
+                    other.queue.put("pointer", pack(protocol.Pointer(at=message.at)))
 
     def _send_roles(self) -> None:
-        others = len(self._connected) - 1
-        for page in self.pages:
-            role = protocol.Role.model_validate({"others": others, **self._lock.role(page.name)})
-            page.queue.put("role", pack(role))
+        people = [
+            protocol.Person(**vars(self._presence[page]), leads=page.name == self._lock.leader, you=False)
+            for page in self.pages
+        ]
+        for k, page in enumerate(self.pages):
+            mine = [person.model_copy(update={"you": k == other}) for other, person in enumerate(people)]
+            role = {"people": mine, **self._lock.role(page.name)}
+            if role["asked"]:
+                role["asking"] = self._called(self._lock.asking)
+            page.queue.put("role", pack(protocol.Role.model_validate(role)))
 
     # Messages
 
     def handle(self, page: Page, message: protocol.FromPage) -> None:
         """Handles a message of a page and acknowledges it; raises UserError for a request that fails."""
+        if isinstance(message, protocol.PRESENCE):
+            self._present(page, message)
+            return
         try:
             self._dispatch(page, message)
         finally:
@@ -258,9 +293,8 @@ class Session:
         if page.name != self._lock.leader:
             raise UserError("another page leads this session; take the lead to edit")
         files = self.files
-        if isinstance(message, protocol.Look):
-            self._share(page, message)
-        elif isinstance(message, protocol.Hand):
+        self._lock.keep()
+        if isinstance(message, protocol.Hand):
             self._lock.answer(over=message.over)
         elif isinstance(message, protocol.Set):
             files.set(message.file, message.changes, message.gesture)
@@ -440,9 +474,11 @@ class Session:
         differences = self.files.differences(file)
         self.problems.show(f"conflict/{file}", message, conflict_fixes(file), place=(file, ""), differences=differences)
 
-    def _notice(self, message: str) -> None:
+    def _notice(self, message: str, to: str = "") -> None:
+        """Shows a short message on the page of a name, or on all pages."""
         for page in self.pages:
-            page.queue.put("notice", pack(protocol.Notice(message=message)))
+            if to in ("", page.name):
+                page.queue.put("notice", pack(protocol.Notice(message=message)))
 
     # Grooming
 

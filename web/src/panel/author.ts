@@ -1,17 +1,17 @@
-// The name under which this page takes snapshots and writes notes; this browser remembers it.
+// The name under which this page takes snapshots and writes notes, which is that of its person; and times.
 
 import { h } from "../dom";
+import { NAME, ownName } from "./people";
 
-const STORE = "ringlet-author";
-
-export function author(): string {
-  return localStorage.getItem(STORE) ?? "";
-}
-
-export function authorField(): HTMLElement {
-  const input = h("input", { type: "text", class: "author", placeholder: "Your name", "aria-label": "Your name", maxlength: 80, autocomplete: "name" });
-  input.value = author();
-  input.addEventListener("change", () => localStorage.setItem(STORE, input.value.trim()));
+/** A field for the name; changed: called after it was given. */
+export function authorField(changed: () => void): HTMLElement {
+  const input = h("input", { type: "text", class: "author", placeholder: "Your name", "aria-label": "Your name", maxlength: 40, autocomplete: "nickname" });
+  input.value = ownName();
+  input.addEventListener("focus", () => (input.value = ownName()));
+  input.addEventListener("change", () => {
+    localStorage.setItem(NAME, input.value.trim());
+    changed();
+  });
   return input;
 }
 

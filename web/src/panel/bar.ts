@@ -4,7 +4,6 @@ import { h, iconButton } from "../dom";
 import type { File, Model } from "../model";
 import { choices, compareWith } from "./compare";
 import { openFile, saveAs, showChanges } from "./files";
-import type { Look } from "./look";
 import { bindKey, command, showKeys } from "./keys";
 
 export class Bar {
@@ -19,22 +18,17 @@ export class Bar {
   private readonly save = h("button", { type: "button", class: "primary", title: "Save (Ctrl+S)" }, "Save");
   private readonly as = h("button", { type: "button", class: "quiet" }, "Save as…");
   private readonly open = iconButton("folder", "Open another file (Ctrl+O)", () => openFile(this.model));
-  private readonly role = h("span", { class: "role" });
-  private readonly lead = h("button", { type: "button", class: "quiet" }, "Ask to edit");
-  private readonly follow = h("button", { type: "button", class: "quiet" }, "Follow");
   private readonly beside = h("select", { "aria-label": "Show another look beside this one", class: "beside" });
 
   constructor(
     private readonly model: Model,
     setTheme: () => void,
-    private readonly look: () => Look,
+    people: HTMLElement,
     private readonly endComparison: () => void,
   ) {
     this.name.addEventListener("click", () => showChanges(model));
     this.save.addEventListener("click", () => this.saveAll());
     this.as.addEventListener("click", () => saveAs(model, this.file));
-    this.lead.addEventListener("click", () => model.say({ kind: "lead" }));
-    this.follow.addEventListener("click", () => this.look().setFollows(!this.look().follows));
     this.beside.addEventListener("change", () => this.compare());
     this.element.append(
       h("span", { class: "brand" }, "Ringlet"),
@@ -44,9 +38,7 @@ export class Bar {
       h("span", { class: "group" }, this.save, this.as),
       this.beside,
       h("span", { class: "space" }),
-      this.role,
-      this.follow,
-      this.lead,
+      people,
       iconButton("keys", "Keys (?)", showKeys),
       iconButton("sun", "Dark or light", setTheme),
     );
@@ -88,15 +80,7 @@ export class Bar {
     for (const part of [this.undo, this.redo, this.save, this.as, this.beside])
       part.toggleAttribute("hidden", !open.length);
     this.as.toggleAttribute("disabled", !role.leads);
-    this.lead.toggleAttribute("hidden", role.leads);
-    this.lead.toggleAttribute("disabled", role.asks);
-    this.lead.textContent = role.asks ? "Asked to edit …" : "Ask to edit";
-    this.follow.toggleAttribute("hidden", role.leads);
-    if (!role.leads) this.follow.setAttribute("aria-pressed", String(this.look().follows));
-    this.follow.textContent = !role.leads && this.look().follows ? "Following" : "Follow";
     this.open.toggleAttribute("disabled", !role.leads);
-    const viewers = role.others > 0 ? `${role.others} ${role.others > 1 ? "viewers" : "viewer"}` : "";
-    this.role.textContent = role.leads ? viewers : "";
     this.beside.replaceChildren(
       h("option", { value: "" }, "Compare with …"),
       ...(this.model.others.length ? [h("option", { value: "end" }, "End the comparison")] : []),

@@ -5,11 +5,12 @@ import type { Model } from "../model";
 import type { Snapshot } from "../protocol";
 import { thumbnail } from "../view/capture";
 import type { Viewer } from "../view/viewer";
-import { author, shortTime } from "./author";
+import { shortTime } from "./author";
 import { compareWith } from "./compare";
 import { openDialog } from "./dialog";
 import { bindKey, plainKey } from "./keys";
 import type { Look } from "./look";
+import { ownName } from "./people";
 import type { Tray, TrayTab } from "./tray";
 
 export class Snapshots {
@@ -45,7 +46,7 @@ export class Snapshots {
     this.waiting = !model.settled && !model.stuck;
     if (this.waiting) return;
     const picture = thumbnail(this.viewer).toDataURL("image/png").split(",")[1];
-    model.say({ kind: "take_snapshot", author: author(), look: this.look.state, picture });
+    model.say({ kind: "take_snapshot", author: ownName(), look: this.look.state, picture });
     this.tray.open(this.tab);
   }
 
@@ -63,7 +64,7 @@ export class Snapshots {
     const { model } = this;
     const { leads } = model.role;
     const title = one.note.split("\n")[0] || shortTime(one.time);
-    const picture = h("img", { src: model.pictures.get(`snapshots/${one.id}`), alt: "", loading: "lazy" });
+    const picture = h("img", { src: model.pictures.get(`snapshots/${one.id}`), alt: "" });
     const compare = h(
       "button",
       { type: "button", class: "thumbnail", disabled: !leads, title: "Compare with it", "aria-label": `Compare with ‘${title}’`, onclick: () => compareWith(model, `snapshot:${one.id}`) },

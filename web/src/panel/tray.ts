@@ -15,7 +15,7 @@ export interface TrayTab {
 }
 
 export class Tray {
-  readonly element = h("section", { class: "tray panel", hidden: true, "aria-label": "Snapshots, notes and references" });
+  readonly element = h("section", { class: "tray", hidden: true, "aria-label": "Snapshots, notes and references" });
   readonly button = iconButton("tray", "Snapshots, notes and references (T)", () => this.show(this.element.hidden === true));
   private readonly tabs: { tab: TrayTab; button: HTMLElement }[] = [];
   private readonly list = h("div", { class: "group", role: "tablist" });
@@ -23,10 +23,10 @@ export class Tray {
   private readonly body = h("div", { class: "tray-body" });
   private chosen: TrayTab | null = null;
 
-  constructor() {
+  constructor(renamed: () => void) {
     this.button.setAttribute("aria-pressed", "false");
     const close = iconButton("close", "Close the tray", () => this.show(false));
-    this.element.append(h("header", { class: "tray-head" }, this.list, this.actions, authorField(), close), this.body);
+    this.element.append(h("header", { class: "tray-head" }, this.list, this.actions, authorField(renamed), close), this.body);
     bindKey({ keys: "T", does: "the tray of snapshots, notes and references", on: plainKey("t"), run: () => this.show(this.element.hidden === true) });
   }
 

@@ -12,18 +12,37 @@ from ringlet.viewer.protocol.review import ReviewMessage
 
 MOST_TEXT = 1_800_000  # characters of a file
 
+PersonName = Annotated[str, Field(max_length=40)]
+
 
 class Hello(Message):
     """First message of a page.
 
     client: name that the page keeps when it reconnects
     leads:  whether it held the edit lock when it was connected last
+    person: name of the person, as others see it; empty where it is not known
     """
 
     kind: Literal["hello"] = "hello"
     version: Row
     client: str = Field(max_length=64)
     leads: bool = False
+    person: PersonName = ""
+
+
+class Introduce(Message):
+    """Names the person of a page. follows: whether the page shows what the leading page looks at."""
+
+    kind: Literal["introduce"] = "introduce"
+    person: PersonName = ""
+    follows: bool = True
+
+
+class Point(Message):
+    """Position of the leading page's pointer in the scene [m]; None where it is elsewhere."""
+
+    kind: Literal["point"] = "point"
+    at: Position | None
 
 
 class Lead(Message):
@@ -254,6 +273,8 @@ class Watch(Message):
 
 FromPage = Annotated[
     Hello
+    | Introduce
+    | Point
     | Lead
     | Set
     | Arrange
@@ -281,3 +302,6 @@ FromPage = Annotated[
     Field(discriminator="kind"),
 ]
 FROM_PAGE: TypeAdapter[FromPage] = TypeAdapter(FromPage)
+
+# Messages of presence: the latest of each counts, so that they are neither acknowledged nor sent again.
+PRESENCE = (Introduce, Point, Look)

@@ -8,7 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from ringlet.data import limits
 
-VERSION = 9
+VERSION = 10
 
 Place = list[str | int]  # path of a setting in its file: ["shape", 0, "amount"]
 File = Literal["recipe", "shot"]
