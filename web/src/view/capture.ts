@@ -37,13 +37,9 @@ export function still(viewer: Viewer, width: number, height: number, clear: bool
 
 /** A small picture of the open look alone. */
 export function thumbnail(viewer: Viewer): HTMLCanvasElement {
-  const { looks } = viewer;
-  const { order } = looks;
-  looks.order = ["a"];
-  const canvas = still(viewer, 400, 250, false);
-  looks.order = order;
-  viewer.drawNow();
-  return canvas;
+  let picture!: HTMLCanvasElement;
+  viewer.withView(() => (picture = still(viewer, 400, 250, false)));
+  return picture;
 }
 
 /** Records what is drawn until it is stopped. */

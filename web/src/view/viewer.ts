@@ -202,7 +202,7 @@ export class Viewer {
   }
 
   /** Puts the camera before the subject so that all hair is in the picture; without angles it keeps its direction. */
-  frame(azimuth = 34, elevation = 6): void {
+  frame(azimuth = 34, elevation = 6, picture = this.size): void {
     const box = this.hair.a.box;
     if (box.isEmpty()) return;
     this.framed = true;
@@ -210,8 +210,7 @@ export class Viewer {
     const target = box.getCenter(new Vector3());
     target.y -= 0.06 * size.y;
     const radius = 0.5 * Math.max(size.x, size.z, 1.12 * size.y);
-    const { clientWidth, clientHeight } = this.element;
-    const narrow = Math.min(1, clientWidth / Math.max(clientHeight, 1));
+    const narrow = Math.min(1, picture.width / Math.max(picture.height, 1));
     const distance = (1.32 * radius) / Math.tan((0.5 * this.camera.fov * Math.PI) / 180) / narrow;
     const [a, e] = [(azimuth * Math.PI) / 180, (elevation * Math.PI) / 180];
     this.controls.target.copy(target);
@@ -233,6 +232,20 @@ export class Viewer {
     this.camera.lookAt(this.controls.target);
     this.onLook();
     this.invalidate();
+  }
+
+  /** Does something with the open look alone, after which the camera is where it was. */
+  withView(does: () => void): void {
+    const { camera, focal_length } = this.cameraState;
+    const { order } = this.looks;
+    const moved = this.onLook;
+    this.onLook = () => {};
+    this.looks.order = ["a"];
+    does();
+    this.looks.order = order;
+    this.lookFrom(camera, focal_length);
+    this.onLook = moved;
+    this.drawNow();
   }
 
   /** Something moves: speed counts more than detail for a moment. */
