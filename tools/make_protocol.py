@@ -28,6 +28,22 @@ PLAIN: dict[Any, str] = {
 }
 
 
+PARTS = (
+    protocol.Stage,
+    protocol.Change,
+    protocol.Fix,
+    protocol.Difference,
+    protocol.Problem,
+    protocol.Person,
+    protocol.Shared,
+    protocol.Snapshot,
+    protocol.Note,
+    protocol.Placement,
+    protocol.Reference,
+    protocol.StageCamera,
+)  # of messages
+
+
 def kind(annotation: Any) -> str:
     """TypeScript notation of a Python type."""
     if annotation in PLAIN:
@@ -79,14 +95,7 @@ def lines() -> Iterator[str]:
     yield f"export const VERSION = {protocol.VERSION};"
     yield "export type Json = string | number | boolean | null | Json[] | { [key: string]: Json };"
     yield ""
-    for message in (
-        protocol.Stage,
-        protocol.Change,
-        protocol.Fix,
-        protocol.Difference,
-        protocol.Problem,
-        protocol.Person,
-    ):
+    for message in PARTS:
         yield from interface(message, from_page=False)
     for message in union:
         yield from interface(message, from_page=True)

@@ -18,11 +18,17 @@ export function viewOf(hash: string): { name: string; view: View } | null {
   const camera = numbers(values.get("camera"));
   if (camera.length !== 6 || !camera.every(Number.isFinite)) return null;
   const [file, ...place] = (values.get("stage") ?? "recipe/curl").split("/");
+  const number = (key: string, otherwise: number) => {
+    const value = Number(values.get(key) ?? otherwise);
+    return Number.isFinite(value) ? value : otherwise;
+  };
   const frame = values.has("frame") ? Number(values.get("frame")) : null;
   return {
     name: values.get("of") ?? "",
     view: {
       camera,
+      focal_length: number("lens", 85),
+      light_turn: number("turn", 0),
       light: values.get("light") ?? "",
       color: values.get("color") ?? "",
       overlay: values.get("overlay") ?? "",
@@ -39,9 +45,10 @@ export function addressOf(hash: string, link?: { name: string; view: View }): st
   const token = tokenOf(hash);
   const values: [string, string][] = [];
   if (link) {
-    const { camera, light, color, overlay, file, place, locks, frame } = link.view;
+    const { camera, focal_length, light_turn, light, color, overlay, file, place, locks, frame } = link.view;
     values.push(["of", link.name], ["camera", camera.map((value) => value.toFixed(4)).join(",")], ["light", light]);
     values.push(["color", color], ["overlay", overlay], ["stage", [file, ...place].join("/")], ["locks", locks.join(",")]);
+    values.push(["lens", String(focal_length)], ["turn", light_turn ? String(light_turn) : ""]);
     if (frame !== null) values.push(["frame", String(frame)]);
   }
   const said = values.filter(([, value]) => value !== "").map(([key, value]) => `${key}=${encodeURIComponent(value)}`);

@@ -9,16 +9,21 @@ import { Bar } from "./panel/bar";
 import { BrushTool } from "./panel/brush";
 import { CompareBar } from "./panel/compare";
 import { bindKey, plainKey } from "./panel/keys";
+import { Lens } from "./panel/lens";
 import { LockTool } from "./panel/lock";
 import { Look } from "./panel/look";
+import { Notes } from "./panel/notes";
 import { ownName, People } from "./panel/people";
 import { PresenterPointer } from "./panel/pointer";
+import { References } from "./panel/references";
 import { Settings } from "./panel/settings";
+import { Snapshots } from "./panel/snapshots";
 import { Sheets } from "./panel/sheets";
 import { Stack } from "./panel/stack";
 import { ProblemBar } from "./panel/problems";
 import { Notices, Status } from "./panel/status";
 import { TimelineBar } from "./panel/timeline";
+import { Tray } from "./panel/tray";
 import { Viewbar } from "./panel/viewbar";
 import type { FromServer } from "./protocol";
 import { Viewer } from "./view/viewer";
@@ -30,6 +35,8 @@ class App {
   readonly lock: LockTool;
   readonly brush: BrushTool;
   readonly look: Look;
+  readonly tray: Tray;
+  private readonly notes: Notes;
   private readonly pointer: PresenterPointer;
   private readonly notices = new Notices();
   private readonly problems: ProblemBar;
@@ -54,6 +61,7 @@ class App {
     this.viewer.onPaint = () => {
       this.lock.place();
       this.pointer.place();
+      this.notes?.place();
     };
     this.viewer.onDraw = (statistics) => this.status.drew(statistics);
     const keys = (names: string, does: string, ...all: string[]) =>
@@ -67,15 +75,26 @@ class App {
     this.viewer.covered = () => [
       left.getBoundingClientRect().right,
       settings.hidden ? 0 : innerWidth - settings.getBoundingClientRect().left,
+      46,
+      98,
     ];
     const viewbar = new Viewbar(this.model, this.viewer, this.brush, name);
     this.look = new Look(this.model, this.viewer, viewbar, this.lock, this.timeline, this.notices);
+    this.tray = new Tray(() => this.look.introduce());
+    const snapshots = new Snapshots(this.model, this.viewer, this.look, this.tray);
+    this.notes = new Notes(this.model, this.viewer, this.look, this.tray);
+    const references = new References(this.model, this.viewer, this.tray, this.notices);
+    picture.append(references.element, this.notes.marks);
+    const lens = new Lens(this.model, this.viewer, this.look, name);
+    viewbar.element.append(lens.button, snapshots.button, this.tray.button);
     root.append(
-      new Bar(this.model, () => this.setTheme(), people.element).element,
+      new Bar(this.model, () => this.setTheme(), people.element, () => this.endComparison()).element,
       left,
       settings,
       viewbar.element,
       new CompareBar(this.model, this.viewer, () => this.endComparison()).element,
+      this.tray.element,
+      lens.element,
       this.timeline.element,
       this.status.element,
       this.notices.element,
@@ -203,9 +222,34 @@ class App {
         this.timeline.add(message);
         break;
       case "compared":
-        model.compared = message.name;
-        viewer.compare(message.name !== "");
+        if (message.name) model.compared[message.side] = message;
+        else delete model.compared[message.side];
+        if (message.side !== "a") viewer.compare(message.side, message.name !== "");
         model.tell("compared");
+        break;
+      case "snapshots":
+        model.snapshots = message.snapshots;
+        model.tell("snapshots");
+        break;
+      case "notes":
+        model.notes = message.notes;
+        model.tell("notes");
+        break;
+      case "references":
+        model.references = message.references;
+        model.tell("references");
+        break;
+      case "views":
+        model.views = message.views;
+        model.tell("views");
+        break;
+      case "cameras":
+        model.cameras = message.cameras;
+        model.tell("cameras");
+        break;
+      case "picture":
+        model.setPicture(message.name, message.data as Uint8Array<ArrayBuffer>);
+        model.tell("pictures");
         break;
       case "saved":
         this.notices.show(`${message.name} is saved`);
@@ -230,7 +274,7 @@ class App {
   private endComparison(): void {
     const { model } = this;
     if (model.timeline?.against) model.say({ kind: "against", name: "" });
-    else model.say({ kind: "compare", to: "none" });
+    else for (const side of model.others) model.say({ kind: "compare", to: "none", side: side as "b" });
   }
 
   /** Another file is open. */

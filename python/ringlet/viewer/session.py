@@ -16,7 +16,7 @@ from typing import Any
 from ringlet import api
 from ringlet.data.errors import UserError
 from ringlet.data.pigment import HAIR_COLORS
-from ringlet.viewer import protocol
+from ringlet.viewer import eyedropper, protocol
 from ringlet.viewer.caches import Caches
 from ringlet.viewer.comparer import Comparer
 from ringlet.viewer.display_groom import DisplayGroom
@@ -31,8 +31,10 @@ from ringlet.viewer.project import Project
 from ringlet.viewer.protocol import File, Fix
 from ringlet.viewer.publisher import Publisher, SendQueue
 from ringlet.viewer.recovery import Recovery
+from ringlet.viewer.reviewing import Reviewing
 from ringlet.viewer.scene import read_scene
 from ringlet.viewer.sculpting import Sculptor
+from ringlet.viewer.stage_cameras import StageCameras
 from ringlet.viewer.viewport import Viewport
 from ringlet.viewer.watcher import FileWatcher
 from ringlet.viewer.wire import pack, trouble
@@ -80,6 +82,7 @@ class Session:
         self._rest = Timer(REST_AFTER, self.submit)
         self._caches = Caches(project)
         self._grooming = Grooming(project, self.publisher, self.problems, self._call, self._show, self.trouble)
+        self._review = Reviewing(project, self.publisher, self._notice)
         self._comparer = Comparer(project, self.publisher, self._call)
         self._load(file)
 
@@ -91,8 +94,10 @@ class Session:
         self._recovery = Recovery(files, self.problems)
         self._playback = Playback(files, self.publisher, viewport, self._call, self.trouble)
         self._manipulator, self._sculptor = LockManipulator(files), Sculptor(files)
+        self._cameras = StageCameras(self.publisher)
         self._grooming.open(files, viewport)
-        self._comparer.open(files, viewport)
+        self._review.open(files)
+        self._comparer.open(files, viewport, self._review)
         self._watcher.changed(files.watched())
         entry = self._recovery.recover()
         self.recovered = entry is not None
@@ -102,6 +107,7 @@ class Session:
         if scene is not None:
             bodies, display = scene
             viewport.stage(display, bodies)
+            self._cameras.show(display.groom, None)
             self._playback.read(display)
 
     # Pages
@@ -115,6 +121,7 @@ class Session:
         for file in self.files.documents:
             self.publisher.publish(f"document/{file}", self.files.message(file))
             self._show_conflict(file)
+        self._review.publish()
         if "recipe" in self.files.documents:
             self._grooming.request()
 
@@ -129,6 +136,8 @@ class Session:
                 if names != posted:
                     self._call(self.publisher.publish, "files", pack(protocol.Files(names=names)))
                 posted = names
+                if await asyncio.to_thread(self._review.watch):
+                    self._call(self._review.reload)
             looks += 1
             await asyncio.sleep(WATCH_INTERVAL)
 
@@ -278,6 +287,9 @@ class Session:
         if isinstance(message, protocol.Watch):
             page.queue.request(self._playback.frame_sources(message))
             return
+        if isinstance(message, protocol.AnyReview):
+            self._review.handle(message)
+            return
         if page.name != self._lock.leader:
             raise UserError("another page leads this session; take the lead to edit")
         files = self.files
@@ -317,6 +329,12 @@ class Session:
             if not self.recovered:
                 files.recover(message.file, message.text, message.edits, message.saved, message.saved_edits)
                 self._edited(message.file)
+        elif isinstance(message, protocol.LoadSnapshot):
+            self._review.load_snapshot(message.id)
+            self._edited("recipe")
+        elif isinstance(message, protocol.PickColor):
+            self._notice(eyedropper.pick(files, message.color))
+            self._edited("recipe")
         elif isinstance(message, protocol.Compare):
             self._comparer.compare(message, page.queue)
         elif isinstance(message, protocol.Isolate):
@@ -473,6 +491,7 @@ class Session:
         self.publisher.publish(f"document/{file}", self.files.message(file))
         if file == "recipe":
             self._grooming.request(draft=not resting)
+            self._comparer.recompute()
         else:
             self._playback.publish_timeline()
         if resting:
@@ -499,6 +518,7 @@ class Session:
     def _show(self, display: DisplayGroom, revision: int) -> None:
         before = self._viewport.display
         self._viewport.show(display, "a", revision)
+        self._cameras.show(display.groom, self.files.shot if self.files.mode == "shot" else None)
         guides_changed = before is None or before.groom.guides is not display.groom.guides
         if guides_changed and display.groom.unsculpted is not None and not self._sculptor.busy:
             self.publisher.publish("guides", self._sculptor.message(display.groom.guides, display.groom))

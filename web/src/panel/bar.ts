@@ -2,6 +2,7 @@
 
 import { h, iconButton } from "../dom";
 import type { File, Model } from "../model";
+import { choices, compareWith } from "./compare";
 import { openFile, saveAs, showChanges } from "./files";
 import { bindKey, command, showKeys } from "./keys";
 
@@ -23,6 +24,7 @@ export class Bar {
     private readonly model: Model,
     setTheme: () => void,
     people: HTMLElement,
+    private readonly endComparison: () => void,
   ) {
     this.name.addEventListener("click", () => showChanges(model));
     this.save.addEventListener("click", () => this.saveAll());
@@ -40,7 +42,7 @@ export class Bar {
       iconButton("keys", "Keys (?)", showKeys),
       iconButton("sun", "Dark or light", setTheme),
     );
-    for (const topic of ["document", "role", "welcome", "files", "compared"] as const) model.on(topic, () => this.update());
+    for (const topic of ["document", "role", "welcome", "files", "compared", "snapshots"] as const) model.on(topic, () => this.update());
     bindKey({ keys: "Ctrl+Z", does: "undo", on: command("z"), run: () => model.say({ kind: "undo" }) });
     const redo = (event: KeyboardEvent) => command("z", true)(event) || command("y")(event);
     bindKey({ keys: "Ctrl+Shift+Z", does: "redo", on: redo, run: () => model.say({ kind: "redo" }) });
@@ -59,12 +61,14 @@ export class Bar {
   }
 
   private compare(): void {
-    const [to, name] = this.beside.value.split(":");
-    this.model.say({ kind: "compare", to: (to || "none") as "now" | "saved" | "file" | "none", name: name ?? "" });
+    const { value } = this.beside;
+    this.beside.value = "";
+    if (value === "end") this.endComparison();
+    else if (value) compareWith(this.model, value);
   }
 
   private update(): void {
-    const { documents, role, welcome, compared } = this.model;
+    const { documents, role, welcome } = this.model;
     const open = Object.values(documents);
     const dirty = open.some((document) => document.dirty);
     this.name.textContent = `${documents.recipe?.name ?? welcome?.name ?? ""}${dirty ? " ·" : ""}`;
@@ -77,17 +81,11 @@ export class Bar {
       part.toggleAttribute("hidden", !open.length);
     this.as.toggleAttribute("disabled", !role.leads);
     this.open.toggleAttribute("disabled", !role.leads);
-    const files = this.model.files.filter((name) => name.endsWith(".toml") && name !== documents.recipe?.name);
-    const choices: [string, string][] = [
-      ["", "Compare with …"],
-      ["now", "this moment"],
-      ["saved", "as saved"],
-      ...files.map((name): [string, string] => [`file:${name}`, name]),
-    ];
-    if (compared) choices[0][1] = "End the comparison";
-    const { value } = this.beside;
-    this.beside.replaceChildren(...choices.map(([key, label]) => h("option", { value: key }, label)));
-    this.beside.value = compared ? value : "";
+    this.beside.replaceChildren(
+      h("option", { value: "" }, "Compare with …"),
+      ...(this.model.others.length ? [h("option", { value: "end" }, "End the comparison")] : []),
+      ...choices(this.model),
+    );
     this.beside.toggleAttribute("disabled", !role.leads);
   }
 }

@@ -7,7 +7,7 @@ import type { Person } from "../protocol";
 import { bindKey, plainKey } from "./keys";
 import type { Look } from "./look";
 
-const NAME = "ringlet-person";
+export const NAME = "ringlet-person"; // where this browser remembers it
 const MOST_SEEN = 4; // people in the bar; the list has all
 
 /** The name of this browser's person; empty where it was not given yet. */

@@ -6,6 +6,7 @@ import type { Model } from "../model";
 import { bindKey, plainKey } from "./keys";
 import type { Frame, Timeline } from "../protocol";
 import { OVERLAYS, overlayValues } from "../view/overlays";
+import type { Side } from "../view/looks";
 import type { Viewer } from "../view/viewer";
 
 type Layer = "shot" | "against";
@@ -186,7 +187,8 @@ export class TimelineBar {
   }
 
   /** Hair has gone from where a frame had put it. */
-  displaced(side: "a" | "b"): void {
+  displaced(side: Side): void {
+    if (side === "c" || side === "d") return;
     delete this.drawn[side === "a" ? "shot" : "against"];
   }
 

@@ -8,6 +8,7 @@ from pydantic import Field, TypeAdapter
 
 from ringlet.data import limits
 from ringlet.viewer.protocol.message import File, FrameNumber, Gesture, Id, Message, Place, Position, Row, Shared
+from ringlet.viewer.protocol.review import ReviewMessage
 
 MOST_TEXT = 1_800_000  # characters of a file
 
@@ -173,11 +174,15 @@ class Restore(Message):
 
 
 class Compare(Message):
-    """Shows a second groom for comparison: a snapshot, the saved one, another recipe of the project, or none."""
+    """Shows another groom on a side: as it is now, as saved, a snapshot, another recipe of the project, or none.
+
+    name: of the recipe, or id of the snapshot
+    """
 
     kind: Literal["compare"] = "compare"
-    to: Literal["now", "saved", "file", "none"]
+    to: Literal["now", "saved", "snapshot", "file", "none"]
     name: str = Field(default="", max_length=240)
+    side: Literal["b", "c", "d"] = "b"
 
 
 class Drag(Message):
@@ -292,7 +297,8 @@ FromPage = Annotated[
     | Hand
     | Play
     | Against
-    | Watch,
+    | Watch
+    | ReviewMessage,
     Field(discriminator="kind"),
 ]
 FROM_PAGE: TypeAdapter[FromPage] = TypeAdapter(FromPage)

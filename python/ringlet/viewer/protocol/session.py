@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import Any, ClassVar, Literal
 
-from ringlet.viewer.protocol.message import File, Message, Place, Point, Shared
+from pydantic import Field
+
+from ringlet.viewer.protocol.message import File, Message, Place, Point, Shared, Side
 
 
 class Welcome(Message):
@@ -149,10 +151,18 @@ class Timeline(Message):
 
 
 class Compared(Message):
-    """Name of the groom or cache to compare with; empty for none."""
+    """A look that is compared; ``a`` is the open recipe.
+
+    name:     of the groom or cache; empty for none
+    detail:   author and time of a snapshot
+    settings: those that its recipe sets, in the notation of TOML; empty for a cache
+    """
 
     kind: Literal["compared"] = "compared"
+    side: Side
     name: str
+    detail: str = ""
+    settings: dict[str, str] = Field(default_factory=dict)
 
 
 class Heard(Message):
