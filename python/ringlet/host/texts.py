@@ -59,7 +59,7 @@ def _make(document: Document, change: Change) -> None:
 
 def _place(document: Document, change: SetValue) -> Place:
     """The place that a change sets: that of a plain number itself, where the change names its ``value``."""
-    place: Place = tuple(change.set)
+    place: Place = change.set
     if len(place) < 2 or place[-1] != "value":
         return place
     found: Any = document.contents()
