@@ -38,9 +38,9 @@ template <class T> struct NewtonMemory {
     T *trial, *gradient, *direction, *band;
 };
 
-// Gradient and Hessian, with the curvature of paths in those lanes where it is `used`: 1 as a step begins, and 0 from where on
-// less than a tenth of the matrix as assembled would be left of it in some direction. Nearly singular matrices give directions
-// that are long and lead nowhere.
+// Gradient and Hessian, with the curvature of paths in those lanes where it is `used`. A lane begins a step with 1. It goes on
+// with 0 once less than a tenth of the matrix as assembled would be left in some direction: nearly singular matrices give
+// directions that are long and lead nowhere.
 template <class T, class Objective>
 void assemble_with_curvature(Objective &objective, T *gradient, typename Objective::Matrix &hessian, T &used) {
     objective.assemble(gradient, hessian);
