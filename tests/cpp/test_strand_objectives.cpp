@@ -180,6 +180,7 @@ struct RotatingStrand : RandomStrand<RodObjective<double>> {
         for (int i = 0; i < vertices; ++i) {
             StrandRow<double> &r = rows[i];
             r.free = 1.0;
+            r.rest_angle += 0.1; // curved everywhere
             r.frame_free = i > 0 && i + 1 < vertices;
             const Vec<double> d = cross(omega, position_of(x, i) - position_of(x, 0));
             for (int k = 0; k < 3; ++k) direction[4 * i + k] = d[k];

@@ -19,9 +19,8 @@ public:
     // slowly: hair that rests on hair must not become soft, sink in and become stiff again.
     void begin_step(std::vector<double> largest, double dt);
 
-    // Loads become the lagged normal forces of the contacts, where those are larger than what the step began with; returns
-    // whether one has changed. A force that only an early iterate had leaves no trace in the solution.
-    bool update_loads(const ContactSet &contacts);
+    // Raises loads to the lagged normal forces of the contacts; returns whether one has risen. None falls within a step.
+    bool raise_loads(const ContactSet &contacts);
 
     const std::vector<double> &largest() const { return largest_; }
 
@@ -31,7 +30,7 @@ public:
     void recall(std::vector<double> loads) { load_ = std::move(loads); }
 
 private:
-    std::vector<double> largest_, carried_, load_;
+    std::vector<double> largest_, load_;
 };
 
 } // namespace ringlet

@@ -74,7 +74,10 @@ void SceneData::exempt_coincident_pairs() {
 
 bool SceneData::is_placed() const {
     const auto same = [&](const std::vector<Vec3> &of, int first) {
-        return std::memcmp(of.data(), configuration.positions.data() + first, of.size() * sizeof(Vec3)) == 0;
+        const auto one = [](const Vec3 &a, const Vec3 &b) { // also 0 and −0, or what is not finite
+            return a == b || std::memcmp(&a, &b, sizeof(Vec3)) == 0;
+        };
+        return std::equal(of.begin(), of.end(), configuration.positions.begin() + first, one);
     };
     bool placed = same(state.positions, 0);
     for (size_t c = 0; c < cloths.size(); ++c) placed &= same(cloths[c]->state().positions, vertices.cloths[c]);

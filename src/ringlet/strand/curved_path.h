@@ -32,6 +32,13 @@ void close_path(const StrandRow<T> *rows, int held_at, const MaskOf<T> &held, T 
     }
 }
 
+// How much of the spin of edge i about itself rotates it: all where its corners are curved at rest, and none where they are
+// straight. There nothing determines the spin, and edges that rotated with it would be led aside by chance.
+template <class T> T rotation_share(const StrandRow<T> *rows, int i) {
+    const T angle = (1.0 / strand_settings::curved_angle) * max(abs(rows[i].rest_angle), abs(rows[i + 1].rest_angle));
+    return min(angle * angle, constant<T>(1.0));
+}
+
 // An edge and the angle of its frame, as a value of γ l̄ [m], at the end of a path.
 template <class T> struct RotatedEdge {
     Vec<T> edge;
@@ -42,12 +49,12 @@ template <class T> struct RotatedEdge {
 // first order does so exactly. The angle is atan ‖ω‖, as that of a straight path, since directions of radians overshoot. The
 // edge keeps its length; where nothing changes the result is the same to the bit.
 template <int dofs, class T>
-RotatedEdge<T> rotate_edge(const StrandRow<T> &row, Vec<T> edge, T length, Vec<T> change, T frame, T frame_change) {
+RotatedEdge<T> rotate_edge(const StrandRow<T> &row, T share, Vec<T> edge, T length, Vec<T> change, T frame, T frame_change) {
     const Vec<T> t = (1.0 / length) * edge, sideways = (1.0 / length) * (change - dot(t, change) * t); // ω × t
     T about{};                                                                                         // ω · t
     if constexpr (dofs == 4)
         about = row.frame_free * (frame_change / row.rest_length + dot(spin(row.reference.tangent, t, length), change));
-    const Vec<T> omega = cross(t, sideways) + about * t;
+    const Vec<T> omega = cross(t, sideways) + share * about * t;
     const T cosine = 1.0 / sqrt(1.0 + dot(omega, omega)), twice = cosine * cosine / (1.0 + cosine);
     const auto rotate = [&](Vec<T> v) { return v + cosine * cross(omega, v) + twice * cross(omega, cross(omega, v)); };
     RotatedEdge<T> to{rotate(edge), frame + frame_change};
@@ -57,7 +64,7 @@ RotatedEdge<T> rotate_edge(const StrandRow<T> &row, Vec<T> edge, T length, Vec<T
         const SineCosine<T> turn = sine_cosine(frame / row.rest_length);
         const Vec<T> director = rotate(turn.cosine * before + turn.sine * cross(t, before));
         const T rotated = atan2(dot(cross(tangent, after), director), dot(after, director));
-        const T correction = row.rest_length * wrap(rotated - to.frame / row.rest_length);
+        const T correction = row.rest_length * wrap(rotated + (1.0 - share) * about - to.frame / row.rest_length);
         to.frame += select((cosine == 1.0) | (row.frame_free == 0.0), T{}, correction);
     }
     return to;
@@ -80,8 +87,8 @@ void curved_path(int vertices, const StrandRow<T> *rows, const T *x, T step, con
             const auto point = now < strand_settings::zero_length;
             const T divisor = select(point, constant<T>(1.0), now);
             const T ratio = max((now + dot(edge, change) / divisor) / divisor, constant<T>(strand_settings::min_edge_ratio));
-            const RotatedEdge<T> rotated =
-                rotate_edge<dofs>(rows[i - 1], edge, divisor, change, x[frame], to[frame] - x[frame]);
+            const RotatedEdge<T> rotated = rotate_edge<dofs>(rows[i - 1], rotation_share(rows, i - 1), edge, divisor, change,
+                                                             x[frame], to[frame] - x[frame]);
             shift = shift + select<T>(point, Vec<T>{}, ratio * rotated.edge - (edge + change));
             if constexpr (dofs == 4) to[frame] = select(point, to[frame], rotated.frame);
             length += rows[i - 1].rest_length;

@@ -9,6 +9,7 @@
 
 #include "ringlet/energy/strand/frame.h"
 #include "ringlet/energy/strand/stretch.h"
+#include "ringlet/strand/curved_path.h"
 #include "ringlet/strand/vertex_data.h"
 
 namespace ringlet::RINGLET_SIMD {
@@ -45,8 +46,9 @@ private:
     EdgeSpin spin_of(int i) const {
         const StrandShape<T> &s = shapes_[i];
         EdgeSpin r;
-        r.about = rows_[i].frame_free * spin(rows_[i].reference.tangent, s.tangent, s.length);
-        r.by_frame = (rows_[i].frame_free / rows_[i].rest_length) * s.tangent;
+        const T share = rows_[i].frame_free * rotation_share(rows_, i);
+        r.about = share * spin(rows_[i].reference.tangent, s.tangent, s.length);
+        r.by_frame = (share / rows_[i].rest_length) * s.tangent;
         const Vec<T> t = (1.0 / s.length) * s.tangent;
         r.by_edge[0] = r.about.x * s.tangent + Vec<T>{T{}, t.z, -t.y}; // t × the x axis
         r.by_edge[1] = r.about.y * s.tangent + Vec<T>{-t.z, T{}, t.x};
@@ -66,7 +68,8 @@ private:
         const T stretch = stretch_across(s.length, rows_[i].damped_length, rows_[i].stretch_stiffness);
         const T across = weight * max(-dot(load, s.tangent) / s.length - stretch, T{});
         const Vec<T> twisting = (0.5 * weight) * cross(load, s.tangent), t = s.tangent;
-        const T a = rows_[i].free, b = rows_[i + 1].free, frame = rows_[i].frame_free / rows_[i].rest_length;
+        const T a = rows_[i].free, b = rows_[i + 1].free;
+        const T frame = rows_[i].frame_free * rotation_share(rows_, i) / rows_[i].rest_length;
         for (int c = 0; c < 3; ++c) {
             T *before = hessian.entry(4 * i + c), *after = hessian.entry(4 * i + 4 + c);
             for (int r = 0; r < 3; ++r) {
