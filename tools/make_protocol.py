@@ -77,7 +77,8 @@ def lines() -> Iterator[str]:
     yield f"export const VERSION = {protocol.VERSION};"
     yield "export type Json = string | number | boolean | null | Json[] | { [key: string]: Json };"
     yield ""
-    for message in (protocol.Stage, protocol.Change, protocol.Fix, protocol.Difference, protocol.Problem):
+    parts = (protocol.Stage, protocol.Change, protocol.Fix, protocol.Difference, protocol.Problem)
+    for message in (*parts, protocol.Lamp, protocol.Rig):
         yield from interface(message, from_page=False)
     for message in union:
         yield from interface(message, from_page=True)

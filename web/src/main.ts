@@ -10,6 +10,7 @@ import { CompareBar } from "./panel/compare";
 import { bindKey, plainKey } from "./panel/keys";
 import { LockTool } from "./panel/lock";
 import { Look } from "./panel/look";
+import { RenderPanel } from "./panel/render";
 import { Settings } from "./panel/settings";
 import { Sheets } from "./panel/sheets";
 import { Stack } from "./panel/stack";
@@ -27,6 +28,7 @@ class App {
   readonly lock: LockTool;
   readonly brush: BrushTool;
   readonly look: Look;
+  readonly render: RenderPanel;
   private readonly notices = new Notices();
   private readonly problems: ProblemBar;
   private readonly status = new Status(this.model);
@@ -60,6 +62,8 @@ class App {
       settings.hidden ? 0 : innerWidth - settings.getBoundingClientRect().left,
     ];
     const viewbar = new Viewbar(this.model, this.viewer, this.brush, name);
+    this.render = new RenderPanel(this.model, this.viewer, viewbar, name);
+    picture.append(this.render.element);
     this.look = new Look(this.model, this.viewer, viewbar, this.lock, this.timeline, this.notices);
     root.append(
       new Bar(this.model, () => this.setTheme(), () => this.look).element,
@@ -92,7 +96,6 @@ class App {
     const next = theme ?? (now === "dark" ? "light" : "dark");
     document.documentElement.dataset["theme"] = next;
     localStorage.setItem("ringlet-theme", next);
-    this.viewer.setTheme(next);
   }
 
   private connected(state: LinkState, why: string): void {
@@ -197,6 +200,9 @@ class App {
         viewer.compare(message.name !== "");
         model.tell("compared");
         break;
+      case "rendered":
+        this.render.show(message);
+        break;
       case "saved":
         this.notices.show(`${message.name} is saved`);
         break;
@@ -209,6 +215,7 @@ class App {
         break;
       case "trouble":
         this.notices.show(model.words(message.message), "bad");
+        if (message.message.startsWith("render:") || message.message.startsWith("picture:")) this.render.fail();
         model.tell("document"); // controls go back to what holds
         break;
     }

@@ -43,6 +43,23 @@ export interface Problem {
   differences: Difference[];
 }
 
+/** A round lamp that faces the subject. */
+export interface Lamp {
+  azimuth: number;
+  elevation: number;
+  size: number;
+  strength: [number, number, number];
+  distance: number;
+}
+
+/** A light rig: its lamps, around the camera or the subject, and the radiance of the surroundings. */
+export interface Rig {
+  label: string;
+  with_camera: boolean;
+  ambient: [number, number, number];
+  lamps: Lamp[];
+}
+
 /** First message of a page. */
 export interface Hello {
   kind: "hello";
@@ -220,6 +237,23 @@ export interface Against {
   name?: string;
 }
 
+/** Path-traces what is seen, in place of the last render of the page; ``Rendered`` answers, step by step. */
+export interface Render {
+  kind: "render";
+  number: number;
+  camera: number[];
+  width: number;
+  height: number;
+  samples?: number;
+  light?: "studio" | "window" | "sun";
+  color?: string;
+}
+
+/** Cancels the render of the page. */
+export interface StopRender {
+  kind: "stop_render";
+}
+
 /** Requests frames, the current one first; replaces earlier requests that are still pending. */
 export interface Watch {
   kind: "watch";
@@ -238,7 +272,8 @@ export interface Welcome {
   schemas: Record<string, Json>;
   operators: string[];
   recovered: boolean;
-  colors: Record<string, [number, number, number, number]>;
+  colors: Record<string, [number, number, number, number, number]>;
+  rigs: Record<string, Rig>;
 }
 
 /** Holder of the edit lock. */
@@ -363,6 +398,7 @@ export interface Colors {
   side: "a" | "b";
   stations: number;
   roughness: number;
+  azimuthal_roughness: number;
   tilt: number;
   reflectance: Uint8Array;
 }
@@ -477,6 +513,15 @@ export interface Progress {
   done: number;
 }
 
+/** A render as it grows, a PNG. samples: per pixel so far, ``of`` so many; it is done with all of them. */
+export interface Rendered {
+  kind: "rendered";
+  number: number;
+  samples: number;
+  of: number;
+  png: Uint8Array;
+}
+
 export type FromPage =
   | Hello
   | Lead
@@ -501,6 +546,8 @@ export type FromPage =
   | Hand
   | Play
   | Against
+  | Render
+  | StopRender
   | Watch;
 
 export type FromServer =
@@ -525,4 +572,5 @@ export type FromServer =
   | Followed
   | Trouble
   | Problems
-  | Progress;
+  | Progress
+  | Rendered;

@@ -1,19 +1,20 @@
 // The picture: bodies and hair before a wall. Drawn only when something has changed, so an idle page rests.
 
-import { type Box3, PerspectiveCamera, Scene, Vector2, Vector3, WebGLRenderer } from "three";
+import { PerspectiveCamera, Scene, Vector2, Vector3, WebGLRenderer } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
-import type { Body as BodyMessage, Colors, Hairs, Locks } from "../protocol";
-import { Backdrop } from "./backdrop";
+import type { Body as BodyMessage, Colors, Hairs, Locks, Rig } from "../protocol";
 import { Body, type Side } from "./body";
 import { GuideLines } from "./guides";
 import { type Colour, Hair } from "./hair";
-import { Lights, PRESETS } from "./lights";
-import { Pace, whenDrawn } from "./pace";
-import { Shadow } from "./shadow";
+import { Film } from "./film";
+import { FOV, type Portrait, portrait } from "./framing";
+import { Lights } from "./lights";
+import { Clock, Pace, type Portion } from "./pace";
 
-const FOV = 24;
 const SUBJECT = 0.8; // width of what is framed, as a part of the picture's height
-const REST_AFTER = 180; // time without a movement after which all detail is drawn [ms]
+const REST_AFTER = 180; // time without a movement after which the picture rests [ms]
+const THINNEST = 0.9; // least width at which a hair is drawn [pixels]
+const SUBJECT_POINTS = 6000; // of the subject, for the distance of the lamps
 
 export type Arrangement = "split" | "wipe" | "flip";
 
@@ -35,7 +36,6 @@ export class Viewer {
   first: Side = "a";
   front: Side = "a";
   wipe = 0.5;
-  private theme: "dark" | "light" = "dark";
   turntable = false;
   onPaint: () => void = () => {};
   /** The camera has moved. */
@@ -48,8 +48,8 @@ export class Viewer {
   /** Whether there is no graphics card: then pictures are plainer, so that they come at all. */
   readonly software: boolean;
 
-  private readonly shadow: Shadow;
-  private readonly backdrop = new Backdrop();
+  private readonly film: Film;
+  private readonly clock: Clock;
   private readonly bodies = new Map<number, Body>();
   private readonly scene = new Scene();
   private readonly casters = new Scene();
@@ -60,7 +60,8 @@ export class Viewer {
   private readonly pace: Pace;
   /** Whether the graphics card is at work on a picture: the next one waits for it. */
   private drawing = false;
-  private fresh = true;
+  /** Drawings that the picture at rest still lacks; what changes begins it again. */
+  private lacking = 0;
   private resting = 0;
   private turned = 0;
   private drawn = 0;
@@ -68,7 +69,7 @@ export class Viewer {
   constructor(readonly element: HTMLElement) {
     this.software = drawsInSoftware();
     this.pace = new Pace(this.software);
-    this.renderer = new WebGLRenderer({ antialias: !this.software, powerPreference: "high-performance" });
+    this.renderer = new WebGLRenderer({ antialias: false, powerPreference: "high-performance" });
     this.renderer.autoClear = false;
     this.renderer.outputColorSpace = "srgb-linear"; // the shaders develop on their own
     this.renderer.setPixelRatio(this.software ? 1 : Math.min(devicePixelRatio, 2));
@@ -82,15 +83,17 @@ export class Viewer {
     this.controls.minDistance = 0.08;
     this.controls.maxDistance = 6;
     this.controls.addEventListener("change", () => this.move());
-    this.shadow = new Shadow(this.software ? 384 : 1024);
-    this.hair = { a: new Hair(this.lights, this.shadow), b: new Hair(this.lights, this.shadow) };
+    this.film = new Film(this.software ? 0 : 4);
+    this.clock = new Clock(this.renderer.getContext() as WebGL2RenderingContext);
+    this.hair = { a: new Hair(this.lights), b: new Hair(this.lights) };
     new ResizeObserver(() => this.resize()).observe(element);
     this.resize();
   }
 
   setBody(message: BodyMessage): void {
     this.bodies.get(message.index)?.dispose();
-    this.bodies.set(message.index, new Body(message, this.lights, this.shadow, [this.scene, this.casters]));
+    for (const hair of Object.values(this.hair)) hair.relight();
+    this.bodies.set(message.index, new Body(message, this.lights, { a: this.hair.a.volume, b: this.hair.b.volume }, [this.scene, this.casters]));
     this.invalidate();
   }
 
@@ -111,6 +114,7 @@ export class Viewer {
       body.place(side, points?.length ? points.slice(3 * at, 3 * (at + body.points)) : undefined);
       at += body.points;
     }
+    this.hair[side].relight();
     this.invalidate();
   }
 
@@ -137,14 +141,8 @@ export class Viewer {
     this.invalidate();
   }
 
-  setLights(name: string): void {
-    this.lights.preset = PRESETS[name] ?? PRESETS["studio"];
-    this.invalidate();
-  }
-
-  setTheme(theme: "dark" | "light"): void {
-    this.theme = theme;
-    this.backdrop.setTheme(theme);
+  setLights(rig: Rig): void {
+    this.lights.rig = rig;
     this.invalidate();
   }
 
@@ -165,27 +163,44 @@ export class Viewer {
     return this.hair.a.box.getCenter(new Vector3());
   }
 
-  /** Puts the camera before the subject so that all hair is in the picture; without angles it keeps its direction. */
-  frame(azimuth = 34, elevation = 6): void {
-    const box = this.hair.a.box;
-    if (box.isEmpty()) return;
+  /** Puts the camera before the subject so that all of it is in the picture. */
+  frame(azimuth = 34, elevation = 7): void {
+    if (this.hair.a.box.isEmpty()) return;
     this.framed = true;
-    const size = box.getSize(new Vector3());
-    const target = box.getCenter(new Vector3());
-    target.y -= 0.06 * size.y;
-    const radius = 0.5 * Math.max(size.x, size.z, 1.12 * size.y);
-    const { clientWidth, clientHeight } = this.element;
-    const narrow = Math.min(1, clientWidth / Math.max(clientHeight, 1));
-    const distance = (1.32 * radius) / Math.tan((0.5 * FOV * Math.PI) / 180) / narrow;
     const [a, e] = [(azimuth * Math.PI) / 180, (elevation * Math.PI) / 180];
+    const backward = new Vector3(Math.sin(a) * Math.cos(e), Math.sin(e), Math.cos(a) * Math.cos(e));
+    const { clientWidth, clientHeight } = this.element;
+    const { target, distance } = portrait(this.subject(), backward, clientWidth / Math.max(clientHeight, 1));
     this.controls.target.copy(target);
-    this.camera.position
-      .set(Math.sin(a) * Math.cos(e), Math.sin(e), Math.cos(a) * Math.cos(e))
-      .multiplyScalar(distance)
-      .add(target);
+    this.camera.position.copy(target).addScaledVector(backward, distance);
     this.controls.update();
     this.onLook();
     this.invalidate();
+  }
+
+  /** What a portrait frames: the hair, and the points of bodies near it, without the shoulders. */
+  private *subject(): Iterable<Float32Array> {
+    const { box, locks } = this.hair.a;
+    if (box.isEmpty() || !locks) return;
+    yield thinned(locks.points);
+    const extent = box.getSize(new Vector3());
+    const near = box.clone();
+    near.min.addScaledVector(extent, -0.05).y -= 0.05 * extent.y;
+    near.max.addScaledVector(extent, 0.05);
+    const place = new Vector3();
+    for (const body of this.bodies.values()) {
+      const points = thinned(body.surface("a").points);
+      const inside: number[] = [];
+      for (let i = 0; i < points.length; i += 3)
+        if (near.containsPoint(place.fromArray(points, i))) inside.push(points[i], points[i + 1], points[i + 2]);
+      if (inside.length) yield new Float32Array(inside);
+    }
+  }
+
+  /** Where a portrait camera of this direction would be, which the lamps go by. */
+  private get portrait(): Portrait {
+    const backward = this.camera.position.clone().sub(this.controls.target).normalize();
+    return portrait(this.subject(), backward);
   }
 
   /** Puts the camera: its place and its target, six numbers. */
@@ -206,7 +221,8 @@ export class Viewer {
   }
 
   invalidate(): void {
-    this.fresh = true;
+    this.film.drawings = 0;
+    this.lacking = 1;
     this.request();
   }
 
@@ -216,10 +232,14 @@ export class Viewer {
     if (!this.drawing) requestAnimationFrame(() => this.draw());
   }
 
-  /** Draws at once, with all detail: for pictures. */
+  /** Draws the picture at rest at once, for pictures that are kept. */
   drawNow(): void {
     this.moved = 0;
-    this.paint(1);
+    const fraction = this.resolved();
+    this.prepare(false);
+    this.film.drawings = 0;
+    this.paint({ fraction, drawings: this.pace.needed(fraction) }, false);
+    this.lacking = 0;
   }
 
   /** Size of the picture [pixels]. */
@@ -234,19 +254,22 @@ export class Viewer {
     return { x: event.clientX - box.left, y: event.clientY - box.top };
   }
 
-  /** Draws at a size and before a wall of one color, for a picture that is kept; then as before. */
-  drawAt(width: number, height: number, taken: (drawn: HTMLCanvasElement) => void, wall?: string): void {
+  /** Draws at a size, for a picture that is kept; then as before. A clear one has no backdrop. */
+  drawAt(width: number, height: number, clear: boolean): HTMLCanvasElement {
     const { renderer, element } = this;
     const ratio = renderer.getPixelRatio();
     renderer.setPixelRatio(1);
     renderer.setSize(width, height, false);
-    if (wall) this.backdrop.setWall(wall, wall);
     this.drawNow();
-    taken(renderer.domElement);
-    this.backdrop.setTheme(this.theme);
+    const kept = document.createElement("canvas");
+    [kept.width, kept.height] = [width, height];
+    const context = kept.getContext("2d")!;
+    if (clear) context.putImageData(this.film.transparent(renderer), 0, 0);
+    else context.drawImage(renderer.domElement, 0, 0);
     renderer.setPixelRatio(ratio);
     renderer.setSize(element.clientWidth, element.clientHeight);
-    this.drawNow();
+    this.invalidate();
+    return kept;
   }
 
   get pictures(): number {
@@ -255,7 +278,7 @@ export class Viewer {
 
   /** Whether no picture is to come until something changes. */
   get idle(): boolean {
-    return !this.wanted && !this.resting && !this.turntable && !this.drawing;
+    return !this.wanted && !this.resting && !this.turntable && !this.drawing && !this.lacking;
   }
 
   private draw(): void {
@@ -268,78 +291,121 @@ export class Viewer {
       this.moved = now;
     } else this.turned = 0;
     const moving = now - this.moved < REST_AFTER;
-    this.pace.hairs = this.hair.a.count;
-    const detail = this.pace.next(moving, this.fresh);
-    this.fresh = false;
-    this.paint(detail);
+    if (moving) this.film.drawings = 0;
+    this.prepare(moving);
+    const portion = this.pace.next(moving);
+    this.clock.begin();
+    this.paint(portion, moving);
+    this.lacking = moving ? 1 : Math.max(0, this.pace.needed(portion.fraction) - this.film.drawings);
     this.onPaint();
     if (moving) {
       clearTimeout(this.resting);
       this.resting = window.setTimeout(() => {
         this.resting = 0;
-        this.request(); // goes on from the detail of the last picture
+        this.invalidate();
       }, REST_AFTER + 20);
     }
     this.drawn++;
     this.drawing = true;
-    whenDrawn(this.renderer.getContext() as WebGL2RenderingContext, () => {
-      const took = performance.now() - now;
+    this.clock.end((took) => {
       this.drawing = false;
-      this.pace.took(took, detail, moving);
-      this.onDraw({ drawMs: took, shown: Math.round(this.hair.a.count * detail) });
+      this.pace.took(took, portion, moving);
+      this.onDraw({ drawMs: took, shown: Math.round(this.hair.a.count * Math.min(1, portion.fraction * portion.drawings)) });
       if (this.wanted) requestAnimationFrame(() => this.draw());
       else if (this.turntable) this.invalidate();
-      else if (!moving && this.pace.refines) this.request();
+      else if (!moving && this.lacking) this.request();
     });
   }
 
-  private paint(detail: number): void {
+  /** The fraction of the hairs that is about as wide as a pixel when it stands for all. */
+  private resolved(): number {
+    const hair = this.hair.a;
+    const { y } = this.renderer.getDrawingBufferSize(new Vector2());
+    const away = this.camera.position.distanceTo(this.controls.target);
+    const pixel = (2 * away * Math.tan((0.5 * FOV * Math.PI) / 180)) / Math.max(y, 1);
+    this.pace.resolved = Math.min(1, Math.max(hair.width / (THINNEST * pixel), 1 / Math.max(hair.count, 1)));
+    return this.pace.resolved;
+  }
+
+  /** Camera, lamps, and the light in the hair of each side. */
+  private prepare(moving: boolean): void {
     const { renderer, camera, lights } = this;
-    const size = renderer.getSize(new Vector2());
     camera.updateMatrixWorld();
-    lights.update(camera);
-    this.backdrop.update(size.x / Math.max(size.y, 1));
+    this.resolved();
+    lights.update(camera, this.portrait);
+    for (const side of this.sides) {
+      const hair = this.hair[side];
+      hair.update(renderer);
+      hair.light(renderer, () => [...this.bodies.values()].filter((body) => body.solid).map((body) => body.surface(side)), moving);
+    }
+  }
+
+  private get sides(): Side[] {
     const both: Side[] = this.first === "a" ? ["a", "b"] : ["b", "a"];
-    const sides: Side[] = !this.compared ? ["a"] : this.arrangement === "flip" ? [this.front] : both;
+    return !this.compared ? ["a"] : this.arrangement === "flip" ? [this.front] : both;
+  }
+
+  /** Adds drawings to the film and develops it. */
+  private paint({ fraction, drawings }: Portion, moving: boolean): void {
+    const { renderer, film } = this;
+    const buffer = renderer.getDrawingBufferSize(new Vector2());
+    if (film.width !== buffer.x || film.height !== buffer.y) film.drawings = 0;
+    if (!film.drawings) film.clear(buffer.x, buffer.y);
+    for (let k = 0; k < drawings; k++) {
+      film.open(renderer);
+      this.expose(fraction, film.drawings, moving ? 2 : 1);
+      film.expose(renderer);
+    }
+    film.show(renderer);
+    this.drawGuides();
+  }
+
+  /** Draws the scene once: a part of the hairs, another one in each drawing, and the pixels moved by a part of one. */
+  private expose(fraction: number, number: number, stride: number): void {
+    const { renderer, camera } = this;
+    const size = renderer.getSize(new Vector2());
+    const { sides } = this;
     const split = this.compared && this.arrangement === "split";
     const width = split ? size.x / 2 : size.x;
     camera.aspect = width / Math.max(size.y, 1);
     const aside = this.makeRoom(width, size.y);
-    const pixel = (2 * Math.tan((0.5 * FOV * Math.PI) / 180)) / (size.y * camera.zoom * renderer.getPixelRatio());
+    // The sequence R2 of Roberts 2018 over a filter as wide as the path tracer's
+    const [x, y] = [0.7548776662, 0.5698402909].map((step) => (((0.5 + step * number) % 1) - 0.5) * 1.2);
+    const ratio = renderer.getPixelRatio();
     for (const body of this.bodies.values()) body.seenFrom(camera.position);
     renderer.setScissorTest(sides.length > 1);
     sides.forEach((side, k) => {
       const hair = this.hair[side];
-      camera.setViewOffset(width, size.y, -aside[k], 0, width, size.y);
+      camera.setViewOffset(width, size.y, -aside[k] + x / ratio, y / ratio, width, size.y);
       for (const body of this.bodies.values()) body.turnTo(side);
-      hair.setDetail(detail, detail < 0.5 ? 2 : 1);
-      hair.update(renderer);
-      hair.seenFrom(camera.position, pixel);
-      hair.litFrom(lights.key, this.shadow.texel);
-      const box = this.lit(hair);
-      renderer.setScissorTest(false);
-      if (!box.isEmpty() && this.hairShown) {
-        const casters = { bodies: this.casters, hairDepth: hair.depthScene, hairLayers: hair.layersScene };
-        this.shadow.update(renderer, lights.key, box, casters);
-      }
-      renderer.setScissorTest(sides.length > 1);
+      hair.setDetail(fraction, stride, Math.round(number * fraction * hair.count) % Math.max(hair.count, 1));
+      hair.seenFrom(camera.position);
       const [begin, end] = split ? [k * width, (k + 1) * width] : [k * this.wipe * width, k ? width : this.wipe * width];
       renderer.setViewport(split ? begin : 0, 0, width, size.y);
       renderer.setScissor(begin, 0, end - begin, size.y);
-      renderer.clear();
-      renderer.render(this.backdrop.scene, camera);
       renderer.render(this.scene, camera);
       if (hair.table && this.hairShown) {
         renderer.render(hair.firstScene, camera);
         renderer.render(hair.scene, camera);
       }
-      if (side === "a" && this.guides.shown) {
-        renderer.clearDepth();
-        renderer.render(this.casters, camera);
-        renderer.render(this.guides.scene, camera);
-      }
     });
     renderer.setScissorTest(false);
+    renderer.setViewport(0, 0, size.x, size.y);
+  }
+
+  private drawGuides(): void {
+    const { renderer, camera } = this;
+    if (!this.guides.shown || !this.sides.includes("a")) return;
+    const size = renderer.getSize(new Vector2());
+    const split = this.compared && this.arrangement === "split";
+    const width = split ? size.x / 2 : size.x;
+    const k = this.sides.indexOf("a");
+    camera.setViewOffset(width, size.y, -this.makeRoom(width, size.y)[k], 0, width, size.y);
+    for (const body of this.bodies.values()) body.turnTo("a");
+    renderer.setViewport(split ? k * width : 0, 0, width, size.y);
+    renderer.clearDepth();
+    renderer.render(this.casters, camera);
+    renderer.render(this.guides.scene, camera);
     renderer.setViewport(0, 0, size.x, size.y);
   }
 
@@ -352,20 +418,14 @@ export class Viewer {
     return [0.5 * left, -0.5 * right];
   }
 
-  /** What the key light must cover: the hair, and what it throws shadows on. */
-  private lit(hair: Hair): Box3 {
-    const box = hair.box.clone();
-    if (!box.isEmpty()) box.min.y -= 0.35 * (box.max.y - box.min.y);
-    return box;
-  }
-
   private resize(): void {
     const { clientWidth, clientHeight } = this.element;
     if (!clientWidth || !clientHeight) return;
     this.renderer.setSize(clientWidth, clientHeight);
     this.camera.aspect = clientWidth / clientHeight;
     this.camera.updateProjectionMatrix();
-    this.paint(this.pace.next(true, true)); // before the browser shows the emptied canvas
+    this.prepare(true);
+    this.paint(this.pace.next(true), true); // before the browser shows the emptied canvas
     this.invalidate();
   }
 
@@ -399,6 +459,15 @@ export class Viewer {
     this.move();
     return true;
   }
+}
+
+/** Some of the points, three numbers each. */
+function thinned(points: Float32Array): Float32Array {
+  const every = Math.ceil(points.length / (3 * SUBJECT_POINTS));
+  if (every <= 1) return points;
+  const kept = new Float32Array(3 * Math.floor(points.length / (3 * every)));
+  for (let i = 0; i < kept.length; i += 3) kept.set(points.subarray(i * every, i * every + 3), i);
+  return kept;
 }
 
 function drawsInSoftware(): boolean {

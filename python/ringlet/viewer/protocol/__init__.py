@@ -46,6 +46,7 @@ from ringlet.viewer.protocol.groom import (
     Names,
     Numbers,
 )
+from ringlet.viewer.protocol.lights import Lamp, Rig
 from ringlet.viewer.protocol.message import (
     VERSION,
     File,
@@ -58,6 +59,7 @@ from ringlet.viewer.protocol.problems import (
     Problem,
     Problems,
 )
+from ringlet.viewer.protocol.render import Render, Rendered, StopRender
 from ringlet.viewer.protocol.session import (
     Change,
     Compared,
@@ -98,6 +100,7 @@ FROM_SERVER: tuple[type[Message], ...] = (
     Trouble,
     Problems,
     Progress,
+    Rendered,
 )
 
 __all__ = [
@@ -129,6 +132,7 @@ __all__ = [
     "Heard",
     "Hello",
     "Isolate",
+    "Lamp",
     "Lead",
     "Locks",
     "Look",
@@ -145,8 +149,11 @@ __all__ = [
     "Problems",
     "Proceed",
     "Progress",
+    "Render",
+    "Rendered",
     "Resolve",
     "Restore",
+    "Rig",
     "Role",
     "Save",
     "Saved",
@@ -154,6 +161,7 @@ __all__ = [
     "Set",
     "Stage",
     "Step",
+    "StopRender",
     "Timeline",
     "Trouble",
     "Unsculpt",

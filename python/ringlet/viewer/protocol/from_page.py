@@ -8,6 +8,7 @@ from pydantic import Field, TypeAdapter
 
 from ringlet.data import limits
 from ringlet.viewer.protocol.message import File, FrameNumber, Gesture, Id, Message, Place, Position, Row, Shared
+from ringlet.viewer.protocol.render import Render, StopRender
 
 MOST_TEXT = 1_800_000  # characters of a file
 
@@ -271,6 +272,8 @@ FromPage = Annotated[
     | Hand
     | Play
     | Against
+    | Render
+    | StopRender
     | Watch,
     Field(discriminator="kind"),
 ]
