@@ -18,11 +18,11 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 SIZE, SAMPLES, PATCH = 320, 24, 16
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
-# Type, locks, points of a hair, colour. There are few hairs, so that a reference takes seconds.
+# Type, locks, points of a hair, colour. There are few and thick hairs, so that a reference takes seconds.
 LOOKS = {
-    "dark": ("4C", 900, 190, "black"),
-    "brown": ("3B", 400, 90, "brown"),
-    "fair": ("1", 400, 40, "blond"),
+    "dark": ("4C", 500, 190, "black"),
+    "brown": ("3B", 300, 90, "brown"),
+    "fair": ("1", 300, 40, "blond"),
 }
 
 
@@ -70,7 +70,7 @@ def test_the_live_picture_has_the_light_of_the_path_traced_one(opened: Any, fold
     shutil.copy(EXAMPLES / "child/head.usdc", folder / "child")
     (folder / "look.recipe.toml").write_text(
         f'ringlet = 1\nextends = "types/{kind}.recipe.toml"\nname = "{name}"\nlocks.count = {locks}\n'
-        f'hairs.density = "20 /cm2"\nhairs.points = {points}\ncolor.preset = "{color}"\n'
+        f'hairs.density = "8 /cm2"\nhairs.width = "0.14 mm"\nhairs.points = {points}\ncolor.preset = "{color}"\n'
     )
     review: Review = opened("look.recipe.toml", viewport={"width": 420, "height": 420})
     path_traced, live = rendered(review), drawn(review)

@@ -36,6 +36,7 @@ uniform ivec3 counts;
 uniform int across;   // slices side by side
 uniform vec2 extent;  // of the picture [pixels]
 uniform float voxel, share;
+uniform bool tangents; // adds up directions from root to tip, in place of tones
 out vec4 mass;
 void main() {
   int k = gl_VertexID * every, at = gl_InstanceID * points;
@@ -43,7 +44,9 @@ void main() {
   vec3 next = lookup(hairPoints, at + min(k + every, points - 1)).xyz;
   ivec3 cell = ivec3(floor((here.xyz - origin) / voxel));
   float projected = 0.7853982 * here.w * length(next - here.xyz) / (voxel * voxel * voxel);
-  mass = projected / share * vec4(toneOf(gl_InstanceID, float(k) / float(points - 1)), 1.0);
+  vec3 along = normalize(next - here.xyz + vec3(0.0, 1e-9, 0.0));
+  vec3 value = tangents ? along : toneOf(gl_InstanceID, float(k) / float(points - 1));
+  mass = projected / share * vec4(value, 1.0);
   vec2 pixel = vec2(ivec2(cell.z % across, cell.z / across) * counts.xy + cell.xy) + 0.5;
   bool outside = any(lessThan(cell, ivec3(0))) || any(greaterThanEqual(cell, counts));
   gl_Position = outside ? vec4(2.0, 2.0, 2.0, 1.0) : vec4(2.0 * pixel / extent - 1.0, 0.0, 1.0);
@@ -81,6 +84,7 @@ export class Density {
         extent: { value: [1, 1] },
         voxel: { value: 1 },
         share: { value: 1 },
+        tangents: { value: false },
       },
       blending: CustomBlending,
       blendEquation: AddEquation,
@@ -95,8 +99,8 @@ export class Density {
     this.scene.add(this.mesh);
   }
 
-  /** Extinction and tone of the hair in the voxels. */
-  measure(renderer: WebGLRenderer, grid: Grid, hairs: number): Pick<Matter, "hair" | "tone"> {
+  /** Extinction, tone and direction of the hair in the voxels. */
+  measure(renderer: WebGLRenderer, grid: Grid, hairs: number): Pick<Matter, "hair" | "tone" | "along"> {
     const [nx, ny, nz] = grid.counts;
     const across = Math.ceil(Math.sqrt(nz));
     const [width, height] = [across * nx, Math.ceil(nz / across) * ny];
@@ -114,6 +118,15 @@ export class Density {
     uniforms["extent"].value = [width, height];
     uniforms["voxel"].value = grid.size;
     uniforms["share"].value = drawn / Math.max(hairs, 1);
+    const [x, y, z, hair] = this.sum(renderer, target, grid, across, false);
+    const [dx, dy, dz] = this.sum(renderer, target, grid, across, true);
+    return { hair, tone: [x, y, z], along: [dx, dy, dz] };
+  }
+
+  /** Sums in the voxels: three numbers times the extinction, and the extinction. */
+  private sum(renderer: WebGLRenderer, target: WebGLRenderTarget, grid: Grid, across: number, tangents: boolean) {
+    const [nx, ny, nz] = grid.counts;
+    this.material.uniforms["tangents"].value = tangents;
     const before = renderer.getRenderTarget();
     renderer.setRenderTarget(target);
     renderer.setClearColor(0x000000, 0);
@@ -125,11 +138,11 @@ export class Density {
     for (let k = 0, to = 0; k < nz; k++)
       for (let j = 0; j < ny; j++)
         for (let i = 0; i < nx; i++, to++) {
-          const from = 4 * ((k % across) * nx + i + width * (Math.floor(k / across) * ny + j));
+          const from = 4 * ((k % across) * nx + i + target.width * (Math.floor(k / across) * ny + j));
           for (let c = 0; c < 4; c++) channels[c][to] = values[from + c];
         }
     for (const channel of channels) blur(channel, grid.counts);
-    return { hair: channels[3], tone: [channels[0], channels[1], channels[2]] };
+    return channels;
   }
 
   dispose(): void {

@@ -12,7 +12,6 @@ import {
   HalfFloatType,
   LinearFilter,
   RGBAFormat,
-  RGFormat,
 } from "three";
 
 const ETA = 1.55;
@@ -28,10 +27,11 @@ export interface Roughness {
   around: number;
 }
 
-/** Transport in a volume of fibers by q: the albedo of one scattering, and the mean cosine of its deflection. */
+/** Transport in a volume of fibers by q: of one scattering the albedo, the mean cosine, and the variance along a fiber. */
 export interface Transport {
   albedo: Float32Array;
   forward: Float32Array;
+  variance: Float32Array;
 }
 
 /** Variances of the lobes R, TT, and TRT with the rest. */
@@ -87,10 +87,11 @@ export class FiberTable {
   }
 }
 
-function means({ albedo, forward }: Transport): DataTexture {
-  const half = new Uint16Array(2 * TONE);
-  for (let t = 0; t < TONE; t++) half.set([albedo[t], forward[t]].map((x) => DataUtils.toHalfFloat(x)), 2 * t);
-  const made = new DataTexture(half, TONE, 1, RGFormat, HalfFloatType);
+function means({ albedo, forward, variance }: Transport): DataTexture {
+  const half = new Uint16Array(4 * TONE);
+  for (let t = 0; t < TONE; t++)
+    half.set([albedo[t], forward[t], variance[t], 0].map((x) => DataUtils.toHalfFloat(x)), 4 * t);
+  const made = new DataTexture(half, TONE, 1, RGBAFormat, HalfFloatType);
   made.minFilter = made.magFilter = LinearFilter;
   made.needsUpdate = true;
   return made;
@@ -136,10 +137,11 @@ function fresnel(cosine: number): number {
 function transport(lobes: Float32Array, along: number): Transport {
   const albedo = new Float32Array(TONE);
   const forward = new Float32Array(TONE);
+  const variance = new Float32Array(TONE);
   const v = variances(along);
   const shrink = [v[0], v[1], v[2], v[2]].map((one) => Math.exp(-0.5 * one));
   for (let t = 0; t < TONE; t++) {
-    let [weights, scattered, deflected] = [0, 0, 0];
+    let [weights, scattered, deflected, spread] = [0, 0, 0, 0];
     for (let c = 0; c < THETA; c++) {
       const cosine = (c + 0.5) / THETA; // uniform in cos θ: dθ = dc / sin θ
       const weight = cosine ** 2 / Math.sqrt(1 - cosine * cosine);
@@ -150,14 +152,16 @@ function transport(lobes: Float32Array, along: number): Transport {
         for (let p = 0; p < 4; p++) {
           const part = weight * step * lobes[4 * (i + PHI * (t + TONE * c)) + p];
           scattered += part;
+          spread += part * v[Math.min(p, 2)];
           deflected += part * shrink[p] * (1 - cosine * cosine - cosine * cosine * Math.cos(phi));
         }
       }
     }
     albedo[t] = Math.min(scattered / weights, BRIGHTEST);
     forward[t] = Math.max(deflected / Math.max(scattered, 1e-9), 0);
+    variance[t] = spread / Math.max(scattered, 1e-9);
   }
-  return { albedo, forward };
+  return { albedo, forward, variance };
 }
 
 /** A function of q, tabulated at even steps, by linear interpolation. */
@@ -172,14 +176,15 @@ export const FIBER = /* glsl */ `
 uniform highp sampler3D fiberTable; // N_p of R, TT, TRT and the rest: azimuth by C^¼ by cos θ of the eye
 uniform vec3 variance;              // of M_p: R, TT, and TRT with the rest
 uniform float tilt;                 // of the cuticle [radians]
-uniform sampler2D fiberTransport;   // albedo and mean cosine of a scattering, by C^¼
+uniform sampler2D fiberTransport;   // albedo, mean cosine and variance of a scattering, by C^¼
 
-void transportOf(vec3 q, out vec3 albedo, out vec3 cosine) {
+void transportOf(vec3 q, out vec3 albedo, out vec3 cosine, out float spread) {
   vec3 at = (q * ${TONE - 1}.0 + 0.5) / ${TONE}.0;
-  vec2 r = texture(fiberTransport, vec2(at.r, 0.5)).rg, g = texture(fiberTransport, vec2(at.g, 0.5)).rg;
-  vec2 b = texture(fiberTransport, vec2(at.b, 0.5)).rg;
+  vec3 r = texture(fiberTransport, vec2(at.r, 0.5)).rgb, g = texture(fiberTransport, vec2(at.g, 0.5)).rgb;
+  vec3 b = texture(fiberTransport, vec2(at.b, 0.5)).rgb;
   albedo = vec3(r.x, g.x, b.x);
   cosine = vec3(r.y, g.y, b.y);
+  spread = g.z;
 }
 
 float besselLog(float x) { // ln(I0(x) exp(-x)), after Olivares et al. 2018
@@ -193,8 +198,14 @@ float longitudinal(float v, float sinL, float cosL, float sinV, float cosV) {
   return exp(besselLog(a) + a - b - 1.0 / v) / (v * (1.0 - exp(-2.0 / v)));
 }
 
-// Radiance that a fiber sends to the eye, of light with an irradiance of 1. q: C^¼
-vec3 fiber(vec3 T, vec3 V, vec3 L, vec3 q) {
+// M of a variance, of light from L.
+float cone(float v, vec3 T, vec3 V, vec3 L) {
+  float sinL = clamp(dot(T, L), -0.9999, 0.9999), sinV = clamp(dot(T, V), -0.9999, 0.9999);
+  return longitudinal(v, sinL, sqrt(1.0 - sinL * sinL), sinV, sqrt(1.0 - sinV * sinV));
+}
+
+// Radiance that a fiber sends to the eye, of light with an irradiance of 1. q: C^¼; size: variance of its directions
+vec3 fiber(vec3 T, vec3 V, vec3 L, vec3 q, float size) {
   float sinL = clamp(dot(T, L), -0.9999, 0.9999), sinV = clamp(dot(T, V), -0.9999, 0.9999);
   float cosL = sqrt(1.0 - sinL * sinL), cosV = sqrt(1.0 - sinV * sinV);
   float phi = acos(clamp((dot(L, V) - sinL * sinV) / (cosL * cosV), -1.0, 1.0)) * 0.3183099;
@@ -203,12 +214,13 @@ vec3 fiber(vec3 T, vec3 V, vec3 L, vec3 q) {
   vec4 red = texture(fiberTable, vec3(azimuth, at.r, cosV));
   vec4 green = texture(fiberTable, vec3(azimuth, at.g, cosV));
   vec4 blue = texture(fiberTable, vec3(azimuth, at.b, cosV));
+  vec3 v = variance + size;
   vec3 a = tilt * vec3(2.0, -1.0, -4.0); // of the eye's angle, for R, TT and TRT
   vec3 s = sinV * cos(a) - cosV * sin(a), c = abs(cosV * cos(a) + sinV * sin(a));
-  float R = longitudinal(variance.x, sinL, cosL, s.x, c.x);
-  float TT = longitudinal(variance.y, sinL, cosL, s.y, c.y);
-  float TRT = longitudinal(variance.z, sinL, cosL, s.z, c.z);
-  float rest = longitudinal(variance.z, sinL, cosL, sinV, cosV);
+  float R = longitudinal(v.x, sinL, cosL, s.x, c.x);
+  float TT = longitudinal(v.y, sinL, cosL, s.y, c.y);
+  float TRT = longitudinal(v.z, sinL, cosL, s.z, c.z);
+  float rest = longitudinal(v.z, sinL, cosL, sinV, cosV);
   vec4 M = vec4(R, TT, TRT, rest);
   return vec3(dot(M, red), dot(M, green), dot(M, blue));
 }

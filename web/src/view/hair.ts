@@ -187,7 +187,7 @@ export class Hair {
     const { uniforms } = this.material;
     uniforms["fiberTable"].value = this.fiber.texture;
     uniforms["fiberTransport"].value = this.fiber.means;
-    (uniforms["variance"].value as Vector3).fromArray(variances(roughness.along).map((v) => v + lights.spread));
+    (uniforms["variance"].value as Vector3).fromArray(variances(roughness.along));
     this.lit = null;
     return this.fiber;
   }

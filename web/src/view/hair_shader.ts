@@ -54,15 +54,24 @@ vec3 ramp(float x) { // from blue over pale to red
 void main() {
   vec3 T = normalize(direction), V = normalize(eye - place);
   vec3 omega, cosine;
-  transportOf(q, omega, cosine);
+  float spread, disorder;
+  transportOf(q, omega, cosine, spread);
   vec3 passing = 1.0 - omega * cosine * cosine;
   vec4 depth = opticalDepth(place), past = pastBodies(place);
-  vec3 light = omega * scattered(place, V, 3.0 * cosine);
+  vec3 light = vec3(0.0), field = omega * scattered(place, V, 3.0 * cosine, disorder);
+  // Hairs that lie alike scatter light to a cone about them, wider by each scattering and by how they differ: the field
+  // has been scattered twice at least when it reaches the eye. Light of all directions has a density of 1/2.
+  float even = ambient, cones = ambient;
   for (int k = 0; k < LAMPS; k++) {
     vec3 L, E = irradiance(k, place, L);
-    if (E.g * past[k] < 1e-3) continue;
-    light += E * past[k] * exp(-depth[k] * passing) * fiber(T, V, L, q);
+    vec3 arriving = E * past[k] * exp(-depth[k] * passing);
+    if (arriving.g < 1e-3) continue;
+    float size = 0.25 * lampSpread[k] * lampSpread[k], share = arriving.g * 0.0795775; // 1 / 4π
+    light += arriving * fiber(T, V, L, q, size);
+    even += share;
+    cones += share * 2.0 * cone(2.0 * spread + size + disorder, T, V, L);
   }
+  light += field * cones / max(even, 1e-6);
   if (showOverlay > 0.5) {
     vec3 tint = showOverlay > 1.5 ? heat(clamp(overlay, 0.0, 1.0)) : ramp(clamp(overlay, 0.0, 1.0));
     vec3 L = normalize(lampAt[0] - place);

@@ -17,6 +17,7 @@ export class Lights {
     lampStrength: { value: Array.from({ length: LAMPS }, () => new Vector3()) },
     lampSpread: { value: [0, 0, 0, 0] },
     lampReach: { value: [1, 1, 1, 1] },
+    ambient: { value: 0 },
   };
   /** Directions from the middle of the subject towards the lamps. */
   private readonly from = Array.from({ length: LAMPS }, () => new Vector3(0, 0, 1));
@@ -33,6 +34,7 @@ export class Lights {
     const { lampAt, lampStrength, lampSpread, lampReach } = this.uniforms;
     const turn = new Matrix4();
     if (rig.with_camera) turn.extractRotation(camera.matrixWorld);
+    this.uniforms.ambient.value = rig.ambient[1];
     for (let k = 0; k < LAMPS; k++) {
       const lamp = rig.lamps[k] ?? NONE;
       const [a, e] = [(lamp.azimuth * Math.PI) / 180, (lamp.elevation * Math.PI) / 180];

@@ -22,6 +22,7 @@ const int LAMPS = 4;
 uniform vec3 lampAt[LAMPS], lampStrength[LAMPS];
 uniform float lampSpread[LAMPS]; // radius over distance
 uniform float lampReach[LAMPS];  // distance at which the strength holds [m]
+uniform float ambient;           // radiance of the surroundings
 vec3 irradiance(int k, vec3 place, out vec3 towards) {
   towards = lampAt[k] - place;
   float away = length(towards);

@@ -73,11 +73,12 @@ export interface Surface {
   triangles: Uint32Array;
 }
 
-/** What fills the grid: extinction by hair [1/m], its q times that, and optical depth and albedo of skin. */
+/** What fills the grid: extinction by hair [1/m], its q and its direction times that, optical depth and albedo of skin. */
 export interface Matter {
   grid: Grid;
   hair: Float32Array;
   tone: [Float32Array, Float32Array, Float32Array];
+  along: [Float32Array, Float32Array, Float32Array];
   skin: Float32Array;
   albedo: Float32Array; // three a voxel
 }
@@ -222,7 +223,7 @@ class Coarse {
   readonly counts: [number, number, number];
   /** Mean radiance in red, green and blue, and its luminance. */
   readonly mean: Four;
-  /** Mean of the luminance times the direction in which it travels. */
+  /** Mean of the luminance times the direction in which it travels; mean square of the sine between hairs. */
   readonly flow: Four;
   private readonly keep: Three; // of the light, what crosses a voxel
   private readonly scatter: Three; // albedo
@@ -261,7 +262,7 @@ class Coarse {
   }
 
   /** Matter and beams of the voxels, from the eight of the grid in each. */
-  private gather({ grid, hair, tone, skin, albedo }: Matter, beams: Beam[], depth: Four, passed: Four, t: Transport): void {
+  private gather({ grid, hair, tone, along, skin, albedo }: Matter, beams: Beam[], depth: Four, passed: Four, t: Transport): void {
     const [nx, ny] = grid.counts;
     const [cx, cy, cz] = this.counts;
     const strength = beams.map((beam) => beam.strength.toArray());
@@ -270,7 +271,7 @@ class Coarse {
       for (let j = 0; j < cy; j++)
         for (let i = 0; i < cx; i++, to++) {
           let [sigma, solid] = [0, 0];
-          const [q, bare] = [[0, 0, 0], [0, 0, 0]];
+          const [q, bare, mean] = [[0, 0, 0], [0, 0, 0], [0, 0, 0]];
           const arriving = [0, 0, 0, 0];
           const optical = [0, 0, 0, 0];
           for (let corner = 0; corner < 8; corner++) {
@@ -279,6 +280,7 @@ class Coarse {
             solid += skin[at] / 4;
             for (let c = 0; c < 3; c++) {
               q[c] += tone[c][at] / 8;
+              mean[c] += along[c][at] / 8;
               bare[c] += (skin[at] * albedo[3 * at + c]) / 4;
             }
             for (let l = 0; l < 4; l++) {
@@ -286,6 +288,7 @@ class Coarse {
               optical[l] += depth[l][at] / 8;
             }
           }
+          this.flow[3][to] = sigma > 0 ? Math.max(0, 1 - mean.reduce((sum, x) => sum + x * x, 0) / sigma ** 2) : 1;
           for (let c = 0; c < 3; c++) {
             const color = sigma > 0 ? q[c] / sigma : 0;
             const [omega, g] = [at(t.albedo, color), at(t.forward, color)];
@@ -399,10 +402,12 @@ vec4 opticalDepth(vec3 place) { return texture(gridDepth, inGrid(place)); }
 vec4 pastBodies(vec3 place) { return texture(gridPassed, inGrid(place)); }
 
 // Mean radiance, weighted by 1 + slope · (cosine of its travel to a direction).
-vec3 scattered(vec3 place, vec3 direction, vec3 slope) {
+// disorder: mean square of the sine between hairs
+vec3 scattered(vec3 place, vec3 direction, vec3 slope, out float disorder) {
   vec3 at = inGrid(place);
-  vec4 mean = texture(gridField, at);
-  float cosine = dot(texture(gridFlux, at).xyz, direction) / max(mean.w, 1e-6);
+  vec4 mean = texture(gridField, at), flux = texture(gridFlux, at);
+  float cosine = dot(flux.xyz, direction) / max(mean.w, 1e-6);
+  disorder = flux.w;
   return mean.rgb * max(1.0 + slope * cosine, 0.0);
 }
 `;
