@@ -56,7 +56,12 @@ export const ICONS = {
   brush: "M13 3l4 4-6.5 6.5-4-4zM6.5 9.5c-2.5.3-1.8 3.8-4 5.5 2.5 1.2 7.3.6 8-1.5",
   folder: "M3 6h5l1.5 2H17v8H3zM3 6v10",
   keys: "M3 6h14v8H3zM6 9h.01M9 9h.01M12 9h.01M14 9h.01M7 11.5h6",
+  link: "M8.5 11.5l3-3M9 6l1.7-1.7a3.5 3.5 0 0 1 5 5L14 11M11 14l-1.7 1.7a3.5 3.5 0 0 1-5-5L6 9",
   swap: "M3 7h12l-3-3M17 13H5l3 3",
+  close: "M5 5l10 10M15 5L5 15",
+  tray: "M3 12h14v5H3zM5 8.5h10M7 5h6",
+  snapshot: "M4 4h12v12H4zM10 7v6M7 10h6",
+  load: "M10 3v9M6 8.5l4 4 4-4M4 16.5h12",
   solo: "M10 3l2 5h5l-4 3.2 1.5 5.3L10 13.3 5.5 16.5 7 11.2 3 8h5z",
 } as const;
 

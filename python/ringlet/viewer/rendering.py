@@ -11,7 +11,7 @@ from ringlet.data.camera import Camera
 from ringlet.data.errors import UserError
 from ringlet.data.picture import PictureSettings
 from ringlet.picture import Pose, PosedBody
-from ringlet.picture.camera import FOCAL_LENGTH, SENSOR
+from ringlet.picture.camera import SENSOR
 from ringlet.viewer import protocol
 from ringlet.viewer.publisher import SendQueue
 from ringlet.viewer.render_process import RenderProcess, RenderStep, RenderTask
@@ -42,6 +42,7 @@ class Rendering:
             samples=message.samples,
             color=message.color or None,
             light=message.light,
+            light_turn=message.light_turn,
             bounces=BOUNCES,
         )
         process, self._spare = self._spare or RenderProcess(), None
@@ -80,9 +81,15 @@ def camera_of(message: protocol.Render, origin: np.ndarray) -> Camera:
     if np.linalg.norm(right) < 1e-6:
         raise UserError("render: the camera looks straight down or up; turn it")
     right = right / np.linalg.norm(right)
-    slope = 0.5 * SENSOR / FOCAL_LENGTH
+    slope = 0.5 * SENSOR / message.focal_length
     slopes = (slope * message.width / message.height, slope)
-    return Camera(place, np.stack([right, np.cross(backward, right), backward]), distance, slopes)
+    return Camera(
+        place,
+        np.stack([right, np.cross(backward, right), backward]),
+        distance,
+        slopes,
+        focal_length=1e-3 * message.focal_length,
+    )
 
 
 def pose_of(viewport: Viewport) -> Pose:

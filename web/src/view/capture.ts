@@ -10,6 +10,16 @@ export function keep(blob: Blob, name: string): void {
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }
 
+/** A small picture of the open look alone. */
+export function thumbnail(viewer: Viewer): HTMLCanvasElement {
+  const { looks } = viewer;
+  const { order } = looks;
+  looks.order = ["a"];
+  const canvas = viewer.drawAt(400, 250, false);
+  looks.order = order;
+  return canvas;
+}
+
 /** Records what is drawn until it is stopped. */
 export class Recorder {
   private recorder: MediaRecorder | null = null;

@@ -127,10 +127,10 @@ export class Film {
     this.drawings++;
   }
 
-  /** Develops the film to the canvas. */
-  show(renderer: WebGLRenderer): void {
+  /** Develops the film to the canvas, or to another target. */
+  show(renderer: WebGLRenderer, into: WebGLRenderTarget | null = null): void {
     this.set(false);
-    renderer.setRenderTarget(null);
+    renderer.setRenderTarget(into);
     this.fill(renderer, this.present);
   }
 

@@ -12,6 +12,8 @@ const OFF: Rig = { label: "", with_camera: true, ambient: [0, 0, 0], lamps: [] }
 
 export class Lights {
   rig: Rig = OFF;
+  /** Angle by which all lamps are turned about the vertical, to the right [degrees]. */
+  turn = 0;
   readonly uniforms = {
     lampAt: { value: Array.from({ length: LAMPS }, () => new Vector3()) },
     lampStrength: { value: Array.from({ length: LAMPS }, () => new Vector3()) },
@@ -37,7 +39,7 @@ export class Lights {
     this.uniforms.ambient.value = rig.ambient[1];
     for (let k = 0; k < LAMPS; k++) {
       const lamp = rig.lamps[k] ?? NONE;
-      const [a, e] = [(lamp.azimuth * Math.PI) / 180, (lamp.elevation * Math.PI) / 180];
+      const [a, e] = [((lamp.azimuth + this.turn) * Math.PI) / 180, (lamp.elevation * Math.PI) / 180];
       from[k].set(Math.sin(a) * Math.cos(e), Math.sin(e), Math.cos(a) * Math.cos(e)).applyMatrix4(turn);
       lampAt.value[k].copy(portrait.target).addScaledVector(from[k], lamp.distance * portrait.distance);
       lampStrength.value[k].set(...lamp.strength);

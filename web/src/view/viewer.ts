@@ -2,21 +2,24 @@
 
 import { PerspectiveCamera, Scene, Vector2, Vector3, WebGLRenderer } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
-import type { Body as BodyMessage, Colors, Hairs, Locks, Rig } from "../protocol";
-import { Body, type Side } from "./body";
+import type { Body as BodyMessage, Colors, Hairs, Locks, Rig, Shared } from "../protocol";
+import { Body } from "./body";
+import { Difference } from "./difference";
 import { GuideLines } from "./guides";
 import { type Colour, Hair } from "./hair";
 import { Film } from "./film";
-import { FOV, type Portrait, portrait } from "./framing";
+import { fieldOfView, FOCAL_LENGTH, focalLengthOf, type Portrait, portrait } from "./framing";
 import { Lights } from "./lights";
+import { type Cell, type Covered, Looks, type Side } from "./looks";
 import { Clock, Pace, type Portion } from "./pace";
+import type { LightVolume } from "./volume";
 
-const SUBJECT = 0.8; // width of what is framed, as a part of the picture's height
 const REST_AFTER = 180; // time without a movement after which the picture rests [ms]
 const THINNEST = 0.9; // least width at which a hair is drawn [pixels]
 const SUBJECT_POINTS = 6000; // of the subject, for the distance of the lamps
 
-export type Arrangement = "split" | "wipe" | "flip";
+/** The camera, and what it is set to: as looks are stored. */
+export type CameraState = Pick<Shared, "camera" | "focal_length" | "light_turn">;
 
 export interface DrawStatistics {
   drawMs: number;
@@ -25,35 +28,33 @@ export interface DrawStatistics {
 
 export class Viewer {
   readonly renderer: WebGLRenderer;
-  readonly camera = new PerspectiveCamera(FOV, 1, 0.02, 20);
+  readonly camera = new PerspectiveCamera(fieldOfView(FOCAL_LENGTH), 1, 0.02, 20);
   readonly controls: OrbitControls;
   readonly lights = new Lights();
   readonly hair: Record<Side, Hair>;
   readonly guides = new GuideLines();
-  compared = false;
-  /** How two looks are arranged, which is on the left, which is seen alone, and where the wipe is. */
-  arrangement: Arrangement = "split";
-  first: Side = "a";
-  front: Side = "a";
-  wipe = 0.5;
+  readonly looks = new Looks();
   turntable = false;
   onPaint: () => void = () => {};
   /** The camera has moved. */
   onLook: () => void = () => {};
   onDraw: (statistics: DrawStatistics) => void = () => {};
 
-  /** How much of the picture panels cover on the left and on the right [pixels]. */
-  covered: () => [number, number] = () => [0, 0];
+  covered: () => Covered = () => [0, 0, 0, 0];
 
   /** Whether there is no graphics card: then pictures are plainer, so that they come at all. */
   readonly software: boolean;
 
   private readonly film: Film;
+  private readonly otherFilm: Film;
+  private readonly difference: Difference;
   private readonly clock: Clock;
   private readonly bodies = new Map<number, Body>();
   private readonly scene = new Scene();
   private readonly casters = new Scene();
   private framed = false;
+  /** Whether a picture is drawn that is kept: no panels cover it. */
+  private keeping = false;
   private hairShown = true;
   private wanted = false;
   private moved = 0;
@@ -84,8 +85,11 @@ export class Viewer {
     this.controls.maxDistance = 6;
     this.controls.addEventListener("change", () => this.move());
     this.film = new Film(this.software ? 0 : 4);
+    this.otherFilm = new Film(this.software ? 0 : 4);
     this.clock = new Clock(this.renderer.getContext() as WebGL2RenderingContext);
-    this.hair = { a: new Hair(this.lights), b: new Hair(this.lights) };
+    const hair = () => new Hair(this.lights);
+    this.hair = { a: hair(), b: hair(), c: hair(), d: hair() };
+    this.difference = new Difference(0);
     new ResizeObserver(() => this.resize()).observe(element);
     this.resize();
   }
@@ -93,17 +97,21 @@ export class Viewer {
   setBody(message: BodyMessage): void {
     this.bodies.get(message.index)?.dispose();
     for (const hair of Object.values(this.hair)) hair.relight();
-    this.bodies.set(message.index, new Body(message, this.lights, { a: this.hair.a.volume, b: this.hair.b.volume }, [this.scene, this.casters]));
+    this.bodies.set(message.index, new Body(message, this.lights, this.volumes, [this.scene, this.casters]));
     this.invalidate();
+  }
+
+  private get volumes(): Record<Side, LightVolume> {
+    const { a, b, c, d } = this.hair;
+    return { a: a.volume, b: b.volume, c: c.volume, d: d.volume };
   }
 
   /** Removes what belongs to a file that is no longer open. */
   reset(): void {
     for (const body of this.bodies.values()) body.dispose();
     this.bodies.clear();
-    this.hair.a.clear();
-    this.hair.b.clear();
-    this.compare(false);
+    for (const hair of Object.values(this.hair)) hair.clear();
+    this.looks.order = ["a"];
     this.framed = false;
   }
 
@@ -152,10 +160,45 @@ export class Viewer {
     this.invalidate();
   }
 
-  /** Shows the other look beside the first, or no more. */
-  compare(on: boolean): void {
-    this.compared = on;
+  /** Shows another look too, or no more. */
+  compare(side: Side, on: boolean): void {
+    if (on) this.looks.add(side);
+    else this.looks.remove(side);
     this.invalidate();
+  }
+
+  /** Whether several looks are in the picture. */
+  get compared(): boolean {
+    return this.looks.several;
+  }
+
+  /** Focal length of the lens, for a picture that is 36 mm high [mm]; the subject keeps its size. */
+  get focalLength(): number {
+    return focalLengthOf(this.camera.fov);
+  }
+
+  set focalLength(length: number) {
+    const away = this.camera.position.clone().sub(this.controls.target).multiplyScalar(length / this.focalLength);
+    this.camera.position.copy(this.controls.target).add(away);
+    this.camera.fov = fieldOfView(length);
+    this.onLook();
+    this.invalidate();
+  }
+
+  /** Angle by which the lights are turned about the vertical [degrees]. */
+  setLightTurn(degrees: number): void {
+    this.lights.turn = degrees;
+    this.invalidate();
+  }
+
+  /** The camera and the turn of the lights, to be stored. */
+  get cameraState(): CameraState {
+    const { camera, controls } = this;
+    return {
+      camera: [...camera.position.toArray(), ...controls.target.toArray()],
+      focal_length: round(this.focalLength, 2),
+      light_turn: this.lights.turn,
+    };
   }
 
   /** The middle of all hair. */
@@ -170,7 +213,7 @@ export class Viewer {
     const [a, e] = [(azimuth * Math.PI) / 180, (elevation * Math.PI) / 180];
     const backward = new Vector3(Math.sin(a) * Math.cos(e), Math.sin(e), Math.cos(a) * Math.cos(e));
     const { clientWidth, clientHeight } = this.element;
-    const { target, distance } = portrait(this.subject(), backward, clientWidth / Math.max(clientHeight, 1));
+    const { target, distance } = portrait(this.subject(), backward, clientWidth / Math.max(clientHeight, 1), this.focalLength);
     this.controls.target.copy(target);
     this.camera.position.copy(target).addScaledVector(backward, distance);
     this.controls.update();
@@ -203,9 +246,10 @@ export class Viewer {
     return portrait(this.subject(), backward);
   }
 
-  /** Puts the camera: its place and its target, six numbers. */
-  lookFrom(camera: number[]): void {
+  /** Puts the camera: its place and its target, six numbers, and the focal length of its lens [mm]. */
+  lookFrom(camera: number[], focalLength = this.focalLength): void {
     this.framed = true;
+    this.camera.fov = fieldOfView(focalLength);
     this.camera.position.fromArray(camera);
     this.controls.target.fromArray(camera, 3);
     this.camera.lookAt(this.controls.target);
@@ -260,7 +304,9 @@ export class Viewer {
     const ratio = renderer.getPixelRatio();
     renderer.setPixelRatio(1);
     renderer.setSize(width, height, false);
+    this.keeping = true;
     this.drawNow();
+    this.keeping = false;
     const kept = document.createElement("canvas");
     [kept.width, kept.height] = [width, height];
     const context = kept.getContext("2d")!;
@@ -322,7 +368,7 @@ export class Viewer {
     const hair = this.hair.a;
     const { y } = this.renderer.getDrawingBufferSize(new Vector2());
     const away = this.camera.position.distanceTo(this.controls.target);
-    const pixel = (2 * away * Math.tan((0.5 * FOV * Math.PI) / 180)) / Math.max(y, 1);
+    const pixel = (2 * away * Math.tan((0.5 * this.camera.fov * Math.PI) / 180)) / Math.max(y, 1);
     this.pace.resolved = Math.min(1, Math.max(hair.width / (THINNEST * pixel), 1 / Math.max(hair.count, 1)));
     return this.pace.resolved;
   }
@@ -333,89 +379,106 @@ export class Viewer {
     camera.updateMatrixWorld();
     this.resolved();
     lights.update(camera, this.portrait);
-    for (const side of this.sides) {
+    for (const { side } of this.cells()) {
       const hair = this.hair[side];
       hair.update(renderer);
       hair.light(renderer, () => [...this.bodies.values()].filter((body) => body.solid).map((body) => body.surface(side)), moving);
     }
   }
 
-  private get sides(): Side[] {
-    const both: Side[] = this.first === "a" ? ["a", "b"] : ["b", "a"];
-    return !this.compared ? ["a"] : this.arrangement === "flip" ? [this.front] : both;
+  /** The looks that are drawn, and where. */
+  private cells(): Cell[] {
+    const { x, y } = this.renderer.getSize(new Vector2());
+    return this.looks.cells(x, y, this.keeping ? [0, 0, 0, 0] : this.covered());
   }
 
   /** Adds drawings to the film and develops it. */
   private paint({ fraction, drawings }: Portion, moving: boolean): void {
-    const { renderer, film } = this;
+    const { renderer, film, otherFilm, looks, difference, camera } = this;
+    const size = renderer.getSize(new Vector2());
     const buffer = renderer.getDrawingBufferSize(new Vector2());
+    const cells = this.cells();
+    const films: [Film, Cell[]][] = looks.difference ? cells.map((cell, k) => [k ? otherFilm : film, [cell]]) : [[film, cells]];
     if (film.width !== buffer.x || film.height !== buffer.y) film.drawings = 0;
-    if (!film.drawings) film.clear(buffer.x, buffer.y);
+    if (!film.drawings) for (const [one] of films) one.clear(buffer.x, buffer.y);
     for (let k = 0; k < drawings; k++) {
-      film.open(renderer);
-      this.expose(fraction, film.drawings, moving ? 2 : 1);
-      film.expose(renderer);
-    }
-    film.show(renderer);
-    this.drawGuides();
-  }
-
-  /** Draws the scene once: a part of the hairs, another one in each drawing, and the pixels moved by a part of one. */
-  private expose(fraction: number, number: number, stride: number): void {
-    const { renderer, camera } = this;
-    const size = renderer.getSize(new Vector2());
-    const { sides } = this;
-    const split = this.compared && this.arrangement === "split";
-    const width = split ? size.x / 2 : size.x;
-    camera.aspect = width / Math.max(size.y, 1);
-    const aside = this.makeRoom(width, size.y);
-    // The sequence R2 of Roberts 2018 over a filter as wide as the path tracer's
-    const [x, y] = [0.7548776662, 0.5698402909].map((step) => (((0.5 + step * number) % 1) - 0.5) * 1.2);
-    const ratio = renderer.getPixelRatio();
-    for (const body of this.bodies.values()) body.seenFrom(camera.position);
-    renderer.setScissorTest(sides.length > 1);
-    sides.forEach((side, k) => {
-      const hair = this.hair[side];
-      camera.setViewOffset(width, size.y, -aside[k] + x / ratio, y / ratio, width, size.y);
-      for (const body of this.bodies.values()) body.turnTo(side);
-      hair.setDetail(fraction, stride, Math.round(number * fraction * hair.count) % Math.max(hair.count, 1));
-      hair.seenFrom(camera.position);
-      const [begin, end] = split ? [k * width, (k + 1) * width] : [k * this.wipe * width, k ? width : this.wipe * width];
-      renderer.setViewport(split ? begin : 0, 0, width, size.y);
-      renderer.setScissor(begin, 0, end - begin, size.y);
-      renderer.render(this.scene, camera);
-      if (hair.table && this.hairShown) {
-        renderer.render(hair.firstScene, camera);
-        renderer.render(hair.scene, camera);
+      const number = film.drawings;
+      for (const [one, seen] of films) {
+        one.open(renderer);
+        for (const cell of seen) this.expose(cell, seen.length > 1, fraction, number, moving ? 2 : 1);
+        renderer.setScissorTest(false);
+        one.expose(renderer);
       }
-    });
-    renderer.setScissorTest(false);
+    }
     renderer.setViewport(0, 0, size.x, size.y);
+    films.forEach(([one], k) => one.show(renderer, looks.difference ? difference.target(k, renderer) : null));
+    if (looks.difference) {
+      renderer.setRenderTarget(null);
+      difference.draw(renderer, camera);
+    } else this.drawGuides(cells);
+    if (looks.split) {
+      const all = { x: 0, y: 0, width: size.x, height: size.y };
+      this.aim({ side: "a", box: all, clear: all }, 1, [0, 0]); // what is pointed at is seen by it
+    }
   }
 
-  private drawGuides(): void {
+  /** Draws a look once: a part of the hairs, another one in each drawing, and the pixels moved by a part of one. */
+  private expose(cell: Cell, several: boolean, fraction: number, number: number, stride: number): void {
     const { renderer, camera } = this;
-    if (!this.guides.shown || !this.sides.includes("a")) return;
+    const hair = this.hair[cell.side];
+    const ratio = renderer.getPixelRatio();
+    // The sequence R2 of Roberts 2018 over a filter as wide as that of the path tracer
+    const shift = [0.7548776662, 0.5698402909].map((step) => ((((0.5 + step * number) % 1) - 0.5) * 1.2) / ratio);
+    this.aim(cell, this.looks.zoom(cell), shift);
+    for (const body of this.bodies.values()) {
+      body.seenFrom(camera.position);
+      body.turnTo(cell.side);
+    }
+    hair.setDetail(fraction, stride, Math.round(number * fraction * hair.count) % Math.max(hair.count, 1));
+    hair.seenFrom(camera.position);
+    this.window(cell, several);
+    renderer.render(this.scene, camera);
+    if (hair.table && this.hairShown) {
+      renderer.render(hair.firstScene, camera);
+      renderer.render(hair.scene, camera);
+    }
+  }
+
+  /** What of the picture a look fills. One next to others has a view of its own; else all are seen through one window. */
+  private window({ box }: Cell, several: boolean): void {
+    const { renderer, looks } = this;
     const size = renderer.getSize(new Vector2());
-    const split = this.compared && this.arrangement === "split";
-    const width = split ? size.x / 2 : size.x;
-    const k = this.sides.indexOf("a");
-    camera.setViewOffset(width, size.y, -this.makeRoom(width, size.y)[k], 0, width, size.y);
+    const bottom = size.y - box.y - box.height;
+    if (looks.split) renderer.setViewport(box.x, bottom, box.width, box.height);
+    else renderer.setViewport(0, 0, size.x, size.y);
+    renderer.setScissorTest(several);
+    renderer.setScissor(box.x, bottom, box.width, box.height);
+  }
+
+  /** Aims the camera at the middle of what is clear of a cell. shift: of the pixels */
+  private aim({ box, clear }: Cell, zoom: number, shift: number[]): void {
+    const { camera, looks } = this;
+    const [x, y] = shift;
+    camera.zoom = zoom;
+    camera.aspect = clear.width / Math.max(clear.height, 1);
+    if (looks.split)
+      camera.setViewOffset(clear.width, clear.height, box.x - clear.x + x, box.y - clear.y + y, box.width, box.height);
+    else camera.setViewOffset(clear.width, clear.height, x, y, clear.width, clear.height);
+  }
+
+  private drawGuides(cells: Cell[]): void {
+    const { renderer, camera } = this;
+    const cell = cells.find(({ side }) => side === "a");
+    if (!this.guides.shown || !cell) return;
+    const size = renderer.getSize(new Vector2());
+    this.aim(cell, this.looks.zoom(cell), [0, 0]);
     for (const body of this.bodies.values()) body.turnTo("a");
-    renderer.setViewport(split ? k * width : 0, 0, width, size.y);
+    this.window(cell, cells.length > 1);
     renderer.clearDepth();
     renderer.render(this.casters, camera);
     renderer.render(this.guides.scene, camera);
+    renderer.setScissorTest(false);
     renderer.setViewport(0, 0, size.x, size.y);
-  }
-
-  /** Two looks are as large as fits between the panels; returns by how much each is moved to the middle there [pixels]. */
-  private makeRoom(width: number, height: number): [number, number] {
-    this.camera.zoom = 1;
-    if (!this.compared || this.arrangement !== "split") return [0, 0];
-    const [left, right] = this.covered().map((pixels) => Math.min(pixels, 0.8 * width));
-    this.camera.zoom = Math.min(1, (width - Math.max(left, right)) / (SUBJECT * height));
-    return [0.5 * left, -0.5 * right];
   }
 
   private resize(): void {
@@ -468,6 +531,10 @@ function thinned(points: Float32Array): Float32Array {
   const kept = new Float32Array(3 * Math.floor(points.length / (3 * every)));
   for (let i = 0; i < kept.length; i += 3) kept.set(points.subarray(i * every, i * every + 3), i);
   return kept;
+}
+
+function round(value: number, digits: number): number {
+  return Number(value.toFixed(digits));
 }
 
 function drawsInSoftware(): boolean {
