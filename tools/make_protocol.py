@@ -35,6 +35,8 @@ PARTS = (
     protocol.Difference,
     protocol.Problem,
     protocol.Person,
+    protocol.Lamp,
+    protocol.Rig,
     protocol.Shared,
     protocol.Snapshot,
     protocol.Note,

@@ -136,7 +136,6 @@ class Review:
 
     def picture(self) -> np.ndarray:
         """Pixels of the canvas, shape (height, width, 3)."""
-        self.get("ringlet.viewer.drawNow()")
         data = self.page.evaluate(
             "() => { ringlet.viewer.drawNow(); return ringlet.viewer.renderer.domElement.toDataURL('image/png') }"
         )
