@@ -61,6 +61,8 @@ export const ICONS = {
   close: "M5 5l10 10M15 5L5 15",
   tray: "M3 12h14v5H3zM5 8.5h10M7 5h6",
   snapshot: "M4 4h12v12H4zM10 7v6M7 10h6",
+  pipette: "M11 6l3 3M13 3.5l3.5 3.5-2.5 2.5-3.5-3.5zM12 7l-7 7-1 3 3-1 7-7",
+  lens: "M10 3a7 7 0 1 0 0 14 7 7 0 0 0 0-14zM10 6.5a3.5 3.5 0 1 0 0 7 3.5 3.5 0 0 0 0-7z",
   load: "M10 3v9M6 8.5l4 4 4-4M4 16.5h12",
   solo: "M10 3l2 5h5l-4 3.2 1.5 5.3L10 13.3 5.5 16.5 7 11.2 3 8h5z",
 } as const;

@@ -9,11 +9,14 @@ import { Bar } from "./panel/bar";
 import { BrushTool } from "./panel/brush";
 import { CompareBar } from "./panel/compare";
 import { bindKey, plainKey } from "./panel/keys";
+import { Lens } from "./panel/lens";
 import { LockTool } from "./panel/lock";
 import { Look } from "./panel/look";
-import { RenderPanel } from "./panel/render";
+import { Notes } from "./panel/notes";
 import { ownName, People } from "./panel/people";
 import { PresenterPointer } from "./panel/pointer";
+import { References } from "./panel/references";
+import { RenderPanel } from "./panel/render";
 import { Settings } from "./panel/settings";
 import { Snapshots } from "./panel/snapshots";
 import { Sheets } from "./panel/sheets";
@@ -33,9 +36,10 @@ class App {
   readonly lock: LockTool;
   readonly brush: BrushTool;
   readonly look: Look;
-  readonly render: RenderPanel;
   readonly tray: Tray;
+  private readonly notes: Notes;
   private readonly pointer: PresenterPointer;
+  readonly render: RenderPanel;
   private readonly notices = new Notices();
   private readonly problems: ProblemBar;
   private readonly status = new Status(this.model);
@@ -59,6 +63,7 @@ class App {
     this.viewer.onPaint = () => {
       this.lock.place();
       this.pointer.place();
+      this.notes?.place();
     };
     this.viewer.onDraw = (statistics) => this.status.drew(statistics);
     const keys = (names: string, does: string, ...all: string[]) =>
@@ -81,7 +86,11 @@ class App {
     this.look = new Look(this.model, this.viewer, viewbar, this.lock, this.timeline, this.notices);
     this.tray = new Tray(() => this.look.introduce());
     const snapshots = new Snapshots(this.model, this.viewer, this.look, this.tray);
-    viewbar.element.append(snapshots.button, this.tray.button);
+    this.notes = new Notes(this.model, this.viewer, this.look, this.tray);
+    const references = new References(this.model, this.viewer, this.tray, this.notices);
+    picture.append(references.element, this.notes.marks);
+    const lens = new Lens(this.model, this.viewer, this.look, name);
+    viewbar.element.append(lens.button, snapshots.button, this.tray.button);
     root.append(
       new Bar(this.model, () => this.setTheme(), people.element, () => this.endComparison()).element,
       left,
@@ -89,6 +98,7 @@ class App {
       viewbar.element,
       new CompareBar(this.model, this.viewer, () => this.endComparison()).element,
       this.tray.element,
+      lens.element,
       this.timeline.element,
       this.status.element,
       this.notices.element,
@@ -220,16 +230,32 @@ class App {
         if (message.side !== "a") viewer.compare(message.side, message.name !== "");
         model.tell("compared");
         break;
-      case "rendered":
-        this.render.show(message);
-        break;
       case "snapshots":
         model.snapshots = message.snapshots;
         model.tell("snapshots");
         break;
+      case "notes":
+        model.notes = message.notes;
+        model.tell("notes");
+        break;
+      case "references":
+        model.references = message.references;
+        model.tell("references");
+        break;
+      case "views":
+        model.views = message.views;
+        model.tell("views");
+        break;
+      case "cameras":
+        model.cameras = message.cameras;
+        model.tell("cameras");
+        break;
       case "picture":
         model.setPicture(message.name, message.data as Uint8Array<ArrayBuffer>);
         model.tell("pictures");
+        break;
+      case "rendered":
+        this.render.show(message);
         break;
       case "saved":
         this.notices.show(`${message.name} is saved`);

@@ -11,11 +11,15 @@ import type {
   Json,
   Measured,
   Names,
+  Note,
   Numbers,
   Problem,
   Progress,
+  Reference,
   Role,
+  Shared,
   Snapshot,
+  StageCamera,
   Timeline,
   Welcome,
 } from "./protocol";
@@ -42,7 +46,11 @@ type Topic =
   | "followed"
   | "overlay"
   | "snapshots"
-  | "pictures";
+  | "pictures"
+  | "notes"
+  | "references"
+  | "views"
+  | "cameras";
 
 export class Model {
   welcome: Welcome | null = null;
@@ -57,6 +65,12 @@ export class Model {
   /** The looks that are compared, by side; that of the open recipe too, once there is another. */
   compared: Partial<Record<Side, Compared>> = {};
   snapshots: Snapshot[] = [];
+  notes: Note[] = [];
+  references: Reference[] = [];
+  /** Bookmarks of the recipe by their number, and the look with which the review opens: 0. */
+  views: Record<string, Shared> = {};
+  /** Cameras of the scene. */
+  cameras: StageCamera[] = [];
   /** Addresses of the pictures that are kept next to the recipe, by name. */
   readonly pictures = new Map<string, string>();
   /** What there is in the project to compare with. */

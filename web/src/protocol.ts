@@ -52,6 +52,23 @@ export interface Person {
   you: boolean;
 }
 
+/** A round lamp that faces the subject. */
+export interface Lamp {
+  azimuth: number;
+  elevation: number;
+  size: number;
+  strength: [number, number, number];
+  distance: number;
+}
+
+/** A light rig: its lamps, around the camera or the subject, and the radiance of the surroundings. */
+export interface Rig {
+  label: string;
+  with_camera: boolean;
+  ambient: [number, number, number];
+  lamps: Lamp[];
+}
+
 /** How the leading page looks at the groom. */
 export interface Shared {
   camera: number[];
@@ -336,8 +353,8 @@ export interface Render {
   height: number;
   samples?: number;
   focal_length?: number;
-  light_turn?: number;
   light?: "studio" | "window" | "sun";
+  light_turn?: number;
   color?: string;
 }
 
@@ -708,15 +725,6 @@ export interface Progress {
   done: number;
 }
 
-/** A render as it grows, a PNG. samples: per pixel so far, ``of`` so many; it is done with all of them. */
-export interface Rendered {
-  kind: "rendered";
-  number: number;
-  samples: number;
-  of: number;
-  png: Uint8Array;
-}
-
 /** All snapshots of the recipe, the oldest first. */
 export interface Snapshots {
   kind: "snapshots";
@@ -752,6 +760,15 @@ export interface Views {
 export interface Cameras {
   kind: "cameras";
   cameras: StageCamera[];
+}
+
+/** A render as it grows, a PNG. samples: per pixel so far, ``of`` so many; it is done with all of them. */
+export interface Rendered {
+  kind: "rendered";
+  number: number;
+  samples: number;
+  of: number;
+  png: Uint8Array;
 }
 
 export type FromPage =
@@ -820,10 +837,10 @@ export type FromServer =
   | Trouble
   | Problems
   | Progress
-  | Rendered
   | Snapshots
   | Picture
   | Notes
   | References
   | Views
-  | Cameras;
+  | Cameras
+  | Rendered;

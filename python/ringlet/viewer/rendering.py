@@ -83,13 +83,8 @@ def camera_of(message: protocol.Render, origin: np.ndarray) -> Camera:
     right = right / np.linalg.norm(right)
     slope = 0.5 * SENSOR / message.focal_length
     slopes = (slope * message.width / message.height, slope)
-    return Camera(
-        place,
-        np.stack([right, np.cross(backward, right), backward]),
-        distance,
-        slopes,
-        focal_length=1e-3 * message.focal_length,
-    )
+    axes = np.stack([right, np.cross(backward, right), backward])
+    return Camera(place, axes, distance, slopes, focal_length=1e-3 * message.focal_length)
 
 
 def pose_of(viewport: Viewport) -> Pose:

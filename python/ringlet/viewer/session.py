@@ -195,8 +195,8 @@ class Session:
     def leave(self, page: Page) -> None:
         """Removes a page; the edit lock stays reserved for it until another page requests it."""
         self.pages.remove(page)
-        self._rendering.cancel(page.queue)
         self._presence.leave(page)
+        self._rendering.cancel(page.queue)
         self.publisher.unsubscribe(page.queue)
         if page.name == self._lock.leader:
             self._end_gesture()

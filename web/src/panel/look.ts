@@ -13,6 +13,7 @@ import type { Notices } from "./status";
 import type { TimelineBar } from "./timeline";
 import type { Viewbar } from "./viewbar";
 
+const KEEP_AFTER = 800; // time without a change of the light after which it is kept [ms]
 const SHARE_AFTER = 50; // time between two looks that are shared [ms]
 const SAME = 1e-4; // cameras that differ by less are the same [m]
 const STORE = "ringlet-look:";
@@ -23,6 +24,9 @@ export class Look {
   private timer = 0;
   private applying = false;
   private restored = "";
+  /** Light, color and lens as they are kept with the recipe. */
+  private keptLight = "";
+  private keeping = 0;
   /** What this page shows of the look of the leader. */
   private applied: View | null = null;
 
@@ -96,6 +100,7 @@ export class Look {
     this.timer = window.setTimeout(() => {
       this.timer = 0;
       this.store();
+      this.keepLight();
       const { role } = this.model;
       if (role.leads && role.people.length > 1) this.model.link?.whisper({ kind: "look", ...this.state });
     }, SHARE_AFTER);
@@ -164,23 +169,45 @@ export class Look {
   private restore(): void {
     if (this.restored === this.key) return;
     this.restored = this.key;
+    this.keptLight = lightOf(this.state);
     if (this.openLink()) return;
     const stored = localStorage.getItem(this.key);
-    if (stored && this.model.role.leads) this.apply(JSON.parse(stored) as View, false);
+    const last = stored ? (JSON.parse(stored) as View) : undefined;
+    const kept = this.model.views["0"]; // light, color and lens are those of the recipe, the camera is this browser's
+    const view = kept ? { ...kept, camera: last?.camera ?? kept.camera } : last;
+    if (view && this.model.role.leads) this.apply(view, false);
+    this.keptLight = lightOf(this.state);
   }
 
-  private bookmark(number: string, keep: boolean): void {
-    const key = `${this.key}:${number}`;
+  /** Recalls a bookmark of the recipe, or keeps one. */
+  bookmark(slot: string, keep: boolean): void {
+    const { model } = this;
+    const kept = model.views[slot];
     if (keep) {
-      localStorage.setItem(key, JSON.stringify(this.state));
-      this.notices.show(`Bookmark ${number} is kept`);
-      return;
-    }
-    const stored = localStorage.getItem(key);
-    if (stored) this.apply(JSON.parse(stored) as View, false);
-    else this.notices.show(`There is no bookmark ${number}; Shift+${number} keeps one`);
-    if (stored) this.changed();
+      model.views[slot] = this.state; // the server says it again
+      model.say({ kind: "keep_view", slot: Number(slot), look: this.state });
+      this.notices.show(`Bookmark ${slot} is kept`);
+      model.tell("views");
+    } else if (kept) {
+      this.apply(kept, false);
+      this.changed();
+    } else this.notices.show(`There is no bookmark ${slot}; Shift+${slot} keeps one`);
   }
+
+  /** Keeps light, color and lens with the recipe, once the page that leads has changed them. */
+  private keepLight(): void {
+    clearTimeout(this.keeping);
+    if (!this.model.role.leads || this.restored !== this.key || lightOf(this.state) === this.keptLight) return;
+    this.keeping = window.setTimeout(() => {
+      this.keptLight = lightOf(this.state);
+      this.model.say({ kind: "keep_view", slot: 0, look: this.state });
+    }, KEEP_AFTER);
+  }
+}
+
+/** What a recipe is lit and seen with. */
+function lightOf({ light, light_turn, color, focal_length }: View): string {
+  return JSON.stringify([light, light_turn, color, focal_length]);
 }
 
 /** Whether two views show the same. */

@@ -12,12 +12,9 @@ export function keep(blob: Blob, name: string): void {
 
 /** A small picture of the open look alone. */
 export function thumbnail(viewer: Viewer): HTMLCanvasElement {
-  const { looks } = viewer;
-  const { order } = looks;
-  looks.order = ["a"];
-  const canvas = viewer.drawAt(400, 250, false);
-  looks.order = order;
-  return canvas;
+  let picture!: HTMLCanvasElement;
+  viewer.withView(() => (picture = viewer.drawAt(400, 250, false)));
+  return picture;
 }
 
 /** Records what is drawn until it is stopped. */

@@ -6,13 +6,14 @@ import type { Portrait } from "./framing";
 import type { Beam } from "./volume";
 
 const LAMPS = 4;
+const UP = new Vector3(0, 1, 0);
 const NONE: Lamp = { azimuth: 0, elevation: 0, size: 0.1, strength: [0, 0, 0], distance: 1 };
 
 const OFF: Rig = { label: "", with_camera: true, ambient: [0, 0, 0], lamps: [] };
 
 export class Lights {
   rig: Rig = OFF;
-  /** Angle by which all lamps are turned about the vertical, to the right [degrees]. */
+  /** Angle by which the rig is turned about the vertical, counter-clockwise from above [degrees]. */
   turn = 0;
   readonly uniforms = {
     lampAt: { value: Array.from({ length: LAMPS }, () => new Vector3()) },
@@ -34,13 +35,14 @@ export class Lights {
   update(camera: Camera, portrait: Portrait): void {
     const { rig, from } = this;
     const { lampAt, lampStrength, lampSpread, lampReach } = this.uniforms;
-    const turn = new Matrix4();
-    if (rig.with_camera) turn.extractRotation(camera.matrixWorld);
+    const withCamera = new Matrix4();
+    if (rig.with_camera) withCamera.extractRotation(camera.matrixWorld);
     this.uniforms.ambient.value = rig.ambient[1];
     for (let k = 0; k < LAMPS; k++) {
       const lamp = rig.lamps[k] ?? NONE;
-      const [a, e] = [((lamp.azimuth + this.turn) * Math.PI) / 180, (lamp.elevation * Math.PI) / 180];
-      from[k].set(Math.sin(a) * Math.cos(e), Math.sin(e), Math.cos(a) * Math.cos(e)).applyMatrix4(turn);
+      const [a, e] = [(lamp.azimuth * Math.PI) / 180, (lamp.elevation * Math.PI) / 180];
+      from[k].set(Math.sin(a) * Math.cos(e), Math.sin(e), Math.cos(a) * Math.cos(e)).applyMatrix4(withCamera);
+      from[k].applyAxisAngle(UP, (this.turn * Math.PI) / 180);
       lampAt.value[k].copy(portrait.target).addScaledVector(from[k], lamp.distance * portrait.distance);
       lampStrength.value[k].set(...lamp.strength);
       lampSpread.value[k] = lamp.size / 2;

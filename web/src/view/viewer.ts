@@ -8,11 +8,10 @@ import { Difference } from "./difference";
 import { GuideLines } from "./guides";
 import { type Colour, Hair } from "./hair";
 import { Film } from "./film";
-import { fieldOfView, FOCAL_LENGTH, focalLengthOf, type Portrait, portrait } from "./framing";
+import { fieldOfView, FOCAL_LENGTH, type Portrait, portrait, SENSOR } from "./framing";
 import { Lights } from "./lights";
 import { type Cell, type Covered, Looks, type Side } from "./looks";
 import { Clock, Pace, type Portion } from "./pace";
-import type { LightVolume } from "./volume";
 
 const REST_AFTER = 180; // time without a movement after which the picture rests [ms]
 const THINNEST = 0.9; // least width at which a hair is drawn [pixels]
@@ -46,8 +45,9 @@ export class Viewer {
   readonly software: boolean;
 
   private readonly film: Film;
-  private readonly otherFilm: Film;
-  private readonly difference: Difference;
+  /** The second look while two are subtracted. */
+  private readonly second: Film;
+  private readonly difference = new Difference();
   private readonly clock: Clock;
   private readonly bodies = new Map<number, Body>();
   private readonly scene = new Scene();
@@ -85,11 +85,10 @@ export class Viewer {
     this.controls.maxDistance = 6;
     this.controls.addEventListener("change", () => this.move());
     this.film = new Film(this.software ? 0 : 4);
-    this.otherFilm = new Film(this.software ? 0 : 4);
+    this.second = new Film(this.software ? 0 : 4);
     this.clock = new Clock(this.renderer.getContext() as WebGL2RenderingContext);
     const hair = () => new Hair(this.lights);
     this.hair = { a: hair(), b: hair(), c: hair(), d: hair() };
-    this.difference = new Difference(0);
     new ResizeObserver(() => this.resize()).observe(element);
     this.resize();
   }
@@ -97,13 +96,10 @@ export class Viewer {
   setBody(message: BodyMessage): void {
     this.bodies.get(message.index)?.dispose();
     for (const hair of Object.values(this.hair)) hair.relight();
-    this.bodies.set(message.index, new Body(message, this.lights, this.volumes, [this.scene, this.casters]));
-    this.invalidate();
-  }
-
-  private get volumes(): Record<Side, LightVolume> {
     const { a, b, c, d } = this.hair;
-    return { a: a.volume, b: b.volume, c: c.volume, d: d.volume };
+    const volumes = { a: a.volume, b: b.volume, c: c.volume, d: d.volume };
+    this.bodies.set(message.index, new Body(message, this.lights, volumes, [this.scene, this.casters]));
+    this.invalidate();
   }
 
   /** Removes what belongs to a file that is no longer open. */
@@ -174,7 +170,7 @@ export class Viewer {
 
   /** Focal length of the lens, for a picture that is 36 mm high [mm]; the subject keeps its size. */
   get focalLength(): number {
-    return focalLengthOf(this.camera.fov);
+    return (0.5 * SENSOR) / Math.tan((0.5 * this.camera.fov * Math.PI) / 180);
   }
 
   set focalLength(length: number) {
@@ -185,7 +181,7 @@ export class Viewer {
     this.invalidate();
   }
 
-  /** Angle by which the lights are turned about the vertical [degrees]. */
+  /** Turns the lights about the vertical [degrees]. */
   setLightTurn(degrees: number): void {
     this.lights.turn = degrees;
     this.invalidate();
@@ -196,7 +192,7 @@ export class Viewer {
     const { camera, controls } = this;
     return {
       camera: [...camera.position.toArray(), ...controls.target.toArray()],
-      focal_length: round(this.focalLength, 2),
+      focal_length: Number(this.focalLength.toFixed(2)),
       light_turn: this.lights.turn,
     };
   }
@@ -207,15 +203,14 @@ export class Viewer {
   }
 
   /** Puts the camera before the subject so that all of it is in the picture. */
-  frame(azimuth = 34, elevation = 7): void {
+  frame(azimuth = 34, elevation = 7, picture = this.size): void {
     if (this.hair.a.box.isEmpty()) return;
     this.framed = true;
     const [a, e] = [(azimuth * Math.PI) / 180, (elevation * Math.PI) / 180];
     const backward = new Vector3(Math.sin(a) * Math.cos(e), Math.sin(e), Math.cos(a) * Math.cos(e));
-    const { clientWidth, clientHeight } = this.element;
-    const { target, distance } = portrait(this.subject(), backward, clientWidth / Math.max(clientHeight, 1), this.focalLength);
+    const { target, distance } = portrait(this.subject(), backward, picture.width / Math.max(picture.height, 1));
     this.controls.target.copy(target);
-    this.camera.position.copy(target).addScaledVector(backward, distance);
+    this.camera.position.copy(target).addScaledVector(backward, (distance * this.focalLength) / FOCAL_LENGTH);
     this.controls.update();
     this.onLook();
     this.invalidate();
@@ -255,6 +250,19 @@ export class Viewer {
     this.camera.lookAt(this.controls.target);
     this.onLook();
     this.invalidate();
+  }
+
+  /** Does something with the open look alone, after which the camera is where it was. */
+  withView(does: () => void): void {
+    const { camera, focal_length } = this.cameraState;
+    const { order } = this.looks;
+    const moved = this.onLook;
+    this.onLook = () => {};
+    this.looks.order = ["a"];
+    does();
+    this.looks.order = order;
+    this.lookFrom(camera, focal_length);
+    this.onLook = moved;
   }
 
   /** Something moves: speed counts more than detail for a moment. */
@@ -379,106 +387,99 @@ export class Viewer {
     camera.updateMatrixWorld();
     this.resolved();
     lights.update(camera, this.portrait);
-    for (const { side } of this.cells()) {
+    for (const { side } of this.cells) {
       const hair = this.hair[side];
       hair.update(renderer);
       hair.light(renderer, () => [...this.bodies.values()].filter((body) => body.solid).map((body) => body.surface(side)), moving);
     }
   }
 
-  /** The looks that are drawn, and where. */
-  private cells(): Cell[] {
-    const { x, y } = this.renderer.getSize(new Vector2());
-    return this.looks.cells(x, y, this.keeping ? [0, 0, 0, 0] : this.covered());
+  /** Which looks are drawn, and where. */
+  private get cells(): Cell[] {
+    const { width, height } = this.renderer.getSize(new Vector2());
+    return this.looks.cells(width, height, this.keeping ? [0, 0, 0, 0] : this.covered());
   }
 
   /** Adds drawings to the film and develops it. */
   private paint({ fraction, drawings }: Portion, moving: boolean): void {
-    const { renderer, film, otherFilm, looks, difference, camera } = this;
-    const size = renderer.getSize(new Vector2());
+    const { renderer, film, looks } = this;
     const buffer = renderer.getDrawingBufferSize(new Vector2());
-    const cells = this.cells();
-    const films: [Film, Cell[]][] = looks.difference ? cells.map((cell, k) => [k ? otherFilm : film, [cell]]) : [[film, cells]];
+    const cells = this.cells;
+    const pictures = looks.difference ? [cells.slice(0, 1), cells.slice(1)] : [cells];
     if (film.width !== buffer.x || film.height !== buffer.y) film.drawings = 0;
-    if (!film.drawings) for (const [one] of films) one.clear(buffer.x, buffer.y);
-    for (let k = 0; k < drawings; k++) {
-      const number = film.drawings;
-      for (const [one, seen] of films) {
+    const begun = film.drawings;
+    pictures.forEach((some, k) => {
+      const one = k ? this.second : film;
+      one.drawings = begun;
+      if (!begun) one.clear(buffer.x, buffer.y);
+      for (let n = 0; n < drawings; n++) {
         one.open(renderer);
-        for (const cell of seen) this.expose(cell, seen.length > 1, fraction, number, moving ? 2 : 1);
-        renderer.setScissorTest(false);
+        this.expose(some, fraction, one.drawings, moving ? 2 : 1);
         one.expose(renderer);
       }
-    }
-    renderer.setViewport(0, 0, size.x, size.y);
-    films.forEach(([one], k) => one.show(renderer, looks.difference ? difference.target(k, renderer) : null));
-    if (looks.difference) {
-      renderer.setRenderTarget(null);
-      difference.draw(renderer, camera);
-    } else this.drawGuides(cells);
-    if (looks.split) {
-      const all = { x: 0, y: 0, width: size.x, height: size.y };
-      this.aim({ side: "a", box: all, clear: all }, 1, [0, 0]); // what is pointed at is seen by it
-    }
+      one.show(renderer, looks.difference ? this.difference.target(k, renderer) : null);
+    });
+    if (looks.difference) this.difference.draw(renderer);
+    else this.drawGuides(cells);
+    if (looks.split) this.aim(alone(this.size), 1); // what is over the picture goes by this camera
   }
 
-  /** Draws a look once: a part of the hairs, another one in each drawing, and the pixels moved by a part of one. */
-  private expose(cell: Cell, several: boolean, fraction: number, number: number, stride: number): void {
-    const { renderer, camera } = this;
-    const hair = this.hair[cell.side];
-    const ratio = renderer.getPixelRatio();
-    // The sequence R2 of Roberts 2018 over a filter as wide as that of the path tracer
-    const shift = [0.7548776662, 0.5698402909].map((step) => ((((0.5 + step * number) % 1) - 0.5) * 1.2) / ratio);
-    this.aim(cell, this.looks.zoom(cell), shift);
-    for (const body of this.bodies.values()) {
-      body.seenFrom(camera.position);
-      body.turnTo(cell.side);
-    }
-    hair.setDetail(fraction, stride, Math.round(number * fraction * hair.count) % Math.max(hair.count, 1));
-    hair.seenFrom(camera.position);
-    this.window(cell, several);
-    renderer.render(this.scene, camera);
-    if (hair.table && this.hairShown) {
-      renderer.render(hair.firstScene, camera);
-      renderer.render(hair.scene, camera);
-    }
-  }
-
-  /** What of the picture a look fills. One next to others has a view of its own; else all are seen through one window. */
-  private window({ box }: Cell, several: boolean): void {
-    const { renderer, looks } = this;
+  /** Draws looks once: a part of the hairs, another one in each drawing, and the pixels moved by a part of one. */
+  private expose(cells: Cell[], fraction: number, number: number, stride: number): void {
+    const { renderer, camera, looks } = this;
     const size = renderer.getSize(new Vector2());
-    const bottom = size.y - box.y - box.height;
-    if (looks.split) renderer.setViewport(box.x, bottom, box.width, box.height);
-    else renderer.setViewport(0, 0, size.x, size.y);
-    renderer.setScissorTest(several);
-    renderer.setScissor(box.x, bottom, box.width, box.height);
-  }
-
-  /** Aims the camera at the middle of what is clear of a cell. shift: of the pixels */
-  private aim({ box, clear }: Cell, zoom: number, shift: number[]): void {
-    const { camera, looks } = this;
-    const [x, y] = shift;
-    camera.zoom = zoom;
-    camera.aspect = clear.width / Math.max(clear.height, 1);
-    if (looks.split)
-      camera.setViewOffset(clear.width, clear.height, box.x - clear.x + x, box.y - clear.y + y, box.width, box.height);
-    else camera.setViewOffset(clear.width, clear.height, x, y, clear.width, clear.height);
+    // The sequence R2 of Roberts 2018 over a filter as wide as the path tracer's
+    const ratio = renderer.getPixelRatio();
+    const [x, y] = [0.7548776662, 0.5698402909].map((step) => ((((0.5 + step * number) % 1) - 0.5) * 1.2) / ratio);
+    for (const body of this.bodies.values()) body.seenFrom(camera.position);
+    renderer.setScissorTest(cells.length > 1);
+    for (const cell of cells) {
+      const hair = this.hair[cell.side];
+      this.aim(cell, looks.zoom(cell), x, y);
+      this.window(cell, size);
+      for (const body of this.bodies.values()) body.turnTo(cell.side);
+      hair.setDetail(fraction, stride, Math.round(number * fraction * hair.count) % Math.max(hair.count, 1));
+      hair.seenFrom(camera.position);
+      renderer.render(this.scene, camera);
+      if (hair.table && this.hairShown) {
+        renderer.render(hair.firstScene, camera);
+        renderer.render(hair.scene, camera);
+      }
+    }
+    renderer.setScissorTest(false);
+    renderer.setViewport(0, 0, size.x, size.y);
   }
 
   private drawGuides(cells: Cell[]): void {
-    const { renderer, camera } = this;
+    const { renderer, camera, looks } = this;
     const cell = cells.find(({ side }) => side === "a");
     if (!this.guides.shown || !cell) return;
     const size = renderer.getSize(new Vector2());
-    this.aim(cell, this.looks.zoom(cell), [0, 0]);
+    this.aim(cell, looks.zoom(cell));
+    this.window(cell, size);
     for (const body of this.bodies.values()) body.turnTo("a");
-    this.window(cell, cells.length > 1);
     renderer.clearDepth();
     renderer.render(this.casters, camera);
     renderer.render(this.guides.scene, camera);
-    renderer.setScissorTest(false);
     renderer.setViewport(0, 0, size.x, size.y);
+  }
+
+  /** Aims the camera at the middle of what is clear of a cell, moved by a part of a pixel. */
+  private aim({ box, clear }: Cell, zoom: number, x = 0, y = 0): void {
+    const { camera } = this;
+    const seen = this.looks.split ? box : clear;
+    camera.zoom = zoom;
+    camera.aspect = clear.width / Math.max(clear.height, 1);
+    camera.setViewOffset(clear.width, clear.height, seen.x - clear.x + x, seen.y - clear.y + y, seen.width, seen.height);
+  }
+
+  /** Sets the part of the canvas that a cell fills: a look next to others has a view of its own, else all share one. */
+  private window({ box }: Cell, size: Vector2): void {
+    const { renderer, looks } = this;
+    const { x, y, width, height } = box;
+    if (looks.split) renderer.setViewport(x, size.y - y - height, width, height);
+    else renderer.setViewport(0, 0, size.x, size.y);
+    renderer.setScissor(x, size.y - y - height, width, height);
   }
 
   private resize(): void {
@@ -524,6 +525,12 @@ export class Viewer {
   }
 }
 
+/** The cell of a look that has all of the picture. */
+function alone({ width, height }: { width: number; height: number }): Cell {
+  const all = { x: 0, y: 0, width, height };
+  return { side: "a", box: all, clear: all };
+}
+
 /** Some of the points, three numbers each. */
 function thinned(points: Float32Array): Float32Array {
   const every = Math.ceil(points.length / (3 * SUBJECT_POINTS));
@@ -531,10 +538,6 @@ function thinned(points: Float32Array): Float32Array {
   const kept = new Float32Array(3 * Math.floor(points.length / (3 * every)));
   for (let i = 0; i < kept.length; i += 3) kept.set(points.subarray(i * every, i * every + 3), i);
   return kept;
-}
-
-function round(value: number, digits: number): number {
-  return Number(value.toFixed(digits));
 }
 
 function drawsInSoftware(): boolean {

@@ -135,13 +135,13 @@ FROM_SERVER: tuple[type[Message], ...] = (
     Trouble,
     Problems,
     Progress,
-    Rendered,
     Snapshots,
     Picture,
     Notes,
     References,
     Views,
     Cameras,
+    Rendered,
 )
 
 __all__ = [

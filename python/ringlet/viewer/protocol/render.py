@@ -16,8 +16,7 @@ class Render(Message):
 
     number: of the render, for the answers
     camera: position and target [m], six numbers
-    focal_length: of a lens whose picture is 36 mm high [mm]
-    light_turn: of the light about the vertical [degrees]
+    focal_length, light_turn: as in ``Shared``
     color:  a hair colour; empty for that of the groom
     """
 
@@ -27,9 +26,9 @@ class Render(Message):
     width: Pixels
     height: Pixels
     samples: int = Field(default=32, ge=1, le=1024)
-    focal_length: float = Field(default=85.0, ge=1.0, le=2000.0)
-    light_turn: float = Field(default=0.0, ge=-360.0, le=360.0)
+    focal_length: float = Field(default=85.0, ge=10.0, le=500.0)
     light: Literal["studio", "window", "sun"] = "studio"
+    light_turn: float = Field(default=0.0, ge=-360.0, le=360.0)
     color: str = Field(default="", max_length=64)
 
 
