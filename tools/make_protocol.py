@@ -42,8 +42,6 @@ PARTS = (
     protocol.Placement,
     protocol.Reference,
     protocol.StageCamera,
-    protocol.Lamp,
-    protocol.Rig,
 )
 
 
