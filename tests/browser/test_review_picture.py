@@ -130,14 +130,15 @@ def test_pictures_are_fluent_while_something_moves_and_soon_cancelled_at_rest(op
 
 
 def test_a_render_is_shown_in_place_wiped_saved_and_ended_by_a_move(opened: Any, tmp_path: Path):
-    review: Review = opened(viewport={"width": 560, "height": 420})
-    review.page.get_by_label("Samples per pixel").evaluate("(list) => (list.value = '16')")
+    review: Review = opened(viewport={"width": 760, "height": 500})
+    choose = "(list) => { list.append(new Option('', '4')); list.value = '4'; }"
+    review.page.get_by_label("Samples per pixel").evaluate(choose)
     review.page.get_by_role("button", name="Render (R)").click()
     review.until("ringlet.render.picture")
     picture = review.page.get_by_alt_text("Path-traced picture")
     assert picture.is_visible()
-    review.until("ringlet.render.picture.samples == 16")
-    assert "Rendered, 16 samples" in review.page.locator(".render-state").inner_text()
+    review.until("ringlet.render.picture.samples == 4")
+    assert "Rendered, 4 samples" in review.page.locator(".render-state").inner_text()
     line = review.page.get_by_role("slider", name="Wipe between render and live picture")
     box = review.page.locator(".render").bounding_box()
     y, middle = box["y"] + 0.8 * box["height"], box["x"] + box["width"] / 2

@@ -159,7 +159,7 @@ function transport(lobes: Float32Array, along: number): Transport {
     }
     albedo[t] = Math.min(scattered / weights, BRIGHTEST);
     forward[t] = Math.max(deflected / Math.max(scattered, 1e-9), 0);
-    const peak = forward[t] ** 2; // what stays in the beam, and is no scattering: a part of TT
+    const peak = forward[t] ** 2; // a part of TT, which the beam keeps
     variance[t] = Math.max(spread / Math.max(scattered, 1e-9) - peak * v[1], 0) / (1 - peak);
   }
   return { albedo, forward, variance };
