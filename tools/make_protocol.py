@@ -16,7 +16,6 @@ from ringlet.viewer import protocol
 
 FILE = Path(__file__).parents[1] / "web/src/protocol.ts"
 # What messages of the server consist of.
-PARTS = (protocol.Stage, protocol.Change, protocol.Fix, protocol.Difference, protocol.Problem, protocol.Person)
 ARRAYS = {"f4": "Float32Array", "f8": "Float64Array", "i4": "Int32Array", "u4": "Uint32Array", "u1": "Uint8Array"}
 PLAIN: dict[Any, str] = {
     str: "string",
@@ -43,6 +42,8 @@ PARTS = (
     protocol.Placement,
     protocol.Reference,
     protocol.StageCamera,
+    protocol.Lamp,
+    protocol.Rig,
 )  # of messages
 
 

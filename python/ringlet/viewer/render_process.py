@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import multiprocessing
+import os
 import signal
 import threading
 from collections.abc import Callable
@@ -76,6 +77,8 @@ class RenderProcess:
 def _serve(connection: Connection) -> None:
     """Takes one task in the process, and sends its steps; None ends them."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the server ends its process
+    if hasattr(os, "nice"):
+        os.nice(5)  # grooming goes first
     from ringlet import picture
     from ringlet.picture.engine import mitsuba
 

@@ -57,13 +57,13 @@ export class RenderPanel {
     bindKey({ keys: "R", does: "render the picture, path-traced", on: plainKey("r"), run: () => this.start() });
     this.bindLine();
     model.on("look", () => this.followLook());
-    model.on("compared", () => model.compared && this.close());
+    model.on("compared", () => viewer.compared && this.close());
     model.on("numbers", () => this.tell());
   }
 
   /** Renders what is seen, in place of the last render. */
   start(size = this.viewer.size): void {
-    if (this.model.compared) return;
+    if (this.viewer.compared) return;
     const request = this.seen(size);
     if (!request.width || !request.height) return;
     this.number += 1;
@@ -124,9 +124,10 @@ export class RenderPanel {
   /** A picture of another view, light or color is not that of what is seen. */
   private followLook(): void {
     if (!this.request) return;
-    const { camera, light, color } = this.seen(this.viewer.size);
+    const now = this.seen(this.viewer.size);
     const then = this.request;
-    if (JSON.stringify([camera, light, color]) !== JSON.stringify([then.camera, then.light, then.color])) this.close();
+    const kept = ["camera", "focal_length", "light", "light_turn", "color"] as const;
+    if (kept.some((name) => JSON.stringify(now[name]) !== JSON.stringify(then[name]))) this.close();
   }
 
   private stop(): void {

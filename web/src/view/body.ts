@@ -118,7 +118,7 @@ export class Body {
       side: 2,
       uniforms: {
         ...lights.uniforms,
-        ...Object.fromEntries(Object.keys(volumes.a.uniforms).map((name) => [name, { value: null }])),
+        ...Object.fromEntries(Object.keys(this.volumes.a.uniforms).map((name) => [name, { value: null }])),
         eye: { value: new Vector3() },
         ...Object.fromEntries(Object.entries(look).map(([name, value]) => [name, { value }])),
       },

@@ -8,10 +8,11 @@ import { Difference } from "./difference";
 import { GuideLines } from "./guides";
 import { type Colour, Hair } from "./hair";
 import { Film } from "./film";
-import { fieldOfView, FOCAL_LENGTH, type Portrait, portrait, SENSOR } from "./framing";
+import { fieldOfView, FOCAL_LENGTH, focalLengthOf, type Portrait, portrait } from "./framing";
 import { Lights } from "./lights";
 import { type Cell, type Covered, Looks, type Side } from "./looks";
 import { Clock, Pace, type Portion } from "./pace";
+import type { LightVolume } from "./volume";
 
 const REST_AFTER = 180; // time without a movement after which the picture rests [ms]
 const THINNEST = 0.9; // least width at which a hair is drawn [pixels]
@@ -96,10 +97,13 @@ export class Viewer {
   setBody(message: BodyMessage): void {
     this.bodies.get(message.index)?.dispose();
     for (const hair of Object.values(this.hair)) hair.relight();
-    const { a, b, c, d } = this.hair;
-    const volumes = { a: a.volume, b: b.volume, c: c.volume, d: d.volume };
-    this.bodies.set(message.index, new Body(message, this.lights, volumes, [this.scene, this.casters]));
+    this.bodies.set(message.index, new Body(message, this.lights, this.volumes, [this.scene, this.casters]));
     this.invalidate();
+  }
+
+  private get volumes(): Record<Side, LightVolume> {
+    const { a, b, c, d } = this.hair;
+    return { a: a.volume, b: b.volume, c: c.volume, d: d.volume };
   }
 
   /** Removes what belongs to a file that is no longer open. */
@@ -170,7 +174,7 @@ export class Viewer {
 
   /** Focal length of the lens, for a picture that is 36 mm high [mm]; the subject keeps its size. */
   get focalLength(): number {
-    return (0.5 * SENSOR) / Math.tan((0.5 * this.camera.fov * Math.PI) / 180);
+    return focalLengthOf(this.camera.fov);
   }
 
   set focalLength(length: number) {
@@ -208,9 +212,9 @@ export class Viewer {
     this.framed = true;
     const [a, e] = [(azimuth * Math.PI) / 180, (elevation * Math.PI) / 180];
     const backward = new Vector3(Math.sin(a) * Math.cos(e), Math.sin(e), Math.cos(a) * Math.cos(e));
-    const { target, distance } = portrait(this.subject(), backward, picture.width / Math.max(picture.height, 1));
+    const { target, distance } = portrait(this.subject(), backward, picture.width / Math.max(picture.height, 1), this.focalLength);
     this.controls.target.copy(target);
-    this.camera.position.copy(target).addScaledVector(backward, (distance * this.focalLength) / FOCAL_LENGTH);
+    this.camera.position.copy(target).addScaledVector(backward, distance);
     this.controls.update();
     this.onLook();
     this.invalidate();
@@ -461,6 +465,7 @@ export class Viewer {
     renderer.clearDepth();
     renderer.render(this.casters, camera);
     renderer.render(this.guides.scene, camera);
+    renderer.setScissorTest(false);
     renderer.setViewport(0, 0, size.x, size.y);
   }
 
