@@ -63,6 +63,7 @@ def test_a_snapshot_is_readable_files_that_survive_and_that_all_pages_see(folder
 def test_only_the_page_that_leads_loads_a_snapshot(folder: Path):
     with serving(folder) as client, page(client, "one") as one, page(client, "two") as two:
         one.receive("role", leads=True)
+        two.receive("snapshots", snapshots=[])
         taken = take(two)
         two.send(kind="load_snapshot", id=taken["id"])
         assert "another page leads" in two.receive_trouble()
