@@ -15,7 +15,6 @@ from pydantic.fields import FieldInfo
 from ringlet.viewer import protocol
 
 FILE = Path(__file__).parents[1] / "web/src/protocol.ts"
-# What messages of the server consist of.
 ARRAYS = {"f4": "Float32Array", "f8": "Float64Array", "i4": "Int32Array", "u4": "Uint32Array", "u1": "Uint8Array"}
 PLAIN: dict[Any, str] = {
     str: "string",
@@ -27,6 +26,7 @@ PLAIN: dict[Any, str] = {
 }
 
 
+# What messages of the server consist of.
 PARTS = (
     protocol.Stage,
     protocol.Change,
@@ -42,9 +42,7 @@ PARTS = (
     protocol.Placement,
     protocol.Reference,
     protocol.StageCamera,
-    protocol.Lamp,
-    protocol.Rig,
-)  # of messages
+)
 
 
 def kind(annotation: Any) -> str:

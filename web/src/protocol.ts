@@ -133,23 +133,6 @@ export interface StageCamera {
   focal_length: number;
 }
 
-/** A round lamp that faces the subject. */
-export interface Lamp {
-  azimuth: number;
-  elevation: number;
-  size: number;
-  strength: [number, number, number];
-  distance: number;
-}
-
-/** A light rig: its lamps, around the camera or the subject, and the radiance of the surroundings. */
-export interface Rig {
-  label: string;
-  with_camera: boolean;
-  ambient: [number, number, number];
-  lamps: Lamp[];
-}
-
 /** First message of a page. */
 export interface Hello {
   kind: "hello";

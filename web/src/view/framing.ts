@@ -2,19 +2,15 @@
 
 import { Vector3 } from "three";
 
-export const FOCAL_LENGTH = 85; // of a portrait lens [mm]
-const SENSOR = 36; // height of the picture that focal lengths refer to [mm]
+export const FOCAL_LENGTH = 85; // of a portrait lens, before a sensor whose height is 36 mm [mm]
+export const SENSOR = 36;
+const LENS = (0.5 * SENSOR) / FOCAL_LENGTH;
 const MARGIN = 0.06; // fraction of the width and height that stays free at each edge
 const HEADROOM = 0.4; // fraction of the free height above the subject
 
-/** Vertical field of view of a lens [degrees]. */
+/** Vertical field of view of a lens [degrees]. focalLength: before the same sensor [mm] */
 export function fieldOfView(focalLength: number): number {
-  return (2 * Math.atan(SENSOR / 2 / focalLength) * 180) / Math.PI;
-}
-
-/** Focal length of a lens with a vertical field of view [degrees]; in mm. */
-export function focalLengthOf(fov: number): number {
-  return SENSOR / 2 / Math.tan((0.5 * fov * Math.PI) / 180);
+  return (2 * Math.atan((0.5 * SENSOR) / focalLength) * 180) / Math.PI;
 }
 
 /** What a camera of a direction looks at, and from how far [m]. */
@@ -24,17 +20,11 @@ export interface Portrait {
 }
 
 /** backward: unit vector from the subject to the camera; points: of the subject, three numbers each; aspect: at most 1. */
-export function portrait(
-  points: Iterable<Float32Array>,
-  backward: Vector3,
-  aspect = 1,
-  focalLength = FOCAL_LENGTH,
-): Portrait {
-  const lens = (0.5 * SENSOR) / focalLength;
+export function portrait(points: Iterable<Float32Array>, backward: Vector3, aspect = 1): Portrait {
   const right = new Vector3(backward.z, 0, -backward.x).normalize();
   const up = backward.clone().cross(right);
-  const slopeX = lens * Math.min(aspect, 1) * (1 - 2 * MARGIN);
-  const slopeY = lens * (1 - 2 * MARGIN);
+  const slopeX = LENS * Math.min(aspect, 1) * (1 - 2 * MARGIN);
+  const slopeY = LENS * (1 - 2 * MARGIN);
   let [reachRight, reachUp, reachLeft, reachDown] = [-Infinity, -Infinity, -Infinity, -Infinity];
   let [nearest, deepest] = [-Infinity, -Infinity];
   for (const some of points)

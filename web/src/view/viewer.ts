@@ -8,11 +8,10 @@ import { Difference } from "./difference";
 import { GuideLines } from "./guides";
 import { type Colour, Hair } from "./hair";
 import { Film } from "./film";
-import { fieldOfView, FOCAL_LENGTH, focalLengthOf, type Portrait, portrait } from "./framing";
+import { fieldOfView, FOCAL_LENGTH, type Portrait, portrait, SENSOR } from "./framing";
 import { Lights } from "./lights";
 import { type Cell, type Covered, Looks, type Side } from "./looks";
 import { Clock, Pace, type Portion } from "./pace";
-import type { LightVolume } from "./volume";
 
 const REST_AFTER = 180; // time without a movement after which the picture rests [ms]
 const THINNEST = 0.9; // least width at which a hair is drawn [pixels]
@@ -97,13 +96,10 @@ export class Viewer {
   setBody(message: BodyMessage): void {
     this.bodies.get(message.index)?.dispose();
     for (const hair of Object.values(this.hair)) hair.relight();
-    this.bodies.set(message.index, new Body(message, this.lights, this.volumes, [this.scene, this.casters]));
-    this.invalidate();
-  }
-
-  private get volumes(): Record<Side, LightVolume> {
     const { a, b, c, d } = this.hair;
-    return { a: a.volume, b: b.volume, c: c.volume, d: d.volume };
+    const volumes = { a: a.volume, b: b.volume, c: c.volume, d: d.volume };
+    this.bodies.set(message.index, new Body(message, this.lights, volumes, [this.scene, this.casters]));
+    this.invalidate();
   }
 
   /** Removes what belongs to a file that is no longer open. */
@@ -174,7 +170,7 @@ export class Viewer {
 
   /** Focal length of the lens, for a picture that is 36 mm high [mm]; the subject keeps its size. */
   get focalLength(): number {
-    return focalLengthOf(this.camera.fov);
+    return (0.5 * SENSOR) / Math.tan((0.5 * this.camera.fov * Math.PI) / 180);
   }
 
   set focalLength(length: number) {
@@ -212,9 +208,9 @@ export class Viewer {
     this.framed = true;
     const [a, e] = [(azimuth * Math.PI) / 180, (elevation * Math.PI) / 180];
     const backward = new Vector3(Math.sin(a) * Math.cos(e), Math.sin(e), Math.cos(a) * Math.cos(e));
-    const { target, distance } = portrait(this.subject(), backward, picture.width / Math.max(picture.height, 1), this.focalLength);
+    const { target, distance } = portrait(this.subject(), backward, picture.width / Math.max(picture.height, 1));
     this.controls.target.copy(target);
-    this.camera.position.copy(target).addScaledVector(backward, distance);
+    this.camera.position.copy(target).addScaledVector(backward, (distance * this.focalLength) / FOCAL_LENGTH);
     this.controls.update();
     this.onLook();
     this.invalidate();
@@ -465,7 +461,6 @@ export class Viewer {
     renderer.clearDepth();
     renderer.render(this.casters, camera);
     renderer.render(this.guides.scene, camera);
-    renderer.setScissorTest(false);
     renderer.setViewport(0, 0, size.x, size.y);
   }
 
