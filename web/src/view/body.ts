@@ -53,7 +53,7 @@ void main() {
   vec3 N = normalize(upward), V = normalize(eye - place);
   if (dot(N, V) < 0.0) N = -N;
   float voxel = gridSize.x / float(textureSize(gridDepth, 0).x), NV = max(dot(N, V), 1e-3);
-  vec4 depth = opticalDepth(place + 0.5 * voxel * N), past = pastBodies(place + 0.5 * voxel * N);
+  vec4 depth = opticalDepth(place + 0.5 * voxel * N), past = pastBodies(place + voxel * N); // above the shell of folds
   float disorder;
   vec3 light = albedo * scattered(place + 1.5 * voxel * N, N, vec3(-2.0), disorder); // irradiance over π
   vec3 tint = mix(vec3(1.0), albedo / max(dot(albedo, vec3(0.2126, 0.7152, 0.0722)), 1e-4), sheenTint);

@@ -27,7 +27,7 @@ export interface Roughness {
   around: number;
 }
 
-/** Transport in a volume of fibers by q: of one scattering the albedo, the mean cosine, and the variance along a fiber. */
+/** Transport in a volume of fibers by q: of one scattering the albedo, the mean cosine, and the variance along a fiber without the peak. */
 export interface Transport {
   albedo: Float32Array;
   forward: Float32Array;
@@ -159,7 +159,8 @@ function transport(lobes: Float32Array, along: number): Transport {
     }
     albedo[t] = Math.min(scattered / weights, BRIGHTEST);
     forward[t] = Math.max(deflected / Math.max(scattered, 1e-9), 0);
-    variance[t] = spread / Math.max(scattered, 1e-9);
+    const peak = forward[t] ** 2; // a part of TT, which the beam keeps
+    variance[t] = Math.max(spread / Math.max(scattered, 1e-9) - peak * v[1], 0) / (1 - peak);
   }
   return { albedo, forward, variance };
 }

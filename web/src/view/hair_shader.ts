@@ -58,20 +58,27 @@ void main() {
   transportOf(q, omega, cosine, spread);
   vec3 passing = 1.0 - omega * cosine * cosine;
   vec4 depth = opticalDepth(place), past = pastBodies(place);
-  vec3 light = vec3(0.0), field = omega * scattered(place, V, 3.0 * cosine, disorder);
-  // Hairs that lie alike scatter light to a cone about them, wider by each scattering and by how they differ: the field
-  // has been scattered twice at least when it reaches the eye. Light of all directions has a density of 1/2.
-  float even = ambient, cones = ambient;
+  vec3 light = vec3(0.0), field = scattered(place, V, 3.0 * cosine, disorder);
+  float shares[LAMPS], even = ambient, beams = 1e-6;
+  vec3 from[LAMPS];
   for (int k = 0; k < LAMPS; k++) {
-    vec3 L, E = irradiance(k, place, L);
+    vec3 E = irradiance(k, place, from[k]);
     vec3 arriving = E * past[k] * exp(-depth[k] * passing);
-    if (arriving.g < 1e-3) continue;
-    float size = 0.25 * lampSpread[k] * lampSpread[k], share = arriving.g * 0.0795775; // 1 / 4π
-    light += arriving * fiber(T, V, L, q, size);
-    even += share;
-    cones += share * 2.0 * cone(2.0 * spread + size + disorder, T, V, L);
+    shares[k] = arriving.g * 0.0795775; // 1 / 4π
+    beams += shares[k];
+    if (arriving.g > 1e-3) light += arriving * fiber(T, V, from[k], q, 0.25 * lampSpread[k] * lampSpread[k]);
   }
-  light += field * cones / max(even, 1e-6);
+  // Hairs that lie alike scatter light to a cone about them, wider by each scattering and by how they differ. Orders of
+  // scattering fall by the ratio of the field to the field with the beams, so that their mean is 2 + field / beams at
+  // the eye. Light of all directions has a density of 1/2.
+  float orders = 2.0 + field.g / beams, cones = ambient;
+  for (int k = 0; k < LAMPS; k++) {
+    if (shares[k] < 1e-4) continue;
+    even += shares[k];
+    float wide = orders * spread + 0.25 * lampSpread[k] * lampSpread[k] + disorder;
+    cones += shares[k] * 2.0 * cone(min(wide, 4.0), T, V, from[k]);
+  }
+  light += omega * field * cones / max(even, 1e-6);
   if (showOverlay > 0.5) {
     vec3 tint = showOverlay > 1.5 ? heat(clamp(overlay, 0.0, 1.0)) : ramp(clamp(overlay, 0.0, 1.0));
     vec3 L = normalize(lampAt[0] - place);
