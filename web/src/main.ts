@@ -147,6 +147,9 @@ class App {
         else if (this.session && this.session !== message.session) {
           model.numbers = null;
           model.problems = [];
+          for (const side of model.others) viewer.compare(side, false); // the new server compares nothing
+          model.compared = {};
+          model.tell("compared");
           if (!message.recovered) this.giveBack();
         }
         this.kept = {};

@@ -506,7 +506,8 @@ class Session:
         self.publisher.publish(f"document/{file}", self.files.message(file))
         if file == "recipe":
             self._grooming.request(draft=not resting)
-            self._comparer.recompute()
+            if resting:
+                self._comparer.recompute()
         else:
             self._playback.publish_timeline()
         if resting:
