@@ -15,8 +15,6 @@ from pydantic.fields import FieldInfo
 from ringlet.viewer import protocol
 
 FILE = Path(__file__).parents[1] / "web/src/protocol.ts"
-# What messages of the server consist of.
-PARTS = (protocol.Stage, protocol.Change, protocol.Fix, protocol.Difference, protocol.Problem, protocol.Person)
 ARRAYS = {"f4": "Float32Array", "f8": "Float64Array", "i4": "Int32Array", "u4": "Uint32Array", "u1": "Uint8Array"}
 PLAIN: dict[Any, str] = {
     str: "string",
@@ -28,6 +26,7 @@ PLAIN: dict[Any, str] = {
 }
 
 
+# What messages of the server consist of.
 PARTS = (
     protocol.Stage,
     protocol.Change,
@@ -35,13 +34,15 @@ PARTS = (
     protocol.Difference,
     protocol.Problem,
     protocol.Person,
+    protocol.Lamp,
+    protocol.Rig,
     protocol.Shared,
     protocol.Snapshot,
     protocol.Note,
     protocol.Placement,
     protocol.Reference,
     protocol.StageCamera,
-)  # of messages
+)
 
 
 def kind(annotation: Any) -> str:

@@ -136,7 +136,6 @@ class Review:
 
     def picture(self) -> np.ndarray:
         """Pixels of the canvas, shape (height, width, 3)."""
-        self.get("ringlet.viewer.drawNow()")
         data = self.page.evaluate(
             "() => { ringlet.viewer.drawNow(); return ringlet.viewer.renderer.domElement.toDataURL('image/png') }"
         )
@@ -183,8 +182,8 @@ class Review:
 
 
 def different(a: np.ndarray, b: np.ndarray) -> float:
-    """Fraction of pixels that differ."""
-    return float((np.abs(a - b).max(axis=2) > 12).mean())
+    """Fraction of pixels that differ; hairs are thin, and cover a part of a pixel."""
+    return float((np.abs(a - b).max(axis=2) > 4).mean())
 
 
 @pytest.fixture(scope="session")

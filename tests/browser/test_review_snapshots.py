@@ -98,6 +98,7 @@ def test_four_looks_have_one_camera_and_their_labels(opened: Any):
     whole = review.picture()
     for side in "abcd":
         assert look_of(review, side).shape == whole.shape
+    review.get("(ringlet.viewer.looks.order = ['a', 'b', 'c', 'd'])")
     page.get_by_role("button", name="Take ‘now’ out").click()
     assert page.locator(".look-label").count() == 3
     assert not review.errors
@@ -113,7 +114,7 @@ def test_the_difference_of_two_looks_is_where_they_differ(opened: Any):
     assert saturation(review.picture()).max() < 12  # two equal looks
     set_curl(review, width=3)
     tinted = saturation(review.picture()) > 60
-    assert 0.005 < tinted.mean() < 0.6
+    assert 0.001 < tinted.mean() < 0.6
     assert not tinted[:40, :40].any()
     assert page.get_by_text("orange: brighter in the first").is_visible()
     assert not review.errors

@@ -356,20 +356,3 @@ def test_numbers_of_a_shot_have_units(opened: Any):
     assert review.page.evaluate("() => ringlet.model.words('curl.width is 0.3 m; must be at most 0.2 m')") == (
         "curl.width is 30 cm; must be at most 20 cm"
     )
-
-
-def test_a_picture_that_takes_long_grows_in_detail_at_rest(opened: Any):
-    review: Review = opened()
-    details = review.page.evaluate(
-        """() => new Promise((done) => {
-            const { pace } = ringlet.viewer, seen = [], next = pace.next.bind(pace);
-            pace.whole = 2000;
-            Object.defineProperty(pace, 'hairs', { get: () => 50000, set: () => {} });
-            pace.took = () => {};
-            pace.next = (moving, fresh) => (seen.push(next(moving, fresh)), seen.at(-1));
-            ringlet.viewer.invalidate();
-            const look = () => (seen.at(-1) === 1 ? done(seen) : setTimeout(look, 20));
-            look();
-        })"""
-    )
-    assert len(details) > 2 and details == sorted(details) and details[-1] == 1

@@ -16,6 +16,7 @@ import { Notes } from "./panel/notes";
 import { ownName, People } from "./panel/people";
 import { PresenterPointer } from "./panel/pointer";
 import { References } from "./panel/references";
+import { RenderPanel } from "./panel/render";
 import { Settings } from "./panel/settings";
 import { Snapshots } from "./panel/snapshots";
 import { Sheets } from "./panel/sheets";
@@ -38,6 +39,7 @@ class App {
   readonly tray: Tray;
   private readonly notes: Notes;
   private readonly pointer: PresenterPointer;
+  readonly render: RenderPanel;
   private readonly notices = new Notices();
   private readonly problems: ProblemBar;
   private readonly status = new Status(this.model);
@@ -79,6 +81,8 @@ class App {
       98,
     ];
     const viewbar = new Viewbar(this.model, this.viewer, this.brush, name);
+    this.render = new RenderPanel(this.model, this.viewer, viewbar, name);
+    picture.append(this.render.element);
     this.look = new Look(this.model, this.viewer, viewbar, this.lock, this.timeline, this.notices);
     this.tray = new Tray(() => this.look.introduce());
     const snapshots = new Snapshots(this.model, this.viewer, this.look, this.tray);
@@ -121,7 +125,6 @@ class App {
     const next = theme ?? (now === "dark" ? "light" : "dark");
     document.documentElement.dataset["theme"] = next;
     localStorage.setItem("ringlet-theme", next);
-    this.viewer.setTheme(next);
   }
 
   private connected(state: LinkState, why: string): void {
@@ -144,6 +147,9 @@ class App {
         else if (this.session && this.session !== message.session) {
           model.numbers = null;
           model.problems = [];
+          for (const side of model.others) viewer.compare(side, false); // the new server compares nothing
+          model.compared = {};
+          model.tell("compared");
           if (!message.recovered) this.giveBack();
         }
         this.kept = {};
@@ -251,6 +257,9 @@ class App {
         model.setPicture(message.name, message.data as Uint8Array<ArrayBuffer>);
         model.tell("pictures");
         break;
+      case "rendered":
+        this.render.show(message);
+        break;
       case "saved":
         this.notices.show(`${message.name} is saved`);
         break;
@@ -266,6 +275,7 @@ class App {
         break;
       case "trouble":
         this.notices.show(model.words(message.message), "bad");
+        if (message.message.startsWith("render:") || message.message.startsWith("picture:")) this.render.fail();
         model.tell("document"); // controls go back to what holds
         break;
     }

@@ -52,6 +52,23 @@ export interface Person {
   you: boolean;
 }
 
+/** A round lamp that faces the subject. */
+export interface Lamp {
+  azimuth: number;
+  elevation: number;
+  size: number;
+  strength: [number, number, number];
+  distance: number;
+}
+
+/** A light rig: its lamps, around the camera or the subject, and the radiance of the surroundings. */
+export interface Rig {
+  label: string;
+  with_camera: boolean;
+  ambient: [number, number, number];
+  lamps: Lamp[];
+}
+
 /** How the leading page looks at the groom. */
 export interface Shared {
   camera: number[];
@@ -310,6 +327,25 @@ export interface Against {
   name?: string;
 }
 
+/** Path-traces what is seen, in place of the last render of the page; ``Rendered`` answers, step by step. */
+export interface Render {
+  kind: "render";
+  number: number;
+  camera: number[];
+  width: number;
+  height: number;
+  samples?: number;
+  focal_length?: number;
+  light?: "studio" | "window" | "sun";
+  light_turn?: number;
+  color?: string;
+}
+
+/** Cancels the render of the page. */
+export interface StopRender {
+  kind: "stop_render";
+}
+
 /** Requests frames, the current one first; replaces earlier requests that are still pending. */
 export interface Watch {
   kind: "watch";
@@ -419,7 +455,8 @@ export interface Welcome {
   schemas: Record<string, Json>;
   operators: string[];
   recovered: boolean;
-  colors: Record<string, [number, number, number, number]>;
+  colors: Record<string, [number, number, number, number, number]>;
+  rigs: Record<string, Rig>;
 }
 
 /** Holder of the edit lock, and the people at the connected pages. */
@@ -545,6 +582,7 @@ export interface Colors {
   side: "a" | "b" | "c" | "d";
   stations: number;
   roughness: number;
+  azimuthal_roughness: number;
   tilt: number;
   reflectance: Uint8Array;
 }
@@ -707,6 +745,15 @@ export interface Cameras {
   cameras: StageCamera[];
 }
 
+/** A render as it grows, a PNG. samples: per pixel so far, ``of`` so many; it is done with all of them. */
+export interface Rendered {
+  kind: "rendered";
+  number: number;
+  samples: number;
+  of: number;
+  png: Uint8Array;
+}
+
 export type FromPage =
   | Hello
   | Introduce
@@ -733,6 +780,8 @@ export type FromPage =
   | Hand
   | Play
   | Against
+  | Render
+  | StopRender
   | Watch
   | TakeSnapshot
   | EditSnapshot
@@ -776,4 +825,5 @@ export type FromServer =
   | Notes
   | References
   | Views
-  | Cameras;
+  | Cameras
+  | Rendered;

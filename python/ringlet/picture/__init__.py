@@ -9,7 +9,7 @@ from ringlet.picture.motion import Pose
 from ringlet.picture.movie import Movie, Shot, check_output, film, still_standpoint, turned_standpoints
 from ringlet.picture.places import write_places
 from ringlet.picture.sheet import sheet
-from ringlet.picture.still import still
+from ringlet.picture.still import growing, still
 
 __all__ = [
     "HAIR_COLORS",
@@ -22,6 +22,7 @@ __all__ = [
     "check_output",
     "compare",
     "film",
+    "growing",
     "material_of",
     "sheet",
     "still",

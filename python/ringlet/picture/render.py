@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -36,6 +36,9 @@ THINNEST = 1e-3
 # Samples per pixel of one pass: enough to stratify a pixel and the lights, few enough for several passes to compare.
 # A time limit makes passes smaller, since denoising needs three of them.
 MAX_PASS_SAMPLES, MAX_TIMED_PASS_SAMPLES, MIN_PASSES = 8, 4, 4
+
+# Most pixels along a side of the first picture of one that grows.
+COARSE = 240
 
 # Passes of a picture with motion blur: each sees the scene at one time.
 MIN_MOVED_PASSES = 16
@@ -158,9 +161,36 @@ def trace(
         return oidn.denoise(accumulated.mean(), layers)
     if done < 3 or denoiser == "none":
         return accumulated.mean().astype(np.float32)
+    return _denoised(scene, accumulated)
+
+
+def trace_growing(
+    scene: Any, camera: Camera, size: tuple[int, int], samples: int, coarse: int = COARSE
+) -> Iterator[tuple[NDArray[np.floating], int]]:
+    """Renders as ``trace``, and yields the picture as it grows: light and coverage, and the samples that it has.
+
+    The first is small, of one sample; then one of each sample per pixel so far; the last is denoised.
+
+    coarse: most pixels along a side of the small one
+    """
+    mi, accumulated = mitsuba(), Passes()
+    if max(size) > coarse:
+        small = tuple(max(1, round(side * coarse / max(size))) for side in size)
+        sensor = _sensor(mi, camera, (small[0], small[1]), scene_scale(camera), {"type": "box"})
+        yield np.nan_to_num(np.array(mi.render(scene, sensor=mi.load_dict(sensor), spp=1), np.float64)), 1
+    for done in range(samples):
+        accumulated.add(np.nan_to_num(np.array(mi.render(scene, spp=1, seed=done), np.float64)))
+        if done + 1 < samples or samples < 3:
+            yield accumulated.mean(), done + 1
+    if samples >= 3:
+        yield _denoised(scene, accumulated), samples
+
+
+def _denoised(scene: Any, accumulated: Passes) -> NDArray[np.float32]:
+    """The mean of at least three passes without specks and noise, with the detail of its hair."""
     halves = accumulated.without_specks()
     denoised = accumulated.without_noise(halves)
-    hair = hair_field(mi, scene)
+    hair = hair_field(mitsuba(), scene)
     return np.asarray(denoised + hair.share[:, :, None] * accumulated.detail(halves, denoised, hair), np.float32)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -28,6 +28,7 @@ from ringlet.picture.render import (
     layers_of,
     over_backdrop,
     trace,
+    trace_growing,
 )
 from ringlet.picture.rigs import Rig, check_rig
 from ringlet.picture.tone import develop
@@ -148,8 +149,34 @@ def place(
 ) -> Standpoint:
     """Camera and light of settings; the arguments are those of ``take_position``."""
     camera = take_position(settings, seen, lock, given)
+    return Standpoint(camera, rig_around(settings, seen, camera))
+
+
+def rig_around(settings: PictureSettings, seen: Sequence[NDArray[np.floating]], camera: Camera) -> Rig:
+    """The light of settings around a subject, as far from it as a portrait camera is."""
     portrait = frame(seen, view=angles_towards(camera.axes[2]))
-    return Standpoint(camera, Rig(settings.light, settings.light_turn, camera.axes, portrait.target, portrait.distance))
+    return Rig(settings.light, settings.light_turn, camera.axes, portrait.target, portrait.distance)
+
+
+def growing(pose: Pose, camera: Camera, settings: PictureSettings) -> Iterator[tuple[Image.Image, int]]:
+    """Pictures from a camera as they grow, developed, and the samples that each has; the last is that of ``still``.
+
+    Takes width, height, samples, colour, light and bounces of the settings; denoises with ``builtin``.
+
+    Raises UserError for an unknown colour or light, and without hairs and bodies.
+    """
+    check_rig(settings.light)
+    size, color = picture_size(settings, camera), hair_color(settings.color)
+    look: dict[str, Any] = {
+        "size": size,
+        "color": color,
+        "max_depth": settings.bounces + 1,
+        "rig": rig_around(settings, subject(pose), camera),
+    }
+    with using(settings.engine):
+        scene = build_scene(pose.bodies, pose.hairs, camera, **look)
+        for image, samples in trace_growing(scene, camera, size, settings.samples):
+            yield developed(np.asarray(image, np.float32), settings.background), samples
 
 
 def check_denoiser(name: str) -> None:

@@ -11,6 +11,7 @@ from ringlet.data.curves import Curves, offsets_from_counts
 from ringlet.data.digest import digest
 from ringlet.data.groom import Groom
 from ringlet.data.pigment import (
+    AZIMUTHAL_ROUGHNESS,
     DYE,
     DYE_AMOUNT,
     FIBER,
@@ -55,6 +56,7 @@ def message(side: str, groom: Groom, hairs: AnyHairs | None) -> bytes:
                 "side": side,
                 "stations": stations,
                 "roughness": of_fiber(curves, ROUGHNESS),
+                "azimuthal_roughness": of_fiber(curves, AZIMUTHAL_ROUGHNESS),
                 "tilt": of_fiber(curves, TILT),
             }
         ),

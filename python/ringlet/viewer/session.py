@@ -23,6 +23,7 @@ from ringlet.viewer.display_groom import DisplayGroom
 from ringlet.viewer.edit_lock import EditLock
 from ringlet.viewer.files import Files, operator_names
 from ringlet.viewer.grooming import Grooming
+from ringlet.viewer.lights import live_rigs
 from ringlet.viewer.manipulator import LockManipulator
 from ringlet.viewer.playback import Playback
 from ringlet.viewer.presence import Presence
@@ -31,6 +32,7 @@ from ringlet.viewer.project import Project
 from ringlet.viewer.protocol import File, Fix
 from ringlet.viewer.publisher import Publisher, SendQueue
 from ringlet.viewer.recovery import Recovery
+from ringlet.viewer.rendering import Rendering
 from ringlet.viewer.reviewing import Reviewing
 from ringlet.viewer.scene import read_scene
 from ringlet.viewer.sculpting import Sculptor
@@ -84,6 +86,7 @@ class Session:
         self._grooming = Grooming(project, self.publisher, self.problems, self._call, self._show, self.trouble)
         self._review = Reviewing(project, self.publisher, self._notice)
         self._comparer = Comparer(project, self.publisher, self._call)
+        self._rendering = Rendering()
         self._load(file)
 
     def _load(self, file: Path) -> None:
@@ -167,6 +170,7 @@ class Session:
         self._end_gesture()
         self._record()
         self._recovery.close()
+        self._rendering.stop()
 
     def _record(self) -> None:
         self._recovery.record(self._heard, self._lock.leader)
@@ -192,6 +196,7 @@ class Session:
         """Removes a page; the edit lock stays reserved for it until another page requests it."""
         self.pages.remove(page)
         self._presence.leave(page)
+        self._rendering.cancel(page.queue)
         self.publisher.unsubscribe(page.queue)
         if page.name == self._lock.leader:
             self._end_gesture()
@@ -217,7 +222,11 @@ class Session:
                     "schemas": schemas,
                     "operators": operator_names(schemas["recipe"]),
                     "recovered": self.recovered,
-                    "colors": {name: (*color.reflectance, color.roughness) for name, color in HAIR_COLORS.items()},
+                    "colors": {
+                        name: (*color.reflectance, color.roughness, color.azimuthal_roughness)
+                        for name, color in HAIR_COLORS.items()
+                    },
+                    "rigs": live_rigs(),
                 }
             )
         )
@@ -283,6 +292,12 @@ class Session:
         if isinstance(message, protocol.Lead):
             self._lock.ask(page.name, self._connected)
             self._send_roles()
+            return
+        if isinstance(message, protocol.Render):
+            self._rendering.render(message, self._viewport, page.queue)
+            return
+        if isinstance(message, protocol.StopRender):
+            self._rendering.cancel(page.queue)
             return
         if isinstance(message, protocol.Watch):
             page.queue.request(self._playback.frame_sources(message))
@@ -491,7 +506,8 @@ class Session:
         self.publisher.publish(f"document/{file}", self.files.message(file))
         if file == "recipe":
             self._grooming.request(draft=not resting)
-            self._comparer.recompute()
+            if resting:
+                self._comparer.recompute()
         else:
             self._playback.publish_timeline()
         if resting:

@@ -40,6 +40,11 @@ class Viewport:
         """Visible meshes with their animation, those that the hair wears last."""
         return self._scene + self._worn
 
+    @property
+    def origin(self) -> np.ndarray:
+        """Origin of positions in messages [m], shape (3,)."""
+        return self._origin
+
     def show(self, display: DisplayGroom, side: str, revision: int = 0) -> None:
         """Shows a groom on one side. revision: of its recipe."""
         if side == "a":

@@ -124,7 +124,7 @@ export class CompareBar {
   private arrange(mode: Arrangement): void {
     const { looks } = this.viewer;
     looks.arrangement = mode;
-    looks.front = looks.order[0];
+    if (!looks.order.includes(looks.front)) looks.front = looks.order[0];
     this.redraw();
   }
 

@@ -4,7 +4,8 @@ import { h, iconButton } from "../dom";
 import type { Model } from "../model";
 import { keep } from "../view/capture";
 import { sheet } from "../view/sheet";
-import { FOCAL_LENGTH, type Viewer } from "../view/viewer";
+import { FOCAL_LENGTH } from "../view/framing";
+import type { Viewer } from "../view/viewer";
 import "./lens.css";
 import type { Look } from "./look";
 

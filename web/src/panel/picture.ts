@@ -1,7 +1,7 @@
 // A picture to keep: how large, and before what.
 
 import { h } from "../dom";
-import { keep, still } from "../view/capture";
+import { keep } from "../view/capture";
 import type { Viewer } from "../view/viewer";
 import { openDialog } from "./dialog";
 
@@ -29,7 +29,7 @@ export function savePicture(viewer: Viewer, name: string): void {
   form.addEventListener("submit", (event) => {
     event.preventDefault();
     const [width, height] = SIZES[size.value] ?? [clientWidth, clientHeight];
-    still(viewer, width, height, clear.checked).toBlob((blob) => blob && keep(blob, `${name}.png`));
+    viewer.drawAt(width, height, clear.checked).toBlob((blob) => blob && keep(blob, `${name}.png`));
     dialog.close();
   });
 }

@@ -29,10 +29,9 @@ export class Snapshots {
     this.tab = { title: "Snapshots", element: this.strip, actions: [take], count: () => model.snapshots.length };
     tray.add(this.tab);
     for (const topic of ["snapshots", "pictures", "role"] as const) model.on(topic, () => this.update());
+    this.button.hidden = take.hidden = true; // until a recipe is open
     model.on("document", () => {
-      const { hidden } = this.button;
-      this.button.hidden = !model.documents.recipe;
-      if (hidden !== this.button.hidden) this.update();
+      this.button.hidden = take.hidden = !model.documents.recipe;
     });
     model.on("numbers", () => this.waiting && model.settled && this.take());
     bindKey({ keys: "S", does: "take a snapshot", on: plainKey("s"), run: () => this.take() });

@@ -5,12 +5,11 @@ import type { Model } from "../model";
 import type { BrushTool } from "./brush";
 import { savePicture } from "./picture";
 import { Recorder } from "../view/capture";
-import { PRESETS } from "../view/lights";
 import { OVERLAYS, type OverlayName } from "../view/overlays";
 import type { Viewer } from "../view/viewer";
 
 const VIEWS: [string, number, number][] = [
-  ["Three-quarter", 34, 6],
+  ["Three-quarter", 34, 7],
   ["Front", 0, 4],
   ["Left", 90, 4],
   ["Back", 180, 8],
@@ -32,9 +31,9 @@ export class Viewbar {
   ) {
     const { light, color, overlay } = this;
     viewer.onLook = () => model.tell("look");
-    for (const [key, preset] of Object.entries(PRESETS)) light.append(h("option", { value: key }, preset.label));
     light.addEventListener("change", () => {
-      viewer.setLights(light.value);
+      const rig = model.welcome?.rigs[light.value];
+      if (rig) viewer.setLights(rig);
       model.tell("look");
     });
 
@@ -50,6 +49,11 @@ export class Viewbar {
       color.replaceChildren(h("option", { value: "" }, "as groomed"), ...named);
       color.value = before;
       color.dispatchEvent(new Event("change"));
+      const rigs = Object.entries(this.model.welcome?.rigs ?? {});
+      const lit = light.value || rigs[0]?.[0];
+      light.replaceChildren(...rigs.map(([key, rig]) => h("option", { value: key }, rig.label)));
+      light.value = lit;
+      light.dispatchEvent(new Event("change"));
     });
 
     const from = h("select", { "aria-label": "View from" });

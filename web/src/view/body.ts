@@ -13,8 +13,8 @@ import {
 import type { Body as BodyMessage } from "../protocol";
 import type { Lights } from "./lights";
 import type { Side } from "./looks";
-import { DEVELOP, LIGHTS, SHADOW } from "./shaders";
-import type { Shadow } from "./shadow";
+import { LIGHTS } from "./shaders";
+import { type LightVolume, type Surface, VOLUME } from "./volume";
 
 const VERTEX = /* glsl */ `
 precision highp float;
@@ -29,42 +29,61 @@ void main() {
 }
 `;
 
+// The principled material of the path tracer (Burley, "Physically-based shading at Disney", 2012).
 const FRAGMENT = /* glsl */ `
 precision highp float;
 precision highp int;
+precision highp sampler3D;
 ${LIGHTS}
-${SHADOW}
-${DEVELOP}
+${VOLUME}
 uniform vec3 eye;
-uniform float roughness, specular, wrap, sheen;
+uniform float roughness, specular, flatness, sheen, sheenTint;
 in vec3 place, upward, albedo;
 out vec4 color;
+
+float fifth(float x) { float y = clamp(1.0 - x, 0.0, 1.0); return y * y * y * y * y; }
+
+// Cosine to a disk of a radius over distance: at the horizon a part of it is seen.
+float facing(float cosine, float radius) {
+  if (abs(cosine) >= radius) return max(cosine, 0.0);
+  return (cosine + radius) * (cosine + radius) / (4.0 * radius);
+}
 
 void main() {
   vec3 N = normalize(upward), V = normalize(eye - place);
   if (dot(N, V) < 0.0) N = -N;
-  vec3 light = albedo * ambient * (0.62 + 0.38 * N.y) * 0.55;
-  for (int k = 0; k < LIGHTS; k++) {
-    vec3 L = lightFrom[k], H = normalize(L + V);
-    float facing = dot(N, L);
-    float seen = k == 0 ? seenThrough(place + 0.002 * N) * seenPast(place + 0.003 * N, 0.0015) : 1.0;
-    // Light wanders under skin: red goes farthest round the edge of a shadow.
-    vec3 round = clamp((vec3(facing) + wrap * vec3(1.0, 0.45, 0.3)) / (1.0 + wrap * vec3(1.0, 0.45, 0.3)), 0.0, 1.0);
-    float a = roughness * roughness, n = clamp(dot(N, H), 0.0, 1.0), d = n * n * (a * a - 1.0) + 1.0;
-    float fresnel = 0.04 + 0.96 * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
-    float shine = specular * a * a / (3.1416 * d * d) * fresnel * clamp(facing, 0.0, 1.0);
-    float edge = sheen * pow(1.0 - clamp(dot(N, V), 0.0, 1.0), 3.0) * clamp(0.5 + 0.5 * facing, 0.0, 1.0);
-    light += lightStrength[k] * seen * (albedo * round * 0.318 + shine + edge * albedo);
+  float voxel = gridSize.x / float(textureSize(gridDepth, 0).x), NV = max(dot(N, V), 1e-3);
+  vec4 depth = opticalDepth(place + 0.5 * voxel * N), past = pastBodies(place + voxel * N); // above the shell of folds
+  float disorder;
+  vec3 light = albedo * scattered(place + 1.5 * voxel * N, N, vec3(-2.0), disorder); // irradiance over π
+  vec3 tint = mix(vec3(1.0), albedo / max(dot(albedo, vec3(0.2126, 0.7152, 0.0722)), 1e-4), sheenTint);
+  for (int k = 0; k < LAMPS; k++) {
+    vec3 L, E = irradiance(k, place, L);
+    vec3 H = normalize(L + V);
+    float NL = facing(dot(N, L), lampSpread[k]), HL = clamp(dot(H, L), 0.0, 1.0), NH = clamp(dot(N, H), 0.0, 1.0);
+    if (NL <= 0.0) continue;
+    float grazing = 2.0 * roughness * HL * HL, ss = roughness * HL * HL;
+    float diffuse = mix(1.0, 0.5 + grazing, fifth(NL)) * mix(1.0, 0.5 + grazing, fifth(NV));
+    float under = mix(1.0, ss, fifth(NL)) * mix(1.0, ss, fifth(NV));
+    float flatter = 1.25 * (under * (1.0 / (NL + NV) - 0.5) + 0.5);
+    // The highlight of a disk: wider, and as much light (Karis, "Real shading in Unreal Engine 4", 2013).
+    float a = roughness * roughness, wide = min(1.0, a + 0.5 * lampSpread[k]);
+    float d = NH * NH * (wide * wide - 1.0) + 1.0;
+    float D = wide * wide / (3.1415927 * d * d);
+    float G = 1.0 / (NL * sqrt(a * a + (1.0 - a * a) * NV * NV) + NV * sqrt(a * a + (1.0 - a * a) * NL * NL) + 1e-4);
+    float F = mix(0.08 * specular, 1.0, fifth(HL));
+    vec3 f = albedo * 0.3183099 * mix(diffuse, flatter, flatness) + sheen * tint * fifth(HL) + vec3(0.5 * D * G * F);
+    light += E * NL * past[k] * exp(-depth[k]) * f;
   }
-  color = vec4(develop(light), 1.0);
+  color = vec4(light, 1.0);
 }
 `;
 
-const LOOKS: Record<string, { roughness: number; specular: number; wrap: number; sheen: number }> = {
-  skin: { roughness: 0.5, specular: 0.55, wrap: 0.32, sheen: 0.06 },
-  eye: { roughness: 0.14, specular: 0.5, wrap: 0.1, sheen: 0 },
-  cloth: { roughness: 0.9, specular: 0.2, wrap: 0.1, sheen: 0.25 },
-  matte: { roughness: 0.8, specular: 0.2, wrap: 0.05, sheen: 0 },
+const LOOKS: Record<string, Record<"roughness" | "specular" | "flatness" | "sheen" | "sheenTint", number>> = {
+  skin: { roughness: 0.48, specular: 0.4, flatness: 0.5, sheen: 0.1, sheenTint: 0.8 },
+  eye: { roughness: 0.06, specular: 0.35, flatness: 0, sheen: 0, sheenTint: 0 },
+  cloth: { roughness: 0.9, specular: 0.15, flatness: 0, sheen: 0.5, sheenTint: 0.5 },
+  matte: { roughness: 0.8, specular: 0.2, flatness: 0, sheen: 0, sheenTint: 0 },
 };
 
 export class Body {
@@ -80,10 +99,11 @@ export class Body {
   constructor(
     message: BodyMessage,
     lights: Lights,
-    shadow: Shadow,
+    private readonly volumes: Record<Side, LightVolume>,
     private readonly scenes: [Scene, Scene],
   ) {
     this.rest = message.points;
+    this.solid = message.made_of === "skin" || message.made_of === "cloth";
     this.index = new BufferAttribute(message.triangles, 1);
     const count = message.points.length / 3;
     const tint = new Float32Array(3 * count);
@@ -98,7 +118,7 @@ export class Body {
       side: 2,
       uniforms: {
         ...lights.uniforms,
-        ...shadow.uniforms,
+        ...Object.fromEntries(Object.keys(this.volumes.a.uniforms).map((name) => [name, { value: null }])),
         eye: { value: new Vector3() },
         ...Object.fromEntries(Object.entries(look).map(([name, value]) => [name, { value }])),
       },
@@ -108,6 +128,17 @@ export class Body {
     this.mesh.frustumCulled = this.caster.frustumCulled = false;
     scenes[0].add(this.mesh);
     scenes[1].add(this.caster);
+  }
+
+  /** Whether it throws shadows into the hair and on other bodies: eyes and lashes are too small to. */
+  readonly solid: boolean;
+
+  /** Its triangles as they are on one side: positions and normals [m], three numbers a point; colors; indices. */
+  surface(side: Side): Surface {
+    const geometry = this.at(side);
+    const values = (name: string) => geometry.getAttribute(name).array as Float32Array;
+    const triangles = geometry.index!.array as Uint32Array;
+    return { points: values("position"), normals: values("normal"), colors: values("tint"), triangles };
   }
 
   get points(): number {
@@ -125,6 +156,7 @@ export class Body {
   /** Lets it be seen as it is on one side. */
   turnTo(side: Side): void {
     this.mesh.geometry = this.caster.geometry = this.at(side);
+    for (const [name, { value }] of Object.entries(this.volumes[side].uniforms)) this.material.uniforms[name].value = value;
   }
 
   /** Its geometry on one side, at first where it rests. */

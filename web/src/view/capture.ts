@@ -10,35 +10,10 @@ export function keep(blob: Blob, name: string): void {
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }
 
-/** A picture of any size; a clear one has no wall, and is transparent there. */
-export function still(viewer: Viewer, width: number, height: number, clear: boolean): HTMLCanvasElement {
-  const canvas = document.createElement("canvas");
-  [canvas.width, canvas.height] = [width, height];
-  const context = canvas.getContext("2d", { willReadFrequently: clear })!;
-  if (!clear) {
-    viewer.drawAt(width, height, (drawn) => context.drawImage(drawn, 0, 0));
-    return canvas;
-  }
-  // What is before a wall differs from white to black by the light that passes.
-  const [black, white] = ["#000000", "#ffffff"].map((wall) => {
-    viewer.drawAt(width, height, (drawn) => context.drawImage(drawn, 0, 0), wall);
-    return context.getImageData(0, 0, width, height);
-  });
-  const { data } = black;
-  for (let i = 0; i < data.length; i += 4) {
-    const passed = Math.max(...[0, 1, 2].map((c) => white.data[i + c] - data[i + c])) / 255;
-    const alpha = Math.min(1, Math.max(0, 1 - passed));
-    for (let c = 0; c < 3; c++) data[i + c] = alpha > 0 ? Math.min(255, data[i + c] / alpha) : 0;
-    data[i + 3] = Math.round(255 * alpha);
-  }
-  context.putImageData(black, 0, 0);
-  return canvas;
-}
-
 /** A small picture of the open look alone. */
 export function thumbnail(viewer: Viewer): HTMLCanvasElement {
   let picture!: HTMLCanvasElement;
-  viewer.withView(() => (picture = still(viewer, 400, 250, false)));
+  viewer.withView(() => (picture = viewer.drawAt(400, 250, false)));
   return picture;
 }
 

@@ -173,6 +173,12 @@ export class Carry {
     this.setRoots(hairs.root);
   }
 
+  /** Mean diameter of the hairs at their thickest [m]. */
+  get width(): number {
+    const { width, count } = this.hairs;
+    return width.reduce((sum, one) => sum + one, 0) / Math.max(count, 1);
+  }
+
   get points() {
     return this.target.texture;
   }

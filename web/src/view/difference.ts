@@ -1,6 +1,6 @@
 // The difference of two pictures: orange where the first is brighter, blue where the second is, over a dim first.
 
-import { GLSL3, LinearFilter, Mesh, PlaneGeometry, RawShaderMaterial, Scene, type WebGLRenderer, WebGLRenderTarget } from "three";
+import { GLSL3, LinearFilter, Mesh, OrthographicCamera, PlaneGeometry, RawShaderMaterial, Scene, type WebGLRenderer, WebGLRenderTarget } from "three";
 
 const VERTEX = /* glsl */ `
 in vec3 position;
@@ -26,6 +26,7 @@ void main() {
 export class Difference {
   private readonly targets: WebGLRenderTarget[];
   private readonly scene = new Scene();
+  private readonly camera = new OrthographicCamera();
   private readonly material = new RawShaderMaterial({
     glslVersion: GLSL3,
     vertexShader: VERTEX,
@@ -35,25 +36,26 @@ export class Difference {
     uniforms: { first: { value: null }, second: { value: null } },
   });
 
-  constructor(samples: number) {
-    const options = { samples, minFilter: LinearFilter, magFilter: LinearFilter };
+  constructor() {
+    const options = { depthBuffer: false, minFilter: LinearFilter, magFilter: LinearFilter };
     this.targets = [0, 1].map(() => new WebGLRenderTarget(1, 1, options));
     const quad = new Mesh(new PlaneGeometry(2, 2), this.material);
     quad.frustumCulled = false;
     this.scene.add(quad);
   }
 
-  /** Where the first or the second picture is drawn, of the size of the canvas. */
+  /** Where the first or the second picture is developed, of the size of the canvas. */
   target(k: number, renderer: WebGLRenderer): WebGLRenderTarget {
     const { width, height } = renderer.domElement;
     if (this.targets[k].width !== width || this.targets[k].height !== height) this.targets[k].setSize(width, height);
     return this.targets[k];
   }
 
-  draw(renderer: WebGLRenderer, camera: Parameters<WebGLRenderer["render"]>[1]): void {
+  draw(renderer: WebGLRenderer): void {
+    renderer.setRenderTarget(null);
     this.material.uniforms["first"].value = this.targets[0].texture;
     this.material.uniforms["second"].value = this.targets[1].texture;
-    renderer.render(this.scene, camera);
+    renderer.render(this.scene, this.camera);
   }
 
   dispose(): void {

@@ -1,13 +1,10 @@
-// The hair of one look: carried by its locks, drawn as ribbons, and what it does to the key light.
+// The hair of one look: carried by its locks, drawn as ribbons, and the light in its mass.
 
 import {
-  AddEquation,
   Box3,
-  CustomBlending,
   GLSL3,
   InstancedBufferGeometry,
   Mesh,
-  OneFactor,
   RawShaderMaterial,
   Scene,
   Vector3,
@@ -15,17 +12,18 @@ import {
 } from "three";
 import type { Colors, Frame, Hairs, Locks } from "../protocol";
 import { Carry } from "./carry";
-import { DEPTH_FRAGMENT, DEPTH_VERTEX, HAIR_FRAGMENT, HAIR_VERTEX, LAYERS_FRAGMENT } from "./hair_shader";
+import { Density } from "./density";
+import { FiberTable, type Roughness, variances } from "./fiber";
+import { DEPTH_FRAGMENT, DEPTH_VERTEX, HAIR_FRAGMENT, HAIR_VERTEX } from "./hair_shader";
 import type { Lights } from "./lights";
-import type { Shadow } from "./shadow";
 import { type LockTable, lockTable } from "./table";
 import { Colours } from "./textures";
+import { type Beam, Grid, LightVolume, shell, type Surface } from "./volume";
 
-/** A hair colour: linear reflectance in red, green and blue, and roughness. */
-export type Colour = [number, number, number, number];
+/** A hair colour: linear reflectance in red, green and blue, and the roughness of the fiber along and around it. */
+export type Colour = [number, number, number, number, number];
 
-/** The least width at which a hair is drawn [pixels]. */
-const THINNEST = 0.9;
+const KEPT = 250; // time for which the light in the hair is kept while something moves [ms]
 
 /** Where locks are; in a frame also where roots are from those of their locks, and which hairs are drawn to theirs. */
 type Placed = Pick<Locks, "points" | "axis"> & Partial<Pick<Frame, "root" | "drawn" | "left">>;
@@ -34,10 +32,9 @@ type Uniforms = Record<string, { value: unknown }>;
 
 export class Hair {
   readonly scene = new Scene();
-  readonly depthScene = new Scene();
-  readonly layersScene = new Scene();
   readonly firstScene = new Scene();
   readonly box = new Box3();
+  readonly volume = new LightVolume();
   locks: Locks | null = null;
   /** Points of the locks where they are now, at rest or in a frame. */
   placed: Float32Array | null = null;
@@ -46,63 +43,58 @@ export class Hair {
   private geometry = new InstancedBufferGeometry();
   private readonly shared: Uniforms;
   private readonly material: RawShaderMaterial;
-  private readonly depth: RawShaderMaterial;
-  private readonly layers: RawShaderMaterial;
   private readonly first: RawShaderMaterial;
+  private readonly density: Density;
   private stale = true;
+  private filled = false;
+  /** Lamps and surroundings of the light in the hair, and when it was computed. */
+  private lit: { at: number; beams: Beam[]; ambient: Vector3 } | null = null;
   private stride = 1;
   private overlay: Uint8Array | undefined;
   private own: Colors | null = null;
   private named: Colour | null = null;
   private ownShown = true;
   private colours: Colours | null = null;
+  private fiber: FiberTable | null = null;
+  private fiberKey = "";
+  private roughness: Roughness = { along: 0.25, around: 0.38 };
 
-  constructor(lights: Lights, shadow: Shadow) {
+  constructor(private readonly lights: Lights) {
     this.shared = {
       hairPoints: { value: null },
       points: { value: 2 },
+      hairColor: { value: null },
+      stations: { value: 0 },
+      tone: { value: new Vector3() },
+    };
+    const drawn = {
+      ...this.shared,
       stride: { value: 1 },
       thicken: { value: 1 },
+      hairs: { value: 1 },
+      firstHair: { value: 0 },
+      eye: { value: new Vector3() },
+    };
+    this.material = this.make(HAIR_VERTEX, HAIR_FRAGMENT, {
+      ...drawn,
+      ...lights.uniforms,
+      ...this.volume.uniforms,
       hairPlace: { value: null },
       lockPlace: { value: null },
       lockPoint: { value: null },
-    };
-    this.material = this.make(HAIR_VERTEX, HAIR_FRAGMENT, {
-      ...lights.uniforms,
-      ...shadow.uniforms,
-      ...view(),
-      reflectance: { value: new Vector3() },
-      roughness: { value: 0.35 },
+      fiberTable: { value: null },
+      fiberTransport: { value: null },
+      variance: { value: new Vector3() },
       tilt: { value: 0.035 },
-      hairColor: { value: null },
-      stations: { value: 0 },
-      middle: { value: new Vector3() },
       highlight: { value: new Vector3(0.2, 0.55, 0.9) },
       showOverlay: { value: 0 },
     });
-    this.depth = this.make(DEPTH_VERTEX, DEPTH_FRAGMENT, view(1));
-    this.layers = this.make(DEPTH_VERTEX, LAYERS_FRAGMENT, {
-      ...view(1),
-      hairNearest: shadow.uniforms.hairNearest,
-      layers: shadow.uniforms.layers,
-      density: { value: 0.5 },
-    });
-    Object.assign(this.layers, {
-      blending: CustomBlending,
-      blendEquation: AddEquation,
-      blendSrc: OneFactor,
-      blendDst: OneFactor,
-      depthTest: false,
-      depthWrite: false,
-      transparent: true,
-    });
-    this.first = this.make(DEPTH_VERTEX, DEPTH_FRAGMENT, view());
+    this.first = this.make(DEPTH_VERTEX, DEPTH_FRAGMENT, drawn);
     this.first.colorWrite = false;
+    this.density = new Density(this.shared);
     for (const [scene, material] of [
       [this.scene, this.material],
       [this.firstScene, this.first],
-      [this.depthScene, this.depth],
-      [this.layersScene, this.layers],
     ] as const) {
       const mesh = new Mesh(this.geometry, material);
       mesh.frustumCulled = false;
@@ -126,6 +118,7 @@ export class Hair {
     this.carry?.dispose();
     this.carry = new Carry(hairs);
     this.shared["points"].value = hairs.points;
+    this.material.uniforms["hairs"].value = hairs.count;
     this.setStride(this.stride, true);
     this.recolour();
     if (this.locks) this.setLocks(this.locks);
@@ -147,7 +140,6 @@ export class Hair {
     if (root?.length) this.carry?.setRoots(root);
     this.carry?.setDrawn(drawn ?? new Uint32Array(), left ?? new Uint8Array());
     measure(this.box, points);
-    (this.material.uniforms["middle"].value as Vector3).copy(this.box.getCenter(new Vector3()));
     this.carry?.setLocks(this.table);
     this.stale = true;
   }
@@ -164,7 +156,7 @@ export class Hair {
     this.own = colors;
     this.colours?.dispose();
     this.colours = colors.stations ? new Colours(colors.reflectance) : null;
-    this.material.uniforms["hairColor"].value = this.colours?.texture ?? null;
+    this.shared["hairColor"].value = this.colours?.texture ?? null;
     this.recolour();
   }
 
@@ -177,13 +169,30 @@ export class Hair {
 
   private recolour(): void {
     const { own, named } = this;
-    const { uniforms } = this.material;
     const fits = own !== null && own.reflectance.length === 3 * own.stations * this.count;
     const shown = this.ownShown && own !== null && own.stations > 0 && fits;
-    uniforms["stations"].value = shown ? own.stations : 0;
-    if (named) (uniforms["reflectance"].value as Vector3).fromArray(named);
-    uniforms["roughness"].value = shown || !named ? (own?.roughness ?? 0.25) : named[3];
-    uniforms["tilt"].value = ((own?.tilt ?? 2) * Math.PI) / 180;
+    this.shared["stations"].value = shown ? own.stations : 0;
+    if (named) (this.shared["tone"].value as Vector3).fromArray(named.slice(0, 3).map((c) => c ** 0.25));
+    this.material.uniforms["tilt"].value = ((own?.tilt ?? 2) * Math.PI) / 180;
+    if (shown) this.roughness = { along: own.roughness, around: own.azimuthal_roughness };
+    else if (named) this.roughness = { along: named[3], around: named[4] };
+    this.filled = false;
+  }
+
+  /** The table of the fiber as it is rough now, under lamps of their size. */
+  private tabulate(): FiberTable {
+    const { roughness, lights } = this;
+    const key = JSON.stringify([roughness, lights.spread]);
+    if (this.fiber && key === this.fiberKey) return this.fiber;
+    this.fiberKey = key;
+    this.fiber?.dispose();
+    this.fiber = new FiberTable(roughness, lights.spread);
+    const { uniforms } = this.material;
+    uniforms["fiberTable"].value = this.fiber.texture;
+    uniforms["fiberTransport"].value = this.fiber.means;
+    (uniforms["variance"].value as Vector3).fromArray(variances(roughness.along));
+    this.lit = null;
+    return this.fiber;
   }
 
   /** Tints the hair by a value for each point of the locks; nothing: the hair as it is. */
@@ -214,35 +223,65 @@ export class Hair {
     }
   }
 
-  /** Draws only a part of the hairs, wider, so that the whole keeps its weight. */
-  setDetail(fraction: number, stride: number): void {
-    this.geometry.instanceCount = Math.max(1, Math.round(this.count * fraction));
-    this.shared["thicken"].value = Math.min(3, 1 / Math.sqrt(fraction));
+  /** Draws a part of the hairs, from the one of a number on, wider, so that they cover as much as all. */
+  setDetail(fraction: number, stride: number, first: number): void {
+    const drawn = Math.max(1, Math.round(this.count * fraction));
+    this.geometry.instanceCount = drawn;
+    const { uniforms } = this.material;
+    uniforms["thicken"].value = this.count / drawn;
+    uniforms["firstHair"].value = first;
     this.setStride(stride, false);
   }
 
   /** Brings the hairs to their places; true when they have moved since the last time. */
   update(renderer: WebGLRenderer): boolean {
     if (!this.stale || !this.carry || !this.table) return false;
-    this.stale = false;
+    this.stale = this.filled = false;
     this.carry.update(renderer);
     this.shared["hairPoints"].value = this.carry.points;
-    for (const name of ["hairPlace", "lockPlace", "lockPoint"]) this.shared[name].value = this.carry.texture(name);
+    for (const name of ["hairPlace", "lockPlace", "lockPoint"])
+      this.material.uniforms[name].value = this.carry.texture(name);
     return true;
   }
 
-  seenFrom(eye: Vector3, pixel: number): void {
-    for (const material of [this.material, this.first]) {
-      (material.uniforms["eye"].value as Vector3).copy(eye);
-      material.uniforms["pixel"].value = pixel * THINNEST;
+  /** Lights the mass of the hair, and the bodies within its reach. While something moves, a light nearly right is kept. */
+  light(renderer: WebGLRenderer, surfaces: () => Surface[], moving: boolean): void {
+    if (!this.carry || !this.table || this.box.isEmpty()) return;
+    const { transport } = this.tabulate();
+    const kept = moving && this.lit !== null && performance.now() - this.lit.at < KEPT;
+    if (!this.filled && !kept) {
+      const grid = Grid.of(this.reach);
+      const bodies = surfaces();
+      this.volume.fill({ grid, ...this.density.measure(renderer, grid, this.count), ...shell(grid, bodies) });
+      this.filled = true;
+      this.lit = null;
     }
+    const { beams, ambient } = this.lights;
+    const now = { at: performance.now(), beams: beams.map(copied), ambient };
+    if (this.lit && (kept || isSame(now, this.lit))) return;
+    this.lit = now;
+    this.volume.light(beams, ambient, transport);
   }
 
-  litFrom(direction: Vector3, texel: number): void {
-    for (const material of [this.depth, this.layers]) {
-      (material.uniforms["eyeward"].value as Vector3).copy(direction);
-      material.uniforms["pixel"].value = texel;
-    }
+  /** Bodies have moved: the light in the hair is to be computed again. */
+  relight(): void {
+    this.filled = false;
+  }
+
+  /** What the light volume covers: the hair, and what it throws shadows on. */
+  private get reach(): Box3 {
+    const box = this.box.clone();
+    box.min.y -= 0.35 * (box.max.y - box.min.y);
+    return box;
+  }
+
+  seenFrom(eye: Vector3): void {
+    (this.material.uniforms["eye"].value as Vector3).copy(eye);
+  }
+
+  /** Diameter of the hairs [m]. */
+  get width(): number {
+    return this.carry?.width ?? 7e-5;
   }
 
   read(renderer: WebGLRenderer, hairs: number): Float32Array {
@@ -253,7 +292,10 @@ export class Hair {
     this.carry?.dispose();
     this.colours?.dispose();
     this.geometry.dispose();
-    for (const material of [this.material, this.first, this.depth, this.layers]) material.dispose();
+    this.fiber?.dispose();
+    this.density.dispose();
+    this.volume.dispose();
+    for (const material of [this.material, this.first]) material.dispose();
   }
 
   private make(vertexShader: string, fragmentShader: string, uniforms: Uniforms): RawShaderMaterial {
@@ -261,7 +303,7 @@ export class Hair {
       glslVersion: GLSL3,
       vertexShader,
       fragmentShader,
-      uniforms: { ...this.shared, ...uniforms },
+      uniforms,
       side: 2,
     });
   }
@@ -270,7 +312,7 @@ export class Hair {
   private setStride(stride: number, always: boolean): void {
     if (!always && stride === this.stride) return;
     this.stride = stride;
-    this.shared["stride"].value = stride;
+    this.material.uniforms["stride"].value = stride;
     const spans = Math.ceil(((this.shared["points"].value as number) - 1) / stride);
     const index = new Uint16Array(6 * spans);
     for (let k = 0; k < spans; k++) index.set([2 * k, 2 * k + 1, 2 * k + 2, 2 * k + 2, 2 * k + 1, 2 * k + 3], 6 * k);
@@ -279,18 +321,19 @@ export class Hair {
     this.geometry = new InstancedBufferGeometry();
     this.geometry.setIndex([...index]);
     this.geometry.instanceCount = Math.min(instanceCount, this.count);
-    for (const scene of [this.scene, this.firstScene, this.depthScene, this.layersScene])
+    for (const scene of [this.scene, this.firstScene])
       (scene.children[0] as Mesh).geometry = this.geometry;
   }
 }
 
-function view(parallel = 0): Uniforms {
-  return {
-    pixel: { value: 0.001 },
-    eye: { value: new Vector3() },
-    parallel: { value: parallel },
-    eyeward: { value: new Vector3(0, 0, 1) },
-  };
+function copied({ from, strength }: Beam): Beam {
+  return { from: from.clone(), strength: strength.clone() };
+}
+
+function isSame(one: { beams: Beam[]; ambient: Vector3 }, other: { beams: Beam[]; ambient: Vector3 }): boolean {
+  const same = (a: Vector3, b: Vector3) => a.distanceToSquared(b) < 1e-12;
+  const beams = one.beams.every((beam, k) => same(beam.from, other.beams[k].from) && same(beam.strength, other.beams[k].strength));
+  return beams && same(one.ambient, other.ambient);
 }
 
 function measure(box: Box3, points: Float32Array): void {

@@ -1,66 +1,103 @@
-// How much detail is drawn: as much as keeps pictures fluent while something moves, and all of it, bit by bit, at rest.
+// How much is drawn for a picture: as much as keeps pictures fluent while something moves; at rest, drawings are added up
+// until all hairs are in them.
+//
+// A drawing has so many hairs that each is about a pixel wide, others in each drawing. `load` is the number of hairs that
+// are drawn for a picture, as a fraction of all.
 
 const MOVING = 16; // aim for a picture while something moves [ms]
 const SOFTWARE = 60; // the same without a graphics card [ms]
-const AT_REST = 33; // a picture that takes longer comes in steps of growing detail [ms]
-const LEAST = 0.06; // fraction of the hairs that is drawn in any case
-const FEW = 3000; // hairs that are drawn in any case: they are not what takes time
-const GROWTH = 3; // of the detail from one step at rest to the next
+const AT_REST = 33; // longest drawing at rest [ms]
+const CANCEL = 80; // the same without a graphics card: input waits for the drawing that is on its way [ms]
+const LEAST = 0.02; // least load
+const FEWEST = { card: 12, software: 5 }; // drawings of a picture at rest, so that its edges are smooth
+const MOST = 48;
+
+/** What one picture draws: so many drawings of a fraction of the hairs each. */
+export interface Portion {
+  drawings: number;
+  fraction: number;
+}
 
 export class Pace {
-  private detail = 1;
-  private step = 1;
-  /** Time that a picture of all detail takes, by the last ones [ms]. */
+  /** Load of a picture while something moves. */
+  private load = 0.25;
+  /** Time that all hairs take, by the last pictures [ms]. */
   private whole = 0;
-
-  /** Number of hairs of the groom. */
-  hairs = Number.POSITIVE_INFINITY;
+  /** Fraction of the hairs that is wide enough for the pixels of a drawing. */
+  resolved = 1;
 
   constructor(private readonly software: boolean) {}
 
-  private get least(): number {
-    return Math.min(1, Math.max(LEAST, FEW / Math.max(this.hairs, 1)));
-  }
-
-  /** Detail of the next picture. fresh: whether something has changed since the last one. */
-  next(moving: boolean, fresh: boolean): number {
-    if (moving) {
-      this.step = Math.max(this.detail, this.least);
-      return this.step;
+  /** What the next picture draws. */
+  next(moving: boolean): Portion {
+    let load = this.load;
+    if (!moving) {
+      const longest = this.software ? CANCEL : AT_REST;
+      load = this.whole > 0 ? Math.max(LEAST, longest / this.whole) : this.resolved;
     }
-    if (this.whole <= AT_REST) this.step = 1;
-    else if (fresh) this.step = Math.min(1, Math.max(this.least, AT_REST / this.whole));
-    else this.step = Math.min(1, GROWTH * this.step);
-    return this.step;
+    const fraction = Math.min(this.resolved, load, 1);
+    return { fraction, drawings: Math.min(this.needed(fraction), Math.max(1, Math.floor(load / fraction))) };
   }
 
-  /** Whether a picture at rest has not all detail yet. */
-  get refines(): boolean {
-    return this.step < 1;
+  /** Drawings of a picture at rest. */
+  needed(fraction: number): number {
+    return Math.min(MOST, Math.max(this.software ? FEWEST.software : FEWEST.card, Math.ceil(1 / fraction)));
   }
 
   /** A picture is done. */
-  took(ms: number, detail: number, moving: boolean): void {
-    this.whole = ms / detail;
+  took(ms: number, { drawings, fraction }: Portion, moving: boolean): void {
+    const load = drawings * fraction;
+    this.whole = ms / load;
     if (!moving) return;
     const aim = this.software ? SOFTWARE : MOVING;
-    if (ms > 1.2 * aim) this.detail = Math.max(this.least, this.detail * Math.max(0.4, aim / ms));
-    else if (ms < 0.7 * aim) this.detail = Math.min(1, this.detail * 1.15);
+    if (ms > 1.2 * aim) this.load = Math.max(LEAST, load * Math.max(0.4, aim / ms));
+    else if (ms < 0.7 * aim) this.load = Math.min(MOST * this.resolved, Math.max(this.load, load) * 1.15);
   }
 }
 
-/** Calls back when the graphics card has drawn what it was given so far: to submit takes a fraction of that time. */
-export function whenDrawn(gl: WebGL2RenderingContext, done: () => void): void {
-  const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
-  gl.flush();
-  const look = () => {
-    const state = fence ? gl.clientWaitSync(fence, 0, 0) : gl.CONDITION_SATISFIED;
-    if (state === gl.TIMEOUT_EXPIRED) {
-      setTimeout(look, 4);
-      return;
-    }
-    gl.deleteSync(fence);
-    done();
-  };
-  setTimeout(look, 0);
+/** Time that the graphics card works on what it is given: by its own clock where it has one. */
+export class Clock {
+  private readonly extension: { TIME_ELAPSED_EXT: number; GPU_DISJOINT_EXT: number } | null;
+  private query: WebGLQuery | null = null;
+  private began = 0;
+
+  constructor(private readonly gl: WebGL2RenderingContext) {
+    this.extension = gl.getExtension("EXT_disjoint_timer_query_webgl2");
+  }
+
+  begin(): void {
+    this.began = performance.now();
+    if (!this.extension) return;
+    this.query = this.gl.createQuery();
+    if (this.query) this.gl.beginQuery(this.extension.TIME_ELAPSED_EXT, this.query);
+  }
+
+  /** Calls back with the time that it took [ms] when the card is done: to submit takes a fraction of that. */
+  end(done: (ms: number) => void): void {
+    const { gl, extension, query } = this;
+    if (extension && query) gl.endQuery(extension.TIME_ELAPSED_EXT);
+    const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    gl.flush();
+    const look = () => {
+      if (fence && gl.clientWaitSync(fence, 0, 0) === gl.TIMEOUT_EXPIRED) {
+        setTimeout(look, 4);
+        return;
+      }
+      gl.deleteSync(fence);
+      done(this.measured());
+    };
+    setTimeout(look, 0);
+  }
+
+  /** By the query of the card, if it is ready and nothing disturbed it; else by the wall clock. */
+  private measured(): number {
+    const { gl, extension, query } = this;
+    const passed = performance.now() - this.began;
+    this.query = null;
+    if (!extension || !query) return passed;
+    const ready = gl.getQueryParameter(query, gl.QUERY_RESULT_AVAILABLE) && !gl.getParameter(extension.GPU_DISJOINT_EXT);
+    const own = ready ? (gl.getQueryParameter(query, gl.QUERY_RESULT) as number) / 1e6 : passed;
+    gl.deleteQuery(query);
+    return own;
+  }
 }

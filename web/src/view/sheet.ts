@@ -2,7 +2,6 @@
 
 import { Vector3 } from "three";
 import type { Note } from "../protocol";
-import { still } from "./capture";
 import { paintStrokes, type Size } from "./marks";
 import { onScreen } from "./pick";
 import type { Viewer } from "./viewer";
@@ -43,13 +42,13 @@ export function sheet(viewer: Viewer, notes: Note[], title: string, file: string
   viewer.withView(() => {
     ANGLES.forEach(([label, azimuth, elevation], k) => {
       viewer.frame(azimuth, elevation, CELL);
-      context.drawImage(still(viewer, CELL.width, CELL.height, false), x(k), 60);
+      context.drawImage(viewer.drawAt(CELL.width, CELL.height, false), x(k), 60);
       context.fillText(label, x(k) + 4, 60 + CELL.height + LINE - 4);
     });
     open.forEach((note, k) => {
       const y = 60 + CELL.height + LINE + GAP + Math.floor(k / ANGLES.length) * (NOTE.height + (LINES + 1) * LINE + GAP);
       viewer.lookFrom(note.look.camera, note.look.focal_length);
-      const picture = still(viewer, NOTE.width, NOTE.height, false);
+      const picture = viewer.drawAt(NOTE.width, NOTE.height, false);
       mark(picture, viewer, note, String(notes.indexOf(note) + 1));
       context.drawImage(picture, x(k), y);
       context.fillStyle = "#a49d94";

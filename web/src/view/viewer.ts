@@ -1,21 +1,21 @@
 // The picture: bodies and hair before a wall. Drawn only when something has changed, so an idle page rests.
 
-import { type Box3, PerspectiveCamera, Scene, Vector2, Vector3, WebGLRenderer } from "three";
+import { PerspectiveCamera, Scene, Vector2, Vector3, WebGLRenderer } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
-import type { Body as BodyMessage, Colors, Hairs, Locks, Shared } from "../protocol";
-import { Backdrop } from "./backdrop";
+import type { Body as BodyMessage, Colors, Hairs, Locks, Rig, Shared } from "../protocol";
 import { Body } from "./body";
 import { Difference } from "./difference";
 import { GuideLines } from "./guides";
 import { type Colour, Hair } from "./hair";
-import { Lights, PRESETS } from "./lights";
+import { Film } from "./film";
+import { fieldOfView, FOCAL_LENGTH, type Portrait, portrait, SENSOR } from "./framing";
+import { Lights } from "./lights";
 import { type Cell, type Covered, Looks, type Side } from "./looks";
-import { Pace, whenDrawn } from "./pace";
-import { Shadow } from "./shadow";
+import { Clock, Pace, type Portion } from "./pace";
 
-export const FOCAL_LENGTH = 85; // of a portrait lens [mm]
-const FILM = 36; // height of the picture that focal lengths refer to, as those of ringlet picture [mm]
-const REST_AFTER = 180; // time without a movement after which all detail is drawn [ms]
+const REST_AFTER = 180; // time without a movement after which the picture rests [ms]
+const THINNEST = 0.9; // least width at which a hair is drawn [pixels]
+const SUBJECT_POINTS = 6000; // of the subject, for the distance of the lamps
 
 /** The camera, and what it is set to: as looks are stored. */
 export type CameraState = Pick<Shared, "camera" | "focal_length" | "light_turn">;
@@ -33,7 +33,6 @@ export class Viewer {
   readonly hair: Record<Side, Hair>;
   readonly guides = new GuideLines();
   readonly looks = new Looks();
-  private theme: "dark" | "light" = "dark";
   turntable = false;
   onPaint: () => void = () => {};
   /** The camera has moved. */
@@ -45,9 +44,11 @@ export class Viewer {
   /** Whether there is no graphics card: then pictures are plainer, so that they come at all. */
   readonly software: boolean;
 
-  private readonly shadow: Shadow;
-  private readonly backdrop = new Backdrop();
-  private readonly difference: Difference;
+  private readonly film: Film;
+  /** The second look while two are subtracted. */
+  private readonly second: Film;
+  private readonly difference = new Difference();
+  private readonly clock: Clock;
   private readonly bodies = new Map<number, Body>();
   private readonly scene = new Scene();
   private readonly casters = new Scene();
@@ -60,7 +61,8 @@ export class Viewer {
   private readonly pace: Pace;
   /** Whether the graphics card is at work on a picture: the next one waits for it. */
   private drawing = false;
-  private fresh = true;
+  /** Drawings that the picture at rest still lacks; what changes begins it again. */
+  private lacking = 0;
   private resting = 0;
   private turned = 0;
   private drawn = 0;
@@ -68,7 +70,7 @@ export class Viewer {
   constructor(readonly element: HTMLElement) {
     this.software = drawsInSoftware();
     this.pace = new Pace(this.software);
-    this.renderer = new WebGLRenderer({ antialias: !this.software, powerPreference: "high-performance" });
+    this.renderer = new WebGLRenderer({ antialias: false, powerPreference: "high-performance" });
     this.renderer.autoClear = false;
     this.renderer.outputColorSpace = "srgb-linear"; // the shaders develop on their own
     this.renderer.setPixelRatio(this.software ? 1 : Math.min(devicePixelRatio, 2));
@@ -82,17 +84,21 @@ export class Viewer {
     this.controls.minDistance = 0.08;
     this.controls.maxDistance = 6;
     this.controls.addEventListener("change", () => this.move());
-    this.shadow = new Shadow(this.software ? 384 : 1024);
-    const hair = () => new Hair(this.lights, this.shadow);
+    this.film = new Film(this.software ? 0 : 4);
+    this.second = new Film(this.software ? 0 : 4);
+    this.clock = new Clock(this.renderer.getContext() as WebGL2RenderingContext);
+    const hair = () => new Hair(this.lights);
     this.hair = { a: hair(), b: hair(), c: hair(), d: hair() };
-    this.difference = new Difference(this.software ? 0 : 4);
     new ResizeObserver(() => this.resize()).observe(element);
     this.resize();
   }
 
   setBody(message: BodyMessage): void {
     this.bodies.get(message.index)?.dispose();
-    this.bodies.set(message.index, new Body(message, this.lights, this.shadow, [this.scene, this.casters]));
+    for (const hair of Object.values(this.hair)) hair.relight();
+    const { a, b, c, d } = this.hair;
+    const volumes = { a: a.volume, b: b.volume, c: c.volume, d: d.volume };
+    this.bodies.set(message.index, new Body(message, this.lights, volumes, [this.scene, this.casters]));
     this.invalidate();
   }
 
@@ -112,6 +118,7 @@ export class Viewer {
       body.place(side, points?.length ? points.slice(3 * at, 3 * (at + body.points)) : undefined);
       at += body.points;
     }
+    this.hair[side].relight();
     this.invalidate();
   }
 
@@ -138,14 +145,8 @@ export class Viewer {
     this.invalidate();
   }
 
-  setLights(name: string): void {
-    this.lights.preset = PRESETS[name] ?? PRESETS["studio"];
-    this.invalidate();
-  }
-
-  setTheme(theme: "dark" | "light"): void {
-    this.theme = theme;
-    this.backdrop.setTheme(theme);
+  setLights(rig: Rig): void {
+    this.lights.rig = rig;
     this.invalidate();
   }
 
@@ -169,7 +170,7 @@ export class Viewer {
 
   /** Focal length of the lens, for a picture that is 36 mm high [mm]; the subject keeps its size. */
   get focalLength(): number {
-    return FILM / 2 / Math.tan((0.5 * this.camera.fov * Math.PI) / 180);
+    return (0.5 * SENSOR) / Math.tan((0.5 * this.camera.fov * Math.PI) / 180);
   }
 
   set focalLength(length: number) {
@@ -180,7 +181,7 @@ export class Viewer {
     this.invalidate();
   }
 
-  /** Angle by which the lights are turned about the vertical [degrees]. */
+  /** Turns the lights about the vertical [degrees]. */
   setLightTurn(degrees: number): void {
     this.lights.turn = degrees;
     this.invalidate();
@@ -191,7 +192,7 @@ export class Viewer {
     const { camera, controls } = this;
     return {
       camera: [...camera.position.toArray(), ...controls.target.toArray()],
-      focal_length: round(this.focalLength, 2),
+      focal_length: Number(this.focalLength.toFixed(2)),
       light_turn: this.lights.turn,
     };
   }
@@ -201,26 +202,43 @@ export class Viewer {
     return this.hair.a.box.getCenter(new Vector3());
   }
 
-  /** Puts the camera before the subject so that all hair is in the picture; without angles it keeps its direction. */
-  frame(azimuth = 34, elevation = 6, picture = this.size): void {
-    const box = this.hair.a.box;
-    if (box.isEmpty()) return;
+  /** Puts the camera before the subject so that all of it is in the picture. */
+  frame(azimuth = 34, elevation = 7, picture = this.size): void {
+    if (this.hair.a.box.isEmpty()) return;
     this.framed = true;
-    const size = box.getSize(new Vector3());
-    const target = box.getCenter(new Vector3());
-    target.y -= 0.06 * size.y;
-    const radius = 0.5 * Math.max(size.x, size.z, 1.12 * size.y);
-    const narrow = Math.min(1, picture.width / Math.max(picture.height, 1));
-    const distance = (1.32 * radius) / Math.tan((0.5 * this.camera.fov * Math.PI) / 180) / narrow;
     const [a, e] = [(azimuth * Math.PI) / 180, (elevation * Math.PI) / 180];
+    const backward = new Vector3(Math.sin(a) * Math.cos(e), Math.sin(e), Math.cos(a) * Math.cos(e));
+    const { target, distance } = portrait(this.subject(), backward, picture.width / Math.max(picture.height, 1));
     this.controls.target.copy(target);
-    this.camera.position
-      .set(Math.sin(a) * Math.cos(e), Math.sin(e), Math.cos(a) * Math.cos(e))
-      .multiplyScalar(distance)
-      .add(target);
+    this.camera.position.copy(target).addScaledVector(backward, (distance * this.focalLength) / FOCAL_LENGTH);
     this.controls.update();
     this.onLook();
     this.invalidate();
+  }
+
+  /** What a portrait frames: the hair, and the points of bodies near it, without the shoulders. */
+  private *subject(): Iterable<Float32Array> {
+    const { box, locks } = this.hair.a;
+    if (box.isEmpty() || !locks) return;
+    yield thinned(locks.points);
+    const extent = box.getSize(new Vector3());
+    const near = box.clone();
+    near.min.addScaledVector(extent, -0.05).y -= 0.05 * extent.y;
+    near.max.addScaledVector(extent, 0.05);
+    const place = new Vector3();
+    for (const body of this.bodies.values()) {
+      const points = thinned(body.surface("a").points);
+      const inside: number[] = [];
+      for (let i = 0; i < points.length; i += 3)
+        if (near.containsPoint(place.fromArray(points, i))) inside.push(points[i], points[i + 1], points[i + 2]);
+      if (inside.length) yield new Float32Array(inside);
+    }
+  }
+
+  /** Where a portrait camera of this direction would be, which the lamps go by. */
+  private get portrait(): Portrait {
+    const backward = this.camera.position.clone().sub(this.controls.target).normalize();
+    return portrait(this.subject(), backward);
   }
 
   /** Puts the camera: its place and its target, six numbers, and the focal length of its lens [mm]. */
@@ -245,7 +263,6 @@ export class Viewer {
     this.looks.order = order;
     this.lookFrom(camera, focal_length);
     this.onLook = moved;
-    this.drawNow();
   }
 
   /** Something moves: speed counts more than detail for a moment. */
@@ -256,7 +273,8 @@ export class Viewer {
   }
 
   invalidate(): void {
-    this.fresh = true;
+    this.film.drawings = 0;
+    this.lacking = 1;
     this.request();
   }
 
@@ -266,10 +284,14 @@ export class Viewer {
     if (!this.drawing) requestAnimationFrame(() => this.draw());
   }
 
-  /** Draws at once, with all detail: for pictures. */
+  /** Draws the picture at rest at once, for pictures that are kept. */
   drawNow(): void {
     this.moved = 0;
-    this.paint(1);
+    const fraction = this.resolved();
+    this.prepare(false);
+    this.film.drawings = 0;
+    this.paint({ fraction, drawings: this.pace.needed(fraction) }, false);
+    this.lacking = 0;
   }
 
   /** Size of the picture [pixels]. */
@@ -284,21 +306,24 @@ export class Viewer {
     return { x: event.clientX - box.left, y: event.clientY - box.top };
   }
 
-  /** Draws at a size and before a wall of one color, for a picture that is kept; then as before. */
-  drawAt(width: number, height: number, taken: (drawn: HTMLCanvasElement) => void, wall?: string): void {
+  /** Draws at a size, for a picture that is kept; then as before. A clear one has no backdrop. */
+  drawAt(width: number, height: number, clear: boolean): HTMLCanvasElement {
     const { renderer, element } = this;
     const ratio = renderer.getPixelRatio();
     renderer.setPixelRatio(1);
     renderer.setSize(width, height, false);
-    if (wall) this.backdrop.setWall(wall, wall);
     this.keeping = true;
     this.drawNow();
     this.keeping = false;
-    taken(renderer.domElement);
-    this.backdrop.setTheme(this.theme);
+    const kept = document.createElement("canvas");
+    [kept.width, kept.height] = [width, height];
+    const context = kept.getContext("2d")!;
+    if (clear) context.putImageData(this.film.transparent(renderer), 0, 0);
+    else context.drawImage(renderer.domElement, 0, 0);
     renderer.setPixelRatio(ratio);
     renderer.setSize(element.clientWidth, element.clientHeight);
-    this.drawNow();
+    this.invalidate();
+    return kept;
   }
 
   get pictures(): number {
@@ -307,7 +332,7 @@ export class Viewer {
 
   /** Whether no picture is to come until something changes. */
   get idle(): boolean {
-    return !this.wanted && !this.resting && !this.turntable && !this.drawing;
+    return !this.wanted && !this.resting && !this.turntable && !this.drawing && !this.lacking;
   }
 
   private draw(): void {
@@ -320,106 +345,141 @@ export class Viewer {
       this.moved = now;
     } else this.turned = 0;
     const moving = now - this.moved < REST_AFTER;
-    this.pace.hairs = this.hair.a.count;
-    const detail = this.pace.next(moving, this.fresh);
-    this.fresh = false;
-    this.paint(detail);
+    if (moving) this.film.drawings = 0;
+    this.prepare(moving);
+    const portion = this.pace.next(moving);
+    this.clock.begin();
+    this.paint(portion, moving);
+    this.lacking = moving ? 1 : Math.max(0, this.pace.needed(portion.fraction) - this.film.drawings);
     this.onPaint();
     if (moving) {
       clearTimeout(this.resting);
       this.resting = window.setTimeout(() => {
         this.resting = 0;
-        this.request(); // goes on from the detail of the last picture
+        this.invalidate();
       }, REST_AFTER + 20);
     }
     this.drawn++;
     this.drawing = true;
-    whenDrawn(this.renderer.getContext() as WebGL2RenderingContext, () => {
-      const took = performance.now() - now;
+    this.clock.end((took) => {
       this.drawing = false;
-      this.pace.took(took, detail, moving);
-      this.onDraw({ drawMs: took, shown: Math.round(this.hair.a.count * detail) });
+      this.pace.took(took, portion, moving);
+      this.onDraw({ drawMs: took, shown: Math.round(this.hair.a.count * Math.min(1, portion.fraction * portion.drawings)) });
       if (this.wanted) requestAnimationFrame(() => this.draw());
       else if (this.turntable) this.invalidate();
-      else if (!moving && this.pace.refines) this.request();
+      else if (!moving && this.lacking) this.request();
     });
   }
 
-  private paint(detail: number): void {
+  /** The fraction of the hairs that is about as wide as a pixel when it stands for all. */
+  private resolved(): number {
+    const hair = this.hair.a;
+    const { y } = this.renderer.getDrawingBufferSize(new Vector2());
+    const away = this.camera.position.distanceTo(this.controls.target);
+    const pixel = (2 * away * Math.tan((0.5 * this.camera.fov * Math.PI) / 180)) / Math.max(y, 1);
+    this.pace.resolved = Math.min(1, Math.max(hair.width / (THINNEST * pixel), 1 / Math.max(hair.count, 1)));
+    return this.pace.resolved;
+  }
+
+  /** Camera, lamps, and the light in the hair of each side. */
+  private prepare(moving: boolean): void {
     const { renderer, camera, lights } = this;
-    const size = renderer.getSize(new Vector2());
     camera.updateMatrixWorld();
-    lights.update(camera);
-    this.backdrop.update(size.x / Math.max(size.y, 1));
-    for (const body of this.bodies.values()) body.seenFrom(camera.position);
-    const { difference, looks } = this;
-    const cells = looks.cells(size.x, size.y, this.keeping ? [0, 0, 0, 0] : this.covered());
-    cells.forEach((cell, k) => {
-      if (looks.difference) renderer.setRenderTarget(difference.target(k, renderer));
-      this.aim(cell, looks.zoom(cell));
-      const { x, y, width, height } = cell.box;
-      this.paintLook(cell.side, detail, size.y, () => {
-        renderer.setScissorTest(cells.length > 1 && !looks.difference);
-        // The view of a look next to others is that of its cell; else all are seen through one window.
-        if (looks.split) renderer.setViewport(x, size.y - y - height, width, height);
-        else renderer.setViewport(0, 0, size.x, size.y);
-        renderer.setScissor(x, size.y - y - height, width, height);
-      });
+    this.resolved();
+    lights.update(camera, this.portrait);
+    for (const { side } of this.cells) {
+      const hair = this.hair[side];
+      hair.update(renderer);
+      hair.light(renderer, () => [...this.bodies.values()].filter((body) => body.solid).map((body) => body.surface(side)), moving);
+    }
+  }
+
+  /** Which looks are drawn, and where. */
+  private get cells(): Cell[] {
+    const { width, height } = this.renderer.getSize(new Vector2());
+    return this.looks.cells(width, height, this.keeping ? [0, 0, 0, 0] : this.covered());
+  }
+
+  /** Adds drawings to the film and develops it. */
+  private paint({ fraction, drawings }: Portion, moving: boolean): void {
+    const { renderer, film, looks } = this;
+    const buffer = renderer.getDrawingBufferSize(new Vector2());
+    const cells = this.cells;
+    const pictures = looks.difference ? [cells.slice(0, 1), cells.slice(1)] : [cells];
+    if (film.width !== buffer.x || film.height !== buffer.y) film.drawings = 0;
+    const begun = film.drawings;
+    pictures.forEach((some, k) => {
+      const one = k ? this.second : film;
+      one.drawings = begun;
+      if (!begun) one.clear(buffer.x, buffer.y);
+      for (let n = 0; n < drawings; n++) {
+        one.open(renderer);
+        this.expose(some, fraction, one.drawings, moving ? 2 : 1);
+        one.expose(renderer);
+      }
+      one.show(renderer, looks.difference ? this.difference.target(k, renderer) : null);
     });
-    renderer.setRenderTarget(null);
+    if (looks.difference) this.difference.draw(renderer);
+    else this.drawGuides(cells);
+    if (looks.split) this.aim(alone(this.size), 1); // what is over the picture goes by this camera
+  }
+
+  /** Draws looks once: a part of the hairs, another one in each drawing, and the pixels moved by a part of one. */
+  private expose(cells: Cell[], fraction: number, number: number, stride: number): void {
+    const { renderer, camera, looks } = this;
+    const size = renderer.getSize(new Vector2());
+    // The sequence R2 of Roberts 2018 over a filter as wide as the path tracer's
+    const ratio = renderer.getPixelRatio();
+    const [x, y] = [0.7548776662, 0.5698402909].map((step) => ((((0.5 + step * number) % 1) - 0.5) * 1.2) / ratio);
+    for (const body of this.bodies.values()) body.seenFrom(camera.position);
+    renderer.setScissorTest(cells.length > 1);
+    for (const cell of cells) {
+      const hair = this.hair[cell.side];
+      this.aim(cell, looks.zoom(cell), x, y);
+      this.window(cell, size);
+      for (const body of this.bodies.values()) body.turnTo(cell.side);
+      hair.setDetail(fraction, stride, Math.round(number * fraction * hair.count) % Math.max(hair.count, 1));
+      hair.seenFrom(camera.position);
+      renderer.render(this.scene, camera);
+      if (hair.table && this.hairShown) {
+        renderer.render(hair.firstScene, camera);
+        renderer.render(hair.scene, camera);
+      }
+    }
     renderer.setScissorTest(false);
     renderer.setViewport(0, 0, size.x, size.y);
-    if (looks.difference) difference.draw(renderer, camera);
-    if (!looks.split) return;
-    this.aim({ side: "a", box: { x: 0, y: 0, width: size.x, height: size.y }, clear: { x: 0, y: 0, width: size.x, height: size.y } }, 1);
   }
 
-  /** Aims the camera at the middle of what is clear of a cell. */
-  private aim({ box, clear }: Cell, zoom: number): void {
-    const { camera, looks } = this;
+  private drawGuides(cells: Cell[]): void {
+    const { renderer, camera, looks } = this;
+    const cell = cells.find(({ side }) => side === "a");
+    if (!this.guides.shown || !cell) return;
+    const size = renderer.getSize(new Vector2());
+    this.aim(cell, looks.zoom(cell));
+    this.window(cell, size);
+    for (const body of this.bodies.values()) body.turnTo("a");
+    renderer.clearDepth();
+    renderer.render(this.casters, camera);
+    renderer.render(this.guides.scene, camera);
+    renderer.setViewport(0, 0, size.x, size.y);
+  }
+
+  /** Aims the camera at the middle of what is clear of a cell, moved by a part of a pixel. */
+  private aim({ box, clear }: Cell, zoom: number, x = 0, y = 0): void {
+    const { camera } = this;
+    const seen = this.looks.split ? box : clear;
     camera.zoom = zoom;
     camera.aspect = clear.width / Math.max(clear.height, 1);
-    if (looks.split) camera.setViewOffset(clear.width, clear.height, box.x - clear.x, box.y - clear.y, box.width, box.height);
-    else camera.setViewOffset(clear.width, clear.height, 0, 0, clear.width, clear.height);
+    camera.setViewOffset(clear.width, clear.height, seen.x - clear.x + x, seen.y - clear.y + y, seen.width, seen.height);
   }
 
-  /** Draws one look. window: sets what of the canvas it fills, after its shadows are drawn. */
-  private paintLook(side: Side, detail: number, height: number, window: () => void): void {
-    const { renderer, camera, lights } = this;
-    const hair = this.hair[side];
-    const full = camera.view?.fullHeight ?? height;
-    const pixel = (2 * Math.tan((0.5 * camera.fov * Math.PI) / 180)) / (full * camera.zoom * renderer.getPixelRatio());
-    for (const body of this.bodies.values()) body.turnTo(side);
-    hair.setDetail(detail, detail < 0.5 ? 2 : 1);
-    hair.update(renderer);
-    hair.seenFrom(camera.position, pixel);
-    hair.litFrom(lights.key, this.shadow.texel);
-    const box = this.lit(hair);
-    renderer.setScissorTest(false);
-    if (!box.isEmpty() && this.hairShown) {
-      const casters = { bodies: this.casters, hairDepth: hair.depthScene, hairLayers: hair.layersScene };
-      this.shadow.update(renderer, lights.key, box, casters);
-    }
-    window();
-    renderer.clear();
-    renderer.render(this.backdrop.scene, camera);
-    renderer.render(this.scene, camera);
-    if (hair.table && this.hairShown) {
-      renderer.render(hair.firstScene, camera);
-      renderer.render(hair.scene, camera);
-    }
-    if (side === "a" && this.guides.shown) {
-      renderer.clearDepth();
-      renderer.render(this.casters, camera);
-      renderer.render(this.guides.scene, camera);
-    }
-  }
-
-  /** What the key light must cover: the hair, and what it throws shadows on. */
-  private lit(hair: Hair): Box3 {
-    const box = hair.box.clone();
-    if (!box.isEmpty()) box.min.y -= 0.35 * (box.max.y - box.min.y);
-    return box;
+  /** Sets the part of the canvas that a cell fills: a look next to others has a view of its own, else all share one. */
+  private window({ box }: Cell, size: Vector2): void {
+    const { renderer, looks } = this;
+    const { x, y, width, height } = box;
+    if (looks.split) renderer.setViewport(x, size.y - y - height, width, height);
+    else renderer.setViewport(0, 0, size.x, size.y);
+    renderer.setScissor(x, size.y - y - height, width, height);
   }
 
   private resize(): void {
@@ -428,7 +488,8 @@ export class Viewer {
     this.renderer.setSize(clientWidth, clientHeight);
     this.camera.aspect = clientWidth / clientHeight;
     this.camera.updateProjectionMatrix();
-    this.paint(this.pace.next(true, true)); // before the browser shows the emptied canvas
+    this.prepare(true);
+    this.paint(this.pace.next(true), true); // before the browser shows the emptied canvas
     this.invalidate();
   }
 
@@ -464,13 +525,19 @@ export class Viewer {
   }
 }
 
-/** Vertical field of view of a lens [degrees]. */
-function fieldOfView(focalLength: number): number {
-  return (2 * Math.atan(FILM / 2 / focalLength) * 180) / Math.PI;
+/** The cell of a look that has all of the picture. */
+function alone({ width, height }: { width: number; height: number }): Cell {
+  const all = { x: 0, y: 0, width, height };
+  return { side: "a", box: all, clear: all };
 }
 
-function round(value: number, digits: number): number {
-  return Number(value.toFixed(digits));
+/** Some of the points, three numbers each. */
+function thinned(points: Float32Array): Float32Array {
+  const every = Math.ceil(points.length / (3 * SUBJECT_POINTS));
+  if (every <= 1) return points;
+  const kept = new Float32Array(3 * Math.floor(points.length / (3 * every)));
+  for (let i = 0; i < kept.length; i += 3) kept.set(points.subarray(i * every, i * every + 3), i);
+  return kept;
 }
 
 function drawsInSoftware(): boolean {

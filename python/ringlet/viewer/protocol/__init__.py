@@ -49,6 +49,7 @@ from ringlet.viewer.protocol.groom import (
     Names,
     Numbers,
 )
+from ringlet.viewer.protocol.lights import Lamp, Rig
 from ringlet.viewer.protocol.message import (
     VERSION,
     File,
@@ -63,6 +64,7 @@ from ringlet.viewer.protocol.problems import (
     Problem,
     Problems,
 )
+from ringlet.viewer.protocol.render import Render, Rendered, StopRender
 from ringlet.viewer.protocol.review import (
     AddReference,
     AnyReview,
@@ -139,6 +141,7 @@ FROM_SERVER: tuple[type[Message], ...] = (
     References,
     Views,
     Cameras,
+    Rendered,
 )
 
 __all__ = [
@@ -181,6 +184,7 @@ __all__ = [
     "Introduce",
     "Isolate",
     "KeepView",
+    "Lamp",
     "Lead",
     "LoadSnapshot",
     "Locks",
@@ -209,9 +213,12 @@ __all__ = [
     "Progress",
     "Reference",
     "References",
+    "Render",
+    "Rendered",
     "Resolve",
     "Restore",
     "ReviewMessage",
+    "Rig",
     "Role",
     "Save",
     "Saved",
@@ -224,6 +231,7 @@ __all__ = [
     "Stage",
     "StageCamera",
     "Step",
+    "StopRender",
     "TakeSnapshot",
     "Timeline",
     "Trouble",

@@ -8,6 +8,7 @@ from pydantic import Field, TypeAdapter
 
 from ringlet.data import limits
 from ringlet.viewer.protocol.message import File, FrameNumber, Gesture, Id, Message, Place, Position, Row, Shared
+from ringlet.viewer.protocol.render import Render, StopRender
 from ringlet.viewer.protocol.review import ReviewMessage
 
 MOST_TEXT = 1_800_000  # characters of a file
@@ -297,6 +298,8 @@ FromPage = Annotated[
     | Hand
     | Play
     | Against
+    | Render
+    | StopRender
     | Watch
     | ReviewMessage,
     Field(discriminator="kind"),

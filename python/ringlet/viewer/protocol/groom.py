@@ -104,6 +104,7 @@ class Colors(Message):
     side: Side
     stations: int
     roughness: float
+    azimuthal_roughness: float
     tilt: float
     arrays: ClassVar[dict[str, str]] = {"reflectance": "u1"}
 

@@ -6,6 +6,7 @@ from typing import Any, ClassVar, Literal
 
 from pydantic import Field
 
+from ringlet.viewer.protocol.lights import Rig
 from ringlet.viewer.protocol.message import File, Message, Place, Point, Shared, Side
 
 
@@ -16,7 +17,8 @@ class Welcome(Message):
     heard:    number of messages that the server has handled for pages of this name
     schemas:  JSON schemas of ``recipe`` and ``shot``
     recovered: whether the server recovered what pages of an earlier run had not saved
-    colors:   linear reflectance in red, green and blue, and roughness, of each hair colour
+    colors:   linear reflectance in red, green and blue, roughness and azimuthal roughness, of each hair colour
+    rigs:     light rigs of pictures, by name
     """
 
     kind: Literal["welcome"] = "welcome"
@@ -28,7 +30,8 @@ class Welcome(Message):
     schemas: dict[str, Any]
     operators: list[str]
     recovered: bool
-    colors: dict[str, tuple[float, float, float, float]]
+    colors: dict[str, tuple[float, float, float, float, float]]
+    rigs: dict[str, Rig]
 
 
 class Person(Message):

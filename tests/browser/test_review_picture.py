@@ -1,0 +1,155 @@
+"""The picture of the review page: like the path-traced one, drawn in time, and rendered in place."""
+
+from __future__ import annotations
+
+import base64
+import io
+import shutil
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from conftest import Review
+from numpy.typing import NDArray
+from PIL import Image
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+SIZE, SAMPLES, PATCH = 240, 16, 12
+# Bounds on percentiles of the luminance of patches: gaps between curls that are finer than a voxel have no shadow.
+BOUNDS = {5: 0.25, 50: 0.2, 95: 0.15}
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
+
+# Type, locks, points of a hair, colour. There are few and thick hairs, so that a reference takes seconds.
+LOOKS = {
+    "brown": ("3B", 300, 90, "brown"),
+    "fair": ("1", 300, 40, "blond"),
+}
+
+
+def pixels(encoded: str) -> NDArray[np.float64]:
+    """Picture of a data URL, shape (height, width, 4), from 0 to 1."""
+    picture = Image.open(io.BytesIO(base64.b64decode(encoded.split(",")[1])))
+    return np.asarray(picture.convert("RGBA"), np.float64) / 255.0
+
+
+def drawn(review: Review, *, hair: bool = True, clear: bool = False) -> NDArray[np.float64]:
+    """The live picture."""
+    show = f"ringlet.viewer.showHair({str(hair).lower()})"
+    draw = f"ringlet.viewer.drawAt({SIZE}, {SIZE}, {str(clear).lower()}).toDataURL('image/png')"
+    return pixels(review.get(f"({show}, {draw})"))
+
+
+def rendered(review: Review, size: int = SIZE, samples: int = SAMPLES) -> NDArray[np.float64]:
+    """The path-traced picture from the same camera."""
+    review.page.get_by_label("Samples per pixel").evaluate(
+        f"(list) => {{ list.append(new Option('', '{samples}')); list.value = '{samples}'; }}"
+    )
+    review.get(f"ringlet.render.start({{ width: {size}, height: {size} }})")
+    review.until(f"ringlet.render.picture?.samples == {samples}", 600.0)
+    read = """new Promise((done) => { const reader = new FileReader(); reader.onload = () => done(reader.result);
+        reader.readAsDataURL(ringlet.render.picture.png); })"""
+    return pixels(review.get(read))
+
+
+def patches(picture: NDArray[np.float64], chosen: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """Mean colours of the square patches that lie in a region, shape (patches, 3)."""
+    count = SIZE // PATCH
+    whole = chosen.reshape(count, PATCH, count, PATCH).mean(axis=(1, 3)) > 0.9
+    return picture[:, :, :3].reshape(count, PATCH, count, PATCH, 3).mean(axis=(1, 3))[whole]
+
+
+def saturation(colors: NDArray[np.float64]) -> float:
+    return float(((colors.max(axis=1) - colors.min(axis=1)) / np.maximum(colors.max(axis=1), 1e-3)).mean())
+
+
+@pytest.mark.parametrize("name", LOOKS)
+def test_the_live_picture_has_the_light_of_the_path_traced_one(opened: Any, folder: Path, name: str):
+    kind, locks, points, color = LOOKS[name]
+    shutil.copytree(EXAMPLES / "types", folder / "types")
+    (folder / "child").mkdir()
+    shutil.copy(EXAMPLES / "child/head.usdc", folder / "child")
+    (folder / "look.recipe.toml").write_text(
+        f'ringlet = 1\nextends = "types/{kind}.recipe.toml"\nname = "{name}"\nlocks.count = {locks}\n'
+        f'hairs.density = "8 /cm2"\nhairs.width = "0.14 mm"\nhairs.points = {points}\ncolor.preset = "{color}"\n'
+    )
+    review: Review = opened("look.recipe.toml", viewport={"width": 420, "height": 420})
+    path_traced, live = rendered(review), drawn(review)
+    bare, covered = drawn(review, hair=False), drawn(review, clear=True)[:, :, 3]
+    hair = np.abs(live - bare).max(axis=2) > 0.03
+    regions = {"hair": hair, "bodies": ~hair & (covered > 0.98), "backdrop": covered < 0.02}
+    for region, chosen in regions.items():
+        ours, theirs = patches(live, chosen), patches(path_traced, chosen)
+        assert len(ours) >= 10, region
+        for part, bound in BOUNDS.items():
+            a, b = (np.percentile(colors @ LUMINANCE, part) for colors in (ours, theirs))
+            assert a == pytest.approx(b, rel=bound, abs=0.01), f"{region}, percentile {part}"
+        assert saturation(ours) == pytest.approx(saturation(theirs), abs=0.08), region
+
+
+def test_a_picture_at_rest_adds_drawings_until_all_hairs_are_in_it(opened: Any):
+    review: Review = opened()
+    review.until("ringlet.viewer.idle")
+    review.get("(window.drawings = [], ringlet.viewer.onPaint = () => drawings.push(ringlet.viewer.film.drawings))")
+    review.get("(ringlet.viewer.pace.took = () => {}, ringlet.viewer.pace.whole = 2000, ringlet.viewer.invalidate())")
+    review.until("ringlet.viewer.idle")
+    seen = review.get("drawings")
+    assert (
+        len(seen) > 2
+        and seen == sorted(set(seen))
+        and seen[-1] * review.get("ringlet.viewer.pace.next(false).fraction") >= 1
+    )
+
+
+PACE = """(() => {
+    const pace = new ringlet.viewer.pace.constructor(SOFTWARE), hairs = 100000, times = [];
+    pace.resolved = 0.2;
+    for (let picture = 0; picture < 40; picture++) {
+        const portion = pace.next(MOVING);
+        times.push(portion.fraction * portion.drawings * hairs * PER_HAIR);
+        pace.took(times.at(-1), portion, MOVING);
+    }
+    return times.slice(20);
+})()"""
+
+
+def test_pictures_are_fluent_while_something_moves_and_soon_cancelled_at_rest(opened: Any):
+    review: Review = opened()
+
+    def times(**values: Any) -> list[float]:
+        script = PACE
+        for name, value in values.items():
+            script = script.replace(name, str(value))
+        return review.get(script)
+
+    # 100 000 hairs, of which a card draws 1 000 a millisecond, and a processor 20
+    assert max(times(SOFTWARE="false", MOVING="true", PER_HAIR=0.001)) < 33
+    assert max(times(SOFTWARE="true", MOVING="true", PER_HAIR=0.02)) < 100
+    assert max(times(SOFTWARE="true", MOVING="false", PER_HAIR=0.02)) < 100
+
+
+def test_a_render_is_shown_in_place_wiped_saved_and_ended_by_a_move(opened: Any, tmp_path: Path):
+    review: Review = opened(viewport={"width": 760, "height": 500})
+    choose = "(list) => { list.append(new Option('', '4')); list.value = '4'; }"
+    review.page.get_by_label("Samples per pixel").evaluate(choose)
+    review.page.get_by_role("button", name="Render (R)").click()
+    review.until("ringlet.render.picture", 600.0)
+    picture = review.page.get_by_alt_text("Path-traced picture")
+    assert picture.is_visible()
+    review.until("ringlet.render.picture.samples == 4", 600.0)
+    assert "Rendered, 4 samples" in review.page.locator(".render-state").inner_text()
+    line = review.page.get_by_role("slider", name="Wipe between render and live picture")
+    box = review.page.locator(".render").bounding_box()
+    y, middle = box["y"] + 0.8 * box["height"], box["x"] + box["width"] / 2
+    review.page.mouse.move(line.bounding_box()["x"] + 12, y)
+    review.page.mouse.down()
+    review.page.mouse.move(middle, y, steps=4)
+    review.page.mouse.up()
+    assert abs(int(line.get_attribute("aria-valuenow")) - 50) <= 2
+    with review.page.expect_download() as download:
+        review.page.get_by_role("button", name="Save PNG").click()
+    saved = Image.open(download.value.path())
+    assert saved.size == (review.get("ringlet.viewer.size.width"), review.get("ringlet.viewer.size.height"))
+    review.get("ringlet.viewer.key('ArrowLeft')")
+    assert not picture.is_visible() and review.get("ringlet.render.picture") is None
+    assert not review.errors

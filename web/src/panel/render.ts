@@ -1,0 +1,180 @@
+// Render in place: the path-traced picture of what is seen, over the live one, with a wipe between them.
+
+import "./render.css";
+import { h, iconButton } from "../dom";
+import type { Model } from "../model";
+import type { Render, Rendered } from "../protocol";
+import { keep } from "../view/capture";
+import type { Viewer } from "../view/viewer";
+import { bindKey, plainKey } from "./keys";
+import type { Viewbar } from "./viewbar";
+
+const SAMPLES = [16, 64, 256];
+const MOST_PIXELS = 2048; // along a side
+
+/** A rendered picture and what it is of, so that it can be kept. */
+export interface RenderedPicture {
+  png: Blob;
+  samples: number;
+  request: Render;
+}
+
+export class RenderPanel {
+  readonly element: HTMLElement;
+  /** The picture as it is so far. */
+  picture: RenderedPicture | null = null;
+  private request: Render | null = null;
+  private number = 0;
+  private wiped = 1;
+  private dragged = false;
+  private readonly image = h("img", { alt: "Path-traced picture", draggable: "false" });
+  private readonly state = h("output", { class: "render-state", role: "status" });
+  private readonly samples = h("select", { "aria-label": "Samples per pixel" });
+  private readonly stopping = h("button", { type: "button", class: "quiet", onclick: () => this.stop() }, "Stop");
+  private readonly saving = h("button", { type: "button", class: "quiet", onclick: () => this.save() }, "Save PNG");
+  private readonly line = h("div", {
+    class: "render-line",
+    role: "slider",
+    tabindex: 0,
+    "aria-label": "Wipe between render and live picture",
+    "aria-valuemin": 0,
+    "aria-valuemax": 100,
+  });
+
+  constructor(
+    private readonly model: Model,
+    private readonly viewer: Viewer,
+    private readonly viewbar: Viewbar,
+    private readonly name: () => string,
+  ) {
+    for (const count of SAMPLES) this.samples.append(h("option", { value: String(count) }, `${count} samples`));
+    this.samples.value = "64";
+    this.samples.addEventListener("change", () => this.start());
+    const close = h("button", { type: "button", class: "quiet", onclick: () => this.close() }, "Close");
+    const bar = h("div", { class: "render-bar" }, this.state, this.samples, this.stopping, this.saving, close);
+    this.element = h("section", { class: "render", hidden: true, "aria-label": "Render" }, this.image, this.line, bar);
+    viewbar.element.append(iconButton("render", "Render (R)", () => this.start()));
+    bindKey({ keys: "R", does: "render the picture, path-traced", on: plainKey("r"), run: () => this.start() });
+    this.bindLine();
+    model.on("look", () => this.followLook());
+    model.on("compared", () => viewer.compared && this.close());
+    model.on("numbers", () => this.tell());
+  }
+
+  /** Renders what is seen, in place of the last render. */
+  start(size = this.viewer.size): void {
+    if (this.viewer.compared) return;
+    const request = this.seen(size);
+    if (!request.width || !request.height) return;
+    this.number += 1;
+    this.request = { ...request, number: this.number };
+    this.picture = null;
+    this.revision = this.model.numbers?.revision ?? 0;
+    this.element.hidden = false;
+    this.image.hidden = true;
+    this.wipe(1);
+    this.model.say(this.request);
+    this.tell();
+  }
+
+  /** A step of a render has arrived. */
+  show(message: Rendered): void {
+    if (!this.request || message.number !== this.request.number) return;
+    const png = new Blob([message.png as Uint8Array<ArrayBuffer>], { type: "image/png" });
+    this.picture = { png, samples: message.samples, request: this.request };
+    URL.revokeObjectURL(this.image.src);
+    this.image.src = URL.createObjectURL(png);
+    this.image.hidden = false;
+    this.tell();
+  }
+
+  /** The render cannot be made. */
+  fail(): void {
+    if (this.request && !this.done && !this.picture) this.close();
+  }
+
+  close(): void {
+    if (!this.request) return;
+    this.stop();
+    this.request = this.picture = null;
+    this.element.hidden = true;
+  }
+
+  private revision = 0;
+
+  private get done(): boolean {
+    return !this.request || (this.picture?.samples ?? 0) >= (this.request.samples ?? 0);
+  }
+
+  /** What is seen now, as a request. */
+  private seen(size: { width: number; height: number }): Render {
+    const part = Math.min(1, MOST_PIXELS / Math.max(size.width, size.height, 1));
+    return {
+      kind: "render",
+      number: 0,
+      ...this.viewer.cameraState,
+      width: Math.round(size.width * part),
+      height: Math.round(size.height * part),
+      samples: Number(this.samples.value),
+      light: this.viewbar.light.value as Render["light"],
+      color: this.viewbar.color.value,
+    };
+  }
+
+  /** A picture of another view, light or color is not that of what is seen. */
+  private followLook(): void {
+    if (!this.request) return;
+    const now = this.seen(this.viewer.size);
+    const then = this.request;
+    const kept = ["camera", "focal_length", "light", "light_turn", "color"] as const;
+    if (kept.some((name) => JSON.stringify(now[name]) !== JSON.stringify(then[name]))) this.close();
+  }
+
+  private stop(): void {
+    if (!this.done) this.model.say({ kind: "stop_render" });
+    if (this.request && this.picture) this.request.samples = this.picture.samples;
+    this.tell();
+  }
+
+  private save(): void {
+    if (this.picture) keep(this.picture.png, `${this.name()}_render.png`);
+  }
+
+  private tell(): void {
+    const { request, picture, model } = this;
+    if (!request) return;
+    const earlier = (model.numbers?.revision ?? 0) !== this.revision ? ", of an earlier groom" : "";
+    const count = picture ? `${picture.samples} of ${request.samples} samples` : "Starting …";
+    this.state.textContent = `${this.done ? `Rendered, ${picture?.samples} samples` : count}${earlier}`;
+    this.stopping.hidden = this.done;
+    this.saving.hidden = !picture;
+    this.line.hidden = !picture;
+  }
+
+  private wipe(part: number): void {
+    this.wiped = Math.min(1, Math.max(0, part));
+    this.image.style.clipPath = `inset(0 ${100 * (1 - this.wiped)}% 0 0)`;
+    this.line.style.left = `clamp(12px, ${100 * this.wiped}%, calc(100% - 12px))`;
+    this.line.setAttribute("aria-valuenow", String(Math.round(100 * this.wiped)));
+  }
+
+  private bindLine(): void {
+    const { line } = this;
+    line.addEventListener("pointerdown", (event) => {
+      this.dragged = true;
+      line.setPointerCapture(event.pointerId);
+    });
+    line.addEventListener("pointermove", (event) => {
+      const box = this.element.getBoundingClientRect();
+      if (this.dragged) this.wipe((event.clientX - box.left) / box.width);
+    });
+    for (const name of ["pointerup", "pointercancel"] as const) line.addEventListener(name, () => (this.dragged = false));
+    line.addEventListener("keydown", (event) => {
+      const by = { ArrowLeft: -0.02, ArrowRight: 0.02 }[event.key];
+      if (!by) return;
+      event.preventDefault();
+      event.stopPropagation();
+      this.wipe(this.wiped + by);
+    });
+  }
+}

@@ -1,0 +1,207 @@
+// How much hair is in each voxel: the points of hairs are added up on the graphics card, slices side by side.
+
+import {
+  AddEquation,
+  CustomBlending,
+  FloatType,
+  GLSL3,
+  HalfFloatType,
+  InstancedBufferGeometry,
+  NearestFilter,
+  OneFactor,
+  OrthographicCamera,
+  Points,
+  RawShaderMaterial,
+  RGBAFormat,
+  Scene,
+  DataUtils,
+  type WebGLRenderer,
+  WebGLRenderTarget,
+} from "three";
+import { LOOKUP, TONE } from "./shaders";
+import type { Grid, Matter } from "./volume";
+
+const MOST = 300_000; // points that are added up; fewer hairs stand for all
+
+const VERTEX = /* glsl */ `
+precision highp float;
+precision highp int;
+precision highp sampler2D;
+${LOOKUP}
+${TONE}
+uniform highp sampler2D hairPoints;
+uniform int points, every;
+uniform vec3 origin;
+uniform ivec3 counts;
+uniform int across;   // slices side by side
+uniform vec2 extent;  // of the picture [pixels]
+uniform float voxel, share;
+uniform bool tangents; // adds up directions from root to tip, in place of tones
+out vec4 mass;
+void main() {
+  int k = gl_VertexID * every, at = gl_InstanceID * points;
+  vec4 here = lookup(hairPoints, at + k);
+  vec3 next = lookup(hairPoints, at + min(k + every, points - 1)).xyz;
+  ivec3 cell = ivec3(floor((here.xyz - origin) / voxel));
+  float projected = 0.7853982 * here.w * length(next - here.xyz) / (voxel * voxel * voxel);
+  vec3 along = normalize(next - here.xyz + vec3(0.0, 1e-9, 0.0));
+  vec3 value = tangents ? along : toneOf(gl_InstanceID, float(k) / float(points - 1));
+  mass = projected / share * vec4(value, 1.0);
+  vec2 pixel = vec2(ivec2(cell.z % across, cell.z / across) * counts.xy + cell.xy) + 0.5;
+  bool outside = any(lessThan(cell, ivec3(0))) || any(greaterThanEqual(cell, counts));
+  gl_Position = outside ? vec4(2.0, 2.0, 2.0, 1.0) : vec4(2.0 * pixel / extent - 1.0, 0.0, 1.0);
+  gl_PointSize = 1.0;
+}
+`;
+const FRAGMENT = /* glsl */ `
+precision highp float;
+in vec4 mass;
+out vec4 color;
+void main() { color = mass; }
+`;
+
+type Uniforms = Record<string, { value: unknown }>;
+
+export class Density {
+  private readonly scene = new Scene();
+  private readonly camera = new OrthographicCamera();
+  private readonly material: RawShaderMaterial;
+  private readonly mesh: Points;
+  private target: WebGLRenderTarget | null = null;
+
+  /** hair: the uniforms of the hair with its points and colors */
+  constructor(private readonly hair: Uniforms) {
+    this.material = new RawShaderMaterial({
+      glslVersion: GLSL3,
+      vertexShader: VERTEX,
+      fragmentShader: FRAGMENT,
+      uniforms: {
+        ...hair,
+        every: { value: 1 },
+        origin: { value: null },
+        counts: { value: [1, 1, 1] },
+        across: { value: 1 },
+        extent: { value: [1, 1] },
+        voxel: { value: 1 },
+        share: { value: 1 },
+        tangents: { value: false },
+      },
+      blending: CustomBlending,
+      blendEquation: AddEquation,
+      blendSrc: OneFactor,
+      blendDst: OneFactor,
+      depthTest: false,
+      depthWrite: false,
+      transparent: true,
+    });
+    this.mesh = new Points(new InstancedBufferGeometry(), this.material);
+    this.mesh.frustumCulled = false;
+    this.scene.add(this.mesh);
+  }
+
+  /** Extinction, tone and direction of the hair in the voxels. */
+  measure(renderer: WebGLRenderer, grid: Grid, hairs: number): Pick<Matter, "hair" | "tone" | "along"> {
+    const [nx, ny, nz] = grid.counts;
+    const across = Math.ceil(Math.sqrt(nz));
+    const [width, height] = [across * nx, Math.ceil(nz / across) * ny];
+    const points = this.hair["points"].value as number;
+    const every = Math.max(1, Math.floor(points / 48));
+    const stations = Math.ceil((points - 1) / every);
+    const drawn = Math.min(hairs, Math.ceil(MOST / stations));
+    const target = this.prepare(renderer, width, height, stations);
+    (this.mesh.geometry as InstancedBufferGeometry).instanceCount = drawn;
+    const { uniforms } = this.material;
+    uniforms["every"].value = every;
+    uniforms["origin"].value = grid.origin;
+    uniforms["counts"].value = grid.counts;
+    uniforms["across"].value = across;
+    uniforms["extent"].value = [width, height];
+    uniforms["voxel"].value = grid.size;
+    uniforms["share"].value = drawn / Math.max(hairs, 1);
+    const [x, y, z, hair] = this.sum(renderer, target, grid, across, false);
+    const [dx, dy, dz] = this.sum(renderer, target, grid, across, true);
+    return { hair, tone: [x, y, z], along: [dx, dy, dz] };
+  }
+
+  /** Sums in the voxels: three numbers times the extinction, and the extinction. */
+  private sum(renderer: WebGLRenderer, target: WebGLRenderTarget, grid: Grid, across: number, tangents: boolean) {
+    const [nx, ny, nz] = grid.counts;
+    this.material.uniforms["tangents"].value = tangents;
+    const before = renderer.getRenderTarget();
+    renderer.setRenderTarget(target);
+    renderer.setClearColor(0x000000, 0);
+    renderer.clear();
+    renderer.render(this.scene, this.camera);
+    const values = read(renderer, target);
+    renderer.setRenderTarget(before);
+    const channels = [0, 1, 2, 3].map(() => new Float32Array(grid.voxels));
+    for (let k = 0, to = 0; k < nz; k++)
+      for (let j = 0; j < ny; j++)
+        for (let i = 0; i < nx; i++, to++) {
+          const from = 4 * ((k % across) * nx + i + target.width * (Math.floor(k / across) * ny + j));
+          for (let c = 0; c < 4; c++) channels[c][to] = values[from + c];
+        }
+    for (const channel of channels) blur(channel, grid.counts);
+    return channels;
+  }
+
+  dispose(): void {
+    this.target?.dispose();
+    this.material.dispose();
+    this.mesh.geometry.dispose();
+  }
+
+  private prepare(renderer: WebGLRenderer, width: number, height: number, stations: number): WebGLRenderTarget {
+    if (this.mesh.geometry.index?.count !== stations) {
+      this.mesh.geometry.dispose();
+      const geometry = new InstancedBufferGeometry();
+      geometry.setIndex([...Array(stations).keys()]);
+      this.mesh.geometry = geometry;
+    }
+    if (this.target?.width === width && this.target.height === height) return this.target;
+    this.target?.dispose();
+    const blends = renderer.getContext().getExtension("EXT_float_blend") !== null;
+    this.target = new WebGLRenderTarget(width, height, {
+      type: blends ? FloatType : HalfFloatType,
+      format: RGBAFormat,
+      minFilter: NearestFilter,
+      magFilter: NearestFilter,
+      depthBuffer: false,
+    });
+    return this.target;
+  }
+}
+
+function read(renderer: WebGLRenderer, target: WebGLRenderTarget): Float32Array {
+  const { width, height } = target;
+  const values = new Float32Array(4 * width * height);
+  if (target.texture.type === FloatType) {
+    renderer.readRenderTargetPixels(target, 0, 0, width, height, values);
+    return values;
+  }
+  const half = new Uint16Array(values.length);
+  renderer.readRenderTargetPixels(target, 0, 0, width, height, half);
+  for (let i = 0; i < half.length; i++) values[i] = DataUtils.fromHalfFloat(half[i]);
+  return values;
+}
+
+/** A binomial filter of three voxels along each axis: points are in one voxel each. */
+function blur(values: Float32Array, [nx, ny, nz]: [number, number, number]): void {
+  const strides = [1, nx, nx * ny];
+  const counts = [nx, ny, nz];
+  for (let axis = 0; axis < 3; axis++) {
+    const [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
+    const stride = strides[axis];
+    for (let b = 0; b < counts[v]; b++)
+      for (let a = 0; a < counts[u]; a++) {
+        let index = a * strides[u] + b * strides[v];
+        let before = 0;
+        for (let m = 0; m < counts[axis]; m++, index += stride) {
+          const here = values[index];
+          const after = m + 1 < counts[axis] ? values[index + stride] : 0;
+          values[index] = 0.25 * before + 0.5 * here + 0.25 * after;
+          before = here;
+        }
+      }
+  }
+}

@@ -1,0 +1,413 @@
+// Light in the mass of the hair, on a grid of voxels: how much of each lamp reaches a place, and the light that hairs,
+// skin and surroundings scatter there.
+//
+// Extinction is that of fibers of all directions, σ = Σ π/4 · diameter · length per volume. A beam includes what is
+// scattered forward: extinction is scaled by 1 - ωf, with f = g² (delta-Eddington: Joseph et al. 1976). The rest is
+// scattered with the mean cosine g' = g / (1 + g), and transported along the six directions of the axes (six-flux: Chu
+// and Churchill 1955).
+
+import {
+  type Box3,
+  ClampToEdgeWrapping,
+  Data3DTexture,
+  DataUtils,
+  HalfFloatType,
+  LinearFilter,
+  RGBAFormat,
+  Vector3,
+} from "three";
+import { at, type Transport } from "./fiber";
+
+/** Voxels along the longest side of the grid. */
+const VOXELS = 64;
+const SHELL = 6; // optical depth of a voxel of skin
+const SWEEPS = 12; // of the scattered light: it converges by the depth of the hair in free paths
+const SWEEPS_MORE = 3; // where it begins with a field that is nearly right
+
+/** A lamp as the grid needs it: direction towards it, and irradiance. */
+export interface Beam {
+  from: Vector3;
+  strength: Vector3;
+}
+
+/** The voxels: how many along each axis, their size and first corner [m]. */
+export class Grid {
+  readonly counts: [number, number, number];
+  readonly origin = new Vector3();
+  readonly size: number;
+
+  constructor(box: Box3, voxels: number) {
+    const extent = box.getSize(new Vector3());
+    this.size = Math.max(extent.x, extent.y, extent.z, 1e-3) / (voxels - 4);
+    const even = (length: number) => 2 * Math.ceil((length / this.size + 4) / 2);
+    this.counts = [even(extent.x), even(extent.y), even(extent.z)];
+    const middle = box.getCenter(new Vector3());
+    const half = new Vector3(...this.counts).multiplyScalar(0.5 * this.size);
+    this.origin.copy(middle).sub(half);
+  }
+
+  static of(box: Box3): Grid {
+    return new Grid(box, VOXELS);
+  }
+
+  get voxels(): number {
+    return this.counts[0] * this.counts[1] * this.counts[2];
+  }
+
+  /** Index of the voxel of a place; -1 outside. */
+  index(x: number, y: number, z: number): number {
+    const [nx, ny, nz] = this.counts;
+    const i = Math.floor((x - this.origin.x) / this.size);
+    const j = Math.floor((y - this.origin.y) / this.size);
+    const k = Math.floor((z - this.origin.z) / this.size);
+    if (i < 0 || j < 0 || k < 0 || i >= nx || j >= ny || k >= nz) return -1;
+    return i + nx * (j + ny * k);
+  }
+}
+
+/** A surface of skin or cloth: three numbers a point. */
+export interface Surface {
+  points: Float32Array;
+  normals: Float32Array;
+  colors: Float32Array;
+  triangles: Uint32Array;
+}
+
+/** What fills the grid: extinction by hair [1/m], its q and its direction times that, optical depth and albedo of skin. */
+export interface Matter {
+  grid: Grid;
+  hair: Float32Array;
+  tone: [Float32Array, Float32Array, Float32Array];
+  along: [Float32Array, Float32Array, Float32Array];
+  skin: Float32Array;
+  albedo: Float32Array; // three a voxel
+}
+
+/** Fills the voxels under surfaces: a shell one voxel below them, so that what lies on them is outside of it. */
+export function shell(grid: Grid, surfaces: Iterable<Surface>): Pick<Matter, "skin" | "albedo"> {
+  const skin = new Float32Array(grid.voxels);
+  const albedo = new Float32Array(3 * grid.voxels);
+  for (const { points, normals, colors, triangles } of surfaces)
+    for (let t = 0; t < triangles.length; t += 3) {
+      const corners = [triangles[t], triangles[t + 1], triangles[t + 2]];
+      let longest = 0;
+      for (let c = 0; c < 3; c++) {
+        const [p, q] = [3 * corners[c], 3 * corners[(c + 1) % 3]];
+        longest = Math.max(longest, Math.hypot(points[p] - points[q], points[p + 1] - points[q + 1], points[p + 2] - points[q + 2]));
+      }
+      const n = Math.min(Math.ceil((2 * longest) / grid.size), 64) || 1;
+      for (let i = 0; i <= n; i++)
+        for (let j = 0; i + j <= n; j++) {
+          const weights = [i / n, j / n, 1 - (i + j) / n];
+          const place = [0, 0, 0];
+          for (let c = 0; c < 3; c++)
+            for (let x = 0; x < 3; x++) {
+              const from = 3 * corners[c] + x;
+              place[x] += weights[c] * (points[from] - grid.size * normals[from]);
+            }
+          const index = grid.index(place[0], place[1], place[2]);
+          if (index < 0) continue;
+          skin[index] = SHELL;
+          for (let x = 0; x < 3; x++) albedo[3 * index + x] = colors[3 * corners[0] + x];
+        }
+    }
+  return { skin, albedo };
+}
+
+/** Optical depth towards each of four lamps, or the part of its light that passes skin. */
+type Four = [Float32Array, Float32Array, Float32Array, Float32Array];
+
+export class LightVolume {
+  readonly uniforms = {
+    gridOrigin: { value: new Vector3() },
+    gridSize: { value: new Vector3(1, 1, 1) },
+    gridDepth: { value: texture([1, 1, 1]) },
+    gridPassed: { value: open() },
+    gridField: { value: texture([1, 1, 1]) },
+    gridFlux: { value: texture([1, 1, 1]) },
+  };
+  private depth: Four | null = null;
+  private passed: Four | null = null;
+  private coarse: Coarse | null = null;
+  private matter: Matter | null = null;
+
+  fill(matter: Matter): void {
+    const { grid } = matter;
+    if (this.matter?.grid.voxels !== grid.voxels || !same(this.matter.grid.counts, grid.counts)) {
+      this.depth = four(grid.voxels);
+      this.passed = four(grid.voxels);
+      this.coarse = new Coarse(grid);
+      this.dispose();
+      const { gridDepth, gridPassed, gridField, gridFlux } = this.uniforms;
+      gridDepth.value = texture(grid.counts);
+      gridPassed.value = texture(grid.counts);
+      gridField.value = texture(this.coarse.counts);
+      gridFlux.value = texture(this.coarse.counts);
+    }
+    this.matter = matter;
+    this.uniforms.gridOrigin.value.copy(grid.origin);
+    this.uniforms.gridSize.value.set(...grid.counts).multiplyScalar(grid.size);
+    this.coarse?.reset();
+  }
+
+  /** Lights the grid. */
+  light(beams: Beam[], ambient: Vector3, transport: Transport): void {
+    const { matter, depth, passed, coarse } = this;
+    if (!matter || !depth || !passed || !coarse) return;
+    beams.forEach((beam, k) => sweep(matter, beam.from, depth[k], passed[k]));
+    coarse.light(matter, beams, depth, passed, ambient, transport);
+    pack(this.uniforms.gridDepth.value, depth);
+    pack(this.uniforms.gridPassed.value, passed);
+    pack(this.uniforms.gridField.value, coarse.mean);
+    pack(this.uniforms.gridFlux.value, coarse.flow);
+  }
+
+  dispose(): void {
+    const { gridDepth, gridPassed, gridField, gridFlux } = this.uniforms;
+    for (const uniform of [gridDepth, gridPassed, gridField, gridFlux]) uniform.value.dispose();
+  }
+}
+
+/** Optical depth of hair and passage of skin towards a light, slice by slice away from it, interpolated in each. */
+function sweep({ grid, hair, skin }: Matter, from: Vector3, depth: Float32Array, passed: Float32Array): void {
+  const { counts, size } = grid;
+  const direction = [from.x, from.y, from.z];
+  const lengths = direction.map(Math.abs);
+  const main = lengths.indexOf(Math.max(...lengths));
+  const [u, v] = [(main + 1) % 3, (main + 2) % 3];
+  const strides = [1, counts[0], counts[0] * counts[1]];
+  const [nu, nv, nm] = [counts[u], counts[v], counts[main]];
+  const step = 1 / lengths[main]; // in voxels, from one slice to the next
+  const [du, dv] = [direction[u] * step, direction[v] * step];
+  const [iu, iv] = [Math.floor(du), Math.floor(dv)];
+  const [fu, fv] = [du - iu, dv - iv];
+  const weights = [(1 - fu) * (1 - fv), fu * (1 - fv), (1 - fu) * fv, fu * fv];
+  const half = 0.5 * step * size;
+  // What leaves the slice before, with a border of what comes from outside of the grid.
+  const wide = nu + 2;
+  let [depths, passages] = [new Float32Array(wide * (nv + 2)), new Float32Array(wide * (nv + 2)).fill(1)];
+  let [nextDepths, nextPassages] = [depths.slice(), passages.slice()];
+  for (let m = 0; m < nm; m++) {
+    const slice = (direction[main] > 0 ? nm - 1 - m : m) * strides[main];
+    for (let b = 0; b < nv; b++) {
+      let here = slice + b * strides[v];
+      let to = 1 + (b + 1) * wide;
+      let there = to + iu + iv * wide;
+      for (let a = 0; a < nu; a++, here += strides[u], to++, there++) {
+        const d =
+          weights[0] * depths[there] +
+          weights[1] * depths[there + 1] +
+          weights[2] * depths[there + wide] +
+          weights[3] * depths[there + wide + 1];
+        let p =
+          weights[0] * passages[there] +
+          weights[1] * passages[there + 1] +
+          weights[2] * passages[there + wide] +
+          weights[3] * passages[there + wide + 1];
+        const within = half * hair[here];
+        const shell = skin[here] > 0 ? Math.exp(-0.5 * step * skin[here]) : 1;
+        p *= shell;
+        depth[here] = d + within;
+        passed[here] = p;
+        nextDepths[to] = d + 2 * within;
+        nextPassages[to] = p * shell;
+      }
+    }
+    [depths, nextDepths] = [nextDepths, depths];
+    [passages, nextPassages] = [nextPassages, passages];
+  }
+}
+
+/** The scattered light, on voxels of twice the size. */
+class Coarse {
+  readonly counts: [number, number, number];
+  /** Mean radiance in red, green and blue, and its luminance. */
+  readonly mean: Four;
+  /** Mean of the luminance times the direction in which it travels; mean square of the sine between hairs. */
+  readonly flow: Four;
+  private readonly keep: Three; // of the light, what crosses a voxel
+  private readonly scatter: Three; // albedo
+  private readonly forward: Three; // albedo times the mean cosine
+  private readonly source: Three; // of the beams: mean radiance
+  private readonly stream: Three[]; // of the beams: the same times the direction, of each channel
+  private readonly flux: Three[];
+  private fresh = true;
+
+  constructor({ counts }: Grid) {
+    this.counts = [counts[0] / 2, counts[1] / 2, counts[2] / 2];
+    const voxels = this.counts[0] * this.counts[1] * this.counts[2];
+    [this.mean, this.flow] = [four(voxels), four(voxels)];
+    [this.keep, this.scatter, this.forward, this.source] = [three(voxels), three(voxels), three(voxels), three(voxels)];
+    this.stream = [three(voxels), three(voxels), three(voxels)];
+    this.flux = [three(voxels), three(voxels), three(voxels)];
+  }
+
+  reset(): void {
+    this.fresh = true;
+  }
+
+  light(matter: Matter, beams: Beam[], depth: Four, passed: Four, ambient: Vector3, transport: Transport): void {
+    this.gather(matter, beams, depth, passed, transport);
+    const sky = ambient.toArray();
+    for (let c = 0; c < 3; c++) {
+      if (this.fresh) for (const values of [this.mean[c], ...this.flux[c]]) values.fill(0);
+      for (let i = 0; i < (this.fresh ? SWEEPS : SWEEPS_MORE); i++) this.transport(c, sky[c]);
+    }
+    this.fresh = false;
+    for (let i = 0; i < this.mean[3].length; i++) {
+      const luminance = (of: Float32Array[]) => 0.2126 * of[0][i] + 0.7152 * of[1][i] + 0.0722 * of[2][i];
+      this.mean[3][i] = luminance(this.mean);
+      for (let axis = 0; axis < 3; axis++) this.flow[axis][i] = luminance(this.flux.map((channel) => channel[axis]));
+    }
+  }
+
+  /** Matter and beams of the voxels, from the eight of the grid in each. */
+  private gather({ grid, hair, tone, along, skin, albedo }: Matter, beams: Beam[], depth: Four, passed: Four, t: Transport): void {
+    const [nx, ny] = grid.counts;
+    const [cx, cy, cz] = this.counts;
+    const strength = beams.map((beam) => beam.strength.toArray());
+    const from = beams.map((beam) => beam.from.toArray());
+    for (let k = 0, to = 0; k < cz; k++)
+      for (let j = 0; j < cy; j++)
+        for (let i = 0; i < cx; i++, to++) {
+          let [sigma, solid] = [0, 0];
+          const [q, bare, mean] = [[0, 0, 0], [0, 0, 0], [0, 0, 0]];
+          const arriving = [0, 0, 0, 0];
+          const optical = [0, 0, 0, 0];
+          for (let corner = 0; corner < 8; corner++) {
+            const at = 2 * i + (corner & 1) + nx * (2 * j + ((corner >> 1) & 1) + ny * (2 * k + (corner >> 2)));
+            sigma += hair[at] / 8;
+            solid += skin[at] / 4;
+            for (let c = 0; c < 3; c++) {
+              q[c] += tone[c][at] / 8;
+              mean[c] += along[c][at] / 8;
+              bare[c] += (skin[at] * albedo[3 * at + c]) / 4;
+            }
+            for (let l = 0; l < 4; l++) {
+              arriving[l] += passed[l][at] / 8;
+              optical[l] += depth[l][at] / 8;
+            }
+          }
+          this.flow[3][to] = sigma > 0 ? Math.max(0, 1 - mean.reduce((sum, x) => sum + x * x, 0) / sigma ** 2) : 1;
+          for (let c = 0; c < 3; c++) {
+            const color = sigma > 0 ? q[c] / sigma : 0;
+            const [omega, g] = [at(t.albedo, color), at(t.forward, color)];
+            const scaled = sigma * (1 - omega * g * g) * 2 * grid.size;
+            const rest = (omega * (1 - g * g)) / (1 - omega * g * g);
+            const total = scaled + solid;
+            this.keep[c][to] = Math.exp(-total);
+            this.scatter[c][to] = total > 0 ? (rest * scaled + wall(solid > 0 ? bare[c] / solid : 0) * solid) / total : 0;
+            this.forward[c][to] = total > 0 ? ((g / (1 + g)) * rest * scaled) / total : 0;
+            let beamed = 0;
+            const streamed = [0, 0, 0];
+            for (let l = 0; l < beams.length; l++) {
+              const one = (strength[l][c] * arriving[l] * Math.exp(-optical[l] * (1 - omega * g * g))) / (4 * Math.PI);
+              beamed += one;
+              for (let axis = 0; axis < 3; axis++) streamed[axis] -= one * from[l][axis];
+            }
+            this.source[c][to] = beamed;
+            for (let axis = 0; axis < 3; axis++) this.stream[c][axis][to] = streamed[axis];
+          }
+        }
+  }
+
+  /** One sweep along each direction with the source of the sweep before. */
+  private transport(c: number, sky: number): void {
+    const [nx, ny, nz] = this.counts;
+    const strides = [1, nx, nx * ny];
+    const counts = [nx, ny, nz];
+    const [keep, scatter, forward, source, mean] = [this.keep[c], this.scatter[c], this.forward[c], this.source[c], this.mean[c]];
+    const sum = new Float32Array(mean.length);
+    for (let axis = 0; axis < 3; axis++) {
+      const [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
+      const [flux, stream] = [this.flux[c][axis], this.stream[c][axis]];
+      const net = new Float32Array(mean.length);
+      for (let b = 0; b < counts[v]; b++)
+        for (let a = 0; a < counts[u]; a++)
+          for (const way of [1, -1]) {
+            const stride = way * strides[axis];
+            let index = a * strides[u] + b * strides[v] + (way < 0 ? (counts[axis] - 1) * strides[axis] : 0);
+            let radiance = sky;
+            for (let m = 0; m < counts[axis]; m++, index += stride) {
+              const even = scatter[index] * (mean[index] + source[index]);
+              const sent = even + way * 3 * forward[index] * (flux[index] + stream[index]);
+              const after = radiance * keep[index] + (1 - keep[index]) * Math.max(sent, 0);
+              const within = 0.5 * (radiance + after);
+              sum[index] += within;
+              net[index] += way * within;
+              radiance = after;
+            }
+          }
+      for (let i = 0; i < net.length; i++) flux[i] = net[i] / 6;
+    }
+    for (let i = 0; i < mean.length; i++) mean[i] = sum[i] / 6;
+  }
+}
+
+/** Albedo of voxels of a wall that sends as much as a diffuse one of an albedo a, lit from one side: they light each other. */
+function wall(a: number): number {
+  return (2 * a) / (1 + (4 / 3) * a);
+}
+
+type Three = [Float32Array, Float32Array, Float32Array];
+
+function three(count: number): Three {
+  return [new Float32Array(count), new Float32Array(count), new Float32Array(count)];
+}
+
+function four(count: number): Four {
+  return [...three(count), new Float32Array(count)];
+}
+
+function same(a: number[], b: number[]): boolean {
+  return a.every((value, i) => value === b[i]);
+}
+
+function texture([x, y, z]: [number, number, number]): Data3DTexture {
+  const made = new Data3DTexture(new Uint16Array(4 * x * y * z), x, y, z);
+  return Object.assign(made, {
+    type: HalfFloatType,
+    format: RGBAFormat,
+    minFilter: LinearFilter,
+    magFilter: LinearFilter,
+    wrapS: ClampToEdgeWrapping,
+    wrapT: ClampToEdgeWrapping,
+    wrapR: ClampToEdgeWrapping,
+  });
+}
+
+/** A grid through which all light passes. */
+function open(): Data3DTexture {
+  const made = texture([1, 1, 1]);
+  (made.image.data as unknown as Uint16Array).fill(DataUtils.toHalfFloat(1));
+  made.needsUpdate = true;
+  return made;
+}
+
+function pack(into: Data3DTexture, values: Four): void {
+  const data = into.image.data as unknown as Uint16Array;
+  for (let c = 0; c < 4; c++) {
+    const from = values[c];
+    for (let i = 0; i < from.length; i++) data[4 * i + c] = DataUtils.toHalfFloat(from[i]);
+  }
+  into.needsUpdate = true;
+}
+
+/** Looks the grid up. */
+export const VOLUME = /* glsl */ `
+uniform highp sampler3D gridDepth, gridPassed, gridField, gridFlux;
+uniform vec3 gridOrigin, gridSize; // first corner, extent [m]
+vec3 inGrid(vec3 place) { return (place - gridOrigin) / gridSize; }
+vec4 opticalDepth(vec3 place) { return texture(gridDepth, inGrid(place)); }
+vec4 pastBodies(vec3 place) { return texture(gridPassed, inGrid(place)); }
+
+// Mean radiance, weighted by 1 + slope · (cosine of its travel to a direction).
+// disorder: mean square of the sine between hairs
+vec3 scattered(vec3 place, vec3 direction, vec3 slope, out float disorder) {
+  vec3 at = inGrid(place);
+  vec4 mean = texture(gridField, at), flux = texture(gridFlux, at);
+  float cosine = dot(flux.xyz, direction) / max(mean.w, 1e-6);
+  disorder = flux.w;
+  return mean.rgb * max(1.0 + slope * cosine, 0.0);
+}
+`;
