@@ -51,6 +51,7 @@ export class CompareBar {
   private readonly changes = h("button", { type: "button", class: "quiet", "aria-expanded": "false" }, "Changes");
   private readonly list = h("div", { class: "compare-changes scrolls", hidden: true, tabindex: 0, role: "region", "aria-label": "Settings that differ" });
   private readonly legend = h("p", { class: "compare-legend", hidden: true }, LEGEND);
+  private readonly bar: HTMLElement;
   private readonly labels = h("div", { class: "look-labels" });
   private readonly divider = h("div", {
     class: "divider",
@@ -77,7 +78,7 @@ export class CompareBar {
       this.list.hidden = !this.list.hidden;
       this.changes.setAttribute("aria-expanded", String(!this.list.hidden));
     });
-    const bar = h(
+    this.bar = h(
       "div",
       { class: "compare-bar" },
       this.mode,
@@ -86,7 +87,7 @@ export class CompareBar {
       this.changes,
       h("button", { type: "button", class: "quiet", onclick: () => this.end() }, "End"),
     );
-    this.element.append(this.divider, this.labels, bar, this.legend, this.list);
+    this.element.append(this.divider, this.labels, this.bar, this.legend, this.list);
     for (const topic of ["compared", "snapshots", "files", "role"] as const) model.on(topic, () => this.update());
     addEventListener("resize", () => this.update());
     bindKey({ keys: "Tab", does: "flip between the looks that are compared", on: (event) => this.flips(event), run: () => this.flip() });
@@ -172,15 +173,17 @@ export class CompareBar {
     const { looks, element, covered } = this.viewer;
     const { clientWidth, clientHeight } = element;
     const bar = this.element.offsetTop;
+    const under = this.bar.offsetTop + this.bar.offsetHeight + 8;
+    this.element.style.setProperty("--under", `${under}px`);
     const cells = looks.cells(clientWidth, clientHeight, covered());
     if (looks.split)
-      return cells.map(({ side, clear }) => [side, clear.x + clear.width / 2, Math.max(62, clear.y + 8 - bar), -50]);
+      return cells.map(({ side, clear }) => [side, clear.x + clear.width / 2, Math.max(under, clear.y + 8 - bar), -50]);
     const at = looks.arrangement === "wipe" ? looks.wipe * clientWidth : clientWidth / 2;
-    if (looks.arrangement === "flip") return [[looks.front, at, 62, -50]];
+    if (looks.arrangement === "flip") return [[looks.front, at, under, -50]];
     const [first, second] = looks.order;
     return [
-      [first, at - 16, 62, -100],
-      [second, at + 16, 62, 0],
+      [first, at - 16, under, -100],
+      [second, at + 16, under, 0],
     ];
   }
 
