@@ -15,6 +15,14 @@ from pydantic.fields import FieldInfo
 from ringlet.viewer import protocol
 
 FILE = Path(__file__).parents[1] / "web/src/protocol.ts"
+PARTS = (
+    protocol.Stage,
+    protocol.Change,
+    protocol.Fix,
+    protocol.Difference,
+    protocol.Problem,
+    protocol.Preset,
+)  # of messages
 ARRAYS = {"f4": "Float32Array", "f8": "Float64Array", "i4": "Int32Array", "u4": "Uint32Array", "u1": "Uint8Array"}
 PLAIN: dict[Any, str] = {
     str: "string",
@@ -77,7 +85,14 @@ def lines() -> Iterator[str]:
     yield f"export const VERSION = {protocol.VERSION};"
     yield "export type Json = string | number | boolean | null | Json[] | { [key: string]: Json };"
     yield ""
-    for message in (protocol.Stage, protocol.Change, protocol.Fix, protocol.Difference, protocol.Problem):
+    for message in (
+        protocol.Stage,
+        protocol.Change,
+        protocol.Fix,
+        protocol.Difference,
+        protocol.Problem,
+        protocol.Preset,
+    ):
         yield from interface(message, from_page=False)
     for message in union:
         yield from interface(message, from_page=True)

@@ -9,7 +9,7 @@ const REFUSED = 4403;
 const WRONG = 4400;
 
 // What changes something: it is said again to a server that has not heard it.
-const CHANGES = ["set", "arrange", "mute", "save", "resolve", "restore", "isolate", "drag", "sculpt", "unsculpt"];
+const CHANGES = ["set", "arrange", "mute", "save", "resolve", "restore", "isolate", "drag", "sculpt", "unsculpt", "take", "keep", "paint", "draw"];
 const STORE = "ringlet-owed"; // what this tab has not been answered when it is left
 
 export type LinkState = "open" | "lost" | "refused";

@@ -6,6 +6,7 @@ import { Link, type LinkState } from "./link";
 import { Model } from "./model";
 import { Bar } from "./panel/bar";
 import { BrushTool } from "./panel/brush";
+import { DrawTool } from "./panel/draw";
 import { CompareBar } from "./panel/compare";
 import { bindKey, plainKey } from "./panel/keys";
 import { LockTool } from "./panel/lock";
@@ -13,6 +14,8 @@ import { Look } from "./panel/look";
 import { Settings } from "./panel/settings";
 import { Sheets } from "./panel/sheets";
 import { Stack } from "./panel/stack";
+import { PaintTool } from "./panel/paint";
+import { PresetTool } from "./panel/presets";
 import { ProblemBar } from "./panel/problems";
 import { Notices, Status } from "./panel/status";
 import { TimelineBar } from "./panel/timeline";
@@ -26,6 +29,8 @@ class App {
   readonly timeline: TimelineBar;
   readonly lock: LockTool;
   readonly brush: BrushTool;
+  readonly paint: PaintTool;
+  readonly draw: DrawTool;
   readonly look: Look;
   private readonly notices = new Notices();
   private readonly problems: ProblemBar;
@@ -43,7 +48,15 @@ class App {
     this.timeline = new TimelineBar(this.model, this.viewer, (frame) => this.status.simulated(frame.statistics));
     this.brush = new BrushTool(this.model, this.viewer);
     this.brush.changed.push((on) => on && this.lock.choose(-1));
-    this.lock.busy = () => this.brush.on;
+    this.paint = new PaintTool(this.model, this.viewer, this.brush.ring);
+    this.paint.changed.push((on) => on && (this.brush.show(false), this.lock.choose(-1)));
+    this.brush.changed.push((on) => on && this.paint.show(false));
+    this.model.paint = (place, label) => this.paint.paint(place, label);
+    this.draw = new DrawTool(this.model, this.viewer);
+    this.model.draw = (place, label) => this.draw.draw(place, label);
+    this.draw.changed.push((on) => on && (this.brush.show(false), this.paint.show(false), this.lock.choose(-1)));
+    for (const { changed } of [this.brush, this.paint]) changed.push((on) => on && this.draw.show(false));
+    this.lock.busy = () => this.brush.on || this.paint.on || this.draw.on;
     picture.append(this.lock.handles, this.brush.ring);
     this.viewer.onPaint = () => this.lock.place();
     this.viewer.onDraw = (statistics) => this.status.drew(statistics);
@@ -53,7 +66,9 @@ class App {
     keys("+ and -", "zoom in, zoom out", "+", "=", "-");
     keys("F", "frame all hair", "f");
     const name = () => (this.model.welcome?.name ?? "ringlet").split(".")[0];
-    const left = h("div", { class: "left" }, new Stack(this.model).element, this.lock.element, this.brush.element);
+    const presets = new PresetTool(this.model, this.viewer);
+    const stack = new Stack(this.model, () => presets.show(true));
+    const left = h("div", { class: "left" }, stack.element, presets.element, this.lock.element, this.brush.element, this.paint.element, this.draw.element);
     const settings = new Settings(this.model).element;
     this.viewer.covered = () => [
       left.getBoundingClientRect().right,
@@ -155,6 +170,14 @@ class App {
         model.progress = message.stage ? message : null;
         model.tell("progress");
         break;
+      case "painted":
+        model.painted = message;
+        model.tell("painted");
+        break;
+      case "presets":
+        model.presets = message.presets;
+        model.tell("presets");
+        break;
       case "names":
         model.names = message;
         model.tell("names");
@@ -224,6 +247,8 @@ class App {
   private reset(): void {
     this.lock.choose(-1);
     this.brush.show(false);
+    this.paint.show(false);
+    this.draw.show(false);
     this.model.reset();
     this.viewer.reset();
     for (const topic of ["document", "timeline", "guides", "compared", "chosen"] as const) this.model.tell(topic);

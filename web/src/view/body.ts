@@ -112,6 +112,10 @@ export class Body {
     scenes[1].add(this.caster);
   }
 
+  get surface(): BufferGeometry {
+    return this.geometry.a;
+  }
+
   get points(): number {
     return this.rest.length / 3;
   }

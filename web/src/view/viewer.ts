@@ -1,6 +1,6 @@
 // The picture: bodies and hair before a wall. Drawn only when something has changed, so an idle page rests.
 
-import { type Box3, PerspectiveCamera, Scene, Vector2, Vector3, WebGLRenderer } from "three";
+import { type Box3, type BufferGeometry, PerspectiveCamera, Scene, Vector2, Vector3, WebGLRenderer } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import type { Body as BodyMessage, Colors, Hairs, Locks } from "../protocol";
 import { Backdrop } from "./backdrop";
@@ -9,6 +9,7 @@ import { GuideLines } from "./guides";
 import { type Colour, Hair } from "./hair";
 import { Lights, PRESETS } from "./lights";
 import { Pace, whenDrawn } from "./pace";
+import { PaintedMap } from "./painted";
 import { Shadow } from "./shadow";
 
 const FOV = 24;
@@ -29,6 +30,7 @@ export class Viewer {
   readonly lights = new Lights();
   readonly hair: Record<Side, Hair>;
   readonly guides = new GuideLines();
+  readonly painted = new PaintedMap();
   compared = false;
   /** How two looks are arranged, which is on the left, which is seen alone, and where the wipe is. */
   arrangement: Arrangement = "split";
@@ -158,6 +160,11 @@ export class Viewer {
   compare(on: boolean): void {
     this.compared = on;
     this.invalidate();
+  }
+
+  /** The bodies as they are seen, to be met by a ray. */
+  get surfaces(): BufferGeometry[] {
+    return [...this.bodies.values()].map((body) => body.surface);
   }
 
   /** The middle of all hair. */
@@ -329,11 +336,12 @@ export class Viewer {
       renderer.clear();
       renderer.render(this.backdrop.scene, camera);
       renderer.render(this.scene, camera);
+      if (side === "a") renderer.render(this.painted.scene, camera);
       if (hair.table && this.hairShown) {
         renderer.render(hair.firstScene, camera);
         renderer.render(hair.scene, camera);
       }
-      if (side === "a" && this.guides.shown) {
+      if (side === "a" && this.guides.active) {
         renderer.clearDepth();
         renderer.render(this.casters, camera);
         renderer.render(this.guides.scene, camera);

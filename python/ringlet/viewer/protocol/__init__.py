@@ -52,6 +52,15 @@ from ringlet.viewer.protocol.message import (
     Message,
     Place,
 )
+from ringlet.viewer.protocol.painting import Draw, Paint, Painted, ShowMap
+from ringlet.viewer.protocol.presets import (
+    Keep,
+    ListPresets,
+    Preset,
+    Presets,
+    Take,
+    Try,
+)
 from ringlet.viewer.protocol.problems import (
     Difference,
     Fix,
@@ -98,6 +107,8 @@ FROM_SERVER: tuple[type[Message], ...] = (
     Trouble,
     Problems,
     Progress,
+    Presets,
+    Painted,
 )
 
 __all__ = [
@@ -117,6 +128,7 @@ __all__ = [
     "Dismiss",
     "Document",
     "Drag",
+    "Draw",
     "File",
     "Files",
     "Fix",
@@ -129,7 +141,9 @@ __all__ = [
     "Heard",
     "Hello",
     "Isolate",
+    "Keep",
     "Lead",
+    "ListPresets",
     "Locks",
     "Look",
     "Measured",
@@ -139,8 +153,12 @@ __all__ = [
     "Notice",
     "Numbers",
     "Open",
+    "Paint",
+    "Painted",
     "Place",
     "Play",
+    "Preset",
+    "Presets",
     "Problem",
     "Problems",
     "Proceed",
@@ -152,10 +170,13 @@ __all__ = [
     "Saved",
     "Sculpt",
     "Set",
+    "ShowMap",
     "Stage",
     "Step",
+    "Take",
     "Timeline",
     "Trouble",
+    "Try",
     "Unsculpt",
     "Watch",
     "Welcome",

@@ -8,6 +8,8 @@ from pydantic import Field, TypeAdapter
 
 from ringlet.data import limits
 from ringlet.viewer.protocol.message import File, FrameNumber, Gesture, Id, Message, Place, Position, Row, Shared
+from ringlet.viewer.protocol.painting import Draw, Paint, ShowMap
+from ringlet.viewer.protocol.presets import Keep, ListPresets, Take, Try
 
 MOST_TEXT = 1_800_000  # characters of a file
 
@@ -267,6 +269,13 @@ FromPage = Annotated[
     | Isolate
     | Sculpt
     | Unsculpt
+    | ShowMap
+    | Paint
+    | Draw
+    | ListPresets
+    | Try
+    | Take
+    | Keep
     | Look
     | Hand
     | Play
