@@ -289,7 +289,7 @@ def test_two_looks_are_labelled_wiped_swapped_and_flipped(opened: Any):
     now = review.picture()
     page.get_by_label("Show another look beside this one").select_option("saved")
     review.until("ringlet.viewer.compared && ringlet.viewer.hair.b.table")
-    assert page.locator(".look-label").all_inner_texts() == ["now", "as saved"]
+    assert page.locator(".look-label b").all_inner_texts() == ["now", "as saved"]
     page.get_by_label("Arrangement of the two looks").select_option("wipe")
     page.get_by_label("Place of the wipe").focus()
     for _ in range(30):

@@ -88,10 +88,16 @@ class Document:
     """
 
     def __init__(
-        self, path: Path, check: Callable[[str, str], Any], edits: str = "", history: History | None = None
+        self,
+        path: Path,
+        check: Callable[[str, str], Any],
+        edits: str = "",
+        history: History | None = None,
+        text: str | None = None,
     ) -> None:
+        """Opens a file; ``text`` is in place of its own."""
         self.path, self.history = path, history or History()
-        self.saved, self.saved_edits = read_text(path), edits
+        self.saved, self.saved_edits = read_text(path) if text is None else text, edits
         self.theirs: tuple[str, str] | None = None
         self._maps_before: dict[str, bytes] = {}  # as they were on disk before they were painted
         self.saved_maps: dict[str, bytes] = {}

@@ -154,7 +154,7 @@ class Files:
         self,
         file: File,
         changes: list[tuple[Place, Any]],
-        gesture: int,
+        gesture: int | None = None,
         maps: Mapping[str, bytes] | None = None,
     ) -> None:
         """Sets values of settings, and painted maps; None removes a setting."""
