@@ -34,7 +34,7 @@ export class DrawTool {
     this.element.append(
       this.title,
       h("p", { class: "told" }, "Draw a line over the scalp. A new line replaces it; the right button, Alt or the arrow keys orbit the camera."),
-      row("lift of its end", this.lift.element, this.height),
+      row("end lift", this.lift.element, this.height),
       row("show the hair", this.hair),
       h("div", { class: "group" }, h("button", { type: "button", class: "quiet", onclick: () => this.show(false) }, "Done")),
     );
@@ -59,13 +59,13 @@ export class DrawTool {
   show(on: boolean): void {
     if (on === this.on && !on) return;
     this.on = on;
+    for (const listener of this.changed) listener(on); // other tools are laid down before this one sets the view
     this.element.toggleAttribute("hidden", !on);
     this.viewer.controls.mouseButtons.RIGHT = on ? MOUSE.ROTATE : MOUSE.PAN;
     this.viewer.showHair(!on || this.hair.checked);
     this.viewer.element.classList.toggle("sculpts", on);
     this.line.visible = false;
     this.viewer.invalidate();
-    for (const listener of this.changed) listener(on);
   }
 
   private tell(): void {

@@ -72,6 +72,7 @@ export class PaintTool {
     this.radius.set(15, { least: SMALLEST, most: LARGEST, step: 1 });
     this.strength.set(0.5, { least: 0.05, most: 1, step: 0.05 });
     this.tell();
+    this.hair.checked = true;
     this.hair.addEventListener("change", () => this.viewer.showHair(this.hair.checked));
     this.mirrored.addEventListener("change", () => this.showPlane());
     const { element } = viewer;
@@ -99,6 +100,7 @@ export class PaintTool {
   show(on: boolean): void {
     if (on === this.on && !on) return;
     this.on = on;
+    for (const listener of this.changed) listener(on); // other tools are laid down before this one sets the view
     this.element.toggleAttribute("hidden", !on);
     this.viewer.painted.shown = on;
     this.viewer.controls.mouseButtons.RIGHT = on ? MOUSE.ROTATE : MOUSE.PAN;
@@ -108,7 +110,6 @@ export class PaintTool {
     this.showPlane();
     if (on) this.ask();
     this.viewer.invalidate();
-    for (const listener of this.changed) listener(on);
   }
 
   /** Asks for the map as it is, unless a stroke shows it anyway. */
